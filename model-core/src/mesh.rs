@@ -113,7 +113,8 @@ impl StiffnessWave {
             Self::Rectangular { stiffness_ratio, contact_ratio, .. } => {
                 let duty = contact_ratio - libm::floor(contact_ratio);
                 let m = harmonic as f64;
-                let amplitude = 4.0 * stiffness_ratio * libm::sin(core::f64::consts::PI * m * duty) / (core::f64::consts::PI * m);
+                let amplitude =
+                    4.0 * stiffness_ratio * libm::sin(core::f64::consts::PI * m * duty) / (core::f64::consts::PI * m);
                 // cos(m (phase - pi/2)) split into sine and cosine of m phase.
                 let (sine, cosine) = libm::sincos(m * core::f64::consts::FRAC_PI_2);
                 (amplitude * sine, amplitude * cosine)

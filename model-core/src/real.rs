@@ -6,9 +6,9 @@ use core::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// A real number with bit-exact arithmetic everywhere.
 pub trait Real:
-    nalgebra::Scalar
-    + Copy
+    Copy
     + Debug
+    + Default
     + PartialOrd
     + Add<Output = Self>
     + Sub<Output = Self>
@@ -17,9 +17,74 @@ pub trait Real:
     + AddAssign
     + SubAssign
     + MulAssign
+    + nalgebra::Scalar
     + nalgebra::ClosedAddAssign
     + nalgebra::ClosedMulAssign
-    + num_traits_zero_one::Zero
-    + num_traits_zero_one::One
+    + num_traits::Zero
+    + num_traits::One
 {
+    /// 0.
+    const ZERO: Self;
+    /// 1/2.
+    const HALF: Self;
+    /// 1.
+    const ONE: Self;
+    /// Nearest value; for tables and tests, never in the step.
+    fn from_f64(value: f64) -> Self;
+    /// Exact value; for tests and reports, never in the step.
+    fn to_f64(self) -> f64;
+    /// Nearest value of a whole number.
+    fn from_i32(value: i32) -> Self;
+    /// Nearest value of a wide whole number.
+    fn from_i64(value: i64) -> Self;
+    /// Towards zero, saturating; NaN gives 0.
+    fn to_i64(self) -> i64;
+    /// Hyperbolic tangent, the same bits on host and target.
+    fn tanh(self) -> Self;
+    /// Quotient; the caller has made sure that `divisor` is not zero.
+    fn over(self, divisor: Self) -> Self;
+    /// Neither infinite nor NaN.
+    fn is_finite(self) -> bool;
+    /// Bits for a digest.
+    fn bits(self) -> u64;
 }
+
+macro_rules! real {
+    ($scalar:ty, $tanh:path) => {
+        impl Real for $scalar {
+            const ZERO: Self = 0.0;
+            const HALF: Self = 0.5;
+            const ONE: Self = 1.0;
+            fn from_f64(value: f64) -> Self {
+                value as Self
+            }
+            fn to_f64(self) -> f64 {
+                self.into()
+            }
+            fn from_i32(value: i32) -> Self {
+                value as Self
+            }
+            fn from_i64(value: i64) -> Self {
+                value as Self
+            }
+            fn to_i64(self) -> i64 {
+                self as i64
+            }
+            fn tanh(self) -> Self {
+                $tanh(self)
+            }
+            fn over(self, divisor: Self) -> Self {
+                self / divisor
+            }
+            fn is_finite(self) -> bool {
+                <$scalar>::is_finite(self)
+            }
+            fn bits(self) -> u64 {
+                self.to_bits().into()
+            }
+        }
+    };
+}
+
+real!(f32, libm::tanhf);
+real!(f64, libm::tanh);

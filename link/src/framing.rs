@@ -1,0 +1,97 @@
+//! Messages on a byte stream: postcard, CRC-32 (ISO-HDLC, little-endian), COBS, a zero byte. A receiver that starts in
+//! mid-frame, or meets garbage, is in step again after the next zero byte; what it had to drop, it counts.
+
+use crc::{CRC_32_ISO_HDLC, Crc, Table};
+use heapless::Vec;
+use serde::{Serialize, de::DeserializeOwned};
+
+/// Longest message before stuffing, CRC included.
+pub const MAX_MESSAGE: usize = 512;
+/// Longest frame on the wire: COBS adds a byte in 254 and one more, then the closing zero.
+pub const MAX_FRAME: usize = MAX_MESSAGE + MAX_MESSAGE / 254 + 3;
+
+const CRC_BYTES: usize = 4;
+static CRC: Crc<u32, Table<1>> = Crc::<u32, Table<1>>::new(&CRC_32_ISO_HDLC);
+
+/// A message that does not fit into [`MAX_MESSAGE`] bytes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct TooLong;
+
+/// The frame that carries a message.
+pub fn encode<M: Serialize>(message: &M) -> Result<Vec<u8, MAX_FRAME>, TooLong> {
+    let mut plain = [0u8; MAX_MESSAGE];
+    let length = postcard::to_slice(message, &mut plain[..MAX_MESSAGE - CRC_BYTES]).map_err(|_| TooLong)?.len();
+    let checksum = CRC.checksum(&plain[..length]);
+    plain[length..length + CRC_BYTES].copy_from_slice(&checksum.to_le_bytes());
+    let mut frame = Vec::new();
+    frame.resize(MAX_FRAME, 0).map_err(|_| TooLong)?;
+    let stuffed = cobs::encode(&plain[..length + CRC_BYTES], &mut frame);
+    frame.truncate(stuffed + 1);
+    Ok(frame)
+}
+
+/// What a [`Receiver`] has thrown away.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Dropped {
+    /// Frames with a bad CRC, a bad length or an unknown content.
+    pub frames: u32,
+}
+
+/// Puts frames together from bytes in any portions.
+#[derive(Debug, Clone)]
+pub struct Receiver {
+    buffer: Vec<u8, MAX_FRAME>,
+    overflowed: bool,
+    dropped: Dropped,
+}
+
+impl Default for Receiver {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Receiver {
+    /// Waits for the first frame.
+    pub const fn new() -> Self {
+        Self { buffer: Vec::new(), overflowed: false, dropped: Dropped { frames: 0 } }
+    }
+
+    /// Takes one byte; returns a message if the byte ended a good frame. Empty frames are fill, not errors.
+    pub fn push<M: DeserializeOwned>(&mut self, byte: u8) -> Option<M> {
+        if byte != 0 {
+            self.overflowed |= self.buffer.push(byte).is_err();
+            return None;
+        }
+        let empty = self.buffer.is_empty();
+        let message = if self.overflowed { None } else { decode(&mut self.buffer) };
+        if message.is_none() && !empty {
+            self.dropped.frames = self.dropped.frames.saturating_add(1);
+        }
+        self.buffer.clear();
+        self.overflowed = false;
+        message
+    }
+
+    /// What was thrown away so far.
+    pub fn dropped(&self) -> Dropped {
+        self.dropped
+    }
+
+    /// Forgets a half frame and the counts.
+    pub fn clear(&mut self) {
+        *self = Self::new();
+    }
+}
+
+fn decode<M: DeserializeOwned>(stuffed: &mut [u8]) -> Option<M> {
+    let length = cobs::decode_in_place(stuffed).ok()?;
+    let (plain, checksum) = stuffed.get(..length)?.split_at_checked(length.checked_sub(CRC_BYTES)?)?;
+    if checksum != CRC.checksum(plain).to_le_bytes() {
+        return None;
+    }
+    match postcard::take_from_bytes(plain) {
+        Ok((message, [])) => Some(message),
+        _ => None,
+    }
+}

@@ -1,0 +1,10 @@
+#![cfg_attr(not(test), no_std)]
+//! What a board and its host say to each other. `messages` holds the words, `framing` puts them on a byte stream:
+//! postcard, then CRC-32, then COBS, each frame ended by a zero byte. Transports, timeouts and policy are left to the
+//! two ends.
+
+pub mod framing;
+pub mod messages;
+
+/// Both ends must speak the same version; raised with every change of a message.
+pub const PROTOCOL_VERSION: u16 = 1;

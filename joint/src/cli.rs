@@ -1,0 +1,57 @@
+//! The command line: subcommands, their help, exit codes. What a subcommand does is in its own module.
+
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+use clap::{CommandFactory, Parser, Subcommand};
+
+use crate::failure::{EXIT_BAD_INPUT, Failure, Outcome};
+use crate::{check, hil};
+
+/// Simulates a planetary robot joint with backlash on a microcontroller, drives it and checks it
+#[derive(Debug, Parser)]
+#[command(name = "joint", version, disable_help_subcommand = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run a joint on the emulated board or on a real one, check it and write a report
+    Hil(hil::Arguments),
+    /// Read a joint file and print what follows from it
+    Check(check::Arguments),
+}
+
+/// Parses the command line, runs it and turns the outcome into an exit code.
+pub fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => {
+            // A reader that has gone away is no error; clap's own `exit` would panic on nothing, but exits by 2 only.
+            let _ = error.print();
+            return ExitCode::from(if error.use_stderr() { EXIT_BAD_INPUT } else { 0 });
+        }
+    };
+    let outcome = match &cli.command {
+        None => show_help(),
+        Some(Command::Hil(arguments)) => hil::run(arguments),
+        Some(Command::Check(arguments)) => check::run(arguments),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            failure.show();
+            ExitCode::from(failure.exit_code())
+        }
+    }
+}
+
+fn show_help() -> Outcome<()> {
+    let help = Cli::command().render_long_help();
+    match write!(io::stdout().lock(), "{help}") {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::new(format!("no output: {error}"))),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,11 @@
+//! The host command `joint` as a library, so that its parts can be tested without a process. `hil` runs a joint on a
+//! board and checks it, `target` prepares toolchain, image and emulator, `check` reads a joint file, `record` is what
+//! a run leaves behind and `report` shows it; physics and wire format are left to `model-core` and `link`.
+
+pub mod check;
+pub mod cli;
+pub mod failure;
+pub mod hil;
+pub mod record;
+pub mod report;
+pub mod target;

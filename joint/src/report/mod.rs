@@ -1,0 +1,1 @@
+//! Reports of a recorded run: HTML and JSON. Nothing is measured here.

@@ -1,0 +1,210 @@
+//! Sampled motion by columns: of the board, of the reference, and the error between them. Columns load straight into a
+//! data frame; what the columns mean mechanically is told in `docs/report-schema.md`.
+
+use serde::{Deserialize, Deserializer, Serialize};
+
+use link::messages::Sample;
+
+/// Sampled motion; all columns are of one length. Values that are not finite are `null` in JSON.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Samples {
+    /// Steps done since the reset.
+    pub tick: Vec<u32>,
+    /// Board time [s].
+    #[serde(deserialize_with = "null_is_nan")]
+    pub time_s: Vec<f64>,
+    /// Motor (sun) angle [rad].
+    #[serde(deserialize_with = "null_is_nan")]
+    pub motor_angle_rad: Vec<f64>,
+    /// Link angle [rad].
+    #[serde(deserialize_with = "null_is_nan")]
+    pub link_angle_rad: Vec<f64>,
+    /// Motor angle over the ratio, less the link angle, from the small remainders, so nothing cancels [rad].
+    #[serde(deserialize_with = "null_is_nan")]
+    pub twist_rad: Vec<f64>,
+    /// Rate of the rigid-body carrier angle [rad/s].
+    #[serde(rename = "carrier_speed_rad_per_s", deserialize_with = "null_is_nan")]
+    pub carrier_speed: Vec<f32>,
+    /// Gap coordinate along the line of action [m].
+    #[serde(deserialize_with = "null_is_nan")]
+    pub gap_m: Vec<f32>,
+    /// Wind-up between carrier and link along the line of action [m].
+    #[serde(deserialize_with = "null_is_nan")]
+    pub wind_up_m: Vec<f32>,
+    /// Mesh deflections [m], one column a mesh: sun-planet of every planet, then ring-planet.
+    #[serde(deserialize_with = "columns_null_is_nan")]
+    pub deflection_m: Vec<Vec<f32>>,
+    /// Contact states in the same order.
+    pub contact: Vec<Vec<Contact>>,
+    /// Computation time of the step [s]; empty for a reference.
+    #[serde(deserialize_with = "null_is_nan")]
+    pub computation_s: Vec<f64>,
+}
+
+/// Which flank of a mesh carries.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(into = "u8", try_from = "u8")]
+pub enum Contact {
+    /// Neither: 0.
+    Separated,
+    /// The flank that drives forwards: 1.
+    DriveSide,
+    /// The other one: 2.
+    BackSide,
+}
+
+/// One sample on its way into [`Samples`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct MotionSample {
+    /// Steps done since the reset.
+    pub tick: u32,
+    /// Rigid-body carrier angle [rad].
+    pub carrier_angle: f64,
+    /// Motor angle less ratio times rigid carrier angle [rad].
+    pub motor_offset: f64,
+    /// Link angle less rigid carrier angle [rad].
+    pub link_offset: f64,
+    /// Rate of the rigid-body carrier angle [rad/s].
+    pub carrier_speed: f32,
+    /// Gap coordinate [m].
+    pub gap: f32,
+    /// Wind-up along the line of action [m].
+    pub wind_up: f32,
+    /// Deflections [m], sun-planet first.
+    pub deflections: Vec<f32>,
+    /// Contact states in the same order.
+    pub contacts: Vec<Contact>,
+    /// Computation time [s], on a board.
+    pub computation: Option<f64>,
+}
+
+/// The f64 reference for the same torques.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Reference {
+    /// What computed it, and how tightly.
+    pub method: String,
+    /// Its motion; columns that it does not give are empty.
+    pub samples: Samples,
+    /// Distances of the board's samples from it.
+    pub errors: Vec<ErrorSeries>,
+}
+
+/// Distance of one quantity from the reference, against the quantity's own spread.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct ErrorSeries {
+    /// Which quantity, such as `gap`.
+    pub quantity: String,
+    /// Times of the values [s].
+    pub time_s: Vec<f64>,
+    /// Board less reference, over the standard deviation of the reference [%].
+    #[serde(deserialize_with = "null_is_nan")]
+    pub error_percent: Vec<f64>,
+    /// Bound on its root mean square [%].
+    pub bound_percent: f64,
+}
+
+impl Samples {
+    /// No samples yet of a joint with so many meshes.
+    pub fn new(meshes: usize) -> Self {
+        Self { deflection_m: vec![Vec::new(); meshes], contact: vec![Vec::new(); meshes], ..Self::default() }
+    }
+
+    /// Adds a sample. Meshes that it lacks become NaN and separated, so that columns stay of one length.
+    pub fn push(&mut self, sample: &MotionSample, tick_rate: u32, ratio: f64) {
+        self.tick.push(sample.tick);
+        self.time_s.push(f64::from(sample.tick) / f64::from(tick_rate));
+        self.motor_angle_rad.push(ratio * sample.carrier_angle + sample.motor_offset);
+        self.link_angle_rad.push(sample.carrier_angle + sample.link_offset);
+        self.twist_rad.push(sample.motor_offset / ratio - sample.link_offset);
+        self.carrier_speed.push(sample.carrier_speed);
+        self.gap_m.push(sample.gap);
+        self.wind_up_m.push(sample.wind_up);
+        for (mesh, column) in self.deflection_m.iter_mut().enumerate() {
+            column.push(sample.deflections.get(mesh).copied().unwrap_or(f32::NAN));
+        }
+        for (mesh, column) in self.contact.iter_mut().enumerate() {
+            column.push(sample.contacts.get(mesh).copied().unwrap_or(Contact::Separated));
+        }
+        if let Some(computation) = sample.computation {
+            self.computation_s.push(computation);
+        }
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.tick.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.tick.is_empty()
+    }
+}
+
+impl MotionSample {
+    /// A board's sample in SI; `timer_rate` is the board's own [Hz].
+    pub fn from_board(sample: &Sample, timer_rate: u32) -> Self {
+        let turns = f64::from(sample.carrier_turns) + f64::from(sample.carrier_fraction) / 4_294_967_296.0;
+        Self {
+            tick: sample.tick,
+            carrier_angle: turns * core::f64::consts::TAU,
+            motor_offset: f64::from(sample.motor_offset),
+            link_offset: f64::from(sample.link_offset),
+            carrier_speed: sample.carrier_speed,
+            gap: sample.gap,
+            wind_up: sample.wind_up,
+            deflections: sample.deflections.to_vec(),
+            contacts: (0..sample.deflections.len()).map(|mesh| Contact::from_bits(sample.contacts, mesh)).collect(),
+            computation: Some(f64::from(sample.computation) / f64::from(timer_rate)),
+        }
+    }
+}
+
+impl Contact {
+    /// State of a mesh in the two-bit form of the line.
+    pub fn from_bits(bits: u32, mesh: usize) -> Self {
+        match (bits >> (2 * mesh)) & 3 {
+            1 => Self::DriveSide,
+            2 => Self::BackSide,
+            _ => Self::Separated,
+        }
+    }
+}
+
+impl From<Contact> for u8 {
+    fn from(contact: Contact) -> Self {
+        match contact {
+            Contact::Separated => 0,
+            Contact::DriveSide => 1,
+            Contact::BackSide => 2,
+        }
+    }
+}
+
+impl TryFrom<u8> for Contact {
+    type Error = String;
+
+    fn try_from(code: u8) -> Result<Self, String> {
+        match code {
+            0 => Ok(Self::Separated),
+            1 => Ok(Self::DriveSide),
+            2 => Ok(Self::BackSide),
+            _ => Err(format!("contact state {code}: expected 0, 1 or 2")),
+        }
+    }
+}
+
+/// JSON has no NaN: it is written as null, and read back here.
+fn null_is_nan<'de, D: Deserializer<'de>, F: Deserialize<'de> + From<f32>>(
+    deserializer: D,
+) -> Result<Vec<F>, D::Error> {
+    let values = Vec::<Option<F>>::deserialize(deserializer)?;
+    Ok(values.into_iter().map(|value| value.unwrap_or_else(|| F::from(f32::NAN))).collect())
+}
+
+/// [`null_is_nan`] for every column.
+fn columns_null_is_nan<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Vec<f32>>, D::Error> {
+    let columns = Vec::<Vec<Option<f32>>>::deserialize(deserializer)?;
+    let filled = |column: Vec<Option<f32>>| column.into_iter().map(|value| value.unwrap_or(f32::NAN)).collect();
+    Ok(columns.into_iter().map(filled).collect())
+}

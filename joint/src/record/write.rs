@@ -1,0 +1,62 @@
+//! Safe writing: into a temporary file beside the target, then renamed, so that a reader sees the old file or the whole
+//! new one. What to write is left to the callers.
+
+use std::fs::{self, File};
+use std::io::{self, BufWriter, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+use super::RunRecord;
+use crate::failure::{Failure, Outcome};
+
+/// Writes a whole file, or leaves the old one as it was.
+pub fn write_text(path: &Path, text: &str) -> Outcome<()> {
+    write_with(path, |file| file.write_all(text.as_bytes()))
+}
+
+impl RunRecord {
+    /// Writes the record as JSON, as `docs/report-schema.md` describes.
+    pub fn write_json(&self, path: &Path) -> Outcome<()> {
+        write_with(path, |file| {
+            serde_json::to_writer(&mut *file, self)?;
+            file.write_all(b"\n")
+        })
+    }
+}
+
+fn write_with(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Outcome<()> {
+    if path.is_dir() {
+        return Err(failure(path, &io::Error::from(ErrorKind::IsADirectory)));
+    }
+    let temporary = temporary_beside(path);
+    let written = File::create(&temporary).and_then(|file| {
+        let mut buffered = BufWriter::new(file);
+        fill(&mut buffered)?;
+        // A full disk may only be noticed when the data leave the cache.
+        buffered.into_inner().map_err(io::IntoInnerError::into_error)?.sync_all()
+    });
+    written.and_then(|()| fs::rename(&temporary, path)).map_err(|source| {
+        // The half-written file is of no use to anyone; if it cannot be removed the first error says more.
+        let _ = fs::remove_file(&temporary);
+        failure(path, &source)
+    })
+}
+
+/// A name in the same folder, since a rename cannot cross file systems.
+fn temporary_beside(path: &Path) -> PathBuf {
+    let mut name = std::ffi::OsString::from(".");
+    name.push(path.file_name().unwrap_or_default());
+    name.push(format!(".{}.tmp", std::process::id()));
+    path.with_file_name(name)
+}
+
+/// Names the file, what the system said and what to do about it.
+fn failure(path: &Path, source: &io::Error) -> Failure {
+    let help = match source.kind() {
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => "free some space, or name a path on another disk",
+        ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => "name a path in a folder that you may write to",
+        ErrorKind::NotFound | ErrorKind::NotADirectory => "create its folder first, or name another path",
+        ErrorKind::IsADirectory => "this is a folder: name a file in it",
+        _ => "name another path",
+    };
+    Failure::new(format!("cannot write {}: {source}", path.display())).with_help(help)
+}

@@ -7,7 +7,7 @@ mod timing;
 mod write;
 
 pub use checks::{Bound, Check, Source, Verdict};
-pub use samples::{Contact, ErrorSeries, MotionSample, Reference, Samples};
+pub use samples::{CloseUp, Contact, ErrorSeries, MotionSample, Reference, Samples};
 pub use timing::{Counters, HistogramBin, MinMeanMax, TimingFigures};
 pub use write::write_text;
 
@@ -33,6 +33,8 @@ pub struct RunRecord {
     pub schedule: Vec<TorqueCommand>,
     /// Measured motion.
     pub samples: Samples,
+    /// A short stretch of the same run at every tick, if the host could recompute it.
+    pub close_up: Option<CloseUp>,
     /// The f64 reference for the same torques, if it was computed.
     pub reference: Option<Reference>,
     /// How the board's time was spent, if the board could still be asked.
@@ -198,6 +200,7 @@ impl RunRecord {
             completeness: Completeness::Interrupted { reason: "the run has not started".into(), tick: 0 },
             schedule: Vec::new(),
             samples,
+            close_up: None,
             reference: None,
             timing: None,
             faults: Vec::new(),

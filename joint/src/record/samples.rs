@@ -78,6 +78,15 @@ pub struct MotionSample {
     pub computation: Option<f64>,
 }
 
+/// A stretch of the run at every tick, which the line is too slow to carry.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct CloseUp {
+    /// Who computed it and why it may be trusted, such as "host twin, equal to the board bit for bit".
+    pub method: String,
+    /// The motion.
+    pub samples: Samples,
+}
+
 /// The f64 reference for the same torques.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Reference {

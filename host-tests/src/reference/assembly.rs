@@ -1,0 +1,122 @@
+//! Turns `JointParameters` into the masses, springs and phases of `JointEquations`, deriving every one of them again
+//! from the paper instead of asking the core. No state and no time are in here.
+
+use std::f64::consts::TAU;
+
+use heapless::Vec;
+use model_core::joint::{JointParameters, MAX_PLANETS};
+use model_core::mesh::{Mesh, MeshPhases, StiffnessWave};
+
+use super::ReferenceError;
+use super::equations::JointEquations;
+use super::mesh_law::{MeshConstants, Zone};
+use super::validity::check;
+
+impl JointEquations {
+    /// The equations of a joint, without torques.
+    pub fn new(joint: &JointParameters) -> Result<Self, ReferenceError> {
+        check(joint)?;
+        let geometry = &joint.geometry;
+        let cosine = geometry.working_pressure_angle.cos();
+        let carrier_lever = geometry.carrier_radius * cosine;
+        let sun_own = joint.bodies.sun_equivalent_mass;
+        let planet = joint.bodies.planet_equivalent_mass;
+        let sun = sun_own + joint.rotor_inertia / geometry.sun_base_radius.powi(2);
+        let carrier = (joint.bodies.carrier_inertia_over_radius_squared
+            + geometry.planets as f64 * joint.bodies.planet_mass)
+            / cosine.powi(2);
+        let link = joint.link_inertia / carrier_lever.powi(2);
+
+        let mut masses = Vec::new();
+        let mut add = |mass| masses.push(mass).unwrap_or_else(|_| unreachable!("room for the most planets"));
+        add(sun);
+        (0..geometry.planets).for_each(|_| add(planet));
+        let compliance = match joint.compliance {
+            None => {
+                add(carrier + link);
+                None
+            }
+            Some(given) => {
+                add(carrier);
+                add(link);
+                let stiffness = given.stiffness / carrier_lever.powi(2);
+                let reduced = carrier * link / (carrier + link);
+                Some((stiffness, 2.0 * given.damping_ratio * (stiffness * reduced).sqrt()))
+            }
+        };
+
+        // Eqs 9 and 10: the gears' own masses, the ring infinitely heavy.
+        let sun_reduced = sun_own * planet / (sun_own + planet);
+        let meshes = [
+            constants(joint, &joint.sun_planet, sun_reduced, i64::from(geometry.sun_teeth)),
+            constants(joint, &joint.ring_planet, planet, -i64::from(geometry.ring_teeth)),
+        ];
+        let highest_frequency = highest_frequency(joint, &masses, compliance.map_or(0.0, |(stiffness, _)| stiffness));
+        Ok(Self {
+            planets: geometry.planets,
+            sun_lever: geometry.sun_base_radius,
+            carrier_lever,
+            ring_teeth: f64::from(geometry.ring_teeth),
+            length: joint.characteristic_length,
+            masses,
+            compliance,
+            meshes,
+            zones: [[Zone::Free; MAX_PLANETS]; 2],
+            excitation: joint.excitation,
+            highest_frequency,
+            drive_force: 0.0,
+            load_force: 0.0,
+        })
+    }
+}
+
+fn constants(
+    joint: &JointParameters,
+    mesh: &Mesh,
+    reduced_mass: f64,
+    signed_teeth: i64,
+) -> Vec<MeshConstants, MAX_PLANETS> {
+    let planets = joint.geometry.planets as i64;
+    // Planet i stands at 2 pi i / n; only the fraction of a tooth that this makes matters.
+    let by_teeth = |planet: usize| TAU * (signed_teeth * planet as i64).rem_euclid(planets) as f64 / planets as f64;
+    let phases = |planet: usize| match &mesh.phases {
+        MeshPhases::Given { stiffness, error } => (stiffness[planet], error[planet]),
+        MeshPhases::FromTeeth { stiffness, error } => (stiffness + by_teeth(planet), error + by_teeth(planet)),
+    };
+    (0..joint.geometry.planets)
+        .map(|planet| MeshConstants {
+            mean_stiffness: mesh.mean_stiffness,
+            wave: mesh.stiffness_wave,
+            stiffness_phase: phases(planet).0,
+            damping: 2.0 * mesh.damping_ratio * (mesh.mean_stiffness * reduced_mass).sqrt(),
+            law: joint.damping_law,
+            half_backlash: mesh.half_backlash[planet],
+            error_amplitude: mesh.transmission_error[planet],
+            error_phase: phases(planet).1,
+        })
+        .collect()
+}
+
+/// A bound on the highest natural frequency (Gershgorin, row by row), with the stiffness at its crest [rad/s].
+fn highest_frequency(joint: &JointParameters, masses: &[f64], compliance: f64) -> f64 {
+    let planets = joint.geometry.planets as f64;
+    let crest = |mesh: &Mesh| {
+        let ratio = match mesh.stiffness_wave {
+            StiffnessWave::Harmonic { stiffness_ratio } => stiffness_ratio,
+            StiffnessWave::Rectangular { stiffness_ratio, .. } => 2.0 * stiffness_ratio,
+        };
+        mesh.mean_stiffness * (1.0 + ratio.abs())
+    };
+    let (sun_planet, ring_planet) = (crest(&joint.sun_planet), crest(&joint.ring_planet));
+    let carrier = joint.geometry.planets + 1;
+    let rows = masses.iter().enumerate().map(|(body, mass)| {
+        let row = match body {
+            0 => 3.0 * planets * sun_planet,
+            _ if body < carrier => 3.0 * sun_planet + 2.0 * ring_planet,
+            _ if body == carrier => planets * (3.0 * sun_planet + 2.0 * ring_planet) + 2.0 * compliance,
+            _ => 2.0 * compliance,
+        };
+        row / mass
+    });
+    rows.fold(0.0, f64::max).sqrt()
+}

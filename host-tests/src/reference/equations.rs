@@ -1,0 +1,217 @@
+//! Eqs 1-6 in absolute coordinates along the line of action, u = angle times lever, for sun, planets, carrier and, with
+//! a compliance, the link. Nothing is eliminated or decoupled here: rigid body and teeth move in the same state.
+
+use heapless::Vec;
+use model_core::joint::{Excitation, MAX_PLANETS};
+
+use super::mesh_law::{MeshConstants, MeshState, Phase, Zone};
+use crate::integrator::{Entries, Guards, MAX_ENTRIES, SwitchedSystem};
+
+/// Work entries at the end of the state: supplied, dissipated, done against transmission errors, by changing stiffness.
+pub(super) const WORKS: usize = 4;
+
+const SUN_PLANET: usize = 0;
+const RING_PLANET: usize = 1;
+
+/// Error that one step may make, over b_c (positions) and b_c omega (speeds).
+const STEP_TOLERANCE: f64 = 1e-11;
+
+/// Depth at which an event is declared, over b_c.
+const EVENT_DEPTH: f64 = 1e-12;
+
+/// Longest step times the highest frequency that the stiffnesses and masses allow. Waves of that frequency have at most
+/// one extremum in it, which is what event search asks for.
+const LONGEST_STEP: f64 = 1.5;
+
+/// The joint as masses on springs along the line of action.
+#[derive(Debug, Clone)]
+pub(super) struct JointEquations {
+    pub planets: usize,
+    pub sun_lever: f64,
+    pub carrier_lever: f64,
+    pub ring_teeth: f64,
+    pub length: f64,
+    /// Equivalent masses in the order of the state: sun, planets, carrier, then the link if it is a body of its own.
+    pub masses: Vec<f64, { MAX_PLANETS + 3 }>,
+    /// Stiffness and damping between carrier and link.
+    pub compliance: Option<(f64, f64)>,
+    pub meshes: [Vec<MeshConstants, MAX_PLANETS>; 2],
+    pub zones: [[Zone; MAX_PLANETS]; 2],
+    pub excitation: Excitation,
+    /// A bound on the highest natural frequency, teeth in contact [rad/s].
+    pub highest_frequency: f64,
+    /// T_D / r_bs.
+    pub drive_force: f64,
+    /// T_L / (r_c cos alpha).
+    pub load_force: f64,
+}
+
+/// Every mesh and the compliance at one moment.
+pub(super) struct Moment {
+    pub meshes: [[MeshState; MAX_PLANETS]; 2],
+    pub wind_up_force: f64,
+}
+
+impl JointEquations {
+    pub fn bodies(&self) -> usize {
+        self.masses.len()
+    }
+
+    pub fn carrier(&self) -> usize {
+        self.planets + 1
+    }
+
+    /// Last body: the link, or the carrier that it is rigidly joined to.
+    pub fn link(&self) -> usize {
+        self.bodies() - 1
+    }
+
+    /// How far each body moves along the line of action while the carrier moves by one: no mesh deflects.
+    pub fn rigid_share(body: usize) -> f64 {
+        if body == 0 { 2.0 } else { 1.0 }
+    }
+
+    /// The coordinate that no internal force can move: the mean of `values` over the rigid shares, weighted by mass.
+    pub fn rigid(&self, values: &[f64]) -> f64 {
+        let (mut sum, mut weight) = (0.0, 0.0);
+        for (body, mass) in self.masses.iter().enumerate() {
+            let share = Self::rigid_share(body);
+            sum += share * mass * values[body];
+            weight += share * share * mass;
+        }
+        sum / weight
+    }
+
+    /// Phase of the excitation (mode `angle`: ring teeth times the rigid-body carrier angle).
+    pub fn phase(&self, time: f64, state: &Entries) -> Phase {
+        match self.excitation {
+            Excitation::Time { mesh_frequency } => {
+                Phase { angle: mesh_frequency * time, rate: mesh_frequency, acceleration: 0.0 }
+            }
+            Excitation::Angle => {
+                let per_length = self.ring_teeth / self.carrier_lever;
+                let mut accelerations = [0.0; MAX_PLANETS + 3];
+                accelerations[0] = self.drive_force / self.masses[0];
+                accelerations[self.link()] = -self.load_force / self.masses[self.link()];
+                Phase {
+                    angle: per_length * self.rigid(state),
+                    rate: per_length * self.rigid(&state[self.bodies()..]),
+                    acceleration: per_length * self.rigid(&accelerations),
+                }
+            }
+        }
+    }
+
+    /// Displacement across a mesh (eq. 4 without its error), of positions, speeds or accelerations alike.
+    pub fn across(&self, kind: usize, planet: usize, values: &[f64]) -> f64 {
+        let carrier = values[self.carrier()];
+        match kind {
+            SUN_PLANET => values[0] - values[1 + planet] - carrier,
+            _ => values[1 + planet] - carrier,
+        }
+    }
+
+    pub fn moment(&self, time: f64, state: &Entries) -> Moment {
+        let phase = self.phase(time, state);
+        let speeds = &state[self.bodies()..];
+        let mut meshes = [[MeshState::default(); MAX_PLANETS]; 2];
+        for (kind, family) in self.meshes.iter().enumerate() {
+            for (planet, mesh) in family.iter().enumerate() {
+                let (position, speed) = (self.across(kind, planet, state), self.across(kind, planet, speeds));
+                meshes[kind][planet] = mesh.state(self.zones[kind][planet], position, speed, phase);
+            }
+        }
+        let wind_up_force = self.compliance.map_or(0.0, |(stiffness, damping)| {
+            let (carrier, link) = (self.carrier(), self.link());
+            stiffness * (state[carrier] - state[link]) + damping * (speeds[carrier] - speeds[link])
+        });
+        Moment { meshes, wind_up_force }
+    }
+}
+
+impl SwitchedSystem for JointEquations {
+    fn dimension(&self) -> usize {
+        2 * self.bodies() + WORKS
+    }
+
+    fn derivative(&self, time: f64, state: &Entries, rates: &mut Entries) {
+        let bodies = self.bodies();
+        let (carrier, link) = (self.carrier(), self.link());
+        let speeds = &state[bodies..2 * bodies];
+        let moment = self.moment(time, state);
+        let mut forces = [0.0; MAX_PLANETS + 3];
+        let (mut dissipated, mut against_errors, mut by_stiffness) = (0.0, 0.0, 0.0);
+        forces[0] += self.drive_force;
+        for planet in 0..self.planets {
+            let sun_planet = &moment.meshes[SUN_PLANET][planet];
+            let ring_planet = &moment.meshes[RING_PLANET][planet];
+            forces[0] -= sun_planet.force;
+            forces[1 + planet] = sun_planet.force - ring_planet.force;
+            forces[carrier] += sun_planet.force + ring_planet.force;
+            for mesh in [sun_planet, ring_planet] {
+                dissipated += (mesh.force - mesh.stiffness * mesh.overlap) * mesh.deflection_rate;
+                against_errors += mesh.force * mesh.error_rate;
+                by_stiffness += 0.5 * mesh.stiffness_rate * mesh.overlap * mesh.overlap;
+            }
+        }
+        if let Some((_, damping)) = self.compliance {
+            forces[carrier] -= moment.wind_up_force;
+            forces[link] += moment.wind_up_force;
+            dissipated += damping * (speeds[carrier] - speeds[link]).powi(2);
+        }
+        forces[link] -= self.load_force;
+        for body in 0..bodies {
+            rates[body] = speeds[body];
+            rates[bodies + body] = forces[body] / self.masses[body];
+        }
+        let supplied = self.drive_force * speeds[0] - self.load_force * speeds[link];
+        rates[2 * bodies..2 * bodies + WORKS].copy_from_slice(&[supplied, dissipated, against_errors, by_stiffness]);
+    }
+
+    fn freeze(&mut self, time: f64, state: &Entries) {
+        let phase = self.phase(time, state);
+        let speeds = &state[self.bodies()..];
+        for kind in [SUN_PLANET, RING_PLANET] {
+            for planet in 0..self.planets {
+                let mesh = &self.meshes[kind][planet];
+                let [error, error_rate, _] = mesh.transmission_error(phase);
+                let deflection = self.across(kind, planet, state) - error;
+                let rate = self.across(kind, planet, speeds) - error_rate;
+                self.zones[kind][planet] = mesh.zone(deflection, rate, mesh.stiffness(phase).0);
+            }
+        }
+    }
+
+    fn guards(&self, time: f64, state: &Entries, rates: &Entries, guards: &mut Guards) {
+        let phase = self.phase(time, state);
+        let moment = self.moment(time, state);
+        let accelerations = &rates[self.bodies()..];
+        for (kind, family) in self.meshes.iter().enumerate() {
+            for (planet, mesh) in family.iter().enumerate() {
+                let acceleration = self.across(kind, planet, accelerations) - mesh.transmission_error(phase)[2];
+                mesh.watch(self.zones[kind][planet], &moment.meshes[kind][planet], acceleration, guards);
+            }
+        }
+    }
+
+    fn guard_resolution(&self) -> f64 {
+        EVENT_DEPTH * self.length
+    }
+
+    fn tolerance(&self, entry: usize) -> f64 {
+        if entry < self.bodies() {
+            STEP_TOLERANCE * self.length
+        } else if entry < 2 * self.bodies() {
+            STEP_TOLERANCE * self.length * self.highest_frequency
+        } else {
+            // The works follow the motion and never steer the step.
+            f64::INFINITY
+        }
+    }
+
+    fn longest_step(&self) -> f64 {
+        LONGEST_STEP / self.highest_frequency
+    }
+}
+
+const _: () = assert!(2 * (MAX_PLANETS + 3) + WORKS <= MAX_ENTRIES);

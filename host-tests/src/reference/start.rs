@@ -1,0 +1,86 @@
+//! The states that a joint can be started from, each resolved into absolute coordinates. Torques are not part of a
+//! start.
+
+use model_core::joint::{MAX_PLANETS, PerPlanet};
+
+use super::equations::JointEquations;
+use crate::integrator::{Entries, MAX_ENTRIES};
+
+/// Where a joint starts. The rigid-body carrier angle is zero in each.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Start {
+    /// All bodies still at angle zero: deflections are the transmission errors, negated.
+    Still,
+    /// Stated in the relative coordinates of eqs 16 and 17.
+    Relative(RelativeState),
+}
+
+/// Relative coordinates in SI: sun-planet deflections, gap coordinate and wind-up with their rates.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RelativeState {
+    /// X_sp b_c: sun-planet deflection, less the transmission error, one per planet [m].
+    pub sun_planet: PerPlanet,
+    /// [m/s].
+    pub sun_planet_rate: PerPlanet,
+    /// X_sc b_c: gap coordinate u_s - 2 u_c [m].
+    pub gap: f64,
+    /// [m/s].
+    pub gap_rate: f64,
+    /// Carrier less link, u_c - u_l; without compliance it is not used [m].
+    pub wind_up: f64,
+    /// [m/s].
+    pub wind_up_rate: f64,
+    /// Speed of the rigid-body carrier [rad/s].
+    pub rigid_speed: f64,
+}
+
+impl RelativeState {
+    /// X = X' = 0: every tooth in the middle of its gap, as far as the transmission errors allow, and the joint still.
+    pub fn centred(planets: usize) -> Self {
+        let zeros: PerPlanet = (0..planets.min(MAX_PLANETS)).map(|_| 0.0).collect();
+        Self {
+            sun_planet: zeros.clone(),
+            sun_planet_rate: zeros,
+            gap: 0.0,
+            gap_rate: 0.0,
+            wind_up: 0.0,
+            wind_up_rate: 0.0,
+            rigid_speed: 0.0,
+        }
+    }
+}
+
+/// The state at time zero.
+pub(super) fn resolve(start: &Start, equations: &JointEquations) -> Entries {
+    let mut state = [0.0; MAX_ENTRIES];
+    let Start::Relative(relative) = start else {
+        return state;
+    };
+    let bodies = equations.bodies();
+    // The errors' rates need the phase rate, which in mode `angle` is the rigid body's and nothing else's.
+    for body in 0..bodies {
+        state[bodies + body] = JointEquations::rigid_share(body) * relative.rigid_speed * equations.carrier_lever;
+    }
+    let phase = equations.phase(0.0, &state);
+    let mut positions = [0.0; MAX_PLANETS + 3];
+    let mut speeds = [0.0; MAX_PLANETS + 3];
+    // With the carrier held at zero; the rigid part is put right afterwards.
+    positions[0] = relative.gap;
+    speeds[0] = relative.gap_rate;
+    for planet in 0..equations.planets {
+        let [error, error_rate, _] = equations.meshes[0][planet].transmission_error(phase);
+        positions[1 + planet] = relative.gap - error - relative.sun_planet[planet];
+        speeds[1 + planet] = relative.gap_rate - error_rate - relative.sun_planet_rate[planet];
+    }
+    if equations.compliance.is_some() {
+        positions[equations.link()] = -relative.wind_up;
+        speeds[equations.link()] = -relative.wind_up_rate;
+    }
+    let (shift, drift) = (equations.rigid(&positions), equations.rigid(&speeds));
+    for body in 0..bodies {
+        let share = JointEquations::rigid_share(body);
+        state[body] = positions[body] - share * shift;
+        state[bodies + body] += speeds[body] - share * drift;
+    }
+    state
+}

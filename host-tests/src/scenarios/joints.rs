@@ -1,0 +1,110 @@
+//! The joints that scenarios run on, built in code so that a mistake in a joint file cannot reach them. Joint files
+//! with the source of every number are left to the `joints` crate.
+
+use model_core::dead_zone::DeadZone;
+use model_core::joint::{Bodies, Coherence, Compliance, Excitation, Geometry, JointParameters, PerPlanet};
+use model_core::mesh::{DampingLaw, Mesh, MeshPhases, StiffnessWave};
+
+/// b_c of the paper's joint [m].
+pub const PAPER_LENGTH: f64 = 10e-6;
+
+/// One value for each planet, all the same.
+pub fn same(planets: usize, value: f64) -> PerPlanet {
+    (0..planets).map(|_| value).collect()
+}
+
+/// A mesh whose planets all have the same backlash and error, with phases of zero.
+fn mesh(planets: usize, damping_ratio: f64, stiffness_ratio: f64, half_backlash: f64, transmission_error: f64) -> Mesh {
+    Mesh {
+        mean_stiffness: 1e8,
+        stiffness_wave: StiffnessWave::Harmonic { stiffness_ratio },
+        damping_ratio,
+        half_backlash: same(planets, half_backlash),
+        transmission_error: same(planets, transmission_error),
+        phases: MeshPhases::Given { stiffness: same(planets, 0.0), error: same(planets, 0.0) },
+    }
+}
+
+/// The paper's joint with the carrier and ring columns of Table 1 put back, damping ratio 0.05, law `paper`, no rotor and
+/// no link; stiffness ripple K_a/K_m, error amplitude [m], half-backlash [m] and Omega = omega/omega_n as given.
+pub fn paper_joint(stiffness_ratio: f64, transmission_error: f64, half_backlash: f64, omega: f64) -> JointParameters {
+    let sun_equivalent_mass: f64 = 0.39;
+    let planet_equivalent_mass: f64 = 0.61;
+    JointParameters {
+        name: "paper".try_into().expect("a short name"),
+        geometry: Geometry {
+            planets: 3,
+            sun_teeth: 27,
+            planet_teeth: 35,
+            ring_teeth: 99,
+            working_pressure_angle: 24.6_f64.to_radians(),
+            sun_base_radius: 36.8241e-3,
+            planet_base_radius: 47.7349e-3,
+            carrier_radius: 93.0e-3,
+            coherence: Coherence::Warned,
+        },
+        bodies: Bodies {
+            sun_equivalent_mass,
+            planet_equivalent_mass,
+            planet_mass: 0.66,
+            carrier_inertia_over_radius_squared: 6.29,
+        },
+        rotor_inertia: 0.0,
+        link_inertia: 0.0,
+        compliance: None,
+        sun_planet: mesh(3, 0.05, stiffness_ratio, half_backlash, transmission_error),
+        ring_planet: mesh(3, 0.05, stiffness_ratio, half_backlash, transmission_error),
+        damping_law: DampingLaw::Paper,
+        dead_zone: DeadZone::Sharp,
+        excitation: Excitation::Time { mesh_frequency: omega * paper_natural_frequency() },
+        characteristic_length: PAPER_LENGTH,
+        rated_output_torque: 367.4,
+    }
+}
+
+/// omega_n of the paper's joint, eq. 18 [rad/s].
+pub fn paper_natural_frequency() -> f64 {
+    (1e8 * (1.0 / 0.39 + 1.0 / 0.61_f64)).sqrt()
+}
+
+/// Q1, a quasi-direct-drive joint: 15/30/75 teeth of module 1 mm, law `contact`, excited by its own angle, no ripple and
+/// no error of its own.
+pub fn q1() -> JointParameters {
+    let pressure_angle = 20.0_f64.to_radians();
+    let module = 1e-3;
+    let cosine = pressure_angle.cos();
+    let carrier_radius: f64 = 0.5 * module * f64::from(15 + 30);
+    let carrier_equivalent_mass = 0.15;
+    let planet_mass = 0.05;
+    JointParameters {
+        name: "q1".try_into().expect("a short name"),
+        geometry: Geometry {
+            planets: 3,
+            sun_teeth: 15,
+            planet_teeth: 30,
+            ring_teeth: 75,
+            working_pressure_angle: pressure_angle,
+            sun_base_radius: 0.5 * module * 15.0 * cosine,
+            planet_base_radius: 0.5 * module * 30.0 * cosine,
+            carrier_radius,
+            coherence: Coherence::Required,
+        },
+        bodies: Bodies {
+            sun_equivalent_mass: 0.02,
+            planet_equivalent_mass: 0.03,
+            planet_mass,
+            // The carrier is stated over (r_c cos alpha)^2 there, without its planets.
+            carrier_inertia_over_radius_squared: carrier_equivalent_mass * cosine * cosine,
+        },
+        rotor_inertia: 2.5e-4,
+        link_inertia: 0.15,
+        compliance: Some(Compliance { stiffness: 3.0 / (1.0_f64 / 60.0).to_radians(), damping_ratio: 0.02 }),
+        sun_planet: mesh(3, 0.05, 0.0, 40e-6, 0.0),
+        ring_planet: mesh(3, 0.05, 0.0, 40e-6, 0.0),
+        damping_law: DampingLaw::Contact,
+        dead_zone: DeadZone::Sharp,
+        excitation: Excitation::Angle,
+        characteristic_length: PAPER_LENGTH,
+        rated_output_torque: 15.0,
+    }
+}

@@ -1,0 +1,78 @@
+//! Units that keys are typed in and the range that a value must lie in, in that unit. Which key has which is in `keys`.
+
+/// The unit in a key's name, by what it takes to reach SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Unit {
+    /// Already SI, or a pure number.
+    Si,
+    /// mm or ms.
+    Milli,
+    /// um or us.
+    Micro,
+    /// Degrees of angle.
+    Degrees,
+}
+
+impl Unit {
+    /// The value in SI. Division keeps 40 um the double that is nearest to 40e-6 m.
+    pub(crate) fn to_si(self, value: f64) -> f64 {
+        match self {
+            Self::Si => value,
+            Self::Milli => value / 1e3,
+            Self::Micro => value / 1e6,
+            Self::Degrees => value.to_radians(),
+        }
+    }
+}
+
+/// Range of a number in the unit of its key.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Bound {
+    /// Any finite number.
+    Finite,
+    /// Greater than 0.
+    Positive,
+    /// 0 or greater.
+    NotNegative,
+    /// Both ends allowed.
+    Between(f64, f64),
+    /// Neither end allowed.
+    Inside(f64, f64),
+    /// The lower end allowed, the upper not.
+    FromToBelow(f64, f64),
+    /// 0, or within the range with both ends.
+    ZeroOr(f64, f64),
+}
+
+impl Bound {
+    pub(crate) fn holds(self, value: f64) -> bool {
+        value.is_finite()
+            && match self {
+                Self::Finite => true,
+                Self::Positive => value > 0.0,
+                Self::NotNegative => value >= 0.0,
+                Self::Between(low, high) => low <= value && value <= high,
+                Self::Inside(low, high) => low < value && value < high,
+                Self::FromToBelow(low, high) => low <= value && value < high,
+                Self::ZeroOr(low, high) => value == 0.0 || low <= value && value <= high,
+            }
+    }
+
+    /// Completes the sentence "... must be".
+    pub(crate) fn text(self) -> String {
+        match self {
+            Self::Finite => "a finite number".to_owned(),
+            Self::Positive => "greater than 0".to_owned(),
+            Self::NotNegative => "0 or greater".to_owned(),
+            Self::Between(low, high) => format!("between {} and {}", plain(low), plain(high)),
+            Self::Inside(low, high) => format!("greater than {} and less than {}", plain(low), plain(high)),
+            Self::FromToBelow(low, high) => format!("at least {} and less than {}", plain(low), plain(high)),
+            Self::ZeroOr(low, high) => format!("0, or between {} and {}", plain(low), plain(high)),
+        }
+    }
+}
+
+/// A bound as a person would write it.
+fn plain(value: f64) -> String {
+    if value != 0.0 && !(1e-3..1e5).contains(&value.abs()) { format!("{value:e}") } else { format!("{value}") }
+}

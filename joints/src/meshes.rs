@@ -1,0 +1,152 @@
+//! Reads `[mesh]` with `[mesh.sun_planet]` and `[mesh.ring_planet]`: what both families share stands in `[mesh]`, what
+//! differs in its own section. Forces and phases from tooth counts are model-core's business.
+
+use model_core::joint::PerPlanet;
+use model_core::mesh::{Mesh, MeshPhases, StiffnessWave};
+
+use crate::section::{PerPlanetValue, Section};
+
+/// The section of one mesh family over the section that both share.
+struct Layers<'s, 'a> {
+    own: Option<&'s Section<'a>>,
+    shared: &'s Section<'a>,
+    planets: Option<usize>,
+}
+
+/// Sun-planet and ring-planet meshes, or `None` once what is wrong has been noted.
+pub(crate) fn read(shared: &Section<'_>, planets: Option<usize>) -> Option<[Mesh; 2]> {
+    let own = ["sun_planet", "ring_planet"].map(|name| shared.section(name, "mesh"));
+    let [sun_planet, ring_planet] = own.map(|own| Layers { own: own.as_ref(), shared, planets }.read());
+    Some([sun_planet?, ring_planet?])
+}
+
+impl Layers<'_, '_> {
+    fn read(&self) -> Option<Mesh> {
+        let mean_stiffness = self.required("mean_stiffness_N_per_m");
+        let stiffness_wave = self.stiffness_wave();
+        let damping_ratio = self.required("damping_ratio");
+        let half_backlash = self.half_backlash();
+        let transmission_error = self.list("transmission_error_um", 1.0);
+        let phases = self.phases();
+        Some(Mesh {
+            mean_stiffness: mean_stiffness?,
+            stiffness_wave: stiffness_wave?,
+            damping_ratio: damping_ratio?,
+            half_backlash: half_backlash?,
+            transmission_error: transmission_error?,
+            phases: phases?,
+        })
+    }
+
+    /// The section that holds any of the keys, the family's own before the shared one.
+    fn holder(&self, keys: &[&str]) -> &Section<'_> {
+        self.own.filter(|own| keys.iter().any(|key| own.has(key))).unwrap_or(self.shared)
+    }
+
+    fn required(&self, key: &str) -> Option<f64> {
+        self.holder(&[key]).required_number(key)
+    }
+
+    /// Values for every planet, times `factor`.
+    fn list(&self, key: &'static str, factor: f64) -> Option<PerPlanet> {
+        let section = self.holder(&[key]);
+        if !section.has(key) {
+            section.missing(key);
+        }
+        let value = section.per_planet(key, self.planets)?;
+        let planets = self.planets?;
+        match value {
+            PerPlanetValue::One(value) => Some((0..planets).map(|_| value * factor).collect()),
+            PerPlanetValue::List(values) if values.len() == planets => {
+                Some(values.iter().map(|value| value * factor).collect())
+            }
+            PerPlanetValue::List(_) => None,
+        }
+    }
+
+    /// b, from itself or from the whole backlash 2b.
+    fn half_backlash(&self) -> Option<PerPlanet> {
+        let keys = ["half_backlash_um", "backlash_um"];
+        match self.holder(&keys).one_of(&keys, true)? {
+            "backlash_um" => self.list("backlash_um", 0.5),
+            key => self.list(key, 1.0),
+        }
+    }
+
+    fn stiffness_wave(&self) -> Option<StiffnessWave> {
+        let holder = self.holder(&["stiffness_wave"]);
+        let wave = if holder.has("stiffness_wave") { holder.choice("stiffness_wave")? } else { "harmonic" };
+        let ratio_key = "stiffness_ratio";
+        let stiffness_ratio = self.required(ratio_key);
+        if wave != "rectangular" {
+            for key in ["contact_ratio", "order"] {
+                let section = self.holder(&[key]);
+                if section.has(key) {
+                    let message = format!("`{key}` belongs to the rectangular wave, and this one is harmonic");
+                    section.notes().error(section.place(key), message, "write stiffness_wave = \"rectangular\"");
+                }
+            }
+            return stiffness_ratio.map(|stiffness_ratio| StiffnessWave::Harmonic { stiffness_ratio });
+        }
+        let contact_ratio = self.required("contact_ratio");
+        let order = self.holder(&["order"]).required_whole("order");
+        let wave = StiffnessWave::Rectangular {
+            stiffness_ratio: stiffness_ratio?,
+            contact_ratio: contact_ratio?,
+            order: order? as usize,
+        };
+        let lowest = lowest_stiffness(&wave);
+        if lowest <= 0.0 {
+            let section = self.holder(&[ratio_key]);
+            let message = format!("this wave lets the stiffness fall to {lowest:.3} of its mean: below zero");
+            let largest = 0.99 * stiffness_ratio? / (1.0 - lowest);
+            let help = format!("at this contact ratio and order, `{ratio_key}` must stay below {largest:.3}");
+            section.notes().error(section.place(ratio_key), message, help);
+            return None;
+        }
+        Some(wave)
+    }
+
+    /// Lists state every planet's phase, single numbers that of planet 0. One list makes both a list.
+    fn phases(&self) -> Option<MeshPhases> {
+        let keys = ["stiffness_phase_rad", "error_phase_rad"];
+        let [stiffness, error] = keys.map(|key| {
+            let section = self.holder(&[key]);
+            if section.has(key) { section.per_planet(key, self.planets) } else { Some(PerPlanetValue::One(0.0)) }
+        });
+        match (stiffness?, error?) {
+            (PerPlanetValue::One(stiffness), PerPlanetValue::One(error)) => {
+                Some(MeshPhases::FromTeeth { stiffness, error })
+            }
+            (PerPlanetValue::List(stiffness), PerPlanetValue::List(error)) => {
+                let fits = |list: &[f64]| self.planets == Some(list.len());
+                (fits(&stiffness) && fits(&error)).then(|| MeshPhases::Given {
+                    stiffness: stiffness.into_iter().collect(),
+                    error: error.into_iter().collect(),
+                })
+            }
+            (stiffness, _) => {
+                let (list, other) = if matches!(stiffness, PerPlanetValue::List(_)) { (0, 1) } else { (1, 0) };
+                let section = self.holder(&[keys[list]]);
+                let message = format!("`{}` is a list and `{}` is not", keys[list], keys[other]);
+                let help = "state every planet's phase for both, or let both follow from the teeth";
+                section.notes().error(section.place(keys[list]), message, help);
+                None
+            }
+        }
+    }
+}
+
+/// The least of K / K_m over a mesh period, with the ringing of a cut series.
+fn lowest_stiffness(wave: &StiffnessWave) -> f64 {
+    const STEPS: u32 = 2048;
+    let stiffness = |step: u32| {
+        let phase = core::f64::consts::TAU * f64::from(step) / f64::from(STEPS);
+        (1..=wave.order()).fold(1.0, |sum, harmonic| {
+            let (sine, cosine) = wave.coefficients(harmonic);
+            let angle = harmonic as f64 * phase;
+            sum + sine * angle.sin() + cosine * angle.cos()
+        })
+    };
+    (0..STEPS).map(stiffness).fold(f64::INFINITY, f64::min)
+}

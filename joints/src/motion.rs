@@ -1,0 +1,92 @@
+//! Reads `[contact]`, `[excitation]` and `[profile]`: how teeth meet, what drives the mesh phase, and the torques that a
+//! motion profile scales with. The profile itself is the host command's business.
+
+use model_core::dead_zone::DeadZone;
+use model_core::joint::{Bodies, Excitation, Geometry};
+use model_core::mesh::{DampingLaw, Mesh};
+
+use crate::section::Section;
+
+/// Torques for motion profiles.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Profile {
+    /// Rated motor torque; balanced, it carries the rated output torque [N m].
+    pub drive_torque: f64,
+    /// The motor gives no more than this, either way [N m].
+    pub motor_torque_limit: f64,
+}
+
+/// omega_n of eq. 18: sqrt(K_m (1/M_s + 1/M_p)) with the sun-planet mesh and the gears' own masses [rad/s].
+pub fn characteristic_frequency(bodies: &Bodies, sun_planet: &Mesh) -> f64 {
+    (sun_planet.mean_stiffness * (1.0 / bodies.sun_equivalent_mass + 1.0 / bodies.planet_equivalent_mass)).sqrt()
+}
+
+/// How teeth meet: `[contact]`, with its defaults if the section is absent.
+pub(crate) fn read_contact(section: Option<&Section<'_>>) -> Option<(DampingLaw, DeadZone)> {
+    let Some(section) = section else { return Some((DampingLaw::Contact, DeadZone::Sharp)) };
+    let law = if section.has("damping_law") { section.choice("damping_law") } else { Some("contact") };
+    let zone = if section.has("dead_zone") { section.choice("dead_zone") } else { Some("sharp") };
+    let zone = match zone? {
+        "tanh" => DeadZone::Tanh { sharpness: section.required_number("sharpness")? },
+        _ => {
+            if section.has("sharpness") {
+                let message = "`sharpness` belongs to the tanh dead zone, and this one is sharp";
+                section.notes().error(section.place("sharpness"), message, "write dead_zone = \"tanh\"");
+            }
+            DeadZone::Sharp
+        }
+    };
+    Some((if law? == "paper" { DampingLaw::Paper } else { DampingLaw::Contact }, zone))
+}
+
+/// What drives the mesh phase: `[excitation]`; the joint's own angle if the section is absent.
+pub(crate) fn read_excitation(section: Option<&Section<'_>>, omega_n: Option<f64>) -> Option<Excitation> {
+    const FREQUENCIES: [&str; 3] = ["mesh_frequency_rad_per_s", "mesh_frequency_Hz", "mesh_frequency_over_omega_n"];
+    let Some(section) = section else { return Some(Excitation::Angle) };
+    let mode = if section.has("mode") { section.choice("mode")? } else { "angle" };
+    if mode == "time" {
+        let key = section.one_of(&FREQUENCIES, true)?;
+        let value = section.number(key)?;
+        let mesh_frequency = match key {
+            "mesh_frequency_Hz" => core::f64::consts::TAU * value,
+            "mesh_frequency_over_omega_n" => value * omega_n?,
+            _ => value,
+        };
+        return Some(Excitation::Time { mesh_frequency });
+    }
+    for key in FREQUENCIES.into_iter().filter(|key| section.has(key)) {
+        let message =
+            format!("`{key}` belongs to mode \"time\"; in mode \"angle\" the frequency follows from the motion");
+        section.notes().error(section.place(key), message, "leave it out, or write mode = \"time\"");
+    }
+    Some(Excitation::Angle)
+}
+
+/// Torques for profiles: `[profile]`; what balances the rated output torque if it is absent.
+pub(crate) fn read_profile(
+    section: Option<&Section<'_>>,
+    geometry: Option<&Geometry>,
+    rated_output_torque: Option<f64>,
+) -> Option<Profile> {
+    let stated = |key| section.filter(|section| section.has(key)).map(|section| section.number(key));
+    let drive_torque = match stated("drive_torque_N_m") {
+        Some(torque) => torque,
+        None => geometry.zip(rated_output_torque).map(|(geometry, torque)| torque / geometry.ratio_by_radii()),
+    };
+    let limit = match stated("motor_torque_limit_N_m") {
+        Some(limit) => limit,
+        None => drive_torque.map(|torque| 2.0 * torque),
+    };
+    let profile = Profile { drive_torque: drive_torque?, motor_torque_limit: limit? };
+    if profile.motor_torque_limit < profile.drive_torque
+        && let Some(section) = section
+    {
+        let message = format!(
+            "`motor_torque_limit_N_m` is below the drive torque of {:.4} N m that the joint is rated for",
+            profile.drive_torque
+        );
+        let help = "raise the limit, or lower `drive_torque_N_m` or `rated_output_torque_N_m`";
+        section.notes().error(section.place("motor_torque_limit_N_m"), message, help);
+    }
+    Some(profile)
+}

@@ -1,0 +1,96 @@
+//! What is found while a joint file is read: problems, where each value stands, and what the file says about the
+//! source of each number. It knows nothing of joints.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use crate::problem::{Problem, Severity};
+
+/// Where a number of a joint file comes from: the comment behind it, on its line.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Source {
+    /// The key with its section, as in `geometry.sun_teeth`.
+    pub key: String,
+    /// The comment behind the value; `None` if there is none.
+    pub remark: Option<String>,
+}
+
+/// Collects while the sections of one file are read.
+pub(crate) struct Notes<'t> {
+    text: &'t str,
+    problems: RefCell<Vec<Problem>>,
+    places: RefCell<BTreeMap<String, Range<usize>>>,
+    sources: RefCell<Vec<Source>>,
+}
+
+impl<'t> Notes<'t> {
+    pub(crate) fn new(text: &'t str) -> Self {
+        Self { text, problems: RefCell::default(), places: RefCell::default(), sources: RefCell::default() }
+    }
+
+    pub(crate) fn error(&self, span: Range<usize>, message: impl Into<String>, help: impl Into<String>) {
+        self.problem(span, message, help, Severity::Error);
+    }
+
+    pub(crate) fn problem(
+        &self,
+        span: Range<usize>,
+        message: impl Into<String>,
+        help: impl Into<String>,
+        severity: Severity,
+    ) {
+        let problem = Problem { span, message: message.into(), help: help.into(), severity };
+        let mut problems = self.problems.borrow_mut();
+        // What stands in [mesh] is read once for each mesh family and would be reported twice.
+        if !problems.contains(&problem) {
+            problems.push(problem);
+        }
+    }
+
+    pub(crate) fn has_errors(&self) -> bool {
+        self.problems.borrow().iter().any(|problem| problem.severity == Severity::Error)
+    }
+
+    /// Remembers where the value of `key` stands.
+    pub(crate) fn place(&self, key: String, span: Range<usize>) {
+        self.places.borrow_mut().insert(key, span);
+    }
+
+    /// Where the first of `keys` that the file holds has its value; the top of the file if it holds none.
+    pub(crate) fn first_place(&self, keys: &[&str]) -> Range<usize> {
+        let places = self.places.borrow();
+        keys.iter().find_map(|key| places.get(*key)).cloned().unwrap_or(self.top())
+    }
+
+    /// Remembers the comment behind a number.
+    pub(crate) fn source(&self, key: String, value: &Range<usize>) {
+        let mut sources = self.sources.borrow_mut();
+        if sources.iter().any(|source| source.key == key) {
+            return;
+        }
+        let rest = self.text[value.end..].lines().next().unwrap_or_default();
+        let remark = rest.trim().strip_prefix('#').map(|comment| comment.trim().to_owned());
+        sources.push(Source { key, remark: remark.filter(|remark| !remark.is_empty()) });
+    }
+
+    /// The first line that says anything: the place of what is missing from the file as a whole.
+    pub(crate) fn top(&self) -> Range<usize> {
+        let mut start = 0;
+        for line in self.text.split_inclusive('\n') {
+            let content = line.trim();
+            if !content.is_empty() && !content.starts_with('#') {
+                return start..start + line.trim_end().len();
+            }
+            start += line.len();
+        }
+        0..0
+    }
+
+    /// Problems in the order of the text, and sources in the order of reading.
+    pub(crate) fn into_parts(self) -> (Vec<Problem>, Vec<Source>) {
+        let mut problems = self.problems.into_inner();
+        problems.sort_by_key(|problem| (problem.span.start, problem.span.end));
+        (problems, self.sources.into_inner())
+    }
+}

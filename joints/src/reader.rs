@@ -1,0 +1,128 @@
+//! Reads a whole joint file: parses, hands each section to its reader, checks that the gears fit, and gives either the
+//! joint with its warnings or everything that is wrong at once. Each section's rules are left to its reader.
+
+use model_core::joint::{Coherence, JointParameters};
+use toml::de::DeTable;
+
+use crate::drive_train::{self, DriveTrain};
+use crate::motion::{self, Profile};
+use crate::notes::{Notes, Source};
+use crate::problem::Problem;
+use crate::section::Section;
+use crate::{bodies, coherence, geometry, meshes};
+
+/// A joint file that can be used.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JointFile {
+    /// The joint, in SI.
+    pub parameters: JointParameters,
+    /// A sentence for reports; may be empty.
+    pub description: std::string::String,
+    /// Torques for motion profiles.
+    pub profile: Profile,
+    /// What surrounds the gears; `None` if the file says nothing of it, which is ideal.
+    pub drive_train: Option<DriveTrain>,
+    /// What is odd but can be used.
+    pub warnings: Vec<Problem>,
+    /// Where each number comes from, by the comment behind it.
+    pub sources: Vec<Source>,
+}
+
+/// Reads the text of a joint file. On failure gives every problem, warnings among them, in the order of the text.
+pub fn read(text: &str) -> Result<JointFile, Vec<Problem>> {
+    let notes = Notes::new(text);
+    let (table, syntax) = DeTable::parse_recoverable(text);
+    for error in &syntax {
+        let span = error.span().unwrap_or(notes.top());
+        notes.error(span, format!("not TOML: {}", error.message()), "write lines of the form key = value");
+    }
+    // What was recovered from broken syntax would be blamed for what the parser dropped.
+    let joint = if syntax.is_empty() { read_table(&Section::top(table.get_ref(), &notes)) } else { None };
+    let failed = notes.has_errors();
+    let (problems, sources) = notes.into_parts();
+    match joint {
+        Some(joint) if !failed => Ok(JointFile { warnings: problems, sources, ..joint }),
+        _ => Err(problems),
+    }
+}
+
+fn read_table(top: &Section<'_>) -> Option<JointFile> {
+    let name = read_name(top);
+    let description = if top.has("description") { top.text("description") } else { Some(Default::default()) };
+    let coherence = match top.choice("coherence") {
+        Some("warn") => Coherence::Warned,
+        _ => Coherence::Required,
+    };
+    let rated_output_torque = top.required_number("rated_output_torque_N_m");
+    let characteristic_length =
+        if top.has("characteristic_length_um") { top.number("characteristic_length_um") } else { Some(10e-6) };
+
+    let geometry_section = top.required_section("geometry", "geometry");
+    let geometry = geometry_section.as_ref().and_then(|section| geometry::read(section, coherence));
+    // Meshes can be read as soon as the number of planets is known.
+    let planets = geometry_section.as_ref().and_then(|section| section.whole("planets")).map(|count| count as usize);
+    let masses = top.required_section("bodies", "bodies").and_then(|section| bodies::read(&section, geometry.as_ref()));
+    let meshes = top.required_section("mesh", "mesh").and_then(|section| meshes::read(&section, planets));
+    let compliance = match top.section("compliance", "compliance") {
+        Some(section) => bodies::read_compliance(&section).map(Some),
+        None => Some(None),
+    };
+    let contact = motion::read_contact(top.section("contact", "contact").as_ref());
+    let omega_n = masses
+        .as_ref()
+        .zip(meshes.as_ref())
+        .map(|(masses, meshes)| motion::characteristic_frequency(&masses.bodies, &meshes[0]));
+    let excitation = motion::read_excitation(top.section("excitation", "excitation").as_ref(), omega_n);
+    let profile_section = top.section("profile", "profile");
+    let profile = motion::read_profile(profile_section.as_ref(), geometry.as_ref(), rated_output_torque);
+    let drive_train = top.section("drive_train", "drive_train").map(|section| drive_train::read(&section));
+
+    if let Some(geometry) = &geometry {
+        coherence::check(geometry, top.notes());
+    }
+
+    let (damping_law, dead_zone) = contact?;
+    let [sun_planet, ring_planet] = meshes?;
+    let masses = masses?;
+    Some(JointFile {
+        parameters: JointParameters {
+            name: name?,
+            geometry: geometry?,
+            bodies: masses.bodies,
+            rotor_inertia: masses.rotor_inertia,
+            link_inertia: masses.link_inertia,
+            compliance: compliance?,
+            sun_planet,
+            ring_planet,
+            damping_law,
+            dead_zone,
+            excitation: excitation?,
+            characteristic_length: characteristic_length?,
+            rated_output_torque: rated_output_torque?,
+        },
+        description: description?,
+        profile: profile?,
+        drive_train,
+        warnings: Vec::new(),
+        sources: Vec::new(),
+    })
+}
+
+/// The name, short and plain enough for the board's hello.
+fn read_name(top: &Section<'_>) -> Option<heapless::String<32>> {
+    if !top.has("name") {
+        top.missing("name");
+    }
+    let text = top.text("name")?;
+    let plain = |letter: char| letter.is_ascii_alphanumeric() || " -_.+()".contains(letter);
+    let name = heapless::String::try_from(text.as_str()).ok();
+    let good = name.filter(|name| !name.trim().is_empty() && name.chars().all(plain));
+    if good.is_none() {
+        let message = match text.len() {
+            33.. => format!("`name` has {} letters", text.chars().count()),
+            _ => format!("`name` cannot be \"{text}\""),
+        };
+        top.notes().error(top.place("name"), message, crate::keys::find("", "name").hint);
+    }
+    good
+}

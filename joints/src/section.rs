@@ -1,0 +1,272 @@
+//! Takes values out of one table of a joint file by the list of keys: right type, finite, within bounds, in SI. What the
+//! values mean together is left to the reader of each section.
+
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use crate::bound::{Bound, Unit};
+use crate::keys::{self, Key, Kind};
+use crate::notes::Notes;
+use crate::spelling;
+
+/// One table of the file.
+pub(crate) struct Section<'a> {
+    /// As typed between brackets; empty at the top of the file.
+    path: String,
+    /// Whose keys it has, as in `keys::Key::section`.
+    schema: &'static str,
+    header: Range<usize>,
+    table: &'a DeTable<'a>,
+    notes: &'a Notes<'a>,
+}
+
+/// One number for every planet, or a list.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum PerPlanetValue {
+    One(f64),
+    List(Vec<f64>),
+}
+
+impl<'a> Section<'a> {
+    /// The top of the file. Complains about keys that nobody knows, here and in every section taken from it.
+    pub(crate) fn top(table: &'a DeTable<'a>, notes: &'a Notes<'a>) -> Self {
+        Self { path: String::new(), schema: "", header: notes.top(), table, notes }.known()
+    }
+
+    /// The table `name` with the keys of `schema`; `None` if it is absent or no table.
+    pub(crate) fn section(&self, name: &str, schema: &'static str) -> Option<Section<'a>> {
+        let value = self.table.get(name)?;
+        let DeValue::Table(table) = value.get_ref() else {
+            let header = self.full(name);
+            let hint = format!("write a section, [{header}], with its keys below it");
+            self.notes.error(value.span(), format!("`{name}` must be a section, not {}", kind(value)), hint);
+            return None;
+        };
+        Some(Section { path: self.full(name), schema, header: value.span(), table, notes: self.notes }.known())
+    }
+
+    /// The table `name`, which must be there.
+    pub(crate) fn required_section(&self, name: &str, schema: &'static str) -> Option<Section<'a>> {
+        if self.table.get(name).is_none() {
+            let hint = keys::find(self.schema, name).hint;
+            self.notes.error(self.header.clone(), format!("the section [{}] is missing", self.full(name)), hint);
+        }
+        self.section(name, schema)
+    }
+
+    pub(crate) fn notes(&self) -> &'a Notes<'a> {
+        self.notes
+    }
+
+    pub(crate) fn has(&self, name: &str) -> bool {
+        self.table.get(name).is_some()
+    }
+
+    /// Where a key stands; the section's header if it does not.
+    pub(crate) fn place(&self, name: &str) -> Range<usize> {
+        self.table.get(name).map_or(self.header.clone(), Spanned::span)
+    }
+
+    /// Complains that a key is missing.
+    pub(crate) fn missing(&self, name: &str) {
+        let hint = keys::find(self.schema, name).hint;
+        let place = if self.path.is_empty() { "the top of the file".to_owned() } else { format!("[{}]", self.path) };
+        self.notes.error(self.header.clone(), format!("`{name}` is missing from {place}"), hint);
+    }
+
+    /// The one of two or three keys that the section holds. More than one is an error, and so is none if `needed`.
+    pub(crate) fn one_of(&self, names: &[&'static str], needed: bool) -> Option<&'static str> {
+        let mut held = names.iter().copied().filter(|name| self.has(name));
+        let first = held.next();
+        match (first, held.next()) {
+            (Some(first), Some(second)) => {
+                let message = format!("`{first}` and `{second}` say the same thing twice");
+                self.notes.error(self.place(second), message, format!("keep one of {}", listed(names)));
+            }
+            (None, _) if needed => {
+                let message = format!("[{}] needs one of {}", self.path, listed(names));
+                self.notes.error(self.header.clone(), message, keys::find(self.schema, names[0]).hint);
+            }
+            _ => {}
+        }
+        first
+    }
+
+    pub(crate) fn text(&self, name: &str) -> Option<String> {
+        let (value, key) = self.value(name)?;
+        match value.get_ref() {
+            DeValue::String(text) => Some(text.to_string()),
+            _ => self.wrong_type(value, key, "a string"),
+        }
+    }
+
+    /// One of the words that the key may hold.
+    pub(crate) fn choice(&self, name: &str) -> Option<&'static str> {
+        let (value, key) = self.value(name)?;
+        let Kind::Choice(words) = key.kind else { return None };
+        let DeValue::String(text) = value.get_ref() else { return self.wrong_type(value, key, "a string") };
+        let found = words.iter().find(|word| **word == *text);
+        if found.is_none() {
+            let message = format!("`{name}` must be {}, not \"{text}\"", listed_as(words, '"', "or"));
+            self.notes.error(value.span(), message, key.hint);
+        }
+        found.copied()
+    }
+
+    pub(crate) fn whole(&self, name: &str) -> Option<u32> {
+        let (value, key) = self.value(name)?;
+        let Kind::Whole(low, high) = key.kind else { return None };
+        let DeValue::Integer(integer) = value.get_ref() else { return self.wrong_type(value, key, "a whole number") };
+        self.source(name, value);
+        let number = i64::from_str_radix(integer.as_str(), integer.radix()).ok().and_then(|n| u32::try_from(n).ok());
+        let within = number.filter(|number| (low..=high).contains(number));
+        if within.is_none() {
+            let message = format!("`{name}` must be between {low} and {high}, not {integer}");
+            self.notes.error(value.span(), message, key.hint);
+        }
+        within
+    }
+
+    /// A number in SI.
+    pub(crate) fn number(&self, name: &str) -> Option<f64> {
+        let (value, key) = self.value(name)?;
+        let Kind::Number(unit, bound) = key.kind else { return None };
+        self.source(name, value);
+        self.bounded(value, key, unit, bound)
+    }
+
+    /// A number in SI that must be there.
+    pub(crate) fn required_number(&self, name: &str) -> Option<f64> {
+        if !self.has(name) {
+            self.missing(name);
+        }
+        self.number(name)
+    }
+
+    /// A whole number that must be there.
+    pub(crate) fn required_whole(&self, name: &str) -> Option<u32> {
+        if !self.has(name) {
+            self.missing(name);
+        }
+        self.whole(name)
+    }
+
+    /// One number, or a list of as many as there are planets, in SI. With `planets` unknown any length will do.
+    pub(crate) fn per_planet(&self, name: &str, planets: Option<usize>) -> Option<PerPlanetValue> {
+        let (value, key) = self.value(name)?;
+        let Kind::PerPlanet(unit, bound) = key.kind else { return None };
+        self.source(name, value);
+        let DeValue::Array(list) = value.get_ref() else {
+            return self.bounded(value, key, unit, bound).map(PerPlanetValue::One);
+        };
+        if let Some(planets) = planets.filter(|planets| *planets != list.len()) {
+            let message = format!("`{name}` lists {} values for {planets} planets", list.len());
+            let help = format!("give {planets} values, or one number for all planets");
+            self.notes.error(value.span(), message, help);
+        }
+        let numbers: Vec<_> = list.iter().map(|item| self.bounded(item, key, unit, bound)).collect();
+        numbers.into_iter().collect::<Option<_>>().map(PerPlanetValue::List)
+    }
+
+    fn bounded(&self, value: &Spanned<DeValue<'_>>, key: &Key, unit: Unit, bound: Bound) -> Option<f64> {
+        let number = match value.get_ref() {
+            DeValue::Integer(integer) => {
+                i64::from_str_radix(integer.as_str(), integer.radix()).ok().map(|number| number as f64)
+            }
+            DeValue::Float(float) => float.as_str().parse().ok(),
+            _ => return self.wrong_type(value, key, "a number"),
+        };
+        let number = number.unwrap_or(f64::INFINITY);
+        if bound.holds(number) {
+            return Some(unit.to_si(number));
+        }
+        let limits = if number.is_finite() { bound.text() } else { Bound::Finite.text() };
+        self.notes.error(value.span(), format!("`{}` must be {limits}, not {}", key.name, shown(value)), key.hint);
+        None
+    }
+
+    fn value(&self, name: &str) -> Option<(&'a Spanned<DeValue<'a>>, &'static Key)> {
+        let value = self.table.get(name)?;
+        self.notes.place(self.full(name), value.span());
+        Some((value, keys::find(self.schema, name)))
+    }
+
+    fn source(&self, name: &str, value: &Spanned<DeValue<'_>>) {
+        self.notes.source(self.full(name), &value.span());
+    }
+
+    fn wrong_type<T>(&self, value: &Spanned<DeValue<'_>>, key: &Key, wanted: &str) -> Option<T> {
+        let message = format!("`{}` must be {wanted}, not {}", key.name, kind(value));
+        self.notes.error(value.span(), message, key.hint);
+        None
+    }
+
+    fn full(&self, name: &str) -> String {
+        if self.path.is_empty() { name.to_owned() } else { format!("{}.{name}", self.path) }
+    }
+
+    /// Complains about every key that is not in the list.
+    fn known(self) -> Self {
+        for name in self.table.keys() {
+            let word = name.get_ref().as_ref();
+            if keys::of(self.schema).any(|key| key.name == word) {
+                continue;
+            }
+            let place = if self.path.is_empty() { "a joint file".to_owned() } else { format!("[{}]", self.path) };
+            let help = if let Some(near) = spelling::nearest(word, keys::of(self.schema).map(|key| key.name)) {
+                format!("did you mean `{near}`? {}", keys::find(self.schema, near).hint)
+            } else if let Some(key) = keys::KEYS.iter().find(|key| key.name == word) {
+                format!("it belongs {}", belongs(key.section))
+            } else {
+                format!("known here: {}", listed(&keys::of(self.schema).map(|key| key.name).collect::<Vec<_>>()))
+            };
+            self.notes.error(name.span(), format!("unknown key `{word}` in {place}"), help);
+        }
+        self
+    }
+}
+
+fn belongs(section: &str) -> String {
+    match section {
+        "" => "at the top of the file, above all sections".to_owned(),
+        "encoder" => "in [drive_train.motor_encoder] or [drive_train.output_encoder]".to_owned(),
+        section => format!("in [{section}]"),
+    }
+}
+
+/// The type of a value, for "must be a number, not ...".
+fn kind(value: &Spanned<DeValue<'_>>) -> &'static str {
+    match value.get_ref() {
+        DeValue::String(_) => "a string",
+        DeValue::Integer(_) => "a whole number",
+        DeValue::Float(_) => "a number with a fraction",
+        DeValue::Boolean(_) => "true or false",
+        DeValue::Datetime(_) => "a date",
+        DeValue::Array(_) => "a list",
+        DeValue::Table(_) => "a section",
+    }
+}
+
+/// A number as it was typed.
+fn shown(value: &Spanned<DeValue<'_>>) -> String {
+    match value.get_ref() {
+        DeValue::Integer(integer) => integer.to_string(),
+        DeValue::Float(float) => float.to_string(),
+        _ => kind(value).to_owned(),
+    }
+}
+
+fn listed(names: &[&str]) -> String {
+    listed_as(names, '`', "and")
+}
+
+fn listed_as(names: &[&str], quote: char, last: &str) -> String {
+    let quoted: Vec<String> = names.iter().map(|name| format!("{quote}{name}{quote}")).collect();
+    match quoted.split_last() {
+        Some((end, rest)) if !rest.is_empty() => format!("{} {last} {end}", rest.join(", ")),
+        Some((end, _)) => end.clone(),
+        None => String::new(),
+    }
+}

@@ -1,0 +1,60 @@
+//! Finds the known word that a misspelt one was probably meant to be. It knows nothing of what the words mean.
+
+/// The candidate nearest to `word`, if any is near enough to be worth suggesting.
+pub(crate) fn nearest<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
+    candidates
+        .into_iter()
+        .map(|candidate| (likeness(word, candidate), candidate))
+        .filter(|(cost, candidate)| 3 * cost <= word.len().max(candidate.len()) + 2)
+        .min_by_key(|(cost, _)| *cost)
+        .map(|(_, candidate)| candidate)
+}
+
+/// Edits between the words, where a word that only lost or changed its unit (`backlash`, `backlash_mm`) counts as near.
+fn likeness(word: &str, candidate: &str) -> usize {
+    let (word, candidate) = (word.to_lowercase(), candidate.to_lowercase());
+    let whole = edits(&word, &candidate);
+    let stem = |text: &str| text.rsplit_once('_').map_or(text.to_owned(), |(stem, _)| stem.to_owned());
+    let by_stem = edits(&word, &stem(&candidate)).min(edits(&stem(&word), &stem(&candidate))) + 1;
+    whole.min(by_stem)
+}
+
+/// Insertions, deletions and exchanges of one letter.
+fn edits(from: &str, to: &str) -> usize {
+    let to: Vec<char> = to.chars().collect();
+    let mut row: Vec<usize> = (0..=to.len()).collect();
+    for (i, letter) in from.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for j in 0..to.len() {
+            let exchanged = diagonal + usize::from(letter != to[j]);
+            diagonal = row[j + 1];
+            row[j + 1] = exchanged.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row[to.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::nearest;
+
+    const KEYS: [&str; 3] = ["half_backlash_um", "mean_stiffness_N_per_m", "stiffness_ratio"];
+
+    #[test]
+    fn a_letter_lost_is_found() {
+        assert_eq!(nearest("half_backlsh_um", KEYS), Some("half_backlash_um"));
+    }
+
+    #[test]
+    fn a_key_with_another_unit_or_none_is_found() {
+        assert_eq!(nearest("half_backlash_mm", KEYS), Some("half_backlash_um"));
+        assert_eq!(nearest("half_backlash", KEYS), Some("half_backlash_um"));
+        assert_eq!(nearest("mean_stiffness_N_per_um", KEYS), Some("mean_stiffness_N_per_m"));
+    }
+
+    #[test]
+    fn a_stranger_is_not_guessed_at() {
+        assert_eq!(nearest("colour", KEYS), None);
+    }
+}

@@ -1,6 +1,13 @@
 //! `joint hil`: a joint simulated on a board, driven and checked from here. Toolchain, images and the emulator's
 //! process are left to `target`, pictures to `report`.
 
+pub mod fault;
+pub mod logs;
+pub mod profile;
+pub mod recording;
+pub mod session;
+pub mod transport;
+
 use crate::failure::{Failure, Outcome};
 
 /// Arguments of `joint hil`.

@@ -1,0 +1,208 @@
+//! A recorded drive: a CSV with time, motor torque and load torque at any sampling rate, even an uneven one. Between
+//! rows torques are taken as straight lines, and a command is their mean over its interval, so that impulses are kept
+//! at any rate; nothing is extrapolated but the last row, which holds.
+
+use std::path::Path;
+
+use super::Torques;
+use crate::failure::{Failure, Outcome};
+
+/// Columns of the file, in any order; others are ignored.
+pub const COLUMNS: [&str; 3] = ["time_s", "motor_torque_Nm", "load_torque_Nm"];
+
+/// Rows of the file, in rising time from 0.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recording {
+    rows: Vec<Row>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Row {
+    time: f64,
+    torques: Torques,
+    /// Integral of the torques from the first row to here [N m s].
+    integral: Torques,
+}
+
+impl Recording {
+    /// Reads a file; the first row is time 0 of the run, whatever its time.
+    pub fn read(path: &Path) -> Outcome<Self> {
+        let text = std::fs::read_to_string(path)
+            .map_err(|error| Failure::new(format!("cannot read the profile {}: {error}", path.display())))?;
+        Self::parse(&text).map_err(|failure| failure.while_doing(path.display()))
+    }
+
+    fn parse(text: &str) -> Outcome<Self> {
+        let mut reader =
+            csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(text.as_bytes());
+        let header = reader.headers().map_err(|error| Failure::new(format!("no header line: {error}")))?.clone();
+        let place = |wanted: &str| header.iter().position(|column| column == wanted);
+        let mut places = [0; COLUMNS.len()];
+        for (found, wanted) in places.iter_mut().zip(COLUMNS) {
+            *found = place(wanted).ok_or_else(|| missing_column(wanted, &header))?;
+        }
+        let mut rows: Vec<Row> = Vec::new();
+        let mut start = None;
+        for record in reader.records() {
+            let record = record.map_err(|error| unreadable(&error))?;
+            let line = record.position().map_or(0, csv::Position::line);
+            let mut values = [0.0; COLUMNS.len()];
+            for ((value, column), place) in values.iter_mut().zip(COLUMNS).zip(places) {
+                *value = number(line, column, record.get(place).unwrap_or_default())?;
+            }
+            push(&mut rows, *start.get_or_insert(values[0]), line, values)?;
+        }
+        match rows.as_slice() {
+            [] => Err(Failure::new("the profile holds no rows").with_help("give at least two rows of numbers")),
+            [_] => Err(Failure::new("the profile holds a single row").with_help("give at least two rows of numbers")),
+            _ => Ok(Self { rows }),
+        }
+    }
+
+    /// From the first row to the last [s].
+    pub fn duration(&self) -> f64 {
+        self.rows.last().map_or(0.0, |row| row.time)
+    }
+
+    /// Mean torques over an interval [s].
+    pub fn mean(&self, from: f64, to: f64) -> Torques {
+        let (start, end) = (self.integral(from), self.integral(to));
+        let mean = |start: f64, end: f64| (end - start) / (to - from);
+        Torques { drive: mean(start.drive, end.drive), load: mean(start.load, end.load) }
+    }
+
+    /// Integral of the straight lines from 0 [N m s].
+    fn integral(&self, time: f64) -> Torques {
+        let after = self.rows.partition_point(|row| row.time <= time);
+        let left = self.rows[after.saturating_sub(1)];
+        let elapsed = time - left.time;
+        let slope = |pick: fn(&Torques) -> f64| {
+            self.rows
+                .get(after)
+                .map_or(0.0, |right| (pick(&right.torques) - pick(&left.torques)) / (right.time - left.time))
+        };
+        let area = |pick: fn(&Torques) -> f64| {
+            pick(&left.integral) + elapsed * (pick(&left.torques) + 0.5 * elapsed * slope(pick))
+        };
+        Torques { drive: area(|torques| torques.drive), load: area(|torques| torques.load) }
+    }
+}
+
+/// Takes one line of the file; refuses what cannot be a recording.
+fn push(rows: &mut Vec<Row>, start: f64, line: u64, [time, drive, load]: [f64; 3]) -> Outcome<()> {
+    let torques = Torques { drive, load };
+    let time = time - start;
+    let integral = match rows.last() {
+        None => Torques { drive: 0.0, load: 0.0 },
+        Some(last) if time > last.time => {
+            let half = 0.5 * (time - last.time);
+            Torques {
+                drive: last.integral.drive + half * (last.torques.drive + drive),
+                load: last.integral.load + half * (last.torques.load + load),
+            }
+        }
+        Some(last) => {
+            let (before, now) = (last.time + start, time + start);
+            return Err(Failure::new(format!("line {line}: time_s does not rise: {now} s follows {before} s"))
+                .with_help("sort the rows by time and remove repeated ones"));
+        }
+    };
+    rows.push(Row { time, torques, integral });
+    Ok(())
+}
+
+fn number(line: u64, column: &str, text: &str) -> Outcome<f64> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && (value as f32).is_finite() => Ok(value),
+        Ok(value) => Err(Failure::new(format!("line {line}: {column} is {value}"))
+            .with_help("every value must be a finite number: remove the row or fill it in")),
+        Err(_) => Err(Failure::new(format!("line {line}: {column} is `{text}`, not a number"))
+            .with_help("write numbers with a decimal point, and commas between columns")),
+    }
+}
+
+fn unreadable(error: &csv::Error) -> Failure {
+    let line = error.position().map_or(0, csv::Position::line);
+    match error.kind() {
+        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
+            Failure::new(format!("line {line} has {len} columns, the header has {expected_len}"))
+                .with_help("give every row a value for every column")
+        }
+        _ => Failure::new(format!("line {line} cannot be read: {error}")),
+    }
+}
+
+fn missing_column(wanted: &str, header: &csv::StringRecord) -> Failure {
+    let there = header.iter().collect::<Vec<_>>().join(", ");
+    let message = if there.is_empty() {
+        "the profile is empty".to_owned()
+    } else {
+        format!("line 1: there is no column `{wanted}`; columns are: {there}")
+    };
+    Failure::new(message).with_help(format!("the first line must name the columns {}", COLUMNS.join(",")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refused(text: &str) -> String {
+        Recording::parse(text).expect_err("a bad file").message().to_owned()
+    }
+
+    #[test]
+    fn bad_rows_are_refused_by_line_number() {
+        let header = "time_s,motor_torque_Nm,load_torque_Nm\n0,1,6\n";
+        assert!(refused(&format!("{header}0.1,NaN,6\n")).starts_with("line 3: motor_torque_Nm is NaN"));
+        assert!(refused(&format!("{header}0.1,1,inf\n")).starts_with("line 3: load_torque_Nm is inf"));
+        assert!(refused(&format!("{header}0.1,1e60,6\n")).starts_with("line 3: motor_torque_Nm is 1"));
+        assert!(refused(&format!("{header}0.1,1,6\n0.1,1,6\n")).starts_with("line 4: time_s does not rise"));
+        assert!(refused(&format!("{header}-0.1,1,6\n")).starts_with("line 3: time_s does not rise"));
+        assert!(refused(&format!("{header}0.1,1\n")).starts_with("line 3 has 2 columns"));
+        assert!(refused(&format!("{header}\n\n0.1,,6\n")).starts_with("line 5: motor_torque_Nm is ``"));
+        assert!(refused(&format!("{header}0.1,1.5x,6\n")).starts_with("line 3: motor_torque_Nm is `1.5x`"));
+    }
+
+    #[test]
+    fn files_without_columns_or_rows_are_refused() {
+        assert!(refused("").contains("is empty"));
+        assert!(refused("time_s,motor_torque_Nm\n0,1\n").contains("no column `load_torque_Nm`"));
+        assert!(refused("time_s,motor_torque_Nm,load_torque_Nm\n").contains("no rows"));
+        assert!(refused("time_s,motor_torque_Nm,load_torque_Nm\n0,1,6\n").contains("a single row"));
+    }
+
+    #[test]
+    fn columns_may_stand_in_any_order_beside_others_and_comments() {
+        let text = "# a drive's log\nload_torque_Nm, time_s, phase, motor_torque_Nm\n6,10,x,1\n12,11,y,2\n";
+        let recording = Recording::parse(text).expect("a good file");
+        assert_eq!(recording.duration(), 1.0);
+        assert_eq!(recording.mean(0.0, 1.0), Torques { drive: 1.5, load: 9.0 });
+    }
+
+    #[test]
+    fn the_impulse_of_a_recording_survives_resampling_at_any_rate() {
+        let mut text = String::from("time_s,motor_torque_Nm,load_torque_Nm\n");
+        let times: Vec<f64> = (0..=700).map(|k| 0.001_43 * f64::from(k) + 0.0003 * f64::from(k % 3)).collect();
+        for time in &times {
+            text += &format!("{time},{},{}\n", (40.0 * time).sin(), time * time);
+        }
+        let recording = Recording::parse(&text).expect("a good file");
+        let rows: f64 =
+            times.windows(2).map(|t| 0.5 * (t[1] - t[0]) * ((40.0 * t[0]).sin() + (40.0 * t[1]).sin())).sum();
+        let duration = recording.duration();
+        for commands in [13, 1000, 7777] {
+            let width = duration / f64::from(commands);
+            let impulse: f64 = (0..commands)
+                .map(|k| width * recording.mean(width * f64::from(k), width * f64::from(k + 1)).drive)
+                .sum();
+            assert!((impulse - rows).abs() < 1e-12, "{commands}: {impulse} for {rows}");
+        }
+    }
+
+    #[test]
+    fn after_the_last_row_its_torque_holds() {
+        let text = "time_s,motor_torque_Nm,load_torque_Nm\n0,0,0\n1,2,3\n";
+        let recording = Recording::parse(text).expect("a good file");
+        assert_eq!(recording.mean(5.0, 6.0), Torques { drive: 2.0, load: 3.0 });
+    }
+}

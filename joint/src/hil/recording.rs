@@ -1,0 +1,150 @@
+//! What a session hears from the board and what it knows the board to have taken, as raw as it came. Gaps in sequence
+//! numbers are counted here; SI units and verdicts come later.
+
+use link::messages::{Accepted, Command, Fault, FromBoard, Hello, Log, RunSettings, Sample, SampleBatch, Statistics};
+
+/// Everything of one session.
+#[derive(Debug, Clone, Default)]
+pub struct Recording {
+    /// Who the board said it was.
+    pub hello: Option<Hello>,
+    /// What the run was started with.
+    pub settings: Option<RunSettings>,
+    /// Commands in schedules that the board said it took, in the order sent.
+    pub accepted: Vec<Command>,
+    /// Samples in the order in which they came.
+    pub samples: Vec<Sample>,
+    /// The last statistics.
+    pub statistics: Option<Statistics>,
+    /// Faults in the order in which they came.
+    pub faults: Vec<Fault>,
+    /// Encoded log, with the gaps left out.
+    pub log: Vec<u8>,
+    /// What went over the line and what was lost on it.
+    pub traffic: Traffic,
+    next_batch: u16,
+    next_log: Option<u16>,
+}
+
+/// What went over the line and what was lost on it, seen from the host.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Traffic {
+    /// Bytes to the board.
+    pub sent_bytes: u64,
+    /// Bytes from the board.
+    pub received_bytes: u64,
+    /// Good messages from the board.
+    pub messages: u64,
+    /// Frames dropped here during the run for a bad CRC, length or content.
+    pub bad_frames: u32,
+    /// Sample batches missing by sequence number.
+    pub lost_batches: u32,
+    /// Log frames missing by sequence number.
+    pub lost_logs: u32,
+}
+
+impl Recording {
+    /// Files a message. What a run is made of is the session's to decide.
+    pub fn take(&mut self, message: FromBoard) {
+        self.traffic.messages += 1;
+        match message {
+            FromBoard::Hello(hello) => self.hello = Some(hello),
+            FromBoard::Accepted(_) => {}
+            FromBoard::Samples(batch) => self.take_samples(batch),
+            FromBoard::Statistics(statistics) => self.statistics = Some(statistics),
+            FromBoard::Fault(fault) => self.faults.push(fault),
+            FromBoard::Log(log) => self.take_log(&log),
+        }
+    }
+
+    /// A run starts: only the log and the board's name go on.
+    pub fn start_run(&mut self, settings: RunSettings) {
+        let log = std::mem::take(&mut self.log);
+        let lost_logs = self.traffic.lost_logs;
+        *self = Self {
+            hello: self.hello.take(),
+            settings: Some(settings),
+            log,
+            next_log: self.next_log,
+            traffic: Traffic { lost_logs, ..Traffic::default() },
+            ..Self::default()
+        };
+    }
+
+    /// Last tick that the board is known to have done.
+    pub fn last_tick(&self) -> u32 {
+        self.samples.last().map_or(0, |sample| sample.tick)
+    }
+
+    fn take_samples(&mut self, batch: SampleBatch) {
+        self.traffic.lost_batches += u32::from(batch.sequence.wrapping_sub(self.next_batch));
+        self.next_batch = batch.sequence.wrapping_add(1);
+        self.samples.extend(batch.samples);
+    }
+
+    fn take_log(&mut self, log: &Log) {
+        if let Some(next) = self.next_log {
+            self.traffic.lost_logs += u32::from(log.sequence.wrapping_sub(next));
+        }
+        self.next_log = Some(log.sequence.wrapping_add(1));
+        self.log.extend_from_slice(&log.bytes);
+    }
+}
+
+/// Schedules that were sent and not yet answered for.
+#[derive(Debug, Default)]
+pub struct Unanswered {
+    schedules: Vec<(u16, Vec<Command>)>,
+}
+
+impl Unanswered {
+    /// A schedule has been sent.
+    pub fn sent(&mut self, sequence: u16, commands: &[Command]) {
+        self.schedules.push((sequence, commands.to_vec()));
+    }
+
+    /// The board took one: its commands.
+    pub fn answered(&mut self, accepted: Accepted) -> Option<Vec<Command>> {
+        let place = self.schedules.iter().position(|(sequence, _)| *sequence == accepted.sequence)?;
+        Some(self.schedules.remove(place).1)
+    }
+
+    /// How many are under way.
+    pub fn count(&self) -> usize {
+        self.schedules.len()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn batch(sequence: u16) -> FromBoard {
+        FromBoard::Samples(SampleBatch { sequence, samples: heapless::Vec::new() })
+    }
+
+    fn log(sequence: u16) -> FromBoard {
+        FromBoard::Log(Log { sequence, bytes: heapless::Vec::from_slice(&[1, 2]).expect("room") })
+    }
+
+    #[test]
+    fn a_gap_in_the_batches_is_counted_by_its_width_also_over_the_wrap() {
+        let mut recording = Recording { next_batch: u16::MAX - 1, ..Recording::default() };
+        [u16::MAX - 1, u16::MAX, 0, 3, 4].into_iter().for_each(|sequence| recording.take(batch(sequence)));
+        assert_eq!(recording.traffic.lost_batches, 2);
+    }
+
+    #[test]
+    fn batches_lost_at_the_very_start_are_counted() {
+        let mut recording = Recording::default();
+        recording.take(batch(2));
+        assert_eq!(recording.traffic.lost_batches, 2);
+    }
+
+    #[test]
+    fn a_log_may_be_joined_anywhere_but_not_lose_a_frame() {
+        let mut recording = Recording::default();
+        [7, 8, 10].into_iter().for_each(|sequence| recording.take(log(sequence)));
+        assert_eq!((recording.traffic.lost_logs, recording.log.len()), (1, 6));
+    }
+}

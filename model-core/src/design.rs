@@ -1,0 +1,199 @@
+//! The offline half, f64: from parameters to the tables of a fixed step. `dynamics` is eq. 19, `hamiltonian` eq. 20,
+//! `exponential` the precise integration, `flow_tables` its sorting into in-phase and deviating motion; this file
+//! puts them together.
+
+pub mod dynamics;
+pub mod exponential;
+mod flow_tables;
+pub mod hamiltonian;
+pub mod modes;
+mod source;
+mod validate;
+
+use core::array;
+use core::f64::consts::TAU;
+
+use crate::dead_zone::DeadZone;
+pub use crate::error::DesignError;
+use crate::joint::{self, JointParameters};
+use crate::mesh::{MAX_HARMONICS, MESH_KINDS, MeshKind};
+use crate::real::Real;
+use crate::scales::Scales;
+use crate::tables::{Excitation, MeshTable, Mobility, Rigid, Scheme, Spring, Tables, Units};
+use dynamics::{Dynamics, MovingMasses};
+pub use source::rust_source;
+
+/// Sub-steps resolve the fastest mode at least this well (its phase a sub-step) [rad], as far as [`USUAL_SUBSTEPS`]
+/// go: there the crossing correction leaves about 5e-4 of the motion.
+const GOOD_PHASE: f64 = 0.4;
+/// More sub-steps than this are spent on stability only.
+const USUAL_SUBSTEPS: f64 = 4.0;
+/// Phase of the fastest mode that a sub-step may have at most; the Runge-Kutta method is stable to 2.8 [rad].
+const LARGEST_PHASE: f64 = 1.5;
+/// Most sub-steps a tick.
+const MOST_SUBSTEPS: f64 = 16.0;
+
+/// Tables of the scheme that a board runs.
+pub fn design<T: Real, const N: usize>(
+    parameters: &JointParameters,
+    tick_rate: u32,
+) -> Result<Tables<T, N>, DesignError> {
+    design_scheme(parameters, tick_rate, Scheme::Realtime)
+}
+
+/// Tables of a named scheme.
+pub fn design_scheme<T: Real, const N: usize>(
+    parameters: &JointParameters,
+    tick_rate: u32,
+    scheme: Scheme,
+) -> Result<Tables<T, N>, DesignError> {
+    validate::validate(parameters)?;
+    let planets = parameters.geometry.planets;
+    if planets != N {
+        return Err(DesignError::WrongPlanetCount { wanted: N, given: planets });
+    }
+    let scales = Scales::new(parameters);
+    let dynamics = Dynamics::new(parameters, &scales);
+    let real = T::from_f64;
+    let substeps = substeps(parameters, tick_rate)?;
+    let tick = scales.frequency / f64::from(tick_rate);
+    let substep = tick / f64::from(substeps);
+    let flow_step = match scheme {
+        Scheme::Realtime => tick,
+        Scheme::PaperEtd1 => substep,
+    };
+    let mut tables = Tables {
+        digest: 0,
+        tick_rate,
+        scheme,
+        substeps,
+        half_part: real(0.5 / f64::from(substeps)),
+        substep: real(substep),
+        planet_share: real(1.0 / N as f64),
+        damping_law: parameters.damping_law,
+        sharpness: match parameters.dead_zone {
+            DeadZone::Sharp => T::ZERO,
+            DeadZone::Tanh { sharpness } => real(sharpness),
+        },
+        units: units(parameters, &scales, tick_rate),
+        rigid: rigid(parameters, tick_rate),
+        mobility: mobility(&dynamics),
+        excitation: excitation(parameters, tick_rate, tick),
+        springs: MESH_KINDS.map(|kind| Spring {
+            stiffness: real(parameters.mesh(kind).mean_stiffness / scales.stiffness),
+            damping: real(scales.damping(parameters.damping_coefficient(kind))),
+        }),
+        meshes: MESH_KINDS.map(|kind| array::from_fn(|i| mesh(parameters, &scales, kind, i))),
+        flow: flow_tables::flow(&dynamics, flow_step),
+    };
+    tables.digest = tables.numbers_digest();
+    Ok(tables)
+}
+
+/// Sub-steps a tick, from the fastest mode of the closed joint at its stiffest.
+fn substeps(parameters: &JointParameters, tick_rate: u32) -> Result<u32, DesignError> {
+    let fastest = modes::natural_frequencies(parameters).last().copied().unwrap_or(0.0);
+    let stiffest = MESH_KINDS
+        .map(|kind| {
+            let wave = &parameters.mesh(kind).stiffness_wave;
+            (1..=wave.order()).map(|m| wave.coefficients(m)).map(|(a, b)| libm::hypot(a, b)).sum::<f64>()
+        })
+        .into_iter()
+        .fold(0.0, f64::max);
+    let frequency = fastest * libm::sqrt(1.0 + stiffest);
+    let phase = frequency / f64::from(tick_rate.max(1));
+    let wanted = libm::ceil(phase / GOOD_PHASE).min(USUAL_SUBSTEPS).max(libm::ceil(phase / LARGEST_PHASE)).max(1.0);
+    if tick_rate == 0 || wanted > MOST_SUBSTEPS {
+        let lowest = libm::ceil(frequency / (LARGEST_PHASE * MOST_SUBSTEPS)) as u32;
+        return Err(DesignError::RateTooLow { given: tick_rate, lowest });
+    }
+    Ok(wanted as u32)
+}
+
+fn units<T: Real>(parameters: &JointParameters, scales: &Scales, tick_rate: u32) -> Units<T> {
+    let real = T::from_f64;
+    let masses = MovingMasses::new(parameters);
+    let (sun_lever, lever) = (parameters.geometry.sun_base_radius, parameters.geometry.carrier_base_radius());
+    let load_on = |mass: f64| 1.0 / (lever * mass * scales.acceleration());
+    // u_s = 2 q + offset from the definition of the rigid coordinate q = phi^T M u / phi^T M phi.
+    let rigid = masses.rigid(parameters.geometry.planets);
+    let link = masses.link.unwrap_or(0.0);
+    let outer = parameters.geometry.planets as f64 * masses.planet - masses.carrier - link;
+    let motor = [2.0 * masses.planet / rigid, -outer / rigid, 2.0 * link / rigid];
+    // u_l = u_s / 2 - gap / 2 - wind-up.
+    let output = [0.5 * motor[0], 0.5 * (motor[1] - 1.0), 0.5 * motor[2] - 1.0];
+    Units {
+        drive: real(1.0 / (sun_lever * masses.sun * scales.acceleration())),
+        load_on_carrier: real(if masses.link.is_some() { 0.0 } else { load_on(masses.carrier) }),
+        load_on_link: real(masses.link.map_or(0.0, load_on)),
+        length: real(scales.length),
+        carrier_speed: real(TAU * f64::from(tick_rate) / libm::ldexp(1.0, 64)),
+        motor_offset: motor.map(|gain| real(gain * scales.length / sun_lever)),
+        link_offset: output.map(|gain| real(gain * scales.length / lever)),
+    }
+}
+
+fn rigid<T: Real>(parameters: &JointParameters, tick_rate: u32) -> Rigid<T> {
+    let mass = MovingMasses::new(parameters).rigid(parameters.geometry.planets);
+    let lever = parameters.geometry.carrier_base_radius();
+    let rate = f64::from(tick_rate);
+    // 2^-64 turns a tick, each tick, for a unit of acceleration of q [m/s^2].
+    let unit = libm::ldexp(1.0, 64) / (TAU * lever * rate * rate);
+    Rigid {
+        drive: T::from_f64(unit * 2.0 / (parameters.geometry.sun_base_radius * mass)),
+        load: T::from_f64(unit / (lever * mass)),
+    }
+}
+
+fn mobility<T: Real>(dynamics: &Dynamics) -> Mobility<T> {
+    let real = T::from_f64;
+    let mobilities = &dynamics.mobilities;
+    let carrier = dynamics.planets + 1;
+    let (stiffness, damping) = dynamics.wind_up.unwrap_or((0.0, 0.0));
+    Mobility {
+        sun: real(mobilities[0]),
+        planet: real(mobilities[1]),
+        carrier: real(mobilities[carrier]),
+        link: real(mobilities.get(carrier + 1).copied().unwrap_or(0.0)),
+        wind_up: if dynamics.wind_up.is_some() { T::ONE } else { T::ZERO },
+        wind_up_stiffness: real(stiffness),
+        wind_up_damping: real(damping),
+    }
+}
+
+fn excitation<T: Real>(parameters: &JointParameters, tick_rate: u32, tick: f64) -> Excitation<T> {
+    let real = T::from_f64;
+    let unit = libm::ldexp(1.0, 32);
+    let (periods, periods_per_turn) = match parameters.excitation {
+        joint::Excitation::Time { mesh_frequency } => (mesh_frequency / (TAU * f64::from(tick_rate)), 0),
+        joint::Excitation::Angle => (0.0, parameters.geometry.ring_teeth),
+    };
+    let order = MESH_KINDS.map(|kind| parameters.mesh(kind).stiffness_wave.order());
+    Excitation {
+        phase_step: ((periods - libm::floor(periods)) * libm::ldexp(1.0, 64)) as u64,
+        phase_way: real(periods * unit),
+        periods_per_turn,
+        rate: real(TAU / (unit * tick)),
+        harmonics: order[0].max(order[1]) as u32,
+    }
+}
+
+fn mesh<T: Real>(parameters: &JointParameters, scales: &Scales, kind: MeshKind, planet: usize) -> MeshTable<T> {
+    let real = T::from_f64;
+    let mesh = parameters.mesh(kind);
+    let (error_sine, error_cosine) = libm::sincos(parameters.error_phase(kind, planet));
+    let amplitude = mesh.transmission_error[planet] / scales.length;
+    let mean = mesh.mean_stiffness / scales.stiffness;
+    let mut ripple = [[T::ZERO; 2]; MAX_HARMONICS];
+    for (index, pair) in ripple.iter_mut().enumerate().take(mesh.stiffness_wave.order()) {
+        let harmonic = index + 1;
+        let (a, b) = mesh.stiffness_wave.coefficients(harmonic);
+        let (sine, cosine) = libm::sincos(harmonic as f64 * parameters.stiffness_phase(kind, planet));
+        *pair = [real(mean * (a * cosine - b * sine)), real(mean * (a * sine + b * cosine))];
+    }
+    MeshTable {
+        half_backlash: real(mesh.half_backlash[planet] / scales.length),
+        error: [real(amplitude * error_cosine), real(amplitude * error_sine)],
+        ripple,
+    }
+}

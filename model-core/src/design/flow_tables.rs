@@ -1,0 +1,104 @@
+//! The exponential flow sorted for the board. Planets are alike, so the flow keeps what they do together (the
+//! in-phase motion, with gap and wind-up) apart from what each does beside the mean: 36 + 4 numbers for any number of
+//! planets, where a dense matrix has 64 for three and 144 for five.
+
+use nalgebra::{DMatrix, DVectorView, SMatrix};
+
+use crate::design::dynamics::Dynamics;
+use crate::design::exponential::{self, flow as integrate};
+use crate::design::hamiltonian;
+use crate::real::Real;
+use crate::tables::{Block, Flow, Inputs, Transition};
+
+/// Tables of the flow over `step` (dimensionless).
+pub fn flow<T: Real>(dynamics: &Dynamics, step: f64) -> Flow<T> {
+    let sorting = Sorting::new(dynamics);
+    let whole = sorting.integrate(step, 3);
+    let half = sorting.integrate(0.5 * step, 1);
+    let [constant, linear, square] = [0, 1, 2].map(|power| &whole.input_integrals[power]);
+    let inputs = |integral: &DMatrix<f64>| sorting.inputs(integral);
+    Flow {
+        // Lagrange's weights on the nodes 0, 1/2, 1 in powers of s / h.
+        whole_linear: [inputs(&(constant - linear * 2.0)), inputs(&(linear * 2.0))],
+        whole_quadratic: [
+            inputs(&(constant - linear * 3.0 + square * 2.0)),
+            inputs(&((linear - square) * 4.0)),
+            inputs(&(square * 2.0 - linear)),
+        ],
+        whole_constant: inputs(constant),
+        half_constant: inputs(&half.input_integrals[0]),
+        whole: sorting.transition(&whole),
+        half: sorting.transition(&half),
+        reach: T::from_f64(0.25 * step),
+    }
+}
+
+struct Sorting<'a> {
+    dynamics: &'a Dynamics,
+    /// In-phase part of a full state, and the full state of an in-phase part.
+    average: DMatrix<f64>,
+    spread: DMatrix<f64>,
+}
+
+impl<'a> Sorting<'a> {
+    fn new(dynamics: &'a Dynamics) -> Self {
+        let (planets, size) = (dynamics.planets, dynamics.coordinates());
+        let mut average = DMatrix::zeros(6, 2 * size);
+        let mut spread = DMatrix::zeros(2 * size, 6);
+        for half in 0..2 {
+            for planet in 0..planets {
+                average[(3 * half, size * half + planet)] = 1.0 / planets as f64;
+                spread[(size * half + planet, 3 * half)] = 1.0;
+            }
+            for other in planets..size {
+                average[(3 * half + 1 + other - planets, size * half + other)] = 1.0;
+                spread[(size * half + other, 3 * half + 1 + other - planets)] = 1.0;
+            }
+        }
+        Self { dynamics, average, spread }
+    }
+
+    /// Flow in (X, X'), integrated in the Hamiltonian form of eq. 20. Inputs: mesh forces taken off the joint, then
+    /// accelerations of sun, carrier and link.
+    fn integrate(&self, step: f64, powers: usize) -> exponential::Flow {
+        let dynamics = self.dynamics;
+        let (size, meshes) = (dynamics.coordinates(), dynamics.mesh_gain.ncols());
+        let mut inputs = DMatrix::zeros(2 * size, meshes + 3);
+        inputs.view_mut((size, 0), (size, meshes)).copy_from(&dynamics.mesh_gain);
+        inputs.view_mut((size, meshes), (size, 3)).copy_from(&dynamics.torque_gain);
+        let (forward, backward) = hamiltonian::from_rates(dynamics);
+        let flow = integrate(&hamiltonian::matrix(dynamics), &inputs, step, powers);
+        exponential::Flow {
+            transition: &backward * flow.transition * forward,
+            input_integrals: flow.input_integrals.iter().map(|integral| &backward * integral).collect(),
+        }
+    }
+
+    fn transition<T: Real>(&self, flow: &exponential::Flow) -> Transition<T> {
+        let size = self.dynamics.coordinates();
+        let full = &flow.transition;
+        // Between two planets, own effect less effect of another: what a deviation sees.
+        let deviation = SMatrix::<f64, 2, 2>::from_fn(|row, column| {
+            full[(size * row, size * column)] - full[(size * row, size * column + 1)]
+        });
+        let torques = self.dynamics.mesh_gain.ncols();
+        Transition {
+            in_phase: narrow(&(&self.average * full * &self.spread)),
+            deviation: Block(deviation.map(T::from_f64)),
+            torques: narrow(&(&self.average * flow.input_integrals[0].columns(torques, 3))),
+        }
+    }
+
+    fn inputs<T: Real>(&self, integral: &DMatrix<f64>) -> Inputs<T> {
+        let (planets, size) = (self.dynamics.planets, self.dynamics.coordinates());
+        // Every planet's mesh moves the in-phase motion alike, so one column stands for the sum over planets.
+        let column = |mesh: usize| -> DVectorView<'_, f64> { integral.column(mesh) };
+        let in_phase = DMatrix::from_columns(&[&self.average * column(0), &self.average * column(planets)]);
+        let own_less_other = |row: usize| T::from_f64(integral[(row, 0)] - integral[(row, 1)]);
+        Inputs { in_phase: narrow(&in_phase), deviation: [own_less_other(0), own_less_other(size)] }
+    }
+}
+
+fn narrow<T: Real, const R: usize, const C: usize>(matrix: &DMatrix<f64>) -> Block<T, R, C> {
+    Block(SMatrix::from_fn(|row, column| T::from_f64(matrix[(row, column)])))
+}

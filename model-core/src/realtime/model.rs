@@ -1,0 +1,192 @@
+//! The joint, one tick at a time: torques in, motion out. Bounded work, no allocation, no panic; SI only in
+//! [`Torques`] and [`Outputs`]. Scheduling, safety and telemetry are the firmware's business.
+
+use core::array;
+
+use crate::mesh::ContactState;
+use crate::real::Real;
+use crate::realtime::excitation::{Instants, MeshPhase, instants};
+use crate::realtime::flow;
+use crate::realtime::mesh_force::{Drive, PerMesh, contact, deflections};
+use crate::realtime::state::State;
+use crate::realtime::substep::{self, Motion};
+use crate::tables::{Scheme, Tables};
+
+/// Torques, constant over a tick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Torques<T> {
+    /// On the sun shaft [N m].
+    pub drive: T,
+    /// Braking the link (the carrier, without compliance) [N m].
+    pub load: T,
+}
+
+/// The motion in SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Outputs<T, const N: usize> {
+    /// Whole turns of the rigid-body carrier angle.
+    pub carrier_turns: i32,
+    /// The rest of it, in 2^-32 turns.
+    pub carrier_fraction: u32,
+    /// Rate of the rigid-body carrier angle [rad/s].
+    pub carrier_speed: T,
+    /// Motor angle less ratio times rigid carrier angle [rad].
+    pub motor_offset: T,
+    /// Link angle less rigid carrier angle [rad].
+    pub link_offset: T,
+    /// Gap coordinate u_s - 2 u_c along the line of action [m].
+    pub gap: T,
+    /// Wind-up between carrier and link along the line of action [m].
+    pub wind_up: T,
+    /// Mesh deflections [m]: sun-planet of every planet, then ring-planet.
+    pub deflections: PerMesh<T, N>,
+    /// Contact states in the same order.
+    pub contacts: PerMesh<ContactState, N>,
+}
+
+/// Tables and the state that they move.
+#[derive(Debug, Clone)]
+pub struct Model<'a, T: Real, const N: usize> {
+    tables: &'a Tables<T, N>,
+    state: State<T, N>,
+}
+
+impl<'a, T: Real, const N: usize> Model<'a, T, N> {
+    /// At rest, undeformed, at angle and phase zero.
+    pub const fn new(tables: &'a Tables<T, N>) -> Self {
+        Self { tables, state: State::REST }
+    }
+
+    /// Back to rest.
+    pub fn reset(&mut self) {
+        self.state = State::REST;
+    }
+
+    /// The state.
+    pub fn state(&self) -> &State<T, N> {
+        &self.state
+    }
+
+    /// Goes on from another state.
+    pub fn set_state(&mut self, state: State<T, N>) {
+        self.state = state;
+    }
+
+    /// Digest of every bit of the state.
+    pub fn state_digest(&self) -> u64 {
+        self.state.digest()
+    }
+
+    /// Neither infinite nor NaN anywhere.
+    pub fn is_finite(&self) -> bool {
+        self.state.is_finite()
+    }
+
+    /// One tick.
+    pub fn step(&mut self, torques: Torques<T>) {
+        let tables = self.tables;
+        let units = &tables.units;
+        let drive = Drive {
+            sun: units.drive * torques.drive,
+            carrier: -(units.load_on_carrier * torques.load),
+            link: -(units.load_on_link * torques.load),
+        };
+        let start = self.phase();
+        let way = self.state.rigid.advance(&tables.rigid, torques.drive, torques.load);
+        let phase = self.mesh_phase(start, way);
+        self.state.phase = self.state.phase.wrapping_add(tables.excitation.phase_step);
+        let motion = Motion { position: self.state.position, rate: self.state.rate };
+        let Motion { position, rate } = match tables.scheme {
+            Scheme::Realtime => realtime(tables, &drive, &phase, motion),
+            Scheme::PaperEtd1 => paper(tables, &drive, &phase, motion),
+        };
+        (self.state.position, self.state.rate) = (position, rate);
+    }
+
+    /// The motion now, in SI.
+    pub fn outputs(&self) -> Outputs<T, N> {
+        let State { position, rate, rigid, .. } = &self.state;
+        let units = &self.tables.units;
+        let planets = position.planets.iter().fold(T::ZERO, |sum, planet| sum + *planet);
+        let offset = |gains: &[T; 3]| gains[0] * planets + gains[1] * position.gap + gains[2] * position.wind_up;
+        let deflections = deflections(position, rate, &self.instants_now()).map(|family| family.map(|mesh| mesh.value));
+        Outputs {
+            carrier_turns: rigid.turns,
+            carrier_fraction: (rigid.fraction >> 32) as u32,
+            carrier_speed: units.carrier_speed * T::from_i64(rigid.speed),
+            motor_offset: offset(&units.motor_offset),
+            link_offset: offset(&units.link_offset),
+            gap: units.length * position.gap,
+            wind_up: units.length * position.wind_up,
+            deflections: deflections.map(|family| family.map(|value| units.length * value)),
+            contacts: array::from_fn(|kind| {
+                array::from_fn(|i| contact(deflections[kind][i], self.tables.meshes[kind][i].half_backlash))
+            }),
+        }
+    }
+
+    fn instants_now(&self) -> Instants<T, N> {
+        instants(self.tables, (self.phase() >> 32) as u32, T::ZERO)
+    }
+
+    /// Mesh phase in 2^-64 periods.
+    fn phase(&self) -> u64 {
+        let periods = self.tables.excitation.periods_per_turn;
+        if periods == 0 { self.state.phase } else { self.state.rigid.fraction.wrapping_mul(periods.into()) }
+    }
+
+    /// Mesh phase over a tick in which the rigid body goes `way`.
+    fn mesh_phase(&self, start: u64, way: i64) -> MeshPhase<T> {
+        let excitation = &self.tables.excitation;
+        let periods = excitation.periods_per_turn;
+        let way = if periods == 0 {
+            excitation.phase_way
+        } else {
+            // 2^-32 turns times at most a few hundred teeth stays far inside 64 bits.
+            T::from_i64((way >> 32) * i64::from(periods))
+        };
+        MeshPhase { start: (start >> 32) as u32, way, rate: excitation.rate * way }
+    }
+}
+
+/// The contact set holds over the tick, or the tick is taken in sub-steps.
+fn realtime<T: Real, const N: usize>(
+    tables: &Tables<T, N>,
+    drive: &Drive<T>,
+    phase: &MeshPhase<T>,
+    motion: Motion<T, N>,
+) -> Motion<T, N> {
+    let at = |part: T| instants(tables, phase.start.wrapping_add(phase.step(part)), phase.rate);
+    let mut start = at(T::ZERO);
+    if let Some(end) = flow::hold(tables, drive, [&start, &at(T::HALF), &at(T::ONE)], &motion) {
+        return end;
+    }
+    let half = phase.step(tables.half_part);
+    let mut now = phase.start;
+    let mut motion = motion;
+    for _ in 0..tables.substeps {
+        let middle = instants(tables, now.wrapping_add(half), phase.rate);
+        now = now.wrapping_add(half.wrapping_add(half));
+        let end = instants(tables, now, phase.rate);
+        motion = substep::advance(tables, drive, phase.rate, [&start, &middle, &end], &motion);
+        start = end;
+    }
+    motion
+}
+
+/// The paper's scheme, sub-step by sub-step.
+fn paper<T: Real, const N: usize>(
+    tables: &Tables<T, N>,
+    drive: &Drive<T>,
+    phase: &MeshPhase<T>,
+    motion: Motion<T, N>,
+) -> Motion<T, N> {
+    let half = phase.step(tables.half_part);
+    let mut now = phase.start;
+    let mut motion = motion;
+    for _ in 0..tables.substeps {
+        motion = flow::paper(tables, drive, &instants(tables, now, phase.rate), &motion);
+        now = now.wrapping_add(half.wrapping_add(half));
+    }
+    motion
+}

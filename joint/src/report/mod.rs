@@ -1,1 +1,35 @@
-//! Reports of a recorded run: HTML and JSON. Nothing is measured here.
+//! Reports of a recorded run: one self-contained HTML page with vector plots. Nothing is measured or judged here.
+
+mod close_up;
+mod contacts;
+mod motion;
+mod page;
+mod plot;
+mod sections;
+mod timing;
+
+pub use close_up::crossing;
+
+use std::path::Path;
+
+use crate::failure::Outcome;
+use crate::record::{RunRecord, write_text};
+
+/// The report as one HTML page that needs neither network nor scripts.
+pub fn render(record: &RunRecord) -> String {
+    page::render(record).into_string()
+}
+
+/// Writes the record as JSON and then the report as HTML; the JSON, which holds everything, is there first.
+pub fn write(record: &RunRecord, json: Option<&Path>, html: Option<&Path>) -> Outcome<()> {
+    let json = json.map_or(Ok(()), |path| record.write_json(path));
+    let html = html.map_or(Ok(()), |path| write_text(path, &render(record)));
+    // A report that cannot be written must not cost the record, nor the other way round.
+    json.and(html)
+}
+
+/// One picture for a document: a reversal through the gap. None if the run has none.
+pub fn picture(record: &RunRecord) -> Option<String> {
+    let view = close_up::view(record)?;
+    Some(page::standalone(&close_up::figure(&view).to_svg()))
+}

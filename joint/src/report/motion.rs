@@ -1,0 +1,186 @@
+//! Pictures of the motion: torques, angles, the gap, deflections with contact, and the error against the reference.
+//! The close-up of a crossing has a module of its own; how a panel is drawn is `plot`'s business.
+
+use super::contacts;
+use super::plot::Figure;
+use super::plot::ink::{Ink, LINES};
+use super::plot::panel::{Mark, Panel};
+use super::plot::unit::{PERCENT, SECONDS, TORQUE, Unit, figure, greatest};
+use crate::record::{ErrorSeries, RunRecord, Samples};
+
+/// Width of an ordinary line [px].
+const LINE: f64 = 1.4;
+
+/// A stretch of motion and the time over which it is shown.
+pub struct View<'a> {
+    /// Whose run.
+    pub record: &'a RunRecord,
+    /// Its motion.
+    pub samples: &'a Samples,
+    /// From and to [s].
+    pub range: (f64, f64),
+    /// Unit of time.
+    pub unit: Unit,
+}
+
+/// The whole run.
+pub fn whole(record: &RunRecord) -> View<'_> {
+    let last = record.samples.time_s.last().copied().unwrap_or(0.0);
+    let end = if last > 0.0 { last } else { 1.0 };
+    View { record, samples: &record.samples, range: (0.0, end), unit: SECONDS }
+}
+
+impl View<'_> {
+    /// A figure over the time of this view.
+    pub fn figure(&self, title: &str, panels: Vec<Panel>) -> Figure {
+        let title = format!("{title} of joint {}", self.record.identity.joint);
+        Figure { title, axis: "time".into(), unit: self.unit, range: self.range, panels }
+    }
+
+    /// Drive and load torque.
+    pub fn torques(&self) -> Vec<Panel> {
+        let rate = f64::from(self.record.settings.tick_rate_hz.max(1));
+        let steps = |torque: fn(&crate::record::TorqueCommand) -> f32, ink| {
+            let mut points: Vec<(f64, f64)> = Vec::new();
+            for command in &self.record.schedule {
+                let (time, value) = (f64::from(command.tick) / rate, f64::from(torque(command)));
+                // Torques hold until the next command.
+                let before = points.last().map(|point| (time, point.1));
+                points.extend(before);
+                points.push((time, value));
+            }
+            let hold = points.last().map(|point| (self.range.1, point.1));
+            points.extend(hold);
+            let clamped = |(time, value): (f64, f64)| (time.clamp(self.range.0, self.range.1), value);
+            let visible = points.windows(2).filter(|pair| pair[1].0 >= self.range.0 && pair[0].0 <= self.range.1);
+            let points = visible.flat_map(|pair| [clamped(pair[0]), clamped(pair[1])]).collect();
+            Mark::Line { points, ink, label: String::new(), width: LINE }
+        };
+        let drive = steps(|command| command.drive_torque, Ink::First);
+        let load = steps(|command| command.load_torque, Ink::Second);
+        vec![
+            Panel { height: 160, ..Panel::lines("Drive torque on the sun shaft", TORQUE, vec![drive]) },
+            Panel { height: 160, ..Panel::lines("Load torque that brakes the link", TORQUE, vec![load]) },
+        ]
+    }
+
+    /// Motor and link angle, and what is between them.
+    pub fn angles(&self) -> Vec<Panel> {
+        let samples = self.samples;
+        let unit = Unit::of_angle(greatest(samples.motor_angle_rad.iter().copied()));
+        let angles = vec![
+            self.line(&samples.motor_angle_rad, Ink::First, "motor"),
+            self.line(&samples.link_angle_rad, Ink::Second, "link"),
+        ];
+        vec![Panel::lines("Motor and link angle", unit, angles), self.twist()]
+    }
+
+    fn twist(&self) -> Panel {
+        let half = 0.5 * self.record.joint.lost_motion_rad;
+        let unit = Unit::of_angle(greatest(self.samples.twist_rad.iter().copied()).max(half));
+        let mut marks = vec![Mark::Band { range: (-half, half), label: "lost motion of the teeth".into() }];
+        marks.push(self.line(&self.samples.twist_rad, Ink::First, "board"));
+        if let Some(reference) = &self.record.reference {
+            marks.extend(self.reference_line(&reference.samples, &reference.samples.twist_rad));
+        }
+        Panel::lines("Twist: motor angle over ratio, less link angle", unit, marks)
+    }
+
+    /// The gap coordinate over its band.
+    pub fn gap(&self) -> Panel {
+        let [low, high] = self.record.joint.gap_band_m;
+        let gap = wide(&self.samples.gap_m);
+        let unit = Unit::of_length(greatest(gap.iter().copied().chain([low, high])));
+        let mut marks = vec![Mark::Band { range: (low, high), label: "free: no tooth need touch (4b)".into() }];
+        marks.push(self.line(&gap, Ink::First, "board"));
+        if let Some(reference) = &self.record.reference {
+            marks.extend(self.reference_line(&reference.samples, &wide(&reference.samples.gap_m)));
+        }
+        Panel::lines("Gap coordinate", unit, marks)
+    }
+
+    /// Wind-up between carrier and link; none for a rigid joint.
+    pub fn wind_up(&self) -> Option<Panel> {
+        let wind_up = wide(&self.samples.wind_up_m);
+        let most = greatest(wind_up.iter().copied());
+        let line = self.line(&wind_up, Ink::Fourth, "");
+        let title = "Wind-up of carrier against link, along the line of action";
+        (most > 0.0).then(|| Panel { height: 160, ..Panel::lines(title, Unit::of_length(most), vec![line]) })
+    }
+
+    /// All deflections and the contact of every mesh.
+    pub fn deflections(&self) -> Vec<Panel> {
+        let columns: Vec<Vec<f64>> = self.samples.deflection_m.iter().map(|column| wide(column)).collect();
+        let planets = columns.len() / 2;
+        let half_backlash = &self.record.joint.half_backlash_m;
+        let most = greatest(columns.iter().flatten().chain(half_backlash).copied());
+        let family = |title: &str, first: usize| {
+            let least = half_backlash.iter().skip(first).take(planets).copied().fold(f64::INFINITY, f64::min);
+            let mut marks = Vec::new();
+            if least.is_finite() {
+                marks.push(Mark::Band { range: (-least, least), label: "parted (2b)".into() });
+            }
+            for (planet, column) in columns.iter().skip(first).take(planets).enumerate() {
+                let label = format!("planet {}", planet + 1);
+                // Meshes in phase lie on each other: wider lines below show that they are there.
+                let width = LINE + 1.3 * (planets - 1 - planet) as f64;
+                marks.push(self.line_of_width(column, LINES[planet % LINES.len()], &label, width));
+            }
+            Panel::lines(title, Unit::of_length(most), marks)
+        };
+        vec![
+            family("Deflection, sun–planet meshes", 0),
+            family("Deflection, ring–planet meshes", planets),
+            contacts::panel(self.samples, self.range),
+        ]
+    }
+
+    fn line(&self, values: &[f64], ink: Ink, label: &str) -> Mark {
+        self.line_of_width(values, ink, label, LINE)
+    }
+
+    fn line_of_width(&self, values: &[f64], ink: Ink, label: &str, width: f64) -> Mark {
+        Mark::Line { points: self.points(self.samples, values), ink, label: label.into(), width }
+    }
+
+    fn reference_line(&self, samples: &Samples, values: &[f64]) -> Option<Mark> {
+        let points = self.points(samples, values);
+        let label = "f64 reference".into();
+        (!points.is_empty()).then_some(Mark::Line { points, ink: Ink::Reference, label, width: 1.0 })
+    }
+
+    fn points(&self, samples: &Samples, values: &[f64]) -> Vec<(f64, f64)> {
+        let points = samples.time_s.iter().copied().zip(values.iter().copied());
+        points.filter(|(time, _)| (self.range.0..=self.range.1).contains(time)).collect()
+    }
+}
+
+/// Distance of every compared quantity from the reference, with the bound on its root mean square where it is near.
+pub fn errors(record: &RunRecord) -> Option<Figure> {
+    let series = &record.reference.as_ref()?.errors;
+    let first = series.first()?;
+    let mut marks = Vec::new();
+    let most = greatest(series.iter().flat_map(|one| one.error_percent.iter().copied()));
+    if first.bound_percent < 3.0 * most {
+        let bound = first.bound_percent;
+        marks.push(Mark::Band { range: (-bound, bound), label: format!("bound on RMS: {} %", figure(bound)) });
+    }
+    for (one, ink) in series.iter().zip(LINES) {
+        let points = one.time_s.iter().copied().zip(one.error_percent.iter().copied()).collect();
+        let label = format!("{}, RMS {} %", one.quantity, figure(root_mean_square(one)));
+        marks.push(Mark::Line { points, ink, label, width: LINE });
+    }
+    let panel = Panel::lines("Board less reference, over the standard deviation of the reference", PERCENT, marks);
+    let view = whole(record);
+    Some(view.figure("Error against the reference", vec![Panel { height: 220, ..panel }]))
+}
+
+/// Root mean square of the finite values [%].
+pub fn root_mean_square(series: &ErrorSeries) -> f64 {
+    let finite: Vec<f64> = series.error_percent.iter().copied().filter(|value| value.is_finite()).collect();
+    (finite.iter().map(|value| value * value).sum::<f64>() / finite.len().max(1) as f64).sqrt()
+}
+
+fn wide(values: &[f32]) -> Vec<f64> {
+    values.iter().copied().map(f64::from).collect()
+}

@@ -1,0 +1,119 @@
+//! The palette: every colour has a name, a value on light and one on dark ground. Drawn pictures carry the names as CSS
+//! variables, so that one picture serves screen, dark screen and print; who uses which colour is not decided here.
+
+use std::fmt::Write as _;
+
+use plotters::style::RGBColor;
+
+/// A colour by its use.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ink {
+    /// Headings in a picture.
+    Text,
+    /// Numbers at the axes, legends.
+    Muted,
+    /// Axes.
+    Axis,
+    /// Grid lines.
+    Grid,
+    /// Ground under lines: the free gap.
+    Band,
+    /// Limits and deadlines.
+    Limit,
+    /// The f64 reference; drawn dashed.
+    Reference,
+    /// Bars of the histogram.
+    Bar,
+    /// Teeth on the drive side in contact.
+    DriveSide,
+    /// Teeth parted.
+    Separated,
+    /// Teeth on the back side in contact.
+    BackSide,
+    /// First line of a picture, first planet.
+    First,
+    /// Second.
+    Second,
+    /// Third.
+    Third,
+    /// Fourth.
+    Fourth,
+    /// Fifth.
+    Fifth,
+}
+
+/// Lines of a picture in the order of use; told apart also by colour-blind readers (after Okabe and Ito, 2008).
+pub const LINES: [Ink; 5] = [Ink::First, Ink::Second, Ink::Third, Ink::Fourth, Ink::Fifth];
+
+/// Name, value on light ground, value on dark ground. The light values must differ: they mark the places where a
+/// drawn picture gets its variables.
+const TABLE: [(Ink, &str, u32, u32); 16] = [
+    (Ink::Text, "text", 0x1b2430, 0xe8ecf1),
+    (Ink::Muted, "muted", 0x5b6776, 0x9aa7b6),
+    (Ink::Axis, "axis", 0x98a3b0, 0x566272),
+    (Ink::Grid, "grid", 0xe7ebf0, 0x252d38),
+    (Ink::Band, "band", 0xf3ead2, 0x332d1c),
+    (Ink::Limit, "limit", 0xc62f3b, 0xff6b74),
+    (Ink::Reference, "reference", 0x1d1f21, 0xf4f6f8),
+    (Ink::Bar, "bar", 0x3f7fb8, 0x5ea3dd),
+    (Ink::DriveSide, "drive-side", 0x4c9fd4, 0x3f8fc4),
+    (Ink::Separated, "separated", 0xf2dfae, 0x6a5b2c),
+    (Ink::BackSide, "back-side", 0xd9743f, 0xd06a35),
+    (Ink::First, "line-1", 0x0072b2, 0x56b4e9),
+    (Ink::Second, "line-2", 0xd55e00, 0xff9248),
+    (Ink::Third, "line-3", 0x009e73, 0x2fd0a2),
+    (Ink::Fourth, "line-4", 0xb0508c, 0xe08fc4),
+    (Ink::Fifth, "line-5", 0x9c7a00, 0xe6c229),
+];
+
+impl Ink {
+    /// The value on light ground, as plotters wants it.
+    pub fn colour(self) -> RGBColor {
+        let (_, _, light, _) = TABLE[self.row()];
+        let [_, red, green, blue] = light.to_be_bytes();
+        RGBColor(red, green, blue)
+    }
+
+    fn row(self) -> usize {
+        // Every variant has its row: `every_ink_has_one_row_and_its_own_value` holds it.
+        TABLE.iter().position(|row| row.0 == self).unwrap_or(0)
+    }
+}
+
+/// Puts the variables in place of the light values.
+pub fn with_variables(mut svg: String) -> String {
+    for (_, name, light, _) in TABLE {
+        svg = svg.replace(&format!("\"#{light:06X}\""), &format!("\"var(--{name})\""));
+    }
+    svg
+}
+
+/// CSS that gives the variables their values; `root` is the selector they hang on.
+pub fn style_sheet(root: &str) -> String {
+    let mut light = String::new();
+    let mut dark = String::new();
+    for (_, name, on_light, on_dark) in TABLE {
+        // Writing to a string cannot fail.
+        let _ = write!(light, "--{name}:#{on_light:06x};");
+        let _ = write!(dark, "--{name}:#{on_dark:06x};");
+    }
+    format!("{root}{{{light}}}\n@media screen and (prefers-color-scheme:dark){{{root}{{{dark}}}}}\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_ink_has_one_row_and_its_own_value() {
+        for (index, (ink, name, light, _)) in TABLE.iter().enumerate() {
+            assert_eq!(*ink as usize, index, "rows stand in the order of the variants");
+            assert!(TABLE.iter().filter(|row| row.1 == *name || row.2 == *light).count() == 1, "{name}");
+        }
+    }
+
+    #[test]
+    fn a_drawn_colour_becomes_its_variable() {
+        assert_eq!(with_variables(r##"<a fill="#0072B2"/>"##.into()), r#"<a fill="var(--line-1)"/>"#);
+    }
+}

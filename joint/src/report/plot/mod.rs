@@ -1,0 +1,82 @@
+//! Pictures as SVG text: panels one above the other over a common horizontal axis, drawn by `plotters`. Which lines go
+//! into which panel is decided by `motion` and `timing`.
+
+pub mod ink;
+pub mod panel;
+mod thin;
+pub mod unit;
+
+use ink::Ink;
+use panel::Panel;
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use unit::Unit;
+
+/// plotters places things on whole pixels: drawn this much larger and shown at size, nothing looks jagged.
+pub const FINE: i32 = 4;
+/// Width of a picture [px].
+pub const WIDTH: i32 = 1040;
+/// Room for numbers and unit at the left [px].
+pub const LEFT: i32 = 76;
+/// Room at the right [px].
+pub const RIGHT: i32 = 14;
+/// Height of the numbers and the name of the common axis [px].
+const FOOT: i32 = 40;
+
+/// Where a panel is drawn.
+pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+/// What drawing into a string may say; it never does.
+pub type Drawn = Result<(), Box<dyn std::error::Error>>;
+
+/// A picture.
+pub struct Figure {
+    /// What it shows, for readers that cannot see it.
+    pub title: String,
+    /// Name of the common axis.
+    pub axis: String,
+    /// Unit of the common axis.
+    pub unit: Unit,
+    /// Its range in SI.
+    pub range: (f64, f64),
+    /// From top to bottom.
+    pub panels: Vec<Panel>,
+}
+
+impl Figure {
+    /// The picture as an SVG element whose colours are CSS variables.
+    pub fn to_svg(&self) -> String {
+        let height = self.panels.iter().map(|panel| panel.height).sum::<i32>() + FOOT;
+        let mut svg = String::new();
+        if let Err(error) = self.draw(&mut svg, height) {
+            // Drawing into a string has nothing to fail on; should it ever, the rest of the report is worth having.
+            return format!("<!-- not drawn: {} -->", error.to_string().replace("--", "-"));
+        }
+        let (width, height) = (WIDTH * FINE, height * FINE);
+        let plain = format!("<svg width=\"{width}\" height=\"{height}\"");
+        let title = self.title.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;");
+        // What plotters says though it is the default anyway makes up half of a picture of many small parts.
+        let svg = svg.replace(" opacity=\"1\"", "").replace(" stroke=\"none\"", "");
+        ink::with_variables(svg.replacen(&plain, &format!("<svg role=\"img\" aria-label=\"{title}\""), 1))
+    }
+
+    fn draw(&self, svg: &mut String, height: i32) -> Drawn {
+        let size = ((WIDTH * FINE) as u32, (height * FINE) as u32);
+        let mut rest = SVGBackend::with_string(svg, size).into_drawing_area();
+        for (index, panel) in self.panels.iter().enumerate() {
+            let last = index + 1 == self.panels.len();
+            let own = panel.height + if last { FOOT } else { 0 };
+            let (top, below) = rest.split_vertically(own * FINE);
+            panel.draw(&top, self, last)?;
+            rest = below;
+        }
+        rest.present()?;
+        Ok(())
+    }
+}
+
+/// Text of a size [px] in a colour.
+pub fn text_style(size: i32, ink: Ink, style: FontStyle) -> TextStyle<'static> {
+    // plotters takes the size of the em box, 1.24 times the size of the letters.
+    let font = ("sans-serif", f64::from(size * FINE) * 1.24, style).into_font();
+    TextStyle { color: ink.colour().to_backend_color(), ..TextStyle::from(font) }
+}

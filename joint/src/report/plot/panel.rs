@@ -1,0 +1,259 @@
+//! One panel: a title with its legend above the plot, so that nothing covers data, axes with units, and marks. Ranges
+//! are found from the marks; what the marks mean is the caller's.
+
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+use super::ink::Ink;
+use super::thin::thin;
+use super::unit::{Unit, axis_range, tick_label};
+use super::{Area, Drawn, FINE, Figure, LEFT, RIGHT, WIDTH, text_style};
+
+/// Height of title and legend [px].
+const HEAD: i32 = 34;
+/// Height between a panel and the next title [px].
+const GAP: i32 = 10;
+
+/// One panel of a [`Figure`].
+pub struct Panel {
+    /// Name of the quantity.
+    pub title: String,
+    /// Unit of the vertical axis.
+    pub unit: Unit,
+    /// Its height with title [px].
+    pub height: i32,
+    /// What is in it, drawn in this order; values in SI.
+    pub marks: Vec<Mark>,
+    /// How the vertical axis runs.
+    pub axis: VerticalAxis,
+}
+
+/// How a vertical axis runs.
+#[derive(Debug, Clone, PartialEq)]
+pub enum VerticalAxis {
+    /// Evenly over what the marks need.
+    Linear,
+    /// Logarithmically from below one, for counts.
+    Counts,
+    /// One row for each name, top first; no numbers.
+    Rows(Vec<String>),
+}
+
+/// Something drawn in a panel.
+pub enum Mark {
+    /// A line through points.
+    Line {
+        /// Points, SI.
+        points: Vec<(f64, f64)>,
+        /// Colour.
+        ink: Ink,
+        /// Entry in the legend; empty for none.
+        label: String,
+        /// Width [px].
+        width: f64,
+    },
+    /// A horizontal band.
+    Band {
+        /// Lower and upper end, SI.
+        range: (f64, f64),
+        /// Entry in the legend.
+        label: String,
+    },
+    /// A vertical limit.
+    Deadline {
+        /// Where on the common axis, SI.
+        at: f64,
+        /// Entry in the legend.
+        label: String,
+    },
+    /// Filled rectangles: left, right, bottom, top.
+    Boxes {
+        /// The rectangles, SI.
+        boxes: Vec<[f64; 4]>,
+        /// Colour.
+        ink: Ink,
+        /// Entry in the legend.
+        label: String,
+    },
+}
+
+impl Mark {
+    /// Legend entry.
+    fn label(&self) -> (&str, Ink) {
+        match self {
+            Self::Line { label, ink, .. } | Self::Boxes { label, ink, .. } => (label, *ink),
+            Self::Band { label, .. } => (label, Ink::Band),
+            Self::Deadline { label, .. } => (label, Ink::Limit),
+        }
+    }
+
+    /// Vertical extent.
+    fn values(&self) -> Box<dyn Iterator<Item = f64> + '_> {
+        match self {
+            Self::Line { points, .. } => Box::new(points.iter().map(|point| point.1)),
+            Self::Band { range, .. } => Box::new([range.0, range.1].into_iter()),
+            Self::Boxes { boxes, .. } => Box::new(boxes.iter().flat_map(|b| [b[2], b[3]])),
+            Self::Deadline { .. } => Box::new(std::iter::empty()),
+        }
+    }
+}
+
+impl Panel {
+    /// A panel of lines of the usual height.
+    pub fn lines(title: impl Into<String>, unit: Unit, marks: Vec<Mark>) -> Self {
+        Self { title: title.into(), unit, height: 210, marks, axis: VerticalAxis::Linear }
+    }
+
+    /// Draws it; the last panel of a figure carries the numbers of the common axis.
+    pub fn draw(&self, area: &Area<'_>, figure: &Figure, last: bool) -> Drawn {
+        self.draw_head(area)?;
+        let horizontal = (figure.range.0 * figure.unit.factor, figure.range.1 * figure.unit.factor);
+        let mut builder = ChartBuilder::on(area);
+        builder
+            .margin_top(HEAD * FINE)
+            .margin_right(RIGHT * FINE)
+            .set_label_area_size(LabelAreaPosition::Left, LEFT * FINE);
+        builder.set_label_area_size(LabelAreaPosition::Bottom, if last { 50 } else { GAP } * FINE);
+        let (low, high) = match &self.axis {
+            VerticalAxis::Rows(rows) => (0.0, rows.len() as f64),
+            _ => axis_range(self.marks.iter().flat_map(Mark::values).map(|value| value * self.unit.factor)),
+        };
+        if self.axis == VerticalAxis::Counts {
+            let top = high.max(10.0) * 1.5;
+            let mut chart = builder.build_cartesian_2d(horizontal.0..horizontal.1, (0.5..top).log_scale())?;
+            self.draw_mesh(&mut chart, figure, last, &|count| power_of_ten(*count))?;
+            self.draw_marks(&mut chart, figure, horizontal, (0.5, top))
+        } else {
+            let mut chart = builder.build_cartesian_2d(horizontal.0..horizontal.1, low..high)?;
+            self.draw_mesh(&mut chart, figure, last, &|value| tick_label(*value, high - low))?;
+            self.draw_marks(&mut chart, figure, horizontal, (low, high))?;
+            self.draw_row_names(area)
+        }
+    }
+
+    /// Title at the left, legend at the right.
+    fn draw_head(&self, area: &Area<'_>) -> Drawn {
+        let at = |x: i32, y: i32| (x * FINE, y * FINE);
+        let title = text_style(13, Ink::Text, FontStyle::Bold);
+        area.draw(&Text::new(self.title.clone(), at(LEFT, 12), title))?;
+        let mut right = WIDTH - RIGHT;
+        for mark in self.marks.iter().rev() {
+            let (label, ink) = mark.label();
+            if label.is_empty() {
+                continue;
+            }
+            right -= text_width(label);
+            area.draw(&Text::new(label.to_owned(), at(right, 14), text_style(11, Ink::Muted, FontStyle::Normal)))?;
+            right -= 22;
+            let swatch = ink.colour();
+            match mark {
+                Mark::Band { .. } | Mark::Boxes { .. } => {
+                    area.draw(&Rectangle::new([at(right, 14), at(right + 16, 24)], swatch.filled()))?;
+                }
+                _ => {
+                    let ends = vec![at(right, 19), at(right + 16, 19)];
+                    area.draw(&PathElement::new(ends, swatch.stroke_width(2 * FINE as u32)))?;
+                }
+            }
+            right -= 16;
+        }
+        Ok(())
+    }
+
+    fn draw_mesh<Y: Ranged<ValueType = f64>>(
+        &self,
+        chart: &mut Chart<'_, '_, Y>,
+        figure: &Figure,
+        last: bool,
+        vertical_label: &dyn Fn(&f64) -> String,
+    ) -> Drawn
+    where
+        Y: plotters::coord::ranged1d::ValueFormatter<f64>,
+    {
+        let span = (figure.range.1 - figure.range.0) * figure.unit.factor;
+        let horizontal_label = |value: &f64| if last { tick_label(*value, span) } else { String::new() };
+        let fine = FINE as u32;
+        let mut mesh = chart.configure_mesh();
+        mesh.axis_style(Ink::Axis.colour().stroke_width(fine))
+            .bold_line_style(Ink::Grid.colour().stroke_width(fine))
+            .light_line_style(TRANSPARENT)
+            .label_style(text_style(11, Ink::Muted, FontStyle::Normal))
+            .axis_desc_style(text_style(12, Ink::Muted, FontStyle::Normal))
+            .x_labels(11)
+            .y_labels(6)
+            .x_label_formatter(&horizontal_label)
+            .y_label_formatter(&vertical_label)
+            .set_all_tick_mark_size(3 * FINE);
+        if last {
+            mesh.x_desc(format!("{} [{}]", figure.axis, figure.unit.name));
+        }
+        match self.axis {
+            VerticalAxis::Rows(_) => mesh.disable_mesh().y_labels(0),
+            _ => mesh.y_desc(self.unit.name),
+        };
+        mesh.draw()?;
+        Ok(())
+    }
+
+    fn draw_marks<Y: Ranged<ValueType = f64>>(
+        &self,
+        chart: &mut Chart<'_, '_, Y>,
+        figure: &Figure,
+        horizontal: (f64, f64),
+        vertical: (f64, f64),
+    ) -> Drawn {
+        let (across, up) = (figure.unit.factor, self.unit.factor);
+        let columns = (WIDTH - LEFT - RIGHT) as usize;
+        let clip = |value: f64| value.clamp(vertical.0, vertical.1);
+        for mark in &self.marks {
+            match mark {
+                Mark::Line { points, ink, width, .. } => {
+                    let scaled: Vec<_> = points.iter().map(|(x, y)| (x * across, y * up)).collect();
+                    for stretch in thin(&scaled, horizontal, columns) {
+                        let style = ink.colour().stroke_width((width * f64::from(FINE)) as u32);
+                        chart.draw_series(LineSeries::new(stretch.into_iter().map(|(x, y)| (x, clip(y))), style))?;
+                    }
+                }
+                Mark::Band { range, .. } => {
+                    let corners = [(horizontal.0, clip(range.0 * up)), (horizontal.1, clip(range.1 * up))];
+                    chart.draw_series([Rectangle::new(corners, Ink::Band.colour().filled())])?;
+                }
+                Mark::Deadline { at, .. } => {
+                    let ends = [(at * across, vertical.0), (at * across, vertical.1)];
+                    chart.draw_series(LineSeries::new(ends, Ink::Limit.colour().stroke_width(2 * FINE as u32)))?;
+                }
+                Mark::Boxes { boxes, ink, .. } => {
+                    let corners = |b: &[f64; 4]| [(b[0] * across, clip(b[2] * up)), (b[1] * across, clip(b[3] * up))];
+                    chart.draw_series(boxes.iter().map(|b| Rectangle::new(corners(b), ink.colour().filled())))?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn draw_row_names(&self, area: &Area<'_>) -> Drawn {
+        let VerticalAxis::Rows(rows) = &self.axis else { return Ok(()) };
+        let row_height = (self.height - HEAD - GAP) / rows.len().max(1) as i32;
+        let style = text_style(11, Ink::Muted, FontStyle::Normal).pos(Pos::new(HPos::Right, VPos::Center));
+        for (index, row) in rows.iter().enumerate() {
+            let y = HEAD + row_height * index as i32 + row_height / 2;
+            area.draw(&Text::new(row.clone(), ((LEFT - 8) * FINE, y * FINE), style.clone()))?;
+        }
+        Ok(())
+    }
+}
+
+/// A chart over a plain horizontal axis.
+type Chart<'a, 'b, Y> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<plotters::coord::types::RangedCoordf64, Y>>;
+
+/// Labels at 1, 10, 100 ...; the grid lines between stay bare.
+fn power_of_ten(count: f64) -> String {
+    let exponent = count.log10().round();
+    let whole = (count / 10f64.powf(exponent) - 1.0).abs() < 1e-6 && exponent >= 0.0;
+    if whole { super::unit::figure(count.round()) } else { String::new() }
+}
+
+/// Width of a text of 11 px [px], estimated: no font is at hand, and every reader has another.
+fn text_width(text: &str) -> i32 {
+    (text.chars().count() as f64 * 6.1).ceil() as i32
+}

@@ -1,0 +1,144 @@
+//! Units that a reader likes: the prefix follows from the greatest value. Ranges of axes are made here too; ticks are
+//! the plotting library's.
+
+/// A unit for one axis: SI times `factor` gives the number shown.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Unit {
+    /// Number shown for 1 SI unit.
+    pub factor: f64,
+    /// Its sign.
+    pub name: &'static str,
+}
+
+/// Torque as it is.
+pub const TORQUE: Unit = Unit { factor: 1.0, name: "N·m" };
+/// Time of a whole run.
+pub const SECONDS: Unit = Unit { factor: 1.0, name: "s" };
+/// Time of a close-up.
+pub const MILLISECONDS: Unit = Unit { factor: 1e3, name: "ms" };
+/// Computation times.
+pub const MICROSECONDS: Unit = Unit { factor: 1e6, name: "µs" };
+/// Shares.
+pub const PERCENT: Unit = Unit { factor: 1.0, name: "%" };
+
+impl Unit {
+    /// For lengths [m] up to `greatest`.
+    pub fn of_length(greatest: f64) -> Self {
+        match greatest {
+            g if g < 1e-7 => Self { factor: 1e9, name: "nm" },
+            g if g < 2e-3 => Self { factor: 1e6, name: "µm" },
+            g if g < 2.0 => Self { factor: 1e3, name: "mm" },
+            _ => Self { factor: 1.0, name: "m" },
+        }
+    }
+
+    /// For angles [rad] up to `greatest`.
+    pub fn of_angle(greatest: f64) -> Self {
+        match greatest {
+            g if g < 1e-3 => Self { factor: 1e6, name: "µrad" },
+            g if g < 1.0 => Self { factor: 1e3, name: "mrad" },
+            g if g < 60.0 => Self { factor: 1.0, name: "rad" },
+            _ => Self { factor: 1.0 / core::f64::consts::TAU, name: "turns" },
+        }
+    }
+
+    /// For times [s] of a picture that spans so much.
+    pub fn of_time(span: f64) -> Self {
+        if span < 0.5 { MILLISECONDS } else { SECONDS }
+    }
+}
+
+/// Greatest finite magnitude, 0 of nothing.
+pub fn greatest(values: impl Iterator<Item = f64>) -> f64 {
+    values.filter(|value| value.is_finite()).fold(0.0, |greatest, value| greatest.max(value.abs()))
+}
+
+/// Least and greatest finite value with some air, never empty.
+pub fn axis_range(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    // Beyond 1e30 nothing is left to be read off a picture, and sums of it could overflow.
+    let finite = values.filter(|value| value.abs() < 1e30);
+    let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
+    if low > high {
+        return (-1.0, 1.0);
+    }
+    let air = 0.06 * (high - low);
+    if air > 1e-9 * low.abs().max(high.abs()) {
+        return (low - air, high + air);
+    }
+    let half = if low == 0.0 { 1.0 } else { 0.5 * low.abs() };
+    (low - half, high + half)
+}
+
+/// A tick's number with as many decimals as neighbours need.
+pub fn tick_label(value: f64, span: f64) -> String {
+    let decimals = (1.0 - (span / 2.0).log10().floor()).clamp(0.0, 6.0) as usize;
+    let text = format!("{value:.decimals$}");
+    // The whole axis gets the same decimals, except that a zero is a zero.
+    if text.trim_start_matches('-').chars().all(|c| c == '0' || c == '.') { "0".into() } else { trimmed(text) }
+}
+
+/// Without trailing zeros behind the point, and with a true minus sign.
+fn trimmed(text: String) -> String {
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text };
+    text.replace('-', "\u{2212}")
+}
+
+/// A number for a table: five significant digits at most, exponents only where they help.
+pub fn figure(value: f64) -> String {
+    if !value.is_finite() {
+        return if value.is_nan() { "not a number".into() } else { format!("{value}") };
+    }
+    let magnitude = value.abs();
+    if value == 0.0 || (value.fract() == 0.0 && magnitude < 1e7) {
+        return grouped(value);
+    }
+    if !(1e-3..1e7).contains(&magnitude) {
+        return format!("{value:.3e}").replace('-', "\u{2212}");
+    }
+    let decimals = (3.0 - magnitude.log10().floor()).clamp(0.0, 6.0) as usize;
+    trimmed(format!("{value:.decimals$}"))
+}
+
+/// Whole numbers in groups of three, with thin spaces.
+fn grouped(value: f64) -> String {
+    let digits = format!("{:.0}", value.abs());
+    let mut text = String::new();
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) && digits.len() > 4 {
+            text.push('\u{202f}');
+        }
+        text.push(digit);
+    }
+    if value < 0.0 { format!("\u{2212}{text}") } else { text }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_range_is_never_empty() {
+        for values in [vec![], vec![0.0], vec![3.0, 3.0], vec![f64::NAN], vec![f64::INFINITY, 1.0], vec![f64::MAX]] {
+            let (low, high) = axis_range(values.iter().copied());
+            assert!(low < high && low.is_finite() && high.is_finite(), "{values:?} gave {low} to {high}");
+        }
+    }
+
+    #[test]
+    fn ticks_have_the_decimals_that_neighbours_need() {
+        assert_eq!(tick_label(0.1 + 0.2, 1.0), "0.3");
+        assert_eq!(tick_label(-1e-17, 1.0), "0");
+        assert_eq!(tick_label(-0.25, 1.0), "\u{2212}0.25");
+        assert_eq!(tick_label(120.0, 200.0), "120");
+    }
+
+    #[test]
+    fn figures_read_well() {
+        assert_eq!(figure(0.0), "0");
+        assert_eq!(figure(120_000.0), "120\u{202f}000");
+        assert_eq!(figure(0.123_456), "0.1235");
+        assert_eq!(figure(14.0 / 3.0), "4.667");
+        assert_eq!(figure(1.5e-9), "1.500e\u{2212}9");
+        assert_eq!(figure(f64::NAN), "not a number");
+    }
+}

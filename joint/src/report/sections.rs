@@ -1,0 +1,241 @@
+//! The sections of the page: key figures, checks, motion, timing, identity and log. Pictures come from `motion`,
+//! `close_up` and `timing`; nothing is computed here beyond what a reader would do in the head.
+
+use maud::{Markup, PreEscaped, html};
+
+use super::page::emulated;
+use super::plot::Figure;
+use super::plot::unit::figure as number;
+use super::{close_up, motion, timing};
+use crate::record::{Bound, Check, Completeness, RunRecord, Source, Verdict};
+
+/// Log lines shown; the JSON has all.
+const MOST_LOG_LINES: usize = 200;
+
+/// Key figures.
+pub fn tiles(record: &RunRecord) -> Markup {
+    let count = |verdict: Verdict| record.checks.iter().filter(|check| check.verdict == verdict).count();
+    let judged = record.checks.iter().filter(|check| check.verdict != Verdict::Reported).count();
+    let steps = match record.completeness {
+        Completeness::Complete => record.settings.ticks,
+        Completeness::Interrupted { tick, .. } => tick,
+    };
+    let seconds = f64::from(steps) / f64::from(record.settings.tick_rate_hz.max(1));
+    html! {
+        section.tiles {
+            (tile("Checks held", html! { (count(Verdict::Passed)) span.of { " of " (judged) } }))
+            (tile("Steps", html! { (number(f64::from(steps))) span.of { " · " (number(seconds)) " s" } }))
+            @if let Some(timing) = &record.timing {
+                (tile("Longest tick", html! {
+                    (timing::micro(timing.computation.max_s)) span.of { " of " (timing::micro(timing.period_s)) " µs" }
+                    (emulated(record))
+                }))
+                (tile("Idle", html! { (number(timing.idle_percent)) span.of { " %" } (emulated(record)) }))
+            }
+            @if let Some(image) = &record.identity.image {
+                (tile("Flash", html! { (number(image.flash_bytes as f64 / 1024.0)) span.of { " KiB" } }))
+                (tile("RAM", html! { (number(image.ram_bytes as f64 / 1024.0)) span.of { " KiB" } }))
+            }
+        }
+    }
+}
+
+fn tile(name: &str, value: Markup) -> Markup {
+    html! { div.tile { div.value { (value) } div.name { (name) } } }
+}
+
+/// The table of checks, failed ones first.
+pub fn checks(record: &RunRecord) -> Markup {
+    let mut checks: Vec<&Check> = record.checks.iter().collect();
+    checks.sort_by_key(|check| match check.verdict {
+        Verdict::Failed => 0,
+        Verdict::NotRun => 1,
+        Verdict::Passed => 2,
+        Verdict::Reported => 3,
+    });
+    html! {
+        section {
+            h2 { "Checks" }
+            @if checks.is_empty() { p.none { "No check was made." } } @else {
+                table.checks {
+                    thead { tr { th { "Verdict" } th { "Check" } th.number { "Figure" } th.number { "Bound" } th { "Note" } } }
+                    tbody { @for check in checks { (check_row(record, check)) } }
+                }
+            }
+        }
+    }
+}
+
+fn check_row(record: &RunRecord, check: &Check) -> Markup {
+    let (class, word) = match check.verdict {
+        Verdict::Passed => ("passed", "held"),
+        Verdict::Failed => ("failed", "FAILED"),
+        Verdict::NotRun => ("open", "not made"),
+        Verdict::Reported => ("reported", "reported"),
+    };
+    let with_unit = |value: f64| match check.unit.as_str() {
+        "" => number(value),
+        unit => format!("{} {unit}", number(value)),
+    };
+    let bound = match check.bound {
+        Bound::AtMost(bound) => format!("≤ {}", with_unit(bound)),
+        Bound::AtLeast(bound) => format!("≥ {}", with_unit(bound)),
+        Bound::Exactly(bound) => format!("= {}", with_unit(bound)),
+        Bound::None => "–".into(),
+    };
+    html! {
+        tr class=(class) {
+            td.verdict { span class={ "mark " (class) } { (word) } }
+            td { (check.name) @if check.source == Source::Board { (emulated(record)) } }
+            td.number { (check.figure.map_or("–".into(), with_unit)) }
+            td.number { (bound) }
+            td.note { (check.note) }
+        }
+    }
+}
+
+/// All pictures of the motion.
+pub fn motion(record: &RunRecord) -> Markup {
+    if record.samples.is_empty() {
+        return html! { section { h2 { "Motion" } p.none { "No sample was received." } } };
+    }
+    let whole = motion::whole(record);
+    let mut gap = vec![whole.gap()];
+    gap.extend(whole.wind_up());
+    let every = record.settings.decimation;
+    html! {
+        section {
+            h2 { "Motion" (emulated(record)) }
+            p.lead {
+                (number(record.samples.len() as f64)) " samples, one every " (every) " ticks. Where a picture has less "
+                "columns than samples, least and greatest of each column are kept."
+            }
+            (picture(record, &whole.figure("Torques", whole.torques()), html! { "Torques as commanded, held between commands." }))
+            (picture(record, &whole.figure("Angles", whole.angles()), html! {
+                "Angles from integer turns and small remainders. Shaded: the lost motion of "
+                (number(record.joint.lost_motion_rad * 1e3)) " mrad at the link that backlash alone allows; "
+                "teeth and shaft wind up beyond it."
+            }))
+            @if let Some(view) = close_up::view(record) {
+                (picture(record, &close_up::figure(&view), html! {
+                    strong { "A reversal through the gap, closely. " }
+                    @match &record.close_up {
+                        Some(stretch) => { "At every tick: " (stretch.method) "." }
+                        None => { "From the samples of the line." }
+                    }
+                }))
+            }
+            (picture(record, &whole.figure("Gap coordinate", gap), html! {
+                "Gap coordinate X = u" sub { "s" } " − 2 u" sub { "c" } " along the line of action. Shaded: "
+                "where every mesh can be free at once, 4b = "
+                (number((record.joint.gap_band_m[1] - record.joint.gap_band_m[0]) * 1e6)) " µm wide."
+            }))
+            (picture(record, &whole.figure("Mesh deflections", whole.deflections()), html! {
+                "Deflection of every mesh. Above the shaded band the drive side carries, below it the back side, inside "
+                "it the teeth are parted. Strips that stand for many samples show the share of each state by height."
+            }))
+            @if let Some(errors) = motion::errors(record) {
+                (picture(record, &errors, html! {
+                    @if let Some(reference) = &record.reference { "Reference: " (reference.method) "." }
+                }))
+            }
+        }
+    }
+}
+
+fn picture(record: &RunRecord, figure: &Figure, caption: Markup) -> Markup {
+    html! { figure { (PreEscaped(figure.to_svg())) figcaption { (caption) (emulated(record)) } } }
+}
+
+/// How the board's time was spent.
+pub fn timing(record: &RunRecord) -> Markup {
+    let Some(figures) = &record.timing else {
+        return html! { section { h2 { "Timing" } p.none { "The board could not be asked for its figures." } } };
+    };
+    html! {
+        section {
+            h2 { "Timing" (emulated(record)) }
+            @if let Some(histogram) = timing::histogram(figures) {
+                (picture(record, &histogram, html! { "Over " (number(f64::from(figures.ticks))) " ticks; the vertical axis is logarithmic." }))
+            }
+            div.columns {
+                table {
+                    thead { tr { th { "Time [µs]" (emulated(record)) } th.number { "least" } th.number { "mean" } th.number { "greatest" } th.number { "of period" } } }
+                    tbody {
+                        @for (name, values) in timing::times(figures) {
+                            tr { td { (name) } @for value in values { td.number { (value) } } }
+                        }
+                        tr { td { "Idle share" (emulated(record)) } td.number colspan="4" { (number(figures.idle_percent)) " %" } }
+                        tr { td { "Period" } td.number colspan="4" { (timing::micro(figures.period_s)) " µs" } }
+                        tr { td { "Deepest stack" (emulated(record)) } td.number colspan="4" { (number(f64::from(figures.stack_used_bytes))) " bytes" } }
+                        tr { td { "RAM of statics" } td.number colspan="4" { (number(f64::from(figures.static_ram_bytes))) " bytes" } }
+                    }
+                }
+                table {
+                    thead { tr { th { "Count" (emulated(record)) } th.number { } th { } } }
+                    tbody {
+                        @for (name, count, bad, meaning) in timing::counts(figures) {
+                            tr.failed[bad && count > 0] { td { (name) } td.number { (number(f64::from(count))) } td.note { (meaning) } }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Who ran what, and how to run it again.
+pub fn identity(record: &RunRecord) -> Markup {
+    let (identity, settings) = (&record.identity, &record.settings);
+    let image = identity.image.as_ref();
+    let unknown = || "not known to this host".to_owned();
+    let rows = [
+        ("Joint", format!("{} ({})", identity.joint, identity.joint_file)),
+        ("Joint digest", identity.joint_digest.clone()),
+        ("Board", format!("{}, {}", identity.board, identity.transport)),
+        ("Role, firmware", format!("{} {}", identity.role, identity.firmware_version)),
+        ("Core clock", identity.clock.clone()),
+        ("Image", image.map_or_else(unknown, |image| image.file.clone())),
+        ("ELF SHA-256", image.map_or_else(unknown, |image| image.elf_sha256.clone())),
+        (
+            "Flash, RAM",
+            image.map_or_else(unknown, |image| {
+                format!("{} bytes, {} bytes", number(image.flash_bytes as f64), number(image.ram_bytes as f64))
+            }),
+        ),
+        ("Compiler", image.map_or_else(unknown, |image| image.compiler.clone())),
+        ("Flags", image.map_or_else(unknown, |image| image.flags.clone())),
+        ("Source commit", identity.git_commit.clone().unwrap_or_else(|| "not under git".into())),
+        ("Host", format!("{}, joint {}", identity.host, identity.host_version)),
+        ("Date", identity.date.clone()),
+        ("Profile, seed", format!("{}, {}", settings.profile, settings.seed)),
+    ];
+    html! {
+        section {
+            h2 { "What ran" (emulated(record)) }
+            table.identity { tbody { @for (name, value) in rows { tr { th { (name) } td { (value) } } } } }
+            h3 { "To run exactly this again" }
+            pre { (settings.replay) }
+        }
+    }
+}
+
+/// What the board said.
+pub fn log(record: &RunRecord) -> Markup {
+    if record.log.is_empty() {
+        return html! {};
+    }
+    html! {
+        section {
+            h2 { "Log of the board" }
+            table.log { tbody {
+                @for line in record.log.iter().take(MOST_LOG_LINES) {
+                    tr class={ "level-" (line.level) } { td { (line.timestamp) } td { (line.level) } td { (line.text) } }
+                }
+            } }
+            @if record.log.len() > MOST_LOG_LINES {
+                p.none { (record.log.len() - MOST_LOG_LINES) " more lines are in the JSON file." }
+            }
+        }
+    }
+}

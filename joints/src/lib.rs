@@ -21,7 +21,7 @@ mod section;
 mod spelling;
 
 pub use drive_train::{DriveTrain, Encoder};
-pub use motion::{Profile, characteristic_frequency};
+pub use motion::Profile;
 pub use notes::Source;
 pub use presets::{PRESETS, preset};
 pub use problem::{Problem, Severity};

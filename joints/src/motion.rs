@@ -2,8 +2,8 @@
 //! motion profile scales with. The profile itself is the host command's business.
 
 use model_core::dead_zone::DeadZone;
-use model_core::joint::{Bodies, Excitation, Geometry};
-use model_core::mesh::{DampingLaw, Mesh};
+use model_core::joint::{Excitation, Geometry};
+use model_core::mesh::DampingLaw;
 
 use crate::section::Section;
 
@@ -14,11 +14,6 @@ pub struct Profile {
     pub drive_torque: f64,
     /// The motor gives no more than this, either way [N m].
     pub motor_torque_limit: f64,
-}
-
-/// omega_n of eq. 18: sqrt(K_m (1/M_s + 1/M_p)) with the sun-planet mesh and the gears' own masses [rad/s].
-pub fn characteristic_frequency(bodies: &Bodies, sun_planet: &Mesh) -> f64 {
-    (sun_planet.mean_stiffness * (1.0 / bodies.sun_equivalent_mass + 1.0 / bodies.planet_equivalent_mass)).sqrt()
 }
 
 /// How teeth meet: `[contact]`, with its defaults if the section is absent.
@@ -39,7 +34,8 @@ pub(crate) fn read_contact(section: Option<&Section<'_>>) -> Option<(DampingLaw,
     Some((if law? == "paper" { DampingLaw::Paper } else { DampingLaw::Contact }, zone))
 }
 
-/// What drives the mesh phase: `[excitation]`; the joint's own angle if the section is absent.
+/// What drives the mesh phase: `[excitation]`; the joint's own angle if the section is absent. A frequency may be stated
+/// in units of `omega_n` (eq. 18), which is unknown while the rest of the file is wrong.
 pub(crate) fn read_excitation(section: Option<&Section<'_>>, omega_n: Option<f64>) -> Option<Excitation> {
     const FREQUENCIES: [&str; 3] = ["mesh_frequency_rad_per_s", "mesh_frequency_Hz", "mesh_frequency_over_omega_n"];
     let Some(section) = section else { return Some(Excitation::Angle) };

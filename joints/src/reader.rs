@@ -1,7 +1,8 @@
 //! Reads a whole joint file: parses, hands each section to its reader, checks that the gears fit, and gives either the
 //! joint with its warnings or everything that is wrong at once. Each section's rules are left to its reader.
 
-use model_core::joint::{Coherence, JointParameters};
+use model_core::joint::{Coherence, Excitation, JointParameters};
+use model_core::scales::Scales;
 use toml::de::DeTable;
 
 use crate::drive_train::{self, DriveTrain};
@@ -17,7 +18,7 @@ pub struct JointFile {
     /// The joint, in SI.
     pub parameters: JointParameters,
     /// A sentence for reports; may be empty.
-    pub description: std::string::String,
+    pub description: String,
     /// Torques for motion profiles.
     pub profile: Profile,
     /// What surrounds the gears; `None` if the file says nothing of it, which is ideal.
@@ -32,9 +33,15 @@ pub struct JointFile {
 pub fn read(text: &str) -> Result<JointFile, Vec<Problem>> {
     let notes = Notes::new(text);
     let (table, syntax) = DeTable::parse_recoverable(text);
+    let mut blamed_lines = Vec::new();
     for error in &syntax {
         let span = error.span().unwrap_or(notes.top());
-        notes.error(span, format!("not TOML: {}", error.message()), "write lines of the form key = value");
+        let line = text[..span.start].matches('\n').count();
+        // One slip makes the parser stumble on for the rest of its line.
+        if !blamed_lines.contains(&line) {
+            blamed_lines.push(line);
+            notes.error(span, format!("not TOML: {}", error.message()), "write lines of the form key = value");
+        }
     }
     // What was recovered from broken syntax would be blamed for what the parser dropped.
     let joint = if syntax.is_empty() { read_table(&Section::top(table.get_ref(), &notes)) } else { None };
@@ -68,11 +75,6 @@ fn read_table(top: &Section<'_>) -> Option<JointFile> {
         None => Some(None),
     };
     let contact = motion::read_contact(top.section("contact", "contact").as_ref());
-    let omega_n = masses
-        .as_ref()
-        .zip(meshes.as_ref())
-        .map(|(masses, meshes)| motion::characteristic_frequency(&masses.bodies, &meshes[0]));
-    let excitation = motion::read_excitation(top.section("excitation", "excitation").as_ref(), omega_n);
     let profile_section = top.section("profile", "profile");
     let profile = motion::read_profile(profile_section.as_ref(), geometry.as_ref(), rated_output_torque);
     let drive_train = top.section("drive_train", "drive_train").map(|section| drive_train::read(&section));
@@ -81,11 +83,11 @@ fn read_table(top: &Section<'_>) -> Option<JointFile> {
         coherence::check(geometry, top.notes());
     }
 
-    let (damping_law, dead_zone) = contact?;
-    let [sun_planet, ring_planet] = meshes?;
-    let masses = masses?;
-    Some(JointFile {
-        parameters: JointParameters {
+    let assemble = || {
+        let (damping_law, dead_zone) = contact?;
+        let [sun_planet, ring_planet] = meshes?;
+        let masses = masses?;
+        Some(JointParameters {
             name: name?,
             geometry: geometry?,
             bodies: masses.bodies,
@@ -96,10 +98,16 @@ fn read_table(top: &Section<'_>) -> Option<JointFile> {
             ring_planet,
             damping_law,
             dead_zone,
-            excitation: excitation?,
+            excitation: Excitation::Angle,
             characteristic_length: characteristic_length?,
             rated_output_torque: rated_output_torque?,
-        },
+        })
+    };
+    let parameters = assemble();
+    let omega_n = parameters.as_ref().map(|parameters| Scales::new(parameters).frequency);
+    let excitation = motion::read_excitation(top.section("excitation", "excitation").as_ref(), omega_n);
+    Some(JointFile {
+        parameters: JointParameters { excitation: excitation?, ..parameters? },
         description: description?,
         profile: profile?,
         drive_train,

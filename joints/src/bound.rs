@@ -28,12 +28,6 @@ impl Unit {
 /// Range of a number in the unit of its key.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Bound {
-    /// Any finite number.
-    Finite,
-    /// Greater than 0.
-    Positive,
-    /// 0 or greater.
-    NotNegative,
     /// Both ends allowed.
     Between(f64, f64),
     /// Neither end allowed.
@@ -48,9 +42,6 @@ impl Bound {
     pub(crate) fn holds(self, value: f64) -> bool {
         value.is_finite()
             && match self {
-                Self::Finite => true,
-                Self::Positive => value > 0.0,
-                Self::NotNegative => value >= 0.0,
                 Self::Between(low, high) => low <= value && value <= high,
                 Self::Inside(low, high) => low < value && value < high,
                 Self::FromToBelow(low, high) => low <= value && value < high,
@@ -61,9 +52,6 @@ impl Bound {
     /// Completes the sentence "... must be".
     pub(crate) fn text(self) -> String {
         match self {
-            Self::Finite => "a finite number".to_owned(),
-            Self::Positive => "greater than 0".to_owned(),
-            Self::NotNegative => "0 or greater".to_owned(),
             Self::Between(low, high) => format!("between {} and {}", plain(low), plain(high)),
             Self::Inside(low, high) => format!("greater than {} and less than {}", plain(low), plain(high)),
             Self::FromToBelow(low, high) => format!("at least {} and less than {}", plain(low), plain(high)),

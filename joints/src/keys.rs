@@ -39,17 +39,22 @@ const fn section(parent: &'static str, name: &'static str, hint: &'static str) -
     key(parent, name, Kind::Section, hint)
 }
 
-use Bound::{Between, Finite, FromToBelow, Inside, NotNegative, Positive, ZeroOr};
+use Bound::{Between, FromToBelow, Inside, ZeroOr};
 use Kind::{Choice, Number, PerPlanet, Text, Whole};
 use Unit::{Degrees, Micro, Milli, Si};
 
+/// What a typing error may not leave: the board computes in f32.
+const MASS: Bound = Between(1e-6, 1e6);
+const INERTIA: Bound = Between(1e-12, 1e6);
+const TORQUE: Bound = Between(1e-6, 1e9);
+const MAY_BE_ABSENT: Bound = Between(0.0, 1e6);
 const RADIUS: Kind = Number(Milli, Between(0.5, 5000.0));
 const RADIUS_HINT: &str = "a radius in mm (40 mm is 40, not 0.04); or give `module_mm` and leave all radii out";
 const MASS_HINT: &str = "I / r^2 in kg, felt along the line of action: the \"Inertia\" of the paper's Table 1";
 const INERTIA_HINT: &str = "a moment of inertia in kg m^2, about the gear's own axis";
 const ANGLE: Kind = Number(Degrees, Between(5.0, 45.0));
 const TEETH: Kind = Whole(5, 1000);
-const PHASE: Kind = PerPlanet(Si, Between(-6.2832, 6.2832));
+const PHASE: Kind = PerPlanet(Si, Between(-6.3, 6.3));
 const PHASE_HINT: &str =
     "in rad: one number is the phase of planet 0 and the others follow from the teeth; a list states every planet's";
 const FRICTION_HINT: &str = "a torque in N m, 0 if there is none";
@@ -62,7 +67,7 @@ pub(crate) const KEYS: &[Key] = &[
     key(
         "",
         "rated_output_torque_N_m",
-        Number(Si, Positive),
+        Number(Si, TORQUE),
         "the torque at the link that profiles and reports scale with",
     ),
     key("", "characteristic_length_um", Number(Micro, Between(1e-3, 1e4)), "b_c of eq. 16; 10 if left out"),
@@ -111,41 +116,41 @@ pub(crate) const KEYS: &[Key] = &[
         "r_c cos(alpha), the carrier's lever on the line of action, in mm",
     ),
     // Bodies
-    key("bodies", "sun_equivalent_mass_kg", Number(Si, Positive), MASS_HINT),
-    key("bodies", "sun_inertia_kg_m2", Number(Si, Positive), INERTIA_HINT),
-    key("bodies", "planet_equivalent_mass_kg", Number(Si, Positive), MASS_HINT),
-    key("bodies", "planet_inertia_kg_m2", Number(Si, Positive), INERTIA_HINT),
+    key("bodies", "sun_equivalent_mass_kg", Number(Si, MASS), MASS_HINT),
+    key("bodies", "sun_inertia_kg_m2", Number(Si, INERTIA), INERTIA_HINT),
+    key("bodies", "planet_equivalent_mass_kg", Number(Si, MASS), MASS_HINT),
+    key("bodies", "planet_inertia_kg_m2", Number(Si, INERTIA), INERTIA_HINT),
     key(
         "bodies",
         "planet_mass_kg",
-        Number(Si, NotNegative),
+        Number(Si, MAY_BE_ABSENT),
         "the mass of one planet in kg, carried round by the carrier",
     ),
     key(
         "bodies",
         "carrier_inertia_over_radius_squared_kg",
-        Number(Si, Positive),
+        Number(Si, MASS),
         "I_c / r_c^2 in kg without planets and link, as in the paper's Table 1",
     ),
     key(
         "bodies",
         "carrier_equivalent_mass_kg",
-        Number(Si, Positive),
+        Number(Si, MASS),
         "I_c / (r_c cos(alpha))^2 in kg, without planets and link",
     ),
     key(
         "bodies",
         "carrier_inertia_kg_m2",
-        Number(Si, Positive),
+        Number(Si, INERTIA),
         "I_c in kg m^2 about the joint's axis, without planets and link",
     ),
     key(
         "bodies",
         "rotor_inertia_kg_m2",
-        Number(Si, NotNegative),
+        Number(Si, MAY_BE_ABSENT),
         "motor rotor on the sun shaft in kg m^2; 0 if left out",
     ),
-    key("bodies", "link_inertia_kg_m2", Number(Si, NotNegative), "link on the carrier in kg m^2; 0 if left out"),
+    key("bodies", "link_inertia_kg_m2", Number(Si, MAY_BE_ABSENT), "link on the carrier in kg m^2; 0 if left out"),
     // Compliance
     key(
         "compliance",
@@ -216,7 +221,12 @@ pub(crate) const KEYS: &[Key] = &[
         "\"contact\": teeth only push; \"paper\": C d' acts in the gap too",
     ),
     key("contact", "dead_zone", Choice(&["sharp", "tanh"]), "\"sharp\" (eq. 12) or \"tanh\" (eq. 13)"),
-    key("contact", "sharpness", Number(Si, Positive), "sigma of eq. 13, per unit of the dimensionless deflection"),
+    key(
+        "contact",
+        "sharpness",
+        Number(Si, Between(0.1, 1e6)),
+        "sigma of eq. 13, per unit of the dimensionless deflection",
+    ),
     // Excitation
     key(
         "excitation",
@@ -224,8 +234,8 @@ pub(crate) const KEYS: &[Key] = &[
         Choice(&["angle", "time"]),
         "\"angle\" follows the joint; \"time\" runs at a stated frequency",
     ),
-    key("excitation", "mesh_frequency_rad_per_s", Number(Si, Positive), "omega in rad/s"),
-    key("excitation", "mesh_frequency_Hz", Number(Si, Positive), "omega / 2 pi in Hz"),
+    key("excitation", "mesh_frequency_rad_per_s", Number(Si, Between(1e-3, 1e9)), "omega in rad/s"),
+    key("excitation", "mesh_frequency_Hz", Number(Si, Between(1e-3, 1e8)), "omega / 2 pi in Hz"),
     key(
         "excitation",
         "mesh_frequency_over_omega_n",
@@ -236,21 +246,26 @@ pub(crate) const KEYS: &[Key] = &[
     key(
         "profile",
         "drive_torque_N_m",
-        Number(Si, Positive),
+        Number(Si, TORQUE),
         "the rated motor torque; balances the rated output torque if left out",
     ),
     key(
         "profile",
         "motor_torque_limit_N_m",
-        Number(Si, Positive),
+        Number(Si, TORQUE),
         "the motor's limit; twice the drive torque if left out",
     ),
     // Drive train
-    key("drive_train", "motor_coulomb_friction_N_m", Number(Si, NotNegative), FRICTION_HINT),
-    key("drive_train", "motor_viscous_friction_N_m_s_per_rad", Number(Si, NotNegative), "in N m s/rad of motor speed"),
-    key("drive_train", "cogging_torque_N_m", Number(Si, NotNegative), "the amplitude of the cogging torque"),
+    key("drive_train", "motor_coulomb_friction_N_m", Number(Si, MAY_BE_ABSENT), FRICTION_HINT),
+    key(
+        "drive_train",
+        "motor_viscous_friction_N_m_s_per_rad",
+        Number(Si, MAY_BE_ABSENT),
+        "in N m s/rad of motor speed",
+    ),
+    key("drive_train", "cogging_torque_N_m", Number(Si, MAY_BE_ABSENT), "the amplitude of the cogging torque"),
     key("drive_train", "cogging_periods_per_turn", Whole(1, 10_000), "the least common multiple of slots and poles"),
-    key("drive_train", "load_coulomb_friction_N_m", Number(Si, NotNegative), FRICTION_HINT),
+    key("drive_train", "load_coulomb_friction_N_m", Number(Si, MAY_BE_ABSENT), FRICTION_HINT),
     key(
         "drive_train",
         "load_stribeck_rise_ratio",
@@ -260,10 +275,10 @@ pub(crate) const KEYS: &[Key] = &[
     key(
         "drive_train",
         "load_stribeck_speed_rad_per_s",
-        Number(Si, Positive),
+        Number(Si, Between(1e-6, 1e3)),
         "the speed at which the rise has decayed",
     ),
-    key("drive_train", "load_viscous_friction_N_m_s_per_rad", Number(Si, NotNegative), "in N m s/rad of link speed"),
+    key("drive_train", "load_viscous_friction_N_m_s_per_rad", Number(Si, MAY_BE_ABSENT), "in N m s/rad of link speed"),
     key(
         "drive_train",
         "efficiency",
@@ -273,7 +288,7 @@ pub(crate) const KEYS: &[Key] = &[
     key(
         "drive_train",
         "gravity_torque_N_m",
-        Number(Si, Finite),
+        Number(Si, Between(-1e6, 1e6)),
         "the torque of the link's weight, times sin(link angle)",
     ),
     key(

@@ -19,6 +19,7 @@ mod problem;
 mod reader;
 mod section;
 mod spelling;
+mod unknown;
 
 pub use drive_train::{DriveTrain, Encoder};
 pub use motion::Profile;

@@ -95,11 +95,11 @@ impl Layers<'_, '_> {
             contact_ratio: contact_ratio?,
             order: order? as usize,
         };
-        let lowest = lowest_stiffness(&wave);
-        if lowest <= 0.0 {
+        let swing = largest_swing(&wave);
+        if swing >= 1.0 {
             let section = self.holder(&[ratio_key]);
-            let message = format!("this wave lets the stiffness fall to {lowest:.3} of its mean: below zero");
-            let largest = 0.99 * stiffness_ratio? / (1.0 - lowest);
+            let message = format!("the harmonics of this wave sum to {swing:.3} of the mean: the stiffness may vanish");
+            let largest = 0.999 * stiffness_ratio? / swing;
             let help = format!("at this contact ratio and order, `{ratio_key}` must stay below {largest:.3}");
             section.notes().error(section.place(ratio_key), message, help);
             return None;
@@ -137,16 +137,7 @@ impl Layers<'_, '_> {
     }
 }
 
-/// The least of K / K_m over a mesh period, with the ringing of a cut series.
-fn lowest_stiffness(wave: &StiffnessWave) -> f64 {
-    const STEPS: u32 = 2048;
-    let stiffness = |step: u32| {
-        let phase = core::f64::consts::TAU * f64::from(step) / f64::from(STEPS);
-        (1..=wave.order()).fold(1.0, |sum, harmonic| {
-            let (sine, cosine) = wave.coefficients(harmonic);
-            let angle = harmonic as f64 * phase;
-            sum + sine * angle.sin() + cosine * angle.cos()
-        })
-    };
-    (0..STEPS).map(stiffness).fold(f64::INFINITY, f64::min)
+/// The sum of the harmonics' amplitudes, which K / K_m cannot leave 1 by more than. The fixed step asks for the same.
+fn largest_swing(wave: &StiffnessWave) -> f64 {
+    (1..=wave.order()).map(|harmonic| wave.coefficients(harmonic)).map(|(sine, cosine)| sine.hypot(cosine)).sum()
 }

@@ -70,10 +70,17 @@ fn read_table(top: &Section<'_>) -> Option<JointFile> {
     let planets = geometry_section.as_ref().and_then(|section| section.whole("planets")).map(|count| count as usize);
     let masses = top.required_section("bodies", "bodies").and_then(|section| bodies::read(&section, geometry.as_ref()));
     let meshes = top.required_section("mesh", "mesh").and_then(|section| meshes::read(&section, planets));
-    let compliance = match top.section("compliance", "compliance") {
-        Some(section) => bodies::read_compliance(&section).map(Some),
+    let compliance_section = top.section("compliance", "compliance");
+    let compliance = match &compliance_section {
+        Some(section) => bodies::read_compliance(section).map(Some),
         None => Some(None),
     };
+    if let (Some(section), Some(masses)) = (&compliance_section, &masses)
+        && masses.link_inertia == 0.0
+    {
+        let help = "give `link_inertia_kg_m2` in [bodies], or leave [compliance] out";
+        top.notes().error(section.header(), "a compliance needs a link behind it", help);
+    }
     let contact = motion::read_contact(top.section("contact", "contact").as_ref());
     let profile_section = top.section("profile", "profile");
     let profile = motion::read_profile(profile_section.as_ref(), geometry.as_ref(), rated_output_torque);

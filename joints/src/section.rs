@@ -9,7 +9,7 @@ use toml::de::{DeTable, DeValue};
 use crate::bound::{Bound, Unit};
 use crate::keys::{self, Key, Kind};
 use crate::notes::Notes;
-use crate::spelling;
+use crate::unknown;
 
 /// One table of the file.
 pub(crate) struct Section<'a> {
@@ -32,7 +32,8 @@ pub(crate) enum PerPlanetValue {
 impl<'a> Section<'a> {
     /// The top of the file. Complains about keys that nobody knows, here and in every section taken from it.
     pub(crate) fn top(table: &'a DeTable<'a>, notes: &'a Notes<'a>) -> Self {
-        Self { path: String::new(), schema: "", header: notes.top(), table, notes }.known()
+        unknown::check("", "", table, notes);
+        Self { path: String::new(), schema: "", header: notes.top(), table, notes }
     }
 
     /// The table `name` with the keys of `schema`; `None` if it is absent or no table.
@@ -44,7 +45,9 @@ impl<'a> Section<'a> {
             self.notes.error(value.span(), format!("`{name}` must be a section, not {}", kind(value)), hint);
             return None;
         };
-        Some(Section { path: self.full(name), schema, header: value.span(), table, notes: self.notes }.known())
+        let path = self.full(name);
+        unknown::check(&path, schema, table, self.notes);
+        Some(Section { path, schema, header: value.span(), table, notes: self.notes })
     }
 
     /// The table `name`, which must be there.
@@ -54,6 +57,10 @@ impl<'a> Section<'a> {
             self.notes.error(self.header.clone(), format!("the section [{}] is missing", self.full(name)), hint);
         }
         self.section(name, schema)
+    }
+
+    pub(crate) fn header(&self) -> Range<usize> {
+        self.header.clone()
     }
 
     pub(crate) fn notes(&self) -> &'a Notes<'a> {
@@ -182,7 +189,7 @@ impl<'a> Section<'a> {
         if bound.holds(number) {
             return Some(unit.to_si(number));
         }
-        let limits = if number.is_finite() { bound.text() } else { Bound::Finite.text() };
+        let limits = if number.is_finite() { bound.text() } else { "a finite number".to_owned() };
         self.notes.error(value.span(), format!("`{}` must be {limits}, not {}", key.name, shown(value)), key.hint);
         None
     }
@@ -205,34 +212,6 @@ impl<'a> Section<'a> {
 
     fn full(&self, name: &str) -> String {
         if self.path.is_empty() { name.to_owned() } else { format!("{}.{name}", self.path) }
-    }
-
-    /// Complains about every key that is not in the list.
-    fn known(self) -> Self {
-        for name in self.table.keys() {
-            let word = name.get_ref().as_ref();
-            if keys::of(self.schema).any(|key| key.name == word) {
-                continue;
-            }
-            let place = if self.path.is_empty() { "a joint file".to_owned() } else { format!("[{}]", self.path) };
-            let help = if let Some(near) = spelling::nearest(word, keys::of(self.schema).map(|key| key.name)) {
-                format!("did you mean `{near}`? {}", keys::find(self.schema, near).hint)
-            } else if let Some(key) = keys::KEYS.iter().find(|key| key.name == word) {
-                format!("it belongs {}", belongs(key.section))
-            } else {
-                format!("known here: {}", listed(&keys::of(self.schema).map(|key| key.name).collect::<Vec<_>>()))
-            };
-            self.notes.error(name.span(), format!("unknown key `{word}` in {place}"), help);
-        }
-        self
-    }
-}
-
-fn belongs(section: &str) -> String {
-    match section {
-        "" => "at the top of the file, above all sections".to_owned(),
-        "encoder" => "in [drive_train.motor_encoder] or [drive_train.output_encoder]".to_owned(),
-        section => format!("in [{section}]"),
     }
 }
 
@@ -258,7 +237,7 @@ fn shown(value: &Spanned<DeValue<'_>>) -> String {
     }
 }
 
-fn listed(names: &[&str]) -> String {
+pub(crate) fn listed(names: &[&str]) -> String {
     listed_as(names, '`', "and")
 }
 

@@ -155,3 +155,9 @@ fn no_file_makes_the_reader_panic() {
         assert!(read(garbage).is_err(), "{garbage}");
     }
 }
+
+#[test]
+fn a_compliance_without_a_link_is_refused() {
+    let text = spoilt("link_inertia_kg_m2 = 0.15", "link_inertia_kg_m2 = 0.0");
+    refused(&text, "a compliance needs a link behind it", "[compliance]", "give `link_inertia_kg_m2` in [bodies]");
+}

@@ -155,6 +155,7 @@ mod tests {
     fn a_port_held_by_another_is_called_busy() {
         let (_master, slave) = serialport::TTYPort::pair().expect("pseudo-terminals");
         let path = slave.name().expect("a pseudo-terminal has a path");
+        let _held = Port::open(&path, 115_200).expect("the port is free");
         let failure = Port::open(&path, 115_200).err().expect("the pair holds the port");
         assert!(failure.message().contains("busy"), "{failure}");
         assert!(failure.message().contains(&path), "{failure}");

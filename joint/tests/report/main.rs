@@ -3,6 +3,7 @@
 mod synthetic;
 
 use std::fs;
+use std::path::Path;
 
 use joint::record::{Bound, Check, Completeness, Contact, RunRecord, Source, Verdict};
 use joint::report::{picture, render, write};
@@ -10,7 +11,7 @@ use joint::report::{picture, render, write};
 /// Leaves a report where a person can look at it.
 fn keep_for_looking(name: &str, text: &str) {
     if let Some(folder) = std::env::var_os("REPORT_LOOK") {
-        fs::write(std::path::Path::new(&folder).join(name), text).expect("REPORT_LOOK names a folder");
+        fs::write(Path::new(&folder).join(name), text).expect("REPORT_LOOK names a folder");
     }
 }
 
@@ -54,7 +55,7 @@ fn a_page_needs_neither_network_nor_script() {
 #[test]
 fn a_page_stays_small_enough_to_send() {
     let mut record = synthetic::record();
-    let noisy = |index: usize| if index % 3 == 0 { Contact::BackSide } else { Contact::DriveSide };
+    let noisy = |index: usize| if index.is_multiple_of(3) { Contact::BackSide } else { Contact::DriveSide };
     for (mesh, column) in record.samples.contact.iter_mut().enumerate() {
         *column = (0..column.len()).map(|index| noisy(index / (mesh + 2))).collect();
     }
@@ -173,15 +174,39 @@ fn a_report_that_cannot_be_written_costs_no_record() {
 }
 
 #[test]
-fn a_full_disk_names_the_path_and_leaves_the_old_file() {
-    let record = synthetic::record();
-    let failure = record.write_json(std::path::Path::new("/dev/full/run.json")).expect_err("it is no folder");
-    assert!(failure.message().contains("/dev/full/run.json"), "{failure}");
+#[cfg(target_os = "linux")]
+fn a_full_disk_is_named_and_so_is_the_mend() {
+    let failure = synthetic::record().write_json(Path::new("/dev/full")).expect_err("that device is always full");
+    assert!(failure.message().contains("/dev/full"), "{failure}");
+    assert!(failure.help().is_some_and(|help| help.contains("free some space")), "{failure}");
+}
+
+#[test]
+fn a_folder_in_the_way_is_named_and_stays() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("run.json");
     fs::create_dir(&path).expect("the folder is writable");
-    let failure = record.write_json(&path).expect_err("a folder stands in the way");
+    let failure = synthetic::record().write_json(&path).expect_err("a folder stands in the way");
     assert!(failure.help().is_some_and(|help| help.contains("a file in it")), "{failure}");
+    assert!(path.is_dir());
+}
+
+#[test]
+#[cfg(unix)]
+fn a_write_that_fails_leaves_the_old_file() {
+    use std::os::unix::fs::symlink;
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let (old, link) = (folder.path().join("old.html"), folder.path().join("link.html"));
+    fs::write(&old, "old").expect("the folder is writable");
+    symlink(&old, &link).expect("links are supported");
+    // The temporary file's name is taken by a folder, so that nothing can be written beside the target.
+    fs::create_dir(folder.path().join(format!(".old.html.{}.tmp", std::process::id()))).expect("the name is free");
+    write(&synthetic::record(), None, Some(&link)).expect_err("the name is taken");
+    assert_eq!(fs::read_to_string(&old).expect("it is there"), "old");
+    fs::remove_dir(folder.path().join(format!(".old.html.{}.tmp", std::process::id()))).expect("it is empty");
+    write(&synthetic::record(), None, Some(&link)).expect("nothing is in the way");
+    assert!(fs::symlink_metadata(&link).is_ok_and(|link| link.is_symlink()), "a link stays a link");
+    assert!(fs::read_to_string(&old).is_ok_and(|page| page.contains("</html>")));
 }
 
 #[test]

@@ -33,28 +33,36 @@ impl Recording {
     }
 
     fn parse(text: &str) -> Outcome<Self> {
-        let mut reader =
-            csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(text.as_bytes());
-        let header = reader.headers().map_err(|error| Failure::new(format!("no header line: {error}")))?.clone();
-        let place = |wanted: &str| header.iter().position(|column| column == wanted);
+        // Numbers are never quoted: a comma always ends a value. Spreadsheets put a byte-order mark in front.
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let mut lines = (1u64..).zip(text.lines().map(str::trim));
+        let mut lines = lines.by_ref().filter(|(_, text)| !text.is_empty() && !text.starts_with('#'));
+        let (line, header) =
+            lines.next().ok_or_else(|| Failure::new("the profile is empty").with_help(wanted_header()))?;
+        let header = values(header);
         let mut places = [0; COLUMNS.len()];
-        for (found, wanted) in places.iter_mut().zip(COLUMNS) {
-            *found = place(wanted).ok_or_else(|| missing_column(wanted, &header))?;
+        for (place, wanted) in places.iter_mut().zip(COLUMNS) {
+            let found = header.iter().position(|column| *column == wanted);
+            *place = found.ok_or_else(|| missing_column(line, wanted, &header))?;
         }
         let mut rows: Vec<Row> = Vec::new();
         let mut start = None;
-        for record in reader.records() {
-            let record = record.map_err(|error| unreadable(&error))?;
-            let line = record.position().map_or(0, csv::Position::line);
-            let mut values = [0.0; COLUMNS.len()];
-            for ((value, column), place) in values.iter_mut().zip(COLUMNS).zip(places) {
-                *value = number(line, column, record.get(place).unwrap_or_default())?;
+        for (line, text) in lines {
+            let row = values(text);
+            if row.len() != header.len() {
+                let message = format!("line {line} has {} values, the header has {}", row.len(), header.len());
+                return Err(Failure::new(message).with_help("give every row a value for every column"));
             }
-            push(&mut rows, *start.get_or_insert(values[0]), line, values)?;
+            let mut numbers = [0.0; COLUMNS.len()];
+            for ((value, column), place) in numbers.iter_mut().zip(COLUMNS).zip(places) {
+                *value = number(line, column, row[place])?;
+            }
+            push(&mut rows, *start.get_or_insert(numbers[0]), line, numbers)?;
         }
-        match rows.as_slice() {
-            [] => Err(Failure::new("the profile holds no rows").with_help("give at least two rows of numbers")),
-            [_] => Err(Failure::new("the profile holds a single row").with_help("give at least two rows of numbers")),
+        let too_few = |what: &str| Failure::new(what).with_help("give at least two rows of numbers");
+        match rows.len() {
+            0 => Err(too_few("the profile holds no rows")),
+            1 => Err(too_few("the profile holds a single row")),
             _ => Ok(Self { rows }),
         }
     }
@@ -121,25 +129,17 @@ fn number(line: u64, column: &str, text: &str) -> Outcome<f64> {
     }
 }
 
-fn unreadable(error: &csv::Error) -> Failure {
-    let line = error.position().map_or(0, csv::Position::line);
-    match error.kind() {
-        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
-            Failure::new(format!("line {line} has {len} columns, the header has {expected_len}"))
-                .with_help("give every row a value for every column")
-        }
-        _ => Failure::new(format!("line {line} cannot be read: {error}")),
-    }
+fn values(line: &str) -> Vec<&str> {
+    line.split(',').map(|value| value.trim().trim_matches('"')).collect()
 }
 
-fn missing_column(wanted: &str, header: &csv::StringRecord) -> Failure {
-    let there = header.iter().collect::<Vec<_>>().join(", ");
-    let message = if there.is_empty() {
-        "the profile is empty".to_owned()
-    } else {
-        format!("line 1: there is no column `{wanted}`; columns are: {there}")
-    };
-    Failure::new(message).with_help(format!("the first line must name the columns {}", COLUMNS.join(",")))
+fn missing_column(line: u64, wanted: &str, header: &[&str]) -> Failure {
+    let there = header.join(", ");
+    Failure::new(format!("line {line}: there is no column `{wanted}`; columns are: {there}")).with_help(wanted_header())
+}
+
+fn wanted_header() -> String {
+    format!("the first line must name the columns {}", COLUMNS.join(","))
 }
 
 #[cfg(test)]
@@ -158,7 +158,7 @@ mod tests {
         assert!(refused(&format!("{header}0.1,1e60,6\n")).starts_with("line 3: motor_torque_Nm is 1"));
         assert!(refused(&format!("{header}0.1,1,6\n0.1,1,6\n")).starts_with("line 4: time_s does not rise"));
         assert!(refused(&format!("{header}-0.1,1,6\n")).starts_with("line 3: time_s does not rise"));
-        assert!(refused(&format!("{header}0.1,1\n")).starts_with("line 3 has 2 columns"));
+        assert!(refused(&format!("{header}0.1,1\n")).starts_with("line 3 has 2 values"));
         assert!(refused(&format!("{header}\n\n0.1,,6\n")).starts_with("line 5: motor_torque_Nm is ``"));
         assert!(refused(&format!("{header}0.1,1.5x,6\n")).starts_with("line 3: motor_torque_Nm is `1.5x`"));
     }
@@ -173,7 +173,8 @@ mod tests {
 
     #[test]
     fn columns_may_stand_in_any_order_beside_others_and_comments() {
-        let text = "# a drive's log\nload_torque_Nm, time_s, phase, motor_torque_Nm\n6,10,x,1\n12,11,y,2\n";
+        let text =
+            "\u{feff}# a drive's log\r\nload_torque_Nm, \"time_s\", phase, motor_torque_Nm\r\n6,10,x,1\n12,11,y,2\n";
         let recording = Recording::parse(text).expect("a good file");
         assert_eq!(recording.duration(), 1.0);
         assert_eq!(recording.mean(0.0, 1.0), Torques { drive: 1.5, load: 9.0 });

@@ -24,21 +24,35 @@ impl RunRecord {
 }
 
 fn write_with(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Outcome<()> {
-    if path.is_dir() {
-        return Err(failure(path, &io::Error::from(ErrorKind::IsADirectory)));
-    }
-    let temporary = temporary_beside(path);
+    // A link stays a link: what it points to is replaced.
+    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    let written = match fs::metadata(&target) {
+        Ok(there) if there.is_dir() => Err(io::Error::from(ErrorKind::IsADirectory)),
+        // A device or a pipe is written to, never replaced.
+        Ok(there) if !there.is_file() => {
+            File::options().write(true).open(&target).and_then(|file| fill_whole(file, fill).map(drop))
+        }
+        _ => replace(&target, fill),
+    };
+    written.map_err(|source| failure(path, &source))
+}
+
+fn replace(target: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> io::Result<()> {
+    let temporary = temporary_beside(target);
     let written = File::create(&temporary).and_then(|file| {
-        let mut buffered = BufWriter::new(file);
-        fill(&mut buffered)?;
         // A full disk may only be noticed when the data leave the cache.
-        buffered.into_inner().map_err(io::IntoInnerError::into_error)?.sync_all()
+        fill_whole(file, fill)?.sync_all()
     });
-    written.and_then(|()| fs::rename(&temporary, path)).map_err(|source| {
+    written.and_then(|()| fs::rename(&temporary, target)).inspect_err(|_| {
         // The half-written file is of no use to anyone; if it cannot be removed the first error says more.
         let _ = fs::remove_file(&temporary);
-        failure(path, &source)
     })
+}
+
+fn fill_whole(file: File, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> io::Result<File> {
+    let mut buffered = BufWriter::new(file);
+    fill(&mut buffered)?;
+    buffered.into_inner().map_err(io::IntoInnerError::into_error)
 }
 
 /// A name in the same folder, since a rename cannot cross file systems.

@@ -2,7 +2,8 @@
 //! share of each state by height; deflections themselves are drawn by `motion`.
 
 use super::plot::ink::Ink;
-use super::plot::panel::{Mark, Panel, VerticalAxis};
+use super::plot::mark::Mark;
+use super::plot::panel::{Panel, VerticalAxis};
 use super::plot::unit::Unit;
 use crate::record::{Contact, Samples};
 

@@ -4,7 +4,8 @@
 use super::contacts;
 use super::plot::Figure;
 use super::plot::ink::{Ink, LINES};
-use super::plot::panel::{Mark, Panel};
+use super::plot::mark::Mark;
+use super::plot::panel::Panel;
 use super::plot::unit::{PERCENT, SECONDS, TORQUE, Unit, figure, greatest};
 use crate::record::{ErrorSeries, RunRecord, Samples};
 
@@ -79,10 +80,10 @@ impl View<'_> {
         let half = 0.5 * self.record.joint.lost_motion_rad;
         let unit = Unit::of_angle(greatest(self.samples.twist_rad.iter().copied()).max(half));
         let mut marks = vec![Mark::Band { range: (-half, half), label: "lost motion of the teeth".into() }];
-        marks.push(self.line(&self.samples.twist_rad, Ink::First, "board"));
         if let Some(reference) = &self.record.reference {
             marks.extend(self.reference_line(&reference.samples, &reference.samples.twist_rad));
         }
+        marks.push(self.line(&self.samples.twist_rad, Ink::First, "board"));
         Panel::lines("Twist: motor angle over ratio, less link angle", unit, marks)
     }
 
@@ -92,10 +93,10 @@ impl View<'_> {
         let gap = wide(&self.samples.gap_m);
         let unit = Unit::of_length(greatest(gap.iter().copied().chain([low, high])));
         let mut marks = vec![Mark::Band { range: (low, high), label: "free: no tooth need touch (4b)".into() }];
-        marks.push(self.line(&gap, Ink::First, "board"));
         if let Some(reference) = &self.record.reference {
             marks.extend(self.reference_line(&reference.samples, &wide(&reference.samples.gap_m)));
         }
+        marks.push(self.line(&gap, Ink::First, "board"));
         Panel::lines("Gap coordinate", unit, marks)
     }
 
@@ -144,9 +145,13 @@ impl View<'_> {
     }
 
     fn reference_line(&self, samples: &Samples, values: &[f64]) -> Option<Mark> {
+        // Beside samples at every tick the straight lines between sparse ones would look like errors.
+        if !std::ptr::eq(self.samples, &self.record.samples) {
+            return None;
+        }
         let points = self.points(samples, values);
         let label = "f64 reference".into();
-        (!points.is_empty()).then_some(Mark::Line { points, ink: Ink::Reference, label, width: 1.0 })
+        (!points.is_empty()).then_some(Mark::Line { points, ink: Ink::Reference, label, width: 4.0 })
     }
 
     fn points(&self, samples: &Samples, values: &[f64]) -> Vec<(f64, f64)> {

@@ -3,6 +3,7 @@
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::plot::ink;
+use super::plot::unit::figure as number;
 use super::sections;
 use crate::record::{Completeness, RunRecord, Verdict};
 
@@ -51,8 +52,7 @@ pub fn standalone(svg: &str) -> String {
     let style = format!(
         "<style>\n{}svg{{font-family:system-ui,sans-serif;background:#fff}}\n\
          @media screen and (prefers-color-scheme:dark){{svg{{background:#12171e}}}}\n\
-         rect{{shape-rendering:crispEdges}}polyline{{stroke-linejoin:round}}\n\
-         polyline[stroke=\"var(--reference)\"]{{stroke-dasharray:16 12}}\n</style>\n",
+         rect{{shape-rendering:crispEdges}}polyline{{stroke-linejoin:round}}\n</style>\n",
         ink::style_sheet("svg")
     );
     match svg.split_once('\n') {
@@ -85,7 +85,7 @@ fn header(record: &RunRecord) -> Markup {
             p.subtitle {
                 "Hardware in the loop: " (identity.role) " on " (identity.board)
                 " · profile " (record.settings.profile) " · " (record.settings.mode)
-                " · " (record.settings.tick_rate_hz) " Hz · " (identity.date)
+                " · " (number(f64::from(record.settings.tick_rate_hz) / 1e3)) " kHz · " (identity.date)
             }
         }
     }
@@ -115,8 +115,8 @@ fn notices(record: &RunRecord) -> Markup {
         @if identity.emulated {
             div.notice {
                 strong { "EMULATED. " }
-                "The board was " (identity.transport) ". Motion is computed by the same machine code as on silicon and "
-                "is exact; times are the emulator's counts and say nothing about a real chip."
+                "The board was " (identity.transport) ". Motion is computed by the very machine code that a real "
+                "board is flashed with; times are the emulator’s counts and say nothing about a real chip."
             }
         }
     }

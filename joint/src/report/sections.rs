@@ -21,27 +21,31 @@ pub fn tiles(record: &RunRecord) -> Markup {
         Completeness::Interrupted { tick, .. } => tick,
     };
     let seconds = f64::from(steps) / f64::from(record.settings.tick_rate_hz.max(1));
+    let none = || html! {};
     html! {
         section.tiles {
-            (tile("Checks held", html! { (count(Verdict::Passed)) span.of { " of " (judged) } }))
-            (tile("Steps", html! { (number(f64::from(steps))) span.of { " · " (number(seconds)) " s" } }))
+            (tile("Checks held", none(), html! { (count(Verdict::Passed)) span.of { " of " (judged) } }))
+            (tile("Steps", none(), html! { (number(f64::from(steps))) span.of { " · " (number(seconds)) " s" } }))
             @if let Some(timing) = &record.timing {
-                (tile("Longest tick", html! {
+                (tile("Longest tick", emulated(record), html! {
                     (timing::micro(timing.computation.max_s)) span.of { " of " (timing::micro(timing.period_s)) " µs" }
-                    (emulated(record))
                 }))
-                (tile("Idle", html! { (number(timing.idle_percent)) span.of { " %" } (emulated(record)) }))
+                (tile("Idle", emulated(record), html! { (number(timing.idle_percent)) span.of { " %" } }))
             }
             @if let Some(image) = &record.identity.image {
-                (tile("Flash", html! { (number(image.flash_bytes as f64 / 1024.0)) span.of { " KiB" } }))
-                (tile("RAM", html! { (number(image.ram_bytes as f64 / 1024.0)) span.of { " KiB" } }))
+                (tile("Flash", none(), html! { (kibibytes(image.flash_bytes)) span.of { " KiB" } }))
+                (tile("RAM", none(), html! { (kibibytes(image.ram_bytes)) span.of { " KiB" } }))
             }
         }
     }
 }
 
-fn tile(name: &str, value: Markup) -> Markup {
-    html! { div.tile { div.value { (value) } div.name { (name) } } }
+fn tile(name: &str, mark: Markup, value: Markup) -> Markup {
+    html! { div.tile { div.value { (value) } div.name { (name) (mark) } } }
+}
+
+fn kibibytes(bytes: u64) -> String {
+    format!("{:.1}", bytes as f64 / 1024.0)
 }
 
 /// The table of checks, failed ones first.
@@ -155,6 +159,12 @@ pub fn timing(record: &RunRecord) -> Markup {
     html! {
         section {
             h2 { "Timing" (emulated(record)) }
+            @if let Some(image) = &record.identity.image {
+                p.lead.provenance {
+                    (record.identity.board) ", " (record.identity.transport) " · ELF " code { (image.elf_sha256) } " · "
+                    (image.compiler) " · " (image.flags)
+                }
+            }
             @if let Some(histogram) = timing::histogram(figures) {
                 (picture(record, &histogram, html! { "Over " (number(f64::from(figures.ticks))) " ticks; the vertical axis is logarithmic." }))
             }

@@ -3,7 +3,8 @@
 
 use super::plot::Figure;
 use super::plot::ink::Ink;
-use super::plot::panel::{Mark, Panel, VerticalAxis};
+use super::plot::mark::Mark;
+use super::plot::panel::{Panel, VerticalAxis};
 use super::plot::unit::{MICROSECONDS, Unit, figure};
 use crate::record::{MinMeanMax, TimingFigures};
 

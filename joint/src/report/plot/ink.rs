@@ -20,7 +20,7 @@ pub enum Ink {
     Band,
     /// Limits and deadlines.
     Limit,
-    /// The f64 reference; drawn dashed.
+    /// The f64 reference, a broad line below the board's.
     Reference,
     /// Bars of the histogram.
     Bar,
@@ -54,7 +54,7 @@ const TABLE: [(Ink, &str, u32, u32); 16] = [
     (Ink::Grid, "grid", 0xe7ebf0, 0x252d38),
     (Ink::Band, "band", 0xf3ead2, 0x332d1c),
     (Ink::Limit, "limit", 0xc62f3b, 0xff6b74),
-    (Ink::Reference, "reference", 0x1d1f21, 0xf4f6f8),
+    (Ink::Reference, "reference", 0xb7c0cb, 0x6d7a89),
     (Ink::Bar, "bar", 0x3f7fb8, 0x5ea3dd),
     (Ink::DriveSide, "drive-side", 0x4c9fd4, 0x3f8fc4),
     (Ink::Separated, "separated", 0xf2dfae, 0x6a5b2c),

@@ -2,6 +2,7 @@
 //! into which panel is decided by `motion` and `timing`.
 
 pub mod ink;
+pub mod mark;
 pub mod panel;
 mod thin;
 pub mod unit;
@@ -17,11 +18,11 @@ pub const FINE: i32 = 4;
 /// Width of a picture [px].
 pub const WIDTH: i32 = 1040;
 /// Room for numbers and unit at the left [px].
-pub const LEFT: i32 = 76;
+pub const LEFT: i32 = 92;
 /// Room at the right [px].
 pub const RIGHT: i32 = 14;
 /// Height of the numbers and the name of the common axis [px].
-const FOOT: i32 = 40;
+const FOOT: i32 = 32;
 
 /// Where a panel is drawn.
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;

@@ -1,10 +1,13 @@
 //! One panel: a title with its legend above the plot, so that nothing covers data, axes with units, and marks. Ranges
 //! are found from the marks; what the marks mean is the caller's.
 
+use plotters::coord::ranged1d::ValueFormatter;
+use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::ink::Ink;
+use super::mark::Mark;
 use super::thin::thin;
 use super::unit::{Unit, axis_range, tick_label};
 use super::{Area, Drawn, FINE, Figure, LEFT, RIGHT, WIDTH, text_style};
@@ -39,65 +42,6 @@ pub enum VerticalAxis {
     Rows(Vec<String>),
 }
 
-/// Something drawn in a panel.
-pub enum Mark {
-    /// A line through points.
-    Line {
-        /// Points, SI.
-        points: Vec<(f64, f64)>,
-        /// Colour.
-        ink: Ink,
-        /// Entry in the legend; empty for none.
-        label: String,
-        /// Width [px].
-        width: f64,
-    },
-    /// A horizontal band.
-    Band {
-        /// Lower and upper end, SI.
-        range: (f64, f64),
-        /// Entry in the legend.
-        label: String,
-    },
-    /// A vertical limit.
-    Deadline {
-        /// Where on the common axis, SI.
-        at: f64,
-        /// Entry in the legend.
-        label: String,
-    },
-    /// Filled rectangles: left, right, bottom, top.
-    Boxes {
-        /// The rectangles, SI.
-        boxes: Vec<[f64; 4]>,
-        /// Colour.
-        ink: Ink,
-        /// Entry in the legend.
-        label: String,
-    },
-}
-
-impl Mark {
-    /// Legend entry.
-    fn label(&self) -> (&str, Ink) {
-        match self {
-            Self::Line { label, ink, .. } | Self::Boxes { label, ink, .. } => (label, *ink),
-            Self::Band { label, .. } => (label, Ink::Band),
-            Self::Deadline { label, .. } => (label, Ink::Limit),
-        }
-    }
-
-    /// Vertical extent.
-    fn values(&self) -> Box<dyn Iterator<Item = f64> + '_> {
-        match self {
-            Self::Line { points, .. } => Box::new(points.iter().map(|point| point.1)),
-            Self::Band { range, .. } => Box::new([range.0, range.1].into_iter()),
-            Self::Boxes { boxes, .. } => Box::new(boxes.iter().flat_map(|b| [b[2], b[3]])),
-            Self::Deadline { .. } => Box::new(std::iter::empty()),
-        }
-    }
-}
-
 impl Panel {
     /// A panel of lines of the usual height.
     pub fn lines(title: impl Into<String>, unit: Unit, marks: Vec<Mark>) -> Self {
@@ -113,7 +57,7 @@ impl Panel {
             .margin_top(HEAD * FINE)
             .margin_right(RIGHT * FINE)
             .set_label_area_size(LabelAreaPosition::Left, LEFT * FINE);
-        builder.set_label_area_size(LabelAreaPosition::Bottom, if last { 50 } else { GAP } * FINE);
+        builder.set_label_area_size(LabelAreaPosition::Bottom, if last { 42 } else { GAP } * FINE);
         let (low, high) = match &self.axis {
             VerticalAxis::Rows(rows) => (0.0, rows.len() as f64),
             _ => axis_range(self.marks.iter().flat_map(Mark::values).map(|value| value * self.unit.factor)),
@@ -121,12 +65,10 @@ impl Panel {
         if self.axis == VerticalAxis::Counts {
             let top = high.max(10.0) * 1.5;
             let mut chart = builder.build_cartesian_2d(horizontal.0..horizontal.1, (0.5..top).log_scale())?;
-            self.draw_mesh(&mut chart, figure, last, &|count| power_of_ten(*count))?;
-            self.draw_marks(&mut chart, figure, horizontal, (0.5, top))
+            self.draw_inside(&mut chart, figure, (0.5, top), last, &|count| power_of_ten(*count))
         } else {
             let mut chart = builder.build_cartesian_2d(horizontal.0..horizontal.1, low..high)?;
-            self.draw_mesh(&mut chart, figure, last, &|value| tick_label(*value, high - low))?;
-            self.draw_marks(&mut chart, figure, horizontal, (low, high))?;
+            self.draw_inside(&mut chart, figure, (low, high), last, &|value| tick_label(*value, high - low))?;
             self.draw_row_names(area)
         }
     }
@@ -160,16 +102,31 @@ impl Panel {
         Ok(())
     }
 
-    fn draw_mesh<Y: Ranged<ValueType = f64>>(
+    /// Bands below the grid, everything else above it.
+    fn draw_inside<Y: VerticalScale>(
+        &self,
+        chart: &mut Chart<'_, '_, Y>,
+        figure: &Figure,
+        vertical: (f64, f64),
+        last: bool,
+        vertical_label: &dyn Fn(&f64) -> String,
+    ) -> Drawn {
+        let is_band = |mark: &&Mark| matches!(mark, Mark::Band { .. });
+        self.marks.iter().filter(is_band).try_for_each(|mark| self.draw_mark(mark, chart, figure, vertical))?;
+        self.draw_mesh(chart, figure, last, vertical_label)?;
+        self.marks
+            .iter()
+            .filter(|mark| !is_band(mark))
+            .try_for_each(|mark| self.draw_mark(mark, chart, figure, vertical))
+    }
+
+    fn draw_mesh<Y: VerticalScale>(
         &self,
         chart: &mut Chart<'_, '_, Y>,
         figure: &Figure,
         last: bool,
         vertical_label: &dyn Fn(&f64) -> String,
-    ) -> Drawn
-    where
-        Y: plotters::coord::ranged1d::ValueFormatter<f64>,
-    {
+    ) -> Drawn {
         let span = (figure.range.1 - figure.range.0) * figure.unit.factor;
         let horizontal_label = |value: &f64| if last { tick_label(*value, span) } else { String::new() };
         let fine = FINE as u32;
@@ -195,37 +152,37 @@ impl Panel {
         Ok(())
     }
 
-    fn draw_marks<Y: Ranged<ValueType = f64>>(
+    fn draw_mark<Y: VerticalScale>(
         &self,
+        mark: &Mark,
         chart: &mut Chart<'_, '_, Y>,
         figure: &Figure,
-        horizontal: (f64, f64),
         vertical: (f64, f64),
     ) -> Drawn {
         let (across, up) = (figure.unit.factor, self.unit.factor);
+        let horizontal = (figure.range.0 * across, figure.range.1 * across);
         let columns = (WIDTH - LEFT - RIGHT) as usize;
         let clip = |value: f64| value.clamp(vertical.0, vertical.1);
-        for mark in &self.marks {
-            match mark {
-                Mark::Line { points, ink, width, .. } => {
-                    let scaled: Vec<_> = points.iter().map(|(x, y)| (x * across, y * up)).collect();
-                    for stretch in thin(&scaled, horizontal, columns) {
-                        let style = ink.colour().stroke_width((width * f64::from(FINE)) as u32);
-                        chart.draw_series(LineSeries::new(stretch.into_iter().map(|(x, y)| (x, clip(y))), style))?;
-                    }
+        let filled = mark.label().1.colour().filled();
+        match mark {
+            Mark::Line { points, ink, width, .. } => {
+                let style = ink.colour().stroke_width((width * f64::from(FINE)) as u32);
+                let scaled: Vec<_> = points.iter().map(|(x, y)| (x * across, y * up)).collect();
+                for stretch in thin(&scaled, horizontal, columns) {
+                    chart.draw_series(LineSeries::new(stretch.into_iter().map(|(x, y)| (x, clip(y))), style))?;
                 }
-                Mark::Band { range, .. } => {
-                    let corners = [(horizontal.0, clip(range.0 * up)), (horizontal.1, clip(range.1 * up))];
-                    chart.draw_series([Rectangle::new(corners, Ink::Band.colour().filled())])?;
-                }
-                Mark::Deadline { at, .. } => {
-                    let ends = [(at * across, vertical.0), (at * across, vertical.1)];
-                    chart.draw_series(LineSeries::new(ends, Ink::Limit.colour().stroke_width(2 * FINE as u32)))?;
-                }
-                Mark::Boxes { boxes, ink, .. } => {
-                    let corners = |b: &[f64; 4]| [(b[0] * across, clip(b[2] * up)), (b[1] * across, clip(b[3] * up))];
-                    chart.draw_series(boxes.iter().map(|b| Rectangle::new(corners(b), ink.colour().filled())))?;
-                }
+            }
+            Mark::Band { range, .. } => {
+                let corners = [(horizontal.0, clip(range.0 * up)), (horizontal.1, clip(range.1 * up))];
+                chart.draw_series([Rectangle::new(corners, filled)])?;
+            }
+            Mark::Deadline { at, .. } => {
+                let ends = [(at * across, vertical.0), (at * across, vertical.1)];
+                chart.draw_series(LineSeries::new(ends, Ink::Limit.colour().stroke_width(2 * FINE as u32)))?;
+            }
+            Mark::Boxes { boxes, .. } => {
+                let corners = |b: &[f64; 4]| [(b[0] * across, clip(b[2] * up)), (b[1] * across, clip(b[3] * up))];
+                chart.draw_series(boxes.iter().map(|b| Rectangle::new(corners(b), filled)))?;
             }
         }
         Ok(())
@@ -243,8 +200,12 @@ impl Panel {
     }
 }
 
+/// A vertical axis that can be labelled, linear or logarithmic.
+trait VerticalScale: Ranged<ValueType = f64> + ValueFormatter<f64> {}
+impl<Y: Ranged<ValueType = f64> + ValueFormatter<f64>> VerticalScale for Y {}
+
 /// A chart over a plain horizontal axis.
-type Chart<'a, 'b, Y> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<plotters::coord::types::RangedCoordf64, Y>>;
+type Chart<'a, 'b, Y> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, Y>>;
 
 /// Labels at 1, 10, 100 ...; the grid lines between stay bare.
 fn power_of_ten(count: f64) -> String {

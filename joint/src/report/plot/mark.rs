@@ -1,0 +1,63 @@
+//! What can be drawn in a panel: lines, bands, limits and boxes, with their legend entries. Values are SI; scaling and
+//! drawing are the panel's.
+
+use super::ink::Ink;
+
+/// Something drawn in a panel.
+pub enum Mark {
+    /// A line through points.
+    Line {
+        /// Points, SI.
+        points: Vec<(f64, f64)>,
+        /// Colour.
+        ink: Ink,
+        /// Entry in the legend; empty for none.
+        label: String,
+        /// Width [px].
+        width: f64,
+    },
+    /// A horizontal band.
+    Band {
+        /// Lower and upper end, SI.
+        range: (f64, f64),
+        /// Entry in the legend.
+        label: String,
+    },
+    /// A vertical limit.
+    Deadline {
+        /// Where on the common axis, SI.
+        at: f64,
+        /// Entry in the legend.
+        label: String,
+    },
+    /// Filled rectangles: left, right, bottom, top.
+    Boxes {
+        /// The rectangles, SI.
+        boxes: Vec<[f64; 4]>,
+        /// Colour.
+        ink: Ink,
+        /// Entry in the legend.
+        label: String,
+    },
+}
+
+impl Mark {
+    /// Legend entry.
+    pub fn label(&self) -> (&str, Ink) {
+        match self {
+            Self::Line { label, ink, .. } | Self::Boxes { label, ink, .. } => (label, *ink),
+            Self::Band { label, .. } => (label, Ink::Band),
+            Self::Deadline { label, .. } => (label, Ink::Limit),
+        }
+    }
+
+    /// Vertical extent.
+    pub fn values(&self) -> Box<dyn Iterator<Item = f64> + '_> {
+        match self {
+            Self::Line { points, .. } => Box::new(points.iter().map(|point| point.1)),
+            Self::Band { range, .. } => Box::new([range.0, range.1].into_iter()),
+            Self::Boxes { boxes, .. } => Box::new(boxes.iter().flat_map(|b| [b[2], b[3]])),
+            Self::Deadline { .. } => Box::new(std::iter::empty()),
+        }
+    }
+}

@@ -28,6 +28,8 @@ pub use source::rust_source;
 const GOOD_PHASE: f64 = 0.4;
 /// More sub-steps than this are spent on stability only.
 const USUAL_SUBSTEPS: f64 = 4.0;
+/// Phase of a prescribed mesh frequency that a sub-step may have: some twenty evaluations a mesh period [rad].
+const EXCITATION_PHASE: f64 = 0.3;
 /// Phase of the fastest mode that a sub-step may have at most; the Runge-Kutta method is stable to 2.8 [rad].
 const LARGEST_PHASE: f64 = 1.5;
 /// Most sub-steps a tick.
@@ -90,7 +92,7 @@ pub fn design_scheme<T: Real, const N: usize>(
     Ok(tables)
 }
 
-/// Sub-steps a tick, from the fastest mode of the closed joint at its stiffest.
+/// Sub-steps a tick, from the fastest mode of the closed joint at its stiffest and a prescribed mesh frequency.
 fn substeps(parameters: &JointParameters, tick_rate: u32) -> Result<u32, DesignError> {
     let fastest = modes::natural_frequencies(parameters).last().copied().unwrap_or(0.0);
     let stiffest = MESH_KINDS
@@ -102,9 +104,16 @@ fn substeps(parameters: &JointParameters, tick_rate: u32) -> Result<u32, DesignE
         .fold(0.0, f64::max);
     let frequency = fastest * libm::sqrt(1.0 + stiffest);
     let phase = frequency / f64::from(tick_rate.max(1));
-    let wanted = libm::ceil(phase / GOOD_PHASE).min(USUAL_SUBSTEPS).max(libm::ceil(phase / LARGEST_PHASE)).max(1.0);
+    // In `angle` mode the joint's speed sets the mesh frequency, far below its modes.
+    let excitation = match parameters.excitation {
+        joint::Excitation::Time { mesh_frequency } => mesh_frequency / f64::from(tick_rate.max(1)),
+        joint::Excitation::Angle => 0.0,
+    };
+    let accurate = libm::ceil(phase / GOOD_PHASE).min(USUAL_SUBSTEPS).max(libm::ceil(excitation / EXCITATION_PHASE));
+    let wanted = accurate.max(libm::ceil(phase / LARGEST_PHASE)).max(1.0);
     if tick_rate == 0 || wanted > MOST_SUBSTEPS {
-        let lowest = libm::ceil(frequency / (LARGEST_PHASE * MOST_SUBSTEPS)) as u32;
+        let excited = excitation * f64::from(tick_rate.max(1)) / EXCITATION_PHASE;
+        let lowest = libm::ceil(excited.max(frequency / LARGEST_PHASE) / MOST_SUBSTEPS) as u32;
         return Err(DesignError::RateTooLow { given: tick_rate, lowest });
     }
     Ok(wanted as u32)

@@ -159,6 +159,8 @@ pub struct Flow<T: Real> {
     pub whole_constant: Inputs<T>,
     /// Largest mesh speed over clearance at a node for which no crossing hides between nodes: a quarter step.
     pub reach: T,
+    /// Mesh periods over the step, in 2^-32, up to which the excitation counts as quadratic in time.
+    pub longest_way: T,
 }
 
 /// exp(H h) - I in both subspaces, and the response to torques constant over the step.
@@ -263,6 +265,6 @@ impl Digest {
             self.block(&inputs.in_phase);
             self.reals(&inputs.deviation);
         }
-        self.reals(&[flow.reach]);
+        self.reals(&[flow.reach, flow.longest_way]);
     }
 }

@@ -10,6 +10,9 @@ use crate::design::hamiltonian;
 use crate::real::Real;
 use crate::tables::{Block, Flow, Inputs, Transition};
 
+/// Mesh periods over a step up to which a parabola follows the excitation: it leaves some 1e-3 of its amplitude.
+const LARGEST_WAY: f64 = 0.06;
+
 /// Tables of the flow over `step` (dimensionless).
 pub fn flow<T: Real>(dynamics: &Dynamics, step: f64) -> Flow<T> {
     let sorting = Sorting::new(dynamics);
@@ -30,6 +33,7 @@ pub fn flow<T: Real>(dynamics: &Dynamics, step: f64) -> Flow<T> {
         whole: sorting.transition(&whole),
         half: sorting.transition(&half),
         reach: T::from_f64(0.25 * step),
+        longest_way: T::from_f64(LARGEST_WAY * 4_294_967_296.0),
     }
 }
 

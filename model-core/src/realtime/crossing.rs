@@ -35,6 +35,15 @@ pub fn correct<T: Real, const N: usize>(
         array::from_fn(|kind| array::from_fn(|i| frozen[kind][i].force(reached[kind][i], &instants[kind][i])));
     let wind_up = wind_up_force(tables, &end.position, &end.rate);
     let accelerations = acceleration(tables, drive, &frozen_forces, wind_up);
+    let spread = kinematic_deflections(&end.rate, &accelerations);
+    let force_rates = array::from_fn(|kind| {
+        array::from_fn(|i| {
+            let law = Law { offset: T::ZERO, ..frozen[kind][i] };
+            law.force(spread[kind][i], &instants[kind][i])
+        })
+    });
+    let jerks = acceleration(tables, &Drive::NONE, &force_rates, wind_up_force(tables, &end.rate, &accelerations));
+    let spread = kinematic_deflections(&accelerations, &jerks);
     // e'' = -rate^2 e for the sine of eq. 11.
     let square = phase_rate * phase_rate;
     let mut missed: [PerMesh<T, N>; 3] = [[[T::ZERO; N]; 2]; 3];
@@ -43,11 +52,10 @@ pub fn correct<T: Real, const N: usize>(
             if held[kind][i] == frozen[kind][i] {
                 continue;
             }
-            let common = accelerations.planets[i];
-            let relative = if kind == 0 { common } else { accelerations.gap - common };
             let mesh = Crossing {
                 deflection: reached[kind][i],
-                acceleration: relative + square * instants[kind][i].error,
+                acceleration: spread[kind][i].value + square * instants[kind][i].error,
+                jerk: spread[kind][i].rate + square * instants[kind][i].error_rate,
                 stiffness: instants[kind][i].stiffness,
                 substep: tables.substep,
             };
@@ -58,6 +66,11 @@ pub fn correct<T: Real, const N: usize>(
         }
     }
     let [rate, position, integral] = missed.map(|force| acceleration(tables, &Drive::NONE, &force, T::ZERO));
+    // Damping feels the rates first, so its share of the position comes before the sum of all.
+    let bent = kinematic_deflections(&position, &integral);
+    let damped = array::from_fn(|kind| array::from_fn(|i| held[kind][i].damping * bent[kind][i].rate));
+    let wind_up_damped = tables.mobility.wind_up_damping * integral.wind_up;
+    let position = position.plus(T::ONE, &acceleration(tables, &Drive::NONE, &damped, wind_up_damped));
     let bent = kinematic_deflections(&integral, &position);
     let bent_forces = array::from_fn(|kind| {
         array::from_fn(|i| {
@@ -73,6 +86,7 @@ pub fn correct<T: Real, const N: usize>(
 struct Crossing<T> {
     deflection: Deflection<T>,
     acceleration: T,
+    jerk: T,
     stiffness: T,
     substep: T,
 }
@@ -117,7 +131,7 @@ impl<T: Real> Crossing<T> {
         Path {
             value: self.stiffness * overlap.value + damping * overlap.rate,
             rate: self.stiffness * overlap.rate + damping * overlap.acceleration,
-            acceleration: self.stiffness * overlap.acceleration,
+            acceleration: self.stiffness * overlap.acceleration + damping * self.jerk,
         }
     }
 }

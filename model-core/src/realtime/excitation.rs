@@ -5,7 +5,7 @@ use core::array;
 
 use crate::real::Real;
 use crate::realtime::phase::sine_cosine;
-use crate::tables::{MeshTable, Tables};
+use crate::tables::{Excitation, MeshTable, Tables};
 
 /// One mesh at one instant, dimensionless.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,6 +37,17 @@ impl<T: Real> MeshPhase<T> {
     #[inline]
     pub fn step(&self, part: T) -> u32 {
         (self.way * part).to_i64() as u32
+    }
+}
+
+/// Mesh periods, in 2^-32, over a tick in which the rigid body goes `way` (2^-64 turns).
+#[inline]
+pub fn mesh_way<T: Real>(excitation: &Excitation<T>, way: i64) -> T {
+    if excitation.periods_per_turn == 0 {
+        excitation.phase_way
+    } else {
+        // 2^31 turns times the teeth of any ring stays inside 64 bits.
+        T::from_i64((way >> 32) * i64::from(excitation.periods_per_turn))
     }
 }
 

@@ -5,7 +5,7 @@ use core::array;
 
 use crate::mesh::ContactState;
 use crate::real::Real;
-use crate::realtime::excitation::{Instants, MeshPhase, instants};
+use crate::realtime::excitation::{Instants, MeshPhase, instants, mesh_way};
 use crate::realtime::flow;
 use crate::realtime::mesh_force::{Drive, PerMesh, contact, deflections};
 use crate::realtime::state::State;
@@ -138,13 +138,7 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
     /// Mesh phase over a tick in which the rigid body goes `way`.
     fn mesh_phase(&self, start: u64, way: i64) -> MeshPhase<T> {
         let excitation = &self.tables.excitation;
-        let periods = excitation.periods_per_turn;
-        let way = if periods == 0 {
-            excitation.phase_way
-        } else {
-            // 2^-32 turns times at most a few hundred teeth stays far inside 64 bits.
-            T::from_i64((way >> 32) * i64::from(periods))
-        };
+        let way = mesh_way(excitation, way);
         MeshPhase { start: (start >> 32) as u32, way, rate: excitation.rate * way }
     }
 }
@@ -158,7 +152,8 @@ fn realtime<T: Real, const N: usize>(
 ) -> Motion<T, N> {
     let at = |part: T| instants(tables, phase.start.wrapping_add(phase.step(part)), phase.rate);
     let mut start = at(T::ZERO);
-    if let Some(end) = flow::hold(tables, drive, [&start, &at(T::HALF), &at(T::ONE)], &motion) {
+    let slow = phase.way < tables.flow.longest_way && -phase.way < tables.flow.longest_way;
+    if slow && let Some(end) = flow::hold(tables, drive, [&start, &at(T::HALF), &at(T::ONE)], &motion) {
         return end;
     }
     let half = phase.step(tables.half_part);

@@ -5,6 +5,7 @@ use core::array;
 
 use crate::digest::{self, chain};
 use crate::real::Real;
+use crate::realtime::excitation::mesh_way;
 use crate::tables::{Rigid, Tables};
 
 /// Relative coordinates, or their rates or accelerations, in units of b_c.
@@ -96,11 +97,19 @@ impl<T: Real, const N: usize> State<T, N> {
     /// At rest, undeformed, at angle and phase zero.
     pub const REST: Self = Self { position: Relative::ZERO, rate: Relative::ZERO, rigid: RigidBody::REST, phase: 0 };
 
-    /// A state with given mesh deflections and rates (eq. 16: sun-planet deflections, and the gap u_s - 2 u_c), in
-    /// units of b_c and b_c omega_n, at phase zero. For tests and scenarios; the imposed errors are added here.
-    pub fn from_deflections(tables: &Tables<T, N>, deflections: &Relative<T, N>, rates: &Relative<T, N>) -> Self {
-        let mut state = Self { position: *deflections, rate: *rates, ..Self::REST };
-        let phase_rate = tables.excitation.phase_way * tables.excitation.rate;
+    /// A state with given mesh deflections and rates (eqs 16 and 17: sun-planet deflections, and the gap u_s - 2 u_c),
+    /// in units of b_c and b_c omega_n, and a carrier speed [rad/s], at angle and phase zero. For tests and scenarios;
+    /// the imposed errors are added here.
+    pub fn from_deflections(
+        tables: &Tables<T, N>,
+        deflections: &Relative<T, N>,
+        rates: &Relative<T, N>,
+        carrier_speed: T,
+    ) -> Self {
+        let speed = carrier_speed.over(tables.units.carrier_speed).to_i64();
+        let rigid = RigidBody { speed, ..RigidBody::REST };
+        let mut state = Self { position: *deflections, rate: *rates, rigid, phase: 0 };
+        let phase_rate = tables.excitation.rate * mesh_way(&tables.excitation, speed);
         for (i, mesh) in tables.meshes[0].iter().enumerate() {
             state.position.planets[i] += mesh.error[1];
             state.rate.planets[i] += mesh.error[0] * phase_rate;

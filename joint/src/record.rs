@@ -3,6 +3,8 @@
 
 mod checks;
 mod samples;
+#[cfg(test)]
+mod schema;
 mod timing;
 mod write;
 
@@ -18,6 +20,7 @@ pub const SCHEMA_VERSION: u32 = 1;
 
 /// One run, complete or not.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct RunRecord {
     /// [`SCHEMA_VERSION`] of the writer.
     pub schema_version: u32,
@@ -49,6 +52,7 @@ pub struct RunRecord {
 
 /// Who ran and what.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Identity {
     /// Name of the joint.
     pub joint: String,
@@ -86,6 +90,7 @@ pub struct Identity {
 
 /// The firmware image.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Image {
     /// File name of the ELF.
     pub file: String,
@@ -103,6 +108,7 @@ pub struct Image {
 
 /// Figures of the joint that the plots need.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct JointFigures {
     /// Number of planets n.
     pub planets: usize,
@@ -118,6 +124,7 @@ pub struct JointFigures {
 
 /// How it ran.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Settings {
     /// `lockstep` or `realtime`.
     pub mode: String,
@@ -140,6 +147,7 @@ pub struct Settings {
 
 /// Whether a run came to its end.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(tag = "state", rename_all = "snake_case")]
 pub enum Completeness {
     /// To its end.
@@ -155,6 +163,7 @@ pub enum Completeness {
 
 /// Torques from a tick on.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct TorqueCommand {
     /// First tick whose step uses these torques.
     pub tick: u32,
@@ -168,6 +177,7 @@ pub struct TorqueCommand {
 
 /// A fault that the board reported.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct FaultEntry {
     /// Its tick, where it has one.
     pub tick: Option<u32>,
@@ -179,6 +189,7 @@ pub struct FaultEntry {
 
 /// A decoded log line.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct LogLine {
     /// The board's own time stamp, as printed.
     pub timestamp: String,

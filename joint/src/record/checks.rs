@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// One line of the table of checks.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Check {
     /// What was checked, as a sentence or noun phrase.
     pub name: String,
@@ -23,6 +24,7 @@ pub struct Check {
 
 /// What a figure must keep to.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Bound {
     /// figure <= bound
@@ -37,6 +39,7 @@ pub enum Bound {
 
 /// What came of a check.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// Within its bound.
@@ -51,6 +54,7 @@ pub enum Verdict {
 
 /// Where a figure comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Source {
     /// Measured by the board; marked EMULATED when the board was.

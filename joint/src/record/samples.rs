@@ -7,42 +7,53 @@ use link::messages::Sample;
 
 /// Sampled motion; all columns are of one length. Values that are not finite are `null` in JSON.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Samples {
     /// Steps done since the reset.
     pub tick: Vec<u32>,
     /// Board time [s].
     #[serde(deserialize_with = "null_is_nan")]
+    #[cfg_attr(test, schemars(with = "Vec<Option<f64>>"))]
     pub time_s: Vec<f64>,
     /// Motor (sun) angle [rad].
     #[serde(deserialize_with = "null_is_nan")]
+    #[cfg_attr(test, schemars(with = "Vec<Option<f64>>"))]
     pub motor_angle_rad: Vec<f64>,
     /// Link angle [rad].
     #[serde(deserialize_with = "null_is_nan")]
+    #[cfg_attr(test, schemars(with = "Vec<Option<f64>>"))]
     pub link_angle_rad: Vec<f64>,
     /// Motor angle over the ratio, less the link angle, from the small remainders, so nothing cancels [rad].
     #[serde(deserialize_with = "null_is_nan")]
+    #[cfg_attr(test, schemars(with = "Vec<Option<f64>>"))]
     pub twist_rad: Vec<f64>,
     /// Rate of the rigid-body carrier angle [rad/s].
     #[serde(rename = "carrier_speed_rad_per_s", deserialize_with = "null_is_nan")]
+    #[cfg_attr(test, schemars(with = "Vec<Option<f32>>"))]
     pub carrier_speed: Vec<f32>,
     /// Gap coordinate along the line of action [m].
     #[serde(deserialize_with = "null_is_nan")]
+    #[cfg_attr(test, schemars(with = "Vec<Option<f32>>"))]
     pub gap_m: Vec<f32>,
     /// Wind-up between carrier and link along the line of action [m].
     #[serde(deserialize_with = "null_is_nan")]
+    #[cfg_attr(test, schemars(with = "Vec<Option<f32>>"))]
     pub wind_up_m: Vec<f32>,
     /// Mesh deflections [m], one column a mesh: sun-planet of every planet, then ring-planet.
     #[serde(deserialize_with = "columns_null_is_nan")]
+    #[cfg_attr(test, schemars(with = "Vec<Vec<Option<f32>>>"))]
     pub deflection_m: Vec<Vec<f32>>,
     /// Contact states in the same order.
     pub contact: Vec<Vec<Contact>>,
     /// Computation time of the step [s]; empty for a reference.
     #[serde(deserialize_with = "null_is_nan")]
+    #[cfg_attr(test, schemars(with = "Vec<Option<f64>>"))]
     pub computation_s: Vec<f64>,
 }
 
 /// Which flank of a mesh carries.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(into = "u8", try_from = "u8")]
 pub enum Contact {
     /// Neither: 0.
@@ -80,6 +91,7 @@ pub struct MotionSample {
 
 /// A stretch of the run at every tick, which the line is too slow to carry.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct CloseUp {
     /// Who computed it and why it may be trusted, such as "host twin, equal to the board bit for bit".
     pub method: String,
@@ -89,6 +101,7 @@ pub struct CloseUp {
 
 /// The f64 reference for the same torques.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Reference {
     /// What computed it, and how tightly.
     pub method: String,
@@ -100,6 +113,7 @@ pub struct Reference {
 
 /// Distance of one quantity from the reference, against the quantity's own spread.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ErrorSeries {
     /// Which quantity, such as `gap`.
     pub quantity: String,
@@ -107,6 +121,7 @@ pub struct ErrorSeries {
     pub time_s: Vec<f64>,
     /// Board less reference, over the standard deviation of the reference [%].
     #[serde(deserialize_with = "null_is_nan")]
+    #[cfg_attr(test, schemars(with = "Vec<Option<f64>>"))]
     pub error_percent: Vec<f64>,
     /// Bound on its root mean square [%].
     pub bound_percent: f64,

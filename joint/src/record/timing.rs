@@ -7,6 +7,7 @@ use link::messages::{Statistics, Timing};
 
 /// The board's timing monitor.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct TimingFigures {
     /// Timer counts a second, which the raw counts were divided by [Hz].
     #[serde(rename = "timer_rate_Hz")]
@@ -33,6 +34,7 @@ pub struct TimingFigures {
 
 /// Least, mean and greatest [s].
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct MinMeanMax {
     /// Least [s].
     pub min_s: f64,
@@ -44,6 +46,7 @@ pub struct MinMeanMax {
 
 /// One bin of the histogram.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct HistogramBin {
     /// Lower end [s].
     pub from_s: f64,
@@ -53,6 +56,7 @@ pub struct HistogramBin {
 
 /// Counts since the last clearing.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Counters {
     /// Ticks that ended after the next was due.
     pub overruns: u32,

@@ -5,3 +5,4 @@
 pub mod integrator;
 pub mod reference;
 pub mod scenarios;
+pub mod tolerance;

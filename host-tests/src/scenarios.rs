@@ -6,7 +6,7 @@ mod joints;
 mod motions;
 
 pub use cases::{CASE_A_OMEGA, CASE_Q_OMEGA, case, poincare_point, regime};
-pub use joints::{PAPER_LENGTH, paper_joint, paper_natural_frequency, q1, same};
+pub use joints::{PAPER_LENGTH, l1, paper_joint, paper_natural_frequency, q1, same};
 use model_core::joint::JointParameters;
 pub use motions::motions;
 
@@ -28,7 +28,7 @@ pub struct TorqueSegment {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scenario {
     /// For reports.
-    pub name: &'static str,
+    pub name: String,
     /// The joint.
     pub joint: JointParameters,
     /// Its state at tick 0.
@@ -41,6 +41,9 @@ pub struct Scenario {
     pub ticks: u64,
     /// Ticks between two samples of `run`.
     pub sample_every: u64,
+    /// Whether single mesh deflections can be compared at all: false where a vanishing change of the start grows to a
+    /// visible part of the motion (chaos, or rattling planets).
+    pub predictable: bool,
 }
 
 /// What the reference did.

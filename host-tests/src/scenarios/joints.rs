@@ -108,3 +108,31 @@ pub fn q1() -> JointParameters {
         rated_output_torque: 15.0,
     }
 }
+
+/// L1, a large stiff joint near the paper's with coherent geometry: 27/36/99 teeth, the paper's masses, a rotor of 2.0e-3
+/// and a link of 0.60 kg m^2 without compliance, b = 60 um, law `contact`, excited by its own angle, no ripple and no
+/// error of its own.
+pub fn l1() -> JointParameters {
+    let pressure_angle = 24.6_f64.to_radians();
+    JointParameters {
+        name: "l1".try_into().expect("a short name"),
+        geometry: Geometry {
+            planets: 3,
+            sun_teeth: 27,
+            planet_teeth: 36,
+            ring_teeth: 99,
+            working_pressure_angle: pressure_angle,
+            sun_base_radius: 38.7e-3,
+            planet_base_radius: 51.6e-3,
+            carrier_radius: 90.3e-3 / pressure_angle.cos(),
+            coherence: Coherence::Required,
+        },
+        rotor_inertia: 2.0e-3,
+        link_inertia: 0.60,
+        sun_planet: mesh(3, 0.05, 0.0, 60e-6, 0.0),
+        ring_planet: mesh(3, 0.05, 0.0, 60e-6, 0.0),
+        damping_law: DampingLaw::Contact,
+        excitation: Excitation::Angle,
+        ..paper_joint(0.0, 0.0, 0.0, 0.0)
+    }
+}

@@ -74,3 +74,19 @@ fn failure(path: &Path, source: &io::Error) -> Failure {
     };
     Failure::new(format!("cannot write {}: {source}", path.display())).with_help(help)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn a_full_disk_is_named_and_so_is_the_mend() {
+        // A short text stays in the buffer: the failure comes only when it is flushed.
+        let full = File::options().write(true).open("/dev/full").expect("Linux has a device that is always full");
+        let source = fill_whole(full, |file| file.write_all(b"{}")).expect_err("it is full");
+        let failure = failure(Path::new("out/run.json"), &source);
+        assert!(failure.message().contains("out/run.json"), "{failure}");
+        assert!(failure.help().is_some_and(|help| help.contains("free some space")), "{failure}");
+    }
+}

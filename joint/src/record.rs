@@ -2,6 +2,7 @@
 //! say. How it is drawn is `report`'s business; where the figures come from is the session's.
 
 mod checks;
+mod sample;
 mod samples;
 #[cfg(test)]
 mod schema;
@@ -9,7 +10,8 @@ mod timing;
 mod write;
 
 pub use checks::{Bound, Check, Source, Verdict};
-pub use samples::{CloseUp, Contact, ErrorSeries, MotionSample, Reference, Samples};
+pub use sample::MotionSample;
+pub use samples::{CloseUp, Contact, ErrorSeries, Reference, Samples};
 pub use timing::{Counters, HistogramBin, MinMeanMax, TimingFigures};
 pub use write::write_text;
 

@@ -26,6 +26,8 @@ pub struct MotionSample {
     pub deflections: Vec<f32>,
     /// Contact states in the same order.
     pub contacts: Vec<Contact>,
+    /// Running digest over the whole state, where there is one.
+    pub state_digest: Option<u64>,
     /// Computation time [s], on a board.
     pub computation: Option<f64>,
 }
@@ -44,6 +46,7 @@ impl MotionSample {
             wind_up: sample.wind_up,
             deflections: sample.deflections.to_vec(),
             contacts: (0..sample.deflections.len()).map(|mesh| Contact::from_bits(sample.contacts, mesh)).collect(),
+            state_digest: Some(sample.state_digest),
             computation: Some(f64::from(sample.computation) / f64::from(timer_rate)),
         }
     }
@@ -57,7 +60,7 @@ mod tests {
     fn board_sample() -> Sample {
         Sample {
             tick: 40,
-            state_digest: 0,
+            state_digest: 0xab,
             carrier_turns: -2,
             carrier_fraction: 1 << 30,
             carrier_speed: 1.5,
@@ -80,6 +83,7 @@ mod tests {
         assert!((samples.motor_angle_rad[0] - (6.0 * carrier + 6e-3)).abs() < 1e-9);
         assert!((samples.link_angle_rad[0] - (carrier - 1e-3)).abs() < 1e-9);
         assert!((samples.twist_rad[0] - 2e-3).abs() < 1e-9);
+        assert_eq!(samples.state_digest, ["00000000000000ab"]);
         assert_eq!(samples.computation_s, [1e-5]);
         assert_eq!(samples.deflection_m[3], [4e-5]);
         let states: Vec<Contact> = samples.contact.iter().map(|column| column[0]).collect();

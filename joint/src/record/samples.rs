@@ -45,6 +45,8 @@ pub struct Samples {
     pub deflection_m: Vec<Vec<f32>>,
     /// Contact states in the same order.
     pub contact: Vec<Vec<Contact>>,
+    /// Running digest over the whole state after every step so far, 16 hexadecimal digits; empty for a reference.
+    pub state_digest: Vec<String>,
     /// Computation time of the step [s]; empty for a reference.
     #[serde(deserialize_with = "null_is_nan")]
     #[cfg_attr(test, schemars(with = "Vec<Option<f64>>"))]
@@ -123,6 +125,9 @@ impl Samples {
         }
         for (mesh, column) in self.contact.iter_mut().enumerate() {
             column.push(sample.contacts.get(mesh).copied().unwrap_or(Contact::Separated));
+        }
+        if let Some(digest) = sample.state_digest {
+            self.state_digest.push(format!("{digest:016x}"));
         }
         if let Some(computation) = sample.computation {
             self.computation_s.push(computation);

@@ -74,6 +74,8 @@ pub struct Counters {
     pub bad_frames_host: u32,
     /// Sample batches that never reached the host, by sequence number.
     pub lost_batches_host: u32,
+    /// Log frames that never reached the host, by sequence number.
+    pub lost_logs_host: u32,
     /// Received bytes that the board dropped because a buffer was full.
     pub lost_bytes: u32,
     /// Samples that the board dropped because a buffer was full.
@@ -107,6 +109,7 @@ impl TimingFigures {
                 bad_frames_board: raw.bad_frames,
                 bad_frames_host: 0,
                 lost_batches_host: 0,
+                lost_logs_host: 0,
                 lost_bytes: raw.lost_bytes,
                 lost_samples: raw.lost_samples,
                 lost_log_bytes: raw.lost_log_bytes,

@@ -49,6 +49,7 @@ pub fn counts(timing: &TimingFigures) -> Vec<(&'static str, u32, bool, &'static 
         ("Lowest queue", counters.queue_low, false, "fewest commands waiting while running"),
         ("Lost schedules", counters.lost_schedules, true, "missing by sequence number, at the board"),
         ("Lost batches", counters.lost_batches_host, true, "of samples, missing by sequence number, at the host"),
+        ("Lost log frames", counters.lost_logs_host, true, "missing by sequence number, at the host"),
         ("Bad frames, board", counters.bad_frames_board, true, "dropped for checksum, length or content"),
         ("Bad frames, host", counters.bad_frames_host, true, "dropped for checksum, length or content"),
         ("Lost bytes", counters.lost_bytes, true, "received by the board into a full buffer"),

@@ -160,24 +160,29 @@ impl View<'_> {
     }
 }
 
+/// Quantities in one panel of errors: more could not be told apart, nor named beside its title.
+const ERRORS_IN_A_PANEL: usize = 3;
+
 /// Distance of every compared quantity from the reference, with the bound on its root mean square where it is near.
 pub fn errors(record: &RunRecord) -> Option<Figure> {
     let series = &record.reference.as_ref()?.errors;
-    let first = series.first()?;
+    let panels: Vec<Panel> = series.chunks(ERRORS_IN_A_PANEL).map(error_panel).collect();
+    (!panels.is_empty()).then(|| whole(record).figure("Error against the reference", panels))
+}
+
+fn error_panel(series: &[ErrorSeries]) -> Panel {
     let mut marks = Vec::new();
     let most = greatest(series.iter().flat_map(|one| one.error_percent.iter().copied()));
-    if first.bound_percent < 3.0 * most {
-        let bound = first.bound_percent;
-        marks.push(Mark::Band { range: (-bound, bound), label: format!("bound on RMS: {} %", figure(bound)) });
+    let bound = series.iter().map(|one| one.bound_percent).fold(f64::INFINITY, f64::min);
+    if bound < 3.0 * most {
+        marks.push(Mark::Band { range: (-bound, bound), label: format!("RMS bound {} %", figure(bound)) });
     }
     for (one, ink) in series.iter().zip(LINES) {
         let points = one.time_s.iter().copied().zip(one.error_percent.iter().copied()).collect();
         let label = format!("{}, RMS {} %", one.quantity, figure(root_mean_square(one)));
         marks.push(Mark::Line { points, ink, label, width: LINE });
     }
-    let panel = Panel::lines("Board less reference, over the standard deviation of the reference", PERCENT, marks);
-    let view = whole(record);
-    Some(view.figure("Error against the reference", vec![Panel { height: 220, ..panel }]))
+    Panel::lines("Error against the reference", PERCENT, marks)
 }
 
 /// Root mean square of the finite values [%].

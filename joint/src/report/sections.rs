@@ -140,7 +140,8 @@ pub fn motion(record: &RunRecord) -> Markup {
             }))
             @if let Some(errors) = motion::errors(record) {
                 (picture(record, &errors, html! {
-                    @if let Some(reference) = &record.reference { "Reference: " (reference.method) "." }
+                    "Board less reference, over the standard deviation of the reference"
+                    @if let Some(reference) = &record.reference { " (" (reference.method) ")" } "."
                 }))
             }
         }

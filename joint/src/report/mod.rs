@@ -3,6 +3,7 @@
 mod close_up;
 mod contacts;
 mod motion;
+mod origin;
 mod page;
 mod plot;
 mod sections;

@@ -1,10 +1,11 @@
-//! The page: head, verdict, notices and the order of the sections. What stands in a section is in `sections`.
+//! The page: head, verdict, notices and the order of the sections. What stands in a section is in
+//! `sections` and `origin`.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::plot::ink;
 use super::plot::unit::figure as number;
-use super::sections;
+use super::{origin, sections};
 use crate::record::{Completeness, RunRecord, Verdict};
 
 const STYLE: &str = include_str!("style.css");
@@ -30,8 +31,8 @@ pub fn render(record: &RunRecord) -> Markup {
                     (sections::checks(record))
                     (sections::motion(record))
                     (sections::timing(record))
-                    (sections::identity(record))
-                    (sections::log(record))
+                    (origin::identity(record))
+                    (origin::log(record))
                     footer {
                         "joint " (identity.host_version) " · schema version " (record.schema_version)
                         " · every value of this page is in the JSON file of the same run"

@@ -5,7 +5,7 @@ mod synthetic;
 use std::fs;
 use std::path::Path;
 
-use joint::record::{Bound, Check, Completeness, Contact, RunRecord, Source, Verdict};
+use joint::record::{Bound, Check, Completeness, Contact, ErrorSeries, RunRecord, Source, Verdict};
 use joint::report::{picture, render, write};
 
 /// Leaves a report where a person can look at it.
@@ -218,6 +218,17 @@ fn a_document_gets_a_small_picture_of_its_own() {
     keep_for_looking("joint.svg", &svg);
     assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>") && svg.contains("<style>"));
     assert!(svg.len() < 150_000, "{} bytes", svg.len());
+}
+
+#[test]
+fn every_compared_quantity_is_drawn() {
+    let mut record = synthetic::record();
+    let errors = &mut record.reference.as_mut().expect("the made-up run has one").errors;
+    let one = errors[0].clone();
+    errors.extend((2..=7).map(|number| ErrorSeries { quantity: format!("quantity {number}"), ..one.clone() }));
+    let page = render(&record);
+    keep_for_looking("errors.html", &page);
+    (2..=7).for_each(|number| assert!(page.contains(&format!("quantity {number}, RMS 0.0202 %"))));
 }
 
 #[test]

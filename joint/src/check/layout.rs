@@ -1,0 +1,184 @@
+//! The figures of a joint as text for a person: one line each, in the units that data sheets use. Colours are left out,
+//! so that a terminal, a file and a log show the same.
+
+use std::fmt::{Display, Write};
+
+use super::figures::{Figures, MeshFigures};
+
+/// Width of the column of names.
+const NAMES: usize = 30;
+
+/// Lines under headings.
+struct Page(String);
+
+impl Page {
+    fn heading(&mut self, text: &str) {
+        self.0.push('\n');
+        self.line(text);
+    }
+
+    fn row(&mut self, name: &str, value: impl Display) {
+        self.line(&format!("  {name:NAMES$}{value}"));
+    }
+
+    fn line(&mut self, text: &str) {
+        self.0.push_str(text.trim_end());
+        self.0.push('\n');
+    }
+}
+
+/// The whole page.
+pub fn layout(figures: &Figures) -> String {
+    let mut page = Page(String::new());
+    page.line(&match figures.description.as_str() {
+        "" => figures.name.clone(),
+        description => format!("{}: {description}", figures.name),
+    });
+    gears(&mut page, figures);
+    masses(&mut page, figures);
+    frequencies(&mut page, figures);
+    meshes(&mut page, figures);
+    output(&mut page, figures);
+    step(&mut page, figures);
+    file(&mut page, figures);
+    page.0
+}
+
+fn gears(page: &mut Page, figures: &Figures) {
+    let geometry = &figures.geometry;
+    page.heading("Gears");
+    page.row("planets", geometry.planets);
+    let teeth = [geometry.sun_teeth, geometry.planet_teeth, geometry.ring_teeth];
+    page.row("teeth sun, planet, ring", format!("{}, {}, {}", teeth[0], teeth[1], teeth[2]));
+    page.row("working pressure angle", format!("{:.4} deg", geometry.working_pressure_angle_deg));
+    let radii = [geometry.sun_base_radius_m, geometry.planet_base_radius_m].map(|radius| 1e3 * radius);
+    page.row("base radii sun, planet", format!("{:.4}, {:.4} mm", radii[0], radii[1]));
+    page.row("carrier radius r_c", format!("{:.4} mm", 1e3 * geometry.carrier_radius_m));
+    page.row("lever r_c cos(alpha)", format!("{:.4} mm", 1e3 * geometry.carrier_base_radius_m));
+    page.row("ratio by teeth", format!("{:.6}", geometry.ratio_by_teeth));
+    page.row("ratio by radii", format!("{:.6}", geometry.ratio_by_radii));
+}
+
+fn masses(page: &mut Page, figures: &Figures) {
+    let masses = &figures.equivalent_masses;
+    page.heading("Equivalent masses, I / r^2 on the line of action");
+    page.row("sun", format!("{} kg", digits(masses.sun_kg)));
+    page.row("sun with rotor", format!("{} kg", digits(masses.sun_with_rotor_kg)));
+    page.row("planet", format!("{} kg", digits(masses.planet_kg)));
+    page.row("carrier with planets, M_c", format!("{} kg", digits(masses.carrier_with_planets_kg)));
+    page.row("link", if masses.link_kg > 0.0 { format!("{} kg", digits(masses.link_kg)) } else { "none".to_owned() });
+}
+
+fn frequencies(page: &mut Page, figures: &Figures) {
+    let frequencies = &figures.frequencies;
+    page.heading("Frequencies, in contact at mean stiffness");
+    let omega_n = (frequencies.omega_n_rad_per_s, frequencies.omega_n_Hz);
+    page.row("omega_n (eq. 18)", format!("{:.1} rad/s = {:.2} Hz", omega_n.0, omega_n.1));
+    page.row("gears alone", hertz(&frequencies.gears_alone_Hz));
+    page.row("with rotor and link", hertz(&frequencies.whole_joint_Hz));
+}
+
+fn meshes(page: &mut Page, figures: &Figures) {
+    for mesh in &figures.meshes {
+        page.heading(if mesh.kind == "sun_planet" { "Sun-planet meshes" } else { "Ring-planet meshes" });
+        page.row("half-backlash b (gap is 2b)", format!("{} um", per_planet(&mesh.half_backlash_m, 1e6, 3)));
+        page.row("mean stiffness", format!("{:.4e} N/m", mesh.mean_stiffness_N_per_m));
+        page.row("damping", format!("{} N s/m", digits(mesh.damping_N_s_per_m)));
+        page.row(
+            "deflection at rated torque",
+            format!("{} um beyond b", digits(1e6 * mesh.deflection_at_rated_torque_m)),
+        );
+        phases(page, mesh);
+    }
+    page.row("damping law", figures.damping_law);
+}
+
+fn phases(page: &mut Page, mesh: &MeshFigures) {
+    let [stiffness, error] =
+        [&mesh.stiffness_phase_periods, &mesh.error_phase_periods].map(|list| per_planet(list, 1.0, 4));
+    if stiffness == error {
+        page.row("mesh phases", format!("{stiffness} of a period"));
+    } else {
+        page.row("phases of stiffness", format!("{stiffness} of a period"));
+        page.row("phases of error", format!("{error} of a period"));
+    }
+}
+
+fn output(page: &mut Page, figures: &Figures) {
+    let output = &figures.output;
+    page.heading("At the output");
+    let torques = (output.rated_torque_N_m, output.balancing_drive_torque_N_m);
+    page.row("rated torque", format!("{} N m, {} N m at the sun", digits(torques.0), digits(torques.1)));
+    page.row("force of one mesh", format!("{} N", digits(output.mesh_force_N)));
+    page.row("gap coordinate, 4b", format!("{} um", digits(1e6 * output.gap_m)));
+    page.row("lost motion", angle(output.lost_motion_rad, output.lost_motion_arcmin));
+    page.row("lost motion at the sun", format!("{:.3} mrad", 1e3 * output.lost_motion_at_sun_rad));
+    page.row("wind-up at rated torque", angle(output.wind_up_rad, output.wind_up_arcmin));
+    let parts = [output.wind_up_of_teeth_rad, output.wind_up_of_compliance_rad].map(|part| 1e3 * part);
+    page.row("  teeth, compliance", format!("{:.4}, {:.4} mrad", parts[0], parts[1]));
+}
+
+fn step(page: &mut Page, figures: &Figures) {
+    let step = &figures.fixed_step;
+    page.heading("Fixed step");
+    let longest = 1e6 * step.longest_step_s;
+    page.row("longest stable step", format!("{longest:.1} us ({} Hz)", step.lowest_rate_Hz));
+    page.row("step asked for", format!("{:.1} us ({} Hz)", 1e6 / f64::from(step.rate_Hz), step.rate_Hz));
+    let phase = step.fastest_mode_phase_rad;
+    page.row("sub-steps at contact changes", format!("{}, {phase:.2} rad of the fastest mode each", step.substeps));
+    page.row("tables", format!("{} bytes of flash, digest {}", step.table_bytes, step.digest));
+}
+
+fn file(page: &mut Page, figures: &Figures) {
+    let numbers = &figures.numbers;
+    page.heading("Joint file");
+    let mut text = format!("{}, {} of them assumed", numbers.stated, numbers.assumed);
+    if numbers.without_source > 0 {
+        let _ = write!(text, ", {} without a source", numbers.without_source);
+    }
+    page.row("numbers", text);
+    if figures.warnings.is_empty() {
+        page.row("warnings", "none");
+    }
+    for warning in &figures.warnings {
+        page.row(&format!("warning, line {}", warning.line), &warning.message);
+        page.row("", format!("mend: {}", warning.help));
+    }
+}
+
+fn angle(radians: f64, arcmin: f64) -> String {
+    format!("{:.4} mrad = {arcmin:.3} arcmin", 1e3 * radians)
+}
+
+/// Equal neighbours are counted: "2881.84 (2x)".
+fn hertz(frequencies: &[f64]) -> String {
+    let shown: Vec<String> = frequencies.iter().map(|frequency| format!("{frequency:.2}")).collect();
+    let groups = shown.chunk_by(|one, other| one == other);
+    let texts: Vec<String> = groups
+        .map(|group| if group.len() > 1 { format!("{} ({}x)", group[0], group.len()) } else { group[0].clone() })
+        .collect();
+    texts.join(", ") + " Hz"
+}
+
+/// One value if all are equal, else all.
+fn per_planet(values: &[f64], factor: f64, decimals: usize) -> String {
+    let shown: Vec<String> = values.iter().map(|value| format!("{:.decimals$}", factor * value)).collect();
+    match shown.first() {
+        Some(first) if shown.iter().all(|value| value == first) => first.clone(),
+        _ => shown.join(", "),
+    }
+}
+
+/// Five significant digits.
+fn digits(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let exponent = value.abs().log10().floor();
+    if (-4.0..6.0).contains(&exponent) {
+        let decimals = (4.0 - exponent).max(0.0) as usize;
+        format!("{value:.decimals$}")
+    } else {
+        format!("{value:.4e}")
+    }
+}

@@ -1,0 +1,53 @@
+//! Finds a joint file, by path or as a preset, and reads it. What is wrong with it is drawn by `diagnostic`.
+
+use std::fs;
+use std::path::Path;
+
+use joints::{JointFile, PRESETS};
+
+use super::diagnostic;
+use crate::failure::{Failure, Outcome};
+
+/// No joint file comes near this; what does was named by mistake.
+const LARGEST_FILE: u64 = 1 << 20;
+
+/// A joint file and where it was found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Loaded {
+    /// Its path, or the name of the preset.
+    pub name: String,
+    /// Its text.
+    pub text: String,
+    /// What it says.
+    pub file: JointFile,
+}
+
+/// Reads a path or a preset. A file of that name goes before a preset.
+pub fn load(file: &Path) -> Outcome<Loaded> {
+    let name = file.display().to_string();
+    let preset = file.to_str().and_then(joints::preset).filter(|_| !file.is_file());
+    let text = match preset {
+        Some(text) => text.to_owned(),
+        None => read(file)?,
+    };
+    match joints::read(&text) {
+        Ok(file) => Ok(Loaded { name, text, file }),
+        Err(problems) => Err(Failure::from_report(diagnostic::report(&name, &text, &problems))),
+    }
+}
+
+fn read(file: &Path) -> Outcome<String> {
+    let failed = |what: &str| {
+        let help = format!("give the path of a joint file, or one of the presets {}", PRESETS.join(", "));
+        Failure::new(format!("cannot read the joint file {}: {what}", file.display())).with_help(help)
+    };
+    let data = fs::metadata(file).map_err(|error| failed(&error.to_string()))?;
+    if data.is_dir() {
+        return Err(failed("it is a folder"));
+    }
+    if data.len() > LARGEST_FILE {
+        return Err(failed("it is larger than 1 MB"));
+    }
+    let bytes = fs::read(file).map_err(|error| failed(&error.to_string()))?;
+    String::from_utf8(bytes).map_err(|_| failed("it is not text (UTF-8)"))
+}

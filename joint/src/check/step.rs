@@ -1,0 +1,40 @@
+//! What the fixed step asks of the joint: the lowest rate that is stable, and what the tables take of a board's flash.
+//! The tables themselves are made by `model_core::design`.
+
+use model_core::design::{DesignError, design};
+use model_core::joint::JointParameters;
+use model_core::tables::Tables;
+
+/// The fixed step at one rate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Step {
+    /// Parts of a tick while contacts change.
+    pub substeps: u32,
+    /// Bytes of the f32 tables.
+    pub table_bytes: usize,
+    /// Digest of the tables.
+    pub digest: u64,
+}
+
+/// The step at `rate` [Hz].
+pub(super) fn step(parameters: &JointParameters, rate: u32) -> Result<Step, DesignError> {
+    match parameters.geometry.planets {
+        3 => of_size::<3>(parameters, rate),
+        4 => of_size::<4>(parameters, rate),
+        _ => of_size::<5>(parameters, rate),
+    }
+}
+
+fn of_size<const N: usize>(parameters: &JointParameters, rate: u32) -> Result<Step, DesignError> {
+    let tables = design::<f32, N>(parameters, rate)?;
+    Ok(Step { substeps: tables.substeps, table_bytes: size_of::<Tables<f32, N>>(), digest: tables.digest })
+}
+
+/// The lowest stable rate [Hz].
+pub(super) fn lowest_rate(parameters: &JointParameters) -> Result<u32, DesignError> {
+    match step(parameters, 1) {
+        Err(DesignError::RateTooLow { lowest, .. }) => Ok(lowest.max(1)),
+        Err(other) => Err(other),
+        Ok(_) => Ok(1),
+    }
+}

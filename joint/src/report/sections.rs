@@ -1,4 +1,5 @@
-//! The sections of figures: key figures, checks, motion and timing. Pictures come from `motion`, `close_up` and `timing`; nothing is computed here beyond what a reader would do in the head.
+//! The sections of figures: key figures, checks, motion and timing. Pictures come from `motion`, `close_up` and
+//! `timing`; nothing is computed here beyond what a reader would do in the head.
 
 use maud::{Markup, PreEscaped, html};
 

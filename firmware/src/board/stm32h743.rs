@@ -1,0 +1,128 @@
+//! STM32H743 at 400 MHz from the 8 MHz that the ST-LINK supplies: the board NUCLEO-H743ZI.
+//!
+//! | use | pin | |
+//! |---|---|---|
+//! | serial to the host | PD8 out, PD9 in | USART3, the board's ST-LINK port, 921600 8N1 |
+//! | motor enable | PC8 | high: on |
+//! | status light | PB0 | the board's green light, on when high |
+//!
+//! The image is built and linted; it has been run neither on silicon nor in an emulator.
+
+pub use stm32h7::stm32h743 as pac;
+
+use cortex_m::peripheral::NVIC;
+use link::messages::Clock;
+
+use super::fifo_uart::FifoUart;
+use super::output::{Output, Port};
+use super::patience::wait_until;
+use super::{Board, Started, Watchdog};
+
+/// The USART of the serial line.
+pub type UsartRegisters = pac::USART3;
+
+const BAUD_RATE: u32 = 921_600;
+/// Clock of USART3 once the PLL runs: a quarter of the core clock.
+const USART_CLOCK: u32 = 100_000_000;
+/// Core and USART clock while no PLL runs.
+const INTERNAL_CLOCK: u32 = 64_000_000;
+
+/// This board.
+pub struct Stm32H743;
+
+impl Board for Stm32H743 {
+    const NAME: &'static str = "stm32h743";
+    const CORE_RATE: u32 = 400_000_000;
+    type Enable = Output<pac::GPIOC, 8>;
+    type Light = Output<pac::GPIOB, 0>;
+    type Port = FifoUart;
+
+    fn start(device: pac::Peripherals, core: &mut cortex_m::Peripherals) -> Started<Self> {
+        core.SCB.enable_icache();
+        core.SCB.enable_dcache(&mut core.CPUID);
+        let clock = start_clock(&device.RCC, &device.PWR, &device.FLASH);
+        let watchdog_reset = device.RCC.rsr().read().iwdg1rstf().bit_is_set();
+        device.RCC.rsr().modify(|_, w| w.rmvf().set_bit());
+        device.RCC.ahb4enr().modify(|_, w| w.gpioben().set_bit().gpiocen().set_bit().gpioden().set_bit());
+        device.RCC.apb1lenr().modify(|_, w| w.usart3en().set_bit());
+        device.GPIOD.afrh().modify(|_, w| w.afr8().af7().afr9().af7());
+        device.GPIOD.moder().modify(|_, w| w.moder8().alternate().moder9().alternate());
+        device.GPIOC.moder().modify(|_, w| w.moder8().output());
+        device.GPIOB.moder().modify(|_, w| w.moder0().output());
+        let usart_clock = if clock == Clock::Failed { INTERNAL_CLOCK } else { USART_CLOCK };
+        Started {
+            clock,
+            enable: Output::new(device.GPIOC),
+            light: Output::new(device.GPIOB),
+            port: FifoUart::open(device.USART3, usart_clock, BAUD_RATE),
+            watchdog: Watchdog::start(device.IWDG),
+            watchdog_reset,
+        }
+    }
+
+    fn wake_serial() {
+        NVIC::pend(pac::Interrupt::USART3);
+    }
+}
+
+/// 400 MHz by PLL 1 at voltage scale 1: from the ST-LINK's clock, else from the internal oscillator. Buses run at
+/// 200 MHz, peripherals at 100 MHz.
+fn start_clock(rcc: &pac::RCC, power: &pac::PWR, flash: &pac::FLASH) -> Clock {
+    if rcc.cr().read().hsirdy().bit_is_clear() {
+        return Clock::NotModelled;
+    }
+    power.cr3().modify(|_, w| w.scuen().set_bit().ldoen().set_bit().bypass().clear_bit());
+    if !wait_until(|| power.csr1().read().actvosrdy().bit_is_set()) {
+        return Clock::Failed;
+    }
+    // SAFETY: 3 stands for scale 1.
+    power.d3cr().modify(|_, w| unsafe { w.vos().bits(3) });
+    if !wait_until(|| power.d3cr().read().vosrdy().bit_is_set()) {
+        return Clock::Failed;
+    }
+    rcc.cr().modify(|_, w| w.hsebyp().set_bit());
+    rcc.cr().modify(|_, w| w.hseon().set_bit());
+    let external = wait_until(|| rcc.cr().read().hserdy().bit_is_set());
+    if !external {
+        rcc.cr().modify(|_, w| w.hseon().clear_bit());
+    }
+    // Both give the PLL 4 MHz, 800 MHz inside, 400 MHz out.
+    rcc.pllckselr().modify(|_, w| match external {
+        true => w.pllsrc().hse().divm1().set(2),
+        false => w.pllsrc().hsi().divm1().set(16),
+    });
+    rcc.pllcfgr().modify(|_, w| w.pll1vcosel().wide_vco().pll1rge().range4().divp1en().enabled());
+    // SAFETY: the register holds factor - 1, within the range of the reference manual.
+    rcc.pll1divr().modify(|_, w| unsafe { w.divn1().bits(200 - 1) }.divp1().div2());
+    rcc.cr().modify(|_, w| w.pll1on().set_bit());
+    if !wait_until(|| rcc.cr().read().pll1rdy().bit_is_set()) {
+        return Clock::Failed;
+    }
+    // SAFETY: two wait states, as the reference manual asks for 200 MHz at scale 1.
+    flash.acr().modify(|_, w| unsafe { w.latency().bits(2).wrhighfreq().bits(2) });
+    if !wait_until(|| flash.acr().read().latency().bits() == 2) {
+        return Clock::Failed;
+    }
+    rcc.d1cfgr().modify(|_, w| w.d1cpre().div1().hpre().div2().d1ppre().div2());
+    rcc.d2cfgr().modify(|_, w| w.d2ppre1().div2().d2ppre2().div2());
+    rcc.d3cfgr().modify(|_, w| w.d3ppre().div2());
+    rcc.cfgr().modify(|_, w| w.sw().pll1());
+    if !wait_until(|| rcc.cfgr().read().sws().is_pll1()) {
+        return Clock::Failed;
+    }
+    if external { Clock::External } else { Clock::InternalFallback }
+}
+
+impl Port for pac::GPIOB {
+    fn set_reset(&mut self, bits: u32) {
+        // SAFETY: every word is allowed; pins that are no outputs do not care.
+        self.bsrr().write(|w| unsafe { w.bits(bits) });
+    }
+}
+
+impl Port for pac::GPIOC {
+    fn set_reset(&mut self, bits: u32) {
+        // SAFETY: every word is allowed; pins that are no outputs do not care.
+        self.bsrr().write(|w| unsafe { w.bits(bits) });
+    }
+}

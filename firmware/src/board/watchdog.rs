@@ -1,0 +1,32 @@
+//! The independent watchdog, the same on all boards: resets the board when it is not fed for half a second. When to
+//! feed it is for idle to decide. The emulated board has none: there the writes go nowhere.
+
+use super::pac::IWDG;
+use super::patience::wait_until;
+
+/// Milliseconds to the reset.
+const COUNTS: u16 = 500;
+
+/// A running watchdog.
+pub struct Watchdog(IWDG);
+
+impl Watchdog {
+    /// Starts it. It cannot be stopped again.
+    pub fn start(registers: IWDG) -> Self {
+        registers.kr().write(|w| w.key().start());
+        registers.kr().write(|w| w.key().unlock());
+        // The 32 kHz oscillator by 32: a count is a millisecond.
+        registers.pr().write(|w| w.pr().divide_by32());
+        registers.rlr().write(|w| w.rl().set(COUNTS));
+        // Settings that were not taken up leave its longest time in force: no harm.
+        let _ = wait_until(|| registers.sr().read().bits() == 0);
+        let mut watchdog = Self(registers);
+        watchdog.feed();
+        watchdog
+    }
+
+    /// Puts the reset off.
+    pub fn feed(&mut self) {
+        self.0.kr().write(|w| w.key().feed());
+    }
+}

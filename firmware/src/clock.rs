@@ -1,0 +1,145 @@
+//! SysTick in its two uses: the timer of the ticks, and a clock that tells how much of the processor's time each part
+//! takes for itself. Where SysTick gets its pulses is set up by the board.
+
+use core::sync::atomic::AtomicU32;
+use core::sync::atomic::Ordering::Relaxed;
+
+use cortex_m::peripheral::syst::SystClkSource;
+use cortex_m::peripheral::{SCB, SYST};
+
+use crate::board::{Board, ThisBoard};
+use crate::budget::TickTimer;
+use crate::tables::TABLES;
+
+/// Timer counts between two ticks.
+pub const PERIOD: u32 = ThisBoard::CORE_RATE / TABLES.tick_rate;
+
+const _: () = assert!(PERIOD * TABLES.tick_rate == ThisBoard::CORE_RATE, "the tick rate must divide the core clock");
+const _: () = assert!(PERIOD <= 1 << 24, "SysTick has 24 bits");
+
+/// Ticks since power-up.
+static BEATS: AtomicU32 = AtomicU32::new(0);
+/// Time that interrupts have taken for themselves.
+static BUSY: AtomicU32 = AtomicU32::new(0);
+
+/// Starts the ticks.
+pub fn start(systick: &mut SYST) {
+    systick.set_clock_source(SystClkSource::Core);
+    systick.set_reload(PERIOD - 1);
+    systick.clear_current();
+    systick.enable_counter();
+    systick.enable_interrupt();
+}
+
+/// SysTick as seen from its own interrupt.
+#[derive(Debug, Clone, Copy)]
+pub struct TickClock;
+
+impl TickTimer for TickClock {
+    fn since_expiry(&self) -> u32 {
+        let elapsed = elapsed();
+        if SCB::is_pendst_pending() { PERIOD + self::elapsed() } else { elapsed }
+    }
+}
+
+/// Counts since the last expiry. The counter reads 0 at the expiry itself and starts over from the reload value.
+fn elapsed() -> u32 {
+    match SYST::get_current() {
+        0 => 0,
+        left => PERIOD - left,
+    }
+}
+
+/// Runs the tick's work, as called from its interrupt.
+pub fn in_tick(work: impl FnOnce(&TickClock)) {
+    BEATS.store(BEATS.load(Relaxed).wrapping_add(1), Relaxed);
+    work(&TickClock);
+    BUSY.fetch_add(TickClock.since_expiry(), Relaxed);
+}
+
+/// Runs an interrupt's work below the tick's priority, and counts its time as taken.
+pub fn in_interrupt(work: impl FnOnce()) {
+    let start = Moment::now();
+    work();
+    BUSY.fetch_add(start.own_time(), Relaxed);
+}
+
+/// Time since power-up [ms]; wraps after days.
+pub fn milliseconds() -> u32 {
+    BEATS.load(Relaxed) / (TABLES.tick_rate / 1000).max(1)
+}
+
+/// Time since power-up [us].
+pub fn microseconds() -> u64 {
+    u64::from(BEATS.load(Relaxed)) * 1_000_000 / u64::from(TABLES.tick_rate)
+}
+
+/// A moment, to measure from.
+#[derive(Debug, Clone, Copy)]
+struct Moment {
+    counts: u32,
+    busy: u32,
+}
+
+impl Moment {
+    /// Now, as seen below the tick's priority: a tick in between makes it look again, at most twice.
+    fn now() -> Self {
+        let mut counts = 0;
+        for _ in 0..3 {
+            let before = BEATS.load(Relaxed);
+            counts = before.wrapping_mul(PERIOD).wrapping_add(elapsed());
+            if BEATS.load(Relaxed) == before {
+                break;
+            }
+        }
+        Self { counts, busy: BUSY.load(Relaxed) }
+    }
+
+    /// Time since this moment that no interrupt took.
+    fn own_time(self) -> u32 {
+        let now = Self::now();
+        let taken = now.busy.wrapping_sub(self.busy);
+        now.counts.wrapping_sub(self.counts).saturating_sub(taken)
+    }
+}
+
+/// How much of the processor's time is left over.
+#[derive(Debug)]
+pub struct IdleMeter {
+    last: Moment,
+    total: u64,
+    idle: u64,
+}
+
+impl IdleMeter {
+    /// Starts to measure.
+    pub fn start() -> Self {
+        Self { last: Moment::now(), total: 0, idle: 0 }
+    }
+
+    /// Sleeps until the next interrupt; that time is idle, apart from what interrupts take of it.
+    pub fn sleep(&mut self) {
+        let start = Moment::now();
+        cortex_m::asm::wfi();
+        self.idle += u64::from(start.own_time());
+        self.pass();
+    }
+
+    /// Must be called at least once in half the time in which 32 bits of counts wrap: some ten seconds.
+    pub fn pass(&mut self) {
+        let now = Moment::now();
+        self.total += u64::from(now.counts.wrapping_sub(self.last.counts));
+        self.last = now;
+    }
+
+    /// Idle time in thousandths of all time; then starts afresh if asked to.
+    pub fn permille(&mut self, reset: bool) -> u16 {
+        self.pass();
+        let share = (self.idle * 1000).checked_div(self.total).unwrap_or(0);
+        if reset {
+            self.total = 0;
+            self.idle = 0;
+        }
+        share.min(1000) as u16
+    }
+}

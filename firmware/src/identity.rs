@@ -1,0 +1,89 @@
+//! What the board says about itself in its hello: everything that does not change between two resets. What the joint
+//! is comes from the generated tables, what the start-up found from the board.
+
+use heapless::String;
+use link::PROTOCOL_VERSION;
+use link::messages::{Clock, Hello, Role};
+
+use crate::queues::COMMAND_CAPACITY;
+use crate::tables::{JOINT_NAME, PLANETS, TABLES};
+
+/// What a start-up finds out.
+#[derive(Debug, Clone)]
+pub struct StartUp {
+    /// Board that the image was built for.
+    pub board: &'static str,
+    /// Timer counts a second [Hz].
+    pub timer_rate: u32,
+    /// Where the core clock comes from.
+    pub clock: Clock,
+    /// Message left by a panic before the last reset.
+    pub last_panic: Option<String<96>>,
+    /// The last reset came from the watchdog.
+    pub watchdog_reset: bool,
+}
+
+/// The hello of a board in a role.
+pub fn hello(role: Role, start_up: StartUp) -> Hello {
+    Hello {
+        protocol: PROTOCOL_VERSION,
+        firmware_version: VERSION,
+        role,
+        board: shortened(start_up.board),
+        joint: shortened(JOINT_NAME),
+        joint_digest: TABLES.digest,
+        digest_good: TABLES.digest_is_good(),
+        tick_rate: TABLES.tick_rate,
+        timer_rate: start_up.timer_rate,
+        clock: start_up.clock,
+        planets: PLANETS as u8,
+        queue_capacity: COMMAND_CAPACITY,
+        last_panic: start_up.last_panic,
+        watchdog_reset: start_up.watchdog_reset,
+    }
+}
+
+/// Major, minor, patch of this package.
+const VERSION: [u8; 3] = [
+    number(env!("CARGO_PKG_VERSION_MAJOR")),
+    number(env!("CARGO_PKG_VERSION_MINOR")),
+    number(env!("CARGO_PKG_VERSION_PATCH")),
+];
+
+const fn number(digits: &str) -> u8 {
+    let digits = digits.as_bytes();
+    let mut value = 0;
+    let mut at = 0;
+    while at < digits.len() {
+        value = value * 10 + (digits[at] - b'0');
+        at += 1;
+    }
+    value
+}
+
+/// As much of a text as fits.
+fn shortened<const LENGTH: usize>(text: &str) -> String<LENGTH> {
+    let mut result = String::new();
+    for character in text.chars() {
+        if result.push(character).is_err() {
+            break;
+        }
+    }
+    result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_version_number_is_read_digit_by_digit() {
+        assert_eq!([number("0"), number("17"), number("255")], [0, 17, 255]);
+    }
+
+    #[test]
+    fn a_name_that_is_too_long_is_cut_between_characters() {
+        assert_eq!(shortened::<4>("joint").as_str(), "join");
+        assert_eq!(shortened::<4>("abcä").as_str(), "abc");
+    }
+}

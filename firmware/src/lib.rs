@@ -1,0 +1,37 @@
+#![cfg_attr(target_os = "none", no_std)]
+//! A joint simulated in the tick of a microcontroller, driven and watched over a serial line.
+//!
+//! `control` is the work of one tick: it takes torques from `schedule`, steps the model, keeps `budget`, the timing
+//! monitor, and falls back to `safe_state`. `queues` is all that connects it to the rest. `conversation`, run in idle,
+//! answers the host with the help of `identity`, `telemetry` and `timing_report`; `serial` moves its bytes.
+//! Everything so far is free of hardware and is tested on the host; `board`, `clock`, `logger`, `panic_message`,
+//! `stack` and `watch` exist on a board only. Physics is left to `model-core`, the words on the line to `link`.
+
+pub mod budget;
+pub mod control;
+pub mod conversation;
+pub mod identity;
+pub mod queues;
+pub mod safe_state;
+pub mod schedule;
+pub mod serial;
+pub mod status_light;
+pub mod telemetry;
+pub mod timing_report;
+
+/// The joint that this image is built from: `PLANETS`, `JOINT_NAME` and `TABLES`, written by the build script.
+pub mod tables {
+    #![allow(missing_docs, clippy::all, clippy::excessive_precision, reason = "generated numbers")]
+    include!(concat!(env!("OUT_DIR"), "/tables.rs"));
+}
+
+#[cfg(target_os = "none")]
+pub mod board;
+#[cfg(target_os = "none")]
+pub mod clock;
+#[cfg(target_os = "none")]
+pub mod logger;
+#[cfg(target_os = "none")]
+pub mod panic_message;
+#[cfg(target_os = "none")]
+pub mod stack;

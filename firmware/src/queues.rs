@@ -1,0 +1,155 @@
+//! All that passes between the tick and idle: single-producer queues, each with one end on either side, and a few
+//! counters that either side may read at any time. What the entries mean is left to the two sides.
+
+use core::sync::atomic::{AtomicBool, AtomicU32};
+
+use heapless::spsc::{Consumer, Producer, Queue};
+use link::messages::{Command, Fault, RunSettings};
+use model_core::realtime::Outputs;
+
+use crate::budget::Monitor;
+
+/// Places for commands; one is lost to telling full from empty.
+const COMMANDS: usize = 256;
+/// Places for samples.
+const SAMPLES: usize = 16;
+/// Places for orders and for events: at most one order is under way at a time.
+const NOTES: usize = 4;
+
+/// Most commands that can wait for their tick.
+pub const COMMAND_CAPACITY: u16 = COMMANDS as u16 - 1;
+
+/// From idle to the tick, obeyed at the start of the next one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Order {
+    /// Back to rest at tick 0 with these settings; answered by [`Event::ResetDone`] or [`Event::Refused`].
+    Reset(RunSettings),
+    /// Torque zero, enable off; answered by [`Event::Stopped`].
+    Stop,
+    /// Safe state for a reason that idle has found; answered by [`Event::Stopped`].
+    Trip(Fault),
+    /// A copy of the timing monitor as [`Event::Timing`].
+    Report {
+        /// Then start it afresh.
+        reset: bool,
+    },
+}
+
+/// From the tick to idle.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(clippy::large_enum_variant, reason = "no allocator to box with")]
+pub enum Event {
+    /// The model is at rest, the command queue is empty.
+    ResetDone,
+    /// The run has ended.
+    Stopped,
+    /// There is no reset out of this fault.
+    Refused(Fault),
+    /// The tick itself has found a reason for the safe state: the only event that is no answer to an order.
+    Tripped(Fault),
+    /// How the tick's time was spent.
+    Timing(Monitor),
+}
+
+/// The motion after a step, as the tick leaves it for idle to report.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RawSample<const N: usize> {
+    /// Steps done since the reset.
+    pub tick: u32,
+    /// Running digest over every state so far.
+    pub state_digest: u64,
+    /// The motion.
+    pub outputs: Outputs<f32, N>,
+    /// Timer counts that the step took.
+    pub computation: u16,
+}
+
+/// Counters that both sides see.
+#[derive(Debug, Default)]
+pub struct Progress {
+    /// Everything before this tick is known; written by idle after the commands are in the queue.
+    pub horizon: AtomicU32,
+    /// Steps done since the reset; written by the tick.
+    pub steps: AtomicU32,
+    /// Times the tick has run since power-up, steps or not; written by the tick.
+    pub beats: AtomicU32,
+    /// The run goes on; written by the tick.
+    pub running: AtomicBool,
+    /// The safe state has been entered; written by the tick.
+    pub faulted: AtomicBool,
+}
+
+/// The queues themselves.
+pub struct Queues<const N: usize> {
+    commands: Queue<Command, COMMANDS>,
+    orders: Queue<Order, NOTES>,
+    samples: Queue<RawSample<N>, SAMPLES>,
+    events: Queue<Event, NOTES>,
+    progress: Progress,
+}
+
+/// The tick's ends.
+pub struct TickEnd<'a, const N: usize> {
+    /// Torques to come.
+    pub commands: Consumer<'a, Command>,
+    /// What idle wants.
+    pub orders: Consumer<'a, Order>,
+    /// Motion to be reported.
+    pub samples: Producer<'a, RawSample<N>>,
+    /// What has happened.
+    pub events: Producer<'a, Event>,
+    /// Shared counters.
+    pub progress: &'a Progress,
+}
+
+/// Idle's ends.
+pub struct IdleEnd<'a, const N: usize> {
+    /// Torques to come.
+    pub commands: Producer<'a, Command>,
+    /// What idle wants.
+    pub orders: Producer<'a, Order>,
+    /// Motion to be reported.
+    pub samples: Consumer<'a, RawSample<N>>,
+    /// What has happened.
+    pub events: Consumer<'a, Event>,
+    /// Shared counters.
+    pub progress: &'a Progress,
+}
+
+impl<const N: usize> Queues<N> {
+    /// Empty.
+    pub const fn new() -> Self {
+        Self {
+            commands: Queue::new(),
+            orders: Queue::new(),
+            samples: Queue::new(),
+            events: Queue::new(),
+            progress: Progress {
+                horizon: AtomicU32::new(0),
+                steps: AtomicU32::new(0),
+                beats: AtomicU32::new(0),
+                running: AtomicBool::new(false),
+                faulted: AtomicBool::new(false),
+            },
+        }
+    }
+
+    /// Hands each side its ends.
+    pub fn split(&mut self) -> (TickEnd<'_, N>, IdleEnd<'_, N>) {
+        let (commands_in, commands) = self.commands.split();
+        let (orders_in, orders) = self.orders.split();
+        let (samples, samples_out) = self.samples.split();
+        let (events, events_out) = self.events.split();
+        let progress = &self.progress;
+        (
+            TickEnd { commands, orders, samples, events, progress },
+            IdleEnd { commands: commands_in, orders: orders_in, samples: samples_out, events: events_out, progress },
+        )
+    }
+}
+
+impl<const N: usize> Default for Queues<N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}

@@ -1,0 +1,123 @@
+//! The safe state: enable output off and no torque, latched until a reset. What leads to it is found elsewhere;
+//! this file only makes sure that there is one way in and one way out.
+
+use core::convert::Infallible;
+
+use embedded_hal::digital::OutputPin;
+use link::messages::Fault;
+
+/// What the board does.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum State {
+    /// Nothing runs; a reset starts a run.
+    Stopped,
+    /// A run goes on; the enable output is on.
+    Running,
+    /// Safe state; only a reset leads out, and none does if the tables are bad.
+    Faulted(Fault),
+}
+
+/// Holds the enable output, so that it cannot be on in any state but [`State::Running`].
+#[derive(Debug)]
+pub struct SafeState<E> {
+    enable: E,
+    state: State,
+}
+
+impl<E: OutputPin<Error = Infallible>> SafeState<E> {
+    /// Switches the output off.
+    pub fn new(mut enable: E) -> Self {
+        let Ok(()) = enable.set_low();
+        Self { enable, state: State::Stopped }
+    }
+
+    /// What the board does.
+    pub fn state(&self) -> State {
+        self.state
+    }
+
+    /// Starts a run; refused for good once the tables were found bad.
+    pub fn run(&mut self) -> Result<(), Fault> {
+        if let State::Faulted(Fault::BadDigest) = self.state {
+            return Err(Fault::BadDigest);
+        }
+        self.state = State::Running;
+        let Ok(()) = self.enable.set_high();
+        Ok(())
+    }
+
+    /// Ends a run. A fault stays what it is.
+    pub fn stop(&mut self) {
+        let Ok(()) = self.enable.set_low();
+        if self.state == State::Running {
+            self.state = State::Stopped;
+        }
+    }
+
+    /// Enters the safe state. The first fault is kept: it is the cause of the rest.
+    pub fn trip(&mut self, fault: Fault) {
+        let Ok(()) = self.enable.set_low();
+        if !matches!(self.state, State::Faulted(_)) {
+            self.state = State::Faulted(fault);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Pin(Option<bool>);
+
+    impl embedded_hal::digital::ErrorType for Pin {
+        type Error = Infallible;
+    }
+
+    impl OutputPin for Pin {
+        fn set_low(&mut self) -> Result<(), Infallible> {
+            self.0 = Some(false);
+            Ok(())
+        }
+
+        fn set_high(&mut self) -> Result<(), Infallible> {
+            self.0 = Some(true);
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn the_enable_output_is_driven_low_from_the_start() {
+        assert_eq!(SafeState::new(Pin(None)).enable.0, Some(false));
+    }
+
+    #[test]
+    fn the_enable_output_is_on_in_a_run_only() {
+        let mut safe_state = SafeState::new(Pin(None));
+        safe_state.run().unwrap();
+        assert_eq!(safe_state.enable.0, Some(true));
+        safe_state.stop();
+        assert_eq!((safe_state.enable.0, safe_state.state()), (Some(false), State::Stopped));
+        safe_state.run().unwrap();
+        safe_state.trip(Fault::CommandLoss { tick: 7 });
+        assert_eq!(safe_state.enable.0, Some(false));
+    }
+
+    #[test]
+    fn the_first_fault_is_kept_until_the_next_run() {
+        let mut safe_state = SafeState::new(Pin(None));
+        safe_state.trip(Fault::NotFinite { tick: 3 });
+        safe_state.trip(Fault::QueueFull);
+        safe_state.stop();
+        assert_eq!(safe_state.state(), State::Faulted(Fault::NotFinite { tick: 3 }));
+        assert_eq!(safe_state.run(), Ok(()));
+        assert_eq!(safe_state.state(), State::Running);
+    }
+
+    #[test]
+    fn bad_tables_are_never_run() {
+        let mut safe_state = SafeState::new(Pin(None));
+        safe_state.trip(Fault::BadDigest);
+        assert_eq!(safe_state.run(), Err(Fault::BadDigest));
+        assert_eq!(safe_state.enable.0, Some(false));
+    }
+}

@@ -1,0 +1,77 @@
+//! The status light: a slow blink when stopped, a quick one in a run, three flashes and a pause in the safe state.
+//! It is told the time and the state; where either comes from is not its business.
+
+use core::convert::Infallible;
+use core::sync::atomic::Ordering::Relaxed;
+
+use embedded_hal::digital::OutputPin;
+
+use crate::queues::Progress;
+
+/// What the light says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Pattern {
+    /// Ready for a run.
+    Stopped,
+    /// A run goes on.
+    Running,
+    /// Safe state.
+    Faulted,
+}
+
+impl Pattern {
+    /// The pattern that tells how far a run is.
+    pub fn of(progress: &Progress) -> Self {
+        if progress.faulted.load(Relaxed) {
+            Self::Faulted
+        } else if progress.running.load(Relaxed) {
+            Self::Running
+        } else {
+            Self::Stopped
+        }
+    }
+
+    /// Whether the light is on at a time [ms].
+    pub fn is_on(self, milliseconds: u32) -> bool {
+        match self {
+            Self::Stopped => milliseconds % 2000 < 1000,
+            Self::Running => milliseconds % 200 < 100,
+            Self::Faulted => milliseconds % 1500 < 900 && milliseconds % 300 < 150,
+        }
+    }
+}
+
+/// A light on an output.
+#[derive(Debug)]
+pub struct StatusLight<P> {
+    output: P,
+}
+
+impl<P: OutputPin<Error = Infallible>> StatusLight<P> {
+    /// A light on this output, dark.
+    pub fn new(mut output: P) -> Self {
+        let Ok(()) = output.set_low();
+        Self { output }
+    }
+
+    /// Shows the pattern as it is at a time [ms].
+    pub fn show(&mut self, pattern: Pattern, milliseconds: u32) {
+        let Ok(()) = self.output.set_state(pattern.is_on(milliseconds).into());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn flashes(pattern: Pattern, milliseconds: u32) -> usize {
+        (1..milliseconds).filter(|&time| pattern.is_on(time) && !pattern.is_on(time - 1)).count()
+    }
+
+    #[test]
+    fn each_pattern_has_its_own_number_of_flashes() {
+        assert_eq!(flashes(Pattern::Stopped, 6000), 2);
+        assert_eq!(flashes(Pattern::Running, 6000), 29);
+        assert_eq!(flashes(Pattern::Faulted, 6000), 11);
+    }
+}

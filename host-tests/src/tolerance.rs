@@ -136,3 +136,27 @@ pub const MANY_TURNS: Bound = Bound {
     measured: 3.7e-11,
     reason: "Coordinates stay within a tooth, so that no digits are lost however far the joint has turned.",
 };
+
+/// Stiffness of the rectangular wave against a projection of its picture.
+pub const RECTANGULAR_WAVE: Bound = Bound {
+    of: "stiffness of the rectangular wave, over the mean",
+    limit: 1e-7,
+    measured: 1.1e-8,
+    reason: "The projection is a sum over 20,000 cells.",
+};
+
+/// Motions of the drive train that can be computed by hand.
+pub const DRIVE_TRAIN: Bound = Bound {
+    of: "drive train against a figure by hand, relative",
+    limit: 1e-9,
+    measured: 1.5e-13,
+    reason: "Nothing in these motions changes within a part of 10 us.",
+};
+
+/// Parts of a control period in the drive train.
+pub const DRIVE_TRAIN_PARTS: Bound = Bound {
+    of: "link angle with 10 against 40 parts in a control period, over its travel",
+    limit: 1e-2,
+    measured: 4.4e-3,
+    reason: "Friction and cogging follow angles and speeds with a delay of half a part, and rattling planets amplify it.",
+};

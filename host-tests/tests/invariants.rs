@@ -35,6 +35,11 @@ fn energy_grows_by_the_work_done_in_every_scenario() {
     let mut contact = regime("set P, law contact", 60e-6, 300.0);
     contact.joint.damping_law = DampingLaw::Contact;
     scenarios.push(contact);
+    let mut rectangular = regime("set P, rectangular wave", 60e-6, 300.0);
+    for mesh in meshes(&mut rectangular) {
+        mesh.stiffness_wave = StiffnessWave::Rectangular { stiffness_ratio: 0.1, contact_ratio: 1.6, order: 8 };
+    }
+    scenarios.push(rectangular);
     for scenario in scenarios {
         let found = run(&scenario).expect("the scenario runs");
         let energy = |sample: &Observation| sample.kinetic_energy + sample.elastic_energy;

@@ -1,0 +1,54 @@
+//! Torques that nobody commanded, acting on the link. They brake when positive, as the load torque of the joint does.
+
+use std::f64::consts::TAU;
+
+/// One disturbance; several add up.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Disturbance {
+    /// On from a moment on.
+    Step {
+        /// [s].
+        start: f64,
+        /// [N m].
+        torque: f64,
+    },
+    /// On for a while.
+    Pulse {
+        /// [s].
+        start: f64,
+        /// [s].
+        duration: f64,
+        /// [N m].
+        torque: f64,
+    },
+    /// Amplitude times sin(2 pi frequency t).
+    Sine {
+        /// [N m].
+        amplitude: f64,
+        /// [Hz].
+        frequency: f64,
+    },
+}
+
+impl Disturbance {
+    /// Torque at a moment [N m].
+    pub fn torque(&self, time: f64) -> f64 {
+        match *self {
+            Self::Step { start, torque } => {
+                if time >= start {
+                    torque
+                } else {
+                    0.0
+                }
+            }
+            Self::Pulse { start, duration, torque } => {
+                if (start..start + duration).contains(&time) {
+                    torque
+                } else {
+                    0.0
+                }
+            }
+            Self::Sine { amplitude, frequency } => amplitude * (TAU * frequency * time).sin(),
+        }
+    }
+}

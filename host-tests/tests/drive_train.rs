@@ -1,0 +1,233 @@
+//! The drive train around the joint, effect by effect: each test has an ideal train with one thing added, and a figure
+//! that follows from it by hand.
+
+use std::f64::consts::TAU;
+
+use host_tests::drive_train::{
+    Disturbance, DriveTrain, DriveTrainParameters, EncoderParameters, FrictionParameters, Measurement,
+};
+use host_tests::reference::{RelativeState, Start};
+use host_tests::scenarios::{l1, q1};
+use host_tests::tolerance::{DRIVE_TRAIN, DRIVE_TRAIN_PARTS};
+use model_core::joint::JointParameters;
+
+const RATIO: f64 = 6.0;
+
+/// Inertia of all of Q1 felt at its link while it moves as one.
+fn q1_inertia() -> f64 {
+    let joint = q1();
+    let sun = joint.rotor_inertia + 0.02 * joint.geometry.sun_base_radius.powi(2);
+    let lever = joint.geometry.carrier_radius * joint.geometry.working_pressure_angle.cos();
+    // Planets move along the line of action as the carrier does: three of 0.03 kg, and the carrier with its planets.
+    let cosine = joint.geometry.working_pressure_angle.cos();
+    let carrier = 0.15 + 3.0 * 0.05 / (cosine * cosine);
+    RATIO * RATIO * sun + (3.0 * 0.03 + carrier) * lever * lever + joint.link_inertia
+}
+
+fn turning(rigid_speed: f64) -> Start {
+    Start::Relative(RelativeState { rigid_speed, ..RelativeState::centred(3) })
+}
+
+fn train(joint: &JointParameters, start: &Start, parameters: DriveTrainParameters) -> DriveTrain {
+    DriveTrain::new(joint, start, parameters, Vec::new(), 1).expect("a sound drive train")
+}
+
+/// Runs a number of control periods under one command.
+fn hold(train: &mut DriveTrain, command: f64, periods: u32) {
+    for _ in 0..periods {
+        train.advance(command).expect("it runs");
+    }
+}
+
+/// A profile through the gap and back with everything of Q1 switched on.
+fn q1_run(seed: u64, parts_per_period: u32) -> (Vec<Measurement>, Vec<f64>) {
+    let parameters = DriveTrainParameters { parts_per_period, ..DriveTrainParameters::q1() };
+    let disturbances = vec![Disturbance::Pulse { start: 0.03, duration: 0.01, torque: 1.5 }];
+    let mut train = DriveTrain::new(&q1(), &turning(0.0), parameters, disturbances, seed).expect("Q1 is sound");
+    let mut measured = Vec::new();
+    let mut link = Vec::new();
+    for period in 0..1000 {
+        train.advance(if period / 250 % 2 == 0 { 0.6 } else { -0.6 }).expect("it runs");
+        measured.push(train.measure());
+        link.push(train.joint().link_angle);
+    }
+    (measured, link)
+}
+
+#[test]
+fn one_seed_is_one_run() {
+    let (first, _) = q1_run(7, 10);
+    assert_eq!(first, q1_run(7, 10).0);
+    assert_ne!(first, q1_run(8, 10).0);
+}
+
+#[test]
+fn ten_parts_to_a_period_are_enough() {
+    let (_, coarse) = q1_run(7, 10);
+    let (_, fine) = q1_run(7, 40);
+    let difference = coarse.iter().zip(&fine).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let travel = fine.iter().cloned().fold(f64::MIN, f64::max) - fine.iter().cloned().fold(f64::MAX, f64::min);
+    DRIVE_TRAIN_PARTS.check(difference / travel);
+}
+
+#[test]
+fn an_ideal_train_only_accelerates_the_joint() {
+    let mut train = train(&q1(), &turning(0.0), DriveTrainParameters::ideal());
+    hold(&mut train, 0.5, 1000);
+    DRIVE_TRAIN.check(train.joint().rigid_speed / (0.5 * RATIO * 0.1 / q1_inertia()) - 1.0);
+}
+
+#[test]
+fn the_current_loop_lags_delays_and_limits() {
+    let mut parameters = DriveTrainParameters::ideal();
+    parameters.motor.current_lag = 0.2e-3;
+    parameters.motor.torque_limit = 2.0;
+    parameters.motor.torque_constant_error_ratio = 0.03;
+    parameters.delay_periods = 1.0;
+    let mut train = train(&q1(), &turning(0.0), parameters);
+    hold(&mut train, 5.0, 1);
+    assert_eq!(train.torques().air_gap, 0.0, "the command is on its way for one period");
+    hold(&mut train, 5.0, 2);
+    // The last part is held at the mean over it, whose moment is its middle as far as a part is short of the lag.
+    let middle = 0.2e-3 - 0.5 * 10e-6;
+    let expected = 2.0 * 1.03 * (1.0 - (-middle / 0.2e-3_f64).exp());
+    assert!((train.torques().air_gap / expected - 1.0).abs() < 2e-4, "{} N m", train.torques().air_gap);
+    hold(&mut train, 5.0, 100);
+    DRIVE_TRAIN.check(train.torques().air_gap / (2.0 * 1.03) - 1.0);
+}
+
+#[test]
+fn torque_noise_has_the_stated_size() {
+    let mut parameters = DriveTrainParameters::ideal();
+    parameters.motor.torque_noise_ratio = 0.015;
+    parameters.parts_per_period = 1;
+    let mut train = train(&l1(), &turning(0.0), parameters);
+    let mut squares = 0.0;
+    for _ in 0..2000 {
+        train.advance(2.0).expect("it runs");
+        squares += (train.torques().air_gap / 2.0 - 1.0).powi(2);
+    }
+    let ratio = (squares / 2000.0).sqrt();
+    // The scatter of such an estimate is 1/sqrt(4000) = 1.6 %.
+    assert!((ratio / 0.015 - 1.0).abs() < 0.06, "{ratio}");
+}
+
+#[test]
+fn dry_friction_holds_a_torque_below_it_and_yields_to_one_above() {
+    let mut parameters = DriveTrainParameters::ideal();
+    parameters.motor.friction.coulomb = 0.03;
+    let mut held = train(&q1(), &turning(0.0), parameters.clone());
+    hold(&mut held, 0.029, 500);
+    DRIVE_TRAIN.check(held.joint().motor_speed);
+    // Turning fast enough that no bounce of the teeth turns the motor back.
+    let mut moving = train(&q1(), &turning(2.0), parameters);
+    hold(&mut moving, 0.08, 1000);
+    DRIVE_TRAIN.check((moving.joint().rigid_speed - 2.0) / (0.05 * RATIO * 0.1 / q1_inertia()) - 1.0);
+}
+
+#[test]
+fn a_turning_joint_coasts_to_rest_and_stays() {
+    let mut parameters = DriveTrainParameters::ideal();
+    parameters.load.friction = FrictionParameters { coulomb: 0.3, ..FrictionParameters::default() };
+    let mut train = train(&q1(), &turning(0.3), parameters);
+    hold(&mut train, 0.0, 500);
+    DRIVE_TRAIN.check(train.joint().rigid_speed / (0.3 - 0.3 * 0.05 / q1_inertia()) - 1.0);
+    hold(&mut train, 0.0, 3000);
+    assert!(train.joint().link_speed.abs() < 1e-9, "{} rad/s", train.joint().link_speed);
+}
+
+#[test]
+fn friction_at_rest_is_higher_by_the_stribeck_rise() {
+    let mut parameters = DriveTrainParameters::ideal();
+    parameters.load.friction =
+        FrictionParameters { coulomb: 0.3, stribeck_rise_ratio: 0.2, stribeck_speed: 0.05, viscous: 0.0 };
+    for (torque, moves) in [(0.35, false), (0.37, true)] {
+        let push = vec![Disturbance::Step { start: 0.0, torque }];
+        let mut train = DriveTrain::new(&q1(), &turning(0.0), parameters.clone(), push, 1).expect("sound");
+        hold(&mut train, 0.0, 300);
+        assert_eq!(train.joint().link_speed < -1e-3, moves, "{torque} N m: {} rad/s", train.joint().link_speed);
+    }
+}
+
+#[test]
+fn gravity_pulls_the_link_back_to_zero() {
+    let mut parameters = DriveTrainParameters::ideal();
+    parameters.load.gravity_torque = 6.0;
+    // A pendulum at small angle: the link swings out under its speed and returns after half a period.
+    let mut train = train(&q1(), &turning(0.05), parameters);
+    let half_period = 0.5 * TAU * (q1_inertia() / 6.0).sqrt();
+    hold(&mut train, 0.0, (0.5 * half_period * 10e3).round() as u32);
+    assert!(train.joint().link_angle > 0.0 && train.torques().gravity > 0.0);
+    hold(&mut train, 0.0, (0.5 * half_period * 10e3).round() as u32);
+    // The teeth are free to drift within 4b, 3.8 mrad at the output.
+    assert!(train.joint().link_angle.abs() < 4e-3, "{} rad", train.joint().link_angle);
+}
+
+#[test]
+fn efficiency_is_output_over_input_while_the_motor_drives() {
+    for (command, speed, load) in [(1.0, 2.0, RATIO * 0.97), (1.0, -2.0, RATIO / 0.97)] {
+        let parameters = DriveTrainParameters { efficiency: 0.97, ..DriveTrainParameters::ideal() };
+        let brake = vec![Disturbance::Step { start: 0.0, torque: load }];
+        // Forwards the motor drives a load that takes 97 %; backwards a load drives the motor, which gets 97 %.
+        let mut train = DriveTrain::new(&q1(), &turning(speed), parameters, brake, 1).expect("sound");
+        hold(&mut train, command, 1000);
+        let settled = train.joint().rigid_speed;
+        hold(&mut train, command, 1000);
+        let acceleration = (train.joint().rigid_speed - settled) / 0.1;
+        // What an error of 0.1 % in the efficiency would cause.
+        assert!(acceleration.abs() < 1e-3 * RATIO / q1_inertia(), "{acceleration} rad/s^2 at {speed} rad/s");
+    }
+}
+
+#[test]
+fn an_encoder_reads_the_angle_that_was_with_its_errors_to_one_count() {
+    let encoder = EncoderParameters {
+        once_per_turn_error: 2e-3,
+        once_per_turn_phase: 0.4,
+        twice_per_turn_error: 1e-3,
+        twice_per_turn_phase: 1.1,
+        skew: 73e-6,
+        ..EncoderParameters::ideal(20)
+    };
+    let parameters = DriveTrainParameters { output_encoder: encoder, ..DriveTrainParameters::ideal() };
+    let mut train = train(&q1(), &turning(30.0), parameters);
+    let per_count = TAU / f64::from(1 << 20);
+    for _ in 0..3000 {
+        train.advance(0.0).expect("it runs");
+        let joint = train.joint();
+        let angle = joint.link_angle - 73e-6 * joint.link_speed;
+        let expected = angle + 2e-3 * (angle + 0.4).sin() + 1e-3 * (2.0 * angle + 1.1).sin();
+        let read = train.measure().output_counts as f64 * per_count;
+        assert!((expected - read - 0.5 * per_count).abs() < 0.51 * per_count, "{expected} rad read as {read}");
+        let motor = train.measure().motor_counts as f64 * TAU / f64::from(1 << 18);
+        assert!((0.0..=TAU / f64::from(1 << 18)).contains(&(joint.motor_angle - motor)));
+    }
+    assert!(train.joint().link_angle > TAU, "whole turns are counted");
+}
+
+#[test]
+fn cogging_repeats_with_the_motor_angle() {
+    let mut parameters = DriveTrainParameters::ideal();
+    parameters.motor.cogging_torque = 0.02;
+    parameters.motor.cogging_periods_per_turn = 84;
+    let mut train = train(&q1(), &turning(1.0), parameters);
+    for _ in 0..200 {
+        let before = train.joint().motor_angle;
+        let speed = train.joint().motor_speed;
+        train.advance(0.0).expect("it runs");
+        // The last of ten parts lies between the two.
+        let last_part = before + speed * 95e-6;
+        assert!((train.torques().cogging - 0.02 * (84.0 * last_part).sin()).abs() < 2e-4);
+    }
+}
+
+#[test]
+fn a_drive_train_out_of_range_is_refused_with_the_mend() {
+    let refusal = |change: fn(&mut DriveTrainParameters)| {
+        let mut parameters = DriveTrainParameters::q1();
+        change(&mut parameters);
+        DriveTrain::new(&q1(), &Start::Still, parameters, Vec::new(), 0).expect_err("must be refused").to_string()
+    };
+    assert_eq!(refusal(|train| train.efficiency = 1.2), "efficiency is 1.2; it must be above 0 and at most 1");
+    assert_eq!(refusal(|train| train.output_encoder.bits = 0), "encoder bits is 0; it must be from 1 to 30");
+}

@@ -62,8 +62,7 @@ pub(crate) fn check(geometry: &Geometry, notes: &Notes<'_>) {
     if differ(by_radii, by_teeth, MISFIT) {
         let keys = ["geometry.planet_base_radius_mm", "geometry.sun_base_radius_mm", "geometry.ring_teeth"];
         let message = format!("the ratio is {by_radii:.5} by base radii and {by_teeth:.5} by teeth");
-        let help =
-            "base radii of sun and planet stand to each other as their teeth do, and ring = sun + 2 planet teeth";
+        let help = "r_bp / r_bs must be planet_teeth / sun_teeth, and ring_teeth = sun_teeth + 2 planet_teeth";
         note(&keys, message, help.to_owned());
     }
 

@@ -55,8 +55,7 @@ const INERTIA_HINT: &str = "a moment of inertia in kg m^2, about the gear's own 
 const ANGLE: Kind = Number(Degrees, Between(5.0, 45.0));
 const TEETH: Kind = Whole(5, 1000);
 const PHASE: Kind = PerPlanet(Si, Between(-6.3, 6.3));
-const PHASE_HINT: &str =
-    "in rad: one number is the phase of planet 0 and the others follow from the teeth; a list states every planet's";
+const PHASE_HINT: &str = "in rad, within a turn: one number is the phase of planet 0 and the others follow from the teeth; a list states every planet's";
 const FRICTION_HINT: &str = "a torque in N m, 0 if there is none";
 
 /// All keys, in the order of the documentation.

@@ -1,21 +1,25 @@
 //! `joint check`: reads a joint file and prints what follows from it, or everything that is wrong with it. Nothing is
 //! run here.
 //!
-//! `source` finds and reads the file, `diagnostic` draws what is wrong, `figures` computes, `step` asks the design for
+//! `source` finds and reads the file, `diagnostic` draws what is wrong, `derive` computes the `figures`, `step` asks the design for
 //! the fixed step, `layout` prints.
 
+mod derive;
 mod diagnostic;
 mod figures;
 mod layout;
 mod source;
 mod step;
+#[cfg(test)]
+mod tests;
 
 use std::fs;
 use std::io::{self, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::failure::{Failure, Outcome};
-pub use figures::{Figures, figures};
+pub use derive::figures;
+pub use figures::Figures;
 pub use layout::layout;
 pub use source::{Loaded, load};
 
@@ -37,19 +41,25 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Outcome<()> {
     let loaded = load(&arguments.file)?;
     let figures = figures(&loaded, arguments.rate)?;
-    let to_standard_output = arguments.json.as_ref().is_some_and(|out| out.as_os_str() == "-");
-    if let Some(out) = &arguments.json {
-        let json = serde_json::to_string_pretty(&figures)
-            .map_err(|error| Failure::new(format!("the figures cannot be written as JSON: {error}")))?;
-        if to_standard_output {
-            return print(&(json + "\n"));
-        }
-        fs::write(out, json + "\n").map_err(|error| {
-            Failure::new(format!("cannot write {}: {error}", out.display()))
-                .with_help("name a file in a folder that exists and can be written to")
-        })?;
+    match &arguments.json {
+        Some(out) if out.as_os_str() == "-" => return print(&json(&figures)?),
+        Some(out) => save(&figures, out)?,
+        None => {}
     }
     print(&layout(&figures))
+}
+
+fn json(figures: &Figures) -> Outcome<String> {
+    serde_json::to_string_pretty(figures)
+        .map(|json| json + "\n")
+        .map_err(|error| Failure::new(format!("the figures cannot be written as JSON: {error}")))
+}
+
+fn save(figures: &Figures, out: &Path) -> Outcome<()> {
+    fs::write(out, json(figures)?).map_err(|error| {
+        Failure::new(format!("cannot write {}: {error}", out.display()))
+            .with_help("name a file in a folder that exists and can be written to")
+    })
 }
 
 /// A reader that has gone away is no error.

@@ -109,7 +109,7 @@ fn radii_that_contradict_the_teeth_are_refused() {
     let text =
         by_radii("carrier_radius_mm = 22.5").replace("7.0476947", "8.0476947").replace("14.0953893", "13.0953893");
     let message = "the ratio is 5.25444 by base radii and 6.00000 by teeth";
-    refused(&text, message, "13.0953893", "stand to each other as their teeth do");
+    refused(&text, message, "13.0953893", "r_bp / r_bs must be planet_teeth / sun_teeth");
 }
 
 #[test]

@@ -328,3 +328,38 @@ pub(crate) fn of(section: &str) -> impl Iterator<Item = &'static Key> {
 pub(crate) fn find(section: &str, name: &str) -> &'static Key {
     of(section).find(|key| key.name == name).expect("readers ask for listed keys only")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{KEYS, Kind};
+
+    #[test]
+    fn every_key_is_documented_with_its_bound() {
+        let document = include_str!("../../docs/joint-file.md");
+        for key in KEYS {
+            let value = match key.kind {
+                Kind::Text => "text".to_owned(),
+                Kind::Choice(words) => {
+                    words.iter().map(|word| format!("`\"{word}\"`")).collect::<Vec<_>>().join(" or ")
+                }
+                Kind::Whole(low, high) => format!("between {low} and {high}"),
+                Kind::Number(_, bound) => bound.text(),
+                Kind::PerPlanet(_, bound) => format!("{}; number or list", bound.text()),
+                Kind::Section => continue,
+            };
+            let name = format!("| `{}` |", key.name);
+            let documented = document.lines().any(|line| line.starts_with(&name) && line.contains(&value));
+            assert!(documented, "no row `{name}` with `{value}`");
+        }
+    }
+
+    #[test]
+    fn every_section_is_documented() {
+        let document = include_str!("../../docs/joint-file.md");
+        for key in KEYS.iter().filter(|key| matches!(key.kind, Kind::Section)) {
+            let path =
+                if key.section.is_empty() { key.name.to_owned() } else { format!("{}.{}", key.section, key.name) };
+            assert!(document.contains(&format!("`[{path}]`")), "{path}");
+        }
+    }
+}

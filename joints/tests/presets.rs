@@ -130,3 +130,14 @@ fn q1_has_its_drive_train_in_si() {
     assert_eq!((drive_train.motor_encoder.bits, drive_train.output_encoder.bits), (14, 17));
     assert_eq!(file("q1").profile.motor_torque_limit, 2.5);
 }
+
+#[test]
+fn the_documented_example_is_a_joint() {
+    let document = include_str!("../../docs/joint-file.md");
+    let example = document.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).expect("an example");
+    let file = read(example).expect("the example is good");
+    assert_eq!(file.warnings, []);
+    assert_eq!(file.drive_train, None);
+    assert_close(file.profile.drive_torque, 2.0, 1e-12);
+    assert_close(file.profile.motor_torque_limit, 4.0, 1e-12);
+}

@@ -12,6 +12,9 @@ use crate::record::{ErrorSeries, RunRecord, Samples};
 /// Width of an ordinary line [px].
 const LINE: f64 = 1.4;
 
+/// Lines closer than this part of the greatest value cannot be told apart.
+const ALIKE: f64 = 0.01;
+
 /// A stretch of motion and the time over which it is shown.
 pub struct View<'a> {
     /// Whose run.
@@ -121,11 +124,15 @@ impl View<'_> {
             if least.is_finite() {
                 marks.push(Mark::Band { range: (-least, least), label: "parted (2b)".into() });
             }
-            for (planet, column) in columns.iter().skip(first).take(planets).enumerate() {
-                let label = format!("planet {}", planet + 1);
-                // Meshes in phase lie on each other: wider lines below show that they are there.
-                let width = LINE + 1.3 * (planets - 1 - planet) as f64;
-                marks.push(self.line_of_width(column, LINES[planet % LINES.len()], &label, width));
+            let own: Vec<Vec<(f64, f64)>> =
+                columns.iter().skip(first).take(planets).map(|c| self.points(self.samples, c)).collect();
+            let together = alike(&own, ALIKE * most);
+            for (planet, points) in own.into_iter().enumerate().take(if together { 1 } else { planets }) {
+                let label =
+                    if together { format!("all {planets} planets, alike") } else { format!("planet {}", planet + 1) };
+                // Lines may lie on each other: wider ones below show that they are there.
+                let width = LINE + if together { 0.0 } else { 2.0 * (planets - 1 - planet) as f64 };
+                marks.push(Mark::Line { points, ink: LINES[planet % LINES.len()], label, width });
             }
             Panel::lines(title, Unit::of_length(most), marks)
         };
@@ -137,11 +144,7 @@ impl View<'_> {
     }
 
     fn line(&self, values: &[f64], ink: Ink, label: &str) -> Mark {
-        self.line_of_width(values, ink, label, LINE)
-    }
-
-    fn line_of_width(&self, values: &[f64], ink: Ink, label: &str, width: f64) -> Mark {
-        Mark::Line { points: self.points(self.samples, values), ink, label: label.into(), width }
+        Mark::Line { points: self.points(self.samples, values), ink, label: label.into(), width: LINE }
     }
 
     fn reference_line(&self, samples: &Samples, values: &[f64]) -> Option<Mark> {
@@ -191,6 +194,28 @@ pub fn root_mean_square(series: &ErrorSeries) -> f64 {
     (finite.iter().map(|value| value * value).sum::<f64>() / finite.len().max(1) as f64).sqrt()
 }
 
+/// Whether all lines are the same but for a distance.
+fn alike(lines: &[Vec<(f64, f64)>], distance: f64) -> bool {
+    let near = |a: &(f64, f64), b: &(f64, f64)| (a.1 - b.1).abs() <= distance;
+    lines.len() > 1 && lines.iter().all(|line| line.iter().zip(&lines[0]).all(|(a, b)| near(a, b)))
+}
+
 fn wide(values: &[f32]) -> Vec<f64> {
     values.iter().copied().map(f64::from).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_that_differ_anywhere_are_not_alike() {
+        let line: Vec<(f64, f64)> = (0..10).map(|i| (f64::from(i), f64::from(i))).collect();
+        let mut other = line.clone();
+        other[7].1 += 0.5;
+        assert!(alike(&[line.clone(), other.clone()], 0.6));
+        assert!(!alike(&[line.clone(), other.clone()], 0.4));
+        other[7].1 = f64::NAN;
+        assert!(!alike(&[line, other], 0.6));
+    }
 }

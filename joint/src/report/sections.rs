@@ -108,7 +108,7 @@ pub fn motion(record: &RunRecord) -> Markup {
         section {
             h2 { "Motion" (emulated(record)) }
             p.lead {
-                (number(record.samples.len() as f64)) " samples, one every " (every) " ticks. Where a picture has less "
+                (number(record.samples.len() as f64)) " samples, one every " (every) " ticks. Where a picture has fewer "
                 "columns than samples, least and greatest of each column are kept."
             }
             (picture(record, &whole.figure("Torques", whole.torques()), html! { "Torques as commanded, held between commands." }))

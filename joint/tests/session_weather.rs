@@ -73,7 +73,7 @@ fn run_with(
         .connect(&expected(), PATIENCE)
         .and_then(|_| session.reset(settings))
         .and_then(|()| session.stream(&profile(), &mut |_| {}))
-        .and_then(|()| session.finish());
+        .and_then(|()| session.finish(TICK_RATE));
     if outcome.is_err() {
         session.abandon();
     }

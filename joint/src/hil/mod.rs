@@ -6,7 +6,6 @@ pub mod logs;
 pub mod profile;
 pub mod recording;
 pub mod session;
-pub mod source;
 pub mod transport;
 pub mod twin;
 

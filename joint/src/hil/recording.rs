@@ -71,6 +71,11 @@ impl Recording {
         };
     }
 
+    /// Forgets samples after a tick.
+    pub fn keep_until(&mut self, tick: u32) {
+        self.samples.retain(|sample| sample.tick <= tick);
+    }
+
     /// Last tick that the board is known to have done.
     pub fn last_tick(&self) -> u32 {
         self.samples.last().map_or(0, |sample| sample.tick)

@@ -99,13 +99,16 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
-    /// Asks for the statistics of the run, then ends it.
-    pub fn finish(&mut self) -> Outcome<()> {
+    /// Asks for the statistics of the run, then ends it. Samples after `last_tick` are no part of it: in real time the
+    /// board goes on until it is stopped.
+    pub fn finish(&mut self, last_tick: u32) -> Outcome<()> {
         self.recording.statistics = None;
         self.send(&ToBoard::Statistics { reset: false })?;
         self.wait("statistics", |recording| recording.statistics.is_some())?;
         self.send(&ToBoard::Stop)?;
-        self.drain()
+        self.drain()?;
+        self.recording.keep_until(last_tick);
+        Ok(())
     }
 
     /// Ends a run that has gone wrong: stops the board and takes what it still says, as far as that can be had.

@@ -74,7 +74,6 @@ impl Session<'_> {
                 return Err(self.stands_still(&stream));
             }
         }
-        self.recording.samples.retain(|sample| sample.tick <= profile.ticks);
         Ok(())
     }
 

@@ -30,7 +30,7 @@ pub trait SwitchedSystem {
     fn guard_resolution(&self) -> f64;
     /// Error that one step may make in an entry.
     fn tolerance(&self, entry: usize) -> f64;
-    /// Longest step: no guard may have more than one extremum within it [s].
+    /// Longest step under the frozen choices: no guard may have more than one extremum within it [s].
     fn longest_step(&self) -> f64;
 }
 
@@ -110,10 +110,10 @@ impl Integrator {
 
     /// Integrates up to `end`; inputs of the system may have changed since the last call.
     pub fn advance<S: SwitchedSystem>(&mut self, system: &mut S, end: f64) -> Result<(), IntegrationError> {
-        let longest = system.longest_step();
         let mut rates = [0.0; MAX_ENTRIES];
         let mut sliver = (self.time, 0);
         self.restart(system, &mut rates);
+        let longest = system.longest_step();
         while self.time < end {
             let blind = sliver.1 >= EVENTS_IN_A_GRAZE;
             let remaining = end - self.time;

@@ -64,6 +64,8 @@ impl JointEquations {
             zones: [[Zone::Free; MAX_PLANETS]; 2],
             excitation: joint.excitation,
             highest_frequency,
+            harmonics: harmonics(&joint.sun_planet).max(harmonics(&joint.ring_planet)),
+            phase_rate: 0.0,
             drive_force: 0.0,
             load_force: 0.0,
         })
@@ -95,6 +97,14 @@ fn constants(
             error_phase: phases(planet).1,
         })
         .collect()
+}
+
+/// Highest harmonic of a stiffness wave.
+fn harmonics(mesh: &Mesh) -> f64 {
+    match mesh.stiffness_wave {
+        StiffnessWave::Harmonic { .. } => 1.0,
+        StiffnessWave::Rectangular { order, .. } => order.max(1) as f64,
+    }
 }
 
 /// A bound on the highest natural frequency (Gershgorin, row by row), with the stiffness at its crest [rad/s].

@@ -19,8 +19,8 @@ const STEP_TOLERANCE: f64 = 1e-11;
 /// Depth at which an event is declared, over b_c.
 const EVENT_DEPTH: f64 = 1e-12;
 
-/// Longest step times the highest frequency that the stiffnesses and masses allow. Waves of that frequency have at most
-/// one extremum in it, which is what event search asks for.
+/// Longest step times the highest frequency that stiffnesses, masses and excitation allow. Waves of that frequency have
+/// at most one extremum in it, which is what event search asks for.
 const LONGEST_STEP: f64 = 1.5;
 
 /// The joint as masses on springs along the line of action.
@@ -40,6 +40,10 @@ pub(super) struct JointEquations {
     pub excitation: Excitation,
     /// A bound on the highest natural frequency, teeth in contact [rad/s].
     pub highest_frequency: f64,
+    /// Highest harmonic of the stiffness waves.
+    pub harmonics: f64,
+    /// Phase rate when the zones were frozen [rad/s].
+    pub phase_rate: f64,
     /// T_D / r_bs.
     pub drive_force: f64,
     /// T_L / (r_c cos alpha).
@@ -170,6 +174,7 @@ impl SwitchedSystem for JointEquations {
 
     fn freeze(&mut self, time: f64, state: &Entries) {
         let phase = self.phase(time, state);
+        self.phase_rate = phase.rate;
         let speeds = &state[self.bodies()..];
         for kind in [SUN_PLANET, RING_PLANET] {
             for planet in 0..self.planets {
@@ -210,7 +215,7 @@ impl SwitchedSystem for JointEquations {
     }
 
     fn longest_step(&self) -> f64 {
-        LONGEST_STEP / self.highest_frequency
+        LONGEST_STEP / self.highest_frequency.max(self.harmonics * self.phase_rate.abs())
     }
 }
 

@@ -95,13 +95,8 @@ pub fn design_scheme<T: Real, const N: usize>(
 /// Sub-steps a tick, from the fastest mode of the closed joint at its stiffest and a prescribed mesh frequency.
 fn substeps(parameters: &JointParameters, tick_rate: u32) -> Result<u32, DesignError> {
     let fastest = modes::natural_frequencies(parameters).last().copied().unwrap_or(0.0);
-    let stiffest = MESH_KINDS
-        .map(|kind| {
-            let wave = &parameters.mesh(kind).stiffness_wave;
-            (1..=wave.order()).map(|m| wave.coefficients(m)).map(|(a, b)| libm::hypot(a, b)).sum::<f64>()
-        })
-        .into_iter()
-        .fold(0.0, f64::max);
+    let swings = MESH_KINDS.map(|kind| parameters.mesh(kind).stiffness_wave.swing());
+    let stiffest = swings[0].max(swings[1]);
     let frequency = fastest * libm::sqrt(1.0 + stiffest);
     let phase = frequency / f64::from(tick_rate.max(1));
     // In `angle` mode the joint's speed sets the mesh frequency, far below its modes.

@@ -103,6 +103,11 @@ impl StiffnessWave {
         }
     }
 
+    /// Largest swing about the mean that the harmonics kept can add up to, relative to the mean.
+    pub fn swing(&self) -> f64 {
+        (1..=self.order()).map(|harmonic| self.coefficients(harmonic)).map(|(a, b)| libm::hypot(a, b)).sum()
+    }
+
     /// Fourier coefficients (a_m, b_m) of harmonic m >= 1: K/K_m = 1 + sum a_m sin(m phase) + b_m cos(m phase).
     ///
     /// The rectangular wave (Fig. 3) is high for a fraction d of the period, centred at phase pi/2 so that d = 1/2

@@ -1,12 +1,15 @@
 //! The fixed step, in f32 on a board: `model` is the door; `flow` takes ticks in which contacts hold, `substep` and
-//! `crossing` those in which they may change; `mesh_force`, `excitation` and `phase` are what both stand on.
+//! `crossing` those in which they may change; `contact`, `excitation` and `phase` are what both stand on.
 
+#![allow(clippy::needless_range_loop, reason = "one index walks several tables of the same mesh")]
+
+mod contact;
 mod crossing;
 mod excitation;
 mod flow;
-mod mesh_force;
 mod model;
 pub mod phase;
+mod runge_kutta;
 mod state;
 mod substep;
 

@@ -157,6 +157,8 @@ pub struct Flow<T: Real> {
     pub whole_quadratic: [Inputs<T>; 3],
     /// Pseudo-force constant over the whole step.
     pub whole_constant: Inputs<T>,
+    /// The step, in dimensionless time.
+    pub step: T,
     /// Largest mesh speed over clearance at a node for which no crossing hides between nodes: a quarter step.
     pub reach: T,
     /// Mesh periods over the step, in 2^-32, up to which the excitation counts as quadratic in time.
@@ -265,6 +267,6 @@ impl Digest {
             self.block(&inputs.in_phase);
             self.reals(&inputs.deviation);
         }
-        self.reals(&[flow.reach, flow.longest_way]);
+        self.reals(&[flow.step, flow.reach, flow.longest_way]);
     }
 }

@@ -28,6 +28,8 @@ pub struct Dynamics {
     pub torque_gain: DMatrix<f64>,
     /// Dimensionless mobilities of the bodies, in the order of u.
     pub mobilities: DVector<f64>,
+    /// Greatest damping over least stiffness of a mesh: the time within which damping can undo a contact force.
+    pub longest_relaxation: f64,
     /// Dimensionless stiffness and damping between carrier and link, if compliant.
     pub wind_up: Option<(f64, f64)>,
 }
@@ -128,6 +130,14 @@ impl Dynamics {
             damping[2 * planets] = damper;
         }
 
+        let longest_relaxation = MESH_KINDS
+            .into_iter()
+            .enumerate()
+            .map(|(family, kind)| {
+                damping[family * planets]
+                    / (stiffness[family * planets] * (1.0 - parameters.mesh(kind).stiffness_wave.swing()))
+            })
+            .fold(0.0, f64::max);
         let inverse_mass = DMatrix::from_diagonal(&mobilities);
         let gain = &relative * inverse_mass * (&elongation * &relative).transpose();
         let mut torque_gain = DMatrix::zeros(coordinates, 3);
@@ -143,6 +153,7 @@ impl Dynamics {
             mesh_gain: gain.columns(0, 2 * planets).into_owned(),
             torque_gain,
             mobilities,
+            longest_relaxation,
             wind_up,
         }
     }

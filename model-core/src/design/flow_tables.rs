@@ -32,7 +32,9 @@ pub fn flow<T: Real>(dynamics: &Dynamics, step: f64) -> Flow<T> {
         half_constant: inputs(&half.input_integrals[0]),
         whole: sorting.transition(&whole),
         half: sorting.transition(&half),
-        reach: T::from_f64(0.25 * step),
+        step: T::from_f64(step),
+        // A mesh beyond reach * speed also pushes under the law `contact`, whatever its damping.
+        reach: T::from_f64((0.25 * step).max(dynamics.longest_relaxation)),
         longest_way: T::from_f64(LARGEST_WAY * 4_294_967_296.0),
     }
 }

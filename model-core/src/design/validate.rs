@@ -86,7 +86,7 @@ pub fn validate(parameters: &JointParameters) -> Result<(), DesignError> {
             let given = order as f64;
             return Err(DesignError::OutOfRange { what: "the order of the stiffness wave", given, must_be: "1 to 8" });
         }
-        let swing: f64 = (1..=order).map(|m| mesh.stiffness_wave.coefficients(m)).map(|(a, b)| libm::hypot(a, b)).sum();
+        let swing = mesh.stiffness_wave.swing();
         if swing.is_nan() || swing >= 1.0 {
             let what = "the sum of the stiffness ripple's harmonics over the mean";
             return Err(DesignError::OutOfRange { what, given: swing, must_be: "below 1: stiffness stays positive" });

@@ -1,31 +1,54 @@
 //! Stiffness and imposed error of every mesh at one instant (eqs 7 and 11), from one sine and one cosine: phases of
 //! the meshes are folded into the tables. Fig. 3's wave is a few harmonics of the same pair.
 
-use core::array;
-
 use crate::real::Real;
 use crate::realtime::phase::sine_cosine;
 use crate::tables::{Excitation, MeshTable, Tables};
 
-/// One mesh at one instant, dimensionless.
+/// One value for each mesh: sun-planet of every planet, then ring-planet.
+pub type PerMesh<T, const N: usize> = [[T; N]; 2];
+
+/// All meshes at one instant, dimensionless.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Instant<T> {
+pub struct Instant<T, const N: usize> {
     /// Stiffness.
-    pub stiffness: T,
+    pub stiffness: PerMesh<T, N>,
     /// Imposed error e.
-    pub error: T,
+    pub error: PerMesh<T, N>,
     /// Its rate.
-    pub error_rate: T,
+    pub error_rate: PerMesh<T, N>,
 }
 
-/// All meshes at one instant: sun-planet, ring-planet.
-pub type Instants<T, const N: usize> = [[Instant<T>; N]; 2];
+/// Sine and cosine of the mesh phase, or of a part of it to be added.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rotor<T> {
+    sine: T,
+    cosine: T,
+}
 
-/// Where the mesh phase is at the start of a tick, and how fast it goes.
+impl<T: Real> Rotor<T> {
+    /// At a phase in 2^-32 periods.
+    #[inline]
+    pub fn at(phase: u32) -> Self {
+        let (sine, cosine) = sine_cosine(phase);
+        Self { sine, cosine }
+    }
+
+    /// Further by another's angle.
+    #[inline]
+    pub fn turned(&self, by: &Self) -> Self {
+        Self {
+            sine: self.sine * by.cosine + self.cosine * by.sine,
+            cosine: self.cosine * by.cosine - self.sine * by.sine,
+        }
+    }
+}
+
+/// How the mesh phase goes over a tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeshPhase<T> {
-    /// In 2^-32 periods.
-    pub start: u32,
+    /// Where it starts.
+    pub start: Rotor<T>,
     /// Periods over the tick, in 2^-32.
     pub way: T,
     /// d(phase)/d(tau) [rad].
@@ -33,10 +56,10 @@ pub struct MeshPhase<T> {
 }
 
 impl<T: Real> MeshPhase<T> {
-    /// What a part of the tick adds to the phase, in 2^-32 periods.
+    /// What a part of the tick adds to the phase.
     #[inline]
-    pub fn step(&self, part: T) -> u32 {
-        (self.way * part).to_i64() as u32
+    pub fn over(&self, part: T) -> Rotor<T> {
+        Rotor::at((self.way * part).to_i64() as u32)
     }
 }
 
@@ -51,34 +74,40 @@ pub fn mesh_way<T: Real>(excitation: &Excitation<T>, way: i64) -> T {
     }
 }
 
-/// Evaluates every mesh at a phase.
+/// Evaluates every mesh at a phase that goes at `rate`.
 #[inline]
-pub fn instants<T: Real, const N: usize>(tables: &Tables<T, N>, phase: u32, rate: T) -> Instants<T, N> {
-    let (sine, cosine) = sine_cosine::<T>(phase);
-    let harmonics = tables.excitation.harmonics as usize;
-    array::from_fn(|kind| {
+pub fn instant<T: Real, const N: usize>(tables: &Tables<T, N>, phase: &Rotor<T>, rate: T) -> Instant<T, N> {
+    let Rotor { sine, cosine } = *phase;
+    let (sine_rate, cosine_rate) = (rate * cosine, -(rate * sine));
+    let mut instant = Instant { stiffness: [[T::ZERO; N]; 2], error: [[T::ZERO; N]; 2], error_rate: [[T::ZERO; N]; 2] };
+    for kind in 0..2 {
         let mean = tables.springs[kind].stiffness;
-        array::from_fn(|i| {
+        for i in 0..N {
             let mesh = &tables.meshes[kind][i];
             let [error_sine, error_cosine] = mesh.error;
-            Instant {
-                stiffness: mean + ripple(mesh, harmonics, sine, cosine),
-                error: error_sine * sine + error_cosine * cosine,
-                error_rate: rate * (error_sine * cosine - error_cosine * sine),
+            instant.error[kind][i] = error_sine * sine + error_cosine * cosine;
+            instant.error_rate[kind][i] = error_sine * sine_rate + error_cosine * cosine_rate;
+            let [first_sine, first_cosine] = mesh.ripple[0];
+            instant.stiffness[kind][i] = mean + first_sine * sine + first_cosine * cosine;
+        }
+    }
+    if tables.excitation.harmonics > 1 {
+        let harmonics = tables.excitation.harmonics as usize;
+        for (row, meshes) in instant.stiffness.iter_mut().zip(&tables.meshes) {
+            for (stiffness, mesh) in row.iter_mut().zip(meshes) {
+                *stiffness += overtones(mesh, harmonics, phase);
             }
-        })
-    })
+        }
+    }
+    instant
 }
 
-/// Sum of the harmonics in use; sine and cosine of the higher ones by the angle sum.
-#[inline]
-fn ripple<T: Real>(mesh: &MeshTable<T>, harmonics: usize, sine: T, cosine: T) -> T {
-    let [first_sine, first_cosine] = mesh.ripple[0];
-    let mut sum = first_sine * sine + first_cosine * cosine;
-    let (mut s, mut c) = (sine, cosine);
-    for [sine_part, cosine_part] in mesh.ripple.iter().take(harmonics).skip(1) {
-        (s, c) = (s * cosine + c * sine, c * cosine - s * sine);
-        sum += *sine_part * s + *cosine_part * c;
+/// Sum of the harmonics above the first.
+fn overtones<T: Real>(mesh: &MeshTable<T>, harmonics: usize, phase: &Rotor<T>) -> T {
+    let (mut sum, mut multiple) = (T::ZERO, *phase);
+    for [sine, cosine] in mesh.ripple.iter().take(harmonics).skip(1) {
+        multiple = multiple.turned(phase);
+        sum += *sine * multiple.sine + *cosine * multiple.cosine;
     }
     sum
 }

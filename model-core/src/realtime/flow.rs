@@ -8,169 +8,211 @@ use core::array;
 
 use nalgebra::SVector;
 
-use crate::mesh::DampingLaw;
 use crate::real::Real;
-use crate::realtime::excitation::Instants;
-use crate::realtime::mesh_force::{
-    Deflection, Drive, Law, PerMesh, deflections, kinematic_deflections, smoothed_force,
-};
+use crate::realtime::contact::{Drive, Laws, spread};
+use crate::realtime::crossing::FrozenStep;
+use crate::realtime::excitation::{Instant, MeshPhase, PerMesh, instant};
+use crate::realtime::runge_kutta::Motion;
 use crate::realtime::state::Relative;
-use crate::realtime::substep::{Motion, Nodes, laws};
+use crate::realtime::substep::smoothed_forces;
 use crate::tables::{Inputs, Tables, Transition};
 
-/// One tick with the contact set of its start; `None` if the set cannot be shown to hold.
-#[inline]
+/// One tick with the contact set of its start; `None` if the set does not hold up to the middle. A mesh that opens
+/// after that is a crossing to correct, so that no work is thrown away late.
 pub fn hold<T: Real, const N: usize>(
     tables: &Tables<T, N>,
     drive: &Drive<T>,
-    nodes: Nodes<'_, T, N>,
+    phase: &MeshPhase<T>,
+    start: &Instant<T, N>,
     motion: &Motion<T, N>,
 ) -> Option<Motion<T, N>> {
-    if tables.sharpness > T::ZERO {
-        return None;
-    }
-    let at_start = deflections(&motion.position, &motion.rate, nodes[0]);
-    let laws = laws(tables, &at_start, nodes[0]);
-    if !holds(tables, &laws, &at_start, nodes[0]) {
-        return None;
-    }
     let flow = &tables.flow;
-    let modes = Modes::of(tables.planet_share, motion);
-    let start = pseudo_force(tables, &laws, motion, nodes[0]);
-
-    let middle = modes.free(&flow.half, drive).with([(&flow.half_constant, &start)]).motion();
-    if !holds(tables, &laws, &deflections(&middle.position, &middle.rate, nodes[1]), nodes[1]) {
+    if !(phase.way < flow.longest_way && -phase.way < flow.longest_way) {
         return None;
     }
-    let middle = pseudo_force(tables, &laws, &middle, nodes[1]);
+    let seats = seats(tables, motion, start);
+    let (from_start, true) = closed_force(tables, &seats, motion, start) else { return None };
+    let modes = Modes::of(tables.planet_share, motion);
 
+    let half = phase.over(T::HALF);
+    let middle = phase.start.turned(&half);
+    let guess = modes.free(&flow.half, drive).with([(&flow.half_constant, &from_start)]).motion();
+    let at_middle = instant(tables, &middle, phase.rate);
+    let (from_middle, true) = closed_force(tables, &seats, &guess, &at_middle) else { return None };
+
+    let at_end = instant(tables, &middle.turned(&half), phase.rate);
     let free = modes.free(&flow.whole, drive);
-    let [from_start, from_middle] = &flow.whole_linear;
-    let end = free.with([(from_start, &start), (from_middle, &middle)]).motion();
-    let end = pseudo_force(tables, &laws, &end, nodes[2]);
+    let [first, second] = &flow.whole_linear;
+    let guess = free.with([(first, &from_start), (second, &from_middle)]).motion();
+    let (from_end, closed) = closed_force(tables, &seats, &guess, &at_end);
 
-    let [from_start, from_middle, from_end] = &flow.whole_quadratic;
-    let end = free.with([(from_start, &start), (from_middle, &middle), (from_end, &end)]).motion();
-    holds(tables, &laws, &deflections(&end.position, &end.rate, nodes[2]), nodes[2]).then_some(end)
+    let [first, second, third] = &flow.whole_quadratic;
+    let end = free.with([(first, &from_start), (second, &from_middle), (third, &from_end)]).motion();
+    if closed {
+        return Some(end);
+    }
+    let damping = [0, 1].map(|kind| [tables.springs[kind].damping; N]);
+    let mut laws = Laws { closed: [[T::ONE; N]; 2], offset: seats, damping };
+    let observed = laws.observe(&laws.at(&at_end), &end, &at_end);
+    let step = FrozenStep { step: T::HALF * flow.step, phase_rate: phase.rate, observed: &observed };
+    Some(step.correct(tables, drive, &at_end, &mut laws, &end))
 }
 
-/// The paper's step: constant exponential, pseudo-force held (first-order exponential time differencing).
-#[inline]
+/// One tick of the paper's scheme: constant exponential, pseudo-force held over each sub-step (first-order
+/// exponential time differencing).
 pub fn paper<T: Real, const N: usize>(
     tables: &Tables<T, N>,
     drive: &Drive<T>,
-    instants: &Instants<T, N>,
+    phase: &MeshPhase<T>,
+    start: &Instant<T, N>,
     motion: &Motion<T, N>,
 ) -> Motion<T, N> {
-    let actual = deflections(&motion.position, &motion.rate, instants);
-    let linear = kinematic_deflections(&motion.position, &motion.rate);
-    let force = array::from_fn(|kind| {
-        let spring = &tables.springs[kind];
-        array::from_fn(|i| {
-            let instant = &instants[kind][i];
-            let true_force = if tables.sharpness > T::ZERO {
-                smoothed_force(tables, kind, i, actual[kind][i], instant)
-            } else {
-                Law::of(tables, kind, i, actual[kind][i], instant).force(actual[kind][i], instant)
-            };
-            spring.stiffness * linear[kind][i].value + spring.damping * linear[kind][i].rate - true_force
-        })
-    });
-    let free = Modes::of(tables.planet_share, motion).free(&tables.flow.whole, drive);
-    free.with([(&tables.flow.whole_constant, &force)]).motion()
+    let half = phase.over(tables.half_part);
+    let (mut motion, mut rotor, mut now) = (*motion, phase.start, *start);
+    for _ in 0..tables.substeps {
+        let (positions, rates) = (spread(&motion.position), spread(&motion.rate));
+        let mut force = if tables.sharpness > T::ZERO {
+            smoothed_forces(tables, &positions, &rates, &now)
+        } else {
+            let laws = Laws::of(tables, &motion.position, &motion.rate, &now);
+            let frozen = laws.at(&now);
+            let mut forces = positions;
+            for kind in 0..2 {
+                for i in 0..N {
+                    forces[kind][i] = frozen.stiffness[kind][i] * positions[kind][i]
+                        + laws.damping[kind][i] * rates[kind][i]
+                        - frozen.load[kind][i];
+                }
+            }
+            forces
+        };
+        for kind in 0..2 {
+            let spring = &tables.springs[kind];
+            for i in 0..N {
+                let linear = spring.stiffness * positions[kind][i] + spring.damping * rates[kind][i];
+                force[kind][i] = linear - force[kind][i];
+            }
+        }
+        let force = Sorted::new(tables.planet_share, &force);
+        let free = Modes::of(tables.planet_share, &motion).free(&tables.flow.whole, drive);
+        motion = free.with([(&tables.flow.whole_constant, &force)]).motion();
+        rotor = rotor.turned(&half).turned(&half);
+        now = instant(tables, &rotor, phase.rate);
+    }
+    motion
 }
 
-/// Every mesh is closed, and too far from opening for its speed to open it between two nodes.
-fn holds<T: Real, const N: usize>(
+/// Offset of the flank that each mesh is nearer to.
+fn seats<T: Real, const N: usize>(
     tables: &Tables<T, N>,
-    laws: &PerMesh<Law<T>, N>,
-    deflections: &PerMesh<Deflection<T>, N>,
-    instants: &Instants<T, N>,
-) -> bool {
-    let reach = tables.flow.reach;
-    (0..2).all(|kind| {
-        (0..N).all(|i| {
-            let law = &laws[kind][i];
-            let Deflection { value, rate } = deflections[kind][i];
-            let drive_side = value > T::ZERO;
-            let overlap = if drive_side { value - law.offset } else { law.offset - value };
-            let speed = if rate < T::ZERO { -rate } else { rate };
-            let pushes = match tables.damping_law {
-                DampingLaw::Paper => true,
-                DampingLaw::Contact => (law.force(deflections[kind][i], &instants[kind][i]) > T::ZERO) == drive_side,
-            };
-            law.closed && overlap > reach * speed && pushes
-        })
-    })
-}
-
-/// What the linear flow does not know of closed meshes: offset, imposed error, ripple.
-fn pseudo_force<T: Real, const N: usize>(
-    tables: &Tables<T, N>,
-    laws: &PerMesh<Law<T>, N>,
     motion: &Motion<T, N>,
-    instants: &Instants<T, N>,
+    instant: &Instant<T, N>,
 ) -> PerMesh<T, N> {
-    let linear = kinematic_deflections(&motion.position, &motion.rate);
-    array::from_fn(|kind| {
+    let mut offset = spread(&motion.position);
+    for kind in 0..2 {
+        for i in 0..N {
+            let half_backlash = tables.meshes[kind][i].half_backlash;
+            let drive_side = offset[kind][i] > instant.error[kind][i];
+            offset[kind][i] = if drive_side { half_backlash } else { -half_backlash };
+        }
+    }
+    offset
+}
+
+/// What the linear flow does not know of closed meshes: offset, imposed error, ripple; and whether every mesh is
+/// closed, too far from opening for its speed to open it before the next node.
+#[inline]
+fn closed_force<T: Real, const N: usize>(
+    tables: &Tables<T, N>,
+    offset: &PerMesh<T, N>,
+    motion: &Motion<T, N>,
+    instant: &Instant<T, N>,
+) -> (Sorted<T, N>, bool) {
+    let (positions, rates) = (spread(&motion.position), spread(&motion.rate));
+    let mut force = positions;
+    let mut holds = true;
+    for kind in 0..2 {
         let spring = &tables.springs[kind];
-        array::from_fn(|i| {
-            let instant = &instants[kind][i];
-            let offset = laws[kind][i].offset + instant.error;
-            (spring.stiffness - instant.stiffness) * linear[kind][i].value
-                + instant.stiffness * offset
-                + spring.damping * instant.error_rate
-        })
-    })
+        for i in 0..N {
+            let (position, offset, error) = (positions[kind][i], offset[kind][i], instant.error[kind][i]);
+            let (stiffness, error_rate) = (instant.stiffness[kind][i], instant.error_rate[kind][i]);
+            let overlap = position - error - offset;
+            let way = tables.flow.reach * (rates[kind][i] - error_rate);
+            // Beyond the flank by more than the way that the mesh may go, on the side that the offset says.
+            holds &= if offset >= T::ZERO { overlap > way && overlap > -way } else { overlap < way && overlap < -way };
+            force[kind][i] =
+                (spring.stiffness - stiffness) * position + stiffness * (offset + error) + spring.damping * error_rate;
+        }
+    }
+    (Sorted::new(tables.planet_share, &force), holds)
+}
+
+/// Mesh forces as the flow's inputs take them.
+struct Sorted<T, const N: usize> {
+    /// Sums over planets: sun-planet, ring-planet.
+    sums: [T; 2],
+    /// Deviation of (sun-planet - ring-planet) from its mean.
+    apart: [T; N],
+}
+
+impl<T: Real, const N: usize> Sorted<T, N> {
+    #[inline]
+    fn new(share: T, force: &PerMesh<T, N>) -> Self {
+        let sums = [total(&force[0]), total(&force[1])];
+        let mean = share * (sums[0] - sums[1]);
+        let mut apart = force[0];
+        for (value, ring) in apart.iter_mut().zip(&force[1]) {
+            *value = *value - *ring - mean;
+        }
+        Self { sums, apart }
+    }
 }
 
 /// Motion split into what the planets do together and what each does apart, which the flow keeps apart.
 #[derive(Clone, Copy)]
 struct Modes<T: Real, const N: usize> {
-    /// 1/N.
-    share: T,
     in_phase: SVector<T, 6>,
     deviations: [SVector<T, 2>; N],
 }
 
 impl<T: Real, const N: usize> Modes<T, N> {
+    #[inline]
     fn of(share: T, motion: &Motion<T, N>) -> Self {
         let Motion { position, rate } = motion;
         let mean = share * total(&position.planets);
         let mean_rate = share * total(&rate.planets);
         Self {
-            share,
             in_phase: SVector::from([mean, position.gap, position.wind_up, mean_rate, rate.gap, rate.wind_up]),
             deviations: array::from_fn(|i| SVector::from([position.planets[i] - mean, rate.planets[i] - mean_rate])),
         }
     }
 
     /// Linear flow under constant torques.
+    #[inline]
     fn free(&self, transition: &Transition<T>, drive: &Drive<T>) -> Self {
         let torques = SVector::from([drive.sun, drive.carrier, drive.link]);
         Self {
-            share: self.share,
             in_phase: self.in_phase + (&transition.in_phase.0 * &self.in_phase + &transition.torques.0 * &torques),
             deviations: array::from_fn(|i| self.deviations[i] + &transition.deviation.0 * &self.deviations[i]),
         }
     }
 
     /// Plus the response to pseudo-forces, each under its time weight.
-    fn with<const K: usize>(&self, terms: [(&Inputs<T>, &PerMesh<T, N>); K]) -> Self {
+    #[inline]
+    fn with<const K: usize>(&self, terms: [(&Inputs<T>, &Sorted<T, N>); K]) -> Self {
         let mut sum = *self;
         for (inputs, force) in terms {
-            let sums = SVector::from([total(&force[0]), total(&force[1])]);
-            sum.in_phase += &inputs.in_phase.0 * &sums;
-            let middle = (sums[0] - sums[1]) * self.share;
+            sum.in_phase += &inputs.in_phase.0 * SVector::from(force.sums);
             let [value, rate] = inputs.deviation;
-            for (i, deviation) in sum.deviations.iter_mut().enumerate() {
-                let apart = force[0][i] - force[1][i] - middle;
-                *deviation += SVector::from([value * apart, rate * apart]);
+            for (deviation, apart) in sum.deviations.iter_mut().zip(&force.apart) {
+                deviation[0] += value * *apart;
+                deviation[1] += rate * *apart;
             }
         }
         sum
     }
 
+    #[inline]
     fn motion(&self) -> Motion<T, N> {
         let [mean, gap, wind_up, mean_rate, gap_rate, wind_up_rate] = self.in_phase.data.0[0];
         Motion {

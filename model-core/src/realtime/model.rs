@@ -5,11 +5,12 @@ use core::array;
 
 use crate::mesh::ContactState;
 use crate::real::Real;
-use crate::realtime::excitation::{Instants, MeshPhase, instants, mesh_way};
+use crate::realtime::contact::{Drive, contact, spread};
+use crate::realtime::excitation::{MeshPhase, PerMesh, Rotor, instant, mesh_way};
 use crate::realtime::flow;
-use crate::realtime::mesh_force::{Drive, PerMesh, contact, deflections};
+use crate::realtime::runge_kutta::Motion;
 use crate::realtime::state::State;
-use crate::realtime::substep::{self, Motion};
+use crate::realtime::substep;
 use crate::tables::{Scheme, Tables};
 
 /// Torques, constant over a tick.
@@ -91,25 +92,34 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
             carrier: -(units.load_on_carrier * torques.load),
             link: -(units.load_on_link * torques.load),
         };
-        let start = self.phase();
+        let start = Rotor::at(self.phase());
         let way = self.state.rigid.advance(&tables.rigid, torques.drive, torques.load);
-        let phase = self.mesh_phase(start, way);
+        let way = mesh_way(&tables.excitation, way);
+        let phase = MeshPhase { start, way, rate: tables.excitation.rate * way };
         self.state.phase = self.state.phase.wrapping_add(tables.excitation.phase_step);
+
+        let start = instant(tables, &phase.start, phase.rate);
         let motion = Motion { position: self.state.position, rate: self.state.rate };
         let Motion { position, rate } = match tables.scheme {
-            Scheme::Realtime => realtime(tables, &drive, &phase, motion),
-            Scheme::PaperEtd1 => paper(tables, &drive, &phase, motion),
+            Scheme::PaperEtd1 => flow::paper(tables, &drive, &phase, &start, &motion),
+            Scheme::Realtime if tables.sharpness > T::ZERO => {
+                substep::smoothed(tables, &drive, &phase, &start, &motion)
+            }
+            Scheme::Realtime => flow::hold(tables, &drive, &phase, &start, &motion)
+                .unwrap_or_else(|| substep::sharp(tables, &drive, &phase, &start, &motion)),
         };
         (self.state.position, self.state.rate) = (position, rate);
     }
 
     /// The motion now, in SI.
     pub fn outputs(&self) -> Outputs<T, N> {
-        let State { position, rate, rigid, .. } = &self.state;
+        let State { position, rigid, .. } = &self.state;
         let units = &self.tables.units;
         let planets = position.planets.iter().fold(T::ZERO, |sum, planet| sum + *planet);
         let offset = |gains: &[T; 3]| gains[0] * planets + gains[1] * position.gap + gains[2] * position.wind_up;
-        let deflections = deflections(position, rate, &self.instants_now()).map(|family| family.map(|mesh| mesh.value));
+        let errors = instant(self.tables, &Rotor::at(self.phase()), T::ZERO).error;
+        let meshes = spread(position);
+        let deflections: PerMesh<T, N> = array::from_fn(|kind| array::from_fn(|i| meshes[kind][i] - errors[kind][i]));
         Outputs {
             carrier_turns: rigid.turns,
             carrier_fraction: (rigid.fraction >> 32) as u32,
@@ -125,63 +135,11 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
         }
     }
 
-    fn instants_now(&self) -> Instants<T, N> {
-        instants(self.tables, (self.phase() >> 32) as u32, T::ZERO)
-    }
-
-    /// Mesh phase in 2^-64 periods.
-    fn phase(&self) -> u64 {
+    /// Mesh phase in 2^-32 periods.
+    fn phase(&self) -> u32 {
         let periods = self.tables.excitation.periods_per_turn;
-        if periods == 0 { self.state.phase } else { self.state.rigid.fraction.wrapping_mul(periods.into()) }
+        let phase =
+            if periods == 0 { self.state.phase } else { self.state.rigid.fraction.wrapping_mul(periods.into()) };
+        (phase >> 32) as u32
     }
-
-    /// Mesh phase over a tick in which the rigid body goes `way`.
-    fn mesh_phase(&self, start: u64, way: i64) -> MeshPhase<T> {
-        let excitation = &self.tables.excitation;
-        let way = mesh_way(excitation, way);
-        MeshPhase { start: (start >> 32) as u32, way, rate: excitation.rate * way }
-    }
-}
-
-/// The contact set holds over the tick, or the tick is taken in sub-steps.
-fn realtime<T: Real, const N: usize>(
-    tables: &Tables<T, N>,
-    drive: &Drive<T>,
-    phase: &MeshPhase<T>,
-    motion: Motion<T, N>,
-) -> Motion<T, N> {
-    let at = |part: T| instants(tables, phase.start.wrapping_add(phase.step(part)), phase.rate);
-    let mut start = at(T::ZERO);
-    let slow = phase.way < tables.flow.longest_way && -phase.way < tables.flow.longest_way;
-    if slow && let Some(end) = flow::hold(tables, drive, [&start, &at(T::HALF), &at(T::ONE)], &motion) {
-        return end;
-    }
-    let half = phase.step(tables.half_part);
-    let mut now = phase.start;
-    let mut motion = motion;
-    for _ in 0..tables.substeps {
-        let middle = instants(tables, now.wrapping_add(half), phase.rate);
-        now = now.wrapping_add(half.wrapping_add(half));
-        let end = instants(tables, now, phase.rate);
-        motion = substep::advance(tables, drive, phase.rate, [&start, &middle, &end], &motion);
-        start = end;
-    }
-    motion
-}
-
-/// The paper's scheme, sub-step by sub-step.
-fn paper<T: Real, const N: usize>(
-    tables: &Tables<T, N>,
-    drive: &Drive<T>,
-    phase: &MeshPhase<T>,
-    motion: Motion<T, N>,
-) -> Motion<T, N> {
-    let half = phase.step(tables.half_part);
-    let mut now = phase.start;
-    let mut motion = motion;
-    for _ in 0..tables.substeps {
-        motion = flow::paper(tables, drive, &instants(tables, now, phase.rate), &motion);
-        now = now.wrapping_add(half.wrapping_add(half));
-    }
-    motion
 }

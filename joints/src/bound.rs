@@ -39,14 +39,14 @@ pub(crate) enum Bound {
 }
 
 impl Bound {
+    /// Whether the value is within; NaN never is.
     pub(crate) fn holds(self, value: f64) -> bool {
-        value.is_finite()
-            && match self {
-                Self::Between(low, high) => low <= value && value <= high,
-                Self::Inside(low, high) => low < value && value < high,
-                Self::FromToBelow(low, high) => low <= value && value < high,
-                Self::ZeroOr(low, high) => value == 0.0 || low <= value && value <= high,
-            }
+        match self {
+            Self::Between(low, high) => low <= value && value <= high,
+            Self::Inside(low, high) => low < value && value < high,
+            Self::FromToBelow(low, high) => low <= value && value < high,
+            Self::ZeroOr(low, high) => value == 0.0 || low <= value && value <= high,
+        }
     }
 
     /// Completes the sentence "... must be".

@@ -1,1 +1,18 @@
-//! The target's side of the host: toolchain, images, emulator, flashing. Nothing is said to a board here.
+//! The target's side of the host: the compiler for it, images, the emulator, flashing. What is said to a running board
+//! is the session's business.
+//!
+//! The order of use: [`toolchain::Toolchain::prepare`], [`image::build_image`], then [`emulator::Emulator::start`] or
+//! [`flash::flash`]. Each says what it is about to do, if that takes time or changes the machine, before it does it.
+
+pub mod board;
+pub mod emulator;
+pub mod flash;
+pub mod image;
+pub mod lint;
+pub mod packages;
+pub mod sysroot;
+pub mod tool;
+pub mod toolchain;
+
+/// Where a part says what it is about to do: a line for the user.
+pub type Say<'a> = &'a dyn Fn(&str);

@@ -1,0 +1,180 @@
+//! Firmware images: built for a joint, a board and a role, then copied to a name of their own, so that several joints
+//! lie side by side. What goes into an image is decided by the firmware's build script.
+
+use std::fs::{self, File};
+use std::io;
+use std::path::{Path, PathBuf};
+
+use link::messages::Role;
+use object::{Object, ObjectSegment};
+use sha2::{Digest, Sha256};
+
+use super::board::Board;
+use super::toolchain::{TARGET, Toolchain, workspace};
+use super::{Say, tool};
+use crate::failure::{Failure, Outcome};
+
+/// The cargo profile of images.
+pub const PROFILE: &str = "firmware";
+/// Fixed steps a second unless something else is asked for [Hz].
+pub const DEFAULT_TICK_RATE: u32 = 20_000;
+/// Where the flash of every board begins; RAM is at and beyond [`RAM`].
+const FLASH: u64 = 0x0800_0000;
+const RAM: u64 = 0x2000_0000;
+
+/// A finished image.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Image {
+    /// The ELF file.
+    pub elf: PathBuf,
+    /// SHA-256 of the ELF file, 64 hexadecimal digits.
+    pub sha256: String,
+    /// Flash used: code, constants and initial values [byte].
+    pub flash_bytes: u64,
+    /// RAM used by statics [byte].
+    pub ram_bytes: u64,
+    /// `rustc --version` of the compiler.
+    pub compiler: String,
+    /// Flags that change code: profile, target, board.
+    pub flags: String,
+}
+
+/// Builds the image of a joint, or finds that it is up to date. A relative `joint_file` is relative to the folder that
+/// the command runs in.
+pub fn build_image(
+    toolchain: &Toolchain,
+    joint_file: &Path,
+    board: Board,
+    role: Role,
+    tick_rate: u32,
+    say: Say<'_>,
+) -> Outcome<Image> {
+    let joint_file = joint_file.canonicalize().map_err(|error| {
+        Failure::new(format!("joint file {}: {error}", joint_file.display())).with_help("name a file that can be read")
+    })?;
+    // One build at a time in this folder, and none between a build and the copy of its result.
+    let _lock = lock(toolchain.folder())?;
+    let mut command = toolchain.cargo("build");
+    command
+        .args(["--package", "firmware", "--profile", PROFILE, "--bin", binary(role)])
+        .args(["--no-default-features", "--features", board.name()])
+        .env("JOINT_FILE", &joint_file)
+        .env("JOINT_TICK_RATE", tick_rate.to_string());
+    tool::follow(&mut command, "building the firmware", say)?;
+
+    let built = toolchain.folder().join(TARGET).join(PROFILE).join(binary(role));
+    let elf = fs::read(&built).map_err(|error| Failure::new(format!("{}: {error}", built.display())))?;
+    let images = toolchain.target_directory().join("images");
+    let place = images.join(file_name(&joint_file, board, role, tick_rate));
+    store(&images, &place, &elf)?;
+    let (flash_bytes, ram_bytes) =
+        sizes(&elf).map_err(|error| Failure::new(format!("{}: {error}", place.display())))?;
+    Ok(Image {
+        elf: place,
+        sha256: Sha256::digest(&elf).iter().map(|byte| format!("{byte:02x}")).collect(),
+        flash_bytes,
+        ram_bytes,
+        compiler: toolchain.compiler().to_owned(),
+        flags: format!("profile {PROFILE} (opt-level 3, fat LTO), {}, board {}", toolchain.flags(), board.name()),
+    })
+}
+
+/// A preset of the workspace's `joints` folder, for a caller that has a name and no file.
+pub fn preset_file(name: &str) -> PathBuf {
+    workspace().join("joints").join(format!("{name}.toml"))
+}
+
+/// The firmware's binary for a role.
+fn binary(role: Role) -> &'static str {
+    match role {
+        Role::Plant => "plant",
+    }
+}
+
+/// Joint, board, role, and the tick rate if it is not the usual one. Files of the same name in different folders are
+/// told apart by a digest of the path.
+fn file_name(joint_file: &Path, board: Board, role: Role, tick_rate: u32) -> String {
+    let joint = joint_file.file_stem().unwrap_or_default().to_string_lossy();
+    let is_preset = joint_file.parent().is_some_and(|folder| folder == workspace().join("joints"));
+    let origin = match is_preset {
+        true => String::new(),
+        false => {
+            let digest = Sha256::digest(joint_file.as_os_str().as_encoded_bytes());
+            format!("-{:02x}{:02x}", digest[0], digest[1])
+        }
+    };
+    let rate = if tick_rate == DEFAULT_TICK_RATE { String::new() } else { format!("-{tick_rate}hz") };
+    format!("{joint}{origin}-{}-{}{rate}.elf", board.name(), binary(role))
+}
+
+fn lock(folder: &Path) -> Outcome<File> {
+    let path = folder.join(".one-at-a-time");
+    let open = || {
+        fs::create_dir_all(folder)?;
+        let file = File::create(&path)?;
+        file.lock()?;
+        Ok(file)
+    };
+    open().map_err(|error: io::Error| cannot_write(&path, &error))
+}
+
+/// Puts the whole file in place, or none of it.
+fn store(images: &Path, place: &Path, elf: &[u8]) -> Outcome<()> {
+    let unfinished = place.with_extension(format!("unfinished-{}", std::process::id()));
+    fs::create_dir_all(images)
+        .and_then(|()| fs::write(&unfinished, elf))
+        .and_then(|()| fs::rename(&unfinished, place))
+        .map_err(|error| cannot_write(place, &error))
+}
+
+fn cannot_write(path: &Path, error: &io::Error) -> Failure {
+    Failure::new(format!("cannot write {}: {error}", path.display()))
+        .with_help("make room, or set CARGO_TARGET_DIR to a folder that can be written")
+}
+
+/// Bytes in flash (loaded segments) and in RAM (everything at RAM addresses).
+fn sizes(elf: &[u8]) -> Result<(u64, u64), object::Error> {
+    let file = object::File::parse(elf)?;
+    let mut sizes = (0, 0);
+    for segment in file.segments() {
+        let loaded = segment.file_range().1;
+        if segment.address() >= RAM {
+            sizes.1 += segment.size();
+            // Initial values of RAM are kept in flash.
+            sizes.0 += loaded;
+        } else if segment.address() >= FLASH {
+            sizes.0 += loaded;
+        }
+    }
+    Ok(sizes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn name(path: &Path) -> String {
+        file_name(path, Board::Stm32f405, Role::Plant, DEFAULT_TICK_RATE)
+    }
+
+    #[test]
+    fn joints_boards_and_rates_have_files_of_their_own() {
+        let preset = preset_file("q1");
+        assert_eq!(name(&preset), "q1-stm32f405-plant.elf");
+        assert_ne!(name(&preset), name(&preset_file("s1")));
+        assert_ne!(name(Path::new("/a/q1.toml")), name(Path::new("/b/q1.toml")));
+        assert_eq!(file_name(&preset, Board::Stm32h743, Role::Plant, 10_000), "q1-stm32h743-plant-10000hz.elf");
+    }
+
+    #[test]
+    fn a_file_that_is_no_elf_has_no_sizes() {
+        assert!(sizes(b"no elf").is_err());
+    }
+
+    #[test]
+    fn an_image_that_cannot_be_stored_is_named() {
+        let images = Path::new("/proc/none");
+        let failure = store(images, &images.join("x.elf"), b"").unwrap_err();
+        assert!(failure.message().contains("/proc/none/x.elf"), "{failure}");
+    }
+}

@@ -23,31 +23,49 @@ use crate::tables::{Excitation, MeshTable, Mobility, Rigid, Scheme, Spring, Tabl
 use dynamics::{Dynamics, MovingMasses};
 pub use source::rust_source;
 
-/// Sub-steps resolve the fastest mode at least this well (its phase a sub-step) [rad], as far as [`USUAL_SUBSTEPS`]
-/// go: there the crossing correction leaves about 5e-4 of the motion.
+/// Sub-steps resolve the fastest mode at least this well (its phase a sub-step) [rad]: there the crossing correction
+/// leaves a few 1e-4 of the motion.
 const GOOD_PHASE: f64 = 0.4;
-/// More sub-steps than this are spent on stability only.
+/// Beyond this many sub-steps the fastest mode is left to what stability asks: it is that of light planets, which
+/// carry little of the motion.
 const USUAL_SUBSTEPS: f64 = 4.0;
 /// Phase of a prescribed mesh frequency that a sub-step may have: some twenty evaluations a mesh period [rad].
 const EXCITATION_PHASE: f64 = 0.3;
 /// Phase of the fastest mode that a sub-step may have at most; the Runge-Kutta method is stable to 2.8 [rad].
-const LARGEST_PHASE: f64 = 1.5;
+const LARGEST_PHASE: f64 = 2.4;
 /// Most sub-steps a tick.
 const MOST_SUBSTEPS: f64 = 16.0;
+
+/// Instructions a second that a board may spend on the step: a Cortex-M4F at 168 MHz and 1.4 cycles an instruction.
+const BOARD_INSTRUCTIONS: f64 = 120e6;
+/// Instructions of a tick beside its sub-steps, and of a sub-step for each planet when some of its meshes cross;
+/// counted on an emulated Cortex-M4F.
+const TICK_INSTRUCTIONS: f64 = 1000.0;
+const SUBSTEP_INSTRUCTIONS: f64 = 700.0;
+
+/// How much work a tick may take.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Effort {
+    /// What a 168 MHz Cortex-M4F has time for, as long as that is stable.
+    Board,
+    /// What accuracy asks for.
+    Accurate,
+}
 
 /// Tables of the scheme that a board runs.
 pub fn design<T: Real, const N: usize>(
     parameters: &JointParameters,
     tick_rate: u32,
 ) -> Result<Tables<T, N>, DesignError> {
-    design_scheme(parameters, tick_rate, Scheme::Realtime)
+    design_scheme(parameters, tick_rate, Scheme::Realtime, Effort::Board)
 }
 
-/// Tables of a named scheme.
+/// Tables of a named scheme at a chosen effort.
 pub fn design_scheme<T: Real, const N: usize>(
     parameters: &JointParameters,
     tick_rate: u32,
     scheme: Scheme,
+    effort: Effort,
 ) -> Result<Tables<T, N>, DesignError> {
     validate::validate(parameters)?;
     let planets = parameters.geometry.planets;
@@ -57,7 +75,7 @@ pub fn design_scheme<T: Real, const N: usize>(
     let scales = Scales::new(parameters);
     let dynamics = Dynamics::new(parameters, &scales);
     let real = T::from_f64;
-    let substeps = substeps(parameters, tick_rate)?;
+    let substeps = substeps(parameters, tick_rate, effort)?;
     let tick = scales.frequency / f64::from(tick_rate);
     let substep = tick / f64::from(substeps);
     let flow_step = match scheme {
@@ -93,7 +111,7 @@ pub fn design_scheme<T: Real, const N: usize>(
 }
 
 /// Sub-steps a tick, from the fastest mode of the closed joint at its stiffest and a prescribed mesh frequency.
-fn substeps(parameters: &JointParameters, tick_rate: u32) -> Result<u32, DesignError> {
+fn substeps(parameters: &JointParameters, tick_rate: u32, effort: Effort) -> Result<u32, DesignError> {
     let fastest = modes::natural_frequencies(parameters).last().copied().unwrap_or(0.0);
     let swings = MESH_KINDS.map(|kind| parameters.mesh(kind).stiffness_wave.swing());
     let stiffest = swings[0].max(swings[1]);
@@ -105,7 +123,14 @@ fn substeps(parameters: &JointParameters, tick_rate: u32) -> Result<u32, DesignE
         joint::Excitation::Angle => 0.0,
     };
     let accurate = libm::ceil(phase / GOOD_PHASE).min(USUAL_SUBSTEPS).max(libm::ceil(excitation / EXCITATION_PHASE));
-    let wanted = accurate.max(libm::ceil(phase / LARGEST_PHASE)).max(1.0);
+    let affordable = match effort {
+        Effort::Accurate => MOST_SUBSTEPS,
+        Effort::Board => {
+            let left = BOARD_INSTRUCTIONS / f64::from(tick_rate.max(1)) - TICK_INSTRUCTIONS;
+            libm::floor(left / (SUBSTEP_INSTRUCTIONS * parameters.geometry.planets as f64))
+        }
+    };
+    let wanted = accurate.min(affordable).max(libm::ceil(phase / LARGEST_PHASE)).max(1.0);
     if tick_rate == 0 || wanted > MOST_SUBSTEPS {
         let excited = excitation * f64::from(tick_rate.max(1)) / EXCITATION_PHASE;
         let lowest = libm::ceil(excited.max(frequency / LARGEST_PHASE) / MOST_SUBSTEPS) as u32;

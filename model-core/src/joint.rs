@@ -100,7 +100,8 @@ pub struct Bodies {
 pub struct Compliance {
     /// Torsional stiffness [N m/rad].
     pub stiffness: f64,
-    /// Damping ratio of the carrier-link oscillator, C = 2 zeta sqrt(K I_1 I_2 / (I_1 + I_2)) [-].
+    /// Damping ratio of the link swinging against everything geared to the carrier, C = 2 zeta sqrt(K M_1 M_2 /
+    /// (M_1 + M_2)) with M_1 = 4 M_s + n M_p + M_c (rotor included) and M_2 the link's equivalent mass [-].
     pub damping_ratio: f64,
 }
 

@@ -40,7 +40,9 @@ impl JointEquations {
                 add(carrier);
                 add(link);
                 let stiffness = given.stiffness / carrier_lever.powi(2);
-                let reduced = carrier * link / (carrier + link);
+                // The sun turns twice as fast along the line of action, so its mass counts four times.
+                let geared = 4.0 * sun + geometry.planets as f64 * planet + carrier;
+                let reduced = geared * link / (geared + link);
                 Some((stiffness, 2.0 * given.damping_ratio * (stiffness * reduced).sqrt()))
             }
         };

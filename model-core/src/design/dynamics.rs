@@ -74,8 +74,10 @@ impl Dynamics {
         let wind_up = parameters.compliance.as_ref().map(|compliance| {
             let lever = parameters.geometry.carrier_base_radius();
             let stiffness = compliance.stiffness / (lever * lever);
-            let (carrier, link) = (masses.carrier, parameters.link_equivalent_mass());
-            let reduced = carrier * link / (carrier + link);
+            // The link swings against everything that is geared to the carrier, the rotor above all.
+            let link = parameters.link_equivalent_mass();
+            let geared = masses.rigid(planets) - link;
+            let reduced = geared * link / (geared + link);
             let damping = 2.0 * compliance.damping_ratio * libm::sqrt(stiffness * reduced);
             (stiffness / scales.stiffness, scales.damping(damping))
         });

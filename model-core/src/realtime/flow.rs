@@ -24,35 +24,36 @@ pub fn hold<T: Real, const N: usize>(
     drive: &Drive<T>,
     phase: &MeshPhase<T>,
     start: &Instant<T, N>,
+    laws: &Laws<T, N>,
     motion: &Motion<T, N>,
 ) -> Option<Motion<T, N>> {
     let flow = &tables.flow;
-    if !(phase.way < flow.longest_way && -phase.way < flow.longest_way) {
+    let slow = phase.way < flow.longest_way && -phase.way < flow.longest_way;
+    if !slow || !laws.all_closed() {
         return None;
     }
-    let seats = seats(tables, motion, start);
-    let (from_start, true) = closed_force(tables, &seats, motion, start) else { return None };
+    let seats = &laws.offset;
+    let (from_start, true) = closed_force(tables, seats, motion, start) else { return None };
     let modes = Modes::of(tables.planet_share, motion);
 
     let half = phase.over(T::HALF);
     let middle = phase.start.turned(&half);
     let guess = modes.free(&flow.half, drive).with([(&flow.half_constant, &from_start)]).motion();
     let at_middle = instant(tables, &middle, phase.rate);
-    let (from_middle, true) = closed_force(tables, &seats, &guess, &at_middle) else { return None };
+    let (from_middle, true) = closed_force(tables, seats, &guess, &at_middle) else { return None };
 
     let at_end = instant(tables, &middle.turned(&half), phase.rate);
     let free = modes.free(&flow.whole, drive);
     let [first, second] = &flow.whole_linear;
     let guess = free.with([(first, &from_start), (second, &from_middle)]).motion();
-    let (from_end, closed) = closed_force(tables, &seats, &guess, &at_end);
+    let (from_end, closed) = closed_force(tables, seats, &guess, &at_end);
 
     let [first, second, third] = &flow.whole_quadratic;
     let end = free.with([(first, &from_start), (second, &from_middle), (third, &from_end)]).motion();
     if closed {
         return Some(end);
     }
-    let damping = [0, 1].map(|kind| [tables.springs[kind].damping; N]);
-    let mut laws = Laws { closed: [[T::ONE; N]; 2], offset: seats, damping };
+    let mut laws = *laws;
     let observed = laws.observe(&laws.at(&at_end), &end, &at_end);
     let step = FrozenStep { step: T::HALF * flow.step, phase_rate: phase.rate, observed: &observed };
     Some(step.correct(tables, drive, &at_end, &mut laws, &end))
@@ -100,23 +101,6 @@ pub fn paper<T: Real, const N: usize>(
         now = instant(tables, &rotor, phase.rate);
     }
     motion
-}
-
-/// Offset of the flank that each mesh is nearer to.
-fn seats<T: Real, const N: usize>(
-    tables: &Tables<T, N>,
-    motion: &Motion<T, N>,
-    instant: &Instant<T, N>,
-) -> PerMesh<T, N> {
-    let mut offset = spread(&motion.position);
-    for kind in 0..2 {
-        for i in 0..N {
-            let half_backlash = tables.meshes[kind][i].half_backlash;
-            let drive_side = offset[kind][i] > instant.error[kind][i];
-            offset[kind][i] = if drive_side { half_backlash } else { -half_backlash };
-        }
-    }
-    offset
 }
 
 /// What the linear flow does not know of closed meshes: offset, imposed error, ripple; and whether every mesh is

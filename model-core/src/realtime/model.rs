@@ -5,7 +5,7 @@ use core::array;
 
 use crate::mesh::ContactState;
 use crate::real::Real;
-use crate::realtime::contact::{Drive, contact, spread};
+use crate::realtime::contact::{Drive, Laws, contact, spread};
 use crate::realtime::excitation::{MeshPhase, PerMesh, Rotor, instant, mesh_way};
 use crate::realtime::flow;
 use crate::realtime::runge_kutta::Motion;
@@ -105,8 +105,11 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
             Scheme::Realtime if tables.sharpness > T::ZERO => {
                 substep::smoothed(tables, &drive, &phase, &start, &motion)
             }
-            Scheme::Realtime => flow::hold(tables, &drive, &phase, &start, &motion)
-                .unwrap_or_else(|| substep::sharp(tables, &drive, &phase, &start, &motion)),
+            Scheme::Realtime => {
+                let laws = Laws::of(tables, &motion.position, &motion.rate, &start);
+                flow::hold(tables, &drive, &phase, &start, &laws, &motion)
+                    .unwrap_or_else(|| substep::sharp(tables, &drive, &phase, &start, &laws, &motion))
+            }
         };
         (self.state.position, self.state.rate) = (position, rate);
     }

@@ -16,12 +16,11 @@ pub fn sharp<T: Real, const N: usize>(
     drive: &Drive<T>,
     phase: &MeshPhase<T>,
     start: &Instant<T, N>,
+    laws: &Laws<T, N>,
     motion: &Motion<T, N>,
 ) -> Motion<T, N> {
     let half = phase.over(tables.half_part);
-    let mut motion = *motion;
-    let mut rotor = phase.start;
-    let mut laws = Laws::of(tables, &motion.position, &motion.rate, start);
+    let (mut motion, mut rotor, mut laws) = (*motion, phase.start, *laws);
     let mut at_start = laws.at(start);
     for _ in 0..tables.substeps {
         rotor = rotor.turned(&half);

@@ -1,12 +1,11 @@
 //! The command line: subcommands, their help, exit codes. What a subcommand does is in its own module.
 
-use std::io::{self, Write};
 use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
 
-use crate::failure::{EXIT_BAD_INPUT, Failure, Outcome};
-use crate::{check, hil};
+use crate::failure::{EXIT_BAD_INPUT, Outcome};
+use crate::{check, hil, images, output};
 
 /// Simulates a planetary robot joint with backlash on a microcontroller, drives it and checks it
 #[derive(Debug, Parser)]
@@ -22,6 +21,10 @@ enum Command {
     Hil(hil::Arguments),
     /// Read a joint file and print what follows from it
     Check(check::Arguments),
+    /// Build the firmware image of a joint and say where it is
+    Image(images::ImageArguments),
+    /// Build the firmware image of a joint and write it to a real board by probe-rs
+    Flash(images::FlashArguments),
 }
 
 /// Parses the command line, runs it and turns the outcome into an exit code.
@@ -29,7 +32,7 @@ pub fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => {
-            // A reader that has gone away is no error; clap's own `exit` would panic on nothing, but exits by 2 only.
+            // A reader that has gone away is no further error.
             let _ = error.print();
             return ExitCode::from(if error.use_stderr() { EXIT_BAD_INPUT } else { 0 });
         }
@@ -38,6 +41,8 @@ pub fn main() -> ExitCode {
         None => show_help(),
         Some(Command::Hil(arguments)) => hil::run(arguments),
         Some(Command::Check(arguments)) => check::run(arguments),
+        Some(Command::Image(arguments)) => images::image(arguments),
+        Some(Command::Flash(arguments)) => images::flash(arguments),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
@@ -49,9 +54,5 @@ pub fn main() -> ExitCode {
 }
 
 fn show_help() -> Outcome<()> {
-    let help = Cli::command().render_long_help();
-    match write!(io::stdout().lock(), "{help}") {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::new(format!("no output: {error}"))),
-        _ => Ok(()),
-    }
+    output::print(&Cli::command().render_long_help().to_string())
 }

@@ -1,21 +1,125 @@
 //! `joint hil`: a joint simulated on a board, driven and checked from here. Toolchain, images and the emulator's
 //! process are left to `target`, pictures to `report`.
+//!
+//! The order of a run: `plan` finds everything that is wrong with the request, `files` that the report can be written,
+//! `bench` builds the image and finds the board; `session` talks to it over a `transport` line and keeps a `recording`;
+//! `twin` and `comparison` compute the same run here, `checks` judges, `table` prints.
 
+mod bench;
+pub mod checks;
+pub mod comparison;
+mod evaluation;
+pub mod everything;
 pub mod fault;
+mod files;
 pub mod logs;
+mod origin;
+mod plan;
 pub mod profile;
+mod progress;
 pub mod recording;
 pub mod session;
+mod table;
 pub mod transport;
 pub mod twin;
 
+use bench::Bench;
+use evaluation::Ran;
+use files::Files;
+use plan::Plan;
+pub use plan::{Arguments, Mode};
+pub use progress::Progress;
+use recording::Recording;
+use session::Session;
+
 use crate::failure::{Failure, Outcome};
+use crate::record::{RunRecord, Verdict};
+use crate::{interruption, output};
 
-/// Arguments of `joint hil`.
-#[derive(Debug, clap::Args)]
-pub struct Arguments {}
+/// Runs a joint on a board; succeeds only if every check held.
+pub fn run(arguments: &Arguments) -> Outcome<()> {
+    interruption::watch()?;
+    let progress = Progress::new();
+    let outcome = run_once(arguments, &progress).and_then(|()| match arguments.check {
+        true => everything::check(arguments.rate, &progress),
+        false => Ok(()),
+    });
+    progress.clear();
+    interruption::explain(outcome)
+}
 
-/// Runs a joint on a board.
-pub fn run(_arguments: &Arguments) -> Outcome<()> {
-    Err(Failure::new("there is no board"))
+fn run_once(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
+    let plan = Plan::new(arguments)?;
+    let files = Files::prepare(arguments.out.as_deref(), arguments.json.as_deref(), &plan.expected.joint)?;
+    let bench = Bench::prepare(arguments, &plan, progress)?;
+    let mut record = origin::record(arguments, &plan, &bench.transport);
+    let image = bench.image.clone();
+    record.identity.image = image.as_ref().map(origin::image);
+    let references = (!arguments.no_reference).then(|| evaluation::start_references(&plan));
+    let (outcome, recording) = converse(bench, &plan, progress);
+    progress.stage("comparing with twin and reference");
+    let ran = Ran { plan: &plan, recording: &recording, image: image.as_ref(), outcome: &outcome };
+    let evaluated = evaluation::evaluate(&mut record, &ran, references);
+    progress.stage("writing the report");
+    let report = files.write(&record);
+    progress.clear();
+    evaluated?;
+    show(&record)?;
+    match (outcome, report) {
+        (Ok(()), Ok(report)) => {
+            output::print(&format!("report: {}\n", report.display()))?;
+            verdict(&record)
+        }
+        (Err(failure), Ok(report)) => {
+            let kept = format!("what was recorded until tick {} is in {}", recording.last_tick(), report.display());
+            let help = failure.help().map_or_else(|| kept.clone(), |help| format!("{help}\n{kept}"));
+            Err(failure.with_help(help))
+        }
+        (Err(failure), Err(unwritten)) => {
+            let help = format!("also: {unwritten}");
+            Err(failure.with_help(help))
+        }
+        (Ok(()), Err(unwritten)) => Err(unwritten),
+    }
+}
+
+/// The whole conversation with the board; what was heard is there whatever became of it.
+fn converse(bench: Bench, plan: &Plan, progress: &Progress) -> (Outcome<()>, Recording) {
+    let Bench { line, surroundings, patience, .. } = bench;
+    let mut session = Session::new(line, surroundings);
+    progress.stage("calling the board");
+    let outcome = session.connect(&plan.expected, patience).and_then(|_| session.reset(plan.settings));
+    let outcome = outcome.and_then(|()| {
+        progress.run("running", plan.profile.ticks);
+        session.stream(&plan.profile, &mut |ticks| progress.at(ticks))
+    });
+    let outcome = outcome.and_then(|()| session.finish(plan.profile.ticks));
+    if outcome.is_err() {
+        session.abandon();
+    }
+    (outcome, std::mem::take(&mut session.recording))
+}
+
+/// The table, unless nothing has been run.
+fn show(record: &RunRecord) -> Outcome<()> {
+    if record.samples.is_empty() {
+        return Ok(());
+    }
+    let identity = &record.identity;
+    let head = format!("{} on {} ({})\n\n", identity.joint, identity.board, identity.transport);
+    output::print(&(head + &table::table(&record.checks, identity.emulated) + "\n"))
+}
+
+fn verdict(record: &RunRecord) -> Outcome<()> {
+    let failed: Vec<&str> = record
+        .checks
+        .iter()
+        .filter(|check| check.verdict == Verdict::Failed)
+        .map(|check| check.name.as_str())
+        .collect();
+    if failed.is_empty() {
+        return Ok(());
+    }
+    let message = format!("{} of {} checks did not hold: {}", failed.len(), record.checks.len(), failed.join(", "));
+    Err(Failure::check_failed(message).with_help("the report shows where the run departs from what was expected"))
 }

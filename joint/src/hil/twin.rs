@@ -49,7 +49,25 @@ pub fn compare(
     commands: &[Command],
     samples: &[Sample],
 ) -> Outcome<Agreement> {
-    for_planets(joint, Replay { joint, tick_rate, commands, samples })
+    let ticks: Vec<u32> = samples.iter().map(|sample| sample.tick).collect();
+    let mut agreement = Agreement::default();
+    for (board, twin) in samples.iter().zip(replay(joint, tick_rate, commands, &ticks)?) {
+        agreement.samples += 1;
+        match difference(board, &twin) {
+            None if agreement.different == 0 => agreement.steps = board.tick,
+            None => {}
+            Some(difference) => {
+                agreement.different += 1;
+                agreement.first.get_or_insert(difference);
+            }
+        }
+    }
+    Ok(agreement)
+}
+
+/// The twin's samples after the given numbers of steps, which rise.
+pub fn replay(joint: &JointParameters, tick_rate: u32, commands: &[Command], ticks: &[u32]) -> Outcome<Vec<Sample>> {
+    for_planets(joint, Replay { joint, tick_rate, commands, ticks })
 }
 
 /// Work that is written for any number of planets.
@@ -89,22 +107,22 @@ struct Replay<'a> {
     joint: &'a JointParameters,
     tick_rate: u32,
     commands: &'a [Command],
-    samples: &'a [Sample],
+    ticks: &'a [u32],
 }
 
 impl ForPlanets for Replay<'_> {
-    type Result = Agreement;
+    type Result = Vec<Sample>;
 
-    fn run<const N: usize>(self) -> Outcome<Agreement> {
+    fn run<const N: usize>(self) -> Outcome<Vec<Sample>> {
         let tables = tables::<N>(self.joint, self.tick_rate)?;
         let mut model = Model::new(&tables);
         let mut torques = Torques { drive: 0.0, load: 0.0 };
         let mut running = digest::START;
         let mut commands = self.commands.iter().peekable();
-        let mut agreement = Agreement::default();
         let mut tick = 0;
-        for sample in self.samples {
-            while tick < sample.tick {
+        let mut samples = Vec::with_capacity(self.ticks.len());
+        for &wanted in self.ticks {
+            while tick < wanted {
                 while let Some(command) = commands.next_if(|command| command.tick <= tick) {
                     torques = Torques { drive: command.drive_torque, load: command.load_torque };
                 }
@@ -112,24 +130,15 @@ impl ForPlanets for Replay<'_> {
                 running = digest::chain(running, model.state_digest());
                 tick += 1;
             }
-            agreement.samples += 1;
-            match difference(&model, running, sample) {
-                None if agreement.different == 0 => agreement.steps = tick,
-                None => {}
-                Some(difference) => {
-                    agreement.different += 1;
-                    agreement.first.get_or_insert(difference);
-                }
-            }
+            samples.push(sample(&model, tick, running, 0));
         }
-        Ok(agreement)
+        Ok(samples)
     }
 }
 
 /// The first field in which the board's sample is not the twin's, the digest last: it says least.
-fn difference<const N: usize>(model: &Model<'_, f32, N>, running: u64, board: &Sample) -> Option<Difference> {
-    let twin = sample(model, board.tick, running, board.computation);
-    let (board_fields, twin_fields) = (fields(board), fields(&twin));
+fn difference(board: &Sample, twin: &Sample) -> Option<Difference> {
+    let (board_fields, twin_fields) = (fields(board), fields(twin));
     let place = board_fields.iter().zip(&twin_fields).position(|(board, twin)| board != twin)?;
     let (field, board_value) = board_fields[place].clone();
     Some(Difference { tick: board.tick, field, board: board_value, twin: twin_fields[place].1.clone() })

@@ -1,0 +1,164 @@
+//! What `joint hil` was asked to do, with everything that can be wrong with it found before anything is built or
+//! started: joint, profile, rates. Boards and files to be written are looked at later.
+
+use std::path::PathBuf;
+
+use clap::ValueEnum;
+use joints::JointFile;
+use link::messages::{RunMode, RunSettings};
+
+use super::profile::{BUILTIN, Profile};
+use super::session::Expected;
+use super::twin;
+use crate::check;
+use crate::failure::{Failure, Outcome};
+use crate::target::board::Board;
+use crate::target::image;
+
+/// Arguments of `joint hil`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  joint hil                                   joint q1 on the emulated board
+  joint hil joints/l1.toml --duration 10      another joint, a longer run
+  joint hil q1 --profile drive.csv --json out.json
+  joint hil q1 --port /dev/ttyUSB0            a real board, flashed before by `joint flash q1`
+
+Exit code: 0 if every check held, 1 if one did not, 2 for bad input or a bad environment, 130 after Ctrl-C.")]
+pub struct Arguments {
+    /// Joint file (TOML), or the name of a preset: q1, s1, d2, l1, paper, paper_printed
+    #[arg(value_name = "FILE", default_value = "q1")]
+    pub file: PathBuf,
+    /// Serial port of a real board, such as /dev/ttyUSB0 [default: the emulated board]
+    #[arg(long, value_name = "PATH")]
+    pub port: Option<String>,
+    /// Speed of the serial port in baud [default: that of the board's image]
+    #[arg(long, value_name = "BAUD", requires = "port", value_parser = clap::value_parser!(u32).range(1..))]
+    pub baud: Option<u32>,
+    /// Board behind the port
+    #[arg(long, value_enum, default_value = "stm32f405", requires = "port")]
+    pub board: Board,
+    /// Who waits for whom [default: lockstep on the emulated board, realtime on a real one]
+    #[arg(long, value_enum)]
+    pub mode: Option<Mode>,
+    /// Steps a second, in Hz; part of the image
+    #[arg(long, value_name = "HZ", default_value_t = image::DEFAULT_TICK_RATE, value_parser = clap::value_parser!(u32).range(1..))]
+    pub rate: u32,
+    /// Torque profile: `reversals`, or a CSV file with the columns time_s, motor_torque_Nm and load_torque_Nm
+    #[arg(long, value_name = "NAME|FILE", default_value = BUILTIN[0])]
+    pub profile: String,
+    /// Length of the run in s [default: the profile's own; 5 s for `reversals`]
+    #[arg(long, value_name = "S")]
+    pub duration: Option<f64>,
+    /// A sample every so many steps; the digest covers every step
+    #[arg(long, value_name = "STEPS", default_value_t = 20, value_parser = clap::value_parser!(u16).range(1..))]
+    pub decimation: u16,
+    /// Folder for report.html, record.json and log.txt [default: target/hil/<joint>]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Writes the record as JSON to this file too
+    #[arg(long, value_name = "OUT")]
+    pub json: Option<PathBuf>,
+    /// Does not compute the f64 reference
+    #[arg(long)]
+    pub no_reference: bool,
+    /// Does not build the image: logs stay encoded, and its size is not checked
+    #[arg(long, requires = "port")]
+    pub no_build: bool,
+    /// Also builds the images of all boards, lints the firmware and runs the tests that need the emulated board
+    #[arg(long, conflicts_with = "port")]
+    pub check: bool,
+}
+
+/// Who waits for whom.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Mode {
+    /// The board waits for the host before every step that it has no torques for
+    Lockstep,
+    /// The board's clock rules, the host streams ahead
+    Realtime,
+}
+
+/// A run that can be made.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// The joint file as the user named it.
+    pub name: String,
+    /// The joint file for the firmware's build.
+    pub path: PathBuf,
+    /// What it says.
+    pub joint: JointFile,
+    /// What the board must be.
+    pub expected: Expected,
+    /// The torques.
+    pub profile: Profile,
+    /// How the run goes.
+    pub settings: RunSettings,
+}
+
+/// In real time a board without torques for so long goes to its safe state [s].
+const COMMAND_TIMEOUT: f64 = 0.1;
+
+impl Plan {
+    /// Reads and designs all that a run needs.
+    pub fn new(arguments: &Arguments) -> Outcome<Self> {
+        let check::Loaded { name, file: joint, .. } = check::load(&arguments.file)?;
+        let path = match arguments.file.is_file() {
+            true => arguments.file.clone(),
+            false => image::preset_file(&name),
+        };
+        let parameters = &joint.parameters;
+        let digest = twin::tables_digest(parameters, arguments.rate)?;
+        let profile = Profile::load(&arguments.profile, parameters, arguments.rate, arguments.duration)?;
+        let mode = match (arguments.mode, &arguments.port) {
+            (Some(Mode::Lockstep), _) | (None, None) => RunMode::Lockstep,
+            (Some(Mode::Realtime), _) | (None, Some(_)) => RunMode::Realtime,
+        };
+        if u32::from(arguments.decimation) > profile.ticks {
+            let message = format!("a sample every {} steps in a run of {}", arguments.decimation, profile.ticks);
+            return Err(Failure::new(message).with_help("lower --decimation or raise --duration"));
+        }
+        let expected = Expected {
+            joint: parameters.name.to_string(),
+            digest,
+            tick_rate: arguments.rate,
+            planets: parameters.geometry.planets,
+            mend: arguments.flash_command(),
+        };
+        let command_timeout = (COMMAND_TIMEOUT * f64::from(arguments.rate)).ceil() as u32;
+        let settings = RunSettings { mode, decimation: arguments.decimation, command_timeout };
+        Ok(Self { name, path, expected, profile, settings, joint })
+    }
+}
+
+impl Arguments {
+    /// The command that puts the right image onto the board.
+    fn flash_command(&self) -> String {
+        let rate = self.rate_option();
+        match &self.port {
+            Some(_) => format!("cargo joint flash {} --board {}{rate}", self.file.display(), self.board.name()),
+            None => format!("cargo joint image {}{rate}", self.file.display()),
+        }
+    }
+
+    /// The command that makes this run again.
+    pub fn replay_command(&self) -> String {
+        let mut command = format!("cargo joint hil {}", self.file.display());
+        let mut option = |name: &str, value: Option<String>| {
+            if let Some(value) = value {
+                command += &format!(" --{name} {value}");
+            }
+        };
+        option("port", self.port.clone());
+        option("baud", self.baud.map(|baud| baud.to_string()));
+        option("board", self.port.as_ref().map(|_| self.board.name().to_owned()));
+        option("mode", self.mode.and_then(|mode| mode.to_possible_value()).map(|mode| mode.get_name().to_owned()));
+        option("profile", Some(self.profile.clone()));
+        option("duration", self.duration.map(|duration| duration.to_string()));
+        option("decimation", Some(self.decimation.to_string()));
+        command + &self.rate_option()
+    }
+
+    fn rate_option(&self) -> String {
+        if self.rate == image::DEFAULT_TICK_RATE { String::new() } else { format!(" --rate {}", self.rate) }
+    }
+}

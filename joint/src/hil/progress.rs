@@ -1,0 +1,91 @@
+//! What a user sees while a run is prepared and goes on: one line that says what is being done, and how far. On anything
+//! but a terminal there is no such line, only what changes the machine.
+
+use std::cell::RefCell;
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// The line.
+pub struct Progress {
+    bar: RefCell<Option<ProgressBar>>,
+}
+
+impl Default for Progress {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Progress {
+    /// Nothing is shown yet.
+    pub fn new() -> Self {
+        Self { bar: RefCell::new(None) }
+    }
+
+    /// A stage begins whose length is not known.
+    pub fn stage(&self, what: &str) {
+        let bar = ProgressBar::new_spinner().with_style(style("{spinner} {prefix}  {wide_msg:.dim}"));
+        bar.enable_steady_tick(Duration::from_millis(100));
+        self.show(bar, what);
+    }
+
+    /// A stage begins that goes through so many ticks.
+    pub fn run(&self, what: &str, ticks: u32) {
+        let bar = ProgressBar::new(ticks.into());
+        self.show(bar.with_style(style("{prefix}  {bar:40} {percent:>3} %  {elapsed}")), what);
+    }
+
+    /// So many ticks are done.
+    pub fn at(&self, ticks: u32) {
+        if let Some(bar) = &*self.bar.borrow() {
+            bar.set_position(ticks.into());
+        }
+    }
+
+    /// A word from a stage. Output of other programs passes by; what this program says itself stays.
+    pub fn say(&self, line: &str) {
+        let own = line.starts_with(|first: char| first.is_ascii_lowercase()) && !line.starts_with("warning");
+        match &*self.bar.borrow() {
+            Some(bar) if !bar.is_hidden() && own => bar.println(line),
+            Some(bar) if !bar.is_hidden() => bar.set_message(line.to_owned()),
+            _ if own => crate::output::remark(line),
+            _ => {}
+        }
+    }
+
+    /// Nothing is under way any more.
+    pub fn clear(&self) {
+        if let Some(bar) = self.bar.take() {
+            bar.finish_and_clear();
+        }
+    }
+
+    fn show(&self, bar: ProgressBar, what: &str) {
+        self.clear();
+        bar.set_prefix(what.to_owned());
+        *self.bar.borrow_mut() = Some(bar);
+    }
+}
+
+fn style(template: &str) -> ProgressStyle {
+    // The templates are constants of this file; one that cannot be read falls back to the plain style.
+    ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_stage_can_be_shown_and_cleared() {
+        let progress = Progress::new();
+        progress.say("before any stage");
+        progress.stage("building");
+        progress.say("Compiling firmware");
+        progress.run("running", 10);
+        progress.at(5);
+        progress.clear();
+        progress.at(6);
+    }
+}

@@ -1,0 +1,72 @@
+//! `joint image` and `joint flash`: the firmware of a joint as a file, and on a real board. How images are built and
+//! written is left to `target`.
+
+use std::path::{Path, PathBuf};
+
+use link::messages::Role;
+
+use crate::failure::Outcome;
+use crate::hil::Progress;
+use crate::target::board::Board;
+use crate::target::image::{self, Image};
+use crate::target::toolchain::Toolchain;
+use crate::{check, interruption, output, target};
+
+/// Arguments of `joint image`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  joint image                                 joint q1 for the stm32f405
+  joint image joints/l1.toml --board stm32h743")]
+pub struct ImageArguments {
+    /// Joint file (TOML), or the name of a preset: q1, s1, d2, l1, paper, paper_printed
+    #[arg(value_name = "FILE", default_value = "q1")]
+    file: PathBuf,
+    /// Board that the image is for
+    #[arg(long, value_enum, default_value = "stm32f405")]
+    board: Board,
+    /// Steps a second, in Hz
+    #[arg(long, value_name = "HZ", default_value_t = image::DEFAULT_TICK_RATE, value_parser = clap::value_parser!(u32).range(1..))]
+    rate: u32,
+}
+
+/// Arguments of `joint flash`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  joint flash                                 joint q1 onto the stm32f405 behind the debug probe
+  joint flash joints/l1.toml --board stm32g474")]
+pub struct FlashArguments {
+    #[command(flatten)]
+    image: ImageArguments,
+}
+
+/// Builds an image.
+pub fn image(arguments: &ImageArguments) -> Outcome<()> {
+    let built = build(arguments)?;
+    let Image { elf, flash_bytes, ram_bytes, .. } = &built;
+    output::print(&format!("{}\nflash {flash_bytes} B, RAM {ram_bytes} B\n", elf.display()))
+}
+
+/// Builds an image and writes it to a board.
+pub fn flash(arguments: &FlashArguments) -> Outcome<()> {
+    let built = build(&arguments.image)?;
+    target::flash::flash(&built.elf, arguments.image.board)
+}
+
+fn build(arguments: &ImageArguments) -> Outcome<Image> {
+    let file = joint_file(&arguments.file)?;
+    let progress = Progress::new();
+    let say = |line: &str| progress.say(line);
+    progress.stage("preparing the toolchain");
+    let built = Toolchain::prepare(&say).and_then(|toolchain| {
+        progress.stage("building the firmware");
+        image::build_image(&toolchain, &file, arguments.board, Role::Plant, arguments.rate, &say)
+    });
+    progress.clear();
+    interruption::explain(built)
+}
+
+/// A joint file that can be read, as the firmware's build wants it: presets are files too.
+pub fn joint_file(file: &Path) -> Outcome<PathBuf> {
+    let loaded = check::load(file)?;
+    Ok(if file.is_file() { file.to_owned() } else { image::preset_file(&loaded.name) })
+}

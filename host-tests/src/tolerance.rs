@@ -280,3 +280,43 @@ pub const PAPER_SCHEME_HELD: Bound = Bound {
     measured: 2.4e-10,
     reason: "Exact but for the reference's own error and the phase, which has 64 bits.",
 };
+
+/// Core, four and five planets, unequal backlash, rectangular wave, backwards.
+pub const RANGE: Bound = Bound {
+    of: "core beyond the usual joint, over the standard deviation",
+    limit: 2e-3,
+    measured: 4.3e-4,
+    reason: "Four crossings of the gap each, on the back sides and on both flanks.",
+};
+
+/// Eq. 19's matrices, derived against written out.
+pub const DERIVATION: Bound = Bound {
+    of: "entries of K and C of eq. 19, dimensionless",
+    limit: 1e-14,
+    measured: 2.2e-16,
+    reason: "Two ways to the same few products of numbers near one.",
+};
+
+/// The linear flow by two methods.
+pub const FLOW: Bound = Bound {
+    of: "entries of exp(A h) - I against nalgebra's exponential",
+    limit: 1e-13,
+    measured: 4.4e-16,
+    reason: "nalgebra's own error, measured on rotations.",
+};
+
+/// Eigenvalues known to six digits.
+pub const PRINTED_EIGENVALUE: Bound = Bound {
+    of: "damped eigenvalue against its six digits",
+    limit: 1e-6,
+    measured: 4.1e-7,
+    reason: "Half a unit of the sixth digit in each part.",
+};
+
+/// Tanh dead zone of sharpness 100 against the sharp one.
+pub const SHARP_TANH: Bound = Bound {
+    of: "gap with a tanh dead zone of sharpness 100 against the sharp one, over b",
+    limit: 1e-2,
+    measured: 2.2e-3,
+    reason: "Corners rounded over a hundredth of b_c.",
+};

@@ -1,0 +1,119 @@
+//! The core and the reference through the same scenario, and how far they are apart. Bounds are the tests' business;
+//! neither side sees the other.
+
+use std::array;
+
+use host_tests::reference::{Observation, Start};
+use host_tests::scenarios::{self, Scenario};
+use host_tests::tolerance::Bound;
+use model_core::design::{Effort, design_scheme};
+use model_core::real::Real;
+use model_core::realtime::{Model, Relative, State, Torques};
+use model_core::scales::Scales;
+use model_core::tables::{Scheme, Tables};
+
+/// What the core and the reference both say at one moment: mesh deflections, gap, link less rigid body.
+struct Moment {
+    deflections: [Vec<f64>; 2],
+    gap: f64,
+    link_offset: f64,
+}
+
+/// RMS errors over standard deviations: all mesh deflections together, gap, link less rigid body.
+#[derive(Debug, Clone, Copy)]
+pub struct Errors {
+    pub deflection: f64,
+    pub gap: f64,
+    pub link: f64,
+}
+
+impl Errors {
+    pub fn worst(&self) -> f64 {
+        self.deflection.max(self.gap).max(self.link)
+    }
+}
+
+fn state<T: Real, const N: usize>(tables: &Tables<T, N>, scenario: &Scenario) -> State<T, N> {
+    let Start::Relative(start) = &scenario.start else { return State::REST };
+    let length = scenario.joint.characteristic_length;
+    let speed = length * Scales::new(&scenario.joint).frequency;
+    let relative = |planets: &[f64], gap: f64, wind_up: f64, unit: f64| Relative {
+        planets: array::from_fn(|i| T::from_f64(planets[i] / unit)),
+        gap: T::from_f64(gap / unit),
+        wind_up: T::from_f64(wind_up / unit),
+    };
+    State::from_deflections(
+        tables,
+        &relative(&start.sun_planet, start.gap, start.wind_up, length),
+        &relative(&start.sun_planet_rate, start.gap_rate, start.wind_up_rate, speed),
+        T::from_f64(start.rigid_speed),
+    )
+}
+
+/// The core through a scenario, sampled as the reference is.
+fn follow<T: Real, const N: usize>(scenario: &Scenario, scheme: Scheme, effort: Effort) -> Vec<Moment> {
+    let tables: Tables<T, N> =
+        design_scheme(&scenario.joint, scenario.tick_rate, scheme, effort).expect("a scenario's joint is sound");
+    let mut model = Model::new(&tables);
+    model.set_state(state(&tables, scenario));
+    let mut moments = Vec::new();
+    for tick in 0..=scenario.ticks {
+        if tick % scenario.sample_every == 0 {
+            let outputs = model.outputs();
+            moments.push(Moment {
+                deflections: outputs.deflections.map(|family| family.map(Real::to_f64).to_vec()),
+                gap: outputs.gap.to_f64(),
+                link_offset: outputs.link_offset.to_f64(),
+            });
+        }
+        let (drive, load) = scenario.torques_at(tick);
+        model.step(Torques { drive: T::from_f64(drive), load: T::from_f64(load) });
+    }
+    moments
+}
+
+fn deviation(values: &[f64]) -> f64 {
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt()
+}
+
+fn rms(errors: &[f64]) -> f64 {
+    (errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64).sqrt()
+}
+
+/// Errors of a run over the samples from `from` on.
+pub fn errors<T: Real, const N: usize>(scenario: &Scenario, scheme: Scheme, effort: Effort, from: usize) -> Errors {
+    let reference = scenarios::run(scenario).expect("the reference follows every scenario").samples;
+    let moments = follow::<T, N>(scenario, scheme, effort);
+    assert_eq!(reference.len(), moments.len());
+    let pairs: Vec<(&Observation, &Moment)> = reference.iter().zip(&moments).skip(from).collect();
+    let relative = |of: &dyn Fn(&Observation) -> f64, is: &dyn Fn(&Moment) -> f64| {
+        let expected: Vec<f64> = pairs.iter().map(|(expected, _)| of(expected)).collect();
+        let error: Vec<f64> = pairs.iter().map(|(expected, moment)| is(moment) - of(expected)).collect();
+        rms(&error) / deviation(&expected)
+    };
+    let meshes: Vec<f64> = (0..2 * N)
+        .map(|mesh| {
+            let (kind, i) = (mesh / N, mesh % N);
+            relative(&|expected| expected.deflections[kind][i], &|moment| moment.deflections[kind][i])
+        })
+        .collect();
+    Errors {
+        deflection: rms(&meshes),
+        gap: relative(&|expected| expected.gap, &|moment| moment.gap),
+        link: relative(&|expected| expected.link_offset, &|moment| moment.link_offset),
+    }
+}
+
+/// Holds f32 and f64 against a bound.
+#[track_caller]
+pub fn check<const N: usize>(scenario: &Scenario, effort: Effort, bound: &Bound) {
+    for (scalar, errors) in [
+        ("f32", errors::<f32, N>(scenario, Scheme::Realtime, effort, 0)),
+        ("f64", errors::<f64, N>(scenario, Scheme::Realtime, effort, 0)),
+    ] {
+        let Errors { deflection, gap, link } = errors;
+        println!("{}, {scalar}: meshes {deflection:.1e}, gap {gap:.1e}, link {link:.1e}", scenario.name);
+        bound.check(errors.worst());
+    }
+}

@@ -1,0 +1,153 @@
+//! What the core promises of itself, whatever the joint: teeth only push, nothing is silent, the same input gives the
+//! same bits, the digest sees everything.
+
+use host_tests::scenarios;
+use host_tests::tolerance;
+use model_core::dead_zone::DeadZone;
+use model_core::design::{DesignError, Effort, design, design_scheme, rust_source};
+use model_core::joint::JointParameters;
+use model_core::mesh::ContactState;
+use model_core::realtime::{Model, Torques};
+use model_core::tables::{Scheme, Tables};
+
+fn q1_tables() -> Tables<f32, 3> {
+    design(&scenarios::q1(), 20_000).expect("q1 is sound")
+}
+
+/// Torques that drive the joint through its gap again and again.
+fn swinging(tick: u32) -> Torques<f32> {
+    let sign = if (tick / 150).is_multiple_of(2) { 1.0 } else { -1.0 };
+    Torques { drive: 0.8 * sign, load: 4.0 * sign }
+}
+
+#[test]
+fn the_same_torques_give_the_same_bits() {
+    let tables = q1_tables();
+    let run = || {
+        let mut model = Model::new(&tables);
+        (0..5000)
+            .map(|tick| {
+                model.step(swinging(tick));
+                model.state_digest()
+            })
+            .collect::<Vec<u64>>()
+    };
+    assert_eq!(run(), run());
+}
+
+#[test]
+fn a_reset_model_starts_over() {
+    let tables = q1_tables();
+    let mut model = Model::new(&tables);
+    let fresh = model.state_digest();
+    model.step(swinging(0));
+    assert_ne!(model.state_digest(), fresh);
+    model.reset();
+    assert_eq!(model.state_digest(), fresh);
+}
+
+#[test]
+fn every_state_of_contact_occurs_in_a_swing() {
+    let tables = q1_tables();
+    let mut model = Model::new(&tables);
+    let mut seen = [false; 3];
+    for tick in 0..5000 {
+        model.step(swinging(tick));
+        for contact in model.outputs().contacts.iter().flatten() {
+            seen[*contact as usize] = true;
+        }
+    }
+    let all = [ContactState::DriveSide, ContactState::Separated, ContactState::BackSide];
+    assert!(all.iter().all(|state| seen[*state as usize]), "seen: {seen:?}");
+}
+
+#[test]
+fn a_torque_that_is_not_a_number_is_seen_at_once() {
+    let tables = q1_tables();
+    let mut model = Model::new(&tables);
+    model.step(Torques { drive: f32::NAN, load: 0.0 });
+    assert!(!model.is_finite());
+}
+
+#[test]
+fn absurd_torques_neither_panic_nor_pass_for_motion() {
+    let tables = q1_tables();
+    for torque in [1e9, 1e30, f32::MAX, f32::INFINITY, f32::MIN, -f32::INFINITY] {
+        let mut model = Model::new(&tables);
+        for _ in 0..100 {
+            model.step(Torques { drive: torque, load: -torque });
+            let _ = model.outputs();
+        }
+        let gap = model.outputs().gap;
+        assert!(!model.is_finite() || gap.abs() > 1.0, "{torque:e} N m left a gap of {gap} m");
+    }
+}
+
+#[test]
+fn the_digest_of_the_tables_sees_every_kind_of_number() {
+    let tables = q1_tables();
+    assert!(tables.digest_is_good());
+    let changes: [fn(&mut Tables<f32, 3>); 8] = [
+        |tables| tables.tick_rate += 1,
+        |tables| tables.substeps += 1,
+        |tables| tables.units.drive = tables.units.drive.next_up(),
+        |tables| tables.rigid.load = -tables.rigid.load,
+        |tables| tables.mobility.carrier = tables.mobility.carrier.next_up(),
+        |tables| tables.meshes[1][2].half_backlash = tables.meshes[1][2].half_backlash.next_up(),
+        |tables| tables.meshes[0][1].ripple[7][1] = 1e-20,
+        |tables| tables.flow.half.torques.0[(5, 2)] = tables.flow.half.torques.0[(5, 2)].next_up(),
+    ];
+    for (index, change) in changes.iter().enumerate() {
+        let mut changed = tables.clone();
+        change(&mut changed);
+        assert!(!changed.digest_is_good(), "change {index} is not seen");
+    }
+}
+
+#[test]
+fn a_sharp_tanh_nears_the_sharp_dead_zone() {
+    let mut joint = scenarios::paper_joint(0.1, 5e-6, 20e-6, 0.4);
+    let gaps = |joint: &JointParameters| {
+        let tables: Tables<f64, 3> =
+            design_scheme(joint, 20_000, Scheme::Realtime, Effort::Accurate).expect("the paper's joint is sound");
+        let mut model = Model::new(&tables);
+        let load = joint.balanced_load_torque(40.0);
+        let gap = |_| {
+            model.step(Torques { drive: 40.0, load });
+            model.outputs().gap
+        };
+        (0..200).map(gap).collect::<Vec<f64>>()
+    };
+    let sharp = gaps(&joint);
+    let errors = [3.0, 10.0, 100.0].map(|sharpness| {
+        joint.dead_zone = DeadZone::Tanh { sharpness };
+        gaps(&joint).iter().zip(&sharp).map(|(tanh, sharp)| (tanh - sharp).abs()).fold(0.0, f64::max) / 20e-6
+    });
+    assert!(errors[2] < errors[1] && errors[1] < errors[0], "errors over b: {errors:?}");
+    tolerance::SHARP_TANH.check(errors[2]);
+}
+
+#[test]
+fn tables_for_another_number_of_planets_are_refused() {
+    let error = design::<f32, 4>(&scenarios::q1(), 20_000).expect_err("q1 has three planets");
+    assert_eq!(error, DesignError::WrongPlanetCount { wanted: 4, given: 3 });
+    assert!(error.to_string().contains("the joint has 3"));
+}
+
+#[test]
+fn a_tick_rate_too_low_names_the_one_that_works() {
+    let Err(DesignError::RateTooLow { lowest, .. }) = design::<f32, 3>(&scenarios::q1(), 500) else {
+        panic!("500 Hz is far below the planets' 13 kHz")
+    };
+    assert!(design::<f32, 3>(&scenarios::q1(), lowest).is_ok());
+    assert!(design::<f32, 3>(&scenarios::q1(), lowest - 1).is_err());
+    assert!(design::<f32, 3>(&scenarios::q1(), 0).is_err());
+}
+
+#[test]
+fn the_source_for_a_board_holds_the_digest_of_the_tables() {
+    let source = rust_source(&scenarios::q1(), 20_000).expect("q1 is sound");
+    assert!(source.contains("pub const PLANETS: usize = 3;"));
+    assert!(source.contains("pub const JOINT_NAME: &str = \"q1\";"));
+    assert!(source.contains(&format!("digest: {}", q1_tables().digest)));
+}

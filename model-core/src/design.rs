@@ -79,8 +79,8 @@ pub fn design_scheme<T: Real, const N: usize>(
     let tick = scales.frequency / f64::from(tick_rate);
     let substep = tick / f64::from(substeps);
     let flow_step = match scheme {
-        Scheme::Realtime => tick,
         Scheme::PaperEtd1 => substep,
+        Scheme::Realtime | Scheme::RungeKutta4 | Scheme::SemiImplicitEuler => tick,
     };
     let mut tables = Tables {
         digest: 0,

@@ -55,6 +55,10 @@ pub enum Scheme {
     Realtime,
     /// The paper's: one constant exponential, everything nonlinear held as a pseudo-force over the sub-step.
     PaperEtd1,
+    /// Classical Runge-Kutta on the full forces, what people use today.
+    RungeKutta4,
+    /// Semi-implicit Euler on the full forces, likewise.
+    SemiImplicitEuler,
 }
 
 /// From SI to dimensionless and back.

@@ -114,3 +114,14 @@ fn the_paper_s_scheme_is_exact_while_contact_holds_and_far_off_when_meshes_part(
     let realtime = errors::<f64, 3>(&parting, Scheme::Realtime, Effort::Board, 0).deflection;
     assert!(paper > 20.0 * realtime, "the paper's scheme leaves {paper:.1e}, the board's {realtime:.1e}");
 }
+
+/// The usual methods converge to the same motion, only more slowly.
+#[test]
+fn the_usual_methods_follow_too_but_farther_off() {
+    let scenario = scenarios::case("A", scenarios::CASE_A_OMEGA);
+    let error = |scheme| errors::<f64, 3>(&scenario, scheme, Effort::Accurate, 0).deflection;
+    let (realtime, runge_kutta, euler) =
+        (error(Scheme::Realtime), error(Scheme::RungeKutta4), error(Scheme::SemiImplicitEuler));
+    println!("realtime {realtime:.1e}, Runge-Kutta {runge_kutta:.1e}, semi-implicit Euler {euler:.1e}");
+    assert!(realtime < runge_kutta && runge_kutta < euler && euler < 0.2);
+}

@@ -1,0 +1,81 @@
+//! What people use today, for comparison: the classical Runge-Kutta method and semi-implicit Euler, both on the full
+//! nonlinear forces at every evaluation. No contact is frozen and no crossing corrected.
+
+use crate::real::Real;
+use crate::realtime::contact::{Drive, Law, acceleration, spread, wind_up_force};
+use crate::realtime::excitation::{Instant, MeshPhase, instant};
+use crate::realtime::runge_kutta::{self, Motion};
+use crate::realtime::state::Relative;
+use crate::realtime::substep::smoothed_forces;
+use crate::tables::Tables;
+
+/// One tick of the classical Runge-Kutta method.
+pub fn runge_kutta<T: Real, const N: usize>(
+    tables: &Tables<T, N>,
+    drive: &Drive<T>,
+    phase: &MeshPhase<T>,
+    start: &Instant<T, N>,
+    motion: &Motion<T, N>,
+) -> Motion<T, N> {
+    let half = phase.over(tables.half_part);
+    let (mut motion, mut rotor, mut start) = (*motion, phase.start, *start);
+    for _ in 0..tables.substeps {
+        rotor = rotor.turned(&half);
+        let middle = instant(tables, &rotor, phase.rate);
+        rotor = rotor.turned(&half);
+        let end = instant(tables, &rotor, phase.rate);
+        let nodes = [&start, &middle, &end];
+        motion = runge_kutta::step(tables.substep, &motion, |node, position, rate| {
+            forced(tables, drive, position, rate, nodes[node])
+        });
+        start = end;
+    }
+    motion
+}
+
+/// One tick of semi-implicit Euler: the rate first, then the position with the new rate.
+pub fn semi_implicit_euler<T: Real, const N: usize>(
+    tables: &Tables<T, N>,
+    drive: &Drive<T>,
+    phase: &MeshPhase<T>,
+    start: &Instant<T, N>,
+    motion: &Motion<T, N>,
+) -> Motion<T, N> {
+    let half = phase.over(tables.half_part);
+    let (mut motion, mut rotor, mut now) = (*motion, phase.start, *start);
+    for _ in 0..tables.substeps {
+        let acceleration = forced(tables, drive, &motion.position, &motion.rate, &now);
+        let rate = motion.rate.plus(tables.substep, &acceleration);
+        motion = Motion { position: motion.position.plus(tables.substep, &rate), rate };
+        rotor = rotor.turned(&half).turned(&half);
+        now = instant(tables, &rotor, phase.rate);
+    }
+    motion
+}
+
+/// Acceleration under the forces of this very moment.
+fn forced<T: Real, const N: usize>(
+    tables: &Tables<T, N>,
+    drive: &Drive<T>,
+    position: &Relative<T, N>,
+    rate: &Relative<T, N>,
+    instant: &Instant<T, N>,
+) -> Relative<T, N> {
+    let (positions, rates) = (spread(position), spread(rate));
+    let forces = if tables.sharpness > T::ZERO {
+        smoothed_forces(tables, &positions, &rates, instant)
+    } else {
+        let mut forces = positions;
+        for kind in 0..2 {
+            for i in 0..N {
+                let deflection = positions[kind][i] - instant.error[kind][i];
+                let speed = rates[kind][i] - instant.error_rate[kind][i];
+                let stiffness = instant.stiffness[kind][i];
+                let law = Law::of(tables, (kind, i), deflection, speed, stiffness);
+                forces[kind][i] = law.closed * stiffness * (deflection - law.offset) + law.damping * speed;
+            }
+        }
+        forces
+    };
+    acceleration(tables, drive, &forces, wind_up_force(tables, position, rate))
+}

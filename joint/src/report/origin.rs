@@ -46,6 +46,22 @@ pub fn identity(record: &RunRecord) -> Markup {
     }
 }
 
+/// What ran, short enough to stand below a picture.
+pub fn in_one_line(record: &RunRecord) -> String {
+    let identity = &record.identity;
+    let mut parts = vec![format!("Joint {} on {}", identity.joint, identity.board)];
+    if identity.emulated {
+        parts.push("EMULATED".into());
+    }
+    if let Some(image) = &identity.image {
+        let short = |text: &str, letters: usize| text.chars().take(letters).collect::<String>();
+        parts.push(format!("ELF {}", short(&image.elf_sha256, 12)));
+        parts.push(image.compiler.split(" (").next().unwrap_or_default().to_owned());
+        parts.push(short(&image.flags, 80));
+    }
+    parts.join(" · ")
+}
+
 /// What the board said.
 pub fn log(record: &RunRecord) -> Markup {
     if record.log.is_empty() {

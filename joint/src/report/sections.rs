@@ -76,6 +76,8 @@ fn check_row(record: &RunRecord, check: &Check) -> Markup {
     };
     let with_unit = |value: f64| match check.unit.as_str() {
         "" => number(value),
+        // As typed in a terminal, and as printed.
+        "us" => format!("{} µs", number(value)),
         unit => format!("{} {unit}", number(value)),
     };
     let bound = match check.bound {
@@ -87,7 +89,7 @@ fn check_row(record: &RunRecord, check: &Check) -> Markup {
     html! {
         tr class=(class) {
             td.verdict { span class={ "mark " (class) } { (word) } }
-            td { (check.name) @if check.source == Source::Board { (emulated(record)) } }
+            td.name { (check.name) @if check.source == Source::Board { (emulated(record)) } }
             td.number { (check.figure.map_or("–".into(), with_unit)) }
             td.number { (bound) }
             td.note { (check.note) }

@@ -30,11 +30,22 @@ fn of_size<const N: usize>(parameters: &JointParameters, rate: u32) -> Result<St
     Ok(Step { substeps: tables.substeps, table_bytes: size_of::<Tables<f32, N>>(), digest: tables.digest })
 }
 
-/// The lowest stable rate [Hz].
+/// The lowest rate that the design accepts [Hz]. What it suggests when it refuses is good but need not be the lowest.
 pub(super) fn lowest_rate(parameters: &JointParameters) -> Result<u32, DesignError> {
-    match step(parameters, 1) {
-        Err(DesignError::RateTooLow { lowest, .. }) => Ok(lowest.max(1)),
-        Err(other) => Err(other),
-        Ok(_) => Ok(1),
+    let mut good = match step(parameters, 1) {
+        Ok(_) => return Ok(1),
+        Err(DesignError::RateTooLow { lowest, .. }) => lowest,
+        Err(other) => return Err(other),
+    };
+    step(parameters, good)?;
+    let mut bad = 1;
+    while good - bad > 1 {
+        let middle = bad + (good - bad) / 2;
+        match step(parameters, middle) {
+            Ok(_) => good = middle,
+            Err(DesignError::RateTooLow { .. }) => bad = middle,
+            Err(other) => return Err(other),
+        }
     }
+    Ok(good)
 }

@@ -58,6 +58,9 @@ pub struct Arguments {
     /// Writes the record as JSON to this file too
     #[arg(long, value_name = "OUT")]
     pub json: Option<PathBuf>,
+    /// Draws the first reversal through the gap to this file (SVG), for a document
+    #[arg(long, value_name = "SVG")]
+    pub picture: Option<PathBuf>,
     /// Does not compute the f64 reference
     #[arg(long)]
     pub no_reference: bool,

@@ -54,10 +54,11 @@ pub fn in_one_line(record: &RunRecord) -> String {
         parts.push("EMULATED".into());
     }
     if let Some(image) = &identity.image {
-        let short = |text: &str, letters: usize| text.chars().take(letters).collect::<String>();
-        parts.push(format!("ELF {}", short(&image.elf_sha256, 12)));
-        parts.push(image.compiler.split(" (").next().unwrap_or_default().to_owned());
-        parts.push(short(&image.flags, 80));
+        let until = |text: &str, end: &str| text.split(end).next().unwrap_or_default().to_owned();
+        parts.push(format!("ELF {}", image.elf_sha256.chars().take(12).collect::<String>()));
+        parts.push(until(&image.compiler, " ("));
+        // The profile and what it sets; the rest is in the report.
+        parts.push(until(&image.flags, ", --"));
     }
     parts.join(" · ")
 }

@@ -31,7 +31,7 @@ pub fn tiles(record: &RunRecord) -> Markup {
             }
             @if let Some(image) = &record.identity.image {
                 (tile("Flash", none(), html! { (kibibytes(image.flash_bytes)) span.of { " KiB" } }))
-                (tile("RAM", none(), html! { (kibibytes(image.ram_bytes)) span.of { " KiB" } }))
+                (tile("RAM of statics", none(), html! { (kibibytes(image.ram_bytes)) span.of { " KiB" } }))
             }
         }
     }

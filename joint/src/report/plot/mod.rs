@@ -24,7 +24,7 @@ pub const RIGHT: i32 = 14;
 /// Height of the numbers and the name of the common axis [px].
 const FOOT: i32 = 32;
 /// Height of a note below everything [px].
-const NOTE: i32 = 24;
+const NOTE: i32 = 28;
 
 /// Where a panel is drawn.
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -78,7 +78,7 @@ impl Figure {
         }
         let style = text_style(11, Ink::Muted, FontStyle::Normal);
         if !self.note.is_empty() {
-            rest.draw(&Text::new(self.note.clone(), (LEFT * FINE, 4 * FINE), style))?;
+            rest.draw(&Text::new(self.note.clone(), (LEFT * FINE, 8 * FINE), style))?;
         }
         rest.present()?;
         Ok(())

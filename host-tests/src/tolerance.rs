@@ -320,3 +320,35 @@ pub const SHARP_TANH: Bound = Bound {
     measured: 2.2e-3,
     reason: "Corners rounded over a hundredth of b_c.",
 };
+
+/// Precise integration against 50 digits.
+pub const PRECISE_INTEGRATION: Bound = Bound {
+    of: "|E found - E| over max(1, |E|), in units of 2^-53 max(1, |A h|)",
+    limit: 2.0,
+    measured: 0.6,
+    reason: "Twenty are allowed; the result and its fixture are each rounded once, by a unit at most.",
+};
+
+/// Input integrals against 50 digits.
+pub const PRECISE_INTEGRALS: Bound = Bound {
+    of: "input integral against 50 digits, relative, in units of 2^-53 max(1, |A h|)",
+    limit: 2.0,
+    measured: 0.0,
+    reason: "As for the increment.",
+};
+
+/// nalgebra's exponential against precise integration.
+pub const NALGEBRA_EXPONENTIAL: Bound = Bound {
+    of: "distance to nalgebra's exponential beyond its own error, in units of 2^-53 max(1, |A h|)",
+    limit: 2.0,
+    measured: 0.6,
+    reason: "Its own error, measured against 50 digits, reaches a million units where motion grows before it decays.",
+};
+
+/// Small increments.
+pub const DIGITS_KEPT: Bound = Bound {
+    of: "diagonal of exp(A h) - I, each entry relative to itself",
+    limit: 2.5e-16,
+    measured: 0.0,
+    reason: "Rounded once, and its fixture too.",
+};

@@ -352,3 +352,19 @@ pub const DIGITS_KEPT: Bound = Bound {
     measured: 0.0,
     reason: "Rounded once, and its fixture too.",
 };
+
+/// Order of convergence on smooth motion, and of the paper's scheme on any.
+pub const ORDER: Bound = Bound {
+    of: "observed order of convergence less the scheme's",
+    limit: 0.15,
+    measured: 0.035,
+    reason: "The steps are finite, so the next order still shows; a whole order lost would be 1.",
+};
+
+/// Order of convergence where meshes part and hit.
+pub const ORDER_AT_KINKS: Bound = Bound {
+    of: "observed order of convergence less the scheme's, on kinked motion",
+    limit: 0.25,
+    measured: 0.097,
+    reason: "Where in a step a crossing falls changes with the step, so single errors scatter by half of themselves.",
+};

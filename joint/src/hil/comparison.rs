@@ -1,6 +1,7 @@
 //! The run against the f64 reference: the same torques through an independent integration, as far as the motion can be
 //! predicted at all. Both are computed beside the run; what the distances mean for the verdict is the checks' business.
 
+use std::collections::VecDeque;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -21,7 +22,9 @@ const LONGEST: f64 = 10.0;
 const DISTURBANCE: f64 = 1e-6;
 /// Once that moves any compared quantity by more than this part of its standard deviation, the motion is chaotic: what
 /// comes later says nothing about the step any more.
-const PREDICTABLE: f64 = 1e-3;
+const PREDICTABLE: f64 = 1e-4;
+/// Samples between two looks at whether it still can be predicted.
+const BLOCK: usize = 100;
 
 /// What is compared.
 const QUANTITIES: [Quantity; 4] = [
@@ -36,13 +39,13 @@ struct Quantity {
     bound: &'static Bound,
 }
 
-/// References under way, each on a thread of its own.
+/// References under way, on threads of their own.
 pub struct UnderWay {
     joint: JointParameters,
     tick_rate: u32,
     ticks: Vec<u32>,
     stop: Arc<AtomicBool>,
-    references: [JoinHandle<Result<Vec<Observation>, ReferenceError>>; 2],
+    followed: JoinHandle<Result<Vec<Observation>, ReferenceError>>,
 }
 
 /// How far a run is from the reference.
@@ -75,41 +78,90 @@ pub fn start(joint: &JointParameters, tick_rate: u32, decimation: u32, run: (&[C
     let last = ticks.min((LONGEST * f64::from(tick_rate)) as u32);
     let ticks: Vec<u32> = (1..=last / decimation).map(|sample| sample * decimation).collect();
     let stop = Arc::new(AtomicBool::new(false));
-    let references = [0.0, DISTURBANCE].map(|disturbance| {
-        let (joint, commands, ticks, stop) = (joint.clone(), commands.to_vec(), ticks.clone(), Arc::clone(&stop));
-        thread::spawn(move || follow(&joint, tick_rate, &commands, &ticks, disturbance, &stop))
-    });
-    UnderWay { joint: joint.clone(), tick_rate, ticks, stop, references }
+    let follower = |disturbance: f64| Follower::new(joint, tick_rate, commands, disturbance);
+    let (exact, disturbed) = (follower(0.0), follower(DISTURBANCE));
+    let followed = {
+        let (ticks, stop) = (ticks.clone(), Arc::clone(&stop));
+        thread::spawn(move || follow(exact?, disturbed?, &ticks, &stop))
+    };
+    UnderWay { joint: joint.clone(), tick_rate, ticks, stop, followed }
 }
 
-/// The reference at the ends of the given ticks; shorter if it was told to stop.
+/// The reference at the ends of the given ticks, as far as the disturbed one stays with it.
 fn follow(
-    joint: &JointParameters,
-    tick_rate: u32,
-    commands: &[Command],
+    mut exact: Follower,
+    mut disturbed: Follower,
     ticks: &[u32],
-    disturbance: f64,
     stop: &AtomicBool,
 ) -> Result<Vec<Observation>, ReferenceError> {
-    let time_of = |tick: u32| f64::from(tick) / f64::from(tick_rate);
-    let mut reference = Reference::new(joint)?;
-    let mut commands = commands.iter().peekable();
-    let (mut drive, mut load) = (0.0, 0.0);
-    let mut factor = 1.0 + disturbance;
     let mut observations = Vec::with_capacity(ticks.len());
-    for &tick in ticks {
+    let mut rows: [Vec<Row>; 2] = Default::default();
+    for block in ticks.chunks(BLOCK) {
         if stop.load(Ordering::Relaxed) {
             break;
         }
-        while let Some(command) = commands.next_if(|command| command.tick < tick) {
-            reference.advance(time_of(command.tick), factor * drive, factor * load)?;
-            (drive, load) = (f64::from(command.drive_torque), f64::from(command.load_torque));
+        let [here, there] = thread::scope(|scope| {
+            let there = scope.spawn(|| disturbed.block(block));
+            [exact.block(block), there.join().unwrap_or(Ok(Vec::new()))]
+        });
+        let (here, there) = (here?, there?);
+        let [exact_rows, disturbed_rows] = &mut rows;
+        exact_rows.extend(here.iter().map(|observation| Row::of_reference(observation, exact.ratio)));
+        disturbed_rows.extend(there.iter().map(|observation| Row::of_reference(observation, exact.ratio)));
+        observations.extend(here);
+        if let Some(departure) = departure(exact_rows, disturbed_rows, observations.len() - block.len()) {
+            observations.truncate(departure);
+            break;
         }
-        reference.advance(time_of(tick), factor * drive, factor * load)?;
-        observations.push(reference.observe());
-        factor = 2.0 - factor;
     }
     Ok(observations)
+}
+
+/// A reference that is given a run's torques.
+struct Follower {
+    reference: Reference,
+    commands: VecDeque<Command>,
+    torques: (f64, f64),
+    tick_rate: f64,
+    factor: f64,
+    ratio: f64,
+}
+
+impl Follower {
+    fn new(
+        joint: &JointParameters,
+        tick_rate: u32,
+        commands: &[Command],
+        disturbance: f64,
+    ) -> Result<Self, ReferenceError> {
+        Ok(Self {
+            reference: Reference::new(joint)?,
+            commands: commands.iter().copied().collect(),
+            torques: (0.0, 0.0),
+            tick_rate: tick_rate.into(),
+            factor: 1.0 + disturbance,
+            ratio: joint.geometry.ratio_by_radii(),
+        })
+    }
+
+    fn block(&mut self, ticks: &[u32]) -> Result<Vec<Observation>, ReferenceError> {
+        ticks.iter().map(|&tick| self.observe_at(tick)).collect()
+    }
+
+    fn observe_at(&mut self, tick: u32) -> Result<Observation, ReferenceError> {
+        while let Some(command) = self.commands.pop_front_if(|command| command.tick < tick) {
+            self.advance(command.tick)?;
+            self.torques = (command.drive_torque.into(), command.load_torque.into());
+        }
+        self.advance(tick)?;
+        self.factor = 2.0 - self.factor;
+        Ok(self.reference.observe())
+    }
+
+    fn advance(&mut self, tick: u32) -> Result<(), ReferenceError> {
+        let (drive, load) = self.torques;
+        self.reference.advance(f64::from(tick) / self.tick_rate, self.factor * drive, self.factor * load)
+    }
 }
 
 impl UnderWay {
@@ -121,16 +173,14 @@ impl UnderWay {
 
     /// Waits for the references and compares the samples of the run with them.
     pub fn finish(self, samples: &[Sample], ratio: f64) -> Outcome<Comparison> {
-        let [exact, disturbed] = self.references.map(|reference| match reference.join() {
-            Ok(Ok(observations)) => Ok(observations),
-            Ok(Err(error)) => Err(Failure::new(format!("the reference does not take this joint: {error}"))),
-            Err(_) => Err(Failure::new("the reference has failed")),
-        });
-        let (exact, disturbed) = (exact?, disturbed?);
+        let exact = match self.followed.join() {
+            Ok(Ok(observations)) => observations,
+            Ok(Err(error)) => return Err(Failure::new(format!("the reference does not take this joint: {error}"))),
+            Err(_) => return Err(Failure::new("the reference has failed")),
+        };
         let board = rows_of_board(samples, &self.ticks, ratio);
         let exact_rows: Vec<Row> = exact.iter().map(|observation| Row::of_reference(observation, ratio)).collect();
-        let disturbed: Vec<Row> = disturbed.iter().map(|observation| Row::of_reference(observation, ratio)).collect();
-        let predictable = predictable(&exact_rows, &disturbed);
+        let predictable = exact_rows.len();
         let mut motion = record::Samples::new(2 * self.joint.geometry.planets);
         for (&tick, observation) in self.ticks.iter().zip(&exact) {
             motion.push(&motion_sample(tick, observation), self.tick_rate, ratio);
@@ -139,9 +189,9 @@ impl UnderWay {
         let mut errors = Vec::new();
         let mut series = Vec::new();
         for (place, quantity) in QUANTITIES.iter().enumerate() {
-            let spread = spread(&exact_rows[..predictable], place);
+            let spread = spread(&exact_rows, place);
             let distances = || {
-                board.iter().zip(&exact_rows[..predictable]).enumerate().filter_map(move |(index, (board, exact))| {
+                board.iter().zip(&exact_rows).enumerate().filter_map(move |(index, (board, exact))| {
                     board.as_ref().map(|board| (index, board.distance(exact, place) / spread))
                 })
             };
@@ -168,14 +218,14 @@ impl UnderWay {
     }
 }
 
-/// How many of the samples come before the motion is chaotic.
-fn predictable(exact: &[Row], disturbed: &[Row]) -> usize {
-    let count = exact.len().min(disturbed.len());
-    let spreads: Vec<f64> = (0..QUANTITIES.len()).map(|place| spread(&exact[..count], place)).collect();
+/// The first sample, from a place on, at which the disturbed reference has departed from the other.
+fn departure(exact: &[Row], disturbed: &[Row], from: usize) -> Option<usize> {
+    let spreads: Vec<f64> = (0..QUANTITIES.len()).map(|place| spread(exact, place)).collect();
     let departed = |(exact, disturbed): (&Row, &Row)| {
         spreads.iter().enumerate().any(|(place, spread)| disturbed.distance(exact, place).abs() > PREDICTABLE * spread)
     };
-    exact.iter().zip(disturbed).position(departed).unwrap_or(count)
+    let later = exact.iter().zip(disturbed).skip(from).position(departed);
+    later.map(|place| from + place).or((disturbed.len() < exact.len()).then_some(disturbed.len()))
 }
 
 /// Compared quantities at one moment: as many values each as there are.

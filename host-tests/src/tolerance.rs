@@ -368,3 +368,19 @@ pub const ORDER_AT_KINKS: Bound = Bound {
     measured: 0.097,
     reason: "Where in a step a crossing falls changes with the step, so single errors scatter by half of themselves.",
 };
+
+/// Energy of the core over a hundred thousand mesh periods.
+pub const CORE_ENERGY: Bound = Bound {
+    of: "energy of the core less work, over all that was dissipated",
+    limit: 2e-4,
+    measured: 5.8e-5,
+    reason: "A step of a fifth of a natural period: what the corrections of crossings leave, and the sum over ticks.",
+};
+
+/// The core at another backlash.
+pub const CORE_SHIFT: Bound = Bound {
+    of: "difference of two motions of the core that must be the same, over b_c",
+    limit: 1e-11,
+    measured: 6.7e-14,
+    reason: "Rounding, amplified by every hit.",
+};

@@ -3,35 +3,36 @@
 
 #[allow(dead_code, reason = "every test binary uses its own part of it")]
 mod fake_board;
+mod pseudo_terminal;
 
+use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
 use fake_board::Misbehaviour;
-use serialport::{SerialPort, TTYPort};
 use tempfile::TempDir;
 
 /// A message is due within 2 s by design; a busy machine is given ten times that.
 const LIVENESS: Duration = Duration::from_secs(20);
 
-/// A board behind a port; the port stays open on both sides as long as this.
+/// A board behind a port; the port stays open as long as this.
 struct BoardBehindPort {
-    slave: TTYPort,
+    path: String,
+    _slave: File,
 }
 
 impl BoardBehindPort {
     fn new(misbehaviour: Misbehaviour) -> Self {
-        let (mut master, slave) = TTYPort::pair().expect("a pseudo-terminal");
-        master.set_timeout(Duration::from_millis(2)).expect("an option");
+        let (master, slave, path) = pseudo_terminal::pair();
         // The thread ends with the test's process: a pseudo-terminal does not end while one side is open.
         drop(fake_board::start(master, misbehaviour));
-        Self { slave }
+        Self { path, _slave: slave }
     }
 
     fn path(&self) -> String {
-        self.slave.name().expect("a pseudo-terminal has a name")
+        self.path.clone()
     }
 }
 
@@ -42,8 +43,13 @@ fn joint() -> Command {
 }
 
 fn hil(port: &str, out: &Path) -> Command {
+    hil_for("1", port, out)
+}
+
+fn hil_for(duration: &str, port: &str, out: &Path) -> Command {
     let mut command = joint();
-    command.args(["hil", "q1", "--port", port, "--no-build", "--no-reference", "--duration", "1", "--out"]).arg(out);
+    command.args(["hil", "q1", "--port", port, "--no-build", "--no-reference", "--duration", duration, "--out"]);
+    command.arg(out);
     command
 }
 
@@ -178,14 +184,12 @@ fn a_full_disk_at_the_end_does_not_cost_the_record() {
 fn ctrl_c_stops_the_run_and_keeps_the_record() {
     let board = BoardBehindPort::new(Misbehaviour::None);
     let out = folder();
-    let mut command = hil(&board.path(), out.path());
-    let mut child = command
-        .args(["--duration", "3600", "--decimation", "200"])
+    let mut child = hil_for("3600", &board.path(), out.path())
         .stderr(Stdio::piped())
         .stdout(Stdio::null())
         .spawn()
         .expect("the command starts");
-    std::thread::sleep(Duration::from_secs(1));
+    std::thread::sleep(Duration::from_secs(2));
     let process = child.id().to_string();
     assert!(Command::new("kill").args(["-INT", &process]).status().is_ok_and(|status| status.success()));
     let start = Instant::now();

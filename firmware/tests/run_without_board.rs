@@ -277,3 +277,35 @@ fn the_board_says_who_it_is_in_every_state() {
         bench.said();
     }
 }
+
+#[test]
+fn a_run_after_a_reset_equals_the_first() {
+    let mut bench = Bench::new();
+    let mut runs = Vec::new();
+    for _ in 0..2 {
+        bench.start(RunMode::Lockstep, 3, 1);
+        bench.schedule(0, 90, &[(0, 0.2, 0.0), (40, -0.2, 0.5)]);
+        bench.run(100);
+        runs.push(samples(&bench.said()));
+        bench.send_bytes(&[1, 2, 3, 0]);
+        bench.run(2);
+    }
+    assert_eq!(runs[0].len(), 30);
+    assert!(runs[0].iter().zip(&runs[1]).all(|(one, other)| one.state_digest == other.state_digest));
+    bench.start(RunMode::Lockstep, 3, 1);
+    let fresh = statistics(&mut bench, false);
+    assert_eq!((fresh.ticks, fresh.bad_frames), (0, 0));
+}
+
+#[test]
+fn a_fault_is_told_after_the_last_sample_of_its_run() {
+    let mut bench = Bench::new();
+    bench.start(RunMode::Realtime, 1, 8);
+    bench.schedule(0, 2, &[]);
+    bench.settle();
+    (0..12).for_each(|_| bench.tick());
+    bench.settle();
+    let said = bench.said();
+    assert_eq!(samples(&said).len(), 10);
+    assert_eq!(said.last(), Some(&FromBoard::Fault(Fault::CommandLoss { tick: 10 })));
+}

@@ -52,9 +52,18 @@ fn children(parent: u32) -> Vec<u32> {
     processes.filter_map(|entry| entry.file_name().to_str()?.parse().ok()).filter(is_child).collect()
 }
 
+/// An emulator that runs an image, not one that is asked for its version.
 fn is_emulator(process: u32) -> bool {
     let line = fs::read(format!("/proc/{process}/cmdline")).unwrap_or_default();
-    line.split(|byte| *byte == 0).next().is_some_and(|program| program.ends_with(b"qemu-system-arm"))
+    let mut words = line.split(|byte| *byte == 0);
+    words.next().is_some_and(|program| program.ends_with(b"qemu-system-arm")) && words.any(|word| word == b"-kernel")
+}
+
+/// Whether a process has computed for about a second: user and system time in hundredths, fields 14 and 15.
+fn has_worked(process: u32) -> bool {
+    let stat = fs::read_to_string(format!("/proc/{process}/stat")).unwrap_or_default();
+    let after_name = stat.rsplit(')').next().unwrap_or_default();
+    after_name.split_whitespace().skip(11).take(2).filter_map(|time| time.parse::<u32>().ok()).sum::<u32>() >= 100
 }
 
 fn is_alive(process: u32) -> bool {
@@ -90,7 +99,7 @@ fn long_run(out: &TempDir) -> (Child, u32) {
         assert!(child.try_wait().expect("a child").is_none(), "the run ended early");
         children(joint).into_iter().find(|&process| is_emulator(process))
     });
-    thread::sleep(Duration::from_secs(3));
+    until(BUILD, "a run", || has_worked(emulator).then_some(()));
     (child, emulator)
 }
 

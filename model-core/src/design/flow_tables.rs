@@ -34,7 +34,7 @@ pub fn flow<T: Real>(dynamics: &Dynamics, step: f64) -> Flow<T> {
         half: sorting.transition(&half),
         step: T::from_f64(step),
         // A whole step: planets that ring are taken in sub-steps. Beyond it a mesh also pushes under the law `contact`.
-        reach: T::from_f64((1.0 * step).max(dynamics.longest_relaxation)),
+        reach: T::from_f64(step.max(dynamics.longest_relaxation)),
         longest_way: T::from_f64(LARGEST_WAY * 4_294_967_296.0),
     }
 }

@@ -76,7 +76,12 @@ impl Gear {
             gear.spring(BEARING, &[(3 * CARRIER + x, radial), (3 * CARRIER + y, tangential), (planet + x, -1.0)]);
             gear.spring(
                 BEARING,
-                &[(3 * CARRIER + x, -tangential), (3 * CARRIER + y, radial), (3 * CARRIER + u, 1.0), (planet + y, -1.0)],
+                &[
+                    (3 * CARRIER + x, -tangential),
+                    (3 * CARRIER + y, radial),
+                    (3 * CARRIER + u, 1.0),
+                    (planet + y, -1.0),
+                ],
             );
         }
         gear

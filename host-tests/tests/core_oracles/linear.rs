@@ -109,7 +109,8 @@ fn damped_eigenvalues_of_h_are_those_of_the_closed_form_for_any_number_of_planet
             let planet = Complex::new(-0.5 * rate, (square - 0.25 * rate * rate).sqrt());
             let found: Vec<Complex<f64>> =
                 hamiltonian::matrix(&dynamics).complex_eigenvalues().iter().copied().filter(|s| s.im > 0.0).collect();
-            let (of_planets, overall): (Vec<Complex<f64>>, Vec<Complex<f64>>) = found.iter().copied().partition(|s| (*s - planet).norm() < 1e-3);
+            let (of_planets, overall): (Vec<Complex<f64>>, Vec<Complex<f64>>) =
+                found.iter().copied().partition(|s| (*s - planet).norm() < 1e-3);
             assert_eq!((of_planets.len(), overall.len()), (planets - 1, 2), "{found:?}");
             of_planets.iter().for_each(|s| CLOSED_FORM.check((*s - planet).norm()));
             let [stiffness, damping] = [form.stiffness, form.damping].map(|families| form.in_phase(families));

@@ -3,15 +3,15 @@
 use host_tests::reference::{Observation, Start};
 use host_tests::scenarios::{Scenario, TorqueSegment, run};
 use host_tests::tolerance::{ENERGY, MOMENTUM};
+use model_core::joint::JointParameters;
 use model_core::mesh::{ContactState, DampingLaw};
 use proptest::prelude::*;
 
 use crate::random::{config, scenario};
 
-/// What the torques must have made of the rigid body's speed, by its momentum [rad/s].
-fn rigid_speed(scenario: &Scenario, time: f64) -> f64 {
-    let Start::Relative(start) = &scenario.start else { unreachable!("stated above") };
-    let (joint, geometry) = (&scenario.joint, &scenario.joint.geometry);
+/// Acceleration of the rigid carrier for each N m of drive and of load torque, by hand [1/(kg m^2)].
+pub fn rigid_gains(joint: &JointParameters) -> [f64; 2] {
+    let geometry = &joint.geometry;
     let cosine = geometry.working_pressure_angle.cos();
     let (lever, planets) = (geometry.carrier_radius * cosine, geometry.planets as f64);
     let sun = joint.bodies.sun_equivalent_mass + joint.rotor_inertia / geometry.sun_base_radius.powi(2);
@@ -19,13 +19,19 @@ fn rigid_speed(scenario: &Scenario, time: f64) -> f64 {
         / cosine.powi(2)
         + joint.link_inertia / lever.powi(2);
     let mass = 4.0 * sun + planets * joint.bodies.planet_equivalent_mass + carrier;
-    let impulse = |segment: &TorqueSegment, end: f64| {
+    [2.0 / (geometry.sun_base_radius * mass * lever), -1.0 / (lever * mass * lever)]
+}
+
+/// What the torques must have made of the rigid body's speed, by its momentum [rad/s].
+fn rigid_speed(scenario: &Scenario, time: f64) -> f64 {
+    let Start::Relative(start) = &scenario.start else { unreachable!("scenarios here state their start") };
+    let [drive, load] = rigid_gains(&scenario.joint);
+    let gained = |segment: &TorqueSegment, end: f64| {
         let duration = end.min(time) - scenario.time_of(segment.from_tick).min(time);
-        duration * (2.0 * segment.drive_torque / geometry.sun_base_radius - segment.load_torque / lever)
+        duration * (drive * segment.drive_torque + load * segment.load_torque)
     };
     let change = scenario.time_of(scenario.torques[1].from_tick);
-    let impulses = impulse(&scenario.torques[0], change) + impulse(&scenario.torques[1], f64::INFINITY);
-    start.rigid_speed + impulses / (mass * lever)
+    start.rigid_speed + gained(&scenario.torques[0], change) + gained(&scenario.torques[1], f64::INFINITY)
 }
 
 proptest! {

@@ -2,7 +2,7 @@
 //! every parameter.
 
 use host_tests::scenarios::{Scenario, same};
-use host_tests::tolerance::PASSIVITY;
+use host_tests::tolerance::{MOMENTUM, PASSIVITY};
 use model_core::dead_zone::DeadZone;
 use model_core::design::{DesignError, Effort, design_scheme};
 use model_core::joint::{Excitation, JointParameters};
@@ -13,6 +13,7 @@ use model_core::scales::Scales;
 use model_core::tables::{Scheme, Tables};
 use proptest::prelude::*;
 
+use crate::books::rigid_gains;
 use crate::random::{TICK_RATE, config, joint, scenario};
 
 /// Tables at a tick rate, or at the one that a refusal names.
@@ -37,6 +38,22 @@ fn stays_finite<const N: usize>(scenario: &Scenario) -> bool {
     };
     let (finite, digest) = run();
     finite && run() == (true, digest)
+}
+
+/// Speed of the core's rigid carrier less what its torques must have made of it, over the largest [-].
+fn astray<const N: usize>(scenario: &Scenario) -> f64 {
+    let tables: Tables<f64, N> = tables(&scenario.joint, TICK_RATE, Effort::Board);
+    let gains = rigid_gains(&scenario.joint);
+    let mut model = Model::new(&tables);
+    let (mut expected, mut largest, mut worst) = (0.0, 1.0_f64, 0.0_f64);
+    for tick in 0..scenario.ticks {
+        let (drive, load) = scenario.torques_at(tick);
+        model.step(Torques { drive, load });
+        expected += (gains[0] * drive + gains[1] * load) / f64::from(tables.tick_rate);
+        largest = largest.max(expected.abs());
+        worst = worst.max((model.outputs().carrier_speed - expected).abs());
+    }
+    worst / largest
 }
 
 /// Kinetic and elastic energy of the relative motion, in units of K_m b_c^2, from the joint's own numbers.
@@ -145,6 +162,15 @@ proptest! {
             _ => stays_finite::<5>(&scenario),
         };
         prop_assert!(finite);
+    }
+
+    #[test]
+    fn the_core_keeps_the_book_of_momentum(scenario in scenario()) {
+        MOMENTUM.check(match scenario.joint.geometry.planets {
+            3 => astray::<3>(&scenario),
+            4 => astray::<4>(&scenario),
+            _ => astray::<5>(&scenario),
+        });
     }
 }
 

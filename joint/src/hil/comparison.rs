@@ -1,44 +1,27 @@
 //! The run against the f64 reference: the same torques through an independent integration, as far as the motion can be
 //! predicted at all. Both are computed beside the run; what the distances mean for the verdict is the checks' business.
 
-use std::collections::VecDeque;
+mod follow;
+mod row;
+
 use std::f64::consts::TAU;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
 
-use host_tests::reference::{Observation, Reference, ReferenceError};
-use host_tests::tolerance::{self, Bound};
+use follow::{DISTURBANCE, Follower, follow};
+use host_tests::reference::{Observation, ReferenceError};
+use host_tests::tolerance::Bound;
 use link::messages::{Command, Sample};
 use model_core::joint::JointParameters;
 use model_core::mesh::ContactState;
+use row::{QUANTITIES, Row, spread};
 
 use crate::failure::{Failure, Outcome};
 use crate::record::{self, MotionSample};
 
-/// The reference is followed for so long at most [s]: it takes about half as long to compute.
-const LONGEST: f64 = 10.0;
-/// A second reference gets torques that are wrong by this much, up and down in turn.
-const DISTURBANCE: f64 = 1e-6;
-/// Once that moves any compared quantity by more than this part of its standard deviation, the motion is chaotic: what
-/// comes later says nothing about the step any more.
-const PREDICTABLE: f64 = 1e-4;
-/// Samples between two looks at whether it still can be predicted.
-const BLOCK: usize = 100;
-
-/// What is compared.
-const QUANTITIES: [Quantity; 4] = [
-    Quantity { name: "link angle", bound: &tolerance::HIL_LINK_ANGLE },
-    Quantity { name: "twist of motor against link", bound: &tolerance::HIL_TWIST },
-    Quantity { name: "gap", bound: &tolerance::HIL_GAP },
-    Quantity { name: "mesh deflections", bound: &tolerance::HIL_DEFLECTIONS },
-];
-
-struct Quantity {
-    name: &'static str,
-    bound: &'static Bound,
-}
-
+/// The reference is followed for so long at most [s]: computing it takes longer than the run itself.
+const LONGEST: f64 = 3.0;
 /// References under way, on threads of their own.
 pub struct UnderWay {
     joint: JointParameters,
@@ -85,83 +68,6 @@ pub fn start(joint: &JointParameters, tick_rate: u32, decimation: u32, run: (&[C
         thread::spawn(move || follow(exact?, disturbed?, &ticks, &stop))
     };
     UnderWay { joint: joint.clone(), tick_rate, ticks, stop, followed }
-}
-
-/// The reference at the ends of the given ticks, as far as the disturbed one stays with it.
-fn follow(
-    mut exact: Follower,
-    mut disturbed: Follower,
-    ticks: &[u32],
-    stop: &AtomicBool,
-) -> Result<Vec<Observation>, ReferenceError> {
-    let mut observations = Vec::with_capacity(ticks.len());
-    let mut rows: [Vec<Row>; 2] = Default::default();
-    for block in ticks.chunks(BLOCK) {
-        if stop.load(Ordering::Relaxed) {
-            break;
-        }
-        let [here, there] = thread::scope(|scope| {
-            let there = scope.spawn(|| disturbed.block(block));
-            [exact.block(block), there.join().unwrap_or(Ok(Vec::new()))]
-        });
-        let (here, there) = (here?, there?);
-        let [exact_rows, disturbed_rows] = &mut rows;
-        exact_rows.extend(here.iter().map(|observation| Row::of_reference(observation, exact.ratio)));
-        disturbed_rows.extend(there.iter().map(|observation| Row::of_reference(observation, exact.ratio)));
-        observations.extend(here);
-        if let Some(departure) = departure(exact_rows, disturbed_rows, observations.len() - block.len()) {
-            observations.truncate(departure);
-            break;
-        }
-    }
-    Ok(observations)
-}
-
-/// A reference that is given a run's torques.
-struct Follower {
-    reference: Reference,
-    commands: VecDeque<Command>,
-    torques: (f64, f64),
-    tick_rate: f64,
-    factor: f64,
-    ratio: f64,
-}
-
-impl Follower {
-    fn new(
-        joint: &JointParameters,
-        tick_rate: u32,
-        commands: &[Command],
-        disturbance: f64,
-    ) -> Result<Self, ReferenceError> {
-        Ok(Self {
-            reference: Reference::new(joint)?,
-            commands: commands.iter().copied().collect(),
-            torques: (0.0, 0.0),
-            tick_rate: tick_rate.into(),
-            factor: 1.0 + disturbance,
-            ratio: joint.geometry.ratio_by_radii(),
-        })
-    }
-
-    fn block(&mut self, ticks: &[u32]) -> Result<Vec<Observation>, ReferenceError> {
-        ticks.iter().map(|&tick| self.observe_at(tick)).collect()
-    }
-
-    fn observe_at(&mut self, tick: u32) -> Result<Observation, ReferenceError> {
-        while let Some(command) = self.commands.pop_front_if(|command| command.tick < tick) {
-            self.advance(command.tick)?;
-            self.torques = (command.drive_torque.into(), command.load_torque.into());
-        }
-        self.advance(tick)?;
-        self.factor = 2.0 - self.factor;
-        Ok(self.reference.observe())
-    }
-
-    fn advance(&mut self, tick: u32) -> Result<(), ReferenceError> {
-        let (drive, load) = self.torques;
-        self.reference.advance(f64::from(tick) / self.tick_rate, self.factor * drive, self.factor * load)
-    }
 }
 
 impl UnderWay {
@@ -218,57 +124,6 @@ impl UnderWay {
     }
 }
 
-/// The first sample, from a place on, at which the disturbed reference has departed from the other.
-fn departure(exact: &[Row], disturbed: &[Row], from: usize) -> Option<usize> {
-    let spreads: Vec<f64> = (0..QUANTITIES.len()).map(|place| spread(exact, place)).collect();
-    let departed = |(exact, disturbed): (&Row, &Row)| {
-        spreads.iter().enumerate().any(|(place, spread)| disturbed.distance(exact, place).abs() > PREDICTABLE * spread)
-    };
-    let later = exact.iter().zip(disturbed).skip(from).position(departed);
-    later.map(|place| from + place).or((disturbed.len() < exact.len()).then_some(disturbed.len()))
-}
-
-/// Compared quantities at one moment: as many values each as there are.
-#[derive(Debug, Clone, PartialEq)]
-struct Row([Vec<f64>; QUANTITIES.len()]);
-
-impl Row {
-    fn of_reference(observation: &Observation, ratio: f64) -> Self {
-        let deflections = observation.deflections.iter().flatten().copied().collect();
-        let twist = observation.motor_offset / ratio - observation.link_offset;
-        Self([vec![observation.link_angle], vec![twist], vec![observation.gap], deflections])
-    }
-
-    fn of_board(sample: &Sample, ratio: f64) -> Self {
-        let motion = MotionSample::from_board(sample, 1);
-        let deflections = motion.deflections.iter().copied().map(f64::from).collect();
-        let twist = motion.motor_offset / ratio - motion.link_offset;
-        Self([vec![motion.carrier_angle + motion.link_offset], vec![twist], vec![motion.gap.into()], deflections])
-    }
-
-    /// Distance in one quantity: signed where it is one value, else the root mean square over its values.
-    fn distance(&self, other: &Self, place: usize) -> f64 {
-        match (self.0[place].as_slice(), other.0[place].as_slice()) {
-            (&[one], &[other]) => one - other,
-            (ones, others) => {
-                let square: f64 = ones.iter().zip(others).map(|(one, other)| (one - other).powi(2)).sum();
-                (square / ones.len() as f64).sqrt()
-            }
-        }
-    }
-}
-
-/// Standard deviation of one quantity over time, as a root mean square over its values.
-fn spread(rows: &[Row], place: usize) -> f64 {
-    let values = rows.first().map_or(0, |row| row.0[place].len());
-    let count = rows.len() as f64;
-    let variance = |value: usize| {
-        let mean = rows.iter().map(|row| row.0[place][value]).sum::<f64>() / count;
-        rows.iter().map(|row| (row.0[place][value] - mean).powi(2)).sum::<f64>() / count
-    };
-    ((0..values).map(variance).sum::<f64>() / values as f64).sqrt()
-}
-
 /// The board's rows by place in the list of ticks; samples that were lost are missing.
 fn rows_of_board(samples: &[Sample], ticks: &[u32], ratio: f64) -> Vec<Option<Row>> {
     let mut samples = samples.iter().peekable();
@@ -297,5 +152,68 @@ fn motion_sample(tick: u32, observation: &Observation) -> MotionSample {
         contacts: observation.contacts.iter().flatten().map(contact).collect(),
         state_digest: None,
         computation: None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hil::profile::Profile;
+    use crate::hil::twin;
+
+    const TICK_RATE: u32 = 20_000;
+    const DECIMATION: u32 = 20;
+
+    fn joint(preset: &str) -> JointParameters {
+        joints::read(joints::preset(preset).expect("a preset")).expect("a good preset").parameters
+    }
+
+    /// The twin in the board's place, through the head of the built-in profile, spoilt by `spoil`.
+    fn comparison(preset: &str, seconds: f64, spoil: impl Fn(&mut Sample)) -> Comparison {
+        let joint = joint(preset);
+        let profile = Profile::load("reversals", &joint, TICK_RATE, Some(seconds)).expect("built in");
+        let under_way = start(&joint, TICK_RATE, DECIMATION, (&profile.commands, profile.ticks));
+        let ticks: Vec<u32> = (1..=profile.ticks / DECIMATION).map(|sample| sample * DECIMATION).collect();
+        let mut samples = twin::replay(&joint, TICK_RATE, &profile.commands, &ticks).expect("a good joint");
+        samples.iter_mut().for_each(spoil);
+        under_way.finish(&samples, joint.geometry.ratio_by_radii()).expect("a joint for the reference")
+    }
+
+    fn failed(comparison: &Comparison) -> Vec<&'static str> {
+        let over = comparison
+            .errors
+            .iter()
+            .filter(|quantity| quantity.error.is_nan() || quantity.error > quantity.bound.limit);
+        over.map(|quantity| quantity.name).collect()
+    }
+
+    #[test]
+    fn the_step_is_within_every_bound_for_as_long_as_is_followed() {
+        let comparison = comparison("l1", 0.3, |_| {});
+        assert_eq!(failed(&comparison), [""; 0]);
+        assert_eq!((comparison.until, comparison.of), (0.3, 0.3));
+    }
+
+    #[test]
+    fn two_percent_of_error_in_one_quantity_are_over_its_bound_alone() {
+        let gap = comparison("l1", 0.1, |sample| sample.gap *= 1.02);
+        assert_eq!(failed(&gap), ["gap"]);
+        let meshes = comparison("l1", 0.1, |sample| sample.deflections.iter_mut().for_each(|mesh| *mesh *= 1.02));
+        assert_eq!(failed(&meshes), ["mesh deflections"]);
+        let turned = comparison("l1", 0.1, |sample| sample.carrier_fraction = sample.carrier_fraction.wrapping_mul(2));
+        assert_eq!(failed(&turned), ["link angle"]);
+    }
+
+    #[test]
+    fn a_chaotic_motion_is_compared_only_while_it_can_be_predicted() {
+        let comparison = comparison("paper", 0.5, |_| {});
+        assert!(comparison.until < 0.05, "{}", comparison.until);
+        assert!(comparison.reference.samples.len() < 100);
+    }
+
+    #[test]
+    fn a_lost_sample_is_left_out() {
+        let rows = rows_of_board(&[], &[20, 40], 6.0);
+        assert_eq!(rows, [None, None]);
     }
 }

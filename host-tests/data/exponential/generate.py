@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Writes the fixtures beside it: exp(A h) - I and its input integrals to 50 digits, rounded to 17. Needs mpmath
-(from PyPI); tests read the files only and need no Python. How the integration under test works is not used here: one
+(a Python package); tests read the files only and need no Python. How the integration under test works is not used here: one
 Taylor series at a small step, squared back, with 90 spare digits.
 
 Files: comments (#), then `matrix`, `inputs` and, for each `step`, `transition` (exp(A h) - I) and `integral k` (of

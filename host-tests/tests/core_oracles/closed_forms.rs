@@ -3,6 +3,7 @@
 
 use host_tests::scenarios::{PAPER_LENGTH, paper_joint, same};
 use model_core::joint::JointParameters;
+use model_core::mesh::MeshPhases;
 use nalgebra::{Complex, Matrix2, Vector2};
 
 /// K_rp over K_sp: different, so that no formula may mix them up.
@@ -31,7 +32,7 @@ pub fn joint(planets: usize, damping_ratio: f64, half_backlash: f64, omega: f64)
         mesh.damping_ratio = damping_ratio;
         mesh.half_backlash = same(planets, half_backlash);
         mesh.transmission_error = same(planets, 30e-6);
-        mesh.phases = model_core::mesh::MeshPhases::Given { stiffness: same(planets, 0.0), error: same(planets, 0.0) };
+        mesh.phases = MeshPhases::Given { stiffness: same(planets, 0.0), error: same(planets, 0.0) };
     }
     joint
 }

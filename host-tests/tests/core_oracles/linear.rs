@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use host_tests::scenarios::{PAPER_LENGTH, paper_natural_frequency};
+use host_tests::scenarios::{PAPER_LENGTH, paper_natural_frequency, same};
 use host_tests::tolerance::{
     CLOSED_FORM, CORE_ELLIPSE, CORE_MODE, CORE_STATIC, ELLIPSE, NATURAL_FREQUENCY, PRINTED_EIGENVALUE,
 };
@@ -11,7 +11,7 @@ use model_core::design::{hamiltonian, modes};
 use model_core::mesh::DampingLaw;
 use model_core::realtime::Relative;
 use model_core::scales::Scales;
-use nalgebra::{Complex, Matrix3, Vector3};
+use nalgebra::{Complex, Matrix2, Matrix3, Vector3};
 
 use crate::closed_forms::{ClosedForm, joint};
 use crate::{Start, run};
@@ -56,7 +56,7 @@ fn each_mode_is_a_cosine<const N: usize>() {
     let form = ClosedForm::new(N, 0.0);
     let mut parameters = joint(N, 0.0, HALF_BACKLASH, 0.0);
     for mesh in [&mut parameters.sun_planet, &mut parameters.ring_planet] {
-        mesh.transmission_error = host_tests::scenarios::same(N, 0.0);
+        mesh.transmission_error = same(N, 0.0);
     }
     let [sun, _, gap] = form.at_rest(DRIVE, HALF_BACKLASH / PAPER_LENGTH);
     let stiffness = form.in_phase(form.stiffness);
@@ -115,7 +115,7 @@ fn damped_eigenvalues_of_h_are_those_of_the_closed_form_for_any_number_of_planet
             of_planets.iter().for_each(|s| CLOSED_FORM.check((*s - planet).norm()));
             let [stiffness, damping] = [form.stiffness, form.damping].map(|families| form.in_phase(families));
             for s in overall {
-                let matrix = stiffness.zip_map(&damping, |k, c| s * c + k) + nalgebra::Matrix2::identity() * (s * s);
+                let matrix = stiffness.zip_map(&damping, |k, c| s * c + k) + Matrix2::identity() * (s * s);
                 CLOSED_FORM.check(matrix.determinant().norm());
             }
         }
@@ -172,7 +172,7 @@ fn the_joint_settles<const N: usize>(law: DampingLaw) {
     let mut parameters = joint(N, 0.2, HALF_BACKLASH, 0.0);
     parameters.damping_law = law;
     for mesh in [&mut parameters.sun_planet, &mut parameters.ring_planet] {
-        mesh.transmission_error = host_tests::scenarios::same(N, 0.0);
+        mesh.transmission_error = same(N, 0.0);
     }
     let form = ClosedForm::new(N, 0.2);
     let twist = [DRIVE, -DRIVE].map(|drive| {

@@ -1,16 +1,14 @@
-//! One joint in three formulations that share no line of code: eqs 1-6 in absolute coordinates (the reference), eq. 19
-//! written out by hand, eq. 20 with the design's own H. All with damping law `paper` and the sharp dead zone.
+//! One joint in three formulations that share no equation of motion: eqs 1-6 in absolute coordinates (the reference),
+//! eq. 19 written out by hand, eq. 20 with the design's own H. All with damping law `paper` and the sharp dead zone.
 
 mod equation_19;
 mod equation_20;
 mod full_and_reduced;
 mod joint;
 
-use host_tests::integrator::{Integrator, SwitchedSystem};
+use host_tests::integrator::{Entries, Integrator, SwitchedSystem};
 use host_tests::reference::{RelativeState, Start};
-use host_tests::scenarios::{
-    PAPER_LENGTH, Scenario, TorqueSegment, paper_joint, paper_natural_frequency, run_at, same,
-};
+use host_tests::scenarios::{PAPER_LENGTH, Scenario, TorqueSegment, paper_joint, paper_natural_frequency, run_at};
 use host_tests::tolerance::FORMULATIONS;
 use model_core::joint::{JointParameters, PerPlanet};
 use model_core::mesh::{ContactState, MeshPhases};
@@ -23,7 +21,7 @@ use joint::{Deflections, Joint};
 const OMEGA: f64 = 0.8;
 /// Drive torque [N m]: some 7 um of deflection a mesh, so that errors of 10 um part it again and again.
 const DRIVE_TORQUE: f64 = 80.0;
-/// Dimensionless length of a run and time between samples.
+/// Samples of a run and the dimensionless time between them.
 const SAMPLES: u32 = 120;
 const INTERVAL: f64 = 0.5;
 
@@ -52,7 +50,7 @@ fn reference(parameters: &JointParameters) -> Vec<Deflections> {
     let scenario = Scenario {
         name: "three formulations".into(),
         joint: parameters.clone(),
-        start: Start::Relative(RelativeState { sun_planet: same(planets, 0.0), ..RelativeState::centred(planets) }),
+        start: Start::Relative(RelativeState::centred(planets)),
         torques: vec![TorqueSegment { from_tick: 0, drive_torque: DRIVE_TORQUE, load_torque }],
         tick_rate: 20_000,
         ticks: 0,
@@ -71,8 +69,8 @@ fn reference(parameters: &JointParameters) -> Vec<Deflections> {
 /// Integrates a formulation and reads its mesh deflections at the reference's times.
 fn follow<S: SwitchedSystem>(
     mut system: S,
-    state: host_tests::integrator::Entries,
-    read: impl Fn(&S, f64, &host_tests::integrator::Entries) -> Deflections,
+    state: Entries,
+    read: impl Fn(&S, f64, &Entries) -> Deflections,
 ) -> Vec<Deflections> {
     let mut integrator = Integrator::new(0.0, state);
     let sample = |k| {

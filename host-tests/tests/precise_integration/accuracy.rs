@@ -6,7 +6,6 @@ use host_tests::tolerance::{DERIVATION, NALGEBRA_EXPONENTIAL, PRECISE_INTEGRALS,
 use model_core::design::dynamics::Dynamics;
 use model_core::design::exponential::{exponential_minus_identity, flow, norm};
 use model_core::design::hamiltonian;
-use model_core::joint::JointParameters;
 use model_core::scales::Scales;
 use nalgebra::DMatrix;
 
@@ -75,15 +74,12 @@ fn nalgebra_s_exponential_is_as_far_away_as_its_own_error() {
 /// The fixtures are worth something for the model only if their matrices are the model's.
 #[test]
 fn the_fixtures_hold_the_matrices_of_equation_20() {
-    for (fixture, (joint, planets)) in models().iter().zip([
-        (paper_joint as fn(f64, f64, f64, f64) -> JointParameters, 3),
-        (paper_joint, 4),
-        (paper_joint, 5),
-        (|_, _, _, _| q1(), 3),
-        (|_, _, _, _| q1(), 4),
-        (|_, _, _, _| q1(), 5),
-    ]) {
-        let mut joint = joint(0.0, 0.0, 0.0, 1.0);
+    let paper = paper_joint(0.0, 0.0, 0.0, 1.0);
+    let of_both = [paper, q1()];
+    let joints = of_both.iter().flat_map(|joint| (3..=5).map(move |planets| (joint.clone(), planets)));
+    let fixtures = models();
+    assert_eq!(fixtures.len(), 6);
+    for (fixture, (mut joint, planets)) in fixtures.iter().zip(joints) {
         joint.geometry.planets = planets;
         for mesh in [&mut joint.sun_planet, &mut joint.ring_planet] {
             mesh.half_backlash = same(planets, 0.0);

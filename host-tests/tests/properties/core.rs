@@ -1,12 +1,12 @@
-//! The core on random joints: finite and repeatable in f32, passive without excitation, and with a digest that sees
-//! every parameter.
+//! The core on random joints: finite and repeatable in f32, passive without excitation, and
+//! never pulling under the law `contact`. Its digest is looked at elsewhere.
 
 use host_tests::scenarios::{Scenario, same};
 use host_tests::tolerance::{MOMENTUM, PASSIVITY};
 use model_core::dead_zone::DeadZone;
 use model_core::design::{DesignError, Effort, design_scheme};
-use model_core::joint::{Excitation, JointParameters};
-use model_core::mesh::{MeshPhases, StiffnessWave};
+use model_core::joint::JointParameters;
+use model_core::mesh::{DampingLaw, StiffnessWave};
 use model_core::real::Real;
 use model_core::realtime::{Model, Relative, State, Torques};
 use model_core::scales::Scales;
@@ -17,7 +17,7 @@ use crate::books::rigid_gains;
 use crate::random::{TICK_RATE, config, joint, scenario};
 
 /// Tables at a tick rate, or at the one that a refusal names.
-fn tables<T: Real, const N: usize>(joint: &JointParameters, tick_rate: u32, effort: Effort) -> Tables<T, N> {
+pub fn tables<T: Real, const N: usize>(joint: &JointParameters, tick_rate: u32, effort: Effort) -> Tables<T, N> {
     let design = |tick_rate| design_scheme(joint, tick_rate, Scheme::Realtime, effort);
     match design(tick_rate) {
         Err(DesignError::RateTooLow { lowest, .. }) => design(lowest).expect("the rate that was named"),
@@ -108,44 +108,23 @@ fn swing<const N: usize>(joint: &JointParameters, start: [f64; 3]) -> (f64, f64)
     })
 }
 
-/// A change of one parameter by a thousandth, or of a choice.
-type Change = fn(&mut JointParameters);
-
-const CHANGES: [(&str, Change); 19] = [
-    ("sun mass", |joint| joint.bodies.sun_equivalent_mass *= 1.001),
-    ("planet equivalent mass", |joint| joint.bodies.planet_equivalent_mass *= 1.001),
-    ("planet mass", |joint| joint.bodies.planet_mass *= 1.001),
-    ("carrier", |joint| joint.bodies.carrier_inertia_over_radius_squared *= 1.001),
-    ("rotor", |joint| joint.rotor_inertia *= 1.001),
-    ("link", |joint| joint.link_inertia *= 1.001),
-    ("sun radius", |joint| joint.geometry.sun_base_radius *= 1.001),
-    ("carrier radius", |joint| joint.geometry.carrier_radius *= 1.001),
-    ("pressure angle", |joint| joint.geometry.working_pressure_angle *= 1.001),
-    ("sun-planet stiffness", |joint| joint.sun_planet.mean_stiffness *= 1.001),
-    ("ring-planet stiffness", |joint| joint.ring_planet.mean_stiffness *= 1.001),
-    ("damping ratio", |joint| joint.ring_planet.damping_ratio += 1e-3),
-    ("backlash of one mesh", |joint| joint.ring_planet.half_backlash[2] += 1e-8),
-    ("error of one mesh", |joint| joint.sun_planet.transmission_error[1] += 1e-8),
-    ("stiffness wave", |joint| joint.sun_planet.stiffness_wave = StiffnessWave::Harmonic { stiffness_ratio: 0.77 }),
-    ("phases", |joint| {
-        joint.sun_planet.transmission_error = same(joint.geometry.planets, 1e-5);
-        joint.sun_planet.phases = MeshPhases::FromTeeth { stiffness: 0.5, error: 7.0 };
-    }),
-    ("damping law", |joint| {
-        use model_core::mesh::DampingLaw::{Contact, Paper};
-        joint.damping_law = if joint.damping_law == Paper { Contact } else { Paper };
-    }),
-    ("dead zone", |joint| joint.dead_zone = DeadZone::Tanh { sharpness: 10.0 }),
-    ("excitation", |joint| {
-        joint.excitation = match joint.excitation {
-            Excitation::Angle => Excitation::Time { mesh_frequency: 100.0 },
-            Excitation::Time { mesh_frequency } => Excitation::Time { mesh_frequency: mesh_frequency + 1.0 },
-        }
-    }),
-];
-
-fn digest<const N: usize>(joint: &JointParameters) -> u64 {
-    tables::<f32, N>(joint, 10 * TICK_RATE, Effort::Board).digest
+/// What a tick changes in the rates when one sun mesh overlaps but recedes at three times the speed at which damping
+/// outweighs its spring, and all others are apart; over that speed.
+fn pull<const N: usize>(joint: &JointParameters) -> f64 {
+    let tables: Tables<f64, N> = tables(joint, 50 * TICK_RATE, Effort::Accurate);
+    let half_backlash = tables.meshes[0][0].half_backlash;
+    let overlap = 0.01 * half_backlash;
+    let speed = 3.0 * overlap * tables.springs[0].stiffness / tables.springs[0].damping;
+    let (mut planets, mut rates) = ([0.0; N], [0.0; N]);
+    (planets[0], rates[0]) = (half_backlash + overlap, -speed);
+    let position = Relative { planets, gap: 0.6 * half_backlash, wind_up: 0.0 };
+    let rate = Relative { planets: rates, ..Relative::ZERO };
+    let mut model = Model::new(&tables);
+    model.set_state(State::from_deflections(&tables, &position, &rate, 0.0));
+    model.step(Torques { drive: 0.0, load: 0.0 });
+    let Relative { planets: after, gap, wind_up } = model.state().rate;
+    let changes = after.iter().zip(rates).map(|(after, before)| after - before).chain([gap, wind_up]);
+    changes.fold(0.0, |largest: f64, change| largest.max(change.abs())) / speed
 }
 
 proptest! {
@@ -165,32 +144,30 @@ proptest! {
     }
 
     #[test]
+    fn teeth_of_the_core_do_not_pull_under_the_law_contact(mut joint in joint(), half_backlash in 10e-6..100e-6) {
+        joint.damping_law = DampingLaw::Contact;
+        let planets = joint.geometry.planets;
+        for mesh in [&mut joint.sun_planet, &mut joint.ring_planet] {
+            mesh.damping_ratio += 0.05;
+            mesh.half_backlash = same(planets, half_backlash);
+            mesh.stiffness_wave = StiffnessWave::Harmonic { stiffness_ratio: 0.0 };
+            mesh.transmission_error = same(planets, 0.0);
+        }
+        let pull = match planets {
+            3 => pull::<3>(&joint),
+            4 => pull::<4>(&joint),
+            _ => pull::<5>(&joint),
+        };
+        prop_assert!(pull == 0.0, "rates change by {pull} of themselves without a force");
+    }
+
+    #[test]
     fn the_core_keeps_the_book_of_momentum(scenario in scenario()) {
         MOMENTUM.check(match scenario.joint.geometry.planets {
             3 => astray::<3>(&scenario),
             4 => astray::<4>(&scenario),
             _ => astray::<5>(&scenario),
         });
-    }
-}
-
-proptest! {
-    #![proptest_config(config(30))]
-
-    #[test]
-    fn every_parameter_changes_the_digest(joint in joint()) {
-        let digest = match joint.geometry.planets {
-            3 => digest::<3>,
-            4 => digest::<4>,
-            _ => digest::<5>,
-        };
-        let plain = digest(&joint);
-        prop_assert_eq!(plain, digest(&joint.clone()));
-        for (what, change) in CHANGES {
-            let mut changed = joint.clone();
-            change(&mut changed);
-            prop_assert_ne!(plain, digest(&changed), "{} leaves no trace", what);
-        }
     }
 }
 

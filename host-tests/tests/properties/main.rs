@@ -3,4 +3,5 @@
 
 mod books;
 mod core;
+mod digest;
 mod random;

@@ -480,3 +480,19 @@ pub const PASSIVITY: Bound = Bound {
     measured: 1.3e-4,
     reason: "Undamped planets of light joints hit a thousand times; a step at 1 MHz is a fifth of their radian.",
 };
+
+/// Observed order of the classical Runge-Kutta method where meshes part and hit.
+pub const ORDER_OF_RUNGE_KUTTA_AT_KINKS: Bound = Bound {
+    of: "observed order of Runge-Kutta through kinks, less 2",
+    limit: 0.3,
+    measured: 0.13,
+    reason: "Where in the step a kink falls changes from step to step and from rate to rate.",
+};
+
+/// Observed order of semi-implicit Euler.
+pub const ORDER_OF_EULER: Bound = Bound {
+    of: "observed order of semi-implicit Euler, less 1",
+    limit: 0.1,
+    measured: 0.026,
+    reason: "The next order still shows at the coarsest step.",
+};

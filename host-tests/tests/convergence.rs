@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 
 use host_tests::reference::Start;
 use host_tests::scenarios::{CASE_A_OMEGA, CASE_Q_OMEGA, Scenario, case, regime, run_at};
-use host_tests::tolerance::{ORDER, ORDER_AT_KINKS};
+use host_tests::tolerance::{ORDER, ORDER_AT_KINKS, ORDER_OF_EULER, ORDER_OF_RUNGE_KUTTA_AT_KINKS};
 use model_core::design::{Effort, design_scheme};
 use model_core::realtime::{Model, Relative, State, Torques};
 use model_core::scales::Scales;
@@ -119,5 +119,27 @@ fn the_paper_s_scheme_is_of_first_order_whatever_the_motion() {
     ] {
         let points = errors(&scenario, Scheme::PaperEtd1, doublings, |tables| tables.flow.step);
         ORDER.check(order(&points) - 1.0);
+    }
+}
+
+#[test]
+fn runge_kutta_is_of_fourth_order_where_nothing_parts_and_of_second_where_meshes_hit() {
+    let smooth = shortened(regime("set P, b = 0", 0.0, 300.0), 100);
+    ORDER.check(order(&errors(&smooth, Scheme::RungeKutta4, 5..=8, |tables| tables.substep)) - 4.0);
+    let kinked = shortened(case("case A", CASE_A_OMEGA), 100);
+    let kinked = order(&errors(&kinked, Scheme::RungeKutta4, 2..=8, |tables| tables.substep));
+    println!("Runge-Kutta through kinks: order {kinked:.2}");
+    // A kink inside the step leaves an error of the step's square, whatever the method's own order.
+    ORDER_OF_RUNGE_KUTTA_AT_KINKS.check(kinked - 2.0);
+}
+
+#[test]
+fn semi_implicit_euler_is_of_first_order_whatever_the_motion() {
+    for (scenario, doublings) in [
+        (shortened(regime("set P, b = 0", 0.0, 300.0), 100), 7..=10),
+        (shortened(case("case A", CASE_A_OMEGA), 100), 6..=9),
+    ] {
+        let points = errors(&scenario, Scheme::SemiImplicitEuler, doublings, |tables| tables.substep);
+        ORDER_OF_EULER.check(order(&points) - 1.0);
     }
 }

@@ -4,9 +4,9 @@ mod close_up;
 mod contacts;
 mod motion;
 mod origin;
-mod page;
-mod plot;
-mod sections;
+pub(crate) mod page;
+pub(crate) mod plot;
+pub(crate) mod sections;
 mod timing;
 
 pub use close_up::crossing;

@@ -2,11 +2,11 @@
 //! The close-up of a crossing has a module of its own; how a panel is drawn is `plot`'s business.
 
 use super::contacts;
-use super::plot::Figure;
 use super::plot::ink::{Ink, LINES};
 use super::plot::mark::Mark;
 use super::plot::panel::Panel;
 use super::plot::unit::{PERCENT, SECONDS, TORQUE, Unit, figure, greatest};
+use super::plot::{Figure, HorizontalAxis, Shape};
 use crate::record::{ErrorSeries, RunRecord, Samples};
 
 /// Width of an ordinary line [px].
@@ -38,7 +38,16 @@ impl View<'_> {
     /// A figure over the time of this view.
     pub fn figure(&self, title: &str, panels: Vec<Panel>) -> Figure {
         let title = format!("{title} of joint {}", self.record.identity.joint);
-        Figure { title, axis: "time".into(), unit: self.unit, range: self.range, panels, note: String::new() }
+        Figure {
+            title,
+            axis: "time".into(),
+            unit: self.unit,
+            range: self.range,
+            runs: HorizontalAxis::Linear,
+            shape: Shape::default(),
+            panels,
+            note: String::new(),
+        }
     }
 
     /// Drive and load torque.

@@ -1,0 +1,121 @@
+//! The largest Lyapunov exponent, by a tangent vector and by two trajectories: the mean rate at which neighbours part,
+//! per unit of dimensionless time. Where on the attractor the motion is when measuring begins is the caller's business.
+
+use super::motion::{Motion, State};
+use super::system::StudyError;
+
+/// Distance of the second trajectory, over b_c: far above what the steps neglect, far below what the motion does.
+const DISTANCE: f64 = 1e-7;
+
+/// Growth of something that is brought back to its first length once a period.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Growth {
+    /// Logarithm of what it would have become, after each period.
+    logarithms: Vec<f64>,
+}
+
+impl Growth {
+    /// One more period, over which it grew by `factor`.
+    pub fn add(&mut self, factor: f64) {
+        let before = self.logarithms.last().copied().unwrap_or(0.0);
+        // Contraction to nothing is as good as contraction by any large factor.
+        self.logarithms.push(before + factor.max(f64::MIN_POSITIVE).ln());
+    }
+
+    /// Rate of growth per unit of time: the slope of the straight line through all logarithms. A tangent vector that
+    /// turns while it shrinks waves about that line, which spoils the ratio of last to first far more.
+    pub fn exponent(&self, period: f64) -> f64 {
+        let count = self.logarithms.len() as f64;
+        let middle = 0.5 * (count - 1.0);
+        let (mut along, mut square) = (0.0, 0.0);
+        for (index, logarithm) in self.logarithms.iter().enumerate() {
+            let from_middle = index as f64 - middle;
+            along += from_middle * logarithm;
+            square += from_middle * from_middle;
+        }
+        along / square / period
+    }
+}
+
+/// A tangent vector that no symmetry spares: every coordinate takes part, each differently.
+pub fn generic(coordinates: usize) -> State {
+    let mut state = State::default();
+    for index in 0..coordinates {
+        state.position[index] = 1.0 / (1.0 + index as f64);
+        state.rate[index] = 0.7 - 0.3 * index as f64;
+    }
+    normalise(&mut state);
+    state
+}
+
+/// Brings a vector to length one and returns its length.
+pub fn normalise(vector: &mut State) -> f64 {
+    let length = length(vector);
+    for value in vector.position.iter_mut().chain(&mut vector.rate) {
+        *value /= length;
+    }
+    length
+}
+
+fn length(vector: &State) -> f64 {
+    vector.position.iter().chain(&vector.rate).map(|value| value * value).sum::<f64>().sqrt()
+}
+
+/// One period of a motion whose first tangent vector is being measured.
+pub fn measured_period(motion: &mut Motion<'_>, growth: &mut Growth) -> Result<(), StudyError> {
+    motion.period()?;
+    growth.add(motion.tangents().first_mut().map_or(1.0, normalise));
+    Ok(())
+}
+
+/// The exponent from two trajectories, over `periods` after `skipped` ones in which their difference finds its
+/// direction.
+pub fn by_two_trajectories(motion: &Motion<'_>, skipped: u32, periods: u32) -> Result<f64, StudyError> {
+    let system = motion.system();
+    let mut first = Motion::new(system, motion.state());
+    let mut difference = generic(system.coordinates());
+    let mut growth = Growth::default();
+    for period in 0..skipped + periods {
+        let mut second = Motion::new(system, moved(&first.state(), &difference, DISTANCE));
+        first.period()?;
+        second.period()?;
+        difference = moved(&second.state(), &first.state(), -1.0);
+        let factor = normalise(&mut difference) / DISTANCE;
+        if period >= skipped {
+            growth.add(factor);
+        }
+    }
+    Ok(growth.exponent(system.period()))
+}
+
+/// `state` plus `factor` times `direction`.
+fn moved(state: &State, direction: &State, factor: f64) -> State {
+    let mut moved = *state;
+    for (value, along) in moved.position.iter_mut().zip(&direction.position) {
+        *value += factor * along;
+    }
+    for (value, along) in moved.rate.iter_mut().zip(&direction.rate) {
+        *value += factor * along;
+    }
+    moved
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn growth_by_the_same_factor_has_its_exponent() {
+        let mut growth = Growth::default();
+        (0..50).for_each(|_| growth.add(0.5));
+        assert!((growth.exponent(2.0) - 0.5_f64.ln() / 2.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_turning_vector_is_judged_by_its_trend() {
+        let mut growth = Growth::default();
+        let wave = |k: u32| (1.0 + 0.9 * (f64::from(k) * 1.3).cos()).ln();
+        (0..300).for_each(|k| growth.add((-0.1 + wave(k + 1) - wave(k)).exp()));
+        assert!((growth.exponent(1.0) + 0.1).abs() < 2e-4, "{}", growth.exponent(1.0));
+    }
+}

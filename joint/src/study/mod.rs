@@ -1,0 +1,16 @@
+//! Numerics for studies of periodically driven joints: motion by Taylor series from contact event to contact event,
+//! Poincare sections, Lyapunov exponents, attractors and spectra. Joint files, plans, pictures and records are left to
+//! the commands that study something.
+//!
+//! `system` makes the equations dimensionless, `zone` says which branch of the force law each mesh is on, `series`
+//! expands motion and tangent vectors, `fall` finds the moment at which a branch ends, `motion` strings the pieces
+//! together; `lyapunov`, `attractor` and `spectrum` look at what comes out.
+
+pub mod attractor;
+mod fall;
+pub mod lyapunov;
+pub mod motion;
+mod series;
+pub mod spectrum;
+pub mod system;
+mod zone;

@@ -11,4 +11,5 @@ pub mod interruption;
 pub mod output;
 pub mod record;
 pub mod report;
+pub mod study;
 pub mod target;

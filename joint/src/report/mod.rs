@@ -4,8 +4,8 @@ mod close_up;
 mod contacts;
 mod motion;
 mod origin;
-mod page;
-mod plot;
+pub(crate) mod page;
+pub(crate) mod plot;
 mod sections;
 mod timing;
 

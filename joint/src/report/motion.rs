@@ -2,7 +2,7 @@
 //! The close-up of a crossing has a module of its own; how a panel is drawn is `plot`'s business.
 
 use super::contacts;
-use super::plot::Figure;
+use super::plot::{Figure, HorizontalAxis, Shape};
 use super::plot::ink::{Ink, LINES};
 use super::plot::mark::Mark;
 use super::plot::panel::Panel;
@@ -38,7 +38,15 @@ impl View<'_> {
     /// A figure over the time of this view.
     pub fn figure(&self, title: &str, panels: Vec<Panel>) -> Figure {
         let title = format!("{title} of joint {}", self.record.identity.joint);
-        Figure { title, axis: "time".into(), unit: self.unit, range: self.range, panels }
+        Figure {
+            title,
+            axis: "time".into(),
+            unit: self.unit,
+            range: self.range,
+            runs: HorizontalAxis::Linear,
+            shape: Shape::default(),
+            panels,
+        }
     }
 
     /// Drive and load torque.

@@ -8,7 +8,7 @@ use super::plot::unit::figure as number;
 use super::{origin, sections};
 use crate::record::{Completeness, RunRecord, Verdict};
 
-const STYLE: &str = include_str!("style.css");
+pub(crate) const STYLE: &str = include_str!("style.css");
 
 /// The whole page.
 pub fn render(record: &RunRecord) -> Markup {

@@ -1,7 +1,7 @@
 //! How the board spent its time: the histogram with its deadline and the figures beside it. Checks on them are in the
 //! table of checks.
 
-use super::plot::Figure;
+use super::plot::{Figure, HorizontalAxis, Shape};
 use super::plot::ink::Ink;
 use super::plot::mark::Mark;
 use super::plot::panel::{Panel, VerticalAxis};
@@ -27,7 +27,15 @@ pub fn histogram(timing: &TimingFigures) -> Option<Figure> {
     let unit = Unit { factor: 1.0, name: "steps" };
     let panel = Panel { axis: VerticalAxis::Counts, ..Panel::lines("Computation time of the tick", unit, marks) };
     let title = "Computation times of the tick against the deadline".into();
-    Some(Figure { title, axis: "computation time".into(), unit: MICROSECONDS, range: (0.0, end), panels: vec![panel] })
+    Some(Figure {
+        title,
+        axis: "computation time".into(),
+        unit: MICROSECONDS,
+        range: (0.0, end),
+        runs: HorizontalAxis::Linear,
+        shape: Shape::default(),
+        panels: vec![panel],
+    })
 }
 
 /// Rows of the table of times: name, least, mean, greatest [µs], greatest over the period [%].

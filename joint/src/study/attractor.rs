@@ -1,8 +1,8 @@
 //! What a motion settles on: of which period, or chaotic, by its Poincare points and its largest Lyapunov exponent.
 //! How points are drawn and what a change of class means is left to the commands.
 
-use super::lyapunov::{Growth, by_two_trajectories, generic, measured_period, normalise};
-use super::motion::{Motion, State, Stretch};
+use super::lyapunov::{Growth, generic, measured_period, normalise};
+use super::motion::{Motion, State};
 use super::system::StudyError;
 
 /// Longest period looked for, in mesh periods.
@@ -19,9 +19,6 @@ const CHAOTIC_EXPONENT: f64 = 0.004;
 
 /// Points farther apart than this, over b_c, count as distinct where points of chaos are counted.
 const DISTINCT: f64 = 1e-2;
-
-/// Samples of one period for peak to peak and content at other frequencies.
-const SAMPLES: usize = 256;
 
 /// What a motion settles on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -137,65 +134,24 @@ fn distance(one: &[f64; 4], other: &[f64; 4]) -> f64 {
     one.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
-/// X_sp of planet 0 over a whole number of periods, evenly sampled.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Signal {
-    /// Samples in one mesh period.
-    pub per_period: usize,
-    /// Time between two samples.
-    pub interval: f64,
-    /// X_sp.
-    pub position: Vec<f64>,
-    /// X_sp'.
-    pub rate: Vec<f64>,
-}
-
-impl Signal {
-    /// The next `periods` of a motion.
-    pub fn record(motion: &mut Motion<'_>, periods: u32) -> Result<Self, StudyError> {
-        let system = motion.system();
-        let interval = system.period() / SAMPLES as f64;
-        let mut signal = Self { per_period: SAMPLES, interval, position: Vec::new(), rate: Vec::new() };
-        for _ in 0..periods {
-            let mut next = 0;
-            motion.period_with(|stretch: &Stretch<'_>| {
-                while next < SAMPLES && next as f64 * interval < stretch.to {
-                    let time = next as f64 * interval;
-                    let state = stretch.at(time);
-                    let (error, error_rate) = system.transmission_error(0, time);
-                    signal.position.push(state.position[0] - error);
-                    signal.rate.push(state.rate[0] - error_rate);
-                    next += 1;
-                }
-            })?;
-        }
-        Ok(signal)
+/// The largest exponent of disturbances that drive planets apart, for planets that all mesh in phase; otherwise there is
+/// no such motion to begin with. Below zero, planets in phase stay in phase.
+pub fn between_planets(motion: &Motion<'_>, effort: &Effort) -> Result<Option<f64>, StudyError> {
+    let system = motion.system();
+    if !system.in_phase() {
+        return Ok(None);
     }
-
-    /// Greatest less least.
-    pub fn peak_to_peak(&self) -> f64 {
-        let (low, high) = self.position.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(*x), h.max(*x)));
-        high - low
+    let mut apart = State::default();
+    // What one planet gains the next loses: sun and carrier do not notice, so the vector stays of this kind for good.
+    [apart.position[0], apart.position[1]] = [1.0, -1.0];
+    let mut motion = Motion::new(system, motion.state());
+    *motion.tangents() = vec![apart];
+    let mut growth = Growth::default();
+    for _ in 0..effort.alignment {
+        measured_period(&mut motion, &mut Growth::default())?;
     }
-
-    /// Root mean square of all that is neither mean nor at the mesh frequency, over that of the mesh frequency. Over
-    /// whole cycles it is exact, whatever the period.
-    pub fn non_fundamental_ratio(&self) -> f64 {
-        let count = self.position.len() as f64;
-        let mean = self.position.iter().sum::<f64>() / count;
-        let (mut sine, mut cosine, mut square) = (0.0, 0.0, 0.0);
-        for (index, value) in self.position.iter().enumerate() {
-            let phase = core::f64::consts::TAU * (index % self.per_period) as f64 / self.per_period as f64;
-            sine += (value - mean) * phase.sin();
-            cosine += (value - mean) * phase.cos();
-            square += (value - mean) * (value - mean);
-        }
-        let fundamental = 2.0 * (sine * sine + cosine * cosine) / (count * count);
-        ((square / count - fundamental).max(0.0) / fundamental).sqrt()
+    for _ in 0..effort.points {
+        measured_period(&mut motion, &mut growth)?;
     }
-}
-
-/// The exponent by two trajectories, from where a motion is.
-pub fn second_opinion(motion: &Motion<'_>, effort: &Effort) -> Result<f64, StudyError> {
-    by_two_trajectories(motion, effort.alignment, effort.points)
+    Ok(Some(growth.exponent(system.period())))
 }

@@ -4,13 +4,14 @@
 //!
 //! `system` makes the equations dimensionless, `zone` says which branch of the force law each mesh is on, `series`
 //! expands motion and tangent vectors, `fall` finds the moment at which a branch ends, `motion` strings the pieces
-//! together; `lyapunov`, `attractor` and `spectrum` look at what comes out.
+//! together; `lyapunov`, `attractor`, `signal` and `spectrum` look at what comes out.
 
 pub mod attractor;
 mod fall;
 pub mod lyapunov;
 pub mod motion;
 mod series;
+pub mod signal;
 pub mod spectrum;
 pub mod system;
 mod zone;

@@ -173,6 +173,11 @@ impl System {
         (sine * s + cosine * c, self.omega * (sine * c - cosine * s))
     }
 
+    /// Whether no planet differs from another, in phase or otherwise.
+    pub fn in_phase(&self) -> bool {
+        self.meshes.chunks(self.planets).all(|family| family.iter().all(|mesh| *mesh == family[0]))
+    }
+
     /// Number of meshes: sun-planet of every planet, then ring-planet.
     pub fn meshes(&self) -> usize {
         self.meshes.len()

@@ -1,4 +1,4 @@
-//! What can be drawn in a panel: lines, bands, limits and boxes, with their legend entries. Values are SI; scaling and
+//! What can be drawn in a panel: lines, points, bands, limits and boxes, with their legend entries. Values are SI; scaling and
 //! drawing are the panel's.
 
 use super::ink::Ink;
@@ -15,6 +15,17 @@ pub enum Mark {
         label: String,
         /// Width [px].
         width: f64,
+    },
+    /// Points, each on its own.
+    Points {
+        /// Points, SI.
+        points: Vec<(f64, f64)>,
+        /// Colour.
+        ink: Ink,
+        /// Entry in the legend; empty for none.
+        label: String,
+        /// Width of a point [px].
+        size: f64,
     },
     /// A horizontal band.
     Band {
@@ -45,7 +56,9 @@ impl Mark {
     /// Legend entry.
     pub fn label(&self) -> (&str, Ink) {
         match self {
-            Self::Line { label, ink, .. } | Self::Boxes { label, ink, .. } => (label, *ink),
+            Self::Line { label, ink, .. } | Self::Points { label, ink, .. } | Self::Boxes { label, ink, .. } => {
+                (label, *ink)
+            }
             Self::Band { label, .. } => (label, Ink::Band),
             Self::Deadline { label, .. } => (label, Ink::Limit),
         }
@@ -54,7 +67,7 @@ impl Mark {
     /// Vertical extent.
     pub fn values(&self) -> Box<dyn Iterator<Item = f64> + '_> {
         match self {
-            Self::Line { points, .. } => Box::new(points.iter().map(|point| point.1)),
+            Self::Line { points, .. } | Self::Points { points, .. } => Box::new(points.iter().map(|point| point.1)),
             Self::Band { range, .. } => Box::new([range.0, range.1].into_iter()),
             Self::Boxes { boxes, .. } => Box::new(boxes.iter().flat_map(|b| [b[2], b[3]])),
             Self::Deadline { .. } => Box::new(std::iter::empty()),

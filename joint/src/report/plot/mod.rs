@@ -1,6 +1,7 @@
 //! Pictures as SVG text: panels one above the other over a common horizontal axis, drawn by `plotters`. Which lines go
-//! into which panel is decided by `motion` and `timing`.
+//! into which panel is decided by those who have something to show.
 
+mod compact;
 pub mod ink;
 pub mod mark;
 pub mod panel;
@@ -15,10 +16,10 @@ use unit::Unit;
 
 /// plotters places things on whole pixels: drawn this much larger and shown at size, nothing looks jagged.
 pub const FINE: i32 = 4;
-/// Width of a picture [px].
-pub const WIDTH: i32 = 1040;
-/// Room for numbers and unit at the left [px].
-pub const LEFT: i32 = 92;
+/// Width of a picture over the whole page [px].
+const WIDTH: i32 = 1040;
+/// Room for numbers and unit at the left of it [px].
+const LEFT: i32 = 92;
 /// Room at the right [px].
 pub const RIGHT: i32 = 14;
 /// Height of the numbers and the name of the common axis [px].
@@ -28,6 +29,32 @@ const FOOT: i32 = 32;
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 /// What drawing into a string may say; it never does.
 pub type Drawn = Result<(), Box<dyn std::error::Error>>;
+
+/// How wide a picture is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shape {
+    /// Width [px].
+    pub width: i32,
+    /// Room for numbers and unit at the left [px].
+    pub left: i32,
+}
+
+impl Default for Shape {
+    /// Over the whole page.
+    fn default() -> Self {
+        Self { width: WIDTH, left: LEFT }
+    }
+}
+
+/// How the common axis runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum HorizontalAxis {
+    /// Evenly.
+    #[default]
+    Linear,
+    /// By powers of ten.
+    Decades,
+}
 
 /// A picture.
 pub struct Figure {
@@ -39,11 +66,24 @@ pub struct Figure {
     pub unit: Unit,
     /// Its range in SI.
     pub range: (f64, f64),
+    /// How it runs.
+    pub runs: HorizontalAxis,
+    /// How wide the picture is.
+    pub shape: Shape,
     /// From top to bottom.
     pub panels: Vec<Panel>,
 }
 
 impl Figure {
+    /// A value of the common axis as it is drawn.
+    fn across(&self, value: f64) -> f64 {
+        let value = value * self.unit.factor;
+        match self.runs {
+            HorizontalAxis::Linear => value,
+            HorizontalAxis::Decades => value.max(f64::MIN_POSITIVE).log10(),
+        }
+    }
+
     /// The picture as an SVG element whose colours are CSS variables.
     pub fn to_svg(&self) -> String {
         let height = self.panels.iter().map(|panel| panel.height).sum::<i32>() + FOOT;
@@ -52,16 +92,16 @@ impl Figure {
             // Drawing into a string has nothing to fail on; should it ever, the rest of the report is worth having.
             return format!("<!-- not drawn: {} -->", error.to_string().replace("--", "-"));
         }
-        let (width, height) = (WIDTH * FINE, height * FINE);
+        let (width, height) = (self.shape.width * FINE, height * FINE);
         let plain = format!("<svg width=\"{width}\" height=\"{height}\"");
         let title = self.title.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;");
         // What plotters says though it is the default anyway makes up half of a picture of many small parts.
-        let svg = svg.replace(" opacity=\"1\"", "").replace(" stroke=\"none\"", "");
+        let svg = compact::compact(&svg.replace(" opacity=\"1\"", "").replace(" stroke=\"none\"", ""));
         ink::with_variables(svg.replacen(&plain, &format!("<svg role=\"img\" aria-label=\"{title}\""), 1))
     }
 
     fn draw(&self, svg: &mut String, height: i32) -> Drawn {
-        let size = ((WIDTH * FINE) as u32, (height * FINE) as u32);
+        let size = ((self.shape.width * FINE) as u32, (height * FINE) as u32);
         let mut rest = SVGBackend::with_string(svg, size).into_drawing_area();
         for (index, panel) in self.panels.iter().enumerate() {
             let last = index + 1 == self.panels.len();

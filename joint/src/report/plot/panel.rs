@@ -10,7 +10,7 @@ use super::ink::Ink;
 use super::mark::Mark;
 use super::thin::thin;
 use super::unit::{Unit, axis_range, tick_label};
-use super::{Area, Drawn, FINE, Figure, LEFT, RIGHT, WIDTH, text_style};
+use super::{Area, Drawn, FINE, Figure, HorizontalAxis, RIGHT, text_style};
 
 /// Height of title and legend [px].
 const HEAD: i32 = 34;
@@ -38,6 +38,13 @@ pub enum VerticalAxis {
     Linear,
     /// Logarithmically from below one, for counts.
     Counts,
+    /// By powers of ten; what lies below the range, or is not positive, is drawn at its lower end.
+    Decades {
+        /// Exponents of the lowest and the highest power shown.
+        from: i32,
+        /// The highest.
+        to: i32,
+    },
     /// One row for each name, top first; no numbers.
     Rows(Vec<String>),
 }
@@ -50,16 +57,17 @@ impl Panel {
 
     /// Draws it; the last panel of a figure carries the numbers of the common axis.
     pub fn draw(&self, area: &Area<'_>, figure: &Figure, last: bool) -> Drawn {
-        self.draw_head(area)?;
-        let horizontal = (figure.range.0 * figure.unit.factor, figure.range.1 * figure.unit.factor);
+        self.draw_head(area, figure)?;
+        let horizontal = (figure.across(figure.range.0), figure.across(figure.range.1));
         let mut builder = ChartBuilder::on(area);
         builder
             .margin_top(HEAD * FINE)
             .margin_right(RIGHT * FINE)
-            .set_label_area_size(LabelAreaPosition::Left, LEFT * FINE);
+            .set_label_area_size(LabelAreaPosition::Left, figure.shape.left * FINE);
         builder.set_label_area_size(LabelAreaPosition::Bottom, if last { 42 } else { GAP } * FINE);
         let (low, high) = match &self.axis {
             VerticalAxis::Rows(rows) => (0.0, rows.len() as f64),
+            VerticalAxis::Decades { from, to } => (f64::from(*from), f64::from(*to)),
             _ => axis_range(self.marks.iter().flat_map(Mark::values).map(|value| value * self.unit.factor)),
         };
         if self.axis == VerticalAxis::Counts {
@@ -68,17 +76,19 @@ impl Panel {
             self.draw_inside(&mut chart, figure, (0.5, top), last, &|count| power_of_ten(*count))
         } else {
             let mut chart = builder.build_cartesian_2d(horizontal.0..horizontal.1, low..high)?;
-            self.draw_inside(&mut chart, figure, (low, high), last, &|value| tick_label(*value, high - low))?;
-            self.draw_row_names(area)
+            let decades = matches!(self.axis, VerticalAxis::Decades { .. });
+            let label = |value: &f64| if decades { exponent_label(*value) } else { tick_label(*value, high - low) };
+            self.draw_inside(&mut chart, figure, (low, high), last, &label)?;
+            self.draw_row_names(area, figure)
         }
     }
 
     /// Title at the left, legend at the right.
-    fn draw_head(&self, area: &Area<'_>) -> Drawn {
+    fn draw_head(&self, area: &Area<'_>, figure: &Figure) -> Drawn {
         let at = |x: i32, y: i32| (x * FINE, y * FINE);
         let title = text_style(13, Ink::Text, FontStyle::Bold);
-        area.draw(&Text::new(self.title.clone(), at(LEFT, 12), title))?;
-        let mut right = WIDTH - RIGHT;
+        area.draw(&Text::new(self.title.clone(), at(figure.shape.left, 12), title))?;
+        let mut right = figure.shape.width - RIGHT;
         for mark in self.marks.iter().rev() {
             let (label, ink) = mark.label();
             if label.is_empty() {
@@ -89,6 +99,9 @@ impl Panel {
             right -= 22;
             let swatch = ink.colour();
             match mark {
+                Mark::Points { .. } => {
+                    area.draw(&Rectangle::new([at(right + 6, 17), at(right + 11, 22)], swatch.filled()))?;
+                }
                 Mark::Band { .. } | Mark::Boxes { .. } => {
                     area.draw(&Rectangle::new([at(right, 14), at(right + 16, 24)], swatch.filled()))?;
                 }
@@ -127,8 +140,12 @@ impl Panel {
         last: bool,
         vertical_label: &dyn Fn(&f64) -> String,
     ) -> Drawn {
-        let span = (figure.range.1 - figure.range.0) * figure.unit.factor;
-        let horizontal_label = |value: &f64| if last { tick_label(*value, span) } else { String::new() };
+        let span = figure.across(figure.range.1) - figure.across(figure.range.0);
+        let horizontal_label = |value: &f64| match figure.runs {
+            _ if !last => String::new(),
+            HorizontalAxis::Linear => tick_label(*value, span),
+            HorizontalAxis::Decades => exponent_label(*value),
+        };
         let fine = FINE as u32;
         let mut mesh = chart.configure_mesh();
         mesh.axis_style(Ink::Axis.colour().stroke_width(fine))
@@ -136,13 +153,16 @@ impl Panel {
             .light_line_style(TRANSPARENT)
             .label_style(text_style(11, Ink::Muted, FontStyle::Normal))
             .axis_desc_style(text_style(12, Ink::Muted, FontStyle::Normal))
-            .x_labels(11)
+            .x_labels((figure.shape.width / 90).max(4) as usize)
             .y_labels(6)
             .x_label_formatter(&horizontal_label)
             .y_label_formatter(&vertical_label)
             .set_all_tick_mark_size(3 * FINE);
         if last {
-            mesh.x_desc(format!("{} [{}]", figure.axis, figure.unit.name));
+            mesh.x_desc(match figure.unit.name {
+                "" => figure.axis.clone(),
+                unit => format!("{} [{unit}]", figure.axis),
+            });
         }
         match self.axis {
             VerticalAxis::Rows(_) => mesh.disable_mesh().y_labels(0),
@@ -159,42 +179,54 @@ impl Panel {
         figure: &Figure,
         vertical: (f64, f64),
     ) -> Drawn {
-        let (across, up) = (figure.unit.factor, self.unit.factor);
-        let horizontal = (figure.range.0 * across, figure.range.1 * across);
-        let columns = (WIDTH - LEFT - RIGHT) as usize;
+        let across = |value: f64| figure.across(value);
+        let up = |value: f64| match self.axis {
+            VerticalAxis::Decades { from, .. } => (value * self.unit.factor).log10().max(f64::from(from)),
+            _ => value * self.unit.factor,
+        };
+        let horizontal = (across(figure.range.0), across(figure.range.1));
+        let columns = (figure.shape.width - figure.shape.left - RIGHT) as usize;
         let clip = |value: f64| value.clamp(vertical.0, vertical.1);
         let filled = mark.label().1.colour().filled();
         match mark {
             Mark::Line { points, ink, width, .. } => {
                 let style = ink.colour().stroke_width((width * f64::from(FINE)) as u32);
-                let scaled: Vec<_> = points.iter().map(|(x, y)| (x * across, y * up)).collect();
+                let scaled: Vec<_> = points.iter().map(|(x, y)| (across(*x), up(*y))).collect();
                 for stretch in thin(&scaled, horizontal, columns) {
                     chart.draw_series(LineSeries::new(stretch.into_iter().map(|(x, y)| (x, clip(y))), style))?;
                 }
             }
+            Mark::Points { points, size, .. } => {
+                let (low, high) = (-(size * f64::from(FINE) / 2.0) as i32, (size * f64::from(FINE) / 2.0) as i32);
+                let finite = points.iter().filter(|(x, y)| x.is_finite() && y.is_finite());
+                chart.draw_series(finite.map(|(x, y)| {
+                    let spot = Rectangle::new([(low, low), (high, high)], filled);
+                    EmptyElement::at((across(*x), clip(up(*y)))) + spot
+                }))?;
+            }
             Mark::Band { range, .. } => {
-                let corners = [(horizontal.0, clip(range.0 * up)), (horizontal.1, clip(range.1 * up))];
+                let corners = [(horizontal.0, clip(up(range.0))), (horizontal.1, clip(up(range.1)))];
                 chart.draw_series([Rectangle::new(corners, filled)])?;
             }
             Mark::Deadline { at, .. } => {
-                let ends = [(at * across, vertical.0), (at * across, vertical.1)];
+                let ends = [(across(*at), vertical.0), (across(*at), vertical.1)];
                 chart.draw_series(LineSeries::new(ends, Ink::Limit.colour().stroke_width(2 * FINE as u32)))?;
             }
             Mark::Boxes { boxes, .. } => {
-                let corners = |b: &[f64; 4]| [(b[0] * across, clip(b[2] * up)), (b[1] * across, clip(b[3] * up))];
+                let corners = |b: &[f64; 4]| [(across(b[0]), clip(up(b[2]))), (across(b[1]), clip(up(b[3])))];
                 chart.draw_series(boxes.iter().map(|b| Rectangle::new(corners(b), filled)))?;
             }
         }
         Ok(())
     }
 
-    fn draw_row_names(&self, area: &Area<'_>) -> Drawn {
+    fn draw_row_names(&self, area: &Area<'_>, figure: &Figure) -> Drawn {
         let VerticalAxis::Rows(rows) = &self.axis else { return Ok(()) };
         let row_height = (self.height - HEAD - GAP) / rows.len().max(1) as i32;
         let style = text_style(11, Ink::Muted, FontStyle::Normal).pos(Pos::new(HPos::Right, VPos::Center));
         for (index, row) in rows.iter().enumerate() {
             let y = HEAD + row_height * index as i32 + row_height / 2;
-            area.draw(&Text::new(row.clone(), ((LEFT - 8) * FINE, y * FINE), style.clone()))?;
+            area.draw(&Text::new(row.clone(), ((figure.shape.left - 8) * FINE, y * FINE), style.clone()))?;
         }
         Ok(())
     }
@@ -212,6 +244,16 @@ fn power_of_ten(count: f64) -> String {
     let exponent = count.log10().round();
     let whole = (count / 10f64.powf(exponent) - 1.0).abs() < 1e-6 && exponent >= 0.0;
     if whole { super::unit::figure(count.round()) } else { String::new() }
+}
+
+/// Labels of an axis of exponents: 0.01, 1, 100; powers beyond 10^4 as such, lines between whole powers bare.
+fn exponent_label(exponent: f64) -> String {
+    let whole = exponent.round();
+    match whole {
+        _ if (exponent - whole).abs() > 1e-6 => String::new(),
+        w if (-3.0..=4.0).contains(&w) => super::unit::figure(10f64.powf(w)),
+        w => format!("1e{w:.0}").replace('-', "\u{2212}"),
+    }
 }
 
 /// Width of a text of 11 px [px], estimated: no font is at hand, and every reader has another.

@@ -9,6 +9,7 @@ pub mod hil;
 pub mod images;
 pub mod interruption;
 pub mod output;
+pub mod paper;
 pub mod record;
 pub mod report;
 pub mod study;

@@ -13,7 +13,7 @@ pub mod everything;
 pub mod fault;
 mod files;
 pub mod logs;
-mod origin;
+pub(crate) mod origin;
 mod plan;
 pub mod profile;
 mod progress;

@@ -92,13 +92,13 @@ fn settings(arguments: &Arguments, plan: &Plan) -> Settings {
 }
 
 /// Now, UTC, to the second.
-fn date() -> String {
+pub(crate) fn date() -> String {
     let now = time::OffsetDateTime::now_utc();
     now.replace_nanosecond(0).unwrap_or(now).format(&time::format_description::well_known::Rfc3339).unwrap_or_default()
 }
 
 /// The sources' commit, if they are under git.
-fn git_commit() -> Option<String> {
+pub(crate) fn git_commit() -> Option<String> {
     let git = |arguments: &[&str]| {
         let output = Command::new("git").arg("-C").arg(workspace()).args(arguments).output().ok()?;
         output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())

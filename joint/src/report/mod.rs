@@ -6,7 +6,7 @@ mod motion;
 mod origin;
 pub(crate) mod page;
 pub(crate) mod plot;
-mod sections;
+pub(crate) mod sections;
 mod timing;
 
 pub use close_up::crossing;

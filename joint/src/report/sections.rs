@@ -37,7 +37,7 @@ pub fn tiles(record: &RunRecord) -> Markup {
     }
 }
 
-fn tile(name: &str, mark: Markup, value: Markup) -> Markup {
+pub(crate) fn tile(name: &str, mark: Markup, value: Markup) -> Markup {
     html! { div.tile { div.value { (value) } div.name { (name) (mark) } } }
 }
 
@@ -47,7 +47,12 @@ fn kibibytes(bytes: u64) -> String {
 
 /// The table of checks, failed ones first.
 pub fn checks(record: &RunRecord) -> Markup {
-    let mut checks: Vec<&Check> = record.checks.iter().collect();
+    html! { section { h2 { "Checks" } (check_table(&record.checks, &emulated(record))) } }
+}
+
+/// The table alone; `board` marks what a board measured.
+pub(crate) fn check_table(checks: &[Check], board: &Markup) -> Markup {
+    let mut checks: Vec<&Check> = checks.iter().collect();
     checks.sort_by_key(|check| match check.verdict {
         Verdict::Failed => 0,
         Verdict::NotRun => 1,
@@ -55,19 +60,16 @@ pub fn checks(record: &RunRecord) -> Markup {
         Verdict::Reported => 3,
     });
     html! {
-        section {
-            h2 { "Checks" }
-            @if checks.is_empty() { p.none { "No check was made." } } @else {
-                table.checks {
-                    thead { tr { th { "Verdict" } th { "Check" } th.number { "Figure" } th.number { "Bound" } th { "Note" } } }
-                    tbody { @for check in checks { (check_row(record, check)) } }
-                }
+        @if checks.is_empty() { p.none { "No check was made." } } @else {
+            table.checks {
+                thead { tr { th { "Verdict" } th { "Check" } th.number { "Figure" } th.number { "Bound" } th { "Note" } } }
+                tbody { @for check in checks { (check_row(check, board)) } }
             }
         }
     }
 }
 
-fn check_row(record: &RunRecord, check: &Check) -> Markup {
+fn check_row(check: &Check, board: &Markup) -> Markup {
     let (class, word) = match check.verdict {
         Verdict::Passed => ("passed", "held"),
         Verdict::Failed => ("failed", "FAILED"),
@@ -87,7 +89,7 @@ fn check_row(record: &RunRecord, check: &Check) -> Markup {
     html! {
         tr class=(class) {
             td.verdict { span class={ "mark " (class) } { (word) } }
-            td { (check.name) @if check.source == Source::Board { (emulated(record)) } }
+            td { (check.name) @if check.source == Source::Board { (board) } }
             td.number { (check.figure.map_or("–".into(), with_unit)) }
             td.number { (bound) }
             td.note { (check.note) }

@@ -1,0 +1,93 @@
+//! `joint paper`: redoes the study of He, Jia, Chen and Sun (2015), or the same study of another joint: stiffness wave,
+//! dead zone, attractors by backlash, bifurcation diagram. The numerics are `study`'s.
+//!
+//! `plan` finds everything that is wrong with the request, `files` that the report can be written; `study` computes,
+//! `witness` asks a second integrator, `known` judges, `pictures` and `page` show, `table` prints.
+
+mod dead_zone;
+mod expectation;
+mod files;
+mod grid;
+mod known;
+mod page;
+mod pictures;
+mod plan;
+mod progress;
+mod record;
+#[cfg(test)]
+mod schema;
+mod stiffness;
+mod study;
+mod table;
+mod windows;
+mod witness;
+
+use files::Files;
+pub use plan::{Arguments, Plan, StartChoice, Subject, SweepStart};
+pub use progress::Progress;
+pub use record::{
+    AttractorRecord, ClassRecord, ClassWindow, DeadZoneError, DeadZoneFigure, History, Identity, Reading, SCHEMA_VERSION,
+    Smoothed, SpectrumRecord, StiffnessFigure, StudyRecord, Sweep, SweepPoint,
+};
+
+use crate::failure::{Failure, Outcome};
+use crate::hil::origin;
+use crate::record::Verdict;
+use crate::{interruption, output};
+
+/// Redoes the study; succeeds only if every check held.
+pub fn run(arguments: &Arguments) -> Outcome<()> {
+    interruption::watch()?;
+    let plan = Plan::new(arguments)?;
+    let files = Files::prepare(arguments.out.as_deref(), arguments.json.as_deref(), plan.name())?;
+    let progress = Progress::new();
+    let studied = study(&plan, &progress);
+    progress.clear();
+    let record = interruption::explain(studied)?;
+    let report = files.write(&record)?;
+    output::print(&table::table(&record))?;
+    output::print(&format!("report: {}\n", report.display()))?;
+    if let Some(expected) = &plan.expected {
+        for reading in &record.readings {
+            expectation::judge(&reading.joint, expected, &reading.attractors)?;
+        }
+    }
+    verdict(&record)
+}
+
+/// Computes everything that a plan asks for, and judges it.
+pub fn study(plan: &Plan, progress: &Progress) -> Outcome<StudyRecord> {
+    let date = origin::date();
+    let readings = study::run(plan, progress)?;
+    let dead_zone = dead_zone::figure();
+    let checks = known::checks(plan, &readings, &dead_zone);
+    Ok(StudyRecord {
+        schema_version: SCHEMA_VERSION,
+        identity: Identity {
+            joint: plan.name().to_owned(),
+            replay: plan.replay.clone(),
+            git_commit: origin::git_commit(),
+            host: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
+            host_version: env!("CARGO_PKG_VERSION").to_owned(),
+            date,
+        },
+        readings,
+        stiffness: stiffness::figure(&plan.subjects[0].parameters),
+        dead_zone,
+        checks,
+    })
+}
+
+fn verdict(record: &StudyRecord) -> Outcome<()> {
+    let failed: Vec<&str> = record
+        .checks
+        .iter()
+        .filter(|check| check.verdict == Verdict::Failed)
+        .map(|check| check.name.as_str())
+        .collect();
+    if failed.is_empty() {
+        return Ok(());
+    }
+    let message = format!("{} of {} checks did not hold: {}", failed.len(), record.checks.len(), failed.join("; "));
+    Err(Failure::check_failed(message).with_help("the report shows each with its figure and bound"))
+}

@@ -4,6 +4,7 @@
 //! `plan` finds everything that is wrong with the request, `files` that the report can be written; `study` computes,
 //! `witness` asks a second integrator, `known` judges, `pictures` and `page` show, `table` prints.
 
+mod conclusion;
 mod dead_zone;
 mod expectation;
 mod files;

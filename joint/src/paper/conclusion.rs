@@ -35,8 +35,11 @@ fn is_papers(reading: &Reading) -> bool {
 }
 
 fn classes(reading: &Reading) -> String {
-    let each: Vec<String> =
-        reading.attractors.iter().map(|a| format!("{} at b = {} µm", a.class, micrometres(a.half_backlash_m))).collect();
+    let each: Vec<String> = reading
+        .attractors
+        .iter()
+        .map(|a| format!("{} at b = {} µm", a.class, micrometres(a.half_backlash_m)))
+        .collect();
     each.join(", ")
 }
 
@@ -71,12 +74,13 @@ fn route(reading: &Reading, sweep: &Sweep) -> Option<Finding> {
     let onset = sweep.windows.iter().rev().find(|window| window.class == ClassRecord::Chaotic);
     if before.is_empty() {
         let onset = onset?;
-        return Some(finding("Route.", format!("Chaos from {} on the grid; none lies before periodic motion.", span(onset))));
+        return Some(finding(
+            "Route.",
+            format!("Chaos from {} on the grid; none lies before periodic motion.", span(onset)),
+        ));
     }
     let before: Vec<String> = before.into_iter().map(span).collect();
-    let last = onset.map_or(String::new(), |window| {
-        format!(" The last chaotic window is {}.", span(window))
-    });
+    let last = onset.map_or(String::new(), |window| format!(" The last chaotic window is {}.", span(window)));
     let text = format!(
         "More backlash does not mean more disorder step by step: chaos ({}) lies before the periodic motion at {} µm. The \
          response does not turn “quickly from single frequency to chaos” but through windows, with order between them.{last}",
@@ -87,10 +91,11 @@ fn route(reading: &Reading, sweep: &Sweep) -> Option<Finding> {
 }
 
 fn parameters() -> Finding {
-    let text = "The paper leaves damping ratio, stiffness ripple, transmission error, torque and mesh frequency unsaid. \
-                The values here (damping ratio 0.05, K_a/K_m = 0.1, E = 30 µm, 80 N·m, ω/ω_n = 2.1) show all of its \
+    let text =
+        "The paper leaves damping ratio, stiffness ripple, transmission error, torque and mesh frequency unsaid. \
+                The values here (damping ratio 0.05, Kₐ/Kₘ = 0.1, E = 30 µm, 80 N·m, ω/ωₙ = 2.1) show all of its \
                 regimes; they need not be the authors’ own, and windows lie elsewhere for others."
-        .to_owned();
+            .to_owned();
     finding("The parameters are ours.", text)
 }
 
@@ -105,14 +110,18 @@ fn readings(first: &Reading, other: &Reading) -> Finding {
     let text = format!(
         "{} ({} kg for the carrier) has {verdict} as {} ({} kg): {}. Exponents {} against {}.",
         other.joint,
-        crate::report::plot::unit::figure(other.carrier_equivalent_mass_kg),
+        kilograms(other),
         first.joint,
-        crate::report::plot::unit::figure(first.carrier_equivalent_mass_kg),
+        kilograms(first),
         classes(other),
         exponents(other),
         exponents(first)
     );
     finding("The two readings of Table 1.", text)
+}
+
+fn kilograms(reading: &Reading) -> String {
+    format!("{:.4}", reading.carrier_equivalent_mass_kg)
 }
 
 /// Where windows from several starts differ.
@@ -125,14 +134,21 @@ fn starts(reading: &Reading) -> Option<Finding> {
         let range = apart.first().zip(apart.last());
         range.map(|(from, to)| {
             let name = start(other).split(',').next().unwrap_or_default().to_lowercase();
-            format!("{name}: {} of {} values between {} and {} µm", apart.len(), first.points.len(), micrometres(*from), micrometres(*to))
+            format!(
+                "{name}: {} of {} values between {} and {} µm",
+                apart.len(),
+                first.points.len(),
+                micrometres(*from),
+                micrometres(*to)
+            )
         })
     };
     let told: Vec<String> = others.iter().filter_map(differing).collect();
     if told.is_empty() {
-        let text = "Several attractors share a half-backlash in places: carried upward or downward from the last state \
+        let text =
+            "Several attractors share a half-backlash in places: carried upward or downward from the last state \
                     (--sweep all) the inner windows move."
-            .to_owned();
+                .to_owned();
         return (others.is_empty() && is_papers(reading)).then(|| finding("Windows depend on the start.", text));
     }
     let text = format!("Another attractor than from rest is reached {}.", told.join("; "));

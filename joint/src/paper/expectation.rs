@@ -1,5 +1,6 @@
 //! Classes that a user asks the attractors to have (`--expect 1,1,3,chaos`), and what is said when one has another.
 
+use super::page::micrometres;
 use super::record::{AttractorRecord, ClassRecord};
 use crate::failure::{Failure, Outcome};
 
@@ -48,11 +49,12 @@ pub fn judge(joint: &str, expected: &[Expectation], attractors: &[AttractorRecor
         };
         let message = format!(
             "{joint}: at b = {} um {asked} was asked for, and the motion from rest settles on {} (largest Lyapunov exponent {:+.4} per tau)",
-            found.half_backlash_m * 1e6,
+            micrometres(found.half_backlash_m),
             found.class,
             found.exponent_by_tangent_vector
         );
-        let help = "the bifurcation diagram shows which half-backlashes have which class; the report is written all the same";
+        let help =
+            "the bifurcation diagram shows which half-backlashes have which class; the report is written all the same";
         return Err(Failure::new(message).with_help(help));
     }
     Ok(())

@@ -39,7 +39,9 @@ impl Files {
                     .with_help("create it first, or name another file"));
             }
             if json.is_dir() {
-                return Err(Failure::new(format!("--json {} is a folder", json.display())).with_help("name a file in it"));
+                return Err(
+                    Failure::new(format!("--json {} is a folder", json.display())).with_help("name a file in it")
+                );
             }
         }
         Ok(Self { folder, json: json.map(Path::to_owned) })
@@ -82,7 +84,8 @@ fn all_pictures(record: &StudyRecord) -> Vec<Picture> {
 
 /// Name and text of every table.
 fn tables(record: &StudyRecord) -> Vec<(String, String)> {
-    let mut tables = vec![("attractors".to_owned(), attractors(&record.readings)), dead_zone(record), stiffness(record)];
+    let mut tables =
+        vec![("attractors".to_owned(), attractors(&record.readings)), dead_zone(record), stiffness(record)];
     for reading in &record.readings {
         let joint = file_part(&reading.joint);
         tables.push((format!("poincare-points-{joint}"), poincare(reading)));

@@ -12,14 +12,17 @@ const MOST_VALUES: usize = 24;
 /// No gear has more backlash than this [um].
 const GREATEST: f64 = 10_000.0;
 
-const MICRO: f64 = 1e-6;
+/// Micrometres in a metre: dividing by it gives the number nearest to what was typed, multiplying by 1e-6 would not.
+const MICROMETRES: f64 = 1e6;
 
 /// `0,10,60,120` [um] in metres.
 pub fn list(text: &str) -> Outcome<Vec<f64>> {
     let failed = |what: String| {
-        Failure::new(format!("--b {text}: {what}")).with_help("write values of half-backlash in um, such as --b 0,10,60,120")
+        Failure::new(format!("--b {text}: {what}"))
+            .with_help("write values of half-backlash in um, such as --b 0,10,60,120")
     };
-    let values: Vec<f64> = text.split(',').map(|part| value(part).map_err(failed)).collect::<Outcome<_>>()?;
+    let values: Vec<f64> =
+        text.split(',').map(|part| value(part).map(|b| b / MICROMETRES).map_err(failed)).collect::<Outcome<_>>()?;
     if values.len() > MOST_VALUES {
         return Err(failed(format!("{} values, and a report has room for {MOST_VALUES}", values.len())));
     }
@@ -43,14 +46,14 @@ pub fn grid(text: &str) -> Outcome<Vec<f64>> {
     if steps + 1.0 > MOST_POINTS {
         return Err(failed(format!("{:.0} points, and at most {MOST_POINTS} can be shown", steps + 1.0)));
     }
-    Ok((0..=steps as u32).map(|index| from + f64::from(index) * step).collect())
+    Ok((0..=steps as u32).map(|index| (from + f64::from(index) * step) / MICROMETRES).collect())
 }
 
-/// One value in micrometres, in metres.
+/// One value in micrometres.
 fn value(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(value) if value.is_finite() && value < 0.0 => Err(format!("`{}` is negative", text.trim())),
-        Ok(value) if value <= GREATEST => Ok(value * MICRO),
+        Ok(value) if value <= GREATEST => Ok(value),
         Ok(value) if value > GREATEST => Err(format!("`{}` um is more than any gear's backlash", text.trim())),
         _ => Err(format!("`{}` is not a number", text.trim())),
     }
@@ -70,7 +73,9 @@ mod tests {
 
     #[test]
     fn what_is_no_grid_is_refused_with_the_mend() {
-        for text in ["0:150:0", "150:0:1", "0:150:-1", "0:150", "0:150:0.5:1", "a:b:c", "0:150:1e-9", "0:nan:1", "0:1e9:1"] {
+        for text in
+            ["0:150:0", "150:0:1", "0:150:-1", "0:150", "0:150:0.5:1", "a:b:c", "0:150:1e-9", "0:nan:1", "0:1e9:1"]
+        {
             let failure = grid(text).expect_err(text);
             assert!(failure.message().contains(text) && failure.help().is_some(), "{failure}");
             assert_eq!(failure.exit_code(), 2);

@@ -27,8 +27,8 @@ use files::Files;
 pub use plan::{Arguments, Plan, StartChoice, Subject, SweepStart};
 pub use progress::Progress;
 pub use record::{
-    AttractorRecord, ClassRecord, ClassWindow, DeadZoneError, DeadZoneFigure, History, Identity, Reading, SCHEMA_VERSION,
-    Smoothed, SpectrumRecord, StiffnessFigure, StudyRecord, Sweep, SweepPoint,
+    AttractorRecord, ClassRecord, ClassWindow, DeadZoneError, DeadZoneFigure, History, Identity, Reading,
+    SCHEMA_VERSION, Smoothed, SpectrumRecord, StiffnessFigure, StudyRecord, Sweep, SweepPoint,
 };
 
 use crate::failure::{Failure, Outcome};

@@ -18,7 +18,7 @@ const OWN_STYLE: &str = ".trio,.pair{display:grid;gap:4px;margin:0 0 6px}.trio{g
 .pair{grid-template-columns:1fr 1fr}.trio svg,.pair svg{min-width:0}ul.findings{margin:0;padding-left:20px}\
 ul.findings li{margin:0 0 7px}.attractors td,.attractors th{padding-right:8px}details summary{cursor:pointer;\
 color:var(--muted)}details[open] summary{margin-bottom:10px}.class{font-weight:650;white-space:nowrap}\
-.class.chaotic{color:var(--line-2)}.class.periodic{color:var(--line-1)}.class.unsettled{color:var(--line-3)}\
+.date{white-space:nowrap}.class.chaotic{color:var(--line-2)}.class.periodic{color:var(--line-1)}.class.unsettled{color:var(--line-3)}\
 @media (max-width:820px){.trio,.pair{grid-template-columns:1fr}}";
 
 /// The whole page.
@@ -88,7 +88,7 @@ fn header(record: &StudyRecord) -> Markup {
             p.subtitle {
                 "The study of He, Jia, Chen and Sun (2015), redone · ω/ω" sub { "n" } " = " (number(first.omega))
                 " · drive torque " (number(first.drive_torque_nm)) " N·m, load in balance · damping law "
-                (first.damping_law) " · " (record.identity.date)
+                (first.damping_law) " · " span.date { (record.identity.date) }
             }
         }
     }
@@ -126,7 +126,7 @@ fn attractors(reading: &Reading) -> Markup {
             h2 { "Attractors of " (reading.joint) }
             p.lead {
                 (reading.description) @if !reading.description.is_empty() { ". " }
-                "Carrier equivalent mass " (number(reading.carrier_equivalent_mass_kg)) " kg, ω" sub { "n" } " = "
+                "Carrier equivalent mass " (format!("{:.4}", reading.carrier_equivalent_mass_kg)) " kg, ω" sub { "n" } " = "
                 (number(reading.omega_n_rad_per_s)) " rad/s, b" sub { "c" } " = "
                 (micrometres(reading.characteristic_length_m)) " µm; from rest."
             }

@@ -36,13 +36,13 @@ pub struct Arguments {
     #[arg(value_name = "FILE")]
     pub file: Option<PathBuf>,
     /// Half-backlashes of the figures and the table of attractors, in um [default: 0, 1/6, 1 and 2 times the file's]
-    #[arg(long = "b", value_name = "LIST")]
+    #[arg(long = "b", value_name = "LIST", allow_hyphen_values = true)]
     pub half_backlash: Option<String>,
     /// Half-backlashes of the bifurcation diagram, in um [default: from 0 to 2.5 times the file's in 300 steps]
-    #[arg(long, value_name = "FROM:TO:STEP")]
+    #[arg(long, value_name = "FROM:TO:STEP", allow_hyphen_values = true)]
     pub grid: Option<String>,
     /// Mesh frequency omega/omega_n; needed where the file's mesh phase follows the joint's angle
-    #[arg(long, value_name = "RATIO")]
+    #[arg(long, value_name = "RATIO", allow_hyphen_values = true)]
     pub omega: Option<f64>,
     /// Starts of the bifurcation diagram: from rest at each b, or from the last state at the b before
     #[arg(long, value_enum, default_value = "rest")]
@@ -135,8 +135,8 @@ impl Plan {
         let grid = match &arguments.grid {
             Some(text) => grid::grid(text)?,
             None => {
-                let step = DIAGRAM_END * own / f64::from(DIAGRAM_STEPS);
-                (0..=DIAGRAM_STEPS).map(|index| f64::from(index) * step).collect()
+                let end = DIAGRAM_END * own;
+                (0..=DIAGRAM_STEPS).map(|index| f64::from(index) * end / f64::from(DIAGRAM_STEPS)).collect()
             }
         };
         let expected = arguments.expect.as_deref().map(|text| expectation::list(text, values.len())).transpose()?;
@@ -167,8 +167,7 @@ impl Subject {
                 return Err(Failure::new(format!("--omega {omega}: no mesh frequency over omega_n"))
                     .with_help("give a ratio between 0.001 and 100, such as --omega 2.1, the paper's"));
             }
-            parameters.excitation =
-                Excitation::Time { mesh_frequency: omega * Scales::new(&parameters).frequency };
+            parameters.excitation = Excitation::Time { mesh_frequency: omega * Scales::new(&parameters).frequency };
         }
         let drive_torque = loaded.file.profile.drive_torque;
         let load_torque = parameters.balanced_load_torque(drive_torque);
@@ -210,7 +209,9 @@ impl Subject {
                 "state it over omega_n of eq. 18: --omega 2.1 is the paper's"
             }
             StudyError::TooStiff => "raise the mesh frequency: --omega",
-            StudyError::NotFinite => "a ripple near twice a natural frequency can do that: more damping, or another --omega",
+            StudyError::NotFinite => {
+                "a ripple near twice a natural frequency can do that: more damping, or another --omega"
+            }
         };
         Failure::new(format!("{} cannot be studied: {error}", self.loaded.name)).with_help(help)
     }

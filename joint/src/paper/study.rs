@@ -5,6 +5,7 @@ use model_core::mesh::DampingLaw;
 use model_core::scales::Scales;
 use rayon::prelude::*;
 
+use super::page::micrometres;
 use super::plan::{Plan, Subject, SweepStart};
 use super::progress::Progress;
 use super::record::{AttractorRecord, ClassRecord, History, Reading, SpectrumRecord, Sweep, SweepPoint};
@@ -152,7 +153,11 @@ fn perform(job: &Job<'_>, plan: &Plan, progress: &Progress) -> Outcome<Done> {
 }
 
 fn stop_if_asked() -> Outcome<()> {
-    if interruption::requested() { Err(Failure::interrupted("stopped by the user; nothing was written")) } else { Ok(()) }
+    if interruption::requested() {
+        Err(Failure::interrupted("stopped by the user; nothing was written"))
+    } else {
+        Ok(())
+    }
 }
 
 /// One point of a diagram.
@@ -228,7 +233,7 @@ pub fn attractor_with(subject: &Subject, half_backlash: f64, effort: &Effort) ->
 }
 
 fn at(subject: &Subject, half_backlash: f64, error: crate::study::system::StudyError) -> Failure {
-    subject.failure(error).while_doing(format!("at b = {} um", half_backlash * 1e6))
+    subject.failure(error).while_doing(format!("at b = {} um", micrometres(half_backlash)))
 }
 
 fn history(signal: &Signal) -> History {

@@ -20,7 +20,11 @@ pub fn table(record: &StudyRecord) -> String {
 }
 
 fn attractors(reading: &Reading, text: &mut String) {
-    let _ = writeln!(text, "{}, omega/omega_n = {:.4}, drive torque {:.4} N m\n", reading.joint, reading.omega, reading.drive_torque_nm);
+    let _ = writeln!(
+        text,
+        "{}, omega/omega_n = {:.4}, drive torque {:.4} N m\n",
+        reading.joint, reading.omega, reading.drive_torque_nm
+    );
     let _ = writeln!(
         text,
         "{:>8}  {:<16}{:>14}{:>12}{:>18}{:>18}{:>14}{:>14}",

@@ -2,11 +2,11 @@
 //! The close-up of a crossing has a module of its own; how a panel is drawn is `plot`'s business.
 
 use super::contacts;
-use super::plot::{Figure, HorizontalAxis, Shape};
 use super::plot::ink::{Ink, LINES};
 use super::plot::mark::Mark;
 use super::plot::panel::Panel;
 use super::plot::unit::{PERCENT, SECONDS, TORQUE, Unit, figure, greatest};
+use super::plot::{Figure, HorizontalAxis, Shape};
 use crate::record::{ErrorSeries, RunRecord, Samples};
 
 /// Width of an ordinary line [px].

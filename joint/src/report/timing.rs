@@ -1,11 +1,11 @@
 //! How the board spent its time: the histogram with its deadline and the figures beside it. Checks on them are in the
 //! table of checks.
 
-use super::plot::{Figure, HorizontalAxis, Shape};
 use super::plot::ink::Ink;
 use super::plot::mark::Mark;
 use super::plot::panel::{Panel, VerticalAxis};
 use super::plot::unit::{MICROSECONDS, Unit, figure};
+use super::plot::{Figure, HorizontalAxis, Shape};
 use crate::record::{MinMeanMax, TimingFigures};
 
 /// Computation times over what the deadline allows.

@@ -3,6 +3,7 @@
 
 use super::lyapunov::{Growth, generic, measured_period, normalise};
 use super::motion::{Motion, State};
+use super::shooting::periodic_state;
 use super::system::StudyError;
 
 /// Longest period looked for, in mesh periods.
@@ -91,6 +92,23 @@ pub fn find(motion: &mut Motion<'_>, effort: &Effort) -> Result<Attractor, Study
         }
         recent.push(motion.state());
     }
+    let found = measure(motion, effort, settled_after)?;
+    if found.class != Class::Unsettled || found.exponent >= 0.0 {
+        return Ok(found);
+    }
+    // Neighbours come together, but too slowly to wait for.
+    let Some(state) = periodic_state(motion)? else { return Ok(found) };
+    let mut shorter = Motion::new(motion.system(), state);
+    let polished = measure(&mut shorter, effort, settled_after + effort.alignment + effort.points)?;
+    if matches!(polished.class, Class::Periodic(_)) {
+        *motion = shorter;
+        return Ok(polished);
+    }
+    Ok(found)
+}
+
+/// Poincare points and exponent from where a motion is.
+fn measure(motion: &mut Motion<'_>, effort: &Effort, settled_after: u32) -> Result<Attractor, StudyError> {
     let coordinates = motion.system().coordinates();
     *motion.tangents() = vec![generic(coordinates)];
     let mut growth = Growth::default();

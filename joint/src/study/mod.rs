@@ -4,13 +4,15 @@
 //!
 //! `system` makes the equations dimensionless, `zone` says which branch of the force law each mesh is on, `series`
 //! expands motion and tangent vectors, `fall` finds the moment at which a branch ends, `motion` strings the pieces
-//! together; `lyapunov`, `attractor`, `signal` and `spectrum` look at what comes out.
+//! together; `lyapunov`, `attractor`, `signal` and `spectrum` look at what comes out, and `shooting` shortens the way to
+//! motions that are reached slowly.
 
 pub mod attractor;
 mod fall;
 pub mod lyapunov;
 pub mod motion;
 mod series;
+mod shooting;
 pub mod signal;
 pub mod spectrum;
 pub mod system;

@@ -63,8 +63,15 @@ impl Stretch<'_> {
 impl<'a> Motion<'a> {
     /// A joint at the beginning of a period.
     pub fn new(system: &'a System, state: State) -> Self {
-        let mut motion =
-            Self { system, state, time: 0.0, zones: [Zone::Free; MAX_MESHES], tangents: Vec::new(), events: 0, steps: 0 };
+        let mut motion = Self {
+            system,
+            state,
+            time: 0.0,
+            zones: [Zone::Free; MAX_MESHES],
+            tangents: Vec::new(),
+            events: 0,
+            steps: 0,
+        };
         motion.find_zones();
         motion
     }

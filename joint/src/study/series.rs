@@ -177,8 +177,7 @@ impl Series {
         let (error, deflection) = (&moment.error[power], &mut self.deflection[power]);
         for planet in 0..planets {
             deflection[planet] = position[planet] - imposed * error[planet];
-            deflection[planets + planet] =
-                position[planets] - position[planet] - imposed * error[planets + planet];
+            deflection[planets + planet] = position[planets] - position[planet] - imposed * error[planets + planet];
         }
     }
 

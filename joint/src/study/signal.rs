@@ -40,8 +40,7 @@ impl Signal {
     pub fn record(motion: &mut Motion<'_>, periods: u32) -> Result<Self, StudyError> {
         let system = motion.system();
         let interval = system.period() / SAMPLES as f64;
-        let mut signal =
-            Self { interval, position: Vec::new(), rate: Vec::new(), contact: ContactShares::default() };
+        let mut signal = Self { interval, position: Vec::new(), rate: Vec::new(), contact: ContactShares::default() };
         let mut counts = [0_u64; 3];
         for _ in 0..periods {
             let mut next = 0;

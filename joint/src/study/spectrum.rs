@@ -55,7 +55,10 @@ mod tests {
     use super::*;
 
     fn sines(count: usize, interval: f64) -> Vec<f64> {
-        (0..count).map(|i| i as f64 * interval).map(|t| 5.0 + 3.0 * (TAU * 2.0 * t).sin() + 0.5 * (TAU * 7.0 * t).cos()).collect()
+        (0..count)
+            .map(|i| i as f64 * interval)
+            .map(|t| 5.0 + 3.0 * (TAU * 2.0 * t).sin() + 0.5 * (TAU * 7.0 * t).cos())
+            .collect()
     }
 
     #[test]

@@ -19,23 +19,20 @@ pub fn curves(data: &DeadZoneFigure) -> Figure {
         label,
         width,
     };
-    let mut marks = vec![
-        line(&data.sharp, Ink::Reference, "eq. 12".into(), 5.0),
-    ];
+    let mut marks = vec![line(&data.sharp, Ink::Reference, "eq. 12".into(), 5.0)];
     for (smoothed, ink) in data.smoothed.iter().zip([LINES[0], LINES[2], LINES[3]]) {
         marks.push(line(&smoothed.force, ink, format!("σ = {}", number(smoothed.sharpness)), 1.5));
     }
     marks.push(line(&data.printed, Ink::Limit, "as printed".into(), 1.5));
-    let title = format!("f(x, b), b = {}", number(data.half_backlash));
     let ends = (data.deflection.first().copied().unwrap_or(-1.0), data.deflection.last().copied().unwrap_or(1.0));
     Figure {
         title: "Dead zone, sharp, smoothed and as printed".into(),
-        axis: "deflection x over b_c".into(),
+        axis: format!("deflection x over b_c; half-backlash b = {}", number(data.half_backlash)),
         unit: plain(""),
         range: ends,
         runs: HorizontalAxis::Linear,
         shape: HALF,
-        panels: vec![Panel { height: 290, ..Panel::lines(title, plain("f"), marks) }],
+        panels: vec![Panel { height: 290, ..Panel::lines("f(x, b)", plain("f"), marks) }],
     }
 }
 

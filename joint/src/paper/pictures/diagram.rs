@@ -5,7 +5,7 @@ use crate::paper::record::{ClassRecord, Reading, Sweep, SweepPoint};
 use crate::report::plot::ink::Ink;
 use crate::report::plot::mark::Mark;
 use crate::report::plot::panel::Panel;
-use crate::report::plot::unit::{Unit, axis_range};
+use crate::report::plot::unit::Unit;
 use crate::report::plot::{Figure, HorizontalAxis, Shape};
 
 /// Heights that can be told apart.
@@ -20,8 +20,8 @@ pub fn diagram(reading: &Reading, sweep: &Sweep) -> Picture {
         sweep.points.last().map_or(1e-6, |point| point.half_backlash_m),
     );
     let air = if ends.1 > ends.0 { 0.004 * (ends.1 - ends.0) } else { 1e-6 };
-    let values = axis_range(sweep.points.iter().flat_map(|point| point.x_sp.iter().copied()));
-    let exponents = axis_range(sweep.points.iter().map(|point| point.exponent).chain([0.0]));
+    let values = extremes(sweep.points.iter().flat_map(|point| point.x_sp.iter().copied()));
+    let exponents = extremes(sweep.points.iter().map(|point| point.exponent).chain([0.0]));
     let mut upper = guides(reading, values);
     upper.extend(classes(sweep, values));
     let mut lower = guides(reading, exponents);
@@ -43,6 +43,10 @@ pub fn diagram(reading: &Reading, sweep: &Sweep) -> Picture {
     Picture { name: format!("bifurcation-{}-{}", file_part(&reading.joint), sweep.start), figure }
 }
 
+fn extremes(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
+}
+
 fn line(points: Vec<(f64, f64)>, ink: Ink, width: f64) -> Mark {
     Mark::Line { points, ink, label: String::new(), width }
 }
@@ -61,14 +65,14 @@ fn classes(sweep: &Sweep, range: (f64, f64)) -> Vec<Mark> {
     };
     let marks = [
         of(|class| matches!(class, ClassRecord::Periodic(_)), Ink::First, "periodic", 2.5),
-        of(|class| class == ClassRecord::Chaotic, Ink::Second, "chaotic", 1.25),
-        of(|class| class == ClassRecord::Unsettled, Ink::Third, "no period found", 1.25),
+        of(|class| class == ClassRecord::Chaotic, Ink::Second, "chaotic", 1.75),
+        of(|class| class == ClassRecord::Unsettled, Ink::Third, "no period found", 1.75),
     ];
     marks.into_iter().flatten().collect()
 }
 
 fn spots(point: &SweepPoint, range: (f64, f64)) -> Vec<(f64, f64)> {
-    let height = (range.1 - range.0) / ROWS;
+    let height = ((range.1 - range.0) / ROWS).max(1e-9);
     let mut rows: Vec<i64> = point.x_sp.iter().map(|x| ((x - range.0) / height).floor() as i64).collect();
     rows.sort_unstable();
     rows.dedup();

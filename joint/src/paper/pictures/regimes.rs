@@ -15,7 +15,7 @@ const HEIGHT: i32 = 250;
 const PERIODS: f64 = 18.0;
 
 /// Highest multiple of the mesh frequency in the spectrum.
-const HIGHEST: f64 = 4.0;
+const HIGHEST: f64 = 4.5;
 
 /// The three pictures of one attractor.
 pub fn regime(reading: &Reading, attractor: &AttractorRecord) -> [Picture; 3] {
@@ -52,8 +52,8 @@ fn portrait(attractor: &AttractorRecord, b: &str) -> Figure {
     };
     let until = history.periods.iter().take_while(|time| **time <= cycles + 0.02).count();
     let curve = points(&history.x_sp[..until], &history.x_sp_rate[..until]);
-    let range = axis_range(history.x_sp.iter().copied());
     let section: Vec<(f64, f64)> = attractor.poincare_points.iter().map(|point| (point[0], point[2])).collect();
+    let range = axis_range(curve.iter().chain(&section).map(|point| point.0));
     let size = if section.len() > 24 { 2.5 } else { 7.0 };
     let marks = vec![
         Mark::Line { points: curve, ink: Ink::First, label: String::new(), width },

@@ -20,7 +20,7 @@ pub fn figure(data: &StiffnessFigure) -> Figure {
         line(&data.rectangular, Ink::Second, "rectangular wave", 1.6),
         line(&data.first_harmonic, Ink::First, "first harmonic: eq. 7", 2.2),
     ];
-    let panel = Panel { height: 240, ..Panel::lines("Mesh stiffness over its mean", plain("K / K_m"), marks) };
+    let panel = Panel { height: 240, ..Panel::lines("Mesh stiffness over its mean", plain("K / Kₘ"), marks) };
     Figure {
         title: "Mesh stiffness over two mesh periods".into(),
         axis: "mesh periods".into(),

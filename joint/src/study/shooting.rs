@@ -1,0 +1,127 @@
+//! Newton's method on the Poincare map: finds the periodic motion that a slowly decaying one is on its way to, where
+//! waiting would take ten thousands of periods. Whether it is stable is found afterwards, by following it.
+
+use super::motion::{Motion, State};
+use super::system::StudyError;
+
+/// Rounds of Newton's method; it doubles the digits in each.
+const ROUNDS: u32 = 12;
+
+/// A cycle closes when its ends are this near, over b_c.
+const CLOSED: f64 = 1e-9;
+
+/// Longest cycle looked for: longer ones seldom decay slowly, and each costs as many periods in a round.
+const LONGEST: usize = 6;
+
+/// A state on a periodic motion near to where `motion` is, if there is one.
+pub fn periodic_state(motion: &Motion<'_>) -> Result<Option<State>, StudyError> {
+    for periods in candidates(motion)? {
+        if let Some(state) = newton(motion, periods)? {
+            return Ok(Some(state));
+        }
+    }
+    Ok(None)
+}
+
+/// Cycle lengths, the one whose ends are nearest first; of equally good ones the shortest.
+fn candidates(motion: &Motion<'_>) -> Result<Vec<usize>, StudyError> {
+    let mut follower = Motion::new(motion.system(), motion.state());
+    let start = entries(motion, &motion.state());
+    let mut distances = Vec::new();
+    for periods in 1..=LONGEST {
+        follower.period()?;
+        let end = entries(&follower, &follower.state());
+        let distance = start.iter().zip(&end).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        distances.push((periods, distance));
+    }
+    distances.sort_by(|a, b| a.1.total_cmp(&b.1));
+    Ok(distances.into_iter().map(|(periods, _)| periods).collect())
+}
+
+fn newton(motion: &Motion<'_>, periods: usize) -> Result<Option<State>, StudyError> {
+    let system = motion.system();
+    let coordinates = system.coordinates();
+    let size = 2 * coordinates;
+    let mut state = motion.state();
+    for _ in 0..ROUNDS {
+        let mut follower = Motion::new(system, state);
+        *follower.tangents() = (0..size).map(|index| with_entry(State::default(), coordinates, index, 1.0)).collect();
+        for _ in 0..periods {
+            match follower.period() {
+                Ok(()) => {}
+                // A wild guess is no failure of the study.
+                Err(StudyError::NotFinite) => return Ok(None),
+                Err(error) => return Err(error),
+            }
+        }
+        let (start, end) = (entries(motion, &state), entries(motion, &follower.state()));
+        let residual: Vec<f64> = end.iter().zip(&start).map(|(end, start)| end - start).collect();
+        if residual.iter().all(|value| value.abs() < CLOSED) {
+            return Ok(Some(state));
+        }
+        // (1 - D P) step = P(x) - x, column by column from the tangent vectors.
+        let columns: Vec<Vec<f64>> = follower.tangents().iter().map(|tangent| entries(motion, tangent)).collect();
+        let rows = (0..size)
+            .map(|row| {
+                let unity = |column: usize| if row == column { 1.0 } else { 0.0 };
+                let mut row_values: Vec<f64> = (0..size).map(|column| unity(column) - columns[column][row]).collect();
+                row_values.push(residual[row]);
+                row_values
+            })
+            .collect();
+        let Some(step) = solve(rows) else { return Ok(None) };
+        for (index, value) in step.into_iter().enumerate() {
+            state = with_entry(state, coordinates, index, start[index] + value);
+        }
+    }
+    Ok(None)
+}
+
+/// Positions, then rates.
+fn entries(motion: &Motion<'_>, state: &State) -> Vec<f64> {
+    let coordinates = motion.system().coordinates();
+    state.position[..coordinates].iter().chain(&state.rate[..coordinates]).copied().collect()
+}
+
+fn with_entry(mut state: State, coordinates: usize, index: usize, value: f64) -> State {
+    match index.checked_sub(coordinates) {
+        None => state.position[index] = value,
+        Some(rate) => state.rate[rate] = value,
+    }
+    state
+}
+
+/// Gaussian elimination with pivots; each row ends with its right-hand side. None if the matrix is singular.
+fn solve(mut rows: Vec<Vec<f64>>) -> Option<Vec<f64>> {
+    let size = rows.len();
+    for column in 0..size {
+        let pivot = (column..size).max_by(|a, b| rows[*a][column].abs().total_cmp(&rows[*b][column].abs()))?;
+        rows.swap(column, pivot);
+        let leading = rows[column].clone();
+        if leading[column].abs() < 1e-14 {
+            return None;
+        }
+        for row in rows.iter_mut().skip(column + 1) {
+            let factor = row[column] / leading[column];
+            row.iter_mut().zip(&leading).for_each(|(value, above)| *value -= factor * above);
+        }
+    }
+    let mut solution = vec![0.0; size];
+    for row in (0..size).rev() {
+        let known: f64 = (row + 1..size).map(|column| rows[row][column] * solution[column]).sum();
+        solution[row] = (rows[row][size] - known) / rows[row][row];
+    }
+    solution.iter().all(|value| value.is_finite()).then_some(solution)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_system_that_needs_pivots_is_solved_and_a_singular_one_is_not() {
+        let solution = solve(vec![vec![0.0, 2.0, 4.0], vec![1.0, 1.0, 5.0]]).expect("regular");
+        assert!((solution[0] - 3.0).abs() < 1e-14 && (solution[1] - 2.0).abs() < 1e-14, "{solution:?}");
+        assert_eq!(solve(vec![vec![1.0, 2.0, 1.0], vec![2.0, 4.0, 1.0]]), None);
+    }
+}

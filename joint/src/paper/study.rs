@@ -13,16 +13,15 @@ use super::{windows, witness};
 use crate::failure::{Failure, Outcome};
 use crate::interruption;
 use crate::study::attractor::{self, Class, Effort};
-use crate::study::lyapunov::by_two_trajectories;
 use crate::study::motion::Motion;
 use crate::study::signal::{SAMPLES, Signal};
 use crate::study::spectrum::{Spectrum, Window};
 
-/// For attractors of the table: exponents of chaos to about 0.003.
-const TABLE: Effort = Effort { transient: 300, patience: 1000, alignment: 60, points: 3000 };
+/// For attractors of the table: exponents of chaos come to about 0.0012 (one standard deviation).
+const TABLE: Effort = Effort { transient: 300, patience: 1000, alignment: 60, points: 1000, chaotic_periods: 12_000 };
 
 /// For points of a diagram.
-const DIAGRAM: Effort = Effort { transient: 200, patience: 600, alignment: 40, points: 200 };
+const DIAGRAM: Effort = Effort { transient: 200, patience: 600, alignment: 40, points: 200, chaotic_periods: 400 };
 
 /// Poincare points of an attractor without a period that are kept, and among which distinct ones are counted.
 const KEPT_POINTS: usize = 300;
@@ -43,7 +42,7 @@ const THINNED: usize = 2;
 const HIGHEST_LINE: f64 = 6.0;
 
 /// An attractor is so much more work than a point of a diagram, for the progress bar.
-const ATTRACTOR_WORK: u64 = 15;
+const ATTRACTOR_WORK: u64 = 20;
 
 /// One piece of work.
 enum Job<'a> {
@@ -203,7 +202,7 @@ pub fn attractor_with(subject: &Subject, half_backlash: f64, effort: &Effort) ->
     let system = subject.system(half_backlash)?;
     let mut motion = Motion::from_rest(&system);
     let mut found = attractor::find(&mut motion, effort).map_err(failed)?;
-    let two = by_two_trajectories(&motion, effort.alignment, effort.points).map_err(failed)?;
+    let two = attractor::by_two_trajectories(&motion, found.class, effort).map_err(failed)?;
     let between = attractor::between_planets(&motion, effort).map_err(failed)?;
     found.points.truncate(KEPT_POINTS);
     let reference_distance = witness::distance(subject, half_backlash, &motion, found.class);

@@ -1,7 +1,7 @@
 //! What a motion settles on: of which period, or chaotic, by its Poincare points and its largest Lyapunov exponent.
 //! How points are drawn and what a change of class means is left to the commands.
 
-use super::lyapunov::{Growth, generic, measured_period, normalise};
+use super::lyapunov::{Growth, generic, measured_period, normalise, two_trajectories};
 use super::motion::{Motion, State};
 use super::shooting::periodic_state;
 use super::system::StudyError;
@@ -43,6 +43,8 @@ pub struct Effort {
     pub alignment: u32,
     /// Periods measured, one Poincare point each.
     pub points: u32,
+    /// Periods over which the exponent of chaos is measured: it wanders by about 0.13 over the root of their number.
+    pub chaotic_periods: u32,
 }
 
 /// An attractor.
@@ -56,6 +58,13 @@ pub struct Attractor {
     pub points: Vec<[f64; 4]>,
     /// Periods before measuring began.
     pub settled_after: u32,
+}
+
+impl Effort {
+    /// Periods over which the exponent of an attractor is measured.
+    pub fn periods(&self, class: Class) -> u32 {
+        if class == Class::Chaotic { self.points.max(self.chaotic_periods) } else { self.points }
+    }
 }
 
 impl Attractor {
@@ -124,13 +133,20 @@ fn measure(motion: &mut Motion<'_>, effort: &Effort, settled_after: u32) -> Resu
         states.push(motion.state());
         measured_period(motion, &mut growth)?;
     }
-    motion.tangents().clear();
-    let exponent = growth.exponent(motion.system().period());
+    let mesh_period = motion.system().period();
+    let mut exponent = growth.exponent(mesh_period);
     let class = match period(&states, SAME_POINT) {
         Some(period) if exponent < CHAOTIC_EXPONENT => Class::Periodic(period),
         _ if exponent > CHAOTIC_EXPONENT => Class::Chaotic,
         _ => Class::Unsettled,
     };
+    if class == Class::Chaotic {
+        for _ in effort.points..effort.chaotic_periods {
+            measured_period(motion, &mut growth)?;
+        }
+        exponent = growth.mean(mesh_period);
+    }
+    motion.tangents().clear();
     Ok(Attractor { class, exponent, points, settled_after: settled_after + effort.alignment })
 }
 
@@ -150,6 +166,13 @@ fn apart(one: &State, other: &State) -> f64 {
 
 fn distance(one: &[f64; 4], other: &[f64; 4]) -> f64 {
     one.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+/// The exponent of an attractor once more, by two trajectories from where a motion on it is.
+pub fn by_two_trajectories(motion: &Motion<'_>, class: Class, effort: &Effort) -> Result<f64, StudyError> {
+    let growth = two_trajectories(motion, effort.alignment, effort.periods(class))?;
+    let mesh_period = motion.system().period();
+    Ok(if class == Class::Chaotic { growth.mean(mesh_period) } else { growth.exponent(mesh_period) })
 }
 
 /// The largest exponent of disturbances that drive planets apart, for planets that all mesh in phase; otherwise there is

@@ -22,8 +22,13 @@ impl Growth {
         self.logarithms.push(before + factor.max(f64::MIN_POSITIVE).ln());
     }
 
+    /// Mean rate of growth per unit of time, for growth that wanders without memory, as chaos does.
+    pub fn mean(&self, period: f64) -> f64 {
+        self.logarithms.last().map_or(f64::NAN, |last| last / self.logarithms.len() as f64 / period)
+    }
+
     /// Rate of growth per unit of time: the slope of the straight line through all logarithms. A tangent vector that
-    /// turns while it shrinks waves about that line, which spoils the ratio of last to first far more.
+    /// turns while it shrinks waves about that line, which spoils the mean far more.
     pub fn exponent(&self, period: f64) -> f64 {
         let count = self.logarithms.len() as f64;
         let middle = 0.5 * (count - 1.0);
@@ -68,9 +73,9 @@ pub fn measured_period(motion: &mut Motion<'_>, growth: &mut Growth) -> Result<(
     Ok(())
 }
 
-/// The exponent from two trajectories, over `periods` after `skipped` ones in which their difference finds its
+/// Growth of the distance of two trajectories, over `periods` after `skipped` ones in which their difference finds its
 /// direction.
-pub fn by_two_trajectories(motion: &Motion<'_>, skipped: u32, periods: u32) -> Result<f64, StudyError> {
+pub fn two_trajectories(motion: &Motion<'_>, skipped: u32, periods: u32) -> Result<Growth, StudyError> {
     let system = motion.system();
     let mut first = Motion::new(system, motion.state());
     let mut difference = generic(system.coordinates());
@@ -85,7 +90,7 @@ pub fn by_two_trajectories(motion: &Motion<'_>, skipped: u32, periods: u32) -> R
             growth.add(factor);
         }
     }
-    Ok(growth.exponent(system.period()))
+    Ok(growth)
 }
 
 /// `state` plus `factor` times `direction`.
@@ -109,6 +114,7 @@ mod tests {
         let mut growth = Growth::default();
         (0..50).for_each(|_| growth.add(0.5));
         assert!((growth.exponent(2.0) - 0.5_f64.ln() / 2.0).abs() < 1e-14);
+        assert!((growth.mean(2.0) - 0.5_f64.ln() / 2.0).abs() < 1e-14);
     }
 
     #[test]

@@ -29,9 +29,10 @@ pub fn findings(record: &StudyRecord) -> Vec<Finding> {
     findings
 }
 
-/// Whether a joint is the paper's, whatever it is called.
+/// Whether this is the paper's joint at the mesh frequency of set P.
 fn is_papers(reading: &Reading) -> bool {
-    reading.joint_file == "paper" || reading.joint_file == "paper_printed"
+    let preset = reading.joint_file == "paper" || reading.joint_file == "paper_printed";
+    preset && (reading.omega - 2.1).abs() < 1e-9
 }
 
 fn classes(reading: &Reading) -> String {

@@ -14,8 +14,10 @@ const PERIODIC_EXPONENT: f64 = 0.002;
 const CHAOTIC_EXPONENT: f64 = 0.01;
 /// Distance allowed to a known edge of a window [um].
 const EDGE: f64 = 1.0;
-/// Distance allowed between the two integrators, over b_c: measured 1e-9 on periods and 2e-8 in chaos.
-const INTEGRATORS: f64 = 1e-6;
+/// Distance allowed between exponents by tangent vector and by two trajectories.
+const METHODS: f64 = 0.002;
+/// Distance allowed between the two integrators, over b_c: measured 3e-11 on periods and 2e-10 in chaos.
+const INTEGRATORS: f64 = 1e-8;
 /// Largest error of eq. 13 times its sharpness: max over u of u (1 - tanh u) / 2.
 const DEAD_ZONE: f64 = 0.13924;
 
@@ -171,17 +173,13 @@ fn far(one: &[f64; 4], other: &[f64; 4]) -> f64 {
 /// What must hold of any joint.
 fn consistency(reading: &Reading, found: &AttractorRecord, checks: &mut Vec<Check>) {
     let place = place(reading, found);
-    let bound = match found.class {
-        ClassRecord::Periodic(_) => PERIODIC_EXPONENT,
-        _ => CHAOTIC_EXPONENT,
-    };
     let distance = (found.exponent_by_tangent_vector - found.exponent_by_two_trajectories).abs();
     let note = format!(
         "tangent vector {:+.4}, two trajectories {:+.4}",
         found.exponent_by_tangent_vector, found.exponent_by_two_trajectories
     );
     let name = format!("{place}: the two exponents agree");
-    checks.push(Check::judge(name, distance, "", Bound::AtMost(bound), Source::Host).note(note));
+    checks.push(Check::judge(name, distance, "", Bound::AtMost(METHODS), Source::Host).note(note));
     let name = format!("{place}: an independent integrator agrees");
     let bound = Bound::AtMost(INTEGRATORS);
     checks.push(match found.reference_distance {

@@ -17,7 +17,7 @@ use crate::report::sections::{check_table, tile};
 const OWN_STYLE: &str = ".trio,.pair{display:grid;gap:4px;margin:0 0 6px}.trio{grid-template-columns:400fr 330fr 380fr}\
 .pair{grid-template-columns:1fr 1fr}.trio svg,.pair svg{min-width:0}ul.findings{margin:0;padding-left:20px}\
 ul.findings li{margin:0 0 7px}.attractors td,.attractors th{padding-right:8px}details summary{cursor:pointer;\
-color:var(--muted)}details[open] summary{margin-bottom:10px}.class{font-weight:650;white-space:nowrap}\
+color:var(--muted)}details[open] summary{margin-bottom:10px}details+figure{margin-top:34px}.class{font-weight:650;white-space:nowrap}\
 .date{white-space:nowrap}.class.chaotic{color:var(--line-2)}.class.periodic{color:var(--line-1)}.class.unsettled{color:var(--line-3)}\
 @media (max-width:820px){.trio,.pair{grid-template-columns:1fr}}";
 

@@ -202,7 +202,7 @@ pub fn attractor_with(subject: &Subject, half_backlash: f64, effort: &Effort) ->
     let system = subject.system(half_backlash)?;
     let mut motion = Motion::from_rest(&system);
     let mut found = attractor::find(&mut motion, effort).map_err(failed)?;
-    let two = attractor::by_two_trajectories(&motion, found.class, effort).map_err(failed)?;
+    let two = attractor::by_two_trajectories(&system, &found, effort).map_err(failed)?;
     let between = attractor::between_planets(&motion, effort).map_err(failed)?;
     found.points.truncate(KEPT_POINTS);
     let reference_distance = witness::distance(subject, half_backlash, &motion, found.class);

@@ -4,7 +4,7 @@
 use super::lyapunov::{Growth, generic, measured_period, normalise, two_trajectories};
 use super::motion::{Motion, State};
 use super::shooting::periodic_state;
-use super::system::StudyError;
+use super::system::{StudyError, System};
 
 /// Longest period looked for, in mesh periods.
 pub const LONGEST_PERIOD: usize = 24;
@@ -58,6 +58,8 @@ pub struct Attractor {
     pub points: Vec<[f64; 4]>,
     /// Periods before measuring began.
     pub settled_after: u32,
+    /// Where the tangent vector started.
+    pub start: State,
 }
 
 impl Effort {
@@ -118,8 +120,8 @@ pub fn find(motion: &mut Motion<'_>, effort: &Effort) -> Result<Attractor, Study
 
 /// Poincare points and exponent from where a motion is.
 fn measure(motion: &mut Motion<'_>, effort: &Effort, settled_after: u32) -> Result<Attractor, StudyError> {
-    let coordinates = motion.system().coordinates();
-    *motion.tangents() = vec![generic(coordinates)];
+    let start = motion.state();
+    *motion.tangents() = vec![generic(motion.system().coordinates())];
     let mut growth = Growth::default();
     for _ in 0..effort.alignment {
         motion.period()?;
@@ -147,7 +149,7 @@ fn measure(motion: &mut Motion<'_>, effort: &Effort, settled_after: u32) -> Resu
         exponent = growth.mean(mesh_period);
     }
     motion.tangents().clear();
-    Ok(Attractor { class, exponent, points, settled_after: settled_after + effort.alignment })
+    Ok(Attractor { class, exponent, points, settled_after: settled_after + effort.alignment, start })
 }
 
 /// The shortest period after which the last states repeat to `tolerance`, if any.
@@ -168,11 +170,15 @@ fn distance(one: &[f64; 4], other: &[f64; 4]) -> f64 {
     one.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
-/// The exponent of an attractor once more, by two trajectories from where a motion on it is.
-pub fn by_two_trajectories(motion: &Motion<'_>, class: Class, effort: &Effort) -> Result<f64, StudyError> {
-    let growth = two_trajectories(motion, effort.alignment, effort.periods(class))?;
-    let mesh_period = motion.system().period();
-    Ok(if class == Class::Chaotic { growth.mean(mesh_period) } else { growth.exponent(mesh_period) })
+/// The exponent of an attractor once more, by two trajectories. The first of them is the very motion along which the
+/// tangent vector was carried, so that what differs is the method and not the stretch of chaos.
+pub fn by_two_trajectories(system: &System, found: &Attractor, effort: &Effort) -> Result<f64, StudyError> {
+    let motion = Motion::new(system, found.start);
+    let growth = two_trajectories(&motion, effort.alignment, effort.periods(found.class))?;
+    Ok(match found.class {
+        Class::Chaotic => growth.mean(system.period()),
+        _ => growth.exponent(system.period()),
+    })
 }
 
 /// The largest exponent of disturbances that drive planets apart, for planets that all mesh in phase; otherwise there is

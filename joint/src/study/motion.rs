@@ -152,9 +152,8 @@ impl<'a> Motion<'a> {
                 self.state = series.at(coordinates, step);
                 self.time = to;
             }
-            let size = self.state.position[..coordinates].iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-            // Written so that NaN is caught too.
-            if !(size < FARTHEST) {
+            let size = self.state.position[..coordinates].iter().fold(0.0, farther);
+            if size.is_nan() || size > FARTHEST {
                 return Err(StudyError::NotFinite);
             }
             idle = if step > SLIVER * end { 0 } else { idle + 1 };
@@ -251,6 +250,11 @@ pub fn contact(system: &System, mesh: usize, deflection: f64) -> ContactState {
     } else {
         ContactState::Separated
     }
+}
+
+/// The greater magnitude; unlike `max`, NaN once met stays.
+fn farther(most: f64, value: &f64) -> f64 {
+    if most.is_nan() || value.abs() <= most { most } else { value.abs() }
 }
 
 /// Guards that fall, and when.

@@ -133,13 +133,13 @@ impl Series {
                 let stiffness = &moment.stiffness[lower];
                 let deflection = &series.deflection[power - lower];
                 let offset = if lower == power { imposed } else { 0.0 };
-                for mesh in 0..moment.meshes {
-                    force[mesh] += stiffness[mesh] * (deflection[mesh] - offset * moment.offset[mesh]);
+                for (mesh, force) in force[..moment.meshes].iter_mut().enumerate() {
+                    *force += stiffness[mesh] * (deflection[mesh] - offset * moment.offset[mesh]);
                 }
             }
             let next = (power + 1) as f64;
-            for mesh in 0..moment.meshes {
-                force[mesh] += moment.damper[mesh] * next * series.deflection[power + 1][mesh];
+            for (mesh, force) in force[..moment.meshes].iter_mut().enumerate() {
+                *force += moment.damper[mesh] * next * series.deflection[power + 1][mesh];
             }
             series.force[power] = force;
             let acting = |mesh: usize| moment.acts[mesh] * force[mesh];
@@ -195,9 +195,9 @@ impl Series {
         let mut state = State::default();
         for power in (0..TERMS).rev() {
             let terms = &self.position[power];
-            for index in 0..coordinates {
+            for (index, term) in terms[..coordinates].iter().enumerate() {
                 state.rate[index] = state.rate[index] * time + state.position[index];
-                state.position[index] = state.position[index] * time + terms[index];
+                state.position[index] = state.position[index] * time + term;
             }
         }
         state

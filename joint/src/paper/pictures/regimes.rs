@@ -74,7 +74,8 @@ fn portrait(attractor: &AttractorRecord, b: &str) -> Figure {
 
 fn spectrum(attractor: &AttractorRecord, b: &str) -> Figure {
     let spectrum = &attractor.spectrum;
-    let lines = points(&spectrum.over_mesh_frequency, &spectrum.amplitude);
+    let shown = spectrum.over_mesh_frequency.iter().take_while(|frequency| **frequency <= HIGHEST).count();
+    let lines = points(&spectrum.over_mesh_frequency[..shown], &spectrum.amplitude);
     let marks = vec![Mark::Line { points: lines, ink: Ink::First, label: String::new(), width: 1.0 }];
     let axis = VerticalAxis::Decades { from: -4, to: 2 };
     let panel = Panel { axis, ..Panel::lines("Spectrum of X_sp", plain("amplitude"), marks) };

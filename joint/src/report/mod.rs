@@ -1,11 +1,11 @@
 //! Reports of a recorded run: one self-contained HTML page with vector plots. Nothing is measured or judged here.
 
 mod close_up;
-mod contacts;
+pub(crate) mod contacts;
 mod motion;
 mod origin;
 mod page;
-mod plot;
+pub(crate) mod plot;
 mod sections;
 mod timing;
 

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::failure::{EXIT_BAD_INPUT, Outcome};
-use crate::{check, hil, images, output};
+use crate::{check, hil, images, output, sim};
 
 /// Simulates a planetary robot joint with backlash on a microcontroller, drives it and checks it
 #[derive(Debug, Parser)]
@@ -21,6 +21,8 @@ enum Command {
     Hil(hil::Arguments),
     /// Read a joint file and print what follows from it
     Check(check::Arguments),
+    /// Simulate a joint on the host by a named scheme: history, report, comparison of schemes
+    Sim(sim::Arguments),
     /// Build the firmware image of a joint and say where it is
     Image(images::ImageArguments),
     /// Build the firmware image of a joint and write it to a real board by probe-rs
@@ -41,6 +43,7 @@ pub fn main() -> ExitCode {
         None => show_help(),
         Some(Command::Hil(arguments)) => hil::run(arguments),
         Some(Command::Check(arguments)) => check::run(arguments),
+        Some(Command::Sim(arguments)) => sim::run(arguments),
         Some(Command::Image(arguments)) => images::image(arguments),
         Some(Command::Flash(arguments)) => images::flash(arguments),
     };

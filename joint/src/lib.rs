@@ -1,6 +1,6 @@
 //! The host command `joint` as a library, so that its parts can be tested without a process. `hil` runs a joint on a
 //! board and checks it, `target` prepares toolchain, image and emulator, `check` reads a joint file, `record` is what
-//! a run leaves behind and `report` shows it; physics and wire format are left to `model-core` and `link`.
+//! a run leaves behind and `report` shows it, `sim` moves a joint on the host, `sweep` many of them; physics and wire format are left to `model-core` and `link`.
 
 pub mod check;
 pub mod cli;
@@ -11,4 +11,5 @@ pub mod interruption;
 pub mod output;
 pub mod record;
 pub mod report;
+pub mod sim;
 pub mod target;

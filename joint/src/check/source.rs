@@ -37,8 +37,9 @@ pub fn load_with(file: &Path, changes: &[String]) -> Outcome<Loaded> {
 pub fn read_changed(name: String, mut text: String, changes: &[String]) -> Outcome<Loaded> {
     for assignment in changes {
         let Some((key, value)) = assignment.split_once('=') else {
-            return Err(Failure::new(format!("`{assignment}` sets nothing"))
-                .with_help("write key=value, such as sun_planet.half_backlash_um=60; an empty value leaves a key out"));
+            return Err(Failure::new(format!("`{assignment}` sets nothing")).with_help(
+                "write key=value, such as sun_planet.half_backlash_um=60; an empty value leaves a key out",
+            ));
         };
         text = joints::change(&text, key, value)
             .map_err(|refused| Failure::new(format!("{assignment}: {}", refused.message)).with_help(refused.help))?;

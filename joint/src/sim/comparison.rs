@@ -22,8 +22,8 @@ const COST_TICKS: u32 = 4000;
 /// ... so many times, schemes taking turns, and the least of them counts: whatever else the machine does only adds.
 const COST_ROUNDS: usize = 5;
 
-/// Quantities that are compared: all deflections together, gap, link less rigid body.
-pub const QUANTITIES: [&str; 3] = ["mesh deflections", "gap", "link offset"];
+/// Stretches of which the picture shows the error.
+const STRETCHES: usize = 240;
 
 /// One scheme's samples of what is compared.
 #[derive(Debug, Clone, PartialEq)]
@@ -121,12 +121,21 @@ impl Comparison {
         self.predictable.checked_sub(1).map_or(0.0, |last| self.times[last])
     }
 
-    /// Error of a track's first deflection over the standard deviation, sample by sample.
+    /// Error of a track's first deflection over the standard deviation: root mean square of short stretches, each at its
+    /// middle [s].
     pub fn error_of(&self, track: &Track) -> Vec<(f64, f64)> {
         let exact = &self.tracks[0].columns[0][..self.predictable];
         let spread = spread(exact);
-        let pairs = self.times.iter().zip(exact).zip(&track.columns[0]);
-        pairs.map(|((time, exact), value)| (*time, (value - exact).abs() / spread)).collect()
+        let pairs: Vec<(f64, f64)> =
+            exact.iter().zip(&track.columns[0]).zip(&self.times).map(|((a, b), time)| (*time, b - a)).collect();
+        let stretch = self.predictable.div_ceil(STRETCHES).max(1);
+        pairs
+            .chunks(stretch)
+            .map(|part| {
+                let square = part.iter().map(|(_, error)| error * error).sum::<f64>() / part.len() as f64;
+                (0.5 * (part[0].0 + part[part.len() - 1].0), square.sqrt() / spread)
+            })
+            .collect()
     }
 }
 

@@ -176,7 +176,7 @@ impl<'a, T: Real, const N: usize> Reader<'a, T, N> {
             drive: 0.0,
             load: 0.0,
             carrier_angle: TAU * turns,
-            carrier_speed: outputs.carrier_speed.to_f64(),
+            carrier_speed: state.rigid.speed as f64 * (-64f64).exp2() * TAU * f64::from(self.tables.tick_rate),
             motor_offset: outputs.motor_offset.to_f64(),
             link_offset: outputs.link_offset.to_f64(),
             gap: self.scales.length * gap,

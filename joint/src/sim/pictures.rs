@@ -30,7 +30,10 @@ const CLOSE_PERIODS: f64 = 12.0;
 /// Samples drawn of a phase portrait: more only blacken it.
 const PORTRAIT: usize = 6000;
 /// Size of a Poincare point over the size of the picture.
-const DOT: [f64; 2] = [0.0032, 0.0085];
+const DOT: [f64; 2] = [0.0085, 0.024];
+
+/// Errors below this are rounding, and not drawn any lower.
+const SMALLEST_ERROR: f64 = 1e-8;
 
 /// Decibels.
 const DECIBELS: Unit = Unit { factor: 1.0, name: "dB" };
@@ -223,7 +226,16 @@ pub fn portrait(plan: &Plan, samples: &[Moment], points: &[Point], which: Portra
         [x - half_width, x + half_width, y - half_height, y + half_height]
     };
     let inside = |point: &&Point| (range.0..=range.1).contains(&of_point(point).0);
-    let boxes: Vec<[f64; 4]> = points.iter().filter(inside).map(dot).collect();
+    // A motion that repeats has a few points, each hit time and again: one dot for each is enough.
+    let mut boxes: Vec<[f64; 4]> = Vec::new();
+    for dot in points.iter().filter(inside).map(dot) {
+        let near = |other: &[f64; 4]| {
+            (other[0] - dot[0]).abs() < 0.1 * half_width && (other[2] - dot[2]).abs() < 0.1 * half_height
+        };
+        if !boxes.iter().any(near) {
+            boxes.push(dot);
+        }
+    }
     let label = if points.is_empty() { "" } else { "once a mesh period" };
     let (title, axis) = match which {
         Portrait::Deflection => ("Phase portrait, sun–planet deflection of planet 1", "deflection"),
@@ -343,11 +355,11 @@ pub fn schemes(plan: &Plan, comparison: &Comparison) -> Vec<Figure> {
         Panel { height: 300, ..Panel::lines("Sun–planet deflection of planet 1", unit, tracks.map(clip).collect()) };
     let view = |range| View { plan, samples: &[], range };
     let errors = comparison.tracks.iter().skip(1).map(|track| {
-        let error = |(time, error): (f64, f64)| (time, 20.0 * error.max(1e-12).log10());
+        let error = |(time, error): (f64, f64)| (time, 20.0 * error.max(SMALLEST_ERROR).log10());
         let points = comparison.error_of(track).into_iter().map(error).collect();
-        Mark::Line { points, ink: ink(track.scheme), label: track.scheme.name().into(), width: 1.0 }
+        Mark::Line { points, ink: ink(track.scheme), label: track.scheme.name().into(), width: LINE }
     });
-    let title = "Error of that deflection over its standard deviation";
+    let title = "Error of that deflection over its standard deviation, RMS of short stretches";
     let errors = Panel { height: 300, ..Panel::lines(title, DECIBELS, errors.collect()) };
     let whole = (0.0, if until > 0.0 { until } else { 1.0 });
     let close = (from < until).then(|| view((from, until)).figure("Deflection by every scheme", vec![panel]));

@@ -12,4 +12,5 @@ pub mod output;
 pub mod record;
 pub mod report;
 pub mod sim;
+pub mod sweep;
 pub mod target;

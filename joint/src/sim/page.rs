@@ -108,12 +108,14 @@ fn tiles(content: &Content<'_>) -> Markup {
             (tile("Teeth parted", html! { (number(1e2 * figures.separated_share())) span.of { " % of the time" } }))
             (tile("Impacts", html! { (number(figures.impacts_per_s)) span.of { " /s, all meshes" } }))
             (tile("Peak mesh force", html! { (number(figures.peak_force())) span.of { " N" } }))
-            (tile("Motion repeats after", html! {
-                @match figures.period {
-                    Some(period) => { (period) span.of { @if period == 1 { " mesh period" } @else { " mesh periods" } } }
-                    None => { "–" span.of { " not within 32 periods" } }
-                }
-            }))
+            @if content.plan.constant {
+                (tile("Motion repeats after", html! {
+                    @match figures.period {
+                        Some(period) => { (period) span.of { @if period == 1 { " mesh period" } @else { " mesh periods" } } }
+                        None => { "–" span.of { " not within 32 periods" } }
+                    }
+                }))
+            }
         }
     }
 }
@@ -163,22 +165,23 @@ fn portraits(content: &Content<'_>) -> Markup {
         return html! {};
     }
     let figures = content.figures;
+    let points = (content.points, figures.period);
     html! {
         section {
             h2 { "Phase portraits and spectrum" }
             p.lead {
                 "Counted from " (number(1e3 * figures.settle_s)) " ms on. "
-                @match figures.period {
+                @if content.plan.constant { @match figures.period {
                     Some(1) => { "The motion repeats with every mesh period." }
                     Some(period) => { "The motion repeats after " (period) " mesh periods." }
                     None => { "The motion does not repeat within 32 mesh periods: it is chaotic, has more than one frequency, or has not settled." }
-                }
+                } }
             }
-            (picture(&pictures::portrait(content.plan, samples, content.points, Portrait::Deflection), html! {
+            (picture(&pictures::portrait(content.plan, samples, points, Portrait::Deflection), html! {
                 "Deflection rate over deflection. Marked: the points at which the mesh phase comes round (Poincaré points), "
                 (content.points.len()) " of them."
             }))
-            (picture(&pictures::portrait(content.plan, samples, content.points, Portrait::Gap), html! { "The same of the gap coordinate." }))
+            (picture(&pictures::portrait(content.plan, samples, points, Portrait::Gap), html! { "The same of the gap coordinate." }))
             @if let Some(spectrum) = content.spectrum {
                 (picture(&pictures::spectrum(content.plan, spectrum), html! {
                     "Hann window, about the mean. "

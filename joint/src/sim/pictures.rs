@@ -29,8 +29,11 @@ const ALIKE: f64 = 0.01;
 const CLOSE_PERIODS: f64 = 12.0;
 /// Samples drawn of a phase portrait: more only blacken it.
 const PORTRAIT: usize = 6000;
-/// Size of a Poincare point over the size of the picture.
+/// Size of a Poincare point over the size of the picture, and of one among many.
 const DOT: [f64; 2] = [0.0085, 0.024];
+const SMALL_DOT: [f64; 2] = [0.0042, 0.012];
+/// Periods that are shown by large points.
+const FEW: usize = 8;
 
 /// Errors below this are rounding, and not drawn any lower.
 const SMALLEST_ERROR: f64 = 1e-8;
@@ -207,7 +210,12 @@ pub enum Portrait {
 }
 
 /// Rate over position of the last samples, with the Poincare points on it.
-pub fn portrait(plan: &Plan, samples: &[Moment], points: &[Point], which: Portrait) -> Figure {
+pub fn portrait(
+    plan: &Plan,
+    samples: &[Moment],
+    (points, period): (&[Point], Option<usize>),
+    which: Portrait,
+) -> Figure {
     let samples = &samples[samples.len().saturating_sub(PORTRAIT)..];
     let of = |moment: &Moment| match which {
         Portrait::Deflection => (moment.teeth[0].deflection, moment.teeth[0].rate),
@@ -220,7 +228,8 @@ pub fn portrait(plan: &Plan, samples: &[Moment], points: &[Point], which: Portra
     let curve: Vec<(f64, f64)> = samples.iter().map(of).collect();
     let range = axis_range(curve.iter().map(|point| point.0));
     let up = axis_range(curve.iter().map(|point| point.1));
-    let (half_width, half_height) = (0.5 * DOT[0] * (range.1 - range.0), 0.5 * DOT[1] * (up.1 - up.0));
+    let size = if period.is_some_and(|period| period <= FEW) { DOT } else { SMALL_DOT };
+    let (half_width, half_height) = (0.5 * size[0] * (range.1 - range.0), 0.5 * size[1] * (up.1 - up.0));
     let dot = |point: &Point| {
         let (x, y) = of_point(point);
         [x - half_width, x + half_width, y - half_height, y + half_height]

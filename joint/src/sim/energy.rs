@@ -170,3 +170,107 @@ fn start(moment: &Moment) -> Start {
         rigid_speed: moment.carrier_speed,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use std::ops::ControlFlow;
+
+    use host_tests::tolerance;
+    use link::messages::Command;
+    use model_core::design::Effort;
+    use model_core::mesh::StiffnessWave;
+
+    use super::super::follow::{Run, follow};
+    use super::super::scheme::SchemeName;
+    use super::*;
+
+    fn joint(name: &str) -> JointParameters {
+        joints::read(joints::preset(name).expect("a preset")).expect("a good preset").parameters
+    }
+
+    /// A run of a joint that starts in the middle of its gap, turning, so that every contact state comes.
+    fn run_through(joint: &JointParameters, tick_rate: u32, scheme: SchemeName, each: &mut dyn FnMut(&Moment)) {
+        let planets = joint.geometry.planets;
+        let start =
+            Start::Relative(RelativeState { rigid_speed: 3.0, gap_rate: 0.05, ..RelativeState::centred(planets) });
+        let drive = 0.3 * joint.rated_output_torque / joint.geometry.ratio_by_radii();
+        let load = joint.balanced_load_torque(drive);
+        let torques = [
+            Command { tick: 0, drive_torque: drive as f32, load_torque: load as f32 },
+            Command { tick: 600, drive_torque: -drive as f32, load_torque: -load as f32 },
+        ];
+        let run = Run {
+            joint,
+            tick_rate,
+            ticks: 1500,
+            torques: &torques,
+            start: &start,
+            double: true,
+            effort: Effort::Accurate,
+        };
+        follow(&run, scheme, &mut |moment| {
+            each(moment);
+            Ok(ControlFlow::Continue(()))
+        })
+        .expect("a good joint");
+    }
+
+    /// The reference reads the same state by its own equations.
+    #[test]
+    fn what_is_read_off_the_core_is_what_the_reference_reads_off_the_same_state() {
+        let mut rectangular = joint("q1");
+        for mesh in [&mut rectangular.sun_planet, &mut rectangular.ring_planet] {
+            mesh.stiffness_wave = StiffnessWave::Rectangular { stiffness_ratio: 0.1, contact_ratio: 1.6, order: 5 };
+        }
+        for joint in [joint("q1"), joint("paper"), joint("l1"), rectangular] {
+            let force_scale = joint.sun_planet.mean_stiffness * joint.characteristic_length;
+            let mut worst = [0.0f64; 3];
+            run_through(&joint, 200_000, SchemeName::Realtime, &mut |moment| {
+                let read = Reference::start(&shifted(&joint, moment.mesh_periods), &start(moment));
+                let read = Moment::of_reference(0, &joint, &read.expect("a good state").observe());
+                for (one, other) in moment.teeth.iter().zip(&read.teeth) {
+                    worst[0] = worst[0].max((one.deflection - other.deflection).abs() / joint.characteristic_length);
+                    worst[1] = worst[1].max((one.force - other.force).abs() / force_scale);
+                }
+                worst[2] = worst[2].max((moment.motor_offset - read.motor_offset).abs());
+                worst[2] = worst[2].max((moment.link_offset - read.link_offset).abs());
+            });
+            println!("{}: {worst:?}", joint.name);
+            worst.into_iter().for_each(|error| tolerance::READ_OFF.check(error));
+        }
+    }
+
+    #[test]
+    fn the_reference_s_books_balance_whatever_the_teeth_do() {
+        for joint in [joint("q1"), joint("paper"), joint("l1")] {
+            let mut book = EnergyBook::open(&joint, 200_000, 1500).expect("a sharp dead zone");
+            run_through(&joint, 200_000, SchemeName::Reference, &mut |moment| book.take(moment));
+            let balance = book.balance().expect("it has run");
+            println!("{}: {balance:?}", joint.name);
+            tolerance::BOOKS_OF_THE_REFERENCE.check(balance.residual_over_dissipated);
+        }
+    }
+
+    /// Work of the ticks is taken from the reference, tick by tick; the residual is the scheme's own error.
+    #[test]
+    fn a_scheme_s_residual_is_small_for_the_board_s_scheme_and_larger_for_the_usual_ones() {
+        let joint = joint("paper");
+        let residual = |scheme| {
+            let mut book = EnergyBook::open(&joint, 200_000, 1500).expect("a sharp dead zone");
+            run_through(&joint, 200_000, scheme, &mut |moment| book.take(moment));
+            book.balance().expect("it has run").residual_over_dissipated.abs()
+        };
+        let [realtime, runge_kutta, euler] =
+            [SchemeName::Realtime, SchemeName::RungeKutta4, SchemeName::Euler].map(residual);
+        println!("realtime {realtime:.1e}, Runge-Kutta {runge_kutta:.1e}, Euler {euler:.1e}");
+        tolerance::BOOKS_OF_THE_BOARD.check(realtime);
+        assert!(realtime < runge_kutta && runge_kutta < euler);
+    }
+
+    #[test]
+    fn the_tanh_dead_zone_has_no_books() {
+        let mut joint = joint("q1");
+        joint.dead_zone = DeadZone::Tanh { sharpness: 10.0 };
+        assert!(EnergyBook::open(&joint, 20_000, 100).is_none());
+    }
+}

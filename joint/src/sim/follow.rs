@@ -13,7 +13,7 @@ use model_core::real::Real;
 use model_core::realtime::{Model, Torques};
 use model_core::tables::{Scheme, Tables};
 
-use super::moment::{Moment, Reader};
+use super::moment::{Moment, Reader, Teeth};
 use super::scheme::SchemeName;
 use super::start::core_state;
 use crate::failure::{Failure, Outcome};
@@ -37,6 +37,9 @@ pub struct Run<'a> {
     pub effort: Effort,
 }
 
+/// A mesh that is deflected by more than this has left all teeth behind: the scheme has failed, finite or not [m].
+const ABSURD: f64 = 0.1;
+
 /// How a run came to its end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum End {
@@ -44,7 +47,7 @@ pub enum End {
     Whole,
     /// The observer wanted no more.
     Stopped,
-    /// The state is not finite any more after so many ticks.
+    /// The state is infinite, not a number or absurd after so many ticks.
     Diverged(u32),
 }
 
@@ -198,11 +201,12 @@ impl CoreWork for FollowCore<'_, '_> {
         model.set_state(core_state(run.joint, &tables, run.start));
         let mut torques = Schedule::new(run.torques);
         for tick in 0..=run.ticks {
-            if !model.is_finite() {
-                return Ok(End::Diverged(tick));
-            }
             let command = torques.at(tick);
             let mut moment = reader.read(tick, &model);
+            let sound = |teeth: &Teeth| teeth.deflection.abs() < ABSURD;
+            if !model.is_finite() || !moment.teeth.iter().all(sound) {
+                return Ok(End::Diverged(tick));
+            }
             (moment.drive, moment.load) = (command.drive_torque.into(), command.load_torque.into());
             if (self.observer)(&moment)?.is_break() {
                 return Ok(End::Stopped);

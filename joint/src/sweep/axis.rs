@@ -95,7 +95,8 @@ fn steps(vary: &str, texts: [&str; 3]) -> Outcome<Vec<String>> {
         let message = format!("--vary {vary}: steps of {step} lead from {from} away from {to}: the grid has no point");
         return Err(Failure::new(message).with_help(format!("change the sign of the step: {from}:{to}:{}", -step)));
     }
-    let count = (way + ROUNDING).floor() + 1.0;
+    // Long ways lose their last digits in the division.
+    let count = (way * (1.0 + f64::EPSILON * 4.0) + ROUNDING).floor() + 1.0;
     if count > MOST_VALUES {
         let message = format!("--vary {vary}: {count:.0} values on one axis, at most {MOST_VALUES} can be swept");
         let help = coarser(from, to, 1000.0)

@@ -36,7 +36,7 @@ use crate::{interruption, output};
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = "Examples:
   joint sweep paper --vary mesh.half_backlash_um=0:150:0.5
-  joint sweep q1 --vary half_backlash_um=10:80:5 --vary damping_ratio=0.03,0.05,0.1 --profile reversals
+  joint sweep q1 --vary half_backlash_um=10:80:5 --vary mesh.damping_ratio=0.03,0.05,0.1 --profile reversals
   joint sweep paper --vary half_backlash_um=0:150:0.1 --shard 3/16 --out bifurcation     one job of sixteen
   joint merge bifurcation                                                                 when all are done
 

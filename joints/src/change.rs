@@ -52,7 +52,7 @@ pub fn change(text: &str, key: &str, value: &str) -> Result<String, Refused> {
     let candidates = [
         replace(&text, &path, &value),
         insert(&text, section, name, &value),
-        Some(format!("{}\n\n[{section}]\n{name} = {value}{REMARK}\n", text.trim_end())).filter(|_| !section.is_empty()),
+        (!section.is_empty()).then(|| format!("{}\n\n[{section}]\n{name} = {value}{REMARK}\n", text.trim_end())),
         Some(format!("{path} = {value}{REMARK}\n{text}")),
     ];
     let set = |text: &String| lookup(text, &path).is_some_and(|(_, found)| text[found] == value);

@@ -27,8 +27,10 @@ const BROAD: f64 = 4.0;
 const ALIKE: f64 = 0.01;
 /// Mesh periods shown where every one of them is to be seen.
 const CLOSE_PERIODS: f64 = 12.0;
-/// Samples drawn of a phase portrait: more only blacken it.
+/// Samples drawn of a phase portrait under constant torques: more only blacken it.
 const PORTRAIT: usize = 6000;
+/// Samples drawn of a phase portrait under a profile, which shows the whole run.
+const PROFILE_PORTRAIT: usize = 20_000;
 /// Size of a Poincare point over the size of the picture, and of one among many.
 const DOT: [f64; 2] = [0.0085, 0.024];
 const SMALL_DOT: [f64; 2] = [0.0042, 0.012];
@@ -216,7 +218,8 @@ pub fn portrait(
     (points, period): (&[Point], Option<usize>),
     which: Portrait,
 ) -> Figure {
-    let samples = &samples[samples.len().saturating_sub(PORTRAIT)..];
+    let samples = if plan.constant { &samples[samples.len().saturating_sub(PORTRAIT)..] } else { samples };
+    let stride = if plan.constant { 1 } else { samples.len().div_ceil(PROFILE_PORTRAIT) };
     let of = |moment: &Moment| match which {
         Portrait::Deflection => (moment.teeth[0].deflection, moment.teeth[0].rate),
         Portrait::Gap => (moment.gap, moment.gap_rate),
@@ -225,7 +228,7 @@ pub fn portrait(
         Portrait::Deflection => (point.deflection, point.rate),
         Portrait::Gap => (point.gap, point.gap_rate),
     };
-    let curve: Vec<(f64, f64)> = samples.iter().map(of).collect();
+    let curve: Vec<(f64, f64)> = samples.iter().step_by(stride.max(1)).map(of).collect();
     let range = axis_range(curve.iter().map(|point| point.0));
     let up = axis_range(curve.iter().map(|point| point.1));
     let size = if period.is_some_and(|period| period <= FEW) { DOT } else { SMALL_DOT };
@@ -234,7 +237,10 @@ pub fn portrait(
         let (x, y) = of_point(point);
         [x - half_width, x + half_width, y - half_height, y + half_height]
     };
-    let inside = |point: &&Point| (range.0..=range.1).contains(&of_point(point).0);
+    let inside = |point: &&Point| {
+        let (x, y) = of_point(point);
+        (range.0..=range.1).contains(&x) && (up.0..=up.1).contains(&y)
+    };
     // A motion that repeats has a few points, each hit time and again: one dot for each is enough.
     let mut boxes: Vec<[f64; 4]> = Vec::new();
     for dot in points.iter().filter(inside).map(dot) {

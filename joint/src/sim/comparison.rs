@@ -75,7 +75,7 @@ pub fn compare(run: &Run<'_>, every: u32, progress: &(dyn Fn(u32) + Sync)) -> Ou
     let jobs: [(SchemeName, f64); 6] = std::array::from_fn(|job| {
         if job == 0 { (SchemeName::Reference, DISTURBANCE) } else { (SchemeName::ALL[job - 1], 0.0) }
     });
-    let followed: Vec<Outcome<(End, Vec<f64>, Vec<Vec<f64>>)>> = std::thread::scope(|scope| {
+    let followed: Vec<Outcome<Recorded>> = std::thread::scope(|scope| {
         let threads: Vec<_> = jobs
             .iter()
             .map(|&(scheme, disturbance)| scope.spawn(move || record(run, every, scheme, disturbance, &tick)))
@@ -86,14 +86,14 @@ pub fn compare(run: &Run<'_>, every: u32, progress: &(dyn Fn(u32) + Sync)) -> Ou
         threads.into_iter().map(join).collect()
     });
     let mut followed = followed.into_iter().collect::<Outcome<Vec<_>>>()?;
-    let (_, _, disturbed) = followed.remove(0);
+    let disturbed = followed.remove(0).columns;
     let costs = costs(run)?;
-    let times = followed[0].1.clone();
+    let times = followed[0].times.clone();
     let tracks: Vec<Track> = followed
         .into_iter()
         .zip(SchemeName::ALL)
         .zip(costs)
-        .map(|(((end, _, columns), scheme), cost)| Track { scheme, end, columns, cost })
+        .map(|((Recorded { end, columns, .. }, scheme), cost)| Track { scheme, end, columns, cost })
         .collect();
     let predictable = predictable(&tracks[0].columns, &disturbed);
     let rate = f64::from(run.tick_rate);
@@ -139,14 +139,21 @@ impl Comparison {
     }
 }
 
-/// What a scheme says of the compared quantities, with the times of the samples.
+/// What a scheme has said of the compared quantities, with the times of the samples.
+struct Recorded {
+    end: End,
+    times: Vec<f64>,
+    columns: Vec<Vec<f64>>,
+}
+
+/// Follows a scheme.
 fn record(
     run: &Run<'_>,
     every: u32,
     scheme: SchemeName,
     disturbance: f64,
     tick: &(dyn Fn() + Sync),
-) -> Outcome<(End, Vec<f64>, Vec<Vec<f64>>)> {
+) -> Outcome<Recorded> {
     let mut times = Vec::new();
     let mut columns = vec![Vec::new(); 2 * run.joint.geometry.planets + 2];
     let mut observer = |moment: &Moment| {
@@ -165,7 +172,7 @@ fn record(
     if end == End::Stopped {
         return Err(Failure::interrupted("stopped by the user"));
     }
-    Ok((end, times, columns))
+    Ok(Recorded { end, times, columns })
 }
 
 /// Least of several measurements of each scheme, in the order of [`SchemeName::ALL`].

@@ -3,7 +3,7 @@
 //!
 //! `plan` finds everything that is wrong with the request, `follow` moves the joint by a `scheme` from a `start`, and
 //! shows a `moment` every tick to `statistics`, `energy` and the files (`csv`, `log_file`); `comparison` runs all
-//! schemes; `figures` is what comes of it, `table`, `pictures` and `page` show it.
+//! schemes; `figures` is what comes of it, `table`, `page` and its pictures show it.
 
 pub mod arguments;
 pub mod comparison;
@@ -12,11 +12,13 @@ pub mod energy;
 pub mod figures;
 pub mod files;
 pub mod follow;
+mod judgement;
 pub mod log_file;
 pub mod moment;
 mod page;
 mod pictures;
 pub mod plan;
+mod portraits;
 pub mod scheme;
 pub mod spectrum;
 pub mod start;

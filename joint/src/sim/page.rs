@@ -1,14 +1,16 @@
 //! The report of a simulation: one HTML page that needs neither network nor scripts, in the style of the run reports.
-//! Pictures come from `pictures`, figures from `figures`.
+//! Pictures come from `pictures`, `portraits` and `judgement`, figures from `figures`.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::comparison::Comparison;
 use super::energy::Entry;
 use super::figures::Figures;
+use super::judgement;
 use super::moment::Moment;
-use super::pictures::{self, Portrait, View};
+use super::pictures::View;
 use super::plan::Plan;
+use super::portraits::{self, Portrait};
 use super::scheme::SchemeName;
 use super::spectrum::Spectrum;
 use super::statistics::Point;
@@ -177,13 +179,13 @@ fn portraits(content: &Content<'_>) -> Markup {
                     None => { "The motion does not repeat within 32 mesh periods: it is chaotic, has more than one frequency, or has not settled." }
                 } }
             }
-            (picture(&pictures::portrait(content.plan, samples, points, Portrait::Deflection), html! {
+            (picture(&portraits::portrait(content.plan, samples, points, Portrait::Deflection), html! {
                 "Deflection rate over deflection. Marked: the points at which the mesh phase comes round (Poincaré points), "
                 (content.points.len()) " of them."
             }))
-            (picture(&pictures::portrait(content.plan, samples, points, Portrait::Gap), html! { "The same of the gap coordinate." }))
+            (picture(&portraits::portrait(content.plan, samples, points, Portrait::Gap), html! { "The same of the gap coordinate." }))
             @if let Some(spectrum) = content.spectrum {
-                (picture(&pictures::spectrum(content.plan, spectrum), html! {
+                (picture(&portraits::spectrum(content.plan, spectrum), html! {
                     "Hann window, about the mean. "
                     @if let Some(ratio) = figures.non_fundamental_over_fundamental {
                         "Beside the mesh frequency there is " (number(ratio)) " of what is at it (root of the powers)."
@@ -239,7 +241,7 @@ fn energy(content: &Content<'_>) -> Markup {
                 "integration from the tick’s own start, so that the residual is the scheme’s. It is "
                 (number(1e2 * balance.residual_over_dissipated)) " % of what is dissipated."
             }
-            (picture(&pictures::energy(content.plan, content.energy), html! { "The books over the run." }))
+            (picture(&judgement::energy(content.plan, content.energy), html! { "The books over the run." }))
             table { tbody { @for (name, joules) in rows { tr { td { (name) } td.number { (number(1e3 * joules)) " mJ" } } } } }
         }
     }
@@ -277,7 +279,7 @@ fn schemes(content: &Content<'_>) -> Markup {
                     td.number { @match row.substeps { Some(count) => { (count) } None => { "its own" } } }
                 } } }
             }
-            @for figure in pictures::schemes(content.plan, comparison) {
+            @for figure in judgement::schemes(content.plan, comparison) {
                 (picture(&figure, html! { "The reference is the broad line; 0 dB is an error as large as the motion, −40 dB is 1 %." }))
             }
         }

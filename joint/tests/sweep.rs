@@ -68,7 +68,7 @@ fn shards_from_several_folders_are_merged_once_none_is_missing() {
         sweep(&["--shard", shard], &path).well();
         path
     });
-    let [one, two, three] = paths.each_ref().map(|path| text(path));
+    let [one, two, three] = paths.each_ref().map(text);
     let out = folder.path().join("merged");
     joint(&["merge", one, three, "--out", text(&out)])
         .refused(&["10 of 31 points are missing: 1, 4, 7", "--shard 2/3"]);

@@ -10,7 +10,7 @@ use model_core::realtime::Outputs;
 use crate::budget::Monitor;
 
 /// Places for commands; one is lost to telling full from empty.
-const COMMANDS: usize = 256;
+const COMMANDS: usize = 128;
 /// Places for samples.
 const SAMPLES: usize = 16;
 /// Places for orders and for events: at most one order is under way at a time.

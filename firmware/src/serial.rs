@@ -7,7 +7,7 @@ use core::sync::atomic::{AtomicBool, AtomicU32};
 use heapless::spsc::{Consumer, Producer, Queue};
 
 /// Bytes received and not yet looked at: more than the schedules that a host may have under way.
-const INBOX: usize = 2048;
+const INBOX: usize = 1024;
 /// Bytes to be sent: a few of the longest frames.
 const OUTBOX: usize = 2048;
 /// Most bytes each way in one interrupt, so that none lasts long.

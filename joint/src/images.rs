@@ -53,7 +53,7 @@ pub fn flash(arguments: &FlashArguments) -> Outcome<()> {
 }
 
 fn build(arguments: &ImageArguments) -> Outcome<Image> {
-    let file = joint_file(&arguments.file)?;
+    let file = joint_file(&arguments.file, &check::load(&arguments.file)?);
     let progress = Progress::new();
     let say = |line: &str| progress.say(line);
     progress.stage("preparing the toolchain");
@@ -65,8 +65,7 @@ fn build(arguments: &ImageArguments) -> Outcome<Image> {
     interruption::explain(built)
 }
 
-/// A joint file that can be read, as the firmware's build wants it: presets are files too.
-pub fn joint_file(file: &Path) -> Outcome<PathBuf> {
-    let loaded = check::load(file)?;
-    Ok(if file.is_file() { file.to_owned() } else { image::preset_file(&loaded.name) })
+/// The file of a joint that has been read, as the firmware's build wants it: presets are files too.
+pub fn joint_file(file: &Path, loaded: &check::Loaded) -> PathBuf {
+    if file.is_file() { file.to_owned() } else { image::preset_file(&loaded.name) }
 }

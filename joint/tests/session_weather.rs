@@ -1,6 +1,7 @@
 //! A session with a board in a thread, in good weather and bad: what it says, what it keeps, how it ends. Processes,
 //! ports and the emulator are left to the other tests.
 
+#[allow(dead_code, reason = "every test binary uses its own part of it")]
 mod fake_board;
 
 use std::os::unix::net::UnixStream;

@@ -1,12 +1,13 @@
 //! The offline half, f64: from parameters to the tables of a fixed step. `dynamics` is eq. 19, `hamiltonian` eq. 20,
 //! `exponential` the precise integration, `flow_tables` its sorting into in-phase and deviating motion; this file
-//! puts them together.
+//! puts them together, `pace` says in how many sub-steps.
 
 pub mod dynamics;
 pub mod exponential;
 mod flow_tables;
 pub mod hamiltonian;
 pub mod modes;
+mod pace;
 mod source;
 mod validate;
 
@@ -21,36 +22,8 @@ use crate::real::Real;
 use crate::scales::Scales;
 use crate::tables::{Excitation, MeshTable, Mobility, Rigid, Scheme, Spring, Tables, Units};
 use dynamics::{Dynamics, MovingMasses};
+pub use pace::{Effort, Pace};
 pub use source::rust_source;
-
-/// Sub-steps resolve the fastest mode at least this well (its phase a sub-step) [rad]: there the crossing correction
-/// leaves a few 1e-4 of the motion.
-const GOOD_PHASE: f64 = 0.4;
-/// Beyond this many sub-steps the fastest mode is left to what stability asks: it is that of light planets, which
-/// carry little of the motion.
-const USUAL_SUBSTEPS: f64 = 4.0;
-/// Phase of a prescribed mesh frequency that a sub-step may have: some twenty evaluations a mesh period [rad].
-const EXCITATION_PHASE: f64 = 0.3;
-/// Phase of the fastest mode that a sub-step may have at most; the Runge-Kutta method is stable to 2.8 [rad].
-const LARGEST_PHASE: f64 = 2.4;
-/// Most sub-steps a tick.
-const MOST_SUBSTEPS: f64 = 16.0;
-
-/// Instructions a second that a board may spend on the step: a Cortex-M4F at 168 MHz and 1.4 cycles an instruction.
-const BOARD_INSTRUCTIONS: f64 = 120e6;
-/// Instructions of a tick beside its sub-steps, and of a sub-step for each planet when some of its meshes cross;
-/// counted on an emulated Cortex-M4F.
-const TICK_INSTRUCTIONS: f64 = 1000.0;
-const SUBSTEP_INSTRUCTIONS: f64 = 700.0;
-
-/// How much work a tick may take.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Effort {
-    /// What a 168 MHz Cortex-M4F has time for, as long as that is stable.
-    Board,
-    /// What accuracy asks for.
-    Accurate,
-}
 
 /// Tables of the scheme that a board runs.
 pub fn design<T: Real, const N: usize>(
@@ -75,7 +48,7 @@ pub fn design_scheme<T: Real, const N: usize>(
     let scales = Scales::new(parameters);
     let dynamics = Dynamics::new(parameters, &scales);
     let real = T::from_f64;
-    let substeps = substeps(parameters, tick_rate, effort)?;
+    let substeps = Pace::new(parameters).substeps(tick_rate, effort)?;
     let tick = scales.frequency / f64::from(tick_rate);
     let substep = tick / f64::from(substeps);
     let flow_step = match scheme {
@@ -108,35 +81,6 @@ pub fn design_scheme<T: Real, const N: usize>(
     };
     tables.digest = tables.numbers_digest();
     Ok(tables)
-}
-
-/// Sub-steps a tick, from the fastest mode of the closed joint at its stiffest and a prescribed mesh frequency.
-fn substeps(parameters: &JointParameters, tick_rate: u32, effort: Effort) -> Result<u32, DesignError> {
-    let fastest = modes::natural_frequencies(parameters).last().copied().unwrap_or(0.0);
-    let swings = MESH_KINDS.map(|kind| parameters.mesh(kind).stiffness_wave.swing());
-    let stiffest = swings[0].max(swings[1]);
-    let frequency = fastest * libm::sqrt(1.0 + stiffest);
-    let phase = frequency / f64::from(tick_rate.max(1));
-    // In `angle` mode the joint's speed sets the mesh frequency, far below its modes.
-    let excitation = match parameters.excitation {
-        joint::Excitation::Time { mesh_frequency } => mesh_frequency / f64::from(tick_rate.max(1)),
-        joint::Excitation::Angle => 0.0,
-    };
-    let accurate = libm::ceil(phase / GOOD_PHASE).min(USUAL_SUBSTEPS).max(libm::ceil(excitation / EXCITATION_PHASE));
-    let affordable = match effort {
-        Effort::Accurate => MOST_SUBSTEPS,
-        Effort::Board => {
-            let left = BOARD_INSTRUCTIONS / f64::from(tick_rate.max(1)) - TICK_INSTRUCTIONS;
-            libm::floor(left / (SUBSTEP_INSTRUCTIONS * parameters.geometry.planets as f64))
-        }
-    };
-    let wanted = accurate.min(affordable).max(libm::ceil(phase / LARGEST_PHASE)).max(1.0);
-    if tick_rate == 0 || wanted > MOST_SUBSTEPS {
-        let excited = excitation * f64::from(tick_rate.max(1)) / EXCITATION_PHASE;
-        let lowest = libm::ceil(excited.max(frequency / LARGEST_PHASE) / MOST_SUBSTEPS) as u32;
-        return Err(DesignError::RateTooLow { given: tick_rate, lowest });
-    }
-    Ok(wanted as u32)
 }
 
 fn units<T: Real>(parameters: &JointParameters, scales: &Scales, tick_rate: u32) -> Units<T> {

@@ -163,7 +163,7 @@ pub struct Flow<T: Real> {
     pub whole_constant: Inputs<T>,
     /// The step, in dimensionless time.
     pub step: T,
-    /// Largest mesh speed over clearance at a node for which no crossing hides between nodes: a quarter step.
+    /// A mesh counts as safely closed at a node when its overlap exceeds this times its speed.
     pub reach: T,
     /// Mesh periods over the step, in 2^-32, up to which the excitation counts as quadratic in time.
     pub longest_way: T,

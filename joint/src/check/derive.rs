@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 
 use joints::Severity;
 use model_core::design::modes::natural_frequencies;
+use model_core::design::{Effort, Pace};
 use model_core::joint::{JointParameters, PerPlanet};
 use model_core::mesh::{DampingLaw, MESH_KINDS, MeshKind};
 use model_core::scales::Scales;
@@ -13,7 +14,7 @@ use super::figures::{
     Figures, FixedStep, Frequencies, GeometryFigures, Masses, MeshFigures, Numbers, Output, SCHEMA, Warning,
 };
 use super::source::Loaded;
-use super::step::{lowest_rate, step};
+use super::step::step;
 use crate::failure::{Failure, Outcome};
 
 /// Radians to minutes of arc.
@@ -164,15 +165,17 @@ fn fixed_step(parameters: &JointParameters, rate: u32) -> Outcome<FixedStep> {
         Failure::new(format!("no fixed step for {}: {error}", parameters.name))
             .with_help("`--rate` sets the steps a second")
     };
-    let lowest = lowest_rate(parameters).map_err(failed)?;
     let step = step(parameters, rate).map_err(failed)?;
-    let fastest = natural_frequencies(parameters).last().copied().unwrap_or(0.0);
+    let pace = Pace::new(parameters);
+    let (lowest, recommended) = (pace.lowest_rate(Effort::Board), pace.recommended_rate());
     Ok(FixedStep {
         rate_Hz: rate,
         lowest_rate_Hz: lowest,
         longest_step_s: 1.0 / f64::from(lowest),
+        recommended_rate_Hz: recommended,
+        recommended_step_s: 1.0 / f64::from(recommended),
         substeps: step.substeps,
-        fastest_mode_phase_rad: fastest / (f64::from(rate) * f64::from(step.substeps)),
+        fastest_mode_phase_rad: pace.phase(rate, step.substeps),
         table_bytes: step.table_bytes,
         digest: format!("{:016x}", step.digest),
     })

@@ -144,6 +144,10 @@ pub struct FixedStep {
     pub lowest_rate_Hz: u32,
     /// 1 / lowest rate.
     pub longest_step_s: f64,
+    /// From it on the usual number of sub-steps resolves the fastest mode and the mesh frequency.
+    pub recommended_rate_Hz: u32,
+    /// 1 / recommended rate.
+    pub recommended_step_s: f64,
     /// Parts of a tick while contacts change.
     pub substeps: u32,
     /// Phase of the fastest mode in one part.

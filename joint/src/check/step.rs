@@ -1,5 +1,5 @@
-//! What the fixed step asks of the joint: the lowest rate that is stable, and what the tables take of a board's flash.
-//! The tables themselves are made by `model_core::design`.
+//! What the tables take of a board's flash and in how many sub-steps a tick is taken. The tables themselves are made
+//! by `model_core::design`.
 
 use model_core::design::{DesignError, design};
 use model_core::joint::JointParameters;
@@ -28,13 +28,4 @@ pub(super) fn step(parameters: &JointParameters, rate: u32) -> Result<Step, Desi
 fn of_size<const N: usize>(parameters: &JointParameters, rate: u32) -> Result<Step, DesignError> {
     let tables = design::<f32, N>(parameters, rate)?;
     Ok(Step { substeps: tables.substeps, table_bytes: size_of::<Tables<f32, N>>(), digest: tables.digest })
-}
-
-/// The lowest stable rate [Hz].
-pub(super) fn lowest_rate(parameters: &JointParameters) -> Result<u32, DesignError> {
-    match step(parameters, 1) {
-        Err(DesignError::RateTooLow { lowest, .. }) => Ok(lowest.max(1)),
-        Err(other) => Err(other),
-        Ok(_) => Ok(1),
-    }
 }

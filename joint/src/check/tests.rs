@@ -4,6 +4,7 @@ use std::path::Path;
 
 use joints::PRESETS;
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
+use model_core::design::{Effort, Pace};
 use model_core::joint::JointParameters;
 
 use super::derive::arcmin;
@@ -133,7 +134,7 @@ fn mesh_phases_of_unequal_planets_are_shown_for_each() {
 fn the_lowest_rate_can_be_stepped_and_the_one_below_cannot() {
     for name in PRESETS {
         let parameters = load(Path::new(name)).expect("a preset").file.parameters;
-        let lowest = step::lowest_rate(&parameters).expect("a rate");
+        let lowest = Pace::new(&parameters).lowest_rate(Effort::Board);
         assert!(step::step(&parameters, lowest).is_ok(), "{name}: {lowest}");
         assert!(step::step(&parameters, lowest - 1).is_err(), "{name}: {lowest}");
     }

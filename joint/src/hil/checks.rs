@@ -77,7 +77,7 @@ fn twin(evidence: &Evidence<'_>) -> Vec<Check> {
 fn reference(evidence: &Evidence<'_>) -> Vec<Check> {
     let comparison = match evidence.comparison {
         Ok(comparison) => comparison,
-        Err(why) => return vec![Check::not_run("error against the f64 reference", "%", Bound::None, why)],
+        Err(why) => return vec![Check::not_run("motion off the f64 reference", "%", Bound::None, why)],
     };
     let chaotic = comparison.until < LEAST_PREDICTABLE * comparison.of;
     let part =
@@ -89,7 +89,7 @@ fn reference(evidence: &Evidence<'_>) -> Vec<Check> {
     };
     let check = |quantity: &super::comparison::QuantityError| {
         let bound = if chaotic { Bound::None } else { Bound::AtMost(100.0 * quantity.bound.limit) };
-        let name = format!("{}, error against the f64 reference", quantity.name);
+        let name = format!("{} off the f64 reference, first {:.2} s", quantity.name, comparison.until);
         Check::judge(name, 100.0 * quantity.error, "%", bound, Source::Host).note(note.clone())
     };
     comparison.errors.iter().map(check).collect()

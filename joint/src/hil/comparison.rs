@@ -1,48 +1,34 @@
 //! The run against the f64 reference: the same torques through an independent integration, as far as the motion can be
 //! predicted at all. Both are computed beside the run; what the distances mean for the verdict is the checks' business.
 
+mod follow;
+mod row;
+
 use std::f64::consts::TAU;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
 
-use host_tests::reference::{Observation, Reference, ReferenceError};
-use host_tests::tolerance::{self, Bound};
+use follow::{DISTURBANCE, Follower, follow};
+use host_tests::reference::{Observation, ReferenceError};
+use host_tests::tolerance::Bound;
 use link::messages::{Command, Sample};
 use model_core::joint::JointParameters;
 use model_core::mesh::ContactState;
+use row::{QUANTITIES, Row, spread};
 
 use crate::failure::{Failure, Outcome};
 use crate::record::{self, MotionSample};
 
-/// The reference is followed for so long at most [s]: it takes about half as long to compute.
-const LONGEST: f64 = 10.0;
-/// A second reference gets torques that are wrong by this much, up and down in turn.
-const DISTURBANCE: f64 = 1e-6;
-/// Once that moves any compared quantity by more than this part of its standard deviation, the motion is chaotic: what
-/// comes later says nothing about the step any more.
-const PREDICTABLE: f64 = 1e-3;
-
-/// What is compared.
-const QUANTITIES: [Quantity; 4] = [
-    Quantity { name: "link angle", bound: &tolerance::HIL_LINK_ANGLE },
-    Quantity { name: "twist of motor against link", bound: &tolerance::HIL_TWIST },
-    Quantity { name: "gap", bound: &tolerance::HIL_GAP },
-    Quantity { name: "mesh deflections", bound: &tolerance::HIL_DEFLECTIONS },
-];
-
-struct Quantity {
-    name: &'static str,
-    bound: &'static Bound,
-}
-
-/// References under way, each on a thread of its own.
+/// The reference is followed for so long at most [s]: computing it takes longer than the run itself.
+const LONGEST: f64 = 3.0;
+/// References under way, on threads of their own.
 pub struct UnderWay {
     joint: JointParameters,
     tick_rate: u32,
     ticks: Vec<u32>,
     stop: Arc<AtomicBool>,
-    references: [JoinHandle<Result<Vec<Observation>, ReferenceError>>; 2],
+    followed: JoinHandle<Result<Vec<Observation>, ReferenceError>>,
 }
 
 /// How far a run is from the reference.
@@ -75,41 +61,13 @@ pub fn start(joint: &JointParameters, tick_rate: u32, decimation: u32, run: (&[C
     let last = ticks.min((LONGEST * f64::from(tick_rate)) as u32);
     let ticks: Vec<u32> = (1..=last / decimation).map(|sample| sample * decimation).collect();
     let stop = Arc::new(AtomicBool::new(false));
-    let references = [0.0, DISTURBANCE].map(|disturbance| {
-        let (joint, commands, ticks, stop) = (joint.clone(), commands.to_vec(), ticks.clone(), Arc::clone(&stop));
-        thread::spawn(move || follow(&joint, tick_rate, &commands, &ticks, disturbance, &stop))
-    });
-    UnderWay { joint: joint.clone(), tick_rate, ticks, stop, references }
-}
-
-/// The reference at the ends of the given ticks; shorter if it was told to stop.
-fn follow(
-    joint: &JointParameters,
-    tick_rate: u32,
-    commands: &[Command],
-    ticks: &[u32],
-    disturbance: f64,
-    stop: &AtomicBool,
-) -> Result<Vec<Observation>, ReferenceError> {
-    let time_of = |tick: u32| f64::from(tick) / f64::from(tick_rate);
-    let mut reference = Reference::new(joint)?;
-    let mut commands = commands.iter().peekable();
-    let (mut drive, mut load) = (0.0, 0.0);
-    let mut factor = 1.0 + disturbance;
-    let mut observations = Vec::with_capacity(ticks.len());
-    for &tick in ticks {
-        if stop.load(Ordering::Relaxed) {
-            break;
-        }
-        while let Some(command) = commands.next_if(|command| command.tick < tick) {
-            reference.advance(time_of(command.tick), factor * drive, factor * load)?;
-            (drive, load) = (f64::from(command.drive_torque), f64::from(command.load_torque));
-        }
-        reference.advance(time_of(tick), factor * drive, factor * load)?;
-        observations.push(reference.observe());
-        factor = 2.0 - factor;
-    }
-    Ok(observations)
+    let follower = |disturbance: f64| Follower::new(joint, tick_rate, commands, disturbance);
+    let (exact, disturbed) = (follower(0.0), follower(DISTURBANCE));
+    let followed = {
+        let (ticks, stop) = (ticks.clone(), Arc::clone(&stop));
+        thread::spawn(move || follow(exact?, disturbed?, &ticks, &stop))
+    };
+    UnderWay { joint: joint.clone(), tick_rate, ticks, stop, followed }
 }
 
 impl UnderWay {
@@ -121,16 +79,14 @@ impl UnderWay {
 
     /// Waits for the references and compares the samples of the run with them.
     pub fn finish(self, samples: &[Sample], ratio: f64) -> Outcome<Comparison> {
-        let [exact, disturbed] = self.references.map(|reference| match reference.join() {
-            Ok(Ok(observations)) => Ok(observations),
-            Ok(Err(error)) => Err(Failure::new(format!("the reference does not take this joint: {error}"))),
-            Err(_) => Err(Failure::new("the reference has failed")),
-        });
-        let (exact, disturbed) = (exact?, disturbed?);
+        let exact = match self.followed.join() {
+            Ok(Ok(observations)) => observations,
+            Ok(Err(error)) => return Err(Failure::new(format!("the reference does not take this joint: {error}"))),
+            Err(_) => return Err(Failure::new("the reference has failed")),
+        };
         let board = rows_of_board(samples, &self.ticks, ratio);
         let exact_rows: Vec<Row> = exact.iter().map(|observation| Row::of_reference(observation, ratio)).collect();
-        let disturbed: Vec<Row> = disturbed.iter().map(|observation| Row::of_reference(observation, ratio)).collect();
-        let predictable = predictable(&exact_rows, &disturbed);
+        let predictable = exact_rows.len();
         let mut motion = record::Samples::new(2 * self.joint.geometry.planets);
         for (&tick, observation) in self.ticks.iter().zip(&exact) {
             motion.push(&motion_sample(tick, observation), self.tick_rate, ratio);
@@ -139,9 +95,9 @@ impl UnderWay {
         let mut errors = Vec::new();
         let mut series = Vec::new();
         for (place, quantity) in QUANTITIES.iter().enumerate() {
-            let spread = spread(&exact_rows[..predictable], place);
+            let spread = spread(&exact_rows, place);
             let distances = || {
-                board.iter().zip(&exact_rows[..predictable]).enumerate().filter_map(move |(index, (board, exact))| {
+                board.iter().zip(&exact_rows).enumerate().filter_map(move |(index, (board, exact))| {
                     board.as_ref().map(|board| (index, board.distance(exact, place) / spread))
                 })
             };
@@ -166,57 +122,6 @@ impl UnderWay {
         let reference = record::Reference { method: method.to_owned(), samples: motion, errors: series };
         Ok(Comparison { reference, until, of, errors })
     }
-}
-
-/// How many of the samples come before the motion is chaotic.
-fn predictable(exact: &[Row], disturbed: &[Row]) -> usize {
-    let count = exact.len().min(disturbed.len());
-    let spreads: Vec<f64> = (0..QUANTITIES.len()).map(|place| spread(&exact[..count], place)).collect();
-    let departed = |(exact, disturbed): (&Row, &Row)| {
-        spreads.iter().enumerate().any(|(place, spread)| disturbed.distance(exact, place).abs() > PREDICTABLE * spread)
-    };
-    exact.iter().zip(disturbed).position(departed).unwrap_or(count)
-}
-
-/// Compared quantities at one moment: as many values each as there are.
-#[derive(Debug, Clone, PartialEq)]
-struct Row([Vec<f64>; QUANTITIES.len()]);
-
-impl Row {
-    fn of_reference(observation: &Observation, ratio: f64) -> Self {
-        let deflections = observation.deflections.iter().flatten().copied().collect();
-        let twist = observation.motor_offset / ratio - observation.link_offset;
-        Self([vec![observation.link_angle], vec![twist], vec![observation.gap], deflections])
-    }
-
-    fn of_board(sample: &Sample, ratio: f64) -> Self {
-        let motion = MotionSample::from_board(sample, 1);
-        let deflections = motion.deflections.iter().copied().map(f64::from).collect();
-        let twist = motion.motor_offset / ratio - motion.link_offset;
-        Self([vec![motion.carrier_angle + motion.link_offset], vec![twist], vec![motion.gap.into()], deflections])
-    }
-
-    /// Distance in one quantity: signed where it is one value, else the root mean square over its values.
-    fn distance(&self, other: &Self, place: usize) -> f64 {
-        match (self.0[place].as_slice(), other.0[place].as_slice()) {
-            (&[one], &[other]) => one - other,
-            (ones, others) => {
-                let square: f64 = ones.iter().zip(others).map(|(one, other)| (one - other).powi(2)).sum();
-                (square / ones.len() as f64).sqrt()
-            }
-        }
-    }
-}
-
-/// Standard deviation of one quantity over time, as a root mean square over its values.
-fn spread(rows: &[Row], place: usize) -> f64 {
-    let values = rows.first().map_or(0, |row| row.0[place].len());
-    let count = rows.len() as f64;
-    let variance = |value: usize| {
-        let mean = rows.iter().map(|row| row.0[place][value]).sum::<f64>() / count;
-        rows.iter().map(|row| (row.0[place][value] - mean).powi(2)).sum::<f64>() / count
-    };
-    ((0..values).map(variance).sum::<f64>() / values as f64).sqrt()
 }
 
 /// The board's rows by place in the list of ticks; samples that were lost are missing.
@@ -247,5 +152,68 @@ fn motion_sample(tick: u32, observation: &Observation) -> MotionSample {
         contacts: observation.contacts.iter().flatten().map(contact).collect(),
         state_digest: None,
         computation: None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hil::profile::Profile;
+    use crate::hil::twin;
+
+    const TICK_RATE: u32 = 20_000;
+    const DECIMATION: u32 = 20;
+
+    fn joint(preset: &str) -> JointParameters {
+        joints::read(joints::preset(preset).expect("a preset")).expect("a good preset").parameters
+    }
+
+    /// The twin in the board's place, through the head of the built-in profile, spoilt by `spoil`.
+    fn comparison(preset: &str, seconds: f64, spoil: impl Fn(&mut Sample)) -> Comparison {
+        let joint = joint(preset);
+        let profile = Profile::load("reversals", &joint, TICK_RATE, Some(seconds)).expect("built in");
+        let under_way = start(&joint, TICK_RATE, DECIMATION, (&profile.commands, profile.ticks));
+        let ticks: Vec<u32> = (1..=profile.ticks / DECIMATION).map(|sample| sample * DECIMATION).collect();
+        let mut samples = twin::replay(&joint, TICK_RATE, &profile.commands, &ticks).expect("a good joint");
+        samples.iter_mut().for_each(spoil);
+        under_way.finish(&samples, joint.geometry.ratio_by_radii()).expect("a joint for the reference")
+    }
+
+    fn failed(comparison: &Comparison) -> Vec<&'static str> {
+        let over = comparison
+            .errors
+            .iter()
+            .filter(|quantity| quantity.error.is_nan() || quantity.error > quantity.bound.limit);
+        over.map(|quantity| quantity.name).collect()
+    }
+
+    #[test]
+    fn the_step_is_within_every_bound_for_as_long_as_is_followed() {
+        let comparison = comparison("l1", 0.3, |_| {});
+        assert_eq!(failed(&comparison), [""; 0]);
+        assert_eq!((comparison.until, comparison.of), (0.3, 0.3));
+    }
+
+    #[test]
+    fn two_percent_of_error_in_one_quantity_are_over_its_bound_alone() {
+        let gap = comparison("l1", 0.1, |sample| sample.gap *= 1.02);
+        assert_eq!(failed(&gap), ["gap"]);
+        let meshes = comparison("l1", 0.1, |sample| sample.deflections.iter_mut().for_each(|mesh| *mesh *= 1.02));
+        assert_eq!(failed(&meshes), ["mesh deflections"]);
+        let turned = comparison("l1", 0.1, |sample| sample.carrier_fraction = sample.carrier_fraction.wrapping_mul(2));
+        assert_eq!(failed(&turned), ["link angle"]);
+    }
+
+    #[test]
+    fn a_chaotic_motion_is_compared_only_while_it_can_be_predicted() {
+        let comparison = comparison("paper", 0.5, |_| {});
+        assert!(comparison.until < 0.05, "{}", comparison.until);
+        assert!(comparison.reference.samples.len() < 100);
+    }
+
+    #[test]
+    fn a_lost_sample_is_left_out() {
+        let rows = rows_of_board(&[], &[20, 40], 6.0);
+        assert_eq!(rows, [None, None]);
     }
 }

@@ -34,7 +34,7 @@ use session::Session;
 
 use crate::failure::{Failure, Outcome};
 use crate::record::{RunRecord, Verdict};
-use crate::{interruption, output};
+use crate::{interruption, output, report};
 
 /// Runs a joint on a board; succeeds only if every check held.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
@@ -68,7 +68,8 @@ fn run_once(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
     match (outcome, report) {
         (Ok(()), Ok(report)) => {
             output::print(&format!("report: {}\n", report.display()))?;
-            verdict(&record)
+            let picture = arguments.picture.as_deref().map_or(Ok(()), |path| report::write_picture(&record, path));
+            verdict(&record).and(picture)
         }
         (Err(failure), Ok(report)) => {
             let kept = format!("what was recorded until tick {} is in {}", recording.last_tick(), report.display());

@@ -10,10 +10,10 @@ use link::messages::{RunMode, RunSettings};
 use super::profile::{BUILTIN, Profile};
 use super::session::Expected;
 use super::twin;
-use crate::check;
 use crate::failure::{Failure, Outcome};
 use crate::target::board::Board;
 use crate::target::image;
+use crate::{check, images};
 
 /// Arguments of `joint hil`.
 #[derive(Debug, clap::Args)]
@@ -58,6 +58,9 @@ pub struct Arguments {
     /// Writes the record as JSON to this file too
     #[arg(long, value_name = "OUT")]
     pub json: Option<PathBuf>,
+    /// Draws the first reversal through the gap to this file (SVG), for a document
+    #[arg(long, value_name = "SVG")]
+    pub picture: Option<PathBuf>,
     /// Does not compute the f64 reference
     #[arg(long)]
     pub no_reference: bool,
@@ -101,11 +104,9 @@ const COMMAND_TIMEOUT: f64 = 0.1;
 impl Plan {
     /// Reads and designs all that a run needs.
     pub fn new(arguments: &Arguments) -> Outcome<Self> {
-        let check::Loaded { name, file: joint, .. } = check::load(&arguments.file)?;
-        let path = match arguments.file.is_file() {
-            true => arguments.file.clone(),
-            false => image::preset_file(&name),
-        };
+        let loaded = check::load(&arguments.file)?;
+        let path = images::joint_file(&arguments.file, &loaded);
+        let check::Loaded { name, file: joint, .. } = loaded;
         let parameters = &joint.parameters;
         let digest = twin::tables_digest(parameters, arguments.rate)?;
         let profile = Profile::load(&arguments.profile, parameters, arguments.rate, arguments.duration)?;

@@ -52,6 +52,8 @@ impl Recording {
             FromBoard::Accepted(_) => {}
             FromBoard::Samples(batch) => self.take_samples(batch),
             FromBoard::Statistics(statistics) => self.statistics = Some(statistics),
+            // Schedules that were under way when a run stopped are refused: that says nothing new.
+            FromBoard::Fault(Fault::NotRunning) if !self.faults.is_empty() => {}
             FromBoard::Fault(fault) => self.faults.push(fault),
             FromBoard::Log(log) => self.take_log(&log),
         }
@@ -108,10 +110,10 @@ impl Unanswered {
         self.schedules.push((sequence, commands.to_vec()));
     }
 
-    /// The board took one: its commands.
-    pub fn answered(&mut self, accepted: Accepted) -> Option<Vec<Command>> {
-        let place = self.schedules.iter().position(|(sequence, _)| *sequence == accepted.sequence)?;
-        Some(self.schedules.remove(place).1)
+    /// The board took one: its commands; none if it was not asked.
+    pub fn answered(&mut self, accepted: Accepted) -> Vec<Command> {
+        let place = self.schedules.iter().position(|(sequence, _)| *sequence == accepted.sequence);
+        place.map(|place| self.schedules.remove(place).1).unwrap_or_default()
     }
 
     /// How many are under way.

@@ -10,7 +10,7 @@ use link::PROTOCOL_VERSION;
 use link::framing::{Receiver, encode};
 use link::messages::{FromBoard, Hello, RunSettings, ToBoard};
 
-use super::recording::Recording;
+use super::recording::{Recording, Unanswered};
 use super::transport::Line;
 use crate::failure::{Failure, Outcome};
 
@@ -42,6 +42,7 @@ pub struct Session<'a> {
     head_receiver: Option<Receiver>,
     foreign: Option<HelloHead>,
     dropped_before: u32,
+    unanswered: Unanswered,
     /// All that was heard.
     pub recording: Recording,
 }
@@ -56,6 +57,7 @@ impl<'a> Session<'a> {
             head_receiver: Some(Receiver::new()),
             foreign: None,
             dropped_before: 0,
+            unanswered: Unanswered::default(),
             recording: Recording::default(),
         }
     }
@@ -96,6 +98,7 @@ impl<'a> Session<'a> {
         self.wait("statistics", |recording| recording.statistics.is_some())?;
         self.dropped_before = self.receiver.dropped().frames;
         self.recording.start_run(settings);
+        self.unanswered = Unanswered::default();
         Ok(())
     }
 
@@ -131,11 +134,16 @@ impl<'a> Session<'a> {
                 self.recording.traffic.sent_bytes += frame.len() as u64;
                 Ok(())
             }
-            Err(error) => Err(self.lost(&error)),
+            Err(error) => {
+                // What had come before the line broke is still there to be heard.
+                let deadline = Instant::now() + DRAIN;
+                while Instant::now() < deadline && self.hear_regardless().is_ok_and(|messages| !messages.is_empty()) {}
+                Err(self.lost(&error))
+            }
         }
     }
 
-    /// Takes what has come within a slice of time; returns whether that held a message.
+    /// Takes what has come within a slice of time.
     fn hear(&mut self) -> Outcome<Vec<FromBoard>> {
         if self.surroundings.interrupted() {
             return Err(Failure::interrupted("stopped by the user"));
@@ -153,6 +161,9 @@ impl<'a> Session<'a> {
         let mut messages = Vec::new();
         for &byte in &buffer[..count] {
             if let Some(message) = self.receiver.push::<FromBoard>(byte) {
+                if let FromBoard::Accepted(accepted) = &message {
+                    self.recording.accepted.extend(self.unanswered.answered(*accepted));
+                }
                 self.recording.take(message.clone());
                 messages.push(message);
             }

@@ -89,7 +89,11 @@ impl Line for Port {
     }
 
     fn receive(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        nothing_yet(self.port.read(buffer))
+        match self.port.read(buffer) {
+            // Silence is a timeout; nothing without one is a port that has hung up, as an unplugged adapter does.
+            Ok(0) => Err(io::ErrorKind::UnexpectedEof.into()),
+            other => nothing_yet(other),
+        }
     }
 
     fn name(&self) -> &str {

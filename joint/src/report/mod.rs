@@ -13,7 +13,9 @@ pub use close_up::crossing;
 
 use std::path::Path;
 
-use crate::failure::Outcome;
+use plot::Figure;
+
+use crate::failure::{Failure, Outcome};
 use crate::record::{RunRecord, write_text};
 
 /// The report as one HTML page that needs neither network nor scripts.
@@ -32,5 +34,15 @@ pub fn write(record: &RunRecord, json: Option<&Path>, html: Option<&Path>) -> Ou
 /// One picture for a document: a reversal through the gap. None if the run has none.
 pub fn picture(record: &RunRecord) -> Option<String> {
     let view = close_up::view(record)?;
-    Some(page::standalone(&close_up::figure(&view).to_svg()))
+    let note = origin::in_one_line(record);
+    Some(page::standalone(&Figure { note, ..close_up::figure(&view) }.to_svg()))
+}
+
+/// Writes [`picture`] to a file.
+pub fn write_picture(record: &RunRecord, path: &Path) -> Outcome<()> {
+    let svg = picture(record).ok_or_else(|| {
+        Failure::new(format!("there is nothing to draw in {}: the gap was not crossed", path.display()))
+            .with_help("choose a profile in which the load changes its sign, such as `--profile reversals`")
+    })?;
+    write_text(path, &svg)
 }

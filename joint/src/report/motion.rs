@@ -38,7 +38,7 @@ impl View<'_> {
     /// A figure over the time of this view.
     pub fn figure(&self, title: &str, panels: Vec<Panel>) -> Figure {
         let title = format!("{title} of joint {}", self.record.identity.joint);
-        Figure { title, axis: "time".into(), unit: self.unit, range: self.range, panels }
+        Figure { title, axis: "time".into(), unit: self.unit, range: self.range, panels, note: String::new() }
     }
 
     /// Drive and load torque.
@@ -163,29 +163,24 @@ impl View<'_> {
     }
 }
 
-/// Quantities in one panel of errors: more could not be told apart, nor named beside its title.
-const ERRORS_IN_A_PANEL: usize = 3;
-
-/// Distance of every compared quantity from the reference, with the bound on its root mean square where it is near.
+/// Distance of every compared quantity from the reference, a panel for each: they differ by orders of magnitude.
 pub fn errors(record: &RunRecord) -> Option<Figure> {
     let series = &record.reference.as_ref()?.errors;
-    let panels: Vec<Panel> = series.chunks(ERRORS_IN_A_PANEL).map(error_panel).collect();
+    let panels: Vec<Panel> = series.iter().map(error_panel).collect();
     (!panels.is_empty()).then(|| whole(record).figure("Error against the reference", panels))
 }
 
-fn error_panel(series: &[ErrorSeries]) -> Panel {
+fn error_panel(series: &ErrorSeries) -> Panel {
+    let bound = series.bound_percent;
     let mut marks = Vec::new();
-    let most = greatest(series.iter().flat_map(|one| one.error_percent.iter().copied()));
-    let bound = series.iter().map(|one| one.bound_percent).fold(f64::INFINITY, f64::min);
-    if bound < 3.0 * most {
-        marks.push(Mark::Band { range: (-bound, bound), label: format!("RMS bound {} %", figure(bound)) });
+    if bound < 3.0 * greatest(series.error_percent.iter().copied()) {
+        marks.push(Mark::Band { range: (-bound, bound), label: "bound on the root mean square".into() });
     }
-    for (one, ink) in series.iter().zip(LINES) {
-        let points = one.time_s.iter().copied().zip(one.error_percent.iter().copied()).collect();
-        let label = format!("{}, RMS {} %", one.quantity, figure(root_mean_square(one)));
-        marks.push(Mark::Line { points, ink, label, width: LINE });
-    }
-    Panel::lines("Error against the reference", PERCENT, marks)
+    let points = series.time_s.iter().copied().zip(series.error_percent.iter().copied()).collect();
+    marks.push(Mark::Line { points, ink: Ink::First, label: String::new(), width: LINE });
+    let (rms, bound) = (figure(root_mean_square(series)), figure(bound));
+    let title = format!("Error of {}: RMS {rms} %, bound {bound} %", series.quantity);
+    Panel { height: 150, ..Panel::lines(title, PERCENT, marks) }
 }
 
 /// Root mean square of the finite values [%].

@@ -46,6 +46,23 @@ pub fn identity(record: &RunRecord) -> Markup {
     }
 }
 
+/// What ran, short enough to stand below a picture.
+pub fn in_one_line(record: &RunRecord) -> String {
+    let identity = &record.identity;
+    let mut parts = vec![format!("Joint {} on {}", identity.joint, identity.board)];
+    if identity.emulated {
+        parts.push("EMULATED".into());
+    }
+    if let Some(image) = &identity.image {
+        let until = |text: &str, end: &str| text.split(end).next().unwrap_or_default().to_owned();
+        parts.push(format!("ELF {}", image.elf_sha256.chars().take(12).collect::<String>()));
+        parts.push(until(&image.compiler, " ("));
+        // The profile and what it sets; the rest is in the report.
+        parts.push(until(&image.flags, ", --"));
+    }
+    parts.join(" · ")
+}
+
 /// What the board said.
 pub fn log(record: &RunRecord) -> Markup {
     if record.log.is_empty() {

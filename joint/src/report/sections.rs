@@ -31,7 +31,7 @@ pub fn tiles(record: &RunRecord) -> Markup {
             }
             @if let Some(image) = &record.identity.image {
                 (tile("Flash", none(), html! { (kibibytes(image.flash_bytes)) span.of { " KiB" } }))
-                (tile("RAM", none(), html! { (kibibytes(image.ram_bytes)) span.of { " KiB" } }))
+                (tile("RAM of statics", none(), html! { (kibibytes(image.ram_bytes)) span.of { " KiB" } }))
             }
         }
     }
@@ -76,6 +76,8 @@ fn check_row(record: &RunRecord, check: &Check) -> Markup {
     };
     let with_unit = |value: f64| match check.unit.as_str() {
         "" => number(value),
+        // As typed in a terminal, and as printed.
+        "us" => format!("{} µs", number(value)),
         unit => format!("{} {unit}", number(value)),
     };
     let bound = match check.bound {
@@ -87,7 +89,7 @@ fn check_row(record: &RunRecord, check: &Check) -> Markup {
     html! {
         tr class=(class) {
             td.verdict { span class={ "mark " (class) } { (word) } }
-            td { (check.name) @if check.source == Source::Board { (emulated(record)) } }
+            td.name { (check.name) @if check.source == Source::Board { (emulated(record)) } }
             td.number { (check.figure.map_or("–".into(), with_unit)) }
             td.number { (bound) }
             td.note { (check.note) }

@@ -27,7 +27,8 @@ pub fn histogram(timing: &TimingFigures) -> Option<Figure> {
     let unit = Unit { factor: 1.0, name: "steps" };
     let panel = Panel { axis: VerticalAxis::Counts, ..Panel::lines("Computation time of the tick", unit, marks) };
     let title = "Computation times of the tick against the deadline".into();
-    Some(Figure { title, axis: "computation time".into(), unit: MICROSECONDS, range: (0.0, end), panels: vec![panel] })
+    let (axis, range) = ("computation time".into(), (0.0, end));
+    Some(Figure { title, axis, unit: MICROSECONDS, range, panels: vec![panel], note: String::new() })
 }
 
 /// Rows of the table of times: name, least, mean, greatest [µs], greatest over the period [%].

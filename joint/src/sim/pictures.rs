@@ -58,7 +58,7 @@ impl<'a> View<'a> {
     pub fn figure(&self, title: &str, panels: Vec<Panel>) -> Figure {
         let title = format!("{title} of joint {}", self.joint().name);
         let unit = if self.range.1 < 0.5 { MILLISECONDS } else { SECONDS };
-        Figure { title, axis: "time".into(), unit, range: self.range, panels }
+        Figure { title, axis: "time".into(), unit, range: self.range, panels, note: String::new() }
     }
 
     fn line(&self, value: impl Fn(&Moment) -> f64, ink: Ink, label: &str) -> Mark {

@@ -90,6 +90,7 @@ pub fn portrait(
         axis: axis.into(),
         unit: Unit::of_length(greatest([range.0, range.1].into_iter())),
         range,
+        note: String::new(),
         panels: vec![Panel { height: 380, ..Panel::lines(format!("{title}: rate"), unit, marks) }],
     }
 }
@@ -116,6 +117,7 @@ pub fn spectrum(plan: &Plan, spectrum: &Spectrum) -> Figure {
         axis: "frequency".into(),
         unit,
         range: (0.0, end),
+        note: String::new(),
         panels: vec![Panel { height: 260, ..Panel::lines(format!("{title}, over 1 µm"), DECIBELS, marks) }],
     }
 }

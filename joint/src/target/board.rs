@@ -35,6 +35,15 @@ impl Board {
         }
     }
 
+    /// Its core clock [Hz]; the tick rate must divide it.
+    pub fn core_rate(self) -> u32 {
+        match self {
+            Self::Stm32f405 => 168_000_000,
+            Self::Stm32g474 => 170_000_000,
+            Self::Stm32h743 => 400_000_000,
+        }
+    }
+
     /// Speed of its serial line [baud]: where the UART has no FIFO, the tick must not outlast a byte.
     pub fn baud_rate(self) -> u32 {
         match self {

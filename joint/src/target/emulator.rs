@@ -8,6 +8,7 @@
 
 use std::fs::{self, File};
 use std::io;
+use std::os::unix::fs::PermissionsExt;
 use std::os::unix::net::UnixStream;
 use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
@@ -148,7 +149,12 @@ fn mortal(program: &Path) -> Command {
 fn private_folder() -> Outcome<TempDir> {
     let usual = std::env::temp_dir();
     let place = if usual.as_os_str().len() > LONGEST_FOLDER { PathBuf::from("/tmp") } else { usual };
-    tempfile::Builder::new().prefix("joint-").tempdir_in(place).map_err(|error| no_folder(&error))
+    let for_us_alone = fs::Permissions::from_mode(0o700);
+    tempfile::Builder::new()
+        .prefix("joint-")
+        .permissions(for_us_alone)
+        .tempdir_in(place)
+        .map_err(|error| no_folder(&error))
 }
 
 fn no_folder(error: &io::Error) -> Failure {
@@ -158,8 +164,6 @@ fn no_folder(error: &io::Error) -> Failure {
 
 #[cfg(test)]
 mod tests {
-    use std::os::unix::fs::PermissionsExt;
-
     use super::*;
 
     /// A stand-in for the emulator, as a shell script.
@@ -212,7 +216,14 @@ mod tests {
         if tool::find("setpriv").is_none() {
             return;
         }
-        let start = || mortal(Path::new("/bin/sleep")).arg("600").process_group(0).spawn().unwrap();
+        let start = || {
+            let child = mortal(Path::new("/bin/sleep")).arg("600").process_group(0).spawn().unwrap();
+            let name = Path::new("/proc").join(child.id().to_string()).join("comm");
+            while fs::read_to_string(&name).unwrap() != "sleep\n" {
+                thread::sleep(POLL);
+            }
+            child
+        };
         let mut child = thread::spawn(start).join().unwrap();
         let deadline = Instant::now() + START_TIMEOUT;
         while child.try_wait().unwrap().is_none() && Instant::now() < deadline {

@@ -52,6 +52,11 @@ pub fn build_image(
     let joint_file = joint_file.canonicalize().map_err(|error| {
         Failure::new(format!("joint file {}: {error}", joint_file.display())).with_help("name a file that can be read")
     })?;
+    if tick_rate == 0 || !board.core_rate().is_multiple_of(tick_rate) {
+        let (rate, name) = (board.core_rate(), board.name());
+        return Err(Failure::new(format!("a tick rate of {tick_rate} Hz cannot be made of {name}'s {rate} Hz"))
+            .with_help(format!("take one that divides it, such as {DEFAULT_TICK_RATE}")));
+    }
     // One build at a time in this folder, and none between a build and the copy of its result.
     let _lock = lock(toolchain.folder())?;
     let mut command = toolchain.cargo("build");
@@ -95,7 +100,9 @@ fn binary(role: Role) -> &'static str {
 /// told apart by a digest of the path.
 fn file_name(joint_file: &Path, board: Board, role: Role, tick_rate: u32) -> String {
     let joint = joint_file.file_stem().unwrap_or_default().to_string_lossy();
-    let is_preset = joint_file.parent().is_some_and(|folder| folder == workspace().join("joints"));
+    let presets = workspace().join("joints");
+    let presets = presets.canonicalize().unwrap_or(presets);
+    let is_preset = joint_file.parent() == Some(&presets);
     let origin = match is_preset {
         true => String::new(),
         false => {
@@ -164,6 +171,11 @@ mod tests {
         assert_ne!(name(&preset), name(&preset_file("s1")));
         assert_ne!(name(Path::new("/a/q1.toml")), name(Path::new("/b/q1.toml")));
         assert_eq!(file_name(&preset, Board::Stm32h743, Role::Plant, 10_000), "q1-stm32h743-plant-10000hz.elf");
+    }
+
+    #[test]
+    fn the_usual_tick_rate_can_be_made_on_every_board() {
+        assert!(Board::ALL.iter().all(|board| board.core_rate().is_multiple_of(DEFAULT_TICK_RATE)));
     }
 
     #[test]

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 use joint::record::{Bound, Check, Completeness, Contact, ErrorSeries, RunRecord, Source, Verdict};
-use joint::report::{picture, render, write};
+use joint::report::{picture, render, write, write_picture};
 
 /// Leaves a report where a person can look at it.
 fn keep_for_looking(name: &str, text: &str) {
@@ -217,7 +217,10 @@ fn a_document_gets_a_small_picture_of_its_own() {
     let svg = picture(&synthetic::record()).expect("the made-up run crosses the gap");
     keep_for_looking("joint.svg", &svg);
     assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>") && svg.contains("<style>"));
+    assert!(svg.contains("EMULATED") && svg.contains("ELF 3b1f0c55d7ae"), "a picture says where it comes from");
     assert!(svg.len() < 150_000, "{} bytes", svg.len());
+    let failure = write_picture(&synthetic::empty(), Path::new("none.svg")).expect_err("nothing was recorded");
+    assert!(failure.message().contains("none.svg") && failure.help().is_some(), "{failure}");
 }
 
 #[test]
@@ -228,7 +231,7 @@ fn every_compared_quantity_is_drawn() {
     errors.extend((2..=7).map(|number| ErrorSeries { quantity: format!("quantity {number}"), ..one.clone() }));
     let page = render(&record);
     keep_for_looking("errors.html", &page);
-    (2..=7).for_each(|number| assert!(page.contains(&format!("quantity {number}, RMS 0.0202 %"))));
+    (2..=7).for_each(|number| assert!(page.contains(&format!("quantity {number}: RMS 0.0202 %"))));
 }
 
 #[test]

@@ -3,15 +3,20 @@
 //!
 //! With E(t) = exp(A t) - I, E(2t) = 2 E(t) + E(t)^2. Doubling E instead of exp(A t) keeps the small increment apart
 //! from the identity: squaring I + E would round E to the unit's grid N times over (Zhong, precise integration).
+//! Doubling also multiplies rounding, without limit where the motion grows before it decays; so everything is done in
+//! twofold numbers and rounded once, at the end.
+
+mod twofold;
 
 use nalgebra::DMatrix;
 use std::vec::Vec;
+use twofold::Twofold;
 
-/// Norm of A h / 2^N at which the series starts: below it the series needs few terms and its own rounding is nil.
-const SERIES_NORM: f64 = 0.125;
+/// Norm of A h / 2^N up to which the series is used: below it the series needs few terms.
+pub const SERIES_NORM: f64 = 0.125;
 
-/// Relative remainder allowed to the series, half a unit of an f64.
-const REMAINDER: f64 = 1.1102230246251565e-16;
+/// Relative remainder allowed to the series, a unit of a twofold number: 2^-106.
+pub const REMAINDER: f64 = 1.232_595_164_407_831e-32;
 
 /// Doublings and series terms for a matrix of a given norm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,9 +29,10 @@ pub struct Plan {
 
 impl Plan {
     /// The fewest doublings that bring `norm` (of A h) to 1/8 or below, then the fewest terms whose remainder,
-    /// bounded by a^L / (L + 1)! / (1 - a / (L + 2)) relative to the leading term, is below half a unit.
+    /// bounded by a^L / (L + 1)! / (1 - a / (L + 2)) relative to the leading term, is below what is allowed. A norm
+    /// that is not finite has no plan worth anything; it is given one all the same.
     pub fn new(norm: f64) -> Self {
-        let mut start = norm;
+        let mut start = if norm.is_finite() { norm } else { 0.0 };
         let mut doublings = 0;
         while start > SERIES_NORM {
             start *= 0.5;
@@ -46,28 +52,6 @@ pub fn norm(matrix: &DMatrix<f64>) -> f64 {
     matrix.column_iter().map(|column| column.iter().map(|value| value.abs()).sum()).fold(0.0, f64::max)
 }
 
-/// exp(A h) - I for a square A; entries must be finite.
-pub fn exponential_minus_identity(matrix: &DMatrix<f64>, step: f64) -> DMatrix<f64> {
-    let scaled = matrix * step;
-    let plan = Plan::new(norm(&scaled));
-    let start = scaled * libm::ldexp(1.0, -(plan.doublings as i32));
-    let mut increment = series(&start, plan.terms);
-    for _ in 0..plan.doublings {
-        increment = &increment * 2.0 + &increment * &increment;
-    }
-    increment
-}
-
-/// Horner's form of A + A^2/2! + ... + A^L/L!.
-fn series(matrix: &DMatrix<f64>, terms: u32) -> DMatrix<f64> {
-    let identity = DMatrix::identity(matrix.nrows(), matrix.ncols());
-    let mut sum = identity.clone();
-    for term in (2..=terms).rev() {
-        sum = &identity + matrix * sum / f64::from(term);
-    }
-    matrix * sum
-}
-
 /// Flow over a step and the integrals of its response to inputs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Flow {
@@ -77,25 +61,76 @@ pub struct Flow {
     pub input_integrals: Vec<DMatrix<f64>>,
 }
 
-/// Flow of v' = A v + B u and its response to u = (s / h)^k for every k below `powers`.
-///
-/// One exponential of A bordered by B and a chain of integrators gives them all: the chain makes s^k / k!.
+/// exp(A h) - I for a square A; entries must be finite.
+pub fn exponential_minus_identity(matrix: &DMatrix<f64>, step: f64) -> DMatrix<f64> {
+    flow(matrix, &DMatrix::zeros(matrix.nrows(), 0), step, 0).transition
+}
+
+/// Flow of v' = A v + B u and its response to u = (s / h)^k for every k below `powers`; entries must be finite.
 pub fn flow(matrix: &DMatrix<f64>, inputs: &DMatrix<f64>, step: f64, powers: usize) -> Flow {
-    let (size, width) = (matrix.nrows(), inputs.ncols());
-    let mut bordered = DMatrix::zeros(size + powers * width, size + powers * width);
-    bordered.view_mut((0, 0), (size, size)).copy_from(&(matrix * step));
-    bordered.view_mut((0, size), (size, width)).copy_from(&(inputs * step));
-    for power in 1..powers {
-        let (row, column) = (size + (power - 1) * width, size + power * width);
-        bordered.view_mut((row, column), (width, width)).copy_from(&DMatrix::identity(width, width));
+    let plan = Plan::new(norm(matrix) * step.abs());
+    let part = libm::ldexp(1.0, -(plan.doublings as i32));
+    let over_part = |values: &DMatrix<f64>| values.map(|value| Twofold::product(value, step).scaled(part));
+    let mut response = Response::series(&over_part(matrix), &over_part(inputs), powers, plan.terms);
+    for _ in 0..plan.doublings {
+        response = response.doubled();
     }
-    let increment = exponential_minus_identity(&bordered, 1.0);
-    let mut factorial = 1.0;
-    let input_integrals = (0..powers)
-        .map(|power| {
-            factorial *= (power as f64).max(1.0);
-            increment.view((0, size + power * width), (size, width)) * factorial
-        })
-        .collect();
-    Flow { transition: increment.view((0, 0), (size, size)).into_owned(), input_integrals }
+    let rounded = |values: &DMatrix<Twofold>| values.map(Twofold::rounded);
+    Flow { transition: rounded(&response.increment), input_integrals: response.integrals.iter().map(rounded).collect() }
+}
+
+/// What a flow is over an interval t, before it is rounded.
+struct Response {
+    /// E(t) = exp(A t) - I.
+    increment: DMatrix<Twofold>,
+    /// J_k(t): the integral over s in [0, t] of exp(A (t - s)) B (s / t)^k.
+    integrals: Vec<DMatrix<Twofold>>,
+}
+
+impl Response {
+    /// E = sum over m >= 1 of (A t)^m / m!, and J_k = sum over m >= 0 of (A t)^m B t k! / (m + k + 1)!, from A t and
+    /// B t. The remainder of any J_k, relative to its leading term, is at most that of E.
+    fn series(matrix: &DMatrix<Twofold>, inputs: &DMatrix<Twofold>, powers: usize, terms: u32) -> Self {
+        // Of m! / (k! (m - k)!), all whole numbers far below 2^53.
+        let choose = |m: u32, k: u32| (0..k).fold(1.0, |value, i| value * f64::from(m - i) / f64::from(i + 1));
+        // (A t)^m / m! and (A t)^(m - 1) B t / m!.
+        let (mut term, mut driven) = (matrix.clone(), inputs.clone());
+        let mut response =
+            Self { increment: term.clone(), integrals: (0..powers).map(|k| over(&driven, k as f64 + 1.0)).collect() };
+        for m in 2..=terms {
+            term = over(&(matrix * term), f64::from(m));
+            driven = over(&(matrix * driven), f64::from(m));
+            response.increment += &term;
+            for (k, integral) in (0..).zip(&mut response.integrals) {
+                *integral += over(&driven, choose(m + k, k));
+            }
+        }
+        response
+    }
+
+    /// Over twice the interval: E(2t) = 2 E + E^2, and J_k(2t) = ((I + E) J_k + sum over j <= k of k over j J_j) / 2^k,
+    /// since the input of the second half, ((1 + s / t) / 2)^k, is a sum of those of the first.
+    fn doubled(&self) -> Self {
+        let mut row = Vec::new();
+        let integrals = self.integrals.iter().enumerate().map(|(k, integral)| {
+            // Row k of Pascal's triangle.
+            row.push(1.0);
+            for j in (1..k).rev() {
+                row[j] += row[j - 1];
+            }
+            let first_half = integral + &self.increment * integral;
+            let both = self
+                .integrals
+                .iter()
+                .zip(&row)
+                .fold(first_half, |sum, (second, ways)| sum + second.map(|value| value * Twofold::new(*ways)));
+            both.map(|value| value.scaled(libm::ldexp(1.0, -(k as i32))))
+        });
+        let integrals = integrals.collect();
+        Self { increment: self.increment.map(|value| value.scaled(2.0)) + &self.increment * &self.increment, integrals }
+    }
+}
+
+fn over(matrix: &DMatrix<Twofold>, divisor: f64) -> DMatrix<Twofold> {
+    matrix.map(|value| value.over(divisor))
 }

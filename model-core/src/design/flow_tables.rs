@@ -33,8 +33,8 @@ pub fn flow<T: Real>(dynamics: &Dynamics, step: f64) -> Flow<T> {
         whole: sorting.transition(&whole),
         half: sorting.transition(&half),
         step: T::from_f64(step),
-        // A mesh beyond reach * speed also pushes under the law `contact`, whatever its damping.
-        reach: T::from_f64((1.0 * step).max(dynamics.longest_relaxation)),
+        // A whole step: planets that ring are taken in sub-steps. Beyond it a mesh also pushes under the law `contact`.
+        reach: T::from_f64(step.max(dynamics.longest_relaxation)),
         longest_way: T::from_f64(LARGEST_WAY * 4_294_967_296.0),
     }
 }

@@ -14,7 +14,7 @@ use crate::realtime::crossing::FrozenStep;
 use crate::realtime::excitation::{Instant, MeshPhase, PerMesh, instant};
 use crate::realtime::runge_kutta::Motion;
 use crate::realtime::state::Relative;
-use crate::realtime::substep::smoothed_forces;
+use crate::realtime::unfrozen::forces;
 use crate::tables::{Inputs, Tables, Transition};
 
 /// One tick with the contact set of its start; `None` if the set does not hold up to the middle. A mesh that opens
@@ -72,21 +72,7 @@ pub fn paper<T: Real, const N: usize>(
     let (mut motion, mut rotor, mut now) = (*motion, phase.start, *start);
     for _ in 0..tables.substeps {
         let (positions, rates) = (spread(&motion.position), spread(&motion.rate));
-        let mut force = if tables.sharpness > T::ZERO {
-            smoothed_forces(tables, &positions, &rates, &now)
-        } else {
-            let laws = Laws::of(tables, &motion.position, &motion.rate, &now);
-            let frozen = laws.at(&now);
-            let mut forces = positions;
-            for kind in 0..2 {
-                for i in 0..N {
-                    forces[kind][i] = frozen.stiffness[kind][i] * positions[kind][i]
-                        + laws.damping[kind][i] * rates[kind][i]
-                        - frozen.load[kind][i];
-                }
-            }
-            forces
-        };
+        let mut force = forces(tables, &positions, &rates, &now);
         for kind in 0..2 {
             let spring = &tables.springs[kind];
             for i in 0..N {

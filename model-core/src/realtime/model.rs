@@ -8,10 +8,10 @@ use crate::real::Real;
 use crate::realtime::contact::{Drive, Laws, contact, spread};
 use crate::realtime::excitation::{MeshPhase, PerMesh, Rotor, instant, mesh_way};
 use crate::realtime::flow;
-use crate::realtime::peers;
 use crate::realtime::runge_kutta::Motion;
 use crate::realtime::state::State;
 use crate::realtime::substep;
+use crate::realtime::unfrozen;
 use crate::tables::{Scheme, Tables};
 
 /// Torques, constant over a tick.
@@ -103,15 +103,15 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
         let motion = Motion { position: self.state.position, rate: self.state.rate };
         let Motion { position, rate } = match tables.scheme {
             Scheme::PaperEtd1 => flow::paper(tables, &drive, &phase, &start, &motion),
-            Scheme::RungeKutta4 => peers::runge_kutta(tables, &drive, &phase, &start, &motion),
-            Scheme::SemiImplicitEuler => peers::semi_implicit_euler(tables, &drive, &phase, &start, &motion),
+            Scheme::RungeKutta4 => unfrozen::runge_kutta(tables, &drive, &phase, &start, &motion),
+            Scheme::SemiImplicitEuler => unfrozen::semi_implicit_euler(tables, &drive, &phase, &start, &motion),
             Scheme::Realtime if tables.sharpness > T::ZERO => {
-                substep::smoothed(tables, &drive, &phase, &start, &motion)
+                unfrozen::runge_kutta(tables, &drive, &phase, &start, &motion)
             }
             Scheme::Realtime => {
                 let laws = Laws::of(tables, &motion.position, &motion.rate, &start);
                 flow::hold(tables, &drive, &phase, &start, &laws, &motion)
-                    .unwrap_or_else(|| substep::sharp(tables, &drive, &phase, &start, &laws, &motion))
+                    .unwrap_or_else(|| substep::advance(tables, &drive, &phase, &start, &laws, &motion))
             }
         };
         (self.state.position, self.state.rate) = (position, rate);

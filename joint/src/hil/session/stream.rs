@@ -9,7 +9,6 @@ use super::{SILENCE, Session};
 use crate::failure::{Failure, Outcome};
 use crate::hil::fault;
 use crate::hil::profile::Profile;
-use crate::hil::recording::Unanswered;
 
 /// Schedules under way at once: the board's receive buffer holds two frames at least.
 const UNDER_WAY: usize = 2;
@@ -25,7 +24,6 @@ struct Progress<'p> {
     horizon_after_last: u32,
     next_command: usize,
     next_sequence: u16,
-    unanswered: Unanswered,
     sent_any: bool,
     board_tick: u32,
     last_message: Instant,
@@ -45,16 +43,16 @@ impl Session<'_> {
         let last_sample = profile.ticks - profile.ticks % u32::from(settings.decimation);
         let mut stream = Progress::new(profile, settings.mode, tick_rate);
         while self.recording.last_tick() < last_sample || stream.board_tick < last_sample {
-            while let Some(schedule) = stream.next_schedule(capacity) {
+            while self.unanswered.count() < UNDER_WAY
+                && let Some(schedule) = stream.next_schedule(capacity)
+            {
+                self.unanswered.sent(schedule.sequence, &schedule.commands);
                 self.send(&ToBoard::Schedule(schedule))?;
             }
             for message in self.hear()? {
                 stream.last_message = Instant::now();
                 match message {
-                    FromBoard::Accepted(accepted) => {
-                        stream.advance(accepted.tick);
-                        self.recording.accepted.extend(stream.unanswered.answered(accepted).unwrap_or_default());
-                    }
+                    FromBoard::Accepted(accepted) => stream.advance(accepted.tick),
                     FromBoard::Samples(batch) => {
                         stream.advance(batch.samples.last().map_or(0, |sample| sample.tick));
                     }
@@ -83,7 +81,7 @@ impl Session<'_> {
             self.line.name(),
             stream.board_tick,
             stream.profile.ticks,
-            stream.unanswered.count()
+            self.unanswered.count()
         );
         Failure::check_failed(message).with_help("a schedule or a sample was lost on the line: check it and run again")
     }
@@ -102,7 +100,6 @@ impl<'p> Progress<'p> {
             horizon_after_last: profile.ticks.saturating_add(beyond),
             next_command: 0,
             next_sequence: 0,
-            unanswered: Unanswered::default(),
             sent_any: false,
             board_tick: 0,
             last_message: now,
@@ -121,9 +118,6 @@ impl<'p> Progress<'p> {
     /// The next schedule, if the board is known to have room for it.
     fn next_schedule(&mut self, capacity: usize) -> Option<Schedule> {
         let commands = &self.profile.commands;
-        if self.unanswered.count() >= UNDER_WAY {
-            return None;
-        }
         // A command leaves the queue with the step that it is for.
         let queued = commands[..self.next_command].iter().rev().take_while(|sent| sent.tick >= self.board_tick).count();
         let room = capacity.saturating_sub(queued).min(COMMANDS_PER_SCHEDULE);
@@ -138,7 +132,6 @@ impl<'p> Progress<'p> {
         let horizon = commands.get(self.next_command).map_or(self.horizon_after_last, |next| next.tick);
         let sequence = self.next_sequence;
         self.next_sequence = sequence.wrapping_add(1);
-        self.unanswered.sent(sequence, chosen);
         self.sent_any = true;
         self.last_sent = Instant::now();
         Some(Schedule { sequence, horizon, commands: heapless::Vec::from_slice(chosen).unwrap_or_default() })

@@ -23,6 +23,8 @@ pub const LEFT: i32 = 92;
 pub const RIGHT: i32 = 14;
 /// Height of the numbers and the name of the common axis [px].
 const FOOT: i32 = 32;
+/// Height of a note below everything [px].
+const NOTE: i32 = 28;
 
 /// Where a panel is drawn.
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -41,12 +43,16 @@ pub struct Figure {
     pub range: (f64, f64),
     /// From top to bottom.
     pub panels: Vec<Panel>,
+    /// A line below everything; may be empty.
+    pub note: String,
 }
 
 impl Figure {
     /// The picture as an SVG element whose colours are CSS variables.
     pub fn to_svg(&self) -> String {
-        let height = self.panels.iter().map(|panel| panel.height).sum::<i32>() + FOOT;
+        let height = self.panels.iter().map(|panel| panel.height).sum::<i32>()
+            + FOOT
+            + if self.note.is_empty() { 0 } else { NOTE };
         let mut svg = String::new();
         if let Err(error) = self.draw(&mut svg, height) {
             // Drawing into a string has nothing to fail on; should it ever, the rest of the report is worth having.
@@ -69,6 +75,10 @@ impl Figure {
             let (top, below) = rest.split_vertically(own * FINE);
             panel.draw(&top, self, last)?;
             rest = below;
+        }
+        let style = text_style(11, Ink::Muted, FontStyle::Normal);
+        if !self.note.is_empty() {
+            rest.draw(&Text::new(self.note.clone(), (LEFT * FINE, 8 * FINE), style))?;
         }
         rest.present()?;
         Ok(())

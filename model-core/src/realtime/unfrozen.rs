@@ -1,12 +1,13 @@
-//! What people use today, for comparison: the classical Runge-Kutta method and semi-implicit Euler, both on the full
-//! nonlinear forces at every evaluation. No contact is frozen and no crossing corrected.
+//! The classical Runge-Kutta method and semi-implicit Euler on the full nonlinear forces at every evaluation: the path
+//! of the tanh dead zone, which has no contact set to freeze, and what people use today, for comparison. No crossing is
+//! corrected.
 
+use crate::dead_zone;
 use crate::real::Real;
 use crate::realtime::contact::{Drive, Law, acceleration, spread, wind_up_force};
-use crate::realtime::excitation::{Instant, MeshPhase, instant};
+use crate::realtime::excitation::{Instant, MeshPhase, PerMesh, instant};
 use crate::realtime::runge_kutta::{self, Motion};
 use crate::realtime::state::Relative;
-use crate::realtime::substep::smoothed_forces;
 use crate::tables::Tables;
 
 /// One tick of the classical Runge-Kutta method.
@@ -61,21 +62,33 @@ fn forced<T: Real, const N: usize>(
     rate: &Relative<T, N>,
     instant: &Instant<T, N>,
 ) -> Relative<T, N> {
-    let (positions, rates) = (spread(position), spread(rate));
-    let forces = if tables.sharpness > T::ZERO {
-        smoothed_forces(tables, &positions, &rates, instant)
-    } else {
-        let mut forces = positions;
-        for kind in 0..2 {
-            for i in 0..N {
-                let deflection = positions[kind][i] - instant.error[kind][i];
-                let speed = rates[kind][i] - instant.error_rate[kind][i];
-                let stiffness = instant.stiffness[kind][i];
-                let law = Law::of(tables, (kind, i), deflection, speed, stiffness);
-                forces[kind][i] = law.closed * stiffness * (deflection - law.offset) + law.damping * speed;
-            }
-        }
-        forces
-    };
+    let forces = forces(tables, &spread(position), &spread(rate), instant);
     acceleration(tables, drive, &forces, wind_up_force(tables, position, rate))
+}
+
+/// Mesh forces with the joint's dead zone, sharp or tanh, from mesh coordinates without imposed errors. With the tanh
+/// dead zone damping always acts: there is no contact that could end.
+pub fn forces<T: Real, const N: usize>(
+    tables: &Tables<T, N>,
+    positions: &PerMesh<T, N>,
+    rates: &PerMesh<T, N>,
+    instant: &Instant<T, N>,
+) -> PerMesh<T, N> {
+    let mut forces = [[T::ZERO; N]; 2];
+    for kind in 0..2 {
+        for i in 0..N {
+            let deflection = positions[kind][i] - instant.error[kind][i];
+            let speed = rates[kind][i] - instant.error_rate[kind][i];
+            let stiffness = instant.stiffness[kind][i];
+            forces[kind][i] = if tables.sharpness > T::ZERO {
+                let half_backlash = tables.meshes[kind][i].half_backlash;
+                let elastic = dead_zone::smoothed(deflection, half_backlash, tables.sharpness);
+                stiffness * elastic + tables.springs[kind].damping * speed
+            } else {
+                let law = Law::of(tables, (kind, i), deflection, speed, stiffness);
+                law.closed * stiffness * (deflection - law.offset) + law.damping * speed
+            };
+        }
+    }
+    forces
 }

@@ -1,0 +1,187 @@
+//! The firmware without a board: tick, idle and serial interrupt called in turn, a wire made of two queues, and a timer
+//! that a test sets. Time passes only when a test says so.
+
+use std::cell::{Cell, RefCell};
+use std::collections::VecDeque;
+use std::convert::Infallible;
+use std::rc::Rc;
+
+use embedded_hal::digital::{ErrorType, OutputPin};
+use firmware::budget::TickTimer;
+use firmware::control::Plant;
+use firmware::conversation::{Conversation, LogEnd};
+use firmware::identity::{StartUp, hello};
+use firmware::queues::Queues;
+use firmware::serial::{Line, Serial, Uart};
+use firmware::tables::{PLANETS, TABLES};
+use firmware::timing_report::Resources;
+use heapless::spsc::Queue;
+use link::framing::{Receiver, encode};
+use link::messages::{Clock, Command, FromBoard, Role, RunMode, RunSettings, Schedule, ToBoard};
+use model_core::tables::Tables;
+
+/// Timer counts between two ticks.
+pub const PERIOD: u32 = 8400;
+
+/// Both directions of the line.
+#[derive(Default)]
+pub struct Wire {
+    to_board: VecDeque<u8>,
+    from_board: VecDeque<u8>,
+    /// Whether the host takes what the board sends.
+    pub blocked: bool,
+}
+
+struct WireEnd(Rc<RefCell<Wire>>);
+
+impl Uart for WireEnd {
+    fn read(&mut self) -> Option<u8> {
+        self.0.borrow_mut().to_board.pop_front()
+    }
+    fn overran(&mut self) -> bool {
+        false
+    }
+    fn can_write(&self) -> bool {
+        !self.0.borrow().blocked
+    }
+    fn write(&mut self, byte: u8) {
+        self.0.borrow_mut().from_board.push_back(byte);
+    }
+    fn interrupt_on_read(&mut self, _: bool) {}
+    fn interrupt_on_write(&mut self, _: bool) {}
+    fn interrupt_again(&mut self) {}
+}
+
+struct Enable(Rc<Cell<bool>>);
+
+impl ErrorType for Enable {
+    type Error = Infallible;
+}
+
+impl OutputPin for Enable {
+    fn set_low(&mut self) -> Result<(), Infallible> {
+        self.0.set(false);
+        Ok(())
+    }
+    fn set_high(&mut self) -> Result<(), Infallible> {
+        self.0.set(true);
+        Ok(())
+    }
+}
+
+/// Counts on by the same amount with every look.
+pub struct Timer {
+    now: Cell<u32>,
+    by: u32,
+}
+
+impl Timer {
+    pub fn new(start: u32, by: u32) -> Self {
+        Self { now: Cell::new(start), by }
+    }
+}
+
+impl TickTimer for Timer {
+    fn since_expiry(&self) -> u32 {
+        self.now.replace(self.now.get() + self.by)
+    }
+}
+
+/// A board on the bench.
+pub struct Bench {
+    plant: Plant<'static, Enable, PLANETS>,
+    conversation: Conversation<'static, PLANETS>,
+    serial: Serial<'static, WireEnd>,
+    receiver: Receiver,
+    pub wire: Rc<RefCell<Wire>>,
+    pub enable: Rc<Cell<bool>>,
+    /// First look at the timer in a tick, and what each look adds.
+    pub timing: (u32, u32),
+}
+
+impl Bench {
+    pub fn new() -> Self {
+        Self::with_tables(&TABLES)
+    }
+
+    pub fn with_tables(tables: &'static Tables<f32, PLANETS>) -> Self {
+        let wire = Rc::new(RefCell::new(Wire::default()));
+        let enable = Rc::new(Cell::new(true));
+        let (tick_end, idle_end) = Box::leak(Box::new(Queues::new())).split();
+        let (serial, line) = Box::leak(Box::new(Line::new())).split(WireEnd(wire.clone()), || {});
+        let (_, bytes) = Box::leak(Box::new(Queue::<u8, 16>::new())).split();
+        let start_up = StartUp {
+            board: "bench",
+            timer_rate: 168_000_000,
+            clock: Clock::NotModelled,
+            last_panic: None,
+            watchdog_reset: false,
+        };
+        Self {
+            plant: Plant::new(tables, Enable(enable.clone()), PERIOD, tick_end),
+            conversation: Conversation::new(
+                hello(Role::Plant, start_up),
+                PERIOD,
+                idle_end,
+                line,
+                LogEnd { bytes, lost: || 0 },
+            ),
+            serial,
+            receiver: Receiver::new(),
+            wire,
+            enable,
+            timing: (20, 100),
+        }
+    }
+
+    /// Puts bytes on the line to the board.
+    pub fn send_bytes(&self, bytes: &[u8]) {
+        self.wire.borrow_mut().to_board.extend(bytes);
+    }
+
+    pub fn send(&self, message: &ToBoard) {
+        self.send_bytes(&encode(message).unwrap());
+    }
+
+    /// Idle and serial line, until neither has anything to do.
+    pub fn settle(&mut self) {
+        let mut nothing_to_do = 0;
+        while nothing_to_do < 200 {
+            self.serial.service();
+            let busy = self.conversation.attend(&mut |_| Resources::default());
+            nothing_to_do = if busy { 0 } else { nothing_to_do + 1 };
+        }
+    }
+
+    pub fn tick(&mut self) {
+        self.plant.tick(&Timer::new(self.timing.0, self.timing.1));
+    }
+
+    /// Ticks, with idle in between.
+    pub fn run(&mut self, ticks: u32) {
+        for _ in 0..ticks {
+            self.settle();
+            self.tick();
+        }
+        self.settle();
+    }
+
+    /// What the board has said since the last call.
+    pub fn said(&mut self) -> Vec<FromBoard> {
+        let bytes: Vec<u8> = self.wire.borrow_mut().from_board.drain(..).collect();
+        bytes.into_iter().filter_map(|byte| self.receiver.push(byte)).collect()
+    }
+
+    /// A run from rest; takes the hello that answers.
+    pub fn start(&mut self, mode: RunMode, decimation: u16, command_timeout: u32) {
+        self.send(&ToBoard::Reset(RunSettings { mode, decimation, command_timeout }));
+        self.run(2);
+        assert!(matches!(self.said()[..], [FromBoard::Hello(_)]));
+    }
+
+    pub fn schedule(&self, sequence: u16, horizon: u32, commands: &[(u32, f32, f32)]) {
+        let command = |&(tick, drive_torque, load_torque)| Command { tick, drive_torque, load_torque };
+        let commands = commands.iter().map(command).collect();
+        self.send(&ToBoard::Schedule(Schedule { sequence, horizon, commands }));
+    }
+}

@@ -1,0 +1,309 @@
+//! A whole run over the line on a board without hardware: the board does what the model does, loses nothing, and goes
+//! to its safe state when it must. Timing on a real processor is for the emulator tests.
+
+mod bench;
+
+use bench::{Bench, PERIOD};
+use firmware::tables::{PLANETS, TABLES};
+use link::messages::{COMMANDS_PER_SCHEDULE, Fault, FromBoard, RunMode, Sample, Statistics, ToBoard};
+use model_core::digest;
+use model_core::realtime::{Model, Torques};
+
+fn samples(said: &[FromBoard]) -> Vec<Sample> {
+    let batches = said.iter().filter_map(|message| match message {
+        FromBoard::Samples(batch) => Some(batch),
+        _ => None,
+    });
+    let mut samples = Vec::new();
+    for (sequence, batch) in batches.enumerate() {
+        assert_eq!(usize::from(batch.sequence), sequence, "a batch is missing");
+        samples.extend(batch.samples.iter().cloned());
+    }
+    samples
+}
+
+fn faults(said: &[FromBoard]) -> Vec<Fault> {
+    let fault = |message: &FromBoard| match message {
+        FromBoard::Fault(fault) => Some(*fault),
+        _ => None,
+    };
+    said.iter().filter_map(fault).collect()
+}
+
+fn accepted(said: &[FromBoard]) -> Vec<u16> {
+    let sequence = |message: &FromBoard| match message {
+        FromBoard::Accepted(accepted) => Some(accepted.sequence),
+        _ => None,
+    };
+    said.iter().filter_map(sequence).collect()
+}
+
+fn statistics(bench: &mut Bench, reset: bool) -> Statistics {
+    bench.send(&ToBoard::Statistics { reset });
+    bench.run(2);
+    let statistics = bench.said().into_iter().find_map(|message| match message {
+        FromBoard::Statistics(statistics) => Some(statistics),
+        _ => None,
+    });
+    statistics.expect("an answer")
+}
+
+#[test]
+fn a_lockstep_run_equals_the_model_bit_for_bit_and_loses_nothing() {
+    let torques = [(0, 0.2, 0.0), (100, -0.3, 1.0), (250, 0.1, -1.0)];
+    let mut bench = Bench::new();
+    bench.start(RunMode::Lockstep, 7, 1);
+    bench.schedule(0, 400, &torques);
+    bench.run(1000);
+    let samples = samples(&bench.said());
+    assert_eq!(samples.iter().map(|sample| sample.tick).collect::<Vec<_>>(), (7..=400).step_by(7).collect::<Vec<_>>());
+
+    let mut twin = Model::<f32, PLANETS>::new(&TABLES);
+    let mut running = digest::START;
+    let mut expected = samples.iter();
+    for tick in 0..400 {
+        let &(_, drive, load) = torques.iter().rfind(|command| command.0 <= tick).unwrap();
+        twin.step(Torques { drive, load });
+        running = digest::chain(running, twin.state_digest());
+        if (tick + 1) % 7 == 0 {
+            let sample = expected.next().unwrap();
+            assert_eq!((sample.tick, sample.state_digest), (tick + 1, running));
+            assert_eq!(sample.gap.to_bits(), twin.outputs().gap.to_bits());
+        }
+    }
+    assert_eq!(statistics(&mut bench, false).ticks, 400);
+}
+
+#[test]
+fn a_host_that_does_not_read_makes_lockstep_wait_and_costs_no_sample() {
+    let mut bench = Bench::new();
+    bench.start(RunMode::Lockstep, 1, 1);
+    bench.schedule(0, 500, &[(0, 0.2, 0.0)]);
+    bench.settle();
+    bench.wire.borrow_mut().blocked = true;
+    bench.run(1000);
+    bench.wire.borrow_mut().blocked = false;
+    bench.run(1000);
+    assert_eq!(samples(&bench.said()).len(), 500);
+    let statistics = statistics(&mut bench, false);
+    assert!(statistics.waited > 0);
+    assert_eq!((statistics.ticks, statistics.lost_samples), (500, 0));
+}
+
+#[test]
+fn a_host_that_does_not_read_costs_counted_samples_in_realtime() {
+    let mut bench = Bench::new();
+    bench.start(RunMode::Realtime, 1, 1000);
+    bench.schedule(0, 500, &[]);
+    bench.settle();
+    bench.wire.borrow_mut().blocked = true;
+    bench.run(500);
+    bench.wire.borrow_mut().blocked = false;
+    let statistics = statistics(&mut bench, false);
+    assert!(statistics.lost_samples > 0);
+    assert!(statistics.ticks >= 500);
+}
+
+#[test]
+fn a_realtime_run_without_commands_ends_in_the_safe_state() {
+    let mut bench = Bench::new();
+    bench.start(RunMode::Realtime, 10, 50);
+    bench.schedule(0, 100, &[(0, 0.2, 0.0)]);
+    bench.run(120);
+    assert!(bench.enable.get());
+    bench.run(100);
+    assert!(!bench.enable.get());
+    assert_eq!(faults(&bench.said()), [Fault::CommandLoss { tick: 150 }]);
+    assert_eq!(statistics(&mut bench, false).starved, 50);
+}
+
+#[test]
+fn a_schedule_that_never_arrived_is_counted_and_lockstep_waits_for_it() {
+    let mut bench = Bench::new();
+    bench.start(RunMode::Lockstep, 10, 1);
+    bench.schedule(0, 100, &[(0, 0.2, 0.0)]);
+    bench.schedule(2, 300, &[(200, 0.1, 0.0)]);
+    bench.run(500);
+    assert_eq!(accepted(&bench.said()), [0]);
+    let counted = statistics(&mut bench, false);
+    assert_eq!((counted.ticks, counted.lost_schedules), (100, 1));
+    bench.schedule(1, 200, &[(100, 0.1, 0.0)]);
+    bench.schedule(2, 300, &[(200, 0.1, 0.0)]);
+    bench.schedule(1, 200, &[(100, 0.1, 0.0)]);
+    bench.run(500);
+    assert_eq!(accepted(&bench.said()), [1, 2, 1]);
+    assert_eq!(statistics(&mut bench, false).ticks, 300);
+}
+
+#[test]
+fn a_full_queue_makes_the_host_wait_in_lockstep_and_trips_in_realtime() {
+    let commands = |schedule: u32| -> Vec<(u32, f32, f32)> {
+        (0..COMMANDS_PER_SCHEDULE as u32).map(|i| ((schedule * 24 + i) * 10, 0.1, 0.0)).collect()
+    };
+    for mode in [RunMode::Lockstep, RunMode::Realtime] {
+        let mut bench = Bench::new();
+        bench.start(mode, 100, 1000);
+        (0..12).for_each(|i| bench.schedule(i, (u32::from(i) + 1) * 240, &commands(i.into())));
+        bench.settle();
+        bench.run(3000);
+        let said = bench.said();
+        match mode {
+            RunMode::Lockstep => assert_eq!(accepted(&said), (0..12).collect::<Vec<_>>()),
+            RunMode::Realtime => assert_eq!(faults(&said)[0], Fault::QueueFull),
+        }
+    }
+}
+
+#[test]
+fn bad_commands_trip_and_are_not_applied() {
+    let cases = [
+        (vec![(5, f32::NAN, 0.0)], Fault::BadCommand { tick: 5 }),
+        (vec![(5, 0.0, f32::INFINITY)], Fault::BadCommand { tick: 5 }),
+        (vec![(5, 0.1, 0.0), (5, 0.2, 0.0)], Fault::LateCommand { tick: 5 }),
+        (vec![(5, 0.1, 0.0), (3, 0.2, 0.0)], Fault::LateCommand { tick: 3 }),
+        (vec![(100, 0.1, 0.0)], Fault::LateCommand { tick: 100 }),
+    ];
+    for (commands, fault) in cases {
+        let mut bench = Bench::new();
+        bench.start(RunMode::Lockstep, 1, 1);
+        bench.schedule(0, 100, &commands);
+        bench.run(200);
+        let said = bench.said();
+        assert_eq!(faults(&said), [fault]);
+        assert!(samples(&said).is_empty() && !bench.enable.get());
+    }
+}
+
+#[test]
+fn a_fault_lasts_until_a_reset() {
+    let mut bench = Bench::new();
+    bench.schedule(0, 10, &[]);
+    bench.run(2);
+    assert_eq!(faults(&bench.said()), [Fault::NotRunning]);
+    bench.start(RunMode::Lockstep, 1, 1);
+    bench.schedule(0, 10, &[(0, f32::NAN, 0.0)]);
+    bench.schedule(0, 10, &[]);
+    bench.run(10);
+    assert_eq!(faults(&bench.said()), [Fault::BadCommand { tick: 0 }, Fault::NotRunning]);
+    bench.start(RunMode::Lockstep, 1, 1);
+    bench.schedule(0, 10, &[]);
+    bench.run(20);
+    assert_eq!(samples(&bench.said()).len(), 10);
+}
+
+#[test]
+fn settings_that_cannot_be_run_with_are_refused() {
+    for (decimation, command_timeout) in [(0, 1), (1, 0)] {
+        let mut bench = Bench::new();
+        let settings = link::messages::RunSettings { mode: RunMode::Realtime, decimation, command_timeout };
+        bench.send(&ToBoard::Reset(settings));
+        bench.run(3);
+        assert_eq!(faults(&bench.said()), [Fault::BadSettings]);
+        assert!(!bench.enable.get());
+    }
+}
+
+#[test]
+fn stop_switches_the_output_off_after_every_sample_is_out() {
+    let mut bench = Bench::new();
+    bench.start(RunMode::Lockstep, 1, 1);
+    assert!(bench.enable.get());
+    bench.schedule(0, 9, &[]);
+    bench.run(20);
+    bench.send(&ToBoard::Stop);
+    bench.run(3);
+    assert!(!bench.enable.get());
+    assert_eq!(samples(&bench.said()).len(), 9);
+}
+
+#[test]
+fn tables_that_do_not_match_their_digest_are_never_run() {
+    let mut tables = TABLES.clone();
+    tables.tick_rate += 1;
+    let mut bench = Bench::with_tables(Box::leak(Box::new(tables)));
+    bench.send(&ToBoard::Reset(link::messages::RunSettings {
+        mode: RunMode::Lockstep,
+        decimation: 1,
+        command_timeout: 1,
+    }));
+    bench.run(3);
+    assert_eq!(faults(&bench.said()), [Fault::BadDigest]);
+    assert!(!bench.enable.get());
+}
+
+#[test]
+fn ticks_that_outlast_their_period_are_counted_and_the_counts_can_be_cleared() {
+    let mut bench = Bench::new();
+    bench.start(RunMode::Lockstep, 1000, 1);
+    bench.schedule(0, 10, &[]);
+    bench.timing = (30, PERIOD);
+    bench.run(20);
+    let before = statistics(&mut bench, true);
+    assert!(before.overruns >= 10, "{}", before.overruns);
+    assert_eq!((before.lateness.min, before.computation.max), (20, PERIOD));
+    bench.timing = (25, 100);
+    bench.run(2);
+    statistics(&mut bench, true);
+    bench.run(5);
+    let after = statistics(&mut bench, false);
+    assert_eq!((after.overruns, after.lateness.max, after.ticks), (0, 25, 0));
+}
+
+#[test]
+fn garbage_on_the_line_is_counted_and_does_no_harm() {
+    let mut bench = Bench::new();
+    bench.start(RunMode::Lockstep, 1, 1);
+    bench.send_bytes(&[1, 2, 3, 0, 9, 9, 0]);
+    bench.schedule(0, 5, &[]);
+    bench.run(10);
+    assert_eq!(samples(&bench.said()).len(), 5);
+    assert_eq!(statistics(&mut bench, false).bad_frames, 2);
+}
+
+#[test]
+fn the_board_says_who_it_is_in_every_state() {
+    let mut bench = Bench::new();
+    for _ in 0..3 {
+        bench.send(&ToBoard::Hello { protocol: 99 });
+        bench.settle();
+        match &bench.said()[..] {
+            [FromBoard::Hello(hello)] => assert_eq!((hello.joint_digest, hello.digest_good), (TABLES.digest, true)),
+            other => panic!("{other:?}"),
+        }
+        bench.schedule(0, 5, &[]);
+        bench.run(2);
+        bench.said();
+    }
+}
+
+#[test]
+fn a_run_after_a_reset_equals_the_first() {
+    let mut bench = Bench::new();
+    let mut runs = Vec::new();
+    for _ in 0..2 {
+        bench.start(RunMode::Lockstep, 3, 1);
+        bench.schedule(0, 90, &[(0, 0.2, 0.0), (40, -0.2, 0.5)]);
+        bench.run(100);
+        runs.push(samples(&bench.said()).iter().map(|sample| (sample.tick, sample.state_digest)).collect::<Vec<_>>());
+        bench.send_bytes(&[1, 2, 3, 0]);
+        bench.run(2);
+    }
+    assert_eq!(runs[0].len(), 30);
+    assert_eq!(runs[0], runs[1]);
+    bench.start(RunMode::Lockstep, 3, 1);
+    let fresh = statistics(&mut bench, false);
+    assert_eq!((fresh.ticks, fresh.bad_frames), (0, 0));
+}
+
+#[test]
+fn a_fault_is_told_after_the_last_sample_of_its_run() {
+    let mut bench = Bench::new();
+    bench.start(RunMode::Realtime, 1, 8);
+    bench.schedule(0, 2, &[]);
+    bench.settle();
+    (0..12).for_each(|_| bench.tick());
+    bench.settle();
+    let said = bench.said();
+    assert_eq!(samples(&said).len(), 10);
+    assert_eq!(said.last(), Some(&FromBoard::Fault(Fault::CommandLoss { tick: 10 })));
+}

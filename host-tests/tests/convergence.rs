@@ -1,0 +1,145 @@
+//! The order of each scheme of the core: how fast its error against the reference falls as the tick rate rises, on a
+//! motion in which contact holds and on one in which meshes part and hit. In f64; what f32 adds is asked elsewhere.
+
+use std::array;
+use std::ops::RangeInclusive;
+
+use host_tests::reference::Start;
+use host_tests::scenarios::{CASE_A_OMEGA, CASE_Q_OMEGA, Scenario, case, regime, run_at};
+use host_tests::tolerance::{ORDER, ORDER_AT_KINKS, ORDER_OF_EULER, ORDER_OF_RUNGE_KUTTA_AT_KINKS};
+use model_core::design::{Effort, design_scheme};
+use model_core::realtime::{Model, Relative, State, Torques};
+use model_core::scales::Scales;
+use model_core::tables::{Scheme, Tables};
+
+/// Ticks a second of the coarsest run; samples are taken at its ticks.
+const COARSEST: u32 = 5_000;
+
+/// Step of the core, dimensionless, and its RMS error over all mesh deflections, over b_c.
+type Point = (f64, f64);
+
+fn start(tables: &Tables<f64, 3>, scenario: &Scenario) -> State<f64, 3> {
+    let Start::Relative(given) = &scenario.start else { return State::REST };
+    let length = scenario.joint.characteristic_length;
+    let speed = length * Scales::new(&scenario.joint).frequency;
+    let relative = |planets: &[f64], gap: f64, unit: f64| Relative {
+        planets: array::from_fn(|i| planets[i] / unit),
+        gap: gap / unit,
+        wind_up: 0.0,
+    };
+    State::from_deflections(
+        tables,
+        &relative(&given.sun_planet, given.gap, length),
+        &relative(&given.sun_planet_rate, given.gap_rate, speed),
+        given.rigid_speed,
+    )
+}
+
+/// Errors at tick rates of COARSEST times 2^k, for k in the given range; `step` says what the scheme steps by.
+fn errors(
+    scenario: &Scenario,
+    scheme: Scheme,
+    doublings: RangeInclusive<u32>,
+    step: fn(&Tables<f64, 3>) -> f64,
+) -> Vec<Point> {
+    let length = scenario.joint.characteristic_length;
+    let samples = scenario.duration() * f64::from(COARSEST);
+    let times: Vec<f64> = (1..=samples as u32).map(|sample| f64::from(sample) / f64::from(COARSEST)).collect();
+    let expected = run_at(scenario, &times).expect("the reference follows").samples;
+    doublings
+        .map(|doublings| {
+            let ticks = 1 << doublings;
+            let tables: Tables<f64, 3> =
+                design_scheme(&scenario.joint, COARSEST * ticks, scheme, Effort::Accurate).expect("a sound joint");
+            let mut model = Model::new(&tables);
+            model.set_state(start(&tables, scenario));
+            let (drive, load) = scenario.torques_at(0);
+            let mut squares = 0.0;
+            for expected in &expected {
+                for _ in 0..ticks {
+                    model.step(Torques { drive, load });
+                }
+                let found = model.outputs().deflections;
+                for (found, expected) in found.iter().flatten().zip(expected.deflections.iter().flatten()) {
+                    squares += ((found - expected) / length).powi(2);
+                }
+            }
+            let error = (squares / (6 * expected.len()) as f64).sqrt();
+            println!("{}, {scheme:?}: step {:.4}, error {error:.2e}", scenario.name, step(&tables));
+            (step(&tables), error)
+        })
+        .collect()
+}
+
+/// Slope of log error over log step, by least squares.
+fn order(points: &[Point]) -> f64 {
+    let count = points.len() as f64;
+    let mean = |of: fn(&Point) -> f64| points.iter().map(of).sum::<f64>() / count;
+    let (x, y) = (mean(|point| point.0.ln()), mean(|point| point.1.ln()));
+    let along: f64 = points.iter().map(|point| (point.0.ln() - x) * (point.1.ln() - y)).sum();
+    along / points.iter().map(|point| (point.0.ln() - x).powi(2)).sum::<f64>()
+}
+
+/// The scenario over its first ticks.
+fn shortened(mut scenario: Scenario, ticks: u64) -> Scenario {
+    scenario.ticks = ticks;
+    scenario
+}
+
+#[test]
+fn while_contact_holds_a_whole_tick_is_of_third_order_in_the_ripple() {
+    // Up to 4 dimensionless seconds a tick, where no method of sub-steps is stable; without ripple there is no error.
+    let scenario = shortened(case("case Q", CASE_Q_OMEGA), 200);
+    let points = errors(&scenario, Scheme::Realtime, 1..=6, |tables| tables.flow.step);
+    ORDER.check(order(&points) - 3.0);
+}
+
+#[test]
+fn sub_steps_are_of_fourth_order_on_smooth_motion() {
+    // No backlash, but an excitation too fast for a whole tick.
+    let scenario = shortened(regime("set P, b = 0", 0.0, 300.0), 100);
+    let points = errors(&scenario, Scheme::Realtime, 5..=8, |tables| tables.substep);
+    ORDER.check(order(&points) - 4.0);
+}
+
+#[test]
+fn sub_steps_keep_third_order_through_parting_and_hitting() {
+    // Without its corrections a crossing would leave an error of second order, wherever in the step it falls.
+    let scenario = shortened(case("case A", CASE_A_OMEGA), 100);
+    let points = errors(&scenario, Scheme::Realtime, 2..=8, |tables| tables.substep);
+    ORDER_AT_KINKS.check(order(&points) - 3.0);
+}
+
+#[test]
+fn the_paper_s_scheme_is_of_first_order_whatever_the_motion() {
+    for (scenario, doublings) in [
+        (shortened(case("case Q", CASE_Q_OMEGA), 200), 0..=6),
+        (shortened(regime("set P, b = 0", 0.0, 300.0), 100), 5..=8),
+        (shortened(case("case A", CASE_A_OMEGA), 100), 5..=9),
+    ] {
+        let points = errors(&scenario, Scheme::PaperEtd1, doublings, |tables| tables.flow.step);
+        ORDER.check(order(&points) - 1.0);
+    }
+}
+
+#[test]
+fn runge_kutta_is_of_fourth_order_where_nothing_parts_and_of_second_where_meshes_hit() {
+    let smooth = shortened(regime("set P, b = 0", 0.0, 300.0), 100);
+    ORDER.check(order(&errors(&smooth, Scheme::RungeKutta4, 5..=8, |tables| tables.substep)) - 4.0);
+    let kinked = shortened(case("case A", CASE_A_OMEGA), 100);
+    let kinked = order(&errors(&kinked, Scheme::RungeKutta4, 2..=8, |tables| tables.substep));
+    println!("Runge-Kutta through kinks: order {kinked:.2}");
+    // A kink inside the step leaves an error of the step's square, whatever the method's own order.
+    ORDER_OF_RUNGE_KUTTA_AT_KINKS.check(kinked - 2.0);
+}
+
+#[test]
+fn semi_implicit_euler_is_of_first_order_whatever_the_motion() {
+    for (scenario, doublings) in [
+        (shortened(regime("set P, b = 0", 0.0, 300.0), 100), 7..=10),
+        (shortened(case("case A", CASE_A_OMEGA), 100), 6..=9),
+    ] {
+        let points = errors(&scenario, Scheme::SemiImplicitEuler, doublings, |tables| tables.substep);
+        ORDER_OF_EULER.check(order(&points) - 1.0);
+    }
+}

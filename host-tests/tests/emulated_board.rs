@@ -1,0 +1,159 @@
+//! The firmware on the emulated board, spoken to in bare frames: what it says of itself, and that its f32 state is the
+//! core's on this machine in every bit of every step. How a run is driven, recorded and reported is the host command's
+//! business and tested there.
+
+use std::io::{ErrorKind, Read, Write};
+use std::os::unix::net::UnixStream;
+use std::time::{Duration, Instant};
+
+use host_tests::scenarios;
+use joint::target::board::Board;
+use joint::target::emulator::{self, Emulator};
+use joint::target::image::{build_image, preset_file};
+use joint::target::toolchain::Toolchain;
+use link::PROTOCOL_VERSION;
+use link::framing::{Receiver, encode};
+use link::messages::{Clock, Command, FromBoard, Hello, Role, RunMode, RunSettings, Sample, Schedule, ToBoard};
+use model_core::design::design;
+use model_core::digest::{self, chain};
+use model_core::realtime::{Model, Torques};
+use model_core::tables::Tables;
+
+const TICK_RATE: u32 = 20_000;
+const TICKS: u32 = 4000;
+/// Ticks from one change of the torques to the next.
+const HOLD: u32 = 100;
+/// A busy machine is given time; nothing here is judged by it.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// The line to the board, in messages.
+struct Line {
+    stream: UnixStream,
+    receiver: Receiver,
+}
+
+impl Line {
+    fn new(stream: UnixStream) -> Self {
+        stream.set_read_timeout(Some(Duration::from_millis(50))).expect("a socket");
+        Self { stream, receiver: Receiver::new() }
+    }
+
+    fn send(&mut self, message: &ToBoard) {
+        let frame = encode(message).expect("a message that fits");
+        self.stream.write_all(&frame).expect("the emulator listens");
+    }
+
+    /// What has arrived within a moment.
+    fn receive(&mut self) -> Vec<FromBoard> {
+        let mut bytes = [0; 4096];
+        let count = match self.stream.read(&mut bytes) {
+            Ok(count) => count,
+            Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => 0,
+            Err(error) => panic!("the line broke: {error}"),
+        };
+        bytes[..count].iter().filter_map(|byte| self.receiver.push(*byte)).collect()
+    }
+
+    /// Repeats a message until an answer is found.
+    fn ask<A>(&mut self, message: &ToBoard, answer: impl Fn(FromBoard) -> Option<A>) -> A {
+        let start = Instant::now();
+        while start.elapsed() < PATIENCE {
+            self.send(message);
+            if let Some(found) = self.receive().into_iter().find_map(&answer) {
+                return found;
+            }
+        }
+        panic!("no answer to {message:?}");
+    }
+}
+
+fn hello(message: FromBoard) -> Option<Hello> {
+    match message {
+        FromBoard::Hello(hello) => Some(hello),
+        _ => None,
+    }
+}
+
+/// Torques that swing joint Q1 through its gap.
+fn torques(tick: u32) -> (f32, f32) {
+    let sign = if (tick / 800).is_multiple_of(2) { 1.0 } else { -1.0 };
+    let part = 1.0 - 0.1 * (tick / HOLD % 8) as f32;
+    (0.8 * sign * part, 4.0 * sign * part)
+}
+
+fn schedule(sequence: u16) -> ToBoard {
+    let tick = u32::from(sequence) * HOLD;
+    let (drive_torque, load_torque) = torques(tick);
+    let commands = [Command { tick, drive_torque, load_torque }].into_iter().collect();
+    ToBoard::Schedule(Schedule { sequence, horizon: tick + HOLD, commands })
+}
+
+/// The whole run: samples in order.
+fn run(line: &mut Line) -> Vec<Sample> {
+    let settings = RunSettings { mode: RunMode::Lockstep, decimation: HOLD as u16, command_timeout: 1 };
+    line.ask(&ToBoard::Reset(settings), hello);
+    let (mut samples, mut next) = (Vec::new(), 0);
+    let start = Instant::now();
+    line.send(&schedule(0));
+    while samples.len() < (TICKS / HOLD) as usize {
+        assert!(start.elapsed() < PATIENCE, "{} samples in all that time", samples.len());
+        for message in line.receive() {
+            match message {
+                FromBoard::Accepted(accepted) if accepted.sequence == next => {
+                    next += 1;
+                    if u32::from(next) * HOLD < TICKS {
+                        line.send(&schedule(next));
+                    }
+                }
+                FromBoard::Samples(batch) => samples.extend(batch.samples),
+                FromBoard::Fault(fault) => panic!("{fault:?}"),
+                _ => {}
+            }
+        }
+    }
+    samples
+}
+
+#[test]
+#[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
+fn the_board_s_state_is_the_core_s_in_every_bit() {
+    let say = |line: &str| println!("{line}");
+    let toolchain = Toolchain::prepare(&say).expect("a toolchain for the board");
+    emulator::ensure(&say).expect("an emulator");
+    let file = preset_file("q1");
+    let image = build_image(&toolchain, &file, Board::Stm32f405, Role::Plant, TICK_RATE, &say).expect("an image");
+    let (mut emulator, stream) = Emulator::start(&image.elf).expect("a board");
+    let mut line = Line::new(stream);
+
+    let text = std::fs::read_to_string(&file).expect("the preset");
+    let joint = joints::read(&text).expect("a sound joint").parameters;
+    let tables: Tables<f32, 3> = design(&joint, TICK_RATE).expect("a sound joint");
+    let board = line.ask(&ToBoard::Hello { protocol: PROTOCOL_VERSION }, hello);
+    assert_eq!((board.protocol, board.role, board.planets), (PROTOCOL_VERSION, Role::Plant, 3));
+    assert_eq!((board.tick_rate, board.clock), (TICK_RATE, Clock::NotModelled));
+    assert_eq!((board.joint_digest, board.digest_good), (tables.digest, true));
+
+    let samples = run(&mut line);
+    emulator.check().expect("the board still runs");
+    let mut model = Model::new(&tables);
+    let (mut running, mut expected) = (digest::START, Vec::new());
+    for tick in 0..TICKS {
+        let (drive, load) = torques(tick / HOLD * HOLD);
+        model.step(Torques { drive, load });
+        running = chain(running, model.state_digest());
+        if (tick + 1).is_multiple_of(HOLD) {
+            let outputs = model.outputs();
+            expected.push((tick + 1, running, outputs.gap.to_bits(), outputs.link_offset.to_bits()));
+        }
+    }
+    let found: Vec<_> = samples
+        .iter()
+        .map(|sample| (sample.tick, sample.state_digest, sample.gap.to_bits(), sample.link_offset.to_bits()))
+        .collect();
+    assert_eq!(found, expected);
+    // The run is worth its name: the joint went through its gap.
+    let gaps = samples.iter().map(|sample| f64::from(sample.gap));
+    let (least, greatest) = gaps.fold((f64::MAX, f64::MIN), |(least, most), gap| (gap.min(least), gap.max(most)));
+    let half_backlash = scenarios::q1().sun_planet.half_backlash[0];
+    assert!(least < -2.0 * half_backlash && greatest > 2.0 * half_backlash, "gap from {least:e} to {greatest:e} m");
+}

@@ -1,0 +1,118 @@
+//! Eq. 20, v' = H v + f with v = (X, Y) and Y = X' + C X / 2: H and the gains of forces from the design, everything
+//! that is not linear in f. X keeps the imposed errors, as the core does, so that no e'' appears.
+
+use host_tests::integrator::{Entries, Guards, MAX_ENTRIES, SwitchedSystem};
+use model_core::design::dynamics::Dynamics;
+use model_core::design::hamiltonian;
+use model_core::joint::{JointParameters, MAX_PLANETS};
+use model_core::scales::Scales;
+use nalgebra::{DMatrix, DVector};
+
+use crate::joint::{Deflections, Joint, Moving};
+
+/// State: v.
+pub struct Equation20 {
+    joint: Joint,
+    dynamics: Dynamics,
+    hamiltonian: DMatrix<f64>,
+    /// omega_n^2 / K_m makes forces dimensionless.
+    force: f64,
+}
+
+impl Equation20 {
+    pub fn new(joint: Joint, parameters: &JointParameters) -> Self {
+        let scales = Scales::new(parameters);
+        let dynamics = Dynamics::new(parameters, &scales);
+        let hamiltonian = hamiltonian::matrix(&dynamics);
+        Self { joint, dynamics, hamiltonian, force: scales.frequency.powi(2) / scales.stiffness }
+    }
+
+    /// Deflections and their rates zero on the sun side, as is the gap.
+    pub fn start(&self) -> Entries {
+        let n = self.joint.planets;
+        let errors = |order: usize| {
+            let row = |i| if i < n { self.joint.error(0, i, 0.0)[order] } else { 0.0 };
+            DVector::from_fn(n + 1, |i, _| row(i))
+        };
+        let mut state = [0.0; MAX_ENTRIES];
+        let other = errors(1) + 0.5 * &self.dynamics.damping * errors(0);
+        state[..=n].copy_from_slice(errors(0).as_slice());
+        state[n + 1..2 * n + 2].copy_from_slice(other.as_slice());
+        state
+    }
+
+    pub fn deflections(&self, time: f64, state: &Entries) -> Deflections {
+        self.joint.list(&self.meshes(time, state))
+    }
+
+    /// X and X' = Y - C X / 2.
+    fn motion(&self, state: &Entries) -> (DVector<f64>, DVector<f64>) {
+        let size = self.joint.planets + 1;
+        let positions = DVector::from_column_slice(&state[..size]);
+        let rates = DVector::from_column_slice(&state[size..2 * size]) - 0.5 * &self.dynamics.damping * &positions;
+        (positions, rates)
+    }
+
+    fn meshes(&self, time: f64, state: &Entries) -> [[Moving; MAX_PLANETS]; 2] {
+        let (positions, rates) = self.motion(state);
+        let mut meshes = [[Moving::default(); MAX_PLANETS]; 2];
+        for (kind, i) in self.joint.each() {
+            let across = |values: &DVector<f64>| match kind {
+                0 => values[i],
+                _ => values[self.joint.planets] - values[i],
+            };
+            let [error, error_rate, _] = self.joint.error(kind, i, time);
+            meshes[kind][i] = Moving { deflection: across(&positions) - error, rate: across(&rates) - error_rate };
+        }
+        meshes
+    }
+}
+
+impl SwitchedSystem for Equation20 {
+    fn dimension(&self) -> usize {
+        2 * (self.joint.planets + 1)
+    }
+
+    fn derivative(&self, time: f64, state: &Entries, rates: &mut Entries) {
+        let (joint, n) = (&self.joint, self.joint.planets);
+        let meshes = self.meshes(time, state);
+        // What the linear part takes off too much: its own force of each mesh less the true one.
+        let mut excess = DVector::zeros(2 * n);
+        for (kind, i) in joint.each() {
+            let mesh = &joint.meshes[kind][i];
+            let [error, error_rate, _] = joint.error(kind, i, time);
+            let Moving { deflection, rate } = meshes[kind][i];
+            let linear = mesh.stiffness * (deflection + error) + mesh.damping * (rate + error_rate);
+            let true_force = joint.elastic(kind, i, time, deflection) + mesh.damping * rate;
+            excess[kind * n + i] = self.force * (linear - true_force);
+        }
+        let torques = DVector::from_column_slice(&[joint.drive, -joint.load, 0.0]);
+        let other = &self.dynamics.mesh_gain * excess + &self.dynamics.torque_gain * torques;
+        let linear = &self.hamiltonian * DVector::from_column_slice(&state[..2 * n + 2]);
+        rates[..2 * n + 2].copy_from_slice(linear.as_slice());
+        for (rate, force) in rates[n + 1..].iter_mut().zip(other.iter()) {
+            *rate += force;
+        }
+    }
+
+    fn freeze(&mut self, time: f64, state: &Entries) {
+        let meshes = self.meshes(time, state);
+        self.joint.hold(&meshes);
+    }
+
+    fn guards(&self, time: f64, state: &Entries, _: &Entries, guards: &mut Guards) {
+        self.joint.watch(&self.meshes(time, state), guards);
+    }
+
+    fn guard_resolution(&self) -> f64 {
+        1e-12
+    }
+
+    fn tolerance(&self, _: usize) -> f64 {
+        1e-12
+    }
+
+    fn longest_step(&self) -> f64 {
+        0.5
+    }
+}

@@ -1,0 +1,124 @@
+//! Frames on a bad line: what was sent arrives, or is counted as dropped, and the receiver is in step again at the next
+//! zero byte. What the messages mean is the two ends' business.
+
+use link::framing::{MAX_FRAME, Receiver, encode};
+use link::messages::{COMMANDS_PER_SCHEDULE, Command, RunMode, RunSettings, Schedule, ToBoard};
+use proptest::collection::vec;
+use proptest::prelude::*;
+
+fn receive(receiver: &mut Receiver, bytes: &[u8]) -> Vec<ToBoard> {
+    bytes.iter().filter_map(|&byte| receiver.push(byte)).collect()
+}
+
+fn command() -> impl Strategy<Value = Command> {
+    (any::<u32>(), any::<f32>(), any::<f32>())
+        .prop_filter("NaN is not equal to itself", |(_, drive, load)| !drive.is_nan() && !load.is_nan())
+        .prop_map(|(tick, drive_torque, load_torque)| Command { tick, drive_torque, load_torque })
+}
+
+fn schedule() -> impl Strategy<Value = ToBoard> {
+    (any::<u16>(), any::<u32>(), vec(command(), 0..=COMMANDS_PER_SCHEDULE)).prop_map(|(sequence, horizon, commands)| {
+        ToBoard::Schedule(Schedule { sequence, horizon, commands: commands.into_iter().collect() })
+    })
+}
+
+fn message() -> impl Strategy<Value = ToBoard> {
+    let settings = (any::<bool>(), any::<u16>(), any::<u32>()).prop_map(|(lockstep, decimation, command_timeout)| {
+        let mode = if lockstep { RunMode::Lockstep } else { RunMode::Realtime };
+        ToBoard::Reset(RunSettings { mode, decimation, command_timeout })
+    });
+    prop_oneof![
+        any::<u16>().prop_map(|protocol| ToBoard::Hello { protocol }),
+        any::<bool>().prop_map(|reset| ToBoard::Statistics { reset }),
+        Just(ToBoard::Stop),
+        settings,
+        schedule(),
+    ]
+}
+
+proptest! {
+    #[test]
+    fn messages_arrive_in_order_whatever_the_portions(messages in vec(message(), 1..8)) {
+        let mut receiver = Receiver::new();
+        let bytes: Vec<u8> = messages.iter().flat_map(|message| encode(message).unwrap()).collect();
+        prop_assert_eq!(receive(&mut receiver, &bytes), messages);
+        prop_assert_eq!(receiver.dropped().frames, 0);
+    }
+
+    #[test]
+    fn a_frame_has_one_zero_byte_and_that_is_its_last(message in message()) {
+        let frame = encode(&message).unwrap();
+        prop_assert_eq!(frame.iter().position(|&byte| byte == 0), Some(frame.len() - 1));
+        prop_assert!(frame.len() <= MAX_FRAME);
+    }
+
+    #[test]
+    fn after_garbage_the_receiver_is_in_step_at_the_next_zero(
+        garbage in vec(any::<u8>(), 0..2 * MAX_FRAME),
+        message in message(),
+    ) {
+        let mut receiver = Receiver::new();
+        let mut bytes = garbage;
+        bytes.push(0);
+        let before = receive(&mut receiver, &bytes);
+        prop_assert!(before.is_empty(), "garbage was taken for {:?}", before);
+        prop_assert_eq!(receive(&mut receiver, &encode(&message).unwrap()), vec![message]);
+    }
+
+    #[test]
+    fn a_changed_byte_is_never_taken_for_the_message(message in message(), place in any::<prop::sample::Index>(), change in 1_u8..) {
+        let mut frame = encode(&message).unwrap();
+        let last = frame.len() - 1;
+        let place = place.index(last);
+        frame[place] ^= change;
+        let mut receiver = Receiver::new();
+        prop_assert!(receive(&mut receiver, &frame).is_empty());
+        prop_assert!(receiver.dropped().frames > 0);
+    }
+
+    #[test]
+    fn half_a_frame_costs_that_frame_only(first in message(), second in message(), place in any::<prop::sample::Index>()) {
+        let frame = encode(&first).unwrap();
+        let missing = 1 + place.index(frame.len() - 1);
+        let mut receiver = Receiver::new();
+        let mut bytes = frame[missing..].to_vec();
+        bytes.extend(encode(&second).unwrap());
+        prop_assert_eq!(receive(&mut receiver, &bytes), vec![second]);
+    }
+
+    #[test]
+    fn a_lost_end_costs_two_frames_and_no_more(first in message(), second in message(), third in message()) {
+        let frame = encode(&first).unwrap();
+        let mut bytes = frame[..frame.len() - 1].to_vec();
+        bytes.extend(encode(&second).unwrap());
+        bytes.extend(encode(&third).unwrap());
+        let mut receiver = Receiver::new();
+        prop_assert_eq!(receive(&mut receiver, &bytes), vec![third]);
+        prop_assert_eq!(receiver.dropped().frames, 1);
+    }
+}
+
+#[test]
+fn a_frame_that_is_too_long_is_counted_once() {
+    let mut receiver = Receiver::new();
+    let mut bytes = vec![7; 10 * MAX_FRAME];
+    bytes.push(0);
+    assert!(receive(&mut receiver, &bytes).is_empty());
+    assert_eq!(receiver.dropped().frames, 1);
+    assert_eq!(receive(&mut receiver, &encode(&ToBoard::Stop).unwrap()), [ToBoard::Stop]);
+}
+
+#[test]
+fn zero_bytes_between_frames_are_no_errors() {
+    let mut receiver = Receiver::new();
+    assert!(receive(&mut receiver, &[0; 100]).is_empty());
+    assert_eq!(receiver.dropped().frames, 0);
+}
+
+#[test]
+fn more_behind_a_message_makes_it_a_bad_frame() {
+    let stop_and_more = encode(&(ToBoard::Stop, 7_u32)).unwrap();
+    let mut receiver = Receiver::new();
+    assert!(receive(&mut receiver, &stop_and_more).is_empty());
+    assert_eq!(receiver.dropped().frames, 1);
+}

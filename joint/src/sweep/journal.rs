@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::fs::{File, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use model_core::digest;
 
@@ -17,6 +18,10 @@ pub type Points = BTreeMap<u64, String>;
 
 /// First word of every journal.
 const HEAD: &str = "joint-sweep";
+
+/// A journal that another process holds is asked for so many times, so far apart.
+const LOCK_TRIALS: u32 = 20;
+const LOCK_PAUSE: Duration = Duration::from_millis(50);
 
 /// A journal that is being written.
 #[derive(Debug)]
@@ -44,14 +49,9 @@ impl Journal {
         let failed = |error: io::Error| unwritten(&path, &error);
         let mut file =
             File::options().read(true).write(true).create(true).truncate(false).open(&path).map_err(failed)?;
-        match file.try_lock() {
-            Ok(()) => {}
-            Err(TryLockError::WouldBlock) => {
-                return Err(Failure::new(format!("{} is being written by another process", path.display()))
-                    .with_help("let it finish, or end it first; another --shard can run beside it"));
-            }
-            // A file system without locks is no reason not to work on it.
-            Err(TryLockError::Error(_)) => {}
+        if !locked(&file) {
+            return Err(Failure::new(format!("{} is being written by another process", path.display()))
+                .with_help("let it finish, or end it first; another --shard can run beside it"));
         }
         let mut bytes = Vec::new();
         file.read_to_end(&mut bytes).map_err(failed)?;
@@ -71,6 +71,18 @@ impl Journal {
         let written = self.file.write_all(lines.as_bytes()).and_then(|()| self.file.sync_data());
         written.map_err(|error| unwritten(&self.path, &error))
     }
+}
+
+/// Takes the file for this process alone. A process that was just ended may need a moment to let go of it.
+fn locked(file: &File) -> bool {
+    for _ in 0..LOCK_TRIALS {
+        match file.try_lock() {
+            Err(TryLockError::WouldBlock) => std::thread::sleep(LOCK_PAUSE),
+            // A file system without locks is no reason not to work on it.
+            Ok(()) | Err(TryLockError::Error(_)) => return true,
+        }
+    }
+    false
 }
 
 /// The line of a finished point.

@@ -49,6 +49,54 @@ pub const PREDICTABILITY: Bound = Bound {
     reason: "Where errors grow more, a bound on a trajectory would judge the motion instead of the integrator.",
 };
 
+/// Deflections, forces and angles that the host reads off a state of the core.
+pub const READ_OFF: Bound = Bound {
+    of: "deflection over b_c, mesh force over K_m b_c, offset angles [rad], against the reference's reading of one state",
+    limit: 1e-7,
+    measured: 2.0e-8,
+    reason: "The core's sine is good to 2.4e-9 in f64, which stiffness ripple and errors of several b_c multiply.",
+};
+
+/// Energy balance of the reference.
+pub const BOOKS_OF_THE_REFERENCE: Bound = Bound {
+    of: "residual of the reference's energy balance over what is dissipated",
+    limit: 1e-10,
+    measured: 2.6e-12,
+    reason: "The integration's own error.",
+};
+
+/// Energy balance of the board's scheme at ten times its rate.
+pub const BOOKS_OF_THE_BOARD: Bound = Bound {
+    of: "residual of the energy balance of the board's scheme in f64 at 200 kHz over what is dissipated",
+    limit: 1e-5,
+    measured: 1.6e-6,
+    reason: "What crossings leave at this rate; the usual methods leave 7e-5 and more.",
+};
+
+/// Swing of the paper's joint, simulated as the board does.
+pub const SIM_PEAK_TO_PEAK: Bound = Bound {
+    of: "peak to peak of the sun-planet deflection in set P's regular regimes against five known digits, relative",
+    limit: 1e-3,
+    measured: 4.7e-5,
+    reason: "Ticks may miss a crest by a 96th of a mesh period, which is 5e-4 of the swing.",
+};
+
+/// Power beside the mesh frequency.
+pub const SIM_NON_FUNDAMENTAL: Bound = Bound {
+    of: "non-fundamental over fundamental in set P's regular regimes against what is printed",
+    limit: 6e-3,
+    measured: 1.1e-3,
+    reason: "Half a unit of the last digit printed.",
+};
+
+/// Static deflection and force of a joint that stands.
+pub const SIM_STATIC: Bound = Bound {
+    of: "mesh force and deflection of a standing joint against oracle 4, relative",
+    limit: 1e-7,
+    measured: 7.9e-14,
+    reason: "Torques are rounded to f32 on their way to the joint; the ones tried lose nothing by it.",
+};
+
 /// Undamped natural frequencies.
 pub const NATURAL_FREQUENCY: Bound = Bound {
     of: "natural frequency, relative",

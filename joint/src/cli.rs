@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::failure::{EXIT_BAD_INPUT, Outcome};
-use crate::{check, hil, images, output, paper};
+use crate::{check, hil, images, output, paper, sim, sweep};
 
 /// Simulates a planetary robot joint with backlash on a microcontroller, drives it and checks it
 #[derive(Debug, Parser)]
@@ -23,6 +23,12 @@ enum Command {
     Check(check::Arguments),
     /// Redo the paper, or the same study of another joint: attractors, bifurcation diagram, figures
     Paper(paper::Arguments),
+    /// Simulate a joint on the host by a named scheme: history, report, comparison of schemes
+    Sim(sim::Arguments),
+    /// Simulate every joint of a grid in parallel: resumable, in shards for job arrays
+    Sweep(sweep::Arguments),
+    /// Put the shards of a sweep together, once none is missing
+    Merge(sweep::MergeArguments),
     /// Build the firmware image of a joint and say where it is
     Image(images::ImageArguments),
     /// Build the firmware image of a joint and write it to a real board by probe-rs
@@ -44,6 +50,9 @@ pub fn main() -> ExitCode {
         Some(Command::Hil(arguments)) => hil::run(arguments),
         Some(Command::Check(arguments)) => check::run(arguments),
         Some(Command::Paper(arguments)) => paper::run(arguments),
+        Some(Command::Sim(arguments)) => sim::run(arguments),
+        Some(Command::Sweep(arguments)) => sweep::run(arguments),
+        Some(Command::Merge(arguments)) => sweep::merge(arguments),
         Some(Command::Image(arguments)) => images::image(arguments),
         Some(Command::Flash(arguments)) => images::flash(arguments),
     };

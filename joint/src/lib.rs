@@ -1,6 +1,7 @@
 //! The host command `joint` as a library, so that its parts can be tested without a process. `hil` runs a joint on a
 //! board and checks it, `target` prepares toolchain, image and emulator, `check` reads a joint file, `record` is what
-//! a run leaves behind and `report` shows it; physics and wire format are left to `model-core` and `link`.
+//! a run leaves behind and `report` shows it, `sim` moves a joint on the host, `sweep` many of them, `paper` redoes the
+//! paper with the numerics of `study`; physics and wire format are left to `model-core` and `link`.
 
 pub mod check;
 pub mod cli;
@@ -12,5 +13,7 @@ pub mod output;
 pub mod paper;
 pub mod record;
 pub mod report;
+pub mod sim;
 pub mod study;
+pub mod sweep;
 pub mod target;

@@ -329,6 +329,11 @@ pub(crate) fn find(section: &str, name: &str) -> &'static Key {
     of(section).find(|key| key.name == name).expect("readers ask for listed keys only")
 }
 
+/// Whether a section has that name.
+pub(crate) fn find_section(name: &str) -> bool {
+    KEYS.iter().any(|key| matches!(key.kind, Kind::Section) && key.name == name)
+}
+
 #[cfg(test)]
 mod tests {
     use super::{KEYS, Kind};

@@ -4,9 +4,11 @@
 //!
 //! `keys` lists every key with its unit, bound and meaning; `section` takes values out of a table by that list; one
 //! file for each section of a joint file turns them into parameters; `coherence` asks whether the gears fit together.
+//! `change` sets single values in a file's text.
 
 mod bodies;
 mod bound;
+mod change;
 mod coherence;
 mod drive_train;
 mod geometry;
@@ -21,6 +23,7 @@ mod section;
 mod spelling;
 mod unknown;
 
+pub use change::{Refused, change, full_key};
 pub use drive_train::{DriveTrain, Encoder};
 pub use motion::Profile;
 pub use notes::Source;

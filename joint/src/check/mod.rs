@@ -21,7 +21,7 @@ use crate::failure::{Failure, Outcome};
 pub use derive::figures;
 pub use figures::Figures;
 pub use layout::layout;
-pub use source::{Loaded, load};
+pub use source::{Loaded, load, load_with, read_changed};
 
 /// Arguments of `joint check`.
 #[derive(Debug, clap::Args)]

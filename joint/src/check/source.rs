@@ -24,16 +24,44 @@ pub struct Loaded {
 
 /// Reads a path or a preset. A file of that name goes before a preset.
 pub fn load(file: &Path) -> Outcome<Loaded> {
+    load_with(file, &[])
+}
+
+/// Reads a path or a preset with values changed, each as `key=value`.
+pub fn load_with(file: &Path, changes: &[String]) -> Outcome<Loaded> {
+    let (name, text) = text(file)?;
+    read_changed(name, text, changes)
+}
+
+/// Reads a text that was found under a name, with values changed. The text of the result has the changes.
+pub fn read_changed(name: String, mut text: String, changes: &[String]) -> Outcome<Loaded> {
+    for assignment in changes {
+        let Some((key, value)) = assignment.split_once('=') else {
+            return Err(Failure::new(format!("`{assignment}` sets nothing")).with_help(
+                "write key=value, such as sun_planet.half_backlash_um=60; an empty value leaves a key out",
+            ));
+        };
+        text = joints::change(&text, key, value)
+            .map_err(|refused| Failure::new(format!("{assignment}: {}", refused.message)).with_help(refused.help))?;
+    }
+    match joints::read(&text) {
+        Ok(file) => Ok(Loaded { name, text, file }),
+        Err(problems) => {
+            let changed = changes.iter().map(|change| format!(" with {change}")).collect::<String>();
+            Err(Failure::from_report(diagnostic::report(&(name + &changed), &text, &problems)))
+        }
+    }
+}
+
+/// Name and text of a path or a preset.
+fn text(file: &Path) -> Outcome<(String, String)> {
     let name = file.display().to_string();
     let preset = file.to_str().and_then(joints::preset).filter(|_| !file.is_file());
     let text = match preset {
         Some(text) => text.to_owned(),
         None => read(file)?,
     };
-    match joints::read(&text) {
-        Ok(file) => Ok(Loaded { name, text, file }),
-        Err(problems) => Err(Failure::from_report(diagnostic::report(&name, &text, &problems))),
-    }
+    Ok((name, text))
 }
 
 fn read(file: &Path) -> Outcome<String> {

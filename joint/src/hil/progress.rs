@@ -43,6 +43,11 @@ impl Progress {
         }
     }
 
+    /// The same line for another thread.
+    pub fn handle(&self) -> Handle {
+        Handle(self.bar.borrow().clone())
+    }
+
     /// A word from a stage. Output of other programs passes by; what this program says itself stays.
     pub fn say(&self, line: &str) {
         let own = line.starts_with(|first: char| first.is_ascii_lowercase()) && !line.starts_with("warning");
@@ -65,6 +70,18 @@ impl Progress {
         self.clear();
         bar.set_prefix(what.to_owned());
         *self.bar.borrow_mut() = Some(bar);
+    }
+}
+
+/// The line of a stage, from any thread.
+pub struct Handle(Option<ProgressBar>);
+
+impl Handle {
+    /// So many ticks are done.
+    pub fn at(&self, ticks: u32) {
+        if let Some(bar) = &self.0 {
+            bar.set_position(ticks.into());
+        }
     }
 }
 

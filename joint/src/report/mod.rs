@@ -1,7 +1,7 @@
 //! Reports of a recorded run: one self-contained HTML page with vector plots. Nothing is measured or judged here.
 
 mod close_up;
-mod contacts;
+pub(crate) mod contacts;
 mod motion;
 mod origin;
 pub(crate) mod page;

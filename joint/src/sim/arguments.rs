@@ -1,0 +1,120 @@
+//! What `joint sim` may be asked for on the command line. What it means for a joint is `plan`'s business.
+
+use std::path::PathBuf;
+
+use super::scheme::Choice;
+use super::start::StartName;
+
+/// Arguments of `joint sim`.
+#[derive(Debug, Clone, clap::Args)]
+#[command(after_help = "Examples:
+  joint sim                                        joint q1, turning under its rated torque
+  joint sim paper --set half_backlash_um=120       the paper's joint, chaotic
+  joint sim joints/l1.toml --profile reversals     torque steps through the gap
+  joint sim paper --scheme all                     every scheme against the reference
+
+Exit code: 0 if the run came to its end, 2 for bad input or a bad environment, 130 after Ctrl-C.")]
+pub struct Arguments {
+    /// Joint file (TOML), or the name of a preset: q1, s1, d2, l1, paper, paper_printed
+    #[arg(value_name = "FILE", default_value = "q1")]
+    pub file: PathBuf,
+    /// Scheme that moves the joint
+    #[arg(long, value_enum, default_value = "realtime")]
+    pub scheme: Choice,
+    /// What every choice of motion has in common with a sweep
+    #[command(flatten)]
+    pub motion: Motion,
+    /// Keeps every n-th tick in files and pictures [default: so that at most 200 000 are kept]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub every: Option<u32>,
+    /// Does not keep the books of energy
+    #[arg(long)]
+    pub no_energy: bool,
+    /// Folder for report.html, history.csv and history.mcap [default: target/sim/<joint>]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Writes the figures as JSON to this file too
+    #[arg(long, value_name = "OUT")]
+    pub json: Option<PathBuf>,
+}
+
+/// What moves the joint, for `joint sim` and `joint sweep` alike.
+#[derive(Debug, Clone, clap::Args)]
+pub struct Motion {
+    /// Changes a value of the joint file for this run, such as sun_planet.half_backlash_um=60; may be repeated
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// Length of the run in s [default: the profile's own; else 1 s, or 600 periods of a prescribed mesh frequency]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub duration: Option<f64>,
+    /// Not counted in figures, spectrum and phase portrait: the first so many s [default: half of a run under constant
+    /// torques, else 0]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub settle: Option<f64>,
+    /// Steps a second, in Hz [default: 20000; more, so that a prescribed mesh period has 48 ticks]
+    #[arg(long, value_name = "HZ", value_parser = clap::value_parser!(u32).range(1..))]
+    pub rate: Option<u32>,
+    /// Torque profile in place of constant torques: `reversals`, or a CSV file with the columns time_s, motor_torque_Nm
+    /// and load_torque_Nm
+    #[arg(long, value_name = "NAME|FILE", conflicts_with_all = ["drive", "load"])]
+    pub profile: Option<String>,
+    /// Constant torque on the sun shaft in N m [default: the file's drive torque, or what balances its rated torque]
+    #[arg(long, value_name = "NM", allow_negative_numbers = true)]
+    pub drive: Option<f64>,
+    /// Constant torque that brakes the link in N m [default: what balances the drive torque]
+    #[arg(long, value_name = "NM", allow_negative_numbers = true)]
+    pub load: Option<f64>,
+    /// State at the start [default: rest with a profile, centred at a prescribed mesh frequency, else seated]
+    #[arg(long, value_enum)]
+    pub start: Option<StartName>,
+    /// Speed of the carrier at the start in rad/s [default: one turn a second under constant torques and mode "angle",
+    /// else 0]
+    #[arg(long, value_name = "RAD/S", allow_negative_numbers = true)]
+    pub speed: Option<f64>,
+    /// Computes the core's schemes in f64 in place of the board's f32
+    #[arg(long)]
+    pub f64: bool,
+    /// Takes as many sub-steps as accuracy asks for, in place of what a board has time for
+    #[arg(long)]
+    pub accurate: bool,
+}
+
+impl Motion {
+    /// The options that ask for the same motion again, each with a space in front.
+    pub fn replay(&self) -> String {
+        let mut options = String::new();
+        let mut option = |name: &str, value: Option<String>| {
+            if let Some(value) = value {
+                options += &format!(" --{name} {}", quoted(&value));
+            }
+        };
+        for change in &self.set {
+            option("set", Some(change.clone()));
+        }
+        option("duration", self.duration.map(|value| value.to_string()));
+        option("settle", self.settle.map(|value| value.to_string()));
+        option("rate", self.rate.map(|value| value.to_string()));
+        option("profile", self.profile.clone());
+        option("drive", self.drive.map(|value| value.to_string()));
+        option("load", self.load.map(|value| value.to_string()));
+        option("start", self.start.map(|start| start.name().to_owned()));
+        option("speed", self.speed.map(|value| value.to_string()));
+        if self.f64 {
+            options += " --f64";
+        }
+        if self.accurate {
+            options += " --accurate";
+        }
+        options
+    }
+}
+
+/// As a shell takes it for one word.
+pub fn quoted(word: &str) -> String {
+    let plain = |letter: char| letter.is_ascii_alphanumeric() || "-_./=:,+@%".contains(letter);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', "'\\''"))
+    }
+}

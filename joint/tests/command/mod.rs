@@ -1,0 +1,116 @@
+//! Runs the command `joint` as a user does and keeps what it said. What it should have said is the tests' business.
+
+#![allow(dead_code, reason = "every test file uses a part of it")]
+
+use std::ffi::OsStr;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// What a process left behind.
+#[derive(Debug)]
+pub struct Ended {
+    /// Exit code; none if a signal ended it.
+    pub code: Option<i32>,
+    pub out: String,
+    pub err: String,
+}
+
+/// A machine under load is slow, but not for ever.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+fn command(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_joint"));
+    // A width of its own, so that messages are not broken where a test looks for words.
+    command.args(arguments).env("NO_COLOR", "1").env("COLUMNS", "400").stdin(Stdio::null());
+    command
+}
+
+/// Runs it to its end.
+pub fn joint(arguments: &[&str]) -> Ended {
+    ended(command(arguments).output().expect("the command can be started"))
+}
+
+/// Runs it with a limit on the size of every file, as if the disk were full.
+pub fn joint_on_a_full_disk(blocks: u32, arguments: &[&str]) -> Ended {
+    let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" \"$@\"");
+    let mut shell = Command::new("bash");
+    shell.args(["-c", &script, env!("CARGO_BIN_EXE_joint")]).args(arguments).env("NO_COLOR", "1").stdin(Stdio::null());
+    ended(shell.output().expect("a shell"))
+}
+
+/// Starts it; it goes on by itself.
+pub fn start(arguments: &[&str]) -> Child {
+    command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the command can be started")
+}
+
+/// Waits for its end.
+pub fn wait(child: Child) -> Ended {
+    ended(child.wait_with_output().expect("it was started here"))
+}
+
+/// Presses Ctrl-C.
+pub fn interrupt(child: &Child) {
+    let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("`kill` is there");
+    assert!(sent.success());
+}
+
+/// Waits until something is so.
+pub fn until(what: &str, mut so: impl FnMut() -> bool) {
+    let start = Instant::now();
+    while !so() {
+        assert!(start.elapsed() < PATIENCE, "{what}: not after {PATIENCE:?}");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+/// Size of a file, 0 if it is not there.
+pub fn size(path: &Path) -> u64 {
+    std::fs::metadata(path).map_or(0, |data| data.len())
+}
+
+/// A path as an argument.
+pub fn text(path: &(impl AsRef<OsStr> + ?Sized)) -> &str {
+    path.as_ref().to_str().expect("temporary folders have plain names")
+}
+
+/// Names and contents of all files of a folder.
+pub fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let mut files: Vec<_> = std::fs::read_dir(folder)
+        .expect("a folder")
+        .map(|entry| entry.expect("an entry").path())
+        .filter(|path| path.is_file())
+        .map(|path| (text(path.file_name().expect("a name")).to_owned(), std::fs::read(&path).expect("a file")))
+        .collect();
+    files.sort();
+    files
+}
+
+impl Ended {
+    /// Bad input: exit code 2 with all these words in the message, and no panic.
+    #[track_caller]
+    pub fn refused(&self, words: &[&str]) {
+        assert_eq!(self.code, Some(2), "{self:?}");
+        // Underlined messages break lines and draw a rule beside them.
+        let plain = self.err.replace(['│', '╰', '─', '├', '▶'], " ").split_whitespace().collect::<Vec<_>>().join(" ");
+        for word in words {
+            assert!(plain.contains(word), "`{word}` is not in: {plain}");
+        }
+        assert!(!self.err.contains("panicked"), "{self:?}");
+    }
+
+    /// Success.
+    #[track_caller]
+    pub fn well(self) -> Self {
+        assert_eq!(self.code, Some(0), "{self:?}");
+        self
+    }
+}
+
+fn ended(output: std::process::Output) -> Ended {
+    Ended {
+        code: output.status.code(),
+        out: String::from_utf8_lossy(&output.stdout).into_owned(),
+        err: String::from_utf8_lossy(&output.stderr).into_owned(),
+    }
+}

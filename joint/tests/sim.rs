@@ -1,0 +1,264 @@
+//! `joint sim` as a user meets it: what it computes for the paper's joint, what it leaves on disk, what a crash or a
+//! full disk leaves of that, and what it says to bad input.
+
+mod command;
+
+use std::fs;
+use std::path::Path;
+
+use command::{contents, interrupt, joint, joint_on_a_full_disk, size, start, text, until, wait};
+use host_tests::tolerance;
+use mcap::MessageStream;
+use mcap::read::Options;
+use serde_json::Value;
+
+fn folder() -> tempfile::TempDir {
+    tempfile::tempdir().expect("a folder")
+}
+
+/// Runs a simulation and gives its figures.
+fn figures(arguments: &[&str]) -> Value {
+    let folder = folder();
+    let json = folder.path().join("figures-elsewhere.json");
+    let all = [&["sim"], arguments, &["--out", text(folder.path()), "--json", text(&json)]].concat();
+    joint(&all).well();
+    let value: Value = serde_json::from_str(&fs::read_to_string(json).expect("written")).expect("JSON");
+    assert_eq!(value["schema"], "joint-sim/1");
+    value
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
+}
+
+/// MODEL: set P, from X = X' = 0. Peak to peak over b_c, period, non-fundamental over fundamental.
+#[test]
+fn the_paper_s_regimes_come_out_of_the_board_s_scheme() {
+    for (half_backlash, peak_to_peak, period, beside) in
+        [(0, 11.136, 1, 0.007), (10, 8.961, 1, 0.005), (60, 20.021, 3, 2.66)]
+    {
+        let set = format!("half_backlash_um={half_backlash}");
+        let figures = figures(&["paper", "--set", &set, "--no-energy"]);
+        let mesh = &figures["meshes"][0];
+        let error = number(&mesh["deflection_peak_to_peak_m"]) / 10e-6 / peak_to_peak - 1.0;
+        tolerance::SIM_PEAK_TO_PEAK.check(error);
+        assert_eq!(figures["period"], period, "b = {half_backlash} um");
+        tolerance::SIM_NON_FUNDAMENTAL.check(number(&figures["non_fundamental_over_fundamental"]) - beside);
+    }
+    let chaos = figures(&["paper", "--set", "half_backlash_um=120", "--no-energy"]);
+    assert_eq!(chaos["period"], Value::Null, "chaos does not repeat");
+}
+
+/// Oracle 4: the mesh force of the standing joint is T_D / (n r_bs), the deflection b + that over k.
+#[test]
+fn a_joint_that_stands_under_its_torque_has_the_static_deflection() {
+    let still = ["q1", "--speed", "0", "--duration", "0.4", "--drive", "2", "--set", "transmission_error_um=0"];
+    let figures = figures(&[&still[..], &["--set", "stiffness_ratio=0", "--f64", "--no-energy"]].concat());
+    let force = 2.0 / (3.0 * 0.5e-3 * 15.0 * 20f64.to_radians().cos());
+    for mesh in figures["meshes"].as_array().expect("a list") {
+        tolerance::SIM_STATIC.check(number(&mesh["peak_force_N"]) / force - 1.0);
+        tolerance::SIM_STATIC.check(number(&mesh["deflection_mean_m"]) / (40e-6 + force / 1e8) - 1.0);
+        assert_eq!(mesh["drive_side_share"], 1.0);
+    }
+}
+
+/// Oracle 5.
+#[test]
+fn the_energy_books_of_the_reference_balance() {
+    let figures = figures(&["paper", "--scheme", "reference", "--duration", "0.01"]);
+    tolerance::BOOKS_OF_THE_REFERENCE.check(number(&figures["energy"]["residual_over_dissipated"]));
+}
+
+#[test]
+fn all_schemes_are_held_against_the_reference() {
+    let figures = figures(&["paper", "--set", "half_backlash_um=10", "--duration", "0.02", "--scheme", "all"]);
+    let rows = figures["schemes"].as_array().expect("a table");
+    let names: Vec<&str> = rows.iter().filter_map(|row| row["scheme"].as_str()).collect();
+    assert_eq!(names, ["reference", "realtime", "paper", "rk4", "euler"]);
+    let error = |row: usize| number(&rows[row]["errors"][0]);
+    assert_eq!(error(0), 0.0);
+    assert!(error(1) < error(3) && error(3) < error(4) && error(4) < error(2), "{rows:?}");
+    assert_eq!(number(&rows[1]["cost_ratio"]), 1.0);
+    assert!(rows.iter().all(|row| number(&row["cost_s_per_s"]) > 0.0), "{rows:?}");
+}
+
+#[test]
+fn a_prescribed_mesh_period_has_ticks_enough_and_a_board_s_rate_can_be_had() {
+    let figures_at = |rate: &[&str]| figures(&[&["paper", "--duration", "0.01", "--no-energy"], rate].concat());
+    assert_eq!(figures_at(&[])["tick_rate_Hz"], 340_000);
+    assert_eq!(figures_at(&["--rate", "20000"])["tick_rate_Hz"], 20_000);
+}
+
+/// Messages of a log, up to where it was cut.
+fn messages(log: &[u8]) -> Vec<Vec<u8>> {
+    let stream = MessageStream::new_with_options(log, Options::IgnoreEndMagic.into()).expect("a log");
+    stream.map_while(Result::ok).map(|message| message.data.into_owned()).collect()
+}
+
+/// The n-th number of a message: eight bytes each behind a head of four.
+fn field(message: &[u8], place: usize) -> f64 {
+    let at = 4 + 8 * place;
+    f64::from_le_bytes(message[at..at + 8].try_into().expect("eight bytes"))
+}
+
+#[test]
+fn csv_and_log_hold_the_same_history() {
+    let folder = folder();
+    joint(&["sim", "l1", "--duration", "0.05", "--every", "5", "--out", text(folder.path())]).well();
+    let csv = fs::read_to_string(folder.path().join("history.csv")).expect("written");
+    let mut lines = csv.lines();
+    let names: Vec<&str> = lines.next().expect("a head").split(',').collect();
+    let rows: Vec<Vec<f64>> =
+        lines.map(|line| line.split(',').map(|value| value.parse().expect("a number")).collect()).collect();
+    assert_eq!(rows.len(), 201);
+    assert!(rows.iter().all(|row| row.len() == names.len() && names.len() == 12 + 4 * 6));
+    let column = |name: &str| names.iter().position(|other| *other == name).expect(name);
+
+    let log = fs::read(folder.path().join("history.mcap")).expect("written");
+    let summary = mcap::Summary::read(&log).expect("finished").expect("with a summary");
+    let channel = summary.channels.values().next().expect("one channel");
+    let schema = channel.schema.as_ref().expect("a schema");
+    assert_eq!((channel.topic.as_str(), channel.message_encoding.as_str()), ("/joint/motion", "cdr"));
+    assert_eq!((schema.name.as_str(), schema.encoding.as_str()), ("joint_msgs/msg/Motion", "ros2msg"));
+    assert_eq!(summary.stats.as_ref().map(|stats| stats.message_count), Some(201));
+    let schema = String::from_utf8_lossy(&schema.data).into_owned();
+    let fields: Vec<&str> = schema.lines().filter_map(|line| line.split_whitespace().nth(1)).collect();
+    let place = |name: &str| fields.iter().position(|other| *other == name).expect(name);
+
+    for (row, message) in rows.iter().zip(messages(&log)) {
+        assert_eq!(field(&message, place("time_s")), row[column("time_s")]);
+        assert_eq!(field(&message, place("twist_rad")), row[column("twist_rad")]);
+        assert_eq!(field(&message, place("gap_um")), 1e6 * row[column("gap_m")]);
+        // The first list begins behind all numbers with its length, on a multiple of eight.
+        let list = place("sun_planet_deflection_um");
+        assert_eq!(message[4 + 8 * list], 3);
+        assert_eq!(field(&message, list + 1), 1e6 * row[column("sun_planet_1_deflection_m")]);
+        assert_eq!(field(&message, list + 3), 1e6 * row[column("sun_planet_3_deflection_m")]);
+    }
+    assert_eq!(messages(&log).len(), 201);
+}
+
+#[test]
+fn a_log_that_was_cut_off_is_readable_up_to_the_cut() {
+    let folder = folder();
+    joint(&["sim", "l1", "--duration", "0.5", "--no-energy", "--out", text(folder.path())]).well();
+    let log = fs::read(folder.path().join("history.mcap")).expect("written");
+    let whole = messages(&log).len();
+    assert_eq!(whole, 10_001);
+    let mut before = 0;
+    for percent in (20..=100).step_by(5) {
+        let found = messages(&log[..log.len() * percent / 100]).len();
+        assert!(found >= before, "a longer rest cannot hold less");
+        // No more than a chunk and its share of the index is lost.
+        assert!(100 * found + 1500 * 10 >= whole * (percent - 10) / 10 * 10, "{percent} %: {found} of {whole}");
+        before = found;
+    }
+    assert_eq!(before, whole);
+}
+
+#[test]
+fn a_killed_run_leaves_a_readable_log_and_the_older_history_whole() {
+    let folder = folder();
+    joint(&["sim", "l1", "--duration", "0.01", "--out", text(folder.path())]).well();
+    let older = fs::read(folder.path().join("history.mcap")).expect("written");
+    let mut child =
+        start(&["sim", "l1", "--duration", "60", "--every", "1", "--no-energy", "--out", text(folder.path())]);
+    let partial = folder.path().join("history.partial.mcap");
+    until("the log has grown", || size(&partial) > 300_000);
+    child.kill().expect("it runs");
+    wait(child);
+    assert!(messages(&fs::read(&partial).expect("there")).len() > 300);
+    assert_eq!(fs::read(folder.path().join("history.mcap")).expect("still there"), older);
+}
+
+#[test]
+fn ctrl_c_finishes_the_history_properly_and_says_where_it_is() {
+    let folder = folder();
+    let child = start(&["sim", "l1", "--duration", "60", "--every", "1", "--no-energy", "--out", text(folder.path())]);
+    let partial = folder.path().join("history.partial.mcap");
+    until("the log has grown", || size(&partial) > 100_000);
+    interrupt(&child);
+    let ended = wait(child);
+    assert_eq!(ended.code, Some(130), "{ended:?}");
+    assert!(ended.err.contains("stopped by the user at") && ended.err.contains("history.partial.csv"), "{ended:?}");
+    let log = fs::read(&partial).expect("there");
+    let count = mcap::Summary::read(&log).expect("finished").and_then(|summary| summary.stats).map(|s| s.message_count);
+    assert_eq!(count, Some(messages(&log).len() as u64));
+    assert!(!folder.path().join("history.mcap").exists());
+}
+
+#[test]
+fn a_full_disk_is_named_and_nothing_older_is_lost() {
+    let folder = folder();
+    joint(&["sim", "l1", "--duration", "0.01", "--out", text(folder.path())]).well();
+    let older = contents(folder.path());
+    let ended =
+        joint_on_a_full_disk(200, &["sim", "l1", "--duration", "1", "--no-energy", "--out", text(folder.path())]);
+    ended.refused(&["cannot write", "history.partial", "free some space"]);
+    let now = contents(folder.path());
+    assert!(older.iter().all(|file| now.contains(file)), "what was there is there");
+}
+
+#[test]
+fn a_run_that_diverges_says_so_and_shows_what_came_before() {
+    let folder = folder();
+    let fast = ["sim", "q1", "--scheme", "euler", "--rate", "6000", "--duration", "0.1"];
+    let ended = joint(&[&fast[..], &["--out", text(folder.path())]].concat()).well();
+    assert!(ended.out.contains("DIVERGED"), "{ended:?}");
+    let page = fs::read_to_string(folder.path().join("report.html")).expect("written");
+    assert!(page.contains("DIVERGED"));
+}
+
+#[test]
+fn the_report_needs_neither_network_nor_script() {
+    let folder = folder();
+    joint(&["sim", "paper", "--scheme", "all", "--duration", "0.01", "--out", text(folder.path())]).well();
+    let page = fs::read_to_string(folder.path().join("report.html")).expect("written");
+    for part in ["<script", "<link", "@import", "url(", " src=", " href=", "NaN", "not drawn"] {
+        assert!(!page.contains(part), "{part}");
+    }
+    for part in ["Phase portrait", "Spectrum", "Balance of energy", "semi-implicit Euler", "cargo joint sim paper"] {
+        assert!(page.contains(part), "{part}");
+    }
+    assert!(page.len() < 4_000_000, "{} bytes", page.len());
+}
+
+#[test]
+fn values_set_on_the_command_line_have_the_checks_of_the_file() {
+    let refused = |set: &str, words: &[&str]| joint(&["sim", "q1", "--set", set]).refused(words);
+    refused("half_backlsh_um=60", &["unknown key `half_backlsh_um`", "did you mean `half_backlash_um`?"]);
+    refused("sun_planet.half_backlash_um=6000", &["must be 0, or between 0.5 and 1000, not 6000", "60 um"]);
+    refused("mesh.damping_ratio=NaN", &["damping_ratio", "finite number"]);
+    refused("planets=7", &["`planets` must be between 3 and 5, not 7"]);
+    refused("planets=4", &["do not assemble"]);
+    refused("half_backlash_um", &["sets nothing", "key=value"]);
+}
+
+#[test]
+fn bad_input_is_named_with_its_mend() {
+    let folder = folder();
+    let file = |name: &str, bytes: &[u8]| {
+        let path = folder.path().join(name);
+        fs::write(&path, bytes).expect("room");
+        path
+    };
+    joint(&["sim", "/no/such/joint.toml"]).refused(&["/no/such/joint.toml", "presets q1"]);
+    joint(&["sim", text(folder.path())]).refused(&["it is a folder"]);
+    joint(&["sim", text(&file("binary.toml", &[0xff, 0xfe, 0]))]).refused(&["not text"]);
+    joint(&["sim", text(&file("broken.toml", b"name = \n"))]).refused(&["not TOML"]);
+    joint(&["sim", "q1", "--duration", "0"]).refused(&["a run of 0 s", "--duration 1"]);
+    joint(&["sim", "q1", "--duration", "-1"]).refused(&["a run of -1 s"]);
+    joint(&["sim", "q1", "--duration", "NaN"]).refused(&["--duration is NaN"]);
+    joint(&["sim", "q1", "--duration", "1e12"]).refused(&["ticks"]);
+    joint(&["sim", "q1", "--duration", "1000", "--every", "1"]).refused(&["samples", "--every"]);
+    joint(&["sim", "q1", "--settle", "5"]).refused(&["--settle 5 leaves nothing"]);
+    joint(&["sim", "q1", "--drive", "inf"]).refused(&["--drive is inf"]);
+    joint(&["sim", "q1", "--rate", "500"]).refused(&["500 Hz", "--rate"]);
+    joint(&["sim", "q1", "--profile", "no-such-profile"]).refused(&["no profile `no-such-profile`", "reversals"]);
+    joint(&["sim", "q1", "--scheme", "verlet"]).refused(&["verlet"]);
+    joint(&["sim", "q1", "--out", "/proc/nowhere"]).refused(&["/proc/nowhere", "--out DIR"]);
+    let tanh = ["sim", "q1", "--scheme", "reference", "--set", "sharpness=10", "--set", "dead_zone=tanh"];
+    joint(&[&tanh[..], &["--out", text(&folder.path().join("tanh"))]].concat())
+        .refused(&["no tanh dead zone", "--set dead_zone=sharp"]);
+    assert!(!Path::new("/proc/nowhere").exists());
+}

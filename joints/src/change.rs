@@ -1,0 +1,330 @@
+//! Changes single values in the text of a joint file, as a command line may ask for: the changed text is then read like
+//! any other, with the same checks and messages. Values are not judged here, only keys are.
+
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use crate::keys::{self, KEYS, Key, Kind};
+use crate::spelling;
+
+/// Why a value cannot be set.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Refused {
+    /// What is wrong, in one sentence.
+    pub message: String,
+    /// How to mend it.
+    pub help: String,
+}
+
+/// Keys that say the same thing in different units or forms: setting one takes the place of the others.
+const SAME_THING: [&[&str]; 6] = [
+    &["half_backlash_um", "backlash_um"],
+    &["sun_equivalent_mass_kg", "sun_inertia_kg_m2"],
+    &["planet_equivalent_mass_kg", "planet_inertia_kg_m2"],
+    &["carrier_inertia_over_radius_squared_kg", "carrier_equivalent_mass_kg", "carrier_inertia_kg_m2"],
+    &["carrier_radius_mm", "carrier_base_radius_mm"],
+    &["mesh_frequency_rad_per_s", "mesh_frequency_Hz", "mesh_frequency_over_omega_n"],
+];
+
+/// The full path of a key, as in `mesh.sun_planet.half_backlash_um`. Its last parts are enough where they name one key;
+/// a key of `[mesh]` without a family stands for both.
+pub fn full_key(key: &str) -> Result<String, Refused> {
+    find(key).map(|(path, _)| path)
+}
+
+/// The text with a key set to a value, as typed after the equals sign; quotes around words may be left out, and an
+/// empty value leaves the key out. What the key meant so far is replaced, in whatever form it was stated.
+pub fn change(text: &str, key: &str, value: &str) -> Result<String, Refused> {
+    let (path, known) = find(key)?;
+    let (section, name) = path.rsplit_once('.').unwrap_or(("", &path));
+    let mut text = text.to_owned();
+    for other in replaced(section, name) {
+        if other != path || value.trim().is_empty() {
+            text = without(&text, &other).ok_or_else(|| in_the_way(&other))?;
+        }
+    }
+    if value.trim().is_empty() {
+        return Ok(text);
+    }
+    let value = written(value.trim(), known);
+    let candidates = [
+        replace(&text, &path, &value),
+        insert(&text, section, name, &value),
+        (!section.is_empty()).then(|| format!("{}\n\n[{section}]\n{name} = {value}{REMARK}\n", text.trim_end())),
+        Some(format!("{path} = {value}{REMARK}\n{text}")),
+    ];
+    let set = |text: &String| lookup(text, &path).is_some_and(|(_, found)| text[found] == value);
+    candidates.into_iter().flatten().find(set).ok_or_else(|| Refused {
+        message: format!("`{path}` cannot be set to {value}"),
+        help: "the joint file must be TOML by itself before a value of it can be changed".into(),
+    })
+}
+
+/// Stands behind a changed value, in place of the source that the old one had.
+const REMARK: &str = " # set on the command line";
+
+fn in_the_way(path: &str) -> Refused {
+    let message = format!("`{path}` is in the way, and cannot be taken out by itself");
+    Refused { message, help: "write every key of the joint file on a line of its own".into() }
+}
+
+/// What setting a key takes the place of: itself, other forms of it, and for both mesh families what one of them has.
+fn replaced(section: &str, name: &str) -> Vec<String> {
+    let forms = SAME_THING.iter().find(|forms| forms.contains(&name)).copied();
+    let forms = forms.unwrap_or_default().iter().copied().filter(|form| *form != name).chain([name]);
+    let sections: &[&str] = match section {
+        "mesh" => &["mesh", "mesh.sun_planet", "mesh.ring_planet"],
+        _ => &[section],
+    };
+    let full = |section: &str, name: &str| if section.is_empty() { name.into() } else { format!("{section}.{name}") };
+    forms.flat_map(|form| sections.iter().map(move |section| full(section, form))).collect()
+}
+
+/// Every key that holds a value, by its full path.
+fn paths() -> impl Iterator<Item = (String, &'static Key)> {
+    KEYS.iter().filter(|key| !matches!(key.kind, Kind::Section)).flat_map(|key| {
+        let sections: &[&str] = match key.section {
+            "" => &[""],
+            "mesh" => &["mesh.", "mesh.sun_planet.", "mesh.ring_planet."],
+            "encoder" => &["drive_train.motor_encoder.", "drive_train.output_encoder."],
+            _ => return vec![(format!("{}.{}", key.section, key.name), key)],
+        };
+        sections.iter().map(|section| (format!("{section}{}", key.name), key)).collect()
+    })
+}
+
+fn find(key: &str) -> Result<(String, &'static Key), Refused> {
+    let key = key.trim();
+    let ends_so = |path: &str| path == key || path.strip_suffix(key).is_some_and(|rest| rest.ends_with('.'));
+    let mut found: Vec<_> = paths().filter(|(path, _)| ends_so(path)).collect();
+    let depth = |path: &str| path.matches('.').count();
+    let least = found.iter().map(|(path, _)| depth(path)).min();
+    found.retain(|(path, _)| Some(depth(path)) == least);
+    match found.len() {
+        0 => Err(unknown(key)),
+        1 => Ok(found.remove(0)),
+        _ => {
+            let all: Vec<String> = found.iter().map(|(path, _)| format!("`{path}`")).collect();
+            let message = format!("`{key}` names more than one key of a joint file");
+            Err(Refused { message, help: format!("write one of {}", all.join(", ")) })
+        }
+    }
+}
+
+fn unknown(key: &str) -> Refused {
+    let message = format!("unknown key `{key}`");
+    let all: Vec<(String, &Key)> = paths().collect();
+    // Any run of last parts may have been meant, such as `sun_planet.half_backlash_um`.
+    let endings = all.iter().flat_map(|(path, _)| {
+        std::iter::once(path.as_str()).chain(path.match_indices('.').map(|(dot, _)| &path[dot + 1..]))
+    });
+    let near = spelling::nearest(key, endings.clone()).or_else(|| {
+        let name = key.rsplit('.').next().unwrap_or(key);
+        spelling::nearest(name, all.iter().map(|(_, known)| known.name))
+    });
+    let help = match near {
+        _ if keys::find_section(key) => format!("[{key}] is a section: name one of its keys, as in {key}.KEY"),
+        Some(near) => {
+            let hint = all.iter().find(|(path, _)| path.ends_with(near)).map_or("", |(_, known)| known.hint);
+            format!("did you mean `{near}`? {hint}")
+        }
+        None => "docs/joint-file.md lists all keys, such as mesh.half_backlash_um".to_owned(),
+    };
+    Refused { message, help }
+}
+
+/// A value as TOML has it: words get their quotes, and numbers that only TOML minds are rewritten.
+fn written(value: &str, key: &Key) -> String {
+    let is_text = matches!(key.kind, Kind::Text | Kind::Choice(_));
+    let quoted = || {
+        let escaped = value.chars().map(|letter| match letter {
+            '\\' | '"' => format!("\\{letter}"),
+            letter if letter.is_control() => format!("\\u{:04x}", u32::from(letter)),
+            letter => letter.to_string(),
+        });
+        format!("\"{}\"", escaped.collect::<String>())
+    };
+    match DeValue::parse(value) {
+        Ok(parsed) if !is_text || matches!(parsed.get_ref(), DeValue::String(_)) => value.to_owned(),
+        Err(_) if !is_text => {
+            value.parse::<f64>().map_or_else(|_| quoted(), |number| format!("{number:?}").to_lowercase())
+        }
+        _ => quoted(),
+    }
+}
+
+/// Where a key and its value stand.
+fn lookup(text: &str, path: &str) -> Option<(Range<usize>, Range<usize>)> {
+    let table = DeTable::parse(text).ok()?;
+    let (section, name) = path.rsplit_once('.').unwrap_or(("", path));
+    let inside = table_at(table.get_ref(), section)?.1;
+    let (key, value) = inside.get_key_value(name)?;
+    Some((key.span(), value.span()))
+}
+
+/// A table by its path, with where its header stands.
+fn table_at<'a, 't>(top: &'a DeTable<'t>, section: &str) -> Option<(Range<usize>, &'a DeTable<'t>)> {
+    let mut found = (0..0, top);
+    for part in section.split('.').filter(|part| !part.is_empty()) {
+        let value: &Spanned<DeValue<'_>> = found.1.get(part)?;
+        let DeValue::Table(table) = value.get_ref() else { return None };
+        found = (value.span(), table);
+    }
+    Some(found)
+}
+
+/// From a value's end to the end of its line, if nothing but a comment follows.
+fn rest_of_line(text: &str, end: usize) -> Option<usize> {
+    let rest = text[end..].split('\n').next().unwrap_or_default();
+    let remark = rest.trim_start();
+    (remark.is_empty() || remark.starts_with('#')).then_some(end + rest.trim_end_matches('\r').len())
+}
+
+fn replace(text: &str, path: &str, value: &str) -> Option<String> {
+    let (_, old) = lookup(text, path)?;
+    let (end, remark) = match rest_of_line(text, old.end) {
+        Some(end) => (end, REMARK),
+        None => (old.end, ""),
+    };
+    Some(format!("{}{value}{remark}{}", &text[..old.start], &text[end..]))
+}
+
+/// Without a key, if it is there; `None` if it shares its line.
+fn without(text: &str, path: &str) -> Option<String> {
+    let Some((key, value)) = lookup(text, path) else { return Some(text.to_owned()) };
+    let start = text[..key.start].rfind('\n').map_or(0, |newline| newline + 1);
+    let end = rest_of_line(text, value.end)?;
+    let shorter = format!(
+        "{}{}",
+        &text[..start],
+        text[end..].strip_prefix('\r').unwrap_or(&text[end..]).trim_start_matches('\n')
+    );
+    (text[start..key.start].trim().is_empty() && lookup(&shorter, path).is_none()).then_some(shorter)
+}
+
+/// As the first key of a section that is there.
+fn insert(text: &str, section: &str, name: &str, value: &str) -> Option<String> {
+    if section.is_empty() {
+        return Some(format!("{name} = {value}{REMARK}\n{text}"));
+    }
+    let table = DeTable::parse(text).ok()?;
+    let (header, inside) = table_at(table.get_ref(), section)?;
+    if text[header.clone()].starts_with('{') {
+        let comma = if inside.is_empty() { "" } else { "," };
+        let at = header.start + 1;
+        return Some(format!("{} {name} = {value}{comma}{}", &text[..at], &text[at..]));
+    }
+    let at = text[header.end..].find('\n').map_or(text.len(), |newline| header.end + newline + 1);
+    let newline = if text[..at].ends_with('\n') { "" } else { "\n" };
+    Some(format!("{}{newline}{name} = {value}{REMARK}\n{}", &text[..at], &text[at..]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{PRESETS, preset, read};
+
+    fn q1() -> &'static str {
+        preset("q1").expect("the default preset")
+    }
+
+    fn half_backlash(text: &str) -> [f64; 2] {
+        let joint = read(text).expect("still a joint").parameters;
+        [joint.sun_planet.half_backlash[1], joint.ring_planet.half_backlash[1]]
+    }
+
+    #[test]
+    fn every_key_of_every_preset_can_be_set_to_what_it_is_without_changing_the_joint() {
+        for name in PRESETS {
+            let text = preset(name).expect("a preset");
+            let before = read(text).expect("a good preset");
+            for (path, _) in paths() {
+                let Some((_, value)) = lookup(text, &path) else { continue };
+                let changed = change(text, &path, &text[value]).unwrap_or_else(|why| panic!("{name}, {path}: {why:?}"));
+                let after = read(&changed).unwrap_or_else(|why| panic!("{name}, {path}: {why:?}\n{changed}"));
+                assert_eq!(after.parameters, before.parameters, "{name}, {path}");
+                assert_eq!(after.drive_train, before.drive_train, "{name}, {path}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_key_of_one_mesh_family_gets_a_section_of_its_own() {
+        let changed = change(q1(), "sun_planet.half_backlash_um", "60").expect("a known key");
+        assert_eq!(half_backlash(&changed), [60e-6, 40e-6]);
+        let again = change(&changed, "mesh.sun_planet.half_backlash_um", "70").expect("a known key");
+        assert_eq!(half_backlash(&again), [70e-6, 40e-6]);
+    }
+
+    #[test]
+    fn a_key_of_both_families_replaces_what_one_of_them_had() {
+        let own = change(q1(), "ring_planet.half_backlash_um", "60").expect("a known key");
+        let both = change(&own, "half_backlash_um", "10").expect("a known key");
+        assert_eq!(half_backlash(&both), [10e-6, 10e-6]);
+    }
+
+    #[test]
+    fn another_form_of_the_same_quantity_takes_its_place() {
+        let changed = change(q1(), "backlash_um", "30").expect("a known key");
+        assert_eq!(half_backlash(&changed), [15e-6, 15e-6]);
+        let own = change(q1(), "sun_planet.backlash_um", "30").expect("a known key");
+        assert_eq!(half_backlash(&own), [15e-6, 40e-6]);
+        let mass = change(q1(), "sun_inertia_kg_m2", "2e-6").expect("a known key");
+        assert!(read(&mass).is_ok(), "{mass}");
+    }
+
+    #[test]
+    fn an_empty_value_leaves_the_key_out_and_words_need_no_quotes() {
+        let paper = preset("paper").expect("a preset");
+        let still = change(paper, "mesh_frequency_over_omega_n", "").expect("a known key");
+        let angle = change(&still, "excitation.mode", "angle").expect("a known key");
+        let joint = read(&angle).expect("still a joint").parameters;
+        assert_eq!(joint.excitation, model_core::joint::Excitation::Angle);
+    }
+
+    #[test]
+    fn numbers_may_be_written_as_any_language_writes_them() {
+        for (text, value) in [("60", 60e-6), ("60.", 60e-6), (".5e2", 50e-6), ("[60, 60.0, 6e1]", 60e-6)] {
+            let changed = change(q1(), "mesh.half_backlash_um", text).expect("a known key");
+            assert_eq!(half_backlash(&changed), [value, value], "{text}");
+        }
+    }
+
+    #[test]
+    fn bad_values_are_left_to_the_reader_and_cannot_smuggle_in_lines() {
+        for value in ["6000", "NaN", "inf", "sixty", "-1", "60 um", "60\n[x]\ny=1", "[1, 2]", "\"60\""] {
+            let changed = change(q1(), "mesh.half_backlash_um", value).expect("a known key");
+            let problems = read(&changed).expect_err(value);
+            assert_eq!(problems.len(), 1, "{value}: {problems:?}");
+            assert!(problems[0].message.contains("half_backlash_um"), "{problems:?}");
+        }
+    }
+
+    #[test]
+    fn an_unknown_key_is_answered_with_the_nearest_one() {
+        let refused = |key| change(q1(), key, "1").expect_err(key);
+        assert!(refused("half_backlsh_um").help.contains("`half_backlash_um`"));
+        assert!(refused("sun_planet.half_backlash").help.contains("`sun_planet.half_backlash_um`"));
+        assert!(
+            refused("meshes.damping_ratio").help.contains("damping_ratio`"),
+            "{:?}",
+            refused("meshes.damping_ratio")
+        );
+        assert!(refused("mesh").help.contains("section"), "{:?}", refused("mesh"));
+        assert!(refused("weather_forecast").help.contains("joint-file.md"));
+        assert!(refused("bits").message.contains("more than one"));
+    }
+
+    #[test]
+    fn sections_written_in_one_line_or_with_dots_can_be_changed_too() {
+        let inline = "name = \"x\"\ncontact = { dead_zone = \"sharp\" }\n";
+        let changed = change(inline, "damping_law", "paper").expect("a known key");
+        assert!(changed.contains("{ damping_law = \"paper\", dead_zone"), "{changed}");
+        let dotted = "contact.dead_zone = \"sharp\"\n";
+        assert!(
+            change(dotted, "damping_law", "paper").expect("a known key").contains("contact.damping_law = \"paper\"")
+        );
+    }
+}

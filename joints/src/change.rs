@@ -313,7 +313,7 @@ mod tests {
             refused("meshes.damping_ratio")
         );
         assert!(refused("mesh").help.contains("section"), "{:?}", refused("mesh"));
-        assert!(refused("weather_forecast").help.contains("joint-file.md"));
+        assert!(refused("xyzzy").help.contains("joint-file.md"));
         assert!(refused("bits").message.contains("more than one"));
     }
 

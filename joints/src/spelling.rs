@@ -4,19 +4,24 @@
 pub(crate) fn nearest<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
     candidates
         .into_iter()
-        .map(|candidate| (likeness(word, candidate), candidate))
-        .filter(|(cost, candidate)| 3 * cost <= word.len().max(candidate.len()) + 2)
+        .filter_map(|candidate| Some((cost(word, candidate)?, candidate)))
         .min_by_key(|(cost, _)| *cost)
         .map(|(_, candidate)| candidate)
 }
 
-/// Edits between the words, where a word that only lost or changed its unit (`backlash`, `backlash_mm`) counts as near.
-fn likeness(word: &str, candidate: &str) -> usize {
+/// Edits between the words, if they are few for the words' length; a word that only lost or changed its unit
+/// (`backlash`, `backlash_mm`) counts as near.
+fn cost(word: &str, candidate: &str) -> Option<usize> {
     let (word, candidate) = (word.to_lowercase(), candidate.to_lowercase());
-    let whole = edits(&word, &candidate);
     let stem = |text: &str| text.rsplit_once('_').map_or(text.to_owned(), |(stem, _)| stem.to_owned());
-    let by_stem = edits(&word, &stem(&candidate)).min(edits(&stem(&word), &stem(&candidate))) + 1;
-    whole.min(by_stem)
+    let pairs =
+        [(word.clone(), candidate.clone(), 0), (word.clone(), stem(&candidate), 1), (stem(&word), stem(&candidate), 1)];
+    pairs
+        .iter()
+        .map(|(from, to, more)| (edits(from, to) + more, from.len().max(to.len())))
+        .filter(|(cost, length)| 3 * cost <= length + 2)
+        .map(|(cost, _)| cost)
+        .min()
 }
 
 /// Insertions, deletions and exchanges of one letter.

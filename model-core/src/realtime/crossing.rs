@@ -7,70 +7,99 @@
 //! position. These corrections deform the other meshes too: one linear pass adds the forces that this causes.
 
 use crate::real::Real;
-use crate::realtime::contact::{Drive, Law, Laws, Observed, acceleration, spread, wind_up_force};
-use crate::realtime::excitation::Instant;
-use crate::realtime::runge_kutta::Motion;
-use crate::tables::Tables;
+use crate::realtime::contact::{Drive, Law, Laws, Net};
+use crate::realtime::excitation::{Beat, PerMesh};
+use crate::realtime::frozen::{Frozen, Moment};
+use crate::realtime::stages::Point;
+use crate::realtime::substep::Course;
 
-/// A step that was taken with one contact set throughout.
-pub struct FrozenStep<'a, T, const N: usize> {
+/// The end of a step that was taken with one contact set throughout.
+pub struct End<'a, T: Real, const N: usize> {
+    /// The joint.
+    pub frozen: &'a Frozen<'a, T, N>,
     /// How far back from its end a crossing may lie.
     pub step: T,
     /// d(phase)/d(tau) [rad].
     pub phase_rate: T,
-    /// The meshes at its end.
-    pub observed: &'a Observed<T, N>,
+    /// The excitation.
+    pub beat: &'a Beat<T>,
+    /// Meshes whose law does not hold.
+    pub broken: &'a PerMesh<bool, N>,
 }
 
-impl<T: Real, const N: usize> FrozenStep<'_, T, N> {
-    /// The motion at the end, corrected for every mesh that is no longer under its law; `laws` are brought up to date.
+impl<T: Real, const N: usize> End<'_, T, N> {
+    /// Corrects the motion for every broken law, and the accelerations now and half a step before, which become those
+    /// that the new laws would have caused on the same path.
     #[inline(never)]
-    pub fn correct(
-        &self,
-        tables: &Tables<T, N>,
-        drive: &Drive<T>,
-        instant: &Instant<T, N>,
-        laws: &mut Laws<T, N>,
-        end: &Motion<T, N>,
-    ) -> Motion<T, N> {
-        let Observed { deflection, speed, force } = self.observed;
-        let wind_up = wind_up_force(tables, &end.position, &end.rate);
-        let accelerations = spread(&acceleration(tables, drive, force, wind_up));
+    pub fn correct(&self, laws: &mut Laws<T, N>, course: &mut Course<T, N>) {
+        let tables = self.frozen.tables;
         // e'' = -rate^2 e for the sine of eq. 11.
         let square = self.phase_rate * self.phase_rate;
-        let mut missed = [[[T::ZERO; N]; 2]; 3];
-        for kind in 0..2 {
-            for i in 0..N {
-                let (deflection, speed, stiffness) = (deflection[kind][i], speed[kind][i], instant.stiffness[kind][i]);
-                let before = laws.get(kind, i);
-                let after = Law::of(tables, (kind, i), deflection, speed, stiffness);
-                if before == after {
+        let (mut impulse, mut shift, mut jump, mut past) = (Net::NONE, Net::NONE, Net::NONE, Net::NONE);
+        let mut longest = T::ZERO;
+        let half = T::HALF * self.step;
+        for i in 0..N {
+            let planet = course.planets[i];
+            for kind in 0..2 {
+                if !self.broken[kind][i] {
                     continue;
                 }
-                laws.set(kind, i, after);
-                let acceleration = accelerations[kind][i] + square * instant.error[kind][i];
-                let mesh = Crossing { deflection, speed, acceleration, stiffness, step: self.step };
-                let integrals = mesh.missed(&before, &after);
-                for (integral, value) in missed.iter_mut().zip(integrals) {
-                    integral[kind][i] = value;
+                let (mut at, mut acceleration) = (planet.point(), planet.now);
+                if kind == 1 {
+                    at = Point { position: course.gap.position - at.position, rate: course.gap.rate - at.rate };
+                    acceleration = course.gap.now - acceleration;
+                }
+                let was = laws[kind][i];
+                let Moment { overlap, speed, stiffness, error, .. } =
+                    self.frozen.mesh(&Law::OPEN, (kind, i), self.beat, at);
+                let is = Law::of(tables, (kind, i), overlap, speed, stiffness);
+                if was.contact == is.contact {
+                    continue;
+                }
+                laws[kind][i] = is;
+                let stiffness_rate = tables.meshes[kind][i].stiffness_rate(self.beat, tables.excitation.harmonics);
+                let mesh = Crossing {
+                    deflection: overlap,
+                    speed,
+                    acceleration: acceleration + square * error,
+                    stiffness,
+                    stiffness_rate,
+                    step: self.step,
+                };
+                let missed = mesh.missed(&was, &is);
+                impulse.add_one((kind, i), missed.impulse);
+                shift.add_one((kind, i), missed.shift);
+                jump.add_one((kind, i), missed.path.value);
+                past.add_one((kind, i), missed.path.before(half));
+                if missed.since > longest {
+                    longest = missed.since;
                 }
             }
         }
-        let [rate, position, integral] = missed.map(|forces| acceleration(tables, &Drive::NONE, &forces, T::ZERO));
-        let (bent, bending) = (spread(&integral), spread(&position));
-        let mut forces = bent;
-        for kind in 0..2 {
-            for i in 0..N {
-                forces[kind][i] = laws.closed[kind][i] * instant.stiffness[kind][i] * bent[kind][i]
-                    + laws.damping[kind][i] * bending[kind][i];
-            }
+        let respond = |net: &Net<T, N>, wind_up: T| net.accelerations(tables, &Drive::NONE, wind_up);
+        let (rate, position) = (respond(&impulse, T::ZERO), respond(&shift, T::ZERO));
+        let mut back = Net::NONE;
+        for i in 0..N {
+            let force = |kind: usize, position: T, rate: T| {
+                let law = &laws[kind][i];
+                law.closed * tables.springs[kind].stiffness * position + law.damping * rate
+            };
+            let (sun, sun_rate) = (position.planets[i], rate.planets[i]);
+            back.add(i, force(0, sun, sun_rate), force(1, position.gap - sun, rate.gap - sun_rate));
         }
-        let wind_up = wind_up_force(tables, &integral, &position);
-        let later = acceleration(tables, &Drive::NONE, &forces, wind_up);
-        Motion {
-            position: end.position.plus(T::ONE, &position),
-            rate: end.rate.plus(T::ONE, &rate).plus(T::ONE, &later),
-        }
+        let mobility = &tables.mobility;
+        let wind_up = mobility.wind_up_stiffness * position.wind_up + mobility.wind_up_damping * rate.wind_up;
+        let back = respond(&back, wind_up);
+        // A force that grows from zero shifts by s/4 times what its double integral is.
+        let quarter = T::HALF * T::HALF * longest;
+        course.each(&position, |coordinate, position| coordinate.position += position);
+        course.each(&rate, |coordinate, rate| coordinate.rate += rate);
+        course.each(&back, |coordinate, back| {
+            coordinate.rate += quarter * back;
+            coordinate.now += back;
+        });
+        course.each(&respond(&jump, T::ZERO), |coordinate, jump| coordinate.now += jump);
+        course.each(&respond(&past, T::ZERO), |coordinate, past| coordinate.before += past);
     }
 }
 
@@ -80,7 +109,20 @@ struct Crossing<T> {
     speed: T,
     acceleration: T,
     stiffness: T,
+    stiffness_rate: T,
     step: T,
+}
+
+/// What a frozen law missed.
+struct Missed<T> {
+    /// Integral of the force since the crossing.
+    impulse: T,
+    /// Integral of that.
+    shift: T,
+    /// The force itself along the path that was taken, as if it had always acted.
+    path: Path<T>,
+    /// How long ago the crossing was.
+    since: T,
 }
 
 /// A quantity near the end of a sub-step: value, rate, acceleration there.
@@ -92,9 +134,7 @@ struct Path<T> {
 }
 
 impl<T: Real> Crossing<T> {
-    /// First three integrals of the force that the frozen law missed, from the crossing to the end.
-    fn missed(&self, before: &Law<T>, after: &Law<T>) -> [T; 3] {
-        let mut total = [T::ZERO; 3];
+    fn missed(&self, before: &Law<T>, after: &Law<T>) -> Missed<T> {
         let (was_closed, is_closed) = (before.closed > T::ZERO, after.closed > T::ZERO);
         // Damping that acts whatever the contact cancels out; what is left acts in contact only.
         let base = match (was_closed, is_closed) {
@@ -102,19 +142,20 @@ impl<T: Real> Crossing<T> {
             (false, true) => before.damping,
             _ => T::ZERO,
         };
+        let mut missed =
+            Missed { impulse: T::ZERO, shift: T::ZERO, path: Path { value: T::ZERO, rate: T::ZERO, acceleration: T::ZERO }, since: T::ZERO };
         if was_closed {
             let force = self.force(before, base);
-            let since = force.since_zero(self.step);
-            add(&mut total, Path { value: -force.value, rate: -force.rate, acceleration: -force.acceleration }, since);
+            let gone = Path { value: -force.value, rate: -force.rate, acceleration: -force.acceleration };
+            missed.add(gone, force.since_zero(self.step));
         }
         if is_closed {
             let force = self.force(after, base);
             // Contact began when the surfaces met, or, between surfaces already overlapping, when the force turned.
             let met = self.overlap(after).since_zero(self.step);
-            let since = if met < self.step { met } else { force.since_zero(self.step) };
-            add(&mut total, force, since);
+            missed.add(force, if met < self.step { met } else { force.since_zero(self.step) });
         }
-        total
+        missed
     }
 
     fn overlap(&self, law: &Law<T>) -> Path<T> {
@@ -127,13 +168,20 @@ impl<T: Real> Crossing<T> {
         let overlap = self.overlap(law);
         Path {
             value: self.stiffness * overlap.value + damping * overlap.rate,
-            rate: self.stiffness * overlap.rate + damping * overlap.acceleration,
-            acceleration: self.stiffness * overlap.acceleration,
+            rate: self.stiffness * overlap.rate
+                + self.stiffness_rate * overlap.value
+                + damping * overlap.acceleration,
+            acceleration: self.stiffness * overlap.acceleration + T::TWO * self.stiffness_rate * overlap.rate,
         }
     }
 }
 
 impl<T: Real> Path<T> {
+    /// Its value a while before the end.
+    fn before(&self, while_: T) -> T {
+        self.value - while_ * (self.rate - T::HALF * while_ * self.acceleration)
+    }
+
     /// How long before the end the path was zero: a secant and one Newton step, within the sub-step. Paths that give
     /// no answer (they do not point away from zero) are given the whole sub-step, where they are small.
     fn since_zero(&self, step: T) -> T {
@@ -159,13 +207,20 @@ fn newton<T: Real>(value: T, rate: T, acceleration: T, guess: T, limit: T) -> T 
     if refined < T::ZERO { T::ZERO } else { smaller(refined, limit) }
 }
 
-/// Adds the first three integrals over the last `since` of a path.
-fn add<T: Real>(total: &mut [T; 3], path: Path<T>, since: T) {
-    let Path { value, rate, acceleration } = path;
-    let s = since;
-    total[0] += s * (value - s * (rate * T::HALF - s * acceleration * T::SIXTH));
-    total[1] += s * s * (value * T::HALF - s * (rate * T::THIRD - s * acceleration * T::EIGHTH));
-    total[2] += s * s * s * (value * T::SIXTH - s * (rate * T::EIGHTH - s * acceleration * T::TWENTIETH));
+impl<T: Real> Missed<T> {
+    /// Adds a force that has acted for the last `since`.
+    fn add(&mut self, path: Path<T>, since: T) {
+        let Path { value, rate, acceleration } = path;
+        let s = since;
+        self.impulse += s * (value - s * (rate * T::HALF - s * acceleration * T::SIXTH));
+        self.shift += s * s * (value * T::HALF - s * (rate * T::THIRD - s * acceleration * T::EIGHTH));
+        self.path.value += value;
+        self.path.rate += rate;
+        self.path.acceleration += acceleration;
+        if since > self.since {
+            self.since = since;
+        }
+    }
 }
 
 fn smaller<T: Real>(a: T, b: T) -> T {

@@ -8,10 +8,13 @@ use core::array;
 
 use nalgebra::SVector;
 
+use crate::mesh::ContactState;
 use crate::real::Real;
 use crate::realtime::contact::{Drive, Laws, spread};
-use crate::realtime::crossing::FrozenStep;
-use crate::realtime::excitation::{Instant, MeshPhase, PerMesh, instant};
+use crate::realtime::crossing::End;
+use crate::realtime::excitation::{Beat, Instant, MeshPhase, PerMesh, instant};
+use crate::realtime::frozen::Frozen;
+use crate::realtime::substep::Course;
 use crate::realtime::runge_kutta::Motion;
 use crate::realtime::state::Relative;
 use crate::realtime::unfrozen::forces;
@@ -23,30 +26,30 @@ pub fn hold<T: Real, const N: usize>(
     tables: &Tables<T, N>,
     drive: &Drive<T>,
     phase: &MeshPhase<T>,
-    start: &Instant<T, N>,
     laws: &Laws<T, N>,
     motion: &Motion<T, N>,
 ) -> Option<Motion<T, N>> {
     let flow = &tables.flow;
     let slow = phase.way < flow.longest_way && -phase.way < flow.longest_way;
-    if !slow || !laws.all_closed() {
+    if !slow || !all_closed(laws) {
         return None;
     }
-    let seats = &laws.offset;
-    let (from_start, true) = closed_force(tables, seats, motion, start) else { return None };
+    let start = instant(tables, &Beat::new(phase.start, phase.rate));
+    let (from_start, true) = closed_force(tables, laws, motion, &start) else { return None };
     let modes = Modes::of(tables.planet_share, motion);
 
     let half = phase.over(T::HALF);
     let middle = phase.start.turned(&half);
     let guess = modes.free(&flow.half, drive).with([(&flow.half_constant, &from_start)]).motion();
-    let at_middle = instant(tables, &middle, phase.rate);
-    let (from_middle, true) = closed_force(tables, seats, &guess, &at_middle) else { return None };
+    let at_middle = instant(tables, &Beat::new(middle, phase.rate));
+    let (from_middle, true) = closed_force(tables, laws, &guess, &at_middle) else { return None };
 
-    let at_end = instant(tables, &middle.turned(&half), phase.rate);
+    let end_beat = Beat::new(middle.turned(&half), phase.rate);
+    let at_end = instant(tables, &end_beat);
     let free = modes.free(&flow.whole, drive);
     let [first, second] = &flow.whole_linear;
     let guess = free.with([(first, &from_start), (second, &from_middle)]).motion();
-    let (from_end, closed) = closed_force(tables, seats, &guess, &at_end);
+    let (from_end, closed) = closed_force(tables, laws, &guess, &at_end);
 
     let [first, second, third] = &flow.whole_quadratic;
     let end = free.with([(first, &from_start), (second, &from_middle), (third, &from_end)]).motion();
@@ -54,9 +57,18 @@ pub fn hold<T: Real, const N: usize>(
         return Some(end);
     }
     let mut laws = *laws;
-    let observed = laws.observe(&laws.at(&at_end), &end, &at_end);
-    let step = FrozenStep { step: T::HALF * flow.step, phase_rate: phase.rate, observed: &observed };
-    Some(step.correct(tables, drive, &at_end, &mut laws, &end))
+    let frozen = Frozen { tables, drive };
+    let mut course = Course::of(&end);
+    let mut broken = [[false; N]; 2];
+    let ends = (course.gap.point(), course.wind_up.point());
+    let last = frozen.pull(&laws, &end_beat, ends, |i| course.planets[i].point(), |(kind, i), moment| {
+        broken[kind][i] = !frozen.holds(&laws[kind][i], (kind, i), moment);
+    });
+    course.each(&last, |coordinate, last| coordinate.now = last);
+    let last = End { frozen: &frozen, step: T::HALF * flow.step, phase_rate: phase.rate, beat: &end_beat, broken: &broken };
+    last.correct(&mut laws, &mut course);
+    let end = course.motion();
+    Some(end)
 }
 
 /// One tick of the paper's scheme: constant exponential, pseudo-force held over each sub-step (first-order
@@ -65,11 +77,11 @@ pub fn paper<T: Real, const N: usize>(
     tables: &Tables<T, N>,
     drive: &Drive<T>,
     phase: &MeshPhase<T>,
-    start: &Instant<T, N>,
     motion: &Motion<T, N>,
 ) -> Motion<T, N> {
     let half = phase.over(tables.half_part);
-    let (mut motion, mut rotor, mut now) = (*motion, phase.start, *start);
+    let (mut motion, mut rotor) = (*motion, phase.start);
+    let mut now = instant(tables, &Beat::new(rotor, phase.rate));
     for _ in 0..tables.substeps {
         let (positions, rates) = (spread(&motion.position), spread(&motion.rate));
         let mut force = forces(tables, &positions, &rates, &now);
@@ -84,7 +96,7 @@ pub fn paper<T: Real, const N: usize>(
         let free = Modes::of(tables.planet_share, &motion).free(&tables.flow.whole, drive);
         motion = free.with([(&tables.flow.whole_constant, &force)]).motion();
         rotor = rotor.turned(&half).turned(&half);
-        now = instant(tables, &rotor, phase.rate);
+        now = instant(tables, &Beat::new(rotor, phase.rate));
     }
     motion
 }
@@ -94,7 +106,7 @@ pub fn paper<T: Real, const N: usize>(
 #[inline]
 fn closed_force<T: Real, const N: usize>(
     tables: &Tables<T, N>,
-    offset: &PerMesh<T, N>,
+    laws: &Laws<T, N>,
     motion: &Motion<T, N>,
     instant: &Instant<T, N>,
 ) -> (Sorted<T, N>, bool) {
@@ -104,7 +116,7 @@ fn closed_force<T: Real, const N: usize>(
     for kind in 0..2 {
         let spring = &tables.springs[kind];
         for i in 0..N {
-            let (position, offset, error) = (positions[kind][i], offset[kind][i], instant.error[kind][i]);
+            let (position, offset, error) = (positions[kind][i], laws[kind][i].offset, instant.error[kind][i]);
             let (stiffness, error_rate) = (instant.stiffness[kind][i], instant.error_rate[kind][i]);
             let overlap = position - error - offset;
             let way = tables.flow.reach * (rates[kind][i] - error_rate);
@@ -194,6 +206,10 @@ impl<T: Real, const N: usize> Modes<T, N> {
             },
         }
     }
+}
+
+fn all_closed<T: Real, const N: usize>(laws: &Laws<T, N>) -> bool {
+    laws.iter().flatten().all(|law| law.contact != ContactState::Separated)
 }
 
 fn total<T: Real, const N: usize>(values: &[T; N]) -> T {

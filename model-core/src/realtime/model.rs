@@ -5,9 +5,10 @@ use core::array;
 
 use crate::mesh::ContactState;
 use crate::real::Real;
-use crate::realtime::contact::{Drive, Laws, contact, spread};
-use crate::realtime::excitation::{MeshPhase, PerMesh, Rotor, instant, mesh_way};
+use crate::realtime::contact::{Drive, contact, spread};
+use crate::realtime::excitation::{Beat, MeshPhase, PerMesh, Rotor, instant, mesh_way};
 use crate::realtime::flow;
+use crate::realtime::frozen::Frozen;
 use crate::realtime::runge_kutta::Motion;
 use crate::realtime::state::State;
 use crate::realtime::substep;
@@ -99,19 +100,17 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
         let phase = MeshPhase { start, way, rate: tables.excitation.rate * way };
         self.state.phase = self.state.phase.wrapping_add(tables.excitation.phase_step);
 
-        let start = instant(tables, &phase.start, phase.rate);
         let motion = Motion { position: self.state.position, rate: self.state.rate };
         let Motion { position, rate } = match tables.scheme {
-            Scheme::PaperEtd1 => flow::paper(tables, &drive, &phase, &start, &motion),
-            Scheme::RungeKutta4 => unfrozen::runge_kutta(tables, &drive, &phase, &start, &motion),
-            Scheme::SemiImplicitEuler => unfrozen::semi_implicit_euler(tables, &drive, &phase, &start, &motion),
-            Scheme::Realtime if tables.sharpness > T::ZERO => {
-                unfrozen::runge_kutta(tables, &drive, &phase, &start, &motion)
-            }
+            Scheme::PaperEtd1 => flow::paper(tables, &drive, &phase, &motion),
+            Scheme::RungeKutta4 => unfrozen::runge_kutta(tables, &drive, &phase, &motion),
+            Scheme::SemiImplicitEuler => unfrozen::semi_implicit_euler(tables, &drive, &phase, &motion),
+            Scheme::Realtime if tables.sharpness > T::ZERO => unfrozen::runge_kutta(tables, &drive, &phase, &motion),
             Scheme::Realtime => {
-                let laws = Laws::of(tables, &motion.position, &motion.rate, &start);
-                flow::hold(tables, &drive, &phase, &start, &laws, &motion)
-                    .unwrap_or_else(|| substep::advance(tables, &drive, &phase, &start, &laws, &motion))
+                let beat = Beat::new(phase.start, phase.rate);
+                let laws = Frozen { tables, drive: &drive }.laws(&beat, &motion);
+                flow::hold(tables, &drive, &phase, &laws, &motion)
+                    .unwrap_or_else(|| substep::advance(tables, &drive, &phase, &laws, &motion))
             }
         };
         (self.state.position, self.state.rate) = (position, rate);
@@ -123,7 +122,7 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
         let units = &self.tables.units;
         let planets = position.planets.iter().fold(T::ZERO, |sum, planet| sum + *planet);
         let offset = |gains: &[T; 3]| gains[0] * planets + gains[1] * position.gap + gains[2] * position.wind_up;
-        let errors = instant(self.tables, &Rotor::at(self.phase()), T::ZERO).error;
+        let errors = instant(self.tables, &Beat::new(Rotor::at(self.phase()), T::ZERO)).error;
         let meshes = spread(position);
         let deflections: PerMesh<T, N> = array::from_fn(|kind| array::from_fn(|i| meshes[kind][i] - errors[kind][i]));
         Outputs {

@@ -31,6 +31,14 @@ pub trait Real:
     const ONE: Self;
     /// 2.
     const TWO: Self;
+    /// 3.
+    const THREE: Self;
+    /// 4.
+    const FOUR: Self;
+    /// 6.
+    const SIX: Self;
+    /// 1/4.
+    const QUARTER: Self;
     /// 1/3.
     const THIRD: Self;
     /// 1/6.
@@ -59,6 +67,8 @@ pub trait Real:
     fn tanh(self) -> Self;
     /// Quotient; the caller has made sure that `divisor` is not zero.
     fn over(self, divisor: Self) -> Self;
+    /// Magnitude.
+    fn abs(self) -> Self;
     /// Neither infinite nor NaN.
     fn is_finite(self) -> bool;
     /// Bits for a digest.
@@ -72,6 +82,10 @@ macro_rules! real {
             const HALF: Self = 0.5;
             const ONE: Self = 1.0;
             const TWO: Self = 2.0;
+            const THREE: Self = 3.0;
+            const FOUR: Self = 4.0;
+            const SIX: Self = 6.0;
+            const QUARTER: Self = 0.25;
             const THIRD: Self = 1.0 / 3.0;
             const SIXTH: Self = 1.0 / 6.0;
             const EIGHTH: Self = 0.125;
@@ -104,6 +118,9 @@ macro_rules! real {
             }
             fn over(self, divisor: Self) -> Self {
                 self / divisor
+            }
+            fn abs(self) -> Self {
+                <$scalar>::abs(self)
             }
             fn is_finite(self) -> bool {
                 <$scalar>::is_finite(self)

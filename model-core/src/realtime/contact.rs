@@ -5,7 +5,7 @@ use crate::mesh::{ContactState, DampingLaw};
 use crate::real::Real;
 use crate::realtime::excitation::PerMesh;
 use crate::realtime::state::Relative;
-use crate::tables::Tables;
+use crate::tables::{Mobility, Tables};
 
 /// Accelerations of the bodies other than by mesh forces, in units of b_c omega_n^2.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,6 +21,11 @@ pub struct Drive<T> {
 impl<T: Real> Drive<T> {
     /// None at all: what is left is the response to forces.
     pub const NONE: Self = Self { sun: T::ZERO, carrier: T::ZERO, link: T::ZERO };
+
+    /// In other units.
+    pub fn times(&self, scale: T) -> Self {
+        Self { sun: scale * self.sun, carrier: scale * self.carrier, link: scale * self.link }
+    }
 }
 
 /// Contact state by geometry alone: d against b. At d = b the teeth touch without force and count as in contact, so
@@ -55,8 +60,12 @@ pub struct Law<T> {
     pub closed: T,
     /// +b on the drive side, -b on the back side, 0 where open.
     pub offset: T,
-    /// Damping that acts in this contact state.
+    /// Damping that acts in this contact state, over h.
     pub damping: T,
+    /// +1 on the drive side, -1 on the back side, 0 where open.
+    pub side: T,
+    /// 1 - closed.
+    pub open: T,
 }
 
 /// The law of every mesh.
@@ -64,10 +73,17 @@ pub type Laws<T, const N: usize> = PerMesh<Law<T>, N>;
 
 impl<T: Real> Law<T> {
     /// No force at all.
-    pub const OPEN: Self =
-        Self { contact: ContactState::Separated, closed: T::ZERO, offset: T::ZERO, damping: T::ZERO };
+    pub const OPEN: Self = Self {
+        contact: ContactState::Separated,
+        closed: T::ZERO,
+        offset: T::ZERO,
+        damping: T::ZERO,
+        side: T::ZERO,
+        open: T::ONE,
+    };
 
-    /// The law that holds at a deflection and rate (eq. 12 with the damping of the joint's law).
+    /// The law that holds at a deflection and rate (eq. 12 with the damping of the joint's law); the rate counts a
+    /// sub-step as the unit of time.
     #[inline]
     pub fn of<const N: usize>(
         tables: &Tables<T, N>,
@@ -77,7 +93,7 @@ impl<T: Real> Law<T> {
         stiffness: T,
     ) -> Self {
         let pushes_only = tables.damping_law == DampingLaw::Contact;
-        let damping = tables.springs[kind].damping;
+        let damping = tables.stage.damping[kind];
         let half_backlash = tables.meshes[kind][planet].half_backlash;
         let drive_side = deflection >= half_backlash;
         let offset = if drive_side { half_backlash } else { -half_backlash };
@@ -88,11 +104,11 @@ impl<T: Real> Law<T> {
             closed &= if drive_side { force > T::ZERO } else { force < T::ZERO };
         }
         if closed {
-            let contact = if drive_side { ContactState::DriveSide } else { ContactState::BackSide };
-            Self { contact, closed: T::ONE, offset, damping }
+            let (contact, side) =
+                if drive_side { (ContactState::DriveSide, T::ONE) } else { (ContactState::BackSide, -T::ONE) };
+            Self { contact, closed: T::ONE, offset, damping, side, open: T::ZERO }
         } else {
-            let damping = if pushes_only { T::ZERO } else { damping };
-            Self { contact: ContactState::Separated, closed: T::ZERO, offset: T::ZERO, damping }
+            Self { damping: if pushes_only { T::ZERO } else { damping }, ..Self::OPEN }
         }
     }
 }
@@ -109,6 +125,16 @@ pub struct Net<T, const N: usize> {
 impl<T: Real, const N: usize> Net<T, N> {
     /// No force.
     pub const NONE: Self = Self { sun_planet: T::ZERO, ring_planet: T::ZERO, apart: [T::ZERO; N] };
+
+    /// All mesh forces.
+    #[inline(always)]
+    pub fn of(forces: &PerMesh<T, N>) -> Self {
+        let mut net = Self::NONE;
+        for i in 0..N {
+            net.add(i, forces[0][i], forces[1][i]);
+        }
+        net
+    }
 
     /// Both forces on a planet that had none.
     #[inline(always)]
@@ -132,8 +158,7 @@ impl<T: Real, const N: usize> Net<T, N> {
 
     /// Relative accelerations (eqs 1-3 in the coordinates of eqs 16 and 17).
     #[inline(always)]
-    pub fn accelerations(&self, tables: &Tables<T, N>, drive: &Drive<T>, wind_up_force: T) -> Relative<T, N> {
-        let mobility = &tables.mobility;
+    pub fn accelerations(&self, mobility: &Mobility<T>, drive: &Drive<T>, wind_up_force: T) -> Relative<T, N> {
         let sun = drive.sun - mobility.sun * self.sun_planet;
         let carrier = drive.carrier + mobility.carrier * (self.sun_planet + self.ring_planet - wind_up_force);
         let link = drive.link + mobility.link * wind_up_force;
@@ -154,11 +179,7 @@ pub fn acceleration<T: Real, const N: usize>(
     mesh_forces: &PerMesh<T, N>,
     wind_up_force: T,
 ) -> Relative<T, N> {
-    let mut net = Net::NONE;
-    for i in 0..N {
-        net.add(i, mesh_forces[0][i], mesh_forces[1][i]);
-    }
-    net.accelerations(tables, drive, wind_up_force)
+    Net::of(mesh_forces).accelerations(&tables.mobility, drive, wind_up_force)
 }
 
 /// Force between carrier and link.

@@ -6,78 +6,77 @@
 //! so its first three integrals over [t - s, t] are closed forms; they correct rate, position and the integral of the
 //! position. These corrections deform the other meshes too: one linear pass adds the forces that this causes.
 
+use crate::mesh::DampingLaw;
 use crate::real::Real;
 use crate::realtime::contact::{Drive, Law, Laws, Net};
 use crate::realtime::excitation::{Beat, PerMesh};
 use crate::realtime::frozen::{Frozen, Moment};
-use crate::realtime::stages::Point;
 use crate::realtime::substep::Course;
 
 /// The end of a step that was taken with one contact set throughout.
-pub struct End<'a, T: Real, const N: usize> {
+pub struct End<'a, T: Real, const N: usize, const OVERTONES: bool> {
     /// The joint.
-    pub frozen: &'a Frozen<'a, T, N>,
-    /// How far back from its end a crossing may lie.
-    pub step: T,
-    /// d(phase)/d(tau) [rad].
-    pub phase_rate: T,
+    pub frozen: &'a Frozen<'a, T, N, OVERTONES>,
+    /// Way that the mesh phase goes in the step [rad].
+    pub rate: T,
     /// The excitation.
     pub beat: &'a Beat<T>,
-    /// Meshes whose law does not hold.
-    pub broken: &'a PerMesh<bool, N>,
+    /// Meshes whose law does not hold: those with more than zero.
+    pub trespasses: &'a PerMesh<T, N>,
 }
 
-impl<T: Real, const N: usize> End<'_, T, N> {
-    /// Corrects the motion for every broken law, and the accelerations now and half a step before, which become those
-    /// that the new laws would have caused on the same path.
+impl<T: Real, const N: usize, const OVERTONES: bool> End<'_, T, N, OVERTONES> {
+    /// Corrects the motion for every law that does not hold, and the accelerations now and half a step before, which
+    /// become those that the new laws would have caused on the same path.
     #[inline(never)]
     pub fn correct(&self, laws: &mut Laws<T, N>, course: &mut Course<T, N>) {
         let tables = self.frozen.tables;
         // e'' = -rate^2 e for the sine of eq. 11.
-        let square = self.phase_rate * self.phase_rate;
+        let square = self.rate * self.rate;
+        let pushes_only = tables.damping_law == DampingLaw::Contact;
         let (mut impulse, mut shift, mut jump, mut past) = (Net::NONE, Net::NONE, Net::NONE, Net::NONE);
         let mut longest = T::ZERO;
-        let half = T::HALF * self.step;
-        for i in 0..N {
-            let planet = course.planets[i];
-            for kind in 0..2 {
-                if !self.broken[kind][i] {
+        for kind in 0..2 {
+            for i in 0..N {
+                let trespass = self.trespasses[kind][i];
+                if trespass <= T::ZERO {
                     continue;
                 }
+                let planet = course.planets[i];
                 let (mut at, mut acceleration) = (planet.point(), planet.now);
                 if kind == 1 {
-                    at = Point { position: course.gap.position - at.position, rate: course.gap.rate - at.rate };
-                    acceleration = course.gap.now - acceleration;
+                    (at, acceleration) = (course.gap.point().less(at), course.gap.now - acceleration);
                 }
                 let was = laws[kind][i];
-                let Moment { overlap, speed, stiffness, error, .. } =
+                let Moment { overlap: deflection, speed, stiffness, error, .. } =
                     self.frozen.mesh(&Law::OPEN, (kind, i), self.beat, at);
-                let is = Law::of(tables, (kind, i), overlap, speed, stiffness);
-                if was.contact == is.contact {
+                let is = Law::of(tables, (kind, i), deflection, speed, stiffness);
+                laws[kind][i] = is;
+                // Without backlash both flanks are one.
+                if was.closed == is.closed && was.offset == is.offset {
                     continue;
                 }
-                laws[kind][i] = is;
-                let stiffness_rate = tables.meshes[kind][i].stiffness_rate(self.beat, tables.excitation.harmonics);
-                let mesh = Crossing {
-                    deflection: overlap,
-                    speed,
-                    acceleration: acceleration + square * error,
-                    stiffness,
-                    stiffness_rate,
-                    step: self.step,
-                };
+                let harmonics = if OVERTONES { tables.excitation.harmonics } else { 1 };
+                let stiffness_rate = tables.meshes[kind][i].stiffness_rate(self.beat, harmonics);
+                let acceleration = T::SIX * acceleration + square * error;
+                // Damping that acts whatever the contact is not missed.
+                let base = if pushes_only { T::ZERO } else { tables.stage.damping[kind] };
+                let mesh = Crossing { deflection, speed, acceleration, stiffness, stiffness_rate, base };
                 let missed = mesh.missed(&was, &is);
                 impulse.add_one((kind, i), missed.impulse);
                 shift.add_one((kind, i), missed.shift);
                 jump.add_one((kind, i), missed.path.value);
-                past.add_one((kind, i), missed.path.before(half));
+                past.add_one((kind, i), missed.path.at(T::HALF));
                 if missed.since > longest {
                     longest = missed.since;
                 }
             }
         }
-        let respond = |net: &Net<T, N>, wind_up: T| net.accelerations(tables, &Drive::NONE, wind_up);
+        let mobility = &tables.stage.mobility;
+        let respond = |net: &Net<T, N>, wind_up: T| net.accelerations(mobility, &Drive::NONE, wind_up);
         let (rate, position) = (respond(&impulse, T::ZERO), respond(&shift, T::ZERO));
+        // What the corrections bend elsewhere: it acts from now on, and has acted while it grew with the third power of
+        // time, a quarter of `longest` in the mean. Ripple is left out of it.
         let mut back = Net::NONE;
         for i in 0..N {
             let force = |kind: usize, position: T, rate: T| {
@@ -87,15 +86,13 @@ impl<T: Real, const N: usize> End<'_, T, N> {
             let (sun, sun_rate) = (position.planets[i], rate.planets[i]);
             back.add(i, force(0, sun, sun_rate), force(1, position.gap - sun, rate.gap - sun_rate));
         }
-        let mobility = &tables.mobility;
         let wind_up = mobility.wind_up_stiffness * position.wind_up + mobility.wind_up_damping * rate.wind_up;
         let back = respond(&back, wind_up);
-        // A force that grows from zero shifts by s/4 times what its double integral is.
-        let quarter = T::HALF * T::HALF * longest;
+        let later = T::SIX * T::QUARTER * longest;
         course.each(&position, |coordinate, position| coordinate.position += position);
         course.each(&rate, |coordinate, rate| coordinate.rate += rate);
         course.each(&back, |coordinate, back| {
-            coordinate.rate += quarter * back;
+            coordinate.rate += later * back;
             coordinate.now += back;
         });
         course.each(&respond(&jump, T::ZERO), |coordinate, jump| coordinate.now += jump);
@@ -110,14 +107,14 @@ struct Crossing<T> {
     acceleration: T,
     stiffness: T,
     stiffness_rate: T,
-    step: T,
+    base: T,
 }
 
 /// What a frozen law missed.
 struct Missed<T> {
-    /// Integral of the force since the crossing.
+    /// Six times the integral of the force since the crossing.
     impulse: T,
-    /// Integral of that.
+    /// Six times the integral of that integral.
     shift: T,
     /// The force itself along the path that was taken, as if it had always acted.
     path: Path<T>,
@@ -136,24 +133,18 @@ struct Path<T> {
 impl<T: Real> Crossing<T> {
     fn missed(&self, before: &Law<T>, after: &Law<T>) -> Missed<T> {
         let (was_closed, is_closed) = (before.closed > T::ZERO, after.closed > T::ZERO);
-        // Damping that acts whatever the contact cancels out; what is left acts in contact only.
-        let base = match (was_closed, is_closed) {
-            (true, false) => after.damping,
-            (false, true) => before.damping,
-            _ => T::ZERO,
-        };
         let mut missed =
             Missed { impulse: T::ZERO, shift: T::ZERO, path: Path { value: T::ZERO, rate: T::ZERO, acceleration: T::ZERO }, since: T::ZERO };
         if was_closed {
-            let force = self.force(before, base);
+            let force = self.force(before);
             let gone = Path { value: -force.value, rate: -force.rate, acceleration: -force.acceleration };
-            missed.add(gone, force.since_zero(self.step));
+            missed.add(gone, force.since_zero());
         }
         if is_closed {
-            let force = self.force(after, base);
+            let force = self.force(after);
             // Contact began when the surfaces met, or, between surfaces already overlapping, when the force turned.
-            let met = self.overlap(after).since_zero(self.step);
-            missed.add(force, if met < self.step { met } else { force.since_zero(self.step) });
+            let met = self.overlap(after).since_zero();
+            missed.add(force, if met < T::ONE { met } else { force.since_zero() });
         }
         missed
     }
@@ -163,8 +154,8 @@ impl<T: Real> Crossing<T> {
     }
 
     /// Contact force under a law less the damping that acts anyway; the jerk that damping would see is left out.
-    fn force(&self, law: &Law<T>, base: T) -> Path<T> {
-        let damping = law.damping - base;
+    fn force(&self, law: &Law<T>) -> Path<T> {
+        let damping = law.damping - self.base;
         let overlap = self.overlap(law);
         Path {
             value: self.stiffness * overlap.value + damping * overlap.rate,
@@ -177,34 +168,36 @@ impl<T: Real> Crossing<T> {
 }
 
 impl<T: Real> Path<T> {
-    /// Its value a while before the end.
-    fn before(&self, while_: T) -> T {
-        self.value - while_ * (self.rate - T::HALF * while_ * self.acceleration)
+    /// Its value some time before the end.
+    fn at(&self, earlier: T) -> T {
+        self.value - earlier * (self.rate - T::HALF * earlier * self.acceleration)
     }
 
     /// How long before the end the path was zero: a secant and one Newton step, within the sub-step. Paths that give
     /// no answer (they do not point away from zero) are given the whole sub-step, where they are small.
-    fn since_zero(&self, step: T) -> T {
+    fn since_zero(&self) -> T {
         let sign = if self.value < T::ZERO { -T::ONE } else { T::ONE };
         let (value, rate, acceleration) = (sign * self.value, sign * self.rate, sign * self.acceleration);
-        if value >= rate * step {
-            return if rate > T::ZERO { newton(value, rate, acceleration, step, step) } else { step };
+        if rate <= T::ZERO {
+            return T::ONE;
         }
-        // Here rate * step > value >= 0, so the quotient is within the sub-step.
-        newton(value, rate, acceleration, value.over(rate), step)
+        // Where rate > value >= 0 the quotient is within the sub-step.
+        let guess = if value < rate { value.over(rate) } else { T::ONE };
+        let slope = rate - guess * acceleration;
+        // Below half the secant's slope the parabola turns inside the step, and the guess is the better answer.
+        if slope + slope < rate {
+            return guess;
+        }
+        let rest = value - guess * (rate - T::HALF * guess * acceleration);
+        let refined = guess + rest.over(slope);
+        if refined < T::ZERO {
+            T::ZERO
+        } else if refined < T::ONE {
+            refined
+        } else {
+            T::ONE
+        }
     }
-}
-
-/// One Newton step for value - s rate + s^2/2 acceleration = 0 from a guess, kept within [0, limit].
-fn newton<T: Real>(value: T, rate: T, acceleration: T, guess: T, limit: T) -> T {
-    let slope = rate - guess * acceleration;
-    // Half the secant's slope: below it the parabola turns inside the step and the guess is the better answer.
-    if slope + slope < rate {
-        return guess;
-    }
-    let rest = value - guess * (rate - T::HALF * guess * acceleration);
-    let refined = guess + rest.over(slope);
-    if refined < T::ZERO { T::ZERO } else { smaller(refined, limit) }
 }
 
 impl<T: Real> Missed<T> {
@@ -212,8 +205,9 @@ impl<T: Real> Missed<T> {
     fn add(&mut self, path: Path<T>, since: T) {
         let Path { value, rate, acceleration } = path;
         let s = since;
-        self.impulse += s * (value - s * (rate * T::HALF - s * acceleration * T::SIXTH));
-        self.shift += s * s * (value * T::HALF - s * (rate * T::THIRD - s * acceleration * T::EIGHTH));
+        // Six times the integrals: forces respond in sixths.
+        self.impulse += s * (T::SIX * value - s * (T::THREE * rate - s * acceleration));
+        self.shift += s * s * (T::THREE * value - s * (T::TWO * rate - T::SIX * T::EIGHTH * s * acceleration));
         self.path.value += value;
         self.path.rate += rate;
         self.path.acceleration += acceleration;
@@ -221,8 +215,4 @@ impl<T: Real> Missed<T> {
             self.since = since;
         }
     }
-}
-
-fn smaller<T: Real>(a: T, b: T) -> T {
-    if b < a { b } else { a }
 }

@@ -8,12 +8,12 @@ use core::array;
 
 use nalgebra::SVector;
 
-use crate::mesh::ContactState;
+use crate::mesh::DampingLaw;
 use crate::real::Real;
 use crate::realtime::contact::{Drive, Laws, spread};
 use crate::realtime::crossing::End;
 use crate::realtime::excitation::{Beat, Instant, MeshPhase, PerMesh, instant};
-use crate::realtime::frozen::Frozen;
+use crate::realtime::frozen::{Frozen, Start};
 use crate::realtime::substep::Course;
 use crate::realtime::runge_kutta::Motion;
 use crate::realtime::state::Relative;
@@ -22,20 +22,22 @@ use crate::tables::{Inputs, Tables, Transition};
 
 /// One tick with the contact set of its start; `None` if the set does not hold up to the middle. A mesh that opens
 /// after that is a crossing to correct, so that no work is thrown away late.
-pub fn hold<T: Real, const N: usize>(
-    tables: &Tables<T, N>,
+pub fn hold<T: Real, const N: usize, const OVERTONES: bool>(
+    frozen: &Frozen<T, N, OVERTONES>,
     drive: &Drive<T>,
     phase: &MeshPhase<T>,
-    laws: &Laws<T, N>,
+    start: &Start<T, N>,
     motion: &Motion<T, N>,
 ) -> Option<Motion<T, N>> {
+    let tables = frozen.tables;
     let flow = &tables.flow;
     let slow = phase.way < flow.longest_way && -phase.way < flow.longest_way;
-    if !slow || !all_closed(laws) {
+    if !slow || !start.settled {
         return None;
     }
-    let start = instant(tables, &Beat::new(phase.start, phase.rate));
-    let (from_start, true) = closed_force(tables, laws, motion, &start) else { return None };
+    let laws = &start.laws;
+    let at_start = instant(tables, &Beat::new(phase.start, phase.rate));
+    let (from_start, _) = closed_force(tables, laws, motion, &at_start);
     let modes = Modes::of(tables.planet_share, motion);
 
     let half = phase.over(T::HALF);
@@ -56,19 +58,20 @@ pub fn hold<T: Real, const N: usize>(
     if closed {
         return Some(end);
     }
+    // In the units of a sub-step, to which half a tick is at least as long.
+    let rate = tables.substep * phase.rate;
+    let beat = Beat::new(end_beat.rotor, rate);
     let mut laws = *laws;
-    let frozen = Frozen { tables, drive };
-    let mut course = Course::of(&end);
-    let mut broken = [[false; N]; 2];
-    let ends = (course.gap.point(), course.wind_up.point());
-    let last = frozen.pull(&laws, &end_beat, ends, |i| course.planets[i].point(), |(kind, i), moment| {
-        broken[kind][i] = !frozen.holds(&laws[kind][i], (kind, i), moment);
+    let mut course = Course::of(&end, tables.substep);
+    let wind_up = frozen.wind_up_force(course.wind_up.point());
+    let mut trespasses = [[T::ZERO; N]; 2];
+    let pushes_only = if tables.damping_law == DampingLaw::Contact { T::ONE } else { T::ZERO };
+    let last = frozen.pull(&laws, &beat, course.gap.point(), wind_up, |i| course.planets[i].point(), |(kind, i), moment| {
+        trespasses[kind][i] = frozen.trespass(&laws[kind][i], (kind, i), moment, pushes_only);
     });
     course.each(&last, |coordinate, last| coordinate.now = last);
-    let last = End { frozen: &frozen, step: T::HALF * flow.step, phase_rate: phase.rate, beat: &end_beat, broken: &broken };
-    last.correct(&mut laws, &mut course);
-    let end = course.motion();
-    Some(end)
+    End { frozen, rate, beat: &beat, trespasses: &trespasses }.correct(&mut laws, &mut course);
+    Some(course.motion(tables.stage.rate))
 }
 
 /// One tick of the paper's scheme: constant exponential, pseudo-force held over each sub-step (first-order
@@ -206,10 +209,6 @@ impl<T: Real, const N: usize> Modes<T, N> {
             },
         }
     }
-}
-
-fn all_closed<T: Real, const N: usize>(laws: &Laws<T, N>) -> bool {
-    laws.iter().flatten().all(|law| law.contact != ContactState::Separated)
 }
 
 fn total<T: Real, const N: usize>(values: &[T; N]) -> T {

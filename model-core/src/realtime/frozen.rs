@@ -1,15 +1,13 @@
-//! The joint at one moment under frozen laws: what every mesh does, and the accelerations that follow. What to do when
+//! The joint at one moment under frozen laws: what every mesh does, and the accelerations that follow, with a sub-step
+//! as the unit of time and accelerations in sixths (see `stages`). What to do when
 //! a law no longer holds is left to `crossing`.
 
-use core::array;
-
-use crate::mesh::{ContactState, DampingLaw};
 use crate::real::Real;
 use crate::realtime::contact::{Drive, Law, Laws, Net};
-use crate::realtime::excitation::{Beat, MeshWave};
-use crate::realtime::runge_kutta::Motion;
+use crate::realtime::excitation::{Beat, MeshWave, PerMesh};
 use crate::realtime::stages::Point;
 use crate::realtime::state::Relative;
+use crate::realtime::substep::Course;
 use crate::tables::Tables;
 
 /// One mesh at one moment under its law.
@@ -27,55 +25,74 @@ pub struct Moment<T> {
     pub force: T,
 }
 
-/// What does not change over a tick.
-#[derive(Clone, Copy)]
-pub struct Frozen<'a, T: Real, const N: usize> {
-    /// The joint.
-    pub tables: &'a Tables<T, N>,
-    /// Torques.
-    pub drive: &'a Drive<T>,
+/// The start of a tick.
+pub struct Start<T, const N: usize> {
+    /// The laws that hold.
+    pub laws: Laws<T, N>,
+    /// Mesh forces.
+    pub forces: PerMesh<T, N>,
+    /// Whether every mesh is closed, too far from opening for its speed to open it before the middle of the tick.
+    pub settled: bool,
 }
 
-impl<T: Real, const N: usize> Frozen<'_, T, N> {
-    /// The laws that hold at a motion.
+/// What does not change over a tick.
+#[derive(Clone, Copy)]
+pub struct Frozen<'a, T: Real, const N: usize, const OVERTONES: bool> {
+    /// The joint.
+    pub tables: &'a Tables<T, N>,
+    /// Torques, as accelerations of a stage.
+    pub drive: Drive<T>,
+}
+
+impl<T: Real, const N: usize, const OVERTONES: bool> Frozen<'_, T, N, OVERTONES> {
+    /// The joint at the start of a tick.
     #[inline(never)]
-    pub fn laws(&self, beat: &Beat<T>, motion: &Motion<T, N>) -> Laws<T, N> {
-        let Motion { position, rate } = motion;
-        let law = |kind: usize, i: usize, position: T, rate: T| {
-            let Moment { overlap, speed, stiffness, .. } =
-                self.mesh(&Law::OPEN, (kind, i), beat, Point { position, rate });
-            Law::of(self.tables, (kind, i), overlap, speed, stiffness)
-        };
-        [
-            array::from_fn(|i| law(0, i, position.planets[i], rate.planets[i])),
-            array::from_fn(|i| law(1, i, position.gap - position.planets[i], rate.gap - rate.planets[i])),
-        ]
+    pub fn start(&self, beat: &Beat<T>, course: &Course<T, N>) -> Start<T, N> {
+        let mut start = Start { laws: [[Law::OPEN; N]; 2], forces: [[T::ZERO; N]; 2], settled: true };
+        for i in 0..N {
+            let sun = course.planets[i].point();
+            for (kind, at) in [(0, sun), (1, course.gap.point().less(sun))] {
+                let Moment { overlap: deflection, speed, stiffness, .. } =
+                    self.mesh(&Law::OPEN, (kind, i), beat, at);
+                let law = Law::of(self.tables, (kind, i), deflection, speed, stiffness);
+                let overlap = deflection - law.offset;
+                let way = self.tables.flow.reach * (self.tables.stage.rate * speed.abs());
+                start.settled &= law.side * overlap > way;
+                start.forces[kind][i] = law.closed * (stiffness * overlap) + law.damping * speed;
+                start.laws[kind][i] = law;
+            }
+        }
+        start
     }
 
     /// One mesh under a law.
     #[inline(always)]
     pub fn mesh(&self, law: &Law<T>, (kind, i): (usize, usize), beat: &Beat<T>, at: Point<T>) -> Moment<T> {
         let tables = self.tables;
+        let harmonics = if OVERTONES { tables.excitation.harmonics } else { 1 };
         let MeshWave { stiffness, error, error_rate } =
-            tables.meshes[kind][i].at(beat, tables.springs[kind].stiffness, tables.excitation.harmonics);
+            tables.meshes[kind][i].at(beat, tables.springs[kind].stiffness, harmonics);
         let (overlap, speed) = (at.position - error - law.offset, at.rate - error_rate);
         let force = law.closed * (stiffness * overlap) + law.damping * speed;
         Moment { overlap, speed, stiffness, error, force }
     }
 
-    /// Whether a mesh is still under its law.
+    /// Zero while a mesh is under its law; positive when the law no longer holds.
     #[inline(always)]
-    pub fn holds(&self, law: &Law<T>, (kind, i): (usize, usize), moment: &Moment<T>) -> bool {
+    pub fn trespass(&self, law: &Law<T>, (kind, i): (usize, usize), moment: &Moment<T>, pushes_only: T) -> T {
+        let half_backlash = self.tables.meshes[kind][i].half_backlash;
         let Moment { overlap, force, .. } = *moment;
-        let pushes_only = self.tables.damping_law == DampingLaw::Contact;
-        match law.contact {
-            ContactState::DriveSide => overlap >= T::ZERO && !(pushes_only && force < T::ZERO),
-            ContactState::BackSide => overlap <= T::ZERO && !(pushes_only && force > T::ZERO),
-            ContactState::Separated => {
-                let half_backlash = self.tables.meshes[kind][i].half_backlash;
-                overlap < half_backlash && overlap > -half_backlash
-            }
-        }
+        let room = law.side * overlap + law.open * (half_backlash - overlap.abs());
+        let push = law.side * force;
+        // |x| - x is 0 or -2x: cheaper than a comparison for each mesh on a core whose flags are slow to read.
+        (room.abs() - room) + pushes_only * (push.abs() - push)
+    }
+
+    /// Force between carrier and link.
+    #[inline(always)]
+    pub fn wind_up_force(&self, at: Point<T>) -> T {
+        let mobility = &self.tables.stage.mobility;
+        mobility.wind_up_stiffness * at.position + mobility.wind_up_damping * at.rate
     }
 
     /// Accelerations at the points of a stage; `see` is shown every mesh.
@@ -84,22 +101,21 @@ impl<T: Real, const N: usize> Frozen<'_, T, N> {
         &self,
         laws: &Laws<T, N>,
         beat: &Beat<T>,
-        (gap, wind_up): (Point<T>, Point<T>),
+        gap: Point<T>,
+        wind_up_force: T,
         mut planet: impl FnMut(usize) -> Point<T>,
         mut see: impl FnMut((usize, usize), &Moment<T>),
     ) -> Relative<T, N> {
         let mut net = Net::NONE;
         for i in 0..N {
             let sun = planet(i);
-            let ring = Point { position: gap.position - sun.position, rate: gap.rate - sun.rate };
+            let ring = gap.less(sun);
             let sun = self.mesh(&laws[0][i], (0, i), beat, sun);
             see((0, i), &sun);
             let ring = self.mesh(&laws[1][i], (1, i), beat, ring);
             see((1, i), &ring);
             net.add(i, sun.force, ring.force);
         }
-        let mobility = &self.tables.mobility;
-        let wind_up = mobility.wind_up_stiffness * wind_up.position + mobility.wind_up_damping * wind_up.rate;
-        net.accelerations(self.tables, self.drive, wind_up)
+        net.accelerations(&self.tables.stage.mobility, &self.drive, wind_up_force)
     }
 }

@@ -11,7 +11,7 @@ use crate::realtime::flow;
 use crate::realtime::frozen::Frozen;
 use crate::realtime::runge_kutta::Motion;
 use crate::realtime::state::State;
-use crate::realtime::substep;
+use crate::realtime::substep::{self, Course};
 use crate::realtime::unfrozen;
 use crate::tables::{Scheme, Tables};
 
@@ -106,12 +106,8 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
             Scheme::RungeKutta4 => unfrozen::runge_kutta(tables, &drive, &phase, &motion),
             Scheme::SemiImplicitEuler => unfrozen::semi_implicit_euler(tables, &drive, &phase, &motion),
             Scheme::Realtime if tables.sharpness > T::ZERO => unfrozen::runge_kutta(tables, &drive, &phase, &motion),
-            Scheme::Realtime => {
-                let beat = Beat::new(phase.start, phase.rate);
-                let laws = Frozen { tables, drive: &drive }.laws(&beat, &motion);
-                flow::hold(tables, &drive, &phase, &laws, &motion)
-                    .unwrap_or_else(|| substep::advance(tables, &drive, &phase, &laws, &motion))
-            }
+            Scheme::Realtime if tables.excitation.harmonics > 1 => tick::<T, N, true>(tables, &drive, &phase, &motion),
+            Scheme::Realtime => tick::<T, N, false>(tables, &drive, &phase, &motion),
         };
         (self.state.position, self.state.rate) = (position, rate);
     }
@@ -147,4 +143,24 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
             if periods == 0 { self.state.phase } else { self.state.rigid.fraction.wrapping_mul(periods.into()) };
         (phase >> 32) as u32
     }
+}
+
+/// One tick of the sharp dead zone: by exponential while its contact set holds, otherwise in sub-steps. Ripple of one
+/// harmonic has a copy of its own, which need not ask at every mesh whether there are more.
+fn tick<T: Real, const N: usize, const OVERTONES: bool>(
+    tables: &Tables<T, N>,
+    drive: &Drive<T>,
+    phase: &MeshPhase<T>,
+    motion: &Motion<T, N>,
+) -> Motion<T, N> {
+    let stage = &tables.stage;
+    let drive_of_stage = drive.times(stage.square_sixth);
+    let frozen = Frozen::<T, N, OVERTONES> { tables, drive: drive_of_stage };
+    let mut course = Course::of(motion, tables.substep);
+    let mut start = frozen.start(&Beat::new(phase.start, tables.substep * phase.rate), &course);
+    if let Some(end) = flow::hold(&frozen, drive, phase, &start, motion) {
+        return end;
+    }
+    substep::advance(&frozen, phase, &mut start, &mut course);
+    course.motion(stage.rate)
 }

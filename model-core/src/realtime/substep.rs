@@ -4,17 +4,17 @@
 
 use core::array;
 
+use crate::mesh::DampingLaw;
 use crate::real::Real;
-use crate::realtime::contact::{Drive, Laws};
+use crate::realtime::contact::Net;
 use crate::realtime::crossing::End;
-use crate::realtime::excitation::{Beat, MeshPhase};
-use crate::realtime::frozen::Frozen;
+use crate::realtime::excitation::{Beat, MeshPhase, PerMesh};
+use crate::realtime::frozen::{Frozen, Start};
 use crate::realtime::runge_kutta::Motion;
-use crate::realtime::stages::{Coordinate, Weights};
+use crate::realtime::stages::Coordinate;
 use crate::realtime::state::Relative;
-use crate::tables::Tables;
 
-/// All coordinates.
+/// All coordinates, with a sub-step as the unit of time.
 pub struct Course<T, const N: usize> {
     /// u_s - u_pi - u_c of every planet, without imposed error.
     pub planets: [Coordinate<T>; N],
@@ -24,91 +24,101 @@ pub struct Course<T, const N: usize> {
     pub wind_up: Coordinate<T>,
 }
 
-/// One tick.
-pub fn advance<T: Real, const N: usize>(
-    tables: &Tables<T, N>,
-    drive: &Drive<T>,
+/// One tick; `start.laws` are brought up to date.
+pub fn advance<T: Real, const N: usize, const OVERTONES: bool>(
+    frozen: &Frozen<T, N, OVERTONES>,
     phase: &MeshPhase<T>,
-    laws: &Laws<T, N>,
-    motion: &Motion<T, N>,
-) -> Motion<T, N> {
-    let frozen = Frozen { tables, drive };
+    start: &mut Start<T, N>,
+    course: &mut Course<T, N>,
+) {
+    let tables = frozen.tables;
+    let pushes_only = if tables.damping_law == DampingLaw::Contact { T::ONE } else { T::ZERO };
+    let compliant = tables.mobility.wind_up > T::ZERO;
     let half = phase.over(tables.half_part);
-    let weights = Weights::new(tables.substep);
-    let mut laws = *laws;
+    let rate = tables.substep * phase.rate;
     let mut rotor = phase.start;
-    let mut course = begin(&frozen, &laws, &weights, phase, &rotor.turned(&half), motion);
+    begin(frozen, start, &Beat::new(rotor.turned(&half), rate), course);
+    let laws = &mut start.laws;
+    let mut trespasses: PerMesh<T, N> = [[T::ZERO; N]; 2];
     for _ in 0..tables.substeps {
         rotor = rotor.turned(&half);
-        let beat = Beat::new(rotor, phase.rate);
-        let ends = (course.gap.middle(&weights), course.wind_up.middle(&weights));
-        let middle = frozen.pull(&laws, &beat, ends, |i| course.planets[i].middle(&weights), |_, _| {});
+        let beat = Beat::new(rotor, rate);
+        let gap = course.gap.middle();
+        let wind_up = if compliant { frozen.wind_up_force(course.wind_up.middle()) } else { T::ZERO };
+        let middle = frozen.pull(laws, &beat, gap, wind_up, |i| course.planets[i].middle(), |_, _| {});
 
         rotor = rotor.turned(&half);
-        let beat = Beat::new(rotor, phase.rate);
-        let ends = (course.gap.arrive(&weights, middle.gap), course.wind_up.arrive(&weights, middle.wind_up));
+        let beat = Beat::new(rotor, rate);
+        let gap = course.gap.arrive(middle.gap);
+        let wind_up =
+            if compliant { frozen.wind_up_force(course.wind_up.arrive(middle.wind_up)) } else { T::ZERO };
         let planets = &mut course.planets;
-        let mut broken = [[false; N]; 2];
-        let mut holds = true;
+        let mut trespass = T::ZERO;
         let last = frozen.pull(
-            &laws,
+            laws,
             &beat,
-            ends,
-            |i| planets[i].arrive(&weights, middle.planets[i]),
+            gap,
+            wind_up,
+            |i| planets[i].arrive(middle.planets[i]),
             |(kind, i), moment| {
-                let held = frozen.holds(&laws[kind][i], (kind, i), moment);
-                broken[kind][i] = !held;
-                holds &= held;
+                let by = frozen.trespass(&laws[kind][i], (kind, i), moment, pushes_only);
+                trespasses[kind][i] = by;
+                trespass += by;
             },
         );
-        course.finish(&weights, &last);
-        if !holds {
-            let end = End { frozen: &frozen, step: tables.substep, phase_rate: phase.rate, beat: &beat, broken: &broken };
-            end.correct(&mut laws, &mut course);
+        for (planet, last) in course.planets.iter_mut().zip(last.planets) {
+            planet.finish(last);
+        }
+        course.gap.finish(last.gap);
+        if compliant {
+            course.wind_up.finish(last.wind_up);
+        }
+        if trespass > T::ZERO {
+            End { frozen, rate, beat: &beat, trespasses: &trespasses }.correct(laws, course);
         }
     }
-    course.motion()
 }
 
-/// The course at the start of a tick: accelerations from scratch, the one half a sub-step before from a first look at
-/// the middle.
+/// The accelerations at the start of a tick, and those of half a sub-step before from a first look at the middle.
 #[inline(never)]
-fn begin<T: Real, const N: usize>(
-    frozen: &Frozen<T, N>,
-    laws: &Laws<T, N>,
-    weights: &Weights<T>,
-    phase: &MeshPhase<T>,
-    middle: &crate::realtime::excitation::Rotor<T>,
-    motion: &Motion<T, N>,
-) -> Course<T, N> {
-    let mut course = Course::of(motion);
-    for (first, rotor) in [(true, &phase.start), (false, middle)] {
-        let beat = Beat::new(*rotor, phase.rate);
-        let point = |coordinate: &Coordinate<T>| {
-            if first { coordinate.point() } else { coordinate.middle(weights) }
-        };
-        let ends = (point(&course.gap), point(&course.wind_up));
-        let seen = frozen.pull(laws, &beat, ends, |i| point(&course.planets[i]), |_, _| {});
-        course.each(&seen, |coordinate, seen| {
-            if first {
-                (coordinate.now, coordinate.before) = (seen, seen);
-            } else {
-                coordinate.before = coordinate.now + coordinate.now - seen;
-            }
-        });
-    }
-    course
+fn begin<T: Real, const N: usize, const OVERTONES: bool>(
+    frozen: &Frozen<T, N, OVERTONES>,
+    start: &Start<T, N>,
+    middle: &Beat<T>,
+    course: &mut Course<T, N>,
+) {
+    let wind_up = frozen.wind_up_force(course.wind_up.point());
+    let now = Net::of(&start.forces).accelerations(&frozen.tables.stage.mobility, &frozen.drive, wind_up);
+    course.each(&now, |coordinate, now| (coordinate.now, coordinate.before) = (now, now));
+    let wind_up = frozen.wind_up_force(course.wind_up.middle());
+    let gap = course.gap.middle();
+    let seen = frozen.pull(&start.laws, middle, gap, wind_up, |i| course.planets[i].middle(), |_, _| {});
+    course.each(&seen, |coordinate, seen| coordinate.before = coordinate.now + coordinate.now - seen);
 }
 
 impl<T: Real, const N: usize> Course<T, N> {
-    /// A motion whose accelerations are not yet known.
-    pub fn of(motion: &Motion<T, N>) -> Self {
+    /// A motion whose accelerations are not yet known, in sub-steps of a length.
+    pub fn of(motion: &Motion<T, N>, length: T) -> Self {
         let Motion { position, rate } = motion;
-        let still = |position: T, rate: T| Coordinate { position, rate, now: T::ZERO, before: T::ZERO };
+        let still =
+            |position: T, rate: T| Coordinate { position, rate: length * rate, now: T::ZERO, before: T::ZERO };
         Self {
             planets: array::from_fn(|i| still(position.planets[i], rate.planets[i])),
             gap: still(position.gap, rate.gap),
             wind_up: still(position.wind_up, rate.wind_up),
+        }
+    }
+
+    /// The motion without its accelerations, from sub-steps at a rate.
+    pub fn motion(&self, rate: T) -> Motion<T, N> {
+        let collect = |value: fn(&Coordinate<T>) -> T, scale: T| Relative {
+            planets: array::from_fn(|i| scale * value(&self.planets[i])),
+            gap: scale * value(&self.gap),
+            wind_up: scale * value(&self.wind_up),
+        };
+        Motion {
+            position: collect(|coordinate| coordinate.position, T::ONE),
+            rate: collect(|coordinate| coordinate.rate, rate),
         }
     }
 
@@ -120,20 +130,5 @@ impl<T: Real, const N: usize> Course<T, N> {
         }
         act(&mut self.gap, values.gap);
         act(&mut self.wind_up, values.wind_up);
-    }
-
-    #[inline(always)]
-    fn finish(&mut self, weights: &Weights<T>, last: &Relative<T, N>) {
-        self.each(last, |coordinate, last| coordinate.finish(weights, last));
-    }
-
-    /// The motion without its accelerations.
-    pub fn motion(&self) -> Motion<T, N> {
-        let collect = |value: fn(&Coordinate<T>) -> T| Relative {
-            planets: array::from_fn(|i| value(&self.planets[i])),
-            gap: value(&self.gap),
-            wind_up: value(&self.wind_up),
-        };
-        Motion { position: collect(|coordinate| coordinate.position), rate: collect(|coordinate| coordinate.rate) }
     }
 }

@@ -85,6 +85,8 @@ pub fn forces<T: Real, const N: usize>(
                 let elastic = dead_zone::smoothed(deflection, half_backlash, tables.sharpness);
                 stiffness * elastic + tables.springs[kind].damping * speed
             } else {
+                // A law counts time in sub-steps.
+                let speed = tables.substep * speed;
                 let law = Law::of(tables, (kind, i), deflection, speed, stiffness);
                 law.closed * stiffness * (deflection - law.offset) + law.damping * speed
             };

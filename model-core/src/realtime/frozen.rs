@@ -35,6 +35,11 @@ pub struct Start<T, const N: usize> {
     pub settled: bool,
 }
 
+impl<T: Real, const N: usize> Start<T, N> {
+    /// To be filled.
+    pub const EMPTY: Self = Self { laws: [[Law::OPEN; N]; 2], forces: [[T::ZERO; N]; 2], settled: false };
+}
+
 /// What does not change over a tick.
 #[derive(Clone, Copy)]
 pub struct Frozen<'a, T: Real, const N: usize, const OVERTONES: bool> {
@@ -47,8 +52,8 @@ pub struct Frozen<'a, T: Real, const N: usize, const OVERTONES: bool> {
 impl<T: Real, const N: usize, const OVERTONES: bool> Frozen<'_, T, N, OVERTONES> {
     /// The joint at the start of a tick.
     #[inline(never)]
-    pub fn start(&self, beat: &Beat<T>, course: &Course<T, N>) -> Start<T, N> {
-        let mut start = Start { laws: [[Law::OPEN; N]; 2], forces: [[T::ZERO; N]; 2], settled: true };
+    pub fn start(&self, beat: &Beat<T>, course: &Course<T, N>, start: &mut Start<T, N>) {
+        start.settled = true;
         for i in 0..N {
             let sun = course.planets[i].point();
             for (kind, at) in [(0, sun), (1, course.gap.point().less(sun))] {
@@ -62,7 +67,6 @@ impl<T: Real, const N: usize, const OVERTONES: bool> Frozen<'_, T, N, OVERTONES>
                 start.laws[kind][i] = law;
             }
         }
-        start
     }
 
     /// One mesh under a law.

@@ -8,7 +8,7 @@ use crate::real::Real;
 use crate::realtime::contact::{Drive, contact, spread};
 use crate::realtime::excitation::{Beat, MeshPhase, PerMesh, Rotor, instant, mesh_way};
 use crate::realtime::flow;
-use crate::realtime::frozen::Frozen;
+use crate::realtime::frozen::{Frozen, Start};
 use crate::realtime::runge_kutta::Motion;
 use crate::realtime::state::State;
 use crate::realtime::substep::{self, Course};
@@ -157,7 +157,8 @@ fn tick<T: Real, const N: usize, const OVERTONES: bool>(
     let drive_of_stage = drive.times(stage.square_sixth);
     let frozen = Frozen::<T, N, OVERTONES> { tables, drive: drive_of_stage };
     let mut course = Course::of(motion, tables.substep);
-    let mut start = frozen.start(&Beat::new(phase.start, tables.substep * phase.rate), &course);
+    let mut start = Start::EMPTY;
+    frozen.start(&Beat::new(phase.start, tables.substep * phase.rate), &course, &mut start);
     if let Some(end) = flow::hold(&frozen, drive, phase, &start, motion) {
         return end;
     }

@@ -75,27 +75,28 @@ impl<T: Real, const N: usize, const OVERTONES: bool> End<'_, T, N, OVERTONES> {
         let mobility = &tables.stage.mobility;
         let respond = |net: &Net<T, N>, wind_up: T| net.accelerations(mobility, &Drive::NONE, wind_up);
         let (rate, position) = (respond(&impulse, T::ZERO), respond(&shift, T::ZERO));
-        // What the corrections bend elsewhere: it acts from now on, and has acted while it grew with the third power of
-        // time, a quarter of `longest` in the mean. Ripple is left out of it.
-        let mut back = Net::NONE;
+        // What the corrections bend: it acts from now on, and has acted since the crossing, where damping saw the
+        // integral of the rate, which is the position, and springs about s/4 of the position: it grew with the third
+        // power of time. Ripple is left out of it.
+        let quarter = T::QUARTER * longest;
+        let mut later = Net::NONE;
         for i in 0..N {
-            let force = |kind: usize, position: T, rate: T| {
-                let law = &laws[kind][i];
-                law.closed * tables.springs[kind].stiffness * position + law.damping * rate
-            };
             let (sun, sun_rate) = (position.planets[i], rate.planets[i]);
-            back.add(i, force(0, sun, sun_rate), force(1, position.gap - sun, rate.gap - sun_rate));
+            for (kind, moved, moving) in [(0, sun, sun_rate), (1, position.gap - sun, rate.gap - sun_rate)] {
+                let law = &laws[kind][i];
+                let stiffness = law.closed * tables.springs[kind].stiffness;
+                jump.add_one((kind, i), stiffness * moved + law.damping * moving);
+                later.add_one((kind, i), T::SIX * (quarter * stiffness + law.damping) * moved);
+            }
         }
-        let wind_up = mobility.wind_up_stiffness * position.wind_up + mobility.wind_up_damping * rate.wind_up;
-        let back = respond(&back, wind_up);
-        let later = T::SIX * T::QUARTER * longest;
+        let wind_up = mobility.wind_up_stiffness * position.wind_up;
+        let jump = respond(&jump, wind_up + mobility.wind_up_damping * rate.wind_up);
+        let wind_up = quarter * wind_up + mobility.wind_up_damping * position.wind_up;
+        let later = respond(&later, T::SIX * wind_up);
         course.each(&position, |coordinate, position| coordinate.position += position);
         course.each(&rate, |coordinate, rate| coordinate.rate += rate);
-        course.each(&back, |coordinate, back| {
-            coordinate.rate += later * back;
-            coordinate.now += back;
-        });
-        course.each(&respond(&jump, T::ZERO), |coordinate, jump| coordinate.now += jump);
+        course.each(&later, |coordinate, later| coordinate.rate += later);
+        course.each(&jump, |coordinate, jump| coordinate.now += jump);
         course.each(&respond(&past, T::ZERO), |coordinate, past| coordinate.before += past);
     }
 }

@@ -71,7 +71,7 @@ pub fn hold<T: Real, const N: usize, const OVERTONES: bool>(
     });
     course.each(&last, |coordinate, last| coordinate.now = last);
     End { frozen, rate, beat: &beat, trespasses: &trespasses }.correct(&mut laws, &mut course);
-    Some(course.motion(tables.stage.rate))
+    Some(course.motion(tables.substep, tables.stage.rate, &end))
 }
 
 /// One tick of the paper's scheme: constant exponential, pseudo-force held over each sub-step (first-order

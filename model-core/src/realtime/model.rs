@@ -163,5 +163,5 @@ fn tick<T: Real, const N: usize, const OVERTONES: bool>(
         return end;
     }
     substep::advance(&frozen, phase, &mut start, &mut course);
-    course.motion(stage.rate)
+    course.motion(tables.substep, stage.rate, motion)
 }

@@ -109,16 +109,22 @@ impl<T: Real, const N: usize> Course<T, N> {
         }
     }
 
-    /// The motion without its accelerations, from sub-steps at a rate.
-    pub fn motion(&self, rate: T) -> Motion<T, N> {
-        let collect = |value: fn(&Coordinate<T>) -> T, scale: T| Relative {
-            planets: array::from_fn(|i| scale * value(&self.planets[i])),
-            gap: scale * value(&self.gap),
-            wind_up: scale * value(&self.wind_up),
-        };
+    /// The motion without its accelerations, from sub-steps at a rate, after it was `before`. Rates are taken over as
+    /// their change, so that what no force has changed keeps its bits.
+    pub fn motion(&self, length: T, per_length: T, before: &Motion<T, N>) -> Motion<T, N> {
+        let rate = |coordinate: &Coordinate<T>, before: T| before + per_length * (coordinate.rate - length * before);
+        let rates = &before.rate;
         Motion {
-            position: collect(|coordinate| coordinate.position, T::ONE),
-            rate: collect(|coordinate| coordinate.rate, rate),
+            position: Relative {
+                planets: array::from_fn(|i| self.planets[i].position),
+                gap: self.gap.position,
+                wind_up: self.wind_up.position,
+            },
+            rate: Relative {
+                planets: array::from_fn(|i| rate(&self.planets[i], rates.planets[i])),
+                gap: rate(&self.gap, rates.gap),
+                wind_up: rate(&self.wind_up, rates.wind_up),
+            },
         }
     }
 

@@ -103,11 +103,11 @@ fn sub_steps_are_of_third_order_on_smooth_motion() {
 }
 
 #[test]
-fn sub_steps_keep_third_order_through_parting_and_hitting() {
+fn sub_steps_keep_at_least_third_order_through_parting_and_hitting() {
     // Without its corrections a crossing would leave an error of second order, wherever in the step it falls.
     let scenario = shortened(case("case A", CASE_A_OMEGA), 100);
     let points = errors(&scenario, Scheme::Realtime, 2..=8, |tables| tables.substep);
-    ORDER_AT_KINKS.check(order(&points) - 3.0);
+    ORDER_AT_KINKS.check((3.0 - order(&points)).max(0.0));
 }
 
 #[test]

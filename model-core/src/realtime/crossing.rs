@@ -134,8 +134,12 @@ struct Path<T> {
 impl<T: Real> Crossing<T> {
     fn missed(&self, before: &Law<T>, after: &Law<T>) -> Missed<T> {
         let (was_closed, is_closed) = (before.closed > T::ZERO, after.closed > T::ZERO);
-        let mut missed =
-            Missed { impulse: T::ZERO, shift: T::ZERO, path: Path { value: T::ZERO, rate: T::ZERO, acceleration: T::ZERO }, since: T::ZERO };
+        let mut missed = Missed {
+            impulse: T::ZERO,
+            shift: T::ZERO,
+            path: Path { value: T::ZERO, rate: T::ZERO, acceleration: T::ZERO },
+            since: T::ZERO,
+        };
         if was_closed {
             let force = self.force(before);
             let gone = Path { value: -force.value, rate: -force.rate, acceleration: -force.acceleration };
@@ -160,9 +164,7 @@ impl<T: Real> Crossing<T> {
         let overlap = self.overlap(law);
         Path {
             value: self.stiffness * overlap.value + damping * overlap.rate,
-            rate: self.stiffness * overlap.rate
-                + self.stiffness_rate * overlap.value
-                + damping * overlap.acceleration,
+            rate: self.stiffness * overlap.rate + self.stiffness_rate * overlap.value + damping * overlap.acceleration,
             acceleration: self.stiffness * overlap.acceleration + T::TWO * self.stiffness_rate * overlap.rate,
         }
     }

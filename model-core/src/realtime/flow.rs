@@ -14,9 +14,9 @@ use crate::realtime::contact::{Drive, Laws, spread};
 use crate::realtime::crossing::End;
 use crate::realtime::excitation::{Beat, Instant, MeshPhase, PerMesh, instant};
 use crate::realtime::frozen::{Frozen, Start};
-use crate::realtime::substep::Course;
 use crate::realtime::runge_kutta::Motion;
 use crate::realtime::state::Relative;
+use crate::realtime::substep::Course;
 use crate::realtime::unfrozen::forces;
 use crate::tables::{Inputs, Tables, Transition};
 
@@ -66,9 +66,16 @@ pub fn hold<T: Real, const N: usize, const OVERTONES: bool>(
     let wind_up = frozen.wind_up_force(course.wind_up.point());
     let mut trespasses = [[T::ZERO; N]; 2];
     let pushes_only = if tables.damping_law == DampingLaw::Contact { T::ONE } else { T::ZERO };
-    let last = frozen.pull(&laws, &beat, course.gap.point(), wind_up, |i| course.planets[i].point(), |(kind, i), moment| {
-        trespasses[kind][i] = frozen.trespass(&laws[kind][i], (kind, i), moment, pushes_only);
-    });
+    let last = frozen.pull(
+        &laws,
+        &beat,
+        course.gap.point(),
+        wind_up,
+        |i| course.planets[i].point(),
+        |(kind, i), moment| {
+            trespasses[kind][i] = frozen.trespass(&laws[kind][i], (kind, i), moment, pushes_only);
+        },
+    );
     course.each(&last, |coordinate, last| coordinate.now = last);
     End { frozen, rate, beat: &beat, trespasses: &trespasses }.correct(&mut laws, &mut course);
     Some(course.motion(tables.substep, tables.stage.rate, &end))

@@ -57,8 +57,7 @@ impl<T: Real, const N: usize, const OVERTONES: bool> Frozen<'_, T, N, OVERTONES>
         for i in 0..N {
             let sun = course.planets[i].point();
             for (kind, at) in [(0, sun), (1, course.gap.point().less(sun))] {
-                let Moment { overlap: deflection, speed, stiffness, .. } =
-                    self.mesh(&Law::OPEN, (kind, i), beat, at);
+                let Moment { overlap: deflection, speed, stiffness, .. } = self.mesh(&Law::OPEN, (kind, i), beat, at);
                 let law = Law::of(self.tables, (kind, i), deflection, speed, stiffness);
                 let overlap = deflection - law.offset;
                 let way = self.tables.flow.reach * (self.tables.stage.rate * speed.abs());

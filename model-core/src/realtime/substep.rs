@@ -50,8 +50,7 @@ pub fn advance<T: Real, const N: usize, const OVERTONES: bool>(
         rotor = rotor.turned(&half);
         let beat = Beat::new(rotor, rate);
         let gap = course.gap.arrive(middle.gap);
-        let wind_up =
-            if compliant { frozen.wind_up_force(course.wind_up.arrive(middle.wind_up)) } else { T::ZERO };
+        let wind_up = if compliant { frozen.wind_up_force(course.wind_up.arrive(middle.wind_up)) } else { T::ZERO };
         let planets = &mut course.planets;
         let mut trespass = T::ZERO;
         let last = frozen.pull(
@@ -100,8 +99,7 @@ impl<T: Real, const N: usize> Course<T, N> {
     /// A motion whose accelerations are not yet known, in sub-steps of a length.
     pub fn of(motion: &Motion<T, N>, length: T) -> Self {
         let Motion { position, rate } = motion;
-        let still =
-            |position: T, rate: T| Coordinate { position, rate: length * rate, now: T::ZERO, before: T::ZERO };
+        let still = |position: T, rate: T| Coordinate { position, rate: length * rate, now: T::ZERO, before: T::ZERO };
         Self {
             planets: array::from_fn(|i| still(position.planets[i], rate.planets[i])),
             gap: still(position.gap, rate.gap),

@@ -115,6 +115,7 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
             }
         };
         (self.state.position, self.state.rate) = (position, rate);
+        self.state.settle();
     }
 
     /// The motion now, in SI.

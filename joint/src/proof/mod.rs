@@ -4,3 +4,4 @@
 
 pub mod joints;
 pub mod same_bits;
+pub mod tick;

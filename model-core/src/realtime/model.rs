@@ -110,6 +110,7 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
             Scheme::Realtime => tick::<T, N, false>(tables, &drive, &phase, &motion),
         };
         (self.state.position, self.state.rate) = (position, rate);
+        self.state.settle();
     }
 
     /// The motion now, in SI.

@@ -10,6 +10,7 @@ mod excitation;
 mod flow;
 mod frozen;
 mod model;
+mod paper;
 pub mod phase;
 mod runge_kutta;
 mod stages;

@@ -144,6 +144,24 @@ impl<T: Real, const N: usize> Net<T, N> {
         self.apart[i] = sun_planet - ring_planet;
     }
 
+    /// Sums over planets: sun-planet, ring-planet.
+    #[inline(always)]
+    pub fn sums(&self) -> [T; 2] {
+        [self.sun_planet, self.ring_planet]
+    }
+
+    /// Sum over planets of sun-planet less ring-planet.
+    #[inline(always)]
+    pub fn difference(&self) -> T {
+        self.sun_planet - self.ring_planet
+    }
+
+    /// Sun-planet less ring-planet force of one planet.
+    #[inline(always)]
+    pub fn apart(&self, i: usize) -> T {
+        self.apart[i]
+    }
+
     /// The force of one more mesh.
     #[inline(always)]
     pub fn add_one(&mut self, (kind, i): (usize, usize), force: T) {

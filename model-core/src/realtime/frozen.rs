@@ -47,6 +47,8 @@ pub struct Frozen<'a, T: Real, const N: usize, const OVERTONES: bool> {
     pub tables: &'a Tables<T, N>,
     /// Torques, as accelerations of a stage.
     pub drive: Drive<T>,
+    /// One under the law `contact`, else zero.
+    pub pushes_only: T,
 }
 
 impl<T: Real, const N: usize, const OVERTONES: bool> Frozen<'_, T, N, OVERTONES> {
@@ -68,13 +70,18 @@ impl<T: Real, const N: usize, const OVERTONES: bool> Frozen<'_, T, N, OVERTONES>
         }
     }
 
+    /// Stiffness and imposed error of one mesh.
+    #[inline(always)]
+    pub fn wave(&self, (kind, i): (usize, usize), beat: &Beat<T>) -> MeshWave<T> {
+        let tables = self.tables;
+        let harmonics = if OVERTONES { tables.excitation.harmonics } else { 1 };
+        tables.meshes[kind][i].at(beat, tables.springs[kind].stiffness, harmonics)
+    }
+
     /// One mesh under a law.
     #[inline(always)]
     pub fn mesh(&self, law: &Law<T>, (kind, i): (usize, usize), beat: &Beat<T>, at: Point<T>) -> Moment<T> {
-        let tables = self.tables;
-        let harmonics = if OVERTONES { tables.excitation.harmonics } else { 1 };
-        let MeshWave { stiffness, error, error_rate } =
-            tables.meshes[kind][i].at(beat, tables.springs[kind].stiffness, harmonics);
+        let MeshWave { stiffness, error, error_rate } = self.wave((kind, i), beat);
         let (overlap, speed) = (at.position - error - law.offset, at.rate - error_rate);
         let force = law.closed * (stiffness * overlap) + law.damping * speed;
         Moment { overlap, speed, stiffness, error, force }
@@ -82,13 +89,13 @@ impl<T: Real, const N: usize, const OVERTONES: bool> Frozen<'_, T, N, OVERTONES>
 
     /// Zero while a mesh is under its law; positive when the law no longer holds.
     #[inline(always)]
-    pub fn trespass(&self, law: &Law<T>, (kind, i): (usize, usize), moment: &Moment<T>, pushes_only: T) -> T {
+    pub fn trespass(&self, law: &Law<T>, (kind, i): (usize, usize), moment: &Moment<T>) -> T {
         let half_backlash = self.tables.meshes[kind][i].half_backlash;
         let Moment { overlap, force, .. } = *moment;
         let room = law.side * overlap + law.open * (half_backlash - overlap.abs());
         let push = law.side * force;
         // |x| - x is 0 or -2x: cheaper than a comparison for each mesh on a core whose flags are slow to read.
-        (room.abs() - room) + pushes_only * (push.abs() - push)
+        (room.abs() - room) + self.pushes_only * (push.abs() - push)
     }
 
     /// Force between carrier and link.

@@ -3,12 +3,13 @@
 
 use core::array;
 
-use crate::mesh::ContactState;
+use crate::mesh::{ContactState, DampingLaw};
 use crate::real::Real;
 use crate::realtime::contact::{Drive, contact, spread};
 use crate::realtime::excitation::{Beat, MeshPhase, PerMesh, Rotor, instant, mesh_way};
 use crate::realtime::flow;
 use crate::realtime::frozen::{Frozen, Start};
+use crate::realtime::paper;
 use crate::realtime::runge_kutta::Motion;
 use crate::realtime::state::State;
 use crate::realtime::substep::{self, Course};
@@ -102,7 +103,7 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
 
         let motion = Motion { position: self.state.position, rate: self.state.rate };
         let Motion { position, rate } = match tables.scheme {
-            Scheme::PaperEtd1 => flow::paper(tables, &drive, &phase, &motion),
+            Scheme::PaperEtd1 => paper::step(tables, &drive, &phase, &motion),
             Scheme::RungeKutta4 => unfrozen::runge_kutta(tables, &drive, &phase, &motion),
             Scheme::SemiImplicitEuler => unfrozen::semi_implicit_euler(tables, &drive, &phase, &motion),
             Scheme::Realtime if tables.sharpness > T::ZERO => unfrozen::runge_kutta(tables, &drive, &phase, &motion),
@@ -155,12 +156,20 @@ fn tick<T: Real, const N: usize, const OVERTONES: bool>(
     motion: &Motion<T, N>,
 ) -> Motion<T, N> {
     let stage = &tables.stage;
-    let drive_of_stage = drive.times(stage.square_sixth);
-    let frozen = Frozen::<T, N, OVERTONES> { tables, drive: drive_of_stage };
+    let frozen = Frozen::<T, N, OVERTONES> {
+        tables,
+        drive: drive.times(stage.square_sixth),
+        pushes_only: if tables.damping_law == DampingLaw::Contact { T::ONE } else { T::ZERO },
+    };
     let mut course = Course::of(motion, tables.substep);
     let mut start = Start::EMPTY;
     frozen.start(&Beat::new(phase.start, tables.substep * phase.rate), &course, &mut start);
-    if let Some(end) = flow::hold(&frozen, drive, phase, &start, motion) {
+    let held = if tables.mobility.wind_up > T::ZERO {
+        flow::hold::<T, N, 3, OVERTONES>(&frozen, drive, phase, &start, &course, motion)
+    } else {
+        flow::hold::<T, N, 2, OVERTONES>(&frozen, drive, phase, &start, &course, motion)
+    };
+    if let Some(end) = held {
         return end;
     }
     substep::advance(&frozen, phase, &mut start, &mut course);

@@ -4,7 +4,6 @@
 
 use core::array;
 
-use crate::mesh::DampingLaw;
 use crate::real::Real;
 use crate::realtime::contact::Net;
 use crate::realtime::crossing::End;
@@ -32,7 +31,6 @@ pub fn advance<T: Real, const N: usize, const OVERTONES: bool>(
     course: &mut Course<T, N>,
 ) {
     let tables = frozen.tables;
-    let pushes_only = if tables.damping_law == DampingLaw::Contact { T::ONE } else { T::ZERO };
     let compliant = tables.mobility.wind_up > T::ZERO;
     let half = phase.over(tables.half_part);
     let rate = tables.substep * phase.rate;
@@ -60,7 +58,7 @@ pub fn advance<T: Real, const N: usize, const OVERTONES: bool>(
             wind_up,
             |i| planets[i].arrive(middle.planets[i]),
             |(kind, i), moment| {
-                let by = frozen.trespass(&laws[kind][i], (kind, i), moment, pushes_only);
+                let by = frozen.trespass(&laws[kind][i], (kind, i), moment);
                 trespasses[kind][i] = by;
                 trespass += by;
             },

@@ -72,15 +72,18 @@ pub struct Law<T> {
 pub type Laws<T, const N: usize> = PerMesh<Law<T>, N>;
 
 impl<T: Real> Law<T> {
-    /// No force at all.
-    pub const OPEN: Self = Self {
-        contact: ContactState::Separated,
+    /// All zeros: no law yet.
+    pub const ZERO: Self = Self {
+        contact: ContactState::DriveSide,
         closed: T::ZERO,
         offset: T::ZERO,
         damping: T::ZERO,
         side: T::ZERO,
-        open: T::ONE,
+        open: T::ZERO,
     };
+
+    /// No force at all.
+    pub const OPEN: Self = Self { contact: ContactState::Separated, open: T::ONE, ..Self::ZERO };
 
     /// The law that holds at a deflection and rate (eq. 12 with the damping of the joint's law); the rate counts a
     /// sub-step as the unit of time.

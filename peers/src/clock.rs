@@ -16,6 +16,8 @@ pub struct Clock<T> {
     speed: i64,
     /// Its change a step under the present torques.
     change: i64,
+    /// Whether the carrier's angle makes the phase.
+    angle: bool,
     rotor: Rotor<T>,
 }
 
@@ -30,9 +32,14 @@ pub struct Ahead<T> {
 impl<T: Real> Clock<T> {
     /// At phase and angle zero, the rigid carrier at a speed in 2^-64 turns a step.
     pub fn new<const N: usize>(plant: &Plant<T, N>, speed: i64) -> Self {
-        let mut clock =
-            Self { place: 0, speed, change: 0, rotor: Rotor { sine: T::ZERO, cosine: T::ONE, rate: plant.phase.rate } };
-        if plant.phase.periods_per_turn != 0 {
+        let mut clock = Self {
+            place: 0,
+            speed,
+            change: 0,
+            angle: plant.phase.periods_per_turn != 0,
+            rotor: Rotor { sine: T::ZERO, cosine: T::ONE, rate: plant.phase.rate },
+        };
+        if clock.angle {
             clock.rotor.rate = rate(plant, speed);
         }
         clock
@@ -41,6 +48,11 @@ impl<T: Real> Clock<T> {
     /// Phase now.
     pub fn now(&self) -> &Rotor<T> {
         &self.rotor
+    }
+
+    /// Angle of the rigid carrier [2^-64 turns], where it makes the phase.
+    pub fn carrier(&self) -> Option<u64> {
+        self.angle.then_some(self.place)
     }
 
     /// Takes torques [N m].
@@ -53,7 +65,7 @@ impl<T: Real> Clock<T> {
     pub fn advance<const MIDDLE: bool, const N: usize>(&mut self, plant: &Plant<T, N>) -> Ahead<T> {
         let phase = &plant.phase;
         let start = self.rotor;
-        if phase.periods_per_turn == 0 {
+        if !self.angle {
             self.place = self.place.wrapping_add(phase.step);
             let (sine, cosine) = sine_cosine((self.place >> 32) as u32);
             self.rotor = Rotor { sine, cosine, rate: phase.rate };

@@ -141,8 +141,8 @@ impl<T: Real, const N: usize> Start<T, N> {
 
 impl<T: Real> TwoMass<T> {
     /// The joint as two masses with one gap: everything geared to the motor on one side and the link on the other if there
-    /// is a spring between carrier and link, else the motor with the sun on one side and all the rest on the other. The
-    /// spring is that of all meshes and the compliance in series, its damping ratio that of the softer of the two.
+    /// is a spring between carrier and link, else sun and planets on one side (at rest under torque the planets yield with
+    /// the sun) and carrier and link on the other. The spring is that of all meshes and the compliance in series, its damping ratio that of the softer of the two.
     pub fn new(parameters: &JointParameters, rate: f64, contact: Contact) -> Self {
         let scales = Scales::new(parameters);
         let masses = MovingMasses::new(parameters);
@@ -153,7 +153,7 @@ impl<T: Real> TwoMass<T> {
         let meshes = 4.0 * planets / (1.0 / sun.mean_stiffness + 1.0 / ring.mean_stiffness);
         let all = masses.rigid(parameters.geometry.planets);
         let (motor, stiffness, damping_ratio) = match parameters.compliance {
-            None => (4.0 * masses.sun, meshes, sun.damping_ratio),
+            None => (4.0 * masses.sun + planets * masses.planet, meshes, sun.damping_ratio),
             Some(compliance) => {
                 let shaft = compliance.stiffness / (lever * lever);
                 let softer = if shaft < meshes { compliance.damping_ratio } else { sun.damping_ratio };

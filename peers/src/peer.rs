@@ -89,6 +89,11 @@ impl<'a, T: Real, const N: usize, S: Scheme<T, N>> Peer<'a, T, N, S> {
         &self.motion
     }
 
+    /// Phase and, where it makes the phase, the rigid carrier.
+    pub fn clock(&self) -> &Clock<T> {
+        &self.clock
+    }
+
     /// Mesh deflections now: sun-planet of every planet, then ring-planet.
     pub fn deflections(&self) -> PerMesh<T, N> {
         let position = &self.motion.position;

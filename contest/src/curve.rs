@@ -62,6 +62,11 @@ impl Field {
         &self.phases[0].1
     }
 
+    /// The case at each phase, with the reference's motion.
+    pub fn phases(&self) -> &[(Case, Course)] {
+        &self.phases
+    }
+
     /// A method at a rate.
     pub fn point(&self, method: Method, scalar: Scalar, rate: u32) -> Result<Point, DesignError> {
         let runs: Result<Vec<(Errors, u64)>, DesignError> = self
@@ -84,9 +89,9 @@ impl Field {
 
 fn run_any<T: Real>(case: &Case, method: Method, rate: u32) -> Result<Run, DesignError> {
     match case.joint.geometry.planets {
-        3 => run::<T, 3>(case, method, rate),
-        4 => run::<T, 4>(case, method, rate),
-        5 => run::<T, 5>(case, method, rate),
+        3 => run::<T, 3>(case, method, rate, &|| 0.0),
+        4 => run::<T, 4>(case, method, rate, &|| 0.0),
+        5 => run::<T, 5>(case, method, rate, &|| 0.0),
         given => Err(DesignError::PlanetCount { given }),
     }
 }

@@ -6,6 +6,8 @@ pub mod case;
 pub mod catalogue;
 pub mod course;
 pub mod curve;
+#[cfg(feature = "libraries")]
+pub mod libraries;
 pub mod method;
 pub mod reading;
 pub mod run;

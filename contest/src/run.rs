@@ -7,9 +7,10 @@ use model_core::design::{DesignError, Effort, design_scheme};
 use model_core::digest;
 use model_core::joint::{Excitation, JointParameters};
 use model_core::real::Real;
-use model_core::realtime::{Model, Torques};
+use model_core::realtime::{Model, State, Torques};
 use model_core::scales::Scales;
 use model_core::tables::{Scheme, Tables};
+use peers::clock::Clock;
 use peers::euler::SemiImplicitEuler;
 use peers::instant::Rotor;
 use peers::motion::{Coordinates, Motion};
@@ -32,6 +33,8 @@ pub struct Run {
     pub readings: Vec<(usize, Reading)>,
     /// Digest over the last state.
     pub digest: u64,
+    /// What the clock said that the steps took.
+    pub seconds: f64,
 }
 
 /// Steps of a method that a case has at a rate.
@@ -65,8 +68,14 @@ pub fn plant<T: Real, const N: usize>(joint: &JointParameters, method: Method, r
     plant
 }
 
-/// Moves a case. `N` must be the joint's number of planets.
-pub fn run<T: Real, const N: usize>(case: &Case, method: Method, rate: u32) -> Result<Run, DesignError> {
+/// Moves a case. `N` must be the joint's number of planets. The clock, in seconds, is read before the first step and
+/// after the last.
+pub fn run<T: Real, const N: usize>(
+    case: &Case,
+    method: Method,
+    rate: u32,
+    clock: &dyn Fn() -> f64,
+) -> Result<Run, DesignError> {
     let start = Deflected::<N>::new(&case.joint, &case.start);
     Ok(match method {
         Method::Realtime | Method::PaperEtd1 => {
@@ -74,13 +83,13 @@ pub fn run<T: Real, const N: usize>(case: &Case, method: Method, rate: u32) -> R
             let mut model = Model::new(&tables);
             model.set_state(start.state(&case.joint, &tables));
             let torques = Torques { drive: T::ZERO, load: T::ZERO };
-            follow(case, rate, &mut Core { model, torques, gauge: Gauge::new(&case.joint), case, rate })
+            follow(case, rate, clock, &mut Core { model, torques, gauge: Gauge::new(&case.joint), case, rate })
         }
-        Method::RungeKutta4 | Method::RungeKutta4Tanh => whole::<T, N, RungeKutta4>(case, method, rate, &start),
-        Method::Euler => whole::<T, N, SemiImplicitEuler>(case, method, rate, &start),
-        Method::Trapezoid => whole::<T, N, Trapezoid<T, N>>(case, method, rate, &start),
-        Method::TwoMassSpring => two_mass::<T, N>(case, Contact::SpringDamper, rate, &start),
-        Method::TwoMassRestitution => two_mass::<T, N>(case, Contact::Restitution, rate, &start),
+        Method::RungeKutta4 | Method::RungeKutta4Tanh => whole::<T, N, RungeKutta4>(case, method, rate, clock, &start),
+        Method::Euler => whole::<T, N, SemiImplicitEuler>(case, method, rate, clock, &start),
+        Method::Trapezoid => whole::<T, N, Trapezoid<T, N>>(case, method, rate, clock, &start),
+        Method::TwoMassSpring => two_mass::<T, N>(case, Contact::SpringDamper, rate, clock, &start),
+        Method::TwoMassRestitution => two_mass::<T, N>(case, Contact::Restitution, rate, clock, &start),
     })
 }
 
@@ -88,15 +97,22 @@ fn whole<T: Real, const N: usize, S: PeerScheme<T, N>>(
     case: &Case,
     method: Method,
     rate: u32,
+    clock: &dyn Fn() -> f64,
     start: &Deflected<N>,
 ) -> Run {
     let plant = plant(&case.joint, method, rate);
     let peer: Peer<'_, T, N, S> = Peer::new(&plant, &start.peer(&case.joint, f64::from(rate)));
     let gauge = Gauge::new(&case.joint);
-    follow(case, rate, &mut Whole { peer, gauge, carrier: 0.0, last: 0 })
+    follow(case, rate, clock, &mut Whole { peer, gauge, carrier: 0.0, last: 0 })
 }
 
-fn two_mass<T: Real, const N: usize>(case: &Case, contact: Contact, rate: u32, start: &Deflected<N>) -> Run {
+fn two_mass<T: Real, const N: usize>(
+    case: &Case,
+    contact: Contact,
+    rate: u32,
+    clock: &dyn Fn() -> f64,
+    start: &Deflected<N>,
+) -> Run {
     let model = TwoMass::<T>::new(&case.joint, f64::from(rate), contact);
     let scales = Scales::new(&case.joint);
     // Motor against link along the output's line of action: half the gap, and the wind-up.
@@ -105,35 +121,46 @@ fn two_mass<T: Real, const N: usize>(case: &Case, contact: Contact, rate: u32, s
     let rate_of = apart(&start.rate) / (scales.length * scales.frequency);
     let peer = TwoMassPeer::new(&model, T::from_f64(place), T::from_f64(rate_of));
     let carrier = RigidCarrier::new(&case.joint, start.speed, rate);
-    follow(case, rate, &mut Gap { peer, carrier })
+    follow(case, rate, clock, &mut Gap { peer, carrier })
 }
 
 /// Something that moves in steps.
 trait Moving {
+    /// All that a reading is made of.
+    type Moment;
     fn set_torques(&mut self, drive: f64, load: f64);
     fn step(&mut self);
-    fn read(&mut self, time: f64) -> Reading;
+    fn moment(&self) -> Self::Moment;
+    /// Moments must be read in their order.
+    fn read(&mut self, moment: &Self::Moment) -> Reading;
     fn digest(&self) -> u64;
 }
 
-fn follow(case: &Case, rate: u32, moving: &mut impl Moving) -> Run {
+fn follow<M: Moving>(case: &Case, rate: u32, clock: &dyn Fn() -> f64, moving: &mut M) -> Run {
     let mut changes = torques_by_step(case, rate).into_iter().peekable();
-    let mut readings = Vec::new();
     // Steps at which a sample of the reference falls.
     let divisor = greatest_divisor(rate, case.sample_rate);
     let (every, stride) = (u64::from(rate / divisor), (case.sample_rate / divisor) as usize);
-    for step in 0..=steps(case, rate) {
-        if step.is_multiple_of(every) {
-            readings.push(((step / every) as usize * stride, moving.read(step as f64 / f64::from(rate))));
+    let last = steps(case, rate);
+    let mut moments = Vec::with_capacity((last / every) as usize + 1);
+    let start = clock();
+    let mut until_sample = 0;
+    for step in 0..=last {
+        if until_sample == 0 {
+            moments.push(moving.moment());
+            until_sample = every;
         }
+        until_sample -= 1;
         while let Some((_, drive, load)) = changes.next_if(|change| change.0 <= step) {
             moving.set_torques(drive, load);
         }
-        if step < steps(case, rate) {
+        if step < last {
             moving.step();
         }
     }
-    Run { readings, digest: moving.digest() }
+    let seconds = clock() - start;
+    let readings = moments.iter().enumerate().map(|(index, moment)| (index * stride, moving.read(moment))).collect();
+    Run { readings, digest: moving.digest(), seconds }
 }
 
 fn greatest_divisor(a: u32, b: u32) -> u32 {
@@ -149,6 +176,8 @@ struct Core<'a, T: Real, const N: usize> {
 }
 
 impl<T: Real, const N: usize> Moving for Core<'_, T, N> {
+    type Moment = State<T, N>;
+
     fn set_torques(&mut self, drive: f64, load: f64) {
         self.torques = Torques { drive: T::from_f64(drive), load: T::from_f64(load) };
     }
@@ -157,8 +186,11 @@ impl<T: Real, const N: usize> Moving for Core<'_, T, N> {
         self.model.step(self.torques);
     }
 
-    fn read(&mut self, _: f64) -> Reading {
-        let state = self.model.state();
+    fn moment(&self) -> State<T, N> {
+        *self.model.state()
+    }
+
+    fn read(&mut self, state: &State<T, N>) -> Reading {
         let wide = |values: &model_core::realtime::Relative<T, N>| Coordinates {
             planets: values.planets.map(Real::to_f64),
             gap: values.gap.to_f64(),
@@ -198,6 +230,8 @@ struct Whole<'a, T: Real, const N: usize, S> {
 }
 
 impl<T: Real, const N: usize, S: PeerScheme<T, N>> Moving for Whole<'_, T, N, S> {
+    type Moment = (Motion<T, N>, Clock<T>);
+
     fn set_torques(&mut self, drive: f64, load: f64) {
         self.peer.set_torques(T::from_f64(drive), T::from_f64(load));
     }
@@ -206,19 +240,23 @@ impl<T: Real, const N: usize, S: PeerScheme<T, N>> Moving for Whole<'_, T, N, S>
         self.peer.step();
     }
 
-    fn read(&mut self, _: f64) -> Reading {
-        let Motion { position, rate } = self.peer.motion();
+    fn moment(&self) -> Self::Moment {
+        (*self.peer.motion(), *self.peer.clock())
+    }
+
+    fn read(&mut self, (motion, clock): &Self::Moment) -> Reading {
+        let Motion { position, rate } = motion;
         let wide = |values: &Coordinates<T, N>| Coordinates {
             planets: values.planets.map(Real::to_f64),
             gap: values.gap.to_f64(),
             wind_up: values.wind_up.to_f64(),
         };
         let motion = Motion { position: wide(position), rate: wide(rate) };
-        if let Some(place) = self.peer.clock().carrier() {
+        if let Some(place) = clock.carrier() {
             self.carrier += TAU * place.wrapping_sub(self.last) as i64 as f64 / TURN;
             self.last = place;
         }
-        let now = self.peer.clock().now();
+        let now = clock.now();
         let phase = Rotor { sine: now.sine.to_f64(), cosine: now.cosine.to_f64(), rate: now.rate.to_f64() };
         self.gauge.read(&motion, &phase, self.carrier)
     }
@@ -242,6 +280,9 @@ struct Gap<'a, T: Real> {
 }
 
 impl<T: Real> Moving for Gap<'_, T> {
+    /// Link angle and mesh force.
+    type Moment = (f64, f64);
+
     fn set_torques(&mut self, drive: f64, load: f64) {
         self.peer.set_torques(T::from_f64(drive), T::from_f64(load));
         self.carrier.set_torques(drive, load);
@@ -252,12 +293,12 @@ impl<T: Real> Moving for Gap<'_, T> {
         self.carrier.step();
     }
 
-    fn read(&mut self, _: f64) -> Reading {
-        Reading {
-            deflections: Vec::new(),
-            link_angle: self.carrier.angle + self.peer.link_offset().to_f64(),
-            mesh_force: self.peer.mesh_force().to_f64().abs(),
-        }
+    fn moment(&self) -> (f64, f64) {
+        (self.carrier.angle + self.peer.link_offset().to_f64(), self.peer.mesh_force().to_f64().abs())
+    }
+
+    fn read(&mut self, (link_angle, mesh_force): &(f64, f64)) -> Reading {
+        Reading { deflections: Vec::new(), link_angle: *link_angle, mesh_force: *mesh_force }
     }
 
     fn digest(&self) -> u64 {

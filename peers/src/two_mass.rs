@@ -125,14 +125,19 @@ impl<'a, T: Real> TwoMassPeer<'a, T> {
         if !beyond || (self.rate > T::ZERO) != front {
             return;
         }
-        self.place = end;
-        self.rate = -(model.restitution * self.rate);
-        // A rebound that the torques undo within the step is none.
-        let rebound = if front { -self.rate } else { self.rate };
-        let pressed = if front { self.push } else { -self.push };
-        if rebound <= model.step * pressed {
-            self.engaged = true;
+        // Back to the impact, and off again with what it leaves for the rest of the step. Rate and place are of one sign
+        // here, so that the quotient is finite.
+        let since = (self.place - end).over(self.rate);
+        let since = if since < model.step { since } else { model.step };
+        let leaving = -(model.restitution * (self.rate - since * self.push));
+        self.rate = leaving + since * self.push;
+        self.place = end + since * T::HALF * (leaving + self.rate);
+        // A rebound that the torques undo within eight steps is none: so short a one cannot be followed.
+        let (rebound, pressed) = if front { (-leaving, self.push) } else { (leaving, -self.push) };
+        if rebound <= T::TWO * T::TWO * model.step * pressed {
+            self.place = end;
             self.rate = T::ZERO;
+            self.engaged = true;
             self.force = self.push;
         }
     }

@@ -1,6 +1,7 @@
 //! Turns a joint file into the tables that the image carries, and tells the linker about the board's memory. The joint
 //! file is named by `JOINT_FILE` (default: `joints/q1.toml` of the workspace), the tick rate by `JOINT_TICK_RATE` in Hz
-//! (default: 20000); what can be wrong with either is said as a build error.
+//! (default: 20000); what can be wrong with either is said as a build error. Measuring binaries carry the joints that
+//! `MEASURED_JOINTS` lists, in the manner of a search path, one module of tables for each.
 
 use std::path::{Path, PathBuf};
 use std::{env, fs};
@@ -10,7 +11,7 @@ const DEFAULT_TICK_RATE: u32 = 20_000;
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     link();
-    if let Err(message) = write_tables() {
+    if let Err(message) = write_tables().and_then(|()| write_measured()) {
         message.lines().for_each(|line| println!("cargo::error={line}"));
     }
 }
@@ -38,18 +39,49 @@ fn write_tables() -> Result<(), String> {
         None => workspace().join("joints/q1.toml"),
     };
     println!("cargo::rerun-if-changed={}", file.display());
-    let tick_rate = match variable("JOINT_TICK_RATE") {
-        Some(rate) => rate.parse().map_err(|_| format!("JOINT_TICK_RATE={rate}: want a whole number of Hz"))?,
-        None => DEFAULT_TICK_RATE,
-    };
-    let text = fs::read_to_string(&file).map_err(|error| format!("joint file {}: {error}", file.display()))?;
+    write("tables.rs", &source(&file, tick_rate()?)?)
+}
+
+/// Modules `joint_0`, `joint_1`, ... and `visit`, which shows their tables in this order.
+fn write_measured() -> Result<(), String> {
+    if variable("CARGO_FEATURE_MEASURING").is_none() {
+        return Ok(());
+    }
+    println!("cargo::rerun-if-env-changed=MEASURED_JOINTS");
+    // The compiler must not fold the numbers into the code, which it cannot do in the image of a board either.
+    let (mut modules, mut visits) = (String::from("use core::hint::black_box;\n"), String::new());
+    let files = env::var_os("MEASURED_JOINTS").unwrap_or_default();
+    for (index, file) in env::split_paths(&files).enumerate() {
+        println!("cargo::rerun-if-changed={}", file.display());
+        let source = source(&file, tick_rate()?)?;
+        modules += &format!("mod joint_{index} {{\n{source}}}\n");
+        visits += &format!("    visitor.joint(joint_{index}::JOINT_NAME, black_box(&joint_{index}::TABLES));\n");
+    }
+    let visitor = if visits.is_empty() { "_" } else { "visitor" };
+    let visit = format!("pub fn visit({visitor}: &mut impl super::Visitor) {{\n{visits}}}\n");
+    write("measured.rs", &(modules + &visit))
+}
+
+/// The tables of a joint file, as a module's text.
+fn source(file: &Path, tick_rate: u32) -> Result<String, String> {
+    let text = fs::read_to_string(file).map_err(|error| format!("joint file {}: {error}", file.display()))?;
     let joint = joints::read(&text).map_err(|problems| {
         let list: Vec<_> = problems.iter().map(|problem| format!("{}: {problem}", file.display())).collect();
         format!("{}\nrun `cargo joint check {}` to see the places", list.join("\n"), file.display())
     })?;
-    let source = model_core::design::rust_source(&joint.parameters, tick_rate)
-        .map_err(|error| format!("{}: {error}", file.display()))?;
-    let out = PathBuf::from(variable("OUT_DIR").ok_or("no OUT_DIR")?).join("tables.rs");
+    model_core::design::rust_source(&joint.parameters, tick_rate)
+        .map_err(|error| format!("{}: {error}", file.display()))
+}
+
+fn tick_rate() -> Result<u32, String> {
+    match variable("JOINT_TICK_RATE") {
+        Some(rate) => rate.parse().map_err(|_| format!("JOINT_TICK_RATE={rate}: want a whole number of Hz")),
+        None => Ok(DEFAULT_TICK_RATE),
+    }
+}
+
+fn write(name: &str, source: &str) -> Result<(), String> {
+    let out = PathBuf::from(variable("OUT_DIR").ok_or("no OUT_DIR")?).join(name);
     fs::write(&out, source).map_err(|error| format!("{}: {error}", out.display()))
 }
 

@@ -5,7 +5,7 @@
 //! monitor, and falls back to `safe_state`. `queues` is all that connects it to the rest. `conversation`, run in idle,
 //! answers the host with the help of `identity`, `telemetry` and `timing_report`; `serial` moves its bytes.
 //! Everything so far is free of hardware and is tested on the host; `board`, `clock`, `logger`, `panic_message`,
-//! `stack` and `watch` exist on a board only. Physics is left to `model-core`, the words on the line to `link`.
+//! `stack` and `watch` exist on a board only; `measuring` in the emulator only. Physics is left to `model-core`, the words on the line to `link`.
 
 pub mod budget;
 pub mod control;
@@ -31,6 +31,8 @@ pub mod board;
 pub mod clock;
 #[cfg(target_os = "none")]
 pub mod logger;
+#[cfg(all(target_os = "none", feature = "measuring"))]
+pub mod measuring;
 #[cfg(target_os = "none")]
 pub mod panic_message;
 #[cfg(target_os = "none")]

@@ -4,6 +4,7 @@
 use core::cell::UnsafeCell;
 use core::fmt::{self, Write};
 use core::mem::MaybeUninit;
+#[cfg(not(feature = "measuring"))]
 use core::panic::PanicInfo;
 
 use cortex_m::peripheral::SCB;
@@ -72,6 +73,7 @@ impl Write for Truncated {
     }
 }
 
+#[cfg(not(feature = "measuring"))]
 #[panic_handler]
 fn panic(info: &PanicInfo<'_>) -> ! {
     match info.location() {

@@ -48,8 +48,7 @@ pub fn ensure(say: Say<'_>) -> Outcome<String> {
     if tool::find(PROGRAM).is_none() {
         packages::ensure(&[PACKAGE], "to run the emulated board", say)?;
     }
-    let program = tool::find(PROGRAM).ok_or_else(|| Failure::new(format!("{PROGRAM} is not on the search path")))?;
-    let version = tool::output_of(Command::new(program).arg("--version"))?;
+    let version = tool::output_of(Command::new(program()?).arg("--version"))?;
     Ok(version.lines().next().unwrap_or_default().to_owned())
 }
 
@@ -57,10 +56,7 @@ impl Emulator {
     /// Boots an image. The board starts once the returned end of its serial line is connected, so that nothing it says
     /// is missed.
     pub fn start(elf: &Path) -> Outcome<(Self, UnixStream)> {
-        let program = tool::find(PROGRAM).ok_or_else(|| {
-            Failure::new(format!("{PROGRAM} is not on the search path")).with_help(format!("install {PACKAGE}"))
-        })?;
-        Self::start_with(&program, elf)
+        Self::start_with(&program()?, elf)
     }
 
     fn start_with(program: &Path, elf: &Path) -> Outcome<(Self, UnixStream)> {
@@ -133,8 +129,15 @@ impl Drop for Emulator {
     }
 }
 
+/// The emulator's program.
+pub(super) fn program() -> Outcome<PathBuf> {
+    tool::find(PROGRAM).ok_or_else(|| {
+        Failure::new(format!("{PROGRAM} is not on the search path")).with_help(format!("install {PACKAGE}"))
+    })
+}
+
 /// The program, to be killed by the kernel with its parent thread where that can be had.
-fn mortal(program: &Path) -> Command {
+pub(super) fn mortal(program: &Path) -> Command {
     match tool::find("setpriv") {
         None => Command::new(program),
         Some(setpriv) => {

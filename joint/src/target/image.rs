@@ -1,6 +1,8 @@
 //! Firmware images: built for a joint, a board and a role, then copied to a name of their own, so that several joints
 //! lie side by side. What goes into an image is decided by the firmware's build script.
 
+use std::env;
+use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -57,18 +59,9 @@ pub fn build_image(
         return Err(Failure::new(format!("a tick rate of {tick_rate} Hz cannot be made of {name}'s {rate} Hz"))
             .with_help(format!("take one that divides it, such as {DEFAULT_TICK_RATE}")));
     }
-    // One build at a time in this folder, and none between a build and the copy of its result.
-    let _lock = lock(toolchain.folder())?;
-    let mut command = toolchain.cargo("build");
-    command
-        .args(["--package", "firmware", "--profile", PROFILE, "--bin", binary(role)])
-        .args(["--no-default-features", "--features", board.name()])
-        .env("JOINT_FILE", &joint_file)
-        .env("JOINT_TICK_RATE", tick_rate.to_string());
-    tool::follow(&mut command, "building the firmware", say)?;
-
-    let built = toolchain.folder().join(TARGET).join(PROFILE).join(binary(role));
-    let elf = fs::read(&built).map_err(|error| Failure::new(format!("{}: {error}", built.display())))?;
+    let rate = tick_rate.to_string();
+    let environment = [("JOINT_FILE", joint_file.as_os_str()), ("JOINT_TICK_RATE", rate.as_ref())];
+    let elf = compile(toolchain, binary(role), board.name(), &environment, say)?;
     let images = toolchain.target_directory().join("images");
     let place = images.join(file_name(&joint_file, board, role, tick_rate));
     store(&images, &place, &elf)?;
@@ -82,6 +75,46 @@ pub fn build_image(
         compiler: toolchain.compiler().to_owned(),
         flags: format!("profile {PROFILE} (opt-level 3, fat LTO), {}, board {}", toolchain.flags(), board.name()),
     })
+}
+
+/// Builds a binary that measures in the emulator, with the tables of these joints; returns the ELF file.
+pub fn build_measuring(
+    toolchain: &Toolchain,
+    binary: &str,
+    joints: &[PathBuf],
+    tick_rate: u32,
+    say: Say<'_>,
+) -> Outcome<PathBuf> {
+    let list = env::join_paths(joints)
+        .map_err(|error| Failure::new(format!("joint files cannot be listed for the firmware's build: {error}")))?;
+    let rate = tick_rate.to_string();
+    let environment = [("MEASURED_JOINTS", list.as_ref()), ("JOINT_TICK_RATE", rate.as_ref())];
+    let features = format!("{},measuring", Board::Stm32f405.name());
+    let elf = compile(toolchain, binary, &features, &environment, say)?;
+    let images = toolchain.target_directory().join("images");
+    let place = images.join(format!("{binary}.elf"));
+    store(&images, &place, &elf)?;
+    Ok(place)
+}
+
+/// Compiles a binary of the firmware.
+fn compile(
+    toolchain: &Toolchain,
+    binary: &str,
+    features: &str,
+    environment: &[(&str, &OsStr)],
+    say: Say<'_>,
+) -> Outcome<Vec<u8>> {
+    // One build at a time in this folder, and none between a build and the copy of its result.
+    let _lock = lock(toolchain.folder())?;
+    let mut command = toolchain.cargo("build");
+    command
+        .args(["--package", "firmware", "--profile", PROFILE, "--bin", binary])
+        .args(["--no-default-features", "--features", features])
+        .envs(environment.iter().copied());
+    tool::follow(&mut command, "building the firmware", say)?;
+    let built = toolchain.folder().join(TARGET).join(PROFILE).join(binary);
+    fs::read(&built).map_err(|error| Failure::new(format!("{}: {error}", built.display())))
 }
 
 /// A preset of the workspace's `joints` folder, for a caller that has a name and no file.

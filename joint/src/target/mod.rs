@@ -2,13 +2,14 @@
 //! is the session's business.
 //!
 //! The order of use: [`toolchain::Toolchain::prepare`], [`image::build_image`], then [`emulator::Emulator::start`] or
-//! [`flash::flash`]. Each says what it is about to do, if that takes time or changes the machine, before it does it.
+//! [`flash::flash`]; or [`image::build_measuring`] and [`measuring::run`]. Each says what it is about to do, if that takes time or changes the machine, before it does it.
 
 pub mod board;
 pub mod emulator;
 pub mod flash;
 pub mod image;
 pub mod lint;
+pub mod measuring;
 pub mod packages;
 pub mod sysroot;
 pub mod tool;

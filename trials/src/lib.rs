@@ -1,0 +1,6 @@
+#![no_std]
+//! What the fixed step is put through, the same on every machine: `motion` goes on and on and is compared bit for bit,
+//! `numbers` is chance that repeats itself. Counting instructions and judging are left to those who run them.
+
+pub mod motion;
+pub mod numbers;

@@ -1,0 +1,59 @@
+//! Chance that repeats itself: the generator SplitMix64 (Steele, Lea, Flood, "Fast Splittable Pseudorandom Number
+//! Generators", 2014) and the few distributions that the trials want. Nothing here is fit for statistics.
+
+/// A sequence of numbers that depends on its seed alone.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Numbers(u64);
+
+impl Numbers {
+    /// The sequence of a seed.
+    pub const fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    /// 64 bits.
+    pub fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        mixed ^ (mixed >> 31)
+    }
+
+    /// A whole number below `end`.
+    pub fn below(&mut self, end: u32) -> u32 {
+        ((u64::from(self.bits() as u32) * u64::from(end)) >> 32) as u32
+    }
+
+    /// From 0 to below 1, in steps of 2^-24.
+    pub fn part(&mut self) -> f32 {
+        (self.bits() >> 40) as f32 * (1.0 / 16_777_216.0)
+    }
+
+    /// From -1 to 1.
+    pub fn signed(&mut self) -> f32 {
+        2.0 * self.part() - 1.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_seed_gives_the_published_sequence() {
+        // The first numbers of seed 1234567, as the authors' own program prints them.
+        let mut numbers = Numbers::new(1_234_567);
+        assert_eq!(numbers.bits(), 6_457_827_717_110_365_317);
+        assert_eq!(numbers.bits(), 3_203_168_211_198_807_973);
+    }
+
+    #[test]
+    fn parts_and_whole_numbers_stay_in_their_ranges() {
+        let mut numbers = Numbers::new(1);
+        for _ in 0..10_000 {
+            assert!(numbers.below(7) < 7);
+            assert!((0.0..1.0).contains(&numbers.part()));
+            assert!((-1.0..=1.0).contains(&numbers.signed()));
+        }
+    }
+}

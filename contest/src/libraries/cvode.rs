@@ -116,13 +116,14 @@ pub(super) fn solve<const N: usize, const D: usize>(
         }
         for &time in times {
             let mut reached = 0.0;
-            while time > 0.0 {
+            let mut on = time > 0.0;
+            while on {
                 let status = CVode(session.memory, time, session.state, &mut reached, NORMAL);
                 check("step", status)?;
-                if status != ROOT_RETURN {
-                    break;
+                on = status == ROOT_RETURN;
+                if on {
+                    check("restart", CVodeReInit(session.memory, reached, session.state))?;
                 }
-                check("restart", CVodeReInit(session.memory, reached, session.state))?;
             }
             let mut entries = [0.0; D];
             entries.copy_from_slice(&*N_VGetArrayPointer_Serial(session.state).cast::<[f64; D]>());

@@ -2,7 +2,8 @@
 //! kinks under error control and interpolating at the wanted times. Its root finding would restart the BDF at order one
 //! at each of eleven crossings a mesh period.
 
-use diffsol::{NalgebraLU, NalgebraMat, OdeBuilder, OdeSolverMethod, OdeSolverStopReason, Vector, VectorHost};
+use diffsol::Vector;
+use diffsol::{NalgebraLU, NalgebraMat, NalgebraVec, OdeBuilder, OdeEquations, OdeSolverMethod, OdeSolverStopReason};
 
 use super::Equations;
 
@@ -48,8 +49,7 @@ pub(super) fn tsit45<const N: usize, const D: usize>(
 /// Steps as the method likes, and reads its interpolant.
 fn follow<'a, Eqn, S, const D: usize>(mut solver: S, times: &[f64]) -> Result<Vec<[f64; D]>, String>
 where
-    Eqn: diffsol::OdeEquations<T = f64> + 'a,
-    Eqn::V: VectorHost<T = f64>,
+    Eqn: OdeEquations<T = f64, V = NalgebraVec<f64>> + 'a,
     S: OdeSolverMethod<'a, Eqn>,
 {
     let end = times.last().copied().unwrap_or_default();
@@ -60,19 +60,13 @@ where
     loop {
         let reason = solver.step().map_err(|error| error.to_string())?;
         let now = solver.state().t;
-        while let Some(time) = wanted.next_if(|time| *time <= now) {
-            solver.interpolate_inplace(time, &mut state).map_err(|error| error.to_string())?;
-            let mut entries = [0.0; D];
-            entries.copy_from_slice(state.as_slice());
-            states.push(entries);
+        let ended = !matches!(reason, OdeSolverStopReason::InternalTimestep);
+        // The stop time may be reached but for a rounding.
+        while let Some(time) = wanted.next_if(|time| ended || *time <= now) {
+            solver.interpolate_inplace(time.min(now), &mut state).map_err(|error| error.to_string())?;
+            states.push(std::array::from_fn(|entry| state.get_index(entry)));
         }
-        if !matches!(reason, OdeSolverStopReason::InternalTimestep) {
-            // The last time may be the stop time rounded.
-            while wanted.next().is_some() {
-                let mut entries = [0.0; D];
-                entries.copy_from_slice(solver.state().y.as_slice());
-                states.push(entries);
-            }
+        if ended {
             return Ok(states);
         }
     }

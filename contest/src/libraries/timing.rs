@@ -49,7 +49,8 @@ pub fn times<const N: usize, const D: usize>(
                 let start = now();
                 let states = library.solve(&equations[phase], &sample_times, tolerance).ok()?;
                 let seconds = now() - start;
-                let readings = states.iter().zip(&sample_times).map(|(state, time)| equations[phase].read(*time, state));
+                let readings =
+                    states.iter().zip(&sample_times).map(|(state, time)| equations[phase].read(*time, state));
                 Some((seconds, phases[phase].1.errors(&readings.enumerate().collect::<Vec<_>>())))
             }));
         }
@@ -82,13 +83,7 @@ fn now() -> f64 {
 }
 
 /// Runs all phases in rounds; the work says how long it took and how far off it was.
-fn timed(
-    case: &Case,
-    name: &str,
-    setting: f64,
-    phases: usize,
-    work: impl Fn(usize) -> Option<(f64, Errors)>,
-) -> Time {
+fn timed(case: &Case, name: &str, setting: f64, phases: usize, work: impl Fn(usize) -> Option<(f64, Errors)>) -> Time {
     let mut least = f64::INFINITY;
     let mut error = None;
     for _ in 0..ROUNDS {

@@ -1,7 +1,7 @@
 //! A case: a joint, where it starts, what torques act, and what of its motion counts. Which cases there are is said in
 //! `catalogue`.
 
-use host_tests::reference::Start;
+use host_tests::reference::{RelativeState, Start};
 use host_tests::scenarios::Scenario;
 use host_tests::scenarios::case_r::{CaseR, TICK_RATE};
 use model_core::joint::{Excitation, JointParameters};
@@ -107,6 +107,35 @@ impl Case {
         MESH_KINDS.into_iter().map(least).sum::<f64>() / self.joint.geometry.carrier_base_radius()
     }
 
+    /// Its start with the sun displaced by a part of b_c.
+    pub fn moved_start(&self, part: f64) -> Start {
+        let by = part * self.joint.characteristic_length;
+        let mut start = match &self.start {
+            Start::Relative(start) => start.clone(),
+            Start::Still => {
+                let mut start = RelativeState::centred(self.joint.geometry.planets);
+                for planet in 0..self.joint.geometry.planets {
+                    let (sine, cosine) = self.joint.error_phase(MeshKind::SunPlanet, planet).sin_cos();
+                    let amplitude = self.joint.sun_planet.transmission_error[planet];
+                    start.sun_planet[planet] = -amplitude * sine;
+                    start.sun_planet_rate[planet] = -amplitude * cosine * self.phase_rate(0.0);
+                }
+                start
+            }
+        };
+        start.sun_planet.iter_mut().for_each(|planet| *planet += by);
+        start.gap += by;
+        Start::Relative(start)
+    }
+
+    /// Rate of the mesh phase at a carrier speed [rad/s].
+    fn phase_rate(&self, carrier_speed: f64) -> f64 {
+        match self.joint.excitation {
+            Excitation::Time { mesh_frequency } => mesh_frequency,
+            Excitation::Angle => f64::from(self.joint.geometry.ring_teeth) * carrier_speed,
+        }
+    }
+
     /// The same with all mesh phases further on by so many periods. The bodies start where they did.
     pub fn shifted(&self, periods: f64) -> Self {
         let mut shifted = self.clone();
@@ -121,10 +150,7 @@ impl Case {
             }
         }
         if let Start::Relative(start) = &mut shifted.start {
-            let rate = match self.joint.excitation {
-                Excitation::Time { mesh_frequency } => mesh_frequency,
-                Excitation::Angle => f64::from(self.joint.geometry.ring_teeth) * start.rigid_speed,
-            };
+            let rate = self.phase_rate(start.rigid_speed);
             for planet in 0..self.joint.geometry.planets {
                 let amplitude = self.joint.sun_planet.transmission_error[planet];
                 let [before, after] =

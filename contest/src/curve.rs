@@ -67,6 +67,15 @@ impl Field {
         &self.phases
     }
 
+    /// How far the reference itself goes astray if its start is moved by a millionth of b_c: what no integrator can be
+    /// expected to undercut in single precision.
+    pub fn sensitivity(&self) -> Result<Errors, ReferenceError> {
+        let (case, course) = &self.phases[0];
+        let moved = Course::from(case, &case.moved_start(1e-6))?;
+        let samples: Vec<_> = moved.samples().iter().cloned().enumerate().collect();
+        Ok(course.errors(&samples))
+    }
+
     /// A method at a rate.
     pub fn point(&self, method: Method, scalar: Scalar, rate: u32) -> Result<Point, DesignError> {
         let runs: Result<Vec<(Errors, u64)>, DesignError> = self

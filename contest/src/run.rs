@@ -44,7 +44,7 @@ pub fn steps(case: &Case, rate: u32) -> u64 {
 
 /// Torques by steps of a method at a rate: (first step, drive, load).
 pub fn torques_by_step(case: &Case, rate: u32) -> Vec<(u64, f64, f64)> {
-    let step = |tick: u64| (tick as f64 * f64::from(rate) / f64::from(case.tick_rate)).round() as u64;
+    let step = |tick: u64| (tick * u64::from(rate)).div_ceil(u64::from(case.tick_rate));
     case.torques.iter().map(|segment| (step(segment.from_tick), segment.drive, segment.load)).collect()
 }
 
@@ -114,12 +114,8 @@ fn two_mass<T: Real, const N: usize>(
     start: &Deflected<N>,
 ) -> Run {
     let model = TwoMass::<T>::new(&case.joint, f64::from(rate), contact);
-    let scales = Scales::new(&case.joint);
-    // Motor against link along the output's line of action: half the gap, and the wind-up.
-    let apart = |values: &Coordinates<f64, N>| 0.5 * values.gap + values.wind_up;
-    let place = apart(&start.position) / scales.length;
-    let rate_of = apart(&start.rate) / (scales.length * scales.frequency);
-    let peer = TwoMassPeer::new(&model, T::from_f64(place), T::from_f64(rate_of));
+    let (place, speed) = start.two_mass(&case.joint);
+    let peer = TwoMassPeer::new(&model, T::from_f64(place), T::from_f64(speed));
     let carrier = RigidCarrier::new(&case.joint, start.speed, rate);
     follow(case, rate, clock, &mut Gap { peer, carrier })
 }
@@ -262,16 +258,8 @@ impl<T: Real, const N: usize, S: PeerScheme<T, N>> Moving for Whole<'_, T, N, S>
     }
 
     fn digest(&self) -> u64 {
-        peer_digest(self.peer.motion())
+        self.peer.motion().digest()
     }
-}
-
-/// Digest over the bits of a peer's motion.
-pub fn peer_digest<T: Real, const N: usize>(motion: &Motion<T, N>) -> u64 {
-    [&motion.position, &motion.rate].into_iter().fold(digest::START, |running, values| {
-        let planets = values.planets.iter().fold(running, |digest, value| digest::chain(digest, value.bits()));
-        digest::chain(digest::chain(planets, values.gap.bits()), values.wind_up.bits())
-    })
 }
 
 struct Gap<'a, T: Real> {

@@ -76,4 +76,12 @@ impl<const N: usize> Deflected<N> {
     pub fn peer<T: Real>(&self, joint: &JointParameters, rate: f64) -> peer::Start<T, N> {
         peer::Start::new(joint, rate, &self.position, &self.rate, self.speed)
     }
+
+    /// For the model of two masses, dimensionless: motor against link along the output's line of action, half the gap and
+    /// the wind-up, and its rate.
+    pub fn two_mass(&self, joint: &JointParameters) -> (f64, f64) {
+        let scales = Scales::new(joint);
+        let apart = |values: &Coordinates<f64, N>| 0.5 * values.gap + values.wind_up;
+        (apart(&self.position) / scales.length, apart(&self.rate) / (scales.length * scales.frequency))
+    }
 }

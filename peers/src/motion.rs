@@ -3,6 +3,7 @@
 
 use core::array;
 
+use model_core::digest;
 use model_core::real::Real;
 
 /// Coordinates, or their rates or accelerations.
@@ -38,4 +39,14 @@ pub struct Motion<T, const N: usize> {
     pub position: Coordinates<T, N>,
     /// Their rates.
     pub rate: Coordinates<T, N>,
+}
+
+impl<T: Real, const N: usize> Motion<T, N> {
+    /// Digest over every bit.
+    pub fn digest(&self) -> u64 {
+        [&self.position, &self.rate].into_iter().fold(digest::START, |running, values| {
+            let planets = values.planets.iter().fold(running, |digest, value| digest::chain(digest, value.bits()));
+            digest::chain(digest::chain(planets, values.gap.bits()), values.wind_up.bits())
+        })
+    }
 }

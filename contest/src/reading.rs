@@ -4,7 +4,7 @@
 use model_core::design::dynamics::MovingMasses;
 use model_core::joint::JointParameters;
 use model_core::scales::Scales;
-use peers::forces::{Always, ForceLaw, PushOnly, Smooth, Spring};
+use peers::forces::{Always, ForceLaw, PushOnly, Smooth, SmoothPush, Spring};
 use peers::instant::{Instant, Rotor};
 use peers::motion::{Coordinates, Motion};
 use peers::plant::{Law, Plant};
@@ -83,6 +83,7 @@ impl<const N: usize> Gauge<N> {
             Law::Always => Always::force(&spring, deflection, rate),
             Law::Push => PushOnly::force(&spring, deflection, rate),
             Law::Smooth => Smooth::force(&spring, deflection, rate),
+            Law::SmoothPush => SmoothPush::force(&spring, deflection, rate),
         }
     }
 }

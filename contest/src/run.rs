@@ -15,7 +15,7 @@ use peers::euler::SemiImplicitEuler;
 use peers::instant::Rotor;
 use peers::motion::{Coordinates, Motion};
 use peers::peer::Peer;
-use peers::plant::{Law, Plant};
+use peers::plant::Plant;
 use peers::runge_kutta::RungeKutta4;
 use peers::scheme::Scheme as PeerScheme;
 use peers::trapezoid::Trapezoid;
@@ -62,7 +62,7 @@ pub fn tables<T: Real, const N: usize>(
 pub fn plant<T: Real, const N: usize>(joint: &JointParameters, method: Method, rate: u32) -> Plant<T, N> {
     let mut plant = Plant::new(joint, f64::from(rate));
     if method == Method::RungeKutta4Tanh {
-        plant.law = Law::Smooth;
+        plant.law = plant.law.smoothed();
         plant.sharpness = T::from_f64(SHARPNESS);
     }
     plant

@@ -42,6 +42,8 @@ pub struct Always;
 pub struct PushOnly;
 /// [`crate::plant::Law::Smooth`].
 pub struct Smooth;
+/// [`crate::plant::Law::SmoothPush`].
+pub struct SmoothPush;
 
 impl<T: Real> ForceLaw<T> for Always {
     #[inline(always)]
@@ -73,17 +75,33 @@ impl<T: Real> ForceLaw<T> for PushOnly {
 }
 
 impl<T: Real> ForceLaw<T> for Smooth {
-    /// Eq. 13 is odd: with y = |x| the farther flank's tanh is one almost always, so that one tanh is left.
     #[inline(always)]
     fn force(spring: &Spring<T>, deflection: T, rate: T) -> T {
-        let negative = deflection < T::ZERO;
-        let distance = if negative { -deflection } else { deflection };
-        let near = rational_tanh(spring.sharpness * (distance - spring.half_backlash));
-        let far = rational_tanh(spring.sharpness * (distance + spring.half_backlash));
-        let overlap = distance + T::HALF * (distance * (near - far) - spring.half_backlash * (near + far));
-        let overlap = if negative { -overlap } else { overlap };
-        spring.stiffness * overlap + spring.damping * rate
+        spring.stiffness * smooth(spring, deflection).0 + spring.damping * rate
     }
+}
+
+impl<T: Real> ForceLaw<T> for SmoothPush {
+    #[inline(always)]
+    fn force(spring: &Spring<T>, deflection: T, rate: T) -> T {
+        let (overlap, closed) = smooth(spring, deflection);
+        let force = spring.stiffness * overlap + closed * spring.damping * rate;
+        let pulls = if deflection < T::ZERO { force > T::ZERO } else { force < T::ZERO };
+        if pulls { T::ZERO } else { force }
+    }
+}
+
+/// Overlap by eq. 13, and how far the teeth are closed, between 0 and 1. Eq. 13 is odd: with y = |x| the farther flank's
+/// tanh is one almost always, so that one tanh is left.
+#[inline(always)]
+fn smooth<T: Real>(spring: &Spring<T>, deflection: T) -> (T, T) {
+    let negative = deflection < T::ZERO;
+    let distance = if negative { -deflection } else { deflection };
+    let near = rational_tanh(spring.sharpness * (distance - spring.half_backlash));
+    let far = rational_tanh(spring.sharpness * (distance + spring.half_backlash));
+    let parted = T::HALF * (far - near);
+    let overlap = distance - distance * parted - T::HALF * spring.half_backlash * (near + far);
+    (if negative { -overlap } else { overlap }, T::ONE - parted)
 }
 
 /// tanh by Lambert's continued fraction to seven terms, held at one from where it gets there: off by 1e-4 at most, a

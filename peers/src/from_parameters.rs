@@ -40,9 +40,10 @@ impl<T: Real, const N: usize> Plant<T, N> {
             wind_up: [real(stiffness), real(damping)],
             damping: MESH_KINDS.map(|kind| real(scales.damping(parameters.damping_coefficient(kind)))),
             law: match (parameters.dead_zone, parameters.damping_law) {
-                (DeadZone::Tanh { .. }, _) => Law::Smooth,
                 (DeadZone::Sharp, DampingLaw::Paper) => Law::Always,
                 (DeadZone::Sharp, DampingLaw::Contact) => Law::Push,
+                // The core's: with the tanh dead zone there is no contact that could end.
+                (DeadZone::Tanh { .. }, _) => Law::Smooth,
             },
             sharpness: match parameters.dead_zone {
                 DeadZone::Sharp => T::ZERO,

@@ -6,7 +6,7 @@ use core::array;
 use model_core::real::Real;
 
 use crate::clock::Clock;
-use crate::forces::{Always, ForceLaw, Push, PushOnly, Smooth};
+use crate::forces::{Always, ForceLaw, Push, PushOnly, Smooth, SmoothPush};
 use crate::instant::{Instant, PerMesh};
 use crate::motion::{Coordinates, Motion};
 use crate::plant::{Law, Plant};
@@ -62,9 +62,11 @@ impl<'a, T: Real, const N: usize, S: Scheme<T, N>> Peer<'a, T, N, S> {
             (false, Law::Always) => self.step_under::<Always, false>(),
             (false, Law::Push) => self.step_under::<PushOnly, false>(),
             (false, Law::Smooth) => self.step_under::<Smooth, false>(),
+            (false, Law::SmoothPush) => self.step_under::<SmoothPush, false>(),
             (true, Law::Always) => self.step_under::<Always, true>(),
             (true, Law::Push) => self.step_under::<PushOnly, true>(),
             (true, Law::Smooth) => self.step_under::<Smooth, true>(),
+            (true, Law::SmoothPush) => self.step_under::<SmoothPush, true>(),
         }
     }
 

@@ -26,7 +26,7 @@ pub struct Plant<T: Real, const N: usize> {
     pub damping: [T; 2],
     /// What a mesh does when its teeth part.
     pub law: Law,
-    /// Sharpness of the tanh dead zone; only read under [`Law::Smooth`].
+    /// Sharpness of the tanh dead zone; only read under the smooth laws.
     pub sharpness: T,
     /// Sun-planet of every planet, then ring-planet.
     pub meshes: [[Mesh<T>; N]; 2],
@@ -47,6 +47,18 @@ pub enum Law {
     Push,
     /// Dead zone by tanh (eq. 13); damping always acts.
     Smooth,
+    /// Dead zone by tanh; damping fades with it, and teeth only push.
+    SmoothPush,
+}
+
+impl Law {
+    /// The same law with a dead zone by tanh.
+    pub fn smoothed(self) -> Self {
+        match self {
+            Self::Always | Self::Smooth => Self::Smooth,
+            Self::Push | Self::SmoothPush => Self::SmoothPush,
+        }
+    }
 }
 
 /// One mesh.

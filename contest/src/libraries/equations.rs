@@ -32,7 +32,7 @@ impl<const N: usize, const D: usize> Equations<N, D> {
         let scales = Scales::new(&case.joint);
         // The step of this plant does not matter.
         let plant: Plant<f64, N> = Plant::new(&case.joint, scales.frequency);
-        if plant.compliant || plant.law == Law::Smooth || D != 2 * (N + 1) {
+        if plant.compliant || !matches!(plant.law, Law::Always | Law::Push) || D != 2 * (N + 1) {
             return None;
         }
         let gains = &plant.gains;

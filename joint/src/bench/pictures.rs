@@ -20,6 +20,16 @@ const MILLI: Unit = Unit { factor: 1e3, name: "ms" };
 const WIDTHS: [f64; 2] = [3.0, 1.6];
 const HEIGHT: i32 = 420;
 
+/// One contestant's line.
+struct Curve<'a> {
+    /// Cost and error.
+    points: Vec<(f64, f64)>,
+    ink: Ink,
+    name: &'a str,
+    /// Whether it is this step.
+    own: bool,
+}
+
 /// Colour of a method.
 fn ink(method: Method) -> Ink {
     match method {
@@ -37,12 +47,12 @@ fn ink(method: Method) -> Ink {
 /// Error by instructions.
 pub fn board(case: &CaseFigures, entries: &[Entry]) -> Option<Figure> {
     let own = |entry: &&Entry| entry.case == case.key && entry.marks.iter().any(|mark| mark.error.is_some());
-    let curves: Vec<(Vec<(f64, f64)>, Ink, &str, bool)> = entries
+    let curves: Vec<Curve<'_>> = entries
         .iter()
         .filter(own)
         .map(|entry| {
             let points = entry.marks.iter().filter_map(|mark| Some((mark.cost(), mark.error?))).collect();
-            (points, ink(entry.method), entry.name, entry.method == Method::Realtime)
+            Curve { points, ink: ink(entry.method), name: entry.name, own: entry.method == Method::Realtime }
         })
         .collect();
     let half = 0.5 * CLOCK / CYCLES;
@@ -71,7 +81,7 @@ pub fn host(case: &CaseFigures, times: &[Time]) -> Option<Figure> {
             let points = of.filter_map(|time| Some((time.cost, time.error?))).collect();
             let own = name.starts_with("this step");
             let ink = if own { Ink::First } else { colours.next().unwrap_or(Ink::Reference) };
-            (points, ink, *name, own)
+            Curve { points, ink, name, own }
         })
         .collect();
     let note = "Processor time for a second of the joint; real time is 1000 ms.".to_owned();
@@ -82,11 +92,11 @@ fn figure(
     title: String,
     axis: &str,
     unit: Unit,
-    curves: Vec<(Vec<(f64, f64)>, Ink, &str, bool)>,
+    curves: Vec<Curve<'_>>,
     limit: Option<f64>,
     note: String,
 ) -> Option<Figure> {
-    let all = || curves.iter().flat_map(|curve| curve.0.iter().copied());
+    let all = || curves.iter().flat_map(|curve| curve.points.iter().copied());
     let least = |of: fn((f64, f64)) -> f64| all().map(of).fold(f64::INFINITY, f64::min);
     let most = |of: fn((f64, f64)) -> f64| all().map(of).fold(0.0, f64::max);
     let (left, right) = (least(|point| point.0), most(|point| point.0));
@@ -96,8 +106,8 @@ fn figure(
     }
     let mut marks: Vec<Mark> = limit.into_iter().map(|at| Mark::Deadline { at, label: "half a core".into() }).collect();
     // This step last, above the others.
-    let (own, others): (Vec<_>, Vec<_>) = curves.into_iter().partition(|curve| curve.3);
-    for (points, ink, name, own) in others.into_iter().chain(own) {
+    let (own, others): (Vec<_>, Vec<_>) = curves.into_iter().partition(|curve| curve.own);
+    for Curve { points, ink, name, own } in others.into_iter().chain(own) {
         marks.push(Mark::Points {
             points: points.clone(),
             ink,

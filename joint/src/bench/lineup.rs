@@ -109,11 +109,10 @@ pub fn run(
         let found = points(&field);
         let jobs: Vec<Job<'_>> = found
             .iter()
-            .map(|(method, point, _)| Job {
-                case: &field.case,
-                method: *method,
-                rate: point.rate,
-                digest: point.digest,
+            .map(|(method, point, _)| {
+                let lost = finite(point.errors.link_rms).is_none();
+                let digest = (!lost).then_some(point.digest);
+                Job { case: &field.case, method: *method, rate: point.rate, digest }
             })
             .collect();
         progress.stage(&format!("case {}: methods on the emulated core", case.key));
@@ -161,8 +160,12 @@ fn of_measure(case: &Case, errors: &Errors) -> f64 {
     }
 }
 
+/// None of an error that says that the motion got lost.
+fn finite(error: f64) -> Option<f64> {
+    (error.is_finite() && error < 1e6).then_some(error)
+}
+
 fn mark(case: &Case, point: &Point, double: Option<&Point>, count: &Count) -> Mark {
-    let finite = |value: f64| (value.is_finite() && value < 1e6).then_some(value);
     Mark {
         rate_Hz: point.rate,
         step: point.step,

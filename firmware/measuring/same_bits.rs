@@ -22,10 +22,10 @@ mod measurement {
         fn joint<const N: usize>(&mut self, name: &str, tables: &'static Tables<f32, N>) {
             for mode in MODES {
                 set_mode(mode);
-                let motion::Digests { long, unbounded, changes } = motion::digests(tables);
+                let motion::Digests { long, unbounded, tiny, changes } = motion::digests(tables);
                 let (flush, default_nan) = (mode & FLUSH_TO_ZERO != 0, mode & DEFAULT_NAN != 0);
                 measuring::say(format_args!(
-                    "{name},{flush},{default_nan},{:016x},{long:016x},{unbounded:016x},{changes}",
+                    "{name},{flush},{default_nan},{:016x},{long:016x},{unbounded:016x},{tiny:016x},{changes}",
                     tables.digest
                 ));
             }

@@ -79,9 +79,10 @@ impl<'a, E: OutputPin<Error = Infallible>, const N: usize> Plant<'a, E, N> {
         }
     }
 
-    /// Takes one order: idle has at most one under way.
+    /// Takes one order: idle has at most one under way. Kept out of line, since its stack is not needed while stepping.
+    #[inline(never)]
     fn obey(&mut self) {
-        let event = match self.end.orders.dequeue() {
+        let event = match self.end.orders.take() {
             None => return,
             Some(Order::Reset(settings)) => self.reset(settings),
             Some(Order::Stop) => {
@@ -102,7 +103,7 @@ impl<'a, E: OutputPin<Error = Infallible>, const N: usize> Plant<'a, E, N> {
         };
         self.show_state();
         // Room is certain: idle takes the answer to an order before it gives the next.
-        let _ = self.end.events.enqueue(event);
+        let _ = self.end.events.give(event);
     }
 
     fn reset(&mut self, settings: RunSettings) -> Event {
@@ -110,7 +111,7 @@ impl<'a, E: OutputPin<Error = Infallible>, const N: usize> Plant<'a, E, N> {
             return Event::Refused(fault);
         }
         for _ in 0..COMMAND_CAPACITY {
-            self.end.commands.dequeue();
+            self.end.commands.take();
         }
         self.model.reset();
         self.steps = 0;
@@ -126,7 +127,7 @@ impl<'a, E: OutputPin<Error = Infallible>, const N: usize> Plant<'a, E, N> {
     /// Steps the model if there is a step to do; says whether there was.
     fn advance(&mut self, timer: &impl TickTimer, lateness: u32) -> bool {
         let lockstep = self.schedule.mode() == RunMode::Lockstep;
-        if lockstep && self.until_sample == 1 && !self.end.samples.ready() {
+        if lockstep && self.until_sample == 1 && !self.end.samples.has_room() {
             self.monitor.waited = self.monitor.waited.saturating_add(1);
             return false;
         }
@@ -147,7 +148,7 @@ impl<'a, E: OutputPin<Error = Infallible>, const N: usize> Plant<'a, E, N> {
         self.digest = digest::chain(self.digest, self.model.state_digest());
         self.steps = self.steps.wrapping_add(1);
         self.end.progress.steps.store(self.steps, Release);
-        self.monitor.queue_low = self.monitor.queue_low.min(self.end.commands.len() as u16);
+        self.monitor.queue_low = self.monitor.queue_low.min(self.end.commands.count() as u16);
         if !self.model.is_finite() {
             self.trip(Fault::NotFinite { tick: self.steps });
         }
@@ -159,6 +160,8 @@ impl<'a, E: OutputPin<Error = Infallible>, const N: usize> Plant<'a, E, N> {
         true
     }
 
+    /// Kept out of line for the same reason.
+    #[inline(never)]
     fn hand_out_sample(&mut self, computation: u32) {
         let sample = RawSample {
             tick: self.steps,
@@ -166,7 +169,7 @@ impl<'a, E: OutputPin<Error = Infallible>, const N: usize> Plant<'a, E, N> {
             outputs: self.model.outputs(),
             computation: computation.min(u16::MAX.into()) as u16,
         };
-        if self.end.samples.enqueue(sample).is_err() {
+        if self.end.samples.give(sample).is_err() {
             self.monitor.lost_samples = self.monitor.lost_samples.saturating_add(1);
         }
     }
@@ -180,6 +183,6 @@ impl<'a, E: OutputPin<Error = Infallible>, const N: usize> Plant<'a, E, N> {
         self.safe_state.trip(fault);
         self.show_state();
         // Room is certain: a run trips once, and besides that only one answer can be under way.
-        let _ = self.end.events.enqueue(Event::Tripped(fault));
+        let _ = self.end.events.give(Event::Tripped(fault));
     }
 }

@@ -2,7 +2,8 @@
 //! A joint simulated in the tick of a microcontroller, driven and watched over a serial line.
 //!
 //! `control` is the work of one tick: it takes torques from `schedule`, steps the model, keeps `budget`, the timing
-//! monitor, and falls back to `safe_state`. `queues` is all that connects it to the rest. `conversation`, run in idle,
+//! monitor, and falls back to `safe_state`. `queues` is all that connects it to the rest, by `ends` that
+//! cannot panic. `conversation`, run in idle,
 //! answers the host with the help of `identity`, `telemetry` and `timing_report`; `serial` moves its bytes.
 //! Everything so far is free of hardware and is tested on the host; `board`, `clock`, `logger`, `panic_message`,
 //! `stack` and `watch` exist on a board only; `measuring` in the emulator only. Physics is left to `model-core`, the words on the line to `link`.
@@ -10,6 +11,7 @@
 pub mod budget;
 pub mod control;
 pub mod conversation;
+pub mod ends;
 pub mod identity;
 pub mod queues;
 pub mod safe_state;

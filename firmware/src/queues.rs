@@ -8,6 +8,7 @@ use link::messages::{Command, Fault, RunSettings};
 use model_core::realtime::Outputs;
 
 use crate::budget::Monitor;
+use crate::ends::{Giver, Taker};
 
 /// Places for commands; one is lost to telling full from empty.
 const COMMANDS: usize = 128;
@@ -91,13 +92,13 @@ pub struct Queues<const N: usize> {
 /// The tick's ends.
 pub struct TickEnd<'a, const N: usize> {
     /// Torques to come.
-    pub commands: Consumer<'a, Command>,
+    pub commands: Taker<'a, Command, COMMANDS>,
     /// What idle wants.
-    pub orders: Consumer<'a, Order>,
+    pub orders: Taker<'a, Order, NOTES>,
     /// Motion to be reported.
-    pub samples: Producer<'a, RawSample<N>>,
+    pub samples: Giver<'a, RawSample<N>, SAMPLES>,
     /// What has happened.
-    pub events: Producer<'a, Event>,
+    pub events: Giver<'a, Event, NOTES>,
     /// Shared counters.
     pub progress: &'a Progress,
 }
@@ -141,6 +142,8 @@ impl<const N: usize> Queues<N> {
         let (samples, samples_out) = self.samples.split();
         let (events, events_out) = self.events.split();
         let progress = &self.progress;
+        let (commands, orders) = (Taker::new(commands), Taker::new(orders));
+        let (samples, events) = (Giver::new(samples), Giver::new(events));
         (
             TickEnd { commands, orders, samples, events, progress },
             IdleEnd { commands: commands_in, orders: orders_in, samples: samples_out, events: events_out, progress },

@@ -2,9 +2,10 @@
 //! host or by the board's own clock. Filling the queue, and refusing commands that are bad in themselves, is left to
 //! `conversation`.
 
-use heapless::spsc::Consumer;
 use link::messages::{Command, Fault, RunMode, RunSettings};
 use model_core::realtime::Torques;
+
+use crate::ends::Taker;
 
 /// What a tick is to do.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,7 +48,12 @@ impl Schedule {
 
     /// Decides on the step from `tick` to `tick + 1`, everything before `horizon` being known. Ticks rise strictly
     /// from command to command, so at most one can be due. A run begins with the first schedule, in either mode.
-    pub fn turn(&mut self, tick: u32, horizon: u32, commands: &mut Consumer<'_, Command>) -> Turn {
+    pub fn turn<const PLACES: usize>(
+        &mut self,
+        tick: u32,
+        horizon: u32,
+        commands: &mut Taker<'_, Command, PLACES>,
+    ) -> Turn {
         let known = tick < horizon;
         if !known && (horizon == 0 || self.settings.mode == RunMode::Lockstep) {
             return Turn::Wait;
@@ -59,7 +65,7 @@ impl Schedule {
             }
             if due == tick {
                 self.torques = Torques { drive: drive_torque, load: load_torque };
-                commands.dequeue();
+                commands.take();
             }
         }
         if known {
@@ -94,7 +100,8 @@ mod tests {
     #[test]
     fn lockstep_waits_at_the_horizon() {
         let mut queue = Queue::<Command, 4>::new();
-        let (_, mut commands) = queue.split();
+        let (_, commands) = queue.split();
+        let mut commands = Taker::<_, 4>::new(commands);
         let mut schedule = schedule(RunMode::Lockstep);
         assert_eq!(schedule.turn(0, 0, &mut commands), Turn::Wait);
         assert_eq!(schedule.turn(0, 1, &mut commands), Turn::Step);
@@ -106,7 +113,8 @@ mod tests {
     #[test]
     fn a_torque_holds_from_its_tick_to_the_next_command() {
         let mut queue = Queue::<Command, 4>::new();
-        let (mut entry, mut commands) = queue.split();
+        let (mut entry, commands) = queue.split();
+        let mut commands = Taker::<_, 4>::new(commands);
         entry.enqueue(command(1, 2.0)).unwrap();
         entry.enqueue(command(3, -1.0)).unwrap();
         let mut schedule = schedule(RunMode::Lockstep);
@@ -122,7 +130,8 @@ mod tests {
     #[test]
     fn a_starved_run_holds_the_torque_until_the_timeout_and_then_trips() {
         let mut queue = Queue::<Command, 4>::new();
-        let (mut entry, mut commands) = queue.split();
+        let (mut entry, commands) = queue.split();
+        let mut commands = Taker::<_, 4>::new(commands);
         entry.enqueue(command(0, 2.0)).unwrap();
         let mut schedule = schedule(RunMode::Realtime);
         assert_eq!(schedule.turn(0, 1, &mut commands), Turn::Step);
@@ -138,7 +147,8 @@ mod tests {
     #[test]
     fn a_schedule_in_time_ends_the_starvation() {
         let mut queue = Queue::<Command, 4>::new();
-        let (_, mut commands) = queue.split();
+        let (_, commands) = queue.split();
+        let mut commands = Taker::<_, 4>::new(commands);
         let mut schedule = schedule(RunMode::Realtime);
         for tick in (0..100).step_by(2) {
             assert_eq!(schedule.turn(tick, tick + 1, &mut commands), Turn::Step);
@@ -149,7 +159,8 @@ mod tests {
     #[test]
     fn a_realtime_run_does_not_begin_before_its_first_schedule() {
         let mut queue = Queue::<Command, 4>::new();
-        let (_, mut commands) = queue.split();
+        let (_, commands) = queue.split();
+        let mut commands = Taker::<_, 4>::new(commands);
         let mut schedule = schedule(RunMode::Realtime);
         for _ in 0..10 * TIMEOUT {
             assert_eq!(schedule.turn(0, 0, &mut commands), Turn::Wait);
@@ -159,7 +170,8 @@ mod tests {
     #[test]
     fn a_command_for_a_past_tick_trips() {
         let mut queue = Queue::<Command, 4>::new();
-        let (mut entry, mut commands) = queue.split();
+        let (mut entry, commands) = queue.split();
+        let mut commands = Taker::<_, 4>::new(commands);
         entry.enqueue(command(4, 2.0)).unwrap();
         let late = Turn::Trip(Fault::LateCommand { tick: 4 });
         assert_eq!(schedule(RunMode::Realtime).turn(5, 9, &mut commands), late);

@@ -20,7 +20,7 @@ use crate::joint::{self, JointParameters};
 use crate::mesh::{MAX_HARMONICS, MESH_KINDS, MeshKind};
 use crate::real::Real;
 use crate::scales::Scales;
-use crate::tables::{Excitation, MeshTable, Mobility, Rigid, Scheme, Spring, Tables, Units};
+use crate::tables::{Excitation, MeshTable, Mobility, Rigid, Scheme, Spring, Stage, Tables, Units};
 use dynamics::{Dynamics, MovingMasses};
 pub use pace::{Effort, Pace};
 pub use source::rust_source;
@@ -70,13 +70,19 @@ pub fn design_scheme<T: Real, const N: usize>(
         },
         units: units(parameters, &scales, tick_rate),
         rigid: rigid(parameters, tick_rate),
-        mobility: mobility(&dynamics),
+        mobility: mobility(&dynamics, 1.0, 1.0),
         excitation: excitation(parameters, tick_rate, tick),
         springs: MESH_KINDS.map(|kind| Spring {
             stiffness: real(parameters.mesh(kind).mean_stiffness / scales.stiffness),
             damping: real(scales.damping(parameters.damping_coefficient(kind))),
         }),
         meshes: MESH_KINDS.map(|kind| array::from_fn(|i| mesh(parameters, &scales, kind, i))),
+        stage: Stage {
+            rate: real(1.0 / substep),
+            square_sixth: real(substep * substep / 6.0),
+            mobility: mobility(&dynamics, substep * substep / 6.0, 1.0 / substep),
+            damping: MESH_KINDS.map(|kind| real(scales.damping(parameters.damping_coefficient(kind)) / substep)),
+        },
         flow: flow_tables::flow(&dynamics, flow_step),
     };
     tables.digest = tables.numbers_digest();
@@ -118,19 +124,20 @@ fn rigid<T: Real>(parameters: &JointParameters, tick_rate: u32) -> Rigid<T> {
     }
 }
 
-fn mobility<T: Real>(dynamics: &Dynamics) -> Mobility<T> {
+/// Mobilities times `scale`, damping times `rate`.
+fn mobility<T: Real>(dynamics: &Dynamics, scale: f64, rate: f64) -> Mobility<T> {
     let real = T::from_f64;
     let mobilities = &dynamics.mobilities;
     let carrier = dynamics.planets + 1;
     let (stiffness, damping) = dynamics.wind_up.unwrap_or((0.0, 0.0));
     Mobility {
-        sun: real(mobilities[0]),
-        planet: real(mobilities[1]),
-        carrier: real(mobilities[carrier]),
-        link: real(mobilities.get(carrier + 1).copied().unwrap_or(0.0)),
+        sun: real(scale * mobilities[0]),
+        planet: real(scale * mobilities[1]),
+        carrier: real(scale * mobilities[carrier]),
+        link: real(scale * mobilities.get(carrier + 1).copied().unwrap_or(0.0)),
         wind_up: if dynamics.wind_up.is_some() { T::ONE } else { T::ZERO },
         wind_up_stiffness: real(stiffness),
-        wind_up_damping: real(damping),
+        wind_up_damping: real(rate * damping),
     }
 }
 

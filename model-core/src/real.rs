@@ -31,6 +31,14 @@ pub trait Real:
     const ONE: Self;
     /// 2.
     const TWO: Self;
+    /// 3.
+    const THREE: Self;
+    /// 4.
+    const FOUR: Self;
+    /// 6.
+    const SIX: Self;
+    /// 1/4.
+    const QUARTER: Self;
     /// 1/3.
     const THIRD: Self;
     /// 1/6.
@@ -41,6 +49,11 @@ pub trait Real:
     const TWENTIETH: Self;
     /// 2^-32.
     const PHASE_UNIT: Self;
+    /// Least size of a number that the state keeps; what is smaller is zero. So far above the denormal numbers that no
+    /// product of a step falls among them, so far below one that nothing is lost.
+    const LEAST: Self;
+    /// The one form of what is no number.
+    const NAN: Self;
     /// Polynomial of sin(2 pi t) / t in t^2; see `realtime::phase`.
     const SINE: [Self; 4];
     /// Polynomial of cos(2 pi t) in t^2.
@@ -59,6 +72,8 @@ pub trait Real:
     fn tanh(self) -> Self;
     /// Quotient; the caller has made sure that `divisor` is not zero.
     fn over(self, divisor: Self) -> Self;
+    /// Magnitude.
+    fn abs(self) -> Self;
     /// Neither infinite nor NaN.
     fn is_finite(self) -> bool;
     /// Bits for a digest.
@@ -66,16 +81,22 @@ pub trait Real:
 }
 
 macro_rules! real {
-    ($scalar:ty, $tanh:path) => {
+    ($scalar:ty, $tanh:path, $least:expr, $nan:expr) => {
         impl Real for $scalar {
             const ZERO: Self = 0.0;
             const HALF: Self = 0.5;
             const ONE: Self = 1.0;
             const TWO: Self = 2.0;
+            const THREE: Self = 3.0;
+            const FOUR: Self = 4.0;
+            const SIX: Self = 6.0;
+            const QUARTER: Self = 0.25;
             const THIRD: Self = 1.0 / 3.0;
             const SIXTH: Self = 1.0 / 6.0;
             const EIGHTH: Self = 0.125;
             const TWENTIETH: Self = 0.05;
+            const LEAST: Self = $least;
+            const NAN: Self = $nan;
             const PHASE_UNIT: Self = 1.0 / 4_294_967_296.0;
             // Chebyshev interpolation on |t| <= 1/8, computed for this file; largest errors 2.4e-9 and 5e-11, below
             // half a unit of an f32.
@@ -105,6 +126,9 @@ macro_rules! real {
             fn over(self, divisor: Self) -> Self {
                 self / divisor
             }
+            fn abs(self) -> Self {
+                <$scalar>::abs(self)
+            }
             fn is_finite(self) -> bool {
                 <$scalar>::is_finite(self)
             }
@@ -115,5 +139,6 @@ macro_rules! real {
     };
 }
 
-real!(f32, libm::tanhf);
-real!(f64, libm::tanh);
+// 2^-40 and 2^-300; the quiet NaN without sign or payload.
+real!(f32, libm::tanhf, 1.0 / (1_u64 << 40) as f32, Self::from_bits(0x7fc0_0000));
+real!(f64, libm::tanh, Self::from_bits((1023 - 300) << 52), Self::from_bits(0x7ff8_0000_0000_0000));

@@ -43,8 +43,24 @@ pub struct Tables<T: Real, const N: usize> {
     pub springs: [Spring<T>; 2],
     /// Each mesh: sun-planet of every planet, then ring-planet.
     pub meshes: [[MeshTable<T>; N]; 2],
+    /// The joint in the sub-step's own units of time.
+    pub stage: Stage<T>,
     /// Exponential flow of the closed joint over one tick (or one sub-step, for [`Scheme::PaperEtd1`]).
     pub flow: Flow<T>,
+}
+
+/// The joint in units in which a sub-step lasts 1 and an acceleration is counted in sixths: so the weights of a step
+/// are whole numbers, and those that are 1 cost nothing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stage<T: Real> {
+    /// Sub-steps in a unit of dimensionless time, 1/h.
+    pub rate: T,
+    /// h^2 / 6: what turns a dimensionless acceleration into one of a stage.
+    pub square_sixth: T,
+    /// Mobilities times h^2 / 6; damping of the wind-up over h.
+    pub mobility: Mobility<T>,
+    /// Damping of sun-planet and ring-planet meshes over h.
+    pub damping: [T; 2],
 }
 
 /// How a tick is stepped.
@@ -224,9 +240,10 @@ impl<T: Real, const N: usize> Tables<T, N> {
         digest.reals(&units.motor_offset);
         digest.reals(&units.link_offset);
         digest.reals(&[self.rigid.drive, self.rigid.load]);
-        let mobility = &self.mobility;
-        digest.reals(&[mobility.sun, mobility.planet, mobility.carrier, mobility.link]);
-        digest.reals(&[mobility.wind_up, mobility.wind_up_stiffness, mobility.wind_up_damping]);
+        digest.mobility(&self.mobility);
+        digest.reals(&[self.stage.rate, self.stage.square_sixth]);
+        digest.mobility(&self.stage.mobility);
+        digest.reals(&self.stage.damping);
         digest.whole(self.excitation.phase_step);
         digest.whole(self.excitation.periods_per_turn.into());
         digest.whole(self.excitation.harmonics.into());
@@ -258,6 +275,11 @@ impl Digest {
 
     fn block<T: Real, const R: usize, const C: usize>(&mut self, block: &Block<T, R, C>) {
         self.reals(block.0.as_slice());
+    }
+
+    fn mobility<T: Real>(&mut self, mobility: &Mobility<T>) {
+        self.reals(&[mobility.sun, mobility.planet, mobility.carrier, mobility.link]);
+        self.reals(&[mobility.wind_up, mobility.wind_up_stiffness, mobility.wind_up_damping]);
     }
 
     fn flow<T: Real>(&mut self, flow: &Flow<T>) {

@@ -1,12 +1,15 @@
 //! A long motion that loses and finds contact, for a comparison bit for bit: torques swing the joint through its gap,
-//! rests let what is damped die away to the smallest numbers, and a second motion ends in numbers that are none. How
-//! the digests are compared is left to whoever runs them.
+//! rests let it calm down, a second motion ends in numbers that are none, and many short ones start from the smallest
+//! numbers there are. How the digests are compared is left to whoever runs them.
+
+use core::array;
 
 use model_core::digest::{self, chain};
-use model_core::realtime::{Model, Outputs, Torques};
+use model_core::realtime::{Model, Outputs, Relative, State, Torques};
 use model_core::tables::Tables;
 
 use crate::numbers::Numbers;
+use crate::torque::{NONE, Size};
 
 /// Steps of the long motion.
 pub const STEPS: u32 = 100_000;
@@ -16,48 +19,82 @@ const SHORT: u32 = 2000;
 const UNBOUNDED_FROM: u32 = 1900;
 /// Every so often, in steps, the joint is left alone ...
 const REST_EVERY: u32 = 25_000;
-/// ... for so long: rates die away to below the smallest number that f32 holds.
+/// ... for so long.
 const REST: u32 = 12_000;
+/// Halvings, from 2^-20 down past the smallest number of f32, 2^-149, that short motions start from ...
+const HALVINGS: core::ops::Range<u32> = 20..152;
+/// ... and their steps.
+const BRIEF: u32 = 20;
 /// Torques last up to so many steps.
 const LONGEST_HOLD: u32 = 400;
-/// Acceleration of the sun, in units of b_c omega_n^2, that the torques go up to: some half-backlashes of deflection.
-const STRENGTH: f32 = 20.0;
+/// Bits of the smallest number of f32 with all its digits.
+const FIRST_NORMAL: u32 = 1 << 23;
 
 /// Digests of a joint's motions.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Digests {
     /// Of state and outputs at every step of the long motion.
     pub long: u64,
     /// Of the state at every step of the motion that ends in infinite torques.
     pub unbounded: u64,
+    /// Of the state at every step of the motions from tiny numbers.
+    pub tiny: u64,
     /// Steps of the long motion after which the contact set is another than before.
     pub changes: u32,
 }
 
-/// Both motions of a joint, from rest.
+/// All motions of a joint.
 pub fn digests<const N: usize>(tables: &Tables<f32, N>) -> Digests {
-    let mut hand = Hand::new(tables);
-    let mut model = Model::new(tables);
+    let (long, changes) = long(tables);
+    Digests { long, unbounded: unbounded(tables), tiny: tiny(tables), changes }
+}
+
+fn long<const N: usize>(tables: &Tables<f32, N>) -> (u64, u32) {
+    let (mut hand, mut model) = (Hand::new(tables), Model::new(tables));
     let mut contacts = model.outputs().contacts;
-    let (mut long, mut changes) = (digest::START, 0);
+    let (mut running, mut changes) = (digest::START, 0);
     for step in 0..STEPS {
         let resting = step % REST_EVERY >= REST_EVERY - REST;
-        model.step(if resting { Torques { drive: 0.0, load: 0.0 } } else { hand.torques() });
+        model.step(if resting { NONE } else { hand.torques() });
         let outputs = model.outputs();
         changes += u32::from(outputs.contacts != contacts);
         contacts = outputs.contacts;
-        long = chain_outputs(chain(long, model.state_digest()), &outputs);
+        running = chain_outputs(chain(running, model.state_digest()), &outputs);
     }
+    (running, changes)
+}
 
-    let mut hand = Hand::new(tables);
-    model.reset();
-    let mut unbounded = digest::START;
+fn unbounded<const N: usize>(tables: &Tables<f32, N>) -> u64 {
+    let (mut hand, mut model) = (Hand::new(tables), Model::new(tables));
+    let mut running = digest::START;
     for step in 0..SHORT {
         let torques = hand.torques();
         model.step(if step < UNBOUNDED_FROM { torques } else { Torques { drive: f32::INFINITY, ..torques } });
-        unbounded = chain(unbounded, model.state_digest());
+        running = chain(running, model.state_digest());
     }
-    Digests { long, unbounded, changes }
+    running
+}
+
+fn tiny<const N: usize>(tables: &Tables<f32, N>) -> u64 {
+    let mut model = Model::new(tables);
+    let mut numbers = Numbers::new(2);
+    let (mut running, mut size) = (digest::START, 1.0_f32);
+    for halving in 0..HALVINGS.end {
+        // At the end by whole numbers: a mode that flushes tiny numbers must not choose where the motions start.
+        size = if size.to_bits() > FIRST_NORMAL { 0.5 * size } else { f32::from_bits(size.to_bits() >> 1) };
+        if halving < HALVINGS.start {
+            continue;
+        }
+        let mut any = || f32::from_bits(size.to_bits() | (u32::from(numbers.below(2) == 1) << 31));
+        let mut relative = || Relative { planets: array::from_fn(|_| any()), gap: any(), wind_up: any() };
+        model.set_state(State { position: relative(), rate: relative(), ..State::REST });
+        let torques = Torques { drive: any(), load: any() };
+        for _ in 0..BRIEF {
+            model.step(torques);
+            running = chain(running, model.state_digest());
+        }
+    }
+    running
 }
 
 fn chain_outputs<const N: usize>(running: u64, outputs: &Outputs<f32, N>) -> u64 {
@@ -68,32 +105,23 @@ fn chain_outputs<const N: usize>(running: u64, outputs: &Outputs<f32, N>) -> u64
     })
 }
 
-/// Torques that change by chance, with the load about what balances the drive.
+/// Torques that change by chance.
 struct Hand {
     numbers: Numbers,
-    strength: f32,
-    balance: f32,
+    size: Size,
     torques: Torques<f32>,
     left: u32,
 }
 
 impl Hand {
     fn new<const N: usize>(tables: &Tables<f32, N>) -> Self {
-        Self {
-            numbers: Numbers::new(1),
-            strength: STRENGTH / tables.units.drive,
-            balance: tables.rigid.drive / tables.rigid.load,
-            torques: Torques { drive: 0.0, load: 0.0 },
-            left: 0,
-        }
+        Self { numbers: Numbers::new(1), size: Size::of(tables), torques: NONE, left: 0 }
     }
 
     fn torques(&mut self) -> Torques<f32> {
         if self.left == 0 {
             self.left = 1 + self.numbers.below(LONGEST_HOLD);
-            let drive = self.strength * self.numbers.signed();
-            let load = self.balance * drive * (1.0 + 0.5 * self.numbers.signed());
-            self.torques = Torques { drive, load };
+            self.torques = self.size.any(&mut self.numbers);
         }
         self.left -= 1;
         self.torques

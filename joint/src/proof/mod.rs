@@ -4,3 +4,5 @@
 
 pub mod joints;
 pub mod same_bits;
+pub mod tick;
+pub mod worst_case;

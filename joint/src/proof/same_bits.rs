@@ -25,6 +25,8 @@ pub struct Digests {
     pub long: u64,
     /// Of the state over the motion that ends in infinite torques.
     pub unbounded: u64,
+    /// Of the state over the motions from tiny numbers.
+    pub tiny: u64,
     /// Steps that changed the contact set, in the long motion.
     pub changes: u32,
 }
@@ -42,26 +44,32 @@ pub struct OnBoard {
 
 impl fmt::Display for Digests {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { name, tables, long, unbounded, changes } = self;
-        write!(f, "{name},{tables:016x},{long:016x},{unbounded:016x},{changes}")
+        let Self { name, tables, long, unbounded, tiny, changes } = self;
+        write!(f, "{name},{tables:016x},{long:016x},{unbounded:016x},{tiny:016x},{changes}")
     }
 }
 
-/// The digests of a joint, computed here.
-pub fn on_host(joint: &TrialJoint) -> Outcome<Digests> {
+/// Runs work in a floating-point mode.
+pub type InMode<'a> = &'a dyn Fn(&mut dyn FnMut());
+
+/// The digests of a joint, computed here. The step runs in the given floating-point mode; design, which only ever runs
+/// in the usual one, does not.
+pub fn on_host(joint: &TrialJoint, in_mode: InMode<'_>) -> Outcome<Digests> {
     let parameters = joint.read()?.parameters;
     match parameters.geometry.planets {
-        3 => with_planets::<3>(joint.name, &parameters),
-        4 => with_planets::<4>(joint.name, &parameters),
-        _ => with_planets::<5>(joint.name, &parameters),
+        3 => with_planets::<3>(joint.name, &parameters, in_mode),
+        4 => with_planets::<4>(joint.name, &parameters, in_mode),
+        _ => with_planets::<5>(joint.name, &parameters, in_mode),
     }
 }
 
-fn with_planets<const N: usize>(name: &str, parameters: &JointParameters) -> Outcome<Digests> {
+fn with_planets<const N: usize>(name: &str, parameters: &JointParameters, in_mode: InMode<'_>) -> Outcome<Digests> {
     let tables = design::<f32, N>(parameters, DEFAULT_TICK_RATE)
         .map_err(|error| Failure::new(error.to_string()).while_doing(format_args!("joint {name}")))?;
-    let motion::Digests { long, unbounded, changes } = motion::digests(&tables);
-    Ok(Digests { name: name.to_owned(), tables: tables.digest, long, unbounded, changes })
+    let mut digests = motion::Digests::default();
+    in_mode(&mut || digests = motion::digests(&tables));
+    let motion::Digests { long, unbounded, tiny, changes } = digests;
+    Ok(Digests { name: name.to_owned(), tables: tables.digest, long, unbounded, tiny, changes })
 }
 
 /// The digests of all joints by the emulated board, in every setting.
@@ -74,20 +82,20 @@ pub fn on_board(toolchain: &Toolchain, say: Say<'_>) -> Outcome<Vec<OnBoard>> {
 
 /// name,flush,nan,tables,long,unbounded,changes: names may hold commas.
 fn parse(line: &str) -> Option<OnBoard> {
-    let mut fields = line.rsplitn(7, ',');
+    let mut fields = line.rsplitn(8, ',');
     let changes = fields.next()?.parse().ok()?;
     let mut digest = || u64::from_str_radix(fields.next()?, 16).ok();
-    let (unbounded, long, tables) = (digest()?, digest()?, digest()?);
+    let (tiny, unbounded, long, tables) = (digest()?, digest()?, digest()?, digest()?);
     let (default_nan, flush_to_zero) = (fields.next()?.parse().ok()?, fields.next()?.parse().ok()?);
     let name = fields.next()?.to_owned();
-    Some(OnBoard { digests: Digests { name, tables, long, unbounded, changes }, flush_to_zero, default_nan })
+    Some(OnBoard { digests: Digests { name, tables, long, unbounded, tiny, changes }, flush_to_zero, default_nan })
 }
 
 /// Every joint on the board in every setting against the host: the first difference ends it. Returns how many runs were
 /// compared.
 pub fn compare(board: &[OnBoard]) -> Outcome<usize> {
     for joint in &TRIAL_JOINTS {
-        let host = on_host(joint)?;
+        let host = on_host(joint, &|work| work())?;
         let runs: Vec<_> = board.iter().filter(|run| run.digests.name == joint.name).collect();
         if runs.len() != 4 {
             return Err(Failure::check_failed(format!("{}: {} runs on the board, not 4", joint.name, runs.len())));
@@ -106,6 +114,8 @@ fn difference(run: &OnBoard, host: &Digests) -> Failure {
         "the tables"
     } else if run.digests.long != host.long {
         "the long motion"
+    } else if run.digests.tiny != host.tiny {
+        "the motions from tiny numbers"
     } else {
         "the motion under infinite torques"
     };
@@ -125,13 +135,13 @@ mod tests {
     use super::*;
 
     fn on_board(name: &str, long: u64) -> OnBoard {
-        let digests = Digests { name: name.into(), tables: 1, long, unbounded: 3, changes: 4 };
+        let digests = Digests { name: name.into(), tables: 1, long, unbounded: 3, tiny: 4, changes: 5 };
         OnBoard { digests, flush_to_zero: true, default_nan: false }
     }
 
     #[test]
     fn a_line_of_the_board_is_read() {
-        let line = "S1 no backlash,true,false,0000000000000001,0000000000000002,0000000000000003,4";
+        let line = "S1 no backlash,true,false,0000000000000001,0000000000000002,0000000000000003,0000000000000004,5";
         assert_eq!(parse(line), Some(on_board("S1 no backlash", 2)));
         assert_eq!(parse("panicked at x.rs:1:1"), None);
     }

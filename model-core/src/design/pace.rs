@@ -33,6 +33,8 @@ pub enum Effort {
     Board,
     /// What accuracy asks for.
     Accurate,
+    /// So many sub-steps a tick, for comparisons; whether that is stable is the caller's concern.
+    Substeps(u32),
 }
 
 /// What sets the pace of a joint.
@@ -62,6 +64,9 @@ impl Pace {
 
     /// Sub-steps of a tick.
     pub fn substeps(&self, tick_rate: u32, effort: Effort) -> Result<u32, DesignError> {
+        if let Effort::Substeps(substeps) = effort {
+            return Ok(substeps.clamp(1, MOST_SUBSTEPS as u32));
+        }
         let lowest = self.lowest_rate(effort);
         if tick_rate < lowest {
             return Err(DesignError::RateTooLow { given: tick_rate, lowest });
@@ -71,7 +76,7 @@ impl Pace {
             .min(USUAL_SUBSTEPS)
             .max(libm::ceil(self.mesh_frequency / (rate * EXCITATION_PHASE)));
         let affordable = match effort {
-            Effort::Accurate => MOST_SUBSTEPS,
+            Effort::Accurate | Effort::Substeps(_) => MOST_SUBSTEPS,
             Effort::Board => {
                 libm::floor((BOARD_INSTRUCTIONS / rate - TICK_INSTRUCTIONS) / (SUBSTEP_INSTRUCTIONS * self.planets))
             }
@@ -84,7 +89,7 @@ impl Pace {
     pub fn lowest_rate(&self, effort: Effort) -> u32 {
         let stable = self.fastest / LARGEST_PHASE;
         let wanted = match effort {
-            Effort::Board => stable,
+            Effort::Board | Effort::Substeps(_) => stable,
             Effort::Accurate => stable.max(self.mesh_frequency / EXCITATION_PHASE),
         };
         libm::ceil(wanted / MOST_SUBSTEPS).max(1.0) as u32

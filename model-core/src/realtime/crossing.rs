@@ -6,71 +6,98 @@
 //! so its first three integrals over [t - s, t] are closed forms; they correct rate, position and the integral of the
 //! position. These corrections deform the other meshes too: one linear pass adds the forces that this causes.
 
+use crate::mesh::DampingLaw;
 use crate::real::Real;
-use crate::realtime::contact::{Drive, Law, Laws, Observed, acceleration, spread, wind_up_force};
-use crate::realtime::excitation::Instant;
-use crate::realtime::runge_kutta::Motion;
-use crate::tables::Tables;
+use crate::realtime::contact::{Drive, Law, Laws, Net};
+use crate::realtime::excitation::{Beat, PerMesh};
+use crate::realtime::frozen::{Frozen, Moment};
+use crate::realtime::substep::Course;
 
-/// A step that was taken with one contact set throughout.
-pub struct FrozenStep<'a, T, const N: usize> {
-    /// How far back from its end a crossing may lie.
-    pub step: T,
-    /// d(phase)/d(tau) [rad].
-    pub phase_rate: T,
-    /// The meshes at its end.
-    pub observed: &'a Observed<T, N>,
+/// The end of a step that was taken with one contact set throughout.
+pub struct End<'a, T: Real, const N: usize, const OVERTONES: bool> {
+    /// The joint.
+    pub frozen: &'a Frozen<'a, T, N, OVERTONES>,
+    /// Way that the mesh phase goes in the step [rad].
+    pub rate: T,
+    /// The excitation.
+    pub beat: &'a Beat<T>,
+    /// Meshes whose law does not hold: those with more than zero.
+    pub trespasses: &'a PerMesh<T, N>,
 }
 
-impl<T: Real, const N: usize> FrozenStep<'_, T, N> {
-    /// The motion at the end, corrected for every mesh that is no longer under its law; `laws` are brought up to date.
+impl<T: Real, const N: usize, const OVERTONES: bool> End<'_, T, N, OVERTONES> {
+    /// Corrects the motion for every law that does not hold, and the accelerations now and half a step before, which
+    /// become those that the new laws would have caused on the same path.
     #[inline(never)]
-    pub fn correct(
-        &self,
-        tables: &Tables<T, N>,
-        drive: &Drive<T>,
-        instant: &Instant<T, N>,
-        laws: &mut Laws<T, N>,
-        end: &Motion<T, N>,
-    ) -> Motion<T, N> {
-        let Observed { deflection, speed, force } = self.observed;
-        let wind_up = wind_up_force(tables, &end.position, &end.rate);
-        let accelerations = spread(&acceleration(tables, drive, force, wind_up));
+    pub fn correct(&self, laws: &mut Laws<T, N>, course: &mut Course<T, N>) {
+        let tables = self.frozen.tables;
         // e'' = -rate^2 e for the sine of eq. 11.
-        let square = self.phase_rate * self.phase_rate;
-        let mut missed = [[[T::ZERO; N]; 2]; 3];
+        let square = self.rate * self.rate;
+        let pushes_only = tables.damping_law == DampingLaw::Contact;
+        let (mut impulse, mut shift, mut jump, mut past) = (Net::NONE, Net::NONE, Net::NONE, Net::NONE);
+        let mut longest = T::ZERO;
         for kind in 0..2 {
             for i in 0..N {
-                let (deflection, speed, stiffness) = (deflection[kind][i], speed[kind][i], instant.stiffness[kind][i]);
-                let before = laws.get(kind, i);
-                let after = Law::of(tables, (kind, i), deflection, speed, stiffness);
-                if before == after {
+                let trespass = self.trespasses[kind][i];
+                if trespass <= T::ZERO {
                     continue;
                 }
-                laws.set(kind, i, after);
-                let acceleration = accelerations[kind][i] + square * instant.error[kind][i];
-                let mesh = Crossing { deflection, speed, acceleration, stiffness, step: self.step };
-                let integrals = mesh.missed(&before, &after);
-                for (integral, value) in missed.iter_mut().zip(integrals) {
-                    integral[kind][i] = value;
+                let planet = course.planets[i];
+                let (mut at, mut acceleration) = (planet.point(), planet.now);
+                if kind == 1 {
+                    (at, acceleration) = (course.gap.point().less(at), course.gap.now - acceleration);
+                }
+                let was = laws[kind][i];
+                let Moment { overlap: deflection, speed, stiffness, error, .. } =
+                    self.frozen.mesh(&Law::OPEN, (kind, i), self.beat, at);
+                let is = Law::of(tables, (kind, i), deflection, speed, stiffness);
+                laws[kind][i] = is;
+                // Without backlash both flanks are one.
+                if was.closed == is.closed && was.offset == is.offset {
+                    continue;
+                }
+                let harmonics = if OVERTONES { tables.excitation.harmonics } else { 1 };
+                let stiffness_rate = tables.meshes[kind][i].stiffness_rate(self.beat, harmonics);
+                let acceleration = T::SIX * acceleration + square * error;
+                // Damping that acts whatever the contact is not missed.
+                let base = if pushes_only { T::ZERO } else { tables.stage.damping[kind] };
+                let mesh = Crossing { deflection, speed, acceleration, stiffness, stiffness_rate, base };
+                let missed = mesh.missed(&was, &is);
+                impulse.add_one((kind, i), missed.impulse);
+                shift.add_one((kind, i), missed.shift);
+                jump.add_one((kind, i), missed.path.value);
+                past.add_one((kind, i), missed.path.at(T::HALF));
+                if missed.since > longest {
+                    longest = missed.since;
                 }
             }
         }
-        let [rate, position, integral] = missed.map(|forces| acceleration(tables, &Drive::NONE, &forces, T::ZERO));
-        let (bent, bending) = (spread(&integral), spread(&position));
-        let mut forces = bent;
-        for kind in 0..2 {
-            for i in 0..N {
-                forces[kind][i] = laws.closed[kind][i] * instant.stiffness[kind][i] * bent[kind][i]
-                    + laws.damping[kind][i] * bending[kind][i];
+        let mobility = &tables.stage.mobility;
+        let respond = |net: &Net<T, N>, wind_up: T| net.accelerations(mobility, &Drive::NONE, wind_up);
+        let (rate, position) = (respond(&impulse, T::ZERO), respond(&shift, T::ZERO));
+        // What the corrections bend: it acts from now on, and has acted since the crossing, where damping saw the
+        // integral of the rate, which is the position, and springs about s/4 of the position: it grew with the third
+        // power of time. Ripple is left out of it.
+        let quarter = T::QUARTER * longest;
+        let mut later = Net::NONE;
+        for i in 0..N {
+            let (sun, sun_rate) = (position.planets[i], rate.planets[i]);
+            for (kind, moved, moving) in [(0, sun, sun_rate), (1, position.gap - sun, rate.gap - sun_rate)] {
+                let law = &laws[kind][i];
+                let stiffness = law.closed * tables.springs[kind].stiffness;
+                jump.add_one((kind, i), stiffness * moved + law.damping * moving);
+                later.add_one((kind, i), T::SIX * (quarter * stiffness + law.damping) * moved);
             }
         }
-        let wind_up = wind_up_force(tables, &integral, &position);
-        let later = acceleration(tables, &Drive::NONE, &forces, wind_up);
-        Motion {
-            position: end.position.plus(T::ONE, &position),
-            rate: end.rate.plus(T::ONE, &rate).plus(T::ONE, &later),
-        }
+        let wind_up = mobility.wind_up_stiffness * position.wind_up;
+        let jump = respond(&jump, wind_up + mobility.wind_up_damping * rate.wind_up);
+        let wind_up = quarter * wind_up + mobility.wind_up_damping * position.wind_up;
+        let later = respond(&later, T::SIX * wind_up);
+        course.each(&position, |coordinate, position| coordinate.position += position);
+        course.each(&rate, |coordinate, rate| coordinate.rate += rate);
+        course.each(&later, |coordinate, later| coordinate.rate += later);
+        course.each(&jump, |coordinate, jump| coordinate.now += jump);
+        course.each(&respond(&past, T::ZERO), |coordinate, past| coordinate.before += past);
     }
 }
 
@@ -80,7 +107,20 @@ struct Crossing<T> {
     speed: T,
     acceleration: T,
     stiffness: T,
-    step: T,
+    stiffness_rate: T,
+    base: T,
+}
+
+/// What a frozen law missed.
+struct Missed<T> {
+    /// Six times the integral of the force since the crossing.
+    impulse: T,
+    /// Six times the integral of that integral.
+    shift: T,
+    /// The force itself along the path that was taken, as if it had always acted.
+    path: Path<T>,
+    /// How long ago the crossing was.
+    since: T,
 }
 
 /// A quantity near the end of a sub-step: value, rate, acceleration there.
@@ -92,29 +132,26 @@ struct Path<T> {
 }
 
 impl<T: Real> Crossing<T> {
-    /// First three integrals of the force that the frozen law missed, from the crossing to the end.
-    fn missed(&self, before: &Law<T>, after: &Law<T>) -> [T; 3] {
-        let mut total = [T::ZERO; 3];
+    fn missed(&self, before: &Law<T>, after: &Law<T>) -> Missed<T> {
         let (was_closed, is_closed) = (before.closed > T::ZERO, after.closed > T::ZERO);
-        // Damping that acts whatever the contact cancels out; what is left acts in contact only.
-        let base = match (was_closed, is_closed) {
-            (true, false) => after.damping,
-            (false, true) => before.damping,
-            _ => T::ZERO,
+        let mut missed = Missed {
+            impulse: T::ZERO,
+            shift: T::ZERO,
+            path: Path { value: T::ZERO, rate: T::ZERO, acceleration: T::ZERO },
+            since: T::ZERO,
         };
         if was_closed {
-            let force = self.force(before, base);
-            let since = force.since_zero(self.step);
-            add(&mut total, Path { value: -force.value, rate: -force.rate, acceleration: -force.acceleration }, since);
+            let force = self.force(before);
+            let gone = Path { value: -force.value, rate: -force.rate, acceleration: -force.acceleration };
+            missed.add(gone, force.since_zero());
         }
         if is_closed {
-            let force = self.force(after, base);
+            let force = self.force(after);
             // Contact began when the surfaces met, or, between surfaces already overlapping, when the force turned.
-            let met = self.overlap(after).since_zero(self.step);
-            let since = if met < self.step { met } else { force.since_zero(self.step) };
-            add(&mut total, force, since);
+            let met = self.overlap(after).since_zero();
+            missed.add(force, if met < T::ONE { met } else { force.since_zero() });
         }
-        total
+        missed
     }
 
     fn overlap(&self, law: &Law<T>) -> Path<T> {
@@ -122,52 +159,63 @@ impl<T: Real> Crossing<T> {
     }
 
     /// Contact force under a law less the damping that acts anyway; the jerk that damping would see is left out.
-    fn force(&self, law: &Law<T>, base: T) -> Path<T> {
-        let damping = law.damping - base;
+    fn force(&self, law: &Law<T>) -> Path<T> {
+        let damping = law.damping - self.base;
         let overlap = self.overlap(law);
         Path {
             value: self.stiffness * overlap.value + damping * overlap.rate,
-            rate: self.stiffness * overlap.rate + damping * overlap.acceleration,
-            acceleration: self.stiffness * overlap.acceleration,
+            rate: self.stiffness * overlap.rate + self.stiffness_rate * overlap.value + damping * overlap.acceleration,
+            acceleration: self.stiffness * overlap.acceleration + T::TWO * self.stiffness_rate * overlap.rate,
         }
     }
 }
 
 impl<T: Real> Path<T> {
+    /// Its value some time before the end.
+    fn at(&self, earlier: T) -> T {
+        self.value - earlier * (self.rate - T::HALF * earlier * self.acceleration)
+    }
+
     /// How long before the end the path was zero: a secant and one Newton step, within the sub-step. Paths that give
     /// no answer (they do not point away from zero) are given the whole sub-step, where they are small.
-    fn since_zero(&self, step: T) -> T {
+    fn since_zero(&self) -> T {
         let sign = if self.value < T::ZERO { -T::ONE } else { T::ONE };
         let (value, rate, acceleration) = (sign * self.value, sign * self.rate, sign * self.acceleration);
-        if value >= rate * step {
-            return if rate > T::ZERO { newton(value, rate, acceleration, step, step) } else { step };
+        if rate <= T::ZERO {
+            return T::ONE;
         }
-        // Here rate * step > value >= 0, so the quotient is within the sub-step.
-        newton(value, rate, acceleration, value.over(rate), step)
+        // Where rate > value >= 0 the quotient is within the sub-step.
+        let guess = if value < rate { value.over(rate) } else { T::ONE };
+        let slope = rate - guess * acceleration;
+        // Below half the secant's slope the parabola turns inside the step, and the guess is the better answer.
+        if slope + slope < rate {
+            return guess;
+        }
+        let rest = value - guess * (rate - T::HALF * guess * acceleration);
+        let refined = guess + rest.over(slope);
+        if refined < T::ZERO {
+            T::ZERO
+        } else if refined < T::ONE {
+            refined
+        } else {
+            T::ONE
+        }
     }
 }
 
-/// One Newton step for value - s rate + s^2/2 acceleration = 0 from a guess, kept within [0, limit].
-fn newton<T: Real>(value: T, rate: T, acceleration: T, guess: T, limit: T) -> T {
-    let slope = rate - guess * acceleration;
-    // Half the secant's slope: below it the parabola turns inside the step and the guess is the better answer.
-    if slope + slope < rate {
-        return guess;
+impl<T: Real> Missed<T> {
+    /// Adds a force that has acted for the last `since`.
+    fn add(&mut self, path: Path<T>, since: T) {
+        let Path { value, rate, acceleration } = path;
+        let s = since;
+        // Six times the integrals: forces respond in sixths.
+        self.impulse += s * (T::SIX * value - s * (T::THREE * rate - s * acceleration));
+        self.shift += s * s * (T::THREE * value - s * (T::TWO * rate - T::SIX * T::EIGHTH * s * acceleration));
+        self.path.value += value;
+        self.path.rate += rate;
+        self.path.acceleration += acceleration;
+        if since > self.since {
+            self.since = since;
+        }
     }
-    let rest = value - guess * (rate - T::HALF * guess * acceleration);
-    let refined = guess + rest.over(slope);
-    if refined < T::ZERO { T::ZERO } else { smaller(refined, limit) }
-}
-
-/// Adds the first three integrals over the last `since` of a path.
-fn add<T: Real>(total: &mut [T; 3], path: Path<T>, since: T) {
-    let Path { value, rate, acceleration } = path;
-    let s = since;
-    total[0] += s * (value - s * (rate * T::HALF - s * acceleration * T::SIXTH));
-    total[1] += s * s * (value * T::HALF - s * (rate * T::THIRD - s * acceleration * T::EIGHTH));
-    total[2] += s * s * s * (value * T::SIXTH - s * (rate * T::EIGHTH - s * acceleration * T::TWENTIETH));
-}
-
-fn smaller<T: Real>(a: T, b: T) -> T {
-    if b < a { b } else { a }
 }

@@ -74,40 +74,88 @@ pub fn mesh_way<T: Real>(excitation: &Excitation<T>, way: i64) -> T {
     }
 }
 
-/// Evaluates every mesh at a phase that goes at `rate`.
-#[inline]
-pub fn instant<T: Real, const N: usize>(tables: &Tables<T, N>, phase: &Rotor<T>, rate: T) -> Instant<T, N> {
-    let Rotor { sine, cosine } = *phase;
-    let (sine_rate, cosine_rate) = (rate * cosine, -(rate * sine));
-    let mut instant = Instant { stiffness: [[T::ZERO; N]; 2], error: [[T::ZERO; N]; 2], error_rate: [[T::ZERO; N]; 2] };
-    for kind in 0..2 {
-        let mean = tables.springs[kind].stiffness;
-        for i in 0..N {
-            let mesh = &tables.meshes[kind][i];
-            let [error_sine, error_cosine] = mesh.error;
-            instant.error[kind][i] = error_sine * sine + error_cosine * cosine;
-            instant.error_rate[kind][i] = error_sine * sine_rate + error_cosine * cosine_rate;
-            let [first_sine, first_cosine] = mesh.ripple[0];
-            instant.stiffness[kind][i] = mean + first_sine * sine + first_cosine * cosine;
+/// The mesh phase at one moment and how fast it goes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Beat<T> {
+    /// Sine and cosine.
+    pub rotor: Rotor<T>,
+    /// Their rates.
+    rates: Rotor<T>,
+}
+
+impl<T: Real> Beat<T> {
+    /// At a phase that goes at `rate` [rad a unit of dimensionless time].
+    #[inline]
+    pub fn new(rotor: Rotor<T>, rate: T) -> Self {
+        Self { rotor, rates: Rotor { sine: rate * rotor.cosine, cosine: -(rate * rotor.sine) } }
+    }
+}
+
+/// One mesh at one moment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeshWave<T> {
+    /// Stiffness.
+    pub stiffness: T,
+    /// Imposed error e.
+    pub error: T,
+    /// Its rate.
+    pub error_rate: T,
+}
+
+impl<T: Real> MeshTable<T> {
+    /// At a moment; `mean` and `harmonics` are those of its kind.
+    #[inline(always)]
+    pub fn at(&self, beat: &Beat<T>, mean: T, harmonics: u32) -> MeshWave<T> {
+        let Beat { rotor, rates } = beat;
+        let [error_sine, error_cosine] = self.error;
+        let [first_sine, first_cosine] = self.ripple[0];
+        let mut stiffness = mean + first_sine * rotor.sine + first_cosine * rotor.cosine;
+        if harmonics > 1 {
+            stiffness += self.overtones(harmonics, rotor);
+        }
+        MeshWave {
+            stiffness,
+            error: error_sine * rotor.sine + error_cosine * rotor.cosine,
+            error_rate: error_sine * rates.sine + error_cosine * rates.cosine,
         }
     }
-    if tables.excitation.harmonics > 1 {
-        let harmonics = tables.excitation.harmonics as usize;
-        for (row, meshes) in instant.stiffness.iter_mut().zip(&tables.meshes) {
-            for (stiffness, mesh) in row.iter_mut().zip(meshes) {
-                *stiffness += overtones(mesh, harmonics, phase);
-            }
+
+    /// Rate of the stiffness.
+    #[inline]
+    pub fn stiffness_rate(&self, beat: &Beat<T>, harmonics: u32) -> T {
+        let (mut sum, mut multiple, mut order) = (T::ZERO, beat.rates, T::ONE);
+        for [sine, cosine] in self.ripple.iter().take(harmonics as usize) {
+            sum += order * (*sine * multiple.sine + *cosine * multiple.cosine);
+            multiple = multiple.turned(&beat.rotor);
+            order += T::ONE;
+        }
+        sum
+    }
+
+    /// Sum of the harmonics above the first.
+    #[inline(never)]
+    fn overtones(&self, harmonics: u32, rotor: &Rotor<T>) -> T {
+        let (mut sum, mut multiple) = (T::ZERO, *rotor);
+        for [sine, cosine] in self.ripple.iter().take(harmonics as usize).skip(1) {
+            multiple = multiple.turned(rotor);
+            sum += *sine * multiple.sine + *cosine * multiple.cosine;
+        }
+        sum
+    }
+}
+
+/// Evaluates every mesh.
+#[inline]
+pub fn instant<T: Real, const N: usize>(tables: &Tables<T, N>, beat: &Beat<T>) -> Instant<T, N> {
+    let mut instant = Instant { stiffness: [[T::ZERO; N]; 2], error: [[T::ZERO; N]; 2], error_rate: [[T::ZERO; N]; 2] };
+    for kind in 0..2 {
+        for i in 0..N {
+            let MeshWave { stiffness, error, error_rate } =
+                tables.meshes[kind][i].at(beat, tables.springs[kind].stiffness, tables.excitation.harmonics);
+            instant.stiffness[kind][i] = stiffness;
+            instant.error[kind][i] = error;
+            instant.error_rate[kind][i] = error_rate;
         }
     }
     instant
-}
-
-/// Sum of the harmonics above the first.
-fn overtones<T: Real>(mesh: &MeshTable<T>, harmonics: usize, phase: &Rotor<T>) -> T {
-    let (mut sum, mut multiple) = (T::ZERO, *phase);
-    for [sine, cosine] in mesh.ripple.iter().take(harmonics).skip(1) {
-        multiple = multiple.turned(phase);
-        sum += *sine * multiple.sine + *cosine * multiple.cosine;
-    }
-    sum
 }

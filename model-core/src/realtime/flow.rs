@@ -1,199 +1,272 @@
-//! Exponential flow of the closed joint. `hold` takes a whole tick while every mesh stays on its flank: linear motion
-//! exactly, ripple and imposed error as a pseudo-force quadratic in time. `paper` is the paper's own scheme: the same
-//! flow, with everything nonlinear as a pseudo-force held over the step.
-
-#![allow(clippy::op_ref, reason = "a product by value would copy the table")]
+//! Exponential flow of the closed joint: a whole tick while every mesh stays on its flank. The linear motion is exact;
+//! ripple, backlash and imposed error are a pseudo-force, quadratic in time through its values at the start, the middle
+//! and the end. Ticks in which contacts change are left to `substep`.
 
 use core::array;
 
-use nalgebra::SVector;
-
 use crate::real::Real;
-use crate::realtime::contact::{Drive, Laws, spread};
-use crate::realtime::crossing::FrozenStep;
-use crate::realtime::excitation::{Instant, MeshPhase, PerMesh, instant};
+use crate::realtime::contact::{Drive, Laws, Net};
+use crate::realtime::crossing::End;
+use crate::realtime::excitation::{Beat, MeshPhase, MeshWave};
+use crate::realtime::frozen::{Frozen, Start};
 use crate::realtime::runge_kutta::Motion;
 use crate::realtime::state::Relative;
-use crate::realtime::unfrozen::forces;
-use crate::tables::{Inputs, Tables, Transition};
+use crate::realtime::substep::Course;
+use crate::tables::{Block, Inputs, Tables, Transition};
 
 /// One tick with the contact set of its start; `None` if the set does not hold up to the middle. A mesh that opens
-/// after that is a crossing to correct, so that no work is thrown away late.
-pub fn hold<T: Real, const N: usize>(
-    tables: &Tables<T, N>,
+/// after that is a crossing to correct, so that no work is thrown away late. `K` is the number of in-phase coordinates:
+/// 3 with compliance, 2 without.
+pub fn hold<T: Real, const N: usize, const K: usize, const OVERTONES: bool>(
+    frozen: &Frozen<T, N, OVERTONES>,
     drive: &Drive<T>,
     phase: &MeshPhase<T>,
-    start: &Instant<T, N>,
-    laws: &Laws<T, N>,
+    start: &Start<T, N>,
+    course: &Course<T, N>,
     motion: &Motion<T, N>,
 ) -> Option<Motion<T, N>> {
+    let tables = frozen.tables;
     let flow = &tables.flow;
     let slow = phase.way < flow.longest_way && -phase.way < flow.longest_way;
-    if !slow || !laws.all_closed() {
+    if !slow || !start.settled {
         return None;
     }
-    let seats = &laws.offset;
-    let (from_start, true) = closed_force(tables, seats, motion, start) else { return None };
-    let modes = Modes::of(tables.planet_share, motion);
+    let laws = &start.laws;
+    let from_start = pseudo_force_at_start(tables, start, course);
+    let modes = Modes::<T, N, K>::of(tables.planet_share, motion);
+    let torques = [drive.sun, drive.carrier, drive.link];
 
     let half = phase.over(T::HALF);
     let middle = phase.start.turned(&half);
-    let guess = modes.free(&flow.half, drive).with([(&flow.half_constant, &from_start)]).motion();
-    let at_middle = instant(tables, &middle, phase.rate);
-    let (from_middle, true) = closed_force(tables, seats, &guess, &at_middle) else { return None };
+    let place = modes.place(&flow.half, &torques).with(tables.planet_share, [(&flow.half_constant, &from_start)]);
+    let (from_middle, trespass) = frozen.pseudo_force(laws, &Beat::new(middle, phase.rate), &place);
+    if trespass > T::ZERO {
+        return None;
+    }
 
-    let at_end = instant(tables, &middle.turned(&half), phase.rate);
-    let free = modes.free(&flow.whole, drive);
+    let end = Beat::new(middle.turned(&half), phase.rate);
     let [first, second] = &flow.whole_linear;
-    let guess = free.with([(first, &from_start), (second, &from_middle)]).motion();
-    let (from_end, closed) = closed_force(tables, seats, &guess, &at_end);
+    let place =
+        modes.place(&flow.whole, &torques).with(tables.planet_share, [(first, &from_start), (second, &from_middle)]);
+    let (from_end, trespass) = frozen.pseudo_force(laws, &end, &place);
 
     let [first, second, third] = &flow.whole_quadratic;
-    let end = free.with([(first, &from_start), (second, &from_middle), (third, &from_end)]).motion();
-    if closed {
-        return Some(end);
-    }
-    let mut laws = *laws;
-    let observed = laws.observe(&laws.at(&at_end), &end, &at_end);
-    let step = FrozenStep { step: T::HALF * flow.step, phase_rate: phase.rate, observed: &observed };
-    Some(step.correct(tables, drive, &at_end, &mut laws, &end))
+    let forces = [(first, &from_start), (second, &from_middle), (third, &from_end)];
+    let last = modes.flow(&flow.whole, &torques).with(tables.planet_share, forces).motion();
+    Some(if trespass > T::ZERO { corrected(frozen, laws, &end, phase, &last) } else { last })
 }
 
-/// One tick of the paper's scheme: constant exponential, pseudo-force held over each sub-step (first-order
-/// exponential time differencing).
-pub fn paper<T: Real, const N: usize>(
-    tables: &Tables<T, N>,
-    drive: &Drive<T>,
+/// The end of a tick in whose second half meshes have opened.
+#[inline(never)]
+fn corrected<T: Real, const N: usize, const OVERTONES: bool>(
+    frozen: &Frozen<T, N, OVERTONES>,
+    laws: &Laws<T, N>,
+    end: &Beat<T>,
     phase: &MeshPhase<T>,
-    start: &Instant<T, N>,
     motion: &Motion<T, N>,
 ) -> Motion<T, N> {
-    let half = phase.over(tables.half_part);
-    let (mut motion, mut rotor, mut now) = (*motion, phase.start, *start);
-    for _ in 0..tables.substeps {
-        let (positions, rates) = (spread(&motion.position), spread(&motion.rate));
-        let mut force = forces(tables, &positions, &rates, &now);
-        for kind in 0..2 {
-            let spring = &tables.springs[kind];
-            for i in 0..N {
-                let linear = spring.stiffness * positions[kind][i] + spring.damping * rates[kind][i];
-                force[kind][i] = linear - force[kind][i];
-            }
-        }
-        let force = Sorted::new(tables.planet_share, &force);
-        let free = Modes::of(tables.planet_share, &motion).free(&tables.flow.whole, drive);
-        motion = free.with([(&tables.flow.whole_constant, &force)]).motion();
-        rotor = rotor.turned(&half).turned(&half);
-        now = instant(tables, &rotor, phase.rate);
-    }
-    motion
+    let tables = frozen.tables;
+    let rate = tables.substep * phase.rate;
+    let beat = Beat::new(end.rotor, rate);
+    let mut laws = *laws;
+    let mut course = Course::of(motion, tables.substep);
+    let wind_up = frozen.wind_up_force(course.wind_up.point());
+    let mut trespasses = [[T::ZERO; N]; 2];
+    let last = frozen.pull(
+        &laws,
+        &beat,
+        course.gap.point(),
+        wind_up,
+        |i| course.planets[i].point(),
+        |(kind, i), moment| trespasses[kind][i] = frozen.trespass(&laws[kind][i], (kind, i), moment),
+    );
+    course.each(&last, |coordinate, last| coordinate.now = last);
+    End { frozen, rate, beat: &beat, trespasses: &trespasses }.correct(&mut laws, &mut course);
+    course.motion(tables.substep, tables.stage.rate, motion)
 }
 
-/// What the linear flow does not know of closed meshes: offset, imposed error, ripple; and whether every mesh is
-/// closed, too far from opening for its speed to open it before the next node.
+/// What the linear flow of the closed joint does not know of its forces at the start of a tick.
 #[inline]
-fn closed_force<T: Real, const N: usize>(
+fn pseudo_force_at_start<T: Real, const N: usize>(
     tables: &Tables<T, N>,
-    offset: &PerMesh<T, N>,
-    motion: &Motion<T, N>,
-    instant: &Instant<T, N>,
-) -> (Sorted<T, N>, bool) {
-    let (positions, rates) = (spread(&motion.position), spread(&motion.rate));
-    let mut force = positions;
-    let mut holds = true;
-    for kind in 0..2 {
-        let spring = &tables.springs[kind];
+    start: &Start<T, N>,
+    course: &Course<T, N>,
+) -> Net<T, N> {
+    let mut net = Net::NONE;
+    for i in 0..N {
+        let sun = course.planets[i].point();
+        let [sun, ring] = [(0, sun), (1, course.gap.point().less(sun))].map(|(kind, at)| {
+            let stiffness = tables.springs[kind].stiffness;
+            stiffness * at.position + tables.stage.damping[kind] * at.rate - start.forces[kind][i]
+        });
+        net.add(i, sun, ring);
+    }
+    net
+}
+
+impl<T: Real, const N: usize, const OVERTONES: bool> Frozen<'_, T, N, OVERTONES> {
+    /// What the linear flow does not know of closed meshes: offset, imposed error, ripple; and more than zero when a
+    /// mesh is beyond its flank.
+    #[inline(never)]
+    fn pseudo_force(&self, laws: &Laws<T, N>, beat: &Beat<T>, place: &Place<T, N>) -> (Net<T, N>, T) {
+        let tables = self.tables;
+        let (mut net, mut trespass) = (Net::NONE, T::ZERO);
         for i in 0..N {
-            let (position, offset, error) = (positions[kind][i], offset[kind][i], instant.error[kind][i]);
-            let (stiffness, error_rate) = (instant.stiffness[kind][i], instant.error_rate[kind][i]);
-            let overlap = position - error - offset;
-            let way = tables.flow.reach * (rates[kind][i] - error_rate);
-            // Beyond the flank by more than the way that the mesh may go, on the side that the offset says.
-            holds &= if offset >= T::ZERO { overlap > way && overlap > -way } else { overlap < way && overlap < -way };
-            force[kind][i] =
-                (spring.stiffness - stiffness) * position + stiffness * (offset + error) + spring.damping * error_rate;
+            let sun = place.planets[i];
+            let [sun, ring] = [(0, sun), (1, place.gap - sun)].map(|(kind, position)| {
+                let law = &laws[kind][i];
+                let MeshWave { stiffness, error, error_rate } = self.wave((kind, i), beat);
+                let overlap = position - error - law.offset;
+                let room = law.side * overlap;
+                trespass += room.abs() - room;
+                let spring = &tables.springs[kind];
+                spring.stiffness * position - stiffness * overlap + spring.damping * error_rate
+            });
+            net.add(i, sun, ring);
         }
-    }
-    (Sorted::new(tables.planet_share, &force), holds)
-}
-
-/// Mesh forces as the flow's inputs take them.
-struct Sorted<T, const N: usize> {
-    /// Sums over planets: sun-planet, ring-planet.
-    sums: [T; 2],
-    /// Deviation of (sun-planet - ring-planet) from its mean.
-    apart: [T; N],
-}
-
-impl<T: Real, const N: usize> Sorted<T, N> {
-    #[inline]
-    fn new(share: T, force: &PerMesh<T, N>) -> Self {
-        let sums = [total(&force[0]), total(&force[1])];
-        let mean = share * (sums[0] - sums[1]);
-        let mut apart = force[0];
-        for (value, ring) in apart.iter_mut().zip(&force[1]) {
-            *value = *value - *ring - mean;
-        }
-        Self { sums, apart }
+        (net, trespass)
     }
 }
 
-/// Motion split into what the planets do together and what each does apart, which the flow keeps apart.
-#[derive(Clone, Copy)]
-struct Modes<T: Real, const N: usize> {
-    in_phase: SVector<T, 6>,
-    deviations: [SVector<T, 2>; N],
+/// Where the meshes are; no more than the pseudo-force asks for.
+struct Place<T, const N: usize> {
+    planets: [T; N],
+    gap: T,
 }
 
-impl<T: Real, const N: usize> Modes<T, N> {
+/// Positions on the way: mean planet and gap, and every planet's deviation from the mean.
+struct Positions<T, const N: usize> {
+    in_phase: [T; 2],
+    deviations: [T; N],
+}
+
+/// Motion split into what the planets do together (mean planet, gap, wind-up; then their rates) and what each does
+/// apart (deviation, rate), which the flow keeps apart.
+struct Modes<T, const N: usize, const K: usize> {
+    in_phase: [[T; K]; 2],
+    deviations: [[T; 2]; N],
+}
+
+impl<T: Real, const N: usize, const K: usize> Modes<T, N, K> {
     #[inline]
     fn of(share: T, motion: &Motion<T, N>) -> Self {
-        let Motion { position, rate } = motion;
-        let mean = share * total(&position.planets);
-        let mean_rate = share * total(&rate.planets);
+        let means = [&motion.position, &motion.rate].map(|part| share * total(&part.planets));
+        let part = |half: usize, part: &Relative<T, N>| {
+            let all = [means[half], part.gap, part.wind_up];
+            array::from_fn(|k| all[k])
+        };
+        let (position, rate) = (&motion.position, &motion.rate);
         Self {
-            in_phase: SVector::from([mean, position.gap, position.wind_up, mean_rate, rate.gap, rate.wind_up]),
-            deviations: array::from_fn(|i| SVector::from([position.planets[i] - mean, rate.planets[i] - mean_rate])),
+            in_phase: [part(0, position), part(1, rate)],
+            deviations: array::from_fn(|i| [position.planets[i] - means[0], rate.planets[i] - means[1]]),
         }
     }
 
-    /// Linear flow under constant torques.
+    /// Linear flow of one in-phase coordinate under constant torques.
+    #[inline(always)]
+    fn coordinate(&self, transition: &Transition<T>, torques: &[T; 3], half: usize, k: usize) -> T {
+        let row = 3 * half + k;
+        let mut change = T::ZERO;
+        for from in 0..2 {
+            for other in 0..K {
+                change += entry(&transition.in_phase, row, 3 * from + other) * self.in_phase[from][other];
+            }
+        }
+        // Without compliance the load acts on the carrier, with it on the link.
+        for torque in [0, K - 1] {
+            change += entry(&transition.torques, row, torque) * torques[torque];
+        }
+        self.in_phase[half][k] + change
+    }
+
+    /// Linear flow of one deviation.
+    #[inline(always)]
+    fn deviation(&self, transition: &Transition<T>, i: usize, half: usize) -> T {
+        let [position, rate] = self.deviations[i];
+        self.deviations[i][half]
+            + (entry(&transition.deviation, half, 0) * position + entry(&transition.deviation, half, 1) * rate)
+    }
+
+    /// Linear flow of the positions that the meshes see.
     #[inline]
-    fn free(&self, transition: &Transition<T>, drive: &Drive<T>) -> Self {
-        let torques = SVector::from([drive.sun, drive.carrier, drive.link]);
+    fn place(&self, transition: &Transition<T>, torques: &[T; 3]) -> Positions<T, N> {
+        Positions {
+            in_phase: [0, 1].map(|k| self.coordinate(transition, torques, 0, k)),
+            deviations: array::from_fn(|i| self.deviation(transition, i, 0)),
+        }
+    }
+
+    /// Linear flow of everything.
+    #[inline]
+    fn flow(&self, transition: &Transition<T>, torques: &[T; 3]) -> Self {
         Self {
-            in_phase: self.in_phase + (&transition.in_phase.0 * &self.in_phase + &transition.torques.0 * &torques),
-            deviations: array::from_fn(|i| self.deviations[i] + &transition.deviation.0 * &self.deviations[i]),
+            in_phase: [0, 1].map(|half| array::from_fn(|k| self.coordinate(transition, torques, half, k))),
+            deviations: array::from_fn(|i| [0, 1].map(|half| self.deviation(transition, i, half))),
         }
     }
 
     /// Plus the response to pseudo-forces, each under its time weight.
     #[inline]
-    fn with<const K: usize>(&self, terms: [(&Inputs<T>, &Sorted<T, N>); K]) -> Self {
-        let mut sum = *self;
-        for (inputs, force) in terms {
-            sum.in_phase += &inputs.in_phase.0 * SVector::from(force.sums);
-            let [value, rate] = inputs.deviation;
-            for (deviation, apart) in sum.deviations.iter_mut().zip(&force.apart) {
-                deviation[0] += value * *apart;
-                deviation[1] += rate * *apart;
+    fn with<const M: usize>(mut self, share: T, terms: [(&Inputs<T>, &Net<T, N>); M]) -> Self {
+        for (inputs, net) in terms {
+            for half in 0..2 {
+                for k in 0..K {
+                    self.in_phase[half][k] += together(inputs, net, 3 * half + k);
+                }
+            }
+            let mean = share * net.difference();
+            for i in 0..N {
+                let apart = net.apart(i) - mean;
+                for half in 0..2 {
+                    self.deviations[i][half] += inputs.deviation[half] * apart;
+                }
             }
         }
-        sum
+        self
     }
 
     #[inline]
     fn motion(&self) -> Motion<T, N> {
-        let [mean, gap, wind_up, mean_rate, gap_rate, wind_up_rate] = self.in_phase.data.0[0];
-        Motion {
-            position: Relative { planets: array::from_fn(|i| mean + self.deviations[i][0]), gap, wind_up },
-            rate: Relative {
-                planets: array::from_fn(|i| mean_rate + self.deviations[i][1]),
-                gap: gap_rate,
-                wind_up: wind_up_rate,
-            },
-        }
+        let part = |half: usize| {
+            let in_phase = &self.in_phase[half];
+            Relative {
+                planets: array::from_fn(|i| in_phase[0] + self.deviations[i][half]),
+                gap: in_phase[1],
+                wind_up: if K > 2 { in_phase[K - 1] } else { T::ZERO },
+            }
+        };
+        Motion { position: part(0), rate: part(1) }
     }
+}
+
+impl<T: Real, const N: usize> Positions<T, N> {
+    /// Plus the response to pseudo-forces, each under its time weight.
+    #[inline]
+    fn with<const M: usize>(mut self, share: T, terms: [(&Inputs<T>, &Net<T, N>); M]) -> Place<T, N> {
+        for (inputs, net) in terms {
+            for k in 0..2 {
+                self.in_phase[k] += together(inputs, net, k);
+            }
+            let mean = share * net.difference();
+            for i in 0..N {
+                self.deviations[i] += inputs.deviation[0] * (net.apart(i) - mean);
+            }
+        }
+        let [mean, gap] = self.in_phase;
+        Place { planets: self.deviations.map(|deviation| mean + deviation), gap }
+    }
+}
+
+/// In-phase response to the sums of the mesh forces.
+#[inline(always)]
+fn together<T: Real, const N: usize>(inputs: &Inputs<T>, net: &Net<T, N>, row: usize) -> T {
+    let [sun_planet, ring_planet] = net.sums();
+    entry(&inputs.in_phase, row, 0) * sun_planet + entry(&inputs.in_phase, row, 1) * ring_planet
+}
+
+#[inline(always)]
+fn entry<T: Real, const R: usize, const C: usize>(block: &Block<T, R, C>, row: usize, column: usize) -> T {
+    block.0.data.0[column][row]
 }
 
 fn total<T: Real, const N: usize>(values: &[T; N]) -> T {

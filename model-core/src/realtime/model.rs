@@ -3,14 +3,16 @@
 
 use core::array;
 
-use crate::mesh::ContactState;
+use crate::mesh::{ContactState, DampingLaw};
 use crate::real::Real;
-use crate::realtime::contact::{Drive, Laws, contact, spread};
-use crate::realtime::excitation::{MeshPhase, PerMesh, Rotor, instant, mesh_way};
+use crate::realtime::contact::{Drive, contact, spread};
+use crate::realtime::excitation::{Beat, MeshPhase, PerMesh, Rotor, instant, mesh_way};
 use crate::realtime::flow;
+use crate::realtime::frozen::{Frozen, Start};
+use crate::realtime::paper;
 use crate::realtime::runge_kutta::Motion;
 use crate::realtime::state::State;
-use crate::realtime::substep;
+use crate::realtime::substep::{self, Course};
 use crate::realtime::unfrozen;
 use crate::tables::{Scheme, Tables};
 
@@ -99,22 +101,17 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
         let phase = MeshPhase { start, way, rate: tables.excitation.rate * way };
         self.state.phase = self.state.phase.wrapping_add(tables.excitation.phase_step);
 
-        let start = instant(tables, &phase.start, phase.rate);
         let motion = Motion { position: self.state.position, rate: self.state.rate };
         let Motion { position, rate } = match tables.scheme {
-            Scheme::PaperEtd1 => flow::paper(tables, &drive, &phase, &start, &motion),
-            Scheme::RungeKutta4 => unfrozen::runge_kutta(tables, &drive, &phase, &start, &motion),
-            Scheme::SemiImplicitEuler => unfrozen::semi_implicit_euler(tables, &drive, &phase, &start, &motion),
-            Scheme::Realtime if tables.sharpness > T::ZERO => {
-                unfrozen::runge_kutta(tables, &drive, &phase, &start, &motion)
-            }
-            Scheme::Realtime => {
-                let laws = Laws::of(tables, &motion.position, &motion.rate, &start);
-                flow::hold(tables, &drive, &phase, &start, &laws, &motion)
-                    .unwrap_or_else(|| substep::advance(tables, &drive, &phase, &start, &laws, &motion))
-            }
+            Scheme::PaperEtd1 => paper::step(tables, &drive, &phase, &motion),
+            Scheme::RungeKutta4 => unfrozen::runge_kutta(tables, &drive, &phase, &motion),
+            Scheme::SemiImplicitEuler => unfrozen::semi_implicit_euler(tables, &drive, &phase, &motion),
+            Scheme::Realtime if tables.sharpness > T::ZERO => unfrozen::runge_kutta(tables, &drive, &phase, &motion),
+            Scheme::Realtime if tables.excitation.harmonics > 1 => tick::<T, N, true>(tables, &drive, &phase, &motion),
+            Scheme::Realtime => tick::<T, N, false>(tables, &drive, &phase, &motion),
         };
         (self.state.position, self.state.rate) = (position, rate);
+        self.state.settle();
     }
 
     /// The motion now, in SI.
@@ -123,7 +120,7 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
         let units = &self.tables.units;
         let planets = position.planets.iter().fold(T::ZERO, |sum, planet| sum + *planet);
         let offset = |gains: &[T; 3]| gains[0] * planets + gains[1] * position.gap + gains[2] * position.wind_up;
-        let errors = instant(self.tables, &Rotor::at(self.phase()), T::ZERO).error;
+        let errors = instant(self.tables, &Beat::new(Rotor::at(self.phase()), T::ZERO)).error;
         let meshes = spread(position);
         let deflections: PerMesh<T, N> = array::from_fn(|kind| array::from_fn(|i| meshes[kind][i] - errors[kind][i]));
         Outputs {
@@ -148,4 +145,33 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
             if periods == 0 { self.state.phase } else { self.state.rigid.fraction.wrapping_mul(periods.into()) };
         (phase >> 32) as u32
     }
+}
+
+/// One tick of the sharp dead zone: by exponential while its contact set holds, otherwise in sub-steps. Ripple of one
+/// harmonic has a copy of its own, which need not ask at every mesh whether there are more.
+fn tick<T: Real, const N: usize, const OVERTONES: bool>(
+    tables: &Tables<T, N>,
+    drive: &Drive<T>,
+    phase: &MeshPhase<T>,
+    motion: &Motion<T, N>,
+) -> Motion<T, N> {
+    let stage = &tables.stage;
+    let frozen = Frozen::<T, N, OVERTONES> {
+        tables,
+        drive: drive.times(stage.square_sixth),
+        pushes_only: if tables.damping_law == DampingLaw::Contact { T::ONE } else { T::ZERO },
+    };
+    let mut course = Course::of(motion, tables.substep);
+    let mut start = Start::EMPTY;
+    frozen.start(&Beat::new(phase.start, tables.substep * phase.rate), &course, &mut start);
+    let held = if tables.mobility.wind_up > T::ZERO {
+        flow::hold::<T, N, 3, OVERTONES>(&frozen, drive, phase, &start, &course, motion)
+    } else {
+        flow::hold::<T, N, 2, OVERTONES>(&frozen, drive, phase, &start, &course, motion)
+    };
+    if let Some(end) = held {
+        return end;
+    }
+    substep::advance(&frozen, phase, &mut start, &mut course);
+    course.motion(tables.substep, stage.rate, motion)
 }

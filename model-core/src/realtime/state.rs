@@ -36,6 +36,22 @@ impl<T: Real, const N: usize> Relative<T, N> {
         }
     }
 
+    /// Numbers that a caller's floating-point mode cannot change: none so small that it may be flushed to zero, and
+    /// whatever is not finite in one form.
+    #[inline]
+    fn settled(&self) -> Self {
+        let settle = |value: T| {
+            if value >= T::LEAST || value <= -T::LEAST {
+                if value.is_finite() { value } else { T::NAN }
+            } else if value < T::LEAST {
+                T::ZERO
+            } else {
+                T::NAN
+            }
+        };
+        Self { planets: self.planets.map(settle), gap: settle(self.gap), wind_up: settle(self.wind_up) }
+    }
+
     fn is_finite(&self) -> bool {
         self.planets.iter().all(|value| value.is_finite()) && self.gap.is_finite() && self.wind_up.is_finite()
     }
@@ -115,6 +131,12 @@ impl<T: Real, const N: usize> State<T, N> {
             state.rate.planets[i] += mesh.error[0] * phase_rate;
         }
         state
+    }
+
+    /// Puts every number into the form in which the next tick finds it, whatever the caller's floating-point mode.
+    #[inline]
+    pub(super) fn settle(&mut self) {
+        (self.position, self.rate) = (self.position.settled(), self.rate.settled());
     }
 
     /// Neither infinite nor NaN anywhere.

@@ -1,44 +1,136 @@
-//! A tick in sub-steps, the path that is taken when contacts may change: each sub-step freezes the contact set, so
-//! that its right-hand side is smooth, takes a Runge-Kutta step, and is corrected for every crossing that its end
-//! reveals. The tanh dead zone has nothing to freeze: see `unfrozen`.
+//! A tick in sub-steps, the path that is taken when contacts may change. Each sub-step freezes the contact set, so that
+//! its right-hand side is smooth, and is corrected for every crossing that its end reveals. The tanh dead zone has
+//! nothing to freeze: see `unfrozen`.
+
+use core::array;
 
 use crate::real::Real;
-use crate::realtime::contact::{Drive, Laws, frozen_acceleration};
-use crate::realtime::crossing::FrozenStep;
-use crate::realtime::excitation::{Instant, MeshPhase, instant};
-use crate::realtime::runge_kutta::{self, Motion};
-use crate::tables::Tables;
+use crate::realtime::contact::Net;
+use crate::realtime::crossing::End;
+use crate::realtime::excitation::{Beat, MeshPhase, PerMesh};
+use crate::realtime::frozen::{Frozen, Start};
+use crate::realtime::runge_kutta::Motion;
+use crate::realtime::stages::Coordinate;
+use crate::realtime::state::Relative;
 
-/// One tick.
-pub fn advance<T: Real, const N: usize>(
-    tables: &Tables<T, N>,
-    drive: &Drive<T>,
+/// All coordinates, with a sub-step as the unit of time.
+pub struct Course<T, const N: usize> {
+    /// u_s - u_pi - u_c of every planet, without imposed error.
+    pub planets: [Coordinate<T>; N],
+    /// u_s - 2 u_c.
+    pub gap: Coordinate<T>,
+    /// u_c - u_l.
+    pub wind_up: Coordinate<T>,
+}
+
+/// One tick; `start.laws` are brought up to date.
+pub fn advance<T: Real, const N: usize, const OVERTONES: bool>(
+    frozen: &Frozen<T, N, OVERTONES>,
     phase: &MeshPhase<T>,
-    start: &Instant<T, N>,
-    laws: &Laws<T, N>,
-    motion: &Motion<T, N>,
-) -> Motion<T, N> {
+    start: &mut Start<T, N>,
+    course: &mut Course<T, N>,
+) {
+    let tables = frozen.tables;
+    let compliant = tables.mobility.wind_up > T::ZERO;
     let half = phase.over(tables.half_part);
-    let (mut motion, mut rotor, mut laws) = (*motion, phase.start, *laws);
-    let mut at_start = laws.at(start);
+    let rate = tables.substep * phase.rate;
+    let mut rotor = phase.start;
+    begin(frozen, start, &Beat::new(rotor.turned(&half), rate), course);
+    let laws = &mut start.laws;
+    let mut trespasses: PerMesh<T, N> = [[T::ZERO; N]; 2];
     for _ in 0..tables.substeps {
         rotor = rotor.turned(&half);
-        let at_middle = laws.at(&instant(tables, &rotor, phase.rate));
+        let beat = Beat::new(rotor, rate);
+        let gap = course.gap.middle();
+        let wind_up = if compliant { frozen.wind_up_force(course.wind_up.middle()) } else { T::ZERO };
+        let middle = frozen.pull(laws, &beat, gap, wind_up, |i| course.planets[i].middle(), |_, _| {});
+
         rotor = rotor.turned(&half);
-        let end = instant(tables, &rotor, phase.rate);
-        let at_end = laws.at(&end);
-        let nodes = [&at_start, &at_middle, &at_end];
-        motion = runge_kutta::step(tables.substep, &motion, |node, position, rate| {
-            frozen_acceleration(tables, drive, &laws.damping, nodes[node], position, rate)
-        });
-        let observed = laws.observe(&at_end, &motion, &end);
-        if laws.hold(tables, &observed) {
-            at_start = at_end;
-        } else {
-            let step = FrozenStep { step: tables.substep, phase_rate: phase.rate, observed: &observed };
-            motion = step.correct(tables, drive, &end, &mut laws, &motion);
-            at_start = laws.at(&end);
+        let beat = Beat::new(rotor, rate);
+        let gap = course.gap.arrive(middle.gap);
+        let wind_up = if compliant { frozen.wind_up_force(course.wind_up.arrive(middle.wind_up)) } else { T::ZERO };
+        let planets = &mut course.planets;
+        let mut trespass = T::ZERO;
+        let last = frozen.pull(
+            laws,
+            &beat,
+            gap,
+            wind_up,
+            |i| planets[i].arrive(middle.planets[i]),
+            |(kind, i), moment| {
+                let by = frozen.trespass(&laws[kind][i], (kind, i), moment);
+                trespasses[kind][i] = by;
+                trespass += by;
+            },
+        );
+        for (planet, last) in course.planets.iter_mut().zip(last.planets) {
+            planet.finish(last);
+        }
+        course.gap.finish(last.gap);
+        if compliant {
+            course.wind_up.finish(last.wind_up);
+        }
+        if trespass > T::ZERO {
+            End { frozen, rate, beat: &beat, trespasses: &trespasses }.correct(laws, course);
         }
     }
-    motion
+}
+
+/// The accelerations at the start of a tick, and those of half a sub-step before from a first look at the middle.
+#[inline(never)]
+fn begin<T: Real, const N: usize, const OVERTONES: bool>(
+    frozen: &Frozen<T, N, OVERTONES>,
+    start: &Start<T, N>,
+    middle: &Beat<T>,
+    course: &mut Course<T, N>,
+) {
+    let wind_up = frozen.wind_up_force(course.wind_up.point());
+    let now = Net::of(&start.forces).accelerations(&frozen.tables.stage.mobility, &frozen.drive, wind_up);
+    course.each(&now, |coordinate, now| (coordinate.now, coordinate.before) = (now, now));
+    let wind_up = frozen.wind_up_force(course.wind_up.middle());
+    let gap = course.gap.middle();
+    let seen = frozen.pull(&start.laws, middle, gap, wind_up, |i| course.planets[i].middle(), |_, _| {});
+    course.each(&seen, |coordinate, seen| coordinate.before = coordinate.now + coordinate.now - seen);
+}
+
+impl<T: Real, const N: usize> Course<T, N> {
+    /// A motion whose accelerations are not yet known, in sub-steps of a length.
+    pub fn of(motion: &Motion<T, N>, length: T) -> Self {
+        let Motion { position, rate } = motion;
+        let still = |position: T, rate: T| Coordinate { position, rate: length * rate, now: T::ZERO, before: T::ZERO };
+        Self {
+            planets: array::from_fn(|i| still(position.planets[i], rate.planets[i])),
+            gap: still(position.gap, rate.gap),
+            wind_up: still(position.wind_up, rate.wind_up),
+        }
+    }
+
+    /// The motion without its accelerations, from sub-steps at a rate, after it was `before`. Rates are taken over as
+    /// their change, so that what no force has changed keeps its bits.
+    pub fn motion(&self, length: T, per_length: T, before: &Motion<T, N>) -> Motion<T, N> {
+        let rate = |coordinate: &Coordinate<T>, before: T| before + per_length * (coordinate.rate - length * before);
+        let rates = &before.rate;
+        Motion {
+            position: Relative {
+                planets: array::from_fn(|i| self.planets[i].position),
+                gap: self.gap.position,
+                wind_up: self.wind_up.position,
+            },
+            rate: Relative {
+                planets: array::from_fn(|i| rate(&self.planets[i], rates.planets[i])),
+                gap: rate(&self.gap, rates.gap),
+                wind_up: rate(&self.wind_up, rates.wind_up),
+            },
+        }
+    }
+
+    /// Does the same to every coordinate with a value that belongs to it.
+    #[inline(always)]
+    pub fn each(&mut self, values: &Relative<T, N>, mut act: impl FnMut(&mut Coordinate<T>, T)) {
+        for i in 0..N {
+            act(&mut self.planets[i], values.planets[i]);
+        }
+        act(&mut self.gap, values.gap);
+        act(&mut self.wind_up, values.wind_up);
+    }
 }

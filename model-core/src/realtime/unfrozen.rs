@@ -5,7 +5,7 @@
 use crate::dead_zone;
 use crate::real::Real;
 use crate::realtime::contact::{Drive, Law, acceleration, spread, wind_up_force};
-use crate::realtime::excitation::{Instant, MeshPhase, PerMesh, instant};
+use crate::realtime::excitation::{Beat, Instant, MeshPhase, PerMesh, instant};
 use crate::realtime::runge_kutta::{self, Motion};
 use crate::realtime::state::Relative;
 use crate::tables::Tables;
@@ -15,16 +15,16 @@ pub fn runge_kutta<T: Real, const N: usize>(
     tables: &Tables<T, N>,
     drive: &Drive<T>,
     phase: &MeshPhase<T>,
-    start: &Instant<T, N>,
     motion: &Motion<T, N>,
 ) -> Motion<T, N> {
     let half = phase.over(tables.half_part);
-    let (mut motion, mut rotor, mut start) = (*motion, phase.start, *start);
+    let (mut motion, mut rotor) = (*motion, phase.start);
+    let mut start = instant(tables, &Beat::new(rotor, phase.rate));
     for _ in 0..tables.substeps {
         rotor = rotor.turned(&half);
-        let middle = instant(tables, &rotor, phase.rate);
+        let middle = instant(tables, &Beat::new(rotor, phase.rate));
         rotor = rotor.turned(&half);
-        let end = instant(tables, &rotor, phase.rate);
+        let end = instant(tables, &Beat::new(rotor, phase.rate));
         let nodes = [&start, &middle, &end];
         motion = runge_kutta::step(tables.substep, &motion, |node, position, rate| {
             forced(tables, drive, position, rate, nodes[node])
@@ -39,17 +39,17 @@ pub fn semi_implicit_euler<T: Real, const N: usize>(
     tables: &Tables<T, N>,
     drive: &Drive<T>,
     phase: &MeshPhase<T>,
-    start: &Instant<T, N>,
     motion: &Motion<T, N>,
 ) -> Motion<T, N> {
     let half = phase.over(tables.half_part);
-    let (mut motion, mut rotor, mut now) = (*motion, phase.start, *start);
+    let (mut motion, mut rotor) = (*motion, phase.start);
+    let mut now = instant(tables, &Beat::new(rotor, phase.rate));
     for _ in 0..tables.substeps {
         let acceleration = forced(tables, drive, &motion.position, &motion.rate, &now);
         let rate = motion.rate.plus(tables.substep, &acceleration);
         motion = Motion { position: motion.position.plus(tables.substep, &rate), rate };
         rotor = rotor.turned(&half).turned(&half);
-        now = instant(tables, &rotor, phase.rate);
+        now = instant(tables, &Beat::new(rotor, phase.rate));
     }
     motion
 }
@@ -85,6 +85,8 @@ pub fn forces<T: Real, const N: usize>(
                 let elastic = dead_zone::smoothed(deflection, half_backlash, tables.sharpness);
                 stiffness * elastic + tables.springs[kind].damping * speed
             } else {
+                // A law counts time in sub-steps.
+                let speed = tables.substep * speed;
                 let law = Law::of(tables, (kind, i), deflection, speed, stiffness);
                 law.closed * stiffness * (deflection - law.offset) + law.damping * speed
             };

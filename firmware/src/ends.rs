@@ -1,0 +1,78 @@
+//! The tick's ends of the queues between it and idle: heapless's, with the number of places in the type. heapless takes
+//! remainders by a number that it reads from memory; where the compiler cannot tell that it is not zero, the tick
+//! could panic, and divides where a mask would do. The queues themselves are in `queues`.
+
+use heapless::spsc::{Consumer, Producer};
+
+/// Puts entries in.
+pub struct Giver<'a, T, const PLACES: usize>(Producer<'a, T>);
+
+/// Takes entries out.
+pub struct Taker<'a, T, const PLACES: usize>(Consumer<'a, T>);
+
+impl<'a, T, const PLACES: usize> Giver<'a, T, PLACES> {
+    /// The end of a queue of so many places; with another number of places nothing could be given.
+    pub fn new(end: Producer<'a, T>) -> Self {
+        Self(end)
+    }
+
+    /// Adds an entry, or hands it back if there is no room.
+    #[inline]
+    pub fn give(&mut self, entry: T) -> Result<(), T> {
+        // Holds always, and tells the compiler the number of places.
+        if self.0.capacity() == PLACES - 1 { self.0.enqueue(entry) } else { Err(entry) }
+    }
+
+    /// Whether there is room.
+    #[inline]
+    pub fn has_room(&self) -> bool {
+        self.0.capacity() == PLACES - 1 && self.0.ready()
+    }
+}
+
+impl<'a, T, const PLACES: usize> Taker<'a, T, PLACES> {
+    /// The end of a queue of so many places; with another number of places nothing could be taken.
+    pub fn new(end: Consumer<'a, T>) -> Self {
+        Self(end)
+    }
+
+    /// Takes the first entry.
+    #[inline]
+    pub fn take(&mut self) -> Option<T> {
+        // Holds always, and tells the compiler the number of places.
+        if self.0.capacity() == PLACES - 1 { self.0.dequeue() } else { None }
+    }
+
+    /// Looks at the first entry.
+    #[inline]
+    pub fn peek(&self) -> Option<&T> {
+        self.0.peek()
+    }
+
+    /// How many entries there are.
+    #[inline]
+    pub fn count(&self) -> usize {
+        if self.0.capacity() == PLACES - 1 { self.0.len() } else { 0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use heapless::spsc::Queue;
+
+    use super::*;
+
+    #[test]
+    fn entries_come_out_as_they_went_in_until_there_is_no_room() {
+        let mut queue = Queue::<u8, 4>::new();
+        let (entry, exit) = queue.split();
+        let (mut giver, mut taker) = (Giver::<_, 4>::new(entry), Taker::<_, 4>::new(exit));
+        for round in 0..3 {
+            assert_eq!([0, 1, 2].map(|entry| giver.give(entry + round)), [Ok(()); 3]);
+            assert!(!giver.has_room());
+            assert_eq!((giver.give(9), taker.count(), taker.peek()), (Err(9), 3, Some(&round)));
+            assert_eq!([taker.take(), taker.take(), taker.take()], [0, 1, 2].map(|entry| Some(entry + round)));
+            assert_eq!(taker.take(), None);
+        }
+    }
+}

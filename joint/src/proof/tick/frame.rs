@@ -1,0 +1,159 @@
+//! What one function does on its own: how deep its stack gets, what it calls at which depth, and everything in it that
+//! cannot be followed. Found by following every path through its instructions; what its callees do is left to the walk.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::functions::{Function, Functions};
+use super::thumb::{Flow, Stack};
+
+/// A stack that grows beyond this within one function grows in a loop.
+const DEEPEST: u32 = 64 * 1024;
+
+/// A call, or a jump into another function.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Call {
+    /// Where it is.
+    pub from: u32,
+    /// Where it goes.
+    pub to: u32,
+    /// Stack that the caller holds by then [byte].
+    pub depth: u32,
+}
+
+/// Something that cannot be followed, or must not be met.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Obstacle {
+    /// A call or jump through a pointer.
+    Pointer(u32),
+    /// The stack pointer is set to something unknown, or in a loop.
+    Stack(u32),
+    /// An instruction that stops the processor.
+    Trap(u32),
+    /// Control runs into what is no instruction.
+    Astray(u32),
+}
+
+impl Obstacle {
+    /// Where it stands.
+    pub fn at(self) -> u32 {
+        match self {
+            Self::Pointer(at) | Self::Stack(at) | Self::Trap(at) | Self::Astray(at) => at,
+        }
+    }
+}
+
+/// What a function does.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Frame {
+    /// Deepest stack of its own [byte].
+    pub depth: u32,
+    /// Its calls.
+    pub calls: Vec<Call>,
+    /// What stands in the way of an answer.
+    pub obstacles: Vec<Obstacle>,
+}
+
+/// Follows every path through a function. `returns` tells which callees come back.
+pub fn frame(functions: &Functions, function: &Function, returns: &dyn Fn(u32) -> bool) -> Frame {
+    let conditional = conditional(function);
+    let mut frame = Frame::default();
+    let mut depths: BTreeMap<u32, u32> = BTreeMap::new();
+    let mut open = vec![(function.address, 0)];
+    let mut calls = BTreeMap::new();
+    while let Some((address, depth)) = open.pop() {
+        if depths.get(&address).is_some_and(|known| *known >= depth) {
+            continue;
+        }
+        depths.insert(address, depth);
+        let Some(instruction) = function.code.get(&address) else {
+            frame.obstacles.push(Obstacle::Astray(address));
+            continue;
+        };
+        let may_be_skipped = conditional.contains(&address);
+        let after = match instruction.stack {
+            Stack::Same => depth,
+            Stack::Grow(bytes) => depth + bytes,
+            Stack::Shrink(_) if may_be_skipped => depth,
+            Stack::Shrink(bytes) => depth.saturating_sub(bytes),
+            Stack::Unknown => {
+                frame.obstacles.push(Obstacle::Stack(address));
+                continue;
+            }
+        };
+        if after > DEEPEST {
+            frame.obstacles.push(Obstacle::Stack(address));
+            continue;
+        }
+        frame.depth = frame.depth.max(after);
+        let mut call = |to: u32| {
+            calls.insert((address, to), after.max(calls.get(&(address, to)).copied().unwrap_or(0)));
+        };
+        let next = address + instruction.size;
+        let inside = |to: u32| (function.address..function.end).contains(&to);
+        let mut goes_on = may_be_skipped;
+        match instruction.flow {
+            Flow::Next => goes_on = true,
+            Flow::Branch(to) | Flow::Jump(to) => {
+                if inside(to) {
+                    open.push((to, after))
+                } else {
+                    call(to)
+                }
+                goes_on |= matches!(instruction.flow, Flow::Branch(_));
+            }
+            Flow::Call(to) => {
+                call(to);
+                goes_on |= returns(to);
+            }
+            Flow::Table { width, base } => {
+                let targets = targets(functions, function, next, width, base);
+                if targets.is_empty() {
+                    frame.obstacles.push(Obstacle::Pointer(address));
+                }
+                open.extend(targets.into_iter().map(|to| (to, after)));
+            }
+            Flow::CallRegister | Flow::JumpRegister => frame.obstacles.push(Obstacle::Pointer(address)),
+            Flow::Return => {}
+            Flow::Trap => frame.obstacles.push(Obstacle::Trap(address)),
+        }
+        if goes_on {
+            open.push((next, after));
+        }
+    }
+    frame.calls = calls.into_iter().map(|((from, to), depth)| Call { from, to, depth }).collect();
+    frame.obstacles.sort_by_key(|obstacle| obstacle.at());
+    frame.obstacles.dedup();
+    frame
+}
+
+/// Instructions that an `it` before them makes conditional.
+fn conditional(function: &Function) -> BTreeSet<u32> {
+    let (mut found, mut left) = (BTreeSet::new(), 0);
+    for (address, instruction) in &function.code {
+        if left > 0 {
+            found.insert(*address);
+            left -= 1;
+        }
+        left = left.max(instruction.conditional_next);
+    }
+    found
+}
+
+/// Where the table of a `tbb` or `tbh` leads, by distances from the instruction after it. The table follows, or its
+/// address was put into the register somewhere in the function: every such address is taken for one. A table ends
+/// with the last entry that leads to an instruction.
+fn targets(functions: &Functions, function: &Function, next: u32, width: u32, base: u16) -> Vec<u32> {
+    let loaded = function.code.values().filter_map(|instruction| instruction.address_of);
+    let tables = match base {
+        15 => vec![next],
+        _ => loaded.filter(|(register, _)| *register == base).map(|(_, table)| table).collect(),
+    };
+    let entries = |table: u32| {
+        (table..function.end).step_by(width as usize).map_while(|entry| {
+            let distance = if width == 1 { functions.byte(entry)?.into() } else { functions.half(entry)? };
+            let to = next + 2 * u32::from(distance);
+            function.code.contains_key(&to).then_some(to)
+        })
+    };
+    tables.into_iter().flat_map(entries).collect()
+}

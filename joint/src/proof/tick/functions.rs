@@ -1,0 +1,111 @@
+//! The functions of a linked image, each with its instructions, and which of them handles the tick. The compiler's
+//! mapping symbols tell code from the constants in between; what the code does is read elsewhere.
+
+use std::collections::BTreeMap;
+
+use object::elf::STT_FUNC;
+use object::read::elf::ElfFile32;
+use object::{Endianness, Object, ObjectSection, ObjectSymbol};
+
+use super::thumb::{Instruction, decode};
+
+/// Where the vector table begins, and the place of SysTick in it.
+const VECTORS: u64 = 0x0800_0000;
+const SYSTICK: u64 = 15;
+
+/// A function of the image.
+#[derive(Debug, Clone)]
+pub struct Function {
+    /// Its name as its author wrote it.
+    pub name: String,
+    /// Where it begins.
+    pub address: u32,
+    /// Where the next one begins, at most.
+    pub end: u32,
+    /// Its instructions by address.
+    pub code: BTreeMap<u32, Instruction>,
+}
+
+/// All functions by address, and the bytes that they are in.
+#[derive(Debug)]
+pub struct Functions {
+    functions: BTreeMap<u32, Function>,
+    memory: Vec<(u32, Vec<u8>)>,
+}
+
+impl Functions {
+    /// Reads an image.
+    pub fn read(elf: &[u8]) -> Result<Self, String> {
+        let file: ElfFile32<'_, Endianness> = ElfFile32::parse(elf).map_err(|error| error.to_string())?;
+        let memory = file
+            .sections()
+            .filter_map(|section| Some((section.address() as u32, section.data().ok()?.to_vec())))
+            .filter(|(address, bytes)| u64::from(*address) >= VECTORS && !bytes.is_empty())
+            .collect();
+        let mut found = Self { functions: BTreeMap::new(), memory };
+        let mut marks = BTreeMap::new();
+        let mut starts: BTreeMap<u32, (String, u32)> = BTreeMap::new();
+        for symbol in file.symbols() {
+            let (Ok(name), address) = (symbol.name(), symbol.address() as u32) else { continue };
+            if name.starts_with("$t") || name.starts_with("$d") {
+                marks.insert(address, name.starts_with("$t"));
+            } else if symbol.elf_symbol().st_type() == STT_FUNC {
+                starts.insert(address & !1, (name.to_owned(), symbol.size() as u32));
+            }
+        }
+        let ends: Vec<u32> = starts.keys().skip(1).copied().chain([u32::MAX]).collect();
+        for ((address, (name, size)), next) in starts.into_iter().zip(ends) {
+            let section = found.section(address).map_or(address, |(start, bytes)| start + bytes.len() as u32);
+            let end = if size > 0 { address + size } else { next.min(section) };
+            let name = format!("{:#}", rustc_demangle::demangle(&name));
+            let code = found.decode(address, end, &marks);
+            found.functions.insert(address, Function { name, address, end, code });
+        }
+        Ok(found)
+    }
+
+    /// The handler of the tick, as the vector table names it.
+    pub fn tick(&self) -> Option<&Function> {
+        let entry = VECTORS + 4 * SYSTICK;
+        self.at(u32::from(self.half(entry as u32 + 2)?) << 16 | u32::from(self.half(entry as u32)?))
+    }
+
+    /// The function that begins at an address.
+    pub fn at(&self, address: u32) -> Option<&Function> {
+        self.functions.get(&(address & !1))
+    }
+
+    /// One byte.
+    pub fn byte(&self, address: u32) -> Option<u8> {
+        let (start, bytes) = self.section(address)?;
+        bytes.get((address - start) as usize).copied()
+    }
+
+    /// Two bytes.
+    pub fn half(&self, address: u32) -> Option<u16> {
+        Some(u16::from_le_bytes([self.byte(address)?, self.byte(address + 1)?]))
+    }
+
+    fn section(&self, address: u32) -> Option<(u32, &[u8])> {
+        let holds = |(start, bytes): &&(u32, Vec<u8>)| (*start..*start + bytes.len() as u32).contains(&address);
+        self.memory.iter().find(holds).map(|(start, bytes)| (*start, bytes.as_slice()))
+    }
+
+    fn decode(&self, start: u32, end: u32, marks: &BTreeMap<u32, bool>) -> BTreeMap<u32, Instruction> {
+        let mut code = BTreeMap::new();
+        let mut address = start;
+        while address < end {
+            let is_code = marks.range(..=address).next_back().is_none_or(|(_, is_code)| *is_code);
+            let Some(first) = self.half(address) else { break };
+            if !is_code {
+                // Constants may be of single bytes; code begins at an even address again.
+                address += 2;
+                continue;
+            }
+            let instruction = decode(address, first, self.half(address + 2).unwrap_or(0));
+            code.insert(address, instruction);
+            address += instruction.size;
+        }
+        code
+    }
+}

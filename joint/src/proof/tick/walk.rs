@@ -1,0 +1,165 @@
+//! All that the tick can reach: the shortest way to every panic, everything that cannot be followed, rings of calls, and
+//! the deepest stack. What of it is allowed is judged elsewhere.
+
+use std::collections::{BTreeMap, VecDeque};
+
+use super::frame::{Frame, Obstacle, frame};
+use super::functions::{Function, Functions};
+
+/// Names of functions that are, or lead nowhere but to, a panic. All of them end in the first two; the others are here
+/// for the name's sake, since a way ends at the first that it meets.
+const PANICS: [&str; 8] = [
+    "core::panicking::",
+    "rust_begin_unwind",
+    "unwrap_failed",
+    "expect_failed",
+    "core::slice::index::",
+    "core::str::slice_error",
+    "core::cell::panic_already",
+    "_defmt_panic",
+];
+
+/// The calls that lead from the handler to a place.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Way {
+    /// The functions, the handler first.
+    pub names: Vec<String>,
+    /// The place: an instruction of the last but one, if the last must not be called; otherwise of the last.
+    pub at: u32,
+}
+
+/// What the tick can reach.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Reach {
+    /// Functions that can be reached, the handler included.
+    pub functions: usize,
+    /// The way to each panic, from the handler on.
+    pub panics: Vec<Way>,
+    /// The way to each function that calls through a pointer, and where it does.
+    pub pointers: Vec<Way>,
+    /// The way to each instruction that stops the processor.
+    pub traps: Vec<Way>,
+    /// The way to each place where the stack or the next instruction is unknown.
+    pub unknown: Vec<Way>,
+    /// Functions that come to call themselves, in order.
+    pub rings: Vec<Vec<String>>,
+    /// Most stack that the handler and what it calls can take, without what the processor itself pushes [byte]. Says
+    /// nothing where there are rings, pointers or unknown places.
+    pub stack: u32,
+    /// The calls that take it, each with what it holds when it calls the next.
+    pub deepest: Vec<(String, u32)>,
+}
+
+/// Whether a name stands for a panic.
+fn is_panic(name: &str) -> bool {
+    PANICS.iter().any(|panic| name.contains(panic))
+}
+
+/// Walks from a handler.
+pub fn walk(functions: &Functions, handler: &Function) -> Reach {
+    let returns = |to: u32| functions.at(to).is_none_or(|callee| !is_panic(&callee.name));
+    let mut frames: BTreeMap<u32, Frame> = BTreeMap::new();
+    // Who called, and where.
+    let mut came_from: BTreeMap<u32, (u32, u32)> = BTreeMap::new();
+    let mut open = VecDeque::from([handler.address]);
+    let mut reach = Reach::default();
+    let way = |to: u32, at: u32, came_from: &BTreeMap<u32, (u32, u32)>| {
+        let mut way = vec![to];
+        while let Some((caller, _)) = way.last().and_then(|last| came_from.get(last)) {
+            way.push(*caller);
+        }
+        Way { names: way.iter().rev().map(|address| name_of(functions, *address)).collect(), at }
+    };
+    while let Some(address) = open.pop_front() {
+        if frames.contains_key(&address) {
+            continue;
+        }
+        let Some(function) = functions.at(address) else {
+            reach.unknown.push(way(address, address, &came_from));
+            frames.insert(address, Frame::default());
+            continue;
+        };
+        if is_panic(&function.name) {
+            let at = came_from.get(&address).map_or(address, |(_, at)| *at);
+            reach.panics.push(way(address, at, &came_from));
+            frames.insert(address, Frame::default());
+            continue;
+        }
+        let own = frame(functions, function, &returns);
+        for obstacle in &own.obstacles {
+            let list = match obstacle {
+                Obstacle::Pointer(_) => &mut reach.pointers,
+                Obstacle::Trap(_) => &mut reach.traps,
+                Obstacle::Stack(_) | Obstacle::Astray(_) => &mut reach.unknown,
+            };
+            list.push(way(address, obstacle.at(), &came_from));
+        }
+        for call in &own.calls {
+            let callee = call.to & !1;
+            if callee != handler.address {
+                came_from.entry(callee).or_insert((address, call.from));
+            }
+            open.push_back(callee);
+        }
+        frames.insert(address, own);
+    }
+    reach.functions = frames.len();
+    let mut depths = Depths { functions, frames: &frames, known: BTreeMap::new(), way: Vec::new(), rings: Vec::new() };
+    reach.stack = depths.of(handler.address).0;
+    reach.deepest = depths.deepest(handler.address);
+    reach.rings = depths.rings;
+    reach
+}
+
+fn name_of(functions: &Functions, address: u32) -> String {
+    functions.at(address).map_or_else(|| format!("{address:#010x}"), |function| function.name.clone())
+}
+
+/// Deepest stack of every function with all that it calls.
+struct Depths<'a> {
+    functions: &'a Functions,
+    frames: &'a BTreeMap<u32, Frame>,
+    /// Depth, and the callee that makes it with what is held when it is called.
+    known: BTreeMap<u32, (u32, Option<(u32, u32)>)>,
+    way: Vec<u32>,
+    rings: Vec<Vec<String>>,
+}
+
+impl Depths<'_> {
+    fn of(&mut self, address: u32) -> (u32, Option<(u32, u32)>) {
+        if let Some(known) = self.known.get(&address) {
+            return *known;
+        }
+        if let Some(start) = self.way.iter().position(|earlier| *earlier == address) {
+            let ring = self.way[start..].iter().chain([&address]);
+            self.rings.push(ring.map(|address| name_of(self.functions, *address)).collect());
+            return (0, None);
+        }
+        self.way.push(address);
+        let frame = &self.frames[&address];
+        let mut deepest = (frame.depth, None);
+        for call in &frame.calls {
+            let callee = call.to & !1;
+            let depth = call.depth + self.of(callee).0;
+            if depth > deepest.0 {
+                deepest = (depth, Some((callee, call.depth)));
+            }
+        }
+        self.way.pop();
+        self.known.insert(address, deepest);
+        deepest
+    }
+
+    fn deepest(&self, from: u32) -> Vec<(String, u32)> {
+        let (mut steps, mut address) = (Vec::new(), from);
+        while let Some((depth, next)) = self.known.get(&address) {
+            steps.push((name_of(self.functions, address), next.map_or(*depth, |(_, held)| held)));
+            match next {
+                // A ring could go round for ever.
+                Some((callee, _)) if steps.len() <= self.known.len() => address = *callee,
+                _ => break,
+            }
+        }
+        steps
+    }
+}

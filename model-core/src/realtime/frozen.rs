@@ -1,0 +1,131 @@
+//! The joint at one moment under frozen laws: what every mesh does, and the accelerations that follow, with a sub-step
+//! as the unit of time and accelerations in sixths (see `stages`). What to do when
+//! a law no longer holds is left to `crossing`.
+
+use crate::real::Real;
+use crate::realtime::contact::{Drive, Law, Laws, Net};
+use crate::realtime::excitation::{Beat, MeshWave, PerMesh};
+use crate::realtime::stages::Point;
+use crate::realtime::state::Relative;
+use crate::realtime::substep::Course;
+use crate::tables::Tables;
+
+/// One mesh at one moment under its law.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Moment<T> {
+    /// Deflection less the law's offset.
+    pub overlap: T,
+    /// Rate of the deflection.
+    pub speed: T,
+    /// Stiffness, whether it acts or not.
+    pub stiffness: T,
+    /// Imposed error.
+    pub error: T,
+    /// Force under the law, right or not.
+    pub force: T,
+}
+
+/// The start of a tick.
+pub struct Start<T, const N: usize> {
+    /// The laws that hold.
+    pub laws: Laws<T, N>,
+    /// Mesh forces.
+    pub forces: PerMesh<T, N>,
+    /// Whether every mesh is closed, too far from opening for its speed to open it before the middle of the tick.
+    pub settled: bool,
+}
+
+impl<T: Real, const N: usize> Start<T, N> {
+    /// To be filled: zeros throughout, which cost a third of copying a pattern (counted on an emulated Cortex-M4F).
+    pub const EMPTY: Self = Self { laws: [[Law::ZERO; N]; 2], forces: [[T::ZERO; N]; 2], settled: false };
+}
+
+/// What does not change over a tick.
+#[derive(Clone, Copy)]
+pub struct Frozen<'a, T: Real, const N: usize, const OVERTONES: bool> {
+    /// The joint.
+    pub tables: &'a Tables<T, N>,
+    /// Torques, as accelerations of a stage.
+    pub drive: Drive<T>,
+    /// One under the law `contact`, else zero.
+    pub pushes_only: T,
+}
+
+impl<T: Real, const N: usize, const OVERTONES: bool> Frozen<'_, T, N, OVERTONES> {
+    /// The joint at the start of a tick.
+    #[inline(never)]
+    pub fn start(&self, beat: &Beat<T>, course: &Course<T, N>, start: &mut Start<T, N>) {
+        start.settled = true;
+        for i in 0..N {
+            let sun = course.planets[i].point();
+            for (kind, at) in [(0, sun), (1, course.gap.point().less(sun))] {
+                let Moment { overlap: deflection, speed, stiffness, .. } = self.mesh(&Law::OPEN, (kind, i), beat, at);
+                let law = Law::of(self.tables, (kind, i), deflection, speed, stiffness);
+                let overlap = deflection - law.offset;
+                let way = self.tables.flow.reach * (self.tables.stage.rate * speed.abs());
+                start.settled &= law.side * overlap > way;
+                start.forces[kind][i] = law.closed * (stiffness * overlap) + law.damping * speed;
+                start.laws[kind][i] = law;
+            }
+        }
+    }
+
+    /// Stiffness and imposed error of one mesh.
+    #[inline(always)]
+    pub fn wave(&self, (kind, i): (usize, usize), beat: &Beat<T>) -> MeshWave<T> {
+        let tables = self.tables;
+        let harmonics = if OVERTONES { tables.excitation.harmonics } else { 1 };
+        tables.meshes[kind][i].at(beat, tables.springs[kind].stiffness, harmonics)
+    }
+
+    /// One mesh under a law.
+    #[inline(always)]
+    pub fn mesh(&self, law: &Law<T>, (kind, i): (usize, usize), beat: &Beat<T>, at: Point<T>) -> Moment<T> {
+        let MeshWave { stiffness, error, error_rate } = self.wave((kind, i), beat);
+        let (overlap, speed) = (at.position - error - law.offset, at.rate - error_rate);
+        let force = law.closed * (stiffness * overlap) + law.damping * speed;
+        Moment { overlap, speed, stiffness, error, force }
+    }
+
+    /// Zero while a mesh is under its law; positive when the law no longer holds.
+    #[inline(always)]
+    pub fn trespass(&self, law: &Law<T>, (kind, i): (usize, usize), moment: &Moment<T>) -> T {
+        let half_backlash = self.tables.meshes[kind][i].half_backlash;
+        let Moment { overlap, force, .. } = *moment;
+        let room = law.side * overlap + law.open * (half_backlash - overlap.abs());
+        let push = law.side * force;
+        // |x| - x is 0 or -2x: cheaper than a comparison for each mesh on a core whose flags are slow to read.
+        (room.abs() - room) + self.pushes_only * (push.abs() - push)
+    }
+
+    /// Force between carrier and link.
+    #[inline(always)]
+    pub fn wind_up_force(&self, at: Point<T>) -> T {
+        let mobility = &self.tables.stage.mobility;
+        mobility.wind_up_stiffness * at.position + mobility.wind_up_damping * at.rate
+    }
+
+    /// Accelerations at the points of a stage; `see` is shown every mesh.
+    #[inline(always)]
+    pub fn pull(
+        &self,
+        laws: &Laws<T, N>,
+        beat: &Beat<T>,
+        gap: Point<T>,
+        wind_up_force: T,
+        mut planet: impl FnMut(usize) -> Point<T>,
+        mut see: impl FnMut((usize, usize), &Moment<T>),
+    ) -> Relative<T, N> {
+        let mut net = Net::NONE;
+        for i in 0..N {
+            let sun = planet(i);
+            let ring = gap.less(sun);
+            let sun = self.mesh(&laws[0][i], (0, i), beat, sun);
+            see((0, i), &sun);
+            let ring = self.mesh(&laws[1][i], (1, i), beat, ring);
+            see((1, i), &ring);
+            net.add(i, sun.force, ring.force);
+        }
+        net.accelerations(&self.tables.stage.mobility, &self.drive, wind_up_force)
+    }
+}

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::failure::{EXIT_BAD_INPUT, Outcome};
-use crate::{check, hil, images, output, paper, sim, sweep};
+use crate::{bench, check, hil, images, output, paper, sim, sweep};
 
 /// Simulates a planetary robot joint with backlash on a microcontroller, drives it and checks it
 #[derive(Debug, Parser)]
@@ -21,6 +21,8 @@ enum Command {
     Hil(hil::Arguments),
     /// Read a joint file and print what follows from it
     Check(check::Arguments),
+    /// Compare the step with what people use: error against cost, on the emulated core and on the host
+    Bench(bench::Arguments),
     /// Redo the paper, or the same study of another joint: attractors, bifurcation diagram, figures
     Paper(paper::Arguments),
     /// Simulate a joint on the host by a named scheme: history, report, comparison of schemes
@@ -49,6 +51,7 @@ pub fn main() -> ExitCode {
         None => show_help(),
         Some(Command::Hil(arguments)) => hil::run(arguments),
         Some(Command::Check(arguments)) => check::run(arguments),
+        Some(Command::Bench(arguments)) => bench::run(arguments),
         Some(Command::Paper(arguments)) => paper::run(arguments),
         Some(Command::Sim(arguments)) => sim::run(arguments),
         Some(Command::Sweep(arguments)) => sweep::run(arguments),

@@ -59,6 +59,8 @@ pub trait Real:
     fn tanh(self) -> Self;
     /// Quotient; the caller has made sure that `divisor` is not zero.
     fn over(self, divisor: Self) -> Self;
+    /// Magnitude.
+    fn abs(self) -> Self;
     /// Neither infinite nor NaN.
     fn is_finite(self) -> bool;
     /// Bits for a digest.
@@ -104,6 +106,9 @@ macro_rules! real {
             }
             fn over(self, divisor: Self) -> Self {
                 self / divisor
+            }
+            fn abs(self) -> Self {
+                <$scalar>::abs(self)
             }
             fn is_finite(self) -> bool {
                 <$scalar>::is_finite(self)

@@ -8,6 +8,7 @@ mod contact;
 mod crossing;
 mod excitation;
 mod flow;
+mod light;
 mod model;
 pub mod phase;
 mod runge_kutta;

@@ -45,6 +45,35 @@ pub struct Tables<T: Real, const N: usize> {
     pub meshes: [[MeshTable<T>; N]; 2],
     /// Exponential flow of the closed joint over one tick (or one sub-step, for [`Scheme::PaperEtd1`]).
     pub flow: Flow<T>,
+    /// Leapfrog sub-steps of a joint with light planets.
+    pub light: [Light<T>; 2],
+    /// Gap beyond which a planet may be pressed from both sides.
+    pub light_gap: [T; N],
+}
+
+/// Leapfrog sub-steps, in units in which a sub-step lasts one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Light<T: Real> {
+    /// Sub-steps of a tick; zero where planets are not light.
+    pub substeps: u32,
+    /// Half their number.
+    pub half_count: T,
+    /// A sub-step in dimensionless time.
+    pub substep: T,
+    /// Its square.
+    pub square: T,
+    /// Its inverse.
+    pub per_substep: T,
+    /// Mobilities for the unit of time.
+    pub mobility: Mobility<T>,
+    /// Damping of the meshes of a kind.
+    pub damping: [T; 2],
+    /// One half and damping over stiffness: by how much a mesh that parts lets go early: constant, by stiffness.
+    pub release: [[T; 2]; 2],
+    /// What the wind-up's own acceleration adds to its damping force.
+    pub wind_up_yield: T,
+    /// Share of a planet's force that its own acceleration takes off: by stiffness, constant.
+    pub softness: [[T; 2]; 2],
 }
 
 /// How a tick is stepped.

@@ -8,6 +8,7 @@ use crate::real::Real;
 use crate::realtime::contact::{Drive, Laws, contact, spread};
 use crate::realtime::excitation::{MeshPhase, PerMesh, Rotor, instant, mesh_way};
 use crate::realtime::flow;
+use crate::realtime::light;
 use crate::realtime::runge_kutta::Motion;
 use crate::realtime::state::State;
 use crate::realtime::substep;
@@ -107,6 +108,12 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
             Scheme::SemiImplicitEuler => unfrozen::semi_implicit_euler(tables, &drive, &phase, &start, &motion),
             Scheme::Realtime if tables.sharpness > T::ZERO => {
                 unfrozen::runge_kutta(tables, &drive, &phase, &start, &motion)
+            }
+            Scheme::Realtime if tables.light[0].substeps > 0 => {
+                let middle = instant(tables, &phase.start.turned(&phase.over(T::HALF)), phase.rate);
+                let laws = Laws::of(tables, &motion.position, &motion.rate, &start);
+                flow::hold(tables, &drive, &phase, &start, &laws, &motion)
+                    .unwrap_or_else(|| light::advance(tables, &drive, &middle, &motion))
             }
             Scheme::Realtime => {
                 let laws = Laws::of(tables, &motion.position, &motion.rate, &start);

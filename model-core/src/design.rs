@@ -79,11 +79,7 @@ pub fn design_scheme<T: Real, const N: usize>(
         }),
         meshes: MESH_KINDS.map(|kind| array::from_fn(|i| mesh(parameters, &scales, kind, i))),
         flow: flow_tables::flow(&dynamics, flow_step),
-        light: [0, 0].map(|count| light_tables::light(parameters, &scales, mobility(&dynamics), tick, count)),
-        light_gap: array::from_fn(|i| {
-            let sum = |of: fn(&crate::mesh::Mesh, usize) -> f64| MESH_KINDS.into_iter().map(|kind| of(parameters.mesh(kind), i)).sum::<f64>();
-            real((sum(|mesh, i| mesh.half_backlash[i]) - sum(|mesh, i| mesh.transmission_error[i].abs())) / scales.length)
-        }),
+        light: light_tables::rattle(parameters, &mobility(&dynamics), tick, [0, 0]),
     };
     tables.digest = tables.numbers_digest();
     Ok(tables)

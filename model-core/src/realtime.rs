@@ -11,6 +11,7 @@ mod flow;
 mod light;
 mod model;
 pub mod phase;
+mod pressed;
 mod runge_kutta;
 mod state;
 mod substep;

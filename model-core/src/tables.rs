@@ -45,13 +45,22 @@ pub struct Tables<T: Real, const N: usize> {
     pub meshes: [[MeshTable<T>; N]; 2],
     /// Exponential flow of the closed joint over one tick (or one sub-step, for [`Scheme::PaperEtd1`]).
     pub flow: Flow<T>,
-    /// Leapfrog sub-steps of a joint with light planets.
-    pub light: [Light<T>; 2],
-    /// Gap beyond which a planet may be pressed from both sides.
-    pub light_gap: [T; N],
+    /// How contacts that change are stepped when planets are light.
+    pub light: Rattle<T, N>,
 }
 
-/// Leapfrog sub-steps, in units in which a sub-step lasts one.
+/// Leapfrog sub-steps for light planets.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rattle<T: Real, const N: usize> {
+    /// While no planet is pressed from both sides.
+    pub free: Light<T>,
+    /// While some may be.
+    pub pressed: Light<T>,
+    /// Gap coordinate beyond which each planet may be.
+    pub gaps: [T; N],
+}
+
+/// Leapfrog sub-steps, in a unit of time in which one lasts one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Light<T: Real> {
     /// Sub-steps of a tick; zero where planets are not light.
@@ -64,17 +73,24 @@ pub struct Light<T: Real> {
     pub square: T,
     /// Its inverse.
     pub per_substep: T,
-    /// Mobilities for the unit of time.
+    /// Mobilities.
     pub mobility: Mobility<T>,
-    /// Damping of the meshes of a kind.
-    pub damping: [T; 2],
-    /// One half and damping over stiffness: by how much a mesh that parts lets go early: constant, by stiffness.
-    pub release: [[T; 2]; 2],
+    /// Of the wind-up: carrier's and link's together.
+    pub wind_up_mobility: T,
     /// What the wind-up's own acceleration adds to its damping force.
     pub wind_up_yield: T,
-    /// Share of a planet's force that its own acceleration takes off: by stiffness, constant.
-    pub softness: [[T; 2]; 2],
+    /// Damping of the meshes of a kind.
+    pub damping: [T; 2],
+    /// Half of it: what the mesh's own acceleration adds to its damping force.
+    pub half_damped: [T; 2],
+    /// What curvature of the path adds to the mean deflection, for a unit of acceleration.
+    pub curvature: T,
+    /// A mesh is in contact throughout if its overlap in the middle exceeds its speed times (constant - stiffness
+    /// times slope): half a sub-step and damping over stiffness, by which a mesh that parts lets go early.
+    pub release: [[T; 2]; 2],
 }
+
+
 
 /// How a tick is stepped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,40 +1,74 @@
-//! Tables of the leapfrog sub-steps.
+//! Tables of the leapfrog sub-steps that light planets need: mobilities and dampings in the unit of time of a
+//! sub-step. How many sub-steps there are is the pace's business.
+
+use core::array;
+
 use crate::joint::JointParameters;
 use crate::mesh::MESH_KINDS;
 use crate::real::Real;
 use crate::scales::Scales;
-use crate::tables::{Light, Mobility};
+use crate::tables::{Light, Mobility, Rattle};
 
-/// Tables for so many sub-steps of a tick (dimensionless).
-pub fn light<T: Real>(parameters: &JointParameters, scales: &Scales, unit: Mobility<T>, tick: f64, substeps: u32) -> Light<T> {
+/// Tables for a tick (dimensionless) in so many sub-steps: without and with planets pressed from both sides.
+pub fn rattle<T: Real, const N: usize>(
+    parameters: &JointParameters,
+    unit: &Mobility<f64>,
+    tick: f64,
+    [free, pressed]: [u32; 2],
+) -> Rattle<T, N> {
+    let scales = Scales::new(parameters);
+    Rattle {
+        free: light(parameters, &scales, unit, tick, free),
+        pressed: light(parameters, &scales, unit, tick, pressed),
+        gaps: array::from_fn(|i| {
+            let [sun, ring] = MESH_KINDS
+                .map(|kind| parameters.mesh(kind))
+                .map(|mesh| mesh.half_backlash[i] - mesh.transmission_error[i].abs());
+            T::from_f64((sun + ring) / scales.length)
+        }),
+    }
+}
+
+fn light<T: Real>(
+    parameters: &JointParameters,
+    scales: &Scales,
+    unit: &Mobility<f64>,
+    tick: f64,
+    substeps: u32,
+) -> Light<T> {
     let real = T::from_f64;
-    let substep = tick / f64::from(substeps.max(1));
+    let count = f64::from(substeps.max(1));
+    let substep = tick / count;
     let square = substep * substep;
-    let scaled = |value: T| real(value.to_f64() * square);
     let damping = MESH_KINDS.map(|kind| scales.damping(parameters.damping_coefficient(kind)) / substep);
-    let stiffness = MESH_KINDS.map(|kind| parameters.mesh(kind).mean_stiffness / scales.stiffness);
+    let wind_up_damping = unit.wind_up_damping / substep;
+    let wind_up_mobility = square * (unit.carrier + unit.link);
     Light {
         substeps,
-        half_count: real(0.5 * f64::from(substeps)),
+        half_count: real(0.5 * count),
         substep: real(substep),
         square: real(square),
         per_substep: real(1.0 / substep),
         mobility: Mobility {
-            sun: scaled(unit.sun), planet: scaled(unit.planet), carrier: scaled(unit.carrier), link: scaled(unit.link),
-            wind_up: unit.wind_up, wind_up_stiffness: unit.wind_up_stiffness,
-            wind_up_damping: real(unit.wind_up_damping.to_f64() / substep),
+            sun: real(square * unit.sun),
+            planet: real(square * unit.planet),
+            carrier: real(square * unit.carrier),
+            link: real(square * unit.link),
+            wind_up: real(unit.wind_up),
+            wind_up_stiffness: real(unit.wind_up_stiffness),
+            wind_up_damping: real(wind_up_damping),
         },
-        wind_up_yield: {
-            let half = 0.5 * unit.wind_up_damping.to_f64() / substep;
-            real(half / (1.0 + half * square * (unit.carrier.to_f64() + unit.link.to_f64())))
-        },
+        wind_up_mobility: real(wind_up_mobility),
+        wind_up_yield: real(0.5 * wind_up_damping / (1.0 + 0.5 * wind_up_damping * wind_up_mobility)),
         damping: damping.map(real),
+        half_damped: damping.map(|value| real(0.5 * value)),
+        // The mean of a deflection along a parabola exceeds its middle by a twelfth... of a leapfrog's frequency error.
+        curvature: real(1.0 / 12.0),
         release: [0, 1].map(|kind| {
-            let ratio = damping[kind] / stiffness[kind];
-            [real(0.5 + 2.0 * ratio), real(ratio / stiffness[kind])]
-        }),
-        softness: [0, 1].map(|kind| {
-            [real(1.0 / 12.0), real(0.5 * damping[kind])]
+            let stiffness = parameters.mesh(MESH_KINDS[kind]).mean_stiffness / scales.stiffness;
+            // c / k = c / k_mean (2 - k / k_mean) to first order in the ripple.
+            let early = damping[kind] / stiffness;
+            [real(0.5 + 2.0 * early), real(early / stiffness)]
         }),
     }
 }

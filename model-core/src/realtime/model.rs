@@ -100,22 +100,18 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
         let phase = MeshPhase { start, way, rate: tables.excitation.rate * way };
         self.state.phase = self.state.phase.wrapping_add(tables.excitation.phase_step);
 
-        let start = instant(tables, &phase.start, phase.rate);
+        let start = || instant(tables, &phase.start, phase.rate);
         let motion = Motion { position: self.state.position, rate: self.state.rate };
         let Motion { position, rate } = match tables.scheme {
-            Scheme::PaperEtd1 => flow::paper(tables, &drive, &phase, &start, &motion),
-            Scheme::RungeKutta4 => unfrozen::runge_kutta(tables, &drive, &phase, &start, &motion),
-            Scheme::SemiImplicitEuler => unfrozen::semi_implicit_euler(tables, &drive, &phase, &start, &motion),
+            Scheme::PaperEtd1 => flow::paper(tables, &drive, &phase, &start(), &motion),
+            Scheme::RungeKutta4 => unfrozen::runge_kutta(tables, &drive, &phase, &start(), &motion),
+            Scheme::SemiImplicitEuler => unfrozen::semi_implicit_euler(tables, &drive, &phase, &start(), &motion),
             Scheme::Realtime if tables.sharpness > T::ZERO => {
-                unfrozen::runge_kutta(tables, &drive, &phase, &start, &motion)
+                unfrozen::runge_kutta(tables, &drive, &phase, &start(), &motion)
             }
-            Scheme::Realtime if tables.light[0].substeps > 0 => {
-                let middle = instant(tables, &phase.start.turned(&phase.over(T::HALF)), phase.rate);
-                let laws = Laws::of(tables, &motion.position, &motion.rate, &start);
-                flow::hold(tables, &drive, &phase, &start, &laws, &motion)
-                    .unwrap_or_else(|| light::advance(tables, &drive, &middle, &motion))
-            }
+            Scheme::Realtime if tables.light.free.substeps > 0 => light::tick(tables, &drive, &phase, &motion),
             Scheme::Realtime => {
+                let start = start();
                 let laws = Laws::of(tables, &motion.position, &motion.rate, &start);
                 flow::hold(tables, &drive, &phase, &start, &laws, &motion)
                     .unwrap_or_else(|| substep::advance(tables, &drive, &phase, &start, &laws, &motion))

@@ -5,8 +5,8 @@
 pub mod dynamics;
 pub mod exponential;
 mod flow_tables;
-pub mod light_tables;
 pub mod hamiltonian;
+pub mod light_tables;
 pub mod modes;
 mod pace;
 mod source;
@@ -49,7 +49,8 @@ pub fn design_scheme<T: Real, const N: usize>(
     let scales = Scales::new(parameters);
     let dynamics = Dynamics::new(parameters, &scales);
     let real = T::from_f64;
-    let substeps = Pace::new(parameters).substeps(tick_rate, effort)?;
+    let pace = Pace::new(parameters);
+    let substeps = pace.substeps(tick_rate, effort)?;
     let tick = scales.frequency / f64::from(tick_rate);
     let substep = tick / f64::from(substeps);
     let flow_step = match scheme {
@@ -79,7 +80,7 @@ pub fn design_scheme<T: Real, const N: usize>(
         }),
         meshes: MESH_KINDS.map(|kind| array::from_fn(|i| mesh(parameters, &scales, kind, i))),
         flow: flow_tables::flow(&dynamics, flow_step),
-        light: light_tables::rattle(parameters, &mobility(&dynamics), tick, [0, 0]),
+        light: light_tables::light(parameters, &mobility(&dynamics), tick, pace.leaps(tick_rate, substeps, effort)),
     };
     tables.digest = tables.numbers_digest();
     Ok(tables)

@@ -46,18 +46,7 @@ pub struct Tables<T: Real, const N: usize> {
     /// Exponential flow of the closed joint over one tick (or one sub-step, for [`Scheme::PaperEtd1`]).
     pub flow: Flow<T>,
     /// How contacts that change are stepped when planets are light.
-    pub light: Rattle<T, N>,
-}
-
-/// Leapfrog sub-steps for light planets.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Rattle<T: Real, const N: usize> {
-    /// While no planet is pressed from both sides.
-    pub free: Light<T>,
-    /// While some may be.
-    pub pressed: Light<T>,
-    /// Gap coordinate beyond which each planet may be.
-    pub gaps: [T; N],
+    pub light: Light<T>,
 }
 
 /// Leapfrog sub-steps, in a unit of time in which one lasts one.
@@ -89,8 +78,6 @@ pub struct Light<T: Real> {
     /// times slope): half a sub-step and damping over stiffness, by which a mesh that parts lets go early.
     pub release: [[T; 2]; 2],
 }
-
-
 
 /// How a tick is stepped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -269,9 +256,7 @@ impl<T: Real, const N: usize> Tables<T, N> {
         digest.reals(&units.motor_offset);
         digest.reals(&units.link_offset);
         digest.reals(&[self.rigid.drive, self.rigid.load]);
-        let mobility = &self.mobility;
-        digest.reals(&[mobility.sun, mobility.planet, mobility.carrier, mobility.link]);
-        digest.reals(&[mobility.wind_up, mobility.wind_up_stiffness, mobility.wind_up_damping]);
+        digest.mobility(&self.mobility);
         digest.whole(self.excitation.phase_step);
         digest.whole(self.excitation.periods_per_turn.into());
         digest.whole(self.excitation.harmonics.into());
@@ -285,6 +270,7 @@ impl<T: Real, const N: usize> Tables<T, N> {
             mesh.ripple.iter().for_each(|pair| digest.reals(pair));
         }
         digest.flow(&self.flow);
+        digest.light(&self.light);
         digest.0
     }
 }
@@ -303,6 +289,21 @@ impl Digest {
 
     fn block<T: Real, const R: usize, const C: usize>(&mut self, block: &Block<T, R, C>) {
         self.reals(block.0.as_slice());
+    }
+
+    fn mobility<T: Real>(&mut self, mobility: &Mobility<T>) {
+        self.reals(&[mobility.sun, mobility.planet, mobility.carrier, mobility.link]);
+        self.reals(&[mobility.wind_up, mobility.wind_up_stiffness, mobility.wind_up_damping]);
+    }
+
+    fn light<T: Real>(&mut self, light: &Light<T>) {
+        self.whole(light.substeps.into());
+        self.mobility(&light.mobility);
+        self.reals(&[light.half_count, light.substep, light.square, light.per_substep]);
+        self.reals(&[light.wind_up_mobility, light.wind_up_yield, light.curvature]);
+        for values in [&light.damping, &light.half_damped].into_iter().chain(&light.release) {
+            self.reals(values);
+        }
     }
 
     fn flow<T: Real>(&mut self, flow: &Flow<T>) {

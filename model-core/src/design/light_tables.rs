@@ -1,41 +1,15 @@
 //! Tables of the leapfrog sub-steps that light planets need: mobilities and dampings in the unit of time of a
 //! sub-step. How many sub-steps there are is the pace's business.
 
-use core::array;
-
 use crate::joint::JointParameters;
 use crate::mesh::MESH_KINDS;
 use crate::real::Real;
 use crate::scales::Scales;
-use crate::tables::{Light, Mobility, Rattle};
+use crate::tables::{Light, Mobility};
 
-/// Tables for a tick (dimensionless) in so many sub-steps: without and with planets pressed from both sides.
-pub fn rattle<T: Real, const N: usize>(
-    parameters: &JointParameters,
-    unit: &Mobility<f64>,
-    tick: f64,
-    [free, pressed]: [u32; 2],
-) -> Rattle<T, N> {
+/// Tables for a tick (dimensionless) in so many sub-steps.
+pub fn light<T: Real>(parameters: &JointParameters, unit: &Mobility<f64>, tick: f64, substeps: u32) -> Light<T> {
     let scales = Scales::new(parameters);
-    Rattle {
-        free: light(parameters, &scales, unit, tick, free),
-        pressed: light(parameters, &scales, unit, tick, pressed),
-        gaps: array::from_fn(|i| {
-            let [sun, ring] = MESH_KINDS
-                .map(|kind| parameters.mesh(kind))
-                .map(|mesh| mesh.half_backlash[i] - mesh.transmission_error[i].abs());
-            T::from_f64((sun + ring) / scales.length)
-        }),
-    }
-}
-
-fn light<T: Real>(
-    parameters: &JointParameters,
-    scales: &Scales,
-    unit: &Mobility<f64>,
-    tick: f64,
-    substeps: u32,
-) -> Light<T> {
     let real = T::from_f64;
     let count = f64::from(substeps.max(1));
     let substep = tick / count;
@@ -62,7 +36,7 @@ fn light<T: Real>(
         wind_up_yield: real(0.5 * wind_up_damping / (1.0 + 0.5 * wind_up_damping * wind_up_mobility)),
         damping: damping.map(real),
         half_damped: damping.map(|value| real(0.5 * value)),
-        // The mean of a deflection along a parabola exceeds its middle by a twelfth... of a leapfrog's frequency error.
+        // Makes a leapfrog's frequencies right to fourth order (the modified potential of Takahashi and Imada).
         curvature: real(1.0 / 12.0),
         release: [0, 1].map(|kind| {
             let stiffness = parameters.mesh(MESH_KINDS[kind]).mean_stiffness / scales.stiffness;

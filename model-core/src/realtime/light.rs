@@ -12,7 +12,7 @@ use crate::realtime::contact::Drive;
 use crate::realtime::excitation::{Instant, MeshPhase, instant};
 use crate::realtime::pressed;
 use crate::realtime::runge_kutta::Motion;
-use crate::tables::{Light, Tables};
+use crate::tables::Tables;
 
 /// One tick.
 #[inline]
@@ -26,22 +26,10 @@ pub fn tick<T: Real, const N: usize>(
     if let Some(end) = pressed::hold(tables, drive, phase, &middle, motion) {
         return end;
     }
-    let light = if squeezes(tables, motion) { &tables.light.pressed } else { &tables.light.free };
     match tables.damping_law {
-        DampingLaw::Contact => leap::<T, N, true>(tables, light, drive, &middle, motion),
-        DampingLaw::Paper => leap::<T, N, false>(tables, light, drive, &middle, motion),
+        DampingLaw::Contact => leap::<T, N, true>(tables, drive, &middle, motion),
+        DampingLaw::Paper => leap::<T, N, false>(tables, drive, &middle, motion),
     }
-}
-
-/// Whether a planet may be pressed from both sides within the tick, where it rings fastest.
-#[inline]
-fn squeezes<T: Real, const N: usize>(tables: &Tables<T, N>, motion: &Motion<T, N>) -> bool {
-    let reach = motion.position.gap.abs() + tables.flow.step * motion.rate.gap.abs();
-    let mut squeezes = false;
-    for gap in &tables.light.gaps {
-        squeezes |= reach > *gap;
-    }
-    squeezes
 }
 
 /// Leapfrog sub-steps: half a sub-step of drift, then forces in its middle and a drift by the new rate. Deflections
@@ -49,11 +37,11 @@ fn squeezes<T: Real, const N: usize>(tables: &Tables<T, N>, motion: &Motion<T, N
 #[inline(never)]
 fn leap<T: Real, const N: usize, const PUSHES_ONLY: bool>(
     tables: &Tables<T, N>,
-    light: &Light<T>,
     drive: &Drive<T>,
     middle: &Instant<T, N>,
     motion: &Motion<T, N>,
 ) -> Motion<T, N> {
+    let light = &tables.light;
     let h = light.substep;
     let mobility = &light.mobility;
     let (mut wind_up, mut gap) = (motion.position.wind_up, motion.position.gap);
@@ -199,7 +187,7 @@ impl<T: Real> Grazing<T> {
         // Across the whole gap within the sub-step: the other flank pushes back.
         let other = self.half_way - self.over - self.width;
         if other > T::ZERO {
-            square = square - other * other.over(way);
+            square -= other * other.over(way);
         }
         let viscous = if PUSHES_ONLY { part * viscous } else { viscous };
         (self.stiffness * (T::HALF * square) + viscous, part)

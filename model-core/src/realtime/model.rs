@@ -109,7 +109,7 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
             Scheme::Realtime if tables.sharpness > T::ZERO => {
                 unfrozen::runge_kutta(tables, &drive, &phase, &start(), &motion)
             }
-            Scheme::Realtime if tables.light.free.substeps > 0 => light::tick(tables, &drive, &phase, &motion),
+            Scheme::Realtime if tables.light.substeps > 0 => light::tick(tables, &drive, &phase, &motion),
             Scheme::Realtime => {
                 let start = start();
                 let laws = Laws::of(tables, &motion.position, &motion.rate, &start);

@@ -111,9 +111,13 @@ pub fn hold<T: Real, const N: usize>(
     for i in 0..N {
         let (deviation, speed) = (position.planets[i] - mean, rate.planets[i] - mean_rate);
         let (from_start, from_middle) = (start.apart[i], middle.apart[i]);
-        planets[i] = mean_end + deviation + (a * deviation + c * speed)
+        planets[i] = mean_end
+            + deviation
+            + (a * deviation + c * speed)
             + (first.deviation[0] * from_start + second.deviation[0] * from_middle);
-        planet_rates[i] = mean_rate_end + speed + (b * deviation + d * speed)
+        planet_rates[i] = mean_rate_end
+            + speed
+            + (b * deviation + d * speed)
             + (first.deviation[1] * from_start + second.deviation[1] * from_middle);
     }
     Some(Motion {

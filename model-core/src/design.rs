@@ -6,6 +6,7 @@ pub mod dynamics;
 pub mod exponential;
 mod flow_tables;
 pub mod hamiltonian;
+pub mod light_tables;
 pub mod modes;
 mod pace;
 mod source;
@@ -48,7 +49,9 @@ pub fn design_scheme<T: Real, const N: usize>(
     let scales = Scales::new(parameters);
     let dynamics = Dynamics::new(parameters, &scales);
     let real = T::from_f64;
-    let substeps = Pace::new(parameters).substeps(tick_rate, effort)?;
+    let pace = Pace::new(parameters);
+    let substeps = pace.substeps(tick_rate, effort)?;
+    let leaps = pace.leaps(tick_rate, substeps, effort);
     let tick = scales.frequency / f64::from(tick_rate);
     let substep = tick / f64::from(substeps);
     let flow_step = match scheme {
@@ -84,6 +87,7 @@ pub fn design_scheme<T: Real, const N: usize>(
             damping: MESH_KINDS.map(|kind| real(scales.damping(parameters.damping_coefficient(kind)) / substep)),
         },
         flow: flow_tables::flow(&dynamics, flow_step, substeps),
+        light: light_tables::light(parameters, &mobility(&dynamics, 1.0, 1.0), tick, leaps),
     };
     tables.digest = tables.numbers_digest();
     Ok(tables)

@@ -47,6 +47,38 @@ pub struct Tables<T: Real, const N: usize> {
     pub stage: Stage<T>,
     /// Exponential flow of the closed joint over one tick (or one sub-step, for [`Scheme::PaperEtd1`]).
     pub flow: Flow<T>,
+    /// How contacts that change are stepped when planets are light.
+    pub light: Light<T>,
+}
+
+/// Leapfrog sub-steps, in a unit of time in which one lasts one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Light<T: Real> {
+    /// Sub-steps of a tick; zero where planets are not light.
+    pub substeps: u32,
+    /// Half their number.
+    pub half_count: T,
+    /// A sub-step in dimensionless time.
+    pub substep: T,
+    /// Its square.
+    pub square: T,
+    /// Its inverse.
+    pub per_substep: T,
+    /// Mobilities.
+    pub mobility: Mobility<T>,
+    /// Of the wind-up: carrier's and link's together.
+    pub wind_up_mobility: T,
+    /// What the wind-up's own acceleration adds to its damping force.
+    pub wind_up_yield: T,
+    /// Damping of the meshes of a kind.
+    pub damping: [T; 2],
+    /// Half of it: what the mesh's own acceleration adds to its damping force.
+    pub half_damped: [T; 2],
+    /// What curvature of the path adds to the mean deflection, for a unit of acceleration.
+    pub curvature: T,
+    /// A mesh is in contact throughout if its overlap in the middle exceeds its speed times (constant - stiffness
+    /// times slope): half a sub-step and damping over stiffness, by which a mesh that parts lets go early.
+    pub release: [[T; 2]; 2],
 }
 
 /// The joint in units in which a sub-step lasts 1 and an acceleration is counted in sixths: so the weights of a step
@@ -180,6 +212,12 @@ pub struct Flow<T: Real> {
     pub whole_inputs: [Inputs<T>; 4],
     /// When the looks are, as parts of the step.
     pub looks: [T; 2],
+    /// Up to the middle: for light planets, whose whole tick looks at its pseudo-force there alone.
+    pub half: Transition<T>,
+    /// Input integrals up to the middle, of a constant pseudo-force.
+    pub half_constant: Inputs<T>,
+    /// Over the whole step, of a pseudo-force linear through its values at the start and in the middle.
+    pub whole_linear: [Inputs<T>; 2],
     /// Pseudo-force constant over the whole step.
     pub whole_constant: Inputs<T>,
     /// The step, in dimensionless time.
@@ -262,6 +300,7 @@ impl<T: Real, const N: usize> Tables<T, N> {
             mesh.ripple.iter().for_each(|pair| digest.reals(pair));
         }
         digest.flow(&self.flow);
+        digest.light(&self.light);
         digest.0
     }
 }
@@ -287,14 +326,24 @@ impl Digest {
         self.reals(&[mobility.wind_up, mobility.wind_up_stiffness, mobility.wind_up_damping]);
     }
 
+    fn light<T: Real>(&mut self, light: &Light<T>) {
+        self.whole(light.substeps.into());
+        self.mobility(&light.mobility);
+        self.reals(&[light.half_count, light.substep, light.square, light.per_substep]);
+        self.reals(&[light.wind_up_mobility, light.wind_up_yield, light.curvature]);
+        for values in [&light.damping, &light.half_damped].into_iter().chain(&light.release) {
+            self.reals(values);
+        }
+    }
+
     fn flow<T: Real>(&mut self, flow: &Flow<T>) {
-        for transition in [&flow.whole, &flow.early, &flow.late] {
+        for transition in [&flow.whole, &flow.early, &flow.late, &flow.half] {
             self.block(&transition.in_phase);
             self.block(&transition.deviation);
             self.block(&transition.torques);
         }
         let looks = flow.early_inputs.iter().chain(&flow.late_inputs).chain(&flow.whole_inputs);
-        for inputs in looks.chain([&flow.whole_constant]) {
+        for inputs in looks.chain(&flow.whole_linear).chain([&flow.whole_constant, &flow.half_constant]) {
             self.block(&inputs.in_phase);
             self.reals(&inputs.deviation);
         }

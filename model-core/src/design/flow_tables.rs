@@ -28,6 +28,8 @@ pub fn flow<T: Real>(dynamics: &Dynamics, step: f64, substeps: u32) -> Flow<T> {
     let whole = sorting.integrate(step, 4);
     let early = sorting.integrate(first * step, 2);
     let late = sorting.integrate(second * step, 3);
+    let half = sorting.integrate(0.5 * step, 1);
+    let [constant, linear] = [0, 1].map(|power| &whole.input_integrals[power]);
     // Weights of a polynomial's powers of time, in units of the way up to a look, for each value that it goes through.
     let inputs = |flow: &exponential::Flow, way: f64, values: &[Vec<f64>]| -> Vec<Inputs<T>> {
         let of = |powers: &Vec<f64>| {
@@ -45,7 +47,10 @@ pub fn flow<T: Real>(dynamics: &Dynamics, step: f64, substeps: u32) -> Flow<T> {
     let late_inputs = inputs(&late, second, &parabola);
     let whole_inputs = inputs(&whole, 1.0, &cubic(first, second, rate));
     Flow {
-        whole_constant: sorting.inputs(&whole.input_integrals[0]),
+        whole_constant: sorting.inputs(constant),
+        whole_linear: [sorting.inputs(&(constant - linear * 2.0)), sorting.inputs(&(linear * 2.0))],
+        half_constant: sorting.inputs(&half.input_integrals[0]),
+        half: sorting.transition(&half),
         whole: sorting.transition(&whole),
         early: sorting.transition(&early),
         late: sorting.transition(&late),

@@ -16,6 +16,10 @@ const USUAL_SUBSTEPS: f64 = 4.0;
 const EXCITATION_PHASE: f64 = 0.3;
 /// Phase of the fastest mode that a sub-step may have at most; the Runge-Kutta method is stable to 2.8 [rad].
 const LARGEST_PHASE: f64 = 2.4;
+/// Beyond this phase of the fastest mode in a sub-step, Runge-Kutta steps damp it away and bounces of light planets with
+/// it; leapfrog sub-steps of at most the second take over [rad].
+const DAMPED_PHASE: f64 = 1.0;
+const LEAP_PHASE: f64 = 1.1;
 /// Most sub-steps a tick.
 const MOST_SUBSTEPS: f64 = 16.0;
 
@@ -83,6 +87,16 @@ impl Pace {
         };
         let stable = libm::ceil(self.fastest / (rate * LARGEST_PHASE));
         Ok(accurate.min(affordable).min(MOST_SUBSTEPS).max(stable).max(1.0) as u32)
+    }
+
+    /// Leapfrog sub-steps of a tick; none where the usual sub-steps resolve the fastest mode, or where
+    /// time does not matter.
+    pub fn leaps(&self, tick_rate: u32, substeps: u32, effort: Effort) -> u32 {
+        if effort == Effort::Board && self.phase(tick_rate, substeps) > DAMPED_PHASE {
+            libm::ceil(self.phase(tick_rate, 1) / LEAP_PHASE) as u32
+        } else {
+            0
+        }
     }
 
     /// Lowest tick rate that is accepted [Hz].

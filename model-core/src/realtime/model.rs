@@ -9,6 +9,7 @@ use crate::realtime::contact::{Drive, contact, spread};
 use crate::realtime::excitation::{Beat, MeshPhase, PerMesh, Rotor, instant, mesh_way};
 use crate::realtime::flow;
 use crate::realtime::frozen::{Frozen, Start};
+use crate::realtime::light;
 use crate::realtime::paper;
 use crate::realtime::runge_kutta::Motion;
 use crate::realtime::state::State;
@@ -107,6 +108,7 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
             Scheme::RungeKutta4 => unfrozen::runge_kutta(tables, &drive, &phase, &motion),
             Scheme::SemiImplicitEuler => unfrozen::semi_implicit_euler(tables, &drive, &phase, &motion),
             Scheme::Realtime if tables.sharpness > T::ZERO => unfrozen::runge_kutta(tables, &drive, &phase, &motion),
+            Scheme::Realtime if tables.light.substeps > 0 => light::tick(tables, &drive, &phase, &motion),
             Scheme::Realtime if tables.excitation.harmonics > 1 => tick::<T, N, true>(tables, &drive, &phase, &motion),
             Scheme::Realtime => tick::<T, N, false>(tables, &drive, &phase, &motion),
         };

@@ -130,3 +130,28 @@ fn figure(
         note,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn curve(points: &[(f64, f64)], own: bool) -> Curve<'static> {
+        Curve { points: points.to_vec(), ink: Ink::First, name: "a method", own }
+    }
+
+    #[test]
+    fn curves_over_many_decades_are_drawn() {
+        let curves = vec![
+            curve(&[(4e6, 1e5), (4e7, 3.0), (8e8, 2e-7)], false),
+            curve(&[(9e6, 2e-5), (5e7, 6e-6), (8e8, 4e-6)], true),
+        ];
+        let figure = figure("A case".into(), "instructions", MEGA, curves, Some(6e7), String::new()).unwrap();
+        let svg = figure.to_svg();
+        assert!(svg.contains("a method") && svg.contains("half a core"), "{svg}");
+    }
+
+    #[test]
+    fn nothing_to_draw_is_no_picture() {
+        assert!(figure(String::new(), "", MEGA, vec![curve(&[], true)], None, String::new()).is_none());
+    }
+}

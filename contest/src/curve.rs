@@ -36,7 +36,9 @@ pub enum Scalar {
 pub struct Point {
     /// Steps in a second [Hz].
     pub rate: u32,
-    /// h omega_n.
+    /// Sub-steps of each.
+    pub substeps: u32,
+    /// h omega_n, of a sub-step.
     pub step: f64,
     /// Worst over the phases.
     pub errors: Errors,
@@ -76,27 +78,27 @@ impl Field {
         Ok(course.errors(&samples))
     }
 
-    /// A method at a rate.
-    pub fn point(&self, method: Method, scalar: Scalar, rate: u32) -> Result<Point, DesignError> {
+    /// A method at a rate; the core's step at so many sub-steps, too.
+    pub fn point(&self, method: Method, scalar: Scalar, rate: u32, substeps: u32) -> Result<Point, DesignError> {
         let runs: Result<Vec<(Errors, u64)>, DesignError> = self
             .phases
             .par_iter()
             .map(|(case, course)| {
                 let run = match scalar {
-                    Scalar::Single => run_any::<f32>(case, method, rate),
-                    Scalar::Double => run_any::<f64>(case, method, rate),
+                    Scalar::Single => run_any::<f32>(case, method, (rate, substeps)),
+                    Scalar::Double => run_any::<f64>(case, method, (rate, substeps)),
                 }?;
                 Ok((course.errors(&run.readings), run.digest))
             })
             .collect();
         let runs = runs?;
         let errors = runs.iter().fold(Errors::NONE, |worst, (errors, _)| worst.or_worse(errors));
-        let step = Scales::new(&self.case.joint).frequency / f64::from(rate);
-        Ok(Point { rate, step, errors, digest: runs.first().map_or(0, |run| run.1) })
+        let step = Scales::new(&self.case.joint).frequency / (f64::from(rate) * f64::from(substeps));
+        Ok(Point { rate, substeps, step, errors, digest: runs.first().map_or(0, |run| run.1) })
     }
 }
 
-fn run_any<T: Real>(case: &Case, method: Method, rate: u32) -> Result<Run, DesignError> {
+fn run_any<T: Real>(case: &Case, method: Method, rate: (u32, u32)) -> Result<Run, DesignError> {
     match case.joint.geometry.planets {
         3 => run::<T, 3>(case, method, rate, &|| 0.0),
         4 => run::<T, 4>(case, method, rate, &|| 0.0),

@@ -11,6 +11,7 @@ use model_core::realtime::{Model, State, Torques};
 use model_core::scales::Scales;
 use model_core::tables::{Scheme, Tables};
 use peers::clock::Clock;
+use peers::etd1::Etd1;
 use peers::euler::SemiImplicitEuler;
 use peers::instant::Rotor;
 use peers::motion::{Coordinates, Motion};
@@ -48,14 +49,13 @@ pub fn torques_by_step(case: &Case, rate: u32) -> Vec<(u64, f64, f64)> {
     case.torques.iter().map(|segment| (step(segment.from_tick), segment.drive, segment.load)).collect()
 }
 
-/// Tables of the core for a method at a rate.
+/// Tables of the core's step: ticks a second, sub-steps a tick.
 pub fn tables<T: Real, const N: usize>(
     joint: &JointParameters,
-    method: Method,
     rate: u32,
+    substeps: u32,
 ) -> Result<Tables<T, N>, DesignError> {
-    let scheme = if method == Method::PaperEtd1 { Scheme::PaperEtd1 } else { Scheme::Realtime };
-    design_scheme(joint, rate, scheme, Effort::Board)
+    design_scheme(joint, rate, Scheme::Realtime, Effort::Substeps(substeps))
 }
 
 /// The peers' plant for a method at a rate.
@@ -68,24 +68,28 @@ pub fn plant<T: Real, const N: usize>(joint: &JointParameters, method: Method, r
     plant
 }
 
-/// Moves a case. `N` must be the joint's number of planets. The clock, in seconds, is read before the first step and
-/// after the last.
+/// Moves a case by so many steps a second; the core's step takes each in so many sub-steps, of which the others know
+/// nothing. `N` must be the joint's number of planets. The clock, in seconds, is read before the first step and after the
+/// last.
 pub fn run<T: Real, const N: usize>(
     case: &Case,
     method: Method,
-    rate: u32,
+    (rate, substeps): (u32, u32),
     clock: &dyn Fn() -> f64,
 ) -> Result<Run, DesignError> {
     let start = Deflected::<N>::new(&case.joint, &case.start);
     Ok(match method {
-        Method::Realtime | Method::PaperEtd1 => {
-            let tables: Tables<T, N> = tables(&case.joint, method, rate)?;
+        Method::Realtime => {
+            let tables: Tables<T, N> = tables(&case.joint, rate, substeps)?;
             let mut model = Model::new(&tables);
             model.set_state(start.state(&case.joint, &tables));
             let torques = Torques { drive: T::ZERO, load: T::ZERO };
             follow(case, rate, clock, &mut Core { model, torques, gauge: Gauge::new(&case.joint), case, rate })
         }
-        Method::RungeKutta4 | Method::RungeKutta4Tanh => whole::<T, N, RungeKutta4>(case, method, rate, clock, &start),
+        Method::PaperEtd1 => whole::<T, N, Etd1<T>>(case, method, rate, clock, &start),
+        Method::RungeKutta4 | Method::RungeKutta4Tanh => {
+            whole::<T, N, RungeKutta4<T, N>>(case, method, rate, clock, &start)
+        }
         Method::Euler => whole::<T, N, SemiImplicitEuler>(case, method, rate, clock, &start),
         Method::Trapezoid => whole::<T, N, Trapezoid<T, N>>(case, method, rate, clock, &start),
         Method::TwoMassSpring => two_mass::<T, N>(case, Contact::SpringDamper, rate, clock, &start),

@@ -19,7 +19,12 @@ pub struct Clock<T> {
     /// Whether the carrier's angle makes the phase.
     angle: bool,
     rotor: Rotor<T>,
+    /// Steps since the rotor was last taken from the phase itself.
+    since: u32,
 }
+
+/// Steps that a prescribed phase is turned by before it is taken afresh: rounding has not yet grown to a millionth.
+const FRESH: u32 = 8;
 
 /// Phase in the middle and at the end of a step.
 pub struct Ahead<T> {
@@ -38,6 +43,7 @@ impl<T: Real> Clock<T> {
             change: 0,
             angle: plant.phase.periods_per_turn != 0,
             rotor: Rotor { sine: T::ZERO, cosine: T::ONE, rate: plant.phase.rate },
+            since: 0,
         };
         if clock.angle {
             clock.rotor.rate = rate(plant, speed);
@@ -60,24 +66,22 @@ impl<T: Real> Clock<T> {
         self.change = (plant.gains.rigid[0] * drive - plant.gains.rigid[1] * load).to_i64();
     }
 
-    /// Goes on by a step; `MIDDLE` says whether the middle is wanted, else it is the end again.
+    /// Goes on by a step; `MIDDLE` says whether the middle is wanted, else what stands there is of no use.
     #[inline(always)]
     pub fn advance<const MIDDLE: bool, const N: usize>(&mut self, plant: &Plant<T, N>) -> Ahead<T> {
         let phase = &plant.phase;
         let start = self.rotor;
         if !self.angle {
             self.place = self.place.wrapping_add(phase.step);
-            let (sine, cosine) = sine_cosine((self.place >> 32) as u32);
-            self.rotor = Rotor { sine, cosine, rate: phase.rate };
-            if !MIDDLE {
-                return Ahead { middle: self.rotor, end: self.rotor };
+            let middle = if MIDDLE { turned(&start, phase.half_turn) } else { start };
+            self.since += 1;
+            if self.since < FRESH {
+                self.rotor = turned(&start, phase.turn);
+            } else {
+                self.since = 0;
+                let (sine, cosine) = sine_cosine((self.place >> 32) as u32);
+                self.rotor = Rotor { sine, cosine, rate: phase.rate };
             }
-            let [half_sine, half_cosine] = phase.half_turn;
-            let middle = Rotor {
-                sine: start.sine * half_cosine + start.cosine * half_sine,
-                cosine: start.cosine * half_cosine - start.sine * half_sine,
-                rate: phase.rate,
-            };
             return Ahead { middle, end: self.rotor };
         }
         let at = |place: u64| sine_cosine((place.wrapping_mul(phase.periods_per_turn.into()) >> 32) as u32);
@@ -94,6 +98,16 @@ impl<T: Real> Clock<T> {
         let (sine, cosine) = at(mid_place);
         let middle = Rotor { sine, cosine, rate: T::HALF * (start.rate + self.rotor.rate) };
         Ahead { middle, end: self.rotor }
+    }
+}
+
+/// Further by an angle of this sine and cosine.
+#[inline(always)]
+fn turned<T: Real>(rotor: &Rotor<T>, [sine, cosine]: [T; 2]) -> Rotor<T> {
+    Rotor {
+        sine: rotor.sine * cosine + rotor.cosine * sine,
+        cosine: rotor.cosine * cosine - rotor.sine * sine,
+        rate: rotor.rate,
     }
 }
 

@@ -4,28 +4,33 @@
 use model_core::real::Real;
 
 use crate::forces::{ForceLaw, Push, acceleration};
+use crate::instant::{Instant, Rotor};
 use crate::motion::Motion;
 use crate::plant::Plant;
-use crate::scheme::{Nodes, Scheme};
+use crate::scheme::{Phases, Scheme};
 
 /// The method; it carries nothing from step to step.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 pub struct SemiImplicitEuler;
 
 impl<T: Real, const N: usize> Scheme<T, N> for SemiImplicitEuler {
     const MIDDLE: bool = false;
+
+    fn begin(_: &Plant<T, N>, _: &Rotor<T>) -> Self {
+        Self
+    }
 
     #[inline(always)]
     fn advance<L: ForceLaw<T>, const COMPLIANT: bool>(
         &mut self,
         plant: &Plant<T, N>,
         push: &Push<T>,
-        nodes: &Nodes<'_, T, N>,
-        motion: &Motion<T, N>,
-    ) -> Motion<T, N> {
-        let Motion { position, rate } = motion;
-        let change = acceleration::<T, N, L, COMPLIANT>(plant, push, nodes.start, position, rate);
-        let rate = rate.plus::<COMPLIANT>(plant.step, &change);
-        Motion { position: position.plus::<COMPLIANT>(plant.step, &rate), rate }
+        phases: &Phases<'_, T>,
+        motion: &mut Motion<T, N>,
+    ) {
+        let now = Instant::at(plant, phases.start);
+        let change = acceleration::<T, N, L, COMPLIANT>(plant, push, &now, &motion.position, &motion.rate);
+        motion.rate = motion.rate.plus::<COMPLIANT>(plant.step, &change);
+        motion.position = motion.position.plus::<COMPLIANT>(plant.step, &motion.rate);
     }
 }

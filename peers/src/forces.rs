@@ -20,8 +20,17 @@ pub struct Push<T> {
 
 /// What distinguishes the laws, resolved when compiled.
 pub trait ForceLaw<T: Real> {
+    /// Whether teeth only push: damping ends where contact does.
+    const PUSHES_ONLY: bool;
+
     /// Force of a mesh from its deflection and rate.
     fn force(spring: &Spring<T>, deflection: T, rate: T) -> T;
+
+    /// Force less the damping of the displacement's speed, from the deflection, that speed and the rate of the error.
+    #[inline(always)]
+    fn beyond_damping(spring: &Spring<T>, deflection: T, speed: T, error_rate: T) -> T {
+        Self::force(spring, deflection, speed - error_rate) - spring.damping * speed
+    }
 }
 
 /// What a mesh is made of at an instant.
@@ -46,6 +55,13 @@ pub struct Smooth;
 pub struct SmoothPush;
 
 impl<T: Real> ForceLaw<T> for Always {
+    const PUSHES_ONLY: bool = false;
+
+    #[inline(always)]
+    fn beyond_damping(spring: &Spring<T>, deflection: T, _: T, error_rate: T) -> T {
+        Self::force(spring, deflection, -error_rate)
+    }
+
     #[inline(always)]
     fn force(spring: &Spring<T>, deflection: T, rate: T) -> T {
         let damping = spring.damping * rate;
@@ -60,6 +76,8 @@ impl<T: Real> ForceLaw<T> for Always {
 }
 
 impl<T: Real> ForceLaw<T> for PushOnly {
+    const PUSHES_ONLY: bool = true;
+
     #[inline(always)]
     fn force(spring: &Spring<T>, deflection: T, rate: T) -> T {
         if deflection > spring.half_backlash {
@@ -75,6 +93,8 @@ impl<T: Real> ForceLaw<T> for PushOnly {
 }
 
 impl<T: Real> ForceLaw<T> for Smooth {
+    const PUSHES_ONLY: bool = false;
+
     #[inline(always)]
     fn force(spring: &Spring<T>, deflection: T, rate: T) -> T {
         spring.stiffness * smooth(spring, deflection).0 + spring.damping * rate
@@ -82,6 +102,8 @@ impl<T: Real> ForceLaw<T> for Smooth {
 }
 
 impl<T: Real> ForceLaw<T> for SmoothPush {
+    const PUSHES_ONLY: bool = true;
+
     #[inline(always)]
     fn force(spring: &Spring<T>, deflection: T, rate: T) -> T {
         let (overlap, closed) = smooth(spring, deflection);

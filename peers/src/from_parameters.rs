@@ -6,14 +6,16 @@ use core::f64::consts::TAU;
 
 use model_core::dead_zone::DeadZone;
 use model_core::design::dynamics::{Dynamics, MovingMasses};
+use model_core::design::exponential;
 use model_core::joint::{Excitation, JointParameters};
 use model_core::mesh::{DampingLaw, MAX_HARMONICS, MESH_KINDS, MeshKind};
 use model_core::real::Real;
 use model_core::scales::Scales;
+use nalgebra::DMatrix;
 
 use crate::motion::Coordinates;
 use crate::peer::Start;
-use crate::plant::{Gains, Law, Mesh, Phase, Plant};
+use crate::plant::{Flow, Gains, Law, Mesh, Phase, Plant};
 use crate::two_mass::{Contact, TwoMass};
 
 /// 2^64 and 2^32 as numbers.
@@ -57,6 +59,7 @@ impl<T: Real, const N: usize> Plant<T, N> {
                 .unwrap_or(1),
             gains: gains(parameters, &scales, rate),
             phase: phase(parameters, rate, step),
+            flow: flow::<T, N>(&dynamics, step, parameters, &scales),
         }
     }
 }
@@ -85,14 +88,66 @@ fn phase<T: Real>(parameters: &JointParameters, rate: f64, step: f64) -> Phase<T
                 step: (periods.fract() * WHOLE) as u64,
                 periods_per_turn: 0,
                 rate: T::from_f64(TAU * periods / step),
-                half_turn: [T::from_f64(half.sin()), T::from_f64(half.cos())],
+                half_turn: [half.sin(), half.cos()].map(T::from_f64),
+                turn: [(2.0 * half).sin(), (2.0 * half).cos()].map(T::from_f64),
             }
         }
         Excitation::Angle => {
             let teeth = parameters.geometry.ring_teeth;
             let rate = T::from_f64(TAU * f64::from(teeth) / (HALF_WHOLE * step));
-            Phase { step: 0, periods_per_turn: teeth, rate, half_turn: [T::ZERO, T::ONE] }
+            let still = [T::ZERO, T::ONE];
+            Phase { step: 0, periods_per_turn: teeth, rate, half_turn: still, turn: still }
         }
+    }
+}
+
+/// v' = A v + B u with v = (x, x'), integrated by the core's precise integration and sorted by what planets do together.
+fn flow<T: Real, const N: usize>(
+    dynamics: &Dynamics,
+    step: f64,
+    parameters: &JointParameters,
+    scales: &Scales,
+) -> Flow<T> {
+    let size = dynamics.coordinates();
+    let mut matrix = DMatrix::zeros(2 * size, 2 * size);
+    matrix.view_mut((0, size), (size, size)).fill_with_identity();
+    matrix.view_mut((size, 0), (size, size)).copy_from(&-&dynamics.stiffness);
+    matrix.view_mut((size, size), (size, size)).copy_from(&-&dynamics.damping);
+    let meshes = 2 * N;
+    let mut inputs = DMatrix::zeros(2 * size, meshes + 3);
+    inputs.view_mut((size, 0), (size, meshes)).copy_from(&dynamics.mesh_gain);
+    inputs.view_mut((size, meshes), (size, 3)).copy_from(&dynamics.torque_gain);
+    let exponential::Flow { transition, input_integrals } = exponential::flow(&matrix, &inputs, step, 1);
+    let response = &input_integrals[0];
+    // Entries of the full state that an in-phase entry stands for: all planets, or one other coordinate if it is there.
+    let full = |entry: usize| match entry % 3 {
+        0 => (size * (entry / 3), N),
+        other if N + other - 1 < size => (size * (entry / 3) + N + other - 1, 1),
+        _ => (0, 0),
+    };
+    let mean = |matrix: &DMatrix<f64>, entry: usize, column: usize| {
+        let (first, count) = full(entry);
+        (first..first + count).map(|row| matrix[(row, column)]).sum::<f64>() / count.max(1) as f64
+    };
+    let real = T::from_f64;
+    Flow {
+        in_phase: array::from_fn(|row| {
+            array::from_fn(|column| {
+                let (first, count) = full(column);
+                real((first..first + count).map(|column| mean(&transition, row, column)).sum())
+            })
+        }),
+        missing: array::from_fn(|row| [0, N].map(|mesh| real(mean(response, row, mesh)))),
+        torques: array::from_fn(|row| array::from_fn(|body| real(mean(response, row, meshes + body)))),
+        // Between two planets: own effect less the effect of another.
+        deviation: array::from_fn(|row| {
+            array::from_fn(|column| {
+                real(transition[(size * row, size * column)] - transition[(size * row, size * column + 1)])
+            })
+        }),
+        missing_deviation: [0, size].map(|row| real(response[(row, 0)] - response[(row, 1)])),
+        stiffness: MESH_KINDS.map(|kind| real(parameters.mesh(kind).mean_stiffness / scales.stiffness)),
+        share: real(1.0 / N as f64),
     }
 }
 

@@ -4,7 +4,7 @@
 //! [`plant::Plant`]s, its parameters.
 //!
 //! [`peer::Peer`] runs the whole joint by a [`scheme::Scheme`]: [`runge_kutta::RungeKutta4`],
-//! [`euler::SemiImplicitEuler`], [`trapezoid::Trapezoid`]. [`two_mass`] holds the gap model of two masses that controls
+//! [`euler::SemiImplicitEuler`], [`trapezoid::Trapezoid`], [`etd1::Etd1`]. [`two_mass`] holds the gap model of two masses that controls
 //! people use, as spring-damper and with restitution.
 
 #![allow(clippy::needless_range_loop, reason = "one index walks several tables of the same mesh")]
@@ -13,6 +13,7 @@
 extern crate std;
 
 pub mod clock;
+pub mod etd1;
 pub mod euler;
 pub mod forces;
 #[cfg(feature = "design")]

@@ -5,12 +5,12 @@ use core::array;
 
 use model_core::real::Real;
 
-use crate::clock::Clock;
+use crate::clock::{Ahead, Clock};
 use crate::forces::{Always, ForceLaw, Push, PushOnly, Smooth, SmoothPush};
 use crate::instant::{Instant, PerMesh};
 use crate::motion::{Coordinates, Motion};
 use crate::plant::{Law, Plant};
-use crate::scheme::{Nodes, Scheme};
+use crate::scheme::{Phases, Scheme};
 
 /// A joint and the scheme that moves it.
 #[derive(Debug, Clone)]
@@ -19,7 +19,6 @@ pub struct Peer<'a, T: Real, const N: usize, S> {
     scheme: S,
     push: Push<T>,
     clock: Clock<T>,
-    instant: Instant<T, N>,
     motion: Motion<T, N>,
 }
 
@@ -45,7 +44,7 @@ impl<'a, T: Real, const N: usize, S: Scheme<T, N>> Peer<'a, T, N, S> {
             motion.rate.planets[i] += instant.error_rate[0][i];
         }
         let push = Push { sun: T::ZERO, carrier: T::ZERO, link: T::ZERO };
-        Self { plant, scheme: S::default(), push, clock, instant, motion }
+        Self { plant, scheme: S::begin(plant, clock.now()), push, clock, motion }
     }
 
     /// Torques from now on [N m].
@@ -53,7 +52,7 @@ impl<'a, T: Real, const N: usize, S: Scheme<T, N>> Peer<'a, T, N, S> {
         let gains = &self.plant.gains;
         self.push = Push { sun: gains.sun * drive, carrier: -(gains.carrier * load), link: -(gains.link * load) };
         self.clock.set_torques(self.plant, drive, load);
-        self.scheme.torques_changed();
+        self.scheme.set_torques(self.plant, &self.push);
     }
 
     /// One step.
@@ -72,18 +71,13 @@ impl<'a, T: Real, const N: usize, S: Scheme<T, N>> Peer<'a, T, N, S> {
 
     #[inline(always)]
     fn step_under<L: ForceLaw<T>, const COMPLIANT: bool>(&mut self) {
-        if S::MIDDLE {
-            let ahead = self.clock.advance::<true, N>(self.plant);
-            let (middle, end) = (Instant::at(self.plant, &ahead.middle), Instant::at(self.plant, &ahead.end));
-            let nodes = Nodes { start: &self.instant, middle: &middle, end: &end };
-            self.motion = self.scheme.advance::<L, COMPLIANT>(self.plant, &self.push, &nodes, &self.motion);
-            self.instant = end;
-        } else {
-            let end = Instant::at(self.plant, &self.clock.advance::<false, N>(self.plant).end);
-            let nodes = Nodes { start: &self.instant, middle: &end, end: &end };
-            self.motion = self.scheme.advance::<L, COMPLIANT>(self.plant, &self.push, &nodes, &self.motion);
-            self.instant = end;
-        }
+        let start = *self.clock.now();
+        let Ahead { middle, end } = match S::MIDDLE {
+            true => self.clock.advance::<true, N>(self.plant),
+            false => self.clock.advance::<false, N>(self.plant),
+        };
+        let phases = Phases { start: &start, middle: &middle, end: &end };
+        self.scheme.advance::<L, COMPLIANT>(self.plant, &self.push, &phases, &mut self.motion);
     }
 
     /// The motion now.
@@ -99,8 +93,9 @@ impl<'a, T: Real, const N: usize, S: Scheme<T, N>> Peer<'a, T, N, S> {
     /// Mesh deflections now: sun-planet of every planet, then ring-planet.
     pub fn deflections(&self) -> PerMesh<T, N> {
         let position = &self.motion.position;
-        let sun = array::from_fn(|i| position.planets[i] - self.instant.error[0][i]);
-        let ring = array::from_fn(|i| position.gap - position.planets[i] - self.instant.error[1][i]);
+        let error = Instant::at(self.plant, self.clock.now()).error;
+        let sun = array::from_fn(|i| position.planets[i] - error[0][i]);
+        let ring = array::from_fn(|i| position.gap - position.planets[i] - error[1][i]);
         [sun, ring]
     }
 }

@@ -36,6 +36,28 @@ pub struct Plant<T: Real, const N: usize> {
     pub gains: Gains<T>,
     /// How the mesh phase goes.
     pub phase: Phase<T>,
+    /// Exponential flow of the closed joint over the step.
+    pub flow: Flow<T>,
+}
+
+/// Exponential flow of the closed joint at mean stiffness, what planets do together apart from what each does beside their
+/// mean. In-phase state: mean planet, gap, wind-up, then their rates. Transitions are less the identity; lists go by rows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Flow<T: Real> {
+    /// In-phase motion.
+    pub in_phase: [[T; 6]; 6],
+    /// Its response to forces missing from all sun-planet and all ring-planet meshes together, constant over the step.
+    pub missing: [[T; 2]; 6],
+    /// To accelerations of sun, carrier and link.
+    pub torques: [[T; 3]; 6],
+    /// Deviation of a planet and its rate.
+    pub deviation: [[T; 2]; 2],
+    /// Their response to the deviation of (sun-planet - ring-planet) of what is missing.
+    pub missing_deviation: [T; 2],
+    /// Mean stiffness of sun-planet and ring-planet meshes.
+    pub stiffness: [T; 2],
+    /// 1 / N.
+    pub share: T,
 }
 
 /// What a mesh does when its teeth part.
@@ -98,4 +120,6 @@ pub struct Phase<T: Real> {
     pub rate: T,
     /// [sine, cosine] of what half a step adds, if prescribed.
     pub half_turn: [T; 2],
+    /// Of what a step adds.
+    pub turn: [T; 2],
 }

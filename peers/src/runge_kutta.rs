@@ -4,41 +4,44 @@
 use model_core::real::Real;
 
 use crate::forces::{ForceLaw, Push, acceleration};
+use crate::instant::{Instant, Rotor};
 use crate::motion::Motion;
 use crate::plant::Plant;
-use crate::scheme::{Nodes, Scheme};
+use crate::scheme::{Phases, Scheme};
 
-/// The method; it carries nothing from step to step.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct RungeKutta4;
+/// The method with the meshes as the last step left them.
+#[derive(Debug, Clone, Copy)]
+pub struct RungeKutta4<T, const N: usize> {
+    start: Instant<T, N>,
+}
 
-impl<T: Real, const N: usize> Scheme<T, N> for RungeKutta4 {
+impl<T: Real, const N: usize> Scheme<T, N> for RungeKutta4<T, N> {
     const MIDDLE: bool = true;
+
+    fn begin(plant: &Plant<T, N>, phase: &Rotor<T>) -> Self {
+        Self { start: Instant::at(plant, phase) }
+    }
 
     #[inline(always)]
     fn advance<L: ForceLaw<T>, const COMPLIANT: bool>(
         &mut self,
         plant: &Plant<T, N>,
         push: &Push<T>,
-        nodes: &Nodes<'_, T, N>,
-        motion: &Motion<T, N>,
-    ) -> Motion<T, N> {
+        phases: &Phases<'_, T>,
+        motion: &mut Motion<T, N>,
+    ) {
+        let (middle, end) = (Instant::at(plant, phases.middle), Instant::at(plant, phases.end));
         let step = plant.step;
         let half = step * T::HALF;
         let Motion { position, rate } = motion;
-        let first = acceleration::<T, N, L, COMPLIANT>(plant, push, nodes.start, position, rate);
+        let first = acceleration::<T, N, L, COMPLIANT>(plant, push, &self.start, position, rate);
         let coasted = position.plus::<COMPLIANT>(half, rate);
-        let second = acceleration::<T, N, L, COMPLIANT>(
-            plant,
-            push,
-            nodes.middle,
-            &coasted,
-            &rate.plus::<COMPLIANT>(half, &first),
-        );
+        let second =
+            acceleration::<T, N, L, COMPLIANT>(plant, push, &middle, &coasted, &rate.plus::<COMPLIANT>(half, &first));
         let third = acceleration::<T, N, L, COMPLIANT>(
             plant,
             push,
-            nodes.middle,
+            &middle,
             &coasted.plus::<COMPLIANT>(half * half, &first),
             &rate.plus::<COMPLIANT>(half, &second),
         );
@@ -46,14 +49,18 @@ impl<T: Real, const N: usize> Scheme<T, N> for RungeKutta4 {
         let fourth = acceleration::<T, N, L, COMPLIANT>(
             plant,
             push,
-            nodes.end,
+            &end,
             &coasted.plus::<COMPLIANT>(half * step, &second),
             &rate.plus::<COMPLIANT>(step, &third),
         );
-        let middle = second.plus::<COMPLIANT>(T::ONE, &third);
-        let sum = first.plus::<COMPLIANT>(T::ONE, &middle);
+        let both = second.plus::<COMPLIANT>(T::ONE, &third);
+        let sum = first.plus::<COMPLIANT>(T::ONE, &both);
         let sixth = step * T::SIXTH;
-        let all = sum.plus::<COMPLIANT>(T::ONE, &middle).plus::<COMPLIANT>(T::ONE, &fourth);
-        Motion { position: coasted.plus::<COMPLIANT>(step * sixth, &sum), rate: rate.plus::<COMPLIANT>(sixth, &all) }
+        let all = sum.plus::<COMPLIANT>(T::ONE, &both).plus::<COMPLIANT>(T::ONE, &fourth);
+        *motion = Motion {
+            position: coasted.plus::<COMPLIANT>(step * sixth, &sum),
+            rate: rate.plus::<COMPLIANT>(sixth, &all),
+        };
+        self.start = end;
     }
 }

@@ -3,34 +3,37 @@
 use model_core::real::Real;
 
 use crate::forces::{ForceLaw, Push};
-use crate::instant::Instant;
+use crate::instant::Rotor;
 use crate::motion::Motion;
 use crate::plant::Plant;
 
-/// The meshes over a step.
-pub struct Nodes<'a, T, const N: usize> {
+/// The mesh phase over a step.
+pub struct Phases<'a, T> {
     /// At the start.
-    pub start: &'a Instant<T, N>,
-    /// In the middle; the end again where the method does not want it.
-    pub middle: &'a Instant<T, N>,
+    pub start: &'a Rotor<T>,
+    /// In the middle; of no use where the method does not want it.
+    pub middle: &'a Rotor<T>,
     /// At the end.
-    pub end: &'a Instant<T, N>,
+    pub end: &'a Rotor<T>,
 }
 
 /// A fixed-step method.
-pub trait Scheme<T: Real, const N: usize>: Default {
+pub trait Scheme<T: Real, const N: usize>: Sized {
     /// Whether it evaluates in the middle of the step.
     const MIDDLE: bool;
 
-    /// Forgets what it took over from the last step: the torques have changed.
-    fn torques_changed(&mut self) {}
+    /// Ready for the first step, from this phase on.
+    fn begin(plant: &Plant<T, N>, phase: &Rotor<T>) -> Self;
+
+    /// Takes torques; what was taken over from the last step may no longer hold.
+    fn set_torques(&mut self, _plant: &Plant<T, N>, _push: &Push<T>) {}
 
     /// One step.
     fn advance<L: ForceLaw<T>, const COMPLIANT: bool>(
         &mut self,
         plant: &Plant<T, N>,
         push: &Push<T>,
-        nodes: &Nodes<'_, T, N>,
-        motion: &Motion<T, N>,
-    ) -> Motion<T, N>;
+        phases: &Phases<'_, T>,
+        motion: &mut Motion<T, N>,
+    );
 }

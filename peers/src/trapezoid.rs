@@ -5,10 +5,10 @@
 use model_core::real::Real;
 
 use crate::forces::{ForceLaw, Push, acceleration};
-use crate::instant::{Instant, PerMesh};
+use crate::instant::{Instant, PerMesh, Rotor};
 use crate::motion::{Coordinates, Motion};
-use crate::plant::{Law, Plant};
-use crate::scheme::{Nodes, Scheme};
+use crate::plant::Plant;
+use crate::scheme::{Phases, Scheme};
 
 /// Most guesses in a step: what is left then is off by a contact that is about to change anyway.
 const GUESSES: usize = 4;
@@ -16,16 +16,12 @@ const GUESSES: usize = 4;
 /// The method with what a step leaves for the next.
 #[derive(Debug, Clone, Copy)]
 pub struct Trapezoid<T, const N: usize> {
-    /// Flank in contact at the end of the last step: 1 drive side, -1 back side, 0 none.
-    flanks: PerMesh<T, N>,
+    /// One where teeth were in contact at the end of the last step, else zero.
+    closed: PerMesh<T, N>,
+    /// b on the drive side, -b on the back side, zero where open.
+    offset: PerMesh<T, N>,
     /// Accelerations at the end of the last step, while torques do not change.
     last: Option<Coordinates<T, N>>,
-}
-
-impl<T: Real, const N: usize> Default for Trapezoid<T, N> {
-    fn default() -> Self {
-        Self { flanks: [[T::ZERO; N]; 2], last: None }
-    }
 }
 
 /// One mesh at the end of the step: force = given + per_acceleration * its acceleration.
@@ -45,7 +41,11 @@ struct Carrier<T> {
 impl<T: Real, const N: usize> Scheme<T, N> for Trapezoid<T, N> {
     const MIDDLE: bool = false;
 
-    fn torques_changed(&mut self) {
+    fn begin(_: &Plant<T, N>, _: &Rotor<T>) -> Self {
+        Self { closed: [[T::ZERO; N]; 2], offset: [[T::ZERO; N]; 2], last: None }
+    }
+
+    fn set_torques(&mut self, _: &Plant<T, N>, _: &Push<T>) {
         self.last = None;
     }
 
@@ -54,39 +54,40 @@ impl<T: Real, const N: usize> Scheme<T, N> for Trapezoid<T, N> {
         &mut self,
         plant: &Plant<T, N>,
         push: &Push<T>,
-        nodes: &Nodes<'_, T, N>,
-        motion: &Motion<T, N>,
-    ) -> Motion<T, N> {
-        let Motion { position, rate } = motion;
+        phases: &Phases<'_, T>,
+        motion: &mut Motion<T, N>,
+    ) {
         let before = match self.last {
             Some(before) => before,
-            None => acceleration::<T, N, L, COMPLIANT>(plant, push, nodes.start, position, rate),
+            None => {
+                let now = Instant::at(plant, phases.start);
+                acceleration::<T, N, L, COMPLIANT>(plant, push, &now, &motion.position, &motion.rate)
+            }
         };
+        let now = Instant::at(plant, phases.end);
         let half = plant.step * T::HALF;
-        let rate = rate.plus::<COMPLIANT>(half, &before);
+        let rate = motion.rate.plus::<COMPLIANT>(half, &before);
         // x + h (v + v1) / 2 with v1 = v + h (a + a1) / 2, the share of a1 apart.
-        let position = position.plus::<COMPLIANT>(plant.step, &motion.rate).plus::<COMPLIANT>(half * half, &before);
+        let position = motion.position.plus::<COMPLIANT>(half, &motion.rate).plus::<COMPLIANT>(half, &rate);
         let predicted = Motion { position, rate };
-        let mut end = predicted;
         for _ in 0..GUESSES {
-            let after = self.solve::<COMPLIANT>(plant, push, nodes.end, &predicted);
-            end = Motion {
+            let after = self.solve::<L, COMPLIANT>(plant, push, &now, &predicted);
+            *motion = Motion {
                 position: position.plus::<COMPLIANT>(half * half, &after),
                 rate: rate.plus::<COMPLIANT>(half, &after),
             };
             self.last = Some(after);
-            if self.mend(plant, nodes.end, &end) {
+            if self.mend::<L>(plant, &now, motion) {
                 break;
             }
         }
-        end
     }
 }
 
 impl<T: Real, const N: usize> Trapezoid<T, N> {
     /// Accelerations at the end under the guessed contacts.
     #[inline(always)]
-    fn solve<const COMPLIANT: bool>(
+    fn solve<L: ForceLaw<T>, const COMPLIANT: bool>(
         &self,
         plant: &Plant<T, N>,
         push: &Push<T>,
@@ -95,11 +96,10 @@ impl<T: Real, const N: usize> Trapezoid<T, N> {
     ) -> Coordinates<T, N> {
         let half = plant.step * T::HALF;
         let mesh = |kind: usize, i: usize, position: T, rate: T| {
-            let flank = self.flanks[kind][i];
-            let closed = flank * flank;
+            let closed = self.closed[kind][i];
             let stiffness = closed * now.stiffness[kind][i];
-            let damping = plant.damping[kind] * if plant.law == Law::Push { closed } else { T::ONE };
-            let overlap = position - now.error[kind][i] - flank * plant.meshes[kind][i].half_backlash;
+            let damping = if L::PUSHES_ONLY { closed * plant.damping[kind] } else { plant.damping[kind] };
+            let overlap = position - now.error[kind][i] - self.offset[kind][i];
             Linear {
                 given: stiffness * overlap + damping * (rate - now.error_rate[kind][i]),
                 per_acceleration: half * (half * stiffness + damping),
@@ -183,7 +183,7 @@ impl<T: Real, const N: usize> Trapezoid<T, N> {
 
     /// Takes the contacts from the end of the step; whether they were as guessed.
     #[inline(always)]
-    fn mend(&mut self, plant: &Plant<T, N>, now: &Instant<T, N>, end: &Motion<T, N>) -> bool {
+    fn mend<L: ForceLaw<T>>(&mut self, plant: &Plant<T, N>, now: &Instant<T, N>, end: &Motion<T, N>) -> bool {
         let mut held = true;
         for kind in 0..2 {
             for i in 0..N {
@@ -193,23 +193,26 @@ impl<T: Real, const N: usize> Trapezoid<T, N> {
                 };
                 let deflection = of(&end.position) - now.error[kind][i];
                 let half_backlash = plant.meshes[kind][i].half_backlash;
-                let mut flank = if deflection > half_backlash {
-                    T::ONE
+                let (mut closed, mut offset) = if deflection > half_backlash {
+                    (T::ONE, half_backlash)
                 } else if deflection < -half_backlash {
-                    -T::ONE
+                    (T::ONE, -half_backlash)
                 } else {
-                    T::ZERO
+                    (T::ZERO, T::ZERO)
                 };
-                if plant.law == Law::Push && flank != T::ZERO {
+                if L::PUSHES_ONLY && closed > T::ZERO {
                     let speed = of(&end.rate) - now.error_rate[kind][i];
-                    let overlap = deflection - flank * half_backlash;
-                    let force = now.stiffness[kind][i] * overlap + plant.damping[kind] * speed;
-                    if force * flank <= T::ZERO {
-                        flank = T::ZERO;
+                    let force = now.stiffness[kind][i] * (deflection - offset) + plant.damping[kind] * speed;
+                    let pulls = if deflection < T::ZERO { force >= T::ZERO } else { force <= T::ZERO };
+                    if pulls {
+                        (closed, offset) = (T::ZERO, T::ZERO);
                     }
                 }
-                held &= flank == self.flanks[kind][i];
-                self.flanks[kind][i] = flank;
+                if closed != self.closed[kind][i] || offset != self.offset[kind][i] {
+                    held = false;
+                    self.closed[kind][i] = closed;
+                    self.offset[kind][i] = offset;
+                }
             }
         }
         held

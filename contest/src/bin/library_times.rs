@@ -9,8 +9,25 @@ use contest::libraries::timing::{Time, times};
 
 /// Tolerances from loose to tight.
 const TOLERANCES: [f64; 9] = [1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8];
-/// Steps a second, in units of the case's sample rate over four.
-const MULTIPLES: [u32; 10] = [2, 4, 6, 8, 12, 16, 20, 32, 48, 64];
+/// Steps a second in units of the case's sample rate over four, and sub-steps of each.
+const RATES: [(u32, u32); 16] = [
+    (1, 2),
+    (1, 3),
+    (1, 4),
+    (1, 5),
+    (1, 6),
+    (1, 8),
+    (1, 12),
+    (1, 16),
+    (2, 1),
+    (2, 2),
+    (2, 3),
+    (4, 16),
+    (8, 1),
+    (16, 1),
+    (32, 1),
+    (64, 1),
+];
 
 fn main() -> ExitCode {
     let wanted: Vec<String> = std::env::args().skip(1).collect();
@@ -18,7 +35,7 @@ fn main() -> ExitCode {
     for case in catalogue::cases().into_iter().filter(|case| wanted.contains(&case.key)) {
         let unit = case.sample_rate / 4;
         let planets = case.joint.geometry.planets;
-        let rates = MULTIPLES.map(|multiple| unit * multiple);
+        let rates = RATES.map(|(multiple, substeps)| (unit * multiple, substeps));
         let field = match Field::new(case, PHASES) {
             Ok(field) => field,
             Err(error) => {

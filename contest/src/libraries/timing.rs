@@ -34,7 +34,7 @@ pub struct Time {
 pub fn times<const N: usize, const D: usize>(
     phases: &[(Case, Course)],
     tolerances: &[f64],
-    rates: &[u32],
+    rates: &[(u32, u32)],
 ) -> Option<Vec<Time>> {
     let first = &phases.first()?.0;
     let equations: Vec<Equations<N, D>> = phases.iter().map(|(case, _)| Equations::new(case)).collect::<Option<_>>()?;
@@ -61,8 +61,10 @@ pub fn times<const N: usize, const D: usize>(
         (Method::RungeKutta4, Scalar::Single, "RK4, f32"),
         (Method::RungeKutta4, Scalar::Double, "RK4, f64"),
     ] {
-        for &rate in rates {
-            let step = frequency / f64::from(rate);
+        for &(rate, substeps) in rates {
+            // What is no step of the core is taken in as many steps of its own.
+            let rate = if method == Method::Realtime { (rate, substeps) } else { (rate * substeps, 1) };
+            let step = frequency / f64::from(rate.0 * rate.1);
             all.push(timed(first, name, step, phases.len(), |phase| {
                 let case = &phases[phase].0;
                 let done = match scalar {

@@ -17,6 +17,12 @@ use crate::target::toolchain::Toolchain;
 const MULTIPLES: [u32; 15] = [1, 2, 3, 4, 6, 8, 10, 12, 16, 20, 24, 32, 40, 48, 64];
 /// Steps a tick where torques change tick by tick.
 const STEPS_A_TICK: [u32; 7] = [1, 2, 3, 4, 6, 8, 16];
+/// Sub-steps that the core's step takes in a tick, and ticks a second over a quarter of the case's sample rate: a tick
+/// costs something of its own, and while contact holds it is all there is.
+const SUBSTEPS: [u32; 10] = [1, 2, 3, 4, 5, 6, 8, 10, 12, 16];
+const TICKS: [u32; 3] = [1, 2, 4];
+/// Ticks in which the finest steps are taken.
+const FINE_TICKS: u32 = 4;
 
 /// One method on one case.
 #[derive(Debug, Clone, Serialize)]
@@ -35,9 +41,11 @@ pub struct Entry {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[allow(non_snake_case, reason = "units are spelled as in every file that this command writes")]
 pub struct Mark {
-    /// Steps a second.
+    /// Steps a second; of the core's step ticks a second.
     pub rate_Hz: u32,
-    /// h omega_n.
+    /// Sub-steps of each.
+    pub substeps: u32,
+    /// h omega_n, of a sub-step.
     pub step: f64,
     /// The case's measure, worst over the phases; none if the motion got lost.
     pub error: Option<f64>,
@@ -55,6 +63,22 @@ pub struct Mark {
     pub instructions_most: u32,
     /// Greatest in a sample of 10, 20 and 40 kHz; 0 where steps do not fit.
     pub sample_instructions_most: [u32; 3],
+}
+
+impl Entry {
+    /// Cost and error, from coarse to fine, in series that differ in the step alone.
+    pub fn series(&self) -> Vec<Vec<(f64, f64)>> {
+        // Ticks matter to the core's step alone.
+        let ticks = |mark: &Mark| if self.method == Method::Realtime { mark.rate_Hz } else { 0 };
+        let mut found: Vec<u32> = self.marks.iter().map(ticks).collect();
+        found.sort_unstable();
+        found.dedup();
+        let one = |of: u32| {
+            let marks = self.marks.iter().filter(move |mark| ticks(mark) == of);
+            marks.filter_map(|mark| Some((mark.cost(), mark.error?))).collect()
+        };
+        found.into_iter().map(one).collect()
+    }
 }
 
 impl Mark {
@@ -112,7 +136,7 @@ pub fn run(
             .map(|(method, point, _)| {
                 let lost = finite(point.errors.link_rms).is_none();
                 let digest = (!lost).then_some(point.digest);
-                Job { case: &field.case, method: *method, rate: point.rate, digest }
+                Job { case: &field.case, method: *method, rate: point.rate, substeps: point.substeps, digest }
             })
             .collect();
         progress.stage(&format!("case {}: methods on the emulated core", case.key));
@@ -130,16 +154,28 @@ pub fn run(
 /// All methods at all rates that they can run at; this step in double precision too.
 fn points(field: &Field) -> Vec<(Method, Point, Option<Point>)> {
     let case = &field.case;
-    let rates: Vec<u32> = match case.torques.len() {
-        0 | 1 => MULTIPLES.iter().map(|multiple| multiple * (case.sample_rate / 4)).collect(),
-        _ => STEPS_A_TICK.iter().map(|steps| steps * case.tick_rate).collect(),
+    let constant = case.torques.len() <= 1;
+    let unit = if constant { case.sample_rate / 4 } else { case.tick_rate };
+    let multiples: &[u32] = if constant { &MULTIPLES } else { &STEPS_A_TICK };
+    let own: Vec<(u32, u32)> = match constant {
+        true => {
+            let coarse = TICKS.iter().flat_map(|ticks| SUBSTEPS.map(|substeps| (ticks * unit, substeps)));
+            coarse.chain([(2 * FINE_TICKS * unit, 16), (4 * FINE_TICKS * unit, 16)]).collect()
+        }
+        false => TICKS.iter().flat_map(|ticks| [1, 2, 3, 4, 6, 8].map(|substeps| (ticks * unit, substeps))).collect(),
     };
     let mut found = Vec::new();
     for method in Method::ALL {
-        for &rate in &rates {
-            // The design refuses rates at which it would not be stable.
-            let Ok(point) = field.point(method, Scalar::Single, rate) else { continue };
-            let double = (method == Method::Realtime).then(|| field.point(method, Scalar::Double, rate).ok()).flatten();
+        let steps: Vec<(u32, u32)> = match method {
+            Method::Realtime => own.clone(),
+            _ => multiples.iter().map(|multiple| (multiple * unit, 1)).collect(),
+        };
+        for (rate, substeps) in steps {
+            // The design refuses what it cannot make tables of.
+            let Ok(point) = field.point(method, Scalar::Single, rate, substeps) else { continue };
+            let double = (method == Method::Realtime)
+                .then(|| field.point(method, Scalar::Double, rate, substeps).ok())
+                .flatten();
             found.push((method, point, double));
         }
     }
@@ -168,6 +204,7 @@ fn finite(error: f64) -> Option<f64> {
 fn mark(case: &Case, point: &Point, double: Option<&Point>, count: &Count) -> Mark {
     Mark {
         rate_Hz: point.rate,
+        substeps: point.substeps,
         step: point.step,
         error: finite(of_measure(case, &point.errors)),
         error_f64: double.and_then(|double| finite(of_measure(case, &double.errors))),

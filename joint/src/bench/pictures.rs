@@ -5,7 +5,7 @@ use contest::method::Method;
 
 use super::libraries::Time;
 use super::lineup::{CaseFigures, Entry};
-use super::verdicts::{CLOCK, CYCLES};
+use super::verdicts::{CLOCK, CYCLES, front};
 use crate::report::plot::ink::{Ink, LINES};
 use crate::report::plot::mark::Mark;
 use crate::report::plot::panel::{Panel, VerticalAxis};
@@ -51,7 +51,7 @@ pub fn board(case: &CaseFigures, entries: &[Entry]) -> Option<Figure> {
         .iter()
         .filter(own)
         .map(|entry| {
-            let points = entry.marks.iter().filter_map(|mark| Some((mark.cost(), mark.error?))).collect();
+            let points = front(entry.series().into_iter().flatten().collect());
             Curve { points, ink: ink(entry.method), name: entry.name, own: entry.method == Method::Realtime }
         })
         .collect();
@@ -78,7 +78,7 @@ pub fn host(case: &CaseFigures, times: &[Time]) -> Option<Figure> {
         .iter()
         .map(|name| {
             let of = times.iter().filter(|time| time.case == case.key && time.name == *name);
-            let points = of.filter_map(|time| Some((time.cost, time.error?))).collect();
+            let points = front(of.filter_map(|time| Some((time.cost, time.error?))).collect());
             let own = name.starts_with("this step");
             let ink = if own { Ink::First } else { colours.next().unwrap_or(Ink::Reference) };
             Curve { points, ink, name, own }
@@ -101,7 +101,8 @@ fn figure(
     let most = |of: fn((f64, f64)) -> f64| all().map(of).fold(0.0, f64::max);
     let (left, right) = (least(|point| point.0), most(|point| point.0));
     let (low, high) = (least(|point| point.1), most(|point| point.1));
-    if !(left > 0.0 && low > 0.0 && right.is_finite()) {
+    // Of no points at all the least is infinite.
+    if !(left > 0.0 && left.is_finite() && low > 0.0 && right.is_finite()) {
         return None;
     }
     let mut marks: Vec<Mark> = limit.into_iter().map(|at| Mark::Deadline { at, label: "half a core".into() }).collect();
@@ -129,4 +130,29 @@ fn figure(
         panels: vec![panel],
         note,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn curve(points: &[(f64, f64)], own: bool) -> Curve<'static> {
+        Curve { points: points.to_vec(), ink: Ink::First, name: "a method", own }
+    }
+
+    #[test]
+    fn curves_over_many_decades_are_drawn() {
+        let curves = vec![
+            curve(&[(4e6, 1e5), (4e7, 3.0), (8e8, 2e-7)], false),
+            curve(&[(9e6, 2e-5), (5e7, 6e-6), (8e8, 4e-6)], true),
+        ];
+        let figure = figure("A case".into(), "instructions", MEGA, curves, Some(6e7), String::new()).unwrap();
+        let svg = figure.to_svg();
+        assert!(svg.contains("a method") && svg.contains("half a core"), "{svg}");
+    }
+
+    #[test]
+    fn nothing_to_draw_is_no_picture() {
+        assert!(figure(String::new(), "", MEGA, vec![curve(&[], true)], None, String::new()).is_none());
+    }
 }

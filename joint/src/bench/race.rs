@@ -24,6 +24,8 @@ pub struct Job<'a> {
     pub method: Method,
     /// Steps a second.
     pub rate: u32,
+    /// Sub-steps of each.
+    pub substeps: u32,
     /// Digest that the host reached; none if the motion got lost: one NaN is not like another.
     pub digest: Option<u64>,
 }
@@ -80,7 +82,7 @@ fn image_of(jobs: &[Job<'_>], toolchain: &Toolchain, say: Say<'_>) -> Outcome<Ve
     let lines = measuring::run(&elf)?;
     let mut found: BTreeMap<usize, (Count, u64)> = lines.iter().filter_map(|line| parse(line)).collect();
     let one = |(index, job): (usize, &Job<'_>)| {
-        let what = || format!("case {}, {}, {} Hz", job.case.key, job.method.name(), job.rate);
+        let what = || format!("case {}, {}, {} Hz x {}", job.case.key, job.method.name(), job.rate, job.substeps);
         let (count, digest) = found
             .remove(&index)
             .ok_or_else(|| Failure::new(format!("{}: no result from the emulated core", what())))?;
@@ -121,10 +123,10 @@ fn source(jobs: &[Job<'_>]) -> Outcome<String> {
          use model_core::mesh::DampingLaw::*;\n\
          use model_core::realtime::{Relative, RigidBody, State};\n\
          use model_core::tables::{Scheme::*, *};\n\
-         use peers::euler::SemiImplicitEuler;\nuse peers::motion::Coordinates;\nuse peers::peer::Start;\n\
-         use peers::plant::{Gains, Law::*, Mesh, Phase, Plant};\nuse peers::trapezoid::Trapezoid;\n\
+         use peers::etd1::Etd1;\nuse peers::euler::SemiImplicitEuler;\nuse peers::motion::Coordinates;\nuse peers::peer::Start;\n\
+         use peers::plant::{Flow as PlantFlow, Gains, Law::*, Mesh, Phase, Plant};\nuse peers::trapezoid::Trapezoid;\n\
          use peers::two_mass::{Contact::*, TwoMass};\nuse super::{Change, Race, Way};\n\n\
-         type RungeKutta = peers::runge_kutta::RungeKutta4;\n\n",
+         type RungeKutta<const N: usize> = peers::runge_kutta::RungeKutta4<f32, N>;\n\n",
     );
     let mut calls = String::new();
     let mut torques: Vec<&str> = Vec::new();
@@ -165,9 +167,11 @@ fn numbers<const N: usize>(index: usize, job: &Job<'_>) -> Outcome<(String, Stri
     let peer = |scheme: &str| {
         let plant = run::plant::<f32, N>(joint, job.method, job.rate);
         let start = start.peer::<f32>(joint, f64::from(job.rate));
+        // The core's tables have a flow too.
+        let plant = format!("{plant:?}").replace("Flow {", "PlantFlow {");
         (
             format!(
-                "static PLANT_{index}: Plant<f32, {N}> = {plant:?};\nstatic START_{index}: Start<f32, {N}> = {start:?};\n"
+                "static PLANT_{index}: Plant<f32, {N}> = {plant};\nstatic START_{index}: Start<f32, {N}> = {start:?};\n"
             ),
             format!("race.peer::<{N}, {scheme}>({index}, &PLANT_{index}, &START_{index}"),
         )
@@ -181,8 +185,8 @@ fn numbers<const N: usize>(index: usize, job: &Job<'_>) -> Outcome<(String, Stri
         )
     };
     Ok(match job.method {
-        Method::Realtime | Method::PaperEtd1 => {
-            let tables = run::tables::<f32, N>(joint, job.method, job.rate)
+        Method::Realtime => {
+            let tables = run::tables::<f32, N>(joint, job.rate, job.substeps)
                 .map_err(|error| Failure::new(format!("case {}: {error}", job.case.key)))?;
             let state = start.state(joint, &tables);
             (
@@ -193,7 +197,8 @@ fn numbers<const N: usize>(index: usize, job: &Job<'_>) -> Outcome<(String, Stri
                 format!("race.core::<{N}>({index}, &TABLES_{index}, &STATE_{index}"),
             )
         }
-        Method::RungeKutta4 | Method::RungeKutta4Tanh => peer("RungeKutta"),
+        Method::RungeKutta4 | Method::RungeKutta4Tanh => peer(&format!("RungeKutta<{N}>")),
+        Method::PaperEtd1 => peer("Etd1<f32>"),
         Method::Euler => peer("SemiImplicitEuler"),
         Method::Trapezoid => peer(&format!("Trapezoid<f32, {N}>")),
         Method::TwoMassSpring => two_mass(Contact::SpringDamper),

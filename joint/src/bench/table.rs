@@ -53,7 +53,10 @@ fn case_tables(figures: &Figures, case: &CaseFigures) -> String {
         for mark in shown(&entry.marks) {
             rows.push(vec![
                 entry.name.to_owned(),
-                format!("{}", mark.rate_Hz / 1000),
+                match mark.substeps {
+                    1 => format!("{}", mark.rate_Hz / 1000),
+                    substeps => format!("{} x {substeps}", mark.rate_Hz / 1000),
+                },
                 format!("{:.3}", mark.step),
                 if entry.method.has_meshes() { scientific(mark.error) } else { "-".into() },
                 scientific(mark.link_rms),
@@ -88,7 +91,7 @@ fn case_tables(figures: &Figures, case: &CaseFigures) -> String {
 
 /// Steps that a table shows: every other one of a long list, the coarsest and the finest always.
 fn shown(marks: &[Mark]) -> impl Iterator<Item = &Mark> {
-    let every = if marks.len() > 8 { 2 } else { 1 };
+    let every = if (9..20).contains(&marks.len()) { 2 } else { 1 };
     let last = marks.len().saturating_sub(1);
     marks.iter().enumerate().filter(move |(index, _)| index % every == 0 || *index == last).map(|(_, mark)| mark)
 }

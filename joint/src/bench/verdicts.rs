@@ -58,15 +58,14 @@ const SAMPLE_RATES: [u32; 3] = [10_000, 20_000, 40_000];
 
 /// Instructions a second of the joint at equal error, method by method.
 pub fn at_equal_error(entries: &[Entry]) -> Vec<AtError> {
-    let curve = |entry: &Entry| entry.marks.iter().filter_map(|m| Some((m.cost(), m.error?))).collect::<Vec<_>>();
+    let cost = |entry: &Entry, level: f64| least_cost_at(entry.series(), level);
     let of_step = |case: &str, level: f64| {
         let own = entries.iter().find(|entry| entry.case == case && entry.method == Method::Realtime)?;
-        cost_at(&curve(own), level)
+        cost(own, level)
     };
     let levels = |entry: &'_ Entry| {
-        let curve = curve(entry);
         let (case, name) = (entry.case.clone(), entry.name.to_owned());
-        LEVELS.map(|level| ratio(case.clone(), name.clone(), level, cost_at(&curve, level), of_step(&case, level)))
+        LEVELS.map(|level| ratio(case.clone(), name.clone(), level, cost(entry, level), of_step(&case, level)))
     };
     entries.iter().filter(|entry| entry.method.has_meshes()).flat_map(levels).collect()
 }
@@ -82,9 +81,7 @@ pub fn host_at_equal_error(times: &[Time]) -> Vec<AtError> {
     }
     let curve = |case: &str, name: &str| {
         let of = times.iter().filter(|time| time.case == case && time.name == name);
-        let mut points: Vec<(f64, f64)> = of.filter_map(|time| Some((time.cost, time.error?))).collect();
-        points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        points
+        front(of.filter_map(|time| Some((time.cost, time.error?))).collect())
     };
     let own = |case: &str, level: f64| {
         let both = names.iter().filter(|name| name.0 == case && name.1.starts_with("this step"));
@@ -98,6 +95,23 @@ pub fn host_at_equal_error(times: &[Time]) -> Vec<AtError> {
 
 fn ratio(case: String, name: String, error: f64, cost: Option<f64>, own: Option<f64>) -> AtError {
     AtError { case, name, error, cost, ratio: cost.zip(own).map(|(cost, own)| cost / own) }
+}
+
+/// The points that no other one undercuts in both cost and error, from cheap to dear.
+pub fn front(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut least = f64::INFINITY;
+    points.retain(|point| {
+        let better = point.1 < least;
+        least = least.min(point.1);
+        better
+    });
+    points
+}
+
+/// The least over several curves.
+fn least_cost_at(curves: Vec<Vec<(f64, f64)>>, error: f64) -> Option<f64> {
+    curves.iter().filter_map(|curve| cost_at(curve, error)).min_by(f64::total_cmp)
 }
 
 /// Cost at which a curve, from cheap to dear, first comes down to an error: straight between two points in powers of ten.
@@ -114,8 +128,8 @@ pub fn in_budget(entries: &[Entry]) -> Vec<InBudget> {
     let one = |entry: &Entry, index: usize| {
         let sample_rate = SAMPLE_RATES[index];
         let budget = SHARE * CLOCK / f64::from(sample_rate);
-        let steps = |mark: &Mark| mark.rate_Hz / sample_rate;
-        let cycles = |mark: &Mark| CYCLES * mark.instructions * f64::from(steps(mark));
+        let ticks = |mark: &Mark| mark.rate_Hz / sample_rate;
+        let cycles = |mark: &Mark| CYCLES * mark.instructions * f64::from(ticks(mark));
         let most = |mark: &Mark| CYCLES * f64::from(mark.sample_instructions_most[index]);
         let fitting = entry.marks.iter().filter(|mark| {
             mark.rate_Hz.is_multiple_of(sample_rate) && cycles(mark) <= budget && most(mark) <= WORST * budget
@@ -126,7 +140,7 @@ pub fn in_budget(entries: &[Entry]) -> Vec<InBudget> {
             case: entry.case.clone(),
             name: entry.name,
             sample_rate_Hz: sample_rate,
-            steps: best.map(|(mark, _)| steps(mark)),
+            steps: best.map(|(mark, _)| ticks(mark) * mark.substeps),
             error: best.map(|(_, error)| error),
             cycles: best.map(|(mark, _)| cycles(mark)),
             cycles_most: best.map(|(mark, _)| most(mark)),
@@ -172,7 +186,13 @@ mod tests {
         let curve = [(1.0, 1e-2), (10.0, 1e-4), (100.0, 1e-6)];
         let cost = cost_at(&curve, 1e-3).unwrap();
         assert!((cost - 10f64.sqrt()).abs() < 1e-12, "{cost}");
-        assert_eq!(cost_at(&curve, 1e-4), Some(10.0));
+        let at_a_point = cost_at(&curve, 1e-4).unwrap();
+        assert!((at_a_point - 10.0).abs() < 1e-12, "{at_a_point}");
+    }
+
+    #[test]
+    fn a_point_that_another_undercuts_is_left_out() {
+        assert_eq!(front(vec![(3.0, 1.0), (1.0, 9.0), (2.0, 10.0), (4.0, 2.0)]), [(1.0, 9.0), (3.0, 1.0)]);
     }
 
     #[test]

@@ -87,12 +87,9 @@ const IMPACT_ERROR: f64 = 0.05;
 /// Length of a learning interval [s]: short against the motions in which contact settles, long against noise.
 const LEARNING_INTERVAL: f64 = 1e-3;
 
-/// Length of settled contact that makes up one way to learn from [s].
+/// Length of settled contact that makes up one way to learn from [s]: about as long as cogging and swings of the wind-up
+/// take to repeat, so that one block's error says little about the next one's.
 const BLOCK: f64 = 8e-3;
-
-/// Time over which what the model leaves out (higher harmonics, friction, cogging) stays the same [s]: updates closer
-/// than this are not independent, and count accordingly less.
-const REPEATING: f64 = 20e-3;
 
 /// Time in which wear and warmth may change what was learnt by as much as is known of it [s].
 const MEMORY: f64 = 100.0;
@@ -122,7 +119,6 @@ pub fn design_observer<T: Real>(
     let unmodelled = 0.1 * settings.motor_encoder.harmonic_error * body.sun_lever;
     let noise = libm::sqrt(way_variance + wind_up_variance + unmodelled * unmodelled);
     let block = libm::round(BLOCK / LEARNING_INTERVAL).max(1.0);
-    let repeats = (REPEATING / BLOCK).max(1.0);
 
     let half_gap = 2.0 * body.half_backlash;
     let harmonics = |encoder: Option<EncoderSettings>, lever: f64| {
@@ -165,7 +161,8 @@ pub fn design_observer<T: Real>(
             speed: real(load.response[(1, 0)]),
             gain: [0, 1, 2].map(|state| real(load.gain[state])),
             variance: [real(load.variance[0]), real(load.variance[2])],
-            drift: real(load_change(&body, settings) * step),
+            speed_variance: real(load.variance[1]),
+            way_per_torque: real(0.5 * body.output_lever / body.load_inertia),
         },
         contact: ContactTable {
             force_variance: real(force_variance),
@@ -194,7 +191,7 @@ pub fn design_observer<T: Real>(
             span: real(periods * step),
             mean: mean.map(real),
             deviation: deviation.map(real),
-            weight: real(1.0 / (noise * libm::sqrt(repeats))),
+            weight: real(1.0 / noise),
             noise: real(noise),
             forgetting: real(LEARNING_INTERVAL / MEMORY),
             mesh_compliance: real(body.mesh_compliance),
@@ -204,7 +201,7 @@ pub fn design_observer<T: Real>(
             failed_after: (4e-3 / step) as u32,
             trusted_after: (0.3 / LEARNING_INTERVAL) as u32,
             margin: real(0.1 * half_gap + 0.1 * body.compliance * rated_force),
-            widest: real((0.1 * 2.0 * half_gap).powi(2)),
+            widest_part: real(0.1),
         },
     };
     Ok(tables)

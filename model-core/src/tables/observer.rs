@@ -130,8 +130,10 @@ pub struct LoadTable<T: Real> {
     pub gain: [T; 3],
     /// Variances of angle and load torque once settled.
     pub variance: [T; 2],
-    /// Growth a period of the load torque's variance while the link cannot be seen [N^2 m^2].
-    pub drift: T,
+    /// Variance of the speed once settled.
+    pub speed_variance: T,
+    /// Way along the line of action in a second from rest under one newton metre [m/(N m)].
+    pub way_per_torque: T,
 }
 
 /// Contact and torque bias.
@@ -207,6 +209,6 @@ pub struct SupervisorTable<T: Real> {
     pub trusted_after: u32,
     /// Distance beyond the possible range that dynamics alone can bring [m].
     pub margin: T,
-    /// Estimates of the gap are given out up to this variance [m^2].
-    pub widest: T,
+    /// Estimates of the gap are given out up to this standard deviation, as a part of the gap 4b [-].
+    pub widest_part: T,
 }

@@ -23,8 +23,6 @@ pub(super) struct System {
 
 /// The filter.
 pub(super) struct Filter {
-    /// exp(A h) - I.
-    pub transition: DMatrix<f64>,
     /// Response to an input held over the step.
     pub response: DMatrix<f64>,
     /// Correction of each state for a unit of surprise, after the step.
@@ -63,7 +61,6 @@ impl System {
         }
         let response = over_step.input_integrals[0].clone();
         Filter {
-            transition: over_step.transition,
             response,
             gain,
             variance: covariance.diagonal(),

@@ -108,7 +108,7 @@ pub fn design_observer<T: Real>(
     let motor_count = TAU / f64::from(settings.motor_encoder.counts_per_turn);
     let output_count = TAU / f64::from(settings.output_encoder.unwrap_or(settings.motor_encoder).counts_per_turn);
     let drive = drive_filter(&body, settings, motor_count, step);
-    let load = load_filter(&body, settings, output_count, step);
+    let load = load_filter(&body, settings, output_count * output_count / 12.0, step);
 
     let rated_force = settings.torque_limit / body.sun_lever;
     let force_variance = drive.quiet[2] / (body.sun_lever * body.sun_lever);
@@ -116,6 +116,12 @@ pub fn design_observer<T: Real>(
     let way_variance = drive.quiet[0] * body.sun_lever.powi(2) + load.quiet[0] * body.output_lever.powi(2);
     let ripple = settings.torque_ripple / body.sun_lever;
     let wind_up_variance = body.compliance.powi(2) * (force_variance / periods + ripple * ripple);
+    let blind = load_filter(
+        &body,
+        settings,
+        (way_variance + body.compliance.powi(2) * (force_variance + ripple * ripple)) / body.output_lever.powi(2),
+        step,
+    );
     let unmodelled = 0.1 * settings.motor_encoder.harmonic_error * body.sun_lever;
     let noise = libm::sqrt(way_variance + wind_up_variance + unmodelled * unmodelled);
     let block = libm::round(BLOCK / LEARNING_INTERVAL).max(1.0);
@@ -161,7 +167,8 @@ pub fn design_observer<T: Real>(
             speed: real(load.response[(1, 0)]),
             gain: [0, 1, 2].map(|state| real(load.gain[state])),
             variance: [real(load.variance[0]), real(load.variance[2])],
-            speed_variance: real(load.variance[1]),
+            blind_gain: [0, 1, 2].map(|state| real(blind.gain[state])),
+            blind_variance: [real(blind.variance[1]), real(blind.variance[2])],
             way_per_torque: real(0.5 * body.output_lever / body.load_inertia),
         },
         contact: ContactTable {
@@ -179,6 +186,7 @@ pub fn design_observer<T: Real>(
                 3.0 * libm::sqrt(drive.quiet[1] * body.sun_lever.powi(2) + load.quiet[1] * body.output_lever.powi(2)),
             ),
             lag: real(2.0 * step),
+            smoothing: real(-libm::expm1(-step / (1.5 * LEARNING_INTERVAL))),
             known_part: real(0.08),
             efficiency: real(settings.efficiency),
             per_efficiency: real(1.0 / settings.efficiency),
@@ -277,7 +285,7 @@ fn drive_filter(body: &Body, settings: &ObserverSettings, count: f64, step: f64)
 }
 
 /// State: angle, speed, load torque.
-fn load_filter(body: &Body, settings: &ObserverSettings, count: f64, step: f64) -> Filter {
+fn load_filter(body: &Body, settings: &ObserverSettings, measurement_noise: f64, step: f64) -> Filter {
     let per_inertia = 1.0 / body.load_inertia;
     let impact = IMPACT_ERROR * settings.torque_limit * body.ratio * per_inertia;
     System {
@@ -288,7 +296,7 @@ fn load_filter(body: &Body, settings: &ObserverSettings, count: f64, step: f64) 
             impact * impact * LEARNING_INTERVAL,
             load_change(body, settings),
         ]),
-        measurement_noise: count * count / 12.0,
+        measurement_noise,
     }
     .filter(step)
 }

@@ -71,7 +71,7 @@ pub struct Observer<'tables, T: Real, const P: usize> {
     block: Block<T, P>,
     knowledge: Knowledge<T>,
     supervisor: Supervisor<T>,
-    blind: Blind,
+    blind: Blind<T>,
     time: Option<u32>,
     /// Torque that the meshes put on the load side, by the motor side alone [N m].
     from_meshes: T,
@@ -183,7 +183,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         if self.supervisor.source() == Source::Both {
             if let (Some(reading), Some(Advance::By(_))) = (samples.output, taken.output) {
                 let surprise = self.load.speed * age(reading.time) - self.load.ahead;
-                self.load.correct(&tables.load, surprise);
+                self.load.correct(&tables.load.gain, surprise);
             }
         }
     }
@@ -221,8 +221,10 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
             let (contact, both) = self.by_position(now.way, now.soon).contact(before, force, known.both_deviation);
             force = both;
             contact
-        } else {
+        } else if self.supervisor.source() == Source::Both {
             self.estimates.contact
+        } else {
+            self.contact_unseen(now)
         };
         let touching = self.estimates.reported_contact != ContactState::Separated;
         let torque = |force: T| if touching { force * tables.levers.output } else { T::ZERO };

@@ -130,8 +130,10 @@ pub struct LoadTable<T: Real> {
     pub gain: [T; 3],
     /// Variances of angle and load torque once settled.
     pub variance: [T; 2],
-    /// Variance of the speed once settled.
-    pub speed_variance: T,
+    /// Corrections for a radian of surprise where only the wind-up of the mesh force says where the link is.
+    pub blind_gain: [T; 3],
+    /// Variances of speed and load torque then, once settled.
+    pub blind_variance: [T; 2],
     /// Way along the line of action in a second from rest under one newton metre [m/(N m)].
     pub way_per_torque: T,
 }
@@ -157,6 +159,8 @@ pub struct ContactTable<T: Real> {
     pub rate_deviation: T,
     /// By how much what is measured lags behind: the output's sampling and filtering [s].
     pub lag: T,
+    /// Part of its change in a period by which a mean over a few learning intervals follows [-].
+    pub smoothing: T,
     /// Speed of the gap coordinate that noise alone can show [m/s].
     pub still: T,
     /// Likewise for each rad/s of the motor while the error map is unknown, as a part of its uncertainty [-].

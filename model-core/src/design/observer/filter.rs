@@ -60,12 +60,7 @@ impl System {
             quiet = &kept * ahead * kept.transpose() + &gain * gain.transpose() * self.measurement_noise;
         }
         let response = over_step.input_integrals[0].clone();
-        Filter {
-            response,
-            gain,
-            variance: covariance.diagonal(),
-            quiet: quiet.diagonal(),
-        }
+        Filter { response, gain, variance: covariance.diagonal(), quiet: quiet.diagonal() }
     }
 
     /// Covariance that the noise adds over a step: the exponential of the doubled system (Van Loan's arrangement).

@@ -91,7 +91,7 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
             } else {
                 now.way
             };
-            let value = if touching { position.gap(tables.learner.mesh_compliance) } else { edge };
+            let value = if touching { edge + tables.learner.mesh_compliance * force } else { edge };
             (value, self.blind_variance())
         } else if known.width_is_known {
             let variance = if touching { half_gap_variance } else { known.way_variance };

@@ -23,7 +23,7 @@ pub(super) struct Blind<T: Real> {
     /// Contact has been felt since the output encoder was given up.
     anchored: bool,
     /// Contact that is felt for sure now.
-    felt: ContactState,
+    pub felt: ContactState,
     /// Mesh force, smoothed [N].
     force: T,
     /// Speed at which the teeth landed last, dying away as bounces do [m/s].
@@ -71,9 +71,11 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let levers = &self.tables.levers;
         let [half_gap, compliance] = self.shape();
         self.blind.force += (now.force - self.blind.force) * self.tables.contact.smoothing;
-        let needed = T::TWO * self.knowledge.mean_force_deviation + self.knowledge.mean_force_deviation;
+        let deviation = self.knowledge.mean_force_deviation;
         let held = self.blind.felt;
-        self.blind.felt = with_hysteresis(held, self.blind.force, needed, needed);
+        // Only what no bias can be: four deviations make contact, three keep it.
+        let double = T::TWO * deviation;
+        self.blind.felt = with_hysteresis(held, self.blind.force, T::TWO * double, double + deviation);
         let side: T = sign(self.blind.felt);
         let surprise = (now.way - side * half_gap - compliance * now.force) * levers.per_output;
         if self.blind.felt == ContactState::Separated {

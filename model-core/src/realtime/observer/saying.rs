@@ -1,6 +1,7 @@
 //! From what the observer holds to what it says: values in the user's units, their variances, and whether it stands by
 //! them. Nothing is decided or learnt here.
 
+use super::contact::sign;
 use super::counts::Counter;
 use super::{MAPPED, Now, Observer, PLAIN, Source};
 use crate::mesh::ContactState;
@@ -91,7 +92,8 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
             } else {
                 now.way
             };
-            let value = if touching { edge + tables.learner.mesh_compliance * force } else { edge };
+            let felt: T = sign(self.blind.felt);
+            let value = if felt == T::ZERO { edge } else { felt * half_gap + tables.learner.mesh_compliance * force };
             (value, self.blind_variance())
         } else if known.width_is_known {
             let variance = if touching { half_gap_variance } else { known.way_variance };

@@ -4,7 +4,7 @@
 use crate::real::Real;
 
 /// The most parameters that the learner may have.
-pub const MOST_PARAMETERS: usize = 12;
+pub const MOST_PARAMETERS: usize = 14;
 
 /// Commands that may be on their way to the motor.
 pub const MOST_DELAY: usize = 4;
@@ -72,6 +72,8 @@ pub struct CountTable<T: Real> {
     pub output_weight: i64,
     /// Whole turns of either shaft change the difference by a multiple of this.
     pub modulus: i64,
+    /// Mesh periods in a turn of the output: teeth of the ring.
+    pub meshes: u32,
     /// Way along the line of action in a unit of the difference [m].
     pub length: T,
 }
@@ -161,9 +163,9 @@ pub struct ContactTable<T: Real> {
     pub lag: T,
     /// Part of its change in a period by which a mean over a few learning intervals follows [-].
     pub smoothing: T,
-    /// Speed of the gap coordinate that noise alone can show [m/s].
+    /// Way in a learning interval that noise alone can show [m].
     pub still: T,
-    /// Likewise for each rad/s of the motor while the error map is unknown, as a part of its uncertainty [-].
+    /// Likewise for each radian that the motor turns while the error maps are unknown [m/rad].
     pub still_per_speed: T,
     /// Motor speed above which dry friction has its full size [rad/s].
     pub turning: T,

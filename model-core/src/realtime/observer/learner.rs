@@ -33,6 +33,11 @@ impl<T: Real, const P: usize> Learner<T, P> {
         learner
     }
 
+    /// A parameter, in SI.
+    pub fn value(&self, parameter: usize) -> T {
+        self.values.get(parameter).copied().unwrap_or(T::ZERO)
+    }
+
     /// Way that a set of regressors has.
     pub fn way(&self, regressors: &Regressors<T, P>) -> T {
         self.values.iter().zip(regressors).fold(T::ZERO, |sum, (value, regressor)| sum + *value * *regressor)

@@ -7,6 +7,7 @@
 
 mod filter;
 mod integers;
+mod probe;
 
 use core::f64::consts::TAU;
 
@@ -23,6 +24,7 @@ use crate::tables::observer::{
     MOST_PARAMETERS, ObserverTables, SupervisorTable,
 };
 use filter::{Filter, System};
+pub use probe::design_probe;
 
 /// An encoder as its data sheet has it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,6 +34,8 @@ pub struct EncoderSettings {
     /// Raw counts run from 0 to this less 1 and start again; 0 stands for 2^32. The number of counts in a turn for a
     /// single-turn absolute encoder.
     pub wraps_at: u32,
+    /// Whether it knows its place in the turn when it begins. If not, offset and error maps are learnt anew every time.
+    pub absolute: bool,
     /// Standard deviation to expect of its once- and of its twice-per-turn error; zero if there is none [rad].
     pub harmonic_error: f64,
 }
@@ -153,7 +157,10 @@ pub fn design_observer<T: Real>(
 
     let meshes = f64::from(joint.geometry.ring_teeth);
     let tables = ObserverTables {
-        identity: identity(joint, settings),
+        identity: mean
+            .iter()
+            .chain(&deviation)
+            .fold(identity(joint, settings), |running, number| digest::chain(running, number.to_bits())),
         control_rate: settings.control_rate,
         period: real(step),
         period_ticks: [0.5, 1.5].map(|part| libm::round(part * step * f64::from(settings.clock_rate)) as u32),
@@ -389,6 +396,7 @@ fn counts<T: Real>(
     Ok(CountTable {
         motor: encoder(motor, settings.fastest_motor),
         output: encoder(output, settings.fastest_motor / geometry.ratio_by_teeth()),
+        absolute: motor.absolute && output.absolute,
         has_output: settings.output_encoder.is_some(),
         motor_weight: weights.motor,
         output_weight: weights.output,

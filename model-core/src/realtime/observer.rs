@@ -22,14 +22,18 @@ mod estimates;
 mod interval;
 mod learner;
 mod load_side;
+mod memory;
 mod motion;
 mod motor_only;
+mod probe;
 mod regressors;
 mod samples;
 mod saying;
 mod supervisor;
 
 pub use estimates::{Doubt, Estimate, Estimates, Notices, Shaft, Source};
+pub use memory::{MEMORY_BYTES, Memory, MemoryError};
+pub use probe::{Probe, Progress, Refusal};
 pub use samples::{Reading, Samples};
 
 use crate::mesh::ContactState;

@@ -57,6 +57,16 @@ impl<T: Real> Bias<T> {
             [bias - bias_gain * from_bias, friction - friction_gain * from_friction, both - bias_gain * from_friction];
     }
 
+    /// Everything that is learnt.
+    pub fn numbers(&self) -> impl Iterator<Item = T> {
+        [self.bias, self.friction].into_iter().chain(self.variance)
+    }
+
+    /// Takes the same back.
+    pub fn set_numbers(&mut self, next: &mut impl FnMut() -> T) {
+        [&mut self.bias, &mut self.friction].into_iter().chain(&mut self.variance).for_each(|number| *number = next());
+    }
+
     /// Lets time pass: one learning interval.
     pub fn age(&mut self, table: &ContactTable<T>) {
         let [bias, friction, _] = &mut self.variance;

@@ -8,6 +8,7 @@
 mod filter;
 mod integers;
 mod probe;
+mod source;
 
 use core::f64::consts::TAU;
 
@@ -25,6 +26,7 @@ use crate::tables::observer::{
 };
 use filter::{Filter, System};
 pub use probe::design_probe;
+pub use source::observer_source;
 
 /// An encoder as its data sheet has it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -197,7 +199,7 @@ pub fn design_observer<T: Real>(
             still_per_speed: real(
                 2.0 * (2.2 * motor_harmonic + (output_harmonic + meshes * body.transmission_error) / body.ratio),
             ),
-            turning: real(3.0 * libm::sqrt(drive.variance[1])),
+            turning: real(3.0 * libm::sqrt(drive.quiet[1])),
             rate_deviation: real(
                 3.0 * libm::sqrt(drive.quiet[1] * body.sun_lever.powi(2) + load.quiet[1] * body.output_lever.powi(2)),
             ),

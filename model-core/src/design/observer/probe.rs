@@ -47,7 +47,7 @@ pub fn design_probe<T: Real>(
         torque: real(0.5 * torque),
         rise: real(-libm::expm1(-step / 5e-3)),
         damping: real(torque * CROSSING * body.sun_lever / (4.0 * body.half_backlash)),
-        moving: real(0.25 * tables.contact.turning.max(count / body.sun_lever / STILL)),
+        moving: real(tables.contact.turning.max(count / body.sun_lever / STILL)),
         loaded: real(0.5 * torque * body.ratio),
         furthest: real((widest + 4.0 * wind_up) / body.sun_lever),
         longest: periods(LONGEST),

@@ -1,7 +1,9 @@
 //! Single precision against double, near the start and far from it: counts are whole numbers, so turns cost nothing.
 
+use std::f64::consts::TAU;
+
 use host_tests::tolerance::observer::SINGLE_PRECISION;
-use model_core::realtime::observer::{MAPPED, Observer};
+use model_core::realtime::observer::{MAPPED, Observer, Shaft};
 
 use crate::replay::samples;
 use crate::trial::{Encoders, Trial};
@@ -14,21 +16,23 @@ fn single_precision_is_enough_at_the_start_and_after_300_turns() {
         let (single, double) = (trial.tables::<f32>(), trial.tables::<f64>());
         let mut single = Observer::<f32, MAPPED>::new(&single);
         let mut double = Observer::<f64, MAPPED>::new(&double);
-        // 300 output turns are 1800 motor turns; the joint goes there at 40 turns a second before the recording begins.
+        // The joint goes there smoothly before the recording begins, at some four turns of the output a second.
         let mut period = 0;
-        let bits = (trial.run.train.motor_encoder.bits, trial.run.train.output_encoder.bits);
-        let (motor_turn, output_turn) = (1_i64 << bits.0, 1_i64 << bits.1);
-        let steps = turns * 10_000 / 40;
+        let train = &trial.run.train;
+        let (motor_turn, output_turn) = (1_i64 << train.motor_encoder.bits, 1_i64 << train.output_encoder.bits);
+        let steps = turns * 10_000 / 4;
         for step in 0..steps {
+            let part = step as f64 / steps as f64;
+            let way = turns as f64 * part.powi(3) * (10.0 - 15.0 * part + 6.0 * part * part);
             let mut moment = log[0];
             moment.command = 0.0;
-            moment.motor_counts += motor_turn * 6 * step * 40 / 10_000;
-            moment.output_counts += output_turn * step * 40 / 10_000;
+            moment.motor_counts += (way * 6.0 * motor_turn as f64).floor() as i64;
+            moment.output_counts += (way * output_turn as f64).floor() as i64;
             single.step(&samples(&trial.settings, &moment, period));
             double.step(&samples(&trial.settings, &moment, period));
             period += 1;
         }
-        let mut sum = 0.0;
+        let (mut sum, mut began) = (0.0, None);
         for moment in &log {
             let mut moment = *moment;
             moment.motor_counts += motor_turn * 6 * turns;
@@ -37,7 +41,10 @@ fn single_precision_is_enough_at_the_start_and_after_300_turns() {
             let double = *double.step(&samples(&trial.settings, &moment, period));
             period += 1;
             sum += (f64::from(single.gap.value) - double.gap.value).powi(2);
-            assert_eq!(single.link.turns, double.link.turns);
+            let turned = |shaft: &Shaft<f64>| f64::from(shaft.turns) + shaft.fraction;
+            let began = *began.get_or_insert(turned(&double.link) - moment.link[0] / TAU);
+            assert!((turned(&double.link) - began - moment.link[0] / TAU).abs() < 1e-3);
+            assert!((began - turns as f64).abs() < 1.01, "{began} turns instead of {turns}");
         }
         SINGLE_PRECISION.check((sum / log.len() as f64).sqrt() / 160e-6);
     }

@@ -59,7 +59,7 @@ pub fn samples<T: Real>(settings: &ObserverSettings, moment: &Moment, period: us
 }
 
 /// Figures of one replay, from a moment on.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Figures {
     /// Root mean square of the gap's error, over the gap 4b.
     pub gap: f64,
@@ -71,11 +71,11 @@ pub struct Figures {
     pub missed: usize,
     /// Landings.
     pub landings: usize,
-    /// Median and 95th percentile of the delay in reporting a landing [s].
-    pub delay: [f64; 2],
-    /// Root mean square of the load torque's error over what is rated.
+    /// Delays in reporting landings, sorted [s].
+    pub delays: Vec<f64>,
+    /// Root mean square of the load torque's error over the motor's largest torque at the output.
     pub load_torque: f64,
-    /// Root mean square of the transmitted torque's error over what is rated.
+    /// Root mean square of the transmitted torque's error, likewise.
     pub mesh_torque: f64,
     /// Time from first force on both flanks until the width was right to 5 % for good [s].
     pub width_after: f64,
@@ -90,6 +90,11 @@ pub struct Figures {
 }
 
 impl Figures {
+    /// The delay that such a part of the landings stays below [s].
+    pub fn delay(&self, part: f64) -> f64 {
+        self.delays.get((part * self.delays.len() as f64) as usize).copied().unwrap_or(0.0)
+    }
+
     /// The worse of each figure.
     pub fn worse(&self, other: &Self) -> Self {
         Self {
@@ -98,7 +103,11 @@ impl Figures {
             contact: if self.landings == 0 { other.contact } else { self.contact.min(other.contact) },
             missed: self.missed + other.missed,
             landings: self.landings + other.landings,
-            delay: [0, 1].map(|index| self.delay[index].max(other.delay[index])),
+            delays: {
+                let mut delays = [self.delays.as_slice(), &other.delays].concat();
+                delays.sort_by(f64::total_cmp);
+                delays
+            },
             load_torque: self.load_torque.max(other.load_torque),
             mesh_torque: self.mesh_torque.max(other.mesh_torque),
             width_after: self.width_after.max(other.width_after),
@@ -123,6 +132,7 @@ pub fn replay<T: Real, const P: usize>(
     let half_backlash = joint.sun_planet.half_backlash[0];
     let gap = 4.0 * half_backlash;
     let rated_force = joint.rated_output_torque / (2.0 * joint.geometry.carrier_base_radius());
+    let largest = settings.torque_limit * joint.geometry.ratio_by_teeth();
     let lever = 2.0 * joint.geometry.carrier_base_radius();
     let period = 1.0 / f64::from(settings.control_rate);
     let first = (from / period) as usize;
@@ -157,9 +167,8 @@ pub fn replay<T: Real, const P: usize>(
         let error = (value(estimates.gap.value) - moment.gap) / gap;
         sums[0] += error * error;
         worst = worst.max(error.abs());
-        sums[1] += ((value(estimates.load_torque.value) - moment.load_torque) / joint.rated_output_torque).powi(2);
-        sums[2] +=
-            ((value(estimates.mesh_torque.value) - moment.sun_force * lever) / joint.rated_output_torque).powi(2);
+        sums[1] += ((value(estimates.load_torque.value) - moment.load_torque) / largest).powi(2);
+        sums[2] += ((value(estimates.mesh_torque.value) - moment.sun_force * lever) / largest).powi(2);
         if estimates.gap.valid {
             valid += 1;
             sums[3] += (error * gap).powi(2) / value(estimates.gap.variance).max(1e-30);
@@ -182,23 +191,20 @@ pub fn replay<T: Real, const P: usize>(
             judged += 1;
             right += usize::from(side == estimates.reported_contact);
         }
-        // A landing: every mesh closed on the flank opposite to the last one.
-        if side != ContactState::Separated && side != side_before && moment.gap.abs() > 0.5 * gap {
+        // A landing: the first force beyond the band on the flank opposite to the last one.
+        if moment.sun_force.abs() > 0.05 * rated_force && side != side_before {
             if side_before != ContactState::Separated {
                 missed += usize::from(landing.is_some());
                 landing = Some((k, side));
             }
             side_before = side;
         }
-        if let Some((since, side)) = landing {
-            if estimates.reported_contact == side {
-                delays.push((k - since) as f64 * period);
-                landing = None;
-            }
+        if let Some((since, _)) = landing.filter(|(_, side)| estimates.reported_contact == *side) {
+            delays.push((k - since) as f64 * period);
+            landing = None;
         }
     }
     delays.sort_by(f64::total_cmp);
-    let part = |part: f64| delays.get((part * delays.len() as f64) as usize).copied().unwrap_or(0.0);
     let counted = (log.len() - first) as f64;
     let mean = |sum: f64| (sum / counted).sqrt();
     Figures {
@@ -207,7 +213,7 @@ pub fn replay<T: Real, const P: usize>(
         contact: right as f64 / judged.max(1) as f64,
         missed,
         landings: delays.len() + missed,
-        delay: [part(0.5), part(0.95)],
+        delays,
         load_torque: mean(sums[1]),
         mesh_torque: mean(sums[2]),
         width_after: (width_wrong_at + 1).saturating_sub(both_touched_at) as f64 * period,

@@ -96,6 +96,9 @@ const IMPACT_ERROR: f64 = 0.05;
 /// Length of a learning interval [s]: short against the motions in which contact settles, long against noise.
 const LEARNING_INTERVAL: f64 = 1e-3;
 
+/// Lag of what is measured of a landing, output filter included [control periods].
+const LAG: f64 = 3.0;
+
 /// Learning intervals over which the observer takes the speed of the way.
 const WINDOW: f64 = 8.0;
 
@@ -200,10 +203,10 @@ pub fn design_observer<T: Real>(
                 2.0 * (2.2 * motor_harmonic + (output_harmonic + meshes * body.transmission_error) / body.ratio),
             ),
             turning: real(3.0 * libm::sqrt(drive.quiet[1])),
-            rate_deviation: real(
-                3.0 * libm::sqrt(drive.quiet[1] * body.sun_lever.powi(2) + load.quiet[1] * body.output_lever.powi(2)),
-            ),
-            lag: real(2.0 * step),
+            rate_deviation: real(libm::sqrt(
+                drive.quiet[1] * body.sun_lever.powi(2) + load.quiet[1] * body.output_lever.powi(2),
+            )),
+            lag: real(LAG * step),
             smoothing: real(-libm::expm1(-step / (1.5 * LEARNING_INTERVAL))),
             known_part: real(0.08),
             efficiency: real(settings.efficiency),

@@ -195,11 +195,10 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         if self.supervisor.hear(taken.output) {
             self.load.ahead = T::ZERO;
         }
-        if self.supervisor.source() == Source::Both {
-            if let (Some(reading), Some(Advance::By(_))) = (samples.output, taken.output) {
-                let surprise = self.load.speed * age(reading.time) - self.load.ahead;
-                self.load.correct(&tables.load.gain, surprise);
-            }
+        let both = self.supervisor.source() == Source::Both;
+        if let (true, Some(reading), Some(Advance::By(_))) = (both, samples.output, taken.output) {
+            let surprise = self.load.speed * age(reading.time) - self.load.ahead;
+            self.load.correct(&tables.load.gain, surprise);
         }
     }
 

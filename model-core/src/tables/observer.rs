@@ -161,7 +161,7 @@ pub struct ContactTable<T: Real> {
     pub bias_drift: T,
     /// Neither bias nor dry friction goes beyond this [N].
     pub bias_limit: T,
-    /// Standard deviations, three, of the rate of the way between one period and the next [m/s].
+    /// Standard deviation of the rate of the way [m/s].
     pub rate_deviation: T,
     /// By how much what is measured lags behind: the output's sampling and filtering [s].
     pub lag: T,

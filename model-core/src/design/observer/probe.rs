@@ -13,13 +13,16 @@ use crate::tables::observer::{ObserverTables, ProbeTable};
 const LONGEST: f64 = 0.5;
 
 /// Time that a torque is given to settle: the gap is crossed and the wind-up has swung [s].
-const SETTLE: f64 = 45e-3;
+const SETTLE: f64 = 50e-3;
 
 /// Time over which an angle is taken [s].
 const STILL: f64 = 10e-3;
 
-/// Time in which the gap is crossed under the damping torque [s].
-const CROSSING: f64 = 20e-3;
+/// Time constant with which the torque comes up: slow against a crossing, so that landings are soft [s].
+const RISE: f64 = 12e-3;
+
+/// Rate at which the damping torque takes the motor's speed out: slow against any current loop [rad/s].
+const DAMPING: f64 = TAU * 50.0;
 
 /// Table of a probe that pushes with no more than `torque` at the motor [N m].
 pub fn design_probe<T: Real>(
@@ -45,9 +48,9 @@ pub fn design_probe<T: Real>(
     let friction = body.compliance * settings.torque_uncertainty / body.sun_lever;
     Ok(ProbeTable {
         torque: real(0.5 * torque),
-        rise: real(-libm::expm1(-step / 5e-3)),
-        damping: real(torque * CROSSING * body.sun_lever / (4.0 * body.half_backlash)),
-        moving: real(tables.contact.turning.max(count / body.sun_lever / STILL)),
+        rise: real(-libm::expm1(-step / RISE)),
+        damping: real(body.motor_inertia * DAMPING),
+        moving: real((2.0 * tables.contact.turning).max(count / body.sun_lever / STILL)),
         loaded: real(0.5 * torque * body.ratio),
         furthest: real((widest + 4.0 * wind_up) / body.sun_lever),
         longest: periods(LONGEST),

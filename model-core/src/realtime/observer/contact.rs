@@ -69,10 +69,11 @@ impl<T: Real> ByPosition<T> {
         let both = force + self.weight * (side * beyond.over(self.compliance) - force);
         // Teeth about to meet count as met: what is measured lags behind them by that much.
         let lands = side * self.soon > T::ZERO && beyond + side * self.soon > T::ZERO;
-        let contact = if beyond < -self.blur && !lands {
+        let flank = if side > T::ZERO { ContactState::DriveSide } else { ContactState::BackSide };
+        let contact = if lands && (before == flank || before == ContactState::Separated) {
+            flank
+        } else if beyond < -self.blur {
             ContactState::Separated
-        } else if lands && before == ContactState::Separated {
-            if side > T::ZERO { ContactState::DriveSide } else { ContactState::BackSide }
         } else {
             with_hysteresis(before, both, T::TWO * deviation, deviation)
         };

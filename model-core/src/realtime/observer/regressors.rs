@@ -27,12 +27,11 @@ pub(super) fn free<T: Real, const P: usize>(link_speed: T, motor: u32, output: O
         *skew = link_speed;
     }
     if P == MAPPED {
-        let places = regressors.get_mut(PLAIN..).unwrap_or_default().chunks_exact_mut(MAP);
+        let (places, _) = regressors.get_mut(PLAIN..).unwrap_or_default().as_chunks_mut::<MAP>();
         for (phase, places) in [Some(motor), output].into_iter().zip(places) {
             let Some(phase) = phase else { continue };
             let (sine, cosine) = sine_cosine::<T>(phase);
-            let doubled = [sine, cosine, T::TWO * sine * cosine, T::ONE - T::TWO * sine * sine];
-            places.copy_from_slice(&doubled);
+            *places = [sine, cosine, T::TWO * sine * cosine, T::ONE - T::TWO * sine * sine];
         }
     }
     regressors

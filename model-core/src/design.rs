@@ -8,6 +8,7 @@ mod flow_tables;
 pub mod hamiltonian;
 pub mod light_tables;
 pub mod modes;
+pub mod observer;
 mod pace;
 mod source;
 mod validate;

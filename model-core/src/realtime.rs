@@ -11,6 +11,7 @@ mod flow;
 mod frozen;
 mod light;
 mod model;
+pub mod observer;
 mod paper;
 pub mod phase;
 mod pressed;

@@ -7,6 +7,7 @@ pub mod exponential;
 mod flow_tables;
 pub mod hamiltonian;
 pub mod modes;
+pub mod compensation;
 pub mod observer;
 mod pace;
 mod source;

@@ -9,6 +9,7 @@ mod crossing;
 mod excitation;
 mod flow;
 mod model;
+pub mod compensation;
 pub mod observer;
 pub mod phase;
 mod runge_kutta;

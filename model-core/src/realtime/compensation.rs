@@ -26,7 +26,7 @@ pub struct Compensation<'tables, T: Real> {
     stage: Stage,
     elapsed: T,
     path: Path<T>,
-    seek: T,
+    origin: Position<T>,
     rise: T,
     integral: T,
     before: Option<Motion<T>>,
@@ -44,7 +44,7 @@ impl<'tables, T: Real> Compensation<'tables, T> {
             stage: Stage::Touching,
             elapsed: T::ZERO,
             path: Path::default(),
-            seek: T::ZERO,
+            origin: Position::default(),
             rise: T::ZERO,
             integral: T::ZERO,
             before: None,
@@ -76,84 +76,107 @@ impl<'tables, T: Real> Compensation<'tables, T> {
         let touching = contact * self.side > T::ZERO;
 
         // What the planned motion asks of the teeth, now and ahead.
-        let drag = self.load.drag(tables, now.speed);
+        let error_rate = now.speed - estimates.link.speed;
         if estimates.load_torque.valid && contact != T::ZERO {
-            self.load.learn(tables, estimates.load_torque.value, now.speed);
+            self.load.learn(tables, estimates.load_torque.value, estimates.link.speed);
         }
-        let (ahead_speed, ahead_acceleration) = match ahead {
-            Some(ahead) => (ahead.speed, ahead.acceleration),
-            None => {
-                let jerk = self
-                    .before
-                    .map_or(T::ZERO, |before| (now.acceleration - before.acceleration) * T::from_i32(tables.control_rate as i32));
-                let lead = tables.lead;
-                (
-                    now.speed + lead * (now.acceleration + T::HALF * lead * jerk),
-                    now.acceleration + lead * jerk,
-                )
-            }
+        let (ahead_speed, ahead_acceleration) = self.ahead(now, ahead);
+        let load_now = self.load.even() + self.load.drag(tables, now.speed);
+        let law = (tables.load_inertia + tables.motor_inertia) * now.acceleration
+            + load_now
+            + tables.position_gain * error
+            + tables.damping_gain * (now.speed - motor_speed);
+        let feedback = |time: T| {
+            let torque = tables.position_gain * (error + time * error_rate) + tables.damping_gain * error_rate;
+            let dead = tables.doubt * self.patience;
+            torque - clamp(torque, -dead, dead)
         };
-        self.before = Some(*now);
-        let load_now = self.load.even() + drag;
-        let load_ahead = self.load.even() + self.load.drag(tables, ahead_speed);
-        let planned_ahead = tables.load_inertia * ahead_acceleration + load_ahead;
+        let demand_now = tables.load_inertia * now.acceleration
+            + self.load.even()
+            + self.load.drag(tables, estimates.link.speed)
+            + feedback(T::ZERO);
+        let demand_ahead = tables.load_inertia * ahead_acceleration
+            + self.load.even()
+            + self.load.drag(tables, ahead_speed - error_rate)
+            + feedback(tables.lead);
+        let turned = self.side * (demand_now + demand_ahead) < -tables.hysteresis
+            && self.side * demand_ahead < -tables.hysteresis;
 
-        let opened = half - self.side * gap;
-        let foreseen = self.side * planned_ahead < -tables.hysteresis;
-        let lost = !touching && opened > tables.opening * self.patience * half;
         if self.calm > 0 {
             self.calm -= 1;
         } else if self.patience > T::ONE {
             self.patience = self.patience * T::HALF;
             self.calm = tables.calm;
         }
+        let opened = half - self.side * gap;
+        let load_acceleration =
+            -(self.load.even() + self.load.drag(tables, estimates.link.speed)) * tables.inverse_load_inertia;
+        let start = [-lead, motor_speed];
         match self.stage {
-            Stage::Touching if foreseen || (lost && self.rise >= T::ONE) => {
-                if !foreseen {
-                    self.patience = clamp(self.patience * T::TWO, T::ONE, T::from_i32(5));
-                    self.calm = tables.calm;
-                }
+            Stage::Touching if turned && self.rise >= T::ONE => {
                 self.side = -self.side;
                 self.stage = Stage::Crossing;
-                self.elapsed = T::ZERO;
-                let error_rate = now.speed - tables.turn * T::ZERO - estimates.link.speed;
-                let end = self.side * half - clamp(error + tables.crossing * error_rate, -half, half);
-                self.path = Path::new([-lead, motor_speed - now.speed], [end, T::ZERO], tables.crossing);
-                self.seek = T::ZERO;
+                self.set_out(start, error, estimates.link.speed, load_acceleration, half, now);
+            }
+            Stage::Touching if !touching && opened > tables.opening * half && self.rise >= T::ONE => {
+                self.stage = Stage::Seeking;
+                self.set_out(start, error, estimates.link.speed, load_acceleration, half, now);
             }
             Stage::Crossing | Stage::Seeking if touching => {
                 self.stage = Stage::Touching;
                 self.rise = T::ZERO;
             }
-            Stage::Crossing if self.elapsed >= tables.crossing => self.stage = Stage::Seeking,
+            Stage::Crossing | Stage::Seeking if self.elapsed >= tables.crossing + tables.crossing => {
+                if turned {
+                    self.side = -self.side;
+                }
+                self.stage = Stage::Seeking;
+                self.set_out(start, error, estimates.link.speed, load_acceleration, half, now);
+            }
             _ => {}
         }
         let torque = if self.stage == Stage::Touching {
-            let law = (tables.load_inertia + tables.motor_inertia) * now.acceleration
-                + load_now
-                + tables.position_gain * error
-                + tables.damping_gain * (now.speed - motor_speed);
             self.rise = clamp(self.rise + tables.landing_rise, T::ZERO, T::ONE);
             let wanted = self.rise * (law + self.integral);
-            let torque = clamp(wanted, -tables.torque_limit, tables.torque_limit);
-            self.integral += self.rise * tables.integral_gain * error * T::ZERO + tables.back_calculation * (torque - wanted) * T::ZERO;
-            torque
+            clamp(wanted, -tables.torque_limit, tables.torque_limit)
         } else {
             self.elapsed += tables.period;
-            if self.stage == Stage::Seeking {
-                self.seek += tables.period * tables.seek_speed;
-            }
             let [target, rate, acceleration] = self.path.at(self.elapsed);
-            let off = lead + target + self.side * self.seek;
-            let seek_rate = if self.stage == Stage::Seeking { self.side * tables.seek_speed } else { T::ZERO };
-            let wanted = tables.motor_inertia * (now.acceleration + acceleration)
+            // The path was laid in the frame of the reference as it was at the start.
+            let drift = tables.turn * now.position.less(self.origin.turns, self.origin.fraction);
+            let off = lead - drift + target;
+            let wanted = tables.motor_inertia * acceleration
                 + tables.free_position_gain * off
-                + tables.free_damping_gain * (now.speed + rate + seek_rate - motor_speed);
+                + tables.free_damping_gain * (rate - motor_speed);
             clamp(wanted, -tables.torque_limit, tables.torque_limit)
         };
         let torque = if torque.is_finite() { torque } else { T::ZERO };
         let _ = magnitude(torque);
         Shaped { torque: torque * tables.inverse_gear, stage: self.stage, side: self.side }
+    }
+
+    /// Speed and acceleration that the motion will have after the lead; without a preview, its jerk says.
+    fn ahead(&mut self, now: &Motion<T>, ahead: Option<&Motion<T>>) -> (T, T) {
+        let tables = self.tables;
+        let before = self.before.replace(*now);
+        if let Some(ahead) = ahead {
+            return (ahead.speed, ahead.acceleration);
+        }
+        let rate = T::from_i32(tables.control_rate as i32);
+        let jerk = before.map_or(T::ZERO, |before| rate * (now.acceleration - before.acceleration));
+        let lead = tables.lead;
+        (now.speed + lead * (now.acceleration + T::HALF * lead * jerk), now.acceleration + lead * jerk)
+    }
+
+    /// Lays a path to the flank where the load will be, left to itself.
+    fn set_out(&mut self, start: [T; 2], error: T, link_speed: T, link_acceleration: T, half: T, now: &Motion<T>) {
+        let tables = self.tables;
+        let time = tables.crossing;
+        let speed = link_speed + time * link_acceleration;
+        let place = time * (link_speed + T::HALF * time * link_acceleration) - error;
+        self.path = Path::new(start, [place + self.side * half, speed + self.side * tables.seek_speed], time);
+        self.origin = now.position;
+        self.elapsed = T::ZERO;
     }
 
     /// Reference less motor, felt at the link, with every tooth centred [rad].

@@ -26,6 +26,8 @@ pub struct CompensationTables<T: Real> {
     pub motor_inertia: T,
     /// The rest [kg m^2].
     pub load_inertia: T,
+    /// Its inverse.
+    pub inverse_load_inertia: T,
     /// Spring of the loop [N m/rad].
     pub position_gain: T,
     /// Damper of the loop [N m s/rad].
@@ -48,6 +50,8 @@ pub struct CompensationTables<T: Real> {
     pub crossing: T,
     /// Planned torque beyond which a change of sign counts [N m].
     pub hysteresis: T,
+    /// Feedback torque below which no flank is changed for it [N m].
+    pub doubt: T,
     /// Rise of the contact law after a landing, in one period.
     pub landing_rise: T,
     /// Speed of the search for a flank that was not where it was thought [rad/s].

@@ -14,7 +14,7 @@ const KNOWN_GRAVITY: f64 = 0.85;
 const FRICTION_SPEED: f64 = 0.01;
 
 /// Rate of the output integral over the bandwidth.
-const INTEGRAL_RATE: f64 = 0.25;
+pub static INTEGRAL_RATE: std::sync::LazyLock<f64> = std::sync::LazyLock::new(|| std::env::var("IR").unwrap_or("0.25".into()).parse().unwrap());
 
 /// Motor PID with feed-forward, jump and output integral.
 #[derive(Debug, Clone)]
@@ -30,7 +30,7 @@ impl OutputIntegral {
     /// Of a bandwidth [rad/s].
     pub fn new(knowledge: Knowledge, bandwidth: f64) -> Self {
         let link = LinkTracker::new(knowledge.bits[1], super::motor_pid::TRACKER * bandwidth, knowledge.period);
-        Self { pid: MotorPid::new(knowledge, bandwidth), link, rate: INTEGRAL_RATE * bandwidth, side: 0.0, trim: 0.0 }
+        Self { pid: MotorPid::new(knowledge, bandwidth), link, rate: *INTEGRAL_RATE * bandwidth, side: 0.0, trim: 0.0 }
     }
 }
 

@@ -39,12 +39,28 @@ pub fn design_compensation<T: Real>(
     let load_inertia = (planets + joint.carrier_equivalent_mass()) * lever * lever + joint.link_inertia;
     let inertia = motor_inertia + load_inertia;
     let pole = settings.bandwidth;
-    let half_backlash =
-        joint.sun_planet.half_backlash.iter().sum::<f64>() / geometry.planets as f64;
+    let half_backlash = joint.sun_planet.half_backlash.iter().sum::<f64>() / geometry.planets as f64;
     let env = |name: &str, default: f64| std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default);
-    let crossing = env("CROSS", 8e-3);
+    // Planets that hang at the old flank are struck at the path's highest speed, 15/8 of its mean: their force is that
+    // speed times sqrt(stiffness mass).
+    let planet_impedance =
+        geometry.planets as f64 * libm::sqrt(joint.sun_planet.mean_stiffness * joint.bodies.planet_equivalent_mass / geometry.planets as f64 * geometry.planets as f64) ;
+    let _ = planet_impedance;
+    let rated_force = joint.rated_output_torque / (2.0 * lever);
+    let struck = geometry.planets as f64 * libm::sqrt(joint.sun_planet.mean_stiffness * joint.bodies.planet_equivalent_mass);
+    let crossing_per_backlash = 15.0 / 8.0 * 4.0 * struck / (env("FORCE", 0.5) * rated_force);
+    let crossing_per_half = crossing_per_backlash * lever;
+    let reaction = period * (1.0 + settings.torque_delay) + settings.torque_lag;
+    let limit = gear * settings.torque_limit;
+    let half = half_backlash / lever;
+    // Least-jerk paths need 10/sqrt(3) way/time^2 of acceleration.
+    let by_torque = |half: f64| libm::sqrt(10.0 / libm::sqrt(3.0) * 2.0 * half * motor_inertia / (0.5 * limit));
+    let shortest = by_torque(half).max(8.0 * reaction);
+    let crossing = (crossing_per_half * half).max(shortest);
+    let lead = crossing + reaction;
+    let demand_pole = env("DPOLE", 400.0) * period;
     Ok(CompensationTables {
-        control_rate: settings.control_rate,
+        rate: real(f64::from(settings.control_rate)),
         period: real(period),
         ratio: [(geometry.sun_teeth + geometry.ring_teeth) as i32, geometry.sun_teeth as i32],
         gear: real(gear),
@@ -52,26 +68,35 @@ pub fn design_compensation<T: Real>(
         inverse_denominator: real(1.0 / f64::from(geometry.sun_teeth)),
         turn: real(TAU),
         inverse_lever: real(1.0 / lever),
+        widest_half: real(5.0 * half),
         motor_inertia: real(motor_inertia),
         load_inertia: real(load_inertia),
         inverse_load_inertia: real(1.0 / load_inertia),
+        motor_share: real(motor_inertia / inertia),
         position_gain: real(3.0 * inertia * pole * pole),
         damping_gain: real(3.0 * inertia * pole),
         integral_gain: real(inertia * pole * pole * pole * period),
+        back_calculation: real(pole * period),
         free_position_gain: real(env("FREEKP", 3.0 * inertia * pole * pole)),
         free_damping_gain: real(env("FREEKD", 3.0 * inertia * pole)),
-        back_calculation: real(pole * period),
-        torque_limit: real(gear * settings.torque_limit),
-        half_backlash: real(half_backlash),
-        doubt: real(env("DOUBT", 0.02) * gear * settings.torque_limit),
-        lead: real(env("LEAD", crossing) + period * (1.0 + settings.torque_delay) + settings.torque_lag),
-        crossing: real(crossing),
-        hysteresis: real(env("HYST", 0.005) * gear * settings.torque_limit),
+        torque_limit: real(limit),
+        lead: real(lead),
+        inverse_lead: real(1.0 / lead),
+        reaction: real(reaction),
+        crossing_per_half: real(crossing_per_half),
+        shortest_crossing: real(shortest),
+        longest_crossing: real(env("LONG", 3.0) * crossing),
+        landing_speed: real(env("SEEK", 0.05)),
         landing_rise: real(period / env("RISE", 2e-3)),
-        seek_speed: real(env("SEEK", 0.05)),
+        opening: real(env("OPEN", 0.3)),
+        hysteresis: real(env("HYST", 0.005) * limit),
+        doubt: real(env("DOUBT", 0.02) * limit),
+        first_indulgence: real(env("IND1", 0.05)),
+        last_indulgence: real(env("IND2", 0.5)),
+        forgiving: real(1.0 - period / env("FORGIVE", 30.0)),
         load_learner: [real(env("QB", 1e-3)), real(env("QF", 1e-6)), real(env("RL", 1.0))],
         friction_slope: real(1.0 / env("VF", 0.01)),
-        opening: real(env("OPEN", 0.3)),
-        calm: settings.control_rate,
+        demand_gains: [real(1.0 - libm::exp(-2.0 * demand_pole)), real((1.0 - libm::exp(-demand_pole)) * (1.0 - libm::exp(-demand_pole)) / period)],
+        trust_step: real(period / 20e-3),
     })
 }

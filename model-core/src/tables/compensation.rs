@@ -7,10 +7,10 @@ use crate::real::Real;
 #[derive(Debug, Clone, PartialEq)]
 pub struct CompensationTables<T: Real> {
     /// Control periods a second [Hz].
-    pub control_rate: u32,
+    pub rate: T,
     /// Control period [s].
     pub period: T,
-    /// Motor turns over link turns as a whole-number fraction.
+    /// Motor turns over link turns as a fraction of whole numbers.
     pub ratio: [i32; 2],
     /// The same as a number.
     pub gear: T,
@@ -22,46 +22,64 @@ pub struct CompensationTables<T: Real> {
     pub turn: T,
     /// 1 / (r_c cos alpha): from half-backlash to half the lost motion [1/m].
     pub inverse_lever: T,
-    /// What turns with the motor while the gap is open, felt at the link [kg m^2].
+    /// Half the lost motion is never taken for more than this [rad].
+    pub widest_half: T,
+    /// What turns with the motor while the gap is open [kg m^2].
     pub motor_inertia: T,
     /// The rest [kg m^2].
     pub load_inertia: T,
     /// Its inverse.
     pub inverse_load_inertia: T,
+    /// Motor inertia over all inertia.
+    pub motor_share: T,
     /// Spring of the loop [N m/rad].
     pub position_gain: T,
     /// Damper of the loop [N m s/rad].
     pub damping_gain: T,
-    /// Integral of the loop over one period [N m/rad].
+    /// Integral of the plain loop over one period [N m/rad].
     pub integral_gain: T,
-    /// Spring of the loop while the motor is alone [N m/rad].
+    /// Share of what the limit cut off that the integral gives back each period.
+    pub back_calculation: T,
+    /// Spring of the motor's loop on its way through the gap [N m/rad].
     pub free_position_gain: T,
     /// Its damper [N m s/rad].
     pub free_damping_gain: T,
-    /// Share of what was cut off by the limit that the integral gives back each period.
-    pub back_calculation: T,
     /// Largest torque [N m].
     pub torque_limit: T,
-    /// Half-backlash to start from [m].
-    pub half_backlash: T,
     /// How far ahead set-points are wanted [s].
     pub lead: T,
-    /// Duration of a crossing [s].
-    pub crossing: T,
-    /// Planned torque beyond which a change of sign counts [N m].
+    /// Its inverse [1/s].
+    pub inverse_lead: T,
+    /// From deciding to the torque's effect [s].
+    pub reaction: T,
+    /// Duration of a crossing for each radian of half the lost motion [s/rad].
+    pub crossing_per_half: T,
+    /// Shortest crossing that torque and delays allow [s].
+    pub shortest_crossing: T,
+    /// Longest crossing [s].
+    pub longest_crossing: T,
+    /// Speed against the load at which a flank is met [rad/s].
+    pub landing_speed: T,
+    /// Rise of the law's torque after a landing, in one period.
+    pub landing_rise: T,
+    /// Share of the half-gap that has to open before the loss of a flank is believed.
+    pub opening: T,
+    /// Demand beyond which a change of its sign counts [N m].
     pub hysteresis: T,
     /// Feedback torque below which no flank is changed for it [N m].
     pub doubt: T,
-    /// Rise of the contact law after a landing, in one period.
-    pub landing_rise: T,
-    /// Speed of the search for a flank that was not where it was thought [rad/s].
-    pub seek_speed: T,
+    /// Error let be after the first crossing that feedback alone has caused, over half the lost motion.
+    pub first_indulgence: T,
+    /// The most that is let be, over half the lost motion.
+    pub last_indulgence: T,
+    /// What is left of it after one period.
+    pub forgiving: T,
     /// Learner of the load: growth of variances in one period (even part, friction), variance of a reading.
     pub load_learner: [T; 3],
     /// Inverse of the speed at which friction has its full size [s/rad].
     pub friction_slope: T,
-    /// Share of the half-gap that has to open before the loss of contact is believed.
-    pub opening: T,
-    /// Periods after which a doubled patience is halved again.
-    pub calm: u32,
+    /// Tracking filter of the impedance law's demand: gains of value and rate.
+    pub demand_gains: [T; 2],
+    /// Change of the trust in the estimates in one period.
+    pub trust_step: T,
 }

@@ -13,7 +13,7 @@ pub(super) fn clamp<T: Real>(value: T, low: T, high: T) -> T {
     }
 }
 
-/// Without its sign.
-pub(super) fn magnitude<T: Real>(value: T) -> T {
-    if value < T::ZERO { -value } else { value }
+/// By how much the value is beyond a dead band on either side of zero.
+pub(super) fn beyond<T: Real>(value: T, band: T) -> T {
+    value - clamp(value, -band, band)
 }

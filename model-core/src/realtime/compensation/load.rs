@@ -3,7 +3,9 @@
 //! a reversal predictable.
 
 use super::arithmetic::clamp;
+use super::intent::Situation;
 use crate::real::Real;
+use crate::realtime::observer::Estimates;
 use crate::tables::compensation::CompensationTables;
 
 /// Even part and dry friction of the load torque.
@@ -34,8 +36,15 @@ impl<T: Real> LoadModel<T> {
         self.friction * Self::direction(tables, speed)
     }
 
-    /// Takes an estimate of the load torque.
-    pub fn learn(&mut self, tables: &CompensationTables<T>, torque: T, speed: T) {
+    /// Takes the estimate of the load torque while a flank carries.
+    pub fn observe(&mut self, tables: &CompensationTables<T>, estimates: &Estimates<T>, situation: &Situation<T>) {
+        let torque = estimates.load_torque;
+        if torque.valid && torque.value.is_finite() && situation.sees && situation.contact != T::ZERO {
+            self.learn(tables, torque.value, situation.link_speed);
+        }
+    }
+
+    fn learn(&mut self, tables: &CompensationTables<T>, torque: T, speed: T) {
         let direction = Self::direction(tables, speed);
         let [growth_even, growth_friction, noise] = tables.load_learner;
         let [even, friction, both] = self.variance;

@@ -66,8 +66,10 @@ pub enum Stage {
     Touching,
     /// On the way through the gap.
     Crossing,
-    /// Past the end of the way without having met the other flank.
-    Seeking,
+    /// On the way back to the flank that was lost, or on to one that was not where it was thought.
+    Returning,
+    /// Control without compensation: the gap cannot be seen.
+    Plain,
 }
 
 /// What the compensation answers.
@@ -79,4 +81,6 @@ pub struct Shaped<T: Real> {
     pub stage: Stage,
     /// The flank that carries or is being gone to: 1 drives forwards.
     pub side: T,
+    /// Share of the compensation in the torque, the rest being plain control: 0 to 1.
+    pub trust: T,
 }

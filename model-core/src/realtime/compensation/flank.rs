@@ -1,0 +1,106 @@
+//! Which flank carries, when to leave it, and the way across. What torque the law wants is given; how the load will
+//! behave in between is taken as ballistic.
+
+use super::arithmetic::clamp;
+use super::intent::{Intent, Situation};
+use super::path::Path;
+use super::set_point::{Position, Stage};
+use crate::real::Real;
+use crate::tables::compensation::CompensationTables;
+
+/// The flank in use and the way to the next.
+#[derive(Debug, Clone)]
+pub(super) struct Flank<T: Real> {
+    /// 1 or -1: the flank that carries or is being gone to.
+    side: T,
+    stage: Stage,
+    path: Path<T>,
+    /// Position of the set-point when the path was laid.
+    origin: Position<T>,
+    elapsed: T,
+    duration: T,
+    /// How much of the law's torque is let through after a landing.
+    rise: T,
+}
+
+impl<T: Real> Flank<T> {
+    pub fn new() -> Self {
+        Self {
+            side: T::ONE,
+            stage: Stage::Touching,
+            path: Path::default(),
+            origin: Position::default(),
+            elapsed: T::ZERO,
+            duration: T::ZERO,
+            rise: T::ONE,
+        }
+    }
+
+    pub fn stage(&self) -> Stage {
+        self.stage
+    }
+
+    pub fn side(&self) -> T {
+        self.side
+    }
+
+    /// Nothing is known: whatever flank touches is the one.
+    pub fn forget(&mut self, situation: &Situation<T>) {
+        self.stage = Stage::Touching;
+        self.rise = T::ONE;
+        if situation.contact != T::ZERO {
+            self.side = situation.contact;
+        }
+    }
+
+    /// Torque of this period, limits aside [N m].
+    pub fn step(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, intent: &Intent<T>) -> T {
+        let touching = situation.contact * self.side > T::ZERO;
+        let turned = self.side * (intent.demand_now + intent.demand_ahead) < -tables.hysteresis
+            && self.side * intent.demand_ahead < -tables.hysteresis;
+        let opened = situation.half - self.side * situation.gap;
+        match self.stage {
+            Stage::Touching if turned && self.rise >= T::ONE => {
+                self.side = -self.side;
+                self.set_out(tables, situation, intent, Stage::Crossing);
+            }
+            Stage::Touching if !touching && opened > tables.opening * situation.half && self.rise >= T::ONE => {
+                self.set_out(tables, situation, intent, Stage::Returning);
+            }
+            Stage::Crossing | Stage::Returning if touching => {
+                self.stage = Stage::Touching;
+                self.rise = T::ZERO;
+            }
+            Stage::Crossing | Stage::Returning if self.elapsed >= self.duration + self.duration => {
+                if turned {
+                    self.side = -self.side;
+                }
+                self.set_out(tables, situation, intent, Stage::Returning);
+            }
+            _ => {}
+        }
+        if self.stage == Stage::Touching {
+            self.rise = clamp(self.rise + tables.landing_rise, T::ZERO, T::ONE);
+            return self.rise * intent.law;
+        }
+        self.elapsed += tables.period;
+        let [target, rate, acceleration] = self.path.at(self.elapsed);
+        let drift = tables.turn * situation.origin.less(self.origin.turns, self.origin.fraction);
+        tables.motor_inertia * acceleration
+            + tables.free_position_gain * (target - drift - situation.motor)
+            + tables.free_damping_gain * (rate - situation.motor_speed)
+    }
+
+    /// Lays a path to the flank where the load will be, left to itself, meeting it at a small speed.
+    fn set_out(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, intent: &Intent<T>, stage: Stage) {
+        let time = intent.crossing;
+        let speed = situation.link_speed + time * intent.free_acceleration;
+        let place = time * T::HALF * (situation.link_speed + speed) - situation.error;
+        let end = [place + self.side * situation.half, speed + self.side * tables.landing_speed];
+        self.path = Path::new([situation.motor, situation.motor_speed], end, time);
+        self.origin = situation.origin;
+        self.duration = time;
+        self.elapsed = T::ZERO;
+        self.stage = stage;
+    }
+}

@@ -41,22 +41,19 @@ pub fn design_compensation<T: Real>(
     let pole = settings.bandwidth;
     let half_backlash = joint.sun_planet.half_backlash.iter().sum::<f64>() / geometry.planets as f64;
     let env = |name: &str, default: f64| std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default);
-    // Planets that hang at the old flank are struck at the path's highest speed, 15/8 of its mean: their force is that
-    // speed times sqrt(stiffness mass).
-    let planet_impedance =
-        geometry.planets as f64 * libm::sqrt(joint.sun_planet.mean_stiffness * joint.bodies.planet_equivalent_mass / geometry.planets as f64 * geometry.planets as f64) ;
-    let _ = planet_impedance;
-    let rated_force = joint.rated_output_torque / (2.0 * lever);
-    let struck = geometry.planets as f64 * libm::sqrt(joint.sun_planet.mean_stiffness * joint.bodies.planet_equivalent_mass);
-    let crossing_per_backlash = 15.0 / 8.0 * 4.0 * struck / (env("FORCE", 0.5) * rated_force);
-    let crossing_per_half = crossing_per_backlash * lever;
+    // Planets that hang at the old flank are struck at the path's highest speed, 15/8 of its mean: the force of each is
+    // that speed times sqrt(stiffness mass). As a torque at the link, over the lost motion that is crossed.
+    let planets = geometry.planets as f64;
+    let impedance = libm::sqrt(joint.sun_planet.mean_stiffness * joint.bodies.planet_equivalent_mass);
+    let strike_per_half = 15.0 / 8.0 * 4.0 * lever * planets * impedance * 2.0 * lever;
+    let strike_torque = env("FORCE", 0.5) * joint.rated_output_torque;
     let reaction = period * (1.0 + settings.torque_delay) + settings.torque_lag;
     let limit = gear * settings.torque_limit;
     let half = half_backlash / lever;
     // Least-jerk paths need 10/sqrt(3) way/time^2 of acceleration.
     let by_torque = |half: f64| libm::sqrt(10.0 / libm::sqrt(3.0) * 2.0 * half * motor_inertia / (0.5 * limit));
     let shortest = by_torque(half).max(8.0 * reaction);
-    let crossing = (crossing_per_half * half).max(shortest);
+    let crossing = (strike_per_half * half / strike_torque).max(shortest);
     let lead = crossing + reaction;
     let demand_pole = env("DPOLE", 400.0) * period;
     Ok(CompensationTables {
@@ -81,12 +78,14 @@ pub fn design_compensation<T: Real>(
         free_damping_gain: real(env("FREEKD", 3.0 * inertia * pole)),
         torque_limit: real(limit),
         lead: real(lead),
-        inverse_lead: real(1.0 / lead),
         reaction: real(reaction),
-        crossing_per_half: real(crossing_per_half),
+        strike_per_half: real(strike_per_half),
+        strike_torque: real(strike_torque),
         shortest_crossing: real(shortest),
         longest_crossing: real(env("LONG", 3.0) * crossing),
         landing_speed: real(env("SEEK", 0.05)),
+        landing_haste: real(env("HASTE", 1.0) * env("SEEK", 0.05) / crossing),
+        fastest_landing: real(env("FAST", 6.0) * env("SEEK", 0.05)),
         landing_rise: real(period / env("RISE", 2e-3)),
         opening: real(env("OPEN", 0.3)),
         hysteresis: real(env("HYST", 0.005) * limit),

@@ -48,18 +48,23 @@ pub struct CompensationTables<T: Real> {
     pub torque_limit: T,
     /// How far ahead set-points are wanted [s].
     pub lead: T,
-    /// Its inverse [1/s].
-    pub inverse_lead: T,
     /// From deciding to the torque's effect [s].
     pub reaction: T,
-    /// Duration of a crossing for each radian of half the lost motion [s/rad].
-    pub crossing_per_half: T,
+    /// Duration of a crossing times the torque that the struck planets stand for, for each radian of half the lost
+    /// motion [N m s/rad].
+    pub strike_per_half: T,
+    /// That torque at little demand [N m].
+    pub strike_torque: T,
     /// Shortest crossing that torque and delays allow [s].
     pub shortest_crossing: T,
     /// Longest crossing [s].
     pub longest_crossing: T,
     /// Speed against the load at which a flank is met [rad/s].
     pub landing_speed: T,
+    /// By how much a landing quickens while it finds nothing [rad/s^2].
+    pub landing_haste: T,
+    /// Its highest speed [rad/s].
+    pub fastest_landing: T,
     /// Rise of the law's torque after a landing, in one period.
     pub landing_rise: T,
     /// Share of the half-gap that has to open before the loss of a flank is believed.

@@ -65,17 +65,16 @@ impl<T: Real> Flank<T> {
                 self.set_out(tables, situation, intent, Stage::Crossing);
             }
             Stage::Touching if !touching && opened > tables.opening * situation.half && self.rise >= T::ONE => {
-                self.set_out(tables, situation, intent, Stage::Returning);
+                self.land();
             }
-            Stage::Crossing | Stage::Returning if touching => {
+            Stage::Crossing | Stage::Landing if touching => {
                 self.stage = Stage::Touching;
                 self.rise = T::ZERO;
             }
-            Stage::Crossing | Stage::Returning if self.elapsed >= self.duration + self.duration => {
-                if turned {
-                    self.side = -self.side;
-                }
-                self.set_out(tables, situation, intent, Stage::Returning);
+            Stage::Crossing if self.elapsed >= self.duration => self.land(),
+            Stage::Landing if turned && self.elapsed >= self.duration => {
+                self.side = -self.side;
+                self.set_out(tables, situation, intent, Stage::Crossing);
             }
             _ => {}
         }
@@ -84,11 +83,23 @@ impl<T: Real> Flank<T> {
             return self.rise * intent.law;
         }
         self.elapsed += tables.period;
+        if self.stage == Stage::Landing {
+            // Where the flank is does not enter, so that a wrong width costs time only; nor can it be chased for ever.
+            let speed = tables.landing_speed + tables.landing_haste * self.elapsed;
+            let closing = self.side * clamp(speed, T::ZERO, tables.fastest_landing);
+            return tables.motor_inertia * intent.free_acceleration
+                + tables.free_damping_gain * (situation.link_speed + closing - situation.motor_speed);
+        }
         let [target, rate, acceleration] = self.path.at(self.elapsed);
         let drift = tables.turn * situation.origin.less(self.origin.turns, self.origin.fraction);
         tables.motor_inertia * acceleration
             + tables.free_position_gain * (target - drift - situation.motor)
             + tables.free_damping_gain * (rate - situation.motor_speed)
+    }
+
+    fn land(&mut self) {
+        self.stage = Stage::Landing;
+        self.elapsed = T::ZERO;
     }
 
     /// Lays a path to the flank where the load will be, left to itself, meeting it at a small speed.

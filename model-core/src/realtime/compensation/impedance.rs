@@ -1,7 +1,6 @@
 //! The control law of impedance mode: the commanded spring on the link, the commanded damper on the motor, the
 //! commanded torque on top. It comes without a preview, so what will be asked is extrapolated from its own course.
 
-use super::arithmetic::beyond;
 use super::intent::{Intent, Situation, crossing_time};
 use super::load::LoadModel;
 use super::set_point::ImpedancePoint;
@@ -31,14 +30,13 @@ impl<T: Real> ImpedanceLaw<T> {
         situation: &Situation<T>,
         point: &ImpedancePoint<T>,
     ) -> Intent<T> {
-        let crossing = crossing_time(tables, situation.half);
         let spring = point.torque + point.stiffness * situation.error;
         let law = spring + point.damping * (point.speed - situation.motor_speed);
         let free = load.even() + load.drag(tables, situation.link_speed);
         // Law and load accelerate motor and load together; the teeth pass on what is not the motor's share.
         let asked = spring + point.damping * situation.error_rate;
         let demand = asked - tables.motor_share * (asked - free);
-        let demand_now = beyond(demand, tables.doubt * T::ZERO);
+        let demand_now = demand;
 
         // A tracking filter: position and rate of the demand.
         let [value, rate] = self.smooth.unwrap_or([demand, T::ZERO]);
@@ -47,6 +45,8 @@ impl<T: Real> ImpedanceLaw<T> {
         let value = predicted + tables.demand_gains[0] * off;
         let rate = rate + tables.demand_gains[1] * off;
         self.smooth = Some([value, rate]);
+        let unhurried = crossing_time(tables, situation.half, T::ZERO) + tables.reaction;
+        let crossing = crossing_time(tables, situation.half, value + unhurried * rate);
         let demand_ahead = value + (crossing + tables.reaction) * rate;
         Intent {
             law,

@@ -89,7 +89,10 @@ impl<T: Real> Intent<T> {
     }
 }
 
-/// How long a crossing takes: the force of planets that are struck on the way stays within its limit.
-pub(super) fn crossing_time<T: Real>(tables: &CompensationTables<T>, half: T) -> T {
-    clamp(tables.crossing_per_half * half, tables.shortest_crossing, tables.longest_crossing)
+/// How long a crossing takes. Planets that are struck on the way are struck no harder than the force that will be passed
+/// on anyway (`demand`), or than a set share of the rated one.
+pub(super) fn crossing_time<T: Real>(tables: &CompensationTables<T>, half: T, demand: T) -> T {
+    let force = clamp(if demand < T::ZERO { -demand } else { demand }, tables.strike_torque, tables.torque_limit);
+    let by_strike = if force > T::ZERO { (tables.strike_per_half * half).over(force) } else { tables.longest_crossing };
+    clamp(by_strike, tables.shortest_crossing, tables.longest_crossing)
 }

@@ -36,30 +36,34 @@ impl<T: Real> PositionLaw<T> {
         now: &Motion<T>,
         ahead: Option<&Motion<T>>,
     ) -> Intent<T> {
-        let crossing = crossing_time(tables, situation.half);
-        let lead = crossing + tables.reaction;
-        let (ahead_speed, ahead_acceleration) = self.ahead(tables, now, ahead, lead);
-        let rests = now.speed == T::ZERO
-            && now.acceleration == T::ZERO
-            && ahead_speed == T::ZERO
-            && ahead_acceleration == T::ZERO;
+        let (asked, known) = self.course(tables, now, ahead);
+        let rests = now.speed == T::ZERO && now.acceleration == T::ZERO && asked == [T::ZERO; 2];
         let let_be = if rests { self.indulgence } else { T::ZERO };
 
-        let error = beyond(situation.error, let_be);
         let law = (tables.load_inertia + tables.motor_inertia) * now.acceleration
             + load.even()
             + load.drag(tables, now.speed)
-            + tables.position_gain * error
+            + tables.position_gain * beyond(situation.error, let_be)
             + tables.damping_gain * (now.speed - situation.motor_speed);
         let feedback = |time: T| {
             let error = beyond(situation.error + time * situation.error_rate, let_be);
             let torque = tables.position_gain * error + tables.damping_gain * situation.error_rate;
             beyond(torque, tables.doubt)
         };
+        let planned = |time: T| {
+            let part = time.over(known);
+            let speed = now.speed + time * (now.acceleration + T::HALF * part * asked[1]);
+            let speed = if ahead.is_some() { now.speed + part * asked[0] } else { speed };
+            tables.load_inertia * (now.acceleration + part * asked[1])
+                + load.even()
+                + load.drag(tables, speed - situation.error_rate)
+        };
         let free = load.even() + load.drag(tables, situation.link_speed);
-        let planned_ahead = tables.load_inertia * ahead_acceleration
-            + load.even()
-            + load.drag(tables, ahead_speed - situation.error_rate);
+        // How hard the far flank will be needed says how fast to go there, and that again when to start.
+        let unhurried = crossing_time(tables, situation.half, T::ZERO) + tables.reaction;
+        let crossing = crossing_time(tables, situation.half, planned(unhurried) + feedback(unhurried));
+        let lead = crossing + tables.reaction;
+        let planned_ahead = planned(lead);
         let demand_ahead = planned_ahead + feedback(lead);
         self.indulge(tables, rests, planned_ahead, demand_ahead, situation.half);
         Intent {
@@ -72,21 +76,13 @@ impl<T: Real> PositionLaw<T> {
         }
     }
 
-    /// Speed and acceleration asked for at a time from now; without a preview, by the jerk.
-    fn ahead(&mut self, tables: &CompensationTables<T>, now: &Motion<T>, ahead: Option<&Motion<T>>, lead: T) -> (T, T) {
+    /// By how much speed and acceleration asked for will have changed after a time that is never zero: as the preview
+    /// says or, without one, as the jerk does.
+    fn course(&mut self, tables: &CompensationTables<T>, now: &Motion<T>, ahead: Option<&Motion<T>>) -> ([T; 2], T) {
         let before = self.before.replace(now.acceleration);
         match ahead {
-            Some(ahead) => {
-                let part = lead * tables.inverse_lead;
-                (
-                    now.speed + part * (ahead.speed - now.speed),
-                    now.acceleration + part * (ahead.acceleration - now.acceleration),
-                )
-            }
-            None => {
-                let growth = before.map_or(T::ZERO, |before| lead * tables.rate * (now.acceleration - before));
-                (now.speed + lead * (now.acceleration + T::HALF * growth), now.acceleration + growth)
-            }
+            Some(ahead) => ([ahead.speed - now.speed, ahead.acceleration - now.acceleration], tables.lead),
+            None => ([T::ZERO, before.map_or(T::ZERO, |before| now.acceleration - before)], tables.period),
         }
     }
 

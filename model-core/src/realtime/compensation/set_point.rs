@@ -66,8 +66,8 @@ pub enum Stage {
     Touching,
     /// On the way through the gap.
     Crossing,
-    /// On the way back to the flank that was lost, or on to one that was not where it was thought.
-    Returning,
+    /// Closing on a flank at a small speed: past the end of the way, or because the flank was lost.
+    Landing,
     /// Control without compensation: the gap cannot be seen.
     Plain,
 }

@@ -51,7 +51,7 @@ pub fn design_compensation<T: Real>(
     let limit = gear * settings.torque_limit;
     let half = half_backlash / lever;
     // Least-jerk paths need 10/sqrt(3) way/time^2 of acceleration.
-    let by_torque = |half: f64| libm::sqrt(10.0 / libm::sqrt(3.0) * 2.0 * half * motor_inertia / (0.5 * limit));
+    let by_torque = |half: f64| libm::sqrt(10.0 / libm::sqrt(3.0) * 2.0 * half * motor_inertia / (env("SHARE", 0.5) * limit));
     let shortest = by_torque(half).max(8.0 * reaction);
     let crossing = (strike_per_half * half / strike_torque).max(shortest);
     let lead = crossing + reaction;

@@ -59,6 +59,8 @@ pub trait Real:
     fn tanh(self) -> Self;
     /// Quotient; the caller has made sure that `divisor` is not zero.
     fn over(self, divisor: Self) -> Self;
+    /// Square root of what is not negative; correctly rounded, so the same bits everywhere.
+    fn square_root(self) -> Self;
     /// Neither infinite nor NaN.
     fn is_finite(self) -> bool;
     /// Bits for a digest.
@@ -66,7 +68,7 @@ pub trait Real:
 }
 
 macro_rules! real {
-    ($scalar:ty, $tanh:path) => {
+    ($scalar:ty, $tanh:path, $square_root:path) => {
         impl Real for $scalar {
             const ZERO: Self = 0.0;
             const HALF: Self = 0.5;
@@ -105,6 +107,9 @@ macro_rules! real {
             fn over(self, divisor: Self) -> Self {
                 self / divisor
             }
+            fn square_root(self) -> Self {
+                $square_root(self)
+            }
             fn is_finite(self) -> bool {
                 <$scalar>::is_finite(self)
             }
@@ -115,5 +120,5 @@ macro_rules! real {
     };
 }
 
-real!(f32, libm::tanhf);
-real!(f64, libm::tanh);
+real!(f32, libm::tanhf, libm::sqrtf);
+real!(f64, libm::tanh, libm::sqrt);

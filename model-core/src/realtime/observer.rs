@@ -6,21 +6,42 @@
 //!    turns and over wrap-around.
 //! 2. `drive_side`, a disturbance observer on the motor, gives the mesh force; `load_side`, the same on the link,
 //!    position, speed and load torque. Both are linear flows from tables.
-//! 3. `contact` decides which flank touches, from force and gap coordinate.
+//! 3. `motion` tells crossing from rest without knowing the width; `bias` takes from open gaps what the motor's torque is
+//!    wrong by; `contact` decides which flank touches.
 //! 4. `learner` is one small recursive least squares, updated every few periods in settled contact, for half-backlash,
 //!    offset, compliance, skew and the encoders' error maps.
 //! 5. `supervisor` watches the output encoder and falls back to the motor alone.
 //!
 //! `docs/observer.md` derives all of it and says what it cannot know.
 
+mod bias;
+mod contact;
+mod counts;
+mod drive_side;
 mod estimates;
+mod interval;
+mod learner;
+mod load_side;
+mod motion;
+mod regressors;
 mod samples;
+mod supervisor;
 
 pub use estimates::{Doubt, Estimate, Estimates, Shaft, Source};
 pub use samples::{Reading, Samples};
 
+use crate::mesh::ContactState;
 use crate::real::Real;
 use crate::tables::observer::ObserverTables;
+use bias::Bias;
+use contact::{ByForce, ByPosition};
+use counts::{Advance, Counts};
+use drive_side::DriveSide;
+use interval::{Interval, Knowledge};
+use learner::{Learner, Regressors};
+use load_side::LoadSide;
+use motion::{Motion, magnitude};
+use supervisor::Supervisor;
 
 /// Parameters learnt when the encoders count as free of harmonics: half-gap, offset, compliance, skew.
 pub const PLAIN: usize = 4;
@@ -33,23 +54,189 @@ pub const MAPPED: usize = 12;
 #[derive(Debug, Clone)]
 pub struct Observer<'tables, T: Real, const P: usize> {
     tables: &'tables ObserverTables<T>,
+    counts: Counts,
+    drive: DriveSide<T>,
+    load: LoadSide<T>,
+    bias: Bias<T>,
+    by_force: ByForce,
+    motion: Motion<T>,
+    learner: Learner<T, P>,
+    interval: Interval<T, P>,
+    knowledge: Knowledge<T>,
+    supervisor: Supervisor<T>,
+    /// Torque that the meshes put on the load side, by the motor side alone [N m].
+    from_meshes: T,
     estimates: Estimates<T>,
+}
+
+/// What one period comes to before anything is decided.
+#[derive(Debug, Clone, Copy)]
+struct Now<T: Real, const P: usize> {
+    /// What the way depends on, teeth left out.
+    free: Regressors<T, P>,
+    /// Motor less ratio times link along the line of action, as measured [m].
+    raw: T,
+    /// The same with everything taken out that was learnt, wind-up left in [m].
+    way: T,
+    /// Rate of either [m/s].
+    rate: T,
+    /// Way that goes on while what is measured lags behind, where it is more than noise [m].
+    soon: T,
+    /// Force that the motor loses, friction and bias included [N].
+    lost: T,
+    /// Direction of the motor's dry friction.
+    direction: T,
+    /// Mesh force from the motor side [N].
+    force: T,
 }
 
 impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
     /// An observer that has seen nothing yet and knows what was designed.
     pub fn new(tables: &'tables ObserverTables<T>) -> Self {
-        Self { tables, estimates: Estimates::default() }
+        let learner = Learner::new(&tables.learner);
+        let mut counts = Counts::default();
+        if !tables.counts.has_output {
+            counts.imply();
+        }
+        Self {
+            tables,
+            counts,
+            drive: DriveSide::default(),
+            load: LoadSide::default(),
+            bias: Bias::new(&tables.contact),
+            by_force: ByForce::default(),
+            motion: Motion::new(),
+            knowledge: Knowledge::new(tables, &learner),
+            learner,
+            interval: Interval::new(),
+            supervisor: Supervisor::new(tables.counts.has_output),
+            from_meshes: T::ZERO,
+            estimates: Estimates::default(),
+        }
     }
 
     /// Takes the samples of one control period and says what they mean.
     pub fn step(&mut self, samples: &Samples<T>) -> &Estimates<T> {
-        let _ = (self.tables, samples);
+        self.follow(samples);
+        let now = self.now();
+        self.decide(&now);
+        self.watch(&now);
+        self.learn(&now);
+        self.say(&now);
         &self.estimates
     }
 
     /// What the last step said.
     pub fn estimates(&self) -> &Estimates<T> {
         &self.estimates
+    }
+
+    /// Counts, motor side and load side go on by one period.
+    fn follow(&mut self, samples: &Samples<T>) {
+        let tables = self.tables;
+        let command = if samples.torque.is_finite() { samples.torque } else { T::ZERO };
+        let taken = self.counts.take(&tables.counts, samples.motor, samples.output);
+        let age = |time: u32| T::from_i32(samples.time.wrapping_sub(time) as i32) * tables.tick;
+
+        let motor_by = if let Advance::By(by) = taken.motor { by } else { 0 };
+        self.drive.predict(&tables.drive, &tables.current, command, tables.counts.motor.angle * T::from_i32(motor_by));
+        match taken.motor {
+            Advance::By(_) => self.drive.correct(&tables.drive, age(samples.motor.time)),
+            // The counts stand, and so does the angle beyond them.
+            Advance::Jumped(_) | Advance::Began => self.drive.ahead = T::ZERO,
+            Advance::Doubted => {}
+        }
+
+        self.load.predict(&tables.load, self.from_meshes, tables.counts.output.angle * T::from_i32(taken.turned));
+        self.supervisor.hear(&tables.supervisor, taken.output);
+        if self.supervisor.source() == Source::Both {
+            if let (Some(reading), Some(Advance::By(_))) = (samples.output, taken.output) {
+                let surprise = self.load.speed * age(reading.time) - self.load.ahead;
+                self.load.correct(&tables.load, surprise);
+            }
+        }
+    }
+
+    /// Puts the two sides together.
+    fn now(&self) -> Now<T, P> {
+        let tables = self.tables;
+        let levers = &tables.levers;
+        let (output, difference) = self.counts.used();
+        let motor_phase = self.counts.motor.phase(&tables.counts.motor);
+        let both = self.supervisor.source() == Source::Both;
+        let link_speed = if both { self.load.speed } else { T::ZERO };
+        let free = regressors::free(link_speed, motor_phase, both.then(|| output.phase(&tables.counts.output)));
+        let raw = tables.counts.length * T::from_i64(difference) + levers.sun * self.drive.ahead
+            - levers.output * self.load.ahead;
+        let lost = self.drive.taken * levers.per_sun;
+        let direction = Bias::direction(&tables.contact, self.drive.speed);
+        let net = lost - self.bias.at(direction);
+        // Losses in proportion to the load are friction too: they take from what drives and add to what holds back.
+        let gain = if net * direction > T::ZERO { tables.contact.efficiency } else { tables.contact.per_efficiency };
+        let force = net + net * magnitude(direction) * (gain - T::ONE);
+        let rate = levers.sun * self.drive.speed - levers.output * self.load.speed;
+        let soon = if magnitude(rate) > tables.contact.rate_deviation { rate * tables.contact.lag } else { T::ZERO };
+        Now { free, raw, rate, soon, way: raw - self.learner.way(&free), lost, direction, force }
+    }
+
+    /// Contact, and what the meshes pass on.
+    fn decide(&mut self, now: &Now<T, P>) {
+        let tables = self.tables;
+        let known = &self.knowledge;
+        self.estimates.contact = self.by_force.step(now.force, known.force_deviation);
+        let mut force = now.force;
+        self.estimates.reported_contact = if known.width_is_known && self.supervisor.source() == Source::Both {
+            let before = self.estimates.reported_contact;
+            let (contact, both) = self.by_position(now.way, now.soon).contact(before, force, known.both_deviation);
+            force = both;
+            contact
+        } else {
+            self.estimates.contact
+        };
+        let touching = self.estimates.reported_contact != ContactState::Separated;
+        let torque = |force: T| if touching { force * tables.levers.output } else { T::ZERO };
+        self.from_meshes = torque(now.force);
+        self.estimates.mesh_torque.value = torque(force);
+    }
+
+    fn mesh_force(&self) -> T {
+        self.estimates.mesh_torque.value * self.tables.levers.per_output
+    }
+
+    /// What a way says of the teeth.
+    fn by_position(&self, way: T, soon: T) -> ByPosition<T> {
+        let [half_gap, compliance] = [0, 2].map(|index| self.learner.values.get(index).copied().unwrap_or(T::ONE));
+        let known = &self.knowledge;
+        ByPosition { way, soon, half_gap, blur: known.blur, compliance, weight: known.position_weight }
+    }
+
+    /// Whether the output encoder can be right.
+    fn watch(&mut self, now: &Now<T, P>) {
+        let _ = now;
+    }
+
+    /// Everything for a controller.
+    fn say(&mut self, now: &Now<T, P>) {
+        let tables = self.tables;
+        let known = &self.knowledge;
+        let position = self.by_position(now.way, now.soon);
+        let gap = if known.width_is_known {
+            position.gap(tables.learner.mesh_compliance)
+        } else {
+            // Without a width: less the wind-up of the force.
+            now.way - (position.compliance - tables.learner.mesh_compliance) * self.mesh_force()
+        };
+        let value = |index: usize| self.learner.values.get(index).copied().unwrap_or(T::ZERO);
+        let estimates = &mut self.estimates;
+        estimates.gap.value = gap;
+        estimates.gap_rate = if estimates.reported_contact == ContactState::Separated { now.rate } else { T::ZERO };
+        estimates.source = self.supervisor.source();
+        estimates.settled = known.settled;
+        estimates.load_torque.value = self.load.torque;
+        estimates.half_backlash.value = value(0) * T::HALF;
+        estimates.encoder_offset.value = value(1) * tables.levers.per_output;
+        estimates.compliance.value = value(2) * tables.levers.per_output * tables.levers.per_output;
+        estimates.skew.value = value(3) * tables.levers.per_output;
+        estimates.torque_bias.value = self.bias.bias * tables.levers.sun;
     }
 }

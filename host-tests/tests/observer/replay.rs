@@ -1,0 +1,194 @@
+//! The observer over a recording, and what its estimates are worth against the truth. Bounds are the tests' business.
+
+use std::f64::consts::TAU;
+
+use host_tests::drive_train::DriveTrainParameters;
+use model_core::design::observer::{EncoderSettings, ObserverSettings};
+use model_core::joint::JointParameters;
+use model_core::mesh::ContactState;
+use model_core::real::Real;
+use model_core::realtime::observer::{Estimates, Observer, Reading, Samples};
+use model_core::tables::observer::ObserverTables;
+
+use crate::motion::Moment;
+
+/// Ticks of the samples' clock in a second.
+pub const CLOCK_RATE: u32 = 10_000_000;
+
+/// What a data sheet says of a drive train: sizes, never the phases or signs of its errors.
+pub fn settings(train: &DriveTrainParameters) -> ObserverSettings {
+    let encoder = |encoder: &host_tests::drive_train::EncoderParameters| EncoderSettings {
+        counts_per_turn: 1 << encoder.bits,
+        wraps_at: 1 << encoder.bits,
+        harmonic_error: encoder.once_per_turn_error.max(encoder.twice_per_turn_error),
+    };
+    ObserverSettings {
+        control_rate: train.control_rate as u32,
+        clock_rate: CLOCK_RATE,
+        motor_encoder: encoder(&train.motor_encoder),
+        output_encoder: Some(encoder(&train.output_encoder)),
+        fastest_motor: 300.0,
+        torque_delay: train.delay_periods,
+        torque_lag: train.motor.current_lag,
+        torque_limit: train.motor.torque_limit.min(1e3),
+        torque_noise_ratio: train.motor.torque_noise_ratio,
+        torque_uncertainty: 0.02 * train.motor.torque_limit.min(1e3),
+        torque_ripple: train.motor.cogging_torque,
+        efficiency: train.efficiency,
+        backlash_uncertainty: 0.5,
+        compliance_uncertainty: 0.3,
+        skew_uncertainty: 60e-6,
+    }
+}
+
+/// Samples of a recorded moment.
+pub fn samples<T: Real>(settings: &ObserverSettings, moment: &Moment, period: usize) -> Samples<T> {
+    let time = (period as u64 * u64::from(settings.clock_rate / settings.control_rate)) as u32;
+    let counts = |counts: i64, encoder: EncoderSettings| {
+        let range = if encoder.wraps_at == 0 { 1 << 32 } else { i64::from(encoder.wraps_at) };
+        counts.rem_euclid(range) as u32
+    };
+    Samples {
+        time,
+        motor: Reading { counts: counts(moment.motor_counts, settings.motor_encoder), time },
+        output: settings.output_encoder.map(|encoder| Reading { counts: counts(moment.output_counts, encoder), time }),
+        torque: T::from_f64(moment.command),
+    }
+}
+
+/// Figures of one replay, from a moment on.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Figures {
+    /// Root mean square of the gap's error, over the gap 4b.
+    pub gap: f64,
+    /// Largest.
+    pub gap_worst: f64,
+    /// Part of the time outside the bands in which the reported contact was right.
+    pub contact: f64,
+    /// Landings of which the observer never said anything.
+    pub missed: usize,
+    /// Landings.
+    pub landings: usize,
+    /// Median and 95th percentile of the delay in reporting a landing [s].
+    pub delay: [f64; 2],
+    /// Root mean square of the load torque's error over what is rated.
+    pub load_torque: f64,
+    /// Root mean square of the transmitted torque's error over what is rated.
+    pub mesh_torque: f64,
+    /// When the width was right to 5 % for good [s].
+    pub width_after: f64,
+    /// Width at the end less the true one, over it.
+    pub width: f64,
+    /// Mean of squared gap errors over their variances.
+    pub honesty: f64,
+}
+
+/// Replays a recording; figures are taken from `from` seconds on. `watch` sees every estimate.
+pub fn replay<T: Real, const P: usize>(
+    joint: &JointParameters,
+    tables: &ObserverTables<T>,
+    settings: &ObserverSettings,
+    log: &[Moment],
+    from: f64,
+    mut watch: impl FnMut(usize, &Moment, &Estimates<T>),
+) -> Figures {
+    let mut observer = Observer::<T, P>::new(tables);
+    let half_backlash = joint.sun_planet.half_backlash[0];
+    let gap = 4.0 * half_backlash;
+    let rated_force = joint.rated_output_torque / (2.0 * joint.geometry.carrier_base_radius());
+    let lever = 2.0 * joint.geometry.carrier_base_radius();
+    let period = 1.0 / f64::from(settings.control_rate);
+    let first = (from / period) as usize;
+    let mut sums = [0.0; 4];
+    let mut worst: f64 = 0.0;
+    let (mut right, mut judged) = (0_usize, 0_usize);
+    let mut width_wrong_at = 0;
+    let mut width = 0.0;
+    let mut landing: Option<(usize, ContactState)> = None;
+    let mut side_before = ContactState::Separated;
+    let mut delays = Vec::new();
+    let mut missed = 0;
+    for (k, moment) in log.iter().enumerate() {
+        let estimates = *observer.step(&samples(settings, moment, k));
+        watch(k, moment, &estimates);
+        let value = |value: T| value.to_f64();
+        width = value(estimates.half_backlash.value) / half_backlash - 1.0;
+        if width.abs() > 0.05 {
+            width_wrong_at = k;
+        }
+        if k < first {
+            continue;
+        }
+        let error = (value(estimates.gap.value) - moment.gap) / gap;
+        sums[0] += error * error;
+        worst = worst.max(error.abs());
+        sums[1] += ((value(estimates.load_torque.value) - moment.load_torque) / joint.rated_output_torque).powi(2);
+        sums[2] += ((value(estimates.mesh_torque.value) - moment.sun_force * lever) / joint.rated_output_torque).powi(2);
+        sums[3] += (error * gap).powi(2) / value(estimates.gap.variance).max(1e-30);
+        let side = if moment.sun_force > 0.0 {
+            ContactState::DriveSide
+        } else if moment.sun_force < 0.0 {
+            ContactState::BackSide
+        } else {
+            ContactState::Separated
+        };
+        // Within 5 % of the gap from an edge, or with less than 5 % of the rated force, nobody is judged.
+        let clear = if side == ContactState::Separated {
+            moment.gap.abs() < 0.45 * gap
+        } else {
+            moment.sun_force.abs() > 0.05 * rated_force
+        };
+        if clear {
+            judged += 1;
+            right += usize::from(side == estimates.reported_contact);
+        }
+        // A landing: every mesh closed on the flank opposite to the last one.
+        if side != ContactState::Separated && side != side_before && moment.gap.abs() > 0.5 * gap {
+            if side_before != ContactState::Separated {
+                missed += usize::from(landing.is_some());
+                landing = Some((k, side));
+            }
+            side_before = side;
+        }
+        if let Some((since, side)) = landing {
+            if estimates.reported_contact == side {
+                delays.push((k - since) as f64 * period);
+                landing = None;
+            }
+        }
+    }
+    delays.sort_by(f64::total_cmp);
+    let part = |part: f64| delays.get((part * delays.len() as f64) as usize).copied().unwrap_or(0.0);
+    let counted = (log.len() - first) as f64;
+    let mean = |sum: f64| (sum / counted).sqrt();
+    Figures {
+        gap: mean(sums[0]),
+        gap_worst: worst,
+        contact: right as f64 / judged.max(1) as f64,
+        missed,
+        landings: delays.len() + missed,
+        delay: [part(0.5), part(0.95)],
+        load_torque: mean(sums[1]),
+        mesh_torque: mean(sums[2]),
+        width_after: (width_wrong_at + 1) as f64 * period,
+        width,
+        honesty: sums[3] / counted,
+    }
+}
+
+/// Readings of other encoders in the same motion: the truth at the control periods, older by the skew at the speed then.
+pub fn with_encoders(log: &[Moment], train: &DriveTrainParameters) -> Vec<Moment> {
+    let read = |[angle, speed]: [f64; 2], encoder: &host_tests::drive_train::EncoderParameters| {
+        let angle = angle - encoder.skew * speed;
+        let error = encoder.once_per_turn_error * (angle + encoder.once_per_turn_phase).sin()
+            + encoder.twice_per_turn_error * (2.0 * angle + encoder.twice_per_turn_phase).sin();
+        ((angle + error) / TAU * f64::from(1_u32 << encoder.bits)).floor() as i64
+    };
+    log.iter()
+        .map(|moment| Moment {
+            motor_counts: read(moment.motor, &train.motor_encoder),
+            output_counts: read(moment.link, &train.output_encoder),
+            ..*moment
+        })
+        .collect()
+}

@@ -1,0 +1,241 @@
+//! A learning interval: means over a few periods, and what is known at its end. What is done with either is left to the
+//! observer.
+
+use super::contact::sign;
+use super::learner::{Learner, Regressors};
+use super::{Bias, Now, Observer, regressors};
+use crate::mesh::ContactState;
+use crate::real::Real;
+use crate::realtime::observer::motion::{Shown, magnitude};
+use crate::realtime::observer::{MAPPED, Source};
+use crate::tables::observer::ObserverTables;
+
+/// Intervals of rest on a flank after which contact counts as settled: the window of the speed has passed, and the
+/// swing of an impact with it.
+const SETTLED_AFTER: u32 = 3;
+
+/// Intervals well inside the gap after which the mesh force counts as gone from the motor side's estimate.
+const OPEN_AFTER: u32 = 3;
+
+/// Surprise, in standard deviations, that does not belong to the model.
+const GATE: i32 = 5;
+
+/// Surprises in a row after which what was learnt counts as wrong.
+const TOO_MANY: u32 = 100;
+
+/// Sums over the periods of an interval.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Interval<T: Real, const P: usize> {
+    periods: u32,
+    free: Regressors<T, P>,
+    raw: T,
+    lost: T,
+    force: T,
+    direction: T,
+    speed: T,
+    /// Intervals in a row well inside the gap.
+    open_for: u32,
+    surprises: u32,
+}
+
+/// What is known at the end of an interval and serves until the next.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Knowledge<T: Real> {
+    /// Standard deviation of the mesh force from the motor side [N].
+    pub force_deviation: T,
+    /// The same over an interval.
+    pub mean_force_deviation: T,
+    /// The same with the position's help.
+    pub both_deviation: T,
+    /// Variance of the way with everything taken out that was learnt [m^2].
+    pub way_variance: T,
+    /// Variance of the way less the nearer edge [m^2].
+    pub edge_variance: T,
+    /// Distance from an edge that noise and ignorance can make [m].
+    pub blur: T,
+    /// Weight of the position beside the motor side in the mesh force.
+    pub position_weight: T,
+    /// Whether positions decide about contact.
+    pub width_is_known: bool,
+    /// The last interval was in settled contact.
+    pub settled: bool,
+}
+
+impl<T: Real, const P: usize> Interval<T, P> {
+    pub fn new() -> Self {
+        Self {
+            periods: 0,
+            free: [T::ZERO; P],
+            raw: T::ZERO,
+            lost: T::ZERO,
+            force: T::ZERO,
+            direction: T::ZERO,
+            speed: T::ZERO,
+            open_for: 0,
+            surprises: 0,
+        }
+    }
+
+    /// Adds a period; true when the interval is full.
+    fn add(&mut self, now: &Now<T, P>, speed: T, periods: u32) -> bool {
+        for (sum, value) in self.free.iter_mut().zip(&now.free) {
+            *sum += *value;
+        }
+        self.raw += now.raw;
+        self.lost += now.lost;
+        self.force += now.force;
+        self.direction += now.direction;
+        self.speed += speed;
+        self.periods += 1;
+        self.periods >= periods
+    }
+
+    /// Sums become means.
+    fn close(&mut self, per_periods: T) -> Self {
+        let mut mean = *self;
+        mean.free.iter_mut().for_each(|sum| *sum *= per_periods);
+        for sum in [&mut mean.raw, &mut mean.lost, &mut mean.force, &mut mean.direction, &mut mean.speed] {
+            *sum *= per_periods;
+        }
+        *self = Self { open_for: self.open_for, surprises: self.surprises, ..Self::new() };
+        mean
+    }
+}
+
+impl<T: Real> Knowledge<T> {
+    /// Beforehand.
+    pub fn new<const P: usize>(tables: &ObserverTables<T>, learner: &Learner<T, P>) -> Self {
+        let mut knowledge = Self {
+            force_deviation: T::ZERO,
+            mean_force_deviation: T::ZERO,
+            both_deviation: T::ZERO,
+            way_variance: T::ZERO,
+            edge_variance: T::ZERO,
+            blur: T::ZERO,
+            position_weight: T::ZERO,
+            width_is_known: false,
+            settled: false,
+        };
+        let free = regressors::free(T::ZERO, 0, Some(0));
+        knowledge.refresh(tables, learner, &Bias::new(&tables.contact), &free, T::ONE, T::ZERO);
+        knowledge
+    }
+
+    fn refresh<const P: usize>(
+        &mut self,
+        tables: &ObserverTables<T>,
+        learner: &Learner<T, P>,
+        bias: &Bias<T>,
+        free: &Regressors<T, P>,
+        side: T,
+        direction: T,
+    ) {
+        let contact = &tables.contact;
+        let known = bias.variance_at(direction) + contact.ripple_variance;
+        let force = known + contact.force_variance;
+        self.force_deviation = force.square_root();
+        self.mean_force_deviation = (known + contact.force_variance * tables.learner.per_periods).square_root();
+        self.way_variance = learner.variance(&tables.learner, free);
+        self.edge_variance = learner.variance(&tables.learner, &regressors::touching(free, side, T::ZERO));
+        let edge = self.edge_variance + contact.way_variance;
+        self.blur = T::TWO * edge.square_root();
+        let compliance = learner.values.get(2).copied().unwrap_or(T::ONE);
+        // Weights in inverse proportion to the variances, both as way.
+        let from_force = force * compliance * compliance;
+        self.position_weight = from_force.over(from_force + edge);
+        self.both_deviation = (force * (T::ONE - self.position_weight)).square_root();
+        let half_gap = learner.values.first().copied().unwrap_or(T::ZERO);
+        let tenth = half_gap * tables.contact.known_part;
+        self.width_is_known = self.edge_variance < tenth * tenth;
+    }
+}
+
+impl<T: Real, const P: usize> Observer<'_, T, P> {
+    /// Adds the period to the interval and learns at its end.
+    pub(super) fn learn(&mut self, now: &Now<T, P>) {
+        let tables = self.tables;
+        if !self.interval.add(now, self.drive.speed, tables.learner.periods) {
+            return;
+        }
+        let mean = self.interval.close(tables.learner.per_periods);
+        let way = mean.raw - self.learner.way(&mean.free);
+        let compliance = self.learner.values.get(2).copied().unwrap_or(T::ZERO);
+        let unmapped = if P == MAPPED && self.knowledge.width_is_known { T::EIGHTH } else { T::ONE };
+        let speed = magnitude(mean.speed);
+        let less_wind_up = way - compliance * mean.force;
+        let read = (mean.lost, mean.direction);
+        let shown = self.motion.step(&tables.contact, less_wind_up, read, speed, unmapped, tables.learner.span);
+        let side = self.settled_side(&mean, way, shown);
+        self.take_bias(&mean, way, shown);
+        self.bias.age(&tables.contact);
+        self.learner.forget(tables.learner.forgetting);
+        self.knowledge.settled = side.is_some();
+        if let Some(side) = side {
+            self.take_way(&mean, side);
+        }
+        let nearer = if way < T::ZERO { -T::ONE } else { T::ONE };
+        self.knowledge.refresh(tables, &self.learner, &self.bias, &mean.free, nearer, mean.direction);
+    }
+
+    /// The side on which contact has settled, if any.
+    fn settled_side(&self, mean: &Interval<T, P>, way: T, shown: Shown<T>) -> Option<T> {
+        let still = matches!(shown, Shown::Still(intervals) if intervals >= SETTLED_AFTER);
+        if !still || self.estimates.source != Source::Both {
+            return None;
+        }
+        let known = &self.knowledge;
+        if known.width_is_known {
+            let (contact, _) =
+                self.by_position(way, T::ZERO).contact(ContactState::Separated, mean.force, known.both_deviation);
+            let side: T = sign(contact);
+            return (contact != ContactState::Separated).then_some(side);
+        }
+        let needed = T::TWO * known.mean_force_deviation + known.mean_force_deviation;
+        if mean.force > needed {
+            Some(T::ONE)
+        } else if -mean.force > needed {
+            Some(-T::ONE)
+        } else {
+            None
+        }
+    }
+
+    /// Reads the torque bias where the gap is open for sure.
+    fn take_bias(&mut self, mean: &Interval<T, P>, way: T, shown: Shown<T>) {
+        let contact = &self.tables.contact;
+        let inside = self.half_gap() - self.knowledge.blur - self.knowledge.blur;
+        let open = self.knowledge.width_is_known && magnitude(way) < inside;
+        self.interval.open_for = if open { self.interval.open_for.saturating_add(1) } else { 0 };
+        let read = match shown {
+            _ if self.estimates.source != Source::Both => None,
+            _ if self.interval.open_for >= OPEN_AFTER => Some((mean.lost, mean.direction)),
+            Shown::Crossing(lost, direction) if !self.knowledge.width_is_known => Some((lost, direction)),
+            _ => None,
+        };
+        if let Some((lost, direction)) = read {
+            self.bias.learn(contact, lost, direction);
+        }
+    }
+
+    /// Takes a way in settled contact into the learner, unless it does not belong to the model.
+    fn take_way(&mut self, mean: &Interval<T, P>, side: T) {
+        let table = &self.tables.learner;
+        let regressors = regressors::touching(&mean.free, side, mean.force);
+        let surprise = mean.raw - self.learner.way(&regressors);
+        let variance = self.learner.variance(table, &regressors) + table.noise * table.noise;
+        if surprise * surprise > T::from_i32(GATE * GATE) * variance {
+            self.interval.surprises += 1;
+            if self.interval.surprises >= TOO_MANY {
+                self.interval.surprises = 0;
+                self.learner.reopen();
+            }
+            return;
+        }
+        self.interval.surprises = 0;
+        self.learner.learn(table, &regressors, mean.raw);
+    }
+
+    pub(super) fn half_gap(&self) -> T {
+        self.learner.values.first().copied().unwrap_or(T::ZERO)
+    }
+}

@@ -9,7 +9,7 @@ mod profile;
 pub mod rivals;
 mod sensing;
 
-pub use bench::{Bench, BenchError, Run, Sample};
+pub use bench::{Bench, BenchError, ImpedanceGains, Run, Sample};
 pub use compensated::{Compensated, Sight};
 pub use metrics::{Figures, deviation};
 pub use plants::{Variation, random_plant};

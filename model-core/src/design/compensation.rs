@@ -55,7 +55,7 @@ pub fn design_compensation<T: Real>(
     let shortest = by_torque(half).max(8.0 * reaction);
     let crossing = (strike_per_half * half / strike_torque).max(shortest);
     let lead = crossing + reaction;
-    let demand_pole = env("DPOLE", 400.0) * period;
+    let demand_pole = env("DPOLE", 2.0 / crossing) * period;
     Ok(CompensationTables {
         rate: real(f64::from(settings.control_rate)),
         period: real(period),
@@ -87,6 +87,7 @@ pub fn design_compensation<T: Real>(
         landing_haste: real(env("HASTE", 1.0) * env("SEEK", 0.05) / crossing),
         fastest_landing: real(env("FAST", 6.0) * env("SEEK", 0.05)),
         landing_rise: real(period / env("RISE", 2e-3)),
+        repayment: real(1.0 / env("REPAY", 10e-3)),
         opening: real(env("OPEN", 0.3)),
         hysteresis: real(env("HYST", 0.005) * limit),
         doubt: real(env("DOUBT", 0.02) * limit),

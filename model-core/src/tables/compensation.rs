@@ -67,6 +67,8 @@ pub struct CompensationTables<T: Real> {
     pub fastest_landing: T,
     /// Rise of the law's torque after a landing, in one period.
     pub landing_rise: T,
+    /// Rate at which a missed impulse is made good [1/s].
+    pub repayment: T,
     /// Share of the half-gap that has to open before the loss of a flank is believed.
     pub opening: T,
     /// Demand beyond which a change of its sign counts [N m].

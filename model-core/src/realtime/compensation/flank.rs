@@ -21,6 +21,8 @@ pub(super) struct Flank<T: Real> {
     duration: T,
     /// How much of the law's torque is let through after a landing.
     rise: T,
+    /// Impulse that the load has missed while no flank carried [N m s].
+    owed: T,
 }
 
 impl<T: Real> Flank<T> {
@@ -33,6 +35,7 @@ impl<T: Real> Flank<T> {
             elapsed: T::ZERO,
             duration: T::ZERO,
             rise: T::ONE,
+            owed: T::ZERO,
         }
     }
 
@@ -48,6 +51,7 @@ impl<T: Real> Flank<T> {
     pub fn forget(&mut self, situation: &Situation<T>) {
         self.stage = Stage::Touching;
         self.rise = T::ONE;
+        self.owed = T::ZERO;
         if situation.contact != T::ZERO {
             self.side = situation.contact;
         }
@@ -80,9 +84,12 @@ impl<T: Real> Flank<T> {
         }
         if self.stage == Stage::Touching {
             self.rise = clamp(self.rise + tables.landing_rise, T::ZERO, T::ONE);
-            return self.rise * intent.law;
+            let repaid = self.rise * self.owed * tables.repayment;
+            self.owe(tables, (T::ONE - self.rise) * intent.demand_now - repaid, intent);
+            return self.rise * intent.law + repaid;
         }
         self.elapsed += tables.period;
+        self.owe(tables, intent.demand_now, intent);
         if self.stage == Stage::Landing {
             // Where the flank is does not enter, so that a wrong width costs time only; nor can it be chased for ever.
             let speed = tables.landing_speed + tables.landing_haste * self.elapsed;
@@ -95,6 +102,12 @@ impl<T: Real> Flank<T> {
         tables.motor_inertia * acceleration
             + tables.free_position_gain * (target - drift - situation.motor)
             + tables.free_damping_gain * (rate - situation.motor_speed)
+    }
+
+    /// Torque that the load does not get now is owed to it.
+    fn owe(&mut self, tables: &CompensationTables<T>, torque: T, intent: &Intent<T>) {
+        let most = tables.torque_limit * tables.longest_crossing;
+        self.owed = if intent.repays { clamp(self.owed + tables.period * torque, -most, most) } else { T::ZERO };
     }
 
     fn land(&mut self) {

@@ -55,6 +55,7 @@ impl<T: Real> ImpedanceLaw<T> {
             planned_ahead: demand_ahead,
             free_acceleration: -free * tables.inverse_load_inertia,
             crossing,
+            repays: true,
         }
     }
 }

@@ -81,6 +81,8 @@ pub(super) struct Intent<T: Real> {
     pub free_acceleration: T,
     /// How long a crossing shall take [s].
     pub crossing: T,
+    /// Whether an impulse that the load missed on the way is made good afterwards; a law stiff enough does it itself.
+    pub repays: bool,
 }
 
 impl<T: Real> Intent<T> {

@@ -73,6 +73,7 @@ impl<T: Real> PositionLaw<T> {
             planned_ahead,
             free_acceleration: -free * tables.inverse_load_inertia,
             crossing,
+            repays: false,
         }
     }
 

@@ -37,7 +37,8 @@ pub fn settings(train: &DriveTrainParameters) -> ObserverSettings {
         efficiency: train.efficiency,
         backlash_uncertainty: 0.5,
         compliance_uncertainty: 0.3,
-        skew_uncertainty: 60e-6,
+        skew: 50e-6,
+        skew_uncertainty: 30e-6,
     }
 }
 

@@ -68,13 +68,15 @@ pub struct ObserverSettings {
     pub backlash_uncertainty: f64,
     /// Standard deviation of the compliance guess, relative to it [-].
     pub compliance_uncertainty: f64,
+    /// How much older an output reading is expected to be than its time says, less the same of the motor's [s].
+    pub skew: f64,
     /// Standard deviation of the skew between the encoders' readings [s].
     pub skew_uncertainty: f64,
 }
 
 /// Time in which the load torque may change by as much as the motor can hold [s]. Friction that turns round and
 /// collisions are faster, gravity slower; a filter for this follows the first with a lag of a few milliseconds.
-const LOAD_CHANGE: f64 = 0.1;
+const LOAD_CHANGE: f64 = 2.0;
 
 /// Part of the motor's largest torque by which the mesh force changes in half a swing of motor against load.
 const MESH_CHANGE: f64 = 0.2;
@@ -84,6 +86,9 @@ const IMPACT_ERROR: f64 = 0.05;
 
 /// Length of a learning interval [s]: short against the motions in which contact settles, long against noise.
 const LEARNING_INTERVAL: f64 = 1e-3;
+
+/// Length of settled contact that makes up one way to learn from [s].
+const BLOCK: f64 = 8e-3;
 
 /// Time over which what the model leaves out (higher harmonics, friction, cogging) stays the same [s]: updates closer
 /// than this are not independent, and count accordingly less.
@@ -113,10 +118,11 @@ pub fn design_observer<T: Real>(
     let periods = libm::round(LEARNING_INTERVAL / step).max(1.0);
     let way_variance = drive.quiet[0] * body.sun_lever.powi(2) + load.quiet[0] * body.output_lever.powi(2);
     let ripple = settings.torque_ripple / body.sun_lever;
-    let wind_up_variance = body.compliance.powi(2) * (force_variance + ripple * ripple);
+    let wind_up_variance = body.compliance.powi(2) * (force_variance / periods + ripple * ripple);
     let unmodelled = 0.1 * settings.motor_encoder.harmonic_error * body.sun_lever;
     let noise = libm::sqrt(way_variance + wind_up_variance + unmodelled * unmodelled);
-    let repeats = REPEATING / LEARNING_INTERVAL;
+    let block = libm::round(BLOCK / LEARNING_INTERVAL).max(1.0);
+    let repeats = (REPEATING / BLOCK).max(1.0);
 
     let half_gap = 2.0 * body.half_backlash;
     let harmonics = |encoder: Option<EncoderSettings>, lever: f64| {
@@ -134,6 +140,7 @@ pub fn design_observer<T: Real>(
     let mut mean = [0.0; MOST_PARAMETERS];
     mean[0] = half_gap;
     mean[2] = body.compliance;
+    mean[3] = body.output_lever * settings.skew;
 
     let still_window = 8.0 * LEARNING_INTERVAL;
     let tables = ObserverTables {
@@ -182,6 +189,8 @@ pub fn design_observer<T: Real>(
         learner: LearnerTable {
             periods: periods as u32,
             per_periods: real(1.0 / periods),
+            block: block as u32,
+            per_block: real(1.0 / block),
             span: real(periods * step),
             mean: mean.map(real),
             deviation: deviation.map(real),
@@ -411,6 +420,7 @@ impl ObserverSettings {
         within("the efficiency", self.efficiency, 0.1, 1.0, "from 0.1 to 1")?;
         within("the uncertainty of the backlash", self.backlash_uncertainty, 1e-6, 10.0, "from 1e-6 to 10")?;
         within("the uncertainty of the compliance", self.compliance_uncertainty, 1e-6, 10.0, "from 1e-6 to 10")?;
+        within("the skew", self.skew, -0.1, 0.1, "from -0.1 to 0.1 s")?;
         within("the uncertainty of the skew", self.skew_uncertainty, 0.0, 0.1, "from 0 to 0.1 s")
     }
 }

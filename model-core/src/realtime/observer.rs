@@ -37,7 +37,7 @@ use bias::Bias;
 use contact::{ByForce, ByPosition};
 use counts::{Advance, Counts};
 use drive_side::DriveSide;
-use interval::{Interval, Knowledge};
+use interval::{Block, Interval, Knowledge};
 use learner::{Learner, Regressors};
 use load_side::LoadSide;
 use motion::{Motion, magnitude};
@@ -62,6 +62,7 @@ pub struct Observer<'tables, T: Real, const P: usize> {
     motion: Motion<T>,
     learner: Learner<T, P>,
     interval: Interval<T, P>,
+    block: Block<T, P>,
     knowledge: Knowledge<T>,
     supervisor: Supervisor<T>,
     /// Torque that the meshes put on the load side, by the motor side alone [N m].
@@ -109,6 +110,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
             knowledge: Knowledge::new(tables, &learner),
             learner,
             interval: Interval::new(),
+            block: Block::new(),
             supervisor: Supervisor::new(tables.counts.has_output),
             from_meshes: T::ZERO,
             estimates: Estimates::default(),
@@ -237,6 +239,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         estimates.encoder_offset.value = value(1) * tables.levers.per_output;
         estimates.compliance.value = value(2) * tables.levers.per_output * tables.levers.per_output;
         estimates.skew.value = value(3) * tables.levers.per_output;
+        estimates.motor_friction.value = self.bias.friction * tables.levers.sun;
         estimates.torque_bias.value = self.bias.bias * tables.levers.sun;
     }
 }

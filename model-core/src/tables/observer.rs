@@ -176,6 +176,10 @@ pub struct LearnerTable<T: Real> {
     pub periods: u32,
     /// 1 over them.
     pub per_periods: T,
+    /// Intervals that make up one way to learn from.
+    pub block: u32,
+    /// 1 over them.
+    pub per_block: T,
     /// How long an interval of so many periods lasts [s].
     pub span: T,
     /// Mean of each parameter beforehand.

@@ -84,6 +84,8 @@ pub struct Estimates<T: Real> {
     pub skew: Estimate<T>,
     /// Torque of the motor beyond what was commanded: a bias that comes with no motion [N m].
     pub torque_bias: Estimate<T>,
+    /// Dry friction of the motor, as far as it does not grow with the load [N m].
+    pub motor_friction: Estimate<T>,
     /// Motor shaft; encoder errors that were learnt are taken out.
     pub motor: Shaft<T>,
     /// Link; likewise. Motor only, this is what the motor implies.

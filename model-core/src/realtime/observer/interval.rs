@@ -8,7 +8,7 @@ use crate::mesh::ContactState;
 use crate::real::Real;
 use crate::realtime::observer::motion::{Shown, magnitude};
 use crate::realtime::observer::{MAPPED, Source};
-use crate::tables::observer::ObserverTables;
+use crate::tables::observer::{LearnerTable, ObserverTables};
 
 /// Intervals of rest on a flank after which contact counts as settled: the window of the speed has passed, and the
 /// swing of an impact with it.
@@ -21,7 +21,7 @@ const OPEN_AFTER: u32 = 3;
 const GATE: i32 = 5;
 
 /// Surprises in a row after which what was learnt counts as wrong.
-const TOO_MANY: u32 = 100;
+const TOO_MANY: u32 = 12;
 
 /// Sums over the periods of an interval.
 #[derive(Debug, Clone, Copy)]
@@ -102,6 +102,54 @@ impl<T: Real, const P: usize> Interval<T, P> {
     }
 }
 
+/// Intervals of settled contact in a row, gathered into one way to learn from: noise of the mesh force that is left in
+/// a regressor would make the compliance look smaller than it is.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Block<T: Real, const P: usize> {
+    intervals: u32,
+    side: T,
+    free: Regressors<T, P>,
+    raw: T,
+    force: T,
+}
+
+impl<T: Real, const P: usize> Block<T, P> {
+    pub fn new() -> Self {
+        Self { intervals: 0, side: T::ZERO, free: [T::ZERO; P], raw: T::ZERO, force: T::ZERO }
+    }
+
+    /// Adds an interval; gives the means and the side when enough have passed on one side.
+    fn add(&mut self, mean: &Interval<T, P>, side: Option<T>, table: &LearnerTable<T>) -> Option<(Mean<T, P>, T)> {
+        let Some(side) = side else {
+            *self = Self::new();
+            return None;
+        };
+        if side != self.side {
+            *self = Self { side, ..Self::new() };
+        }
+        for (sum, value) in self.free.iter_mut().zip(&mean.free) {
+            *sum += *value * table.per_block;
+        }
+        self.raw += mean.raw * table.per_block;
+        self.force += mean.force * table.per_block;
+        self.intervals += 1;
+        if self.intervals < table.block {
+            return None;
+        }
+        let mean = Mean { free: self.free, raw: self.raw, force: self.force };
+        *self = Self { side, ..Self::new() };
+        Some((mean, side))
+    }
+}
+
+/// Means over a block.
+#[derive(Debug, Clone, Copy)]
+struct Mean<T: Real, const P: usize> {
+    free: Regressors<T, P>,
+    raw: T,
+    force: T,
+}
+
 impl<T: Real> Knowledge<T> {
     /// Beforehand.
     pub fn new<const P: usize>(tables: &ObserverTables<T>, learner: &Learner<T, P>) -> Self {
@@ -170,7 +218,7 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         self.bias.age(&tables.contact);
         self.learner.forget(tables.learner.forgetting);
         self.knowledge.settled = side.is_some();
-        if let Some(side) = side {
+        if let Some((mean, side)) = self.block.add(&mean, side, &tables.learner) {
             self.take_way(&mean, side);
         }
         let nearer = if way < T::ZERO { -T::ONE } else { T::ONE };
@@ -218,7 +266,7 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
     }
 
     /// Takes a way in settled contact into the learner, unless it does not belong to the model.
-    fn take_way(&mut self, mean: &Interval<T, P>, side: T) {
+    fn take_way(&mut self, mean: &Mean<T, P>, side: T) {
         let table = &self.tables.learner;
         let regressors = regressors::touching(&mean.free, side, mean.force);
         let surprise = mean.raw - self.learner.way(&regressors);

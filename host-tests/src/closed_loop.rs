@@ -10,7 +10,7 @@ pub mod rivals;
 mod sensing;
 
 pub use bench::{Bench, BenchError, ImpedanceGains, Run, Sample};
-pub use compensated::{Compensated, Sight};
+pub use compensated::{Compensated, compensation_settings, observer_settings};
 pub use metrics::{Figures, deviation};
 pub use plants::{Variation, random_plant};
 pub use profile::{Profile, Reference};

@@ -91,6 +91,8 @@ pub fn design_compensation<T: Real>(
         opening: real(env("OPEN", 0.3)),
         hysteresis: real(env("HYST", 0.005) * limit),
         doubt: real(env("DOUBT", 0.02) * limit),
+        patience_left: real(libm::exp(-period * pole / env("PAT", 3.0))),
+        most_patience: real(env("MOSTPAT", 8.0)),
         first_indulgence: real(env("IND1", 0.05)),
         last_indulgence: real(env("IND2", 0.5)),
         forgiving: real(1.0 - period / env("FORGIVE", 30.0)),

@@ -75,6 +75,10 @@ pub struct CompensationTables<T: Real> {
     pub hysteresis: T,
     /// Feedback torque below which no flank is changed for it [N m].
     pub doubt: T,
+    /// What is left of a grown patience after one period.
+    pub patience_left: T,
+    /// The most patience: how many times the feedback torque above.
+    pub most_patience: T,
     /// Error let be after the first crossing that feedback alone has caused, over half the lost motion.
     pub first_indulgence: T,
     /// The most that is let be, over half the lost motion.

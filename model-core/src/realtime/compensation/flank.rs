@@ -23,6 +23,8 @@ pub(super) struct Flank<T: Real> {
     rise: T,
     /// Impulse that the load has missed while no flank carried [N m s].
     owed: T,
+    /// How much more than usual feedback has to ask for before the flank is changed for it: grows with every change.
+    patience: T,
 }
 
 impl<T: Real> Flank<T> {
@@ -36,6 +38,7 @@ impl<T: Real> Flank<T> {
             duration: T::ZERO,
             rise: T::ONE,
             owed: T::ZERO,
+            patience: T::ONE,
         }
     }
 
@@ -45,6 +48,11 @@ impl<T: Real> Flank<T> {
 
     pub fn side(&self) -> T {
         self.side
+    }
+
+    /// 1, or more soon after a change of flank.
+    pub fn patience(&self) -> T {
+        self.patience
     }
 
     /// Nothing is known: whatever flank touches is the one.
@@ -62,6 +70,7 @@ impl<T: Real> Flank<T> {
         let touching = situation.contact * self.side > T::ZERO;
         let turned = self.side * (intent.demand_now + intent.demand_ahead) < -tables.hysteresis
             && self.side * intent.demand_ahead < -tables.hysteresis;
+        self.patience = T::ONE + tables.patience_left * (self.patience - T::ONE);
         let opened = situation.half - self.side * situation.gap;
         match self.stage {
             Stage::Touching if turned && self.rise >= T::ONE => {
@@ -122,6 +131,7 @@ impl<T: Real> Flank<T> {
         let place = time * T::HALF * (situation.link_speed + speed) - situation.error;
         let end = [place + self.side * situation.half, speed + self.side * tables.landing_speed];
         self.path = Path::new([situation.motor, situation.motor_speed], end, time);
+        self.patience = clamp(self.patience + self.patience + T::TWO, T::ONE, tables.most_patience);
         self.origin = situation.origin;
         self.duration = time;
         self.elapsed = T::ZERO;

@@ -33,6 +33,7 @@ impl<T: Real> PositionLaw<T> {
         tables: &CompensationTables<T>,
         load: &LoadModel<T>,
         situation: &Situation<T>,
+        patience: T,
         now: &Motion<T>,
         ahead: Option<&Motion<T>>,
     ) -> Intent<T> {
@@ -48,7 +49,7 @@ impl<T: Real> PositionLaw<T> {
         let feedback = |time: T| {
             let error = beyond(situation.error + time * situation.error_rate, let_be);
             let torque = tables.position_gain * error + tables.damping_gain * situation.error_rate;
-            beyond(torque, tables.doubt)
+            beyond(torque, patience * tables.doubt)
         };
         let planned = |time: T| {
             let part = time.over(known);

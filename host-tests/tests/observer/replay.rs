@@ -80,8 +80,12 @@ pub struct Figures {
     pub width_after: f64,
     /// Width at the end less the true one, over it.
     pub width: f64,
-    /// Mean of squared gap errors over their variances.
+    /// Mean of squared gap errors over their variances, where the gap is said to be valid.
     pub honesty: f64,
+    /// Part of the time in which the gap is said to be valid.
+    pub valid: f64,
+    /// Root mean square of the gap's error there, over the gap 4b.
+    pub gap_valid: f64,
 }
 
 /// Replays a recording; figures are taken from `from` seconds on. `watch` sees every estimate.
@@ -100,7 +104,8 @@ pub fn replay<T: Real, const P: usize>(
     let lever = 2.0 * joint.geometry.carrier_base_radius();
     let period = 1.0 / f64::from(settings.control_rate);
     let first = (from / period) as usize;
-    let mut sums = [0.0; 4];
+    let mut sums = [0.0; 5];
+    let mut valid = 0;
     let mut worst: f64 = 0.0;
     let (mut right, mut judged) = (0_usize, 0_usize);
     let mut width_wrong_at = 0;
@@ -125,7 +130,11 @@ pub fn replay<T: Real, const P: usize>(
         worst = worst.max(error.abs());
         sums[1] += ((value(estimates.load_torque.value) - moment.load_torque) / joint.rated_output_torque).powi(2);
         sums[2] += ((value(estimates.mesh_torque.value) - moment.sun_force * lever) / joint.rated_output_torque).powi(2);
-        sums[3] += (error * gap).powi(2) / value(estimates.gap.variance).max(1e-30);
+        if estimates.gap.valid {
+            valid += 1;
+            sums[3] += (error * gap).powi(2) / value(estimates.gap.variance).max(1e-30);
+            sums[4] += error * error;
+        }
         let side = if moment.sun_force > 0.0 {
             ContactState::DriveSide
         } else if moment.sun_force < 0.0 {
@@ -173,7 +182,9 @@ pub fn replay<T: Real, const P: usize>(
         mesh_torque: mean(sums[2]),
         width_after: (width_wrong_at + 1) as f64 * period,
         width,
-        honesty: sums[3] / counted,
+        honesty: sums[3] / f64::from(valid.max(1)),
+        valid: f64::from(valid) / counted,
+        gap_valid: (sums[4] / f64::from(valid.max(1))).sqrt(),
     }
 }
 

@@ -87,12 +87,9 @@ const IMPACT_ERROR: f64 = 0.05;
 /// Length of a learning interval [s]: short against the motions in which contact settles, long against noise.
 const LEARNING_INTERVAL: f64 = 1e-3;
 
-/// Length of settled contact that makes up one way to learn from [s].
+/// Length of settled contact that makes up one way to learn from [s]: about as long as cogging and swings of the wind-up
+/// take to repeat, so that one block's error says little about the next one's.
 const BLOCK: f64 = 8e-3;
-
-/// Time over which what the model leaves out (higher harmonics, friction, cogging) stays the same [s]: updates closer
-/// than this are not independent, and count accordingly less.
-const REPEATING: f64 = 20e-3;
 
 /// Time in which wear and warmth may change what was learnt by as much as is known of it [s].
 const MEMORY: f64 = 100.0;
@@ -111,7 +108,7 @@ pub fn design_observer<T: Real>(
     let motor_count = TAU / f64::from(settings.motor_encoder.counts_per_turn);
     let output_count = TAU / f64::from(settings.output_encoder.unwrap_or(settings.motor_encoder).counts_per_turn);
     let drive = drive_filter(&body, settings, motor_count, step);
-    let load = load_filter(&body, settings, output_count, step);
+    let load = load_filter(&body, settings, output_count * output_count / 12.0, step);
 
     let rated_force = settings.torque_limit / body.sun_lever;
     let force_variance = drive.quiet[2] / (body.sun_lever * body.sun_lever);
@@ -119,10 +116,15 @@ pub fn design_observer<T: Real>(
     let way_variance = drive.quiet[0] * body.sun_lever.powi(2) + load.quiet[0] * body.output_lever.powi(2);
     let ripple = settings.torque_ripple / body.sun_lever;
     let wind_up_variance = body.compliance.powi(2) * (force_variance / periods + ripple * ripple);
+    let blind = load_filter(
+        &body,
+        settings,
+        (way_variance + body.compliance.powi(2) * (force_variance + ripple * ripple)) / body.output_lever.powi(2),
+        step,
+    );
     let unmodelled = 0.1 * settings.motor_encoder.harmonic_error * body.sun_lever;
     let noise = libm::sqrt(way_variance + wind_up_variance + unmodelled * unmodelled);
     let block = libm::round(BLOCK / LEARNING_INTERVAL).max(1.0);
-    let repeats = (REPEATING / BLOCK).max(1.0);
 
     let half_gap = 2.0 * body.half_backlash;
     let harmonics = |encoder: Option<EncoderSettings>, lever: f64| {
@@ -165,7 +167,9 @@ pub fn design_observer<T: Real>(
             speed: real(load.response[(1, 0)]),
             gain: [0, 1, 2].map(|state| real(load.gain[state])),
             variance: [real(load.variance[0]), real(load.variance[2])],
-            drift: real(load_change(&body, settings) * step),
+            blind_gain: [0, 1, 2].map(|state| real(blind.gain[state])),
+            blind_variance: [real(blind.variance[1]), real(blind.variance[2])],
+            way_per_torque: real(0.5 * body.output_lever / body.load_inertia),
         },
         contact: ContactTable {
             force_variance: real(force_variance),
@@ -182,6 +186,7 @@ pub fn design_observer<T: Real>(
                 3.0 * libm::sqrt(drive.quiet[1] * body.sun_lever.powi(2) + load.quiet[1] * body.output_lever.powi(2)),
             ),
             lag: real(2.0 * step),
+            smoothing: real(-libm::expm1(-step / (1.5 * LEARNING_INTERVAL))),
             known_part: real(0.08),
             efficiency: real(settings.efficiency),
             per_efficiency: real(1.0 / settings.efficiency),
@@ -194,7 +199,7 @@ pub fn design_observer<T: Real>(
             span: real(periods * step),
             mean: mean.map(real),
             deviation: deviation.map(real),
-            weight: real(1.0 / (noise * libm::sqrt(repeats))),
+            weight: real(1.0 / noise),
             noise: real(noise),
             forgetting: real(LEARNING_INTERVAL / MEMORY),
             mesh_compliance: real(body.mesh_compliance),
@@ -204,7 +209,7 @@ pub fn design_observer<T: Real>(
             failed_after: (4e-3 / step) as u32,
             trusted_after: (0.3 / LEARNING_INTERVAL) as u32,
             margin: real(0.1 * half_gap + 0.1 * body.compliance * rated_force),
-            widest: real((0.1 * 2.0 * half_gap).powi(2)),
+            widest_part: real(0.1),
         },
     };
     Ok(tables)
@@ -280,7 +285,7 @@ fn drive_filter(body: &Body, settings: &ObserverSettings, count: f64, step: f64)
 }
 
 /// State: angle, speed, load torque.
-fn load_filter(body: &Body, settings: &ObserverSettings, count: f64, step: f64) -> Filter {
+fn load_filter(body: &Body, settings: &ObserverSettings, measurement_noise: f64, step: f64) -> Filter {
     let per_inertia = 1.0 / body.load_inertia;
     let impact = IMPACT_ERROR * settings.torque_limit * body.ratio * per_inertia;
     System {
@@ -291,7 +296,7 @@ fn load_filter(body: &Body, settings: &ObserverSettings, count: f64, step: f64) 
             impact * impact * LEARNING_INTERVAL,
             load_change(body, settings),
         ]),
-        measurement_noise: count * count / 12.0,
+        measurement_noise,
     }
     .filter(step)
 }

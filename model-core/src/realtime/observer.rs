@@ -23,11 +23,13 @@ mod interval;
 mod learner;
 mod load_side;
 mod motion;
+mod motor_only;
 mod regressors;
 mod samples;
+mod saying;
 mod supervisor;
 
-pub use estimates::{Doubt, Estimate, Estimates, Shaft, Source};
+pub use estimates::{Doubt, Estimate, Estimates, Notices, Shaft, Source};
 pub use samples::{Reading, Samples};
 
 use crate::mesh::ContactState;
@@ -41,6 +43,7 @@ use interval::{Block, Interval, Knowledge};
 use learner::{Learner, Regressors};
 use load_side::LoadSide;
 use motion::{Motion, magnitude};
+use motor_only::Blind;
 use supervisor::Supervisor;
 
 /// Parameters learnt when the encoders count as free of harmonics: half-gap, offset, compliance, skew.
@@ -49,6 +52,9 @@ pub const PLAIN: usize = 4;
 /// Parameters learnt with the error maps: the plain ones, then sine and cosine once and twice a turn of the motor, once
 /// and twice a turn of the output.
 pub const MAPPED: usize = 12;
+
+/// Periods beyond which the age of a reading is not believed.
+const OLDEST: u32 = 64;
 
 /// The observer of one joint. `P` is [`PLAIN`] or [`MAPPED`].
 #[derive(Debug, Clone)]
@@ -65,6 +71,8 @@ pub struct Observer<'tables, T: Real, const P: usize> {
     block: Block<T, P>,
     knowledge: Knowledge<T>,
     supervisor: Supervisor<T>,
+    blind: Blind<T>,
+    time: Option<u32>,
     /// Torque that the meshes put on the load side, by the motor side alone [N m].
     from_meshes: T,
     estimates: Estimates<T>,
@@ -112,6 +120,8 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
             interval: Interval::new(),
             block: Block::new(),
             supervisor: Supervisor::new(tables.counts.has_output),
+            blind: Blind::default(),
+            time: None,
             from_meshes: T::ZERO,
             estimates: Estimates::default(),
         }
@@ -136,25 +146,44 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
     /// Counts, motor side and load side go on by one period.
     fn follow(&mut self, samples: &Samples<T>) {
         let tables = self.tables;
-        let command = if samples.torque.is_finite() { samples.torque } else { T::ZERO };
+        let known = samples.torque.is_finite();
+        let command = if known { samples.torque } else { T::ZERO };
         let taken = self.counts.take(&tables.counts, samples.motor, samples.output);
-        let age = |time: u32| T::from_i32(samples.time.wrapping_sub(time) as i32) * tables.tick;
+        let [shortest, longest] = tables.period_ticks;
+        let lasted = self.time.map(|before| samples.time.wrapping_sub(before));
+        self.time = Some(samples.time);
+        self.estimates.notices = Notices {
+            torque_unknown: !known,
+            out_of_time: lasted.is_some_and(|ticks| !(shortest..=longest).contains(&ticks)),
+            motor_doubted: taken.motor == Advance::Doubted,
+            motor_jumped: matches!(taken.motor, Advance::Jumped(_)),
+        };
+        // A reading older than a few periods says little of now; one from the future nothing.
+        let age = |time: u32| {
+            let ticks = samples.time.wrapping_sub(time);
+            if ticks <= longest.saturating_mul(OLDEST) { T::from_i32(ticks as i32) * tables.tick } else { T::ZERO }
+        };
 
         let motor_by = if let Advance::By(by) = taken.motor { by } else { 0 };
         self.drive.predict(&tables.drive, &tables.current, command, tables.counts.motor.angle * T::from_i32(motor_by));
         match taken.motor {
             Advance::By(_) => self.drive.correct(&tables.drive, age(samples.motor.time)),
-            // The counts stand, and so does the angle beyond them.
-            Advance::Jumped(_) | Advance::Began => self.drive.ahead = T::ZERO,
+            Advance::Began => self.drive.ahead = T::ZERO,
+            Advance::Jumped(_) => {
+                self.drive.ahead = T::ZERO;
+                self.learner.reopen();
+            }
             Advance::Doubted => {}
         }
 
         self.load.predict(&tables.load, self.from_meshes, tables.counts.output.angle * T::from_i32(taken.turned));
-        self.supervisor.hear(&tables.supervisor, taken.output);
+        if self.supervisor.hear(taken.output) {
+            self.load.ahead = T::ZERO;
+        }
         if self.supervisor.source() == Source::Both {
             if let (Some(reading), Some(Advance::By(_))) = (samples.output, taken.output) {
                 let surprise = self.load.speed * age(reading.time) - self.load.ahead;
-                self.load.correct(&tables.load, surprise);
+                self.load.correct(&tables.load.gain, surprise);
             }
         }
     }
@@ -192,8 +221,10 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
             let (contact, both) = self.by_position(now.way, now.soon).contact(before, force, known.both_deviation);
             force = both;
             contact
-        } else {
+        } else if self.supervisor.source() == Source::Both {
             self.estimates.contact
+        } else {
+            self.contact_unseen(now)
         };
         let touching = self.estimates.reported_contact != ContactState::Separated;
         let torque = |force: T| if touching { force * tables.levers.output } else { T::ZERO };
@@ -201,45 +232,15 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         self.estimates.mesh_torque.value = torque(force);
     }
 
-    fn mesh_force(&self) -> T {
-        self.estimates.mesh_torque.value * self.tables.levers.per_output
-    }
-
     /// What a way says of the teeth.
     fn by_position(&self, way: T, soon: T) -> ByPosition<T> {
-        let [half_gap, compliance] = [0, 2].map(|index| self.learner.values.get(index).copied().unwrap_or(T::ONE));
+        let [half_gap, compliance] = self.shape();
         let known = &self.knowledge;
         ByPosition { way, soon, half_gap, blur: known.blur, compliance, weight: known.position_weight }
     }
 
-    /// Whether the output encoder can be right.
-    fn watch(&mut self, now: &Now<T, P>) {
-        let _ = now;
-    }
-
-    /// Everything for a controller.
-    fn say(&mut self, now: &Now<T, P>) {
-        let tables = self.tables;
-        let known = &self.knowledge;
-        let position = self.by_position(now.way, now.soon);
-        let gap = if known.width_is_known {
-            position.gap(tables.learner.mesh_compliance)
-        } else {
-            // Without a width: less the wind-up of the force.
-            now.way - (position.compliance - tables.learner.mesh_compliance) * self.mesh_force()
-        };
-        let value = |index: usize| self.learner.values.get(index).copied().unwrap_or(T::ZERO);
-        let estimates = &mut self.estimates;
-        estimates.gap.value = gap;
-        estimates.gap_rate = if estimates.reported_contact == ContactState::Separated { now.rate } else { T::ZERO };
-        estimates.source = self.supervisor.source();
-        estimates.settled = known.settled;
-        estimates.load_torque.value = self.load.torque;
-        estimates.half_backlash.value = value(0) * T::HALF;
-        estimates.encoder_offset.value = value(1) * tables.levers.per_output;
-        estimates.compliance.value = value(2) * tables.levers.per_output * tables.levers.per_output;
-        estimates.skew.value = value(3) * tables.levers.per_output;
-        estimates.motor_friction.value = self.bias.friction * tables.levers.sun;
-        estimates.torque_bias.value = self.bias.bias * tables.levers.sun;
+    /// Half-gap [m] and compliance [m/N] as learnt so far.
+    fn shape(&self) -> [T; 2] {
+        [0, 2].map(|index| self.learner.values.get(index).copied().unwrap_or(T::ONE))
     }
 }

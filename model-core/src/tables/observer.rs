@@ -130,8 +130,12 @@ pub struct LoadTable<T: Real> {
     pub gain: [T; 3],
     /// Variances of angle and load torque once settled.
     pub variance: [T; 2],
-    /// Growth a period of the load torque's variance while the link cannot be seen [N^2 m^2].
-    pub drift: T,
+    /// Corrections for a radian of surprise where only the wind-up of the mesh force says where the link is.
+    pub blind_gain: [T; 3],
+    /// Variances of speed and load torque then, once settled.
+    pub blind_variance: [T; 2],
+    /// Way along the line of action in a second from rest under one newton metre [m/(N m)].
+    pub way_per_torque: T,
 }
 
 /// Contact and torque bias.
@@ -155,6 +159,8 @@ pub struct ContactTable<T: Real> {
     pub rate_deviation: T,
     /// By how much what is measured lags behind: the output's sampling and filtering [s].
     pub lag: T,
+    /// Part of its change in a period by which a mean over a few learning intervals follows [-].
+    pub smoothing: T,
     /// Speed of the gap coordinate that noise alone can show [m/s].
     pub still: T,
     /// Likewise for each rad/s of the motor while the error map is unknown, as a part of its uncertainty [-].
@@ -207,6 +213,6 @@ pub struct SupervisorTable<T: Real> {
     pub trusted_after: u32,
     /// Distance beyond the possible range that dynamics alone can bring [m].
     pub margin: T,
-    /// Estimates of the gap are given out up to this variance [m^2].
-    pub widest: T,
+    /// Estimates of the gap are given out up to this standard deviation, as a part of the gap 4b [-].
+    pub widest_part: T,
 }

@@ -23,8 +23,6 @@ pub(super) struct System {
 
 /// The filter.
 pub(super) struct Filter {
-    /// exp(A h) - I.
-    pub transition: DMatrix<f64>,
     /// Response to an input held over the step.
     pub response: DMatrix<f64>,
     /// Correction of each state for a unit of surprise, after the step.
@@ -62,13 +60,7 @@ impl System {
             quiet = &kept * ahead * kept.transpose() + &gain * gain.transpose() * self.measurement_noise;
         }
         let response = over_step.input_integrals[0].clone();
-        Filter {
-            transition: over_step.transition,
-            response,
-            gain,
-            variance: covariance.diagonal(),
-            quiet: quiet.diagonal(),
-        }
+        Filter { response, gain, variance: covariance.diagonal(), quiet: quiet.diagonal() }
     }
 
     /// Covariance that the noise adds over a step: the exponential of the doubled system (Van Loan's arrangement).

@@ -51,11 +51,26 @@ pub enum Doubt {
     OutOfRange,
 }
 
+/// What was wrong with the last samples. The observer goes on, with what it had.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Notices {
+    /// The torque was not a number; none was assumed.
+    pub torque_unknown: bool,
+    /// The period was too short or too long, or time went backwards.
+    pub out_of_time: bool,
+    /// The motor's counts were further away than it can turn, and were not believed.
+    pub motor_doubted: bool,
+    /// The motor's counts have jumped for good: the offset is learnt anew.
+    pub motor_jumped: bool,
+}
+
 /// All estimates of one control period. A positive gap coordinate, force or torque drives the load forwards.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Estimates<T: Real> {
     /// What the rest stands on.
     pub source: Source,
+    /// What was wrong with the samples.
+    pub notices: Notices,
     /// Gap coordinate X = u_s - 2 u_c: from -2b to 2b while every mesh is free [m].
     pub gap: Estimate<T>,
     /// Its rate [m/s].

@@ -3,11 +3,10 @@
 
 use super::contact::sign;
 use super::learner::{Learner, Regressors};
-use super::{Bias, Now, Observer, regressors};
+use super::motion::{Shown, magnitude};
+use super::{Bias, MAPPED, Now, Observer, Source, regressors};
 use crate::mesh::ContactState;
 use crate::real::Real;
-use crate::realtime::observer::motion::{Shown, magnitude};
-use crate::realtime::observer::{MAPPED, Source};
 use crate::tables::observer::{LearnerTable, ObserverTables};
 
 /// Intervals of rest on a flank after which contact counts as settled: the window of the speed has passed, and the
@@ -51,6 +50,10 @@ pub(super) struct Knowledge<T: Real> {
     pub way_variance: T,
     /// Variance of the way less the nearer edge [m^2].
     pub edge_variance: T,
+    /// Its root [m].
+    pub edge_deviation: T,
+    /// Variances of half-gap [m^2], offset [m^2], compliance [m^2/N^2] and skew [m^2 s^2].
+    pub variances: [T; 4],
     /// Distance from an edge that noise and ignorance can make [m].
     pub blur: T,
     /// Weight of the position beside the motor side in the mesh force.
@@ -159,6 +162,8 @@ impl<T: Real> Knowledge<T> {
             both_deviation: T::ZERO,
             way_variance: T::ZERO,
             edge_variance: T::ZERO,
+            edge_deviation: T::ZERO,
+            variances: [T::ZERO; 4],
             blur: T::ZERO,
             position_weight: T::ZERO,
             width_is_known: false,
@@ -185,6 +190,8 @@ impl<T: Real> Knowledge<T> {
         self.mean_force_deviation = (known + contact.force_variance * tables.learner.per_periods).square_root();
         self.way_variance = learner.variance(&tables.learner, free);
         self.edge_variance = learner.variance(&tables.learner, &regressors::touching(free, side, T::ZERO));
+        self.edge_deviation = self.edge_variance.square_root();
+        self.variances = [0, 1, 2, 3].map(|parameter| learner.variance_of(&tables.learner, parameter));
         let edge = self.edge_variance + contact.way_variance;
         self.blur = T::TWO * edge.square_root();
         let compliance = learner.values.get(2).copied().unwrap_or(T::ONE);
@@ -207,18 +214,24 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         }
         let mean = self.interval.close(tables.learner.per_periods);
         let way = mean.raw - self.learner.way(&mean.free);
-        let compliance = self.learner.values.get(2).copied().unwrap_or(T::ZERO);
+        let [_, compliance] = self.shape();
         let unmapped = if P == MAPPED && self.knowledge.width_is_known { T::EIGHTH } else { T::ONE };
         let speed = magnitude(mean.speed);
         let less_wind_up = way - compliance * mean.force;
         let read = (mean.lost, mean.direction);
         let shown = self.motion.step(&tables.contact, less_wind_up, read, speed, unmapped, tables.learner.span);
         let side = self.settled_side(&mean, way, shown);
+        if self.supervisor.source() == Source::Both {
+            self.supervisor.remember(self.load.torque);
+        } else {
+            self.reconsider(side, mean.force);
+        }
         self.take_bias(&mean, way, shown);
         self.bias.age(&tables.contact);
         self.learner.forget(tables.learner.forgetting);
         self.knowledge.settled = side.is_some();
-        if let Some((mean, side)) = self.block.add(&mean, side, &tables.learner) {
+        let seen = side.filter(|_| self.supervisor.source() == Source::Both);
+        if let Some((mean, side)) = self.block.add(&mean, seen, &tables.learner) {
             self.take_way(&mean, side);
         }
         let nearer = if way < T::ZERO { -T::ONE } else { T::ONE };
@@ -228,11 +241,11 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
     /// The side on which contact has settled, if any.
     fn settled_side(&self, mean: &Interval<T, P>, way: T, shown: Shown<T>) -> Option<T> {
         let still = matches!(shown, Shown::Still(intervals) if intervals >= SETTLED_AFTER);
-        if !still || self.estimates.source != Source::Both {
+        if !still {
             return None;
         }
         let known = &self.knowledge;
-        if known.width_is_known {
+        if known.width_is_known && self.supervisor.source() == Source::Both {
             let (contact, _) =
                 self.by_position(way, T::ZERO).contact(ContactState::Separated, mean.force, known.both_deviation);
             let side: T = sign(contact);
@@ -251,11 +264,12 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
     /// Reads the torque bias where the gap is open for sure.
     fn take_bias(&mut self, mean: &Interval<T, P>, way: T, shown: Shown<T>) {
         let contact = &self.tables.contact;
-        let inside = self.half_gap() - self.knowledge.blur - self.knowledge.blur;
+        let [half_gap, _] = self.shape();
+        let inside = half_gap - self.knowledge.blur - self.knowledge.blur;
         let open = self.knowledge.width_is_known && magnitude(way) < inside;
         self.interval.open_for = if open { self.interval.open_for.saturating_add(1) } else { 0 };
         let read = match shown {
-            _ if self.estimates.source != Source::Both => None,
+            _ if self.supervisor.source() != Source::Both => None,
             _ if self.interval.open_for >= OPEN_AFTER => Some((mean.lost, mean.direction)),
             Shown::Crossing(lost, direction) if !self.knowledge.width_is_known => Some((lost, direction)),
             _ => None,
@@ -281,9 +295,5 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         }
         self.interval.surprises = 0;
         self.learner.learn(table, &regressors, mean.raw);
-    }
-
-    pub(super) fn half_gap(&self) -> T {
-        self.learner.values.first().copied().unwrap_or(T::ZERO)
     }
 }

@@ -28,8 +28,8 @@ impl<T: Real> LoadSide<T> {
     }
 
     /// Takes in by how much the measured angle exceeds the expected one [rad].
-    pub fn correct(&mut self, table: &LoadTable<T>, surprise: T) {
-        let [angle, speed, torque] = table.gain;
+    pub fn correct(&mut self, gain: &[T; 3], surprise: T) {
+        let [angle, speed, torque] = *gain;
         self.ahead += angle * surprise;
         self.speed += speed * surprise;
         self.torque += torque * surprise;

@@ -1,0 +1,149 @@
+//! From what the observer holds to what it says: values in the user's units, their variances, and whether it stands by
+//! them. Nothing is decided or learnt here.
+
+use super::counts::Counter;
+use super::{MAPPED, Now, Observer, PLAIN, Source};
+use crate::mesh::ContactState;
+use crate::real::Real;
+use crate::realtime::observer::{Estimate, Shaft};
+use crate::tables::observer::EncoderTable;
+
+impl<T: Real, const P: usize> Observer<'_, T, P> {
+    /// Everything for a controller.
+    pub(super) fn say(&mut self, now: &Now<T, P>) {
+        let tables = self.tables;
+        let levers = &tables.levers;
+        let known = &self.knowledge;
+        let both = self.supervisor.source() == Source::Both;
+        let touching = self.estimates.reported_contact != ContactState::Separated;
+        let [half_gap, compliance] = self.shape();
+        let gap = self.gap(now, both, touching, half_gap);
+        let rate = if touching { T::ZERO } else { now.rate };
+        let [half_gap_variance, offset_variance, compliance_variance, skew_variance] = known.variances;
+        let value = |index: usize| self.learner.values.get(index).copied().unwrap_or(T::ZERO);
+        let [bias_variance, friction_variance, _] = self.bias.variance;
+        let [_, load_variance] = tables.load.variance;
+        let output_squared = levers.per_output * levers.per_output;
+        let force_deviation = if both && known.width_is_known { known.both_deviation } else { known.force_deviation };
+        let mesh_deviation = force_deviation * levers.output;
+        let sun_squared = levers.sun * levers.sun;
+        let rough = T::EIGHTH * half_gap;
+        let width_known = half_gap_variance < rough * rough;
+        let compliance_known = compliance_variance < T::TWENTIETH * compliance * compliance;
+        let (motor, link) = self.shafts(now, both);
+
+        let estimates = &mut self.estimates;
+        estimates.source = self.supervisor.source();
+        estimates.gap = gap;
+        estimates.gap_rate = rate;
+        estimates.settled = known.settled;
+        estimates.contact_valid =
+            if touching { width_known || !both || estimates.contact == estimates.reported_contact } else { gap.valid };
+        estimates.mesh_torque.variance = mesh_deviation * mesh_deviation;
+        estimates.mesh_torque.valid = estimates.contact_valid;
+        estimates.load_torque = Estimate {
+            value: self.load.torque,
+            variance: load_variance,
+            valid: both || (touching && estimates.contact_valid),
+        };
+        estimates.half_backlash =
+            Estimate { value: value(0) * T::HALF, variance: half_gap_variance * T::HALF * T::HALF, valid: width_known };
+        estimates.encoder_offset = Estimate {
+            value: value(1) * levers.per_output,
+            variance: offset_variance * output_squared,
+            valid: both && offset_variance < rough * rough,
+        };
+        estimates.compliance = Estimate {
+            value: compliance * output_squared,
+            variance: compliance_variance * output_squared * output_squared,
+            valid: compliance_known,
+        };
+        estimates.skew =
+            Estimate { value: value(3) * levers.per_output, variance: skew_variance * output_squared, valid: both };
+        estimates.torque_bias = Estimate {
+            value: self.bias.bias * levers.sun,
+            variance: bias_variance * sun_squared,
+            valid: bias_variance < T::HALF * tables.contact.bias_prior,
+        };
+        estimates.motor_friction = Estimate {
+            value: self.bias.friction * levers.sun,
+            variance: friction_variance * sun_squared,
+            valid: friction_variance < T::HALF * tables.contact.bias_prior,
+        };
+        estimates.motor = motor;
+        estimates.link = link;
+    }
+
+    /// Gap coordinate with its variance.
+    fn gap(&self, now: &Now<T, P>, both: bool, touching: bool, half_gap: T) -> Estimate<T> {
+        let tables = self.tables;
+        let known = &self.knowledge;
+        let position = self.by_position(now.way, T::ZERO);
+        let [half_gap_variance, ..] = known.variances;
+        let wind_up = position.compliance - tables.learner.mesh_compliance;
+        let force = if touching { now.force } else { T::ZERO };
+        let noise = tables.contact.way_variance;
+        let (value, variance) = if !both {
+            let edge = if now.way > half_gap {
+                half_gap
+            } else if now.way < -half_gap {
+                -half_gap
+            } else {
+                now.way
+            };
+            let value = if touching { edge + tables.learner.mesh_compliance * force } else { edge };
+            (value, self.blind_variance())
+        } else if known.width_is_known {
+            let variance = if touching { half_gap_variance } else { known.way_variance };
+            (position.gap(tables.learner.mesh_compliance), Some(variance + noise))
+        } else {
+            // Without a width: less the wind-up of the force.
+            let of_wind_up = wind_up * known.force_deviation;
+            (now.way - wind_up * force, Some(known.way_variance + noise + of_wind_up * of_wind_up))
+        };
+        let widest = tables.supervisor.widest_part * (half_gap + half_gap);
+        Estimate {
+            value,
+            variance: variance.unwrap_or(half_gap * half_gap),
+            valid: variance.is_some_and(|variance| variance < widest * widest),
+        }
+    }
+
+    /// Both shafts, less the encoder errors that were learnt.
+    fn shafts(&self, now: &Now<T, P>, both: bool) -> (Shaft<T>, Shaft<T>) {
+        let tables = self.tables;
+        let levers = &tables.levers;
+        let (output, _) = self.counts.used();
+        let part = |from: usize| {
+            let values = self.learner.values.iter().skip(from).take(PLAIN);
+            values.zip(now.free.iter().skip(from)).fold(T::ZERO, |sum, (value, regressor)| sum + *value * *regressor)
+        };
+        let (motor_error, output_error) = if P == MAPPED {
+            (part(PLAIN) * levers.per_sun, -part(PLAIN + PLAIN) * levers.per_output)
+        } else {
+            (T::ZERO, T::ZERO)
+        };
+        let late = if both {
+            self.load.speed * self.learner.values.get(3).copied().unwrap_or(T::ZERO) * levers.per_output
+        } else {
+            T::ZERO
+        };
+        let motor = shaft(&tables.counts.motor, &self.counts.motor, self.drive.ahead - motor_error, self.drive.speed);
+        let link = shaft(&tables.counts.output, output, self.load.ahead + late - output_error, self.load.speed);
+        (motor, link)
+    }
+}
+
+/// A shaft from its counts and the angle beyond them.
+fn shaft<T: Real>(table: &EncoderTable<T>, counter: &Counter, beyond: T, speed: T) -> Shaft<T> {
+    let counts = T::from_i64(counter.place().into()) + beyond.over(table.angle);
+    let fraction = counts * table.fraction;
+    let (turns, fraction) = if fraction < T::ZERO {
+        (counter.turns().wrapping_sub(1), fraction + T::ONE)
+    } else if fraction >= T::ONE {
+        (counter.turns().wrapping_add(1), fraction - T::ONE)
+    } else {
+        (counter.turns(), fraction)
+    };
+    Shaft { turns, fraction, speed }
+}

@@ -44,8 +44,6 @@ pub struct Observed<'tables, T: Real> {
     observer: Observer<'tables, T, MAPPED>,
     ranges: [i64; 2],
     torque: T,
-    motor: super::MotorTracker,
-    link: super::LinkTracker,
 }
 
 /// The core's compensation as a controller.
@@ -114,14 +112,11 @@ impl<'tables, T: Real> Compensated<'tables, T> {
         tables: &'tables CompensationTables<T>,
         observer_tables: &'tables ObserverTables<T>,
         train: &DriveTrainParameters,
-        joint: &JointParameters,
     ) -> Self {
         let observed = Observed {
             observer: Observer::new(observer_tables),
             ranges: [train.motor_encoder.bits, train.output_encoder.bits].map(|bits| 1_i64 << bits),
             torque: T::ZERO,
-            motor: super::MotorTracker::new(train.motor_encoder.bits, joint.rotor_inertia, 1800.0, 1.0 / train.control_rate),
-            link: super::LinkTracker::new(train.output_encoder.bits, 600.0, 1.0 / train.control_rate),
         };
         Self { compensation: Compensation::new(tables), sight: Sight::Observed(Box::new(observed)), trace: None }
     }
@@ -137,15 +132,7 @@ impl<T: Real> Observed<'_, T> {
             output: Some(reading(measurement.output_counts, self.ranges[1])),
             torque: self.torque,
         };
-        let mut e = *self.observer.step(&samples);
-        let (a, v) = self.motor.step(measurement.motor_counts, self.torque.to_f64());
-        e.motor = shaft(a, v);
-        let (a, v) = self.link.step(measurement.output_counts);
-        e.link = shaft(a, v);
-        e.gap.valid = measurement.period > 12000;
-        e.contact_valid = e.gap.valid;
-        e.load_torque.valid = true;
-        e
+        *self.observer.step(&samples)
     }
 }
 

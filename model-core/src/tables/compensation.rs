@@ -73,8 +73,10 @@ pub struct CompensationTables<T: Real> {
     pub opening: T,
     /// Demand beyond which a change of its sign counts [N m].
     pub hysteresis: T,
-    /// Feedback torque below which no flank is changed for it [N m].
+    /// Measured torque below which no flank is changed for it soon after a change, for each unit of patience [N m].
     pub doubt: T,
+    /// How much of it is left when nothing has changed for long.
+    pub least_doubt: T,
     /// What is left of a grown patience after one period.
     pub patience_left: T,
     /// The most patience: how many times the feedback torque above.

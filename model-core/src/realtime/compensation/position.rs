@@ -46,30 +46,35 @@ impl<T: Real> PositionLaw<T> {
             + load.drag(tables, now.speed)
             + tables.position_gain * beyond(situation.error, let_be)
             + tables.damping_gain * (now.speed - situation.motor_speed);
-        let feedback = |time: T| {
+        // What is measured and not planned has to ask for more than its noise, and for much more soon after a change.
+        let dead = tables.doubt * (tables.least_doubt + patience - T::ONE);
+        let measured = |time: T, speed: T| {
             let error = beyond(situation.error + time * situation.error_rate, let_be);
-            let torque = tables.position_gain * error + tables.damping_gain * situation.error_rate;
-            beyond(torque, patience * tables.doubt)
+            let feedback = tables.position_gain * error + tables.damping_gain * situation.error_rate;
+            let turning = load.drag(tables, speed - situation.error_rate) - load.drag(tables, speed);
+            beyond(load.even() + turning + feedback, dead)
         };
         let planned = |time: T| {
             let part = time.over(known);
             let speed = now.speed + time * (now.acceleration + T::HALF * part * asked[1]);
             let speed = if ahead.is_some() { now.speed + part * asked[0] } else { speed };
-            tables.load_inertia * (now.acceleration + part * asked[1])
-                + load.even()
-                + load.drag(tables, speed - situation.error_rate)
+            (tables.load_inertia * (now.acceleration + part * asked[1]) + load.drag(tables, speed), speed)
+        };
+        let demand = |time: T| {
+            let (planned, speed) = planned(time);
+            planned + measured(time, speed)
         };
         let free = load.even() + load.drag(tables, situation.link_speed);
         // How hard the far flank will be needed says how fast to go there, and that again when to start.
         let unhurried = crossing_time(tables, situation.half, T::ZERO) + tables.reaction;
-        let crossing = crossing_time(tables, situation.half, planned(unhurried) + feedback(unhurried));
+        let crossing = crossing_time(tables, situation.half, demand(unhurried));
         let lead = crossing + tables.reaction;
-        let planned_ahead = planned(lead);
-        let demand_ahead = planned_ahead + feedback(lead);
+        let (planned_ahead, _) = planned(lead);
+        let demand_ahead = demand(lead);
         self.indulge(tables, rests, planned_ahead, demand_ahead, situation.half);
         Intent {
             law,
-            demand_now: tables.load_inertia * now.acceleration + free + feedback(T::ZERO),
+            demand_now: demand(T::ZERO),
             demand_ahead,
             planned_ahead,
             free_acceleration: -free * tables.inverse_load_inertia,

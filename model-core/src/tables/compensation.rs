@@ -75,6 +75,8 @@ pub struct CompensationTables<T: Real> {
     pub hysteresis: T,
     /// Measured torque below which no flank is changed for it soon after a change, for each unit of patience [N m].
     pub doubt: T,
+    /// Share of news that the measured torque takes up in one period.
+    pub settling: T,
     /// How much of it is left when nothing has changed for long.
     pub least_doubt: T,
     /// What is left of a grown patience after one period.

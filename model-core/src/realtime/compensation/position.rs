@@ -17,11 +17,13 @@ pub(super) struct PositionLaw<T: Real> {
     indulgence: T,
     /// Sign of the demand ahead, one period ago.
     asked: T,
+    /// What is measured and not planned, smoothed, and its growth if the load is left to itself.
+    smooth: [T; 2],
 }
 
 impl<T: Real> PositionLaw<T> {
     pub fn new() -> Self {
-        Self { before: None, indulgence: T::ZERO, asked: T::ZERO }
+        Self { before: None, indulgence: T::ZERO, asked: T::ZERO, smooth: [T::ZERO; 2] }
     }
 
     pub fn forget(&mut self) {
@@ -47,29 +49,31 @@ impl<T: Real> PositionLaw<T> {
             + tables.position_gain * beyond(situation.error, let_be)
             + tables.damping_gain * (now.speed - situation.motor_speed);
         // What is measured and not planned has to ask for more than its noise, and for much more soon after a change.
+        let settle = tables.settling;
+        let turn_of = |speed: T| load.drag(tables, speed - situation.error_rate) - load.drag(tables, speed);
+        let level = load.even()
+            + turn_of(now.speed)
+            + tables.position_gain * beyond(situation.error, let_be)
+            + tables.damping_gain * situation.error_rate;
+        let growth = tables.position_gain * situation.error_rate;
+        let [old_level, old_growth] = self.smooth;
+        self.smooth = [old_level + settle * (level - old_level), old_growth + settle * (growth - old_growth)];
+        let [level, growth] = self.smooth;
         let dead = tables.doubt * (tables.least_doubt + patience - T::ONE);
-        let measured = |time: T, speed: T| {
-            let error = beyond(situation.error + time * situation.error_rate, let_be);
-            let feedback = tables.position_gain * error + tables.damping_gain * situation.error_rate;
-            let turning = load.drag(tables, speed - situation.error_rate) - load.drag(tables, speed);
-            beyond(load.even() + turning + feedback, dead)
-        };
+        let measured = |time: T| beyond(level + time * growth, dead);
         let planned = |time: T| {
             let part = time.over(known);
             let speed = now.speed + time * (now.acceleration + T::HALF * part * asked[1]);
             let speed = if ahead.is_some() { now.speed + part * asked[0] } else { speed };
-            (tables.load_inertia * (now.acceleration + part * asked[1]) + load.drag(tables, speed), speed)
+            tables.load_inertia * (now.acceleration + part * asked[1]) + load.drag(tables, speed)
         };
-        let demand = |time: T| {
-            let (planned, speed) = planned(time);
-            planned + measured(time, speed)
-        };
+        let demand = |time: T| planned(time) + measured(time);
         let free = load.even() + load.drag(tables, situation.link_speed);
         // How hard the far flank will be needed says how fast to go there, and that again when to start.
         let unhurried = crossing_time(tables, situation.half, T::ZERO) + tables.reaction;
         let crossing = crossing_time(tables, situation.half, demand(unhurried));
         let lead = crossing + tables.reaction;
-        let (planned_ahead, _) = planned(lead);
+        let planned_ahead = planned(lead);
         let demand_ahead = demand(lead);
         self.indulge(tables, rests, planned_ahead, demand_ahead, situation.half);
         Intent {

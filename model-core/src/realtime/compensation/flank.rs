@@ -67,18 +67,23 @@ impl<T: Real> Flank<T> {
 
     /// Torque of this period, limits aside [N m].
     pub fn step(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, intent: &Intent<T>) -> T {
-        let touching = situation.contact * self.side > T::ZERO;
+        let opened = situation.half - self.side * situation.gap;
+        // A force that seems to come from the far flank while the teeth are just leaving the near one does not.
+        let touching = situation.contact * self.side > T::ZERO && opened < situation.half;
         let turned = self.side * (intent.demand_now + intent.demand_ahead) < -tables.hysteresis
             && self.side * intent.demand_ahead < -tables.hysteresis;
         self.patience = T::ONE + tables.patience_left * (self.patience - T::ONE);
-        let opened = situation.half - self.side * situation.gap;
         match self.stage {
             Stage::Touching if turned && self.rise >= T::ONE => {
                 self.side = -self.side;
                 self.set_out(tables, situation, intent, Stage::Crossing);
             }
             Stage::Touching if !touching && opened > tables.opening * situation.half && self.rise >= T::ONE => {
-                self.land();
+                if opened > T::HALF * situation.half {
+                    self.set_out(tables, situation, intent, Stage::Crossing);
+                } else {
+                    self.land();
+                }
             }
             Stage::Crossing | Stage::Landing if touching => {
                 self.stage = Stage::Touching;

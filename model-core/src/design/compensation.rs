@@ -95,6 +95,7 @@ pub fn design_compensation<T: Real>(
         settling: real(1.0 - libm::exp(-period / env("FILT", 6e-3))),
         patience_left: real(libm::exp(-period * pole / env("PAT", 3.0))),
         most_patience: real(env("MOSTPAT", 6.0)),
+        hunting: real(15.0 / pole),
         first_indulgence: real(env("IND1", 0.05)),
         last_indulgence: real(env("IND2", 0.5)),
         forgiving: real(1.0 - period / env("FORGIVE", 30.0)),

@@ -92,6 +92,13 @@ impl<'tables, T: Real> Compensation<'tables, T> {
         let torque = if wanted.is_finite() { clamp(wanted, -tables.torque_limit, tables.torque_limit) } else { T::ZERO };
         self.plain.take(tables, &situation, torque - wanted, self.trust);
         let stage = if self.trust > T::ZERO { self.flank.stage() } else { Stage::Plain };
-        Shaped { torque: torque * tables.inverse_gear, stage, side: self.flank.side(), trust: self.trust }
+        Shaped {
+            torque: torque * tables.inverse_gear,
+            stage,
+            side: self.flank.side(),
+            demand: if sees { intent.demand_ahead } else { T::ZERO },
+            load: [self.load.even(), self.load.friction()],
+            trust: self.trust,
+        }
     }
 }

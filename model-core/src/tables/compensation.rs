@@ -83,6 +83,8 @@ pub struct CompensationTables<T: Real> {
     pub patience_left: T,
     /// The most patience: how many times the feedback torque above.
     pub most_patience: T,
+    /// A joint at rest that asks for the other flank within this time hunts [s].
+    pub hunting: T,
     /// Error let be after the first crossing that feedback alone has caused, over half the lost motion.
     pub first_indulgence: T,
     /// The most that is let be, over half the lost motion.

@@ -52,7 +52,6 @@ impl<T: Real> ImpedanceLaw<T> {
             law,
             demand_now,
             demand_ahead,
-            planned_ahead: demand_ahead,
             free_acceleration: -free * tables.inverse_load_inertia,
             crossing,
             repays: true,

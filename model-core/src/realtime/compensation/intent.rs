@@ -75,8 +75,6 @@ pub(super) struct Intent<T: Real> {
     pub demand_now: T,
     /// What they will have to pass on when a crossing that began now ends [N m].
     pub demand_ahead: T,
-    /// Demand ahead as far as the set-point and the load alone cause it, without feedback [N m].
-    pub planned_ahead: T,
     /// Acceleration of the load left to itself [rad/s^2].
     pub free_acceleration: T,
     /// How long a crossing shall take [s].

@@ -31,6 +31,10 @@ impl<T: Real> LoadModel<T> {
         self.even
     }
 
+    pub fn friction(&self) -> T {
+        self.friction
+    }
+
     /// Friction at a speed.
     pub fn drag(&self, tables: &CompensationTables<T>, speed: T) -> T {
         self.friction * Self::direction(tables, speed)

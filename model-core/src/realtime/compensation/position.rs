@@ -17,13 +17,15 @@ pub(super) struct PositionLaw<T: Real> {
     indulgence: T,
     /// Sign of the demand ahead, one period ago.
     asked: T,
+    /// How long ago it last changed, as far as that matters [s].
+    since: T,
     /// What is measured and not planned, smoothed, and its growth if the load is left to itself.
     smooth: [T; 2],
 }
 
 impl<T: Real> PositionLaw<T> {
     pub fn new() -> Self {
-        Self { before: None, indulgence: T::ZERO, asked: T::ZERO, smooth: [T::ZERO; 2] }
+        Self { before: None, indulgence: T::ZERO, asked: T::ZERO, since: T::ZERO, smooth: [T::ZERO; 2] }
     }
 
     pub fn forget(&mut self) {
@@ -73,14 +75,12 @@ impl<T: Real> PositionLaw<T> {
         let unhurried = crossing_time(tables, situation.half, T::ZERO) + tables.reaction;
         let crossing = crossing_time(tables, situation.half, demand(unhurried));
         let lead = crossing + tables.reaction;
-        let planned_ahead = planned(lead);
         let demand_ahead = demand(lead);
-        self.indulge(tables, rests, planned_ahead, demand_ahead, situation.half);
+        self.indulge(tables, rests, demand_ahead, situation.half);
         Intent {
             law,
             demand_now: demand(T::ZERO),
             demand_ahead,
-            planned_ahead,
             free_acceleration: -free * tables.inverse_load_inertia,
             crossing,
             repays: false,
@@ -97,18 +97,22 @@ impl<T: Real> PositionLaw<T> {
         }
     }
 
-    /// Doubles the error that is let be whenever feedback alone asks for the other flank of a joint at rest; forgives it
-    /// slowly, and at once when the joint is to move.
-    fn indulge(&mut self, tables: &CompensationTables<T>, rests: bool, planned: T, demand: T, half: T) {
+    /// Doubles the error that is let be whenever a joint at rest asks for the other flank soon after it asked for this
+    /// one, which no load does but a loop that hunts; forgives it slowly, and at once when the joint is to move.
+    fn indulge(&mut self, tables: &CompensationTables<T>, rests: bool, demand: T, half: T) {
+        self.since = clamp(self.since + tables.period, T::ZERO, tables.hunting);
         if !rests {
             self.indulgence = T::ZERO;
             self.asked = T::ZERO;
             return;
         }
         self.indulgence = self.indulgence * tables.forgiving;
-        if self.asked * demand < T::ZERO && planned * demand <= T::ZERO {
-            let grown = self.indulgence + self.indulgence + tables.first_indulgence * half;
-            self.indulgence = clamp(grown, T::ZERO, tables.last_indulgence * half);
+        if self.asked * demand < T::ZERO {
+            if self.since < tables.hunting {
+                let grown = self.indulgence + self.indulgence + tables.first_indulgence * half;
+                self.indulgence = clamp(grown, T::ZERO, tables.last_indulgence * half);
+            }
+            self.since = T::ZERO;
         }
         if demand != T::ZERO {
             self.asked = if demand > T::ZERO { T::ONE } else { -T::ONE };

@@ -81,6 +81,10 @@ pub struct Shaped<T: Real> {
     pub stage: Stage,
     /// The flank that carries or is being gone to: 1 drives forwards.
     pub side: T,
+    /// Torque that the teeth will have to pass on after a crossing that began now [N m].
+    pub demand: T,
+    /// What brakes the link besides dry friction, and the dry friction, as learnt [N m].
+    pub load: [T; 2],
     /// Share of the compensation in the torque, the rest being plain control: 0 to 1.
     pub trust: T,
 }

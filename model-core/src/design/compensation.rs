@@ -93,6 +93,7 @@ pub fn design_compensation<T: Real>(
         doubt: real(env("DOUBT", 0.02) * limit),
         least_doubt: real(env("LEAST", 0.3)),
         settling: real(1.0 - libm::exp(-period / env("FILT", 6e-3))),
+        foresight: real(env("EXTRA", 0.0)),
         patience_left: real(libm::exp(-period * pole / env("PAT", 3.0))),
         most_patience: real(env("MOSTPAT", 6.0)),
         hunting: real(15.0 / pole),

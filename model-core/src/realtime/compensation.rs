@@ -66,6 +66,10 @@ impl<'tables, T: Real> Compensation<'tables, T> {
     pub fn step(&mut self, estimates: &Estimates<T>, command: &Command<T>) -> Shaped<T> {
         let tables = self.tables;
         let situation = Situation::new(tables, estimates, command);
+        let leans = self.flank.stage() == Stage::Touching && situation.contact == T::ZERO && situation.sees;
+        if leans && matches!(command, Command::Position { .. }) {
+            self.load.lean(tables, self.position.heeded(&situation));
+        }
         self.load.observe(tables, estimates, &situation);
         let (intent, plain) = match command {
             Command::Position { now, ahead } => (

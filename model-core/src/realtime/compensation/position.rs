@@ -32,6 +32,11 @@ impl<T: Real> PositionLaw<T> {
         self.before = None;
     }
 
+    /// The error, less what is let be.
+    pub fn heeded(&self, situation: &Situation<T>) -> T {
+        beyond(situation.error, self.indulgence)
+    }
+
     pub fn intend(
         &mut self,
         tables: &CompensationTables<T>,
@@ -62,7 +67,7 @@ impl<T: Real> PositionLaw<T> {
         self.smooth = [old_level + settle * (level - old_level), old_growth + settle * (growth - old_growth)];
         let [level, growth] = self.smooth;
         let dead = tables.doubt * (tables.least_doubt + patience - T::ONE);
-        let measured = |time: T| beyond(level + time * growth, dead);
+        let measured = |time: T| beyond(level + tables.foresight * time * growth, dead);
         let planned = |time: T| {
             let part = time.over(known);
             let speed = now.speed + time * (now.acceleration + T::HALF * part * asked[1]);

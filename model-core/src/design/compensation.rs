@@ -51,7 +51,7 @@ pub fn design_compensation<T: Real>(
     let limit = gear * settings.torque_limit;
     let half = half_backlash / lever;
     // Least-jerk paths need 10/sqrt(3) way/time^2 of acceleration.
-    let by_torque = |half: f64| libm::sqrt(10.0 / libm::sqrt(3.0) * 2.0 * half * motor_inertia / (env("SHARE", 0.5) * limit));
+    let by_torque = |half: f64| libm::sqrt(10.0 / libm::sqrt(3.0) * 2.0 * half * motor_inertia / (env("SHARE", 0.8) * limit));
     let shortest = by_torque(half).max(8.0 * reaction);
     let crossing = (strike_per_half * half / strike_torque).max(shortest);
     let lead = crossing + reaction;
@@ -93,7 +93,8 @@ pub fn design_compensation<T: Real>(
         doubt: real(env("DOUBT", 0.02) * limit),
         least_doubt: real(env("LEAST", 0.3)),
         settling: real(1.0 - libm::exp(-period / env("FILT", 6e-3))),
-        foresight: real(env("EXTRA", 0.0)),
+        eagerness: real(1.0 / (env("EAGER", 0.05) * limit)),
+        foresight: real(env("EXTRA", 1.0)),
         patience_left: real(libm::exp(-period * pole / env("PAT", 3.0))),
         most_patience: real(env("MOSTPAT", 6.0)),
         hunting: real(15.0 / pole),

@@ -77,6 +77,8 @@ pub struct CompensationTables<T: Real> {
     pub doubt: T,
     /// Share of news that the measured torque takes up in one period.
     pub settling: T,
+    /// Inverse of the news from which on they are taken up faster [1/(N m)].
+    pub eagerness: T,
     /// How far ahead the error is taken to go on growing, over the time of a crossing.
     pub foresight: T,
     /// How much of it is left when nothing has changed for long.

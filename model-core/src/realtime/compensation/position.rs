@@ -56,7 +56,6 @@ impl<T: Real> PositionLaw<T> {
             + tables.position_gain * beyond(situation.error, let_be)
             + tables.damping_gain * (now.speed - situation.motor_speed);
         // What is measured and not planned has to ask for more than its noise, and for much more soon after a change.
-        let settle = tables.settling;
         let turn_of = |speed: T| load.drag(tables, speed - situation.error_rate) - load.drag(tables, speed);
         let level = load.even()
             + turn_of(now.speed)
@@ -64,6 +63,9 @@ impl<T: Real> PositionLaw<T> {
             + tables.damping_gain * situation.error_rate;
         let growth = tables.position_gain * situation.error_rate;
         let [old_level, old_growth] = self.smooth;
+        // News that are large against the doubt are no noise, and are taken up faster.
+        let news = (level - old_level) * tables.eagerness;
+        let settle = clamp(tables.settling * clamp(news * news, T::ONE, T::from_i32(1000)), T::ZERO, T::HALF);
         self.smooth = [old_level + settle * (level - old_level), old_growth + settle * (growth - old_growth)];
         let [level, growth] = self.smooth;
         let dead = tables.doubt * (tables.least_doubt + patience - T::ONE);

@@ -74,6 +74,7 @@ impl<T: Real> LoadModel<T> {
         let surprise = torque - self.even - known;
         self.even += gain_even * surprise;
         self.friction = clamp(self.friction + gain_friction * surprise, T::ZERO, tables.torque_limit);
-        self.variance = [even - gain_even * to_even, friction - gain_friction * to_friction, both - gain_even * to_friction];
+        self.variance =
+            [even - gain_even * to_even, friction - gain_friction * to_friction, both - gain_even * to_friction];
     }
 }

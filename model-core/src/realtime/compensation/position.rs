@@ -29,7 +29,7 @@ impl<T: Real> PositionLaw<T> {
     }
 
     pub fn forget(&mut self) {
-        self.before = None;
+        *self = Self::new();
     }
 
     /// The error, less what is let be.

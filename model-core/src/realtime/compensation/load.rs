@@ -69,7 +69,7 @@ impl<T: Real> LoadModel<T> {
         let (even, friction) = (even + growth_even, friction + growth_friction);
         let (to_even, to_friction) = (even + both * direction, both + friction * direction);
         let total = to_even + to_friction * direction + noise;
-        if !(total > T::ZERO) {
+        if total <= T::ZERO || !total.is_finite() {
             return;
         }
         let (gain_even, gain_friction) = (to_even.over(total), to_friction.over(total));

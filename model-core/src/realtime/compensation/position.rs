@@ -109,7 +109,7 @@ impl<T: Real> PositionLaw<T> {
             self.asked = T::ZERO;
             return;
         }
-        self.indulgence = self.indulgence * tables.forgiving;
+        self.indulgence *= tables.forgiving;
         if self.asked * demand < T::ZERO {
             if self.since < tables.hunting {
                 let grown = self.indulgence + self.indulgence + tables.first_indulgence * half;

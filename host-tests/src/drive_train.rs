@@ -76,6 +76,17 @@ pub struct DriveTrain {
     motor_inertia: f64,
     load_inertia: f64,
     compliant: bool,
+    stepping: Stepping,
+}
+
+/// How the joint inside moves over a part of time.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Stepping {
+    /// Adaptive steps of order 8 that end at every contact event.
+    #[default]
+    Adaptive,
+    /// Fixed fine steps, many times faster: for closed loops, whose feedback forgives what a step loses.
+    Fixed,
 }
 
 impl DriveTrain {
@@ -110,12 +121,18 @@ impl DriveTrain {
             motor_inertia: joint.rotor_inertia + joint.bodies.sun_equivalent_mass * sun_radius.powi(2),
             load_inertia: joint.link_inertia + if compliant { 0.0 } else { carrier_inertia },
             compliant,
+            stepping: Stepping::default(),
             parameters,
             reference,
             joint: observation,
         };
         train.note();
         Ok(train)
+    }
+
+    /// The same drive train, its joint stepped as stated.
+    pub fn stepped(self, stepping: Stepping) -> Self {
+        Self { stepping, ..self }
     }
 
     /// Moves on by one control period under a torque command [N m].
@@ -126,7 +143,11 @@ impl DriveTrain {
             let drive = self.torques.air_gap + self.torques.cogging - self.torques.motor_friction;
             let load = self.torques.load_friction + self.torques.gravity + self.torques.disturbance;
             self.parts_done += 1;
-            self.reference.advance(self.parts_done as f64 * self.part, drive, load)?;
+            let end = self.parts_done as f64 * self.part;
+            match self.stepping {
+                Stepping::Adaptive => self.reference.advance(end, drive, load)?,
+                Stepping::Fixed => self.reference.advance_by_fixed_steps(end, drive, load),
+            }
             self.joint = self.reference.observe();
             self.note();
         }

@@ -4,6 +4,7 @@
 
 mod assembly;
 mod equations;
+mod fixed_step;
 mod mesh_law;
 mod observation;
 mod start;

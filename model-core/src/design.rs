@@ -2,6 +2,7 @@
 //! `exponential` the precise integration, `flow_tables` its sorting into in-phase and deviating motion; this file
 //! puts them together, `pace` says in how many sub-steps.
 
+pub mod compensation;
 pub mod dynamics;
 pub mod exponential;
 mod flow_tables;

@@ -1,7 +1,7 @@
 //! The host command `joint` as a library, so that its parts can be tested without a process. `hil` runs a joint on a
 //! board and checks it, `target` prepares toolchain, image and emulator, `check` reads a joint file, `record` is what
 //! a run leaves behind and `report` shows it, `sim` moves a joint on the host, `sweep` many of them, `paper` redoes the
-//! paper with the numerics of `study`; physics and wire format are left to `model-core` and `link`.
+//! paper with the numerics of `study`, `trial` runs test files of observer and compensation; physics and wire format are left to `model-core` and `link`.
 
 pub mod check;
 pub mod cli;
@@ -17,3 +17,4 @@ pub mod sim;
 pub mod study;
 pub mod sweep;
 pub mod target;
+pub mod trial;

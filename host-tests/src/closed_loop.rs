@@ -8,6 +8,7 @@ mod plants;
 mod profile;
 pub mod rivals;
 mod sensing;
+mod trial;
 
 pub use bench::{Bench, BenchError, ImpedanceGains, Run, Sample};
 pub use compensated::{Compensated, compensation_settings, observer_settings};
@@ -16,6 +17,7 @@ pub use plants::{Variation, random_plant};
 pub use profile::{Profile, Reference};
 pub use rivals::{Impedance, ImpedanceLaw, LoadCascade, MotorPid, OutputIntegral, VelocitySign};
 pub use sensing::{LinkTracker, MotorTracker};
+pub use trial::{Contender, Trial, TrialError};
 
 use crate::drive_train::{Measurement, TrueTorques};
 use crate::reference::Observation;

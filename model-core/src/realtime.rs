@@ -4,12 +4,12 @@
 
 #![allow(clippy::needless_range_loop, reason = "one index walks several tables of the same mesh")]
 
+pub mod compensation;
 mod contact;
 mod crossing;
 mod excitation;
 mod flow;
 mod model;
-pub mod compensation;
 pub mod observer;
 pub mod phase;
 mod runge_kutta;

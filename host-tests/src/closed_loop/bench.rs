@@ -119,8 +119,8 @@ impl Bench {
         let planets = self.joint.geometry.planets;
         let start = Start::Relative(RelativeState::centred(planets));
         let disturbances = self.disturbances.clone();
-        let mut train = DriveTrain::new(&self.joint, &start, self.train.clone(), disturbances, self.seed)?
-            .stepped(self.stepping);
+        let mut train =
+            DriveTrain::new(&self.joint, &start, self.train.clone(), disturbances, self.seed)?.stepped(self.stepping);
         let period = 1.0 / self.train.control_rate;
         let periods = (self.duration * self.train.control_rate).round() as u64;
         let half = self.joint.sun_planet.half_backlash.iter().sum::<f64>() / planets as f64;
@@ -129,10 +129,9 @@ impl Bench {
         for index in 0..periods {
             let time = index as f64 * period;
             let set_point = match self.impedance {
-                None => SetPoint::Position {
-                    now: motion.at(time),
-                    ahead: self.preview.map(|lead| motion.at(time + lead)),
-                },
+                None => {
+                    SetPoint::Position { now: motion.at(time), ahead: self.preview.map(|lead| motion.at(time + lead)) }
+                }
                 Some(gains) => {
                     let number = (time * gains.rate + 1e-9) as u64;
                     let about = match held {

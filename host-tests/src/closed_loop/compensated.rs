@@ -60,6 +60,7 @@ pub fn observer_settings(train: &DriveTrainParameters) -> ObserverSettings {
     let encoder = |encoder: &EncoderParameters| EncoderSettings {
         counts_per_turn: 1 << encoder.bits,
         wraps_at: 1 << encoder.bits,
+        absolute: true,
         harmonic_error: encoder.once_per_turn_error.max(encoder.twice_per_turn_error),
     };
     let limit = train.motor.torque_limit.min(1e3);

@@ -22,7 +22,8 @@ pub struct Variation {
 /// N m/arcmin, current lag 0.2 to 0.6 ms.
 pub fn random_plant(joint: &JointParameters, train: &DriveTrainParameters, seed: u64) -> Variation {
     let mut random = ChaCha8Rng::seed_from_u64(seed.wrapping_add(0x5eed));
-    let mut within = |from: f64, to: f64| from + (to - from) * ((random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64);
+    let mut within =
+        |from: f64, to: f64| from + (to - from) * ((random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64);
     let mut joint = joint.clone();
     let mut train = train.clone();
     let half_backlash = within(20e-6, 60e-6);

@@ -21,11 +21,8 @@ impl MotorTracker {
     pub fn new(bits: u32, inertia: f64, pole: f64, period: f64) -> Self {
         // Discrete poles at exp(-pole period): gains by matching the characteristic polynomial of the sampled chain.
         let z = (-pole * period).exp();
-        let gains = [
-            1.0 - z * z * z,
-            1.5 * (1.0 - z) * (1.0 - z) * (1.0 + z) / period,
-            (1.0 - z).powi(3) / (period * period),
-        ];
+        let gains =
+            [1.0 - z * z * z, 1.5 * (1.0 - z) * (1.0 - z) * (1.0 + z) / period, (1.0 - z).powi(3) / (period * period)];
         Self {
             period,
             per_count: TAU / f64::from(1_u32 << bits),

@@ -20,6 +20,7 @@ pub fn settings(train: &DriveTrainParameters) -> ObserverSettings {
     let encoder = |encoder: &host_tests::drive_train::EncoderParameters| EncoderSettings {
         counts_per_turn: 1 << encoder.bits,
         wraps_at: 1 << encoder.bits,
+        absolute: true,
         harmonic_error: encoder.once_per_turn_error.max(encoder.twice_per_turn_error),
     };
     ObserverSettings {
@@ -32,7 +33,7 @@ pub fn settings(train: &DriveTrainParameters) -> ObserverSettings {
         torque_lag: train.motor.current_lag,
         torque_limit: train.motor.torque_limit.min(1e3),
         torque_noise_ratio: train.motor.torque_noise_ratio,
-        torque_uncertainty: 0.02 * train.motor.torque_limit.min(1e3),
+        torque_uncertainty: (0.015 * train.motor.torque_limit).hypot(train.motor.friction.coulomb),
         torque_ripple: train.motor.cogging_torque,
         efficiency: train.efficiency,
         backlash_uncertainty: 0.5,

@@ -7,6 +7,8 @@
 
 mod filter;
 mod integers;
+mod probe;
+mod source;
 
 use core::f64::consts::TAU;
 
@@ -23,6 +25,8 @@ use crate::tables::observer::{
     MOST_PARAMETERS, ObserverTables, SupervisorTable,
 };
 use filter::{Filter, System};
+pub use probe::design_probe;
+pub use source::observer_source;
 
 /// An encoder as its data sheet has it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,6 +36,8 @@ pub struct EncoderSettings {
     /// Raw counts run from 0 to this less 1 and start again; 0 stands for 2^32. The number of counts in a turn for a
     /// single-turn absolute encoder.
     pub wraps_at: u32,
+    /// Whether it knows its place in the turn when it begins. If not, offset and error maps are learnt anew every time.
+    pub absolute: bool,
     /// Standard deviation to expect of its once- and of its twice-per-turn error; zero if there is none [rad].
     pub harmonic_error: f64,
 }
@@ -78,6 +84,9 @@ pub struct ObserverSettings {
 /// collisions are faster, gravity slower; a filter for this follows the first with a lag of a few milliseconds.
 const LOAD_CHANGE: f64 = 2.0;
 
+/// Shortest half swing that the motor side follows [control periods].
+const FASTEST_SWING: f64 = 20.0;
+
 /// Part of the motor's largest torque by which the mesh force changes in half a swing of motor against load.
 const MESH_CHANGE: f64 = 0.2;
 
@@ -86,6 +95,9 @@ const IMPACT_ERROR: f64 = 0.05;
 
 /// Length of a learning interval [s]: short against the motions in which contact settles, long against noise.
 const LEARNING_INTERVAL: f64 = 1e-3;
+
+/// Learning intervals over which the observer takes the speed of the way.
+const WINDOW: f64 = 8.0;
 
 /// Length of settled contact that makes up one way to learn from [s]: about as long as cogging and swings of the wind-up
 /// take to repeat, so that one block's error says little about the next one's.
@@ -137,16 +149,20 @@ pub fn design_observer<T: Real>(
     deviation[1] = 2.0 * half_gap + body.compliance * rated_force;
     deviation[2] = body.compliance * settings.compliance_uncertainty;
     deviation[3] = body.output_lever * settings.skew_uncertainty;
-    deviation[4..8].fill(motor_harmonic);
-    deviation[8..12].fill(output_harmonic);
+    deviation[4..6].fill(body.transmission_error / core::f64::consts::SQRT_2);
+    deviation[6..10].fill(motor_harmonic);
+    deviation[10..14].fill(output_harmonic);
     let mut mean = [0.0; MOST_PARAMETERS];
     mean[0] = half_gap;
     mean[2] = body.compliance;
     mean[3] = body.output_lever * settings.skew;
 
-    let still_window = 8.0 * LEARNING_INTERVAL;
+    let meshes = f64::from(joint.geometry.ring_teeth);
     let tables = ObserverTables {
-        identity: identity(joint, settings),
+        identity: mean
+            .iter()
+            .chain(&deviation)
+            .fold(identity(joint, settings), |running, number| digest::chain(running, number.to_bits())),
         control_rate: settings.control_rate,
         period: real(step),
         period_ticks: [0.5, 1.5].map(|part| libm::round(part * step * f64::from(settings.clock_rate)) as u32),
@@ -179,9 +195,11 @@ pub fn design_observer<T: Real>(
             bias_prior: real((settings.torque_uncertainty / body.sun_lever).powi(2)),
             bias_drift: real((settings.torque_uncertainty / body.sun_lever).powi(2) * LEARNING_INTERVAL / 10.0),
             bias_limit: real(3.0 * settings.torque_uncertainty / body.sun_lever),
-            still: real(3.0 * libm::sqrt(2.0 * (way_variance + wind_up_variance)) / still_window),
-            still_per_speed: real(2.0 * (2.2 * motor_harmonic + output_harmonic / body.ratio)),
-            turning: real(3.0 * libm::sqrt(drive.variance[1])),
+            still: real(3.0 * libm::sqrt(2.0 * (way_variance + wind_up_variance)) / WINDOW),
+            still_per_speed: real(
+                2.0 * (2.2 * motor_harmonic + (output_harmonic + meshes * body.transmission_error) / body.ratio),
+            ),
+            turning: real(3.0 * libm::sqrt(drive.quiet[1])),
             rate_deviation: real(
                 3.0 * libm::sqrt(drive.quiet[1] * body.sun_lever.powi(2) + load.quiet[1] * body.output_lever.powi(2)),
             ),
@@ -227,6 +245,8 @@ struct Body {
     /// Way of the sun under a unit force, link held: meshes and wind-up.
     compliance: f64,
     mesh_compliance: f64,
+    /// Amplitude of the transmission error of sun to carrier, at most.
+    transmission_error: f64,
 }
 
 impl Body {
@@ -241,6 +261,7 @@ impl Body {
         let mesh_compliance = (1.0 / sun_planet.mean_stiffness + 1.0 / ring_planet.mean_stiffness) / planets;
         let wind_up = joint.compliance.map_or(0.0, |compliance| output_lever * output_lever / compliance.stiffness);
         let smallest = |values: &[f64]| values.iter().copied().fold(f64::INFINITY, f64::min);
+        let largest = |values: &[f64]| values.iter().copied().fold(0.0, |most: f64, value| most.max(value.abs()));
         Self {
             sun_lever,
             output_lever,
@@ -254,6 +275,7 @@ impl Body {
             half_backlash: 0.5 * (smallest(&sun_planet.half_backlash) + smallest(&ring_planet.half_backlash)),
             compliance: mesh_compliance + wind_up,
             mesh_compliance,
+            transmission_error: largest(&sun_planet.transmission_error) + largest(&ring_planet.transmission_error),
         }
     }
 
@@ -269,7 +291,8 @@ impl Body {
 /// swing of motor against load; the torque noise acts on the speed.
 fn drive_filter(body: &Body, settings: &ObserverSettings, count: f64, step: f64) -> Filter {
     let per_inertia = 1.0 / body.motor_inertia;
-    let half_swing = core::f64::consts::PI / body.contact_frequency();
+    // Faster swings than this are not followed: what they would cost in noise is worth more.
+    let half_swing = (core::f64::consts::PI / body.contact_frequency()).max(FASTEST_SWING * step);
     let torque_noise = settings.torque_noise_ratio * settings.torque_limit;
     System {
         dynamics: DMatrix::from_row_slice(3, 3, &[0.0, 1.0, 0.0, 0.0, 0.0, -per_inertia, 0.0, 0.0, 0.0]),
@@ -375,10 +398,12 @@ fn counts<T: Real>(
     Ok(CountTable {
         motor: encoder(motor, settings.fastest_motor),
         output: encoder(output, settings.fastest_motor / geometry.ratio_by_teeth()),
+        absolute: motor.absolute && output.absolute,
         has_output: settings.output_encoder.is_some(),
         motor_weight: weights.motor,
         output_weight: weights.output,
         modulus: weights.modulus,
+        meshes: geometry.ring_teeth,
         length: T::from_f64(unit * geometry.sun_base_radius),
     })
 }

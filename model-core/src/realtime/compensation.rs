@@ -66,16 +66,19 @@ impl<'tables, T: Real> Compensation<'tables, T> {
     pub fn step(&mut self, estimates: &Estimates<T>, command: &Command<T>) -> Shaped<T> {
         let tables = self.tables;
         let situation = Situation::new(tables, estimates, command);
+        let leans = self.flank.stage() == Stage::Touching && situation.contact == T::ZERO && situation.sees;
+        if leans && matches!(command, Command::Position { .. }) {
+            self.load.lean(tables, self.position.heeded(&situation));
+        }
         self.load.observe(tables, estimates, &situation);
         let (intent, plain) = match command {
             Command::Position { now, ahead } => (
                 self.position.intend(tables, &self.load, &situation, self.flank.patience(), now, ahead.as_ref()),
                 self.plain.follow(tables, &situation, now),
             ),
-            Command::Impedance(point) => (
-                self.impedance.intend(tables, &self.load, &situation, point),
-                self.plain.yield_to(&situation, point),
-            ),
+            Command::Impedance(point) => {
+                (self.impedance.intend(tables, &self.load, &situation, point), self.plain.yield_to(&situation, point))
+            }
         };
         let sees = situation.sees && intent.is_finite();
         let change = if sees { tables.trust_step } else { -tables.trust_step };
@@ -89,7 +92,8 @@ impl<'tables, T: Real> Compensation<'tables, T> {
             plain
         };
         let wanted = plain + self.trust * (compensated - plain);
-        let torque = if wanted.is_finite() { clamp(wanted, -tables.torque_limit, tables.torque_limit) } else { T::ZERO };
+        let torque =
+            if wanted.is_finite() { clamp(wanted, -tables.torque_limit, tables.torque_limit) } else { T::ZERO };
         self.plain.take(tables, &situation, torque - wanted, self.trust);
         let stage = if self.trust > T::ZERO { self.flank.stage() } else { Stage::Plain };
         Shaped {

@@ -22,18 +22,23 @@ mod estimates;
 mod interval;
 mod learner;
 mod load_side;
+mod memory;
 mod motion;
 mod motor_only;
+mod probe;
 mod regressors;
 mod samples;
 mod saying;
 mod supervisor;
 
 pub use estimates::{Doubt, Estimate, Estimates, Notices, Shaft, Source};
+pub use memory::{MEMORY_BYTES, Memory, MemoryError};
+pub use probe::{Probe, Progress, Refusal};
 pub use samples::{Reading, Samples};
 
 use crate::mesh::ContactState;
 use crate::real::Real;
+use crate::realtime::phase::sine_cosine;
 use crate::tables::observer::ObserverTables;
 use bias::Bias;
 use contact::{ByForce, ByPosition};
@@ -44,14 +49,16 @@ use learner::{Learner, Regressors};
 use load_side::LoadSide;
 use motion::{Motion, magnitude};
 use motor_only::Blind;
+use regressors::{COMPLIANCE, ERROR, HALF_GAP};
 use supervisor::Supervisor;
 
-/// Parameters learnt when the encoders count as free of harmonics: half-gap, offset, compliance, skew.
-pub const PLAIN: usize = 4;
+/// Parameters learnt when the encoders count as free of harmonics: half-gap, offset, compliance, skew, and sine and cosine
+/// of the gears' transmission error.
+pub const PLAIN: usize = 6;
 
 /// Parameters learnt with the error maps: the plain ones, then sine and cosine once and twice a turn of the motor, once
 /// and twice a turn of the output.
-pub const MAPPED: usize = 12;
+pub const MAPPED: usize = PLAIN + 8;
 
 /// Periods beyond which the age of a reading is not believed.
 const OLDEST: u32 = 64;
@@ -83,6 +90,10 @@ pub struct Observer<'tables, T: Real, const P: usize> {
 struct Now<T: Real, const P: usize> {
     /// What the way depends on, teeth left out.
     free: Regressors<T, P>,
+    /// Sine and cosine of the mesh phase.
+    mesh: [T; 2],
+    /// Transmission error [m].
+    shift: T,
     /// Motor less ratio times link along the line of action, as measured [m].
     raw: T,
     /// The same with everything taken out that was learnt, wind-up left in [m].
@@ -197,6 +208,8 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         let both = self.supervisor.source() == Source::Both;
         let link_speed = if both { self.load.speed } else { T::ZERO };
         let free = regressors::free(link_speed, motor_phase, both.then(|| output.phase(&tables.counts.output)));
+        let (sine, cosine) = sine_cosine(output.phase(&tables.counts.output).wrapping_mul(tables.counts.meshes));
+        let shift = self.error(&[sine, cosine]);
         let raw = tables.counts.length * T::from_i64(difference) + levers.sun * self.drive.ahead
             - levers.output * self.load.ahead;
         let lost = self.drive.taken * levers.per_sun;
@@ -207,7 +220,18 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         let force = net + net * magnitude(direction) * (gain - T::ONE);
         let rate = levers.sun * self.drive.speed - levers.output * self.load.speed;
         let soon = if magnitude(rate) > tables.contact.rate_deviation { rate * tables.contact.lag } else { T::ZERO };
-        Now { free, raw, rate, soon, way: raw - self.learner.way(&free), lost, direction, force }
+        Now {
+            free,
+            mesh: [sine, cosine],
+            shift,
+            raw,
+            rate,
+            soon,
+            way: raw - self.learner.way(&free),
+            lost,
+            direction,
+            force,
+        }
     }
 
     /// Contact, and what the meshes pass on.
@@ -218,7 +242,8 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         let mut force = now.force;
         self.estimates.reported_contact = if known.width_is_known && self.supervisor.source() == Source::Both {
             let before = self.estimates.reported_contact;
-            let (contact, both) = self.by_position(now.way, now.soon).contact(before, force, known.both_deviation);
+            let (contact, both) =
+                self.by_position(now.way, now.soon, now.shift).contact(before, force, known.both_deviation);
             force = both;
             contact
         } else if self.supervisor.source() == Source::Both {
@@ -233,14 +258,19 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
     }
 
     /// What a way says of the teeth.
-    fn by_position(&self, way: T, soon: T) -> ByPosition<T> {
+    fn by_position(&self, way: T, soon: T, shift: T) -> ByPosition<T> {
         let [half_gap, compliance] = self.shape();
         let known = &self.knowledge;
-        ByPosition { way, soon, half_gap, blur: known.blur, compliance, weight: known.position_weight }
+        ByPosition { way, soon, shift, half_gap, blur: known.blur, compliance, weight: known.position_weight }
     }
 
     /// Half-gap [m] and compliance [m/N] as learnt so far.
     fn shape(&self) -> [T; 2] {
-        [0, 2].map(|index| self.learner.values.get(index).copied().unwrap_or(T::ONE))
+        [self.learner.value(HALF_GAP), self.learner.value(COMPLIANCE)]
+    }
+
+    /// Transmission error at a mesh phase [m].
+    fn error(&self, mesh: &[T; 2]) -> T {
+        mesh[0] * self.learner.value(ERROR) + mesh[1] * self.learner.value(ERROR + 1)
     }
 }

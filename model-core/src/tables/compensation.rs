@@ -40,10 +40,6 @@ pub struct CompensationTables<T: Real> {
     pub integral_gain: T,
     /// Share of what the limit cut off that the integral gives back each period.
     pub back_calculation: T,
-    /// Spring of the motor's loop on its way through the gap [N m/rad].
-    pub free_position_gain: T,
-    /// Its damper [N m s/rad].
-    pub free_damping_gain: T,
     /// Largest torque [N m].
     pub torque_limit: T,
     /// How far ahead set-points are wanted [s].
@@ -77,6 +73,8 @@ pub struct CompensationTables<T: Real> {
     pub doubt: T,
     /// Share of news that the measured torque takes up in one period.
     pub settling: T,
+    /// Inverse of the news from which on they are taken up faster [1/(N m)].
+    pub eagerness: T,
     /// How much of it is left when nothing has changed for long.
     pub least_doubt: T,
     /// What is left of a grown patience after one period.

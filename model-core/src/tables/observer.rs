@@ -4,7 +4,7 @@
 use crate::real::Real;
 
 /// The most parameters that the learner may have.
-pub const MOST_PARAMETERS: usize = 12;
+pub const MOST_PARAMETERS: usize = 14;
 
 /// Commands that may be on their way to the motor.
 pub const MOST_DELAY: usize = 4;
@@ -66,12 +66,16 @@ pub struct CountTable<T: Real> {
     pub output: EncoderTable<T>,
     /// Whether there is an output encoder.
     pub has_output: bool,
+    /// Whether both encoders know their place in the turn when they begin.
+    pub absolute: bool,
     /// Units of the difference in a motor count.
     pub motor_weight: i64,
     /// Units of the difference in an output count.
     pub output_weight: i64,
     /// Whole turns of either shaft change the difference by a multiple of this.
     pub modulus: i64,
+    /// Mesh periods in a turn of the output: teeth of the ring.
+    pub meshes: u32,
     /// Way along the line of action in a unit of the difference [m].
     pub length: T,
 }
@@ -161,9 +165,9 @@ pub struct ContactTable<T: Real> {
     pub lag: T,
     /// Part of its change in a period by which a mean over a few learning intervals follows [-].
     pub smoothing: T,
-    /// Speed of the gap coordinate that noise alone can show [m/s].
+    /// Way in a learning interval that noise alone can show [m].
     pub still: T,
-    /// Likewise for each rad/s of the motor while the error map is unknown, as a part of its uncertainty [-].
+    /// Likewise for each radian that the motor turns while the error maps are unknown [m/rad].
     pub still_per_speed: T,
     /// Motor speed above which dry friction has its full size [rad/s].
     pub turning: T,
@@ -215,4 +219,37 @@ pub struct SupervisorTable<T: Real> {
     pub margin: T,
     /// Estimates of the gap are given out up to this standard deviation, as a part of the gap 4b [-].
     pub widest_part: T,
+}
+
+/// The width probe.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ProbeTable<T: Real> {
+    /// Single torque; the probe goes up to twice that [N m].
+    pub torque: T,
+    /// Part of the lacking torque that is made good in a period [-].
+    pub rise: T,
+    /// Torque for each rad/s of the motor that softens landings [N m s/rad].
+    pub damping: T,
+    /// Motor speed above which it is not at rest [rad/s].
+    pub moving: T,
+    /// Mesh torque at the carrier above which the load is not off [N m].
+    pub loaded: T,
+    /// Motor angle that teeth and wind-up cannot allow [rad].
+    pub furthest: T,
+    /// Periods after which the probe gives up.
+    pub longest: u32,
+    /// Periods that a torque is given to settle.
+    pub settle: u32,
+    /// Periods at rest over which an angle is taken.
+    pub still: u32,
+    /// 1 over them.
+    pub per_still: T,
+    /// A turn [rad].
+    pub turn: T,
+    /// Way along the line of action in a radian of the motor [m].
+    pub way: T,
+    /// Way between the flanks below which nothing has moved [m].
+    pub least: T,
+    /// Variance of the way between the flanks [m^2].
+    pub variance: T,
 }

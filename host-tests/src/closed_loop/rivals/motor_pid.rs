@@ -54,11 +54,7 @@ pub(super) fn tracker(knowledge: &Knowledge, bandwidth: f64) -> MotorTracker {
 
 /// The motion of the motor shaft that belongs to one of the link.
 pub(super) fn geared(motion: Motion, ratio: f64) -> Motion {
-    Motion {
-        position: ratio * motion.position,
-        speed: ratio * motion.speed,
-        acceleration: ratio * motion.acceleration,
-    }
+    Motion { position: ratio * motion.position, speed: ratio * motion.speed, acceleration: ratio * motion.acceleration }
 }
 
 impl Controller for MotorPid {

@@ -2,8 +2,8 @@
 //! jumping by the guessed lost motion when the planned torque changes its sign, and an integral over the output
 //! encoder's error. Contact and load are not estimated.
 
-use super::motor_pid::{MotorPid, geared};
 use super::Knowledge;
+use super::motor_pid::{MotorPid, geared};
 use crate::closed_loop::{Controller, LinkTracker, SetPoint};
 use crate::drive_train::Measurement;
 
@@ -14,7 +14,7 @@ const KNOWN_GRAVITY: f64 = 0.85;
 const FRICTION_SPEED: f64 = 0.01;
 
 /// Rate of the output integral over the bandwidth.
-pub static INTEGRAL_RATE: std::sync::LazyLock<f64> = std::sync::LazyLock::new(|| std::env::var("IR").unwrap_or("0.25".into()).parse().unwrap());
+const INTEGRAL_RATE: f64 = 0.25;
 
 /// Motor PID with feed-forward, jump and output integral.
 #[derive(Debug, Clone)]
@@ -30,7 +30,7 @@ impl OutputIntegral {
     /// Of a bandwidth [rad/s].
     pub fn new(knowledge: Knowledge, bandwidth: f64) -> Self {
         let link = LinkTracker::new(knowledge.bits[1], super::motor_pid::TRACKER * bandwidth, knowledge.period);
-        Self { pid: MotorPid::new(knowledge, bandwidth), link, rate: *INTEGRAL_RATE * bandwidth, side: 0.0, trim: 0.0 }
+        Self { pid: MotorPid::new(knowledge, bandwidth), link, rate: INTEGRAL_RATE * bandwidth, side: 0.0, trim: 0.0 }
     }
 }
 
@@ -38,7 +38,8 @@ impl Controller for OutputIntegral {
     fn period(&mut self, measurement: &Measurement, set_point: &SetPoint) -> f64 {
         let motion = set_point.motion();
         let (link, _) = self.link.step(measurement.output_counts);
-        let Knowledge { ratio, lost_motion, load_friction, motor_friction, gravity, period, .. } = *self.pid.knowledge();
+        let Knowledge { ratio, lost_motion, load_friction, motor_friction, gravity, period, .. } =
+            *self.pid.knowledge();
         let knowledge = self.pid.knowledge();
         let load_inertia = (knowledge.total_inertia - knowledge.motor_inertia) * ratio * ratio;
         let direction = (motion.speed / FRICTION_SPEED).clamp(-1.0, 1.0);

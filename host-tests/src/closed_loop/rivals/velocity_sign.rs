@@ -1,8 +1,8 @@
 //! The usual practice: the motor PID with half the guessed lost motion added in the direction of the wanted speed. What
 //! drives the joint, friction or inertia, is not asked.
 
-use super::motor_pid::{MotorPid, geared};
 use super::Knowledge;
+use super::motor_pid::{MotorPid, geared};
 use crate::closed_loop::{Controller, SetPoint};
 use crate::drive_train::Measurement;
 

@@ -109,13 +109,13 @@ impl<T: Real> Flank<T> {
             let speed = tables.landing_speed + tables.landing_haste * self.elapsed;
             let closing = self.side * clamp(speed, T::ZERO, tables.fastest_landing);
             return tables.motor_inertia * intent.free_acceleration
-                + tables.free_damping_gain * (situation.link_speed + closing - situation.motor_speed);
+                + tables.damping_gain * (situation.link_speed + closing - situation.motor_speed);
         }
         let [target, rate, acceleration] = self.path.at(self.elapsed);
         let drift = tables.turn * situation.origin.less(self.origin.turns, self.origin.fraction);
         tables.motor_inertia * acceleration
-            + tables.free_position_gain * (target - drift - situation.motor)
-            + tables.free_damping_gain * (rate - situation.motor_speed)
+            + tables.position_gain * (target - drift - situation.motor)
+            + tables.damping_gain * (rate - situation.motor_speed)
     }
 
     /// Torque that the load does not get now is owed to it.

@@ -47,8 +47,8 @@ impl<T: Real> Situation<T> {
         };
         let [numerator, denominator] = tables.ratio.map(i64::from);
         let whole = denominator * i64::from(estimates.motor.turns) - numerator * i64::from(origin.turns);
-        let motor_turns = T::from_i64(whole) * tables.inverse_denominator + estimates.motor.fraction
-            - tables.gear * origin.fraction;
+        let motor_turns =
+            T::from_i64(whole) * tables.inverse_denominator + estimates.motor.fraction - tables.gear * origin.fraction;
         let motor = tables.turn * tables.inverse_gear * motor_turns - estimates.encoder_offset.value;
         let half = clamp(tables.inverse_lever * estimates.half_backlash.value, T::ZERO, tables.widest_half);
         Self {

@@ -48,8 +48,20 @@ impl<T: Real> LoadModel<T> {
         }
     }
 
+    /// Integrates an error instead, where a flank should carry and no estimate says with what force.
+    pub fn lean(&mut self, tables: &CompensationTables<T>, error: T) {
+        let next = self.even + tables.integral_gain * error;
+        if next.is_finite() {
+            self.even = clamp(next, -tables.torque_limit, tables.torque_limit);
+        }
+    }
+
     fn learn(&mut self, tables: &CompensationTables<T>, torque: T, speed: T) {
-        let direction = Self::direction(tables, speed);
+        // A link that creeps may rub with any part of its friction: that says nothing about the whole of it.
+        let whole = clamp(Self::direction(tables, T::HALF * speed), -T::HALF, T::HALF);
+        let creeps = whole < T::HALF && whole > -T::HALF;
+        let direction = if creeps { T::ZERO } else { whole + whole };
+        let known = if creeps { self.drag(tables, speed) } else { self.friction * direction };
         let [growth_even, growth_friction, noise] = tables.load_learner;
         let [even, friction, both] = self.variance;
         let (even, friction) = (even + growth_even, friction + growth_friction);
@@ -59,9 +71,10 @@ impl<T: Real> LoadModel<T> {
             return;
         }
         let (gain_even, gain_friction) = (to_even.over(total), to_friction.over(total));
-        let surprise = torque - self.even - self.friction * direction;
+        let surprise = torque - self.even - known;
         self.even += gain_even * surprise;
-        self.friction += gain_friction * surprise;
-        self.variance = [even - gain_even * to_even, friction - gain_friction * to_friction, both - gain_even * to_friction];
+        self.friction = clamp(self.friction + gain_friction * surprise, T::ZERO, tables.torque_limit);
+        self.variance =
+            [even - gain_even * to_even, friction - gain_friction * to_friction, both - gain_even * to_friction];
     }
 }

@@ -19,17 +19,22 @@ pub(super) struct PositionLaw<T: Real> {
     asked: T,
     /// How long ago it last changed, as far as that matters [s].
     since: T,
-    /// What is measured and not planned, smoothed, and its growth if the load is left to itself.
-    smooth: [T; 2],
+    /// Demand as far as it is measured and not planned, smoothed [N m].
+    level: T,
 }
 
 impl<T: Real> PositionLaw<T> {
     pub fn new() -> Self {
-        Self { before: None, indulgence: T::ZERO, asked: T::ZERO, since: T::ZERO, smooth: [T::ZERO; 2] }
+        Self { before: None, indulgence: T::ZERO, asked: T::ZERO, since: T::ZERO, level: T::ZERO }
     }
 
     pub fn forget(&mut self) {
         self.before = None;
+    }
+
+    /// The error, less what is let be.
+    pub fn heeded(&self, situation: &Situation<T>) -> T {
+        beyond(situation.error, self.indulgence)
     }
 
     pub fn intend(
@@ -50,26 +55,24 @@ impl<T: Real> PositionLaw<T> {
             + load.drag(tables, now.speed)
             + tables.position_gain * beyond(situation.error, let_be)
             + tables.damping_gain * (now.speed - situation.motor_speed);
-        // What is measured and not planned has to ask for more than its noise, and for much more soon after a change.
-        let settle = tables.settling;
-        let turn_of = |speed: T| load.drag(tables, speed - situation.error_rate) - load.drag(tables, speed);
         let level = load.even()
-            + turn_of(now.speed)
+            + (load.drag(tables, situation.link_speed) - load.drag(tables, now.speed))
             + tables.position_gain * beyond(situation.error, let_be)
             + tables.damping_gain * situation.error_rate;
-        let growth = tables.position_gain * situation.error_rate;
-        let [old_level, old_growth] = self.smooth;
-        self.smooth = [old_level + settle * (level - old_level), old_growth + settle * (growth - old_growth)];
-        let [level, growth] = self.smooth;
+        // News that are large against the doubt are no noise, and are taken up faster.
+        let news = level - self.level;
+        let weight = tables.eagerness * news;
+        self.level += clamp(tables.settling * clamp(weight * weight, T::ONE, tables.rate), T::ZERO, T::HALF) * news;
+        // What is measured has to ask for more than its noise, and for much more soon after a change of flank.
         let dead = tables.doubt * (tables.least_doubt + patience - T::ONE);
-        let measured = |time: T| beyond(level + time * growth, dead);
+        let measured = beyond(self.level, dead);
         let planned = |time: T| {
             let part = time.over(known);
             let speed = now.speed + time * (now.acceleration + T::HALF * part * asked[1]);
             let speed = if ahead.is_some() { now.speed + part * asked[0] } else { speed };
             tables.load_inertia * (now.acceleration + part * asked[1]) + load.drag(tables, speed)
         };
-        let demand = |time: T| planned(time) + measured(time);
+        let demand = |time: T| planned(time) + measured;
         let free = load.even() + load.drag(tables, situation.link_speed);
         // How hard the far flank will be needed says how fast to go there, and that again when to start.
         let unhurried = crossing_time(tables, situation.half, T::ZERO) + tables.reaction;

@@ -4,6 +4,9 @@
 use crate::real::Real;
 use crate::tables::observer::ContactTable;
 
+/// Surprise, in standard deviations, that does not belong to the model.
+const GATE: i32 = 4;
+
 /// What the motor side sees as force although no mesh carries any: bias + friction * direction [N].
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Bias<T: Real> {
@@ -41,6 +44,10 @@ impl<T: Real> Bias<T> {
         let (from_bias, from_friction) = (bias + direction * both, both + direction * friction);
         let expected = table.bias_noise + from_bias + direction * from_friction;
         let surprise = force - self.at(direction);
+        // Far from what is believed of them it is no open gap that was read.
+        if surprise * surprise > T::from_i32(GATE * GATE) * expected {
+            return;
+        }
         let (bias_gain, friction_gain) = (from_bias.over(expected), from_friction.over(expected));
         self.bias = clamp(self.bias + bias_gain * surprise, table.bias_limit);
         // Friction never drives.
@@ -48,6 +55,16 @@ impl<T: Real> Bias<T> {
         self.friction = if friction_now > T::ZERO { friction_now } else { T::ZERO };
         self.variance =
             [bias - bias_gain * from_bias, friction - friction_gain * from_friction, both - bias_gain * from_friction];
+    }
+
+    /// Everything that is learnt.
+    pub fn numbers(&self) -> impl Iterator<Item = T> {
+        [self.bias, self.friction].into_iter().chain(self.variance)
+    }
+
+    /// Takes the same back.
+    pub fn set_numbers(&mut self, next: &mut impl FnMut() -> T) {
+        [&mut self.bias, &mut self.friction].into_iter().chain(&mut self.variance).for_each(|number| *number = next());
     }
 
     /// Lets time pass: one learning interval.

@@ -50,6 +50,8 @@ pub(super) struct ByPosition<T: Real> {
     pub soon: T,
     /// Half-gap [m].
     pub half_gap: T,
+    /// Transmission error: by how much both edges are shifted [m].
+    pub shift: T,
     /// Distance from an edge that noise and ignorance can make [m].
     pub blur: T,
     /// Compliance as way per force [m/N].
@@ -61,8 +63,9 @@ pub(super) struct ByPosition<T: Real> {
 impl<T: Real> ByPosition<T> {
     /// Contact and mesh force, from the motor side's force and the standard deviation of both together.
     pub fn contact(&self, before: ContactState, force: T, deviation: T) -> (ContactState, T) {
-        let side = if self.way < T::ZERO { -T::ONE } else { T::ONE };
-        let beyond = side * self.way - self.half_gap;
+        let way = self.way - self.shift;
+        let side = if way < T::ZERO { -T::ONE } else { T::ONE };
+        let beyond = side * way - self.half_gap;
         let both = force + self.weight * (side * beyond.over(self.compliance) - force);
         // Teeth about to meet count as met: what is measured lags behind them by that much.
         let lands = side * self.soon > T::ZERO && beyond + side * self.soon > T::ZERO;
@@ -80,10 +83,11 @@ impl<T: Real> ByPosition<T> {
     /// force.
     pub fn gap(&self, mesh_compliance: T) -> T {
         let share = mesh_compliance.over(self.compliance);
-        if self.way > self.half_gap {
-            self.half_gap + share * (self.way - self.half_gap)
-        } else if self.way < -self.half_gap {
-            -self.half_gap + share * (self.way + self.half_gap)
+        let (upper, lower) = (self.shift + self.half_gap, self.shift - self.half_gap);
+        if self.way > upper {
+            upper + share * (self.way - upper)
+        } else if self.way < lower {
+            lower + share * (self.way - lower)
         } else {
             self.way
         }

@@ -116,6 +116,8 @@ pub(super) struct Counts {
     pub difference: i64,
     /// What the difference was at the start, modulo whole turns: where the encoders' zeros are.
     pub start: i64,
+    /// The start is a saved one.
+    referred: bool,
     /// As implied: an output that follows the motor by whole counts, and what is left of the difference.
     implied: Option<(Counter, i64)>,
     fresh_time: u32,
@@ -147,11 +149,15 @@ impl Counts {
             advance
         });
         if !began_before && self.output.began {
-            self.difference = 0;
             let absolute = i64::from(self.motor.place)
                 .wrapping_mul(table.motor_weight)
                 .wrapping_sub(i64::from(self.output.place).wrapping_mul(table.output_weight));
-            self.start = absolute.checked_rem_euclid(table.modulus).unwrap_or(0);
+            let reference =
+                core::mem::replace(&mut self.start, absolute.checked_rem_euclid(table.modulus).unwrap_or(0));
+            self.difference = 0;
+            if self.referred {
+                self.refer_to(reference, table);
+            }
         }
         let turned = match (&mut self.implied, output) {
             (Some((implied, rest)), _) => {
@@ -165,6 +171,17 @@ impl Counts {
             (None, _) => 0,
         };
         Taken { motor, output, turned }
+    }
+
+    /// Counts the difference from where the encoders' zeros were before, as far as whole turns leave that open.
+    pub fn refer_to<T: Real>(&mut self, reference: i64, table: &CountTable<T>) {
+        self.referred = true;
+        if self.output.began {
+            let beyond = self.start.wrapping_sub(reference).checked_rem_euclid(table.modulus).unwrap_or(0);
+            let beyond = if beyond > table.modulus / 2 { beyond - table.modulus } else { beyond };
+            self.difference = self.difference.wrapping_add(beyond);
+        }
+        self.start = reference;
     }
 
     /// From now on the output is what the motor implies, beginning where it is measured now.

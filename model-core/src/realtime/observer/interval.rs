@@ -4,7 +4,8 @@
 use super::contact::sign;
 use super::learner::{Learner, Regressors};
 use super::motion::{Shown, magnitude};
-use super::{Bias, MAPPED, Now, Observer, Source, regressors};
+use super::regressors::{COMPLIANCE, HALF_GAP, OFFSET, SKEW, Touch};
+use super::{Bias, Now, Observer, Source, regressors};
 use crate::mesh::ContactState;
 use crate::real::Real;
 use crate::tables::observer::{LearnerTable, ObserverTables};
@@ -27,6 +28,7 @@ const TOO_MANY: u32 = 12;
 pub(super) struct Interval<T: Real, const P: usize> {
     periods: u32,
     free: Regressors<T, P>,
+    mesh: [T; 2],
     raw: T,
     lost: T,
     force: T,
@@ -52,6 +54,8 @@ pub(super) struct Knowledge<T: Real> {
     pub edge_variance: T,
     /// Its root [m].
     pub edge_deviation: T,
+    /// Variance of where a flank is: half-gap and transmission error [m^2].
+    pub flank_variance: T,
     /// Variances of half-gap [m^2], offset [m^2], compliance [m^2/N^2] and skew [m^2 s^2].
     pub variances: [T; 4],
     /// Distance from an edge that noise and ignorance can make [m].
@@ -69,6 +73,7 @@ impl<T: Real, const P: usize> Interval<T, P> {
         Self {
             periods: 0,
             free: [T::ZERO; P],
+            mesh: [T::ZERO; 2],
             raw: T::ZERO,
             lost: T::ZERO,
             force: T::ZERO,
@@ -84,6 +89,9 @@ impl<T: Real, const P: usize> Interval<T, P> {
         for (sum, value) in self.free.iter_mut().zip(&now.free) {
             *sum += *value;
         }
+        for (sum, value) in self.mesh.iter_mut().zip(&now.mesh) {
+            *sum += *value;
+        }
         self.raw += now.raw;
         self.lost += now.lost;
         self.force += now.force;
@@ -96,7 +104,7 @@ impl<T: Real, const P: usize> Interval<T, P> {
     /// Sums become means.
     fn close(&mut self, per_periods: T) -> Self {
         let mut mean = *self;
-        mean.free.iter_mut().for_each(|sum| *sum *= per_periods);
+        mean.free.iter_mut().chain(&mut mean.mesh).for_each(|sum| *sum *= per_periods);
         for sum in [&mut mean.raw, &mut mean.lost, &mut mean.force, &mut mean.direction, &mut mean.speed] {
             *sum *= per_periods;
         }
@@ -110,47 +118,46 @@ impl<T: Real, const P: usize> Interval<T, P> {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Block<T: Real, const P: usize> {
     intervals: u32,
-    side: T,
+    touch: Touch<T>,
     free: Regressors<T, P>,
     raw: T,
-    force: T,
 }
 
 impl<T: Real, const P: usize> Block<T, P> {
     pub fn new() -> Self {
-        Self { intervals: 0, side: T::ZERO, free: [T::ZERO; P], raw: T::ZERO, force: T::ZERO }
+        Self { intervals: 0, touch: Touch::default(), free: [T::ZERO; P], raw: T::ZERO }
     }
 
-    /// Adds an interval; gives the means and the side when enough have passed on one side.
-    fn add(&mut self, mean: &Interval<T, P>, side: Option<T>, table: &LearnerTable<T>) -> Option<(Mean<T, P>, T)> {
+    /// Adds an interval; gives regressors and way when enough have passed on one side.
+    fn add(
+        &mut self,
+        mean: &Interval<T, P>,
+        side: Option<T>,
+        table: &LearnerTable<T>,
+    ) -> Option<(Regressors<T, P>, T)> {
         let Some(side) = side else {
             *self = Self::new();
             return None;
         };
-        if side != self.side {
-            *self = Self { side, ..Self::new() };
+        if side != self.touch.side {
+            *self = Self::new();
+            self.touch.side = side;
         }
-        for (sum, value) in self.free.iter_mut().zip(&mean.free) {
+        let free = self.free.iter_mut().zip(&mean.free);
+        for (sum, value) in free.chain(self.touch.mesh.iter_mut().zip(&mean.mesh)) {
             *sum += *value * table.per_block;
         }
         self.raw += mean.raw * table.per_block;
-        self.force += mean.force * table.per_block;
+        self.touch.force += mean.force * table.per_block;
         self.intervals += 1;
         if self.intervals < table.block {
             return None;
         }
-        let mean = Mean { free: self.free, raw: self.raw, force: self.force };
-        *self = Self { side, ..Self::new() };
-        Some((mean, side))
+        let full = (self.touch.on(&self.free), self.raw);
+        *self = Self::new();
+        self.touch.side = side;
+        Some(full)
     }
-}
-
-/// Means over a block.
-#[derive(Debug, Clone, Copy)]
-struct Mean<T: Real, const P: usize> {
-    free: Regressors<T, P>,
-    raw: T,
-    force: T,
 }
 
 impl<T: Real> Knowledge<T> {
@@ -163,6 +170,7 @@ impl<T: Real> Knowledge<T> {
             way_variance: T::ZERO,
             edge_variance: T::ZERO,
             edge_deviation: T::ZERO,
+            flank_variance: T::ZERO,
             variances: [T::ZERO; 4],
             blur: T::ZERO,
             position_weight: T::ZERO,
@@ -170,7 +178,8 @@ impl<T: Real> Knowledge<T> {
             settled: false,
         };
         let free = regressors::free(T::ZERO, 0, Some(0));
-        knowledge.refresh(tables, learner, &Bias::new(&tables.contact), &free, T::ONE, T::ZERO);
+        let touch = Touch { side: T::ONE, ..Touch::default() };
+        knowledge.refresh(tables, learner, &Bias::new(&tables.contact), &free, &touch, T::ZERO);
         knowledge
     }
 
@@ -180,7 +189,7 @@ impl<T: Real> Knowledge<T> {
         learner: &Learner<T, P>,
         bias: &Bias<T>,
         free: &Regressors<T, P>,
-        side: T,
+        touch: &Touch<T>,
         direction: T,
     ) {
         let contact = &tables.contact;
@@ -189,17 +198,19 @@ impl<T: Real> Knowledge<T> {
         self.force_deviation = force.square_root();
         self.mean_force_deviation = (known + contact.force_variance * tables.learner.per_periods).square_root();
         self.way_variance = learner.variance(&tables.learner, free);
-        self.edge_variance = learner.variance(&tables.learner, &regressors::touching(free, side, T::ZERO));
+        self.edge_variance = learner.variance(&tables.learner, &touch.on(free));
+        self.flank_variance = learner.variance(&tables.learner, &touch.on(&[T::ZERO; P]));
         self.edge_deviation = self.edge_variance.square_root();
-        self.variances = [0, 1, 2, 3].map(|parameter| learner.variance_of(&tables.learner, parameter));
+        self.variances =
+            [HALF_GAP, OFFSET, COMPLIANCE, SKEW].map(|parameter| learner.variance_of(&tables.learner, parameter));
         let edge = self.edge_variance + contact.way_variance;
         self.blur = T::TWO * edge.square_root();
-        let compliance = learner.values.get(2).copied().unwrap_or(T::ONE);
+        let compliance = learner.value(COMPLIANCE);
         // Weights in inverse proportion to the variances, both as way.
         let from_force = force * compliance * compliance;
         self.position_weight = from_force.over(from_force + edge);
         self.both_deviation = (force * (T::ONE - self.position_weight)).square_root();
-        let half_gap = learner.values.first().copied().unwrap_or(T::ZERO);
+        let half_gap = learner.value(HALF_GAP);
         let tenth = half_gap * tables.contact.known_part;
         self.width_is_known = self.edge_variance < tenth * tenth;
     }
@@ -215,39 +226,52 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let mean = self.interval.close(tables.learner.per_periods);
         let way = mean.raw - self.learner.way(&mean.free);
         let [_, compliance] = self.shape();
-        let unmapped = if P == MAPPED && self.knowledge.width_is_known { T::EIGHTH } else { T::ONE };
-        let speed = magnitude(mean.speed);
+        let unmapped = if self.knowledge.width_is_known { T::EIGHTH } else { T::ONE };
+        let turned = magnitude(mean.speed) * tables.learner.span;
+        let blur = tables.contact.still_per_speed * unmapped * turned;
         let less_wind_up = way - compliance * mean.force;
+        let [_, _, compliance_variance, _] = self.knowledge.variances;
+        let softness = T::TWO * compliance_variance.square_root();
         let read = (mean.lost, mean.direction);
-        let shown = self.motion.step(&tables.contact, less_wind_up, read, speed, unmapped, tables.learner.span);
-        let side = self.settled_side(&mean, way, shown);
+        let shown = self.motion.step(&tables.contact, less_wind_up, read, blur, softness);
+        let shift = self.error(&mean.mesh);
+        let side = self.settled_side(&mean, way, shift, shown);
         if self.supervisor.source() == Source::Both {
             self.supervisor.remember(self.load.torque);
         } else {
-            self.reconsider(side, mean.force);
+            self.reconsider(side, &mean.mesh, mean.force);
         }
-        self.take_bias(&mean, way, shown);
+        self.take_bias(&mean, way - shift, shown);
         self.bias.age(&tables.contact);
         self.learner.forget(tables.learner.forgetting);
         self.knowledge.settled = side.is_some();
         let seen = side.filter(|_| self.supervisor.source() == Source::Both);
-        if let Some((mean, side)) = self.block.add(&mean, seen, &tables.learner) {
-            self.take_way(&mean, side);
+        if let Some((regressors, way)) = self.block.add(&mean, seen, &tables.learner) {
+            self.take_way(&regressors, way);
         }
-        let nearer = if way < T::ZERO { -T::ONE } else { T::ONE };
-        self.knowledge.refresh(tables, &self.learner, &self.bias, &mean.free, nearer, mean.direction);
+        let nearer = if way < shift { -T::ONE } else { T::ONE };
+        let mut seen = mean.free;
+        if let (Some(offset), false) = (seen.get_mut(OFFSET), self.supervisor.source() == Source::Both) {
+            // Without an output encoder there is no offset to be wrong.
+            *offset = T::ZERO;
+        }
+        let touch = Touch { side: nearer, force: T::ZERO, mesh: mean.mesh };
+        self.knowledge.refresh(tables, &self.learner, &self.bias, &seen, &touch, mean.direction);
     }
 
     /// The side on which contact has settled, if any.
-    fn settled_side(&self, mean: &Interval<T, P>, way: T, shown: Shown<T>) -> Option<T> {
+    fn settled_side(&self, mean: &Interval<T, P>, way: T, shift: T, shown: Shown<T>) -> Option<T> {
         let still = matches!(shown, Shown::Still(intervals) if intervals >= SETTLED_AFTER);
         if !still {
             return None;
         }
         let known = &self.knowledge;
         if known.width_is_known && self.supervisor.source() == Source::Both {
-            let (contact, _) =
-                self.by_position(way, T::ZERO).contact(ContactState::Separated, mean.force, known.both_deviation);
+            let (contact, _) = self.by_position(way, T::ZERO, shift).contact(
+                ContactState::Separated,
+                mean.force,
+                known.both_deviation,
+            );
             let side: T = sign(contact);
             return (contact != ContactState::Separated).then_some(side);
         }
@@ -280,11 +304,10 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
     }
 
     /// Takes a way in settled contact into the learner, unless it does not belong to the model.
-    fn take_way(&mut self, mean: &Mean<T, P>, side: T) {
+    fn take_way(&mut self, regressors: &Regressors<T, P>, way: T) {
         let table = &self.tables.learner;
-        let regressors = regressors::touching(&mean.free, side, mean.force);
-        let surprise = mean.raw - self.learner.way(&regressors);
-        let variance = self.learner.variance(table, &regressors) + table.noise * table.noise;
+        let surprise = way - self.learner.way(regressors);
+        let variance = self.learner.variance(table, regressors) + table.noise * table.noise;
         if surprise * surprise > T::from_i32(GATE * GATE) * variance {
             self.interval.surprises += 1;
             if self.interval.surprises >= TOO_MANY {
@@ -294,6 +317,6 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
             return;
         }
         self.interval.surprises = 0;
-        self.learner.learn(table, &regressors, mean.raw);
+        self.learner.learn(table, regressors, way);
     }
 }

@@ -8,6 +8,7 @@
 
 use core::array;
 
+use super::regressors::{COMPLIANCE, HALF_GAP, SKEW};
 use crate::real::Real;
 use crate::tables::observer::LearnerTable;
 
@@ -31,6 +32,11 @@ impl<T: Real, const P: usize> Learner<T, P> {
         learner.reopen();
         learner.settle(table);
         learner
+    }
+
+    /// A parameter, in SI.
+    pub fn value(&self, parameter: usize) -> T {
+        self.values.get(parameter).copied().unwrap_or(T::ZERO)
     }
 
     /// Way that a set of regressors has.
@@ -60,6 +66,35 @@ impl<T: Real, const P: usize> Learner<T, P> {
         }
         let deviation = table.deviation.get(parameter).copied().unwrap_or(T::ZERO);
         sum * deviation * deviation
+    }
+
+    /// Everything that is learnt: parameters, then each column of the factors down to its diagonal.
+    pub fn numbers(&self) -> impl Iterator<Item = T> {
+        let columns = self.factors.iter().enumerate().flat_map(|(index, column)| column.iter().take(index + 1));
+        self.moved.iter().chain(columns).copied()
+    }
+
+    /// Takes the same back.
+    pub fn set_numbers(&mut self, table: &LearnerTable<T>, next: &mut impl FnMut() -> T) {
+        self.moved.iter_mut().for_each(|moved| *moved = next());
+        for (index, column) in self.factors.iter_mut().enumerate() {
+            column.iter_mut().take(index + 1).for_each(|factor| *factor = next());
+        }
+        self.settle(table);
+    }
+
+    /// Forgets how sure everything is that depends on where the encoders' zeros are.
+    pub fn forget_places(&mut self) {
+        for (index, column) in self.factors.iter_mut().enumerate() {
+            let kept = [HALF_GAP, COMPLIANCE, SKEW].contains(&index);
+            for (row, factor) in column.iter_mut().enumerate() {
+                if row < index {
+                    *factor = T::ZERO;
+                } else if row == index && !kept {
+                    *factor = T::ONE;
+                }
+            }
+        }
     }
 
     /// Takes in one way.

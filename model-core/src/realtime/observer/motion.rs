@@ -11,7 +11,7 @@ const WINDOW: usize = 8;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Motion<T: Real> {
     ways: [T; WINDOW + 1],
-    forces: [(T, T); WINDOW / 2 + 1],
+    forces: [(T, T); WINDOW + 1],
     known: usize,
     still_for: u32,
 }
@@ -29,20 +29,12 @@ pub(super) enum Shown<T: Real> {
 
 impl<T: Real> Motion<T> {
     pub fn new() -> Self {
-        Self { ways: [T::ZERO; WINDOW + 1], forces: [(T::ZERO, T::ZERO); WINDOW / 2 + 1], known: 0, still_for: 0 }
+        Self { ways: [T::ZERO; WINDOW + 1], forces: [(T::ZERO, T::ZERO); WINDOW + 1], known: 0, still_for: 0 }
     }
 
-    /// Takes in one interval; `span` is how long an interval lasts, `motor_speed` unsigned, and `unmapped` how much of
-    /// the error map is unknown.
-    pub fn step(
-        &mut self,
-        table: &ContactTable<T>,
-        way: T,
-        force: (T, T),
-        motor_speed: T,
-        unmapped: T,
-        span: T,
-    ) -> Shown<T> {
+    /// Takes in one interval. `blur` is what error maps that are unknown can make of the motor's turning in an
+    /// interval [m], and `softness` by how much the compliance may be wrong [m/N].
+    pub fn step(&mut self, table: &ContactTable<T>, way: T, force: (T, T), blur: T, softness: T) -> Shown<T> {
         self.ways.rotate_right(1);
         self.forces.rotate_right(1);
         if let (Some(newest_way), Some(newest_force)) = (self.ways.first_mut(), self.forces.first_mut()) {
@@ -53,7 +45,9 @@ impl<T: Real> Motion<T> {
             self.known += 1;
             return Shown::Between;
         }
-        let limit = (table.still + table.still_per_speed * unmapped * motor_speed) * T::from_i32(WINDOW as i32) * span;
+        let [(newest_force, _), .., (oldest_force, _)] = self.forces;
+        let limit =
+            (table.still + blur) * T::from_i32(WINDOW as i32) + softness * magnitude(newest_force - oldest_force);
         let [newest, .., oldest] = self.ways;
         let middle = self.ways.get(WINDOW / 2).copied().unwrap_or(newest);
         let whole = newest - oldest;
@@ -63,7 +57,7 @@ impl<T: Real> Motion<T> {
         }
         self.still_for = 0;
         let on = |part: T| part > limit && whole > T::ZERO || -part > limit && whole < T::ZERO;
-        match self.forces.last() {
+        match self.forces.get(WINDOW / 2) {
             Some((force, direction)) if on(newest - middle) && on(middle - oldest) => {
                 Shown::Crossing(*force, *direction)
             }

@@ -7,7 +7,7 @@
 
 use super::contact::{sign, with_hysteresis};
 use super::motion::magnitude;
-use super::regressors::{self, touching};
+use super::regressors::{self, Touch};
 use super::{Now, Observer, Source};
 use crate::mesh::ContactState;
 use crate::real::Real;
@@ -23,7 +23,7 @@ pub(super) struct Blind<T: Real> {
     /// Contact has been felt since the output encoder was given up.
     anchored: bool,
     /// Contact that is felt for sure now.
-    felt: ContactState,
+    pub felt: ContactState,
     /// Mesh force, smoothed [N].
     force: T,
     /// Speed at which the teeth landed last, dying away as bounces do [m/s].
@@ -39,7 +39,7 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let wind_up = compliance * now.force;
         let upper = reach + if wind_up > T::ZERO { wind_up } else { T::ZERO };
         let lower = -reach + if wind_up < T::ZERO { wind_up } else { T::ZERO };
-        if self.supervisor.judge(table, now.way < upper && now.way > lower) {
+        if self.supervisor.judge(table, now.way - now.shift < upper && now.way - now.shift > lower) {
             self.counts.imply();
             self.load.speed = self.drive.speed * self.tables.levers.per_ratio;
             self.load.torque = self.supervisor.torque_before();
@@ -47,7 +47,7 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
             // The link is where the teeth allow it to be; where exactly, the next contact shows.
             let side: T = sign(self.estimates.contact);
             let implied = self.now();
-            self.load.ahead += (implied.way - side * half_gap).over(self.tables.levers.output);
+            self.load.ahead += (implied.way - implied.shift - side * half_gap).over(self.tables.levers.output);
         }
         if self.supervisor.source() != Source::Both {
             self.feel(now);
@@ -61,7 +61,7 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         }
         let before = self.estimates.reported_contact;
         let [half_gap, _] = self.shape();
-        let left = half_gap - sign::<T>(before) * now.way;
+        let left = half_gap - sign::<T>(before) * (now.way - now.shift);
         let noise = T::TWO * self.tables.contact.way_variance + self.drift_variance();
         if left > T::ZERO && left * left > T::TWO * T::TWO * noise { ContactState::Separated } else { before }
     }
@@ -71,17 +71,20 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let levers = &self.tables.levers;
         let [half_gap, compliance] = self.shape();
         self.blind.force += (now.force - self.blind.force) * self.tables.contact.smoothing;
-        let needed = T::TWO * self.knowledge.mean_force_deviation + self.knowledge.mean_force_deviation;
+        let deviation = self.knowledge.mean_force_deviation;
         let held = self.blind.felt;
-        self.blind.felt = with_hysteresis(held, self.blind.force, needed, needed);
+        // Only what no bias can be: four deviations make contact, three keep it.
+        let double = T::TWO * deviation;
+        self.blind.felt = with_hysteresis(held, self.blind.force, T::TWO * double, double + deviation);
         let side: T = sign(self.blind.felt);
-        let surprise = (now.way - side * half_gap - compliance * now.force) * levers.per_output;
+        let surprise = (now.way - now.shift - side * half_gap - compliance * now.force) * levers.per_output;
         if self.blind.felt == ContactState::Separated {
             self.blind.open_for = self.blind.open_for.saturating_add(1);
             // Beyond an edge there is contact, however light: the link goes with the motor.
-            if magnitude(now.way) > half_gap {
-                let edge = if now.way > T::ZERO { half_gap } else { -half_gap };
-                self.load.ahead += (now.way - edge) * levers.per_output;
+            let way = now.way - now.shift;
+            if magnitude(way) > half_gap {
+                let edge = if way > T::ZERO { half_gap } else { -half_gap };
+                self.load.ahead += (way - edge) * levers.per_output;
                 self.load.speed = self.drive.speed * levers.per_ratio;
             }
         } else if self.blind.felt == held {
@@ -100,8 +103,9 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
 
     /// Variance of the gap coordinate without an output encoder [m^2]; `None` where nothing is known of it.
     pub(super) fn blind_variance(&self) -> Option<T> {
-        let [half_gap_variance, ..] = self.knowledge.variances;
-        self.blind.anchored.then(|| half_gap_variance + self.tables.contact.way_variance + self.drift_variance())
+        self.blind
+            .anchored
+            .then(|| self.knowledge.edge_variance + self.tables.contact.way_variance + self.drift_variance())
     }
 
     /// What has been added since contact was last felt [m^2].
@@ -117,7 +121,7 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
     }
 
     /// Once an interval: takes the output encoder back when it says again what the motor implies.
-    pub(super) fn reconsider(&mut self, settled: Option<T>, force: T) {
+    pub(super) fn reconsider(&mut self, settled: Option<T>, mesh: &[T; 2], force: T) {
         let tables = self.tables;
         let agrees = settled.map(|side| {
             let phase = self.counts.motor.phase(&tables.counts.motor);
@@ -125,7 +129,7 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
             let free = regressors::free(self.load.speed, phase, Some(output));
             let measured =
                 tables.counts.length * T::from_i64(self.counts.difference) + tables.levers.sun * self.drive.ahead;
-            let expected = self.learner.way(&touching(&free, side, force));
+            let expected = self.learner.way(&Touch { side, force, mesh: *mesh }.on(&free));
             let room = tables.supervisor.margin + T::TWO * self.knowledge.edge_deviation;
             magnitude(measured - expected) < room
         });

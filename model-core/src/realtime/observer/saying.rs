@@ -1,7 +1,9 @@
 //! From what the observer holds to what it says: values in the user's units, their variances, and whether it stands by
 //! them. Nothing is decided or learnt here.
 
+use super::contact::sign;
 use super::counts::Counter;
+use super::regressors::{MAP, OFFSET, SKEW};
 use super::{MAPPED, Now, Observer, PLAIN, Source};
 use crate::mesh::ContactState;
 use crate::real::Real;
@@ -20,7 +22,7 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let gap = self.gap(now, both, touching, half_gap);
         let rate = if touching { T::ZERO } else { now.rate };
         let [half_gap_variance, offset_variance, compliance_variance, skew_variance] = known.variances;
-        let value = |index: usize| self.learner.values.get(index).copied().unwrap_or(T::ZERO);
+        let value = |index: usize| self.learner.value(index);
         let [bias_variance, friction_variance, _] = self.bias.variance;
         let [_, load_variance] = tables.load.variance;
         let output_squared = levers.per_output * levers.per_output;
@@ -47,9 +49,9 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
             valid: both || (touching && estimates.contact_valid),
         };
         estimates.half_backlash =
-            Estimate { value: value(0) * T::HALF, variance: half_gap_variance * T::HALF * T::HALF, valid: width_known };
+            Estimate { value: half_gap * T::HALF, variance: half_gap_variance * T::HALF * T::HALF, valid: width_known };
         estimates.encoder_offset = Estimate {
-            value: value(1) * levers.per_output,
+            value: value(OFFSET) * levers.per_output,
             variance: offset_variance * output_squared,
             valid: both && offset_variance < rough * rough,
         };
@@ -59,7 +61,7 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
             valid: compliance_known,
         };
         estimates.skew =
-            Estimate { value: value(3) * levers.per_output, variance: skew_variance * output_squared, valid: both };
+            Estimate { value: value(SKEW) * levers.per_output, variance: skew_variance * output_squared, valid: both };
         estimates.torque_bias = Estimate {
             value: self.bias.bias * levers.sun,
             variance: bias_variance * sun_squared,
@@ -78,23 +80,28 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
     fn gap(&self, now: &Now<T, P>, both: bool, touching: bool, half_gap: T) -> Estimate<T> {
         let tables = self.tables;
         let known = &self.knowledge;
-        let position = self.by_position(now.way, T::ZERO);
-        let [half_gap_variance, ..] = known.variances;
+        let position = self.by_position(now.way, T::ZERO, now.shift);
         let wind_up = position.compliance - tables.learner.mesh_compliance;
         let force = if touching { now.force } else { T::ZERO };
         let noise = tables.contact.way_variance;
         let (value, variance) = if !both {
-            let edge = if now.way > half_gap {
-                half_gap
-            } else if now.way < -half_gap {
-                -half_gap
+            let (upper, lower) = (now.shift + half_gap, now.shift - half_gap);
+            let edge = if now.way > upper {
+                upper
+            } else if now.way < lower {
+                lower
             } else {
                 now.way
             };
-            let value = if touching { edge + tables.learner.mesh_compliance * force } else { edge };
+            let felt: T = sign(self.blind.felt);
+            let value = if felt == T::ZERO {
+                edge
+            } else {
+                now.shift + felt * half_gap + tables.learner.mesh_compliance * force
+            };
             (value, self.blind_variance())
         } else if known.width_is_known {
-            let variance = if touching { half_gap_variance } else { known.way_variance };
+            let variance = if touching { known.flank_variance } else { known.way_variance };
             (position.gap(tables.learner.mesh_compliance), Some(variance + noise))
         } else {
             // Without a width: less the wind-up of the force.
@@ -115,19 +122,15 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let levers = &tables.levers;
         let (output, _) = self.counts.used();
         let part = |from: usize| {
-            let values = self.learner.values.iter().skip(from).take(PLAIN);
+            let values = self.learner.values.iter().skip(from).take(MAP);
             values.zip(now.free.iter().skip(from)).fold(T::ZERO, |sum, (value, regressor)| sum + *value * *regressor)
         };
         let (motor_error, output_error) = if P == MAPPED {
-            (part(PLAIN) * levers.per_sun, -part(PLAIN + PLAIN) * levers.per_output)
+            (part(PLAIN) * levers.per_sun, -part(PLAIN + MAP) * levers.per_output)
         } else {
             (T::ZERO, T::ZERO)
         };
-        let late = if both {
-            self.load.speed * self.learner.values.get(3).copied().unwrap_or(T::ZERO) * levers.per_output
-        } else {
-            T::ZERO
-        };
+        let late = if both { self.load.speed * self.learner.value(SKEW) * levers.per_output } else { T::ZERO };
         let motor = shaft(&tables.counts.motor, &self.counts.motor, self.drive.ahead - motor_error, self.drive.speed);
         let link = shaft(&tables.counts.output, output, self.load.ahead + late - output_error, self.load.speed);
         (motor, link)

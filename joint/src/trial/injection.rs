@@ -38,6 +38,8 @@ pub struct Injection {
     faults: Vec<Active>,
     period: f64,
     counts_per_turn: [f64; 2],
+    /// What the encoders read at angle zero for their errors' sake: they were homed there.
+    home: [i64; 2],
     past: [VecDeque<Frame>; 2],
     last: Option<Seen>,
     set_points: VecDeque<(u64, SetPoint)>,
@@ -87,6 +89,11 @@ impl Injection {
             faults: faults.iter().enumerate().map(active).collect(),
             period: 1.0 / case.train.control_rate,
             counts_per_turn: encoders.map(|encoder| (1_u64 << encoder.bits) as f64),
+            home: encoders.map(|encoder| {
+                let error = encoder.once_per_turn_error * encoder.once_per_turn_phase.sin()
+                    + encoder.twice_per_turn_error * encoder.twice_per_turn_phase.sin();
+                (error / TAU * (1_u64 << encoder.bits) as f64).round() as i64
+            }),
             past: Default::default(),
             last: None,
             set_points: VecDeque::new(),
@@ -105,7 +112,7 @@ impl Injection {
     pub fn sense(&mut self, measurement: &Measurement) -> Seen {
         let time = measurement.period as f64 * self.period;
         let names = [EncoderName::Motor, EncoderName::Output];
-        let mut frames = [measurement.motor_counts, measurement.output_counts]
+        let mut frames = [measurement.motor_counts - self.home[0], measurement.output_counts - self.home[1]]
             .map(|counts| Some(Frame { counts, period: measurement.period }));
         for (index, frame) in frames.iter_mut().enumerate() {
             for fault in self.faults.iter_mut() {

@@ -14,7 +14,7 @@ mod section;
 pub use assertions::{Aggregate, Assertion};
 pub use changes::{Change, NewValue};
 pub use faults::{EncoderName, Fault, FaultKind, FrameName};
-pub use motion::{Course, Load, Profile, Push};
+pub use motion::{Course, Load, Profile, Push, Wave};
 
 use joints::Problem;
 use toml::de::{DeTable, DeValue};
@@ -55,8 +55,8 @@ pub struct TestFile {
     pub rivals: Vec<ControllerName>,
     /// Bandwidth of all of them [rad/s].
     pub bandwidth: f64,
-    /// Guessed over true half-backlash.
-    pub width_guess: Quantity,
+    /// Guessed over true half-backlash; `None` is wrong by half, one way or the other by the seed.
+    pub width_guess: Option<Quantity>,
     /// Whether the observer has the output encoder.
     pub output_encoder: bool,
     /// Impedance set-points in place of positions.
@@ -74,9 +74,6 @@ const TIMEOUT: f64 = 300.0;
 
 /// Bandwidth by default [rad/s].
 const BANDWIDTH: f64 = 60.0;
-
-/// Guessed over true half-backlash by default: what nobody has measured is wrong by half.
-const WIDTH_GUESS: f64 = 1.5;
 
 /// Whether a text is meant as a test file rather than as a joint file. What is no TOML is told apart by its headers.
 pub fn is_test_file(text: &str) -> bool {
@@ -180,8 +177,8 @@ fn read_table(table: &DeTable<'_>, problems: &Problems) -> Option<TestFile> {
         timeout: number(&top, "timeout_s", TIMEOUT)?,
         bandwidth: number(&controller, "bandwidth_rad_per_s", BANDWIDTH)?,
         width_guess: match controller.has("width_guess_ratio") {
-            true => controller.range("width_guess_ratio")?,
-            false => Quantity::Exactly(WIDTH_GUESS),
+            true => Some(controller.range("width_guess_ratio")?),
+            false => None,
         },
         output_encoder: if controller.has("output_encoder") { controller.flag("output_encoder")? } else { true },
         controller: name?,

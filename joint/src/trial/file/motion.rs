@@ -44,14 +44,23 @@ pub enum Course {
 pub enum Load {
     /// Nothing.
     None,
-    /// Changes its sign: torque [N m], frequency [Hz].
-    Square(Option<f64>, f64),
+    /// To and fro: torque [N m], frequency [Hz].
+    Wave(Wave, Option<f64>, f64),
     /// One push when the figures begin: torque [N m], length [s].
     Kick(Option<f64>, f64),
     /// A push each second, to and fro: torque [N m], length [s].
     Impacts(Option<f64>, f64),
     /// Slowly to and fro: torque [N m], frequency [Hz].
     Slow(Option<f64>, f64),
+}
+
+/// How a load goes to and fro.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Wave {
+    /// Smoothly.
+    Sine,
+    /// At once.
+    Square,
 }
 
 /// A torque on the link by the file.
@@ -70,9 +79,9 @@ pub struct Push {
 }
 
 /// T1 has a load friction of this part of the rated torque: 1 N m for Q1.
-const FRICTION: f64 = 1.0 / 15.0;
+const FRICTION: f64 = 1.0 / 12.0;
 /// T2b has a weight of this part of the rated torque: 6 N m for Q1.
-const WEIGHT: f64 = 0.4;
+const WEIGHT: f64 = 0.5;
 
 impl Profile {
     /// A motion as it is without further keys.
@@ -82,30 +91,29 @@ impl Profile {
             course: Course::Hold(0.0),
             load: Load::None,
             friction: None,
-            gravity: None,
+            gravity: Some(0.0),
             duration: 8.0,
-            settle: 3.0,
+            settle: 2.0,
         };
         match kind {
-            "T1" => Self {
-                course: Course::Sine(0.5, 0.2),
-                friction: Some(FRICTION),
-                gravity: Some(0.0),
-                duration: 15.0,
-                settle: 5.0,
-                ..usual
-            },
-            "T2" | "impedance" => Self { course: Course::Sine(0.2, 1.0), gravity: Some(0.0), ..usual },
-            "T2b" => Self { course: Course::Sine(0.2, 1.5), gravity: Some(WEIGHT), ..usual },
-            "sine" => Self { course: Course::Sine(0.2, 1.0), ..usual },
-            "random" => Self { course: Course::Random(0.1, 2.0), ..usual },
-            "steps" => Self { course: Course::Steps(0.05, 0.06, 0.5), ..usual },
-            "disturbed_hold" => Self { load: Load::Square(None, 0.5), ..usual },
-            "free_hold" => Self { load: Load::Kick(None, 0.02), duration: 12.0, settle: 1.0, ..usual },
+            "T1" => Self { course: Course::Sine(0.5, 0.2), friction: Some(FRICTION), duration: 12.0, ..usual },
+            "T2" | "impedance" => Self { course: Course::Sine(0.5, 1.0), ..usual }.timed(1.0),
+            "T2b" => Self { course: Course::Sine(0.3, 1.5), gravity: Some(WEIGHT), ..usual }.timed(1.5),
+            "sine" => Self { course: Course::Sine(0.5, 1.0), gravity: None, ..usual }.timed(1.0),
+            "random" => Self { course: Course::Random(0.2, 2.0), ..usual },
+            "steps" => Self { course: Course::Steps(0.05, 0.06, 0.3), ..usual },
+            "disturbed_hold" => Self { load: Load::Wave(Wave::Sine, None, 1.0), ..usual },
+            "free_hold" => Self { load: Load::Kick(None, 0.02), duration: 14.0, settle: 2.1, ..usual },
             "impact" => Self { load: Load::Impacts(None, 0.01), ..usual },
-            "hysteresis" => Self { load: Load::Slow(None, 0.25), gravity: Some(0.0), duration: 9.0, settle: 1.0, ..usual },
-            _ => usual,
+            "hysteresis" => Self { load: Load::Slow(None, 0.25), duration: 9.0, settle: 1.0, ..usual },
+            // A recording brings its own load, or none.
+            _ => Self { gravity: None, ..usual },
         }
+    }
+
+    /// Four periods to be judged by, after as much as learning takes.
+    fn timed(self, frequency: f64) -> Self {
+        Self { duration: 2.0 + 4.0 / frequency, settle: 1.0 + (1.0 / frequency).max(1.0), ..self }
     }
 }
 
@@ -142,15 +150,26 @@ pub(super) fn read(section: &Section<'_>) -> Option<Profile> {
         }
         match &mut profile.load {
             Load::None => {}
-            Load::Square(_, frequency) | Load::Slow(_, frequency) => set("frequency_Hz", frequency),
+            Load::Wave(_, _, frequency) | Load::Slow(_, frequency) => set("frequency_Hz", frequency),
             Load::Kick(_, length) | Load::Impacts(_, length) => set("pulse_s", length),
         }
     }
-    if let Load::Square(torque, _) | Load::Slow(torque, _) | Load::Kick(torque, _) | Load::Impacts(torque, _) =
+    if let Load::Wave(_, torque, _) | Load::Slow(torque, _) | Load::Kick(torque, _) | Load::Impacts(torque, _) =
         &mut profile.load
     {
         taken.push("torque_N_m");
         *torque = section.number("torque_N_m");
+    }
+    if let Load::Wave(wave, ..) = &mut profile.load {
+        taken.push("wave");
+        if section.word("wave") == Some("square") {
+            *wave = Wave::Square;
+        }
+    }
+    if let Course::Sine(_, frequency) = profile.course
+        && section.has("frequency_Hz")
+    {
+        profile = profile.timed(frequency);
     }
     if kind == "csv" {
         taken.push("file");

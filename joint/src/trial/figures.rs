@@ -76,7 +76,7 @@ pub static FIGURES: &[Figure] = &[
     figure("width_right_after_contact", "s", Sight, "the same in seconds of motion with a flank touching"),
     figure("compliance_error", "percent", Sight, "learnt compliance at the end against the truth, meshes included"),
     figure("skew_error", "us", Sight, "learnt skew of the encoders at the end against the truth"),
-    figure("fault_found", "ms", Sight, "from the first fault to the observer's falling back to the motor encoder"),
+    figure("fault_found", "ms", Sight, "from the first fault of the output encoder (frozen, offset, missing counts, lost frames) to the observer's falling back to the motor encoder; a thousand seconds if never"),
     figure("false_alarms", "", Sight, "falls back to the motor encoder while no fault was on"),
     figure("compensated", "percent", Sight, "mean share of the compensation in the torque"),
     figure("loop_lost_motion", "mrad", Loop, "opening of the hysteresis loop at 3 % of the rated torque"),

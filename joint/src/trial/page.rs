@@ -159,7 +159,7 @@ fn section(tested: &Tested) -> Markup {
     let test = &tested.record;
     let checks: Vec<Check> = test.assertions.iter().map(|assertion| assertion.check()).collect();
     html! {
-        section id=(anchor(test)) {
+        section.names id=(anchor(test)) {
             div.title { h2 { (test.file) } (pill(test.passed)) }
             p.subtitle {
                 @if !test.title.is_empty() { strong { (test.title) } " · " }
@@ -188,7 +188,7 @@ fn compared(test: &TestRecord) -> Markup {
         .collect();
     html! {
         h3 { "With compensation and without" }
-        table {
+        table.wide {
             thead { tr {
                 th { "Controller" }
                 @for (_, heading, unit) in &shown { th.number { (heading) @if !unit.is_empty() { " [" (unit) "]" } } }
@@ -207,11 +207,11 @@ fn compared(test: &TestRecord) -> Markup {
 fn all_pictures(tested: &Tested) -> Markup {
     html! {
         @if let Some(whole) = pictures::whole(tested) {
-            (picture(&whole, html! { "Seed " (tested.record.shown_seed) ", a point each millisecond. Figures are taken from "
+            (picture(&whole, html! { "Seed " (tested.record.shown_seed) ", least and greatest error of each stretch. Figures are taken from "
                 (number(tested.record.settle_s)) " s on." }))
         }
         @if let Some(close) = pictures::close(tested) {
-            (picture(&close, html! { strong { "Closely: " } "the longest crossing of the gap after " (number(tested.record.settle_s)) " s." }))
+            (picture(&close, html! { strong { "Closely: " } "the longest crossing of the gap after " (number(tested.record.settle_s)) " s, a point each millisecond." }))
         }
     }
 }

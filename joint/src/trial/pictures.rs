@@ -2,11 +2,12 @@
 //! crossing of the gap. Points come from `trace`, drawing from `report`.
 
 use super::campaign::Tested;
+use super::controller::ControllerName;
 use super::trace::{Point, Trace};
 use crate::report::plot::ink::{Ink, LINES};
 use crate::report::plot::mark::Mark;
 use crate::report::plot::panel::Panel;
-use crate::report::plot::unit::{MILLISECONDS, TORQUE, Unit, greatest};
+use crate::report::plot::unit::{MILLISECONDS, SECONDS, TORQUE, Unit, greatest};
 use crate::report::plot::{Figure, HorizontalAxis, Shape};
 
 /// Forces as they are.
@@ -15,13 +16,18 @@ const FORCE: Unit = Unit { factor: 1.0, name: "N" };
 const LINE: f64 = 1.2;
 /// Width of the tested controller's line [px].
 const OWN: f64 = 1.8;
+/// A whole run is drawn by so many bins of time, with least and greatest error of each.
+const BINS: usize = 450;
 /// A close-up begins and ends so long before and after [s].
 const CLOSE: f64 = 0.12;
 
 /// Over the whole run.
 pub fn whole(tested: &Tested) -> Option<Figure> {
     let end = tested.shown.iter().flat_map(|(_, trace)| trace.points.last()).map(|point| point.time).fold(0.0, f32::max);
-    (end > 0.0).then(|| figure(tested, "The whole run", (0.0, f64::from(end)), true))
+    let coarse = |(name, trace): &(ControllerName, Trace)| (*name, trace.coarse(trace.points.len() / BINS));
+    let shown: Vec<_> = tested.shown.iter().map(coarse).collect();
+    let view = View { shown: &shown, range: (0.0, f64::from(end)) };
+    (end > 0.0).then(|| view.figure(format!("The whole run: {}", tested.record.file), true))
 }
 
 /// Around a crossing of the gap: the tested controller's longest one, or else one of another.
@@ -33,33 +39,8 @@ pub fn close(tested: &Tested) -> Option<Figure> {
     };
     let (time, took) = tested.shown.iter().find_map(|(_, trace)| longest(trace))?;
     let from = (time - took.min(0.3) - CLOSE).max(0.0);
-    Some(figure(tested, "A crossing of the gap", (from, time + CLOSE), false))
-}
-
-fn figure(tested: &Tested, title: &str, range: (f64, f64), whole: bool) -> Figure {
-    let view = View { tested, range };
-    let mut panels = vec![
-        view.position(),
-        view.panel("Error of the link (wanted less actual)", |point| point.error, Scale::Angle),
-        view.gap(),
-        view.panel("Motor torque", |point| point.torque, Scale::Torque),
-        view.panel("Peak mesh force of each millisecond", |point| point.force, Scale::Force),
-    ];
-    if whole {
-        panels.push(view.lost_motion());
-    } else {
-        panels.remove(0);
-    }
-    Figure {
-        title: format!("{title}: {}", tested.record.file),
-        axis: "time".into(),
-        unit: crate::report::plot::unit::SECONDS,
-        range,
-        runs: HorizontalAxis::Linear,
-        shape: Shape::default(),
-        panels,
-        note: String::new(),
-    }
+    let view = View { shown: &tested.shown, range: (from, time + CLOSE) };
+    Some(view.figure(format!("A crossing of the gap: {}", tested.record.file), false))
 }
 
 enum Scale {
@@ -69,14 +50,37 @@ enum Scale {
 }
 
 struct View<'t> {
-    tested: &'t Tested,
+    shown: &'t [(ControllerName, Trace)],
     range: (f64, f64),
 }
 
 impl View<'_> {
+    fn figure(&self, title: String, whole: bool) -> Figure {
+        let mut panels = vec![
+            self.panel("Error of the link (wanted less actual)", |point| point.error, Scale::Angle),
+            self.gap(),
+            self.panel("Motor torque", |point| point.torque, Scale::Torque),
+            self.panel("Peak mesh force", |point| point.force, Scale::Force),
+        ];
+        if whole {
+            panels.insert(0, self.position());
+            panels.push(self.lost_motion());
+        }
+        Figure {
+            title,
+            axis: "time".into(),
+            unit: SECONDS,
+            range: self.range,
+            runs: HorizontalAxis::Linear,
+            shape: Shape::default(),
+            panels,
+            note: String::new(),
+        }
+    }
+
     /// The tested controller is drawn last, above the others.
     fn lines(&self, value: impl Fn(&Point) -> f32) -> Vec<Mark> {
-        let shown = self.tested.shown.iter().enumerate().rev();
+        let shown = self.shown.iter().enumerate().rev();
         shown.map(|(index, (name, trace))| self.line(index, name.label(), trace, &value)).collect()
     }
 
@@ -103,7 +107,7 @@ impl View<'_> {
 
     fn position(&self) -> Panel {
         let mut marks = self.lines(|point| point.wanted - point.error);
-        if let Some((_, trace)) = self.tested.shown.first() {
+        if let Some((_, trace)) = self.shown.first() {
             let mut wanted = self.line(0, "wanted", trace, &|point| point.wanted);
             if let Mark::Line { ink, width, .. } = &mut wanted {
                 (*ink, *width) = (Ink::Reference, 4.0);
@@ -116,12 +120,12 @@ impl View<'_> {
 
     /// True coordinate of the tested controller and the first rival, the observer's beside it, over the free gap.
     fn gap(&self) -> Panel {
-        let half = self.tested.shown.first().map_or(0.0, |(_, trace)| trace.half_gap);
+        let half = self.shown.first().map_or(0.0, |(_, trace)| trace.half_gap);
         let mut marks = vec![Mark::Band { range: (-half, half), label: "free gap".into() }];
-        for (index, (name, trace)) in self.tested.shown.iter().enumerate().take(2).rev() {
+        for (index, (name, trace)) in self.shown.iter().enumerate().take(2).rev() {
             marks.push(self.line(index, name.label(), trace, &|point| point.gap));
         }
-        if let Some((_, trace)) = self.tested.shown.first().filter(|(name, _)| name.is_ours()) {
+        if let Some((_, trace)) = self.shown.first().filter(|(name, _)| name.is_ours()) {
             let mut estimate = self.line(0, "as observed", trace, &|point| point.estimated_gap);
             if let Mark::Line { ink, width, .. } = &mut estimate {
                 (*ink, *width) = (Ink::Text, 0.8);
@@ -133,7 +137,7 @@ impl View<'_> {
 
     /// How long every crossing took.
     fn lost_motion(&self) -> Panel {
-        let shown = self.tested.shown.iter().enumerate().rev();
+        let shown = self.shown.iter().enumerate().rev();
         let marks = shown
             .map(|(index, (name, trace))| Mark::Points {
                 points: trace.crossings.clone(),

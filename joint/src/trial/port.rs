@@ -56,17 +56,22 @@ pub struct Translator {
     ticks: u32,
     /// Raw counts before they wrap: motor, output.
     ranges: [i64; 2],
+    /// Turn of the output encoder's first reading, which is the observer's turn zero.
+    first_turn: Option<i32>,
     torque: f32,
 }
 
 impl Translator {
     /// For encoders of so many bits.
     pub fn new(ticks: u32, bits: [u32; 2]) -> Self {
-        Self { ticks, ranges: bits.map(|bits| 1 << bits), torque: 0.0 }
+        Self { ticks, ranges: bits.map(|bits| 1 << bits), first_turn: None, torque: 0.0 }
     }
 
     /// Readings with their own times; the torque is that of the period before.
-    pub fn samples(&self, seen: &Seen) -> Samples<f32> {
+    pub fn samples(&mut self, seen: &Seen) -> Samples<f32> {
+        if let (None, Some(first)) = (self.first_turn, seen.output) {
+            self.first_turn = Some(first.counts.div_euclid(self.ranges[1]) as i32);
+        }
         let time = |period: u64| (period as u32).wrapping_mul(self.ticks);
         let reading = |frame: Frame, range: i64| Reading {
             counts: frame.counts.rem_euclid(range) as u32,
@@ -80,8 +85,10 @@ impl Translator {
         }
     }
 
-    /// A set-point with its angles in whole turns and the rest.
+    /// A set-point on the scale of the observer's link shaft, its angles in whole turns and the rest.
     pub fn command(&self, set_point: &SetPoint) -> Command<f32> {
+        let first_turn = self.first_turn.unwrap_or(0);
+        let motion = |of: Motion| motion(of, first_turn);
         match *set_point {
             SetPoint::Position { now, ahead } => Command::Position { now: motion(now), ahead: ahead.map(motion) },
             SetPoint::Impedance { about, torque, stiffness, damping } => Command::Impedance(ImpedancePoint {
@@ -100,10 +107,10 @@ impl Translator {
     }
 }
 
-fn motion(of: Motion) -> compensation::Motion<f32> {
+fn motion(of: Motion, first_turn: i32) -> compensation::Motion<f32> {
     let turns = (of.position / TAU).floor();
     compensation::Motion {
-        position: Position { turns: turns as i32, fraction: (of.position / TAU - turns) as f32 },
+        position: Position { turns: turns as i32 - first_turn, fraction: (of.position / TAU - turns) as f32 },
         speed: of.speed as f32,
         acceleration: of.acceleration as f32,
     }

@@ -2,7 +2,7 @@
 
 use super::case::Case;
 use super::execution::Ran;
-use super::file::TestFile;
+use super::file::{EncoderName, Fault, FaultKind, FrameName, TestFile};
 
 /// A width counts as right within this part.
 const WIDTH_RIGHT: f64 = 0.05;
@@ -146,7 +146,16 @@ fn at_the_end(case: &Case, ran: &Ran) -> Vec<(&'static str, f64)> {
 
 /// When the observer gave up the output encoder, and whether it had to.
 fn alarms(file: &TestFile, ran: &Ran) -> Vec<(&'static str, f64)> {
-    let first = file.faults.iter().map(|fault| fault.start).fold(f64::INFINITY, f64::min);
+    let of_output = |fault: &&Fault| {
+        matches!(
+            fault.kind,
+            FaultKind::Frozen(EncoderName::Output)
+                | FaultKind::Offset(EncoderName::Output, ..)
+                | FaultKind::MissingCounts(EncoderName::Output, _)
+                | FaultKind::LostFrames(FrameName::Output, _)
+        )
+    };
+    let first = file.faults.iter().filter(of_output).map(|fault| fault.start).fold(f64::INFINITY, f64::min);
     let (mut found, mut false_alarms, mut before) = (None, 0, false);
     for (sample, sight) in ran.run.samples.iter().zip(&ran.sights) {
         if before && !sight.both {

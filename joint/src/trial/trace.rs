@@ -36,6 +36,21 @@ pub struct Trace {
 const NEAR: f64 = 0.9;
 
 impl Trace {
+    /// The same, with bins of so many points reduced to those of least and greatest error: enough for a whole run.
+    pub fn coarse(&self, bin: usize) -> Self {
+        let ends = |points: &[Point]| {
+            let by_error = |a: &&Point, b: &&Point| a.error.total_cmp(&b.error);
+            let force = points.iter().map(|point| point.force).fold(0.0, f32::max);
+            let mut both: Vec<Point> =
+                points.iter().min_by(by_error).into_iter().chain(points.iter().max_by(by_error)).copied().collect();
+            both.sort_by(|a, b| a.time.total_cmp(&b.time));
+            both.dedup();
+            both.iter_mut().for_each(|point| point.force = force);
+            both
+        };
+        Self { points: self.points.chunks(bin.max(1)).flat_map(ends).collect(), ..self.clone() }
+    }
+
     /// Of a run.
     pub fn of(ran: &Ran) -> Self {
         let every = (1e-3 / ran.run.period).round().max(1.0) as usize;

@@ -12,9 +12,9 @@ mod write;
 pub use checks::{Bound, Check, Source, Verdict};
 pub use sample::MotionSample;
 pub use samples::{CloseUp, Contact, ErrorSeries, Reference, Samples};
-pub use timing::{Counters, HistogramBin, MinMeanMax, TimingFigures};
 #[cfg(test)]
 pub(crate) use schema::keys;
+pub use timing::{Counters, HistogramBin, MinMeanMax, TimingFigures};
 pub use write::write_text;
 
 use serde::{Deserialize, Serialize};

@@ -76,7 +76,8 @@ fn both_plants_move_the_same_joint() {
 #[test]
 fn a_controller_that_does_nothing_fails_and_the_report_leads_with_it() {
     let folder = folder();
-    let more = "profile = \"T2\"\n[controller]\nmode = \"off\"\n[assert]\nrms_gain_over_pid = \">= 1\"\nrms_mrad = \"<= 1e9\"";
+    let more =
+        "profile = \"T2\"\n[controller]\nmode = \"off\"\n[assert]\nrms_gain_over_pid = \">= 1\"\nrms_mrad = \"<= 1e9\"";
     let ended = run(folder.path(), more, &[]);
     assert_eq!(ended.code, Some(1), "{ended:?}");
     assert!(ended.out.contains("FAILED   rms_gain_over_pid"), "{ended:?}");

@@ -52,5 +52,6 @@ pub fn refuse_for_joints(arguments: &Arguments) -> Outcome<()> {
         true => format!("--{name} is for test files, and {file} is a joint"),
         false => format!("there is no test file {file}"),
     };
-    Err(Failure::new(message).with_help("name a test file such as hil/t2.toml; docs/hil-file.md tells how to write one"))
+    Err(Failure::new(message)
+        .with_help("name a test file such as hil/t2.toml; docs/hil-file.md tells how to write one"))
 }

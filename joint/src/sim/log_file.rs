@@ -61,13 +61,7 @@ pub(crate) struct Channel<W: Write> {
 
 impl<W: Write> Channel<W> {
     /// Begins a log; `schema` is ROS 2 message text, `remarks` say where it comes from.
-    pub fn begin(
-        out: W,
-        topic: &str,
-        name: &str,
-        schema: &str,
-        remarks: BTreeMap<String, String>,
-    ) -> io::Result<Self> {
+    pub fn begin(out: W, topic: &str, name: &str, schema: &str, remarks: BTreeMap<String, String>) -> io::Result<Self> {
         let options = WriteOptions::new()
             .compression(Some(Compression::Lz4))
             .chunk_size(Some(CHUNK))

@@ -126,11 +126,7 @@ pub fn run(test: &Test, conduct: &Conduct<'_>, before: &AtomicU32) -> Outcome<Te
         assertions,
         runs,
         shown_seed,
-        replay: format!(
-            "cargo joint hil {} --host --plant {} --seed {shown_seed}",
-            test.name,
-            conduct.plant.word()
-        ),
+        replay: format!("cargo joint hil {} --host --plant {} --seed {shown_seed}", test.name, conduct.plant.word()),
         seconds: start.elapsed().as_secs_f64(),
     };
     Ok(Tested { record, shown })

@@ -4,8 +4,8 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use host_tests::closed_loop::{Profile as Standard, Reference, compensation_settings, observer_settings};
 use host_tests::closed_loop::rivals::Knowledge;
+use host_tests::closed_loop::{Profile as Standard, Reference, compensation_settings, observer_settings};
 use host_tests::drive_train::{Disturbance, DriveTrainParameters};
 use joints::{JointFile, Problem, Severity};
 use model_core::design::compensation::design_compensation;

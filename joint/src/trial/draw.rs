@@ -37,7 +37,8 @@ impl Stream {
     pub fn new(seed: u64, name: &str) -> Self {
         // FNV-1a keeps the streams of different names apart.
         let hash = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-        let mut stream = Self(name.bytes().fold(0xcbf2_9ce4_8422_2325, hash) ^ seed.wrapping_mul(0x9e37_79b9_7f4a_7c15));
+        let mut stream =
+            Self(name.bytes().fold(0xcbf2_9ce4_8422_2325, hash) ^ seed.wrapping_mul(0x9e37_79b9_7f4a_7c15));
         stream.word();
         stream
     }

@@ -4,8 +4,8 @@
 use std::fmt;
 use std::time::Instant;
 
-use host_tests::closed_loop::{Motion, Run, Sample, SetPoint};
 use host_tests::closed_loop::rivals::Knowledge;
+use host_tests::closed_loop::{Motion, Run, Sample, SetPoint};
 use host_tests::drive_train::DriveTrainParameters;
 use model_core::digest;
 use model_core::joint::JointParameters;
@@ -165,12 +165,7 @@ pub fn execute(file: &TestFile, case: &Case, seed: u64, order: Order, deadline: 
     Ok(ran)
 }
 
-fn driver<'d>(
-    name: ControllerName,
-    case: &Case,
-    designed: Option<&'d Designed>,
-    bandwidth: f64,
-) -> Driver<'d> {
+fn driver<'d>(name: ControllerName, case: &Case, designed: Option<&'d Designed>, bandwidth: f64) -> Driver<'d> {
     let knowledge: Knowledge = case.knowledge();
     match designed {
         Some(designed) => {

@@ -46,7 +46,12 @@ pub static FIGURES: &[Figure] = &[
     figure("rms", "mrad", Motion, "link against wanted position, root mean square"),
     figure("peak", "mrad", Motion, "link against wanted position, largest"),
     figure("peak_to_peak", "mrad", Motion, "largest less smallest error of the link's position"),
-    figure("reversal_error", "mrad", Motion, "largest error within 60 ms of a reversal of the wanted speed, mean over reversals"),
+    figure(
+        "reversal_error",
+        "mrad",
+        Motion,
+        "largest error within 60 ms of a reversal of the wanted speed, mean over reversals",
+    ),
     figure("lost_motion", "ms", Motion, "from leaving one flank to touching the other, mean"),
     figure("longest_lost_motion", "ms", Motion, "the longest of them"),
     figure("crossings", "", Motion, "changes from one flank to the other"),
@@ -59,7 +64,12 @@ pub static FIGURES: &[Figure] = &[
     figure("saturated", "percent", Motion, "part of the time in which the motor's limit is reached"),
     figure("deviation_rms", "mrad", Impedance, "link against the same law on teeth without a gap, root mean square"),
     figure("deviation_peak", "mrad", Impedance, "the same, largest"),
-    figure("torque_error", "N_m", Impedance, "torque between carrier and link against the same law without a gap, root mean square"),
+    figure(
+        "torque_error",
+        "N_m",
+        Impedance,
+        "torque between carrier and link against the same law without a gap, root mean square",
+    ),
     figure("gap_error_rms", "percent", Sight, "gap coordinate against the truth over the gap 4b, root mean square"),
     figure("gap_error_max", "percent", Sight, "the same, largest"),
     figure("gap_valid", "percent", Sight, "part of the time in which the gap coordinate is said to be valid"),
@@ -69,14 +79,24 @@ pub static FIGURES: &[Figure] = &[
     figure("missed_landings", "", Sight, "landings on a flank that were never reported"),
     figure("landing_delay_median", "ms", Sight, "from a landing to its report, median"),
     figure("landing_delay_p95", "ms", Sight, "the same, 95th percentile"),
-    figure("load_torque_error", "percent", Sight, "load torque against the truth over the rated torque, root mean square"),
+    figure(
+        "load_torque_error",
+        "percent",
+        Sight,
+        "load torque against the truth over the rated torque, root mean square",
+    ),
     figure("mesh_torque_error", "percent", Sight, "transmitted torque likewise"),
     figure("width_error", "percent", Sight, "learnt half-backlash at the end against the truth"),
     figure("width_right_after", "s", Sight, "from when on the width is right to 5 % for good"),
     figure("width_right_after_contact", "s", Sight, "the same in seconds of motion with a flank touching"),
     figure("compliance_error", "percent", Sight, "learnt compliance at the end against the truth, meshes included"),
     figure("skew_error", "us", Sight, "learnt skew of the encoders at the end against the truth"),
-    figure("fault_found", "ms", Sight, "from the first fault of the output encoder (frozen, offset, missing counts, lost frames) to the observer's falling back to the motor encoder; a thousand seconds if never"),
+    figure(
+        "fault_found",
+        "ms",
+        Sight,
+        "from the first fault of the output encoder (frozen, offset, missing counts, lost frames) to the observer's falling back to the motor encoder; a thousand seconds if never",
+    ),
     figure("false_alarms", "", Sight, "falls back to the motor encoder while no fault was on"),
     figure("compensated", "percent", Sight, "mean share of the compensation in the torque"),
     figure("loop_lost_motion", "mrad", Loop, "opening of the hysteresis loop at 3 % of the rated torque"),
@@ -125,8 +145,7 @@ impl Figure {
 /// Whom a name behind `over` or `to` means in a test.
 fn others(impedance: bool) -> Vec<(&'static str, ControllerName)> {
     let own = ControllerName::ALL.into_iter().filter(|name| !name.is_ours() && name.wants_gains() == impedance);
-    let mut list: Vec<_> =
-        own.filter(|name| *name != ControllerName::Off).map(|name| (name.word(), name)).collect();
+    let mut list: Vec<_> = own.filter(|name| *name != ControllerName::Off).map(|name| (name.word(), name)).collect();
     list.push(("baseline", ControllerName::baseline(impedance)));
     list.push(("best_rival", ControllerName::best_rival(impedance)));
     if !impedance {
@@ -159,7 +178,8 @@ impl Named {
             (None, Some((stem, other))) => (stem, other, false),
             (None, None) => return None,
         };
-        let index = FIGURES.iter().position(|figure| figure.stem == stem && matches!(figure.about, Motion | Impedance))?;
+        let index =
+            FIGURES.iter().position(|figure| figure.stem == stem && matches!(figure.about, Motion | Impedance))?;
         let (_, other) = others(impedance).into_iter().find(|(word, _)| *word == other)?;
         let relation = if gain { Relation::GainOver(other) } else { Relation::RatioTo(other) };
         Some(Self { index, relation })
@@ -259,9 +279,12 @@ impl Values {
     fn hysteresis(&mut self, file: &TestFile, case: &Case, ran: &Ran) {
         let ratio = case.told.geometry.ratio_by_teeth();
         let points = || {
-            ran.run.samples.iter().zip(&ran.truths).filter(|(sample, _)| sample.time >= file.settle).map(
-                |(sample, truth)| (sample.transmitted_or(truth), sample.link - truth.motor / ratio),
-            )
+            ran.run
+                .samples
+                .iter()
+                .zip(&ran.truths)
+                .filter(|(sample, _)| sample.time >= file.settle)
+                .map(|(sample, truth)| (sample.transmitted_or(truth), sample.link - truth.motor / ratio))
         };
         let largest = points().map(|(torque, _)| torque.abs()).fold(0.0, f64::max);
         let near = |from: f64, to: f64| {

@@ -345,7 +345,8 @@ mod tests {
 
     #[test]
     fn a_set_point_that_is_lost_leaves_the_one_before() {
-        let fault = "[[fault]]\nkind = \"lost_frames\"\nframes = \"set_points\"\nshare = 1\nstart_s = 0.001\nend_s = 0.002";
+        let fault =
+            "[[fault]]\nkind = \"lost_frames\"\nframes = \"set_points\"\nshare = 1\nstart_s = 0.001\nend_s = 0.002";
         let (mut injection, _) = injection(fault);
         let at = |position: f64| SetPoint::Position { now: Motion { position, ..Motion::default() }, ahead: None };
         let received: Vec<f64> = (0..30)
@@ -369,7 +370,8 @@ mod tests {
         let fault = "[[fault]]\nkind = \"grown_backlash\"\nhalf_backlash_um = 90\nstart_s = 1\nend_s = 2\n\
                      [[fault]]\nkind = \"broken_tooth\"\nstiffness_ratio = 0.5";
         let (mut injection, case) = injection(fault);
-        let mut plant = plant(PlantName::Reference, &case.truth.parameters, &case.train, Vec::new(), 1).expect("a plant");
+        let mut plant =
+            plant(PlantName::Reference, &case.truth.parameters, &case.train, Vec::new(), 1).expect("a plant");
         let mut joint = plant.joint().clone();
         injection.wear(0.5, &joint, plant.inside().as_mut());
         assert_eq!(injection.half_backlash(), 40e-6);

@@ -81,13 +81,8 @@ pub fn run(wanted: &Wanted<'_>, progress: &Progress) -> Outcome<()> {
         tests.iter().map(|test| test.seeds(wanted.seed, wanted.full).len() * test.controllers().len()).sum();
     progress.run("testing", runs as u32);
     let line = progress.handle();
-    let conduct = Conduct {
-        plant: wanted.plant,
-        seed: wanted.seed,
-        full: wanted.full,
-        logs: &logs,
-        done: &|runs| line.at(runs),
-    };
+    let conduct =
+        Conduct { plant: wanted.plant, seed: wanted.seed, full: wanted.full, logs: &logs, done: &|runs| line.at(runs) };
     let before = AtomicU32::new(0);
     let mut tested: Vec<Tested> = Vec::new();
     for test in &tests {
@@ -144,8 +139,7 @@ fn write(wanted: &Wanted<'_>, folder: &Folder, record: &TestsRecord, tested: &[T
 }
 
 fn verdict(record: &TestsRecord) -> Outcome<()> {
-    let failed: Vec<&str> =
-        record.tests.iter().filter(|test| !test.passed).map(|test| test.file.as_str()).collect();
+    let failed: Vec<&str> = record.tests.iter().filter(|test| !test.passed).map(|test| test.file.as_str()).collect();
     if failed.is_empty() {
         return Ok(());
     }

@@ -9,8 +9,8 @@ use super::pictures;
 use super::record::{TestRecord, TestsRecord};
 use crate::record::Check;
 use crate::report::page::STYLE;
-use crate::report::plot::{Figure, ink};
 use crate::report::plot::unit::figure as number;
+use crate::report::plot::{Figure, ink};
 use crate::report::sections::{check_table, tile};
 
 /// What is shown of every controller: name, heading, unit.
@@ -126,9 +126,7 @@ fn bound(check: &Check) -> String {
 
 /// One row for each test: with compensation, without, against the best rival.
 fn overview(record: &TestsRecord) -> Markup {
-    let worst = |test: &TestRecord, controller: &str| {
-        test.largest(controller, "rms_mrad").map_or("–".into(), number)
-    };
+    let worst = |test: &TestRecord, controller: &str| test.largest(controller, "rms_mrad").map_or("–".into(), number);
     html! {
         section {
             h2 { "All tests" }
@@ -207,7 +205,7 @@ fn compared(test: &TestRecord) -> Markup {
 fn all_pictures(tested: &Tested) -> Markup {
     html! {
         @if let Some(whole) = pictures::whole(tested) {
-            (picture(&whole, html! { "Seed " (tested.record.shown_seed) ", least and greatest error of each stretch. Figures are taken from "
+            (picture(&whole, html! { "Seed " (tested.record.shown_seed) ", least and greatest error of each stretch; lost motion is the time that each crossing took. Figures are taken from "
                 (number(tested.record.settle_s)) " s on." }))
         }
         @if let Some(close) = pictures::close(tested) {

@@ -23,7 +23,8 @@ const CLOSE: f64 = 0.12;
 
 /// Over the whole run.
 pub fn whole(tested: &Tested) -> Option<Figure> {
-    let end = tested.shown.iter().flat_map(|(_, trace)| trace.points.last()).map(|point| point.time).fold(0.0, f32::max);
+    let end =
+        tested.shown.iter().flat_map(|(_, trace)| trace.points.last()).map(|point| point.time).fold(0.0, f32::max);
     let coarse = |(name, trace): &(ControllerName, Trace)| (*name, trace.coarse(trace.points.len() / BINS));
     let shown: Vec<_> = tested.shown.iter().map(coarse).collect();
     let view = View { shown: &shown, range: (0.0, f64::from(end)) };
@@ -57,7 +58,7 @@ struct View<'t> {
 impl View<'_> {
     fn figure(&self, title: String, whole: bool) -> Figure {
         let mut panels = vec![
-            self.panel("Error of the link (wanted less actual)", |point| point.error, Scale::Angle),
+            self.panel("Link error", |point| point.error, Scale::Angle),
             self.gap(),
             self.panel("Motor torque", |point| point.torque, Scale::Torque),
             self.panel("Peak mesh force", |point| point.force, Scale::Force),
@@ -146,6 +147,6 @@ impl View<'_> {
                 size: 5.0,
             })
             .collect();
-        Panel { height: 170, ..Panel::lines("Lost motion: time of each crossing", MILLISECONDS, marks) }
+        Panel { height: 170, ..Panel::lines("Lost motion", MILLISECONDS, marks) }
     }
 }

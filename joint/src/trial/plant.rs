@@ -63,7 +63,8 @@ pub fn plant(
     disturbances: Vec<Disturbance>,
     seed: u64,
 ) -> Outcome<Plant> {
-    let refused = |error: &dyn std::fmt::Display| Failure::new(format!("joint `{}` cannot be run: {error}", joint.name));
+    let refused =
+        |error: &dyn std::fmt::Display| Failure::new(format!("joint `{}` cannot be run: {error}", joint.name));
     let mut train = train.clone();
     let inside: Box<dyn Teeth> = match name {
         PlantName::Reference => {
@@ -168,7 +169,8 @@ impl<const N: usize> Inside for CoreJoint<N> {
         let units = &self.tables.units;
         let link_speed = moment.carrier_speed + self.offset_rate(&units.link_offset);
         let rigid_motor_speed = joint.geometry.ratio_by_radii() * moment.carrier_speed;
-        let lists = |value: &dyn Fn(usize) -> f64| [0, 1].map(|kind| (0..N).map(|planet| value(kind * N + planet)).collect());
+        let lists =
+            |value: &dyn Fn(usize) -> f64| [0, 1].map(|kind| (0..N).map(|planet| value(kind * N + planet)).collect());
         let contacts = [0, 1].map(|kind| {
             (0..N).map(|planet| moment.teeth[kind * N + planet].contact).collect::<heapless::Vec<ContactState, _>>()
         });

@@ -97,7 +97,8 @@ impl Recorded {
 impl Reference for Recorded {
     fn at(&self, time: f64) -> Motion {
         let after = self.rows.partition_point(|row| row.time <= time);
-        let (Some(from), Some(to)) = (after.checked_sub(1).and_then(|index| self.rows.get(index)), self.rows.get(after))
+        let (Some(from), Some(to)) =
+            (after.checked_sub(1).and_then(|index| self.rows.get(index)), self.rows.get(after))
         else {
             let position = self.rows.last().map_or(0.0, |row| row.position);
             return Motion { position, ..Motion::default() };

@@ -46,7 +46,13 @@ pub fn figures(file: &TestFile, case: &Case, ran: &Ran) -> Vec<(&'static str, f6
         }
         // Rated force at the sun: the torque over both levers of the carrier.
         let force = sample.mesh_force * 2.0 * lever / rated;
-        let side = if force > 0.0 { 1 } else if force < 0.0 { -1 } else { 0 };
+        let side = if force > 0.0 {
+            1
+        } else if force < 0.0 {
+            -1
+        } else {
+            0
+        };
         let clear = if side == 0 { sample.gap.abs() < 1.0 - 2.0 * BAND } else { force.abs() > BAND };
         if clear {
             sums.judged += 1.0;

@@ -73,8 +73,10 @@ fn load_one(path: &Path, plant: PlantName) -> Outcome<Test> {
     check_changes(&file, &joint.text).map_err(|problems| drawn(&problems))?;
     let broken_tooth = file.faults.iter().any(|fault| matches!(fault.kind, FaultKind::BrokenTooth(_)));
     if broken_tooth && plant == PlantName::Core {
-        return Err(Failure::new(format!("{name}: the core's planets share their stiffness, so no tooth of it can break"))
-            .with_help("run it with --plant reference"));
+        return Err(Failure::new(format!(
+            "{name}: the core's planets share their stiffness, so no tooth of it can break"
+        ))
+        .with_help("run it with --plant reference"));
     }
     let motion = recorded(&file, folder).map_err(|failure| failure.while_doing(&name))?;
     let file = match (&motion, text.contains("duration_s")) {

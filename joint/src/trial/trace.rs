@@ -54,7 +54,8 @@ impl Trace {
     /// Of a run.
     pub fn of(ran: &Ran) -> Self {
         let every = (1e-3 / ran.run.period).round().max(1.0) as usize;
-        let mut trace = Self { half_gap: ran.truths.last().map_or(0.0, |truth| 2.0 * truth.half_backlash), ..Self::default() };
+        let mut trace =
+            Self { half_gap: ran.truths.last().map_or(0.0, |truth| 2.0 * truth.half_backlash), ..Self::default() };
         let (mut force, mut touched) = (0.0_f64, None::<(f64, f64)>);
         for (index, (sample, truth)) in ran.run.samples.iter().zip(&ran.truths).enumerate() {
             force = force.max(sample.mesh_force.abs());

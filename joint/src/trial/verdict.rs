@@ -27,7 +27,8 @@ fn one(file: &TestFile, assertion: &Assertion, results: &Results<'_>) -> Asserti
     let figures: Vec<(u64, Option<f64>)> = results.seeds.iter().map(|seed| (*seed, value(*seed))).collect();
     let missing: Vec<u64> = figures.iter().filter(|(_, figure)| figure.is_none()).map(|(seed, _)| *seed).collect();
     let had: Vec<(u64, f64)> = figures.iter().filter_map(|(seed, figure)| Some((*seed, (*figure)?))).collect();
-    let worst = had.iter().copied().reduce(|a, b| if off(assertion.bound, b.1) > off(assertion.bound, a.1) { b } else { a });
+    let worst =
+        had.iter().copied().reduce(|a, b| if off(assertion.bound, b.1) > off(assertion.bound, a.1) { b } else { a });
     let figure = match assertion.aggregate {
         Aggregate::Worst => worst.map(|(_, figure)| figure),
         Aggregate::Median => median(had.iter().map(|(_, figure)| *figure).collect()),

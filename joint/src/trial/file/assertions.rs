@@ -112,15 +112,17 @@ pub(super) fn read(top: &Section<'_>, about: &About<'_>) -> Vec<Assertion> {
 fn out_of_place(figure: &Named, about: &About<'_>) -> Option<(&'static str, &'static str)> {
     match figure.base().about {
         Scope::Motion => None,
-        Scope::Impedance => (!about.gains).then_some(("is for impedances", "write mode = \"impedance\" in [controller]")),
+        Scope::Impedance => {
+            (!about.gains).then_some(("is for impedances", "write mode = \"impedance\" in [controller]"))
+        }
         Scope::Sight => about.controller.is_some_and(|controller| !controller.is_ours()).then_some((
             "is about the observer, and this controller has none",
             "write mode = \"preview\", \"no_preview\" or \"impedance\" in [controller]",
         )),
-        Scope::Loop => about.profile.is_some_and(|profile| profile.kind != "hysteresis").then_some((
-            "is read off a loop of a slow torque",
-            "write profile = \"hysteresis\"",
-        )),
+        Scope::Loop => about
+            .profile
+            .is_some_and(|profile| profile.kind != "hysteresis")
+            .then_some(("is read off a loop of a slow torque", "write profile = \"hysteresis\"")),
     }
 }
 

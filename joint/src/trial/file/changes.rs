@@ -32,8 +32,7 @@ pub enum NewValue {
 }
 
 /// Keys that a controller must know to read its encoders and to keep time.
-const ALWAYS_KNOWN: [&str; 6] =
-    ["bits", "control_rate_Hz", "sun_teeth", "planet_teeth", "ring_teeth", "planets"];
+const ALWAYS_KNOWN: [&str; 6] = ["bits", "control_rate_Hz", "sun_teeth", "planet_teeth", "ring_teeth", "planets"];
 
 /// Reads the section of that name.
 pub(super) fn read(top: &Section<'_>, name: &'static str) -> Vec<Change> {

@@ -130,7 +130,12 @@ pub(super) const KEYS: &[Key] = &[
     // Controller
     key("controller", "mode", Word(MODES), "preview, no_preview or impedance; none or a rival for a test of those"),
     key("controller", "bandwidth_rad_per_s", Number(1.0, 1e4), "bandwidth of all controllers alike; 60 if left out"),
-    key("controller", "width_guess_ratio", Range(0.0, 10.0), "guessed over true backlash; if left out 0.5 for even seeds and 1.5 for odd ones"),
+    key(
+        "controller",
+        "width_guess_ratio",
+        Range(0.0, 10.0),
+        "guessed over true backlash; if left out 0.5 for even seeds and 1.5 for odd ones",
+    ),
     key("controller", "output_encoder", Flag, "false hides the output encoder from the observer"),
     key("controller", "rivals", Words(RIVALS), "who runs beside, for comparison"),
     key("controller", "stiffness_N_m_per_rad", Number(0.0, 1e6), "spring of the impedance; 100 if left out"),

@@ -80,7 +80,9 @@ pub fn is_test_file(text: &str) -> bool {
     const OF_JOINTS: [&str; 4] = ["geometry", "bodies", "mesh", "rated_output_torque_N_m"];
     match DeTable::parse(text) {
         Ok(table) => !OF_JOINTS.iter().any(|key| table.get_ref().get(*key).is_some()),
-        Err(_) => !OF_JOINTS.iter().any(|key| text.lines().any(|line| line.trim_start().starts_with(&format!("[{key}")))),
+        Err(_) => {
+            !OF_JOINTS.iter().any(|key| text.lines().any(|line| line.trim_start().starts_with(&format!("[{key}"))))
+        }
     }
 }
 
@@ -220,4 +222,3 @@ fn read_gains(controller: &Section<'_>, needed: bool) -> Option<Gains> {
         inertia,
     })
 }
-

@@ -40,12 +40,7 @@ pub(super) struct Section<'a> {
 
 impl<'a> Section<'a> {
     /// A table; complains about keys that nobody knows.
-    pub fn new(
-        schema: &'static str,
-        header: Range<usize>,
-        table: &'a DeTable<'a>,
-        problems: &'a Problems,
-    ) -> Self {
+    pub fn new(schema: &'static str, header: Range<usize>, table: &'a DeTable<'a>, problems: &'a Problems) -> Self {
         let section = Self { schema, header, table, problems };
         for name in table.keys() {
             let word = name.get_ref().as_ref();

@@ -1,6 +1,8 @@
 //! Every bound that a test of this workspace holds a number against, with the value measured when it was set and the
 //! reason why it is not tighter. Tests keep no tolerances of their own.
 
+pub mod observer;
+
 /// An upper limit on the size of an error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bound {
@@ -653,14 +655,14 @@ pub const IMPEDANCE_TORQUE: Bound = Bound {
 pub const PLANTS_GAIN: Bound = Bound {
     of: "median RMS error in random plants over motor PID's",
     limit: 1.0 / 3.0,
-    measured: 0.2,
-    reason: "Half of the trials are unforeseen steps.",
+    measured: 0.346,
+    reason: "Three times better is asked and just missed: half of the trials are unforeseen steps near saturation (0.35 to 0.6).",
 };
 
 /// Random plants, worst.
 pub const PLANTS_WORST: Bound = Bound {
     of: "worst RMS error in random plants over motor PID's",
     limit: 1.0,
-    measured: 0.5,
+    measured: 0.6,
     reason: "Never worse is what is asked.",
 };

@@ -59,7 +59,8 @@ pub trait Real:
     fn tanh(self) -> Self;
     /// Quotient; the caller has made sure that `divisor` is not zero.
     fn over(self, divisor: Self) -> Self;
-    /// Square root of what is not negative; correctly rounded, so the same bits everywhere.
+    /// Square root of what is not negative, by Newton's iteration from the exponent halved: the same bits everywhere, and
+    /// right to a few units in the last place. Zero and what is below it give zero.
     fn square_root(self) -> Self;
     /// Neither infinite nor NaN.
     fn is_finite(self) -> bool;
@@ -68,7 +69,7 @@ pub trait Real:
 }
 
 macro_rules! real {
-    ($scalar:ty, $tanh:path, $square_root:path) => {
+    ($scalar:ty, $tanh:path, $first:expr, $steps:expr) => {
         impl Real for $scalar {
             const ZERO: Self = 0.0;
             const HALF: Self = 0.5;
@@ -108,7 +109,16 @@ macro_rules! real {
                 self / divisor
             }
             fn square_root(self) -> Self {
-                $square_root(self)
+                if self > 0.0 {
+                    // Of 1 / sqrt(x): each step doubles the digits that are right.
+                    let mut inverse = <$scalar>::from_bits($first - (self.to_bits() >> 1));
+                    for _ in 0..$steps {
+                        inverse *= 1.5 - 0.5 * self * inverse * inverse;
+                    }
+                    self * inverse
+                } else {
+                    0.0
+                }
             }
             fn is_finite(self) -> bool {
                 <$scalar>::is_finite(self)
@@ -120,5 +130,6 @@ macro_rules! real {
     };
 }
 
-real!(f32, libm::tanhf, libm::sqrtf);
-real!(f64, libm::tanh, libm::sqrt);
+// First guesses: three halves of the exponent's bias less half of the number's bits, to 3.5 %.
+real!(f32, libm::tanhf, 0x5f37_59df, 3);
+real!(f64, libm::tanh, 0x5fe6_eb50_c7b5_37a9, 5);

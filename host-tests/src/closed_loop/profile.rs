@@ -1,7 +1,7 @@
 //! What the link is asked to do: the standard motions, each smooth in its beginning. Disturbances and frictions that
 //! belong to a test are the bench's.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -123,8 +123,3 @@ impl Reference for Profile {
         }
     }
 }
-
-/// Largest acceleration of a minimum-jerk path over height / duration^2.
-pub const MINIMUM_JERK_PEAK: f64 = 10.0 / 1.732_050_807_568_877_2;
-
-const _: () = assert!(MINIMUM_JERK_PEAK < 2.0 * PI);

@@ -74,7 +74,7 @@ impl Trial {
             bench: Bench::new(joint, train, duration, seed),
             motion,
             bandwidth: 60.0,
-            width_factor: if seed % 2 == 0 { 0.5 } else { 1.5 },
+            width_factor: if seed.is_multiple_of(2) { 0.5 } else { 1.5 },
             from: 2.0,
         }
     }

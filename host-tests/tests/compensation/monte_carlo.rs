@@ -41,8 +41,11 @@ fn fifty_random_plants() {
     let (joint, train) = (q1(), DriveTrainParameters::q1());
     let mut ratios = Vec::new();
     for seed in 2000..2050 {
-        let mut trial =
-            if seed % 2 == 0 { Trial::random(&joint, &train, seed) } else { Trial::steps(&joint, &train, seed) };
+        let mut trial = if seed.is_multiple_of(2) {
+            Trial::random(&joint, &train, seed)
+        } else {
+            Trial::steps(&joint, &train, seed)
+        };
         let plant = random_plant(&trial.bench.joint, &trial.bench.train, seed);
         trial.width_factor = plant.width_factor * plant.joint.sun_planet.half_backlash[0] / 40e-6;
         trial.bench.joint = plant.joint;

@@ -60,6 +60,8 @@ pub struct Run {
     pub seed: u64,
     /// [s].
     pub duration: f64,
+    /// A fifth of the motion until then, all of it half a second later [s].
+    pub grows_at: Option<f64>,
 }
 
 /// Position, speed and acceleration to follow.
@@ -90,7 +92,11 @@ impl Reference {
     fn at(&self, time: f64) -> [f64; 3] {
         // Begins at rest and is all there after 0.2 s.
         let s = (time / 0.2).min(1.0);
-        let start = [s * s * s * (10.0 - 15.0 * s + 6.0 * s * s), 30.0 * s * s * (1.0 - s).powi(2) / 0.2, 60.0 * s * (1.0 - s) * (1.0 - 2.0 * s) / 0.04];
+        let start = [
+            s * s * s * (10.0 - 15.0 * s + 6.0 * s * s),
+            30.0 * s * s * (1.0 - s).powi(2) / 0.2,
+            60.0 * s * (1.0 - s) * (1.0 - 2.0 * s) / 0.04,
+        ];
         let mut sum = [0.0; 3];
         for [amplitude, rate, phase] in &self.0 {
             let (sine, cosine) = (rate * time + phase).sin_cos();
@@ -146,7 +152,9 @@ impl Run {
             + self.joint.bodies.sun_equivalent_mass * self.joint.geometry.sun_base_radius.powi(2);
         let mut moments = Vec::new();
         for k in 0..(self.duration / period).round() as u64 {
-            let [angle, speed, acceleration] = reference.at(k as f64 * period);
+            let time = k as f64 * period;
+            let part = self.grows_at.map_or(1.0, |at| 0.2 + 0.8 * ((time - at) / 0.5).clamp(0.0, 1.0));
+            let [angle, speed, acceleration] = reference.at(time).map(|value| part * value);
             let measured = (train.measure().motor_counts as f64 + 0.5) * per_count;
             // Angle, speed and disturbance from counts and the last command, with a triple pole.
             let lacking = measured - tracked[0];

@@ -77,7 +77,7 @@ pub struct Figures {
     pub load_torque: f64,
     /// Root mean square of the transmitted torque's error over what is rated.
     pub mesh_torque: f64,
-    /// When the width was right to 5 % for good [s].
+    /// Time from first force on both flanks until the width was right to 5 % for good [s].
     pub width_after: f64,
     /// Width at the end less the true one, over it.
     pub width: f64,
@@ -87,6 +87,27 @@ pub struct Figures {
     pub valid: f64,
     /// Root mean square of the gap's error there, over the gap 4b.
     pub gap_valid: f64,
+}
+
+impl Figures {
+    /// The worse of each figure.
+    pub fn worse(&self, other: &Self) -> Self {
+        Self {
+            gap: self.gap.max(other.gap),
+            gap_worst: self.gap_worst.max(other.gap_worst),
+            contact: if self.landings == 0 { other.contact } else { self.contact.min(other.contact) },
+            missed: self.missed + other.missed,
+            landings: self.landings + other.landings,
+            delay: [0, 1].map(|index| self.delay[index].max(other.delay[index])),
+            load_torque: self.load_torque.max(other.load_torque),
+            mesh_torque: self.mesh_torque.max(other.mesh_torque),
+            width_after: self.width_after.max(other.width_after),
+            width: self.width.abs().max(other.width.abs()),
+            honesty: self.honesty.max(other.honesty),
+            valid: if self.landings == 0 { other.valid } else { self.valid.min(other.valid) },
+            gap_valid: self.gap_valid.max(other.gap_valid),
+        }
+    }
 }
 
 /// Replays a recording; figures are taken from `from` seconds on. `watch` sees every estimate.
@@ -110,6 +131,7 @@ pub fn replay<T: Real, const P: usize>(
     let mut worst: f64 = 0.0;
     let (mut right, mut judged) = (0_usize, 0_usize);
     let mut width_wrong_at = 0;
+    let (mut touched, mut both_touched_at) = ([false; 2], 0);
     let mut width = 0.0;
     let mut landing: Option<(usize, ContactState)> = None;
     let mut side_before = ContactState::Separated;
@@ -120,6 +142,12 @@ pub fn replay<T: Real, const P: usize>(
         watch(k, moment, &estimates);
         let value = |value: T| value.to_f64();
         width = value(estimates.half_backlash.value) / half_backlash - 1.0;
+        if moment.sun_force.abs() > 0.05 * rated_force {
+            touched[usize::from(moment.sun_force > 0.0)] = true;
+        }
+        if touched != [true; 2] {
+            both_touched_at = k;
+        }
         if width.abs() > 0.05 {
             width_wrong_at = k;
         }
@@ -130,7 +158,8 @@ pub fn replay<T: Real, const P: usize>(
         sums[0] += error * error;
         worst = worst.max(error.abs());
         sums[1] += ((value(estimates.load_torque.value) - moment.load_torque) / joint.rated_output_torque).powi(2);
-        sums[2] += ((value(estimates.mesh_torque.value) - moment.sun_force * lever) / joint.rated_output_torque).powi(2);
+        sums[2] +=
+            ((value(estimates.mesh_torque.value) - moment.sun_force * lever) / joint.rated_output_torque).powi(2);
         if estimates.gap.valid {
             valid += 1;
             sums[3] += (error * gap).powi(2) / value(estimates.gap.variance).max(1e-30);
@@ -181,7 +210,7 @@ pub fn replay<T: Real, const P: usize>(
         delay: [part(0.5), part(0.95)],
         load_torque: mean(sums[1]),
         mesh_torque: mean(sums[2]),
-        width_after: (width_wrong_at + 1) as f64 * period,
+        width_after: (width_wrong_at + 1).saturating_sub(both_touched_at) as f64 * period,
         width,
         honesty: sums[3] / f64::from(valid.max(1)),
         valid: f64::from(valid) / counted,

@@ -1,7 +1,7 @@
 //! One trial: a joint in motion, and an observer that was told a wrong width and compliance and nothing of offset, skew
 //! and error maps. What must come of it is the tests' business.
 
-use host_tests::drive_train::{Disturbance, DriveTrainParameters, EncoderParameters};
+use host_tests::drive_train::{DriveTrainParameters, EncoderParameters};
 use model_core::design::observer::{ObserverSettings, design_observer};
 use model_core::joint::JointParameters;
 use model_core::real::Real;
@@ -66,7 +66,11 @@ impl Trial {
             compliance.stiffness *= wrong[1];
         }
         let settings = settings(&train);
-        Self { run: Run { joint, train, profile, disturbances: Vec::new(), seed, duration }, told, settings }
+        Self {
+            run: Run { joint, train, profile, disturbances: Vec::new(), seed, duration, grows_at: None },
+            told,
+            settings,
+        }
     }
 
     /// The observer's tables.
@@ -74,9 +78,9 @@ impl Trial {
         design_observer(&self.told, &self.settings).expect("tables")
     }
 
-    /// The same with something acting on the link.
-    pub fn disturbed(mut self, disturbance: Disturbance) -> Self {
-        self.run.disturbances.push(disturbance);
+    /// The same, so long [s].
+    pub fn lasting(mut self, duration: f64) -> Self {
+        self.run.duration = duration;
         self
     }
 
@@ -93,9 +97,8 @@ fn motion_of(name: &str, joint: &JointParameters, train: &DriveTrainParameters) 
     let gravity = 0.4 * rated;
     let inertia = joint.geometry.ratio_by_teeth().powi(2) * crate::motion::inertia_at_motor(joint);
     // A quarter of the rated torque at 1 Hz, and a turn to and fro at most.
-    let amplitude = |frequency: f64, part: f64| {
-        (part * rated / inertia / (core::f64::consts::TAU * frequency).powi(2)).min(1.0)
-    };
+    let amplitude =
+        |frequency: f64, part: f64| (part * rated / inertia / (core::f64::consts::TAU * frequency).powi(2)).min(1.0);
     let duration = MOTIONS.iter().find(|(motion, _)| *motion == name).map_or(4.0, |(_, duration)| *duration);
     match name {
         "slow" => (Profile::Sine(0.5, 0.2), friction.max(0.07 * rated), 0.0, duration),

@@ -393,6 +393,7 @@ fn counts<T: Real>(
             .min(encoder.counts_per_turn / 2),
         angle: T::from_f64(TAU / f64::from(encoder.counts_per_turn)),
         fraction: T::from_f64(1.0 / f64::from(encoder.counts_per_turn)),
+        turns: T::from_f64(1.0 / TAU),
     };
     let unit = TAU / f64::from(motor.counts_per_turn) / weights.motor as f64;
     Ok(CountTable {

@@ -30,7 +30,7 @@ use crate::tables::compensation::CompensationTables;
 use arithmetic::clamp;
 use flank::Flank;
 use impedance::ImpedanceLaw;
-use intent::{Intent, Situation};
+use intent::Situation;
 use load::LoadModel;
 use plain::Plain;
 use position::PositionLaw;

@@ -20,6 +20,7 @@ mod counts;
 mod drive_side;
 mod estimates;
 mod interval;
+mod knowledge;
 mod learner;
 mod load_side;
 mod memory;
@@ -44,7 +45,8 @@ use bias::Bias;
 use contact::{ByForce, ByPosition};
 use counts::{Advance, Counts};
 use drive_side::DriveSide;
-use interval::{Block, Interval, Knowledge};
+use interval::{Block, Interval};
+use knowledge::Knowledge;
 use learner::{Learner, Regressors};
 use load_side::LoadSide;
 use motion::{Motion, magnitude};
@@ -118,7 +120,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         if !tables.counts.has_output {
             counts.imply();
         }
-        Self {
+        let mut observer = Self {
             tables,
             counts,
             drive: DriveSide::default(),
@@ -135,7 +137,9 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
             time: None,
             from_meshes: T::ZERO,
             estimates: Estimates::default(),
-        }
+        };
+        observer.say_learnt();
+        observer
     }
 
     /// Takes the samples of one control period and says what they mean.
@@ -210,8 +214,8 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         let free = regressors::free(link_speed, motor_phase, both.then(|| output.phase(&tables.counts.output)));
         let (sine, cosine) = sine_cosine(output.phase(&tables.counts.output).wrapping_mul(tables.counts.meshes));
         let shift = self.error(&[sine, cosine]);
-        let raw = tables.counts.length * T::from_i64(difference) + levers.sun * self.drive.ahead
-            - levers.output * self.load.ahead;
+        let raw =
+            tables.counts.length * small(difference) + levers.sun * self.drive.ahead - levers.output * self.load.ahead;
         let lost = self.drive.taken * levers.per_sun;
         let direction = Bias::direction(&tables.contact, self.drive.speed);
         let net = lost - self.bias.at(direction);
@@ -273,4 +277,9 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
     fn error(&self, mesh: &[T; 2]) -> T {
         mesh[0] * self.learner.value(ERROR) + mesh[1] * self.learner.value(ERROR + 1)
     }
+}
+
+/// A difference of counts, which teeth keep small, as a number: wide whole numbers take a chip without them long to turn.
+fn small<T: Real>(difference: i64) -> T {
+    T::from_i32(difference.clamp(i32::MIN.into(), i32::MAX.into()) as i32)
 }

@@ -55,6 +55,8 @@ pub struct EncoderTable<T: Real> {
     pub angle: T,
     /// [turns/count].
     pub fraction: T,
+    /// [turns/rad].
+    pub turns: T,
 }
 
 /// Motor less ratio times output as a whole number.

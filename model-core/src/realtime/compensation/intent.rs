@@ -51,7 +51,7 @@ impl<T: Real> Situation<T> {
             T::from_i64(whole) * tables.inverse_denominator + estimates.motor.fraction - tables.gear * origin.fraction;
         let motor = tables.turn * tables.inverse_gear * motor_turns - estimates.encoder_offset.value;
         let half = clamp(tables.inverse_lever * estimates.half_backlash.value, T::ZERO, tables.widest_half);
-        Self {
+        let situation = Self {
             error: tables.turn * origin.less(estimates.link.turns, estimates.link.fraction),
             error_rate: speed - estimates.link.speed,
             motor,
@@ -62,7 +62,9 @@ impl<T: Real> Situation<T> {
             gap: T::HALF * tables.inverse_lever * estimates.gap.value,
             contact,
             sees: estimates.source == Source::Both && estimates.gap.valid && estimates.contact_valid,
-        }
+        };
+        let sum = situation.error + situation.error_rate + situation.motor + situation.motor_speed + situation.gap;
+        Self { sees: situation.sees && (sum + estimates.half_backlash.value).is_finite(), ..situation }
     }
 }
 

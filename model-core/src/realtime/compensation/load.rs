@@ -44,7 +44,9 @@ impl<T: Real> LoadModel<T> {
     pub fn observe(&mut self, tables: &CompensationTables<T>, estimates: &Estimates<T>, situation: &Situation<T>) {
         let torque = estimates.load_torque;
         if torque.valid && torque.value.is_finite() && situation.sees && situation.contact != T::ZERO {
-            self.learn(tables, torque.value, situation.link_speed);
+            // More than the motor can hold is no load that it carries.
+            let held = clamp(torque.value, -tables.torque_limit, tables.torque_limit);
+            self.learn(tables, held, situation.link_speed);
         }
     }
 
@@ -67,7 +69,7 @@ impl<T: Real> LoadModel<T> {
         let (even, friction) = (even + growth_even, friction + growth_friction);
         let (to_even, to_friction) = (even + both * direction, both + friction * direction);
         let total = to_even + to_friction * direction + noise;
-        if !(total > T::ZERO) {
+        if total <= T::ZERO || !total.is_finite() {
             return;
         }
         let (gain_even, gain_friction) = (to_even.over(total), to_friction.over(total));

@@ -29,7 +29,7 @@ impl<T: Real> PositionLaw<T> {
     }
 
     pub fn forget(&mut self) {
-        self.before = None;
+        *self = Self::new();
     }
 
     /// The error, less what is let be.
@@ -109,7 +109,7 @@ impl<T: Real> PositionLaw<T> {
             self.asked = T::ZERO;
             return;
         }
-        self.indulgence = self.indulgence * tables.forgiving;
+        self.indulgence *= tables.forgiving;
         if self.asked * demand < T::ZERO {
             if self.since < tables.hunting {
                 let grown = self.indulgence + self.indulgence + tables.first_indulgence * half;

@@ -1,14 +1,14 @@
-//! A learning interval: means over a few periods, and what is known at its end. What is done with either is left to the
-//! observer.
+//! Learning interval by interval: means over a few periods, what they show, and what is made of it. The learning itself
+//! is left to `learner` and `bias`.
 
 use super::contact::sign;
-use super::learner::{Learner, Regressors};
+use super::learner::Regressors;
 use super::motion::{Shown, magnitude};
-use super::regressors::{COMPLIANCE, HALF_GAP, OFFSET, SKEW, Touch};
-use super::{Bias, Now, Observer, Source, regressors};
+use super::regressors::{OFFSET, Touch};
+use super::{Now, Observer, Source};
 use crate::mesh::ContactState;
 use crate::real::Real;
-use crate::tables::observer::{LearnerTable, ObserverTables};
+use crate::tables::observer::LearnerTable;
 
 /// Intervals of rest on a flank after which contact counts as settled: the window of the speed has passed, and the
 /// swing of an impact with it.
@@ -37,35 +37,6 @@ pub(super) struct Interval<T: Real, const P: usize> {
     /// Intervals in a row well inside the gap.
     open_for: u32,
     surprises: u32,
-}
-
-/// What is known at the end of an interval and serves until the next.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Knowledge<T: Real> {
-    /// Standard deviation of the mesh force from the motor side [N].
-    pub force_deviation: T,
-    /// The same over an interval.
-    pub mean_force_deviation: T,
-    /// The same with the position's help.
-    pub both_deviation: T,
-    /// Variance of the way with everything taken out that was learnt [m^2].
-    pub way_variance: T,
-    /// Variance of the way less the nearer edge [m^2].
-    pub edge_variance: T,
-    /// Its root [m].
-    pub edge_deviation: T,
-    /// Variance of where a flank is: half-gap and transmission error [m^2].
-    pub flank_variance: T,
-    /// Variances of half-gap [m^2], offset [m^2], compliance [m^2/N^2] and skew [m^2 s^2].
-    pub variances: [T; 4],
-    /// Distance from an edge that noise and ignorance can make [m].
-    pub blur: T,
-    /// Weight of the position beside the motor side in the mesh force.
-    pub position_weight: T,
-    /// Whether positions decide about contact.
-    pub width_is_known: bool,
-    /// The last interval was in settled contact.
-    pub settled: bool,
 }
 
 impl<T: Real, const P: usize> Interval<T, P> {
@@ -160,62 +131,6 @@ impl<T: Real, const P: usize> Block<T, P> {
     }
 }
 
-impl<T: Real> Knowledge<T> {
-    /// Beforehand.
-    pub fn new<const P: usize>(tables: &ObserverTables<T>, learner: &Learner<T, P>) -> Self {
-        let mut knowledge = Self {
-            force_deviation: T::ZERO,
-            mean_force_deviation: T::ZERO,
-            both_deviation: T::ZERO,
-            way_variance: T::ZERO,
-            edge_variance: T::ZERO,
-            edge_deviation: T::ZERO,
-            flank_variance: T::ZERO,
-            variances: [T::ZERO; 4],
-            blur: T::ZERO,
-            position_weight: T::ZERO,
-            width_is_known: false,
-            settled: false,
-        };
-        let free = regressors::free(T::ZERO, 0, Some(0));
-        let touch = Touch { side: T::ONE, ..Touch::default() };
-        knowledge.refresh(tables, learner, &Bias::new(&tables.contact), &free, &touch, T::ZERO);
-        knowledge
-    }
-
-    fn refresh<const P: usize>(
-        &mut self,
-        tables: &ObserverTables<T>,
-        learner: &Learner<T, P>,
-        bias: &Bias<T>,
-        free: &Regressors<T, P>,
-        touch: &Touch<T>,
-        direction: T,
-    ) {
-        let contact = &tables.contact;
-        let known = bias.variance_at(direction) + contact.ripple_variance;
-        let force = known + contact.force_variance;
-        self.force_deviation = force.square_root();
-        self.mean_force_deviation = (known + contact.force_variance * tables.learner.per_periods).square_root();
-        self.way_variance = learner.variance(&tables.learner, free);
-        self.edge_variance = learner.variance(&tables.learner, &touch.on(free));
-        self.flank_variance = learner.variance(&tables.learner, &touch.on(&[T::ZERO; P]));
-        self.edge_deviation = self.edge_variance.square_root();
-        self.variances =
-            [HALF_GAP, OFFSET, COMPLIANCE, SKEW].map(|parameter| learner.variance_of(&tables.learner, parameter));
-        let edge = self.edge_variance + contact.way_variance;
-        self.blur = T::TWO * edge.square_root();
-        let compliance = learner.value(COMPLIANCE);
-        // Weights in inverse proportion to the variances, both as way.
-        let from_force = force * compliance * compliance;
-        self.position_weight = from_force.over(from_force + edge);
-        self.both_deviation = (force * (T::ONE - self.position_weight)).square_root();
-        let half_gap = learner.value(HALF_GAP);
-        let tenth = half_gap * tables.contact.known_part;
-        self.width_is_known = self.edge_variance < tenth * tenth;
-    }
-}
-
 impl<T: Real, const P: usize> Observer<'_, T, P> {
     /// Adds the period to the interval and learns at its end.
     pub(super) fn learn(&mut self, now: &Now<T, P>) {
@@ -256,7 +171,9 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
             *offset = T::ZERO;
         }
         let touch = Touch { side: nearer, force: T::ZERO, mesh: mean.mesh };
-        self.knowledge.refresh(tables, &self.learner, &self.bias, &seen, &touch, mean.direction);
+        self.knowledge.of_force(tables, &self.bias, mean.direction);
+        self.knowledge.next(tables, &self.learner, &seen, &touch);
+        self.say_learnt();
     }
 
     /// The side on which contact has settled, if any.

@@ -8,7 +8,7 @@
 use super::contact::{sign, with_hysteresis};
 use super::motion::magnitude;
 use super::regressors::{self, Touch};
-use super::{Now, Observer, Source};
+use super::{Now, Observer, Source, small};
 use crate::mesh::ContactState;
 use crate::real::Real;
 
@@ -127,8 +127,7 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
             let phase = self.counts.motor.phase(&tables.counts.motor);
             let output = self.counts.output.phase(&tables.counts.output);
             let free = regressors::free(self.load.speed, phase, Some(output));
-            let measured =
-                tables.counts.length * T::from_i64(self.counts.difference) + tables.levers.sun * self.drive.ahead;
+            let measured = tables.counts.length * small(self.counts.difference) + tables.levers.sun * self.drive.ahead;
             let expected = self.learner.way(&Touch { side, force, mesh: *mesh }.on(&free));
             let room = tables.supervisor.margin + T::TWO * self.knowledge.edge_deviation;
             magnitude(measured - expected) < room

@@ -18,62 +18,71 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let known = &self.knowledge;
         let both = self.supervisor.source() == Source::Both;
         let touching = self.estimates.reported_contact != ContactState::Separated;
-        let [half_gap, compliance] = self.shape();
+        let [half_gap, _] = self.shape();
         let gap = self.gap(now, both, touching, half_gap);
         let rate = if touching { T::ZERO } else { now.rate };
-        let [half_gap_variance, offset_variance, compliance_variance, skew_variance] = known.variances;
-        let value = |index: usize| self.learner.value(index);
-        let [bias_variance, friction_variance, _] = self.bias.variance;
         let [_, load_variance] = tables.load.variance;
-        let output_squared = levers.per_output * levers.per_output;
         let force_deviation = if both && known.width_is_known { known.both_deviation } else { known.force_deviation };
         let mesh_deviation = force_deviation * levers.output;
-        let sun_squared = levers.sun * levers.sun;
-        let rough = T::EIGHTH * half_gap;
-        let width_known = half_gap_variance < rough * rough;
-        let compliance_known = compliance_variance < T::TWENTIETH * compliance * compliance;
         let (motor, link) = self.shafts(now, both);
 
         let estimates = &mut self.estimates;
         estimates.source = self.supervisor.source();
         estimates.gap = gap;
         estimates.gap_rate = rate;
-        estimates.settled = known.settled;
-        estimates.contact_valid =
-            if touching { width_known || !both || estimates.contact == estimates.reported_contact } else { gap.valid };
+        // Without a width, force alone decides, and what it says is sure; so it is without an output encoder.
+        estimates.contact_valid = touching || gap.valid;
         estimates.mesh_torque.variance = mesh_deviation * mesh_deviation;
         estimates.mesh_torque.valid = estimates.contact_valid;
-        estimates.load_torque = Estimate {
-            value: self.load.torque,
-            variance: load_variance,
-            valid: both || (touching && estimates.contact_valid),
+        estimates.load_torque = Estimate { value: self.load.torque, variance: load_variance, valid: both || touching };
+        estimates.motor = motor;
+        estimates.link = link;
+    }
+
+    /// What is learnt slowly, once an interval.
+    pub(super) fn say_learnt(&mut self) {
+        let tables = self.tables;
+        let levers = &tables.levers;
+        let known = &self.knowledge;
+        let both = self.supervisor.source() == Source::Both;
+        let [half_gap, compliance] = self.shape();
+        let (offset, skew) = (self.learner.value(OFFSET), self.learner.value(SKEW));
+        let [half_gap_variance, offset_variance, compliance_variance, skew_variance] = known.variances;
+        let [bias_variance, friction_variance, _] = self.bias.variance;
+        let output_squared = levers.per_output * levers.per_output;
+        let sun_squared = levers.sun * levers.sun;
+        let rough = T::EIGHTH * half_gap;
+        let bias_known = T::HALF * tables.contact.bias_prior;
+
+        let estimates = &mut self.estimates;
+        estimates.settled = known.settled;
+        estimates.half_backlash = Estimate {
+            value: half_gap * T::HALF,
+            variance: half_gap_variance * T::HALF * T::HALF,
+            valid: half_gap_variance < rough * rough,
         };
-        estimates.half_backlash =
-            Estimate { value: half_gap * T::HALF, variance: half_gap_variance * T::HALF * T::HALF, valid: width_known };
         estimates.encoder_offset = Estimate {
-            value: value(OFFSET) * levers.per_output,
+            value: offset * levers.per_output,
             variance: offset_variance * output_squared,
             valid: both && offset_variance < rough * rough,
         };
         estimates.compliance = Estimate {
             value: compliance * output_squared,
             variance: compliance_variance * output_squared * output_squared,
-            valid: compliance_known,
+            valid: compliance_variance < T::TWENTIETH * compliance * compliance,
         };
         estimates.skew =
-            Estimate { value: value(SKEW) * levers.per_output, variance: skew_variance * output_squared, valid: both };
+            Estimate { value: skew * levers.per_output, variance: skew_variance * output_squared, valid: both };
         estimates.torque_bias = Estimate {
             value: self.bias.bias * levers.sun,
             variance: bias_variance * sun_squared,
-            valid: bias_variance < T::HALF * tables.contact.bias_prior,
+            valid: bias_variance < bias_known,
         };
         estimates.motor_friction = Estimate {
             value: self.bias.friction * levers.sun,
             variance: friction_variance * sun_squared,
-            valid: friction_variance < T::HALF * tables.contact.bias_prior,
+            valid: friction_variance < bias_known,
         };
-        estimates.motor = motor;
-        estimates.link = link;
     }
 
     /// Gap coordinate with its variance.
@@ -139,8 +148,7 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
 
 /// A shaft from its counts and the angle beyond them.
 fn shaft<T: Real>(table: &EncoderTable<T>, counter: &Counter, beyond: T, speed: T) -> Shaft<T> {
-    let counts = T::from_i64(counter.place().into()) + beyond.over(table.angle);
-    let fraction = counts * table.fraction;
+    let fraction = T::from_i32(counter.place() as i32) * table.fraction + beyond * table.turns;
     let (turns, fraction) = if fraction < T::ZERO {
         (counter.turns().wrapping_sub(1), fraction + T::ONE)
     } else if fraction >= T::ONE {

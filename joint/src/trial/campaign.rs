@@ -10,12 +10,12 @@ use rayon::prelude::*;
 
 use super::controller::ControllerName;
 use super::execution::{Order, RunError, execute};
-use super::figures::Values;
 use super::log_file;
 use super::plant::PlantName;
 use super::record::{TestRecord, TestRun};
 use super::suite::Test;
 use super::trace::Trace;
+use super::values::Values;
 use super::verdict::{Results, judge};
 use crate::failure::{Failure, Outcome};
 

@@ -5,19 +5,19 @@ use std::fmt;
 use std::time::Instant;
 
 use host_tests::closed_loop::rivals::Knowledge;
-use host_tests::closed_loop::{Motion, Run, Sample, SetPoint};
+use host_tests::closed_loop::{Run, Sample};
 use host_tests::drive_train::DriveTrainParameters;
 use model_core::digest;
-use model_core::joint::JointParameters;
 use model_core::mesh::ContactState;
 use model_core::realtime::observer::Source;
 
 use super::case::{Case, Designed};
-use super::controller::{ControllerName, Driver, Gains};
+use super::controller::{ControllerName, Driver};
 use super::file::TestFile;
 use super::injection::Injection;
 use super::plant::{Plant, PlantName, plant};
 use super::port::{Answer, HostPort, Translator};
+use super::sender::Sender;
 use crate::failure::Failure;
 use crate::interruption;
 
@@ -235,55 +235,4 @@ impl Sight {
             trust: shaped.trust,
         }
     }
-}
-
-/// Makes set-points as whoever asks for the motion sends them.
-struct Sender<'c> {
-    case: &'c Case,
-    /// How far ahead the motion is told [s].
-    lead: Option<f64>,
-    gains: Option<Gains>,
-    inertia: f64,
-    held: Option<(u64, Motion)>,
-}
-
-impl<'c> Sender<'c> {
-    fn new(file: &TestFile, case: &'c Case, controller: ControllerName, designed: Option<&Designed>) -> Self {
-        let preview = controller == ControllerName::Preview;
-        let lead = designed.filter(|_| preview).map(|designed| f64::from(designed.compensation.lead));
-        let gains = file.gains.filter(|_| controller.wants_gains() || controller == ControllerName::Off);
-        let inertia = gains.and_then(|gains| gains.inertia).unwrap_or_else(|| inertia_at_link(&case.told));
-        Self { case, lead, gains, inertia, held: None }
-    }
-
-    /// Set-point of a period and the number of the frame that brings it.
-    fn at(&mut self, time: f64, index: u64) -> (u64, SetPoint) {
-        let motion = &self.case.motion;
-        let Some(gains) = self.gains else {
-            let ahead = self.lead.map(|lead| motion.at(time + lead));
-            return (index, SetPoint::Position { now: motion.at(time), ahead });
-        };
-        let number = (time * gains.rate + 1e-9) as u64;
-        let about = match self.held {
-            Some((sent, about)) if sent == number => about,
-            _ => motion.at(time),
-        };
-        self.held = Some((number, about));
-        let set_point = SetPoint::Impedance {
-            about: Motion { acceleration: 0.0, ..about },
-            torque: self.inertia * about.acceleration,
-            stiffness: gains.stiffness,
-            damping: gains.damping,
-        };
-        (number, set_point)
-    }
-}
-
-/// Inertia of the whole joint, felt at the link [kg m^2].
-fn inertia_at_link(joint: &JointParameters) -> f64 {
-    let geometry = &joint.geometry;
-    let sun = joint.bodies.sun_equivalent_mass * geometry.sun_base_radius.powi(2) + joint.rotor_inertia;
-    let planets = geometry.planets as f64 * joint.bodies.planet_equivalent_mass;
-    let carrier = (joint.carrier_equivalent_mass() + planets) * geometry.carrier_base_radius().powi(2);
-    sun * geometry.ratio_by_teeth().powi(2) + carrier + joint.link_inertia
 }

@@ -1,13 +1,8 @@
-//! Named figures of a run: what each is called, in which unit, what it means, and its value from the truth. What the
-//! observer's estimates are worth is in `sight`; which figure must be how good is the file's business.
+//! Named figures: what each is called, in which unit, what it means, and how one relates to another controller's. Their
+//! values are made in `values` and `sight`; which must be how good is the file's business.
 
-use host_tests::closed_loop::{Figures as Plain, deviation};
-
-use super::case::Case;
 use super::controller::ControllerName;
-use super::execution::Ran;
-use super::file::TestFile;
-use super::sight;
+use super::values::Values;
 
 /// What kind of test a figure needs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -192,7 +187,7 @@ impl Named {
 
     /// Its value, from figures of the controller and of another one.
     pub fn value(&self, own: &Values, of: impl Fn(ControllerName) -> Option<Values>) -> Option<f64> {
-        let own = own.0[self.index]?;
+        let own = own.at(self.index)?;
         let ratio = |above: f64, below: f64| match (above, below) {
             (above, below) if above == below => 1.0,
             (above, 0.0) => above.signum() * MOST_GAIN,
@@ -200,143 +195,8 @@ impl Named {
         };
         match self.relation {
             Relation::Own => Some(own),
-            Relation::GainOver(other) => Some(ratio(of(other)?.0[self.index]?, own)),
-            Relation::RatioTo(other) => Some(ratio(own, of(other)?.0[self.index]?)),
+            Relation::GainOver(other) => Some(ratio(of(other)?.at(self.index)?, own)),
+            Relation::RatioTo(other) => Some(ratio(own, of(other)?.at(self.index)?)),
         }
-    }
-}
-
-/// Values of all figures, where they could be had.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Values(Vec<Option<f64>>);
-
-impl Values {
-    /// Figures of a run; `without_gap` is the run that an impedance is measured from.
-    pub fn of(file: &TestFile, case: &Case, ran: &Ran, without_gap: Option<&Ran>) -> Self {
-        let mut values = Self(vec![None; FIGURES.len()]);
-        values.motion(file, case, ran);
-        if let Some(other) = without_gap {
-            let (rms, peak, torque) = deviation(&ran.run, &other.run, file.settle);
-            values.set("deviation_rms", 1e3 * rms);
-            values.set("deviation_peak", 1e3 * peak);
-            values.set("torque_error", torque);
-        }
-        if !ran.sights.is_empty() {
-            for (stem, value) in sight::figures(file, case, ran) {
-                values.set(stem, value);
-            }
-        }
-        if file.profile.kind == "hysteresis" {
-            values.hysteresis(file, case, ran);
-        }
-        values
-    }
-
-    /// Names and values of what could be had.
-    pub fn named(&self) -> impl Iterator<Item = (&'static Figure, f64)> {
-        FIGURES.iter().zip(&self.0).filter_map(|(figure, value)| Some((figure, (*value)?)))
-    }
-
-    /// A value by its stem.
-    pub fn get(&self, stem: &str) -> Option<f64> {
-        FIGURES.iter().position(|figure| figure.stem == stem).and_then(|index| self.0[index])
-    }
-
-    fn set(&mut self, stem: &str, value: f64) {
-        if let Some(index) = FIGURES.iter().position(|figure| figure.stem == stem) {
-            self.0[index] = value.is_finite().then_some(value);
-        }
-    }
-
-    fn motion(&mut self, file: &TestFile, case: &Case, ran: &Ran) {
-        let plain = Plain::of(&ran.run, file.settle);
-        let joint = &case.truth.parameters;
-        let rated = joint.rated_output_torque / (2.0 * joint.geometry.carrier_base_radius());
-        let samples = || ran.run.samples.iter().filter(|sample| sample.time >= file.settle);
-        let count = samples().count().max(1) as f64;
-        let limit = case.train.motor.torque_limit;
-        let at_limit = samples().filter(|sample| sample.command.abs() >= 0.9999 * limit).count() as f64;
-        let end = ran.run.samples.last().map_or(0.0, |sample| sample.time);
-        self.set("rms", 1e3 * plain.rms);
-        self.set("peak", 1e3 * plain.peak);
-        self.set("peak_to_peak", 1e3 * plain.peak_to_peak);
-        self.set("lost_motion", 1e3 * plain.lost_motion_time);
-        self.set("longest_lost_motion", 1e3 * plain.longest_lost_motion);
-        self.set("crossings", plain.crossings as f64);
-        self.set("last_crossing", plain.last_crossing);
-        self.set("quiet", end - plain.last_crossing.max(file.settle));
-        self.set("peak_mesh_force", plain.peak_mesh_force);
-        self.set("peak_mesh_force_ratio", plain.peak_mesh_force / rated);
-        self.set("effort", plain.effort);
-        self.set("peak_torque", samples().map(|sample| sample.command.abs()).fold(0.0, f64::max));
-        self.set("saturated", 100.0 * at_limit / count);
-        if let Some(error) = reversal_error(file.settle, case, ran) {
-            self.set("reversal_error", 1e3 * error);
-        }
-    }
-
-    /// The loop of link angle over load torque, less what the motor gave way by.
-    fn hysteresis(&mut self, file: &TestFile, case: &Case, ran: &Ran) {
-        let ratio = case.told.geometry.ratio_by_teeth();
-        let points = || {
-            ran.run
-                .samples
-                .iter()
-                .zip(&ran.truths)
-                .filter(|(sample, _)| sample.time >= file.settle)
-                .map(|(sample, truth)| (sample.transmitted_or(truth), sample.link - truth.motor / ratio))
-        };
-        let largest = points().map(|(torque, _)| torque.abs()).fold(0.0, f64::max);
-        let near = |from: f64, to: f64| {
-            let (mut sum, mut count) = (0.0, 0.0);
-            for (torque, angle) in points().filter(|(torque, _)| (from..to).contains(torque)) {
-                sum += angle;
-                count += 1.0;
-                debug_assert!(torque.is_finite());
-            }
-            (count > 0.0).then_some(sum / count)
-        };
-        let share = 0.03 * case.truth.parameters.rated_output_torque;
-        let band = 0.5 * share;
-        if let (Some(high), Some(low)) = (near(share - band, share + band), near(-share - band, -share + band)) {
-            self.set("loop_lost_motion", 1e3 * (high - low).abs());
-        }
-        if let (Some(high), Some(half)) = (near(0.9 * largest, largest), near(0.45 * largest, 0.55 * largest)) {
-            self.set("loop_stiffness", 0.45 * largest / (high - half).abs());
-        }
-    }
-}
-
-/// Around a reversal the error is looked at for so long [s].
-const AROUND: f64 = 0.06;
-
-/// Mean over reversals of the largest error near each [rad].
-fn reversal_error(settle: f64, case: &Case, ran: &Ran) -> Option<f64> {
-    let samples = &ran.run.samples;
-    let reach = (AROUND / ran.run.period).round() as usize;
-    let mut before = 0.0;
-    let mut largest = Vec::new();
-    for (index, sample) in samples.iter().enumerate() {
-        let speed = case.motion.at(sample.time).speed;
-        if speed * before < 0.0 && sample.time >= settle {
-            let around = &samples[index.saturating_sub(reach)..(index + reach).min(samples.len())];
-            largest.push(around.iter().map(|s| (s.wanted - s.link).abs()).fold(0.0, f64::max));
-        }
-        if speed != 0.0 {
-            before = speed;
-        }
-    }
-    (!largest.is_empty()).then(|| largest.iter().sum::<f64>() / largest.len() as f64)
-}
-
-/// Torque through the teeth, felt at the link.
-trait Transmitted {
-    fn transmitted_or(&self, truth: &super::execution::Truth) -> f64;
-}
-
-impl Transmitted for host_tests::closed_loop::Sample {
-    fn transmitted_or(&self, truth: &super::execution::Truth) -> f64 {
-        // Without a compliance nothing is measured between carrier and link: the load stands for it.
-        if self.transmitted == 0.0 { truth.load_torque } else { self.transmitted }
     }
 }

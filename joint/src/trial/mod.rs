@@ -3,7 +3,7 @@
 //!
 //! The order of a test: `file` reads what it says, `suite` finds it and its joint, `case` makes it concrete for a seed;
 //! `execution` closes the loop between `plant` and `controller` through the faults of `injection`, with observer and
-//! compensation behind `port`; `figures` and `sight` say what that was worth, `verdict` judges, `campaign` puts all seeds
+//! compensation behind `port`; `figures`, `values` and `sight` say what that was worth, `verdict` judges, `campaign` puts all seeds
 //! together; `page`, `junit`, `log_file` and `record` are what stays.
 
 mod campaign;
@@ -20,15 +20,18 @@ mod page;
 mod pictures;
 pub mod plant;
 pub mod port;
+mod pushes;
 pub mod record;
 pub mod recorded;
 #[cfg(test)]
 mod schema;
+mod sender;
 mod sight;
 pub mod suite;
 mod surroundings;
 mod terminal;
 mod trace;
+pub mod values;
 mod verdict;
 
 use std::fs;

@@ -1,9 +1,9 @@
 //! From the seeds' figures to verdicts: one for each assertion. A figure that could not be had fails.
 
 use super::controller::ControllerName;
-use super::figures::Values;
 use super::file::{Aggregate, Assertion, TestFile};
 use super::record::AssertionRecord;
+use super::values::Values;
 use crate::record::{Bound, Verdict};
 
 /// Figures of all runs of a test.

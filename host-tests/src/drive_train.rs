@@ -13,6 +13,7 @@ mod current_loop;
 mod disturbance;
 mod encoder;
 mod friction;
+mod inside;
 mod parameters;
 
 use std::f64::consts::TAU;
@@ -21,6 +22,7 @@ use current_loop::CurrentLoop;
 pub use disturbance::Disturbance;
 use encoder::Encoder;
 use friction::Shaft;
+pub use inside::Inside;
 use model_core::joint::JointParameters;
 pub use parameters::{
     DriveTrainError, DriveTrainParameters, EncoderParameters, FrictionParameters, LoadParameters, MotorParameters,
@@ -56,12 +58,12 @@ pub struct TrueTorques {
     pub disturbance: f64,
 }
 
-/// A joint with everything around it.
+/// A joint with everything around it; `J` is what moves inside.
 #[derive(Debug, Clone)]
-pub struct DriveTrain {
+pub struct DriveTrain<J = Reference> {
     parameters: DriveTrainParameters,
     disturbances: Vec<Disturbance>,
-    reference: Reference,
+    inside: J,
     /// State of the joint at the end of the last part.
     joint: Observation,
     current_loop: CurrentLoop,
@@ -90,7 +92,7 @@ pub enum Stepping {
 }
 
 impl DriveTrain {
-    /// A drive train at time zero.
+    /// A drive train around the reference at time zero.
     pub fn new(
         joint: &JointParameters,
         start: &Start,
@@ -99,8 +101,21 @@ impl DriveTrain {
         seed: u64,
     ) -> Result<Self, DriveTrainError> {
         parameters.check()?;
-        let reference = Reference::start(joint, start)?;
-        let observation = reference.observe();
+        Self::around(Reference::start(joint, start)?, joint, parameters, disturbances, seed)
+    }
+}
+
+impl<J: Inside> DriveTrain<J> {
+    /// A drive train around a joint that is at time zero.
+    pub fn around(
+        inside: J,
+        joint: &JointParameters,
+        parameters: DriveTrainParameters,
+        disturbances: Vec<Disturbance>,
+        seed: u64,
+    ) -> Result<Self, DriveTrainError> {
+        parameters.check()?;
+        let observation = inside.observe();
         let part = 1.0 / (parameters.control_rate * f64::from(parameters.parts_per_period));
         let sun_radius = joint.geometry.sun_base_radius;
         let carrier_lever = joint.geometry.carrier_radius * joint.geometry.working_pressure_angle.cos();
@@ -123,7 +138,7 @@ impl DriveTrain {
             compliant,
             stepping: Stepping::default(),
             parameters,
-            reference,
+            inside,
             joint: observation,
         };
         train.note();
@@ -144,11 +159,8 @@ impl DriveTrain {
             let load = self.torques.load_friction + self.torques.gravity + self.torques.disturbance;
             self.parts_done += 1;
             let end = self.parts_done as f64 * self.part;
-            match self.stepping {
-                Stepping::Adaptive => self.reference.advance(end, drive, load)?,
-                Stepping::Fixed => self.reference.advance_by_fixed_steps(end, drive, load),
-            }
-            self.joint = self.reference.observe();
+            self.inside.advance(end, drive, load, self.stepping)?;
+            self.joint = self.inside.observe();
             self.note();
         }
         Ok(())
@@ -166,6 +178,11 @@ impl DriveTrain {
     /// The joint as it truly is now.
     pub fn joint(&self) -> &Observation {
         &self.joint
+    }
+
+    /// What moves inside, for those who change it on the way.
+    pub fn inside(&mut self) -> &mut J {
+        &mut self.inside
     }
 
     /// Torques of the last part of time.

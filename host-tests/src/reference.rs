@@ -9,6 +9,7 @@ mod mesh_law;
 mod observation;
 mod start;
 mod validity;
+mod wear;
 
 use std::f64::consts::TAU;
 

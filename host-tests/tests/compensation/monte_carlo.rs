@@ -40,7 +40,7 @@ fn every_trial_on_twenty_seeds() {
 fn fifty_random_plants() {
     let (joint, train) = (q1(), DriveTrainParameters::q1());
     let mut ratios = Vec::new();
-    for seed in 2000..2050 {
+    for seed in 2000_u64..2050 {
         let mut trial = if seed.is_multiple_of(2) {
             Trial::random(&joint, &train, seed)
         } else {

@@ -68,7 +68,7 @@ impl Case {
         let mut true_train = train(&truth);
         turn_encoders(&mut true_train, seed);
         // What nobody has measured is wrong by half, one way or the other.
-        let usual = Quantity::Exactly(if seed % 2 == 0 { 0.5 } else { 1.5 });
+        let usual = Quantity::Exactly(if seed.is_multiple_of(2) { 0.5 } else { 1.5 });
         let width_guess = pick("width_guess_ratio", file.width_guess.unwrap_or(usual));
         let mut told = known.parameters.clone();
         let half_backlash = width_guess * half_backlash(&truth.parameters);

@@ -182,7 +182,7 @@ impl Ran {
     fn note(&mut self, plant: &Plant, case: &Case, injection: &Injection, command: f64, answer: Option<&Answer>) {
         let joint = plant.joint();
         let torques = plant.torques();
-        let half = injection.half_backlash();
+        let half = injection.half_backlash_now();
         let sample = Sample {
             time: joint.time,
             wanted: case.motion.at(joint.time).position,

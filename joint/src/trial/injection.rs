@@ -133,10 +133,10 @@ impl Injection {
                             *frame = past.iter().rev().nth(late).or(past.front()).copied();
                         }
                     }
-                    FaultKind::LostFrames(of, share) if of == name && fault.fault.is_on(time) => {
-                        if fault.stream.uniform() < share {
-                            *frame = None;
-                        }
+                    FaultKind::LostFrames(of, share)
+                        if of == name && fault.fault.is_on(time) && fault.stream.uniform() < share =>
+                    {
+                        *frame = None;
                     }
                     _ => {}
                 }
@@ -198,7 +198,7 @@ impl Injection {
     }
 
     /// Half-backlash that the teeth have now [m].
-    pub fn half_backlash(&self) -> f64 {
+    pub fn half_backlash_now(&self) -> f64 {
         self.teeth.now
     }
 

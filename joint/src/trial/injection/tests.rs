@@ -93,7 +93,7 @@ fn grown_backlash_and_a_broken_tooth_reach_the_teeth_and_end() {
     assert_eq!(injection.half_backlash_now(), 40e-6);
     assert_eq!(injection.teeth.soft, [true, false, false], "the broken tooth starts at planet 0");
     injection.wear(1.5, &joint, plant.inside().as_mut());
-    assert_eq!(injection.half_backlash_now(), 90e-6);
+    assert!((injection.half_backlash_now() - 90e-6).abs() < 1e-18);
     // A third of a turn of the sun against the carrier later it is at the next planet.
     joint.motor_angle = joint.carrier_angle + TAU / 3.0 + 0.01;
     injection.wear(2.5, &joint, plant.inside().as_mut());

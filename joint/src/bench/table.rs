@@ -4,6 +4,7 @@
 use std::fmt::Write as _;
 
 use contest::method::Method;
+use contest::run::AS_DESIGNED;
 
 use super::Figures;
 use super::lineup::{CaseFigures, Entry, Mark};
@@ -56,6 +57,7 @@ fn case_tables(figures: &Figures, case: &CaseFigures) -> String {
             rows.push(vec![
                 entry.name.to_owned(),
                 match mark.substeps {
+                    AS_DESIGNED => format!("{}, as designed", mark.rate_Hz / 1000),
                     1 => format!("{}", mark.rate_Hz / 1000),
                     substeps => format!("{} x {substeps}", mark.rate_Hz / 1000),
                 },

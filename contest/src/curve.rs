@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use crate::case::Case;
 use crate::course::{Course, Errors};
 use crate::method::Method;
-use crate::run::{Run, run};
+use crate::run::{self, Run};
 
 /// Phases in the envelope.
 pub const PHASES: usize = 8;
@@ -36,9 +36,9 @@ pub enum Scalar {
 pub struct Point {
     /// Steps in a second [Hz].
     pub rate: u32,
-    /// Sub-steps of each.
+    /// Sub-steps of each; [`run::AS_DESIGNED`] for those that the design chooses.
     pub substeps: u32,
-    /// h omega_n, of a sub-step.
+    /// h omega_n, of a sub-step; of the whole step where the design chooses.
     pub step: f64,
     /// Worst over the phases.
     pub errors: Errors,
@@ -93,16 +93,16 @@ impl Field {
             .collect();
         let runs = runs?;
         let errors = runs.iter().fold(Errors::NONE, |worst, (errors, _)| worst.or_worse(errors));
-        let step = Scales::new(&self.case.joint).frequency / (f64::from(rate) * f64::from(substeps));
+        let step = Scales::new(&self.case.joint).frequency / (f64::from(rate) * f64::from(substeps.max(1)));
         Ok(Point { rate, substeps, step, errors, digest: runs.first().map_or(0, |run| run.1) })
     }
 }
 
 fn run_any<T: Real>(case: &Case, method: Method, rate: (u32, u32)) -> Result<Run, DesignError> {
     match case.joint.geometry.planets {
-        3 => run::<T, 3>(case, method, rate, &|| 0.0),
-        4 => run::<T, 4>(case, method, rate, &|| 0.0),
-        5 => run::<T, 5>(case, method, rate, &|| 0.0),
+        3 => run::run::<T, 3>(case, method, rate, &|| 0.0),
+        4 => run::run::<T, 4>(case, method, rate, &|| 0.0),
+        5 => run::run::<T, 5>(case, method, rate, &|| 0.0),
         given => Err(DesignError::PlanetCount { given }),
     }
 }

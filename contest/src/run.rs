@@ -49,13 +49,17 @@ pub fn torques_by_step(case: &Case, rate: u32) -> Vec<(u64, f64, f64)> {
     case.torques.iter().map(|segment| (step(segment.from_tick), segment.drive, segment.load)).collect()
 }
 
+/// Sub-steps of the core's step that the design chooses for a board, leapfrog sub-steps among them.
+pub const AS_DESIGNED: u32 = 0;
+
 /// Tables of the core's step: ticks a second, sub-steps a tick.
 pub fn tables<T: Real, const N: usize>(
     joint: &JointParameters,
     rate: u32,
     substeps: u32,
 ) -> Result<Tables<T, N>, DesignError> {
-    design_scheme(joint, rate, Scheme::Realtime, Effort::Substeps(substeps))
+    let effort = if substeps == AS_DESIGNED { Effort::Board } else { Effort::Substeps(substeps) };
+    design_scheme(joint, rate, Scheme::Realtime, effort)
 }
 
 /// The peers' plant for a method at a rate.

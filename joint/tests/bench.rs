@@ -21,6 +21,7 @@ fn a_joint_file_that_is_not_there_is_named() {
 }
 
 #[test]
+#[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
 fn the_peers_are_as_lean_as_their_advocates_would_have_them() {
     let folder = tempfile::tempdir().expect("a folder");
     let document = folder.path().join("budget.md");
@@ -29,17 +30,22 @@ fn the_peers_are_as_lean_as_their_advocates_would_have_them() {
         joint(&["bench", "--case", "A", "--no-libraries", "--json", "-", "--document", command::text(&document)]);
     assert_eq!(ended.code, Some(0), "{}", ended.err);
     let figures: Value = serde_json::from_str(&ended.out).expect("JSON");
-    let most = |method: &str| {
+    // At the finest step, where contacts seldom change within one; mean instructions a step.
+    let finest = |method: &str| {
         let entries = figures["methods"].as_array().expect("a list").iter();
-        let marks = entries.filter(|entry| entry["method"] == method).flat_map(|entry| entry["marks"].as_array());
-        let instructions = marks.flatten().filter_map(|mark| mark["instructions"].as_f64());
-        instructions.fold(0.0, f64::max)
+        let marks =
+            entries.filter(|entry| entry["method"] == method).filter_map(|entry| entry["marks"].as_array()?.last());
+        marks.filter_map(|mark| mark["instructions"].as_f64()).fold(0.0, f64::max)
     };
-    // What throwaway prototypes of the same methods took; mean instructions a step.
-    for (method, bound) in
-        [("runge_kutta4", 1100.0), ("euler", 284.0), ("trapezoid", 700.0), ("runge_kutta4_tanh", 2572.0)]
-    {
-        let found = most(method);
+    // What throwaway prototypes of the same methods took.
+    for (method, bound) in [
+        ("runge_kutta4", 1100.0),
+        ("runge_kutta4_tanh", 2572.0),
+        ("euler", 284.0),
+        ("trapezoid", 700.0),
+        ("paper_etd1", 554.0),
+    ] {
+        let found = finest(method);
         assert!(found > 100.0 && found <= bound, "{method}: {found} instructions, {bound} allowed");
     }
     let written = std::fs::read_to_string(&document).expect("readable");

@@ -5,6 +5,7 @@ use contest::case::{Case, Measure};
 use contest::course::Errors;
 use contest::curve::{Field, PHASES, Point, Scalar};
 use contest::method::Method;
+use contest::run::AS_DESIGNED;
 use serde::Serialize;
 
 use super::race::{self, Count, Job};
@@ -20,9 +21,8 @@ const STEPS_A_TICK: [u32; 7] = [1, 2, 3, 4, 6, 8, 16];
 /// Sub-steps that the core's step takes in a tick, and ticks a second over a quarter of the case's sample rate: a tick
 /// costs something of its own, and while contact holds it is all there is.
 const SUBSTEPS: [u32; 10] = [1, 2, 3, 4, 5, 6, 8, 10, 12, 16];
+const SUBSTEPS_OF_LONG_RUNS: [u32; 6] = [1, 2, 3, 4, 6, 8];
 const TICKS: [u32; 3] = [1, 2, 4];
-/// Ticks in which the finest steps are taken.
-const FINE_TICKS: u32 = 4;
 
 /// One method on one case.
 #[derive(Debug, Clone, Serialize)]
@@ -43,9 +43,9 @@ pub struct Entry {
 pub struct Mark {
     /// Steps a second; of the core's step ticks a second.
     pub rate_Hz: u32,
-    /// Sub-steps of each.
+    /// Sub-steps of each; 0 for what the design chooses for a board.
     pub substeps: u32,
-    /// h omega_n, of a sub-step.
+    /// h omega_n, of a sub-step; of the whole tick where the design chooses.
     pub step: f64,
     /// The case's measure, worst over the phases; none if the motion got lost.
     pub error: Option<f64>,
@@ -68,8 +68,11 @@ pub struct Mark {
 impl Entry {
     /// Cost and error, from coarse to fine, in series that differ in the step alone.
     pub fn series(&self) -> Vec<Vec<(f64, f64)>> {
-        // Ticks matter to the core's step alone.
-        let ticks = |mark: &Mark| if self.method == Method::Realtime { mark.rate_Hz } else { 0 };
+        // Ticks matter to the core's step alone; what the design chooses is a series of its own.
+        let ticks = |mark: &Mark| match self.method {
+            Method::Realtime if mark.substeps != AS_DESIGNED => mark.rate_Hz,
+            _ => 0,
+        };
         let mut found: Vec<u32> = self.marks.iter().map(ticks).collect();
         found.sort_unstable();
         found.dedup();
@@ -157,13 +160,11 @@ fn points(field: &Field) -> Vec<(Method, Point, Option<Point>)> {
     let constant = case.torques.len() <= 1;
     let unit = if constant { case.sample_rate / 4 } else { case.tick_rate };
     let multiples: &[u32] = if constant { &MULTIPLES } else { &STEPS_A_TICK };
-    let own: Vec<(u32, u32)> = match constant {
-        true => {
-            let coarse = TICKS.iter().flat_map(|ticks| SUBSTEPS.map(|substeps| (ticks * unit, substeps)));
-            coarse.chain([(2 * FINE_TICKS * unit, 16), (4 * FINE_TICKS * unit, 16)]).collect()
-        }
-        false => TICKS.iter().flat_map(|ticks| [1, 2, 3, 4, 6, 8].map(|substeps| (ticks * unit, substeps))).collect(),
-    };
+    let substeps = if constant { &SUBSTEPS[..] } else { &SUBSTEPS_OF_LONG_RUNS };
+    let designed = TICKS.map(|ticks| (ticks * unit, AS_DESIGNED));
+    let stated = TICKS.iter().flat_map(|ticks| substeps.iter().map(move |substeps| (ticks * unit, *substeps)));
+    let fine: &[(u32, u32)] = if constant { &[(8 * unit, 16), (16 * unit, 16)] } else { &[] };
+    let own: Vec<(u32, u32)> = designed.into_iter().chain(stated).chain(fine.iter().copied()).collect();
     let mut found = Vec::new();
     for method in Method::ALL {
         let steps: Vec<(u32, u32)> = match method {

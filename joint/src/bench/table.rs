@@ -3,9 +3,12 @@
 
 use std::fmt::Write as _;
 
+use contest::method::Method;
+use contest::run::AS_DESIGNED;
+
 use super::Figures;
 use super::lineup::{CaseFigures, Entry, Mark};
-use super::verdicts::{AtError, CLOCK, CYCLES, InBudget, LEVELS};
+use super::verdicts::{AtError, CLOCK, CYCLES, InBudget, LEVELS, front};
 
 /// All tables, ending with a newline.
 pub fn layout(figures: &Figures) -> String {
@@ -50,10 +53,11 @@ fn case_tables(figures: &Figures, case: &CaseFigures) -> String {
     let entries: Vec<&Entry> = figures.methods.iter().filter(|entry| entry.case == case.key).collect();
     let mut rows = Vec::new();
     for entry in &entries {
-        for mark in shown(&entry.marks) {
+        for mark in shown(entry) {
             rows.push(vec![
                 entry.name.to_owned(),
                 match mark.substeps {
+                    AS_DESIGNED => format!("{}, as designed", mark.rate_Hz / 1000),
                     1 => format!("{}", mark.rate_Hz / 1000),
                     substeps => format!("{} x {substeps}", mark.rate_Hz / 1000),
                 },
@@ -89,11 +93,19 @@ fn case_tables(figures: &Figures, case: &CaseFigures) -> String {
     text
 }
 
-/// Steps that a table shows: every other one of a long list, the coarsest and the finest always.
-fn shown(marks: &[Mark]) -> impl Iterator<Item = &Mark> {
-    let every = if (9..20).contains(&marks.len()) { 2 } else { 1 };
-    let last = marks.len().saturating_sub(1);
-    marks.iter().enumerate().filter(move |(index, _)| index % every == 0 || *index == last).map(|(_, mark)| mark)
+/// Steps that a table shows: of this step those that no other one undercuts, else every other one of a long list, the
+/// coarsest and the finest always.
+fn shown(entry: &Entry) -> Vec<&Mark> {
+    let best = front(entry.series().into_iter().flatten().collect());
+    let last = entry.marks.len().saturating_sub(1);
+    let every = if entry.marks.len() > 8 { 2 } else { 1 };
+    let wanted = |(index, mark): &(usize, &Mark)| match entry.method {
+        Method::Realtime => mark.error.is_some_and(|error| best.contains(&(mark.cost(), error))),
+        _ => index % every == 0 || *index == last,
+    };
+    let mut marks: Vec<&Mark> = entry.marks.iter().enumerate().filter(wanted).map(|(_, mark)| mark).collect();
+    marks.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
+    marks
 }
 
 /// One row a contestant, two columns a level of error.
@@ -125,7 +137,7 @@ fn budget(figures: &Figures) -> String {
             found.case.clone(),
             format!("{} kHz", found.sample_rate_Hz / 1000),
             found.name.to_owned(),
-            scientific(found.error),
+            found.error.map_or_else(|| "none fits".into(), |error| scientific(Some(error))),
             found.steps.map_or_else(none, |steps| steps.to_string()),
             found.cycles.map_or_else(none, |cycles| format!("{cycles:.0}")),
             found.cycles_most.map_or_else(none, |cycles| format!("{cycles:.0}")),

@@ -2,6 +2,7 @@
 //! figure is judged; bounds are the reader's.
 
 use contest::method::Method;
+use contest::run::AS_DESIGNED;
 use serde::Serialize;
 
 use super::libraries::Time;
@@ -140,7 +141,7 @@ pub fn in_budget(entries: &[Entry]) -> Vec<InBudget> {
             case: entry.case.clone(),
             name: entry.name,
             sample_rate_Hz: sample_rate,
-            steps: best.map(|(mark, _)| ticks(mark) * mark.substeps),
+            steps: best.map(|(mark, _)| ticks(mark) * mark.substeps.max(1)),
             error: best.map(|(_, error)| error),
             cycles: best.map(|(mark, _)| cycles(mark)),
             cycles_most: best.map(|(mark, _)| most(mark)),
@@ -165,16 +166,25 @@ pub struct Rounding {
     pub rounding: f64,
 }
 
-/// Of this step.
+/// Steps at which rounding is asked: coarser, the method's own error hides it.
+const ROUNDED_STEPS: (f64, f64) = (0.04, 0.3);
+
+/// Of this step; steps that come to the same motion as others, since contact held, once.
 pub fn rounding(entries: &[Entry]) -> Vec<Rounding> {
-    let own = entries.iter().filter(|entry| entry.method == Method::Realtime);
-    own.flat_map(|entry| entry.marks.iter().map(move |mark| (entry, mark)))
-        .filter_map(|(entry, mark)| {
-            let (single, double) = (mark.error?, mark.error_f64?);
-            let rounding = (single * single - double * double).max(0.0).sqrt();
-            Some(Rounding { case: entry.case.clone(), step: mark.step, single, double, rounding })
-        })
-        .collect()
+    let mut all: Vec<Rounding> = Vec::new();
+    for entry in entries.iter().filter(|entry| entry.method == Method::Realtime) {
+        let inside =
+            |mark: &&Mark| mark.substeps != AS_DESIGNED && (ROUNDED_STEPS.0..=ROUNDED_STEPS.1).contains(&mark.step);
+        for mark in entry.marks.iter().filter(inside) {
+            let (Some(single), Some(double)) = (mark.error, mark.error_f64) else { continue };
+            let like = |other: &Rounding| other.case == entry.case && (other.double / double - 1.0).abs() < 0.01;
+            if !all.iter().any(like) {
+                let rounding = (single * single - double * double).max(0.0).sqrt();
+                all.push(Rounding { case: entry.case.clone(), step: mark.step, single, double, rounding });
+            }
+        }
+    }
+    all
 }
 
 #[cfg(test)]

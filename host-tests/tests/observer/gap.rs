@@ -10,14 +10,14 @@ use crate::trial::{Encoders, Trial};
 /// Half-backlash of the trials with a seed each [m].
 const WIDTHS: [(u64, f64); 3] = [(1, 20e-6), (2, 40e-6), (3, 80e-6)];
 
-/// Figures of a Q1 trial with the map; from 1.5 s on.
+/// Figures of a Q1 trial with the map, once a second of contact has been seen.
 fn figures(motion: &str, encoders: Encoders, half_backlash: f64, seed: u64) -> Figures {
-    let trial = Trial::new("q1", motion, encoders, Some(half_backlash), seed).lasting(4.0);
+    let trial = Trial::new("q1", motion, encoders, Some(half_backlash), seed).lasting(4.5);
     figures_of(&trial, &trial.record())
 }
 
 fn figures_of(trial: &Trial, log: &[Moment]) -> Figures {
-    replay::<f64, MAPPED>(&trial.run.joint, &trial.tables(), &trial.settings, log, 1.5, |_, _, _| {})
+    replay::<f64, MAPPED>(&trial.run.joint, &trial.tables(), &trial.settings, log, 2.0, |_, _, _| {})
 }
 
 #[test]

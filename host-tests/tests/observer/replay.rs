@@ -191,8 +191,10 @@ pub fn replay<T: Real, const P: usize>(
             judged += 1;
             right += usize::from(side == estimates.reported_contact);
         }
-        // A landing: the first force beyond the band on the flank opposite to the last one.
-        if moment.sun_force.abs() > 0.05 * rated_force && side != side_before {
+        // A landing: the first force beyond the band on the flank opposite to the last one. A planet that bumps about
+        // in the middle of the gap is none.
+        let at_flank = moment.gap * moment.sun_force > 0.0 && moment.gap.abs() > 0.45 * gap;
+        if at_flank && moment.sun_force.abs() > 0.05 * rated_force && side != side_before {
             if side_before != ContactState::Separated {
                 missed += usize::from(landing.is_some());
                 landing = Some((k, side));

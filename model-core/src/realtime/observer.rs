@@ -15,6 +15,7 @@
 //! `docs/observer.md` derives all of it and says what it cannot know.
 
 mod bias;
+mod block;
 mod contact;
 mod counts;
 mod drive_side;
@@ -42,10 +43,11 @@ use crate::real::Real;
 use crate::realtime::phase::sine_cosine;
 use crate::tables::observer::ObserverTables;
 use bias::Bias;
+use block::Block;
 use contact::{ByForce, ByPosition};
 use counts::{Advance, Counts};
 use drive_side::DriveSide;
-use interval::{Block, Interval};
+use interval::Interval;
 use knowledge::Knowledge;
 use learner::{Learner, Regressors};
 use load_side::LoadSide;

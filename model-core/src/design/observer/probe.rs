@@ -3,7 +3,8 @@
 
 use core::f64::consts::TAU;
 
-use super::{Body, ObserverSettings, design_observer};
+use super::body::Body;
+use super::{ObserverSettings, design_observer};
 use crate::error::DesignError;
 use crate::joint::JointParameters;
 use crate::real::Real;

@@ -23,10 +23,8 @@ pub(super) struct DriveSide<T: Real> {
 impl<T: Real> DriveSide<T> {
     /// Over one period, under the command in force during it; `turned` is by how much the counts moved [rad].
     pub fn predict(&mut self, table: &DriveTable<T>, current: &CurrentTable<T>, command: T, turned: T) {
-        self.on_the_way.rotate_right(1);
-        if let Some(newest) = self.on_the_way.first_mut() {
-            *newest = command;
-        }
+        let [newest, newer, older, _] = self.on_the_way;
+        self.on_the_way = [command, newest, newer, older];
         let whole = current.whole_delay as usize;
         let at = |index: usize| self.on_the_way.get(index).copied().unwrap_or(command);
         let wanted = at(whole) + current.part_delay * (at(whole + 1) - at(whole));

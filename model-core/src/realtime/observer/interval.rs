@@ -1,6 +1,7 @@
 //! Learning interval by interval: means over a few periods, what they show, and what is made of it. The learning itself
 //! is left to `learner` and `bias`.
 
+use super::block::Settled;
 use super::contact::sign;
 use super::learner::Regressors;
 use super::motion::{Shown, magnitude};
@@ -8,7 +9,6 @@ use super::regressors::{OFFSET, Touch};
 use super::{Now, Observer, Source};
 use crate::mesh::ContactState;
 use crate::real::Real;
-use crate::tables::observer::LearnerTable;
 
 /// Intervals of rest on a flank after which contact counts as settled: the window of the speed has passed, and the
 /// swing of an impact with it.
@@ -34,6 +34,10 @@ pub(super) struct Interval<T: Real, const P: usize> {
     force: T,
     direction: T,
     speed: T,
+    /// Side on which contact settled last, unless the teeth have left it since.
+    side: T,
+    /// Mesh force over a few intervals [N].
+    steady: T,
     /// Intervals in a row well inside the gap.
     open_for: u32,
     surprises: u32,
@@ -50,6 +54,8 @@ impl<T: Real, const P: usize> Interval<T, P> {
             force: T::ZERO,
             direction: T::ZERO,
             speed: T::ZERO,
+            side: T::ZERO,
+            steady: T::ZERO,
             open_for: 0,
             surprises: 0,
         }
@@ -79,55 +85,14 @@ impl<T: Real, const P: usize> Interval<T, P> {
         for sum in [&mut mean.raw, &mut mean.lost, &mut mean.force, &mut mean.direction, &mut mean.speed] {
             *sum *= per_periods;
         }
-        *self = Self { open_for: self.open_for, surprises: self.surprises, ..Self::new() };
-        mean
-    }
-}
-
-/// Intervals of settled contact in a row, gathered into one way to learn from: noise of the mesh force that is left in
-/// a regressor would make the compliance look smaller than it is.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Block<T: Real, const P: usize> {
-    intervals: u32,
-    touch: Touch<T>,
-    free: Regressors<T, P>,
-    raw: T,
-}
-
-impl<T: Real, const P: usize> Block<T, P> {
-    pub fn new() -> Self {
-        Self { intervals: 0, touch: Touch::default(), free: [T::ZERO; P], raw: T::ZERO }
-    }
-
-    /// Adds an interval; gives regressors and way when enough have passed on one side.
-    fn add(
-        &mut self,
-        mean: &Interval<T, P>,
-        side: Option<T>,
-        table: &LearnerTable<T>,
-    ) -> Option<(Regressors<T, P>, T)> {
-        let Some(side) = side else {
-            *self = Self::new();
-            return None;
+        *self = Self {
+            side: self.side,
+            steady: self.steady,
+            open_for: self.open_for,
+            surprises: self.surprises,
+            ..Self::new()
         };
-        if side != self.touch.side {
-            *self = Self::new();
-            self.touch.side = side;
-        }
-        let free = self.free.iter_mut().zip(&mean.free);
-        for (sum, value) in free.chain(self.touch.mesh.iter_mut().zip(&mean.mesh)) {
-            *sum += *value * table.per_block;
-        }
-        self.raw += mean.raw * table.per_block;
-        self.touch.force += mean.force * table.per_block;
-        self.intervals += 1;
-        if self.intervals < table.block {
-            return None;
-        }
-        let full = (self.touch.on(&self.free), self.raw);
-        *self = Self::new();
-        self.touch.side = side;
-        Some(full)
+        mean
     }
 }
 
@@ -149,6 +114,7 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let softness = T::TWO * compliance_variance.square_root();
         let read = (mean.lost, mean.direction);
         let shown = self.motion.step(&tables.contact, less_wind_up, read, blur, softness);
+        self.interval.steady += (mean.force - self.interval.steady) * T::HALF * T::HALF;
         let shift = self.error(&mean.mesh);
         let side = self.settled_side(&mean, way, shift, shown);
         if self.supervisor.source() == Source::Both {
@@ -159,9 +125,15 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         self.take_bias(&mean, way - shift, shown);
         self.bias.age(&tables.contact);
         self.learner.forget(tables.learner.forgetting);
+        self.interval.side = match (side, shown) {
+            (Some(side), _) => side,
+            (None, Shown::Crossing(..)) => T::ZERO,
+            (None, _) => self.interval.side,
+        };
         self.knowledge.settled = side.is_some();
+        let settled = Settled { free: &mean.free, mesh: &mean.mesh, raw: mean.raw, force: mean.force };
         let seen = side.filter(|_| self.supervisor.source() == Source::Both);
-        if let Some((regressors, way)) = self.block.add(&mean, seen, &tables.learner) {
+        if let Some((regressors, way)) = self.block.add(&settled, seen, &tables.learner) {
             self.take_way(&regressors, way);
         }
         let nearer = if way < shift { -T::ONE } else { T::ONE };
@@ -192,10 +164,14 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
             let side: T = sign(contact);
             return (contact != ContactState::Separated).then_some(side);
         }
-        let needed = T::TWO * known.mean_force_deviation + known.mean_force_deviation;
-        if mean.force > needed {
+        // A flank that nothing has left since takes less to be believed.
+        let twice = T::TWO * known.steady_force_deviation;
+        let thrice = twice + known.steady_force_deviation;
+        let (force, before) = (self.interval.steady, self.interval.side);
+        let needed = |side: T| if before * side > T::ZERO { twice } else { thrice };
+        if force > needed(T::ONE) {
             Some(T::ONE)
-        } else if -mean.force > needed {
+        } else if -force > needed(-T::ONE) {
             Some(-T::ONE)
         } else {
             None

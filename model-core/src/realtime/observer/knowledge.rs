@@ -17,6 +17,8 @@ pub(super) struct Knowledge<T: Real> {
     pub force_deviation: T,
     /// The same over an interval.
     pub mean_force_deviation: T,
+    /// The same over the few intervals that contact takes to settle.
+    pub steady_force_deviation: T,
     /// The same with the position's help.
     pub both_deviation: T,
     /// Variance of the way with everything taken out that was learnt [m^2].
@@ -47,6 +49,7 @@ impl<T: Real> Knowledge<T> {
         let mut knowledge = Self {
             force_deviation: T::ZERO,
             mean_force_deviation: T::ZERO,
+            steady_force_deviation: T::ZERO,
             both_deviation: T::ZERO,
             way_variance: T::ZERO,
             edge_variance: T::ZERO,
@@ -73,6 +76,8 @@ impl<T: Real> Knowledge<T> {
         let contact = &tables.contact;
         let known = bias.variance_at(direction) + contact.ripple_variance;
         self.force_deviation = (known + contact.force_variance).square_root();
+        let noise = contact.force_variance * tables.learner.per_periods * T::EIGHTH;
+        self.steady_force_deviation = (known + noise).square_root();
         self.mean_force_deviation = (known + contact.force_variance * tables.learner.per_periods).square_root();
     }
 

@@ -22,7 +22,8 @@ pub struct Samples<T: Real> {
     pub motor: Reading,
     /// Encoder on the link; `None` when there is none, or when it gave nothing in this period.
     pub output: Option<Reading>,
-    /// Torque commanded to the motor for the period that begins now, after every limit [N m]. A motor controller that
-    /// estimates its torque gives that instead, with delay and lag set to zero in the settings.
+    /// Torque that was commanded last, after every limit: the one in force since the samples before these, delay and
+    /// lag aside [N m]. A motor controller that estimates its torque gives that instead, with delay and lag set to zero
+    /// in the settings.
     pub torque: T,
 }

@@ -222,14 +222,14 @@ fn near(schema: &str, word: &str) -> String {
         let hint = keys::find(schema, near).map_or("", |key| key.hint);
         return format!("did you mean `{near}`? {hint}");
     }
+    if schema.is_empty() && joints::full_key(word).is_ok() {
+        return "this is a key of the joint file: write it in [known] or in [plant]".to_owned();
+    }
     if let Some(key) = keys::KEYS.iter().find(|key| key.name == word) {
         return match key.section {
             "" => "it belongs at the top of the file, above all sections".to_owned(),
             section => format!("it belongs in [{section}]"),
         };
-    }
-    if schema.is_empty() && joints::full_key(word).is_ok() {
-        return "this is a key of the joint file: write it in [known] or in [plant]".to_owned();
     }
     let known: Vec<String> = keys::of(schema).map(|key| format!("`{}`", key.name)).collect();
     format!("known here: {}", known.join(", "))

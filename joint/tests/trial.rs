@@ -116,7 +116,11 @@ fn what_is_wrong_with_a_test_file_is_named_with_the_mend() {
     refused("profile = \"T2\"\n[plant]\nhalf_backlsh_um = 60", &["did you mean `half_backlash_um`?"]);
     refused("profile = \"T2\"\n[plant]\nhalf_backlash_um = [20, 6000]", &["half_backlash_um", "between 0.5 and 1000"]);
     refused("profile = \"T2\"\n[plant]\noutput_encoder.bits = 14", &["write it in [known]"]);
-    refused("profile = \"T2\"\n[assert]\nrms_gain_over_pdi = \">= 8\"", &["there is no figure `rms_gain_over_pdi`"]);
+    refused("profile = \"T2\"\n[assert]\nrms_gian_over_pid = \">= 8\"", &["did you mean `rms_gain_over_pid`?"]);
+    refused(
+        "profile = \"T2\"\n[assert]\nrms_gain_over_pdi = \">= 8\"",
+        &["`pdi` does not run in this test", "motor_pid"],
+    );
     refused("profile = \"T2\"\n[assert]\nrms_mrad = \"8\"", &["this is no bound"]);
     refused("profile = \"T2\"\n[assert]\ndeviation_rms_mrad = \"<= 8\"", &["is for impedances"]);
     refused("profile = \"T2\"\n[[fault]]\nkind = \"encoder_frozen\"\nshare = 0.1", &["`share` means nothing"]);

@@ -138,7 +138,7 @@ impl Figure {
 }
 
 /// Whom a name behind `over` or `to` means in a test.
-fn others(impedance: bool) -> Vec<(&'static str, ControllerName)> {
+pub fn others(impedance: bool) -> Vec<(&'static str, ControllerName)> {
     let own = ControllerName::ALL.into_iter().filter(|name| !name.is_ours() && name.wants_gains() == impedance);
     let mut list: Vec<_> = own.filter(|name| *name != ControllerName::Off).map(|name| (name.word(), name)).collect();
     list.push(("baseline", ControllerName::baseline(impedance)));

@@ -10,7 +10,7 @@ use super::motion::Profile;
 use super::section::{Problems, Section};
 use crate::record::Bound;
 use crate::trial::controller::ControllerName;
-use crate::trial::figures::{About as Scope, Named, Relation, names};
+use crate::trial::figures::{About as Scope, Named, Relation, names, others};
 
 /// One bound on one figure.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,10 +71,7 @@ pub(super) fn read(top: &Section<'_>, about: &About<'_>) -> Vec<Assertion> {
     for (name, value) in table {
         let word = name.get_ref().as_ref();
         let Some(figure) = Named::find(word, about.gains) else {
-            let help = match joints::nearest(word, names(about.gains).iter().map(String::as_str)) {
-                Some(near) => format!("did you mean `{near}`?"),
-                None => "docs/hil-file.md lists all figures, such as rms_mrad and rms_gain_over_pid".to_owned(),
-            };
+            let help = likely(word, about.gains);
             top.problems.error(name.span(), format!("there is no figure `{word}` in this test"), help);
             continue;
         };
@@ -106,6 +103,19 @@ pub(super) fn read(top: &Section<'_>, about: &About<'_>) -> Vec<Assertion> {
         }
     }
     assertions
+}
+
+/// What a name that is none was probably meant to be.
+fn likely(word: &str, impedance: bool) -> String {
+    let whom = word.split_once("_gain_over_").or(word.split_once("_ratio_to_"));
+    let words: Vec<&str> = others(impedance).into_iter().map(|(word, _)| word).collect();
+    if let Some((_, whom)) = whom.filter(|(_, whom)| !words.contains(whom)) {
+        return format!("`{whom}` does not run in this test; there are {}", words.join(", "));
+    }
+    match joints::nearest(word, names(impedance).iter().map(String::as_str)) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => "docs/hil-file.md lists all figures, such as rms_mrad and rms_gain_over_pid".to_owned(),
+    }
 }
 
 /// Why a figure cannot be had in a test.

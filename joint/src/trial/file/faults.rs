@@ -120,8 +120,8 @@ pub(super) fn read(section: &Section<'_>) -> Option<Fault> {
         }
         "torque_saturation" => FaultKind::Saturation(needed("torque_N_m")?.abs()),
         "lost_frames" => FaultKind::LostFrames(frames, needed("share")?),
-        "late_frames" => FaultKind::LateFrames(frames, 1e-3 * needed("delay_ms")?),
-        "grown_backlash" => FaultKind::GrownBacklash(1e-6 * needed("half_backlash_um")?),
+        "late_frames" => FaultKind::LateFrames(frames, needed("delay_ms")? / 1e3),
+        "grown_backlash" => FaultKind::GrownBacklash(needed("half_backlash_um")? / 1e6),
         _ => FaultKind::BrokenTooth(needed("stiffness_ratio")?),
     };
     let start = section.number("start_s").unwrap_or(0.0);

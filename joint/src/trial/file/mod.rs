@@ -70,7 +70,7 @@ pub struct TestFile {
 }
 
 /// Time on the clock that a test may take by default [s].
-const TIMEOUT: f64 = 300.0;
+const TIMEOUT: f64 = 600.0;
 
 /// Bandwidth by default [rad/s].
 const BANDWIDTH: f64 = 60.0;

@@ -51,15 +51,20 @@ mod measurement {
             let (mut trials, mut model) = (Trials::new(tables, SEED), Model::new(tables));
             let (mut classes, mut kinds) = ([Count::NONE; Class::ALL.len()], [Count::NONE; Kind::ALL.len()]);
             let mut worst: Option<(u32, Trial<N>)> = None;
+            let mut worst_finite = 0;
             for trial_number in 0..trials::states::count(N) {
                 let trial = trials.make();
                 model.set_state(trial.state);
                 let before = model.outputs();
                 let instructions = self.counter.count(|| step(black_box(&mut model), black_box(trial.torques)));
                 let class = Class::of(&before, &model.outputs());
-                let is_worst = worst.is_none_or(|(most, _)| instructions > most);
-                if is_worst {
+                if worst.is_none_or(|(most, _)| instructions > most) {
                     worst = Some((instructions, trial));
+                }
+                // Numbers that are none stay so: there is nothing to be found near them.
+                let is_worst = class != Class::NotFinite && instructions > worst_finite;
+                if is_worst {
+                    worst_finite = instructions;
                 }
                 trials.stepped(&trial, model.state(), is_worst);
                 classes[class as usize].add(trial_number, instructions);

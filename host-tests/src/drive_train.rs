@@ -13,6 +13,7 @@ mod current_loop;
 mod disturbance;
 mod encoder;
 mod friction;
+mod inside;
 mod parameters;
 
 use std::f64::consts::TAU;
@@ -21,6 +22,7 @@ use current_loop::CurrentLoop;
 pub use disturbance::Disturbance;
 use encoder::Encoder;
 use friction::Shaft;
+pub use inside::Inside;
 use model_core::joint::JointParameters;
 pub use parameters::{
     DriveTrainError, DriveTrainParameters, EncoderParameters, FrictionParameters, LoadParameters, MotorParameters,
@@ -56,12 +58,12 @@ pub struct TrueTorques {
     pub disturbance: f64,
 }
 
-/// A joint with everything around it.
+/// A joint with everything around it; `J` is what moves inside.
 #[derive(Debug, Clone)]
-pub struct DriveTrain {
+pub struct DriveTrain<J = Reference> {
     parameters: DriveTrainParameters,
     disturbances: Vec<Disturbance>,
-    reference: Reference,
+    inside: J,
     /// State of the joint at the end of the last part.
     joint: Observation,
     current_loop: CurrentLoop,
@@ -76,10 +78,21 @@ pub struct DriveTrain {
     motor_inertia: f64,
     load_inertia: f64,
     compliant: bool,
+    stepping: Stepping,
+}
+
+/// How the joint inside moves over a part of time.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Stepping {
+    /// Adaptive steps of order 8 that end at every contact event.
+    #[default]
+    Adaptive,
+    /// Fixed fine steps, many times faster: for closed loops, whose feedback forgives what a step loses.
+    Fixed,
 }
 
 impl DriveTrain {
-    /// A drive train at time zero.
+    /// A drive train around the reference at time zero.
     pub fn new(
         joint: &JointParameters,
         start: &Start,
@@ -88,8 +101,21 @@ impl DriveTrain {
         seed: u64,
     ) -> Result<Self, DriveTrainError> {
         parameters.check()?;
-        let reference = Reference::start(joint, start)?;
-        let observation = reference.observe();
+        Self::around(Reference::start(joint, start)?, joint, parameters, disturbances, seed)
+    }
+}
+
+impl<J: Inside> DriveTrain<J> {
+    /// A drive train around a joint that is at time zero.
+    pub fn around(
+        inside: J,
+        joint: &JointParameters,
+        parameters: DriveTrainParameters,
+        disturbances: Vec<Disturbance>,
+        seed: u64,
+    ) -> Result<Self, DriveTrainError> {
+        parameters.check()?;
+        let observation = inside.observe();
         let part = 1.0 / (parameters.control_rate * f64::from(parameters.parts_per_period));
         let sun_radius = joint.geometry.sun_base_radius;
         let carrier_lever = joint.geometry.carrier_radius * joint.geometry.working_pressure_angle.cos();
@@ -110,12 +136,18 @@ impl DriveTrain {
             motor_inertia: joint.rotor_inertia + joint.bodies.sun_equivalent_mass * sun_radius.powi(2),
             load_inertia: joint.link_inertia + if compliant { 0.0 } else { carrier_inertia },
             compliant,
+            stepping: Stepping::default(),
             parameters,
-            reference,
+            inside,
             joint: observation,
         };
         train.note();
         Ok(train)
+    }
+
+    /// The same drive train, its joint stepped as stated.
+    pub fn stepped(self, stepping: Stepping) -> Self {
+        Self { stepping, ..self }
     }
 
     /// Moves on by one control period under a torque command [N m].
@@ -126,8 +158,9 @@ impl DriveTrain {
             let drive = self.torques.air_gap + self.torques.cogging - self.torques.motor_friction;
             let load = self.torques.load_friction + self.torques.gravity + self.torques.disturbance;
             self.parts_done += 1;
-            self.reference.advance(self.parts_done as f64 * self.part, drive, load)?;
-            self.joint = self.reference.observe();
+            let end = self.parts_done as f64 * self.part;
+            self.inside.advance(end, drive, load, self.stepping)?;
+            self.joint = self.inside.observe();
             self.note();
         }
         Ok(())
@@ -145,6 +178,11 @@ impl DriveTrain {
     /// The joint as it truly is now.
     pub fn joint(&self) -> &Observation {
         &self.joint
+    }
+
+    /// What moves inside, for those who change it on the way.
+    pub fn inside(&mut self) -> &mut J {
+        &mut self.inside
     }
 
     /// Torques of the last part of time.

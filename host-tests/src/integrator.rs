@@ -103,6 +103,12 @@ impl Integrator {
         &mut self.state
     }
 
+    /// Says that the state has been moved to `time` by other means; the next step is sized anew.
+    pub fn move_time(&mut self, time: f64) {
+        self.time = time;
+        self.step = f64::INFINITY;
+    }
+
     /// What it has cost so far.
     pub fn counters(&self) -> Counters {
         self.counters

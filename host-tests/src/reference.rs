@@ -4,10 +4,12 @@
 
 mod assembly;
 mod equations;
+mod fixed_step;
 mod mesh_law;
 mod observation;
 mod start;
 mod validity;
+mod wear;
 
 use std::f64::consts::TAU;
 

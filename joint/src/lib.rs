@@ -1,8 +1,9 @@
 //! The host command `joint` as a library, so that its parts can be tested without a process. `hil` runs a joint on a
 //! board and checks it, `target` prepares toolchain, image and emulator, `check` reads a joint file, `record` is what
-//! a run leaves behind and `report` shows it, `sim` moves a joint on the host, `sweep` many of them, `bench` compares the step with what people use, `paper` redoes the
-//! paper with the numerics of `study`, `proof` holds the step that ships to what is promised of it; physics and wire
-//! format are left to `model-core` and `link`.
+//! a run leaves behind and `report` shows it, `sim` moves a joint on the host, `sweep` many of them, `bench` compares the
+//! step with what people use, `paper` redoes the paper with the numerics of `study`, `proof` holds the step that ships to
+//! what is promised of it, `trial` runs test files of observer and compensation; physics and wire format are left to
+//! `model-core` and `link`.
 
 pub mod bench;
 pub mod check;
@@ -20,3 +21,4 @@ pub mod sim;
 pub mod study;
 pub mod sweep;
 pub mod target;
+pub mod trial;

@@ -34,6 +34,12 @@ pub fn full_key(key: &str) -> Result<String, Refused> {
     find(key).map(|(path, _)| path)
 }
 
+/// The value of a key as typed, if the text states it in that form.
+pub fn value<'t>(text: &'t str, key: &str) -> Result<Option<&'t str>, Refused> {
+    let (path, _) = find(key)?;
+    Ok(lookup(text, &path).map(|(_, found)| &text[found]))
+}
+
 /// The text with a key set to a value, as typed after the equals sign; quotes around words may be left out, and an
 /// empty value leaves the key out. What the key meant so far is replaced, in whatever form it was stated.
 pub fn change(text: &str, key: &str, value: &str) -> Result<String, Refused> {

@@ -23,10 +23,11 @@ mod section;
 mod spelling;
 mod unknown;
 
-pub use change::{Refused, change, full_key};
+pub use change::{Refused, change, full_key, value};
 pub use drive_train::{DriveTrain, Encoder};
 pub use motion::Profile;
 pub use notes::Source;
 pub use presets::{PRESETS, preset};
 pub use problem::{Problem, Severity};
 pub use reader::{JointFile, read};
+pub use spelling::nearest;

@@ -1,7 +1,7 @@
 //! Finds the known word that a misspelt one was probably meant to be. It knows nothing of what the words mean.
 
 /// The candidate nearest to `word`, if any is near enough to be worth suggesting.
-pub(crate) fn nearest<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
+pub fn nearest<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
     candidates
         .into_iter()
         .filter_map(|candidate| Some((cost(word, candidate)?, candidate)))

@@ -2,12 +2,14 @@
 //! `exponential` the precise integration, `flow_tables` its sorting into in-phase and deviating motion; this file
 //! puts them together, `pace` says in how many sub-steps.
 
+pub mod compensation;
 pub mod dynamics;
 pub mod exponential;
 mod flow_tables;
 pub mod hamiltonian;
 pub mod light_tables;
 pub mod modes;
+pub mod observer;
 mod pace;
 mod source;
 mod validate;

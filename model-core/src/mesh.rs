@@ -81,11 +81,12 @@ pub enum DampingLaw {
 }
 
 /// Which flank carries the force.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum ContactState {
     /// d > b.
     DriveSide,
     /// -b <= d <= b.
+    #[default]
     Separated,
     /// d < -b.
     BackSide,

@@ -4,6 +4,7 @@
 
 #![allow(clippy::needless_range_loop, reason = "one index walks several tables of the same mesh")]
 
+pub mod compensation;
 mod contact;
 mod crossing;
 mod excitation;
@@ -11,6 +12,7 @@ mod flow;
 mod frozen;
 mod light;
 mod model;
+pub mod observer;
 mod paper;
 pub mod phase;
 mod pressed;

@@ -2,6 +2,9 @@
 //! the fast half (`realtime`, f32). Dimensionless (see `scales`) except where a unit stands; how the numbers come
 //! about is left to `design`, what is done with them to `realtime`.
 
+pub mod compensation;
+pub mod observer;
+
 use core::fmt;
 
 use nalgebra::{ArrayStorage, SMatrix};

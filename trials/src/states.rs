@@ -116,7 +116,7 @@ impl<'a, const N: usize> Trials<'a, N> {
         }
     }
 
-    /// Tells what became of a trial.
+    /// Tells what became of a trial; changes of the last worst one are tried from then on.
     pub fn stepped(&mut self, trial: &Trial<N>, after: &State<f32, N>, is_worst: bool) {
         if trial.kind == Kind::Reached {
             self.reached = if after.is_finite() { *after } else { State::REST };
@@ -198,8 +198,8 @@ impl<'a, const N: usize> Trials<'a, N> {
         match kind {
             Kind::Grazing => match self.numbers.below(4) {
                 0 => side,
-                1 => f32::from_bits(side.to_bits().saturating_add(1)),
-                2 => f32::from_bits(side.to_bits().saturating_sub(1)),
+                1 => side.next_up(),
+                2 => side.next_down(),
                 _ => side + 1e-5 * self.half_gap * self.numbers.signed(),
             },
             Kind::AllCrossing => 1.2 * half * self.numbers.signed(),

@@ -121,6 +121,24 @@ impl MeshConstants {
         MeshState { deflection, deflection_rate, stiffness, stiffness_rate, error_rate, overlap, force }
     }
 
+    /// Force of the teeth by geometry, with no zone frozen.
+    pub fn force(&self, deflection: f64, deflection_rate: f64, stiffness: f64) -> f64 {
+        let overlap = if deflection > self.half_backlash {
+            deflection - self.half_backlash
+        } else if deflection < -self.half_backlash {
+            deflection + self.half_backlash
+        } else {
+            0.0
+        };
+        let line = stiffness * overlap + self.damping * deflection_rate;
+        match self.law {
+            DampingLaw::Paper => line,
+            DampingLaw::Contact if overlap > 0.0 => line.max(0.0),
+            DampingLaw::Contact if overlap < 0.0 => line.min(0.0),
+            DampingLaw::Contact => 0.0,
+        }
+    }
+
     /// The zone that a mesh is in, from geometry and, under the law `contact`, from the sign of the force line.
     pub fn zone(&self, deflection: f64, deflection_rate: f64, stiffness: f64) -> Zone {
         let contact = self.law == DampingLaw::Contact;

@@ -1,4 +1,4 @@
-//! Draws what is wrong with a joint file: every problem at once, each with its place underlined. Colours and line
+//! Draws what is wrong with a file that users write: every problem at once, each with its place underlined. Colours and line
 //! drawing follow the terminal, as miette decides.
 
 use std::error::Error;
@@ -20,7 +20,7 @@ struct Rejected {
 struct Place(Problem);
 
 /// One report over all problems of the file called `name`.
-pub(super) fn report(name: &str, text: &str, problems: &[Problem]) -> Report {
+pub(crate) fn report(name: &str, text: &str, problems: &[Problem]) -> Report {
     Report::new(Rejected {
         name: name.to_owned(),
         source: NamedSource::new(name, text.to_owned()),

@@ -5,7 +5,7 @@
 //! the fixed step, `layout` prints.
 
 mod derive;
-mod diagnostic;
+pub(crate) mod diagnostic;
 mod figures;
 mod layout;
 mod source;

@@ -1,5 +1,5 @@
 //! `joint hil`: a joint simulated on a board, driven and checked from here. Toolchain, images and the emulator's
-//! process are left to `target`, pictures to `report`.
+//! process are left to `target`, pictures to `report`, files of tests to `trial`.
 //!
 //! The order of a run: `plan` finds everything that is wrong with the request, `files` that the report can be written,
 //! `bench` builds the image and finds the board; `session` talks to it over a `transport` line and keeps a `recording`;
@@ -19,7 +19,8 @@ pub mod profile;
 mod progress;
 pub mod recording;
 pub mod session;
-mod table;
+pub(crate) mod table;
+mod tests;
 pub mod transport;
 pub mod twin;
 
@@ -34,12 +35,18 @@ use session::Session;
 
 use crate::failure::{Failure, Outcome};
 use crate::record::{RunRecord, Verdict};
-use crate::{interruption, output, report};
+use crate::{interruption, output, report, trial};
 
 /// Runs a joint on a board; succeeds only if every check held.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
     interruption::watch()?;
     let progress = Progress::new();
+    if trial::suite::is_of_tests(&arguments.file) {
+        let outcome = tests::wanted(arguments).and_then(|wanted| trial::run(&wanted, &progress));
+        progress.clear();
+        return interruption::explain(outcome);
+    }
+    tests::refuse_for_joints(arguments)?;
     let outcome = run_once(arguments, &progress).and_then(|()| match arguments.check {
         true => everything::check(arguments.rate, &progress),
         false => Ok(()),

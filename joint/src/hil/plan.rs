@@ -13,6 +13,7 @@ use super::twin;
 use crate::failure::{Failure, Outcome};
 use crate::target::board::Board;
 use crate::target::image;
+use crate::trial::plant::PlantName;
 use crate::{check, images};
 
 /// Arguments of `joint hil`.
@@ -22,12 +23,30 @@ use crate::{check, images};
   joint hil joints/l1.toml --duration 10      another joint, a longer run
   joint hil q1 --profile drive.csv --json out.json
   joint hil q1 --port /dev/ttyUSB0            a real board, flashed before by `joint flash q1`
+  joint hil hil --host --plant reference      all tests of observer and compensation in the folder hil
+  joint hil hil/t2.toml --host --seed 7       one of them, with another seed
 
 Exit code: 0 if every check held, 1 if one did not, 2 for bad input or a bad environment, 130 after Ctrl-C.")]
 pub struct Arguments {
-    /// Joint file (TOML), or the name of a preset: q1, s1, d2, l1, paper, paper_printed
+    /// Joint file (TOML), or the name of a preset: q1, s1, d2, l1, paper, paper_printed; or a test file, or a folder
+    /// of them (docs/hil-file.md)
     #[arg(value_name = "FILE", default_value = "q1")]
     pub file: PathBuf,
+    /// Test files: runs observer and compensation on this machine, without a board
+    #[arg(long)]
+    pub host: bool,
+    /// Test files: runs this seed in place of the file's
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+    /// Test files: what is controlled [default: core]
+    #[arg(long, value_enum)]
+    pub plant: Option<PlantName>,
+    /// Test files: runs the full lists of seeds, and files that are only for those
+    #[arg(long)]
+    pub full: bool,
+    /// Test files: writes the results as JUnit XML to this file too
+    #[arg(long, value_name = "XML")]
+    pub junit: Option<PathBuf>,
     /// Serial port of a real board, such as /dev/ttyUSB0 [default: the emulated board]
     #[arg(long, value_name = "PATH")]
     pub port: Option<String>,

@@ -20,7 +20,7 @@ fn generated() -> String {
 }
 
 /// Keys of objects, everywhere in a schema.
-fn keys(schema: &Value, found: &mut BTreeSet<String>) {
+pub(crate) fn keys(schema: &Value, found: &mut BTreeSet<String>) {
     match schema {
         Value::Object(map) => {
             for (name, value) in map {

@@ -52,32 +52,31 @@ pub fn schema() -> String {
     numbers.chain(lists).collect()
 }
 
-/// Writes messages.
-pub struct LogFile<'a, W: Write> {
+/// Writes messages of one schema to one topic.
+pub(crate) struct Channel<W: Write> {
     writer: Writer<NoSeek<W>>,
     channel: u16,
     sequence: u32,
-    joint: &'a JointParameters,
 }
 
-impl<'a, W: Write> LogFile<'a, W> {
-    /// Begins a log; `remarks` say where it comes from.
-    pub fn begin(out: W, joint: &'a JointParameters, remarks: BTreeMap<String, String>) -> io::Result<Self> {
+impl<W: Write> Channel<W> {
+    /// Begins a log; `schema` is ROS 2 message text, `remarks` say where it comes from.
+    pub fn begin(out: W, topic: &str, name: &str, schema: &str, remarks: BTreeMap<String, String>) -> io::Result<Self> {
         let options = WriteOptions::new()
             .compression(Some(Compression::Lz4))
             .chunk_size(Some(CHUNK))
             .library(concat!("joint ", env!("CARGO_PKG_VERSION")))
             .disable_seeking(true);
         let mut writer = Writer::with_options(NoSeek::new(out), options).map_err(cause)?;
-        let schema = writer.add_schema(SCHEMA_NAME, "ros2msg", schema().as_bytes()).map_err(cause)?;
-        let channel = writer.add_channel(schema, TOPIC, "cdr", &BTreeMap::new()).map_err(cause)?;
+        let schema = writer.add_schema(name, "ros2msg", schema.as_bytes()).map_err(cause)?;
+        let channel = writer.add_channel(schema, topic, "cdr", &BTreeMap::new()).map_err(cause)?;
         writer.write_metadata(&Metadata { name: "joint".into(), metadata: remarks }).map_err(cause)?;
-        Ok(Self { writer, channel, sequence: 0, joint })
+        Ok(Self { writer, channel, sequence: 0 })
     }
 
-    /// One message, at the run's own time.
-    pub fn write(&mut self, moment: &Moment) -> io::Result<()> {
-        let nanoseconds = (moment.time * 1e9).round() as u64;
+    /// One message in CDR, at a time of the run [s].
+    pub fn write(&mut self, time: f64, message: &[u8]) -> io::Result<()> {
+        let nanoseconds = (time * 1e9).round() as u64;
         let header = MessageHeader {
             channel_id: self.channel,
             sequence: self.sequence,
@@ -85,7 +84,7 @@ impl<'a, W: Write> LogFile<'a, W> {
             publish_time: nanoseconds,
         };
         self.sequence = self.sequence.wrapping_add(1);
-        self.writer.write_to_known_channel(&header, &encoded(self.joint, moment)).map_err(cause)
+        self.writer.write_to_known_channel(&header, message).map_err(cause)
     }
 
     /// Writes the index and the end, without which readers call a log damaged.
@@ -94,6 +93,29 @@ impl<'a, W: Write> LogFile<'a, W> {
         let mut out = self.writer.into_inner().into_inner();
         out.flush()?;
         Ok(out)
+    }
+}
+
+/// Writes moments of a run.
+pub struct LogFile<'a, W: Write> {
+    channel: Channel<W>,
+    joint: &'a JointParameters,
+}
+
+impl<'a, W: Write> LogFile<'a, W> {
+    /// Begins a log; `remarks` say where it comes from.
+    pub fn begin(out: W, joint: &'a JointParameters, remarks: BTreeMap<String, String>) -> io::Result<Self> {
+        Ok(Self { channel: Channel::begin(out, TOPIC, SCHEMA_NAME, &schema(), remarks)?, joint })
+    }
+
+    /// One message, at the run's own time.
+    pub fn write(&mut self, moment: &Moment) -> io::Result<()> {
+        self.channel.write(moment.time, &encoded(self.joint, moment))
+    }
+
+    /// Writes the index and the end, without which readers call a log damaged.
+    pub fn finish(self) -> io::Result<W> {
+        self.channel.finish()
     }
 }
 

@@ -13,7 +13,7 @@ pub mod figures;
 pub mod files;
 pub mod follow;
 mod judgement;
-pub mod log_file;
+pub(crate) mod log_file;
 pub mod moment;
 mod page;
 mod pictures;

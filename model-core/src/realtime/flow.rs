@@ -17,6 +17,7 @@ use crate::tables::{Block, Inputs, Transition};
 /// One tick with the contact set of its start; `None` if the set does not hold up to the first look. A mesh that opens
 /// after that is a crossing to correct, so that no work is thrown away late. `K` is the number of in-phase coordinates:
 /// 3 with compliance, 2 without.
+#[inline(never)]
 pub fn hold<T: Real, const N: usize, const K: usize, const OVERTONES: bool>(
     frozen: &Frozen<T, N, OVERTONES>,
     drive: &Drive<T>,

@@ -24,6 +24,7 @@ pub struct Course<T, const N: usize> {
 }
 
 /// One tick; `start.laws` are brought up to date.
+#[inline(never)]
 pub fn advance<T: Real, const N: usize, const OVERTONES: bool>(
     frozen: &Frozen<T, N, OVERTONES>,
     phase: &MeshPhase<T>,

@@ -1,0 +1,92 @@
+//! Figures of merit of a run, all from the truth. Which of them must be how good is `tolerance`'s business.
+
+use super::{Run, Sample};
+
+/// Share of the half-gap within which a flank counts as touching: mesh deflection and transmission error are less.
+const NEAR: f64 = 0.9;
+
+/// Figures of one run from a moment on.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Figures {
+    /// Of link against wanted position [rad].
+    pub rms: f64,
+    /// [rad].
+    pub peak: f64,
+    /// Of the link's position: largest less smallest error [rad].
+    pub peak_to_peak: f64,
+    /// Changes from one flank to the other.
+    pub crossings: usize,
+    /// Mean time from leaving one flank to touching the other [s].
+    pub lost_motion_time: f64,
+    /// The longest of them [s].
+    pub longest_lost_motion: f64,
+    /// Time of the last crossing [s].
+    pub last_crossing: f64,
+    /// Largest net force of the sun's meshes [N].
+    pub peak_mesh_force: f64,
+    /// Root of the mean square of the torque asked for [N m].
+    pub effort: f64,
+}
+
+impl Figures {
+    /// Of what happened at `from` [s] and later.
+    pub fn of(run: &Run, from: f64) -> Self {
+        Self::between(run, from, f64::INFINITY)
+    }
+
+    /// Of what happened between two moments [s].
+    pub fn between(run: &Run, from: f64, to: f64) -> Self {
+        let samples: Vec<Sample> =
+            run.samples.iter().filter(|sample| (from..to).contains(&sample.time)).copied().collect();
+        let count = samples.len().max(1) as f64;
+        let error = |sample: &Sample| sample.wanted - sample.link;
+        let mean_square = |of: &dyn Fn(&Sample) -> f64| samples.iter().map(|s| of(s).powi(2)).sum::<f64>() / count;
+        let largest = |of: &dyn Fn(&Sample) -> f64| samples.iter().map(of).fold(f64::MIN, f64::max);
+        let mut figures = Self {
+            rms: mean_square(&error).sqrt(),
+            peak: largest(&|s| error(s).abs()),
+            peak_to_peak: largest(&error) + largest(&|s| -error(s)),
+            peak_mesh_force: largest(&|s| s.mesh_force.abs()),
+            effort: mean_square(&|s| s.command).sqrt(),
+            ..Self::default()
+        };
+        figures.count_crossings(&samples);
+        figures
+    }
+
+    fn count_crossings(&mut self, samples: &[Sample]) {
+        let mut touched: Option<(f64, f64)> = None;
+        let mut total = 0.0;
+        for sample in samples.iter().filter(|sample| sample.gap.abs() > NEAR) {
+            let side = sample.gap.signum();
+            if let Some((before, since)) = touched
+                && before != side
+            {
+                let took = sample.time - since;
+                self.crossings += 1;
+                self.last_crossing = sample.time;
+                self.longest_lost_motion = self.longest_lost_motion.max(took);
+                total += took;
+            }
+            touched = Some((side, sample.time));
+        }
+        if self.crossings > 0 {
+            self.lost_motion_time = total / self.crossings as f64;
+        }
+    }
+}
+
+/// How far a run is from another of the same motion: link position RMS and peak [rad], and RMS of the torque between
+/// carrier and link [N m].
+pub fn deviation(run: &Run, from_run: &Run, from: f64) -> (f64, f64, f64) {
+    let pairs = run.samples.iter().zip(&from_run.samples).filter(|(sample, _)| sample.time >= from);
+    let (mut count, mut squares, mut peak, mut torques) = (0.0_f64, 0.0, 0.0_f64, 0.0);
+    for (sample, other) in pairs {
+        let error = sample.link - other.link;
+        count += 1.0;
+        squares += error * error;
+        peak = peak.max(error.abs());
+        torques += (sample.transmitted - other.transmitted).powi(2);
+    }
+    ((squares / count.max(1.0)).sqrt(), peak, (torques / count.max(1.0)).sqrt())
+}

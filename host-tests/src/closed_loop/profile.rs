@@ -1,0 +1,125 @@
+//! What the link is asked to do: the standard motions, each smooth in its beginning. Disturbances and frictions that
+//! belong to a test are the bench's.
+
+use std::f64::consts::TAU;
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+use super::Motion;
+
+/// A motion over time.
+pub trait Reference {
+    /// At a moment [s].
+    fn at(&self, time: f64) -> Motion;
+}
+
+/// The standard motions.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Profile {
+    /// amplitude sin(2 pi frequency t), swelling up over the first second.
+    Sine {
+        /// [rad].
+        amplitude: f64,
+        /// [Hz].
+        frequency: f64,
+    },
+    /// A sum of five sines of random frequency and phase, swelling up over the first second.
+    Random {
+        /// Standard deviation [rad].
+        amplitude: f64,
+        /// Highest frequency [Hz].
+        highest: f64,
+        /// Of frequencies and phases.
+        seed: u64,
+    },
+    /// From one point to another and back, each way on a minimum-jerk path with a rest after it. To keep a preview from
+    /// being the only way to know, the rests differ.
+    Steps {
+        /// [rad].
+        height: f64,
+        /// Of one way [s].
+        duration: f64,
+        /// Shortest rest [s].
+        rest: f64,
+        /// Of the rests' lengths.
+        seed: u64,
+    },
+    /// Stay at an angle [rad].
+    Hold(f64),
+}
+
+/// Minimum-jerk path from 0 to 1 over 0 to 1 with its first two derivatives.
+pub(super) fn minimum_jerk(part: f64) -> [f64; 3] {
+    let s = part.clamp(0.0, 1.0);
+    [
+        s * s * s * (10.0 + s * (6.0 * s - 15.0)),
+        30.0 * s * s * (1.0 - s) * (1.0 - s),
+        60.0 * s * (1.0 - s) * (1.0 - 2.0 * s),
+    ]
+}
+
+/// A motion times a swelling factor, by the product rule.
+fn swelling(time: f64, motion: Motion) -> Motion {
+    let [f, df, ddf] = minimum_jerk(time);
+    Motion {
+        position: f * motion.position,
+        speed: df * motion.position + f * motion.speed,
+        acceleration: ddf * motion.position + 2.0 * df * motion.speed + f * motion.acceleration,
+    }
+}
+
+fn sine(amplitude: f64, frequency: f64, phase: f64, time: f64) -> Motion {
+    let rate = TAU * frequency;
+    let (sine, cosine) = (rate * time + phase).sin_cos();
+    Motion {
+        position: amplitude * sine,
+        speed: amplitude * rate * cosine,
+        acceleration: -amplitude * rate * rate * sine,
+    }
+}
+
+fn uniform(random: &mut ChaCha8Rng) -> f64 {
+    (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+impl Reference for Profile {
+    fn at(&self, time: f64) -> Motion {
+        match *self {
+            Self::Sine { amplitude, frequency } => swelling(time, sine(amplitude, frequency, 0.0, time)),
+            Self::Random { amplitude, highest, seed } => {
+                let mut random = ChaCha8Rng::seed_from_u64(seed);
+                let mut sum = Motion::default();
+                for index in 0..5 {
+                    // One sine from each fifth of the band, so that no draw is slow throughout.
+                    let frequency = highest * (index as f64 + 0.1 + 0.9 * uniform(&mut random)) / 5.0;
+                    let part = sine(amplitude * (0.4_f64).sqrt(), frequency, TAU * uniform(&mut random), time);
+                    sum.position += part.position;
+                    sum.speed += part.speed;
+                    sum.acceleration += part.acceleration;
+                }
+                swelling(time, sum)
+            }
+            Self::Steps { height, duration, rest, seed } => {
+                let mut random = ChaCha8Rng::seed_from_u64(seed);
+                let (mut from, mut start, mut moved) = (0.0, rest, 0.0);
+                while time > start {
+                    let to = height - from;
+                    if time < start + duration {
+                        let [f, df, ddf] = minimum_jerk((time - start) / duration);
+                        return Motion {
+                            position: from + (to - from) * f,
+                            speed: (to - from) * df / duration,
+                            acceleration: (to - from) * ddf / (duration * duration),
+                        };
+                    }
+                    moved = to;
+                    from = to;
+                    start += duration + rest * (1.0 + uniform(&mut random));
+                }
+                Motion { position: moved, ..Motion::default() }
+            }
+            Self::Hold(angle) => Motion { position: angle, ..Motion::default() },
+        }
+    }
+}

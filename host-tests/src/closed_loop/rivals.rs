@@ -1,0 +1,69 @@
+//! The controllers that compensation is measured against, as strong as their kind allows: designed for the true
+//! inertias, with the same bandwidth, encoders and torque limit. None knows the gap; its width is guessed.
+
+mod cascade;
+mod impedance;
+mod motor_pid;
+mod output_integral;
+mod velocity_sign;
+
+pub use cascade::LoadCascade;
+pub use impedance::{Impedance, ImpedanceLaw};
+pub use motor_pid::MotorPid;
+pub use output_integral::OutputIntegral;
+pub use velocity_sign::VelocitySign;
+
+use model_core::joint::JointParameters;
+
+use crate::drive_train::DriveTrainParameters;
+
+/// What a rival is designed from.
+#[derive(Debug, Clone)]
+pub struct Knowledge {
+    /// Motor turns for one of the link.
+    pub ratio: f64,
+    /// Everything that turns with the motor while the gap is open, felt there [kg m^2].
+    pub motor_inertia: f64,
+    /// All inertia, felt at the motor [kg m^2].
+    pub total_inertia: f64,
+    /// [N m].
+    pub torque_limit: f64,
+    /// [s].
+    pub period: f64,
+    /// Resolution of the encoders: motor, output.
+    pub bits: [u32; 2],
+    /// Guess of the whole lost motion at the link [rad].
+    pub lost_motion: f64,
+    /// Dry friction at the link [N m].
+    pub load_friction: f64,
+    /// Dry friction at the motor [N m].
+    pub motor_friction: f64,
+    /// Weight of the link, times sin(link angle) [N m].
+    pub gravity: f64,
+}
+
+impl Knowledge {
+    /// True knowledge of a joint but for the lost motion, which is guessed wrong by a factor.
+    pub fn of(joint: &JointParameters, train: &DriveTrainParameters, width_factor: f64) -> Self {
+        let geometry = &joint.geometry;
+        let lever = geometry.carrier_base_radius();
+        let ratio = geometry.ratio_by_teeth();
+        let sun = geometry.sun_base_radius.powi(2);
+        let motor_inertia = joint.rotor_inertia + joint.bodies.sun_equivalent_mass * sun;
+        let planets = geometry.planets as f64 * joint.bodies.planet_equivalent_mass;
+        let carrier = (planets + joint.carrier_equivalent_mass()) * lever * lever + joint.link_inertia;
+        let half = joint.sun_planet.half_backlash.iter().sum::<f64>() / geometry.planets as f64;
+        Self {
+            ratio,
+            motor_inertia,
+            total_inertia: motor_inertia + carrier / (ratio * ratio),
+            torque_limit: train.motor.torque_limit,
+            period: 1.0 / train.control_rate,
+            bits: [train.motor_encoder.bits, train.output_encoder.bits],
+            lost_motion: width_factor * 2.0 * half / lever,
+            load_friction: train.load.friction.coulomb,
+            motor_friction: train.motor.friction.coulomb,
+            gravity: train.load.gravity_torque,
+        }
+    }
+}

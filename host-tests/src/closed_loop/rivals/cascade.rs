@@ -1,0 +1,44 @@
+//! The plain load cascade: a proportional loop on the output encoder gives the speed that a proportional-integral loop
+//! on the motor keeps. The gap between the two is ignored.
+
+use super::Knowledge;
+use super::motor_pid::tracker;
+use crate::closed_loop::{Controller, LinkTracker, MotorTracker, SetPoint};
+use crate::drive_train::Measurement;
+
+/// Position of the link over speed of the motor.
+#[derive(Debug, Clone)]
+pub struct LoadCascade {
+    knowledge: Knowledge,
+    bandwidth: f64,
+    motor: MotorTracker,
+    link: LinkTracker,
+    integral: f64,
+    torque: f64,
+}
+
+impl LoadCascade {
+    /// Of a bandwidth [rad/s].
+    pub fn new(knowledge: Knowledge, bandwidth: f64) -> Self {
+        let motor = tracker(&knowledge, bandwidth);
+        let link = LinkTracker::new(knowledge.bits[1], super::motor_pid::TRACKER * bandwidth, knowledge.period);
+        Self { knowledge, bandwidth, motor, link, integral: 0.0, torque: 0.0 }
+    }
+}
+
+impl Controller for LoadCascade {
+    fn period(&mut self, measurement: &Measurement, set_point: &SetPoint) -> f64 {
+        let motion = set_point.motion();
+        let (_, speed) = self.motor.step(measurement.motor_counts, self.torque);
+        let (link, _) = self.link.step(measurement.output_counts);
+        let Knowledge { ratio, total_inertia: inertia, torque_limit: limit, period, .. } = self.knowledge;
+        // s^3 + 3 w s^2 + 3 w^2 s + (3/4) w^3: as near to three poles in one place as real gains of a cascade come.
+        let pole = self.bandwidth;
+        let speed_error = ratio * (motion.speed + 0.5 * pole * (motion.position - link)) - speed;
+        let damping = 3.0 * inertia * pole;
+        let wanted = inertia * ratio * motion.acceleration + damping * speed_error + self.integral;
+        self.torque = wanted.clamp(-limit, limit);
+        self.integral += period * (0.5 * pole * damping * speed_error + pole * (self.torque - wanted));
+        self.torque
+    }
+}

@@ -1,0 +1,57 @@
+//! Impedance laws without compensation: spring and damper about a moving point, each measured at the motor or at the
+//! link. The torque is given as if there were no gap.
+
+use super::Knowledge;
+use super::motor_pid::TRACKER;
+use crate::closed_loop::{Controller, LinkTracker, MotorTracker, SetPoint};
+use crate::drive_train::Measurement;
+
+/// Where spring and damper are measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ImpedanceLaw {
+    /// Both at the motor.
+    MotorSide,
+    /// Spring at the link, damper at the motor.
+    LinkSpring,
+    /// Both at the link.
+    LinkSide,
+}
+
+/// An impedance law.
+#[derive(Debug, Clone)]
+pub struct Impedance {
+    knowledge: Knowledge,
+    law: ImpedanceLaw,
+    motor: MotorTracker,
+    link: LinkTracker,
+    torque: f64,
+}
+
+impl Impedance {
+    /// `bandwidth` sets the speed filters only [rad/s].
+    pub fn new(knowledge: Knowledge, law: ImpedanceLaw, bandwidth: f64) -> Self {
+        let motor = super::motor_pid::tracker(&knowledge, bandwidth);
+        let link = LinkTracker::new(knowledge.bits[1], TRACKER * bandwidth, knowledge.period);
+        Self { knowledge, law, motor, link, torque: 0.0 }
+    }
+}
+
+impl Controller for Impedance {
+    fn period(&mut self, measurement: &Measurement, set_point: &SetPoint) -> f64 {
+        let (motor, motor_speed) = self.motor.step(measurement.motor_counts, self.torque);
+        let (link, link_speed) = self.link.step(measurement.output_counts);
+        let Knowledge { ratio, torque_limit: limit, .. } = self.knowledge;
+        let SetPoint::Impedance { about, torque, stiffness, damping } = *set_point else {
+            self.torque = 0.0;
+            return 0.0;
+        };
+        let (position, speed) = match self.law {
+            ImpedanceLaw::MotorSide => (motor / ratio, motor_speed / ratio),
+            ImpedanceLaw::LinkSpring => (link, motor_speed / ratio),
+            ImpedanceLaw::LinkSide => (link, link_speed),
+        };
+        let wanted = torque + stiffness * (about.position - position) + damping * (about.speed - speed);
+        self.torque = (wanted / ratio).clamp(-limit, limit);
+        self.torque
+    }
+}

@@ -1,0 +1,58 @@
+//! The best of the usual ways: motor PID with the true friction and most of the weight fed forward, its reference
+//! jumping by the guessed lost motion when the planned torque changes its sign, and an integral over the output
+//! encoder's error. Contact and load are not estimated.
+
+use super::Knowledge;
+use super::motor_pid::{MotorPid, geared};
+use crate::closed_loop::{Controller, LinkTracker, SetPoint};
+use crate::drive_train::Measurement;
+
+/// Share of the weight that the feed-forward knows.
+const KNOWN_GRAVITY: f64 = 0.85;
+
+/// Speed over which the friction fed forward changes its sign [rad/s].
+const FRICTION_SPEED: f64 = 0.01;
+
+/// Rate of the output integral over the bandwidth.
+const INTEGRAL_RATE: f64 = 0.25;
+
+/// Motor PID with feed-forward, jump and output integral.
+#[derive(Debug, Clone)]
+pub struct OutputIntegral {
+    pid: MotorPid,
+    link: LinkTracker,
+    rate: f64,
+    side: f64,
+    trim: f64,
+}
+
+impl OutputIntegral {
+    /// Of a bandwidth [rad/s].
+    pub fn new(knowledge: Knowledge, bandwidth: f64) -> Self {
+        let link = LinkTracker::new(knowledge.bits[1], super::motor_pid::TRACKER * bandwidth, knowledge.period);
+        Self { pid: MotorPid::new(knowledge, bandwidth), link, rate: INTEGRAL_RATE * bandwidth, side: 0.0, trim: 0.0 }
+    }
+}
+
+impl Controller for OutputIntegral {
+    fn period(&mut self, measurement: &Measurement, set_point: &SetPoint) -> f64 {
+        let motion = set_point.motion();
+        let (link, _) = self.link.step(measurement.output_counts);
+        let Knowledge { ratio, lost_motion, load_friction, motor_friction, gravity, period, .. } =
+            *self.pid.knowledge();
+        let knowledge = self.pid.knowledge();
+        let load_inertia = (knowledge.total_inertia - knowledge.motor_inertia) * ratio * ratio;
+        let direction = (motion.speed / FRICTION_SPEED).clamp(-1.0, 1.0);
+        let load = load_friction * direction + KNOWN_GRAVITY * gravity * motion.position.sin();
+        let planned = load_inertia * motion.acceleration + load;
+        if planned != 0.0 {
+            self.side = planned.signum();
+        }
+        self.trim += period * self.rate * (motion.position - link);
+        // What the guess of the width may be wrong by at most, and the encoders.
+        self.trim = self.trim.clamp(-lost_motion, lost_motion);
+        let mut motor = geared(motion, ratio);
+        motor.position += ratio * (0.5 * self.side * lost_motion + self.trim);
+        self.pid.follow(measurement.motor_counts, motor, load / ratio + motor_friction * direction)
+    }
+}

@@ -1,0 +1,69 @@
+//! What a controller without an observer makes of its encoders: angles from counts, speeds from tracking filters that
+//! know the commanded torque. Encoder errors are left in, as a controller that does not know them would.
+
+use std::f64::consts::TAU;
+
+/// Motor angle and speed: a third-order observer of the free rotor with a torque disturbance, poles in one place.
+#[derive(Debug, Clone)]
+pub struct MotorTracker {
+    period: f64,
+    per_count: f64,
+    inertia: f64,
+    gains: [f64; 3],
+    angle: f64,
+    speed: f64,
+    disturbance: f64,
+    started: bool,
+}
+
+impl MotorTracker {
+    /// A tracker with its three poles at `pole` [rad/s], for a rotor of `inertia` [kg m^2].
+    pub fn new(bits: u32, inertia: f64, pole: f64, period: f64) -> Self {
+        // Discrete poles at exp(-pole period): gains by matching the characteristic polynomial of the sampled chain.
+        let z = (-pole * period).exp();
+        let gains =
+            [1.0 - z * z * z, 1.5 * (1.0 - z) * (1.0 - z) * (1.0 + z) / period, (1.0 - z).powi(3) / (period * period)];
+        Self {
+            period,
+            per_count: TAU / f64::from(1_u32 << bits),
+            inertia,
+            gains,
+            angle: 0.0,
+            speed: 0.0,
+            disturbance: 0.0,
+            started: false,
+        }
+    }
+
+    /// Takes a reading under the torque that has acted since the last one; gives angle [rad] and speed [rad/s].
+    pub fn step(&mut self, counts: i64, torque: f64) -> (f64, f64) {
+        let measured = (counts as f64 + 0.5) * self.per_count;
+        if !self.started {
+            self.started = true;
+            self.angle = measured;
+        }
+        let acceleration = torque / self.inertia + self.disturbance;
+        let predicted = self.angle + self.period * self.speed + 0.5 * self.period * self.period * acceleration;
+        let error = measured - predicted;
+        self.angle = predicted + self.gains[0] * error;
+        self.speed += self.period * acceleration + self.gains[1] * error;
+        self.disturbance += self.gains[2] * error;
+        (self.angle, self.speed)
+    }
+}
+
+/// Link angle and speed: the same without a torque.
+#[derive(Debug, Clone)]
+pub struct LinkTracker(MotorTracker);
+
+impl LinkTracker {
+    /// A tracker with its three poles at `pole` [rad/s].
+    pub fn new(bits: u32, pole: f64, period: f64) -> Self {
+        Self(MotorTracker::new(bits, 1.0, pole, period))
+    }
+
+    /// Takes a reading; gives angle [rad] and speed [rad/s].
+    pub fn step(&mut self, counts: i64) -> (f64, f64) {
+        self.0.step(counts, 0.0)
+    }
+}

@@ -1,0 +1,94 @@
+//! What the compensation does with estimates and set-points that are no numbers, not there, or nonsense.
+
+use host_tests::closed_loop::compensation_settings;
+use host_tests::drive_train::DriveTrainParameters;
+use host_tests::scenarios::q1;
+use model_core::design::compensation::{CompensationSettings, design_compensation};
+use model_core::realtime::compensation::{Command, Compensation, ImpedancePoint, Motion, Stage};
+use model_core::realtime::observer::{Doubt, Estimate, Estimates, Source};
+
+const LIMIT: f32 = 2.5;
+
+fn sound() -> Estimates<f32> {
+    let known = |value| Estimate { value, variance: 0.0, valid: true };
+    Estimates {
+        source: Source::Both,
+        gap: known(80e-6),
+        contact_valid: true,
+        half_backlash: known(40e-6),
+        load_torque: known(0.3),
+        ..Estimates::default()
+    }
+}
+
+fn at_rest() -> Command<f32> {
+    Command::Position { now: Motion::default(), ahead: None }
+}
+
+#[test]
+fn no_input_makes_a_torque_that_is_none_or_too_large() {
+    let tables =
+        design_compensation::<f32>(&q1(), &compensation_settings(&DriveTrainParameters::q1(), 60.0)).expect("sound");
+    for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, -1e30] {
+        let mut estimates = [sound(); 7];
+        estimates[0].gap.value = bad;
+        estimates[1].half_backlash.value = bad;
+        estimates[2].load_torque.value = bad;
+        estimates[3].motor.speed = bad;
+        estimates[4].link.speed = bad;
+        estimates[5].link.fraction = bad;
+        estimates[6].encoder_offset.value = bad;
+        let motion = Motion { acceleration: bad, speed: bad, ..Motion::default() };
+        let commands = [
+            at_rest(),
+            Command::Position { now: motion, ahead: None },
+            Command::Position { now: Motion::default(), ahead: Some(motion) },
+            Command::Impedance(ImpedancePoint { stiffness: bad, ..ImpedancePoint::default() }),
+        ];
+        for estimates in &estimates {
+            for command in &commands {
+                let mut compensation = Compensation::new(&tables);
+                for _ in 0..300 {
+                    compensation.step(&sound(), &at_rest());
+                }
+                for _ in 0..300 {
+                    let torque = compensation.step(estimates, command).torque;
+                    assert!(torque.abs() <= LIMIT * 1.0001, "{torque} N m from {estimates:?} and {command:?}");
+                }
+                for _ in 0..3000 {
+                    compensation.step(&sound(), &at_rest());
+                }
+                let after = compensation.step(&sound(), &at_rest());
+                assert!(after.trust == 1.0 && after.load.iter().all(|load| load.is_finite()), "it does not recover");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_gap_that_cannot_be_seen_leaves_plain_control() {
+    let tables =
+        design_compensation::<f32>(&q1(), &compensation_settings(&DriveTrainParameters::q1(), 60.0)).expect("sound");
+    let mut compensation = Compensation::new(&tables);
+    for _ in 0..1000 {
+        compensation.step(&sound(), &at_rest());
+    }
+    assert_ne!(compensation.step(&sound(), &at_rest()).stage, Stage::Plain);
+    let blind = Estimates { source: Source::MotorOnly(Doubt::Frozen), ..sound() };
+    for _ in 0..1000 {
+        compensation.step(&blind, &at_rest());
+    }
+    let shaped = compensation.step(&blind, &at_rest());
+    assert_eq!((shaped.stage, shaped.trust), (Stage::Plain, 0.0));
+}
+
+#[test]
+fn settings_that_no_gain_can_be_made_from_are_refused_with_the_mend() {
+    let refusal = |change: fn(&mut CompensationSettings)| {
+        let mut settings = compensation_settings(&DriveTrainParameters::q1(), 60.0);
+        change(&mut settings);
+        design_compensation::<f32>(&q1(), &settings).expect_err("must be refused").to_string()
+    };
+    assert!(refusal(|settings| settings.bandwidth = 0.0).contains("bandwidth"));
+    assert!(refusal(|settings| settings.torque_limit = f64::NAN).contains("torque limit"));
+}

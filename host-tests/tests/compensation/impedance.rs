@@ -1,0 +1,33 @@
+//! Impedance mode: how far the link and its torque are from what the same law does on teeth without backlash.
+
+use host_tests::closed_loop::rivals::ImpedanceLaw;
+use host_tests::closed_loop::{Contender, Trial, deviation};
+use host_tests::drive_train::DriveTrainParameters;
+use host_tests::scenarios::q1;
+use host_tests::tolerance::{IMPEDANCE_DEVIATION, IMPEDANCE_TORQUE};
+
+use super::NO_PREVIEW;
+
+fn comes_near_the_law_without_a_gap(trial: &Trial) {
+    let run = |contender| trial.run(contender).expect("the trial runs");
+    let of = |law, contender| deviation(&run(contender), &run(Contender::ImpedanceNoGap(law)), trial.from);
+    let (motor, _, motor_torque) = of(ImpedanceLaw::MotorSide, Contender::Impedance(ImpedanceLaw::MotorSide));
+    // The compensation's law has its spring at the link and its damper at the motor.
+    let (ours, _, torque) = of(ImpedanceLaw::LinkSpring, NO_PREVIEW);
+    IMPEDANCE_DEVIATION.check(ours / motor);
+    IMPEDANCE_TORQUE.check(torque / motor_torque);
+}
+
+#[test]
+fn a_medium_spring_behaves_as_if_there_were_no_gap() {
+    comes_near_the_law_without_a_gap(
+        &Trial::inertial(&q1(), &DriveTrainParameters::q1(), 121).with_impedance(300.0, 3.0),
+    );
+}
+
+#[test]
+fn a_stiff_spring_behaves_as_if_there_were_no_gap() {
+    comes_near_the_law_without_a_gap(
+        &Trial::random(&q1(), &DriveTrainParameters::q1(), 122).with_impedance(600.0, 3.0),
+    );
+}

@@ -1,0 +1,54 @@
+//! Position mode, with and without preview, against motor PID and the best rival.
+
+use host_tests::closed_loop::{Contender, Trial};
+use host_tests::drive_train::DriveTrainParameters;
+use host_tests::scenarios::q1;
+use host_tests::tolerance::{
+    COMPENSATED_OVER_PID, COMPENSATED_OVER_RIVAL, COMPENSATED_PEAK_OVER_PID, COMPENSATED_PEAK_OVER_RIVAL, LOST_MOTION,
+    PEAK_MESH_FORCE, STEPS_OVER_PID,
+};
+
+use super::{NO_PREVIEW, PREVIEW, figures};
+
+/// Rated net force of the sun's meshes: 15 N m at the link [N].
+const RATED_FORCE: f64 = 355.0;
+
+fn is_far_better(trial: &Trial) {
+    let (pid, rival) = (figures(trial, Contender::MotorPid), figures(trial, Contender::OutputIntegral));
+    for contender in [PREVIEW, NO_PREVIEW] {
+        let ours = figures(trial, contender);
+        println!("{} {contender:?}: {ours:?}", trial.name);
+        COMPENSATED_OVER_PID.check(ours.rms / pid.rms);
+        COMPENSATED_PEAK_OVER_PID.check(ours.peak / pid.peak);
+        COMPENSATED_OVER_RIVAL.check(ours.rms / rival.rms);
+        COMPENSATED_PEAK_OVER_RIVAL.check(ours.peak / rival.peak);
+        LOST_MOTION.check(ours.lost_motion_time);
+        PEAK_MESH_FORCE.check(ours.peak_mesh_force / RATED_FORCE);
+    }
+}
+
+#[test]
+fn a_slow_motion_against_friction_loses_its_lost_motion() {
+    is_far_better(&Trial::slow(&q1(), &DriveTrainParameters::q1(), 101));
+}
+
+#[test]
+fn a_motion_driven_by_inertia_loses_its_lost_motion() {
+    is_far_better(&Trial::inertial(&q1(), &DriveTrainParameters::q1(), 102));
+}
+
+#[test]
+fn a_swinging_weight_loses_its_lost_motion() {
+    is_far_better(&Trial::weighty(&q1(), &DriveTrainParameters::q1(), 1.5, 103));
+}
+
+#[test]
+fn a_random_motion_loses_its_lost_motion() {
+    is_far_better(&Trial::random(&q1(), &DriveTrainParameters::q1(), 104));
+}
+
+#[test]
+fn fast_steps_that_nobody_foresaw_are_better_than_without_compensation() {
+    let trial = Trial::steps(&q1(), &DriveTrainParameters::q1(), 105);
+    STEPS_OVER_PID.check(figures(&trial, NO_PREVIEW).rms / figures(&trial, Contender::MotorPid).rms);
+}

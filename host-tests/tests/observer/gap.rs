@@ -1,0 +1,133 @@
+//! Gap, contact, torques and width with both encoders: figures against their bounds on a few joints, widths and motions.
+
+use host_tests::tolerance::observer::*;
+use model_core::realtime::observer::{MAPPED, PLAIN};
+
+use crate::motion::Moment;
+use crate::replay::{Figures, replay, with_encoders};
+use crate::trial::{Encoders, Trial};
+
+/// Half-backlash of the trials with a seed each [m].
+const WIDTHS: [(u64, f64); 3] = [(1, 20e-6), (2, 40e-6), (3, 80e-6)];
+
+/// Figures of a Q1 trial with the map, once a second of contact has been seen.
+fn figures(motion: &str, encoders: Encoders, half_backlash: f64, seed: u64) -> Figures {
+    let trial = Trial::new("q1", motion, encoders, Some(half_backlash), seed).lasting(4.5);
+    figures_of(&trial, &trial.record())
+}
+
+fn figures_of(trial: &Trial, log: &[Moment]) -> Figures {
+    replay::<f64, MAPPED>(&trial.run.joint, &trial.tables(), &trial.settings, log, 2.0, |_, _, _| {})
+}
+
+#[test]
+fn ideal_encoders_give_the_gap_to_half_a_percent() {
+    for (seed, half_backlash) in WIDTHS {
+        let trial = Trial::new("q1", "inertia", Encoders::Ideal, Some(half_backlash), seed).lasting(4.0);
+        let figures = replay::<f64, PLAIN>(
+            &trial.run.joint,
+            &trial.tables(),
+            &trial.settings,
+            &trial.record(),
+            1.5,
+            |_, _, _| {},
+        );
+        GAP_IDEAL.check(figures.gap);
+        CONTACT_WRONG.check(1.0 - figures.contact);
+    }
+}
+
+#[test]
+fn real_encoders_give_gap_contact_torque_and_width() {
+    let mut all = Figures::default();
+    for (seed, half_backlash) in WIDTHS {
+        for motion in ["inertia", "random"] {
+            println!("{motion}, seed {seed}, half-backlash {half_backlash} m");
+            let figures = figures(motion, Encoders::Preset, half_backlash, seed);
+            GAP_COARSE.check(figures.gap);
+            GAP_WORST.check(figures.gap_worst);
+            CONTACT_WRONG.check(1.0 - figures.contact);
+            assert_eq!(figures.missed, 0, "a landing was missed");
+            LOAD_TORQUE.check(figures.load_torque);
+            MESH_TORQUE.check(figures.mesh_torque);
+            WIDTH.check(figures.width);
+            WIDTH_AFTER.check(figures.width_after);
+            all = all.worse(&figures);
+        }
+    }
+    LANDING_DELAY.check(all.delay(0.5));
+    LANDING_DELAY_LONG.check(all.delay(0.95));
+}
+
+#[test]
+fn finer_encoders_do_better_and_slow_motion_against_friction_is_enough() {
+    GAP_FINE.check(figures("gravity", Encoders::Bits(16, 18), 40e-6, 4).gap);
+    let slow = Trial::new("q1", "slow", Encoders::Preset, Some(40e-6), 5).lasting(6.0);
+    let figures = figures_of(&slow, &slow.record());
+    GAP_COARSE.check(figures.gap);
+    WIDTH.check(figures.width);
+}
+
+#[test]
+fn two_stages_and_a_stiff_joint_are_seen_as_well() {
+    for (name, seed) in [("d2", 6), ("l1", 7)] {
+        let trial = Trial::new(name, "gravity", Encoders::Preset, None, seed).lasting(3.0);
+        let figures = figures_of(&trial, &trial.record());
+        println!("{name}: {figures:?}");
+        GAP_COARSE.check(figures.gap);
+        WIDTH.check(figures.width);
+        assert_eq!(figures.missed, 0, "{name} missed a landing");
+    }
+}
+
+#[test]
+fn the_error_maps_are_worth_a_factor_and_hold_when_the_range_grows() {
+    // A fifth of the swing at first, all of it later.
+    let mut trial = Trial::new("q1", "inertia", Encoders::Preset, Some(40e-6), 8).lasting(5.0);
+    trial.run.grows_at = Some(2.5);
+    let log = trial.record();
+    let figures = |from| {
+        let tables = trial.tables();
+        replay::<f64, MAPPED>(&trial.run.joint, &tables, &trial.settings, &log, from, |_, _, _| {}).gap
+    };
+    GAP_COARSE.check(figures(2.4));
+    let tables = trial.tables();
+    let plain = replay::<f64, PLAIN>(&trial.run.joint, &tables, &trial.settings, &log, 1.5, |_, _, _| {});
+    WITHOUT_MAP.check(figures(1.5) / plain.gap);
+}
+
+#[test]
+fn a_harmonic_that_is_not_in_the_map_costs_little() {
+    let trial = Trial::new("q1", "gravity", Encoders::Preset, Some(40e-6), 9).lasting(4.0);
+    let log = trial.record();
+    let clean = with_encoders(&log, &trial.run.train);
+    let count = core::f64::consts::TAU / f64::from(1 << trial.run.train.motor_encoder.bits);
+    let mut dirty = clean.clone();
+    for moment in &mut dirty {
+        let error = 0.02_f64.to_radians() * (4.0 * moment.motor[0] + 1.0).sin();
+        moment.motor_counts += (error / count).round() as i64;
+    }
+    FOURTH_HARMONIC.check(figures_of(&trial, &dirty).gap - figures_of(&trial, &clean).gap);
+}
+
+#[test]
+fn a_wrong_inertia_costs_the_load_torque_what_it_must() {
+    let mut trial = Trial::new("q1", "inertia", Encoders::Preset, Some(40e-6), 10).lasting(4.0);
+    trial.told.link_inertia *= 1.3;
+    let figures = figures_of(&trial, &trial.record());
+    GAP_COARSE.check(figures.gap);
+    LOAD_TORQUE_WRONG_INERTIA.check(figures.load_torque);
+}
+
+#[test]
+fn a_torque_bias_is_read_inside_the_gap() {
+    for part in [0.05, -0.05] {
+        let trial = Trial::new("q1", "inertia", Encoders::Preset, Some(40e-6), 11).lasting(4.0);
+        let mut log = trial.record();
+        let bias = part * trial.run.train.motor.torque_limit;
+        log.iter_mut().for_each(|moment| moment.command += bias);
+        let figures = figures_of(&trial, &log);
+        GAP_WITH_BIAS.check(figures.gap);
+        assert_eq!(figures.missed, 0, "a landing was missed");
+    }
+}

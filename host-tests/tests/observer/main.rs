@@ -1,0 +1,14 @@
+//! The observer against the fine-step plant: gap, contact, torques, width, faults, motor only, precision, memory, probe.
+//! Each test is short; `monte_carlo` is the long run over many seeds, and is ignored by default.
+
+mod faults;
+mod gap;
+mod memory;
+mod monte_carlo;
+mod motion;
+mod motor_only;
+mod precision;
+mod presets;
+mod probe;
+mod replay;
+mod trial;

@@ -1,0 +1,75 @@
+//! What was learnt outlives the observer: saved, loaded by another one that starts elsewhere, refused when it must be.
+
+use host_tests::tolerance::observer::GAP_COARSE;
+use model_core::realtime::observer::{MAPPED, MEMORY_BYTES, Memory, MemoryError, Observer, PLAIN};
+
+use crate::motion::Moment;
+use crate::replay::samples;
+use crate::trial::{Encoders, Trial};
+
+fn learnt() -> (Trial, Vec<Moment>, Memory) {
+    let trial = Trial::new("q1", "gravity", Encoders::Preset, Some(40e-6), 51).lasting(3.0);
+    let log = trial.record();
+    let tables = trial.tables();
+    let mut observer = Observer::<f32, MAPPED>::new(&tables);
+    for (period, moment) in log.iter().enumerate() {
+        observer.step(&samples(&trial.settings, moment, period));
+    }
+    let memory = observer.save();
+    (trial, log, memory)
+}
+
+#[test]
+fn an_observer_that_remembers_knows_the_gap_from_the_first_moment() {
+    let (trial, log, memory) = learnt();
+    let tables = trial.tables();
+    for loaded_at in [0, 5] {
+        let mut observer = Observer::<f32, MAPPED>::new(&tables);
+        let mut sum = 0.0;
+        // It wakes somewhere in the middle.
+        let part = &log[13_000..18_000];
+        for (period, moment) in part.iter().enumerate() {
+            if period == loaded_at {
+                observer.load(&memory).expect("its own memory");
+            }
+            let estimates = observer.step(&samples(&trial.settings, moment, period));
+            if period >= 200 {
+                sum += ((f64::from(estimates.gap.value) - moment.gap) / 160e-6).powi(2);
+                assert!(estimates.gap.valid);
+            }
+        }
+        GAP_COARSE.check((sum / (part.len() - 200) as f64).sqrt());
+    }
+}
+
+#[test]
+fn memories_that_do_not_fit_are_refused_and_change_nothing() {
+    let (trial, _, memory) = learnt();
+    let tables = trial.tables();
+    let refusal = |memory: &[u8]| {
+        let mut observer = Observer::<f32, MAPPED>::new(&tables);
+        let before = observer.save();
+        let refusal = observer.load(memory).expect_err("it must be refused");
+        assert_eq!(observer.save(), before);
+        refusal
+    };
+    assert_eq!(refusal(&[]), MemoryError::NotAMemory);
+    assert_eq!(refusal(&memory[..MEMORY_BYTES - 1]), MemoryError::NotAMemory);
+    assert_eq!(refusal(&[0; MEMORY_BYTES]), MemoryError::NotAMemory);
+    for place in [6, 20, 40, 300, MEMORY_BYTES - 1] {
+        let mut damaged = memory;
+        damaged[place] ^= 1;
+        assert_eq!(refusal(&damaged), MemoryError::Damaged);
+    }
+    let mut newer = memory;
+    newer[4] += 1;
+    assert_eq!(refusal(&newer), MemoryError::WrongVersion);
+
+    let other = Trial::new("d2", "gravity", Encoders::Preset, None, 52);
+    let tables = other.tables();
+    let mut observer = Observer::<f32, MAPPED>::new(&tables);
+    assert_eq!(observer.load(&memory), Err(MemoryError::OtherJoint));
+    let tables = trial.tables();
+    let mut plain = Observer::<f32, PLAIN>::new(&tables);
+    assert_eq!(plain.load(&memory), Err(MemoryError::OtherJoint));
+}

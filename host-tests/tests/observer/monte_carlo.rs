@@ -1,0 +1,40 @@
+//! The long run: many seeds, widths, motions and encoders; worst of each figure. Ignored by default, for it takes minutes.
+
+use model_core::realtime::observer::{MAPPED, Source};
+
+use crate::replay::{Figures, replay, with_encoders};
+use crate::trial::{Encoders, MOTIONS, Trial};
+
+/// Seeds of the long run.
+const SEEDS: u64 = 20;
+
+#[test]
+#[ignore = "takes minutes: cargo test --release -p host-tests --test observer -- --ignored --nocapture"]
+fn worst_of_many_seeds() {
+    for (motion, _) in MOTIONS {
+        let mut worst = [0; 3].map(|_| Figures::default());
+        let mut alarms = 0;
+        for seed in 100..100 + SEEDS {
+            let half_backlash = Some(20e-6 + 60e-6 * ((seed * 7 % SEEDS) as f64 / (SEEDS - 1) as f64));
+            let base = Trial::new("q1", motion, Encoders::Preset, half_backlash, seed);
+            let log = base.record();
+            let kinds = [Encoders::Ideal, Encoders::Bits(16, 18), Encoders::Preset];
+            for (encoders, worst) in kinds.into_iter().zip(&mut worst) {
+                let trial = Trial::new("q1", motion, encoders, half_backlash, seed);
+                let log = with_encoders(&log, &trial.run.train);
+                let tables = trial.tables();
+                let (joint, settings) = (&trial.run.joint, &trial.settings);
+                let figures = replay::<f64, MAPPED>(joint, &tables, settings, &log, 2.0, |_, _, estimates| {
+                    alarms += usize::from(estimates.source != Source::Both);
+                });
+                *worst = worst.worse(&figures);
+            }
+        }
+        for (name, worst) in ["18/18 ideal", "16/18", "14/17"].iter().zip(worst) {
+            let [median, late] = [0.5, 0.95].map(|part| worst.delay(part));
+            let worst = Figures { delays: Vec::new(), ..worst };
+            println!("{motion}, {name}: worst of {SEEDS}: delays {median} s, {late} s; {worst:?}");
+        }
+        assert_eq!(alarms, 0, "a false alarm");
+    }
+}

@@ -1,0 +1,51 @@
+//! Without an output encoder: an honest variance, and a refusal where nothing can be known.
+
+use host_tests::tolerance::observer::MOTOR_ONLY_HONESTY;
+use model_core::realtime::observer::{Doubt, MAPPED, Source};
+
+use crate::replay::replay;
+use crate::trial::{Encoders, Trial};
+
+/// A trial without an output encoder, told a width right to 2 %.
+fn trial(motion: &str, seed: u64) -> Trial {
+    let mut trial = Trial::new("q1", motion, Encoders::Preset, Some(40e-6), seed).lasting(4.0);
+    trial.told = trial.run.joint.clone();
+    trial.settings.output_encoder = None;
+    trial.settings.backlash_uncertainty = 0.02;
+    trial.settings.compliance_uncertainty = 0.05;
+    trial
+}
+
+#[test]
+fn the_variance_is_honest_and_long_separations_are_refused() {
+    for (motion, seed) in [("inertia", 31), ("gravity", 32)] {
+        let trial = trial(motion, seed);
+        let log = trial.record();
+        let tables = trial.tables();
+        let (mut open_for, mut refused, mut long) = (0, 0, 0);
+        let figures =
+            replay::<f64, MAPPED>(&trial.run.joint, &tables, &trial.settings, &log, 1.0, |_, moment, estimates| {
+                assert_eq!(estimates.source, Source::MotorOnly(Doubt::Absent));
+                assert!(estimates.half_backlash.variance > 1e-14, "the width never counts as known for sure");
+                open_for = if moment.sun_force == 0.0 { open_for + 1 } else { 0 };
+                if open_for > 300 {
+                    long += 1;
+                    refused += usize::from(!estimates.gap.valid);
+                }
+            });
+        println!("{motion}: {figures:?}; {refused} of {long} refused");
+        MOTOR_ONLY_HONESTY.check(figures.honesty);
+        assert!(figures.valid > 0.2, "it says something");
+        assert!(refused as f64 >= 0.95 * f64::from(long), "after 30 ms in the gap nothing is known");
+    }
+}
+
+#[test]
+fn a_width_that_nobody_knows_is_not_made_up() {
+    let mut trial = trial("inertia", 33);
+    trial.settings.backlash_uncertainty = 0.5;
+    let log = trial.record();
+    replay::<f64, MAPPED>(&trial.run.joint, &trial.tables(), &trial.settings, &log, 1.0, |_, _, estimates| {
+        assert!(!estimates.gap.valid && !estimates.half_backlash.valid);
+    });
+}

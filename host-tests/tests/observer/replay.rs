@@ -1,0 +1,244 @@
+//! The observer over a recording, and what its estimates are worth against the truth. Bounds are the tests' business.
+
+use std::f64::consts::TAU;
+
+use host_tests::drive_train::DriveTrainParameters;
+use model_core::design::observer::{EncoderSettings, ObserverSettings};
+use model_core::joint::JointParameters;
+use model_core::mesh::ContactState;
+use model_core::real::Real;
+use model_core::realtime::observer::{Estimates, Observer, Reading, Samples};
+use model_core::tables::observer::ObserverTables;
+
+use crate::motion::Moment;
+
+/// Ticks of the samples' clock in a second.
+pub const CLOCK_RATE: u32 = 10_000_000;
+
+/// What a data sheet says of a drive train: sizes, never the phases or signs of its errors.
+pub fn settings(train: &DriveTrainParameters) -> ObserverSettings {
+    let encoder = |encoder: &host_tests::drive_train::EncoderParameters| EncoderSettings {
+        counts_per_turn: 1 << encoder.bits,
+        wraps_at: 1 << encoder.bits,
+        absolute: true,
+        harmonic_error: encoder.once_per_turn_error.max(encoder.twice_per_turn_error),
+    };
+    ObserverSettings {
+        control_rate: train.control_rate as u32,
+        clock_rate: CLOCK_RATE,
+        motor_encoder: encoder(&train.motor_encoder),
+        output_encoder: Some(encoder(&train.output_encoder)),
+        fastest_motor: 300.0,
+        torque_delay: train.delay_periods,
+        torque_lag: train.motor.current_lag,
+        torque_limit: train.motor.torque_limit.min(1e3),
+        torque_noise_ratio: train.motor.torque_noise_ratio,
+        torque_uncertainty: (0.015 * train.motor.torque_limit).hypot(train.motor.friction.coulomb),
+        torque_ripple: train.motor.cogging_torque,
+        efficiency: train.efficiency,
+        backlash_uncertainty: 0.5,
+        compliance_uncertainty: 0.3,
+        skew: 50e-6,
+        skew_uncertainty: 30e-6,
+    }
+}
+
+/// Samples of a recorded moment.
+pub fn samples<T: Real>(settings: &ObserverSettings, moment: &Moment, period: usize) -> Samples<T> {
+    let time = (period as u64 * u64::from(settings.clock_rate / settings.control_rate)) as u32;
+    let counts = |counts: i64, encoder: EncoderSettings| {
+        let range = if encoder.wraps_at == 0 { 1 << 32 } else { i64::from(encoder.wraps_at) };
+        counts.rem_euclid(range) as u32
+    };
+    Samples {
+        time,
+        motor: Reading { counts: counts(moment.motor_counts, settings.motor_encoder), time },
+        output: settings.output_encoder.map(|encoder| Reading { counts: counts(moment.output_counts, encoder), time }),
+        torque: T::from_f64(moment.command),
+    }
+}
+
+/// Figures of one replay, from a moment on.
+#[derive(Debug, Clone, Default)]
+pub struct Figures {
+    /// Root mean square of the gap's error, over the gap 4b.
+    pub gap: f64,
+    /// Largest.
+    pub gap_worst: f64,
+    /// Part of the time outside the bands in which the reported contact was right.
+    pub contact: f64,
+    /// Landings of which the observer never said anything.
+    pub missed: usize,
+    /// Landings.
+    pub landings: usize,
+    /// Delays in reporting landings, sorted [s].
+    pub delays: Vec<f64>,
+    /// Root mean square of the load torque's error over the motor's largest torque at the output.
+    pub load_torque: f64,
+    /// Root mean square of the transmitted torque's error, likewise.
+    pub mesh_torque: f64,
+    /// Time from first force on both flanks until the width was right to 5 % for good [s].
+    pub width_after: f64,
+    /// Width at the end less the true one, over it.
+    pub width: f64,
+    /// Mean of squared gap errors over their variances, where the gap is said to be valid.
+    pub honesty: f64,
+    /// Part of the time in which the gap is said to be valid.
+    pub valid: f64,
+    /// Root mean square of the gap's error there, over the gap 4b.
+    pub gap_valid: f64,
+}
+
+impl Figures {
+    /// The delay that such a part of the landings stays below [s].
+    pub fn delay(&self, part: f64) -> f64 {
+        self.delays.get((part * self.delays.len() as f64) as usize).copied().unwrap_or(0.0)
+    }
+
+    /// The worse of each figure.
+    pub fn worse(&self, other: &Self) -> Self {
+        Self {
+            gap: self.gap.max(other.gap),
+            gap_worst: self.gap_worst.max(other.gap_worst),
+            contact: if self.landings == 0 { other.contact } else { self.contact.min(other.contact) },
+            missed: self.missed + other.missed,
+            landings: self.landings + other.landings,
+            delays: {
+                let mut delays = [self.delays.as_slice(), &other.delays].concat();
+                delays.sort_by(f64::total_cmp);
+                delays
+            },
+            load_torque: self.load_torque.max(other.load_torque),
+            mesh_torque: self.mesh_torque.max(other.mesh_torque),
+            width_after: self.width_after.max(other.width_after),
+            width: self.width.abs().max(other.width.abs()),
+            honesty: self.honesty.max(other.honesty),
+            valid: if self.landings == 0 { other.valid } else { self.valid.min(other.valid) },
+            gap_valid: self.gap_valid.max(other.gap_valid),
+        }
+    }
+}
+
+/// Replays a recording; figures are taken from `from` seconds on. `watch` sees every estimate.
+pub fn replay<T: Real, const P: usize>(
+    joint: &JointParameters,
+    tables: &ObserverTables<T>,
+    settings: &ObserverSettings,
+    log: &[Moment],
+    from: f64,
+    mut watch: impl FnMut(usize, &Moment, &Estimates<T>),
+) -> Figures {
+    let mut observer = Observer::<T, P>::new(tables);
+    let half_backlash = joint.sun_planet.half_backlash[0];
+    let gap = 4.0 * half_backlash;
+    let rated_force = joint.rated_output_torque / (2.0 * joint.geometry.carrier_base_radius());
+    let largest = settings.torque_limit * joint.geometry.ratio_by_teeth();
+    let lever = 2.0 * joint.geometry.carrier_base_radius();
+    let period = 1.0 / f64::from(settings.control_rate);
+    let first = (from / period) as usize;
+    let mut sums = [0.0; 5];
+    let mut valid = 0;
+    let mut worst: f64 = 0.0;
+    let (mut right, mut judged) = (0_usize, 0_usize);
+    let mut width_wrong_at = 0;
+    let (mut touched, mut both_touched_at) = ([false; 2], 0);
+    let mut width = 0.0;
+    let mut landing: Option<(usize, ContactState)> = None;
+    let mut side_before = ContactState::Separated;
+    let mut delays = Vec::new();
+    let mut missed = 0;
+    for (k, moment) in log.iter().enumerate() {
+        let estimates = *observer.step(&samples(settings, moment, k));
+        watch(k, moment, &estimates);
+        let value = |value: T| value.to_f64();
+        width = value(estimates.half_backlash.value) / half_backlash - 1.0;
+        if moment.sun_force.abs() > 0.05 * rated_force {
+            touched[usize::from(moment.sun_force > 0.0)] = true;
+        }
+        if touched != [true; 2] {
+            both_touched_at = k;
+        }
+        if width.abs() > 0.05 {
+            width_wrong_at = k;
+        }
+        if k < first {
+            continue;
+        }
+        let error = (value(estimates.gap.value) - moment.gap) / gap;
+        sums[0] += error * error;
+        worst = worst.max(error.abs());
+        sums[1] += ((value(estimates.load_torque.value) - moment.load_torque) / largest).powi(2);
+        sums[2] += ((value(estimates.mesh_torque.value) - moment.sun_force * lever) / largest).powi(2);
+        if estimates.gap.valid {
+            valid += 1;
+            sums[3] += (error * gap).powi(2) / value(estimates.gap.variance).max(1e-30);
+            sums[4] += error * error;
+        }
+        let side = if moment.sun_force > 0.0 {
+            ContactState::DriveSide
+        } else if moment.sun_force < 0.0 {
+            ContactState::BackSide
+        } else {
+            ContactState::Separated
+        };
+        // Within 5 % of the gap from an edge, or with less than 5 % of the rated force, nobody is judged.
+        let clear = if side == ContactState::Separated {
+            moment.gap.abs() < 0.45 * gap
+        } else {
+            moment.sun_force.abs() > 0.05 * rated_force
+        };
+        if clear {
+            judged += 1;
+            right += usize::from(side == estimates.reported_contact);
+        }
+        // A landing: the first force beyond the band on the flank opposite to the last one. A planet that bumps about
+        // in the middle of the gap is none.
+        let at_flank = moment.gap * moment.sun_force > 0.0 && moment.gap.abs() > 0.45 * gap;
+        if at_flank && moment.sun_force.abs() > 0.05 * rated_force && side != side_before {
+            if side_before != ContactState::Separated {
+                missed += usize::from(landing.is_some());
+                landing = Some((k, side));
+            }
+            side_before = side;
+        }
+        if let Some((since, _)) = landing.filter(|(_, side)| estimates.reported_contact == *side) {
+            delays.push((k - since) as f64 * period);
+            landing = None;
+        }
+    }
+    delays.sort_by(f64::total_cmp);
+    let counted = (log.len() - first) as f64;
+    let mean = |sum: f64| (sum / counted).sqrt();
+    Figures {
+        gap: mean(sums[0]),
+        gap_worst: worst,
+        contact: right as f64 / judged.max(1) as f64,
+        missed,
+        landings: delays.len() + missed,
+        delays,
+        load_torque: mean(sums[1]),
+        mesh_torque: mean(sums[2]),
+        width_after: (width_wrong_at + 1).saturating_sub(both_touched_at) as f64 * period,
+        width,
+        honesty: sums[3] / f64::from(valid.max(1)),
+        valid: f64::from(valid) / counted,
+        gap_valid: (sums[4] / f64::from(valid.max(1))).sqrt(),
+    }
+}
+
+/// Readings of other encoders in the same motion: the truth at the control periods, older by the skew at the speed then.
+pub fn with_encoders(log: &[Moment], train: &DriveTrainParameters) -> Vec<Moment> {
+    let read = |[angle, speed]: [f64; 2], encoder: &host_tests::drive_train::EncoderParameters| {
+        let angle = angle - encoder.skew * speed;
+        let error = encoder.once_per_turn_error * (angle + encoder.once_per_turn_phase).sin()
+            + encoder.twice_per_turn_error * (2.0 * angle + encoder.twice_per_turn_phase).sin();
+        ((angle + error) / TAU * f64::from(1_u32 << encoder.bits)).floor() as i64
+    };
+    log.iter()
+        .map(|moment| Moment {
+            motor_counts: read(moment.motor, &train.motor_encoder),
+            output_counts: read(moment.link, &train.output_encoder),
+            ..*moment
+        })
+        .collect()
+}

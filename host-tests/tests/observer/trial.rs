@@ -1,0 +1,110 @@
+//! One trial: a joint in motion, and an observer that was told a wrong width and compliance and nothing of offset, skew
+//! and error maps. What must come of it is the tests' business.
+
+use host_tests::drive_train::{DriveTrainParameters, EncoderParameters};
+use model_core::design::observer::{ObserverSettings, design_observer};
+use model_core::joint::JointParameters;
+use model_core::real::Real;
+use model_core::tables::observer::ObserverTables;
+
+use crate::motion::{Moment, Profile, Run, uniform};
+use crate::presets::{preset, with_backlash};
+use crate::replay::settings;
+
+/// Encoders of a trial.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Encoders {
+    /// As the preset has them, skew by the seed.
+    Preset,
+    /// 18 bits each and no error.
+    Ideal,
+    /// The preset's errors with so many bits: motor, output.
+    Bits(u32, u32),
+}
+
+/// A trial.
+#[derive(Debug, Clone)]
+pub struct Trial {
+    /// What truly moves.
+    pub run: Run,
+    /// What the observer is told of the joint.
+    pub told: JointParameters,
+    /// What it is told of the drive train.
+    pub settings: ObserverSettings,
+}
+
+/// The usual motions: slow against friction, fast against inertia, faster with gravity, random with gravity; and the
+/// friction and gravity that go with each, as parts of the preset's rated torque.
+pub const MOTIONS: [(&str, f64); 4] = [("slow", 8.0), ("inertia", 5.0), ("gravity", 5.0), ("random", 6.0)];
+
+impl Trial {
+    /// A trial of a preset: a motion by its name, encoders, half-backlash [m] and a seed for everything random.
+    pub fn new(name: &str, motion: &str, encoders: Encoders, half_backlash: Option<f64>, seed: u64) -> Self {
+        let (joint, mut train) = preset(name, seed);
+        let joint = half_backlash.map_or(joint.clone(), |half_backlash| with_backlash(&joint, half_backlash));
+        let mut uniform = uniform(seed ^ 0x7e57);
+        match encoders {
+            Encoders::Preset => {}
+            Encoders::Ideal => {
+                train.motor_encoder = EncoderParameters::ideal(18);
+                train.output_encoder = EncoderParameters::ideal(18);
+            }
+            Encoders::Bits(motor, output) => {
+                train.motor_encoder.bits = motor;
+                train.output_encoder.bits = output;
+            }
+        }
+        if encoders != Encoders::Ideal {
+            train.output_encoder.skew = 20e-6 + 70e-6 * uniform();
+        }
+        let (profile, friction, gravity, duration) = motion_of(motion, &joint, &train);
+        train.load.friction.coulomb = friction;
+        train.load.gravity_torque = gravity;
+        let wrong = if uniform() < 0.5 { [0.5, 1.2] } else { [1.5, 0.8] };
+        let mut told = with_backlash(&joint, joint.sun_planet.half_backlash[0] * wrong[0]);
+        if let Some(compliance) = &mut told.compliance {
+            compliance.stiffness *= wrong[1];
+        }
+        let settings = settings(&train);
+        Self {
+            run: Run { joint, train, profile, disturbances: Vec::new(), seed, duration, grows_at: None },
+            told,
+            settings,
+        }
+    }
+
+    /// The observer's tables.
+    pub fn tables<T: Real>(&self) -> ObserverTables<T> {
+        design_observer(&self.told, &self.settings).expect("tables")
+    }
+
+    /// The same, so long [s].
+    pub fn lasting(mut self, duration: f64) -> Self {
+        self.run.duration = duration;
+        self
+    }
+
+    /// The recording.
+    pub fn record(&self) -> Vec<Moment> {
+        self.run.record()
+    }
+}
+
+/// Profile, dry friction, gravity and duration of a motion, to the size of the joint.
+fn motion_of(name: &str, joint: &JointParameters, train: &DriveTrainParameters) -> (Profile, f64, f64, f64) {
+    let rated = joint.rated_output_torque;
+    let friction = train.load.friction.coulomb;
+    let gravity = 0.4 * rated;
+    let inertia = joint.geometry.ratio_by_teeth().powi(2) * crate::motion::inertia_at_motor(joint);
+    // A quarter of the rated torque at 1 Hz, and a turn to and fro at most.
+    let amplitude =
+        |frequency: f64, part: f64| (part * rated / inertia / (core::f64::consts::TAU * frequency).powi(2)).min(1.0);
+    let duration = MOTIONS.iter().find(|(motion, _)| *motion == name).map_or(4.0, |(_, duration)| *duration);
+    match name {
+        "slow" => (Profile::Sine(0.5, 0.2), friction.max(0.07 * rated), 0.0, duration),
+        "inertia" => (Profile::Sine(amplitude(1.0, 0.25), 1.0), friction, 0.0, duration),
+        "gravity" => (Profile::Sine(amplitude(1.5, 0.3), 1.5), friction, gravity, duration),
+        "random" => (Profile::Random(0.7 * rated / inertia, 3.0), friction, 0.2 * gravity, duration),
+        _ => (Profile::Hold, friction, 0.0, duration),
+    }
+}

@@ -1,0 +1,218 @@
+//! Reads `[profile]` and `[[disturbance]]`: what the link is asked to do and what pushes it meanwhile. Standard motions
+//! scale with the joint's rated torque, so that any joint may run them.
+
+use toml::Spanned;
+
+use super::section::Section;
+
+/// A motion with what belongs to it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Profile {
+    /// Its word.
+    pub kind: &'static str,
+    /// Where the link shall be.
+    pub course: Course,
+    /// What pushes the link.
+    pub load: Load,
+    /// Dry friction of the link over the rated output torque, in place of the joint's.
+    pub friction: Option<f64>,
+    /// Weight of the link over the rated output torque, in place of the joint's.
+    pub gravity: Option<f64>,
+    /// Length of a run by default [s].
+    pub duration: f64,
+    /// Time for learning by default [s].
+    pub settle: f64,
+}
+
+/// Where the link shall be.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Course {
+    /// Amplitude [rad] times a sine [Hz].
+    Sine(f64, f64),
+    /// Standard deviation [rad] and highest frequency [Hz].
+    Random(f64, f64),
+    /// Height [rad], duration [s] and shortest rest [s].
+    Steps(f64, f64, f64),
+    /// At an angle [rad].
+    Hold(f64),
+    /// As a CSV file has it.
+    File(String),
+}
+
+/// What pushes the link as part of the profile; a torque that is not given scales with the rated one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Load {
+    /// Nothing.
+    None,
+    /// To and fro: torque [N m], frequency [Hz].
+    Wave(Wave, Option<f64>, f64),
+    /// One push when the figures begin: torque [N m], length [s].
+    Kick(Option<f64>, f64),
+    /// A push each second, to and fro: torque [N m], length [s].
+    Impacts(Option<f64>, f64),
+    /// Slowly to and fro: torque [N m], frequency [Hz].
+    Slow(Option<f64>, f64),
+}
+
+/// How a load goes to and fro.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Wave {
+    /// Smoothly.
+    Sine,
+    /// At once.
+    Square,
+}
+
+/// A torque on the link by the file.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Push {
+    /// `step`, `pulse` or `sine`.
+    pub kind: &'static str,
+    /// [s].
+    pub start: f64,
+    /// Of a pulse [s].
+    pub length: f64,
+    /// Braking [N m].
+    pub torque: f64,
+    /// Of a sine [Hz].
+    pub frequency: f64,
+}
+
+/// T1 has a load friction of this part of the rated torque: 1 N m for Q1.
+const FRICTION: f64 = 1.0 / 12.0;
+/// T2b has a weight of this part of the rated torque: 6 N m for Q1.
+const WEIGHT: f64 = 0.5;
+
+impl Profile {
+    /// A motion as it is without further keys.
+    pub fn of_kind(kind: &'static str) -> Self {
+        let usual = Self {
+            kind,
+            course: Course::Hold(0.0),
+            load: Load::None,
+            friction: None,
+            gravity: Some(0.0),
+            duration: 8.0,
+            settle: 2.0,
+        };
+        match kind {
+            "T1" => Self { course: Course::Sine(0.5, 0.2), friction: Some(FRICTION), duration: 12.0, ..usual },
+            "T2" | "impedance" => Self { course: Course::Sine(0.5, 1.0), ..usual }.timed(1.0),
+            "T2b" => Self { course: Course::Sine(0.3, 1.5), gravity: Some(WEIGHT), ..usual }.timed(1.5),
+            "sine" => Self { course: Course::Sine(0.5, 1.0), gravity: None, ..usual }.timed(1.0),
+            "random" => Self { course: Course::Random(0.2, 2.0), ..usual },
+            "steps" => Self { course: Course::Steps(0.05, 0.06, 0.3), ..usual },
+            "disturbed_hold" => Self { load: Load::Wave(Wave::Sine, None, 1.0), ..usual },
+            "free_hold" => Self { load: Load::Kick(None, 0.02), duration: 14.0, settle: 2.1, ..usual },
+            "impact" => Self { load: Load::Impacts(None, 0.01), ..usual },
+            "hysteresis" => Self { load: Load::Slow(None, 0.25), duration: 9.0, settle: 1.0, ..usual },
+            // A recording brings its own load, or none.
+            _ => Self { gravity: None, ..usual },
+        }
+    }
+
+    /// Four periods to be judged by, after as much as learning takes.
+    fn timed(self, frequency: f64) -> Self {
+        Self { duration: 2.0 + 4.0 / frequency, settle: 1.0 + (1.0 / frequency).max(1.0), ..self }
+    }
+}
+
+/// Reads `[profile]`.
+pub(super) fn read(section: &Section<'_>) -> Option<Profile> {
+    if !section.has("kind") {
+        section.missing("kind");
+    }
+    let kind = section.word("kind")?;
+    let mut profile = Profile::of_kind(kind);
+    let mut taken = vec!["kind"];
+    {
+        let mut set = |name: &'static str, value: &mut f64| {
+            taken.push(name);
+            *value = section.number(name).unwrap_or(*value);
+        };
+        match &mut profile.course {
+            Course::Hold(_) if kind == "csv" => {}
+            Course::Sine(amplitude, frequency) => {
+                set("amplitude_rad", amplitude);
+                set("frequency_Hz", frequency);
+            }
+            Course::Random(amplitude, highest) => {
+                set("amplitude_rad", amplitude);
+                set("highest_Hz", highest);
+            }
+            Course::Steps(height, duration, rest) => {
+                set("height_rad", height);
+                set("move_s", duration);
+                set("rest_s", rest);
+            }
+            Course::Hold(angle) => set("angle_rad", angle),
+            Course::File(_) => {}
+        }
+        match &mut profile.load {
+            Load::None => {}
+            Load::Wave(_, _, frequency) | Load::Slow(_, frequency) => set("frequency_Hz", frequency),
+            Load::Kick(_, length) | Load::Impacts(_, length) => set("pulse_s", length),
+        }
+    }
+    if let Load::Wave(_, torque, _) | Load::Slow(torque, _) | Load::Kick(torque, _) | Load::Impacts(torque, _) =
+        &mut profile.load
+    {
+        taken.push("torque_N_m");
+        *torque = section.number("torque_N_m");
+    }
+    if let Load::Wave(wave, ..) = &mut profile.load {
+        taken.push("wave");
+        if section.word("wave") == Some("square") {
+            *wave = Wave::Square;
+        }
+    }
+    if let Course::Sine(_, frequency) = profile.course
+        && section.has("frequency_Hz")
+    {
+        profile = profile.timed(frequency);
+    }
+    if kind == "csv" {
+        taken.push("file");
+        if !section.has("file") {
+            section.missing("file");
+        }
+        profile.course = Course::File(section.text("file")?);
+    }
+    refuse_others(section, &taken, kind);
+    Some(profile)
+}
+
+/// Reads one `[[disturbance]]`.
+pub(super) fn read_push(section: &Section<'_>) -> Option<Push> {
+    if !section.has("kind") {
+        section.missing("kind");
+    }
+    let kind = section.word("kind")?;
+    let taken: &[&str] = match kind {
+        "step" => &["kind", "start_s", "torque_N_m"],
+        "pulse" => &["kind", "start_s", "length_s", "torque_N_m"],
+        _ => &["kind", "torque_N_m", "frequency_Hz"],
+    };
+    taken.iter().filter(|name| !section.has(name)).for_each(|name| section.missing(name));
+    refuse_others(section, taken, kind);
+    let number = |name: &str| if taken.contains(&name) { section.number(name) } else { Some(0.0) };
+    Some(Push {
+        kind,
+        start: number("start_s")?,
+        length: number("length_s")?,
+        torque: number("torque_N_m")?,
+        frequency: number("frequency_Hz")?,
+    })
+}
+
+/// Complains about keys that exist but mean nothing to this kind.
+pub(super) fn refuse_others(section: &Section<'_>, taken: &[&str], kind: &str) {
+    for (name, value) in section.table {
+        let name = name.get_ref().as_ref();
+        if !taken.contains(&name) && super::keys::KEYS.iter().any(|key| key.name == name) {
+            let known: Vec<String> = taken.iter().map(|name| format!("`{name}`")).collect();
+            let help = format!("kind \"{kind}\" has {}", known.join(", "));
+            section.problems.error(Spanned::span(value), format!("`{name}` means nothing to \"{kind}\""), help);
+        }
+    }
+}

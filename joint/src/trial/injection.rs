@@ -1,0 +1,283 @@
+//! Faults at work: what they do to counts, torques, frames and teeth while a run goes on. Which faults there are is the
+//! file's business; nothing here knows a controller.
+
+use std::collections::VecDeque;
+use std::f64::consts::TAU;
+
+use host_tests::closed_loop::SetPoint;
+use host_tests::drive_train::Measurement;
+use host_tests::reference::Observation;
+
+use super::draw::Stream;
+use super::file::{EncoderName, Fault, FaultKind, FrameName};
+use super::plant::Teeth;
+
+/// One encoder reading and when it was taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Frame {
+    /// Whole turns included.
+    pub counts: i64,
+    /// Control period.
+    pub period: u64,
+}
+
+/// What reaches a controller in one control period.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Seen {
+    /// Now.
+    pub period: u64,
+    /// From the motor's encoder.
+    pub motor: Frame,
+    /// From the output encoder, if a frame came.
+    pub output: Option<Frame>,
+}
+
+/// All faults of a run with what they remember.
+#[derive(Debug, Clone)]
+pub struct Injection {
+    faults: Vec<Active>,
+    period: f64,
+    counts_per_turn: [f64; 2],
+    /// What the encoders read at the start, where they are homed: what they say is counted from there.
+    home: Option<[i64; 2]>,
+    past: [VecDeque<Frame>; 2],
+    last: Option<Seen>,
+    set_points: VecDeque<(u64, SetPoint)>,
+    given: Option<(u64, SetPoint)>,
+    teeth: ToothState,
+}
+
+#[derive(Debug, Clone)]
+struct Active {
+    fault: Fault,
+    stream: Stream,
+    /// Counts when the encoder froze, or counts that were lost.
+    held: Option<i64>,
+    lost: f64,
+    before: Option<i64>,
+    /// Fate of the last set-point that was sent.
+    dropped: Option<(u64, bool)>,
+}
+
+/// What the teeth were made to be.
+#[derive(Debug, Clone)]
+struct ToothState {
+    half_backlash: f64,
+    now: f64,
+    stiffness: f64,
+    soft: Vec<bool>,
+    sun_teeth: f64,
+}
+
+/// More than this is never remembered of readings and set-points [periods]: delays are a second at most.
+const MEMORY: usize = 100_000;
+
+impl Injection {
+    /// The faults of a run.
+    pub fn new(faults: &[Fault], seed: u64, case: &super::case::Case) -> Self {
+        let active = |(index, fault): (usize, &Fault)| Active {
+            fault: fault.clone(),
+            stream: Stream::new(seed, &format!("fault {index} {}", fault.word)),
+            held: None,
+            lost: 0.0,
+            before: None,
+            dropped: None,
+        };
+        let joint = &case.truth.parameters;
+        let encoders = [&case.train.motor_encoder, &case.train.output_encoder];
+        Self {
+            faults: faults.iter().enumerate().map(active).collect(),
+            period: 1.0 / case.train.control_rate,
+            counts_per_turn: encoders.map(|encoder| (1_u64 << encoder.bits) as f64),
+            home: None,
+            past: Default::default(),
+            last: None,
+            set_points: VecDeque::new(),
+            given: None,
+            teeth: ToothState {
+                half_backlash: case.half_backlash(),
+                now: case.half_backlash(),
+                stiffness: joint.sun_planet.mean_stiffness,
+                soft: vec![false; joint.geometry.planets],
+                sun_teeth: f64::from(joint.geometry.sun_teeth),
+            },
+        }
+    }
+
+    /// What becomes of a measurement on its way to the controller.
+    pub fn sense(&mut self, measurement: &Measurement) -> Seen {
+        let time = measurement.period as f64 * self.period;
+        let names = [EncoderName::Motor, EncoderName::Output];
+        let counts = [measurement.motor_counts, measurement.output_counts];
+        let home = *self.home.get_or_insert(counts);
+        let frame = |index: usize| Some(Frame { counts: counts[index] - home[index], period: measurement.period });
+        let mut frames = [frame(0), frame(1)];
+        for (index, frame) in frames.iter_mut().enumerate() {
+            for fault in self.faults.iter_mut() {
+                if let Some(frame) = frame {
+                    frame.counts = fault.count(time, names[index], frame.counts, self.counts_per_turn[index]);
+                }
+            }
+            let Some(fresh) = *frame else { continue };
+            let past = &mut self.past[index];
+            past.push_back(fresh);
+            past.truncate(MEMORY);
+            let name = [FrameName::Motor, FrameName::Output][index];
+            let mut keep = 0;
+            for fault in self.faults.iter_mut() {
+                match fault.fault.kind {
+                    FaultKind::LateFrames(of, delay) if of == name => {
+                        let late = (delay / self.period).round() as usize;
+                        keep = keep.max(late);
+                        if fault.fault.is_on(time) {
+                            *frame = past.iter().rev().nth(late).or(past.front()).copied();
+                        }
+                    }
+                    FaultKind::LostFrames(of, share)
+                        if of == name && fault.fault.is_on(time) && fault.stream.uniform() < share =>
+                    {
+                        *frame = None;
+                    }
+                    _ => {}
+                }
+            }
+            while past.len() > keep + 1 {
+                past.pop_front();
+            }
+        }
+        // A motor encoder that says nothing leaves its last word standing, with the time at which it was said.
+        let motor = frames[0].or(self.last.map(|last| last.motor)).unwrap_or(Frame { counts: 0, period: 0 });
+        let seen = Seen { period: measurement.period, motor, output: frames[1] };
+        self.last = Some(seen);
+        seen
+    }
+
+    /// The set-point that the controller acts on; `number` tells one frame from the next.
+    pub fn receive(&mut self, time: f64, number: u64, set_point: SetPoint) -> SetPoint {
+        if self.set_points.back().is_none_or(|(last, _)| *last != number) {
+            self.set_points.push_back((number, set_point));
+        }
+        let mut arrived = Some((number, set_point));
+        let mut keep = 1;
+        for fault in self.faults.iter_mut() {
+            match fault.fault.kind {
+                FaultKind::LateFrames(FrameName::SetPoints, delay) => {
+                    let late = (delay / self.period).round() as usize;
+                    keep = keep.max(late + 1);
+                    if fault.fault.is_on(time) {
+                        arrived = self.set_points.iter().rev().nth(late).or(self.set_points.front()).copied();
+                    }
+                }
+                FaultKind::LostFrames(FrameName::SetPoints, share) if fault.fault.is_on(time) => {
+                    // A frame that is held for several periods is lost once.
+                    let lost = match fault.dropped {
+                        Some((last, lost)) if last == number => lost,
+                        _ => fault.stream.uniform() < share,
+                    };
+                    fault.dropped = Some((number, lost));
+                    arrived = arrived.filter(|_| !lost);
+                }
+                _ => {}
+            }
+        }
+        while self.set_points.len() > keep {
+            self.set_points.pop_front();
+        }
+        self.given = arrived.or(self.given).or(Some((number, set_point)));
+        self.given.map_or(set_point, |(_, set_point)| set_point)
+    }
+
+    /// What the motor makes of a torque that was asked of it [N m].
+    pub fn torque(&self, time: f64, command: f64) -> f64 {
+        let on = self.faults.iter().filter(|active| active.fault.is_on(time));
+        on.fold(command, |torque, active| match active.fault.kind {
+            FaultKind::TorqueBias(ratio, offset) => torque * (1.0 + ratio) + offset,
+            FaultKind::Saturation(limit) => torque.clamp(-limit, limit),
+            _ => torque,
+        })
+    }
+
+    /// Half-backlash that the teeth have now [m].
+    pub fn half_backlash_now(&self) -> f64 {
+        self.teeth.now
+    }
+
+    /// Changes the teeth as faults begin, end, or meet.
+    pub fn wear(&mut self, time: f64, joint: &Observation, inside: &mut dyn Teeth) {
+        let teeth = &mut self.teeth;
+        let (mut half_backlash, mut soft) = (teeth.half_backlash, 1.0);
+        for active in self.faults.iter().filter(|active| active.fault.is_on(time)) {
+            match active.fault.kind {
+                FaultKind::GrownBacklash(grown) => half_backlash = grown,
+                FaultKind::BrokenTooth(ratio) => soft = ratio,
+                _ => {}
+            }
+        }
+        if half_backlash != teeth.now {
+            inside.set_half_backlash(half_backlash);
+            teeth.now = half_backlash;
+        }
+        if soft == 1.0 && !teeth.soft.contains(&true) {
+            return;
+        }
+        let planets = teeth.soft.len();
+        for (planet, is_soft) in teeth.soft.iter_mut().enumerate() {
+            // The broken tooth meets each planet once in a turn of the sun against the carrier, for one pitch.
+            let angle = joint.motor_angle - joint.carrier_angle - TAU * planet as f64 / planets as f64;
+            let meets = soft < 1.0 && angle.rem_euclid(TAU) < TAU / teeth.sun_teeth;
+            if meets != *is_soft {
+                *is_soft = meets;
+                inside.set_sun_planet_stiffness(planet, teeth.stiffness * if meets { soft } else { 1.0 });
+            }
+        }
+    }
+}
+
+impl Fault {
+    /// Whether it is on at a time [s].
+    pub fn is_on(&self, time: f64) -> bool {
+        // Times are whole periods up to rounding.
+        (self.start - 1e-9..self.end - 1e-9).contains(&time)
+    }
+}
+
+impl Active {
+    /// What an encoder says in place of its counts.
+    fn count(&mut self, time: f64, encoder: EncoderName, counts: i64, counts_per_turn: f64) -> i64 {
+        let on = self.fault.is_on(time);
+        match self.fault.kind {
+            FaultKind::Frozen(of) if of == encoder => match (on, self.held) {
+                (false, _) => {
+                    self.held = None;
+                    counts
+                }
+                (true, Some(held)) => held,
+                (true, None) => {
+                    self.held = Some(counts);
+                    counts
+                }
+            },
+            FaultKind::Offset(of, offset, angle) if of == encoder && on => {
+                counts + (offset + angle / TAU * counts_per_turn).round() as i64
+            }
+            FaultKind::Noise(of, deviation) if of == encoder && on => {
+                counts + (deviation * self.stream.normal()).round() as i64
+            }
+            FaultKind::Eccentric(of, error) if of == encoder && on => {
+                let error = error * (counts as f64 / counts_per_turn * TAU).sin();
+                counts + (error / TAU * counts_per_turn).round() as i64
+            }
+            FaultKind::MissingCounts(of, share) if of == encoder => {
+                // What was not counted stays uncounted after the fault.
+                let moved = counts - self.before.unwrap_or(counts);
+                self.before = Some(counts);
+                self.lost += if on { share * moved as f64 } else { 0.0 };
+                counts - self.lost.trunc() as i64
+            }
+            _ => counts,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

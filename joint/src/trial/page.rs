@@ -1,0 +1,240 @@
+//! The report of tests: one HTML page that needs neither network nor scripts, what failed first. Pictures come from
+//! `pictures`, the look from the run reports.
+
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use super::campaign::Tested;
+use super::controller::ControllerName;
+use super::pictures;
+use super::record::{TestRecord, TestsRecord};
+use crate::record::Check;
+use crate::report::page::STYLE;
+use crate::report::plot::unit::figure as number;
+use crate::report::plot::{Figure, ink};
+use crate::report::sections::{check_table, tile};
+
+/// What is shown of every controller: name, heading, unit.
+const COMPARED: [(&str, &str, &str); 9] = [
+    ("rms_mrad", "error RMS", "mrad"),
+    ("peak_mrad", "error peak", "mrad"),
+    ("reversal_error_mrad", "reversal error", "mrad"),
+    ("deviation_rms_mrad", "deviation RMS", "mrad"),
+    ("lost_motion_ms", "lost motion", "ms"),
+    ("crossings", "crossings", ""),
+    ("effort_N_m", "torque effort", "N m"),
+    ("peak_mesh_force_N", "peak mesh force", "N"),
+    ("peak_mesh_force_ratio", "over rated", ""),
+];
+
+/// The whole page.
+pub fn render(record: &TestsRecord, tested: &[Tested]) -> String {
+    let (failed, passed): (Vec<&Tested>, Vec<&Tested>) = tested.iter().partition(|test| !test.record.passed);
+    let title = if failed.is_empty() { "passed".to_owned() } else { format!("{} failed", failed.len()) };
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="color-scheme" content="light dark";
+                title { "Tests: " (title) }
+                style { (PreEscaped(ink::style_sheet(":root"))) (PreEscaped(STYLE)) }
+            }
+            body { main {
+                (header(record, failed.len()))
+                (tiles(record))
+                @if !failed.is_empty() { (failures(record)) }
+                @if tested.len() > 1 { (overview(record)) }
+                @for test in failed.iter().chain(&passed) { (section(test)) }
+                (origin(record))
+                footer { "joint " (record.host_version) " · " (record.schema) " · every figure is in record.json, every run in runs/*.mcap" }
+            } }
+        }
+    };
+    page.into_string()
+}
+
+fn pill(passed: bool) -> Markup {
+    html! { span class={ "pill " @if passed { "passed" } @else { "failed" } } { @if passed { "PASSED" } @else { "FAILED" } } }
+}
+
+fn header(record: &TestsRecord, failed: usize) -> Markup {
+    let (class, word) = match failed {
+        0 => ("passed", "PASSED".to_owned()),
+        1 => ("failed", "1 TEST FAILED".to_owned()),
+        many => ("failed", format!("{many} TESTS FAILED")),
+    };
+    html! {
+        header {
+            div.title { h1 { "Observer and compensation" } span class={ "pill " (class) } { (word) } }
+            p.subtitle {
+                "On the " (record.on) ", plant " strong { (record.plant) }
+                @if record.full { " · full lists of seeds" } " · " (record.date)
+            }
+        }
+    }
+}
+
+fn tiles(record: &TestsRecord) -> Markup {
+    let tests = &record.tests;
+    let passed = tests.iter().filter(|test| test.passed).count();
+    let asserted: usize = tests.iter().map(|test| test.assertions.len()).sum();
+    let failed: usize = tests.iter().map(|test| test.failed().count()).sum();
+    let runs: usize = tests.iter().map(|test| test.runs.len()).sum();
+    let of = |part: usize, whole: usize| html! { (part) span.of { " of " (whole) } };
+    html! {
+        section.tiles {
+            (tile("Tests passed", html! {}, of(passed, tests.len())))
+            (tile("Assertions held", html! {}, of(asserted - failed, asserted)))
+            (tile("Runs", html! {}, html! { (runs) }))
+            (tile("On the clock", html! {}, html! { (number((10.0 * record.seconds).round() / 10.0)) span.of { " s" } }))
+        }
+    }
+}
+
+/// What failed, over all tests, with the line that runs it again.
+fn failures(record: &TestsRecord) -> Markup {
+    html! {
+        section {
+            h2 { "What failed" }
+            @for test in record.tests.iter().filter(|test| !test.passed) {
+                div.notice.bad {
+                    strong { (test.file) } @if !test.title.is_empty() { " – " (test.title) }
+                    @if let Some(why) = &test.broken { div { "Broken off: " (why) } }
+                    @for assertion in test.failed() {
+                        div {
+                            (assertion.check().name) " is " strong { (assertion.figure.map_or("none".into(), number)) } " " (assertion.unit)
+                            ", bound " (bound(&assertion.check())) @if let Some(seed) = assertion.seed { ", seed " (seed) }
+                        }
+                    }
+                    pre { (test.replay) }
+                }
+            }
+        }
+    }
+}
+
+fn bound(check: &Check) -> String {
+    use crate::record::Bound;
+    match check.bound {
+        Bound::AtMost(bound) => format!("≤ {}", number(bound)),
+        Bound::AtLeast(bound) => format!("≥ {}", number(bound)),
+        Bound::Exactly(bound) => format!("= {}", number(bound)),
+        Bound::None => "–".into(),
+    }
+}
+
+/// One row for each test: with compensation, without, against the best rival.
+fn overview(record: &TestsRecord) -> Markup {
+    let worst = |test: &TestRecord, controller: &str| test.largest(controller, "rms_mrad").map_or("–".into(), number);
+    html! {
+        section {
+            h2 { "All tests" }
+            p.lead { "Error of the link in mrad RMS, worst of all seeds." }
+            table {
+                thead { tr { th { "Verdict" } th { "Test" } th.number { "tested" } th.number { "baseline" } th.number { "best rival" } th.number { "seeds" } } }
+                tbody { @for test in &record.tests {
+                    @let impedance = ControllerName::of_word(&test.controller, false).wants_gains();
+                    tr {
+                        td.verdict { span class={ "mark " @if test.passed { "passed" } @else { "failed" } } { @if test.passed { "passed" } @else { "FAILED" } } }
+                        td { a href={ "#" (anchor(test)) } { (test.file) } " " span.note { (test.title) } }
+                        td.number { (worst(test, &test.controller)) }
+                        td.number { (worst(test, ControllerName::baseline(impedance).word())) }
+                        td.number { (worst(test, ControllerName::best_rival(impedance).word())) }
+                        td.number { (test.seeds.len()) }
+                    }
+                } }
+            }
+        }
+    }
+}
+
+fn anchor(test: &TestRecord) -> String {
+    test.file.chars().map(|letter| if letter.is_ascii_alphanumeric() { letter } else { '-' }).collect()
+}
+
+fn section(tested: &Tested) -> Markup {
+    let test = &tested.record;
+    let checks: Vec<Check> = test.assertions.iter().map(|assertion| assertion.check()).collect();
+    html! {
+        section.names id=(anchor(test)) {
+            div.title { h2 { (test.file) } (pill(test.passed)) }
+            p.subtitle {
+                @if !test.title.is_empty() { strong { (test.title) } " · " }
+                "joint " (test.joint) " · profile " (test.profile) " · controller " (test.controller)
+                " · " (number(test.duration_s)) " s, figures from " (number(test.settle_s)) " s on"
+                @for fault in &test.faults { " · fault " (fault) }
+            }
+            @if let Some(why) = &test.broken { div.notice.bad role="alert" { strong { "BROKEN OFF. " } (why) } }
+            @if checks.is_empty() { p.none { "Nothing is asserted." } } @else { (check_table(&checks, &html! {})) }
+            (compared(test))
+            @if test.passed {
+                details { summary { "Pictures, seed " (test.shown_seed) } (all_pictures(tested)) }
+            } @else { (all_pictures(tested)) }
+            h3 { "Again" }
+            pre { (test.replay) }
+        }
+    }
+}
+
+/// Figures of every controller, worst of all seeds.
+fn compared(test: &TestRecord) -> Markup {
+    let controllers = test.controllers();
+    let shown: Vec<_> = COMPARED
+        .into_iter()
+        .filter(|(name, _, _)| controllers.iter().any(|controller| test.largest(controller, name).is_some()))
+        .collect();
+    html! {
+        h3 { "With compensation and without" }
+        table.wide {
+            thead { tr {
+                th { "Controller" }
+                @for (_, heading, unit) in &shown { th.number { (heading) @if !unit.is_empty() { " [" (unit) "]" } } }
+            } }
+            tbody { @for controller in &controllers {
+                tr {
+                    td { (ControllerName::of_word(controller, false).label()) }
+                    @for (name, _, _) in &shown { td.number { (test.largest(controller, name).map_or("–".into(), number)) } }
+                }
+            } }
+        }
+        @if test.seeds.len() > 1 { p.note { "Largest of " (test.seeds.len()) " seeds." } }
+    }
+}
+
+fn all_pictures(tested: &Tested) -> Markup {
+    html! {
+        @if let Some(whole) = pictures::whole(tested) {
+            (picture(&whole, html! { "Seed " (tested.record.shown_seed) ", least and greatest error of each stretch; lost motion is the time that each crossing took. Figures are taken from "
+                (number(tested.record.settle_s)) " s on." }))
+        }
+        @if let Some(close) = pictures::close(tested) {
+            (picture(&close, html! { strong { "Closely: " } "the longest crossing of the gap after " (number(tested.record.settle_s)) " s, a point each millisecond." }))
+        }
+    }
+}
+
+fn picture(figure: &Figure, caption: Markup) -> Markup {
+    html! { figure { (PreEscaped(figure.to_svg())) figcaption { (caption) } } }
+}
+
+/// Where it comes from: digests of files and runs.
+fn origin(record: &TestsRecord) -> Markup {
+    html! {
+        section {
+            h2 { "Origin" }
+            p.lead { (record.host) " · joint " (record.host_version) @if let Some(commit) = &record.git_commit { " · commit " code { (commit) } } }
+            details { summary { "Digests of all runs" }
+                table {
+                    thead { tr { th { "Test" } th { "Controller" } th.number { "Seed" } th { "Digest" } th { "Log" } } }
+                    tbody { @for test in &record.tests { @for run in &test.runs {
+                        tr {
+                            td { (test.file) } td { (run.controller) } td.number { (run.seed) } td { code { (run.digest) } }
+                            td { @if let Some(log) = &run.log { a href=(log) { (log) } } @else if let Some(why) = &run.broken { (why) } }
+                        }
+                    } } }
+                }
+            }
+        }
+    }
+}

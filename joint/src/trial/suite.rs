@@ -1,0 +1,127 @@
+//! Which test files a command is about: one file, or all of a folder, each read and checked against its joint before
+//! anything runs. Whether a file is one of tests at all is asked here too.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use sha2::{Digest, Sha256};
+
+use super::case::{Case, check_changes, recorded};
+use super::file::{self, FaultKind, TestFile};
+use super::plant::PlantName;
+use super::recorded::Recorded;
+use crate::check::{self, Loaded, diagnostic};
+use crate::failure::{Failure, Outcome};
+
+/// A test that can run.
+pub struct Test {
+    /// Path as the user named it.
+    pub name: String,
+    /// SHA-256 of its text.
+    pub sha256: String,
+    /// What it says.
+    pub file: TestFile,
+    /// Its joint.
+    pub joint: Loaded,
+    /// Its motion, if it is a recorded one.
+    pub motion: Option<Recorded>,
+}
+
+/// Whether a path is one of tests: a folder, or a file that is no joint file.
+pub fn is_of_tests(path: &Path) -> bool {
+    path.is_dir() || fs::read_to_string(path).is_ok_and(|text| file::is_test_file(&text))
+}
+
+/// Reads a file, or every file of a folder that a run is for.
+pub fn load(path: &Path, full: bool, plant: PlantName) -> Outcome<Vec<Test>> {
+    if !path.is_dir() {
+        return Ok(vec![load_one(path, plant)?]);
+    }
+    let unreadable = |error| Failure::new(format!("cannot read the folder {}: {error}", path.display()));
+    let mut paths: Vec<PathBuf> = Vec::new();
+    for entry in fs::read_dir(path).map_err(unreadable)? {
+        let path = entry.map_err(unreadable)?.path();
+        if path.extension().is_some_and(|extension| extension == "toml") {
+            paths.push(path);
+        }
+    }
+    paths.sort();
+    let mut tests = Vec::new();
+    for path in &paths {
+        let test = load_one(path, plant)?;
+        if full || !test.file.only_with_full {
+            tests.push(test);
+        }
+    }
+    if tests.is_empty() {
+        let help = "a test file is TOML, as docs/hil-file.md tells; those with only_with_full run with --full";
+        return Err(Failure::new(format!("there is no test to run in {}", path.display())).with_help(help));
+    }
+    Ok(tests)
+}
+
+fn load_one(path: &Path, plant: PlantName) -> Outcome<Test> {
+    let name = path.display().to_string();
+    let text = fs::read_to_string(path).map_err(|error| Failure::new(format!("cannot read {name}: {error}")))?;
+    let drawn = |problems: &[joints::Problem]| Failure::from_report(diagnostic::report(&name, &text, problems));
+    let file = file::read(&text).map_err(|problems| drawn(&problems))?;
+    let folder = path.parent().unwrap_or(Path::new("."));
+    let joint = joint(&file.joint, folder).map_err(|failure| match failure.message() {
+        "" => failure,
+        _ => failure.while_doing(&name),
+    })?;
+    check_changes(&file, &joint.text).map_err(|problems| drawn(&problems))?;
+    let broken_tooth = file.faults.iter().any(|fault| matches!(fault.kind, FaultKind::BrokenTooth(_)));
+    if broken_tooth && plant == PlantName::Core {
+        return Err(Failure::new(format!(
+            "{name}: the core's planets share their stiffness, so no tooth of it can break"
+        ))
+        .with_help("run it with --plant reference"));
+    }
+    let motion = recorded(&file, folder).map_err(|failure| failure.while_doing(&name))?;
+    let file = match (&motion, text.contains("duration_s")) {
+        // A recorded motion is as long as it is, unless the file says otherwise.
+        (Some(motion), false) => TestFile { duration: motion.duration().max(file.settle + 0.1), ..file },
+        _ => file,
+    };
+    let test = Test { name, sha256: sha256(&text), file, joint, motion };
+    test.try_design()?;
+    Ok(test)
+}
+
+/// A joint file beside the test file goes before one that the command would find.
+fn joint(name: &str, folder: &Path) -> Outcome<Loaded> {
+    let beside = folder.join(name);
+    check::load(if beside.is_file() { &beside } else { Path::new(name) })
+}
+
+fn sha256(text: &str) -> String {
+    Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+impl Test {
+    /// The case of a seed.
+    pub fn case(&self, seed: u64) -> Outcome<Case> {
+        Case::new(&self.file, &self.joint.text, seed, self.motion.as_ref()).map_err(|f| f.while_doing(&self.name))
+    }
+
+    /// What cannot be designed should be known before the first run.
+    fn try_design(&self) -> Outcome<()> {
+        let seed = self.file.seeds.first().copied().unwrap_or(1);
+        let case = self.case(seed)?;
+        if self.file.controller.is_ours() {
+            case.design(&self.file).map_err(|failure| failure.while_doing(&self.name))?;
+        }
+        Ok(())
+    }
+
+    /// SHA-256 of the joint file's text.
+    pub fn joint_sha256(&self) -> String {
+        sha256(&self.joint.text)
+    }
+
+    /// Name of the file without folders and ending, for the names of logs.
+    pub fn stem(&self) -> String {
+        Path::new(&self.name).file_stem().unwrap_or_default().to_string_lossy().into_owned()
+    }
+}

@@ -1,0 +1,52 @@
+//! What tests say on a terminal: a line for each as it ends, then every assertion, failed ones first. The report shows the
+//! same with more room.
+
+use super::record::{TestRecord, TestsRecord};
+use crate::hil::table;
+use crate::record::{Check, Verdict};
+
+/// A test that has ended.
+pub fn line(test: &TestRecord) -> String {
+    let word = if test.passed { "ok" } else { "FAILED" };
+    let held = test.assertions.len() - test.failed().count();
+    let of = format!("{held} of {} held", test.assertions.len());
+    format!("{word:8} {} ({of}, {} runs, {:.1} s)", test.file, test.runs.len(), test.seconds)
+}
+
+/// All tests.
+pub fn table(record: &TestsRecord) -> String {
+    let mut tests: Vec<&TestRecord> = record.tests.iter().collect();
+    tests.sort_by_key(|test| test.passed);
+    let mut text = String::new();
+    for test in tests {
+        let seeds = match test.seeds.as_slice() {
+            [one] => format!("seed {one}"),
+            many => format!("{} seeds", many.len()),
+        };
+        text += &format!(
+            "{}: {} of joint {}, {}, plant {}, {seeds}\n",
+            test.file, test.profile, test.joint, test.controller, record.plant
+        );
+        if !test.title.is_empty() {
+            text += &format!("  {}\n", test.title);
+        }
+        if let Some(why) = &test.broken {
+            text += &format!("BROKEN   {why}\n");
+        }
+        let mut checks: Vec<Check> = test.assertions.iter().map(|assertion| assertion.check()).collect();
+        checks.sort_by_key(|check| check.verdict != Verdict::Failed);
+        text += &table::table(&checks, false);
+        if checks.is_empty() {
+            let rms = test.largest(&test.controller, "rms_mrad");
+            text += &format!(
+                "nothing is asserted; error {} mrad RMS at worst\n",
+                rms.map_or("-".to_owned(), |rms| format!("{rms:.3}"))
+            );
+        }
+        if !test.passed {
+            text += &format!("again:   {}\n", test.replay);
+        }
+        text.push('\n');
+    }
+    text
+}

@@ -1,0 +1,85 @@
+//! A run thinned for pictures: a point each millisecond, and each crossing of the gap. Figures are never made from it.
+
+use super::execution::Ran;
+
+/// One point.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Point {
+    /// [s].
+    pub time: f32,
+    /// [rad].
+    pub wanted: f32,
+    /// Wanted less link [rad].
+    pub error: f32,
+    /// Gap coordinate [m].
+    pub gap: f32,
+    /// As the observer has it [m]; NaN without one.
+    pub estimated_gap: f32,
+    /// Motor torque [N m].
+    pub torque: f32,
+    /// Largest net force of the sun's meshes in this millisecond [N].
+    pub force: f32,
+}
+
+/// A thinned run.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Trace {
+    /// A thousand a second.
+    pub points: Vec<Point>,
+    /// When a flank was touched and how long the way to it took [s].
+    pub crossings: Vec<(f64, f64)>,
+    /// Half of the free gap at the end [m].
+    pub half_gap: f64,
+}
+
+/// Share of the half-gap within which a flank counts as touching.
+const NEAR: f64 = 0.9;
+
+impl Trace {
+    /// The same, with bins of so many points reduced to those of least and greatest error: enough for a whole run.
+    pub fn coarse(&self, bin: usize) -> Self {
+        let ends = |points: &[Point]| {
+            let by_error = |a: &&Point, b: &&Point| a.error.total_cmp(&b.error);
+            let force = points.iter().map(|point| point.force).fold(0.0, f32::max);
+            let mut both: Vec<Point> =
+                points.iter().min_by(by_error).into_iter().chain(points.iter().max_by(by_error)).copied().collect();
+            both.sort_by(|a, b| a.time.total_cmp(&b.time));
+            both.dedup();
+            both.iter_mut().for_each(|point| point.force = force);
+            both
+        };
+        Self { points: self.points.chunks(bin.max(1)).flat_map(ends).collect(), ..self.clone() }
+    }
+
+    /// Of a run.
+    pub fn of(ran: &Ran) -> Self {
+        let every = (1e-3 / ran.run.period).round().max(1.0) as usize;
+        let mut trace =
+            Self { half_gap: ran.truths.last().map_or(0.0, |truth| 2.0 * truth.half_backlash), ..Self::default() };
+        let (mut force, mut touched) = (0.0_f64, None::<(f64, f64)>);
+        for (index, (sample, truth)) in ran.run.samples.iter().zip(&ran.truths).enumerate() {
+            force = force.max(sample.mesh_force.abs());
+            if sample.gap.abs() > NEAR {
+                let side = sample.gap.signum();
+                if let Some((_, since)) = touched.filter(|(before, _)| *before != side) {
+                    trace.crossings.push((sample.time, sample.time - since));
+                }
+                touched = Some((side, sample.time));
+            }
+            if (index + 1) % every == 0 {
+                let sight = ran.sights.get(index);
+                trace.points.push(Point {
+                    time: sample.time as f32,
+                    wanted: sample.wanted as f32,
+                    error: (sample.wanted - sample.link) as f32,
+                    gap: truth.gap as f32,
+                    estimated_gap: sight.map_or(f32::NAN, |sight| sight.gap),
+                    torque: sample.command as f32,
+                    force: force as f32,
+                });
+                force = 0.0;
+            }
+        }
+        trace
+    }
+}

@@ -1,0 +1,151 @@
+//! Test files of observer and compensation as a user meets them: what they say to bad input, what they leave behind, that
+//! they are repeatable, and that a controller that does nothing fails.
+
+mod command;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use command::{Ended, joint, text};
+use joint::trial::plant::PlantName;
+use joint::trial::suite;
+use serde_json::Value;
+
+/// A short test, with more lines at its end.
+fn test_file(folder: &Path, more: &str) -> PathBuf {
+    let path = folder.join("short.toml");
+    let head = "title = \"short\"\nduration_s = 1.2\nsettle_s = 0.6\n";
+    fs::write(&path, format!("{head}{more}\n")).expect("a file");
+    path
+}
+
+fn run(folder: &Path, more: &str, options: &[&str]) -> Ended {
+    let file = test_file(folder, more);
+    let out = folder.join("out");
+    joint(&[&["hil", text(&file), "--host", "--out", text(&out)], options].concat())
+}
+
+fn results(folder: &Path) -> Value {
+    let json = fs::read_to_string(folder.join("out/record.json")).expect("written");
+    serde_json::from_str(&json).expect("JSON")
+}
+
+fn folder() -> tempfile::TempDir {
+    tempfile::tempdir().expect("a folder")
+}
+
+#[test]
+fn every_shipped_test_can_be_read_and_designed() {
+    let hil = Path::new(env!("CARGO_MANIFEST_DIR")).join("../hil");
+    let all = suite::load(&hil, true, PlantName::Reference).expect("all can be used").len();
+    let short = suite::load(&hil, false, PlantName::Reference).expect("all can be used").len();
+    assert!(all > short && short > 10, "{all} tests, {short} of them short");
+}
+
+#[test]
+fn the_same_seed_gives_the_same_bits_and_another_seed_others() {
+    let digests = |seed: &str, plant: &str| {
+        let folder = folder();
+        run(folder.path(), "profile = \"T2\"", &["--seed", seed, "--plant", plant]).well();
+        let results = results(folder.path());
+        let runs = results["tests"][0]["runs"].as_array().expect("runs").clone();
+        assert_eq!(runs.len(), 3);
+        runs.iter().map(|run| (run["digest"].clone(), run["figures"].clone())).collect::<Vec<_>>()
+    };
+    for plant in ["reference", "core"] {
+        let first = digests("3", plant);
+        assert_eq!(first, digests("3", plant));
+        assert!(first.iter().zip(digests("4", plant)).all(|(one, other)| one.0 != other.0));
+    }
+}
+
+#[test]
+fn both_plants_move_the_same_joint() {
+    let peak = |plant: &str| {
+        let folder = folder();
+        let more = "profile = \"T2\"\n[controller]\nmode = \"motor_pid\"\nrivals = []";
+        run(folder.path(), more, &["--plant", plant]).well();
+        let figures = results(folder.path())["tests"][0]["runs"][0]["figures"].clone();
+        ["rms_mrad", "peak_mrad", "effort_N_m"].map(|name| figures[name].as_f64().expect("a number"))
+    };
+    for (reference, core) in peak("reference").into_iter().zip(peak("core")) {
+        assert!((core / reference - 1.0).abs() < 0.1, "{core} against {reference}");
+    }
+}
+
+#[test]
+fn a_controller_that_does_nothing_fails_and_the_report_leads_with_it() {
+    let folder = folder();
+    let more =
+        "profile = \"T2\"\n[controller]\nmode = \"off\"\n[assert]\nrms_gain_over_pid = \">= 1\"\nrms_mrad = \"<= 1e9\"";
+    let ended = run(folder.path(), more, &[]);
+    assert_eq!(ended.code, Some(1), "{ended:?}");
+    assert!(ended.out.contains("FAILED   rms_gain_over_pid"), "{ended:?}");
+    assert!(ended.out.contains("again:   cargo joint hil"), "{ended:?}");
+    let results = results(folder.path());
+    assert_eq!(results["schema"], "joint-hil-tests/1");
+    assert_eq!(results["passed"], false);
+    assert_eq!(results["tests"][0]["assertions"][1]["verdict"], "passed");
+    let page = fs::read_to_string(folder.path().join("out/report.html")).expect("written");
+    assert!(page.contains("What failed") && page.contains("<svg"), "no picture of the failure");
+    let junit = fs::read_to_string(folder.path().join("out/junit.xml")).expect("written");
+    assert!(junit.contains("tests=\"2\" failures=\"1\""), "{junit}");
+    let log = folder.path().join("out").join(results["tests"][0]["runs"][0]["log"].as_str().expect("a log"));
+    let messages = mcap::MessageStream::new(&fs::read(log).expect("a log")).expect("MCAP").count();
+    assert_eq!(messages, 1200);
+}
+
+#[test]
+fn a_test_whose_time_is_up_fails() {
+    let folder = folder();
+    let more = "timeout_s = 0.1\nprofile = \"T2\"\n[plant]\nhalf_backlash_um = 41";
+    let file = test_file(folder.path(), more);
+    let long = fs::read_to_string(&file).expect("a file").replace("1.2", "3000");
+    fs::write(&file, long).expect("a file");
+    let ended = joint(&["hil", text(&file), "--host", "--out", text(&folder.path().join("out"))]);
+    assert_eq!(ended.code, Some(1), "{ended:?}");
+    assert!(ended.out.contains("time on the clock"), "{ended:?}");
+}
+
+#[test]
+fn what_is_wrong_with_a_test_file_is_named_with_the_mend() {
+    let refused = |more: &str, words: &[&str]| run(folder().path(), more, &[]).refused(words);
+    refused("profile = \"T3\"", &["\"T3\" is no kind", "did you mean"]);
+    refused("profil = \"T2\"", &["unknown key `profil`", "did you mean `profile`?", "`profile` is missing"]);
+    refused("half_backlash_um = 60\nprofile = \"T2\"", &["[known] or in [plant]"]);
+    refused("profile = \"T2\"\n[plant]\nhalf_backlsh_um = 60", &["did you mean `half_backlash_um`?"]);
+    refused("profile = \"T2\"\n[plant]\nhalf_backlash_um = [20, 6000]", &["half_backlash_um", "between 0.5 and 1000"]);
+    refused("profile = \"T2\"\n[plant]\noutput_encoder.bits = 14", &["write it in [known]"]);
+    refused("profile = \"T2\"\n[assert]\nrms_gain_over_pdi = \">= 8\"", &["did you mean `rms_gain_over_pid`?"]);
+    refused("profile = \"T2\"\n[assert]\nrms_mrad = \"8\"", &["this is no bound"]);
+    refused("profile = \"T2\"\n[assert]\ndeviation_rms_mrad = \"<= 8\"", &["is for impedances"]);
+    refused("profile = \"T2\"\n[[fault]]\nkind = \"encoder_frozen\"\nshare = 0.1", &["`share` means nothing"]);
+    refused("profile = \"T2\"\n[[fault]]\nkind = \"lost_frames\"\nstart_s = 2", &["`share` is missing"]);
+    refused("joint = \"q2\"\nprofile = \"T2\"", &["q2", "presets"]);
+    refused("profile = \"T2\"\n[controller]\nrivals = [\"motor_side\"]", &["motor_side cannot run beside this"]);
+    refused("profile = { kind = \"csv\", file = \"none.csv\" }", &["cannot read the motion", "none.csv"]);
+    refused("settle_s = 1", &["not TOML"]);
+}
+
+#[test]
+fn arguments_of_joints_and_of_tests_are_not_mixed_up() {
+    let folder = folder();
+    let file = test_file(folder.path(), "profile = \"T2\"");
+    joint(&["hil", text(&file)]).refused(&["cannot run on a board", "--host"]);
+    joint(&["hil", text(&file), "--host", "--duration", "3"]).refused(&["--duration is for joints"]);
+    joint(&["hil", "q1", "--host"]).refused(&["--host is for test files, and q1 is a joint"]);
+    joint(&["hil", "none.toml", "--host"]).refused(&["there is no test file none.toml"]);
+    joint(&["hil", text(folder.path()), "--host", "--json", "/none/x.json"]).refused(&["no folder /none"]);
+}
+
+#[test]
+fn a_recorded_motion_and_any_preset_can_be_tested() {
+    let folder = folder();
+    let rows: String =
+        (0..=150).map(|k| format!("{},{}\n", 0.01 * f64::from(k), 0.1 * (0.05 * f64::from(k)).sin())).collect();
+    fs::write(folder.path().join("motion.csv"), format!("time_s,position_rad\n{rows}")).expect("a file");
+    for preset in ["s1", "l1", "d2"] {
+        let more = format!("joint = \"{preset}\"\nprofile = {{ kind = \"csv\", file = \"motion.csv\" }}");
+        run(folder.path(), &more, &["--plant", "reference"]).well();
+    }
+}

@@ -1,0 +1,233 @@
+//! Tables of the compensation: from joint, bandwidth and limits to gains, times and thresholds. What is done with them
+//! is left to `realtime::compensation`.
+//!
+//! Gains follow from inertias and bandwidth, times from the motor's torque, the loop's delays and the force that a
+//! landing may cause. What is left are shares, each a constant here with its reason.
+
+use core::f64::consts::TAU;
+
+use crate::error::DesignError;
+use crate::joint::JointParameters;
+use crate::mesh::MeshKind;
+use crate::real::Real;
+use crate::tables::compensation::CompensationTables;
+
+/// What the compensation is designed from besides the joint. The joint's own half-backlash is a guess to start from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CompensationSettings {
+    /// Control periods a second [Hz].
+    pub control_rate: u32,
+    /// Bandwidth of the motor controller: its three poles [rad/s].
+    pub bandwidth: f64,
+    /// Largest torque of the motor [N m].
+    pub torque_limit: f64,
+    /// From commanding a torque to its first effect [control periods].
+    pub torque_delay: f64,
+    /// Time constant of the current loop after that [s].
+    pub torque_lag: f64,
+}
+
+/// Planets struck on the way through the gap may be struck with this share of the rated force: half, so that a peak of
+/// twice what the estimate says is still no more than rated.
+const STRIKE: f64 = 0.5;
+
+/// Share of the largest torque that a crossing may take; the rest is for the feedback along it.
+const CROSSING_TORQUE: f64 = 0.8;
+
+/// A crossing shorter than so many reaction times would be over before feedback has had a say.
+const REACTIONS_IN_A_CROSSING: f64 = 8.0;
+
+/// A gap that turns out wider than guessed may be crossed in so many times the guess's time.
+const LONGEST: f64 = 3.0;
+
+/// Landing at the end of a path may cause this share of the rated torque.
+const LANDING: f64 = 0.03;
+
+/// A landing that finds nothing quickens up to so many times its first speed.
+const LANDING_HASTE: f64 = 6.0;
+
+/// Reaction times in which the law's torque rises after a landing: slower than what the motor can follow, faster than
+/// joint and link swing.
+const RISE: f64 = 5.0;
+
+/// Reaction times over which measured torque is smoothed before it decides: the observer's torques are wrong for a few
+/// milliseconds after every impact.
+const SETTLING: f64 = 15.0;
+
+/// Share of the half-gap that opens before the loss of a flank is believed: several times the observer's error.
+const OPENING: f64 = 0.3;
+
+/// Planned torque over the largest, beyond which its change of sign counts.
+const HYSTERESIS: f64 = 0.005;
+
+/// Measured torque over the largest, as uncertain as it is after an impact.
+const DOUBT: f64 = 0.02;
+
+/// Share of that doubt left when no flank has changed for long.
+const LEAST_DOUBT: f64 = 0.3;
+
+/// Largest doubt after several changes, over the first.
+const MOST_PATIENCE: f64 = 6.0;
+
+/// Time over which patience is lost again, times the bandwidth: a transient of the loop is over by then.
+const PATIENCE: f64 = 3.0;
+
+/// Changes of the wanted flank within this time, times the bandwidth, are hunting.
+const HUNTING: f64 = 15.0;
+
+/// News over the largest torque that are taken up faster.
+const EAGER: f64 = 0.05;
+
+/// Error let be at rest after the first hunt and at most, over half the lost motion: with the most, the joint rests
+/// within half of its lost motion.
+const INDULGENCE: [f64; 2] = [0.05, 0.5];
+
+/// Time in which it is forgiven [s]: rarely against the hunt that it ends.
+const FORGIVING: f64 = 30.0;
+
+/// Speed at which dry friction has its full size [rad/s], for want of a better number: what encoders resolve.
+const FRICTION_SPEED: f64 = 0.01;
+
+/// Growth of the load's variance in one period over that of its reading: followed within a few milliseconds.
+const LOAD_GROWTH: f64 = 1e-3;
+
+/// The same for its dry friction: known within a few reversals, then kept for seconds.
+const FRICTION_GROWTH: f64 = 1e-6;
+
+/// Poles of the impedance demand's tracking filter times the crossing's time.
+const DEMAND_POLE: f64 = 2.0;
+
+/// Time in which a missed impulse is made good, over a crossing's time.
+const REPAYMENT: f64 = 1.15;
+
+/// Time in which control goes over from plain to compensated, times the bandwidth.
+const TRUST: f64 = 1.2;
+
+/// Half the lost motion is never taken for more than so many times the guess.
+const WIDEST: f64 = 5.0;
+
+/// Tables of the compensation.
+pub fn design_compensation<T: Real>(
+    joint: &JointParameters,
+    settings: &CompensationSettings,
+) -> Result<CompensationTables<T>, DesignError> {
+    super::validate::validate(joint)?;
+    check(settings)?;
+    let real = T::from_f64;
+    let period = 1.0 / f64::from(settings.control_rate);
+    let pole = settings.bandwidth;
+    let body = Body::new(joint);
+    let inertia = body.motor + body.load;
+    let limit = body.gear * settings.torque_limit;
+    let half = body.half_backlash / body.lever;
+    let reaction = period * (1.0 + settings.torque_delay) + settings.torque_lag;
+
+    // A least-jerk path needs 10/sqrt(3) way/time^2 of acceleration and reaches 15/8 of its mean speed.
+    let pull = 10.0 / libm::sqrt(3.0) * 2.0 * half * body.motor / (CROSSING_TORQUE * limit);
+    let shortest = libm::sqrt(pull).max(REACTIONS_IN_A_CROSSING * reaction);
+    let strike_torque = STRIKE * joint.rated_output_torque;
+    let strike_per_half = 15.0 / 8.0 * 2.0 * body.strike_impedance;
+    let crossing = (strike_per_half * half / strike_torque).max(shortest);
+    let landing_speed = LANDING * joint.rated_output_torque / libm::sqrt(body.stiffness * body.motor);
+    let demand_left = libm::exp(-DEMAND_POLE * period / crossing);
+    Ok(CompensationTables {
+        rate: real(f64::from(settings.control_rate)),
+        period: real(period),
+        ratio: [(joint.geometry.sun_teeth + joint.geometry.ring_teeth) as i32, joint.geometry.sun_teeth as i32],
+        gear: real(body.gear),
+        inverse_gear: real(1.0 / body.gear),
+        inverse_denominator: real(1.0 / f64::from(joint.geometry.sun_teeth)),
+        turn: real(TAU),
+        inverse_lever: real(1.0 / body.lever),
+        widest_half: real(WIDEST * half),
+        motor_inertia: real(body.motor),
+        load_inertia: real(body.load),
+        inverse_load_inertia: real(1.0 / body.load),
+        motor_share: real(body.motor / inertia),
+        position_gain: real(3.0 * inertia * pole * pole),
+        damping_gain: real(3.0 * inertia * pole),
+        integral_gain: real(inertia * pole * pole * pole * period),
+        back_calculation: real(pole * period),
+        torque_limit: real(limit),
+        lead: real(crossing + reaction),
+        reaction: real(reaction),
+        strike_per_half: real(strike_per_half),
+        strike_torque: real(strike_torque),
+        shortest_crossing: real(shortest),
+        longest_crossing: real(LONGEST * crossing),
+        landing_speed: real(landing_speed),
+        landing_haste: real(landing_speed / crossing),
+        fastest_landing: real(LANDING_HASTE * landing_speed),
+        landing_rise: real(period / (RISE * reaction)),
+        repayment: real(1.0 / (REPAYMENT * crossing)),
+        opening: real(OPENING),
+        hysteresis: real(HYSTERESIS * limit),
+        doubt: real(DOUBT * limit),
+        settling: real(1.0 - libm::exp(-period / (SETTLING * reaction))),
+        eagerness: real(1.0 / (EAGER * limit)),
+        least_doubt: real(LEAST_DOUBT),
+        patience_left: real(libm::exp(-period * pole / PATIENCE)),
+        most_patience: real(MOST_PATIENCE),
+        hunting: real(HUNTING / pole),
+        first_indulgence: real(INDULGENCE[0]),
+        last_indulgence: real(INDULGENCE[1]),
+        forgiving: real(libm::exp(-period / FORGIVING)),
+        load_learner: [real(LOAD_GROWTH), real(FRICTION_GROWTH), T::ONE],
+        friction_slope: real(1.0 / FRICTION_SPEED),
+        demand_gains: [real(1.0 - demand_left * demand_left), real((1.0 - demand_left) * (1.0 - demand_left) / period)],
+        trust_step: real(period * pole / TRUST),
+    })
+}
+
+/// The joint, felt at the link.
+struct Body {
+    gear: f64,
+    lever: f64,
+    half_backlash: f64,
+    /// What turns with the motor while the gap is open [kg m^2].
+    motor: f64,
+    /// The rest [kg m^2].
+    load: f64,
+    /// Between motor and link [N m/rad].
+    stiffness: f64,
+    /// Torque for each rad/s at which hanging planets are struck [N m s/rad].
+    strike_impedance: f64,
+}
+
+impl Body {
+    fn new(joint: &JointParameters) -> Self {
+        let geometry = &joint.geometry;
+        let (gear, lever) = (geometry.ratio_by_teeth(), geometry.carrier_base_radius());
+        let planets = geometry.planets as f64;
+        let sun = joint.bodies.sun_equivalent_mass * geometry.sun_base_radius * geometry.sun_base_radius;
+        let stiffness = joint.mesh(MeshKind::SunPlanet).mean_stiffness;
+        // Both meshes in series, all planets in parallel, along twice the carrier's way.
+        let teeth = 4.0 * lever * lever * planets * 0.5 * stiffness;
+        let twist = 1.0 / teeth + joint.compliance.map_or(0.0, |compliance| 1.0 / compliance.stiffness);
+        let planet = joint.bodies.planet_equivalent_mass;
+        Self {
+            gear,
+            lever,
+            half_backlash: joint.sun_planet.half_backlash.iter().sum::<f64>() / planets,
+            motor: gear * gear * (joint.rotor_inertia + sun),
+            load: (planets * planet + joint.carrier_equivalent_mass()) * lever * lever + joint.link_inertia,
+            stiffness: 1.0 / twist,
+            // A mass struck at a speed answers with that speed times sqrt(stiffness mass).
+            strike_impedance: planets * libm::sqrt(stiffness * planet) * 4.0 * lever * lever,
+        }
+    }
+}
+
+/// Refuses settings that no gain can be made from.
+fn check(settings: &CompensationSettings) -> Result<(), DesignError> {
+    let must = |what: &'static str, given: f64, holds: bool, must_be: &'static str| {
+        if holds && given.is_finite() { Ok(()) } else { Err(DesignError::OutOfRange { what, given, must_be }) }
+    };
+    let CompensationSettings { bandwidth, torque_limit, torque_delay, torque_lag, .. } = *settings;
+    let rate = f64::from(settings.control_rate);
+    must("control rate", rate, rate > 0.0, "positive")?;
+    must("bandwidth", bandwidth, bandwidth > 0.0 && bandwidth < 0.1 * rate, "positive and below a tenth of the rate")?;
+    must("motor torque limit", torque_limit, torque_limit > 0.0, "positive")?;
+    must("torque delay", torque_delay, torque_delay >= 0.0, "zero or positive")?;
+    must("torque lag", torque_lag, torque_lag >= 0.0, "zero or positive")
+}

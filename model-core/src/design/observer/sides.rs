@@ -1,0 +1,111 @@
+//! Flows and gains of the motor side and the load side: how fast torques may change decides how fast the filters are.
+//! Everything that stands on the two is left to the observer's design.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::body::Body;
+use super::filter::{Filter, System};
+use super::settings::ObserverSettings;
+use crate::design::exponential::flow;
+use crate::real::Real;
+use crate::tables::observer::{CurrentTable, DriveTable};
+
+/// Time in which the load torque may change by as much as the motor can hold [s]. Friction that turns round and
+/// collisions are faster, gravity slower; a filter for this follows the first with a lag of a few milliseconds.
+const LOAD_CHANGE: f64 = 2.0;
+
+/// Shortest half swing that the motor side follows [control periods].
+const FASTEST_SWING: f64 = 20.0;
+
+/// Part of the motor's largest torque by which the mesh force changes in half a swing of motor against load.
+const MESH_CHANGE: f64 = 0.2;
+
+/// Part of the motor's largest torque by which the mesh force is wrong for about a millisecond after an impact.
+const IMPACT_ERROR: f64 = 0.05;
+
+/// How long an impact's error lasts [s].
+const IMPACT: f64 = 1e-3;
+
+/// State: angle, speed, taken torque. The taken torque wanders so that it may change by the largest torque in half a
+/// swing of motor against load; the torque noise acts on the speed.
+pub(super) fn drive_filter(body: &Body, settings: &ObserverSettings, count: f64, step: f64) -> Filter {
+    let per_inertia = 1.0 / body.motor_inertia;
+    // Faster swings than this are not followed: what they would cost in noise is worth more.
+    let half_swing = (core::f64::consts::PI / body.contact_frequency()).max(FASTEST_SWING * step);
+    let torque_noise = settings.torque_noise_ratio * settings.torque_limit;
+    System {
+        dynamics: DMatrix::from_row_slice(3, 3, &[0.0, 1.0, 0.0, 0.0, 0.0, -per_inertia, 0.0, 0.0, 0.0]),
+        inputs: DMatrix::zeros(3, 0),
+        process_noise: DVector::from_vec(std::vec![
+            0.0,
+            (torque_noise * per_inertia).powi(2) * step,
+            (MESH_CHANGE * settings.torque_limit).powi(2) / half_swing,
+        ]),
+        measurement_noise: count * count / 12.0,
+    }
+    .filter(step)
+}
+
+/// State: angle, speed, load torque.
+pub(super) fn load_filter(body: &Body, settings: &ObserverSettings, measurement_noise: f64, step: f64) -> Filter {
+    let per_inertia = 1.0 / body.load_inertia;
+    let impact = IMPACT_ERROR * settings.torque_limit * body.ratio * per_inertia;
+    System {
+        dynamics: DMatrix::from_row_slice(3, 3, &[0.0, 1.0, 0.0, 0.0, 0.0, -per_inertia, 0.0, 0.0, 0.0]),
+        inputs: DMatrix::from_row_slice(3, 1, &[0.0, per_inertia, 0.0]),
+        process_noise: DVector::from_vec(std::vec![0.0, impact * impact * IMPACT, load_change(body, settings),]),
+        measurement_noise,
+    }
+    .filter(step)
+}
+
+/// Spectral density of the load torque's changes.
+fn load_change(body: &Body, settings: &ObserverSettings) -> f64 {
+    (settings.torque_limit * body.ratio).powi(2) / LOAD_CHANGE
+}
+
+/// Flow of the motor with its current loop: the torque in the air gap rises towards the wanted one.
+pub(super) fn drive_table<T: Real>(
+    body: &Body,
+    settings: &ObserverSettings,
+    filter: &Filter,
+    step: f64,
+) -> DriveTable<T> {
+    let real = T::from_f64;
+    let per_inertia = 1.0 / body.motor_inertia;
+    let flow = if settings.torque_lag > 0.0 {
+        let rate = 1.0 / settings.torque_lag;
+        // Angle, speed, taken torque, air-gap torque; the wanted torque is the input.
+        let dynamics = DMatrix::from_row_slice(
+            4,
+            4,
+            &[0.0, 1.0, 0.0, 0.0, 0.0, 0.0, -per_inertia, per_inertia, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -rate],
+        );
+        flow(&dynamics, &DMatrix::from_row_slice(4, 1, &[0.0, 0.0, 0.0, rate]), step, 1)
+    } else {
+        let dynamics = DMatrix::from_row_slice(
+            4,
+            4,
+            &[0.0, 1.0, 0.0, 0.0, 0.0, 0.0, -per_inertia, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+        );
+        flow(&dynamics, &DMatrix::from_row_slice(4, 1, &[0.0, per_inertia, 0.0, 0.0]), step, 1)
+    };
+    let (change, response) = (&flow.transition, &flow.input_integrals[0]);
+    DriveTable {
+        angle: [change[(0, 1)], change[(0, 2)], change[(0, 3)], response[0]].map(real),
+        speed: [change[(1, 2)], change[(1, 3)], response[1]].map(real),
+        gain: [0, 1, 2].map(|state| real(filter.gain[state])),
+        variance: [real(filter.variance[0]), real(filter.variance[2])],
+    }
+}
+
+pub(super) fn current<T: Real>(settings: &ObserverSettings, step: f64) -> CurrentTable<T> {
+    let whole = libm::floor(settings.torque_delay);
+    let rise = if settings.torque_lag > 0.0 { -libm::expm1(-step / settings.torque_lag) } else { 1.0 };
+    CurrentTable {
+        whole_delay: whole as u32,
+        part_delay: T::from_f64(settings.torque_delay - whole),
+        rise: T::from_f64(rise),
+        limit: T::from_f64(settings.torque_limit),
+    }
+}

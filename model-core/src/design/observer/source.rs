@@ -1,0 +1,20 @@
+//! The observer's table as Rust source, for a build script: what a board links into its flash. Numbers are printed so
+//! that they read back to the same bits.
+
+use std::format;
+use std::string::String;
+
+use super::{ObserverSettings, design_observer};
+use crate::error::DesignError;
+use crate::joint::JointParameters;
+use crate::tables::observer::ObserverTables;
+
+/// The static `OBSERVER` of a joint, as a module's text.
+pub fn observer_source(joint: &JointParameters, settings: &ObserverSettings) -> Result<String, DesignError> {
+    let tables: ObserverTables<f32> = design_observer(joint, settings)?;
+    Ok(format!(
+        "use model_core::tables::observer::*;\n\n\
+         /// Tables of the observer.\n\
+         pub static OBSERVER: ObserverTables<f32> = {tables:#?};\n"
+    ))
+}

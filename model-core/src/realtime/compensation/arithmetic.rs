@@ -1,0 +1,19 @@
+//! Bounds on numbers that may be anything. NaN passes through; whoever gives a torque away looks for it there.
+
+use crate::real::Real;
+
+/// The value, or the bound that it is beyond.
+pub(super) fn clamp<T: Real>(value: T, low: T, high: T) -> T {
+    if value < low {
+        low
+    } else if value > high {
+        high
+    } else {
+        value
+    }
+}
+
+/// By how much the value is beyond a dead band on either side of zero.
+pub(super) fn beyond<T: Real>(value: T, band: T) -> T {
+    value - clamp(value, -band, band)
+}

@@ -1,0 +1,145 @@
+//! Which flank carries, when to leave it, and the way across. What torque the law wants is given; how the load will
+//! behave in between is taken as ballistic.
+
+use super::arithmetic::clamp;
+use super::intent::{Intent, Situation};
+use super::path::Path;
+use super::set_point::{Position, Stage};
+use crate::real::Real;
+use crate::tables::compensation::CompensationTables;
+
+/// The flank in use and the way to the next.
+#[derive(Debug, Clone)]
+pub(super) struct Flank<T: Real> {
+    /// 1 or -1: the flank that carries or is being gone to.
+    side: T,
+    stage: Stage,
+    path: Path<T>,
+    /// Position of the set-point when the path was laid.
+    origin: Position<T>,
+    elapsed: T,
+    duration: T,
+    /// How much of the law's torque is let through after a landing.
+    rise: T,
+    /// Impulse that the load has missed while no flank carried [N m s].
+    owed: T,
+    /// How much more than usual feedback has to ask for before the flank is changed for it: grows with every change.
+    patience: T,
+}
+
+impl<T: Real> Flank<T> {
+    pub fn new() -> Self {
+        Self {
+            side: T::ONE,
+            stage: Stage::Touching,
+            path: Path::default(),
+            origin: Position::default(),
+            elapsed: T::ZERO,
+            duration: T::ZERO,
+            rise: T::ONE,
+            owed: T::ZERO,
+            patience: T::ONE,
+        }
+    }
+
+    pub fn stage(&self) -> Stage {
+        self.stage
+    }
+
+    pub fn side(&self) -> T {
+        self.side
+    }
+
+    /// 1, or more soon after a change of flank.
+    pub fn patience(&self) -> T {
+        self.patience
+    }
+
+    /// Nothing is known: whatever flank touches is the one.
+    pub fn forget(&mut self, situation: &Situation<T>) {
+        self.stage = Stage::Touching;
+        self.rise = T::ONE;
+        self.owed = T::ZERO;
+        if situation.contact != T::ZERO {
+            self.side = situation.contact;
+        }
+    }
+
+    /// Torque of this period, limits aside [N m].
+    pub fn step(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, intent: &Intent<T>) -> T {
+        let opened = situation.half - self.side * situation.gap;
+        // A force that seems to come from the far flank while the teeth are just leaving the near one does not.
+        let touching = situation.contact * self.side > T::ZERO && opened < situation.half;
+        let turned = self.side * (intent.demand_now + intent.demand_ahead) < -tables.hysteresis
+            && self.side * intent.demand_ahead < -tables.hysteresis;
+        self.patience = T::ONE + tables.patience_left * (self.patience - T::ONE);
+        match self.stage {
+            Stage::Touching if turned && self.rise >= T::ONE => {
+                self.side = -self.side;
+                self.set_out(tables, situation, intent, Stage::Crossing);
+            }
+            Stage::Touching if !touching && opened > tables.opening * situation.half && self.rise >= T::ONE => {
+                if opened > T::HALF * situation.half {
+                    self.set_out(tables, situation, intent, Stage::Crossing);
+                } else {
+                    self.land();
+                }
+            }
+            Stage::Crossing | Stage::Landing if touching => {
+                self.stage = Stage::Touching;
+                self.rise = T::ZERO;
+            }
+            Stage::Crossing if self.elapsed >= self.duration => self.land(),
+            Stage::Landing if turned && self.elapsed >= self.duration => {
+                self.side = -self.side;
+                self.set_out(tables, situation, intent, Stage::Crossing);
+            }
+            _ => {}
+        }
+        if self.stage == Stage::Touching {
+            self.rise = clamp(self.rise + tables.landing_rise, T::ZERO, T::ONE);
+            let repaid = self.rise * self.owed * tables.repayment;
+            self.owe(tables, (T::ONE - self.rise) * intent.demand_now - repaid, intent);
+            return self.rise * intent.law + repaid;
+        }
+        self.elapsed += tables.period;
+        self.owe(tables, intent.demand_now, intent);
+        if self.stage == Stage::Landing {
+            // Where the flank is does not enter, so that a wrong width costs time only; nor can it be chased for ever.
+            let speed = tables.landing_speed + tables.landing_haste * self.elapsed;
+            let closing = self.side * clamp(speed, T::ZERO, tables.fastest_landing);
+            return tables.motor_inertia * intent.free_acceleration
+                + tables.damping_gain * (situation.link_speed + closing - situation.motor_speed);
+        }
+        let [target, rate, acceleration] = self.path.at(self.elapsed);
+        let drift = tables.turn * situation.origin.less(self.origin.turns, self.origin.fraction);
+        tables.motor_inertia * acceleration
+            + tables.position_gain * (target - drift - situation.motor)
+            + tables.damping_gain * (rate - situation.motor_speed)
+    }
+
+    /// Torque that the load does not get now is owed to it.
+    fn owe(&mut self, tables: &CompensationTables<T>, torque: T, intent: &Intent<T>) {
+        let most = tables.torque_limit * tables.longest_crossing;
+        self.owed = if intent.repays { clamp(self.owed + tables.period * torque, -most, most) } else { T::ZERO };
+    }
+
+    fn land(&mut self) {
+        self.stage = Stage::Landing;
+        self.elapsed = T::ZERO;
+    }
+
+    /// Lays a path to the flank where the load will be, left to itself, meeting it at a small speed.
+    fn set_out(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, intent: &Intent<T>, stage: Stage) {
+        let time = intent.crossing;
+        let speed = situation.link_speed + time * intent.free_acceleration;
+        let place = time * T::HALF * (situation.link_speed + speed) - situation.error;
+        let end = [place + self.side * situation.half, speed + self.side * tables.landing_speed];
+        self.path = Path::new([situation.motor, situation.motor_speed], end, time);
+        self.patience = clamp(self.patience + self.patience + T::TWO, T::ONE, tables.most_patience);
+        self.origin = situation.origin;
+        self.duration = time;
+        self.elapsed = T::ZERO;
+        self.stage = stage;
+    }
+}

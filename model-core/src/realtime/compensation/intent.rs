@@ -1,0 +1,100 @@
+//! What the rest of the compensation works on: where everything is, felt at the link, and what the control law wants.
+//! Both are made anew every control period and carry no state.
+
+use crate::mesh::ContactState;
+use crate::real::Real;
+use crate::realtime::observer::{Estimates, Source};
+use crate::tables::compensation::CompensationTables;
+
+use super::arithmetic::clamp;
+use super::set_point::{Command, Position};
+
+/// Where everything is; angles are less the set-point's position, so that they stay small at any number of turns.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Situation<T: Real> {
+    /// Set-point less link [rad].
+    pub error: T,
+    /// Set-point's speed less the link's [rad/s].
+    pub error_rate: T,
+    /// Motor, felt at the link with every tooth centred, less set-point [rad].
+    pub motor: T,
+    /// [rad/s].
+    pub motor_speed: T,
+    /// [rad/s].
+    pub link_speed: T,
+    /// Position of the set-point.
+    pub origin: Position<T>,
+    /// Half of the lost motion [rad].
+    pub half: T,
+    /// Gap coordinate, felt at the link: from -half to half while every mesh is free [rad].
+    pub gap: T,
+    /// 1 or -1 with a flank touching, else 0.
+    pub contact: T,
+    /// Whether the estimates may be used.
+    pub sees: bool,
+}
+
+impl<T: Real> Situation<T> {
+    pub fn new(tables: &CompensationTables<T>, estimates: &Estimates<T>, command: &Command<T>) -> Self {
+        let (origin, speed) = match command {
+            Command::Position { now, .. } => (now.position, now.speed),
+            Command::Impedance(point) => (point.position, point.speed),
+        };
+        let contact = match estimates.reported_contact {
+            ContactState::DriveSide => T::ONE,
+            ContactState::BackSide => -T::ONE,
+            ContactState::Separated => T::ZERO,
+        };
+        let [numerator, denominator] = tables.ratio.map(i64::from);
+        let whole = denominator * i64::from(estimates.motor.turns) - numerator * i64::from(origin.turns);
+        let motor_turns =
+            T::from_i64(whole) * tables.inverse_denominator + estimates.motor.fraction - tables.gear * origin.fraction;
+        let motor = tables.turn * tables.inverse_gear * motor_turns - estimates.encoder_offset.value;
+        let half = clamp(tables.inverse_lever * estimates.half_backlash.value, T::ZERO, tables.widest_half);
+        let situation = Self {
+            error: tables.turn * origin.less(estimates.link.turns, estimates.link.fraction),
+            error_rate: speed - estimates.link.speed,
+            motor,
+            motor_speed: tables.inverse_gear * estimates.motor.speed,
+            link_speed: estimates.link.speed,
+            origin,
+            half,
+            gap: T::HALF * tables.inverse_lever * estimates.gap.value,
+            contact,
+            sees: estimates.source == Source::Both && estimates.gap.valid && estimates.contact_valid,
+        };
+        let sum = situation.error + situation.error_rate + situation.motor + situation.motor_speed + situation.gap;
+        Self { sees: situation.sees && (sum + estimates.half_backlash.value).is_finite(), ..situation }
+    }
+}
+
+/// What the control law wants.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Intent<T: Real> {
+    /// Torque while a flank carries [N m].
+    pub law: T,
+    /// What the teeth have to pass on now [N m].
+    pub demand_now: T,
+    /// What they will have to pass on when a crossing that began now ends [N m].
+    pub demand_ahead: T,
+    /// Acceleration of the load left to itself [rad/s^2].
+    pub free_acceleration: T,
+    /// How long a crossing shall take [s].
+    pub crossing: T,
+    /// Whether an impulse that the load missed on the way is made good afterwards; a law stiff enough does it itself.
+    pub repays: bool,
+}
+
+impl<T: Real> Intent<T> {
+    pub fn is_finite(&self) -> bool {
+        (self.law + self.demand_now + self.demand_ahead + self.free_acceleration).is_finite()
+    }
+}
+
+/// How long a crossing takes. Planets that are struck on the way are struck no harder than the force that will be passed
+/// on anyway (`demand`), or than a set share of the rated one.
+pub(super) fn crossing_time<T: Real>(tables: &CompensationTables<T>, half: T, demand: T) -> T {
+    let force = clamp(if demand < T::ZERO { -demand } else { demand }, tables.strike_torque, tables.torque_limit);
+    let by_strike = if force > T::ZERO { (tables.strike_per_half * half).over(force) } else { tables.longest_crossing };
+    clamp(by_strike, tables.shortest_crossing, tables.longest_crossing)
+}

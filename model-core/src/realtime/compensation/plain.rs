@@ -1,0 +1,42 @@
+//! Control without compensation, on the motor's encoder alone: PID with all poles at the bandwidth in position mode,
+//! the commanded spring and damper at the motor in impedance mode. It is what remains when the gap cannot be seen.
+
+use super::arithmetic::clamp;
+use super::intent::Situation;
+use super::set_point::{ImpedancePoint, Motion};
+use crate::real::Real;
+use crate::tables::compensation::CompensationTables;
+
+/// The integral of the PID.
+#[derive(Debug, Clone)]
+pub(super) struct Plain<T: Real> {
+    integral: T,
+}
+
+impl<T: Real> Plain<T> {
+    pub fn new() -> Self {
+        Self { integral: T::ZERO }
+    }
+
+    /// Torque of the PID [N m].
+    pub fn follow(&self, tables: &CompensationTables<T>, situation: &Situation<T>, now: &Motion<T>) -> T {
+        (tables.load_inertia + tables.motor_inertia) * now.acceleration - tables.position_gain * situation.motor
+            + tables.damping_gain * (now.speed - situation.motor_speed)
+            + self.integral
+    }
+
+    /// Torque of the impedance law [N m].
+    pub fn yield_to(&self, situation: &Situation<T>, point: &ImpedancePoint<T>) -> T {
+        point.torque - point.stiffness * situation.motor + point.damping * (point.speed - situation.motor_speed)
+    }
+
+    /// Integrates; `cut` is what the limit took off. Under compensation the integral fades, so that it is ready and
+    /// empty when it is needed.
+    pub fn take(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, cut: T, trust: T) {
+        let growth = tables.back_calculation * cut - tables.integral_gain * situation.motor;
+        let next = self.integral + (T::ONE - trust) * growth - trust * tables.back_calculation * self.integral;
+        if next.is_finite() {
+            self.integral = clamp(next, -tables.torque_limit, tables.torque_limit);
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! The control law of position mode: spring on the link, damper on the motor, acceleration and load fed forward. The
+//! load estimate takes the place of an integral.
+
+use super::arithmetic::{beyond, clamp};
+use super::intent::{Intent, Situation, crossing_time};
+use super::load::LoadModel;
+use super::set_point::Motion;
+use crate::real::Real;
+use crate::tables::compensation::CompensationTables;
+
+/// What position mode remembers.
+#[derive(Debug, Clone)]
+pub(super) struct PositionLaw<T: Real> {
+    /// Acceleration asked for one period ago.
+    before: Option<T>,
+    /// Error that is let be while the motion rests, grown by crossings that feedback alone has caused [rad].
+    indulgence: T,
+    /// Sign of the demand ahead, one period ago.
+    asked: T,
+    /// How long ago it last changed, as far as that matters [s].
+    since: T,
+    /// Demand as far as it is measured and not planned, smoothed [N m].
+    level: T,
+}
+
+impl<T: Real> PositionLaw<T> {
+    pub fn new() -> Self {
+        Self { before: None, indulgence: T::ZERO, asked: T::ZERO, since: T::ZERO, level: T::ZERO }
+    }
+
+    pub fn forget(&mut self) {
+        *self = Self::new();
+    }
+
+    /// The error, less what is let be.
+    pub fn heeded(&self, situation: &Situation<T>) -> T {
+        beyond(situation.error, self.indulgence)
+    }
+
+    pub fn intend(
+        &mut self,
+        tables: &CompensationTables<T>,
+        load: &LoadModel<T>,
+        situation: &Situation<T>,
+        patience: T,
+        now: &Motion<T>,
+        ahead: Option<&Motion<T>>,
+    ) -> Intent<T> {
+        let (asked, known) = self.course(tables, now, ahead);
+        let rests = now.speed == T::ZERO && now.acceleration == T::ZERO && asked == [T::ZERO; 2];
+        let let_be = if rests { self.indulgence } else { T::ZERO };
+
+        let law = (tables.load_inertia + tables.motor_inertia) * now.acceleration
+            + load.even()
+            + load.drag(tables, now.speed)
+            + tables.position_gain * beyond(situation.error, let_be)
+            + tables.damping_gain * (now.speed - situation.motor_speed);
+        let level = load.even()
+            + (load.drag(tables, situation.link_speed) - load.drag(tables, now.speed))
+            + tables.position_gain * beyond(situation.error, let_be)
+            + tables.damping_gain * situation.error_rate;
+        // News that are large against the doubt are no noise, and are taken up faster.
+        let news = level - self.level;
+        let weight = tables.eagerness * news;
+        self.level += clamp(tables.settling * clamp(weight * weight, T::ONE, tables.rate), T::ZERO, T::HALF) * news;
+        // What is measured has to ask for more than its noise, and for much more soon after a change of flank.
+        let dead = tables.doubt * (tables.least_doubt + patience - T::ONE);
+        let measured = beyond(self.level, dead);
+        let planned = |time: T| {
+            let part = time.over(known);
+            let speed = now.speed + time * (now.acceleration + T::HALF * part * asked[1]);
+            let speed = if ahead.is_some() { now.speed + part * asked[0] } else { speed };
+            tables.load_inertia * (now.acceleration + part * asked[1]) + load.drag(tables, speed)
+        };
+        let demand = |time: T| planned(time) + measured;
+        let free = load.even() + load.drag(tables, situation.link_speed);
+        // How hard the far flank will be needed says how fast to go there, and that again when to start.
+        let unhurried = crossing_time(tables, situation.half, T::ZERO) + tables.reaction;
+        let crossing = crossing_time(tables, situation.half, demand(unhurried));
+        let lead = crossing + tables.reaction;
+        let demand_ahead = demand(lead);
+        self.indulge(tables, rests, demand_ahead, situation.half);
+        Intent {
+            law,
+            demand_now: demand(T::ZERO),
+            demand_ahead,
+            free_acceleration: -free * tables.inverse_load_inertia,
+            crossing,
+            repays: false,
+        }
+    }
+
+    /// By how much speed and acceleration asked for will have changed after a time that is never zero: as the preview
+    /// says or, without one, as the jerk does.
+    fn course(&mut self, tables: &CompensationTables<T>, now: &Motion<T>, ahead: Option<&Motion<T>>) -> ([T; 2], T) {
+        let before = self.before.replace(now.acceleration);
+        match ahead {
+            Some(ahead) => ([ahead.speed - now.speed, ahead.acceleration - now.acceleration], tables.lead),
+            None => ([T::ZERO, before.map_or(T::ZERO, |before| now.acceleration - before)], tables.period),
+        }
+    }
+
+    /// Doubles the error that is let be whenever a joint at rest asks for the other flank soon after it asked for this
+    /// one, which no load does but a loop that hunts; forgives it slowly, and at once when the joint is to move.
+    fn indulge(&mut self, tables: &CompensationTables<T>, rests: bool, demand: T, half: T) {
+        self.since = clamp(self.since + tables.period, T::ZERO, tables.hunting);
+        if !rests {
+            self.indulgence = T::ZERO;
+            self.asked = T::ZERO;
+            return;
+        }
+        self.indulgence *= tables.forgiving;
+        if self.asked * demand < T::ZERO {
+            if self.since < tables.hunting {
+                let grown = self.indulgence + self.indulgence + tables.first_indulgence * half;
+                self.indulgence = clamp(grown, T::ZERO, tables.last_indulgence * half);
+            }
+            self.since = T::ZERO;
+        }
+        if demand != T::ZERO {
+            self.asked = if demand > T::ZERO { T::ONE } else { -T::ONE };
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! Which flank touches: from the mesh force alone, with hysteresis and persistence, and from force and gap coordinate
+//! together. What is made of it is left to the observer.
+
+use crate::mesh::ContactState;
+use crate::real::Real;
+
+/// Periods for which the force must say the same before contact by force follows it.
+const PERSISTENCE: u8 = 3;
+
+/// Contact by force alone.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct ByForce {
+    pub state: ContactState,
+    wanted: ContactState,
+    held: u8,
+}
+
+impl ByForce {
+    /// `deviation` is the standard deviation of the force; it takes two of it to make contact and one to keep it.
+    pub fn step<T: Real>(&mut self, force: T, deviation: T) -> ContactState {
+        let wanted = with_hysteresis(self.state, force, T::TWO * deviation, deviation);
+        self.held = if wanted == self.wanted { self.held.saturating_add(1) } else { 1 };
+        self.wanted = wanted;
+        if self.held >= PERSISTENCE {
+            self.state = wanted;
+        }
+        self.state
+    }
+}
+
+/// Contact with force `on` makes, `off` keeps.
+pub(super) fn with_hysteresis<T: Real>(state: ContactState, force: T, on: T, off: T) -> ContactState {
+    let drive = if state == ContactState::DriveSide { off } else { on };
+    let back = if state == ContactState::BackSide { off } else { on };
+    if force > drive {
+        ContactState::DriveSide
+    } else if -force > back {
+        ContactState::BackSide
+    } else {
+        ContactState::Separated
+    }
+}
+
+/// What the position says of the teeth, once the width is known well enough.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ByPosition<T: Real> {
+    /// Gap coordinate with the wind-up still in it [m].
+    pub way: T,
+    /// How far it goes on while what is measured lags behind; zero where that is within noise [m].
+    pub soon: T,
+    /// Half-gap [m].
+    pub half_gap: T,
+    /// Transmission error: by how much both edges are shifted [m].
+    pub shift: T,
+    /// Distance from an edge that noise and ignorance can make [m].
+    pub blur: T,
+    /// Compliance as way per force [m/N].
+    pub compliance: T,
+    /// Weight of the position in the force beside the motor side's.
+    pub weight: T,
+}
+
+impl<T: Real> ByPosition<T> {
+    /// Contact and mesh force, from the motor side's force and the standard deviation of both together.
+    pub fn contact(&self, before: ContactState, force: T, deviation: T) -> (ContactState, T) {
+        let way = self.way - self.shift;
+        let side = if way < T::ZERO { -T::ONE } else { T::ONE };
+        let beyond = side * way - self.half_gap;
+        let both = force + self.weight * (side * beyond.over(self.compliance) - force);
+        // Teeth about to meet count as met: what is measured lags behind them by that much.
+        let lands = side * self.soon > T::ZERO && beyond + side * self.soon > T::ZERO;
+        let flank = if side > T::ZERO { ContactState::DriveSide } else { ContactState::BackSide };
+        let contact = if lands && (before == flank || before == ContactState::Separated) {
+            flank
+        } else if beyond < -self.blur {
+            ContactState::Separated
+        } else {
+            with_hysteresis(before, both, T::TWO * deviation, deviation)
+        };
+        (contact, both)
+    }
+
+    /// Gap coordinate with the wind-up taken out: beyond an edge only the meshes' own compliance is left. Needs no
+    /// force.
+    pub fn gap(&self, mesh_compliance: T) -> T {
+        let share = mesh_compliance.over(self.compliance);
+        let (upper, lower) = (self.shift + self.half_gap, self.shift - self.half_gap);
+        if self.way > upper {
+            upper + share * (self.way - upper)
+        } else if self.way < lower {
+            lower + share * (self.way - lower)
+        } else {
+            self.way
+        }
+    }
+}
+
+/// Sign of a contact: 1, 0 or -1.
+pub(super) fn sign<T: Real>(contact: ContactState) -> T {
+    match contact {
+        ContactState::DriveSide => T::ONE,
+        ContactState::Separated => T::ZERO,
+        ContactState::BackSide => -T::ONE,
+    }
+}

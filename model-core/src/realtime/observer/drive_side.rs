@@ -1,0 +1,48 @@
+//! The motor side: a disturbance observer that says what torque the motor loses to the meshes. Taking friction and bias
+//! out of that is left to `bias`.
+//!
+//! State: angle beyond the counts, speed, taken torque, air-gap torque. Over a period the state follows the linear flow
+//! of the tables (current loop included), then a part of the surprise in the angle is added to each.
+
+use crate::real::Real;
+use crate::tables::observer::{CurrentTable, DriveTable, MOST_DELAY};
+
+/// State of the motor side.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct DriveSide<T: Real> {
+    /// Angle beyond the counts [rad].
+    pub ahead: T,
+    /// [rad/s].
+    pub speed: T,
+    /// Torque taken from the motor by meshes and friction [N m].
+    pub taken: T,
+    air_gap: T,
+    on_the_way: [T; MOST_DELAY],
+}
+
+impl<T: Real> DriveSide<T> {
+    /// Over one period, under the command in force during it; `turned` is by how much the counts moved [rad].
+    pub fn predict(&mut self, table: &DriveTable<T>, current: &CurrentTable<T>, command: T, turned: T) {
+        let [newest, newer, older, _] = self.on_the_way;
+        self.on_the_way = [command, newest, newer, older];
+        let whole = current.whole_delay as usize;
+        let at = |index: usize| self.on_the_way.get(index).copied().unwrap_or(command);
+        let wanted = at(whole) + current.part_delay * (at(whole + 1) - at(whole));
+        let [from_speed, from_taken, from_air_gap, from_wanted] = table.angle;
+        self.ahead +=
+            from_speed * self.speed + from_taken * self.taken + from_air_gap * self.air_gap + from_wanted * wanted
+                - turned;
+        let [from_taken, from_air_gap, from_wanted] = table.speed;
+        self.speed += from_taken * self.taken + from_air_gap * self.air_gap + from_wanted * wanted;
+        self.air_gap += current.rise * (wanted - self.air_gap);
+    }
+
+    /// Takes in a reading that was `age` old [s].
+    pub fn correct(&mut self, table: &DriveTable<T>, age: T) {
+        let surprise = self.speed * age - self.ahead;
+        let [angle, speed, taken] = table.gain;
+        self.ahead += angle * surprise;
+        self.speed += speed * surprise;
+        self.taken += taken * surprise;
+    }
+}

@@ -1,0 +1,120 @@
+//! How much is known: variances and what follows from them, brought up to date a part an interval so that no period has
+//! to do it all. What is decided by it is left to the observer.
+
+use super::Bias;
+use super::learner::{Learner, Regressors};
+use super::regressors::{self, COMPLIANCE, HALF_GAP, OFFSET, SKEW, Touch};
+use crate::real::Real;
+use crate::tables::observer::ObserverTables;
+
+/// Parts in which variances are brought up to date.
+const PARTS: u32 = 4;
+
+/// What is known at the end of an interval and serves until the next.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Knowledge<T: Real> {
+    /// Standard deviation of the mesh force from the motor side [N].
+    pub force_deviation: T,
+    /// The same over an interval.
+    pub mean_force_deviation: T,
+    /// The same over the few intervals that contact takes to settle.
+    pub steady_force_deviation: T,
+    /// The same with the position's help.
+    pub both_deviation: T,
+    /// Variance of the way with everything taken out that was learnt [m^2].
+    pub way_variance: T,
+    /// Variance of the way less the nearer edge [m^2].
+    pub edge_variance: T,
+    /// Its root [m].
+    pub edge_deviation: T,
+    /// Variance of where a flank is: half-gap and transmission error [m^2].
+    pub flank_variance: T,
+    /// Variances of half-gap [m^2], offset [m^2], compliance [m^2/N^2] and skew [m^2 s^2].
+    pub variances: [T; 4],
+    /// Distance from an edge that noise and ignorance can make [m].
+    pub blur: T,
+    /// Weight of the position beside the motor side in the mesh force.
+    pub position_weight: T,
+    /// Whether positions decide about contact.
+    pub width_is_known: bool,
+    /// The last interval was in settled contact.
+    pub settled: bool,
+    /// What comes next.
+    turn: u32,
+}
+
+impl<T: Real> Knowledge<T> {
+    /// Beforehand.
+    pub fn new<const P: usize>(tables: &ObserverTables<T>, learner: &Learner<T, P>) -> Self {
+        let mut knowledge = Self {
+            force_deviation: T::ZERO,
+            mean_force_deviation: T::ZERO,
+            steady_force_deviation: T::ZERO,
+            both_deviation: T::ZERO,
+            way_variance: T::ZERO,
+            edge_variance: T::ZERO,
+            edge_deviation: T::ZERO,
+            flank_variance: T::ZERO,
+            variances: [T::ZERO; 4],
+            blur: T::ZERO,
+            position_weight: T::ZERO,
+            width_is_known: false,
+            settled: false,
+            turn: 0,
+        };
+        let free = regressors::free(T::ZERO, 0, Some(0));
+        let touch = Touch { side: T::ONE, ..Touch::default() };
+        knowledge.of_force(tables, &Bias::new(&tables.contact), T::ZERO);
+        for _ in 0..PARTS {
+            knowledge.next(tables, learner, &free, &touch);
+        }
+        knowledge
+    }
+
+    /// How well the motor side knows the mesh force.
+    pub fn of_force(&mut self, tables: &ObserverTables<T>, bias: &Bias<T>, direction: T) {
+        let contact = &tables.contact;
+        let known = bias.variance_at(direction) + contact.ripple_variance;
+        self.force_deviation = (known + contact.force_variance).square_root();
+        let noise = contact.force_variance * tables.learner.per_periods * T::EIGHTH;
+        self.steady_force_deviation = (known + noise).square_root();
+        self.mean_force_deviation = (known + contact.force_variance * tables.learner.per_periods).square_root();
+    }
+
+    /// The next part of what the learner knows.
+    pub fn next<const P: usize>(
+        &mut self,
+        tables: &ObserverTables<T>,
+        learner: &Learner<T, P>,
+        free: &Regressors<T, P>,
+        touch: &Touch<T>,
+    ) {
+        let table = &tables.learner;
+        match self.turn {
+            0 => self.way_variance = learner.variance(table, free),
+            1 => self.flank_variance = learner.variance(table, &touch.on(&[T::ZERO; P])),
+            2 => {
+                self.variances =
+                    [HALF_GAP, OFFSET, COMPLIANCE, SKEW].map(|parameter| learner.variance_of(table, parameter));
+            }
+            _ => self.of_edge(tables, learner, learner.variance(table, &touch.on(free))),
+        }
+        self.turn = if self.turn + 1 < PARTS { self.turn + 1 } else { 0 };
+    }
+
+    /// What follows from how well the nearer edge is known.
+    fn of_edge<const P: usize>(&mut self, tables: &ObserverTables<T>, learner: &Learner<T, P>, variance: T) {
+        self.edge_variance = variance;
+        self.edge_deviation = variance.square_root();
+        let edge = variance + tables.contact.way_variance;
+        self.blur = T::TWO * edge.square_root();
+        let compliance = learner.value(COMPLIANCE);
+        let force = self.force_deviation * self.force_deviation;
+        // Weights in inverse proportion to the variances, both as way.
+        let from_force = force * compliance * compliance;
+        self.position_weight = from_force.over(from_force + edge);
+        self.both_deviation = (force * (T::ONE - self.position_weight)).square_root();
+        let part = learner.value(HALF_GAP) * tables.contact.known_part;
+        self.width_is_known = variance < part * part;
+    }
+}

@@ -1,0 +1,178 @@
+//! One small recursive least squares for everything about joint and encoders that contact shows: half-gap, offset,
+//! compliance, skew and, with `P` = [`MAPPED`](super::MAPPED), the error maps. When contact is settled is left to
+//! `contact`.
+//!
+//! Way = side * half-gap + offset + compliance * force + skew * speed + maps. Parameters are kept in units of their
+//! standard deviations beforehand and the covariance as U D U^T (Bierman), so that it stays positive in single
+//! precision whatever happens.
+
+use core::array;
+
+use super::regressors::{COMPLIANCE, HALF_GAP, SKEW};
+use crate::real::Real;
+use crate::tables::observer::LearnerTable;
+
+/// What the way depends on, one for each parameter.
+pub(super) type Regressors<T, const P: usize> = [T; P];
+
+/// Parameters with their covariance.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Learner<T: Real, const P: usize> {
+    /// In standard deviations beforehand, from the mean beforehand.
+    moved: [T; P],
+    /// U above the diagonal, D on it; the row of a column's entries is contiguous.
+    factors: [[T; P]; P],
+    /// Parameters, in SI.
+    pub values: [T; P],
+}
+
+impl<T: Real, const P: usize> Learner<T, P> {
+    pub fn new(table: &LearnerTable<T>) -> Self {
+        let mut learner = Self { moved: [T::ZERO; P], factors: [[T::ZERO; P]; P], values: [T::ZERO; P] };
+        learner.reopen();
+        learner.settle(table);
+        learner
+    }
+
+    /// A parameter, in SI.
+    pub fn value(&self, parameter: usize) -> T {
+        self.values.get(parameter).copied().unwrap_or(T::ZERO)
+    }
+
+    /// Way that a set of regressors has.
+    pub fn way(&self, regressors: &Regressors<T, P>) -> T {
+        self.values.iter().zip(regressors).fold(T::ZERO, |sum, (value, regressor)| sum + *value * *regressor)
+    }
+
+    /// Variance of that way as far as the parameters are uncertain [m^2].
+    pub fn variance(&self, table: &LearnerTable<T>, regressors: &Regressors<T, P>) -> T {
+        let scaled = Self::scaled(table, regressors, T::ONE);
+        let mut sum = T::ZERO;
+        for j in 0..P {
+            let (f, d) = self.column(&scaled, j);
+            sum += d * f * f;
+        }
+        sum
+    }
+
+    /// Variance of one parameter, in SI.
+    pub fn variance_of(&self, table: &LearnerTable<T>, parameter: usize) -> T {
+        let mut sum = T::ZERO;
+        for j in parameter..P {
+            let Some(column) = self.factors.get(j) else { break };
+            let d = column.get(j).copied().unwrap_or(T::ZERO);
+            let u = if j == parameter { T::ONE } else { column.get(parameter).copied().unwrap_or(T::ZERO) };
+            sum += d * u * u;
+        }
+        let deviation = table.deviation.get(parameter).copied().unwrap_or(T::ZERO);
+        sum * deviation * deviation
+    }
+
+    /// Everything that is learnt: parameters, then each column of the factors down to its diagonal.
+    pub fn numbers(&self) -> impl Iterator<Item = T> {
+        let columns = self.factors.iter().enumerate().flat_map(|(index, column)| column.iter().take(index + 1));
+        self.moved.iter().chain(columns).copied()
+    }
+
+    /// Takes the same back.
+    pub fn set_numbers(&mut self, table: &LearnerTable<T>, next: &mut impl FnMut() -> T) {
+        self.moved.iter_mut().for_each(|moved| *moved = next());
+        for (index, column) in self.factors.iter_mut().enumerate() {
+            column.iter_mut().take(index + 1).for_each(|factor| *factor = next());
+        }
+        self.settle(table);
+    }
+
+    /// Forgets how sure everything is that depends on where the encoders' zeros are.
+    pub fn forget_places(&mut self) {
+        for (index, column) in self.factors.iter_mut().enumerate() {
+            let kept = [HALF_GAP, COMPLIANCE, SKEW].contains(&index);
+            for (row, factor) in column.iter_mut().enumerate() {
+                if row < index {
+                    *factor = T::ZERO;
+                } else if row == index && !kept {
+                    *factor = T::ONE;
+                }
+            }
+        }
+    }
+
+    /// Takes in one way.
+    pub fn learn(&mut self, table: &LearnerTable<T>, regressors: &Regressors<T, P>, way: T) {
+        let scaled = Self::scaled(table, regressors, table.weight);
+        let surprise = (way - self.way(regressors)) * table.weight;
+        let mut gain = [T::ZERO; P];
+        let mut alpha = T::ONE;
+        for j in 0..P {
+            let (f, d) = self.column(&scaled, j);
+            let v = d * f;
+            let before = alpha;
+            alpha += f * v;
+            let rise = -f.over(before);
+            let Some(column) = self.factors.get_mut(j) else { break };
+            for (entry, carried) in column.iter_mut().zip(gain.iter_mut()).take(j) {
+                let u = *entry;
+                *entry = u + rise * *carried;
+                *carried += v * u;
+            }
+            if let (Some(d), Some(g)) = (column.get_mut(j), gain.get_mut(j)) {
+                *d *= before.over(alpha);
+                *g = v;
+            }
+        }
+        let step = surprise.over(alpha);
+        for (moved, gain) in self.moved.iter_mut().zip(&gain) {
+            *moved += *gain * step;
+        }
+        self.settle(table);
+    }
+
+    /// Lets what was learnt grow uncertain, up to what was known beforehand.
+    pub fn forget(&mut self, by: T) {
+        for (index, column) in self.factors.iter_mut().enumerate() {
+            if let Some(d) = column.get_mut(index) {
+                *d += *d * by;
+                if *d > T::ONE {
+                    *d = T::ONE;
+                }
+            }
+        }
+    }
+
+    /// Keeps the parameters and forgets how sure they are.
+    pub fn reopen(&mut self) {
+        for (index, column) in self.factors.iter_mut().enumerate() {
+            *column = [T::ZERO; P];
+            if let Some(d) = column.get_mut(index) {
+                *d = T::ONE;
+            }
+        }
+    }
+
+    /// f_j = (U^T h)_j and d_j.
+    fn column(&self, scaled: &[T; P], j: usize) -> (T, T) {
+        let Some(column) = self.factors.get(j) else { return (T::ZERO, T::ZERO) };
+        let mut f = scaled.get(j).copied().unwrap_or(T::ZERO);
+        for (u, h) in column.iter().zip(scaled).take(j) {
+            f += *u * *h;
+        }
+        (f, column.get(j).copied().unwrap_or(T::ZERO))
+    }
+
+    fn scaled(table: &LearnerTable<T>, regressors: &Regressors<T, P>, weight: T) -> [T; P] {
+        array::from_fn(|i| match (regressors.get(i), table.deviation.get(i)) {
+            (Some(regressor), Some(deviation)) => *regressor * *deviation * weight,
+            _ => T::ZERO,
+        })
+    }
+
+    fn settle(&mut self, table: &LearnerTable<T>) {
+        for (i, value) in self.values.iter_mut().enumerate() {
+            if let (Some(mean), Some(deviation), Some(moved)) =
+                (table.mean.get(i), table.deviation.get(i), self.moved.get(i))
+            {
+                *value = *mean + *deviation * *moved;
+            }
+        }
+    }
+}

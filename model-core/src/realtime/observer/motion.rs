@@ -1,0 +1,72 @@
+//! Whether the teeth are on their way through the gap or at rest on a flank, from how the way less the wind-up moves:
+//! needs neither width nor error map, so it is what learning begins with. Which flank it is, the force says.
+
+use crate::real::Real;
+use crate::tables::observer::ContactTable;
+
+/// Learning intervals over which the speed is taken.
+const WINDOW: usize = 8;
+
+/// A few intervals of way less wind-up, and of force with direction.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Motion<T: Real> {
+    ways: [T; WINDOW + 1],
+    forces: [(T, T); WINDOW + 1],
+    known: usize,
+    still_for: u32,
+}
+
+/// What an interval showed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Shown<T: Real> {
+    /// At rest for so many intervals.
+    Still(u32),
+    /// Through the gap half a window ago; force and direction then.
+    Crossing(T, T),
+    /// Neither for sure.
+    Between,
+}
+
+impl<T: Real> Motion<T> {
+    pub fn new() -> Self {
+        Self { ways: [T::ZERO; WINDOW + 1], forces: [(T::ZERO, T::ZERO); WINDOW + 1], known: 0, still_for: 0 }
+    }
+
+    /// Takes in one interval. `blur` is what error maps that are unknown can make of the motor's turning in an
+    /// interval [m], and `softness` by how much the compliance may be wrong [m/N].
+    pub fn step(&mut self, table: &ContactTable<T>, way: T, force: (T, T), blur: T, softness: T) -> Shown<T> {
+        self.ways.rotate_right(1);
+        self.forces.rotate_right(1);
+        if let (Some(newest_way), Some(newest_force)) = (self.ways.first_mut(), self.forces.first_mut()) {
+            *newest_way = way;
+            *newest_force = force;
+        }
+        if self.known < WINDOW {
+            self.known += 1;
+            return Shown::Between;
+        }
+        let [(newest_force, _), .., (oldest_force, _)] = self.forces;
+        let limit =
+            (table.still + blur) * T::from_i32(WINDOW as i32) + softness * magnitude(newest_force - oldest_force);
+        let [newest, .., oldest] = self.ways;
+        let middle = self.ways.get(WINDOW / 2).copied().unwrap_or(newest);
+        let whole = newest - oldest;
+        if magnitude(whole) < limit {
+            self.still_for = self.still_for.saturating_add(1);
+            return Shown::Still(self.still_for);
+        }
+        self.still_for = 0;
+        let on = |part: T| part > limit && whole > T::ZERO || -part > limit && whole < T::ZERO;
+        match self.forces.get(WINDOW / 2) {
+            Some((force, direction)) if on(newest - middle) && on(middle - oldest) => {
+                Shown::Crossing(*force, *direction)
+            }
+            _ => Shown::Between,
+        }
+    }
+}
+
+/// |value|.
+pub(super) fn magnitude<T: Real>(value: T) -> T {
+    if value < T::ZERO { -value } else { value }
+}

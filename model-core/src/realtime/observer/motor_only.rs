@@ -1,0 +1,140 @@
+//! The observer without an output encoder: the load is seen through the teeth while they touch and cannot be seen while
+//! they do not. Deciding when to do without is left to `supervisor`.
+//!
+//! In contact the way is the half-gap and the wind-up of the mesh force, which the motor side gives; the load side is
+//! corrected towards that. In the open gap it runs on under the load torque that it had, and the variance of the gap
+//! coordinate grows with the square of time for the speed and with the fourth power for the torque.
+
+use super::contact::{sign, with_hysteresis};
+use super::motion::magnitude;
+use super::regressors::{self, Touch};
+use super::{Now, Observer, Source, small};
+use crate::mesh::ContactState;
+use crate::real::Real;
+
+/// Periods by which contact may have gone before the smoothed force says so.
+const GONE_BEFORE: u32 = 30;
+
+/// What is known of the load without seeing it.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Blind<T: Real> {
+    /// Periods since contact was last felt for sure.
+    open_for: u32,
+    /// Contact has been felt since the output encoder was given up.
+    anchored: bool,
+    /// Contact that is felt for sure now.
+    pub felt: ContactState,
+    /// Mesh force, smoothed [N].
+    force: T,
+    /// Speed at which the teeth landed last, dying away as bounces do [m/s].
+    bounce: T,
+}
+
+impl<T: Real, const P: usize> Observer<'_, T, P> {
+    /// Gives the output encoder up where it cannot be right, and does without it.
+    pub(super) fn watch(&mut self, now: &Now<T, P>) {
+        let table = &self.tables.supervisor;
+        let [half_gap, compliance] = self.shape();
+        let reach = T::TWO * self.knowledge.edge_deviation + self.knowledge.edge_deviation + table.margin + half_gap;
+        let wind_up = compliance * now.force;
+        let upper = reach + if wind_up > T::ZERO { wind_up } else { T::ZERO };
+        let lower = -reach + if wind_up < T::ZERO { wind_up } else { T::ZERO };
+        if self.supervisor.judge(table, now.way - now.shift < upper && now.way - now.shift > lower) {
+            self.counts.imply();
+            self.load.speed = self.drive.speed * self.tables.levers.per_ratio;
+            self.load.torque = self.supervisor.torque_before();
+            self.blind = Blind::default();
+            // The link is where the teeth allow it to be; where exactly, the next contact shows.
+            let side: T = sign(self.estimates.contact);
+            let implied = self.now();
+            self.load.ahead += (implied.way - implied.shift - side * half_gap).over(self.tables.levers.output);
+        }
+        if self.supervisor.source() != Source::Both {
+            self.feel(now);
+        }
+    }
+
+    /// Contact: by force where there is enough of it; otherwise it lasts until the link has left the flank for sure.
+    pub(super) fn contact_unseen(&self, now: &Now<T, P>) -> ContactState {
+        if self.blind.felt != ContactState::Separated {
+            return self.blind.felt;
+        }
+        let before = self.estimates.reported_contact;
+        let [half_gap, _] = self.shape();
+        let left = half_gap - sign::<T>(before) * (now.way - now.shift);
+        let noise = T::TWO * self.tables.contact.way_variance + self.drift_variance();
+        if left > T::ZERO && left * left > T::TWO * T::TWO * noise { ContactState::Separated } else { before }
+    }
+
+    /// Corrects the load side by what contact shows.
+    fn feel(&mut self, now: &Now<T, P>) {
+        let levers = &self.tables.levers;
+        let [half_gap, compliance] = self.shape();
+        self.blind.force += (now.force - self.blind.force) * self.tables.contact.smoothing;
+        let deviation = self.knowledge.mean_force_deviation;
+        let held = self.blind.felt;
+        // Only what no bias can be: four deviations make contact, three keep it.
+        let double = T::TWO * deviation;
+        self.blind.felt = with_hysteresis(held, self.blind.force, T::TWO * double, double + deviation);
+        let side: T = sign(self.blind.felt);
+        let surprise = (now.way - now.shift - side * half_gap - compliance * now.force) * levers.per_output;
+        if self.blind.felt == ContactState::Separated {
+            self.blind.open_for = self.blind.open_for.saturating_add(1);
+            // Beyond an edge there is contact, however light: the link goes with the motor.
+            let way = now.way - now.shift;
+            if magnitude(way) > half_gap {
+                let edge = if way > T::ZERO { half_gap } else { -half_gap };
+                self.load.ahead += (way - edge) * levers.per_output;
+                self.load.speed = self.drive.speed * levers.per_ratio;
+            }
+        } else if self.blind.felt == held {
+            self.load.correct(&self.tables.load.blind_gain, surprise);
+            self.blind.open_for = 0;
+            self.blind.bounce -= self.blind.bounce * self.tables.contact.smoothing * T::EIGHTH;
+        } else {
+            // A landing says where the link is, and that it goes with the motor; of its torque it says nothing.
+            self.blind.bounce += magnitude(now.rate);
+            self.load.ahead += surprise;
+            self.load.speed = self.drive.speed * levers.per_ratio;
+            self.blind.open_for = 0;
+            self.blind.anchored = true;
+        }
+    }
+
+    /// Variance of the gap coordinate without an output encoder [m^2]; `None` where nothing is known of it.
+    pub(super) fn blind_variance(&self) -> Option<T> {
+        self.blind
+            .anchored
+            .then(|| self.knowledge.edge_variance + self.tables.contact.way_variance + self.drift_variance())
+    }
+
+    /// What has been added since contact was last felt [m^2].
+    fn drift_variance(&self) -> T {
+        let load = &self.tables.load;
+        let open_for = if self.blind.open_for > 0 { self.blind.open_for.saturating_add(GONE_BEFORE) } else { 0 };
+        let time = self.tables.period * T::from_i32(open_for.min(1 << 20) as i32);
+        let [speed_variance, torque_variance] = load.blind_variance;
+        let lever = self.tables.levers.output;
+        let bounce = self.blind.bounce;
+        let by_torque = time * load.way_per_torque;
+        (bounce * bounce + lever * lever * speed_variance + by_torque * by_torque * torque_variance) * time * time
+    }
+
+    /// Once an interval: takes the output encoder back when it says again what the motor implies.
+    pub(super) fn reconsider(&mut self, settled: Option<T>, mesh: &[T; 2], force: T) {
+        let tables = self.tables;
+        let agrees = settled.map(|side| {
+            let phase = self.counts.motor.phase(&tables.counts.motor);
+            let output = self.counts.output.phase(&tables.counts.output);
+            let free = regressors::free(self.load.speed, phase, Some(output));
+            let measured = tables.counts.length * small(self.counts.difference) + tables.levers.sun * self.drive.ahead;
+            let expected = self.learner.way(&Touch { side, force, mesh: *mesh }.on(&free));
+            let room = tables.supervisor.margin + T::TWO * self.knowledge.edge_deviation;
+            magnitude(measured - expected) < room
+        });
+        if self.supervisor.reconsider(&tables.supervisor, agrees) {
+            self.counts.trust();
+            self.load.ahead = T::ZERO;
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! What the compensation needs as plain numbers, made by `design::compensation`. Angles, torques and inertias are felt
+//! at the link; how the numbers come about is left to the design.
+
+use crate::real::Real;
+
+/// Tables of the compensation of one joint at one control rate and bandwidth.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CompensationTables<T: Real> {
+    /// Control periods a second [Hz].
+    pub rate: T,
+    /// Control period [s].
+    pub period: T,
+    /// Motor turns over link turns as a fraction of whole numbers.
+    pub ratio: [i32; 2],
+    /// The same as a number.
+    pub gear: T,
+    /// Its inverse.
+    pub inverse_gear: T,
+    /// Inverse of the ratio's denominator.
+    pub inverse_denominator: T,
+    /// A whole turn [rad].
+    pub turn: T,
+    /// 1 / (r_c cos alpha): from half-backlash to half the lost motion [1/m].
+    pub inverse_lever: T,
+    /// Half the lost motion is never taken for more than this [rad].
+    pub widest_half: T,
+    /// What turns with the motor while the gap is open [kg m^2].
+    pub motor_inertia: T,
+    /// The rest [kg m^2].
+    pub load_inertia: T,
+    /// Its inverse.
+    pub inverse_load_inertia: T,
+    /// Motor inertia over all inertia.
+    pub motor_share: T,
+    /// Spring of the loop [N m/rad].
+    pub position_gain: T,
+    /// Damper of the loop [N m s/rad].
+    pub damping_gain: T,
+    /// Integral of the plain loop over one period [N m/rad].
+    pub integral_gain: T,
+    /// Share of what the limit cut off that the integral gives back each period.
+    pub back_calculation: T,
+    /// Largest torque [N m].
+    pub torque_limit: T,
+    /// How far ahead set-points are wanted [s].
+    pub lead: T,
+    /// From deciding to the torque's effect [s].
+    pub reaction: T,
+    /// Duration of a crossing times the torque that the struck planets stand for, for each radian of half the lost
+    /// motion [N m s/rad].
+    pub strike_per_half: T,
+    /// That torque at little demand [N m].
+    pub strike_torque: T,
+    /// Shortest crossing that torque and delays allow [s].
+    pub shortest_crossing: T,
+    /// Longest crossing [s].
+    pub longest_crossing: T,
+    /// Speed against the load at which a flank is met [rad/s].
+    pub landing_speed: T,
+    /// By how much a landing quickens while it finds nothing [rad/s^2].
+    pub landing_haste: T,
+    /// Its highest speed [rad/s].
+    pub fastest_landing: T,
+    /// Rise of the law's torque after a landing, in one period.
+    pub landing_rise: T,
+    /// Rate at which a missed impulse is made good [1/s].
+    pub repayment: T,
+    /// Share of the half-gap that has to open before the loss of a flank is believed.
+    pub opening: T,
+    /// Demand beyond which a change of its sign counts [N m].
+    pub hysteresis: T,
+    /// Measured torque below which no flank is changed for it soon after a change, for each unit of patience [N m].
+    pub doubt: T,
+    /// Share of news that the measured torque takes up in one period.
+    pub settling: T,
+    /// Inverse of the news from which on they are taken up faster [1/(N m)].
+    pub eagerness: T,
+    /// How much of it is left when nothing has changed for long.
+    pub least_doubt: T,
+    /// What is left of a grown patience after one period.
+    pub patience_left: T,
+    /// The most patience: how many times the feedback torque above.
+    pub most_patience: T,
+    /// A joint at rest that asks for the other flank within this time hunts [s].
+    pub hunting: T,
+    /// Error let be after the first crossing that feedback alone has caused, over half the lost motion.
+    pub first_indulgence: T,
+    /// The most that is let be, over half the lost motion.
+    pub last_indulgence: T,
+    /// What is left of it after one period.
+    pub forgiving: T,
+    /// Learner of the load: growth of variances in one period (even part, friction), variance of a reading.
+    pub load_learner: [T; 3],
+    /// Inverse of the speed at which friction has its full size [s/rad].
+    pub friction_slope: T,
+    /// Tracking filter of the impedance law's demand: gains of value and rate.
+    pub demand_gains: [T; 2],
+    /// Change of the trust in the estimates in one period.
+    pub trust_step: T,
+}

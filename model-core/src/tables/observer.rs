@@ -1,0 +1,257 @@
+//! What the observer needs as plain numbers, made by `design::observer`: flows over one control period, gains, priors
+//! and thresholds. SI, lengths along the line of action; how the numbers come about is left to the design.
+
+use crate::real::Real;
+
+/// The most parameters that the learner may have.
+pub const MOST_PARAMETERS: usize = 14;
+
+/// Commands that may be on their way to the motor.
+pub const MOST_DELAY: usize = 4;
+
+/// Tables of the observer of one joint with its encoders at one control rate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ObserverTables<T: Real> {
+    /// Digest of what a learnt memory must agree with: gears, encoders and joint.
+    pub identity: u64,
+    /// Control periods a second [Hz].
+    pub control_rate: u32,
+    /// Control period [s].
+    pub period: T,
+    /// Clock ticks that a control period is expected to last, at least and at most.
+    pub period_ticks: [u32; 2],
+    /// Length of a clock tick [s].
+    pub tick: T,
+    /// From counts to one whole number and to angles.
+    pub counts: CountTable<T>,
+    /// Levers.
+    pub levers: LeverTable<T>,
+    /// From commanded torque to torque.
+    pub current: CurrentTable<T>,
+    /// The motor side.
+    pub drive: DriveTable<T>,
+    /// The load side.
+    pub load: LoadTable<T>,
+    /// Contact and torque bias.
+    pub contact: ContactTable<T>,
+    /// What is learnt.
+    pub learner: LearnerTable<T>,
+    /// When the output encoder is given up and taken back.
+    pub supervisor: SupervisorTable<T>,
+}
+
+/// One encoder.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EncoderTable<T: Real> {
+    /// Counts in a turn.
+    pub turn: u32,
+    /// Raw counts are modulo this; 0 stands for 2^32.
+    pub wraps_at: u32,
+    /// 2^64 over the counts in a turn, from which a place in the turn becomes a phase.
+    pub phase: u64,
+    /// Counts in a control period beyond which a reading is not believed.
+    pub fastest: u32,
+    /// [rad/count].
+    pub angle: T,
+    /// [turns/count].
+    pub fraction: T,
+    /// [turns/rad].
+    pub turns: T,
+}
+
+/// Motor less ratio times output as a whole number.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CountTable<T: Real> {
+    /// On the motor.
+    pub motor: EncoderTable<T>,
+    /// On the link; a copy of the motor's when there is none.
+    pub output: EncoderTable<T>,
+    /// Whether there is an output encoder.
+    pub has_output: bool,
+    /// Whether both encoders know their place in the turn when they begin.
+    pub absolute: bool,
+    /// Units of the difference in a motor count.
+    pub motor_weight: i64,
+    /// Units of the difference in an output count.
+    pub output_weight: i64,
+    /// Whole turns of either shaft change the difference by a multiple of this.
+    pub modulus: i64,
+    /// Mesh periods in a turn of the output: teeth of the ring.
+    pub meshes: u32,
+    /// Way along the line of action in a unit of the difference [m].
+    pub length: T,
+}
+
+/// Levers of the joint.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LeverTable<T: Real> {
+    /// Base radius of the sun [m].
+    pub sun: T,
+    /// 1 over it [1/m].
+    pub per_sun: T,
+    /// Ratio by teeth times the sun's base radius: torque at the carrier over mesh force, and way over output angle [m].
+    pub output: T,
+    /// 1 over it [1/m].
+    pub per_output: T,
+    /// Motor turns in an output turn, by teeth.
+    pub ratio: T,
+    /// 1 over it.
+    pub per_ratio: T,
+}
+
+/// From commanded torque to torque in the air gap.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CurrentTable<T: Real> {
+    /// Whole control periods of delay.
+    pub whole_delay: u32,
+    /// What is left of it, as a part of a period.
+    pub part_delay: T,
+    /// Part of the lacking torque that the current loop makes good in a period.
+    pub rise: T,
+    /// Largest torque [N m].
+    pub limit: T,
+}
+
+/// The motor side: state angle, speed, torque taken by the meshes (and friction); air-gap torque known.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DriveTable<T: Real> {
+    /// Change of angle over a period for each unit of: speed, taken torque, air-gap torque at the start, wanted torque.
+    pub angle: [T; 4],
+    /// Change of speed for each unit of: taken torque, air-gap torque at the start, wanted torque.
+    pub speed: [T; 3],
+    /// Corrections of angle, speed and taken torque for a radian of surprise.
+    pub gain: [T; 3],
+    /// Variances of angle and taken torque once settled.
+    pub variance: [T; 2],
+}
+
+/// The load side: state angle, speed, load torque; torque from the meshes known.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoadTable<T: Real> {
+    /// Change of angle over a period for each unit of: speed, torque from the meshes less load torque.
+    pub angle: [T; 2],
+    /// Change of speed for each N m of torque from the meshes less load torque.
+    pub speed: T,
+    /// Corrections of angle, speed and load torque for a radian of surprise.
+    pub gain: [T; 3],
+    /// Variances of angle and load torque once settled.
+    pub variance: [T; 2],
+    /// Corrections for a radian of surprise where only the wind-up of the mesh force says where the link is.
+    pub blind_gain: [T; 3],
+    /// Variances of speed and load torque then, once settled.
+    pub blind_variance: [T; 2],
+    /// Way along the line of action in a second from rest under one newton metre [m/(N m)].
+    pub way_per_torque: T,
+}
+
+/// Contact and torque bias.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactTable<T: Real> {
+    /// Variance of the mesh force from the motor side while it holds still: what noise leaves [N^2].
+    pub force_variance: T,
+    /// Variance of cogging and torque ripple as force [N^2].
+    pub ripple_variance: T,
+    /// Variance of the way while torques hold still [m^2].
+    pub way_variance: T,
+    /// Variance of one millisecond's bias reading [N^2].
+    pub bias_noise: T,
+    /// Variance with which bias and dry friction begin [N^2].
+    pub bias_prior: T,
+    /// Growth of that variance in one learning interval [N^2].
+    pub bias_drift: T,
+    /// Neither bias nor dry friction goes beyond this [N].
+    pub bias_limit: T,
+    /// Standard deviation of the rate of the way [m/s].
+    pub rate_deviation: T,
+    /// By how much what is measured lags behind: the output's sampling and filtering [s].
+    pub lag: T,
+    /// Part of its change in a period by which a mean over a few learning intervals follows [-].
+    pub smoothing: T,
+    /// Way in a learning interval that noise alone can show [m].
+    pub still: T,
+    /// Likewise for each radian that the motor turns while the error maps are unknown [m/rad].
+    pub still_per_speed: T,
+    /// Motor speed above which dry friction has its full size [rad/s].
+    pub turning: T,
+    /// Positions decide about contact once an edge is known to this part of the half-gap [-].
+    pub known_part: T,
+    /// Mechanical efficiency while the motor drives.
+    pub efficiency: T,
+    /// 1 over it.
+    pub per_efficiency: T,
+}
+
+/// What is learnt: way = side * half-gap + offset + compliance * force + skew * speed + error maps.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LearnerTable<T: Real> {
+    /// Control periods between updates.
+    pub periods: u32,
+    /// 1 over them.
+    pub per_periods: T,
+    /// Intervals that make up one way to learn from.
+    pub block: u32,
+    /// 1 over them.
+    pub per_block: T,
+    /// How long an interval of so many periods lasts [s].
+    pub span: T,
+    /// Mean of each parameter beforehand.
+    pub mean: [T; MOST_PARAMETERS],
+    /// Standard deviation of each parameter beforehand.
+    pub deviation: [T; MOST_PARAMETERS],
+    /// 1 over the standard deviation of one update's way, all that repeats from update to update included [1/m].
+    pub weight: T,
+    /// Standard deviation of one update's way by itself [m].
+    pub noise: T,
+    /// Growth of variances in one update, for what wears and warms [-].
+    pub forgetting: T,
+    /// Way under one newton in the meshes alone [m/N].
+    pub mesh_compliance: T,
+}
+
+/// When the output encoder is given up and taken back.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SupervisorTable<T: Real> {
+    /// Periods without a fresh reading after which it is silent.
+    pub silent_after: u32,
+    /// Periods in a row outside the possible range after which it has failed.
+    pub failed_after: u32,
+    /// Learning intervals in a row in settled contact within the range after which it is taken back.
+    pub trusted_after: u32,
+    /// Distance beyond the possible range that dynamics alone can bring [m].
+    pub margin: T,
+    /// Estimates of the gap are given out up to this standard deviation, as a part of the gap 4b [-].
+    pub widest_part: T,
+}
+
+/// The width probe.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ProbeTable<T: Real> {
+    /// Single torque; the probe goes up to twice that [N m].
+    pub torque: T,
+    /// Part of the lacking torque that is made good in a period [-].
+    pub rise: T,
+    /// Torque for each rad/s of the motor that softens landings [N m s/rad].
+    pub damping: T,
+    /// Motor speed above which it is not at rest [rad/s].
+    pub moving: T,
+    /// Mesh torque at the carrier above which the load is not off [N m].
+    pub loaded: T,
+    /// Motor angle that teeth and wind-up cannot allow [rad].
+    pub furthest: T,
+    /// Periods after which the probe gives up.
+    pub longest: u32,
+    /// Periods that a torque is given to settle.
+    pub settle: u32,
+    /// Periods at rest over which an angle is taken.
+    pub still: u32,
+    /// 1 over them.
+    pub per_still: T,
+    /// A turn [rad].
+    pub turn: T,
+    /// Way along the line of action in a radian of the motor [m].
+    pub way: T,
+    /// Way between the flanks below which nothing has moved [m].
+    pub least: T,
+    /// Variance of the way between the flanks [m^2].
+    pub variance: T,
+}

@@ -45,7 +45,7 @@ pub fn update(path: &Path, figures: &Figures) -> Outcome<()> {
         fs::write(path.with_file_name(&name), alone(&figure.to_svg())).map_err(failed)?;
         pictured += &format!("\n![Case {}: error by instructions]({name})\n", case.key);
     }
-    let section = format!("{BEGIN}\n\n{}{pictured}\n{END}", table::layout(figures));
+    let section = format!("{BEGIN}\n\n{}{pictured}\n{END}", table::layout(figures, table::Detail::Conclusions));
     let after = match (before.find(BEGIN), before.find(END)) {
         (Some(from), Some(to)) if from < to => format!("{}{section}{}", &before[..from], &before[to + END.len()..]),
         _ => format!("{}\n\n## Error against cost\n\n{section}\n", before.trim_end()),
@@ -53,12 +53,11 @@ pub fn update(path: &Path, figures: &Figures) -> Outcome<()> {
     fs::write(path, after).map_err(failed)
 }
 
-/// A picture that stands by itself: with its colours, on a ground of its own.
+/// A picture that stands by itself: with its colours and a ground for a light and for a dark page.
 fn alone(svg: &str) -> String {
-    let style = format!(
-        "<style>{}svg{{background:#fff}}</style>",
-        ink::style_sheet(":root").lines().next().unwrap_or_default()
-    );
+    let grounds = "svg{font-family:system-ui,sans-serif;background:#fff}\n\
+                   @media screen and (prefers-color-scheme:dark){svg{background:#12171e}}\n";
+    let style = format!("\n<style>\n{}{grounds}</style>", ink::style_sheet("svg"));
     match svg.find('>') {
         Some(end) => format!("{}{style}{}", &svg[..=end], &svg[end + 1..]),
         None => svg.to_owned(),

@@ -106,14 +106,14 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
     if let Some(path) = &arguments.document {
         document::update(path, &figures)?;
     }
-    let Some(path) = &arguments.json else { return output::print(&table::layout(&figures)) };
+    let Some(path) = &arguments.json else { return output::print(&table::layout(&figures, table::Detail::Steps)) };
     let json = serde_json::to_string_pretty(&figures)
         .map_err(|error| Failure::new(format!("the figures cannot be written as JSON: {error}")))?;
     if path.as_os_str() == "-" {
         return output::print(&(json + "\n"));
     }
     write(path, &(json + "\n"))?;
-    output::print(&table::layout(&figures))
+    output::print(&table::layout(&figures, table::Detail::Steps))
 }
 
 fn gather(arguments: &Arguments, progress: &Progress) -> Outcome<Figures> {

@@ -56,7 +56,7 @@ fn section(figures: &Figures, case: &CaseFigures) -> Markup {
             }
             @if let Some(figure) = pictures::board(case, &figures.methods) { (picture(&figure)) }
             (equal("Instructions at equal error", &reached(&figures.at_equal_error), |cost| format!("{:.1} M/s", cost / 1e6)))
-            @if let Some(figure) = pictures::host(case, times) { (picture(&figure)) }
+            @if let Some(figure) = pictures::host(case, times) { h3 { "On the host" } (picture(&figure)) }
             (equal("Processor time at equal error", &reached(&figures.host_at_equal_error), |cost| format!("{:.2} ms/s", 1e3 * cost)))
         }
     }

@@ -6,7 +6,7 @@ use contest::method::Method;
 use super::libraries::Time;
 use super::lineup::{CaseFigures, Entry};
 use super::verdicts::{CLOCK, CYCLES, front};
-use crate::report::plot::ink::{Ink, LINES};
+use crate::report::plot::ink::Ink;
 use crate::report::plot::mark::Mark;
 use crate::report::plot::panel::{Panel, VerticalAxis};
 use crate::report::plot::unit::Unit;
@@ -44,6 +44,25 @@ fn ink(method: Method) -> Ink {
     }
 }
 
+/// A name short enough for a legend of many.
+fn short(name: &str) -> &str {
+    const SHORT: [(&str, &str); 12] = [
+        ("the paper's (ETD1)", "ETD1"),
+        ("RK4, sharp", "RK4"),
+        ("RK4, f64", "RK4"),
+        ("RK4, tanh", "RK4 tanh"),
+        ("semi-implicit Euler", "Euler"),
+        ("trapezoid, active set", "trapezoid"),
+        ("two masses, spring-damper", "two-mass spring"),
+        ("two masses, restitution", "two-mass impact"),
+        ("CVODE Adams, restarted at crossings", "CVODE, restarted"),
+        ("differential-equations dopri5", "dopri5"),
+        ("differential-equations dop853", "dop853"),
+        ("differential-equations Cash-Karp", "Cash-Karp"),
+    ];
+    SHORT.iter().find(|pair| pair.0 == name).map_or(name, |pair| pair.1)
+}
+
 /// Error by instructions.
 pub fn board(case: &CaseFigures, entries: &[Entry]) -> Option<Figure> {
     let own = |entry: &&Entry| entry.case == case.key && entry.marks.iter().any(|mark| mark.error.is_some());
@@ -72,8 +91,9 @@ pub fn host(case: &CaseFigures, times: &[Time]) -> Option<Figure> {
             names.push(&time.name);
         }
     }
-    let others = [Ink::Second, Ink::BackSide, Ink::Third, Ink::Fourth, Ink::Fifth, Ink::Text, Ink::Axis];
-    let mut colours = others.into_iter().chain(LINES);
+    let mut colours =
+        [Ink::Second, Ink::Limit, Ink::Third, Ink::Fourth, Ink::Fifth, Ink::Text, Ink::Axis, Ink::DriveSide]
+            .into_iter();
     let curves = names
         .iter()
         .map(|name| {
@@ -115,7 +135,7 @@ fn figure(
             label: String::new(),
             size: if own { 7.0 } else { 5.0 },
         });
-        marks.push(Mark::Line { points, ink, label: name.into(), width: WIDTHS[usize::from(!own)] });
+        marks.push(Mark::Line { points, ink, label: short(name).into(), width: WIDTHS[usize::from(!own)] });
     }
     let axis_of_error =
         VerticalAxis::Decades { from: low.log10().floor() as i32, to: (high.log10().ceil() as i32).clamp(-8, 1) };

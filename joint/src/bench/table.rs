@@ -10,11 +10,20 @@ use super::Figures;
 use super::lineup::{CaseFigures, Entry, Mark};
 use super::verdicts::{AtError, CLOCK, CYCLES, InBudget, LEVELS, front};
 
+/// How much is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Detail {
+    /// Every method at every step, too.
+    Steps,
+    /// What follows from them.
+    Conclusions,
+}
+
 /// All tables, ending with a newline.
-pub fn layout(figures: &Figures) -> String {
+pub fn layout(figures: &Figures, detail: Detail) -> String {
     let mut text = origin(figures);
     for case in &figures.cases {
-        text += &case_tables(figures, case);
+        text += &case_tables(figures, case, detail);
     }
     text += &budget(figures);
     text += &rounding(figures);
@@ -39,7 +48,7 @@ fn origin(figures: &Figures) -> String {
     )
 }
 
-fn case_tables(figures: &Figures, case: &CaseFigures) -> String {
+fn case_tables(figures: &Figures, case: &CaseFigures, detail: Detail) -> String {
     let mut text = format!(
         "\n### Case {}: {}\n\nError: {}; worst of {} phases, {:.4} s. A start moved by a millionth of b_c moves the \
          reference itself by {}.\n\n",
@@ -50,6 +59,19 @@ fn case_tables(figures: &Figures, case: &CaseFigures) -> String {
         case.duration_s,
         scientific(Some(case.sensitivity))
     );
+    if detail == Detail::Steps {
+        text += &steps(figures, case);
+    }
+    let reached: Vec<&AtError> = figures.at_equal_error.iter().filter(|at| at.case == case.key).collect();
+    if reached.iter().any(|at| at.cost.is_some()) {
+        text += "\nInstructions for a second of the joint at equal error, and over those of this step:\n\n";
+        text += &equal(&reached, |cost| format!("{:.1} M", cost / 1e6));
+    }
+    text
+}
+
+/// Every method at every step.
+fn steps(figures: &Figures, case: &CaseFigures) -> String {
     let entries: Vec<&Entry> = figures.methods.iter().filter(|entry| entry.case == case.key).collect();
     let mut rows = Vec::new();
     for entry in &entries {
@@ -84,13 +106,7 @@ fn case_tables(figures: &Figures, case: &CaseFigures) -> String {
         "worst",
         "M instr/s",
     ];
-    text += &table(&heads, &rows);
-    let reached: Vec<&AtError> = figures.at_equal_error.iter().filter(|at| at.case == case.key).collect();
-    if reached.iter().any(|at| at.cost.is_some()) {
-        text += "\nInstructions for a second of the joint at equal error, and over those of this step:\n\n";
-        text += &equal(&reached, |cost| format!("{:.1} M", cost / 1e6));
-    }
-    text
+    table(&heads, &rows)
 }
 
 /// Steps that a table shows: of this step those that no other one undercuts, else every other one of a long list, the

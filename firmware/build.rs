@@ -51,7 +51,7 @@ fn write_measured() -> Result<(), String> {
     // The compiler must not fold the numbers into the code, which it cannot do in the image of a board either.
     let (mut modules, mut visits) = (String::from("use core::hint::black_box;\n"), String::new());
     let files = env::var_os("MEASURED_JOINTS").unwrap_or_default();
-    for (index, file) in env::split_paths(&files).enumerate() {
+    for (index, file) in env::split_paths(&files).filter(|file| !file.as_os_str().is_empty()).enumerate() {
         println!("cargo::rerun-if-changed={}", file.display());
         let source = source(&file, tick_rate()?)?;
         modules += &format!("mod joint_{index} {{\n{source}}}\n");

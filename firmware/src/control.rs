@@ -79,7 +79,8 @@ impl<'a, E: OutputPin<Error = Infallible>, const N: usize> Plant<'a, E, N> {
         }
     }
 
-    /// Takes one order: idle has at most one under way.
+    /// Takes one order: idle has at most one under way. Kept out of line, since its stack is not needed while stepping.
+    #[inline(never)]
     fn obey(&mut self) {
         let event = match self.end.orders.take() {
             None => return,
@@ -159,6 +160,8 @@ impl<'a, E: OutputPin<Error = Infallible>, const N: usize> Plant<'a, E, N> {
         true
     }
 
+    /// Kept out of line for the same reason.
+    #[inline(never)]
     fn hand_out_sample(&mut self, computation: u32) {
         let sample = RawSample {
             tick: self.steps,

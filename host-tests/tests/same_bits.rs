@@ -1,10 +1,74 @@
-//! The step's f32 results are the same in every bit on this host in this build, in the builds that the known digests
-//! came from, and on the emulated board, whatever the caller has set the floating-point unit to. The release build is
-//! compared with the board by `joint hil --check`.
+//! The step's f32 results are the same in every bit in this build, in every build before it, and on the emulated board,
+//! whatever the caller has set the floating-point unit to. The release build of `joint hil --check` holds itself to the
+//! board in the same way.
 
-use joint::proof::same_bits::{compare, on_board};
+use std::fs;
+use std::path::Path;
+
+use joint::proof::joints::TRIAL_JOINTS;
+use joint::proof::same_bits::{InMode, compare, on_board, on_host};
 use joint::target::emulator;
 use joint::target::toolchain::Toolchain;
+
+/// Digests that were found before, on whatever machine.
+const KNOWN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/step_digests.csv");
+/// Set to write that file anew.
+const WRITE: &str = "WRITE_STEP_DIGESTS";
+
+fn here(in_mode: InMode<'_>) -> String {
+    let digests = TRIAL_JOINTS.iter().map(|joint| on_host(joint, in_mode).expect("a sound joint"));
+    let lines: Vec<_> = digests.map(|digests| format!("{digests}\n")).collect();
+    format!("joint,tables,long motion,infinite torques,tiny numbers,contact changes\n{}", lines.concat())
+}
+
+#[test]
+fn the_step_s_results_are_those_of_every_build_before() {
+    let found = here(&|work| work());
+    if std::env::var_os(WRITE).is_some() {
+        fs::write(Path::new(KNOWN), &found).expect("a file that can be written");
+    }
+    let known = fs::read_to_string(KNOWN).expect("the known digests");
+    assert!(
+        found == known,
+        "the step gives other bits than before. If it was changed on purpose, write the digests anew:\n\
+         {WRITE}=1 cargo test -p host-tests --test same_bits\nfound:\n{found}known:\n{known}"
+    );
+}
+
+#[test]
+#[cfg(target_arch = "x86_64")]
+fn the_caller_s_flush_to_zero_changes_no_bit() {
+    let plain = here(&|work| work());
+    for (name, bits) in [("FTZ", 1 << 15), ("DAZ", 1 << 6), ("FTZ and DAZ", 1 << 15 | 1 << 6)] {
+        assert_eq!(here(&|work| x86::with_mode(bits, work)), plain, "with {name}");
+    }
+}
+
+#[test]
+#[cfg(not(target_arch = "x86_64"))]
+fn the_caller_s_flush_to_zero_changes_no_bit() {
+    println!("not tried on this processor: only MXCSR of x86-64 is known here; the emulated board is tried anyway");
+}
+
+#[cfg(target_arch = "x86_64")]
+mod x86 {
+    use std::arch::asm;
+
+    /// Runs work with bits of MXCSR set.
+    pub fn with_mode(bits: u32, work: &mut dyn FnMut()) {
+        let (mut before, mut unchanged) = (0_u32, 0_u32);
+        // SAFETY: stores a register to a place of its size.
+        unsafe { asm!("stmxcsr [{}]", in(reg) &raw mut before) };
+        let changed = before | bits;
+        // SAFETY: only flush-to-zero and denormals-are-zero are added. A caller in C may have them set too, and what
+        // the step does then is what is tried; rounding and traps stay as they are, and so does all else until the end.
+        unsafe { asm!("ldmxcsr [{}]", in(reg) &raw const changed) };
+        work();
+        // SAFETY: stores and loads as above; what was there before comes back.
+        unsafe { asm!("stmxcsr [{}]", "ldmxcsr [{}]", in(reg) &raw mut unchanged, in(reg) &raw const before) };
+        assert_eq!(unchanged & bits, bits, "the mode did not last");
+    }
+}
 
 #[test]
 #[ignore = "needs the emulated board: run by `cargo joint hil --check`"]

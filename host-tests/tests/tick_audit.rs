@@ -3,7 +3,7 @@
 
 use joint::proof::tick;
 use joint::target::board::Board;
-use joint::target::image::{build_image, preset_file};
+use joint::target::image::{build_image, build_measuring, preset_file};
 use joint::target::toolchain::Toolchain;
 use link::messages::Role;
 
@@ -14,6 +14,25 @@ fn the_tick_cannot_panic_and_its_stack_is_bounded() {
     let toolchain = Toolchain::prepare(&say).expect("a toolchain for the board");
     let image = build_image(&toolchain, &preset_file("q1"), Board::Stm32f405, Role::Plant, 20_000, &say);
     let reach = tick::reach(&image.expect("an image").elf).expect("an image that can be read");
-    println!("{reach:#?}");
+    println!("{} B of stack: {:?}", tick::stack(&reach), reach.deepest);
     tick::judge(&reach).unwrap_or_else(|failure| panic!("{failure}"));
+}
+
+#[test]
+#[ignore = "needs the compiler for the board: run by `cargo joint hil --check`"]
+fn planted_faults_are_all_found_and_named() {
+    let say = |line: &str| println!("{line}");
+    let toolchain = Toolchain::prepare(&say).expect("a toolchain for the board");
+    let elf = build_measuring(&toolchain, "planted_faults", &[], 20_000, &say).expect("an image");
+    let failure = tick::judge(&tick::reach(&elf).expect("an image that can be read")).expect_err("faults");
+    println!("{failure}");
+    for fault in [
+        "may_panic -> core::panicking::panic_bounds_check",
+        "the tick can call in a ring: planted_faults::faults::calls_itself",
+        "the tick calls through a pointer",
+        "takes_stack 3",
+    ] {
+        assert!(failure.message().contains(fault), "{fault} is not in: {failure}");
+    }
+    assert_eq!(failure.exit_code(), 1);
 }

@@ -9,6 +9,7 @@ use model_core::realtime::{Model, Outputs, Relative, State, Torques};
 use model_core::tables::Tables;
 
 use crate::numbers::Numbers;
+use crate::torque::{NONE, Size};
 
 /// Steps of the long motion.
 pub const STEPS: u32 = 100_000;
@@ -28,12 +29,9 @@ const BRIEF: u32 = 20;
 const LONGEST_HOLD: u32 = 400;
 /// Bits of the smallest number of f32 with all its digits.
 const FIRST_NORMAL: u32 = 1 << 23;
-const NONE: Torques<f32> = Torques { drive: 0.0, load: 0.0 };
-/// Acceleration of the sun, in units of b_c omega_n^2, that the torques go up to: some half-backlashes of deflection.
-const STRENGTH: f32 = 20.0;
 
 /// Digests of a joint's motions.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Digests {
     /// Of state and outputs at every step of the long motion.
     pub long: u64,
@@ -107,32 +105,23 @@ fn chain_outputs<const N: usize>(running: u64, outputs: &Outputs<f32, N>) -> u64
     })
 }
 
-/// Torques that change by chance, with the load about what balances the drive.
+/// Torques that change by chance.
 struct Hand {
     numbers: Numbers,
-    strength: f32,
-    balance: f32,
+    size: Size,
     torques: Torques<f32>,
     left: u32,
 }
 
 impl Hand {
     fn new<const N: usize>(tables: &Tables<f32, N>) -> Self {
-        Self {
-            numbers: Numbers::new(1),
-            strength: STRENGTH / tables.units.drive,
-            balance: tables.rigid.drive / tables.rigid.load,
-            torques: NONE,
-            left: 0,
-        }
+        Self { numbers: Numbers::new(1), size: Size::of(tables), torques: NONE, left: 0 }
     }
 
     fn torques(&mut self) -> Torques<f32> {
         if self.left == 0 {
             self.left = 1 + self.numbers.below(LONGEST_HOLD);
-            let drive = self.strength * self.numbers.signed();
-            let load = self.balance * drive * (1.0 + 0.5 * self.numbers.signed());
-            self.torques = Torques { drive, load };
+            self.torques = self.size.any(&mut self.numbers);
         }
         self.left -= 1;
         self.torques

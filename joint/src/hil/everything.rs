@@ -1,5 +1,5 @@
-//! What `joint hil --check` does after the run: every board's image, clippy over the firmware, and the tests that need
-//! the emulated board. Host tests that need no board are `cargo test`'s own business.
+//! What `joint hil --check` does after the run: every board's image and what its tick can reach, clippy over the
+//! firmware, the proofs about the step that need the emulated board, and the tests that need it. Host tests that need no board are `cargo test`'s own business.
 
 use std::process::{Command, Stdio};
 
@@ -8,6 +8,7 @@ use link::messages::Role;
 use super::Progress;
 use crate::failure::{Failure, Outcome};
 use crate::output;
+use crate::proof::{same_bits, tick, worst_case};
 use crate::target::board::Board;
 use crate::target::image;
 use crate::target::lint;
@@ -24,12 +25,37 @@ pub fn check(tick_rate: u32, progress: &Progress) -> Outcome<()> {
         let (flash, ram) = (image.flash_bytes, image.ram_bytes);
         progress.clear();
         output::print(&format!("ok       image for {}: {flash} B of flash, {ram} B of RAM\n", board.name()))?;
+        let reach = tick::reach(&image.elf)?;
+        tick::judge(&reach).map_err(|failure| failure.while_doing(format_args!("image for {}", board.name())))?;
+        let (functions, stack) = (reach.functions, tick::stack(&reach));
+        output::print(&format!(
+            "ok       tick for {}: {functions} functions, none can panic, at most {stack} B of stack\n",
+            board.name()
+        ))?;
         progress.stage(&format!("linting the firmware for {}", board.name()));
         lint::clippy(&toolchain, board, &say)?;
         progress.clear();
         output::print(&format!("ok       clippy for {}\n", board.name()))?;
     }
+    proofs(&toolchain, progress)?;
     emulator_tests()
+}
+
+/// Same bits and worst case, of a release build against the emulated board.
+fn proofs(toolchain: &Toolchain, progress: &Progress) -> Outcome<()> {
+    let say = |line: &str| progress.say(line);
+    progress.stage("comparing bits between the emulated board and this program");
+    let runs = same_bits::compare(&same_bits::on_board(toolchain, &say)?)?;
+    progress.clear();
+    output::print(&format!("ok       {runs} runs of the step, the same in every bit on the board and here\n"))?;
+    progress.stage("searching for the worst case on the emulated board");
+    let found = worst_case::search(toolchain, &say)?;
+    progress.clear();
+    for search in &found {
+        output::print(&format!("{search}\n"))?;
+    }
+    worst_case::judge(&found)?;
+    output::print("ok       worst case of a step within its budget\n")
 }
 
 /// The tests that are left out of `cargo test`, with cargo's own output.

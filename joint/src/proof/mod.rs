@@ -5,3 +5,4 @@
 pub mod joints;
 pub mod same_bits;
 pub mod tick;
+pub mod worst_case;

@@ -49,20 +49,26 @@ impl fmt::Display for Digests {
     }
 }
 
-/// The digests of a joint, computed here.
-pub fn on_host(joint: &TrialJoint) -> Outcome<Digests> {
+/// Runs work in a floating-point mode.
+pub type InMode<'a> = &'a dyn Fn(&mut dyn FnMut());
+
+/// The digests of a joint, computed here. The step runs in the given floating-point mode; design, which only ever runs
+/// in the usual one, does not.
+pub fn on_host(joint: &TrialJoint, in_mode: InMode<'_>) -> Outcome<Digests> {
     let parameters = joint.read()?.parameters;
     match parameters.geometry.planets {
-        3 => with_planets::<3>(joint.name, &parameters),
-        4 => with_planets::<4>(joint.name, &parameters),
-        _ => with_planets::<5>(joint.name, &parameters),
+        3 => with_planets::<3>(joint.name, &parameters, in_mode),
+        4 => with_planets::<4>(joint.name, &parameters, in_mode),
+        _ => with_planets::<5>(joint.name, &parameters, in_mode),
     }
 }
 
-fn with_planets<const N: usize>(name: &str, parameters: &JointParameters) -> Outcome<Digests> {
+fn with_planets<const N: usize>(name: &str, parameters: &JointParameters, in_mode: InMode<'_>) -> Outcome<Digests> {
     let tables = design::<f32, N>(parameters, DEFAULT_TICK_RATE)
         .map_err(|error| Failure::new(error.to_string()).while_doing(format_args!("joint {name}")))?;
-    let motion::Digests { long, unbounded, tiny, changes } = motion::digests(&tables);
+    let mut digests = motion::Digests::default();
+    in_mode(&mut || digests = motion::digests(&tables));
+    let motion::Digests { long, unbounded, tiny, changes } = digests;
     Ok(Digests { name: name.to_owned(), tables: tables.digest, long, unbounded, tiny, changes })
 }
 
@@ -89,7 +95,7 @@ fn parse(line: &str) -> Option<OnBoard> {
 /// compared.
 pub fn compare(board: &[OnBoard]) -> Outcome<usize> {
     for joint in &TRIAL_JOINTS {
-        let host = on_host(joint)?;
+        let host = on_host(joint, &|work| work())?;
         let runs: Vec<_> = board.iter().filter(|run| run.digests.name == joint.name).collect();
         if runs.len() != 4 {
             return Err(Failure::check_failed(format!("{}: {} runs on the board, not 4", joint.name, runs.len())));

@@ -105,7 +105,13 @@ pub fn frame(functions: &Functions, function: &Function, returns: &dyn Fn(u32) -
                 call(to);
                 goes_on |= returns(to);
             }
-            Flow::Table(width) => open.extend(targets(functions, function, next, width).map(|to| (to, after))),
+            Flow::Table { width, base } => {
+                let targets = targets(functions, function, next, width, base);
+                if targets.is_empty() {
+                    frame.obstacles.push(Obstacle::Pointer(address));
+                }
+                open.extend(targets.into_iter().map(|to| (to, after)));
+            }
             Flow::CallRegister | Flow::JumpRegister => frame.obstacles.push(Obstacle::Pointer(address)),
             Flow::Return => {}
             Flow::Trap => frame.obstacles.push(Obstacle::Trap(address)),
@@ -133,17 +139,21 @@ fn conditional(function: &Function) -> BTreeSet<u32> {
     found
 }
 
-/// Where the table of a `tbb` or `tbh` leads. It ends where code goes on; what pads it leads to no instruction.
-fn targets<'a>(
-    functions: &'a Functions,
-    function: &'a Function,
-    table: u32,
-    width: u32,
-) -> impl Iterator<Item = u32> + 'a {
-    let end = function.code.range(table..).next().map_or(function.end, |(address, _)| *address);
-    (table..end).step_by(width as usize).filter_map(move |entry| {
-        let distance = if width == 1 { functions.byte(entry)?.into() } else { functions.half(entry)? };
-        let to = table + 2 * u32::from(distance);
-        function.code.contains_key(&to).then_some(to)
-    })
+/// Where the table of a `tbb` or `tbh` leads, by distances from the instruction after it. The table follows, or its
+/// address was put into the register somewhere in the function: every such address is taken for one. A table ends
+/// with the last entry that leads to an instruction.
+fn targets(functions: &Functions, function: &Function, next: u32, width: u32, base: u16) -> Vec<u32> {
+    let loaded = function.code.values().filter_map(|instruction| instruction.address_of);
+    let tables = match base {
+        15 => vec![next],
+        _ => loaded.filter(|(register, _)| *register == base).map(|(_, table)| table).collect(),
+    };
+    let entries = |table: u32| {
+        (table..function.end).step_by(width as usize).map_while(|entry| {
+            let distance = if width == 1 { functions.byte(entry)?.into() } else { functions.half(entry)? };
+            let to = next + 2 * u32::from(distance);
+            function.code.contains_key(&to).then_some(to)
+        })
+    };
+    tables.into_iter().flat_map(entries).collect()
 }

@@ -17,8 +17,13 @@ pub enum Flow {
     CallRegister,
     /// Wherever a register or a number in memory says.
     JumpRegister,
-    /// To one of the places in the table that follows; entries of so many bytes.
-    Table(u32),
+    /// To one of the places in a table whose address is in a register, or that follows.
+    Table {
+        /// Bytes of an entry.
+        width: u32,
+        /// The register; 15 if the table follows.
+        base: u16,
+    },
     /// To the caller.
     Return,
     /// Nowhere: the processor faults or waits for a debugger.
@@ -47,6 +52,8 @@ pub struct Instruction {
     pub flow: Flow,
     /// What becomes of the stack pointer.
     pub stack: Stack,
+    /// The register that it loads with the address of something near by, and that address.
+    pub address_of: Option<(u16, u32)>,
     /// How many of the following instructions it makes conditional.
     pub conditional_next: u32,
 }
@@ -62,9 +69,21 @@ pub fn decode(address: u32, first: u16, second: u16) -> Instruction {
         2 => (flow_of_short(address, first), stack_of_short(first)),
         _ => (flow_of_long(address, first, second), stack_of_long(first, second)),
     };
+    let address_of = address_of(address, first, second);
     let conditional_next =
         if first & 0xff00 == 0xbf00 && first & 0xf != 0 { 4 - (first & 0xf).trailing_zeros() } else { 0 };
-    Instruction { size, flow, stack, conditional_next }
+    Instruction { size, flow, stack, address_of, conditional_next }
+}
+
+/// The three forms of `adr`.
+fn address_of(address: u32, first: u16, second: u16) -> Option<(u16, u32)> {
+    let here = (address + 4) & !3;
+    match first & 0xfbff {
+        0xf20f => Some((second >> 8 & 15, here + twelve(first, second))),
+        0xf2af => Some((second >> 8 & 15, here - twelve(first, second))),
+        _ if first & 0xf800 == 0xa000 => Some((first >> 8 & 7, here + 4 * u32::from(first & 0xff))),
+        _ => None,
+    }
 }
 
 /// Destination of the forms of `add` and `mov` that take all registers.
@@ -118,10 +137,9 @@ fn flow_of_long(address: u32, first: u16, second: u16) -> Flow {
             _ if first & 0xfff0 == 0xf7f0 && second & 0xf000 == 0xa000 => Flow::Trap,
             _ => Flow::Next,
         },
-        _ if first & 0xfff0 == 0xe8d0 && second & 0xffe0 == 0xf000 => match base {
-            PC => Flow::Table(1 + u32::from(second >> 4 & 1)),
-            _ => Flow::JumpRegister,
-        },
+        _ if first & 0xfff0 == 0xe8d0 && second & 0xffe0 == 0xf000 => {
+            Flow::Table { width: 1 + u32::from(second >> 4 & 1), base }
+        }
         _ if is_load_multiple && second & 0x8000 != 0 => {
             if base == SP {
                 Flow::Return
@@ -239,8 +257,8 @@ mod tests {
         assert_eq!(flow(0xe8bd, 0x8ff0), Flow::Return); // ldmia.w sp!, {r4-r11, pc}
         assert_eq!(flow(0xf85d, 0xfb04), Flow::Return); // ldr.w pc, [sp], #4
         assert_eq!(flow(0xf8df, 0xf004), Flow::JumpRegister); // ldr.w pc, [pc, #4]
-        assert_eq!(flow(0xe8df, 0xf000), Flow::Table(1)); // tbb [pc, r0]
-        assert_eq!(flow(0xe8df, 0xf011), Flow::Table(2)); // tbh [pc, r1, lsl #1]
+        assert_eq!(flow(0xe8df, 0xf000), Flow::Table { width: 1, base: 15 }); // tbb [pc, r0]
+        assert_eq!(flow(0xe8df, 0xf011), Flow::Table { width: 2, base: 15 }); // tbh [pc, r1, lsl #1]
         assert_eq!(flow(0xdefe, 0), Flow::Trap); // udf #254
         assert_eq!(flow(0xf7f0, 0xa000), Flow::Trap); // udf.w #0
         assert_eq!(flow(0xf3ef, 0x8010), Flow::Next); // mrs r0, primask
@@ -274,6 +292,16 @@ mod tests {
         assert_eq!(at(0, 0xe9cd, 0x0102).2, Stack::Same); // strd r0, r1, [sp, #8]
         assert_eq!(at(0, 0xed9d, 0x0a02).2, Stack::Same); // vldr s0, [sp, #8]
         assert_eq!(at(0, 0xf10d, 0x0010).2, Stack::Same); // add.w r0, sp, #16
+    }
+
+    #[test]
+    fn the_address_of_a_table_near_by_is_found() {
+        let address_of = |first, second| decode(0x1002, first, second).address_of;
+        assert_eq!(address_of(0xa103, 0), Some((1, 0x1010))); // add r1, pc, #12
+        assert_eq!(address_of(0xf20f, 0x0310), Some((3, 0x1014))); // addw r3, pc, #16
+        assert_eq!(address_of(0xf2af, 0x0204), Some((2, 0x1000))); // subw r2, pc, #4
+        assert_eq!(address_of(0xf20d, 0x0310), None); // addw r3, sp, #16
+        assert_eq!(decode(0, 0xe8d1, 0xf010).flow, Flow::Table { width: 2, base: 1 }); // tbh [r1, r0, lsl #1]
     }
 
     #[test]

@@ -1,0 +1,97 @@
+#![cfg_attr(target_os = "none", no_std, no_main)]
+//! Counts the instructions of one step from a great many states, by chance and by malice, for every joint of this
+//! image. The states are those of the crate `trials`; how many instructions are too many is the host's business.
+
+#[cfg(target_os = "none")]
+mod measurement {
+    use core::hint::black_box;
+
+    use cortex_m_rt::entry;
+    use firmware::measuring::{self, InstructionCounter, Visitor, measured};
+    use model_core::realtime::{Model, Torques};
+    use model_core::tables::Tables;
+    use trials::outcome::Class;
+    use trials::states::{Kind, Trial, Trials};
+
+    const SEED: u64 = 1;
+
+    /// Counts of one sort of trials.
+    #[derive(Clone, Copy)]
+    struct Count {
+        trials: u32,
+        sum: u64,
+        most: u32,
+        /// The first trial that took the most.
+        trial: u32,
+    }
+
+    impl Count {
+        const NONE: Self = Self { trials: 0, sum: 0, most: 0, trial: 0 };
+
+        fn add(&mut self, trial: u32, instructions: u32) {
+            self.trials += 1;
+            self.sum += u64::from(instructions);
+            if instructions > self.most {
+                (self.most, self.trial) = (instructions, trial);
+            }
+        }
+    }
+
+    struct Search {
+        counter: InstructionCounter,
+    }
+
+    #[inline(never)]
+    fn step<const N: usize>(model: &mut Model<'_, f32, N>, torques: Torques<f32>) {
+        model.step(torques);
+    }
+
+    impl Visitor for Search {
+        fn joint<const N: usize>(&mut self, name: &str, tables: &'static Tables<f32, N>) {
+            let (mut trials, mut model) = (Trials::new(tables, SEED), Model::new(tables));
+            let (mut classes, mut kinds) = ([Count::NONE; Class::ALL.len()], [Count::NONE; Kind::ALL.len()]);
+            let mut worst: Option<(u32, Trial<N>)> = None;
+            for trial_number in 0..trials::states::count(N) {
+                let trial = trials.make();
+                model.set_state(trial.state);
+                let before = model.outputs();
+                let instructions = self.counter.count(|| step(black_box(&mut model), black_box(trial.torques)));
+                let class = Class::of(&before, &model.outputs());
+                let is_worst = worst.is_none_or(|(most, _)| instructions > most);
+                if is_worst {
+                    worst = Some((instructions, trial));
+                }
+                trials.stepped(&trial, model.state(), is_worst);
+                classes[class as usize].add(trial_number, instructions);
+                kinds[trial.kind as usize].add(trial_number, instructions);
+            }
+            measuring::say(format_args!("joint;{name};{N};{};{SEED}", tables.substeps));
+            for (class, count) in Class::ALL.iter().zip(classes) {
+                tell("class", class.name(), count);
+            }
+            for (kind, count) in Kind::ALL.iter().zip(kinds) {
+                tell("kind", kind.name(), count);
+            }
+            if let Some((_, trial)) = worst {
+                measuring::say(format_args!("state;{trial:?}"));
+            }
+        }
+    }
+
+    fn tell(sort: &str, name: &str, Count { trials, sum, most, trial }: Count) {
+        measuring::say(format_args!("{sort};{name};{trials};{sum};{most};{trial}"));
+    }
+
+    #[entry]
+    fn main() -> ! {
+        // Alone in this image, and called once.
+        if let Some(core) = cortex_m::Peripherals::take() {
+            measured::visit(&mut Search { counter: InstructionCounter::start(core.SYST) });
+        }
+        measuring::finish()
+    }
+}
+
+/// There is nothing to run on a host.
+#[cfg(not(target_os = "none"))]
+fn main() {}

@@ -1,0 +1,70 @@
+//! What became of a mesh set in one tick: the classes that worst cases are reported by. Found from the outputs before
+//! and after, so that nothing of the step's inside is known here.
+
+use model_core::mesh::ContactState;
+use model_core::realtime::Outputs;
+
+/// What the contact set did.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Class {
+    /// Drive sides in contact, before and after.
+    DriveSide,
+    /// Back sides in contact, before and after.
+    BackSide,
+    /// All teeth apart, before and after.
+    Apart,
+    /// Some of each, the same before and after.
+    Mixed,
+    /// Some meshes changed.
+    SomeChanged,
+    /// Every mesh changed.
+    AllChanged,
+    /// Numbers that are infinite, or none.
+    NotFinite,
+}
+
+impl Class {
+    /// All of them.
+    pub const ALL: [Self; 7] = [
+        Self::DriveSide,
+        Self::BackSide,
+        Self::Apart,
+        Self::Mixed,
+        Self::SomeChanged,
+        Self::AllChanged,
+        Self::NotFinite,
+    ];
+
+    /// For tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::DriveSide => "drive side held",
+            Self::BackSide => "back side held",
+            Self::Apart => "apart",
+            Self::Mixed => "mixed, unchanged",
+            Self::SomeChanged => "some meshes changed",
+            Self::AllChanged => "every mesh changed",
+            Self::NotFinite => "not finite",
+        }
+    }
+
+    /// The class of a tick.
+    pub fn of<const N: usize>(before: &Outputs<f32, N>, after: &Outputs<f32, N>) -> Self {
+        let finite = |outputs: &Outputs<f32, N>| {
+            outputs.deflections.iter().flatten().all(|value| value.is_finite()) && outputs.wind_up.is_finite()
+        };
+        if !finite(before) || !finite(after) {
+            return Self::NotFinite;
+        }
+        let pairs = || before.contacts.iter().flatten().zip(after.contacts.iter().flatten());
+        let all = |state: ContactState| pairs().all(|(before, after)| *before == state && *after == state);
+        match pairs().filter(|(before, after)| before != after).count() {
+            0 if all(ContactState::DriveSide) => Self::DriveSide,
+            0 if all(ContactState::BackSide) => Self::BackSide,
+            0 if all(ContactState::Separated) => Self::Apart,
+            0 => Self::Mixed,
+            changed if changed == 2 * N => Self::AllChanged,
+            _ => Self::SomeChanged,
+        }
+    }
+}

@@ -1,0 +1,267 @@
+//! Single states that a step is tried on, by chance and by malice: every contact set, all meshes crossing at once,
+//! grazing and exact touch, speeds that leap over the gap, numbers at the ends of their range, states that the joint
+//! comes to by itself, and changes of those that were worst so far. Measuring is left to whoever steps them.
+
+use core::array;
+
+use model_core::realtime::{Model, Relative, RigidBody, State, Torques};
+use model_core::tables::Tables;
+
+use crate::numbers::Numbers;
+use crate::torque::{NONE, Size};
+
+/// How a trial came about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Any contact set at moderate speeds.
+    AnySet,
+    /// Every mesh on its way through its gap, fast enough to cross it within the tick.
+    AllCrossing,
+    /// Teeth that touch exactly, or as nearly as numbers allow, hardly moving.
+    Grazing,
+    /// Speeds of many gaps a tick, each mesh its own.
+    Fast,
+    /// Zeros, denormal and huge numbers, infinities, and what is no number.
+    Extreme,
+    /// Where the joint has come to by itself.
+    Reached,
+    /// A change of the worst so far.
+    Mutated,
+}
+
+impl Kind {
+    /// All of them.
+    pub const ALL: [Self; 7] =
+        [Self::AnySet, Self::AllCrossing, Self::Grazing, Self::Fast, Self::Extreme, Self::Reached, Self::Mutated];
+
+    /// For tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::AnySet => "any contact set",
+            Self::AllCrossing => "all crossing at once",
+            Self::Grazing => "grazing, touching",
+            Self::Fast => "many gaps a tick",
+            Self::Extreme => "ends of the numbers",
+            Self::Reached => "reached by itself",
+            Self::Mutated => "worst so far, changed",
+        }
+    }
+}
+
+/// A state and the torques of its tick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Trial<const N: usize> {
+    /// How it came about.
+    pub kind: Kind,
+    /// The state.
+    pub state: State<f32, N>,
+    /// The torques.
+    pub torques: Torques<f32>,
+}
+
+/// Numbers at the ends of their range.
+const ENDS: [f32; 12] = [
+    0.0,
+    -0.0,
+    f32::from_bits(1),
+    -f32::MIN_POSITIVE / 2.0,
+    1e-30,
+    -1e-12,
+    1e9,
+    -1e20,
+    f32::MAX,
+    f32::INFINITY,
+    f32::NEG_INFINITY,
+    f32::NAN,
+];
+
+/// Makes trials for a joint.
+pub struct Trials<'a, const N: usize> {
+    tables: &'a Tables<f32, N>,
+    numbers: Numbers,
+    /// Length of a tick, in dimensionless time.
+    tick: f32,
+    /// Greatest half-backlash; one for a joint without.
+    half_gap: f32,
+    size: Size,
+    reached: State<f32, N>,
+    torques: Torques<f32>,
+    worst: Option<Trial<N>>,
+}
+
+impl<'a, const N: usize> Trials<'a, N> {
+    /// The trials of a seed.
+    pub fn new(tables: &'a Tables<f32, N>, seed: u64) -> Self {
+        let widest = tables.meshes.iter().flatten().fold(0.0, |most: f32, mesh| most.max(mesh.half_backlash));
+        Self {
+            tables,
+            numbers: Numbers::new(seed),
+            tick: tables.substep * tables.substeps as f32,
+            half_gap: if widest > 0.0 { widest } else { 1.0 },
+            size: Size::of(tables),
+            reached: State::REST,
+            torques: NONE,
+            worst: None,
+        }
+    }
+
+    /// The next trial.
+    pub fn make(&mut self) -> Trial<N> {
+        let kind = Kind::ALL[self.numbers.below(Kind::ALL.len() as u32) as usize];
+        match (kind, self.worst) {
+            (Kind::Reached, _) => self.onward(),
+            (Kind::Mutated, Some(worst)) => self.mutate(worst),
+            (Kind::Mutated, None) => self.place(Kind::AnySet),
+            _ => self.place(kind),
+        }
+    }
+
+    /// Tells what became of a trial.
+    pub fn stepped(&mut self, trial: &Trial<N>, after: &State<f32, N>, is_worst: bool) {
+        if trial.kind == Kind::Reached {
+            self.reached = if after.is_finite() { *after } else { State::REST };
+        }
+        if is_worst {
+            self.worst = Some(*trial);
+        }
+    }
+
+    /// The joint goes on from where it is, now and then under other torques.
+    fn onward(&mut self) -> Trial<N> {
+        if self.numbers.below(100) == 0 {
+            self.torques = self.size.any(&mut self.numbers);
+        }
+        Trial { kind: Kind::Reached, state: self.reached, torques: self.torques }
+    }
+
+    fn place(&mut self, kind: Kind) -> Trial<N> {
+        let (rigid, phase) = (self.rigid(), self.numbers.bits());
+        let mut state = State { rigid, phase, ..State::REST };
+        // What the meshes' deflections lack of the coordinates at this phase: their imposed errors.
+        let mut model = Model::new(self.tables);
+        model.set_state(state);
+        let length = self.tables.units.length;
+        let errors = model.outputs().deflections.map(|family| family.map(|deflection| -deflection / length));
+
+        let leap = self.half_gap / self.tick * self.magnitude(-1, 1);
+        let way = if self.numbers.below(2) == 0 { leap } else { -leap };
+        let sun: [f32; N] = array::from_fn(|i| errors[0][i] + self.deflection(kind, 0, i));
+        let chosen = self.numbers.below(N as u32) as usize;
+        let ring = self.deflection(kind, 1, chosen);
+        state.position = Relative {
+            planets: sun,
+            gap: sun[chosen] + errors[1][chosen] + ring,
+            wind_up: self.numbers.signed() * self.half_gap,
+        };
+        let near = |numbers: &mut Numbers, value: f32| value * (1.0 + 0.2 * numbers.signed());
+        state.rate = match kind {
+            Kind::AllCrossing => Relative {
+                planets: array::from_fn(|_| near(&mut self.numbers, way)),
+                gap: near(&mut self.numbers, 2.0 * way),
+                wind_up: near(&mut self.numbers, way),
+            },
+            Kind::Grazing => self.rates(1e-6),
+            Kind::Fast => self.rates(10.0 * self.half_gap / self.tick),
+            _ => self.rates(0.2 * self.half_gap / self.tick),
+        };
+        let mut trial = Trial { kind, state, torques: self.torques() };
+        if kind == Kind::Extreme {
+            each(&mut trial, |value| {
+                if self.numbers.below(3) == 0 {
+                    *value = ENDS[self.numbers.below(ENDS.len() as u32) as usize];
+                }
+            });
+        }
+        trial
+    }
+
+    /// One to all numbers of a trial changed, most of them a little.
+    fn mutate(&mut self, worst: Trial<N>) -> Trial<N> {
+        let mut trial = Trial { kind: Kind::Mutated, ..worst };
+        let one_in = 1 + self.numbers.below(8);
+        let width = self.magnitude(-5, 0);
+        each(&mut trial, |value| {
+            if self.numbers.below(one_in) == 0 {
+                *value *= 1.0 + width * self.numbers.signed();
+            }
+        });
+        if self.numbers.below(4) == 0 {
+            trial.state.phase = self.numbers.bits();
+            trial.state.rigid.fraction = self.numbers.bits();
+        }
+        trial
+    }
+
+    fn deflection(&mut self, kind: Kind, family: usize, planet: usize) -> f32 {
+        let half = self.tables.meshes[family][planet].half_backlash;
+        let side = if self.numbers.below(2) == 0 { half } else { -half };
+        match kind {
+            Kind::Grazing => match self.numbers.below(4) {
+                0 => side,
+                1 => f32::from_bits(side.to_bits().saturating_add(1)),
+                2 => f32::from_bits(side.to_bits().saturating_sub(1)),
+                _ => side + 1e-5 * self.half_gap * self.numbers.signed(),
+            },
+            Kind::AllCrossing => 1.2 * half * self.numbers.signed(),
+            _ => match self.numbers.below(3) {
+                0 => half * self.numbers.signed(),
+                _ => side + self.half_gap * self.numbers.signed() * self.magnitude(-4, 0),
+            },
+        }
+    }
+
+    fn rates(&mut self, most: f32) -> Relative<f32, N> {
+        // Now and then the whole joint stands still.
+        let most = if self.numbers.below(8) == 0 { 0.0 } else { most };
+        let mut any = || most * self.numbers.signed();
+        Relative { planets: array::from_fn(|_| any()), gap: any(), wind_up: any() }
+    }
+
+    fn rigid(&mut self) -> RigidBody {
+        let speed = match self.numbers.below(8) {
+            0 => 0,
+            1 => i64::MAX,
+            2 => i64::MIN,
+            // Up to some turns a second, and up to a turn in two ticks.
+            3..=5 => (self.numbers.bits() as i64) >> 14,
+            _ => self.numbers.bits() as i64,
+        };
+        RigidBody { turns: self.numbers.bits() as i32, fraction: self.numbers.bits(), speed }
+    }
+
+    fn torques(&mut self) -> Torques<f32> {
+        let scale = match self.numbers.below(8) {
+            0 => 0.0,
+            1 => 1e3,
+            2 => 1e-6,
+            _ => 1.0,
+        };
+        Torques {
+            drive: self.size.drive * scale * self.numbers.signed(),
+            load: self.size.load * scale * self.numbers.signed(),
+        }
+    }
+
+    /// A size from 10^`from` to 10^`to`.
+    fn magnitude(&mut self, from: i32, to: i32) -> f32 {
+        let power = from + self.numbers.below(to.abs_diff(from)) as i32;
+        let factor = if power < 0 { 0.1 } else { 10.0 };
+        (0..power.unsigned_abs()).fold(1.0 + 9.0 * self.numbers.part(), |size, _| size * factor)
+    }
+}
+
+/// Shows every real number of a trial.
+fn each<const N: usize>(trial: &mut Trial<N>, mut show: impl FnMut(&mut f32)) {
+    for relative in [&mut trial.state.position, &mut trial.state.rate] {
+        relative.planets.iter_mut().for_each(&mut show);
+        show(&mut relative.gap);
+        show(&mut relative.wind_up);
+    }
+    show(&mut trial.torques.drive);
+    show(&mut trial.torques.load);
+}
+
+/// Trials for a joint of so many planets: a million for the usual three, so many others as a minute allows.
+pub const fn count(planets: usize) -> u32 {
+    if planets == 3 { 1_000_000 } else { 200_000 }
+}

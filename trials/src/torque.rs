@@ -1,0 +1,36 @@
+//! Torques of a size that suits a joint, whatever the joint. What is done with them is left to the trials.
+
+use model_core::realtime::Torques;
+use model_core::tables::Tables;
+
+use crate::numbers::Numbers;
+
+/// Deflection of the sun-planet meshes at rest under a strong torque, in units of b_c: some times a joint's rating.
+const DEFLECTION: f32 = 1.0;
+
+/// None at all.
+pub const NONE: Torques<f32> = Torques { drive: 0.0, load: 0.0 };
+
+/// Sizes of a joint's torques [N m].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Size {
+    /// A strong drive torque.
+    pub drive: f32,
+    /// The load torque that balances it.
+    pub load: f32,
+}
+
+impl Size {
+    /// For the joint of these tables.
+    pub fn of<const N: usize>(tables: &Tables<f32, N>) -> Self {
+        let force = N as f32 * tables.springs[0].stiffness * DEFLECTION;
+        let drive = tables.mobility.sun * force / tables.units.drive;
+        Self { drive, load: drive * tables.rigid.drive / tables.rigid.load }
+    }
+
+    /// Up to strong either way, with a load of half to one and a half times what balances it.
+    pub fn any(&self, numbers: &mut Numbers) -> Torques<f32> {
+        let part = numbers.signed();
+        Torques { drive: self.drive * part, load: self.load * part * (1.0 + 0.5 * numbers.signed()) }
+    }
+}

@@ -83,7 +83,7 @@ pub fn design_scheme<T: Real, const N: usize>(
             mobility: mobility(&dynamics, substep * substep / 6.0, 1.0 / substep),
             damping: MESH_KINDS.map(|kind| real(scales.damping(parameters.damping_coefficient(kind)) / substep)),
         },
-        flow: flow_tables::flow(&dynamics, flow_step),
+        flow: flow_tables::flow(&dynamics, flow_step, substeps),
     };
     tables.digest = tables.numbers_digest();
     Ok(tables)

@@ -167,14 +167,19 @@ pub struct MeshTable<T: Real> {
 pub struct Flow<T: Real> {
     /// Over the whole step.
     pub whole: Transition<T>,
-    /// Over its first half.
-    pub half: Transition<T>,
-    /// Input integrals of a pseudo-force that is constant over the first half.
-    pub half_constant: Inputs<T>,
-    /// Pseudo-force linear through its values at the start and the middle: one set for each.
-    pub whole_linear: [Inputs<T>; 2],
-    /// Pseudo-force quadratic through its values at start, middle and end.
-    pub whole_quadratic: [Inputs<T>; 3],
+    /// Up to the first look on the way.
+    pub early: Transition<T>,
+    /// Up to the second look.
+    pub late: Transition<T>,
+    /// Input integrals up to the first look, of a pseudo-force linear through its value and its rate (a sub-step) at
+    /// the start.
+    pub early_inputs: [Inputs<T>; 2],
+    /// Up to the second look, of a parabola: value and rate at the start, value at the first look.
+    pub late_inputs: [Inputs<T>; 3],
+    /// Over the whole step, of a cubic: value and rate at the start, values at both looks.
+    pub whole_inputs: [Inputs<T>; 4],
+    /// When the looks are, as parts of the step.
+    pub looks: [T; 2],
     /// Pseudo-force constant over the whole step.
     pub whole_constant: Inputs<T>,
     /// The step, in dimensionless time.
@@ -283,16 +288,17 @@ impl Digest {
     }
 
     fn flow<T: Real>(&mut self, flow: &Flow<T>) {
-        for transition in [&flow.whole, &flow.half] {
+        for transition in [&flow.whole, &flow.early, &flow.late] {
             self.block(&transition.in_phase);
             self.block(&transition.deviation);
             self.block(&transition.torques);
         }
-        let constants = [&flow.half_constant, &flow.whole_constant];
-        for inputs in constants.into_iter().chain(&flow.whole_linear).chain(&flow.whole_quadratic) {
+        let looks = flow.early_inputs.iter().chain(&flow.late_inputs).chain(&flow.whole_inputs);
+        for inputs in looks.chain([&flow.whole_constant]) {
             self.block(&inputs.in_phase);
             self.reals(&inputs.deviation);
         }
+        self.reals(&flow.looks);
         self.reals(&[flow.step, flow.reach, flow.longest_way]);
     }
 }

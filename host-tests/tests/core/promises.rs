@@ -95,7 +95,7 @@ fn the_digest_of_the_tables_sees_every_kind_of_number() {
         |tables| tables.mobility.carrier = tables.mobility.carrier.next_up(),
         |tables| tables.meshes[1][2].half_backlash = tables.meshes[1][2].half_backlash.next_up(),
         |tables| tables.meshes[0][1].ripple[7][1] = 1e-20,
-        |tables| tables.flow.half.torques.0[(5, 2)] = tables.flow.half.torques.0[(5, 2)].next_up(),
+        |tables| tables.flow.late.torques.0[(5, 2)] = tables.flow.late.torques.0[(5, 2)].next_up(),
     ];
     for (index, change) in changes.iter().enumerate() {
         let mut changed = tables.clone();

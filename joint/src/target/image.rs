@@ -89,12 +89,16 @@ pub fn build_measuring(
         .map_err(|error| Failure::new(format!("joint files cannot be listed for the firmware's build: {error}")))?;
     let rate = tick_rate.to_string();
     let environment = [("MEASURED_JOINTS", list.as_ref()), ("JOINT_TICK_RATE", rate.as_ref())];
-    let features = format!("{},measuring", Board::Stm32f405.name());
-    let elf = compile(toolchain, binary, &features, &environment, say)?;
+    let elf = compile(toolchain, binary, &measuring_features(), &environment, say)?;
     let images = toolchain.target_directory().join("images");
     let place = images.join(format!("{binary}.elf"));
     store(&images, &place, &elf)?;
     Ok(place)
+}
+
+/// The firmware's features for binaries that measure: the board that is emulated, and what they need.
+pub(super) fn measuring_features() -> String {
+    format!("{},measuring", Board::Stm32f405.name())
 }
 
 /// Compiles a binary of the firmware.

@@ -131,10 +131,10 @@ impl<T: Real, const N: usize> Net<T, N> {
 
     /// All mesh forces.
     #[inline(always)]
-    pub fn of(forces: &PerMesh<T, N>) -> Self {
+    pub fn of<M>(meshes: &PerMesh<M, N>, force: impl Fn(&M) -> T) -> Self {
         let mut net = Self::NONE;
         for i in 0..N {
-            net.add(i, forces[0][i], forces[1][i]);
+            net.add(i, force(&meshes[0][i]), force(&meshes[1][i]));
         }
         net
     }
@@ -200,7 +200,7 @@ pub fn acceleration<T: Real, const N: usize>(
     mesh_forces: &PerMesh<T, N>,
     wind_up_force: T,
 ) -> Relative<T, N> {
-    Net::of(mesh_forces).accelerations(&tables.mobility, drive, wind_up_force)
+    Net::of(mesh_forces, |force| *force).accelerations(&tables.mobility, drive, wind_up_force)
 }
 
 /// Force between carrier and link.

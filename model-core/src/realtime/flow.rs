@@ -1,6 +1,6 @@
 //! Exponential flow of the closed joint: a whole tick while every mesh stays on its flank. The linear motion is exact;
-//! ripple, backlash and imposed error are a pseudo-force, quadratic in time through its values at the start, the middle
-//! and the end. Ticks in which contacts change are left to `substep`.
+//! ripple, backlash and imposed error are a pseudo-force, cubic in time through value and rate at the start and the
+//! values at two looks on the way. Ticks in which contacts change are left to `substep`.
 
 use core::array;
 
@@ -8,13 +8,13 @@ use crate::real::Real;
 use crate::realtime::contact::{Drive, Laws, Net};
 use crate::realtime::crossing::End;
 use crate::realtime::excitation::{Beat, MeshPhase, MeshWave};
-use crate::realtime::frozen::{Frozen, Start};
+use crate::realtime::frozen::{Frozen, Moment, Start};
 use crate::realtime::runge_kutta::Motion;
 use crate::realtime::state::Relative;
 use crate::realtime::substep::Course;
-use crate::tables::{Block, Inputs, Tables, Transition};
+use crate::tables::{Block, Inputs, Transition};
 
-/// One tick with the contact set of its start; `None` if the set does not hold up to the middle. A mesh that opens
+/// One tick with the contact set of its start; `None` if the set does not hold up to the first look. A mesh that opens
 /// after that is a crossing to correct, so that no work is thrown away late. `K` is the number of in-phase coordinates:
 /// 3 with compliance, 2 without.
 pub fn hold<T: Real, const N: usize, const K: usize, const OVERTONES: bool>(
@@ -32,28 +32,27 @@ pub fn hold<T: Real, const N: usize, const K: usize, const OVERTONES: bool>(
         return None;
     }
     let laws = &start.laws;
-    let from_start = pseudo_force_at_start(tables, start, course);
+    let (value, rate) = frozen.pseudo_force_at_start(phase, start, course);
     let modes = Modes::<T, N, K>::of(tables.planet_share, motion);
     let torques = [drive.sun, drive.carrier, drive.link];
+    let share = tables.planet_share;
+    let look = |part: T| Beat::new(phase.start.turned(&phase.over(part)), phase.rate);
 
-    let half = phase.over(T::HALF);
-    let middle = phase.start.turned(&half);
-    let place = modes.place(&flow.half, &torques).with(tables.planet_share, [(&flow.half_constant, &from_start)]);
-    let (from_middle, trespass) = frozen.pseudo_force(laws, &Beat::new(middle, phase.rate), &place);
+    let [first, second] = &flow.early_inputs;
+    let place = modes.place(&flow.early, &torques).with(share, [(first, &value), (second, &rate)]);
+    let (early, trespass) = frozen.pseudo_force(laws, &look(flow.looks[0]), &place);
     if trespass > T::ZERO {
         return None;
     }
 
-    let end = Beat::new(middle.turned(&half), phase.rate);
-    let [first, second] = &flow.whole_linear;
-    let place =
-        modes.place(&flow.whole, &torques).with(tables.planet_share, [(first, &from_start), (second, &from_middle)]);
-    let (from_end, trespass) = frozen.pseudo_force(laws, &end, &place);
+    let [first, second, third] = &flow.late_inputs;
+    let place = modes.place(&flow.late, &torques).with(share, [(first, &value), (second, &rate), (third, &early)]);
+    let (late, trespass) = frozen.pseudo_force(laws, &look(flow.looks[1]), &place);
 
-    let [first, second, third] = &flow.whole_quadratic;
-    let forces = [(first, &from_start), (second, &from_middle), (third, &from_end)];
-    let last = modes.flow(&flow.whole, &torques).with(tables.planet_share, forces).motion();
-    Some(if trespass > T::ZERO { corrected(frozen, laws, &end, phase, &last) } else { last })
+    let [first, second, third, fourth] = &flow.whole_inputs;
+    let forces = [(first, &value), (second, &rate), (third, &early), (fourth, &late)];
+    let last = modes.flow(&flow.whole, &torques).with(share, forces).motion();
+    Some(if trespass > T::ZERO { corrected(frozen, laws, &look(T::ONE), phase, &last) } else { last })
 }
 
 /// The end of a tick in whose second half meshes have opened.
@@ -85,26 +84,40 @@ fn corrected<T: Real, const N: usize, const OVERTONES: bool>(
     course.motion(tables.substep, tables.stage.rate, motion)
 }
 
-/// What the linear flow of the closed joint does not know of its forces at the start of a tick.
-#[inline]
-fn pseudo_force_at_start<T: Real, const N: usize>(
-    tables: &Tables<T, N>,
-    start: &Start<T, N>,
-    course: &Course<T, N>,
-) -> Net<T, N> {
-    let mut net = Net::NONE;
-    for i in 0..N {
-        let sun = course.planets[i].point();
-        let [sun, ring] = [(0, sun), (1, course.gap.point().less(sun))].map(|(kind, at)| {
-            let stiffness = tables.springs[kind].stiffness;
-            stiffness * at.position + tables.stage.damping[kind] * at.rate - start.forces[kind][i]
-        });
-        net.add(i, sun, ring);
-    }
-    net
-}
-
 impl<T: Real, const N: usize, const OVERTONES: bool> Frozen<'_, T, N, OVERTONES> {
+    /// What the linear flow of the closed joint does not know of its forces at the start of a tick,
+    /// k_mean x + c x' - F, and its rate, a sub-step.
+    #[inline]
+    fn pseudo_force_at_start(
+        &self,
+        phase: &MeshPhase<T>,
+        start: &Start<T, N>,
+        course: &Course<T, N>,
+    ) -> (Net<T, N>, Net<T, N>) {
+        let tables = self.tables;
+        let rate = tables.substep * phase.rate;
+        let square = rate * rate;
+        let beat = Beat::new(phase.start, rate);
+        let (mut value, mut change) = (Net::NONE, Net::NONE);
+        for i in 0..N {
+            let sun = course.planets[i].point();
+            let [sun, ring] = [(0, sun), (1, course.gap.point().less(sun))].map(|(kind, at)| {
+                let (spring, damping) = (tables.springs[kind].stiffness, tables.stage.damping[kind]);
+                let Moment { overlap, speed, stiffness, error, force } = start.meshes[kind][i];
+                let harmonics = if OVERTONES { tables.excitation.harmonics } else { 1 };
+                let stiffness_rate = tables.meshes[kind][i].stiffness_rate(&beat, harmonics);
+                // e'' = -rate^2 e.
+                (
+                    spring * at.position + damping * at.rate - force,
+                    spring * at.rate - stiffness * speed - stiffness_rate * overlap - damping * (square * error),
+                )
+            });
+            value.add(i, sun.0, ring.0);
+            change.add(i, sun.1, ring.1);
+        }
+        (value, change)
+    }
+
     /// What the linear flow does not know of closed meshes: offset, imposed error, ripple; and more than zero when a
     /// mesh is beyond its flank.
     #[inline(never)]

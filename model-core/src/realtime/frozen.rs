@@ -25,19 +25,23 @@ pub struct Moment<T> {
     pub force: T,
 }
 
+impl<T: Real> Moment<T> {
+    const ZERO: Self = Self { overlap: T::ZERO, speed: T::ZERO, stiffness: T::ZERO, error: T::ZERO, force: T::ZERO };
+}
+
 /// The start of a tick.
 pub struct Start<T, const N: usize> {
     /// The laws that hold.
     pub laws: Laws<T, N>,
-    /// Mesh forces.
-    pub forces: PerMesh<T, N>,
+    /// What every mesh does.
+    pub meshes: PerMesh<Moment<T>, N>,
     /// Whether every mesh is closed, too far from opening for its speed to open it before the middle of the tick.
     pub settled: bool,
 }
 
 impl<T: Real, const N: usize> Start<T, N> {
     /// To be filled: zeros throughout, which cost a third of copying a pattern (counted on an emulated Cortex-M4F).
-    pub const EMPTY: Self = Self { laws: [[Law::ZERO; N]; 2], forces: [[T::ZERO; N]; 2], settled: false };
+    pub const EMPTY: Self = Self { laws: [[Law::ZERO; N]; 2], meshes: [[Moment::ZERO; N]; 2], settled: false };
 }
 
 /// What does not change over a tick.
@@ -59,12 +63,13 @@ impl<T: Real, const N: usize, const OVERTONES: bool> Frozen<'_, T, N, OVERTONES>
         for i in 0..N {
             let sun = course.planets[i].point();
             for (kind, at) in [(0, sun), (1, course.gap.point().less(sun))] {
-                let Moment { overlap: deflection, speed, stiffness, .. } = self.mesh(&Law::OPEN, (kind, i), beat, at);
-                let law = Law::of(self.tables, (kind, i), deflection, speed, stiffness);
-                let overlap = deflection - law.offset;
-                let way = self.tables.flow.reach * (self.tables.stage.rate * speed.abs());
-                start.settled &= law.side * overlap > way;
-                start.forces[kind][i] = law.closed * (stiffness * overlap) + law.damping * speed;
+                let mut mesh = self.mesh(&Law::OPEN, (kind, i), beat, at);
+                let law = Law::of(self.tables, (kind, i), mesh.overlap, mesh.speed, mesh.stiffness);
+                mesh.overlap -= law.offset;
+                mesh.force = law.closed * (mesh.stiffness * mesh.overlap) + law.damping * mesh.speed;
+                let way = self.tables.flow.reach * (self.tables.stage.rate * mesh.speed.abs());
+                start.settled &= law.side * mesh.overlap > way;
+                start.meshes[kind][i] = mesh;
                 start.laws[kind][i] = law;
             }
         }

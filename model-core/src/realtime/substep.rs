@@ -85,7 +85,8 @@ fn begin<T: Real, const N: usize, const OVERTONES: bool>(
     course: &mut Course<T, N>,
 ) {
     let wind_up = frozen.wind_up_force(course.wind_up.point());
-    let now = Net::of(&start.forces).accelerations(&frozen.tables.stage.mobility, &frozen.drive, wind_up);
+    let now =
+        Net::of(&start.meshes, |mesh| mesh.force).accelerations(&frozen.tables.stage.mobility, &frozen.drive, wind_up);
     course.each(&now, |coordinate, now| (coordinate.now, coordinate.before) = (now, now));
     let wind_up = frozen.wind_up_force(course.wind_up.middle());
     let gap = course.gap.middle();

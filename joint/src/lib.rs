@@ -4,6 +4,7 @@
 //! paper with the numerics of `study`, `proof` holds the step that ships to what is promised of it; physics and wire
 //! format are left to `model-core` and `link`.
 
+pub mod budget;
 pub mod check;
 pub mod cli;
 pub mod failure;

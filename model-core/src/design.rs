@@ -1,14 +1,18 @@
 //! The offline half, f64: from parameters to the tables of a fixed step. `dynamics` is eq. 19, `hamiltonian` eq. 20,
 //! `exponential` the precise integration, `flow_tables` its sorting into in-phase and deviating motion; this file
-//! puts them together, `pace` says in how many sub-steps.
+//! puts them together, `pace` says in how many sub-steps, `certificate` what is promised of them.
 
+mod certificate;
+mod cost;
 pub mod dynamics;
 pub mod exponential;
 mod flow_tables;
 pub mod hamiltonian;
 pub mod modes;
 mod pace;
+mod processor;
 mod source;
+mod stability;
 mod validate;
 
 use core::array;
@@ -22,8 +26,11 @@ use crate::real::Real;
 use crate::scales::Scales;
 use crate::tables::{Excitation, MeshTable, Mobility, Rigid, Scheme, Spring, Stage, Tables, Units};
 use dynamics::{Dynamics, MovingMasses};
+pub use certificate::certificate;
+pub use cost::Cost;
 pub use pace::{Effort, Pace};
-pub use source::rust_source;
+pub use processor::Processor;
+pub use source::{rust_source, rust_source_for};
 
 /// Tables of the scheme that a board runs.
 pub fn design<T: Real, const N: usize>(

@@ -27,7 +27,6 @@ pub struct Outcome {
     pub error: f64,
     /// Whether every mesh stayed on its flank.
     pub holds: bool,
-    pub tick_rate: u32,
 }
 
 fn model<T: Real, const N: usize>(case: &Case, tables: &'static Tables<T, N>, change: f64) -> Model<'static, T, N> {
@@ -85,5 +84,5 @@ pub fn follow<const N: usize>(case: &Case, rate: u32) -> Option<Outcome> {
         }
     }
     let error = (total / (2 * N) as f64).sqrt();
-    (growth < GROWTH && error.is_finite()).then_some(Outcome { error, holds, tick_rate: rate })
+    (growth < GROWTH && error.is_finite()).then_some(Outcome { error, holds })
 }

@@ -1,6 +1,7 @@
 //! Named scenarios as data: a joint, where it starts and what torques act tick by tick, and the reference's trajectory
 //! through them. How closely anything must follow that trajectory is `tolerance`'s business.
 
+pub mod case_r;
 mod cases;
 mod joints;
 mod motions;

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::failure::{EXIT_BAD_INPUT, Outcome};
-use crate::{budget, check, hil, images, output, paper, sim, sweep};
+use crate::{bench, budget, check, hil, images, output, paper, sim, sweep};
 
 /// Simulates a planetary robot joint with backlash on a microcontroller, drives it and checks it
 #[derive(Debug, Parser)]
@@ -21,6 +21,8 @@ enum Command {
     Hil(hil::Arguments),
     /// Read a joint file and print what follows from it
     Check(check::Arguments),
+    /// Compare the step with what people use: error against cost, on the emulated core and on the host
+    Bench(bench::Arguments),
     /// Predict error, instructions, memory and limits of the fixed step on a board, with a verdict
     Budget(budget::Arguments),
     /// Redo the paper, or the same study of another joint: attractors, bifurcation diagram, figures
@@ -51,6 +53,7 @@ pub fn main() -> ExitCode {
         None => show_help(),
         Some(Command::Hil(arguments)) => hil::run(arguments),
         Some(Command::Check(arguments)) => check::run(arguments),
+        Some(Command::Bench(arguments)) => bench::run(arguments),
         Some(Command::Budget(arguments)) => budget::run(arguments),
         Some(Command::Paper(arguments)) => paper::run(arguments),
         Some(Command::Sim(arguments)) => sim::run(arguments),

@@ -8,7 +8,7 @@ use super::random::{Case, Chance};
 
 /// The fit was made with other seeds.
 const UNSEEN_SEED: u64 = 4711;
-const CASES: usize = 600;
+const CASES: usize = 300;
 
 /// Cases of one kind, and how many of them stay below each promise.
 #[derive(Default)]
@@ -58,7 +58,7 @@ fn nine_in_ten_unseen_motions_stay_below_the_promised_error() {
         println!("{name}: {} cases, {typical:.0} % below typical, {nine_in_ten:.0} % below nine in ten", tally.cases);
     }
     println!("{unpredictable} of {CASES} cases cannot be predicted by anyone");
-    assert!(holding.cases > 80 && losing.cases > 300, "the cases have become one-sided");
+    assert!(holding.cases > 40 && losing.cases > 150, "the cases have become one-sided");
     let cases = (holding.cases + losing.cases) as f64;
     LEAST_COVERAGE.check(1.0 - (holding.below_nine_in_ten + losing.below_nine_in_ten) as f64 / cases);
     for tally in [&holding, &losing] {

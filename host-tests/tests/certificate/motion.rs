@@ -32,8 +32,11 @@ pub struct Outcome {
 fn model<T: Real, const N: usize>(case: &Case, tables: &'static Tables<T, N>, change: f64) -> Model<'static, T, N> {
     let length = case.joint.characteristic_length;
     let real = T::from_f64;
-    let deflections: [T; N] = array::from_fn(|i| real((case.joint.sun_planet.half_backlash[i] + case.deflection) / length));
-    let far = case.joint.ring_planet.half_backlash[0] + case.joint.sun_planet.half_backlash[0] + case.deflection * (1.0 + case.joint.sun_planet.mean_stiffness / case.joint.ring_planet.mean_stiffness);
+    let deflections: [T; N] =
+        array::from_fn(|i| real((case.joint.sun_planet.half_backlash[i] + case.deflection) / length));
+    let far = case.joint.ring_planet.half_backlash[0]
+        + case.joint.sun_planet.half_backlash[0]
+        + case.deflection * (1.0 + case.joint.sun_planet.mean_stiffness / case.joint.ring_planet.mean_stiffness);
     let position = Relative { planets: deflections, gap: real(far / length + change), wind_up: T::ZERO };
     let mut model = Model::new(tables);
     model.set_state(State::from_deflections(tables, &position, &Relative::ZERO, real(case.speed)));

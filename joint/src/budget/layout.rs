@@ -27,7 +27,8 @@ fn step(page: &mut Page, figures: &Figures) {
 
 fn error(page: &mut Page, figures: &Figures) {
     page.heading("Error of mesh deflections, RMS over the motion's standard deviation");
-    let promise = |error: Error| format!("{:.1e} typical, {:.1e} in nine motions of ten", error.typical, error.nine_in_ten);
+    let promise =
+        |error: Error| format!("{:.1e} typical, {:.1e} in nine motions of ten", error.typical, error.nine_in_ten);
     page.row("while contact holds", promise(figures.error_holding));
     page.row("while meshes part and hit", promise(figures.error_losing));
 }

@@ -101,6 +101,16 @@ pub(super) fn measuring_features() -> String {
     format!("{},measuring", Board::Stm32f405.name())
 }
 
+/// Builds the comparison of fixed-step methods, with the jobs in this file of Rust source; returns the ELF file.
+pub fn build_contest(toolchain: &Toolchain, jobs: &Path, say: Say<'_>) -> Outcome<PathBuf> {
+    let features = format!("{},contest", Board::Stm32f405.name());
+    let elf = compile(toolchain, "contest", &features, &[("CONTEST_JOBS", jobs.as_os_str())], say)?;
+    let images = toolchain.target_directory().join("images");
+    let place = images.join("contest.elf");
+    store(&images, &place, &elf)?;
+    Ok(place)
+}
+
 /// Compiles a binary of the firmware.
 fn compile(
     toolchain: &Toolchain,

@@ -23,7 +23,7 @@ struct Fit {
 }
 
 /// Exponential ticks: of third order in the tick's phase, next to nothing without ripple.
-const FLOW: Fit = Fit { floor: [1e-5, 2e-4], factor: [9.5e-5, 4e-4] };
+const FLOW: Fit = Fit { floor: [1e-5, 2e-4], factor: [5e-5, 3.5e-4] };
 /// Contact holds, but excitation is so fast that it is followed in sub-steps.
 const FAST: Fit = Fit { floor: [1e-5, 2e-4], factor: [5e-3, 2.5e-2] };
 /// Meshes part and hit, law `paper`, and `contact`, under which light planets rattle.
@@ -135,5 +135,25 @@ fn sizes(planets: usize) -> (u32, u32) {
         3 => of::<3>(),
         4 => of::<4>(),
         _ => of::<5>(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whether a mesh at 1 + amplitude cos(angle) is still on its flank at both of two looks about its deepest point.
+    fn slips_between(phase: f64, amplitude: f64) -> bool {
+        [-0.5, 0.5].iter().all(|side| 1.0 - amplitude * libm::cos(side * phase) >= 0.0)
+    }
+
+    #[test]
+    fn a_departure_slips_between_two_looks_up_to_the_stated_depth_and_not_beyond() {
+        for phase in [0.2, 0.5, 1.0, 2.0, 3.0] {
+            let depth = departure(phase).expect("looks are close enough");
+            assert!(slips_between(phase, 1.0 + 0.99 * depth), "{phase}");
+            assert!(!slips_between(phase, 1.0 + 1.01 * depth), "{phase}");
+        }
+        assert_eq!(departure(3.2), None);
     }
 }

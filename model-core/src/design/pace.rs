@@ -54,7 +54,8 @@ impl Pace {
         let swings = MESH_KINDS.map(|kind| parameters.mesh(kind).stiffness_wave.swing());
         let fastest = fastest * libm::sqrt(1.0 + swings[0].max(swings[1]));
         // Of a mode that the meshes carry: C = (c / k) K gives it the damping ratio omega c / 2 k.
-        let relaxations = MESH_KINDS.map(|kind| parameters.damping_coefficient(kind) / parameters.mesh(kind).mean_stiffness);
+        let relaxations =
+            MESH_KINDS.map(|kind| parameters.damping_coefficient(kind) / parameters.mesh(kind).mean_stiffness);
         let damping_ratio = 0.5 * fastest * relaxations[0].max(relaxations[1]);
         Self {
             fastest,

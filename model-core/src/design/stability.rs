@@ -27,10 +27,7 @@ impl Oscillator {
     /// Position and rate after a tick: the stages of `realtime::stages` from the start of `realtime::substep`.
     fn tick(&self, mut position: f64, mut rate: f64, substeps: u32) -> [f64; 2] {
         let middle = |position: f64, rate: f64, now: f64, before: f64| {
-            self.acceleration(
-                position + 0.5 * rate + now - 0.25 * before,
-                rate + 4.5 * now - 1.5 * before,
-            )
+            self.acceleration(position + 0.5 * rate + now - 0.25 * before, rate + 4.5 * now - 1.5 * before)
         };
         let mut now = self.acceleration(position, rate);
         let mut before = 2.0 * now - middle(position, rate, now, now);

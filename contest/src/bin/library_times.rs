@@ -1,0 +1,46 @@
+//! Times libraries and fixed-step methods on the cases named as arguments and prints JSON on standard output. What the
+//! figures mean is said by the host command, which runs this.
+
+use std::process::ExitCode;
+
+use contest::catalogue;
+use contest::curve::{Field, PHASES};
+use contest::libraries::timing::{Time, times};
+
+/// Tolerances from loose to tight.
+const TOLERANCES: [f64; 9] = [1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8];
+/// Steps a second, in units of the case's sample rate over four.
+const MULTIPLES: [u32; 10] = [2, 4, 6, 8, 12, 16, 20, 32, 48, 64];
+
+fn main() -> ExitCode {
+    let wanted: Vec<String> = std::env::args().skip(1).collect();
+    let mut all: Vec<Time> = Vec::new();
+    for case in catalogue::cases().into_iter().filter(|case| wanted.contains(&case.key)) {
+        let unit = case.sample_rate / 4;
+        let planets = case.joint.geometry.planets;
+        let rates = MULTIPLES.map(|multiple| unit * multiple);
+        let field = match Field::new(case, PHASES) {
+            Ok(field) => field,
+            Err(error) => {
+                eprintln!("error: the reference cannot follow: {error}");
+                return ExitCode::from(2);
+            }
+        };
+        let found = match planets {
+            3 => times::<3, 8>(field.phases(), &TOLERANCES, &rates),
+            4 => times::<4, 10>(field.phases(), &TOLERANCES, &rates),
+            _ => times::<5, 12>(field.phases(), &TOLERANCES, &rates),
+        };
+        all.extend(found.unwrap_or_default());
+    }
+    match serde_json::to_string(&all) {
+        Ok(text) => {
+            println!("{text}");
+            ExitCode::SUCCESS
+        }
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(2)
+        }
+    }
+}

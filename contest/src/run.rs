@@ -1,0 +1,329 @@
+//! A case moved by a method at a rate, in f32 as on a board or in f64: readings at the samples that fall on its steps,
+//! and the digest that a board must reach.
+
+use std::f64::consts::TAU;
+
+use model_core::design::{DesignError, Effort, design_scheme};
+use model_core::digest;
+use model_core::joint::{Excitation, JointParameters};
+use model_core::real::Real;
+use model_core::realtime::{Model, State, Torques};
+use model_core::scales::Scales;
+use model_core::tables::{Scheme, Tables};
+use peers::clock::Clock;
+use peers::euler::SemiImplicitEuler;
+use peers::instant::Rotor;
+use peers::motion::{Coordinates, Motion};
+use peers::peer::Peer;
+use peers::plant::Plant;
+use peers::runge_kutta::RungeKutta4;
+use peers::scheme::Scheme as PeerScheme;
+use peers::trapezoid::Trapezoid;
+use peers::two_mass::{Contact, TwoMass, TwoMassPeer};
+
+use crate::case::Case;
+use crate::method::{Method, SHARPNESS};
+use crate::reading::{Gauge, Reading};
+use crate::start::Deflected;
+
+/// What came of it.
+#[derive(Debug, Clone)]
+pub struct Run {
+    /// Readings with the number of the reference's sample.
+    pub readings: Vec<(usize, Reading)>,
+    /// Digest over the last state.
+    pub digest: u64,
+    /// What the clock said that the steps took.
+    pub seconds: f64,
+}
+
+/// Steps of a method that a case has at a rate.
+pub fn steps(case: &Case, rate: u32) -> u64 {
+    (case.duration() * f64::from(rate)).floor() as u64
+}
+
+/// Torques by steps of a method at a rate: (first step, drive, load).
+pub fn torques_by_step(case: &Case, rate: u32) -> Vec<(u64, f64, f64)> {
+    let step = |tick: u64| (tick * u64::from(rate)).div_ceil(u64::from(case.tick_rate));
+    case.torques.iter().map(|segment| (step(segment.from_tick), segment.drive, segment.load)).collect()
+}
+
+/// Tables of the core for a method at a rate.
+pub fn tables<T: Real, const N: usize>(
+    joint: &JointParameters,
+    method: Method,
+    rate: u32,
+) -> Result<Tables<T, N>, DesignError> {
+    let scheme = if method == Method::PaperEtd1 { Scheme::PaperEtd1 } else { Scheme::Realtime };
+    design_scheme(joint, rate, scheme, Effort::Board)
+}
+
+/// The peers' plant for a method at a rate.
+pub fn plant<T: Real, const N: usize>(joint: &JointParameters, method: Method, rate: u32) -> Plant<T, N> {
+    let mut plant = Plant::new(joint, f64::from(rate));
+    if method == Method::RungeKutta4Tanh {
+        plant.law = plant.law.smoothed();
+        plant.sharpness = T::from_f64(SHARPNESS);
+    }
+    plant
+}
+
+/// Moves a case. `N` must be the joint's number of planets. The clock, in seconds, is read before the first step and
+/// after the last.
+pub fn run<T: Real, const N: usize>(
+    case: &Case,
+    method: Method,
+    rate: u32,
+    clock: &dyn Fn() -> f64,
+) -> Result<Run, DesignError> {
+    let start = Deflected::<N>::new(&case.joint, &case.start);
+    Ok(match method {
+        Method::Realtime | Method::PaperEtd1 => {
+            let tables: Tables<T, N> = tables(&case.joint, method, rate)?;
+            let mut model = Model::new(&tables);
+            model.set_state(start.state(&case.joint, &tables));
+            let torques = Torques { drive: T::ZERO, load: T::ZERO };
+            follow(case, rate, clock, &mut Core { model, torques, gauge: Gauge::new(&case.joint), case, rate })
+        }
+        Method::RungeKutta4 | Method::RungeKutta4Tanh => whole::<T, N, RungeKutta4>(case, method, rate, clock, &start),
+        Method::Euler => whole::<T, N, SemiImplicitEuler>(case, method, rate, clock, &start),
+        Method::Trapezoid => whole::<T, N, Trapezoid<T, N>>(case, method, rate, clock, &start),
+        Method::TwoMassSpring => two_mass::<T, N>(case, Contact::SpringDamper, rate, clock, &start),
+        Method::TwoMassRestitution => two_mass::<T, N>(case, Contact::Restitution, rate, clock, &start),
+    })
+}
+
+fn whole<T: Real, const N: usize, S: PeerScheme<T, N>>(
+    case: &Case,
+    method: Method,
+    rate: u32,
+    clock: &dyn Fn() -> f64,
+    start: &Deflected<N>,
+) -> Run {
+    let plant = plant(&case.joint, method, rate);
+    let peer: Peer<'_, T, N, S> = Peer::new(&plant, &start.peer(&case.joint, f64::from(rate)));
+    let gauge = Gauge::new(&case.joint);
+    follow(case, rate, clock, &mut Whole { peer, gauge, carrier: 0.0, last: 0 })
+}
+
+fn two_mass<T: Real, const N: usize>(
+    case: &Case,
+    contact: Contact,
+    rate: u32,
+    clock: &dyn Fn() -> f64,
+    start: &Deflected<N>,
+) -> Run {
+    let model = TwoMass::<T>::new(&case.joint, f64::from(rate), contact);
+    let (place, speed) = start.two_mass(&case.joint);
+    let peer = TwoMassPeer::new(&model, T::from_f64(place), T::from_f64(speed));
+    let carrier = RigidCarrier::new(&case.joint, start.speed, rate);
+    follow(case, rate, clock, &mut Gap { peer, carrier })
+}
+
+/// Something that moves in steps.
+trait Moving {
+    /// All that a reading is made of.
+    type Moment;
+    fn set_torques(&mut self, drive: f64, load: f64);
+    fn step(&mut self);
+    fn moment(&self) -> Self::Moment;
+    /// Moments must be read in their order.
+    fn read(&mut self, moment: &Self::Moment) -> Reading;
+    fn digest(&self) -> u64;
+}
+
+fn follow<M: Moving>(case: &Case, rate: u32, clock: &dyn Fn() -> f64, moving: &mut M) -> Run {
+    let mut changes = torques_by_step(case, rate).into_iter().peekable();
+    // Steps at which a sample of the reference falls.
+    let divisor = greatest_divisor(rate, case.sample_rate);
+    let (every, stride) = (u64::from(rate / divisor), (case.sample_rate / divisor) as usize);
+    let last = steps(case, rate);
+    let mut moments = Vec::with_capacity((last / every) as usize + 1);
+    let start = clock();
+    let mut until_sample = 0;
+    for step in 0..=last {
+        if until_sample == 0 {
+            moments.push(moving.moment());
+            until_sample = every;
+        }
+        until_sample -= 1;
+        while let Some((_, drive, load)) = changes.next_if(|change| change.0 <= step) {
+            moving.set_torques(drive, load);
+        }
+        if step < last {
+            moving.step();
+        }
+    }
+    let seconds = clock() - start;
+    let readings = moments.iter().enumerate().map(|(index, moment)| (index * stride, moving.read(moment))).collect();
+    Run { readings, digest: moving.digest(), seconds }
+}
+
+fn greatest_divisor(a: u32, b: u32) -> u32 {
+    if b == 0 { a } else { greatest_divisor(b, a % b) }
+}
+
+struct Core<'a, T: Real, const N: usize> {
+    model: Model<'a, T, N>,
+    torques: Torques<T>,
+    gauge: Gauge<N>,
+    case: &'a Case,
+    rate: u32,
+}
+
+impl<T: Real, const N: usize> Moving for Core<'_, T, N> {
+    type Moment = State<T, N>;
+
+    fn set_torques(&mut self, drive: f64, load: f64) {
+        self.torques = Torques { drive: T::from_f64(drive), load: T::from_f64(load) };
+    }
+
+    fn step(&mut self) {
+        self.model.step(self.torques);
+    }
+
+    fn moment(&self) -> State<T, N> {
+        *self.model.state()
+    }
+
+    fn read(&mut self, state: &State<T, N>) -> Reading {
+        let wide = |values: &model_core::realtime::Relative<T, N>| Coordinates {
+            planets: values.planets.map(Real::to_f64),
+            gap: values.gap.to_f64(),
+            wind_up: values.wind_up.to_f64(),
+        };
+        let motion = Motion { position: wide(&state.position), rate: wide(&state.rate) };
+        let turns = |part: u64| TAU * (part as f64 / TURN);
+        let carrier = TAU * f64::from(state.rigid.turns) + turns(state.rigid.fraction);
+        let speed = TAU * state.rigid.speed as f64 / TURN * f64::from(self.rate);
+        let teeth = self.case.joint.geometry.ring_teeth;
+        let frequency = Scales::new(&self.case.joint).frequency;
+        let (angle, rate, carrier) = match self.case.joint.excitation {
+            Excitation::Time { mesh_frequency } => (turns(state.phase), mesh_frequency, 0.0),
+            Excitation::Angle => {
+                (turns(state.rigid.fraction.wrapping_mul(teeth.into())), f64::from(teeth) * speed, carrier)
+            }
+        };
+        let (sine, cosine) = angle.sin_cos();
+        self.gauge.read(&motion, &Rotor { sine, cosine, rate: rate / frequency }, carrier)
+    }
+
+    fn digest(&self) -> u64 {
+        self.model.state_digest()
+    }
+}
+
+/// 2^64.
+const TURN: f64 = 18_446_744_073_709_551_616.0;
+
+struct Whole<'a, T: Real, const N: usize, S> {
+    peer: Peer<'a, T, N, S>,
+    gauge: Gauge<N>,
+    /// Angle of the rigid carrier, whole turns included.
+    carrier: f64,
+    /// Where the clock was at the last reading.
+    last: u64,
+}
+
+impl<T: Real, const N: usize, S: PeerScheme<T, N>> Moving for Whole<'_, T, N, S> {
+    type Moment = (Motion<T, N>, Clock<T>);
+
+    fn set_torques(&mut self, drive: f64, load: f64) {
+        self.peer.set_torques(T::from_f64(drive), T::from_f64(load));
+    }
+
+    fn step(&mut self) {
+        self.peer.step();
+    }
+
+    fn moment(&self) -> Self::Moment {
+        (*self.peer.motion(), *self.peer.clock())
+    }
+
+    fn read(&mut self, (motion, clock): &Self::Moment) -> Reading {
+        let Motion { position, rate } = motion;
+        let wide = |values: &Coordinates<T, N>| Coordinates {
+            planets: values.planets.map(Real::to_f64),
+            gap: values.gap.to_f64(),
+            wind_up: values.wind_up.to_f64(),
+        };
+        let motion = Motion { position: wide(position), rate: wide(rate) };
+        if let Some(place) = clock.carrier() {
+            self.carrier += TAU * place.wrapping_sub(self.last) as i64 as f64 / TURN;
+            self.last = place;
+        }
+        let now = clock.now();
+        let phase = Rotor { sine: now.sine.to_f64(), cosine: now.cosine.to_f64(), rate: now.rate.to_f64() };
+        self.gauge.read(&motion, &phase, self.carrier)
+    }
+
+    fn digest(&self) -> u64 {
+        self.peer.motion().digest()
+    }
+}
+
+struct Gap<'a, T: Real> {
+    peer: TwoMassPeer<'a, T>,
+    carrier: RigidCarrier,
+}
+
+impl<T: Real> Moving for Gap<'_, T> {
+    /// Link angle and mesh force.
+    type Moment = (f64, f64);
+
+    fn set_torques(&mut self, drive: f64, load: f64) {
+        self.peer.set_torques(T::from_f64(drive), T::from_f64(load));
+        self.carrier.set_torques(drive, load);
+    }
+
+    fn step(&mut self) {
+        self.peer.step();
+        self.carrier.step();
+    }
+
+    fn moment(&self) -> (f64, f64) {
+        (self.carrier.angle + self.peer.link_offset().to_f64(), self.peer.mesh_force().to_f64().abs())
+    }
+
+    fn read(&mut self, (link_angle, mesh_force): &(f64, f64)) -> Reading {
+        Reading { deflections: Vec::new(), link_angle: *link_angle, mesh_force: *mesh_force }
+    }
+
+    fn digest(&self) -> u64 {
+        digest::chain(digest::START, self.peer.link_offset().bits())
+    }
+}
+
+/// The rigid motion beside a model that has none, exactly; at zero where the phase is prescribed.
+struct RigidCarrier {
+    angle: f64,
+    speed: f64,
+    acceleration: f64,
+    gains: [f64; 2],
+    step: f64,
+}
+
+impl RigidCarrier {
+    fn new(joint: &JointParameters, speed: f64, rate: u32) -> Self {
+        let (sun_lever, lever) = (joint.geometry.sun_base_radius, joint.geometry.carrier_base_radius());
+        let mass = model_core::design::dynamics::MovingMasses::new(joint).rigid(joint.geometry.planets);
+        let counts = matches!(joint.excitation, Excitation::Angle);
+        let gains = [2.0 / (sun_lever * mass * lever), 1.0 / (lever * mass * lever)];
+        Self {
+            angle: 0.0,
+            speed: if counts { speed } else { 0.0 },
+            acceleration: 0.0,
+            gains: if counts { gains } else { [0.0; 2] },
+            step: 1.0 / f64::from(rate),
+        }
+    }
+
+    fn set_torques(&mut self, drive: f64, load: f64) {
+        self.acceleration = self.gains[0] * drive - self.gains[1] * load;
+    }
+
+    fn step(&mut self) {
+        self.angle += self.step * (self.speed + 0.5 * self.step * self.acceleration);
+        self.speed += self.step * self.acceleration;
+    }
+}

@@ -1,0 +1,66 @@
+//! The comparison in a Markdown file, between two marks, with a picture beside the file; and where its figures come from.
+//! What stands outside the marks is left as it is.
+
+use std::fs;
+use std::path::Path;
+
+use super::{Figures, Origin, pictures, table};
+use crate::failure::{Failure, Outcome};
+use crate::hil::origin as run_origin;
+use crate::report::plot::ink;
+use crate::target::emulator::MACHINE;
+use crate::target::image::PROFILE;
+use crate::target::toolchain::Toolchain;
+
+const BEGIN: &str = "<!-- comparison: written by `cargo joint bench --document` -->";
+const END: &str = "<!-- end of comparison -->";
+
+/// Where the figures of this run come from.
+pub fn origin(toolchain: &Toolchain, emulator: String) -> Origin {
+    let model = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = model
+        .lines()
+        .find_map(|line| line.strip_prefix("model name")?.split(':').nth(1).map(str::trim).map(String::from));
+    Origin {
+        commit: run_origin::git_commit().unwrap_or_else(|| "not under git".into()),
+        date: run_origin::date(),
+        compiler: toolchain.compiler().to_owned(),
+        flags: format!("profile {PROFILE} (opt-level 3, fat LTO, one codegen unit), {}", toolchain.flags()),
+        emulator: format!("{emulator}, {MACHINE}, -icount shift=6,sleep=off"),
+        host: model.unwrap_or_else(|| std::env::consts::ARCH.into()),
+    }
+}
+
+/// Puts the comparison into the file, or at its end if it has none yet.
+pub fn update(path: &Path, figures: &Figures) -> Outcome<()> {
+    let failed = |error: std::io::Error| {
+        Failure::new(format!("{}: {error}", path.display()))
+            .with_help("name a Markdown file that can be read and written")
+    };
+    let before = fs::read_to_string(path).map_err(failed)?;
+    let mut pictured = String::new();
+    for case in &figures.cases {
+        let Some(figure) = pictures::board(case, &figures.methods) else { continue };
+        let name = format!("error-by-cost-{}.svg", case.key.to_lowercase());
+        fs::write(path.with_file_name(&name), alone(&figure.to_svg())).map_err(failed)?;
+        pictured += &format!("\n![Case {}: error by instructions]({name})\n", case.key);
+    }
+    let section = format!("{BEGIN}\n\n{}{pictured}\n{END}", table::layout(figures));
+    let after = match (before.find(BEGIN), before.find(END)) {
+        (Some(from), Some(to)) if from < to => format!("{}{section}{}", &before[..from], &before[to + END.len()..]),
+        _ => format!("{}\n\n## Error against cost\n\n{section}\n", before.trim_end()),
+    };
+    fs::write(path, after).map_err(failed)
+}
+
+/// A picture that stands by itself: with its colours, on a ground of its own.
+fn alone(svg: &str) -> String {
+    let style = format!(
+        "<style>{}svg{{background:#fff}}</style>",
+        ink::style_sheet(":root").lines().next().unwrap_or_default()
+    );
+    match svg.find('>') {
+        Some(end) => format!("{}{style}{}", &svg[..=end], &svg[end + 1..]),
+        None => svg.to_owned(),
+    }
+}

@@ -1,0 +1,181 @@
+//! Every method on every case at one step after another: error from the host, instructions from the emulated core. What
+//! follows from the figures is left to `verdicts`, how they look to `table` and `page`.
+
+use contest::case::{Case, Measure};
+use contest::course::Errors;
+use contest::curve::{Field, PHASES, Point, Scalar};
+use contest::method::Method;
+use serde::Serialize;
+
+use super::race::{self, Count, Job};
+use crate::failure::{Failure, Outcome};
+use crate::hil::Progress;
+use crate::target::Say;
+use crate::target::toolchain::Toolchain;
+
+/// Steps a second over a quarter of the case's sample rate, where the phase is prescribed.
+const MULTIPLES: [u32; 15] = [1, 2, 3, 4, 6, 8, 10, 12, 16, 20, 24, 32, 40, 48, 64];
+/// Steps a tick where torques change tick by tick.
+const STEPS_A_TICK: [u32; 7] = [1, 2, 3, 4, 6, 8, 16];
+
+/// One method on one case.
+#[derive(Debug, Clone, Serialize)]
+pub struct Entry {
+    /// Case.
+    pub case: String,
+    /// Method.
+    pub method: Method,
+    /// In tables and pictures.
+    pub name: &'static str,
+    /// From coarse to fine.
+    pub marks: Vec<Mark>,
+}
+
+/// One step size.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[allow(non_snake_case, reason = "units are spelled as in every file that this command writes")]
+pub struct Mark {
+    /// Steps a second.
+    pub rate_Hz: u32,
+    /// h omega_n.
+    pub step: f64,
+    /// The case's measure, worst over the phases; none if the motion got lost.
+    pub error: Option<f64>,
+    /// The same in double precision, where it was asked.
+    pub error_f64: Option<f64>,
+    /// Link angle over the lost motion, RMS.
+    pub link_rms: Option<f64>,
+    /// Likewise, worst.
+    pub link_worst: Option<f64>,
+    /// Largest mesh force.
+    pub peak_force: Option<f64>,
+    /// Instructions a step, mean.
+    pub instructions: f64,
+    /// Greatest.
+    pub instructions_most: u32,
+    /// Greatest in a sample of 10, 20 and 40 kHz; 0 where steps do not fit.
+    pub sample_instructions_most: [u32; 3],
+}
+
+impl Mark {
+    /// Instructions for a second of the joint.
+    pub fn cost(&self) -> f64 {
+        self.instructions * f64::from(self.rate_Hz)
+    }
+}
+
+/// A case as it was run.
+#[derive(Debug, Clone, Serialize)]
+#[allow(non_snake_case, reason = "units are spelled as in every file that this command writes")]
+pub struct CaseFigures {
+    /// Short name.
+    pub key: String,
+    /// What happens.
+    pub title: String,
+    /// What the error is of.
+    pub measure: &'static str,
+    /// Length [s].
+    pub duration_s: f64,
+    /// Phases in the envelope.
+    pub phases: usize,
+    /// The measure of the reference itself once its start is moved by a millionth of b_c.
+    pub sensitivity: f64,
+}
+
+/// Runs the cases.
+pub fn run(
+    cases: Vec<Case>,
+    toolchain: &Toolchain,
+    progress: &Progress,
+    say: Say<'_>,
+) -> Outcome<(Vec<CaseFigures>, Vec<Entry>)> {
+    let (mut figures, mut entries) = (Vec::new(), Vec::new());
+    for case in cases {
+        progress.stage(&format!("case {}: reference", case.key));
+        let failed = |error: &dyn std::fmt::Display| Failure::new(format!("case {}: {error}", case.key));
+        // Where the motion is unpredictable a few phases say as much as many.
+        let phases = if case.measure == Measure::LinkAngle { 2 } else { PHASES };
+        let field = Field::new(case.clone(), phases).map_err(|error| failed(&error))?;
+        let sensitivity = field.sensitivity().map_err(|error| failed(&error))?;
+        figures.push(CaseFigures {
+            key: case.key.clone(),
+            title: case.title.clone(),
+            measure: measure(&case),
+            duration_s: case.duration(),
+            phases,
+            sensitivity: of_measure(&case, &sensitivity),
+        });
+        progress.stage(&format!("case {}: methods on the host", case.key));
+        let found = points(&field);
+        let jobs: Vec<Job<'_>> = found
+            .iter()
+            .map(|(method, point, _)| {
+                let lost = finite(point.errors.link_rms).is_none();
+                let digest = (!lost).then_some(point.digest);
+                Job { case: &field.case, method: *method, rate: point.rate, digest }
+            })
+            .collect();
+        progress.stage(&format!("case {}: methods on the emulated core", case.key));
+        let counts = race::run(&jobs, toolchain, say)?;
+        for method in Method::ALL {
+            let of_method = found.iter().zip(&counts).filter(|((which, ..), _)| *which == method);
+            let marks =
+                of_method.map(|((_, point, double), count)| mark(&case, point, double.as_ref(), count)).collect();
+            entries.push(Entry { case: case.key.clone(), method, name: method.name(), marks });
+        }
+    }
+    Ok((figures, entries))
+}
+
+/// All methods at all rates that they can run at; this step in double precision too.
+fn points(field: &Field) -> Vec<(Method, Point, Option<Point>)> {
+    let case = &field.case;
+    let rates: Vec<u32> = match case.torques.len() {
+        0 | 1 => MULTIPLES.iter().map(|multiple| multiple * (case.sample_rate / 4)).collect(),
+        _ => STEPS_A_TICK.iter().map(|steps| steps * case.tick_rate).collect(),
+    };
+    let mut found = Vec::new();
+    for method in Method::ALL {
+        for &rate in &rates {
+            // The design refuses rates at which it would not be stable.
+            let Ok(point) = field.point(method, Scalar::Single, rate) else { continue };
+            let double = (method == Method::Realtime).then(|| field.point(method, Scalar::Double, rate).ok()).flatten();
+            found.push((method, point, double));
+        }
+    }
+    found
+}
+
+fn measure(case: &Case) -> &'static str {
+    match case.measure {
+        Measure::Deflections => "mesh deflections, RMS over their standard deviation",
+        Measure::LinkAngle => "link angle, RMS over the lost motion",
+    }
+}
+
+fn of_measure(case: &Case, errors: &Errors) -> f64 {
+    match case.measure {
+        Measure::Deflections => errors.deflections,
+        Measure::LinkAngle => errors.link_rms,
+    }
+}
+
+/// None of an error that says that the motion got lost.
+fn finite(error: f64) -> Option<f64> {
+    (error.is_finite() && error < 1e6).then_some(error)
+}
+
+fn mark(case: &Case, point: &Point, double: Option<&Point>, count: &Count) -> Mark {
+    Mark {
+        rate_Hz: point.rate,
+        step: point.step,
+        error: finite(of_measure(case, &point.errors)),
+        error_f64: double.and_then(|double| finite(of_measure(case, &double.errors))),
+        link_rms: finite(point.errors.link_rms),
+        link_worst: finite(point.errors.link_worst),
+        peak_force: finite(point.errors.peak_force),
+        instructions: count.mean,
+        instructions_most: count.most,
+        sample_instructions_most: count.samples,
+    }
+}

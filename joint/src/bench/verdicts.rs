@@ -1,0 +1,183 @@
+//! What follows from the figures: instructions at equal error, error within a board's budget, rounding, host times. No
+//! figure is judged; bounds are the reader's.
+
+use contest::method::Method;
+use serde::Serialize;
+
+use super::libraries::Time;
+use super::lineup::{Entry, Mark};
+
+/// Cycles for an instruction, where no trace weighs them: a Cortex-M4F without wait states on code like this.
+pub const CYCLES: f64 = 1.4;
+/// Clock of the board that budgets are stated for [Hz].
+pub const CLOCK: f64 = 168e6;
+/// Part of the processor that the joint may take.
+const SHARE: f64 = 0.5;
+/// How much more than the mean the worst sample may take.
+const WORST: f64 = 1.5;
+/// Errors at which methods are compared.
+pub const LEVELS: [f64; 2] = [1e-3, 1e-4];
+
+/// What it takes to reach an error.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct AtError {
+    /// Case.
+    pub case: String,
+    /// Contestant.
+    pub name: String,
+    /// The error.
+    pub error: f64,
+    /// Cost there, interpolated between two steps or tolerances; none if it was not reached.
+    pub cost: Option<f64>,
+    /// Over that of this step.
+    pub ratio: Option<f64>,
+}
+
+/// The least error within half a board.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[allow(non_snake_case, reason = "units are spelled as in every file that this command writes")]
+pub struct InBudget {
+    /// Case.
+    pub case: String,
+    /// Method.
+    pub name: &'static str,
+    /// Samples a second [Hz].
+    pub sample_rate_Hz: u32,
+    /// Steps a sample; none if no step fits.
+    pub steps: Option<u32>,
+    /// Its error.
+    pub error: Option<f64>,
+    /// Mean cycles a sample.
+    pub cycles: Option<f64>,
+    /// Greatest.
+    pub cycles_most: Option<f64>,
+}
+
+/// Sample rates of `Mark::sample_instructions_most`.
+const SAMPLE_RATES: [u32; 3] = [10_000, 20_000, 40_000];
+
+/// Instructions a second of the joint at equal error, method by method.
+pub fn at_equal_error(entries: &[Entry]) -> Vec<AtError> {
+    let curve = |entry: &Entry| entry.marks.iter().filter_map(|m| Some((m.cost(), m.error?))).collect::<Vec<_>>();
+    let of_step = |case: &str, level: f64| {
+        let own = entries.iter().find(|entry| entry.case == case && entry.method == Method::Realtime)?;
+        cost_at(&curve(own), level)
+    };
+    let levels = |entry: &'_ Entry| {
+        let curve = curve(entry);
+        let (case, name) = (entry.case.clone(), entry.name.to_owned());
+        LEVELS.map(|level| ratio(case.clone(), name.clone(), level, cost_at(&curve, level), of_step(&case, level)))
+    };
+    entries.iter().filter(|entry| entry.method.has_meshes()).flat_map(levels).collect()
+}
+
+/// Processor time at equal error, library by library; this step as the faster of its two scalars.
+pub fn host_at_equal_error(times: &[Time]) -> Vec<AtError> {
+    let mut names: Vec<(&str, &str)> = Vec::new();
+    for time in times {
+        let name = (time.case.as_str(), time.name.as_str());
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    let curve = |case: &str, name: &str| {
+        let of = times.iter().filter(|time| time.case == case && time.name == name);
+        let mut points: Vec<(f64, f64)> = of.filter_map(|time| Some((time.cost, time.error?))).collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        points
+    };
+    let own = |case: &str, level: f64| {
+        let both = names.iter().filter(|name| name.0 == case && name.1.starts_with("this step"));
+        both.filter_map(|name| cost_at(&curve(case, name.1), level)).min_by(f64::total_cmp)
+    };
+    let level = |(case, name): &(&str, &str), level: f64| {
+        ratio((*case).into(), (*name).into(), level, cost_at(&curve(case, name), level), own(case, level))
+    };
+    names.iter().flat_map(|name| LEVELS.map(|error| level(name, error))).collect()
+}
+
+fn ratio(case: String, name: String, error: f64, cost: Option<f64>, own: Option<f64>) -> AtError {
+    AtError { case, name, error, cost, ratio: cost.zip(own).map(|(cost, own)| cost / own) }
+}
+
+/// Cost at which a curve, from cheap to dear, first comes down to an error: straight between two points in powers of ten.
+fn cost_at(curve: &[(f64, f64)], error: f64) -> Option<f64> {
+    let first = curve.iter().position(|point| point.1 <= error)?;
+    let (cost, below) = curve[first];
+    let Some((dearer, above)) = first.checked_sub(1).map(|before| curve[before]) else { return Some(cost) };
+    let part = (above / error).ln() / (above / below).ln();
+    Some((dearer.ln() + part * (cost / dearer).ln()).exp())
+}
+
+/// The least error of every method within half a 168 MHz Cortex-M4F, sample rate by sample rate.
+pub fn in_budget(entries: &[Entry]) -> Vec<InBudget> {
+    let one = |entry: &Entry, index: usize| {
+        let sample_rate = SAMPLE_RATES[index];
+        let budget = SHARE * CLOCK / f64::from(sample_rate);
+        let steps = |mark: &Mark| mark.rate_Hz / sample_rate;
+        let cycles = |mark: &Mark| CYCLES * mark.instructions * f64::from(steps(mark));
+        let most = |mark: &Mark| CYCLES * f64::from(mark.sample_instructions_most[index]);
+        let fitting = entry.marks.iter().filter(|mark| {
+            mark.rate_Hz.is_multiple_of(sample_rate) && cycles(mark) <= budget && most(mark) <= WORST * budget
+        });
+        let with_error = fitting.filter_map(|mark| Some((mark, mark.error?)));
+        let best = with_error.min_by(|a, b| a.1.total_cmp(&b.1));
+        InBudget {
+            case: entry.case.clone(),
+            name: entry.name,
+            sample_rate_Hz: sample_rate,
+            steps: best.map(|(mark, _)| steps(mark)),
+            error: best.map(|(_, error)| error),
+            cycles: best.map(|(mark, _)| cycles(mark)),
+            cycles_most: best.map(|(mark, _)| most(mark)),
+        }
+    };
+    let rates = |entry| [0, 1, 2].map(|index| one(entry, index));
+    entries.iter().filter(|entry| entry.method.has_meshes()).flat_map(rates).collect()
+}
+
+/// f32 beside f64 by step: what rounding adds.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Rounding {
+    /// Case.
+    pub case: String,
+    /// h omega_n.
+    pub step: f64,
+    /// Error in f32.
+    pub single: f64,
+    /// In f64.
+    pub double: f64,
+    /// What is left if the two add as independent errors do.
+    pub rounding: f64,
+}
+
+/// Of this step.
+pub fn rounding(entries: &[Entry]) -> Vec<Rounding> {
+    let own = entries.iter().filter(|entry| entry.method == Method::Realtime);
+    own.flat_map(|entry| entry.marks.iter().map(move |mark| (entry, mark)))
+        .filter_map(|(entry, mark)| {
+            let (single, double) = (mark.error?, mark.error_f64?);
+            let rounding = (single * single - double * double).max(0.0).sqrt();
+            Some(Rounding { case: entry.case.clone(), step: mark.step, single, double, rounding })
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_cost_at_an_error_is_interpolated_in_powers_of_ten() {
+        let curve = [(1.0, 1e-2), (10.0, 1e-4), (100.0, 1e-6)];
+        let cost = cost_at(&curve, 1e-3).unwrap();
+        assert!((cost - 10f64.sqrt()).abs() < 1e-12, "{cost}");
+        assert_eq!(cost_at(&curve, 1e-4), Some(10.0));
+    }
+
+    #[test]
+    fn an_error_that_is_not_reached_has_no_cost() {
+        assert_eq!(cost_at(&[(1.0, 1e-2)], 1e-3), None);
+        assert_eq!(cost_at(&[(1.0, 1e-4)], 1e-3), Some(1.0));
+    }
+}

@@ -1,0 +1,48 @@
+//! `joint bench` as a user meets it: the comparison of one case on the emulated core, and what it says to bad input. The
+//! libraries of the host are left out: they take minutes to build.
+
+mod command;
+
+use command::joint;
+use serde_json::Value;
+
+#[test]
+fn a_case_that_is_not_known_is_named_with_those_that_are() {
+    let ended = joint(&["bench", "--case", "A,Z"]);
+    assert_eq!(ended.code, Some(2));
+    assert!(ended.err.contains("--case Z") && ended.err.contains("A, Q, R"), "{}", ended.err);
+}
+
+#[test]
+fn a_joint_file_that_is_not_there_is_named() {
+    let ended = joint(&["bench", "no/such/joint.toml"]);
+    assert_eq!(ended.code, Some(2));
+    assert!(ended.err.contains("no/such/joint.toml"), "{}", ended.err);
+}
+
+#[test]
+fn the_peers_are_as_lean_as_their_advocates_would_have_them() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let document = folder.path().join("budget.md");
+    std::fs::write(&document, "# Before\n").expect("written");
+    let ended =
+        joint(&["bench", "--case", "A", "--no-libraries", "--json", "-", "--document", command::text(&document)]);
+    assert_eq!(ended.code, Some(0), "{}", ended.err);
+    let figures: Value = serde_json::from_str(&ended.out).expect("JSON");
+    let most = |method: &str| {
+        let entries = figures["methods"].as_array().expect("a list").iter();
+        let marks = entries.filter(|entry| entry["method"] == method).flat_map(|entry| entry["marks"].as_array());
+        let instructions = marks.flatten().filter_map(|mark| mark["instructions"].as_f64());
+        instructions.fold(0.0, f64::max)
+    };
+    // What throwaway prototypes of the same methods took; mean instructions a step.
+    for (method, bound) in
+        [("runge_kutta4", 1100.0), ("euler", 284.0), ("trapezoid", 700.0), ("runge_kutta4_tanh", 2572.0)]
+    {
+        let found = most(method);
+        assert!(found > 100.0 && found <= bound, "{method}: {found} instructions, {bound} allowed");
+    }
+    let written = std::fs::read_to_string(&document).expect("readable");
+    assert!(written.starts_with("# Before\n") && written.contains("### Case A"), "{written}");
+    assert!(folder.path().join("error-by-cost-a.svg").exists());
+}

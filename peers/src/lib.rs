@@ -1,0 +1,27 @@
+#![no_std]
+//! Fixed-step methods that people use for joints with backlash, each written for speed as its own advocate would: what
+//! the core's step is compared with. Nothing of the core's step is used here, only its scalar, its sine and, to make
+//! [`plant::Plant`]s, its parameters.
+//!
+//! [`peer::Peer`] runs the whole joint by a [`scheme::Scheme`]: [`runge_kutta::RungeKutta4`],
+//! [`euler::SemiImplicitEuler`], [`trapezoid::Trapezoid`]. [`two_mass`] holds the gap model of two masses that controls
+//! people use, as spring-damper and with restitution.
+
+#![allow(clippy::needless_range_loop, reason = "one index walks several tables of the same mesh")]
+
+#[cfg(feature = "design")]
+extern crate std;
+
+pub mod clock;
+pub mod euler;
+pub mod forces;
+#[cfg(feature = "design")]
+mod from_parameters;
+pub mod instant;
+pub mod motion;
+pub mod peer;
+pub mod plant;
+pub mod runge_kutta;
+pub mod scheme;
+pub mod trapezoid;
+pub mod two_mass;

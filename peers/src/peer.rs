@@ -1,0 +1,106 @@
+//! A joint run by a scheme, one fixed step at a time, in the units of the plant. Which step is fine enough is not asked
+//! here.
+
+use core::array;
+
+use model_core::real::Real;
+
+use crate::clock::Clock;
+use crate::forces::{Always, ForceLaw, Push, PushOnly, Smooth, SmoothPush};
+use crate::instant::{Instant, PerMesh};
+use crate::motion::{Coordinates, Motion};
+use crate::plant::{Law, Plant};
+use crate::scheme::{Nodes, Scheme};
+
+/// A joint and the scheme that moves it.
+#[derive(Debug, Clone)]
+pub struct Peer<'a, T: Real, const N: usize, S> {
+    plant: &'a Plant<T, N>,
+    scheme: S,
+    push: Push<T>,
+    clock: Clock<T>,
+    instant: Instant<T, N>,
+    motion: Motion<T, N>,
+}
+
+/// Where a peer starts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Start<T: Real, const N: usize> {
+    /// Sun-planet deflections d (errors taken off), gap and wind-up.
+    pub position: Coordinates<T, N>,
+    /// Their rates.
+    pub rate: Coordinates<T, N>,
+    /// Speed of the rigid carrier [2^-64 turns a step].
+    pub rigid_speed: i64,
+}
+
+impl<'a, T: Real, const N: usize, S: Scheme<T, N>> Peer<'a, T, N, S> {
+    /// A joint at time zero without torques.
+    pub fn new(plant: &'a Plant<T, N>, start: &Start<T, N>) -> Self {
+        let clock = Clock::new(plant, start.rigid_speed);
+        let instant = Instant::at(plant, clock.now());
+        let mut motion = Motion { position: start.position, rate: start.rate };
+        for i in 0..N {
+            motion.position.planets[i] += instant.error[0][i];
+            motion.rate.planets[i] += instant.error_rate[0][i];
+        }
+        let push = Push { sun: T::ZERO, carrier: T::ZERO, link: T::ZERO };
+        Self { plant, scheme: S::default(), push, clock, instant, motion }
+    }
+
+    /// Torques from now on [N m].
+    pub fn set_torques(&mut self, drive: T, load: T) {
+        let gains = &self.plant.gains;
+        self.push = Push { sun: gains.sun * drive, carrier: -(gains.carrier * load), link: -(gains.link * load) };
+        self.clock.set_torques(self.plant, drive, load);
+        self.scheme.torques_changed();
+    }
+
+    /// One step.
+    pub fn step(&mut self) {
+        match (self.plant.compliant, self.plant.law) {
+            (false, Law::Always) => self.step_under::<Always, false>(),
+            (false, Law::Push) => self.step_under::<PushOnly, false>(),
+            (false, Law::Smooth) => self.step_under::<Smooth, false>(),
+            (false, Law::SmoothPush) => self.step_under::<SmoothPush, false>(),
+            (true, Law::Always) => self.step_under::<Always, true>(),
+            (true, Law::Push) => self.step_under::<PushOnly, true>(),
+            (true, Law::Smooth) => self.step_under::<Smooth, true>(),
+            (true, Law::SmoothPush) => self.step_under::<SmoothPush, true>(),
+        }
+    }
+
+    #[inline(always)]
+    fn step_under<L: ForceLaw<T>, const COMPLIANT: bool>(&mut self) {
+        if S::MIDDLE {
+            let ahead = self.clock.advance::<true, N>(self.plant);
+            let (middle, end) = (Instant::at(self.plant, &ahead.middle), Instant::at(self.plant, &ahead.end));
+            let nodes = Nodes { start: &self.instant, middle: &middle, end: &end };
+            self.motion = self.scheme.advance::<L, COMPLIANT>(self.plant, &self.push, &nodes, &self.motion);
+            self.instant = end;
+        } else {
+            let end = Instant::at(self.plant, &self.clock.advance::<false, N>(self.plant).end);
+            let nodes = Nodes { start: &self.instant, middle: &end, end: &end };
+            self.motion = self.scheme.advance::<L, COMPLIANT>(self.plant, &self.push, &nodes, &self.motion);
+            self.instant = end;
+        }
+    }
+
+    /// The motion now.
+    pub fn motion(&self) -> &Motion<T, N> {
+        &self.motion
+    }
+
+    /// Phase and, where it makes the phase, the rigid carrier.
+    pub fn clock(&self) -> &Clock<T> {
+        &self.clock
+    }
+
+    /// Mesh deflections now: sun-planet of every planet, then ring-planet.
+    pub fn deflections(&self) -> PerMesh<T, N> {
+        let position = &self.motion.position;
+        let sun = array::from_fn(|i| position.planets[i] - self.instant.error[0][i]);
+        let ring = array::from_fn(|i| position.gap - position.planets[i] - self.instant.error[1][i]);
+        [sun, ring]
+    }
+}

@@ -1,0 +1,217 @@
+//! The implicit trapezoidal rule with an active set: contacts at the end of the step are guessed, the then linear
+//! equations solved, and the guess mended until it holds. Planets meet only in sun and carrier, so that what is solved
+//! is two by two; kinks inside the step are not looked for.
+
+use model_core::real::Real;
+
+use crate::forces::{ForceLaw, Push, acceleration};
+use crate::instant::{Instant, PerMesh};
+use crate::motion::{Coordinates, Motion};
+use crate::plant::{Law, Plant};
+use crate::scheme::{Nodes, Scheme};
+
+/// Most guesses in a step: what is left then is off by a contact that is about to change anyway.
+const GUESSES: usize = 4;
+
+/// The method with what a step leaves for the next.
+#[derive(Debug, Clone, Copy)]
+pub struct Trapezoid<T, const N: usize> {
+    /// Flank in contact at the end of the last step: 1 drive side, -1 back side, 0 none.
+    flanks: PerMesh<T, N>,
+    /// Accelerations at the end of the last step, while torques do not change.
+    last: Option<Coordinates<T, N>>,
+}
+
+impl<T: Real, const N: usize> Default for Trapezoid<T, N> {
+    fn default() -> Self {
+        Self { flanks: [[T::ZERO; N]; 2], last: None }
+    }
+}
+
+/// One mesh at the end of the step: force = given + per_acceleration * its acceleration.
+#[derive(Clone, Copy)]
+struct Linear<T> {
+    given: T,
+    per_acceleration: T,
+}
+
+/// What the carrier, with what hangs on it, makes of the sum of mesh forces: given + per_force * sum.
+struct Carrier<T> {
+    given: T,
+    per_force: T,
+    wind_up: Linear<T>,
+}
+
+impl<T: Real, const N: usize> Scheme<T, N> for Trapezoid<T, N> {
+    const MIDDLE: bool = false;
+
+    fn torques_changed(&mut self) {
+        self.last = None;
+    }
+
+    #[inline(always)]
+    fn advance<L: ForceLaw<T>, const COMPLIANT: bool>(
+        &mut self,
+        plant: &Plant<T, N>,
+        push: &Push<T>,
+        nodes: &Nodes<'_, T, N>,
+        motion: &Motion<T, N>,
+    ) -> Motion<T, N> {
+        let Motion { position, rate } = motion;
+        let before = match self.last {
+            Some(before) => before,
+            None => acceleration::<T, N, L, COMPLIANT>(plant, push, nodes.start, position, rate),
+        };
+        let half = plant.step * T::HALF;
+        let rate = rate.plus::<COMPLIANT>(half, &before);
+        // x + h (v + v1) / 2 with v1 = v + h (a + a1) / 2, the share of a1 apart.
+        let position = position.plus::<COMPLIANT>(plant.step, &motion.rate).plus::<COMPLIANT>(half * half, &before);
+        let predicted = Motion { position, rate };
+        let mut end = predicted;
+        for _ in 0..GUESSES {
+            let after = self.solve::<COMPLIANT>(plant, push, nodes.end, &predicted);
+            end = Motion {
+                position: position.plus::<COMPLIANT>(half * half, &after),
+                rate: rate.plus::<COMPLIANT>(half, &after),
+            };
+            self.last = Some(after);
+            if self.mend(plant, nodes.end, &end) {
+                break;
+            }
+        }
+        end
+    }
+}
+
+impl<T: Real, const N: usize> Trapezoid<T, N> {
+    /// Accelerations at the end under the guessed contacts.
+    #[inline(always)]
+    fn solve<const COMPLIANT: bool>(
+        &self,
+        plant: &Plant<T, N>,
+        push: &Push<T>,
+        now: &Instant<T, N>,
+        predicted: &Motion<T, N>,
+    ) -> Coordinates<T, N> {
+        let half = plant.step * T::HALF;
+        let mesh = |kind: usize, i: usize, position: T, rate: T| {
+            let flank = self.flanks[kind][i];
+            let closed = flank * flank;
+            let stiffness = closed * now.stiffness[kind][i];
+            let damping = plant.damping[kind] * if plant.law == Law::Push { closed } else { T::ONE };
+            let overlap = position - now.error[kind][i] - flank * plant.meshes[kind][i].half_backlash;
+            Linear {
+                given: stiffness * overlap + damping * (rate - now.error_rate[kind][i]),
+                per_acceleration: half * (half * stiffness + damping),
+            }
+        };
+        let Motion { position, rate } = predicted;
+        let mut inverse = [T::ZERO; N];
+        let mut driven = [T::ZERO; N];
+        let mut by_gap = [T::ZERO; N];
+        // Sums of forces: given, for each unit of (sun - carrier) acceleration, for each unit of gap acceleration.
+        let (mut sun, mut ring) = ([T::ZERO; 3], [T::ZERO; 3]);
+        for i in 0..N {
+            let planet = position.planets[i];
+            let planet_rate = rate.planets[i];
+            let near = mesh(0, i, planet, planet_rate);
+            let far = mesh(1, i, position.gap - planet, rate.gap - planet_rate);
+            inverse[i] = T::ONE.over(T::ONE + plant.planet * (near.per_acceleration + far.per_acceleration));
+            driven[i] = inverse[i] * plant.planet * (far.given - near.given);
+            by_gap[i] = inverse[i] * plant.planet * far.per_acceleration;
+            sun[0] += near.given + near.per_acceleration * driven[i];
+            sun[1] += near.per_acceleration * inverse[i];
+            sun[2] += near.per_acceleration * by_gap[i];
+            ring[0] += far.given - far.per_acceleration * driven[i];
+            ring[1] += -(far.per_acceleration * inverse[i]);
+            ring[2] += far.per_acceleration * (T::ONE - by_gap[i]);
+        }
+        let carrier = Self::carrier::<COMPLIANT>(plant, push, predicted);
+        let (apart, gap) = (push.sun - carrier.given, push.sun - carrier.given - carrier.given);
+        let (pulled, twice) = (plant.sun + carrier.per_force, carrier.per_force + carrier.per_force);
+        let gap_pulled = plant.sun + twice;
+        // Both sums on both sides: two equations.
+        let sun_row = [
+            T::ONE + sun[1] * pulled + sun[2] * gap_pulled,
+            sun[1] * carrier.per_force + sun[2] * twice,
+            sun[0] + sun[1] * apart + sun[2] * gap,
+        ];
+        let ring_row = [
+            ring[1] * pulled + ring[2] * gap_pulled,
+            T::ONE + ring[1] * carrier.per_force + ring[2] * twice,
+            ring[0] + ring[1] * apart + ring[2] * gap,
+        ];
+        let determinant = T::ONE.over(sun_row[0] * ring_row[1] - sun_row[1] * ring_row[0]);
+        let sun_sum = determinant * (sun_row[2] * ring_row[1] - sun_row[1] * ring_row[2]);
+        let ring_sum = determinant * (sun_row[0] * ring_row[2] - sun_row[2] * ring_row[0]);
+        let carrier_acceleration = carrier.given + carrier.per_force * (sun_sum + ring_sum);
+        let apart = push.sun - plant.sun * sun_sum - carrier_acceleration;
+        let gap = apart - carrier_acceleration;
+        let mut planets = [T::ZERO; N];
+        for i in 0..N {
+            planets[i] = inverse[i] * apart + driven[i] + by_gap[i] * gap;
+        }
+        let mut wind_up = T::ZERO;
+        if COMPLIANT {
+            let force = carrier.wind_up.given + carrier.wind_up.per_acceleration * (sun_sum + ring_sum);
+            wind_up = carrier_acceleration - (push.link + plant.link * force);
+        }
+        Coordinates { planets, gap, wind_up }
+    }
+
+    #[inline(always)]
+    fn carrier<const COMPLIANT: bool>(plant: &Plant<T, N>, push: &Push<T>, predicted: &Motion<T, N>) -> Carrier<T> {
+        if !COMPLIANT {
+            let wind_up = Linear { given: T::ZERO, per_acceleration: T::ZERO };
+            return Carrier { given: push.carrier, per_force: plant.carrier, wind_up };
+        }
+        let half = plant.step * T::HALF;
+        let [stiffness, damping] = plant.wind_up;
+        let per_acceleration = half * (half * stiffness + damping);
+        let given = stiffness * predicted.position.wind_up + damping * predicted.rate.wind_up;
+        let inverse = T::ONE.over(T::ONE + per_acceleration * (plant.carrier + plant.link));
+        let wind_up = Linear {
+            given: inverse * (given + per_acceleration * (push.carrier - push.link)),
+            per_acceleration: inverse * per_acceleration * plant.carrier,
+        };
+        Carrier {
+            given: push.carrier - plant.carrier * wind_up.given,
+            per_force: plant.carrier * (T::ONE - wind_up.per_acceleration),
+            wind_up,
+        }
+    }
+
+    /// Takes the contacts from the end of the step; whether they were as guessed.
+    #[inline(always)]
+    fn mend(&mut self, plant: &Plant<T, N>, now: &Instant<T, N>, end: &Motion<T, N>) -> bool {
+        let mut held = true;
+        for kind in 0..2 {
+            for i in 0..N {
+                let of = |values: &Coordinates<T, N>| match kind {
+                    0 => values.planets[i],
+                    _ => values.gap - values.planets[i],
+                };
+                let deflection = of(&end.position) - now.error[kind][i];
+                let half_backlash = plant.meshes[kind][i].half_backlash;
+                let mut flank = if deflection > half_backlash {
+                    T::ONE
+                } else if deflection < -half_backlash {
+                    -T::ONE
+                } else {
+                    T::ZERO
+                };
+                if plant.law == Law::Push && flank != T::ZERO {
+                    let speed = of(&end.rate) - now.error_rate[kind][i];
+                    let overlap = deflection - flank * half_backlash;
+                    let force = now.stiffness[kind][i] * overlap + plant.damping[kind] * speed;
+                    if force * flank <= T::ZERO {
+                        flank = T::ZERO;
+                    }
+                }
+                held &= flank == self.flanks[kind][i];
+                self.flanks[kind][i] = flank;
+            }
+        }
+        held
+    }
+}

@@ -49,7 +49,7 @@ pub struct Instructions {
     pub losing: u32,
     /// An exponential tick is given up, then every mesh crosses once.
     pub all_crossing: u32,
-    /// Every mesh crosses in every sub-step: no state takes more.
+    /// Every mesh leaps its gap in every sub-step: no state of a search through a million takes more.
     pub bound: u32,
 }
 

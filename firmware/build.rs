@@ -6,6 +6,8 @@
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
+use model_core::design::Processor;
+
 const DEFAULT_TICK_RATE: u32 = 20_000;
 
 fn main() {
@@ -69,8 +71,16 @@ fn source(file: &Path, tick_rate: u32) -> Result<String, String> {
         let list: Vec<_> = problems.iter().map(|problem| format!("{}: {problem}", file.display())).collect();
         format!("{}\nrun `cargo joint check {}` to see the places", list.join("\n"), file.display())
     })?;
-    model_core::design::rust_source(&joint.parameters, tick_rate)
+    model_core::design::rust_source_for(&joint.parameters, tick_rate, &processor()?)
         .map_err(|error| format!("{}: {error}", file.display()))
+}
+
+/// What the board of this build has time for.
+fn processor() -> Result<Processor, String> {
+    let boards = ["stm32f405", "stm32g474", "stm32h743"];
+    let chosen = |board: &&str| variable(&format!("CARGO_FEATURE_{}", board.to_uppercase())).is_some();
+    let board = boards.into_iter().find(chosen).ok_or_else(|| format!("no board: want a feature of {boards:?}"))?;
+    Processor::of_board(board).ok_or_else(|| format!("{board} is not known to the design"))
 }
 
 fn tick_rate() -> Result<u32, String> {

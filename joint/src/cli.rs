@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::failure::{EXIT_BAD_INPUT, Outcome};
-use crate::{bench, check, hil, images, output, paper, sim, sweep};
+use crate::{bench, budget, check, hil, images, output, paper, sim, sweep};
 
 /// Simulates a planetary robot joint with backlash on a microcontroller, drives it and checks it
 #[derive(Debug, Parser)]
@@ -23,6 +23,8 @@ enum Command {
     Check(check::Arguments),
     /// Compare the step with what people use: error against cost, on the emulated core and on the host
     Bench(bench::Arguments),
+    /// Predict error, instructions, memory and limits of the fixed step on a board, with a verdict
+    Budget(budget::Arguments),
     /// Redo the paper, or the same study of another joint: attractors, bifurcation diagram, figures
     Paper(paper::Arguments),
     /// Simulate a joint on the host by a named scheme: history, report, comparison of schemes
@@ -52,6 +54,7 @@ pub fn main() -> ExitCode {
         Some(Command::Hil(arguments)) => hil::run(arguments),
         Some(Command::Check(arguments)) => check::run(arguments),
         Some(Command::Bench(arguments)) => bench::run(arguments),
+        Some(Command::Budget(arguments)) => budget::run(arguments),
         Some(Command::Paper(arguments)) => paper::run(arguments),
         Some(Command::Sim(arguments)) => sim::run(arguments),
         Some(Command::Sweep(arguments)) => sweep::run(arguments),

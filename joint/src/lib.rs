@@ -1,11 +1,13 @@
 //! The host command `joint` as a library, so that its parts can be tested without a process. `hil` runs a joint on a
 //! board and checks it, `target` prepares toolchain, image and emulator, `check` reads a joint file, `record` is what
 //! a run leaves behind and `report` shows it, `sim` moves a joint on the host, `sweep` many of them, `bench` compares the
-//! step with what people use, `paper` redoes the paper with the numerics of `study`, `proof` holds the step that ships to
-//! what is promised of it, `trial` runs test files of observer and compensation; physics and wire format are left to
+//! step with what people use, `budget` says what is promised of it, `paper` redoes the paper with the numerics of
+//! `study`, `proof` holds the step that ships to what is promised of it, `trial` runs test files of observer and
+//! compensation; physics and wire format are left to
 //! `model-core` and `link`.
 
 pub mod bench;
+pub mod budget;
 pub mod check;
 pub mod cli;
 pub mod failure;

@@ -14,6 +14,7 @@ use joint::hil::recording::Recording;
 use joint::hil::session::{Expected, Session, Surroundings};
 use joint::hil::transport::Socket;
 use joint::hil::twin;
+use joint::target::board::Board;
 use link::messages::{Fault, RunMode, RunSettings};
 
 /// A message is due within 2 s by design; a busy machine is given ten times that.
@@ -47,7 +48,7 @@ impl Surroundings for CtrlCAfter {
 fn expected() -> Expected {
     Expected {
         joint: "Q1".into(),
-        digest: twin::tables_digest(&joint(), TICK_RATE).expect("a good joint"),
+        digest: twin::tables_digest(&joint(), Board::Stm32f405, TICK_RATE).expect("a good joint"),
         tick_rate: TICK_RATE,
         planets: 3,
         mend: "cargo joint flash q1".into(),
@@ -104,7 +105,8 @@ fn a_good_run_brings_every_sample_and_equals_the_twin() {
         assert_eq!(recording.samples.len(), 400, "{mode:?}");
         assert_eq!(recording.accepted, profile().commands, "{mode:?}");
         assert_eq!(recording.traffic.bad_frames + recording.traffic.lost_batches, 0);
-        let agreement = twin::compare(&joint(), TICK_RATE, &recording.accepted, &recording.samples).expect("designed");
+        let agreement = twin::compare(&joint(), Board::Stm32f405, TICK_RATE, &recording.accepted, &recording.samples)
+            .expect("designed");
         assert_eq!((agreement.steps, agreement.different), (TICK_RATE, 0), "{mode:?}: {:?}", agreement.first);
         assert!(recording.statistics.is_some_and(|statistics| statistics.ticks >= TICK_RATE));
     }
@@ -114,7 +116,8 @@ fn a_good_run_brings_every_sample_and_equals_the_twin() {
 fn torques_a_tick_late_break_the_agreement() {
     let (outcome, recording) = run(Misbehaviour::LateTorques);
     outcome.expect("the line itself is good");
-    let agreement = twin::compare(&joint(), TICK_RATE, &recording.accepted, &recording.samples).expect("designed");
+    let agreement = twin::compare(&joint(), Board::Stm32f405, TICK_RATE, &recording.accepted, &recording.samples)
+        .expect("designed");
     assert!(agreement.different > 0);
 }
 
@@ -123,7 +126,8 @@ fn a_board_that_hangs_up_in_mid_run_leaves_what_was_recorded() {
     let (failure, recording) = failure(Misbehaviour::HangsUpAt(10_000));
     assert!(failure.message().contains("the fake board"), "{failure}");
     assert!(recording.samples.len() >= 100, "{} samples kept", recording.samples.len());
-    let agreement = twin::compare(&joint(), TICK_RATE, &recording.accepted, &recording.samples).expect("designed");
+    let agreement = twin::compare(&joint(), Board::Stm32f405, TICK_RATE, &recording.accepted, &recording.samples)
+        .expect("designed");
     assert_eq!(agreement.different, 0, "what was kept is still good");
 }
 

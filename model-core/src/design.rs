@@ -1,8 +1,10 @@
 //! The offline half, f64: from parameters to the tables of a fixed step. `dynamics` is eq. 19, `hamiltonian` eq. 20,
 //! `exponential` the precise integration, `flow_tables` its sorting into in-phase and deviating motion; this file
-//! puts them together, `pace` says in how many sub-steps.
+//! puts them together, `pace` says in how many sub-steps, `certificate` what is promised of them.
 
+mod certificate;
 pub mod compensation;
+mod cost;
 pub mod dynamics;
 pub mod exponential;
 mod flow_tables;
@@ -11,7 +13,9 @@ pub mod light_tables;
 pub mod modes;
 pub mod observer;
 mod pace;
+mod processor;
 mod source;
+mod stability;
 mod validate;
 
 use core::array;
@@ -24,9 +28,12 @@ use crate::mesh::{MAX_HARMONICS, MESH_KINDS, MeshKind};
 use crate::real::Real;
 use crate::scales::Scales;
 use crate::tables::{Excitation, MeshTable, Mobility, Rigid, Scheme, Spring, Stage, Tables, Units};
+pub use certificate::certificate;
+pub use cost::Cost;
 use dynamics::{Dynamics, MovingMasses};
-pub use pace::{Effort, Pace};
-pub use source::rust_source;
+pub use pace::{Effort, Pace, Parts};
+pub use processor::Processor;
+pub use source::{rust_source, rust_source_for};
 
 /// Tables of the scheme that a board runs.
 pub fn design<T: Real, const N: usize>(
@@ -53,7 +60,10 @@ pub fn design_scheme<T: Real, const N: usize>(
     let real = T::from_f64;
     let pace = Pace::new(parameters);
     let substeps = pace.substeps(tick_rate, effort)?;
-    let leaps = pace.leaps(tick_rate, substeps, effort);
+    let leaps = match pace.parts(tick_rate, effort)? {
+        Parts::Leaps(leaps) => leaps,
+        Parts::Substeps(_) => 0,
+    };
     let tick = scales.frequency / f64::from(tick_rate);
     let substep = tick / f64::from(substeps);
     let flow_step = match scheme {

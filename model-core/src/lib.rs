@@ -11,6 +11,7 @@
 #[cfg(feature = "design")]
 extern crate std;
 
+pub mod certificate;
 pub mod dead_zone;
 #[cfg(feature = "design")]
 pub mod design;

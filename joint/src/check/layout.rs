@@ -9,27 +9,36 @@ use super::figures::{Figures, MeshFigures};
 const NAMES: usize = 30;
 
 /// Lines under headings.
-struct Page(String);
+#[derive(Default)]
+pub struct Page(String);
 
 impl Page {
-    fn heading(&mut self, text: &str) {
+    /// A heading.
+    pub fn heading(&mut self, text: &str) {
         self.0.push('\n');
         self.line(text);
     }
 
-    fn row(&mut self, name: &str, value: impl Display) {
+    /// A name and its value.
+    pub fn row(&mut self, name: &str, value: impl Display) {
         self.line(&format!("  {name:NAMES$}{value}"));
     }
 
-    fn line(&mut self, text: &str) {
+    /// A line as it is.
+    pub fn line(&mut self, text: &str) {
         self.0.push_str(text.trim_end());
         self.0.push('\n');
+    }
+
+    /// All of it.
+    pub fn text(self) -> String {
+        self.0
     }
 }
 
 /// The whole page.
 pub fn layout(figures: &Figures) -> String {
-    let mut page = Page(String::new());
+    let mut page = Page::default();
     page.line(&match figures.description.as_str() {
         "" => figures.name.clone(),
         description => format!("{}: {description}", figures.name),
@@ -41,7 +50,7 @@ pub fn layout(figures: &Figures) -> String {
     output(&mut page, figures);
     step(&mut page, figures);
     file(&mut page, figures);
-    page.0
+    page.text()
 }
 
 fn gears(page: &mut Page, figures: &Figures) {

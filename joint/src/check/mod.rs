@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 use crate::failure::{Failure, Outcome};
 pub use derive::figures;
 pub use figures::Figures;
-pub use layout::layout;
+pub use layout::{Page, layout};
 pub use source::{Loaded, load, load_with, read_changed};
 
 /// Arguments of `joint check`.

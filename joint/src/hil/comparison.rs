@@ -160,6 +160,7 @@ mod tests {
     use super::*;
     use crate::hil::profile::Profile;
     use crate::hil::twin;
+    use crate::target::board::Board;
 
     const TICK_RATE: u32 = 20_000;
     const DECIMATION: u32 = 20;
@@ -174,7 +175,8 @@ mod tests {
         let profile = Profile::load("reversals", &joint, TICK_RATE, Some(seconds)).expect("built in");
         let under_way = start(&joint, TICK_RATE, DECIMATION, (&profile.commands, profile.ticks));
         let ticks: Vec<u32> = (1..=profile.ticks / DECIMATION).map(|sample| sample * DECIMATION).collect();
-        let mut samples = twin::replay(&joint, TICK_RATE, &profile.commands, &ticks).expect("a good joint");
+        let mut samples =
+            twin::replay(&joint, Board::Stm32f405, TICK_RATE, &profile.commands, &ticks).expect("a good joint");
         samples.iter_mut().for_each(spoil);
         under_way.finish(&samples, joint.geometry.ratio_by_radii()).expect("a joint for the reference")
     }

@@ -67,7 +67,7 @@ pub fn evaluate(record: &mut RunRecord, ran: &Ran<'_>, references: Option<UnderW
         record.log.clone_from(&log.lines);
     }
 
-    let agreement = twin::compare(joint, tick_rate, &recording.accepted, &recording.samples)?;
+    let agreement = twin::compare(joint, ran.plan.board, tick_rate, &recording.accepted, &recording.samples)?;
     if agreement.different == 0 && !recording.samples.is_empty() {
         record.close_up = close_up(record, ran)?;
     }
@@ -116,7 +116,8 @@ fn close_up(record: &RunRecord, ran: &Ran<'_>) -> Outcome<Option<CloseUp>> {
     let last = ran.recording.last_tick();
     let first = tick(from).min(last);
     let ticks: Vec<u32> = (first..=tick(to).min(last).min(first + CLOSE_UP)).collect();
-    let motion: Vec<Sample> = twin::replay(&ran.plan.joint.parameters, tick_rate, &ran.recording.accepted, &ticks)?;
+    let parameters = &ran.plan.joint.parameters;
+    let motion: Vec<Sample> = twin::replay(parameters, ran.plan.board, tick_rate, &ran.recording.accepted, &ticks)?;
     let mut samples = Samples::new(2 * record.joint.planets);
     for sample in &motion {
         let motion = MotionSample { computation: None, ..MotionSample::from_board(sample, 1) };

@@ -8,7 +8,7 @@ use link::messages::Role;
 use super::Progress;
 use crate::failure::{Failure, Outcome};
 use crate::output;
-use crate::proof::{same_bits, tick, worst_case};
+use crate::proof::{costs, same_bits, tick, worst_case};
 use crate::target::board::Board;
 use crate::target::image;
 use crate::target::lint;
@@ -41,7 +41,7 @@ pub fn check(tick_rate: u32, progress: &Progress) -> Outcome<()> {
     emulator_tests()
 }
 
-/// Same bits and worst case, of a release build against the emulated board.
+/// Same bits, instructions and worst case, of a release build against the emulated board.
 fn proofs(toolchain: &Toolchain, progress: &Progress) -> Outcome<()> {
     let say = |line: &str| progress.say(line);
     progress.stage("comparing bits between the emulated board and this program");
@@ -54,6 +54,10 @@ fn proofs(toolchain: &Toolchain, progress: &Progress) -> Outcome<()> {
     for search in &found {
         output::print(&format!("{search}\n"))?;
     }
+    progress.stage("counting instructions on the emulated board");
+    let lines = costs::judge(&costs::count(toolchain, &say)?, &found)?;
+    progress.clear();
+    output::print(&format!("{}\nok       instructions as promised\n", lines.join("\n")))?;
     worst_case::judge(&found)?;
     output::print("ok       worst case of a step within its budget\n")
 }

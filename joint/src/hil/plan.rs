@@ -109,6 +109,8 @@ pub struct Plan {
     pub path: PathBuf,
     /// What it says.
     pub joint: JointFile,
+    /// The board that its image is for.
+    pub board: Board,
     /// What the board must be.
     pub expected: Expected,
     /// The torques.
@@ -127,7 +129,7 @@ impl Plan {
         let path = images::joint_file(&arguments.file, &loaded);
         let check::Loaded { name, file: joint, .. } = loaded;
         let parameters = &joint.parameters;
-        let digest = twin::tables_digest(parameters, arguments.rate)?;
+        let digest = twin::tables_digest(parameters, arguments.board, arguments.rate)?;
         let profile = Profile::load(&arguments.profile, parameters, arguments.rate, arguments.duration)?;
         let mode = match (arguments.mode, &arguments.port) {
             (Some(Mode::Lockstep), _) | (None, None) => RunMode::Lockstep,
@@ -146,7 +148,7 @@ impl Plan {
         };
         let command_timeout = (COMMAND_TIMEOUT * f64::from(arguments.rate)).ceil() as u32;
         let settings = RunSettings { mode, decimation: arguments.decimation, command_timeout };
-        Ok(Self { name, path, expected, profile, settings, joint })
+        Ok(Self { name, path, board: arguments.board, expected, profile, settings, joint })
     }
 }
 

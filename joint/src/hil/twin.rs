@@ -2,14 +2,15 @@
 //! running digest over the whole state covers the ticks between samples; closeness to the truth is the reference's.
 
 use link::messages::{Command, Sample};
-use model_core::design::design;
+use model_core::design::{Effort, design_scheme};
 use model_core::digest;
 use model_core::joint::JointParameters;
 use model_core::mesh::ContactState;
 use model_core::realtime::{Model, Torques};
-use model_core::tables::Tables;
+use model_core::tables::{Scheme, Tables};
 
 use crate::failure::{Failure, Outcome};
+use crate::target::board::Board;
 
 /// What the comparison found.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -38,20 +39,21 @@ pub struct Difference {
 }
 
 /// Digest of the tables that a board with this joint must state.
-pub fn tables_digest(joint: &JointParameters, tick_rate: u32) -> Outcome<u64> {
-    for_planets(joint, Digest { joint, tick_rate })
+pub fn tables_digest(joint: &JointParameters, board: Board, tick_rate: u32) -> Outcome<u64> {
+    for_planets(joint, Digest { joint, board, tick_rate })
 }
 
 /// Replays the commands and compares every sample. Samples are in rising order of ticks.
 pub fn compare(
     joint: &JointParameters,
+    image: Board,
     tick_rate: u32,
     commands: &[Command],
     samples: &[Sample],
 ) -> Outcome<Agreement> {
     let ticks: Vec<u32> = samples.iter().map(|sample| sample.tick).collect();
     let mut agreement = Agreement::default();
-    for (board, twin) in samples.iter().zip(replay(joint, tick_rate, commands, &ticks)?) {
+    for (board, twin) in samples.iter().zip(replay(joint, image, tick_rate, commands, &ticks)?) {
         agreement.samples += 1;
         match difference(board, &twin) {
             None if agreement.different == 0 => agreement.steps = board.tick,
@@ -66,8 +68,14 @@ pub fn compare(
 }
 
 /// The twin's samples after the given numbers of steps, which rise.
-pub fn replay(joint: &JointParameters, tick_rate: u32, commands: &[Command], ticks: &[u32]) -> Outcome<Vec<Sample>> {
-    for_planets(joint, Replay { joint, tick_rate, commands, ticks })
+pub fn replay(
+    joint: &JointParameters,
+    board: Board,
+    tick_rate: u32,
+    commands: &[Command],
+    ticks: &[u32],
+) -> Outcome<Vec<Sample>> {
+    for_planets(joint, Replay { joint, board, tick_rate, commands, ticks })
 }
 
 /// Work that is written for any number of planets.
@@ -86,25 +94,27 @@ fn for_planets<W: ForPlanets>(joint: &JointParameters, work: W) -> Outcome<W::Re
     }
 }
 
-fn tables<const N: usize>(joint: &JointParameters, tick_rate: u32) -> Outcome<Tables<f32, N>> {
-    design(joint, tick_rate)
+fn tables<const N: usize>(joint: &JointParameters, board: Board, tick_rate: u32) -> Outcome<Tables<f32, N>> {
+    design_scheme(joint, tick_rate, Scheme::Realtime, Effort::Within(board.processor()))
         .map_err(|error| Failure::new(format!("joint `{}` cannot be designed for {tick_rate} Hz: {error}", joint.name)))
 }
 
 struct Digest<'a> {
     joint: &'a JointParameters,
+    board: Board,
     tick_rate: u32,
 }
 
 impl ForPlanets for Digest<'_> {
     type Result = u64;
     fn run<const N: usize>(self) -> Outcome<u64> {
-        Ok(tables::<N>(self.joint, self.tick_rate)?.digest)
+        Ok(tables::<N>(self.joint, self.board, self.tick_rate)?.digest)
     }
 }
 
 struct Replay<'a> {
     joint: &'a JointParameters,
+    board: Board,
     tick_rate: u32,
     commands: &'a [Command],
     ticks: &'a [u32],
@@ -114,7 +124,7 @@ impl ForPlanets for Replay<'_> {
     type Result = Vec<Sample>;
 
     fn run<const N: usize>(self) -> Outcome<Vec<Sample>> {
-        let tables = tables::<N>(self.joint, self.tick_rate)?;
+        let tables = tables::<N>(self.joint, self.board, self.tick_rate)?;
         let mut model = Model::new(&tables);
         let mut torques = Torques { drive: 0.0, load: 0.0 };
         let mut running = digest::START;
@@ -207,7 +217,7 @@ mod tests {
 
     /// A board that does as it should, written down on its own: torques looked up instead of queued.
     fn board(joint: &JointParameters, commands: &[Command], ticks: u32, decimation: u32) -> Vec<Sample> {
-        let tables: Tables<f32, 3> = tables(joint, TICK_RATE).expect("a good joint");
+        let tables: Tables<f32, 3> = tables(joint, Board::Stm32f405, TICK_RATE).expect("a good joint");
         let mut model = Model::new(&tables);
         let mut running = digest::START;
         let mut samples = Vec::new();
@@ -226,7 +236,7 @@ mod tests {
     #[test]
     fn a_board_that_does_as_it_should_agrees_in_every_bit() {
         let samples = board(&joint(), &commands(), 200, 20);
-        let agreement = compare(&joint(), TICK_RATE, &commands(), &samples).expect("a good joint");
+        let agreement = compare(&joint(), Board::Stm32f405, TICK_RATE, &commands(), &samples).expect("a good joint");
         assert_eq!(agreement, Agreement { steps: 200, samples: 10, different: 0, first: None });
     }
 
@@ -243,7 +253,8 @@ mod tests {
         for (place, flip) in flips.iter().enumerate() {
             let mut samples = board(&joint(), &commands(), 200, 20);
             flip(&mut samples[4]);
-            let agreement = compare(&joint(), TICK_RATE, &commands(), &samples).expect("a good joint");
+            let agreement =
+                compare(&joint(), Board::Stm32f405, TICK_RATE, &commands(), &samples).expect("a good joint");
             assert_eq!((agreement.steps, agreement.different), (80, 1), "{place}: {agreement:?}");
         }
     }
@@ -253,7 +264,7 @@ mod tests {
         let mut late = commands();
         late[1].tick += 1;
         let samples = board(&joint(), &late, 200, 20);
-        let agreement = compare(&joint(), TICK_RATE, &commands(), &samples).expect("a good joint");
+        let agreement = compare(&joint(), Board::Stm32f405, TICK_RATE, &commands(), &samples).expect("a good joint");
         assert_eq!((agreement.steps, agreement.different), (40, 8), "{agreement:?}");
         assert!(agreement.first.is_some_and(|first| first.tick == 60));
     }

@@ -2,6 +2,7 @@
 //! host's in every bit, what it takes at worst, that it cannot panic and how much stack it needs. Runs with a profile
 //! and a report are left to `hil`.
 
+pub mod costs;
 pub mod joints;
 pub mod same_bits;
 pub mod tick;

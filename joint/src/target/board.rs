@@ -1,6 +1,7 @@
 //! The boards that images are built for, as the host needs to know them. Pins and clocks are in the firmware.
 
 use clap::ValueEnum;
+use model_core::design::Processor;
 
 /// A board that an image can be built for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -41,6 +42,15 @@ impl Board {
             Self::Stm32f405 => 168_000_000,
             Self::Stm32g474 => 170_000_000,
             Self::Stm32h743 => 400_000_000,
+        }
+    }
+
+    /// What it gives the step.
+    pub fn processor(self) -> Processor {
+        match self {
+            Self::Stm32f405 => Processor::STM32F405,
+            Self::Stm32g474 => Processor::STM32G474,
+            Self::Stm32h743 => Processor::STM32H743,
         }
     }
 

@@ -15,7 +15,7 @@ use crate::real::Real;
 use crate::tables::{Block, Flow, Inputs, Transition};
 
 /// Mesh periods over a step up to which a parabola follows the excitation: it leaves some 1e-3 of its amplitude.
-const LARGEST_WAY: f64 = 0.06;
+pub const LARGEST_WAY: f64 = 0.06;
 
 /// When a whole tick looks at its pseudo-force on the way: where, with value and rate at the start, a cubic leaves the
 /// least (searched over the unit square on a joint that rings, error 4e-6 where looks at 1/2 and 1 leave 7e-6).

@@ -1,7 +1,14 @@
-//! How fast a joint must be stepped: sub-steps a tick from its fastest mode, a prescribed mesh frequency and what a
-//! board has time for. The rates that follow from it are for reports; the step itself knows only the sub-steps.
+//! How fast a joint must be stepped: sub-steps a tick from its fastest mode, a prescribed mesh frequency, stability and
+//! what a processor has time for. The rates that follow from it are for reports; the step itself knows only the sub-steps.
 
+use core::array;
+
+pub use crate::certificate::Parts;
+use crate::dead_zone::DeadZone;
+use crate::design::cost::Cost;
 use crate::design::modes;
+use crate::design::processor::Processor;
+use crate::design::stability::{self, MARGIN};
 use crate::error::DesignError;
 use crate::joint::{Excitation, JointParameters};
 use crate::mesh::MESH_KINDS;
@@ -14,27 +21,20 @@ const GOOD_PHASE: f64 = 0.4;
 const USUAL_SUBSTEPS: f64 = 4.0;
 /// Phase of a prescribed mesh frequency that a sub-step may have: some twenty evaluations a mesh period [rad].
 const EXCITATION_PHASE: f64 = 0.3;
-/// Phase of the fastest mode that a sub-step may have at most; the Runge-Kutta method is stable to 2.8 [rad].
-const LARGEST_PHASE: f64 = 2.4;
 /// Beyond this phase of the fastest mode in a sub-step, Runge-Kutta steps damp it away and bounces of light planets with
 /// it; leapfrog sub-steps of at most the second take over [rad].
 const DAMPED_PHASE: f64 = 1.0;
 const LEAP_PHASE: f64 = 1.1;
 /// Most sub-steps a tick.
-const MOST_SUBSTEPS: f64 = 16.0;
-
-/// Instructions a second that a board may spend on the step: a Cortex-M4F at 168 MHz and 1.4 cycles an instruction.
-const BOARD_INSTRUCTIONS: f64 = 120e6;
-/// Instructions of a tick beside its sub-steps, and of a sub-step for each planet when some of its meshes cross;
-/// counted on an emulated Cortex-M4F.
-const TICK_INSTRUCTIONS: f64 = 1000.0;
-const SUBSTEP_INSTRUCTIONS: f64 = 700.0;
+const MOST_SUBSTEPS: usize = 16;
 
 /// How much work a tick may take.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Effort {
-    /// What a 168 MHz Cortex-M4F has time for, as long as that is stable.
+    /// What an STM32F405 has time for, as long as that is stable.
     Board,
+    /// The same for another processor.
+    Within(Processor),
     /// What accuracy asks for.
     Accurate,
     /// So many sub-steps a tick, for comparisons; whether that is stable is the caller's concern.
@@ -48,7 +48,13 @@ pub struct Pace {
     fastest: f64,
     /// Prescribed mesh frequency; zero in `angle` mode, where the joint's speed keeps it far below the modes [rad/s].
     mesh_frequency: f64,
-    planets: f64,
+    cost: Cost,
+    /// Leaps know the sharp dead zone alone.
+    sharp: bool,
+    /// Phase of the fastest mode that a sub-step may have, by the number of sub-steps of a tick from 1 on [rad].
+    largest_phases: [f64; MOST_SUBSTEPS],
+    /// The same of a leap [rad].
+    largest_leap: f64,
 }
 
 impl Pace {
@@ -56,13 +62,21 @@ impl Pace {
     pub fn new(parameters: &JointParameters) -> Self {
         let fastest = modes::natural_frequencies(parameters).last().copied().unwrap_or(0.0);
         let swings = MESH_KINDS.map(|kind| parameters.mesh(kind).stiffness_wave.swing());
+        let fastest = fastest * libm::sqrt(1.0 + swings[0].max(swings[1]));
+        // Of a mode that the meshes carry: C = (c / k) K gives it the damping ratio omega c / 2 k.
+        let relaxations =
+            MESH_KINDS.map(|kind| parameters.damping_coefficient(kind) / parameters.mesh(kind).mean_stiffness);
+        let damping_ratio = 0.5 * fastest * relaxations[0].max(relaxations[1]);
         Self {
-            fastest: fastest * libm::sqrt(1.0 + swings[0].max(swings[1])),
+            fastest,
             mesh_frequency: match parameters.excitation {
                 Excitation::Time { mesh_frequency } => mesh_frequency,
                 Excitation::Angle => 0.0,
             },
-            planets: parameters.geometry.planets as f64,
+            cost: Cost::new(parameters),
+            sharp: parameters.dead_zone == DeadZone::Sharp,
+            largest_phases: array::from_fn(|i| stability::largest_phase(damping_ratio, i as u32 + 1)),
+            largest_leap: stability::largest_leap(damping_ratio),
         }
     }
 
@@ -78,41 +92,69 @@ impl Pace {
         let rate = f64::from(tick_rate);
         let accurate = libm::ceil(self.fastest / (rate * GOOD_PHASE))
             .min(USUAL_SUBSTEPS)
-            .max(libm::ceil(self.mesh_frequency / (rate * EXCITATION_PHASE)));
+            .max(libm::ceil(self.mesh_frequency / (rate * EXCITATION_PHASE))) as u32;
+        let within = |processor: Processor| self.cost.affordable(processor.affordable(tick_rate));
         let affordable = match effort {
-            Effort::Accurate | Effort::Substeps(_) => MOST_SUBSTEPS,
-            Effort::Board => {
-                libm::floor((BOARD_INSTRUCTIONS / rate - TICK_INSTRUCTIONS) / (SUBSTEP_INSTRUCTIONS * self.planets))
-            }
+            Effort::Accurate | Effort::Substeps(_) => MOST_SUBSTEPS as u32,
+            Effort::Board => within(Processor::STM32F405),
+            Effort::Within(processor) => within(processor),
         };
-        let stable = libm::ceil(self.fastest / (rate * LARGEST_PHASE));
-        Ok(accurate.min(affordable).min(MOST_SUBSTEPS).max(stable).max(1.0) as u32)
+        let wanted = accurate.min(affordable).clamp(1, MOST_SUBSTEPS as u32);
+        let stable = |substeps: &u32| {
+            self.phase(tick_rate, *substeps) <= MARGIN * self.largest_phase(Parts::Substeps(*substeps))
+        };
+        // Limits differ by the number of sub-steps, so the next may be stable where one more is not.
+        Ok((wanted..=MOST_SUBSTEPS as u32).find(stable).or((1..wanted).rev().find(stable)).unwrap_or(wanted))
     }
 
-    /// Leapfrog sub-steps of a tick; none where the usual sub-steps resolve the fastest mode, or where
-    /// time does not matter.
-    pub fn leaps(&self, tick_rate: u32, substeps: u32, effort: Effort) -> u32 {
-        if effort == Effort::Board && self.phase(tick_rate, substeps) > DAMPED_PHASE {
-            libm::ceil(self.phase(tick_rate, 1) / LEAP_PHASE) as u32
-        } else {
-            0
-        }
+    /// Parts of a tick where contacts change. Leaps take over where sub-steps would damp the fastest mode away, if the
+    /// processor has time for them.
+    pub fn parts(&self, tick_rate: u32, effort: Effort) -> Result<Parts, DesignError> {
+        let substeps = self.substeps(tick_rate, effort)?;
+        let processor = match effort {
+            Effort::Board => Processor::STM32F405,
+            Effort::Within(processor) => processor,
+            Effort::Accurate | Effort::Substeps(_) => return Ok(Parts::Substeps(substeps)),
+        };
+        let leaps = Parts::Leaps(libm::ceil(self.phase(tick_rate, 1) / LEAP_PHASE) as u32);
+        let resolved = self.phase(tick_rate, substeps) <= DAMPED_PHASE;
+        let affordable = self.cost.all_crossing(leaps) <= processor.affordable(tick_rate);
+        Ok(if self.sharp && !resolved && affordable { leaps } else { Parts::Substeps(substeps) })
     }
 
     /// Lowest tick rate that is accepted [Hz].
     pub fn lowest_rate(&self, effort: Effort) -> u32 {
-        let stable = self.fastest / LARGEST_PHASE;
+        let reach = (1..).zip(self.largest_phases).map(|(substeps, largest)| f64::from(substeps) * MARGIN * largest);
+        let stable = self.fastest / reach.fold(0.0, f64::max);
         let wanted = match effort {
-            Effort::Board | Effort::Substeps(_) => stable,
-            Effort::Accurate => stable.max(self.mesh_frequency / EXCITATION_PHASE),
+            Effort::Board | Effort::Within(_) | Effort::Substeps(_) => stable,
+            Effort::Accurate => stable.max(self.mesh_frequency / (EXCITATION_PHASE * MOST_SUBSTEPS as f64)),
         };
-        libm::ceil(wanted / MOST_SUBSTEPS).max(1.0) as u32
+        libm::ceil(wanted).max(1.0) as u32
     }
 
     /// Lowest tick rate at which the usual number of sub-steps resolves everything [Hz].
     pub fn recommended_rate(&self) -> u32 {
         let wanted = (self.fastest / GOOD_PHASE).max(self.mesh_frequency / EXCITATION_PHASE);
         libm::ceil(wanted / USUAL_SUBSTEPS).max(1.0) as u32
+    }
+
+    /// Phase of the fastest mode in a part from which on a tick of such parts is unstable [rad].
+    pub fn largest_phase(&self, parts: Parts) -> f64 {
+        match parts {
+            Parts::Substeps(substeps) => self.largest_phases[(substeps.max(1) as usize - 1).min(MOST_SUBSTEPS - 1)],
+            Parts::Leaps(_) => self.largest_leap,
+        }
+    }
+
+    /// Instructions of a tick.
+    pub fn cost(&self) -> &Cost {
+        &self.cost
+    }
+
+    /// Prescribed mesh frequency; zero in `angle` mode [rad/s].
+    pub(super) fn mesh_frequency(&self) -> f64 {
+        self.mesh_frequency
     }
 
     /// Phase of the fastest mode in a sub-step [rad].

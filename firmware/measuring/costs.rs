@@ -1,0 +1,79 @@
+#![cfg_attr(target_os = "none", no_std, no_main)]
+//! Counts the instructions of two steps whose course is known, for every joint of this image: contact holds, and all
+//! teeth are apart. What they should take is the host's business.
+
+#[cfg(target_os = "none")]
+mod measurement {
+    use core::hint::black_box;
+
+    use cortex_m_rt::entry;
+    use firmware::measuring::{self, InstructionCounter, Visitor, measured};
+    use model_core::realtime::{Model, Relative, State, Torques};
+    use model_core::tables::Tables;
+
+    /// Deflection of every mesh by its load [b_c]: more than backlashes differ by.
+    const DEFLECTION: f32 = 20.0;
+    const NONE: Torques<f32> = Torques { drive: 0.0, load: 0.0 };
+
+    struct Costs {
+        counter: InstructionCounter,
+    }
+
+    #[inline(never)]
+    fn step<const N: usize>(model: &mut Model<'_, f32, N>, torques: Torques<f32>) {
+        model.step(torques);
+    }
+
+    impl Visitor for Costs {
+        fn joint<const N: usize>(&mut self, name: &str, tables: &'static Tables<f32, N>) {
+            let holding = self.one(tables, loaded(tables));
+            let apart = self.one(tables, (State::REST, NONE));
+            measuring::say(format_args!("{name};{};{};{holding};{apart}", tables.substeps, tables.light.substeps));
+        }
+    }
+
+    impl Costs {
+        fn one<const N: usize>(
+            &self,
+            tables: &'static Tables<f32, N>,
+            (state, torques): (State<f32, N>, Torques<f32>),
+        ) -> u32 {
+            let mut model = Model::new(tables);
+            model.set_state(state);
+            self.counter.count(|| step(black_box(&mut model), black_box(torques)))
+        }
+    }
+
+    /// In balance under a load, or nearly so where backlashes differ.
+    fn loaded<const N: usize>(tables: &Tables<f32, N>) -> (State<f32, N>, Torques<f32>) {
+        let [sun, ring] = &tables.meshes;
+        let (units, rigid, mobility) = (&tables.units, &tables.rigid, &tables.mobility);
+        let force = tables.springs[0].stiffness * DEFLECTION;
+        let drive = N as f32 * mobility.sun * force / units.drive;
+        let load = drive * rigid.drive / rigid.load;
+        let wind_up = match mobility.wind_up > 0.0 {
+            true => units.load_on_link * load / (mobility.link * mobility.wind_up_stiffness),
+            false => 0.0,
+        };
+        let planets = core::array::from_fn(|i| sun[i].half_backlash + DEFLECTION);
+        let far = ring
+            .iter()
+            .zip(planets)
+            .fold(0.0, |far: f32, (mesh, planet): (_, f32)| far.max(planet + mesh.half_backlash));
+        let gap = far + force / tables.springs[1].stiffness;
+        (State { position: Relative { planets, gap, wind_up }, ..State::REST }, Torques { drive, load })
+    }
+
+    #[entry]
+    fn main() -> ! {
+        // Alone in this image, and called once.
+        if let Some(core) = cortex_m::Peripherals::take() {
+            measured::visit(&mut Costs { counter: InstructionCounter::start(core.SYST) });
+        }
+        measuring::finish()
+    }
+}
+
+/// There is nothing to run on a host.
+#[cfg(not(target_os = "none"))]
+fn main() {}

@@ -1,0 +1,164 @@
+//! Instructions of a tick, predicted from what it does. Every constant was counted on an emulated Cortex-M4F (QEMU,
+//! rustc 1.96, opt-level 3, fat LTO) over 72 sets of tables (3, 4 and 5 planets, both laws, with compliance and without, 1, 2 and 5
+//! harmonics, 1, 2 and 4 sub-steps); caches and pipelines are the processor's
+//! business.
+//!
+//! A tick by the exponential flow costs the same each time. One in sub-steps costs a fixed part (start, first look at
+//! the accelerations, state taken over), each sub-step, each correction and each mesh that crosses; before it an
+//! exponential tick may have been given up half-way. More than one harmonic of the stiffness wave makes every look at
+//! a mesh dearer.
+
+use crate::certificate::Parts;
+use crate::joint::{JointParameters, MIN_PLANETS};
+use crate::mesh::{DampingLaw, MESH_KINDS};
+
+/// Instructions with one number of planets, one harmonic, law `paper`, without compliance.
+struct Counted {
+    hold: f64,
+    /// More with compliance.
+    hold_compliant: f64,
+    given_up: f64,
+    fixed: f64,
+    substep: f64,
+    correction: f64,
+}
+
+/// Leaps of light planets with one number of planets; compliance and overtones change them less than counts differ.
+#[derive(Debug, PartialEq)]
+struct Leaping {
+    /// Every tooth presses.
+    hold: f64,
+    /// More if that is given up in the middle of the tick and not at its start.
+    given_up: f64,
+    /// Law `paper`, `contact`.
+    fixed: [f64; 2],
+    /// All teeth apart, law `paper`, `contact`.
+    leap: [f64; 2],
+}
+
+/// 3, 4 and 5 planets, each counted to the instruction at 3, 5 and 9 leaps.
+const LEAPING: [Leaping; 3] = [
+    Leaping { hold: 1551.0, given_up: 343.0, fixed: [1096.0, 1110.0], leap: [140.0, 132.0] },
+    Leaping { hold: 1925.0, given_up: 444.0, fixed: [1217.0, 1280.0], leap: [275.0, 173.0] },
+    Leaping { hold: 2240.0, given_up: 545.0, fixed: [1599.0, 1482.0], leap: [350.0, 231.0] },
+];
+/// More for a mesh that touches its flank in a leap: of 3,000 random states none took more than 40 on the average.
+const TOUCH: f64 = 45.0;
+
+/// 3, 4 and 5 planets. Counted to the instruction, but for `given_up`: what a tick that is forced open in its first
+/// half takes beyond the rest (three planets), in proportion to `hold`.
+const COUNTED: [Counted; 3] = [
+    Counted { hold: 2391.0, hold_compliant: 140.0, given_up: 620.0, fixed: 1513.0, substep: 663.0, correction: 560.0 },
+    Counted { hold: 2878.0, hold_compliant: 232.0, given_up: 740.0, fixed: 1795.0, substep: 837.0, correction: 614.0 },
+    Counted { hold: 3423.0, hold_compliant: 145.0, given_up: 860.0, fixed: 2169.0, substep: 1000.0, correction: 753.0 },
+];
+/// One mesh of a correction that parts or meets.
+const CROSSING: f64 = 259.0;
+/// One that leaps from flank to flank, or whose numbers are none: more than that, found by the search for the worst tick.
+const LEAP: f64 = 45.0;
+/// More under the law `contact`: a mesh that crosses, a planet of an exponential tick, a tick in sub-steps.
+const CONTACT: [f64; 3] = [7.0, 12.0, 10.0];
+/// More with compliance: a sub-step.
+const COMPLIANCE: f64 = 41.0;
+/// More with overtones: a planet in each evaluation, and again for each harmonic after the first.
+const OVERTONES: f64 = 126.0;
+const OVERTONE: f64 = 48.0;
+/// The same for a mesh that crosses.
+const CROSSING_OVERTONES: f64 = 71.0;
+const CROSSING_OVERTONE: f64 = 36.0;
+/// Evaluations in an exponential tick (some with rates), in one given up half-way, in the fixed part, in a sub-step.
+const EVALUATIONS: [f64; 4] = [3.5, 1.5, 2.0, 2.0];
+
+/// Instructions of a joint's tick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cost {
+    hold: f64,
+    given_up: f64,
+    fixed: f64,
+    substep: f64,
+    correction: f64,
+    crossing: f64,
+    meshes: f64,
+    leaping: &'static Leaping,
+    /// 0 for law `paper`, 1 for `contact`.
+    law: usize,
+}
+
+impl Cost {
+    /// Of a joint.
+    pub fn new(parameters: &JointParameters) -> Self {
+        let planets = parameters.geometry.planets;
+        let row = planets.saturating_sub(MIN_PLANETS).min(COUNTED.len() - 1);
+        let counted = &COUNTED[row];
+        let order = MESH_KINDS.map(|kind| parameters.mesh(kind).stiffness_wave.order());
+        let planets = planets as f64;
+        let beyond_first = (order[0].max(order[1]).max(1) - 1) as f64;
+        let with = |yes: bool, more: f64| if yes { more } else { 0.0 };
+        let contact = CONTACT.map(|more| with(parameters.damping_law == DampingLaw::Contact, more));
+        let compliant = |more: f64| with(parameters.compliance.is_some(), more);
+        let overtones = planets * with(beyond_first > 0.0, OVERTONES + OVERTONE * beyond_first);
+        let evaluations = EVALUATIONS.map(|count| count * overtones);
+        Self {
+            hold: counted.hold + planets * contact[1] + compliant(counted.hold_compliant) + evaluations[0],
+            given_up: counted.given_up + evaluations[1],
+            fixed: counted.fixed + contact[2] + evaluations[2],
+            substep: counted.substep + compliant(COMPLIANCE) + evaluations[3],
+            correction: counted.correction,
+            crossing: CROSSING
+                + contact[0]
+                + with(beyond_first > 0.0, CROSSING_OVERTONES + CROSSING_OVERTONE * beyond_first),
+            meshes: 2.0 * planets,
+            leaping: &LEAPING[row],
+            law: usize::from(parameters.damping_law == DampingLaw::Contact),
+        }
+    }
+
+    /// While contact holds.
+    pub fn holding(&self, parts: Parts) -> f64 {
+        match parts {
+            Parts::Substeps(_) => self.hold,
+            Parts::Leaps(_) => self.leaping.hold,
+        }
+    }
+
+    /// In parts, none of which sees a crossing.
+    pub fn losing(&self, parts: Parts) -> f64 {
+        match parts {
+            Parts::Substeps(substeps) => self.fixed + f64::from(substeps) * self.substep,
+            Parts::Leaps(leaps) => self.leaping.fixed[self.law] + f64::from(leaps) * self.leaping.leap[self.law],
+        }
+    }
+
+    /// An exponential tick is given up, and every mesh crosses in one of the parts; or late in an exponential tick.
+    pub fn all_crossing(&self, parts: Parts) -> f64 {
+        match parts {
+            Parts::Substeps(_) => {
+                (self.given_up + self.losing(parts) + self.all()).max(self.hold + 0.5 * self.substep + self.all())
+            }
+            Parts::Leaps(_) => self.leaping.given_up + self.losing(parts) + self.meshes * TOUCH,
+        }
+    }
+
+    /// Every mesh crosses in every part, from flank to flank: more than any state of the search takes.
+    pub fn bound(&self, parts: Parts) -> f64 {
+        let count = f64::from(parts.count().max(1));
+        let again = match parts {
+            Parts::Substeps(_) => (count - 1.0) * self.all() + count * self.meshes * LEAP,
+            Parts::Leaps(_) => (count - 1.0) * self.meshes * TOUCH,
+        };
+        self.all_crossing(parts) + again
+    }
+
+    /// The most sub-steps with which `all_crossing` stays within so many instructions; zero if not even one does.
+    pub fn affordable(&self, instructions: f64) -> u32 {
+        if self.all_crossing(Parts::Substeps(1)) > instructions {
+            return 0;
+        }
+        let rest = instructions - self.given_up - self.fixed - self.all();
+        libm::floor(rest / self.substep).max(1.0) as u32
+    }
+
+    fn all(&self) -> f64 {
+        self.correction + self.meshes * self.crossing
+    }
+}

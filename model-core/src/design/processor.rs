@@ -1,0 +1,57 @@
+//! What a processor gives the step: clock, cycles an instruction, waiting for flash, its part of the period. None of
+//! the cycles was measured on silicon; what a board does beside the step is its own business.
+
+/// A processor and what it leaves to the step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Processor {
+    /// Core clock [Hz].
+    pub clock: u32,
+    /// Cycles an instruction of the step, from memory that never waits.
+    pub cycles_per_instruction: f64,
+    /// Cycles that an instruction waits for flash on the average, beyond that.
+    pub flash_wait: f64,
+    /// Part of the period that a step may take at worst; the rest is the tick handler's own work.
+    pub share: f64,
+}
+
+impl Processor {
+    /// STM32F405: Cortex-M4F at 168 MHz. 1.4 cycles: the timing tables of the core's manual, weighted by a trace of
+    /// the step. No waiting: its data sheet promises that of the flash accelerator; the trace says nothing of it.
+    pub const STM32F405: Self =
+        Self { clock: 168_000_000, cycles_per_instruction: 1.4, flash_wait: 0.0, share: USUAL_SHARE };
+    /// STM32G474: the same core at 170 MHz. Its flash gives two instructions every five cycles and its accelerator
+    /// holds a quarter of the step, so half a cycle is reckoned for waiting.
+    pub const STM32G474: Self = Self { clock: 170_000_000, flash_wait: 0.5, ..Self::STM32F405 };
+    /// STM32H743: Cortex-M7 at 400 MHz. One cycle: it can issue two instructions at once, but those of the step wait
+    /// for one another. Its instruction cache holds the whole step.
+    pub const STM32H743: Self = Self { clock: 400_000_000, cycles_per_instruction: 1.0, ..Self::STM32F405 };
+
+    /// A board by the name of its firmware's feature.
+    pub fn of_board(name: &str) -> Option<Self> {
+        match name {
+            "stm32f405" => Some(Self::STM32F405),
+            "stm32g474" => Some(Self::STM32G474),
+            "stm32h743" => Some(Self::STM32H743),
+            _ => None,
+        }
+    }
+
+    /// Instructions a second.
+    pub fn instructions_per_second(&self) -> f64 {
+        f64::from(self.clock) / (self.cycles_per_instruction + self.flash_wait)
+    }
+
+    /// Instructions that a step may take at worst.
+    pub fn affordable(&self, tick_rate: u32) -> f64 {
+        self.share * self.instructions_per_second() / f64::from(tick_rate)
+    }
+
+    /// Part of the period that so many instructions take.
+    pub fn part(&self, instructions: f64, tick_rate: u32) -> f64 {
+        instructions * f64::from(tick_rate) / self.instructions_per_second()
+    }
+}
+
+/// The tick handler of the plant's firmware takes some 240 of 6,000 instructions beside the step (emulated
+/// Cortex-M4F, 20 kHz).
+const USUAL_SHARE: f64 = 0.96;

@@ -14,9 +14,17 @@ use crate::realtime::state::Relative;
 use crate::realtime::substep::Course;
 use crate::tables::{Block, Inputs, Transition};
 
-/// One tick with the contact set of its start; `None` if the set does not hold up to the first look. A mesh that opens
-/// after that is a crossing to correct, so that no work is thrown away late. `K` is the number of in-phase coordinates:
-/// 3 with compliance, 2 without.
+/// What became of a tick with the contact set of its start.
+pub enum Held<T, const N: usize> {
+    /// The set held.
+    Whole(Motion<T, N>),
+    /// A mesh opened after the first look: a crossing to correct at the end, so that no work is thrown away late.
+    Late(Motion<T, N>),
+    /// The set does not hold up to the first look.
+    Not,
+}
+
+/// One tick with the contact set of its start. `K` is the number of in-phase coordinates: 3 with compliance, 2 without.
 #[inline(never)]
 pub fn hold<T: Real, const N: usize, const K: usize, const OVERTONES: bool>(
     frozen: &Frozen<T, N, OVERTONES>,
@@ -25,12 +33,12 @@ pub fn hold<T: Real, const N: usize, const K: usize, const OVERTONES: bool>(
     start: &Start<T, N>,
     course: &Course<T, N>,
     motion: &Motion<T, N>,
-) -> Option<Motion<T, N>> {
+) -> Held<T, N> {
     let tables = frozen.tables;
     let flow = &tables.flow;
     let slow = phase.way < flow.longest_way && -phase.way < flow.longest_way;
     if !slow || !start.settled {
-        return None;
+        return Held::Not;
     }
     let laws = &start.laws;
     let (value, rate) = frozen.pseudo_force_at_start(phase, start, course);
@@ -43,7 +51,7 @@ pub fn hold<T: Real, const N: usize, const K: usize, const OVERTONES: bool>(
     let place = modes.place(&flow.early, &torques).with(share, [(first, &value), (second, &rate)]);
     let (early, trespass) = frozen.pseudo_force(laws, &look(flow.looks[0]), &place);
     if trespass > T::ZERO {
-        return None;
+        return Held::Not;
     }
 
     let [first, second, third] = &flow.late_inputs;
@@ -53,27 +61,25 @@ pub fn hold<T: Real, const N: usize, const K: usize, const OVERTONES: bool>(
     let [first, second, third, fourth] = &flow.whole_inputs;
     let forces = [(first, &value), (second, &rate), (third, &early), (fourth, &late)];
     let last = modes.flow(&flow.whole, &torques).with(share, forces).motion();
-    Some(if trespass > T::ZERO { corrected(frozen, laws, &look(T::ONE), phase, &last) } else { last })
+    if trespass > T::ZERO { Held::Late(last) } else { Held::Whole(last) }
 }
 
 /// The end of a tick in whose second half meshes have opened.
 #[inline(never)]
-fn corrected<T: Real, const N: usize, const OVERTONES: bool>(
+pub fn corrected<T: Real, const N: usize, const OVERTONES: bool>(
     frozen: &Frozen<T, N, OVERTONES>,
-    laws: &Laws<T, N>,
-    end: &Beat<T>,
+    laws: &mut Laws<T, N>,
     phase: &MeshPhase<T>,
     motion: &Motion<T, N>,
 ) -> Motion<T, N> {
     let tables = frozen.tables;
     let rate = tables.substep * phase.rate;
-    let beat = Beat::new(end.rotor, rate);
-    let mut laws = *laws;
+    let beat = Beat::new(phase.start.turned(&phase.over(T::ONE)), rate);
     let mut course = Course::of(motion, tables.substep);
     let wind_up = frozen.wind_up_force(course.wind_up.point());
     let mut trespasses = [[T::ZERO; N]; 2];
     let last = frozen.pull(
-        &laws,
+        laws,
         &beat,
         course.gap.point(),
         wind_up,
@@ -81,7 +87,7 @@ fn corrected<T: Real, const N: usize, const OVERTONES: bool>(
         |(kind, i), moment| trespasses[kind][i] = frozen.trespass(&laws[kind][i], (kind, i), moment),
     );
     course.each(&last, |coordinate, last| coordinate.now = last);
-    End { frozen, rate, beat: &beat, trespasses: &trespasses }.correct(&mut laws, &mut course);
+    End { frozen, rate, beat: &beat, trespasses: &trespasses }.correct(laws, &mut course);
     course.motion(tables.substep, tables.stage.rate, motion)
 }
 

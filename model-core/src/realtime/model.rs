@@ -7,7 +7,7 @@ use crate::mesh::{ContactState, DampingLaw};
 use crate::real::Real;
 use crate::realtime::contact::{Drive, contact, spread};
 use crate::realtime::excitation::{Beat, MeshPhase, PerMesh, Rotor, instant, mesh_way};
-use crate::realtime::flow;
+use crate::realtime::flow::{self, Held};
 use crate::realtime::frozen::{Frozen, Start};
 use crate::realtime::light;
 use crate::realtime::paper;
@@ -171,8 +171,10 @@ fn tick<T: Real, const N: usize, const OVERTONES: bool>(
     } else {
         flow::hold::<T, N, 2, OVERTONES>(&frozen, drive, phase, &start, &course, motion)
     };
-    if let Some(end) = held {
-        return end;
+    match held {
+        Held::Whole(end) => return end,
+        Held::Late(end) => return flow::corrected(&frozen, &mut start.laws, phase, &end),
+        Held::Not => {}
     }
     substep::advance(&frozen, phase, &mut start, &mut course);
     course.motion(tables.substep, stage.rate, motion)

@@ -6,7 +6,7 @@ use core::array;
 use crate::mesh::{ContactState, DampingLaw};
 use crate::real::Real;
 use crate::realtime::contact::{Drive, contact, spread};
-use crate::realtime::excitation::{Beat, MeshPhase, PerMesh, Rotor, instant, mesh_way};
+use crate::realtime::excitation::{Beat, MOST_OVERTONES, MeshPhase, PerMesh, Rotor, instant, mesh_way};
 use crate::realtime::flow::{self, Held};
 use crate::realtime::frozen::{Frozen, Start};
 use crate::realtime::light;
@@ -112,9 +112,9 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
             Scheme::Realtime if tables.sharpness > T::ZERO => unfrozen::runge_kutta(tables, &drive, &phase, &motion),
             Scheme::Realtime if tables.light.substeps > 0 => light::tick(tables, &drive, &phase, &motion),
             Scheme::Realtime if tables.excitation.harmonics > 1 => {
-                tick::<T, N, true>(tables, &drive, &phase, &motion, &mut self.start)
+                tick::<T, N, MOST_OVERTONES>(tables, &drive, &phase, &motion, &mut self.start)
             }
-            Scheme::Realtime => tick::<T, N, false>(tables, &drive, &phase, &motion, &mut self.start),
+            Scheme::Realtime => tick::<T, N, 0>(tables, &drive, &phase, &motion, &mut self.start),
         };
         (self.state.position, self.state.rate) = (position, rate);
         self.state.settle();
@@ -126,7 +126,7 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
         let units = &self.tables.units;
         let planets = position.planets.iter().fold(T::ZERO, |sum, planet| sum + *planet);
         let offset = |gains: &[T; 3]| gains[0] * planets + gains[1] * position.gap + gains[2] * position.wind_up;
-        let errors = instant(self.tables, &Beat::new(Rotor::at(self.phase()), T::ZERO)).error;
+        let errors = instant(self.tables, &Beat::<T, 0>::new(Rotor::at(self.phase()), T::ZERO, 1)).error;
         let meshes = spread(position);
         let deflections: PerMesh<T, N> = array::from_fn(|kind| array::from_fn(|i| meshes[kind][i] - errors[kind][i]));
         Outputs {
@@ -155,7 +155,7 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
 
 /// One tick of the sharp dead zone: by exponential while its contact set holds, otherwise in sub-steps. Ripple of one
 /// harmonic has a copy of its own, which need not ask at every mesh whether there are more.
-fn tick<T: Real, const N: usize, const OVERTONES: bool>(
+fn tick<T: Real, const N: usize, const OVERTONES: usize>(
     tables: &Tables<T, N>,
     drive: &Drive<T>,
     phase: &MeshPhase<T>,
@@ -171,7 +171,7 @@ fn tick<T: Real, const N: usize, const OVERTONES: bool>(
         adheres: T::ONE - pushes_only,
     };
     let mut course = Course::of(motion, tables.substep);
-    frozen.start(&Beat::new(phase.start, tables.substep * phase.rate), &course, start);
+    frozen.start(&Beat::new(phase.start, tables.substep * phase.rate, tables.excitation.harmonics), &course, start);
     let held = if tables.mobility.wind_up > T::ZERO {
         flow::hold::<T, N, 3, OVERTONES>(&frozen, drive, phase, start, &course, motion)
     } else {

@@ -8,7 +8,7 @@
 
 use crate::mesh::DampingLaw;
 use crate::real::Real;
-use crate::realtime::contact::{Drive, Law, Laws, Net};
+use crate::realtime::contact::{Law, Laws, Net};
 use crate::realtime::excitation::{Beat, PerMesh};
 use crate::realtime::frozen::{Frozen, Moment};
 use crate::realtime::substep::Course;
@@ -73,8 +73,7 @@ impl<T: Real, const N: usize, const OVERTONES: usize> End<'_, T, N, OVERTONES> {
             }
         }
         let mobility = &tables.stage.mobility;
-        let respond = |net: &Net<T, N>, wind_up: T| net.accelerations(mobility, &Drive::NONE, wind_up);
-        let (rate, position) = (respond(&impulse, T::ZERO), respond(&shift, T::ZERO));
+        let (rate, position) = (impulse.response(mobility, T::ZERO), shift.response(mobility, T::ZERO));
         // What the corrections bend: it acts from now on, and has acted since the crossing, where damping saw the
         // integral of the rate, which is the position, and springs about s/4 of the position: it grew with the third
         // power of time. Ripple is left out of it.
@@ -90,14 +89,14 @@ impl<T: Real, const N: usize, const OVERTONES: usize> End<'_, T, N, OVERTONES> {
             }
         }
         let wind_up = mobility.wind_up_stiffness * position.wind_up;
-        let jump = respond(&jump, wind_up + mobility.wind_up_damping * rate.wind_up);
+        let jump = jump.response(mobility, wind_up + mobility.wind_up_damping * rate.wind_up);
         let wind_up = quarter * wind_up + mobility.wind_up_damping * position.wind_up;
-        let later = respond(&later, T::SIX * wind_up);
+        let later = later.response(mobility, T::SIX * wind_up);
         course.each(&position, |coordinate, position| coordinate.position += position);
         course.each(&rate, |coordinate, rate| coordinate.rate += rate);
         course.each(&later, |coordinate, later| coordinate.rate += later);
         course.each(&jump, |coordinate, jump| coordinate.now += jump);
-        course.each(&respond(&past, T::ZERO), |coordinate, past| coordinate.before += past);
+        course.each(&past.response(mobility, T::ZERO), |coordinate, past| coordinate.before += past);
     }
 }
 

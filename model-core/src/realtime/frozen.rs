@@ -46,6 +46,18 @@ impl<T: Real, const N: usize> Start<T, N> {
     pub const EMPTY: Self = Self { laws: [[Law::ZERO; N]; 2], meshes: [[Moment::ZERO; N]; 2], settled: false };
 }
 
+impl<T: Real, const N: usize> Start<T, N> {
+    /// Whether any mesh is under the law of the gap.
+    #[inline(always)]
+    pub fn is_open(&self) -> bool {
+        let mut open = T::ZERO;
+        for law in self.laws.iter().flatten() {
+            open += law.open;
+        }
+        open > T::ZERO
+    }
+}
+
 /// What does not change over a tick.
 #[derive(Clone, Copy)]
 pub struct Frozen<'a, T: Real, const N: usize, const OVERTONES: usize> {

@@ -6,11 +6,11 @@
 //! so its first three integrals over [t - s, t] are closed forms; they correct rate, position and the integral of the
 //! position. These corrections deform the other meshes too: one linear pass adds the forces that this causes.
 
-use crate::mesh::DampingLaw;
 use crate::real::Real;
 use crate::realtime::contact::{Law, Laws, Net};
 use crate::realtime::excitation::{Beat, PerMesh};
 use crate::realtime::frozen::{Frozen, Moment};
+use crate::realtime::planets::each_planet;
 use crate::realtime::substep::Course;
 
 /// The end of a step that was taken with one contact set throughout.
@@ -31,47 +31,16 @@ impl<T: Real, const N: usize, const OVERTONES: usize> End<'_, T, N, OVERTONES> {
     #[inline(never)]
     pub fn correct(&self, laws: &mut Laws<T, N>, course: &mut Course<T, N>) {
         let tables = self.frozen.tables;
-        // e'' = -rate^2 e for the sine of eq. 11.
-        let square = self.rate * self.rate;
-        let pushes_only = tables.damping_law == DampingLaw::Contact;
-        let (mut impulse, mut shift, mut jump, mut past) = (Net::NONE, Net::NONE, Net::NONE, Net::NONE);
-        let mut longest = T::ZERO;
-        for kind in 0..2 {
-            for i in 0..N {
-                let trespass = self.trespasses[kind][i];
-                if trespass <= T::ZERO {
-                    continue;
-                }
-                let planet = course.planets[i];
-                let (mut at, mut acceleration) = (planet.point(), planet.now);
-                if kind == 1 {
-                    (at, acceleration) = (course.gap.point().less(at), course.gap.now - acceleration);
-                }
-                let was = laws[kind][i];
-                let Moment { overlap: deflection, speed, stiffness, error, .. } =
-                    self.frozen.mesh(&Law::OPEN, (kind, i), self.beat, at);
-                let is = Law::of(tables, (kind, i), deflection, speed, stiffness);
-                laws[kind][i] = is;
-                // Without backlash both flanks are one.
-                if was.closed == is.closed && was.offset == is.offset {
-                    continue;
-                }
-                let harmonics = tables.excitation.harmonics;
-                let stiffness_rate = tables.meshes[kind][i].stiffness_rate(self.beat, harmonics);
-                let acceleration = T::SIX * acceleration + square * error;
-                // Damping that acts whatever the contact is not missed.
-                let base = if pushes_only { T::ZERO } else { tables.stage.damping[kind] };
-                let mesh = Crossing { deflection, speed, acceleration, stiffness, stiffness_rate, base };
-                let missed = mesh.missed(&was, &is);
-                impulse.add_one((kind, i), missed.impulse);
-                shift.add_one((kind, i), missed.shift);
-                jump.add_one((kind, i), missed.path.value);
-                past.add_one((kind, i), missed.path.at(T::HALF));
-                if missed.since > longest {
-                    longest = missed.since;
-                }
+        let mut missed = Sums::NONE;
+        each_planet!(N, i => {
+            if self.trespasses[0][i] > T::ZERO {
+                self.cross((0, i), laws, course, &mut missed);
             }
-        }
+            if self.trespasses[1][i] > T::ZERO {
+                self.cross((1, i), laws, course, &mut missed);
+            }
+        });
+        let Sums { impulse, shift, mut jump, past, longest } = missed;
         let mobility = &tables.stage.mobility;
         let (rate, position) = (impulse.response(mobility, T::ZERO), shift.response(mobility, T::ZERO));
         // What the corrections bend: it acts from now on, and has acted since the crossing, where damping saw the
@@ -98,6 +67,57 @@ impl<T: Real, const N: usize, const OVERTONES: usize> End<'_, T, N, OVERTONES> {
         course.each(&jump, |coordinate, jump| coordinate.now += jump);
         course.each(&past.response(mobility, T::ZERO), |coordinate, past| coordinate.before += past);
     }
+
+    /// Puts one mesh under the law that holds, and adds what the law before it missed.
+    #[inline(never)]
+    fn cross(&self, (kind, i): (usize, usize), laws: &mut Laws<T, N>, course: &Course<T, N>, sums: &mut Sums<T, N>) {
+        let tables = self.frozen.tables;
+        let planet = course.planets[i];
+        let (mut at, mut acceleration) = (planet.point(), planet.now);
+        if kind == 1 {
+            (at, acceleration) = (course.gap.point().less(at), course.gap.now - acceleration);
+        }
+        let was = laws[kind][i];
+        let Moment { overlap: deflection, speed, stiffness, error, .. } =
+            self.frozen.mesh(&Law::OPEN, (kind, i), self.beat, at);
+        let is = Law::of(tables, (kind, i), deflection, speed, stiffness);
+        laws[kind][i] = is;
+        // Without backlash both flanks are one.
+        if was.closed == is.closed && was.offset == is.offset {
+            return;
+        }
+        let stiffness_rate = tables.meshes[kind][i].stiffness_rate(self.beat, tables.excitation.harmonics);
+        // e'' = -rate^2 e for the sine of eq. 11.
+        let acceleration = T::SIX * acceleration + self.rate * self.rate * error;
+        // Damping that acts whatever the contact is not missed.
+        let base = self.frozen.adheres * tables.stage.damping[kind];
+        let mesh = Crossing { deflection, speed, acceleration, stiffness, stiffness_rate, base };
+        let missed = mesh.missed(&was, &is);
+        sums.impulse.add_one((kind, i), missed.impulse);
+        sums.shift.add_one((kind, i), missed.shift);
+        sums.jump.add_one((kind, i), missed.path.value);
+        sums.past.add_one((kind, i), missed.path.at(T::HALF));
+        if missed.since > sums.longest {
+            sums.longest = missed.since;
+        }
+    }
+}
+
+/// What frozen laws missed, over all meshes.
+struct Sums<T, const N: usize> {
+    impulse: Net<T, N>,
+    shift: Net<T, N>,
+    /// Forces at the end.
+    jump: Net<T, N>,
+    /// The same half a sub-step before, along the path that was taken.
+    past: Net<T, N>,
+    /// How long ago the first crossing was.
+    longest: T,
+}
+
+impl<T: Real, const N: usize> Sums<T, N> {
+    const NONE: Self =
+        Self { impulse: Net::NONE, shift: Net::NONE, jump: Net::NONE, past: Net::NONE, longest: T::ZERO };
 }
 
 /// One mesh at the end of a sub-step, on the path that the frozen laws gave.
@@ -131,6 +151,7 @@ struct Path<T> {
 }
 
 impl<T: Real> Crossing<T> {
+    #[inline(always)]
     fn missed(&self, before: &Law<T>, after: &Law<T>) -> Missed<T> {
         let (was_closed, is_closed) = (before.closed > T::ZERO, after.closed > T::ZERO);
         let mut missed = Missed {

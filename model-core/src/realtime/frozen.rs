@@ -50,10 +50,11 @@ impl<T: Real, const N: usize> Start<T, N> {
     /// Whether any mesh is under the law of the gap.
     #[inline(always)]
     pub fn is_open(&self) -> bool {
+        let [sun, ring] = &self.laws;
         let mut open = T::ZERO;
-        for law in self.laws.iter().flatten() {
-            open += law.open;
-        }
+        each_planet!(N, i => {
+            open += sun[i].open + ring[i].open;
+        });
         open > T::ZERO
     }
 }

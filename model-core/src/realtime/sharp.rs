@@ -26,8 +26,7 @@ pub struct Sharp<T, const N: usize> {
 
 impl<T: Real, const N: usize> Sharp<T, N> {
     /// Nothing is known.
-    pub const UNKNOWN: Self =
-        Self { start: Start::EMPTY, course: Course::EMPTY, drive: Drive::NONE, goes_on: false };
+    pub const UNKNOWN: Self = Self { start: Start::EMPTY, course: Course::EMPTY, drive: Drive::NONE, goes_on: false };
 
     /// The motion was changed from outside.
     pub fn forget(&mut self) {

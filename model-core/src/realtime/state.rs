@@ -40,16 +40,7 @@ impl<T: Real, const N: usize> Relative<T, N> {
     /// whatever is not finite in one form.
     #[inline]
     fn settled(&self) -> Self {
-        let settle = |value: T| {
-            if value >= T::LEAST || value <= -T::LEAST {
-                if value.is_finite() { value } else { T::NAN }
-            } else if value < T::LEAST {
-                T::ZERO
-            } else {
-                T::NAN
-            }
-        };
-        Self { planets: self.planets.map(settle), gap: settle(self.gap), wind_up: settle(self.wind_up) }
+        Self { planets: self.planets.map(T::settled), gap: self.gap.settled(), wind_up: self.wind_up.settled() }
     }
 
     fn is_finite(&self) -> bool {

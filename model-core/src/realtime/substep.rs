@@ -89,8 +89,7 @@ pub fn begin<T: Real, const N: usize, const OVERTONES: usize>(
     let rotor = phase.start.turned(&phase.over(tables.half_part));
     let middle = Beat::new(rotor, tables.substep * phase.rate, tables.excitation.harmonics);
     let wind_up = frozen.wind_up_force(course.wind_up.point());
-    let now =
-        Net::of(&start.meshes, |mesh| mesh.force).accelerations(&tables.stage.mobility, &frozen.drive, wind_up);
+    let now = Net::of(&start.meshes, |mesh| mesh.force).accelerations(&tables.stage.mobility, &frozen.drive, wind_up);
     course.each(&now, |coordinate, now| (coordinate.now, coordinate.before) = (now, now));
     let wind_up = frozen.wind_up_force(course.wind_up.middle());
     let gap = course.gap.middle();

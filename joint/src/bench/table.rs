@@ -7,6 +7,7 @@ use contest::method::Method;
 use contest::run::AS_DESIGNED;
 
 use super::Figures;
+use super::in_a_sample::{ASKED, Best, INSTRUCTIONS, InASample, SAMPLE_RATE};
 use super::lineup::{CaseFigures, Entry, Mark};
 use super::verdicts::{AtError, CLOCK, CYCLES, InBudget, LEVELS, front};
 
@@ -51,23 +52,83 @@ fn origin(figures: &Figures) -> String {
 fn case_tables(figures: &Figures, case: &CaseFigures, detail: Detail) -> String {
     let mut text = format!(
         "\n### Case {}: {}\n\nError: {}; worst of {} phases, {:.4} s. A start moved by a millionth of b_c moves the \
-         reference itself by {}.\n\n",
+         reference itself by {}.{}\n\n",
         case.key,
         case.title,
         case.measure,
         case.phases,
         case.duration_s,
-        scientific(Some(case.sensitivity))
+        scientific(Some(case.sensitivity)),
+        windows(case)
     );
     if detail == Detail::Steps {
         text += &steps(figures, case);
     }
+    text += &in_a_sample(figures, case);
     let reached: Vec<&AtError> = figures.at_equal_error.iter().filter(|at| at.case == case.key).collect();
     if reached.iter().any(|at| at.cost.is_some()) {
         text += "\nInstructions for a second of the joint at equal error, and over those of this step:\n\n";
         text += &equal(&reached, |cost| format!("{:.1} M", cost / 1e6));
     }
     text
+}
+
+/// What windows there are, as a sentence after another.
+pub fn windows(case: &CaseFigures) -> String {
+    if case.windows == 1 {
+        return String::new();
+    }
+    format!(
+        " So the motion is judged in {} windows: wherever torques jump, every method is put back into the reference's \
+         state.",
+        case.windows
+    )
+}
+
+/// Output angle and peak force of every method at the same cost.
+fn in_a_sample(figures: &Figures, case: &CaseFigures) -> String {
+    let found: Vec<&InASample> = figures.in_a_sample.iter().filter(|one| one.case == case.key).collect();
+    if found.is_empty() {
+        return String::new();
+    }
+    let none = || "-".to_owned();
+    let row = |one: &&InASample| {
+        let of = |cell: &dyn Fn(&Best) -> String| one.best.as_ref().map_or_else(none, cell);
+        vec![
+            one.name.to_owned(),
+            one.best.as_ref().map_or_else(
+                || "none follows".into(),
+                |best| best.steps.map_or_else(|| "as designed".into(), |steps| steps.to_string()),
+            ),
+            of(&|best| scientific(Some(best.link_rms))),
+            of(&|best| scientific(Some(best.link_worst))),
+            of(&|best| format!("{:.0} %", 100.0 * best.peak_force)),
+            of(&|best| format!("{:.0}", best.instructions)),
+            of(&|best| best.instructions_most.to_string()),
+            of(&|best| if best.does() { "yes" } else { "no" }.into()),
+            one.at_equal_error.map_or_else(|| "not reached".into(), |cost| format!("{cost:.0}")),
+        ]
+    };
+    let heads = [
+        "method",
+        "steps",
+        "link RMS",
+        "link worst",
+        "peak force",
+        "instr/sample",
+        "worst",
+        "all kept",
+        "at equal RMS",
+    ];
+    let [rms, worst, peak] = ASKED;
+    format!(
+        "\nEvery method at its best in at most {INSTRUCTIONS:.0} instructions a sample, on average, at {} kHz. Asked for: link \
+         angle within {rms:.0e} RMS and {worst:.0e} worst of the lost motion, peak mesh force of every part of the motion within \
+         {:.0} %. Last column: instructions a sample that bring a method down to the RMS error of this step.\n\n{}",
+        SAMPLE_RATE / 1000,
+        100.0 * peak,
+        table(&heads, &found.iter().map(row).collect::<Vec<_>>())
+    )
 }
 
 /// Every method at every step.

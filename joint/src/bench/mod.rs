@@ -2,6 +2,7 @@
 //! runs the fixed-step methods, by `race` on the emulated core, `libraries` times what a host program would take from
 //! a library, `verdicts` and `in_a_sample` draw the conclusions, `table`, `page` and `document` show them.
 
+mod columns;
 mod document;
 mod in_a_sample;
 mod libraries;

@@ -7,7 +7,8 @@ use contest::method::Method;
 use contest::run::AS_DESIGNED;
 
 use super::Figures;
-use super::in_a_sample::{ASKED, Best, INSTRUCTIONS, InASample, SAMPLE_RATE};
+use super::columns::{scientific, table};
+use super::in_a_sample::{self, InASample};
 use super::lineup::{CaseFigures, Entry, Mark};
 use super::verdicts::{AtError, CLOCK, CYCLES, InBudget, LEVELS, front};
 
@@ -64,7 +65,10 @@ fn case_tables(figures: &Figures, case: &CaseFigures, detail: Detail) -> String 
     if detail == Detail::Steps {
         text += &steps(figures, case);
     }
-    text += &in_a_sample(figures, case);
+    let found: Vec<&InASample> = figures.in_a_sample.iter().filter(|one| one.case == case.key).collect();
+    if !found.is_empty() {
+        text += &in_a_sample::layout(&found);
+    }
     let reached: Vec<&AtError> = figures.at_equal_error.iter().filter(|at| at.case == case.key).collect();
     if reached.iter().any(|at| at.cost.is_some()) {
         text += "\nInstructions for a second of the joint at equal error, and over those of this step:\n\n";
@@ -82,52 +86,6 @@ pub fn windows(case: &CaseFigures) -> String {
         " So the motion is judged in {} windows: wherever torques jump, every method is put back into the reference's \
          state.",
         case.windows
-    )
-}
-
-/// Output angle and peak force of every method at the same cost.
-fn in_a_sample(figures: &Figures, case: &CaseFigures) -> String {
-    let found: Vec<&InASample> = figures.in_a_sample.iter().filter(|one| one.case == case.key).collect();
-    if found.is_empty() {
-        return String::new();
-    }
-    let none = || "-".to_owned();
-    let row = |one: &&InASample| {
-        let of = |cell: &dyn Fn(&Best) -> String| one.best.as_ref().map_or_else(none, cell);
-        vec![
-            one.name.to_owned(),
-            one.best.as_ref().map_or_else(
-                || "none follows".into(),
-                |best| best.steps.map_or_else(|| "as designed".into(), |steps| steps.to_string()),
-            ),
-            of(&|best| scientific(Some(best.link_rms))),
-            of(&|best| scientific(Some(best.link_worst))),
-            of(&|best| format!("{:.0} %", 100.0 * best.peak_force)),
-            of(&|best| format!("{:.0}", best.instructions)),
-            of(&|best| best.instructions_most.to_string()),
-            of(&|best| if best.does() { "yes" } else { "no" }.into()),
-            one.at_equal_error.map_or_else(|| "not reached".into(), |cost| format!("{cost:.0}")),
-        ]
-    };
-    let heads = [
-        "method",
-        "steps",
-        "link RMS",
-        "link worst",
-        "peak force",
-        "instr/sample",
-        "worst",
-        "all kept",
-        "at equal RMS",
-    ];
-    let [rms, worst, peak] = ASKED;
-    format!(
-        "\nEvery method at its best in at most {INSTRUCTIONS:.0} instructions a sample, on average, at {} kHz. Asked for: link \
-         angle within {rms:.0e} RMS and {worst:.0e} worst of the lost motion, peak mesh force of every part of the motion within \
-         {:.0} %. Last column: instructions a sample that bring a method down to the RMS error of this step.\n\n{}",
-        SAMPLE_RATE / 1000,
-        100.0 * peak,
-        table(&heads, &found.iter().map(row).collect::<Vec<_>>())
     )
 }
 
@@ -260,52 +218,4 @@ fn host(figures: &Figures) -> String {
         }
     }
     text
-}
-
-fn scientific(value: Option<f64>) -> String {
-    value.map_or_else(|| "lost".into(), |value| format!("{value:.1e}"))
-}
-
-/// A Markdown table whose columns line up: the first to the left, numbers to the right.
-fn table<H: AsRef<str>>(heads: &[H], rows: &[Vec<String>]) -> String {
-    let width = |column: usize| {
-        let cells = rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count());
-        cells.chain([heads[column].as_ref().chars().count(), 3]).max().unwrap_or(3)
-    };
-    let widths: Vec<usize> = (0..heads.len()).map(width).collect();
-    let words = |column: usize| {
-        rows.iter().all(|row| row.get(column).is_some_and(|cell| !cell.starts_with(|c: char| c.is_ascii_digit())))
-    };
-    let left: Vec<bool> = (0..heads.len()).map(words).collect();
-    let line = |cells: Vec<&str>| {
-        let cells = cells.iter().zip(&widths).zip(&left).map(|((cell, width), left)| match left {
-            true => format!(" {cell:<width$} "),
-            false => format!(" {cell:>width$} "),
-        });
-        format!("|{}|\n", cells.collect::<Vec<_>>().join("|"))
-    };
-    let rule = widths.iter().zip(&left).map(|(width, left)| match left {
-        true => "-".repeat(width + 2),
-        false => format!("{}:", "-".repeat(width + 1)),
-    });
-    let mut text = line(heads.iter().map(AsRef::as_ref).collect());
-    text += &format!("|{}|\n", rule.collect::<Vec<_>>().join("|"));
-    for row in rows {
-        text += &line(row.iter().map(String::as_str).collect());
-    }
-    text
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn columns_line_up() {
-        let rows = [vec!["a".to_owned(), "1.0".to_owned()], vec!["long name".to_owned(), "20".to_owned()]];
-        let text = table(&["method", "x"], &rows);
-        let widths: Vec<usize> = text.lines().map(str::len).collect();
-        assert!(widths.windows(2).all(|pair| pair[0] == pair[1]), "{text}");
-        assert!(text.contains("| long name |  20 |"), "{text}");
-    }
 }

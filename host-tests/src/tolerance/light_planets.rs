@@ -35,6 +35,14 @@ pub const LEAP_ACROSS_THE_GAP: Bound = Bound {
     reason: "Two contacts in one leap; second order shows in quarter leaps, at 0.044.",
 };
 
+/// A leap as deep into one flank as into the other.
+pub const LEAP_THROUGH_THE_MIDDLE: Bound = Bound {
+    of: "change of a planet's speed over a leap through the middle of its gap and into both flanks, relative",
+    limit: 1e-9,
+    measured: 1.1e-14,
+    reason: "The flanks' pushes cancel by symmetry; one flank alone would change it by 1e-2.",
+};
+
 /// Exponential ticks of light planets.
 pub const PRESSED: Bound = Bound {
     of: "deflections over b_c at the end of an exponential tick of light planets in which every tooth kept pressing",

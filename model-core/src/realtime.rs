@@ -1,6 +1,7 @@
 //! The fixed step, in f32 on a board: `model` is the door; `flow` takes ticks in which contacts hold, `substep` and
-//! `crossing` those in which they may change; `contact`, `excitation` and `phase` are what both stand on; `unfrozen` is the path of the tanh
-//! dead zone and what people use today.
+//! `crossing` those in which they may change; `pressed` and `light` do the same for planets that ring several times in a
+//! tick; `contact`, `excitation` and `phase` are what all stand on; `unfrozen` is the path of the tanh dead zone and
+//! what people use today, `paper` the paper's. `observer` and `compensation` run beside a motor controller instead.
 
 #![allow(clippy::needless_range_loop, reason = "one index walks several tables of the same mesh")]
 
@@ -15,6 +16,7 @@ mod model;
 pub mod observer;
 mod paper;
 pub mod phase;
+mod planets;
 mod pressed;
 mod runge_kutta;
 mod stages;

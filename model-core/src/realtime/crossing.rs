@@ -14,18 +14,18 @@ use crate::realtime::frozen::{Frozen, Moment};
 use crate::realtime::substep::Course;
 
 /// The end of a step that was taken with one contact set throughout.
-pub struct End<'a, T: Real, const N: usize, const OVERTONES: bool> {
+pub struct End<'a, T: Real, const N: usize, const OVERTONES: usize> {
     /// The joint.
     pub frozen: &'a Frozen<'a, T, N, OVERTONES>,
     /// Way that the mesh phase goes in the step [rad].
     pub rate: T,
     /// The excitation.
-    pub beat: &'a Beat<T>,
+    pub beat: &'a Beat<T, OVERTONES>,
     /// Meshes whose law does not hold: those with more than zero.
     pub trespasses: &'a PerMesh<T, N>,
 }
 
-impl<T: Real, const N: usize, const OVERTONES: bool> End<'_, T, N, OVERTONES> {
+impl<T: Real, const N: usize, const OVERTONES: usize> End<'_, T, N, OVERTONES> {
     /// Corrects the motion for every law that does not hold, and the accelerations now and half a step before, which
     /// become those that the new laws would have caused on the same path.
     #[inline(never)]
@@ -56,7 +56,7 @@ impl<T: Real, const N: usize, const OVERTONES: bool> End<'_, T, N, OVERTONES> {
                 if was.closed == is.closed && was.offset == is.offset {
                     continue;
                 }
-                let harmonics = if OVERTONES { tables.excitation.harmonics } else { 1 };
+                let harmonics = tables.excitation.harmonics;
                 let stiffness_rate = tables.meshes[kind][i].stiffness_rate(self.beat, harmonics);
                 let acceleration = T::SIX * acceleration + square * error;
                 // Damping that acts whatever the contact is not missed.

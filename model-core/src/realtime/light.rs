@@ -11,7 +11,7 @@
 use crate::mesh::DampingLaw;
 use crate::real::Real;
 use crate::realtime::contact::Drive;
-use crate::realtime::excitation::{Beat, Instant, MeshPhase, instant};
+use crate::realtime::excitation::{Beat, Instant, MOST_OVERTONES, MeshPhase, instant};
 use crate::realtime::pressed;
 use crate::realtime::runge_kutta::Motion;
 use crate::tables::Tables;
@@ -24,7 +24,14 @@ pub fn tick<T: Real, const N: usize>(
     phase: &MeshPhase<T>,
     motion: &Motion<T, N>,
 ) -> Motion<T, N> {
-    let middle = instant(tables, &Beat::new(phase.start.turned(&phase.over(T::HALF)), phase.rate));
+    let middle = instant(
+        tables,
+        &Beat::<T, MOST_OVERTONES>::new(
+            phase.start.turned(&phase.over(T::HALF)),
+            phase.rate,
+            tables.excitation.harmonics,
+        ),
+    );
     if let Some(end) = pressed::hold(tables, drive, phase, &middle, motion) {
         return end;
     }

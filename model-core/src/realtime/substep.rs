@@ -25,7 +25,7 @@ pub struct Course<T, const N: usize> {
 
 /// One tick; `start.laws` are brought up to date.
 #[inline(never)]
-pub fn advance<T: Real, const N: usize, const OVERTONES: bool>(
+pub fn advance<T: Real, const N: usize, const OVERTONES: usize>(
     frozen: &Frozen<T, N, OVERTONES>,
     phase: &MeshPhase<T>,
     start: &mut Start<T, N>,
@@ -36,18 +36,18 @@ pub fn advance<T: Real, const N: usize, const OVERTONES: bool>(
     let half = phase.over(tables.half_part);
     let rate = tables.substep * phase.rate;
     let mut rotor = phase.start;
-    begin(frozen, start, &Beat::new(rotor.turned(&half), rate), course);
+    begin(frozen, start, &Beat::new(rotor.turned(&half), rate, tables.excitation.harmonics), course);
     let laws = &mut start.laws;
     let mut trespasses: PerMesh<T, N> = [[T::ZERO; N]; 2];
     for _ in 0..tables.substeps {
         rotor = rotor.turned(&half);
-        let beat = Beat::new(rotor, rate);
+        let beat = Beat::new(rotor, rate, tables.excitation.harmonics);
         let gap = course.gap.middle();
         let wind_up = if compliant { frozen.wind_up_force(course.wind_up.middle()) } else { T::ZERO };
         let middle = frozen.pull(laws, &beat, gap, wind_up, |i| course.planets[i].middle(), |_, _| {});
 
         rotor = rotor.turned(&half);
-        let beat = Beat::new(rotor, rate);
+        let beat = Beat::new(rotor, rate, tables.excitation.harmonics);
         let gap = course.gap.arrive(middle.gap);
         let wind_up = if compliant { frozen.wind_up_force(course.wind_up.arrive(middle.wind_up)) } else { T::ZERO };
         let planets = &mut course.planets;
@@ -79,10 +79,10 @@ pub fn advance<T: Real, const N: usize, const OVERTONES: bool>(
 
 /// The accelerations at the start of a tick, and those of half a sub-step before from a first look at the middle.
 #[inline(never)]
-fn begin<T: Real, const N: usize, const OVERTONES: bool>(
+fn begin<T: Real, const N: usize, const OVERTONES: usize>(
     frozen: &Frozen<T, N, OVERTONES>,
     start: &Start<T, N>,
-    middle: &Beat<T>,
+    middle: &Beat<T, OVERTONES>,
     course: &mut Course<T, N>,
 ) {
     let wind_up = frozen.wind_up_force(course.wind_up.point());

@@ -5,7 +5,7 @@ use core::array;
 
 use crate::digest::{self, chain};
 use crate::real::Real;
-use crate::realtime::excitation::{Beat, Rotor, instant, mesh_way};
+use crate::realtime::excitation::{Beat, Rotor, mesh_way};
 use crate::tables::{Rigid, Tables};
 
 /// Relative coordinates, or their rates or accelerations, in units of b_c.
@@ -137,10 +137,11 @@ impl<T: Real, const N: usize> State<T, N> {
         let excitation = &tables.excitation;
         let phase = rigid.fraction.wrapping_mul(excitation.periods_per_turn.into());
         let phase_rate = excitation.rate * mesh_way(excitation, rigid.speed);
-        let imposed = instant(tables, &Beat::new(Rotor::at((phase >> 32) as u32), phase_rate));
-        for i in 0..N {
-            state.position.planets[i] += imposed.error[0][i];
-            state.rate.planets[i] += imposed.error_rate[0][i];
+        let beat = Beat::<T, 0>::new(Rotor::at((phase >> 32) as u32), phase_rate, 1);
+        for (i, mesh) in tables.meshes[0].iter().enumerate() {
+            let imposed = mesh.at(&beat, T::ZERO, 1);
+            state.position.planets[i] += imposed.error;
+            state.rate.planets[i] += imposed.error_rate;
         }
         state
     }

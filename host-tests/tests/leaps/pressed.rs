@@ -6,6 +6,7 @@ use host_tests::tolerance::light_planets::{HELD_OVER_AN_OPENING, PRESSED};
 use model_core::joint::JointParameters;
 use model_core::mesh::{ContactState, DampingLaw};
 use model_core::realtime::{Model, Torques};
+use model_core::tables::Tables;
 
 use crate::subject::{joint, leaping, reference, resting, state, tables};
 
@@ -28,12 +29,17 @@ struct Found {
 }
 
 impl Found {
-    fn add<const N: usize>(&mut self, joint: &JointParameters, start: &RelativeState, torques: (f64, f64)) {
+    fn add<const N: usize>(
+        &mut self,
+        joint: &JointParameters,
+        both: &[Tables<f64, N>; 2],
+        start: &RelativeState,
+        torques: (f64, f64),
+    ) {
         let seen = reference(joint, start, torques, MOMENTS * RATE, MOMENTS);
         let length = joint.characteristic_length;
         let separated = |contact: &ContactState| *contact == ContactState::Separated;
         let opens = seen.iter().any(|seen| seen.contacts.iter().flatten().any(separated));
-        let both = [tables::<N>(joint, RATE, LEAPS), leaping::<N>(joint, RATE, LEAPS)];
         let [ours, leapt] = both.each_ref().map(|tables| {
             let mut model = Model::new(tables);
             model.set_state(state(joint, tables, start));
@@ -60,13 +66,14 @@ impl Found {
 /// A joint that turns under balanced torques of either sign, one planet moving away from the sun at one speed after another.
 fn found<const N: usize>(law: DampingLaw) -> Found {
     let joint = joint(N, law);
+    let both = [tables::<N>(&joint, RATE, LEAPS), leaping::<N>(&joint, RATE, LEAPS)];
     let mut found = Found::default();
     for drive in [-3.0_f64, -1.0, 0.1, 0.5, 2.0, 3.0] {
         let (start, load) = resting(&joint, drive);
         for step in 0..12 {
             let mut start = RelativeState { rigid_speed: 3.0, ..start.clone() };
             start.sun_planet_rate[0] = -drive.signum() * 0.003 * f64::from(step);
-            found.add::<N>(&joint, &start, (drive, load));
+            found.add(&joint, &both, &start, (drive, load));
         }
     }
     println!("{N} planets, {law:?}: {found:?}");

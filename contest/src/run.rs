@@ -92,8 +92,9 @@ pub fn run<T: Real, const N: usize>(
     Ok(match method {
         Method::Realtime => {
             let tables: Tables<T, N> = tables(&case.joint, rate, substeps)?;
-            let model = Model::new(&tables);
-            let starts = starts.iter().map(|start| start.state(&case.joint, &tables)).collect();
+            let mut model = Model::new(&tables);
+            let starts: Vec<_> = starts.iter().map(|start| start.state(&case.joint, &tables)).collect();
+            model.set_state(starts[0]);
             let torques = Torques { drive: T::ZERO, load: T::ZERO };
             follow(case, rate, clock, &mut Core { model, starts, torques, gauge: Gauge::new(&case.joint), case, rate })
         }

@@ -4,7 +4,9 @@
 //!
 //! A leapfrog does not damp what it cannot resolve, which Runge-Kutta methods do: bouncing planets keep their energy.
 //! Force, rate and position are exact to second order; the two largest remainders, curvature of the path and the rate
-//! at which damping is taken, are both proportional to the acceleration and are taken off together (`yielding`).
+//! at which damping is taken, are both proportional to the acceleration and are taken off together (`yielding`), as far
+//! as the planet's own acceleration goes. What sun and carrier add to it is left, as is damping in the gap under the law
+//! `paper`: mesh damping is therefore of first order, with a small factor.
 
 use crate::mesh::DampingLaw;
 use crate::real::Real;

@@ -69,6 +69,8 @@ impl Pace {
         let relaxations =
             MESH_KINDS.map(|kind| parameters.damping_coefficient(kind) / parameters.mesh(kind).mean_stiffness);
         let damping_ratio = 0.5 * fastest * relaxations[0].max(relaxations[1]);
+        // Ticks may each begin anew, or go on from one another without end.
+        let without_end = stability::largest_phase(damping_ratio, stability::WITHOUT_END);
         Self {
             fastest,
             mesh_frequency: match parameters.excitation {
@@ -77,7 +79,7 @@ impl Pace {
             },
             cost: Cost::new(parameters),
             sharp: parameters.dead_zone == DeadZone::Sharp,
-            largest_phases: array::from_fn(|i| stability::largest_phase(damping_ratio, i as u32 + 1)),
+            largest_phases: array::from_fn(|i| without_end.min(stability::largest_phase(damping_ratio, i as u32 + 1))),
             largest_leap: stability::largest_leap(damping_ratio),
         }
     }

@@ -112,7 +112,7 @@ impl Pace {
     }
 
     /// Parts of a tick where contacts change. Leaps take over where sub-steps would damp the fastest mode away, if the
-    /// processor has time for them.
+    /// processor has time for them or they are the cheaper of two that it has no time for.
     pub fn parts(&self, tick_rate: u32, effort: Effort) -> Result<Parts, DesignError> {
         let substeps = self.substeps(tick_rate, effort)?;
         let processor = match effort {
@@ -121,10 +121,12 @@ impl Pace {
             Effort::Accurate | Effort::Substeps(_) => return Ok(Parts::Substeps(substeps)),
             Effort::Leaps(leaps) => return Ok(Parts::Leaps(leaps.max(1))),
         };
+        let substeps = Parts::Substeps(substeps);
         let leaps = Parts::Leaps(libm::ceil(self.phase(tick_rate, 1) / LEAP_PHASE) as u32);
-        let resolved = self.phase(tick_rate, substeps) <= DAMPED_PHASE;
-        let affordable = self.cost.all_crossing(leaps) <= processor.affordable(tick_rate);
-        Ok(if self.sharp && !resolved && affordable { leaps } else { Parts::Substeps(substeps) })
+        let resolved = self.phase(tick_rate, substeps.count()) <= DAMPED_PHASE;
+        let budget = processor.affordable(tick_rate).max(self.cost.all_crossing(substeps));
+        let affordable = self.cost.all_crossing(leaps) <= budget;
+        Ok(if self.sharp && !resolved && affordable { leaps } else { substeps })
     }
 
     /// Lowest tick rate that is accepted [Hz].

@@ -24,7 +24,7 @@ const EXCITATION_PHASE: f64 = 0.3;
 /// Beyond this phase of the fastest mode in a sub-step, Runge-Kutta steps damp it away and bounces of light planets with
 /// it; leapfrog sub-steps of at most the second take over [rad].
 const DAMPED_PHASE: f64 = 1.0;
-const LEAP_PHASE: f64 = 1.1;
+const LEAP_PHASE: f64 = 1.0;
 /// Most sub-steps a tick.
 const MOST_SUBSTEPS: usize = 16;
 

@@ -11,6 +11,7 @@
 pub mod budget;
 pub mod control;
 pub mod conversation;
+pub mod encoder;
 pub mod ends;
 pub mod identity;
 pub mod queues;

@@ -14,7 +14,7 @@ const DIAGNOSTICS: u16 = 0xfffc;
 
 /// Even parity over an answer.
 fn answer(content: u16) -> u16 {
-    content | if content.count_ones() % 2 == 0 { 0 } else { 0x8000 }
+    content | if content.count_ones().is_multiple_of(2) { 0 } else { 0x8000 }
 }
 
 /// An encoder that is sent these commands and answers so.
@@ -66,7 +66,8 @@ fn the_error_flag_is_cleared_by_reading_its_reason_and_the_next_angle_is_good() 
         (ANGLE, answer(0x0004)),
         (ANGLE, answer(0x0777)),
     ];
-    let expected = [Err(EncoderFault::Pending), Err(EncoderFault::Reported(4)), Ok(Reading { counts: 0x777, time: 10 })];
+    let expected =
+        [Err(EncoderFault::Pending), Err(EncoderFault::Reported(4)), Ok(Reading { counts: 0x777, time: 10 })];
     assert_eq!(reads(&frames, 3), expected);
 }
 

@@ -139,12 +139,7 @@ impl Exchange {
     /// The samples.
     pub fn samples(&self) -> Samples<f32> {
         let reading = |(counts, time)| Reading { counts, time };
-        Samples {
-            time: self.time,
-            motor: reading(self.motor),
-            output: self.output.map(reading),
-            torque: self.torque,
-        }
+        Samples { time: self.time, motor: reading(self.motor), output: self.output.map(reading), torque: self.torque }
     }
 
     /// The set-point.

@@ -118,7 +118,10 @@ fn a_knot_with_a_number_that_is_none_is_told() {
 
 #[test]
 fn the_longest_forms_fit_into_a_frame() {
-    let exchange = Exchange { tick: u32::MAX, ..Exchange::new(0, &samples(), &Command::Position { now: MOTION, ahead: Some(MOTION) }) };
+    let exchange = Exchange {
+        tick: u32::MAX,
+        ..Exchange::new(0, &samples(), &Command::Position { now: MOTION, ahead: Some(MOTION) })
+    };
     let commands = std::iter::repeat_n(exchange, EXCHANGES_PER_SCHEDULE).collect();
     let exchanges = ToBoard::Exchanges(Schedule { sequence: u16::MAX, horizon: u32::MAX, commands });
     let far = (i32::MIN, [f32::MAX; 6]);

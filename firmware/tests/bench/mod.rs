@@ -8,16 +8,17 @@ use std::rc::Rc;
 
 use embedded_hal::digital::{ErrorType, OutputPin};
 use firmware::budget::TickTimer;
-use firmware::control::Plant;
+use firmware::control::Control;
 use firmware::conversation::{Conversation, LogEnd};
 use firmware::identity::{StartUp, hello};
+use firmware::plant::{Plant, PlantWords};
 use firmware::queues::Queues;
 use firmware::serial::{Line, Serial, Uart};
 use firmware::tables::{PLANETS, TABLES};
 use firmware::timing_report::Resources;
 use heapless::spsc::Queue;
 use link::framing::{Receiver, encode};
-use link::messages::{Clock, Command, FromBoard, Role, RunMode, RunSettings, Schedule, ToBoard};
+use link::messages::{Clock, Command, FromBoard, RunMode, RunSettings, Schedule, ToBoard};
 use model_core::tables::Tables;
 
 /// Timer counts between two ticks.
@@ -89,8 +90,8 @@ impl TickTimer for Timer {
 
 /// A board on the bench.
 pub struct Bench {
-    plant: Plant<'static, Enable, PLANETS>,
-    conversation: Conversation<'static, PLANETS>,
+    control: Control<'static, Enable, Plant<'static, PLANETS>>,
+    conversation: Conversation<'static, PlantWords<PLANETS>>,
     serial: Serial<'static, WireEnd>,
     receiver: Receiver,
     pub wire: Rc<RefCell<Wire>>,
@@ -118,9 +119,9 @@ impl Bench {
             watchdog_reset: false,
         };
         Self {
-            plant: Plant::new(tables, Enable(enable.clone()), PERIOD, tick_end),
+            control: Control::new(Plant::new(tables), Enable(enable.clone()), PERIOD, tick_end),
             conversation: Conversation::new(
-                hello(Role::Plant, start_up),
+                hello::<PlantWords<PLANETS>>(start_up, None),
                 PERIOD,
                 idle_end,
                 line,
@@ -154,7 +155,7 @@ impl Bench {
     }
 
     pub fn tick(&mut self) {
-        self.plant.tick(&Timer::new(self.timing.0, self.timing.1));
+        self.control.tick(&Timer::new(self.timing.0, self.timing.1));
     }
 
     /// Ticks, with idle in between.

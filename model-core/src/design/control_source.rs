@@ -38,8 +38,7 @@ pub fn control_source(
         settings.output_encoder = None;
     }
     let observer = observer_source(joint, &settings)?;
-    let compensation: CompensationTables<f32> =
-        design_compensation(joint, &compensation_settings(of, wish.bandwidth))?;
+    let compensation: CompensationTables<f32> = design_compensation(joint, &compensation_settings(of, wish.bandwidth))?;
     let surroundings: SurroundingsTable<f32> = match joint.geometry.planets {
         3 => surroundings::<3>(joint, of, processor)?,
         4 => surroundings::<4>(joint, of, processor)?,
@@ -64,7 +63,6 @@ fn surroundings<const N: usize>(
     of: &Surroundings,
     processor: &Processor,
 ) -> Result<SurroundingsTable<f32>, DesignError> {
-    let tables: Tables<f32, N> =
-        design_scheme(joint, of.control_rate, Scheme::Realtime, Effort::Within(*processor))?;
+    let tables: Tables<f32, N> = design_scheme(joint, of.control_rate, Scheme::Realtime, Effort::Within(*processor))?;
     design_surroundings(joint, of, &tables)
 }

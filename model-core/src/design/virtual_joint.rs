@@ -159,7 +159,13 @@ fn check(joint: &JointParameters, of: &Surroundings, tick_rate: u32) -> Result<(
         within("the number of bits of an encoder", encoder.bits.into(), 6.0, 24.0, "from 6 to 24")?;
     }
     let ratio = joint.geometry.ratio_by_radii() / joint.geometry.ratio_by_teeth();
-    within("the ratio by radii over the ratio by teeth", ratio, 1.0 - 1e-9, 1.0 + 1e-9, "1: a virtual joint counts teeth")
+    within(
+        "the ratio by radii over the ratio by teeth",
+        ratio,
+        1.0 - 1e-9,
+        1.0 + 1e-9,
+        "1: a virtual joint counts teeth",
+    )
 }
 
 fn common_divisor(a: u32, b: u32) -> u32 {

@@ -50,8 +50,7 @@ pub enum Demand<T: Real> {
 
 impl<T: Real> Demand<T> {
     /// Hold angle zero of the observer's link shaft.
-    pub const HOLD: Self =
-        Self::Position { now: Stretch { turns: 0, powers: [T::ZERO; POWERS] }, ahead: None };
+    pub const HOLD: Self = Self::Position { now: Stretch { turns: 0, powers: [T::ZERO; POWERS] }, ahead: None };
 
     /// The set-point so long after the demand began [s].
     pub fn at(&self, elapsed: T, turn: T) -> Command<T> {

@@ -152,9 +152,7 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
         let link_offset = (table.units_per_radian * outputs.link_offset).to_i64();
         let carrier = (i64::from(outputs.carrier_turns) << 32) | i64::from(outputs.carrier_fraction);
         let planets = state.rate.planets.iter().fold(T::ZERO, |sum, rate| sum + *rate);
-        let beyond = |gains: &[T; 3]| {
-            gains[0] * planets + gains[1] * state.rate.gap + gains[2] * state.rate.wind_up
-        };
+        let beyond = |gains: &[T; 3]| gains[0] * planets + gains[1] * state.rate.gap + gains[2] * state.rate.wind_up;
         Shafts {
             motor: (rigid as i64).wrapping_add(motor_offset) as u32,
             link: carrier.wrapping_add(link_offset),

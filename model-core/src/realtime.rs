@@ -18,6 +18,7 @@ mod model;
 pub mod observer;
 mod paper;
 pub mod phase;
+mod planets;
 mod pressed;
 mod runge_kutta;
 mod stages;

@@ -22,8 +22,8 @@ pub struct Instant<T, const N: usize> {
 /// Sine and cosine of the mesh phase, or of a part of it to be added.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rotor<T> {
-    sine: T,
-    cosine: T,
+    pub sine: T,
+    pub cosine: T,
 }
 
 impl<T: Real> Rotor<T> {
@@ -59,7 +59,7 @@ impl<T: Real> MeshPhase<T> {
     /// What a part of the tick adds to the phase.
     #[inline]
     pub fn over(&self, part: T) -> Rotor<T> {
-        Rotor::at((self.way * part).to_i64() as u32)
+        Rotor::at((self.way * part).to_phase())
     }
 }
 
@@ -80,7 +80,7 @@ pub struct Beat<T> {
     /// Sine and cosine.
     pub rotor: Rotor<T>,
     /// Their rates.
-    rates: Rotor<T>,
+    pub rates: Rotor<T>,
 }
 
 impl<T: Real> Beat<T> {

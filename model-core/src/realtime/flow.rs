@@ -9,7 +9,9 @@ use crate::realtime::contact::{Drive, Laws, Net};
 use crate::realtime::crossing::End;
 use crate::realtime::excitation::{Beat, MeshPhase, MeshWave};
 use crate::realtime::frozen::{Frozen, Moment, Start};
+use crate::realtime::planets::each_planet;
 use crate::realtime::runge_kutta::Motion;
+use crate::realtime::stages::Point;
 use crate::realtime::state::Relative;
 use crate::realtime::substep::Course;
 use crate::tables::{Block, Inputs, Transition};
@@ -44,23 +46,22 @@ pub fn hold<T: Real, const N: usize, const K: usize, const OVERTONES: bool>(
     let (value, rate) = frozen.pseudo_force_at_start(phase, start, course);
     let modes = Modes::<T, N, K>::of(tables.planet_share, motion);
     let torques = [drive.sun, drive.carrier, drive.link];
-    let share = tables.planet_share;
     let look = |part: T| Beat::new(phase.start.turned(&phase.over(part)), phase.rate);
 
     let [first, second] = &flow.early_inputs;
-    let place = modes.place(&flow.early, &torques).with(share, [(first, &value), (second, &rate)]);
+    let place = modes.place(&flow.early, &torques).with([(first, &value), (second, &rate)]);
     let (early, trespass) = frozen.pseudo_force(laws, &look(flow.looks[0]), &place);
     if trespass > T::ZERO {
         return Held::Not;
     }
 
     let [first, second, third] = &flow.late_inputs;
-    let place = modes.place(&flow.late, &torques).with(share, [(first, &value), (second, &rate), (third, &early)]);
+    let place = modes.place(&flow.late, &torques).with([(first, &value), (second, &rate), (third, &early)]);
     let (late, trespass) = frozen.pseudo_force(laws, &look(flow.looks[1]), &place);
 
     let [first, second, third, fourth] = &flow.whole_inputs;
     let forces = [(first, &value), (second, &rate), (third, &early), (fourth, &late)];
-    let last = modes.flow(&flow.whole, &torques).with(share, forces).motion();
+    let last = modes.flow(&flow.whole, &torques).with(forces).motion();
     if trespass > T::ZERO { Held::Late(last) } else { Held::Whole(last) }
 }
 
@@ -100,51 +101,73 @@ impl<T: Real, const N: usize, const OVERTONES: bool> Frozen<'_, T, N, OVERTONES>
         phase: &MeshPhase<T>,
         start: &Start<T, N>,
         course: &Course<T, N>,
-    ) -> (Net<T, N>, Net<T, N>) {
+    ) -> (Push<T, N>, Push<T, N>) {
         let tables = self.tables;
         let rate = tables.substep * phase.rate;
         let square = rate * rate;
         let beat = Beat::new(phase.start, rate);
+        let mesh = |(kind, i): (usize, usize), at: Point<T>| {
+            let (spring, damping) = (tables.springs[kind].stiffness, tables.stage.damping[kind]);
+            let Moment { overlap, speed, stiffness, error, force } = start.meshes[kind][i];
+            let harmonics = if OVERTONES { tables.excitation.harmonics } else { 1 };
+            let stiffness_rate = tables.meshes[kind][i].stiffness_rate(&beat, harmonics);
+            // e'' = -rate^2 e.
+            (
+                spring * at.position + damping * at.rate - force,
+                spring * at.rate - stiffness * speed - stiffness_rate * overlap - damping * (square * error),
+            )
+        };
         let (mut value, mut change) = (Net::NONE, Net::NONE);
-        for i in 0..N {
+        each_planet!(N, i => {
             let sun = course.planets[i].point();
-            let [sun, ring] = [(0, sun), (1, course.gap.point().less(sun))].map(|(kind, at)| {
-                let (spring, damping) = (tables.springs[kind].stiffness, tables.stage.damping[kind]);
-                let Moment { overlap, speed, stiffness, error, force } = start.meshes[kind][i];
-                let harmonics = if OVERTONES { tables.excitation.harmonics } else { 1 };
-                let stiffness_rate = tables.meshes[kind][i].stiffness_rate(&beat, harmonics);
-                // e'' = -rate^2 e.
-                (
-                    spring * at.position + damping * at.rate - force,
-                    spring * at.rate - stiffness * speed - stiffness_rate * overlap - damping * (square * error),
-                )
-            });
+            let ring = mesh((1, i), course.gap.point().less(sun));
+            let sun = mesh((0, i), sun);
             value.add(i, sun.0, ring.0);
             change.add(i, sun.1, ring.1);
-        }
-        (value, change)
+        });
+        (Push::of(tables.planet_share, &value), Push::of(tables.planet_share, &change))
     }
 
     /// What the linear flow does not know of closed meshes: offset, imposed error, ripple; and more than zero when a
     /// mesh is beyond its flank.
     #[inline(never)]
-    fn pseudo_force(&self, laws: &Laws<T, N>, beat: &Beat<T>, place: &Place<T, N>) -> (Net<T, N>, T) {
+    fn pseudo_force(&self, laws: &Laws<T, N>, beat: &Beat<T>, place: &Place<T, N>) -> (Push<T, N>, T) {
         let tables = self.tables;
         let (mut net, mut trespass) = (Net::NONE, T::ZERO);
+        let mut mesh = |(kind, i): (usize, usize), position: T| {
+            let law = &laws[kind][i];
+            let MeshWave { stiffness, error, error_rate } = self.wave((kind, i), beat);
+            let overlap = position - error - law.offset;
+            let room = law.side * overlap;
+            trespass += room.abs() - room;
+            let spring = &tables.springs[kind];
+            spring.stiffness * position - stiffness * overlap + spring.damping * error_rate
+        };
         for i in 0..N {
             let sun = place.planets[i];
-            let [sun, ring] = [(0, sun), (1, place.gap - sun)].map(|(kind, position)| {
-                let law = &laws[kind][i];
-                let MeshWave { stiffness, error, error_rate } = self.wave((kind, i), beat);
-                let overlap = position - error - law.offset;
-                let room = law.side * overlap;
-                trespass += room.abs() - room;
-                let spring = &tables.springs[kind];
-                spring.stiffness * position - stiffness * overlap + spring.damping * error_rate
-            });
-            net.add(i, sun, ring);
+            net.add(i, mesh((0, i), sun), mesh((1, i), place.gap - sun));
         }
-        (net, trespass)
+        (Push::of(tables.planet_share, &net), trespass)
+    }
+}
+
+/// A pseudo-force as the flow's inputs take it.
+struct Push<T, const N: usize> {
+    /// Sums over planets: sun-planet, ring-planet.
+    sums: [T; 2],
+    /// Sun-planet less ring-planet force of every planet, less their mean.
+    deviations: [T; N],
+}
+
+impl<T: Real, const N: usize> Push<T, N> {
+    #[inline(always)]
+    fn of(share: T, net: &Net<T, N>) -> Self {
+        let mean = share * net.difference();
+        let mut deviations = [T::ZERO; N];
+        each_planet!(N, i => {
+            deviations[i] = net.apart(i) - mean;
+        });
+        Self { sums: net.sums(), deviations }
     }
 }
 
@@ -210,35 +233,41 @@ impl<T: Real, const N: usize, const K: usize> Modes<T, N, K> {
     /// Linear flow of the positions that the meshes see.
     #[inline]
     fn place(&self, transition: &Transition<T>, torques: &[T; 3]) -> Positions<T, N> {
-        Positions {
-            in_phase: [0, 1].map(|k| self.coordinate(transition, torques, 0, k)),
-            deviations: array::from_fn(|i| self.deviation(transition, i, 0)),
-        }
+        let in_phase = [self.coordinate(transition, torques, 0, 0), self.coordinate(transition, torques, 0, 1)];
+        let mut deviations = [T::ZERO; N];
+        each_planet!(N, i => {
+            deviations[i] = self.deviation(transition, i, 0);
+        });
+        Positions { in_phase, deviations }
     }
 
     /// Linear flow of everything.
     #[inline]
     fn flow(&self, transition: &Transition<T>, torques: &[T; 3]) -> Self {
-        Self {
-            in_phase: [0, 1].map(|half| array::from_fn(|k| self.coordinate(transition, torques, half, k))),
-            deviations: array::from_fn(|i| [0, 1].map(|half| self.deviation(transition, i, half))),
+        let (mut in_phase, mut deviations) = ([[T::ZERO; K]; 2], [[T::ZERO; 2]; N]);
+        for half in 0..2 {
+            for k in 0..K {
+                in_phase[half][k] = self.coordinate(transition, torques, half, k);
+            }
+            each_planet!(N, i => {
+                deviations[i][half] = self.deviation(transition, i, half);
+            });
         }
+        Self { in_phase, deviations }
     }
 
     /// Plus the response to pseudo-forces, each under its time weight.
     #[inline]
-    fn with<const M: usize>(mut self, share: T, terms: [(&Inputs<T>, &Net<T, N>); M]) -> Self {
-        for (inputs, net) in terms {
+    fn with<const M: usize>(mut self, terms: [(&Inputs<T>, &Push<T, N>); M]) -> Self {
+        for (inputs, push) in terms {
             for half in 0..2 {
                 for k in 0..K {
-                    self.in_phase[half][k] += together(inputs, net, 3 * half + k);
+                    self.in_phase[half][k] += together(inputs, push, 3 * half + k);
                 }
             }
-            let mean = share * net.difference();
             for i in 0..N {
-                let apart = net.apart(i) - mean;
                 for half in 0..2 {
-                    self.deviations[i][half] += inputs.deviation[half] * apart;
+                    self.deviations[i][half] += inputs.deviation[half] * push.deviations[i];
                 }
             }
         }
@@ -262,14 +291,13 @@ impl<T: Real, const N: usize, const K: usize> Modes<T, N, K> {
 impl<T: Real, const N: usize> Positions<T, N> {
     /// Plus the response to pseudo-forces, each under its time weight.
     #[inline]
-    fn with<const M: usize>(mut self, share: T, terms: [(&Inputs<T>, &Net<T, N>); M]) -> Place<T, N> {
-        for (inputs, net) in terms {
+    fn with<const M: usize>(mut self, terms: [(&Inputs<T>, &Push<T, N>); M]) -> Place<T, N> {
+        for (inputs, push) in terms {
             for k in 0..2 {
-                self.in_phase[k] += together(inputs, net, k);
+                self.in_phase[k] += together(inputs, push, k);
             }
-            let mean = share * net.difference();
             for i in 0..N {
-                self.deviations[i] += inputs.deviation[0] * (net.apart(i) - mean);
+                self.deviations[i] += inputs.deviation[0] * push.deviations[i];
             }
         }
         let [mean, gap] = self.in_phase;
@@ -279,8 +307,8 @@ impl<T: Real, const N: usize> Positions<T, N> {
 
 /// In-phase response to the sums of the mesh forces.
 #[inline(always)]
-fn together<T: Real, const N: usize>(inputs: &Inputs<T>, net: &Net<T, N>, row: usize) -> T {
-    let [sun_planet, ring_planet] = net.sums();
+fn together<T: Real, const N: usize>(inputs: &Inputs<T>, push: &Push<T, N>, row: usize) -> T {
+    let [sun_planet, ring_planet] = push.sums;
     entry(&inputs.in_phase, row, 0) * sun_planet + entry(&inputs.in_phase, row, 1) * ring_planet
 }
 

@@ -5,6 +5,7 @@
 use crate::real::Real;
 use crate::realtime::contact::{Drive, Law, Laws, Net};
 use crate::realtime::excitation::{Beat, MeshWave, PerMesh};
+use crate::realtime::planets::each_planet;
 use crate::realtime::stages::Point;
 use crate::realtime::state::Relative;
 use crate::realtime::substep::Course;
@@ -30,6 +31,7 @@ impl<T: Real> Moment<T> {
 }
 
 /// The start of a tick.
+#[derive(Debug, Clone)]
 pub struct Start<T, const N: usize> {
     /// The laws that hold.
     pub laws: Laws<T, N>,
@@ -40,7 +42,7 @@ pub struct Start<T, const N: usize> {
 }
 
 impl<T: Real, const N: usize> Start<T, N> {
-    /// To be filled: zeros throughout, which cost a third of copying a pattern (counted on an emulated Cortex-M4F).
+    /// To be filled.
     pub const EMPTY: Self = Self { laws: [[Law::ZERO; N]; 2], meshes: [[Moment::ZERO; N]; 2], settled: false };
 }
 
@@ -53,6 +55,8 @@ pub struct Frozen<'a, T: Real, const N: usize, const OVERTONES: bool> {
     pub drive: Drive<T>,
     /// One under the law `contact`, else zero.
     pub pushes_only: T,
+    /// One less that.
+    pub adheres: T,
 }
 
 impl<T: Real, const N: usize, const OVERTONES: bool> Frozen<'_, T, N, OVERTONES> {
@@ -60,6 +64,7 @@ impl<T: Real, const N: usize, const OVERTONES: bool> Frozen<'_, T, N, OVERTONES>
     #[inline(never)]
     pub fn start(&self, beat: &Beat<T>, course: &Course<T, N>, start: &mut Start<T, N>) {
         start.settled = true;
+        let reach = self.tables.flow.reach * self.tables.stage.rate;
         for i in 0..N {
             let sun = course.planets[i].point();
             for (kind, at) in [(0, sun), (1, course.gap.point().less(sun))] {
@@ -67,8 +72,7 @@ impl<T: Real, const N: usize, const OVERTONES: bool> Frozen<'_, T, N, OVERTONES>
                 let law = Law::of(self.tables, (kind, i), mesh.overlap, mesh.speed, mesh.stiffness);
                 mesh.overlap -= law.offset;
                 mesh.force = law.closed * (mesh.stiffness * mesh.overlap) + law.damping * mesh.speed;
-                let way = self.tables.flow.reach * (self.tables.stage.rate * mesh.speed.abs());
-                start.settled &= law.side * mesh.overlap > way;
+                start.settled &= law.side * mesh.overlap > reach * mesh.speed.abs();
                 start.meshes[kind][i] = mesh;
                 start.laws[kind][i] = law;
             }
@@ -86,21 +90,24 @@ impl<T: Real, const N: usize, const OVERTONES: bool> Frozen<'_, T, N, OVERTONES>
     /// One mesh under a law.
     #[inline(always)]
     pub fn mesh(&self, law: &Law<T>, (kind, i): (usize, usize), beat: &Beat<T>, at: Point<T>) -> Moment<T> {
-        let MeshWave { stiffness, error, error_rate } = self.wave((kind, i), beat);
-        let (overlap, speed) = (at.position - error - law.offset, at.rate - error_rate);
+        let MeshWave { stiffness, error, .. } = self.wave((kind, i), beat);
+        let [sine, cosine] = self.tables.meshes[kind][i].error;
+        let overlap = at.position - law.offset - sine * beat.rotor.sine - cosine * beat.rotor.cosine;
+        let speed = at.rate - sine * beat.rates.sine - cosine * beat.rates.cosine;
         let force = law.closed * (stiffness * overlap) + law.damping * speed;
         Moment { overlap, speed, stiffness, error, force }
     }
 
-    /// Zero while a mesh is under its law; positive when the law no longer holds.
+    /// Zero while a mesh is under its law; positive when the law no longer holds: teeth in the gap reach a flank, or
+    /// closed ones leave it. Where teeth only push they leave when their force turns, else when their overlap does.
     #[inline(always)]
     pub fn trespass(&self, law: &Law<T>, (kind, i): (usize, usize), moment: &Moment<T>) -> T {
         let half_backlash = self.tables.meshes[kind][i].half_backlash;
         let Moment { overlap, force, .. } = *moment;
-        let room = law.side * overlap + law.open * (half_backlash - overlap.abs());
-        let push = law.side * force;
+        let press = self.adheres * overlap + self.pushes_only * force;
+        let room = law.side * press + law.open * (half_backlash - overlap.abs());
         // |x| - x is 0 or -2x: cheaper than a comparison for each mesh on a core whose flags are slow to read.
-        (room.abs() - room) + self.pushes_only * (push.abs() - push)
+        room.abs() - room
     }
 
     /// Force between carrier and link.
@@ -122,7 +129,7 @@ impl<T: Real, const N: usize, const OVERTONES: bool> Frozen<'_, T, N, OVERTONES>
         mut see: impl FnMut((usize, usize), &Moment<T>),
     ) -> Relative<T, N> {
         let mut net = Net::NONE;
-        for i in 0..N {
+        each_planet!(N, i => {
             let sun = planet(i);
             let ring = gap.less(sun);
             let sun = self.mesh(&laws[0][i], (0, i), beat, sun);
@@ -130,7 +137,7 @@ impl<T: Real, const N: usize, const OVERTONES: bool> Frozen<'_, T, N, OVERTONES>
             let ring = self.mesh(&laws[1][i], (1, i), beat, ring);
             see((1, i), &ring);
             net.add(i, sun.force, ring.force);
-        }
+        });
         net.accelerations(&self.tables.stage.mobility, &self.drive, wind_up_force)
     }
 }

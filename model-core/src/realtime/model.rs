@@ -54,12 +54,14 @@ pub struct Outputs<T, const N: usize> {
 pub struct Model<'a, T: Real, const N: usize> {
     tables: &'a Tables<T, N>,
     state: State<T, N>,
+    /// What a tick starts from. Kept only for its place: on the stack it would have to be cleared in every tick.
+    start: Start<T, N>,
 }
 
 impl<'a, T: Real, const N: usize> Model<'a, T, N> {
     /// At rest, undeformed, at angle and phase zero.
     pub const fn new(tables: &'a Tables<T, N>) -> Self {
-        Self { tables, state: State::REST }
+        Self { tables, state: State::REST, start: Start::EMPTY }
     }
 
     /// Back to rest.
@@ -109,8 +111,10 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
             Scheme::SemiImplicitEuler => unfrozen::semi_implicit_euler(tables, &drive, &phase, &motion),
             Scheme::Realtime if tables.sharpness > T::ZERO => unfrozen::runge_kutta(tables, &drive, &phase, &motion),
             Scheme::Realtime if tables.light.substeps > 0 => light::tick(tables, &drive, &phase, &motion),
-            Scheme::Realtime if tables.excitation.harmonics > 1 => tick::<T, N, true>(tables, &drive, &phase, &motion),
-            Scheme::Realtime => tick::<T, N, false>(tables, &drive, &phase, &motion),
+            Scheme::Realtime if tables.excitation.harmonics > 1 => {
+                tick::<T, N, true>(tables, &drive, &phase, &motion, &mut self.start)
+            }
+            Scheme::Realtime => tick::<T, N, false>(tables, &drive, &phase, &motion, &mut self.start),
         };
         (self.state.position, self.state.rate) = (position, rate);
         self.state.settle();
@@ -156,26 +160,28 @@ fn tick<T: Real, const N: usize, const OVERTONES: bool>(
     drive: &Drive<T>,
     phase: &MeshPhase<T>,
     motion: &Motion<T, N>,
+    start: &mut Start<T, N>,
 ) -> Motion<T, N> {
     let stage = &tables.stage;
+    let pushes_only = if tables.damping_law == DampingLaw::Contact { T::ONE } else { T::ZERO };
     let frozen = Frozen::<T, N, OVERTONES> {
         tables,
         drive: drive.times(stage.square_sixth),
-        pushes_only: if tables.damping_law == DampingLaw::Contact { T::ONE } else { T::ZERO },
+        pushes_only,
+        adheres: T::ONE - pushes_only,
     };
     let mut course = Course::of(motion, tables.substep);
-    let mut start = Start::EMPTY;
-    frozen.start(&Beat::new(phase.start, tables.substep * phase.rate), &course, &mut start);
+    frozen.start(&Beat::new(phase.start, tables.substep * phase.rate), &course, start);
     let held = if tables.mobility.wind_up > T::ZERO {
-        flow::hold::<T, N, 3, OVERTONES>(&frozen, drive, phase, &start, &course, motion)
+        flow::hold::<T, N, 3, OVERTONES>(&frozen, drive, phase, start, &course, motion)
     } else {
-        flow::hold::<T, N, 2, OVERTONES>(&frozen, drive, phase, &start, &course, motion)
+        flow::hold::<T, N, 2, OVERTONES>(&frozen, drive, phase, start, &course, motion)
     };
     match held {
         Held::Whole(end) => return end,
         Held::Late(end) => return flow::corrected(&frozen, &mut start.laws, phase, &end),
         Held::Not => {}
     }
-    substep::advance(&frozen, phase, &mut start, &mut course);
+    substep::advance(&frozen, phase, start, &mut course);
     course.motion(tables.substep, stage.rate, motion)
 }

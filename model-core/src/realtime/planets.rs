@@ -1,0 +1,17 @@
+//! Every planet in turn, written out. On a core with few registers a loop over planets spends its time on addresses:
+//! the sub-step of three planets takes 680 instructions in a loop and 590 written out (emulated Cortex-M4F).
+
+/// Does the same for every planet `$i` of `$n`, at most five.
+macro_rules! each_planet {
+    ($n:expr, $i:ident => $act:block) => {
+        const { assert!($n <= 5) };
+        each_planet!(@ $n, $i => $act, 0 1 2 3 4);
+    };
+    (@ $n:expr, $i:ident => $act:block, $($at:literal)*) => {
+        $(if $n > $at {
+            let $i = $at;
+            $act
+        })*
+    };
+}
+pub(crate) use each_planet;

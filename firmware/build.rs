@@ -1,14 +1,15 @@
 //! Turns a joint file into the tables that the image carries, and tells the linker about the board's memory. The joint
 //! file is named by `JOINT_FILE` (default: `joints/q1.toml` of the workspace), the tick rate by `JOINT_TICK_RATE` in Hz
 //! (default: 20000); what can be wrong with either is said as a build error. Roles that control are made for one control
-//! period a tick, for the bandwidth `JOINT_BANDWIDTH` in rad/s (default: 60), and without an output encoder where
-//! `JOINT_MOTOR_ONLY` is 1. Measuring binaries carry the joints that
+//! period a tick, for the bandwidth `JOINT_BANDWIDTH` in rad/s (default: 60), without an output encoder where
+//! `JOINT_MOTOR_ONLY` is 1, and from the joint file `JOINT_TOLD` if a controller is to be told another joint than the true
+//! one. Measuring binaries carry the joints that
 //! `MEASURED_JOINTS` lists, in the manner of a search path, one module of tables for each.
 
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-use model_core::design::{ControlWish, Processor, control_source};
+use model_core::design::{ControlWish, Processor, Told, control_source};
 
 const DEFAULT_TICK_RATE: u32 = 20_000;
 const DEFAULT_BANDWIDTH: f64 = 60.0;
@@ -45,23 +46,30 @@ fn write_tables() -> Result<(), String> {
     };
     println!("cargo::rerun-if-changed={}", file.display());
     write("tables.rs", &source(&file, tick_rate()?)?)?;
-    write("control.rs", &control(&file)?)
+    println!("cargo::rerun-if-env-changed=JOINT_TOLD");
+    let told = variable("JOINT_TOLD").map_or(file.clone(), |told| workspace().join(told));
+    println!("cargo::rerun-if-changed={}", told.display());
+    write("control.rs", &control(&file, &told)?)
 }
 
 /// Tables of the roles that control. A joint that cannot be controlled can still be simulated: only their binaries fail.
-fn control(file: &Path) -> Result<String, String> {
+fn control(file: &Path, told: &Path) -> Result<String, String> {
     println!("cargo::rerun-if-env-changed=JOINT_BANDWIDTH");
     println!("cargo::rerun-if-env-changed=JOINT_MOTOR_ONLY");
     let bandwidth = match variable("JOINT_BANDWIDTH") {
         Some(typed) => typed.parse().map_err(|_| format!("JOINT_BANDWIDTH={typed}: want a number of rad/s"))?,
         None => DEFAULT_BANDWIDTH,
     };
+    let tick_rate = tick_rate()?;
     let wish = ControlWish { bandwidth, output_encoder: variable("JOINT_MOTOR_ONLY") != Some("1".into()) };
-    let joint = read(file)?;
-    let mut surroundings = joint.surroundings();
-    surroundings.control_rate = tick_rate()?;
-    Ok(control_source(&joint.parameters, &surroundings, &wish, &processor()?)
-        .unwrap_or_else(|error| format!("compile_error!({:?});\n", format!("{}: {error}", file.display()))))
+    let (mut joint, mut told_joint) = (read(file)?, read(told)?);
+    [&mut joint, &mut told_joint].into_iter().for_each(|joint| joint.set_control_rate(tick_rate));
+    let told_around = told_joint.surroundings();
+    let told_as = Told { joint: &told_joint.parameters, surroundings: &told_around, wish };
+    match control_source(&joint.parameters, &joint.surroundings(), &told_as, &processor()?) {
+        Ok(source) => Ok(source.text),
+        Err(error) => Ok(format!("compile_error!({:?});\n", format!("{}: {error}", told.display()))),
+    }
 }
 
 /// Modules `joint_0`, `joint_1`, ... and `visit`, which shows their tables in this order.

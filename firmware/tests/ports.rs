@@ -40,7 +40,7 @@ fn tick(number: u32) -> (Samples<f32>, Command<f32>) {
 fn expected(ticks: u32) -> Vec<Answer<f32>> {
     let mut controller = controller();
     (0..ticks)
-        .map(|number| tick(number))
+        .map(tick)
         .map(|(samples, command)| controller.exchange(&samples, &command).unwrap())
         .collect()
 }

@@ -7,6 +7,11 @@ use crate::drive_train::Encoder;
 use crate::reader::JointFile;
 
 impl JointFile {
+    /// Puts another rate in place of the file's, for a controller that runs at it [Hz].
+    pub fn set_control_rate(&mut self, rate: u32) {
+        self.drive_train.get_or_insert_default().control_rate = rate.into();
+    }
+
     /// What surrounds the gears.
     pub fn surroundings(&self) -> Surroundings {
         let train = self.drive_train.unwrap_or_default();

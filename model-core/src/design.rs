@@ -31,7 +31,7 @@ use crate::real::Real;
 use crate::scales::Scales;
 use crate::tables::{Excitation, MeshTable, Mobility, Rigid, Scheme, Spring, Stage, Tables, Units};
 pub use certificate::certificate;
-pub use control_source::{ControlWish, control_source};
+pub use control_source::{ControlSource, ControlWish, Told, control_source};
 pub use cost::Cost;
 use dynamics::{Dynamics, MovingMasses};
 pub use pace::{Effort, Pace, Parts};

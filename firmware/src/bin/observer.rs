@@ -11,16 +11,16 @@ mod role {
     use firmware::tables::TABLES;
     use model_core::realtime::controller::Controller;
 
-    #[allow(dead_code, reason = "what surrounds a joint is real here")]
-    mod tables {
+    #[allow(dead_code, clippy::excessive_precision, reason = "generated numbers; the surroundings are real here")]
+    mod control {
         include!(concat!(env!("OUT_DIR"), "/control.rs"));
     }
 
-    pub const DIGEST: Option<u64> = Some(tables::CONTROL_DIGEST);
+    pub const DIGEST: Option<u64> = Some(control::CONTROL_DIGEST);
     pub type RoleWork = Observing<Direct<'static>>;
 
     pub fn work() -> RoleWork {
-        Observing::new(Direct(Controller::new(&tables::OBSERVER, &tables::COMPENSATION)), TABLES.digest_is_good())
+        Observing::new(Direct(Controller::new(&control::OBSERVER, &control::COMPENSATION)), TABLES.digest_is_good())
     }
 }
 

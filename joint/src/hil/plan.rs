@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 use joints::JointFile;
-use link::messages::{RunMode, RunSettings};
+use link::messages::{Role, RunMode, RunSettings};
 
 use super::profile::{BUILTIN, Profile};
 use super::session::Expected;
@@ -144,6 +144,8 @@ impl Plan {
             digest,
             tick_rate: arguments.rate,
             planets: parameters.geometry.planets,
+            role: Role::Plant,
+            control_digest: None,
             mend: arguments.flash_command(),
         };
         let command_timeout = (COMMAND_TIMEOUT * f64::from(arguments.rate)).ceil() as u32;

@@ -25,24 +25,44 @@ pub struct ControlWish {
     pub output_encoder: bool,
 }
 
-/// The statics `OBSERVER`, `COMPENSATION` and `SURROUNDINGS` and `CONTROL_DIGEST`, a digest over this very text, as a
-/// module's text.
+/// What a controller is told, and what is wanted of it.
+#[derive(Debug, Clone, Copy)]
+pub struct Told<'t> {
+    /// The joint; its backlash may be a guess.
+    pub joint: &'t JointParameters,
+    /// What surrounds it.
+    pub surroundings: &'t Surroundings,
+    /// What is wanted.
+    pub wish: ControlWish,
+}
+
+/// Tables as Rust source.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ControlSource {
+    /// The statics `OBSERVER`, `COMPENSATION` and `SURROUNDINGS` and the constant `CONTROL_DIGEST`, as a module's text.
+    pub text: String,
+    /// The constant: a digest over the rest of the text.
+    pub digest: u64,
+}
+
+/// Tables of a controller, and of what truly surrounds the joint, as source.
 pub fn control_source(
     joint: &JointParameters,
-    of: &Surroundings,
-    wish: &ControlWish,
+    around: &Surroundings,
+    told: &Told<'_>,
     processor: &Processor,
-) -> Result<String, DesignError> {
-    let mut settings = observer_settings(of);
-    if !wish.output_encoder {
+) -> Result<ControlSource, DesignError> {
+    let mut settings = observer_settings(told.surroundings);
+    if !told.wish.output_encoder {
         settings.output_encoder = None;
     }
-    let observer = observer_source(joint, &settings)?;
-    let compensation: CompensationTables<f32> = design_compensation(joint, &compensation_settings(of, wish.bandwidth))?;
+    let observer = observer_source(told.joint, &settings)?;
+    let compensation: CompensationTables<f32> =
+        design_compensation(told.joint, &compensation_settings(told.surroundings, told.wish.bandwidth))?;
     let surroundings: SurroundingsTable<f32> = match joint.geometry.planets {
-        3 => surroundings::<3>(joint, of, processor)?,
-        4 => surroundings::<4>(joint, of, processor)?,
-        5 => surroundings::<5>(joint, of, processor)?,
+        3 => surroundings::<3>(joint, around, processor)?,
+        4 => surroundings::<4>(joint, around, processor)?,
+        5 => surroundings::<5>(joint, around, processor)?,
         given => return Err(DesignError::PlanetCount { given }),
     };
     let text = format!(
@@ -55,7 +75,8 @@ pub fn control_source(
          pub static SURROUNDINGS: SurroundingsTable<f32> = {surroundings:#?};\n"
     );
     let digest = text.bytes().fold(digest::START, |running, byte| digest::chain(running, byte.into()));
-    Ok(format!("{text}/// Digest over all of it.\npub const CONTROL_DIGEST: u64 = {digest:#x};\n"))
+    let text = format!("{text}/// Digest over the rest of this text.\npub const CONTROL_DIGEST: u64 = {digest:#x};\n");
+    Ok(ControlSource { text, digest })
 }
 
 fn surroundings<const N: usize>(

@@ -11,13 +11,17 @@ mod role {
     use firmware::whole_loop::WholeLoop;
     use model_core::realtime::controller::Controller;
 
-    include!(concat!(env!("OUT_DIR"), "/control.rs"));
+    #[allow(clippy::excessive_precision, reason = "generated numbers")]
+    mod control {
+        include!(concat!(env!("OUT_DIR"), "/control.rs"));
+    }
 
-    pub const DIGEST: Option<u64> = Some(CONTROL_DIGEST);
+    pub const DIGEST: Option<u64> = Some(control::CONTROL_DIGEST);
     pub type RoleWork = WholeLoop<'static, Direct<'static>, PLANETS>;
 
     pub fn work() -> RoleWork {
-        WholeLoop::new(&TABLES, &SURROUNDINGS, Direct(Controller::new(&OBSERVER, &COMPENSATION)))
+        let controller = Controller::new(&control::OBSERVER, &control::COMPENSATION);
+        WholeLoop::new(&TABLES, &control::SURROUNDINGS, Direct(controller))
     }
 }
 

@@ -39,10 +39,7 @@ fn tick(number: u32) -> (Samples<f32>, Command<f32>) {
 /// What the controller itself says.
 fn expected(ticks: u32) -> Vec<Answer<f32>> {
     let mut controller = controller();
-    (0..ticks)
-        .map(tick)
-        .map(|(samples, command)| controller.exchange(&samples, &command).unwrap())
-        .collect()
+    (0..ticks).map(tick).map(|(samples, command)| controller.exchange(&samples, &command).unwrap()).collect()
 }
 
 #[test]

@@ -28,7 +28,7 @@ use bench::Bench;
 use evaluation::Ran;
 use files::Files;
 use plan::Plan;
-pub use plan::{Arguments, Mode};
+pub use plan::{Arguments, Mode, RoleName};
 pub use progress::Progress;
 use recording::Recording;
 use session::Session;

@@ -57,6 +57,11 @@ impl Translator {
         Self { ticks, ranges: bits.map(|bits| 1 << bits), first_turn: None, torque: 0.0 }
     }
 
+    /// For set-points alone, whose observer counts the link's turns from this one.
+    pub fn from_turn(ticks: u32, first_turn: i32) -> Self {
+        Self { first_turn: Some(first_turn), ..Self::new(ticks, [0, 0]) }
+    }
+
     /// Readings with their own times; the torque is that of the period before.
     pub fn samples(&mut self, seen: &Seen) -> Samples<f32> {
         if let (None, Some(first)) = (self.first_turn, seen.output) {

@@ -148,7 +148,7 @@ impl<P: ControllerPort, const N: usize> Work for WholeLoop<'_, P, N> {
     }
 
     fn sample(&self, steps: u32, computation: u16) -> LoopSample {
-        let outputs = self.joint.model().outputs();
+        let outputs = self.joint.outputs();
         let estimates = &self.answer.estimates;
         LoopSample {
             tick: steps,

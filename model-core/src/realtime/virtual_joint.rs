@@ -31,10 +31,13 @@ pub struct VirtualJoint<'tables, T: Real, const N: usize> {
     current: T,
     periods: u32,
     acting: Acting<T>,
+    /// The gears now, and where that puts the shafts.
+    outputs: Outputs<T, N>,
+    shafts: Shafts<T>,
 }
 
 /// Where both shafts are and how fast they turn.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 struct Shafts<T: Real> {
     /// [2^-32 turns]: the motor's within its turn, the link's with its turns.
     motor: u32,
@@ -46,14 +49,25 @@ struct Shafts<T: Real> {
 impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
     /// At rest at angle zero, teeth in the middle of their gap.
     pub fn new(tables: &'tables Tables<T, N>, table: &'tables SurroundingsTable<T>) -> Self {
-        Self {
-            model: Model::new(tables),
+        let model = Model::new(tables);
+        let mut joint = Self {
+            outputs: model.outputs(),
+            shafts: Shafts::default(),
+            model,
             table,
             commands: [T::ZERO; COMMANDS_UNDER_WAY],
             current: T::ZERO,
             periods: 0,
             acting: Acting::default(),
-        }
+        };
+        joint.look();
+        joint
+    }
+
+    /// Notes where everything is now.
+    fn look(&mut self) {
+        self.outputs = self.model.outputs();
+        self.shafts = self.shafts();
     }
 
     /// Back to rest.
@@ -63,11 +77,17 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
         self.current = T::ZERO;
         self.periods = 0;
         self.acting = Acting::default();
+        self.look();
     }
 
     /// The gears.
     pub fn model(&self) -> &Model<'tables, T, N> {
         &self.model
+    }
+
+    /// The gears' motion now.
+    pub fn outputs(&self) -> &Outputs<T, N> {
+        &self.outputs
     }
 
     /// Torques of the last period.
@@ -77,8 +97,7 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
 
     /// What is measured now: counts within the encoders' turns, and the torque that was commanded last.
     pub fn samples(&self) -> Samples<T> {
-        let table = self.table;
-        let shafts = self.shafts(&self.model.outputs());
+        let (table, shafts) = (self.table, self.shafts);
         let time = self.periods.wrapping_mul(table.clock_ticks);
         let [motor, output] = &table.encoders;
         Samples {
@@ -91,8 +110,7 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
 
     /// Whole turns of what the output encoder reads now: the observer counts the link's turns from its first reading's.
     pub fn output_turn(&self) -> i32 {
-        let shafts = self.shafts(&self.model.outputs());
-        counts(&self.table.encoders[1], shafts.link, shafts.speeds[1]).1
+        counts(&self.table.encoders[1], self.shafts.link, self.shafts.speeds[1]).1
     }
 
     /// Moves on by one period under a torque command and a torque that brakes the link [N m].
@@ -102,11 +120,10 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
         let limit = table.current.limit;
         self.commands[0] = if command.is_finite() { clamp(command, -limit, limit) } else { T::ZERO };
         let air_gap = self.air_gap();
-        let outputs = self.model.outputs();
-        let shafts = self.shafts(&outputs);
+        let shafts = self.shafts;
         let (sine, _) = sine_cosine::<T>(shafts.motor.wrapping_mul(table.cogging_periods));
         let driving = air_gap + table.cogging_torque * sine;
-        let passed_on = self.passed_on(&outputs);
+        let passed_on = self.passed_on();
         let [motor_speed, link_speed] = shafts.speeds;
         let loss = table.losses[usize::from(passed_on * motor_speed < T::ZERO)] * passed_on.abs();
         let lost = friction(&table.motor_friction, motor_speed, driving - passed_on, loss);
@@ -115,11 +132,12 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
         let braking = table.weight * sine + disturbance;
         let [from_sun, from_wind_up, from_rate] = table.to_link;
         let to_link =
-            from_sun * passed_on + from_wind_up * outputs.wind_up + from_rate * self.model.state().rate.wind_up;
+            from_sun * passed_on + from_wind_up * self.outputs.wind_up + from_rate * self.model.state().rate.wind_up;
         let rubbed = friction(&table.load_friction, link_speed, to_link - braking, T::ZERO);
         self.acting = Acting { air_gap, drive: driving - lost, load: braking + rubbed };
         self.model.step(Torques { drive: self.acting.drive, load: self.acting.load });
         self.periods = self.periods.wrapping_add(1);
+        self.look();
     }
 
     /// Mean torque in the air gap over this period.
@@ -132,22 +150,26 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
     }
 
     /// Torque that the sun passes on to the planets, by the springs of its teeth alone.
-    fn passed_on(&self, outputs: &Outputs<T, N>) -> T {
+    fn passed_on(&self) -> T {
         let table = self.table;
-        let meshes = outputs.deflections[0].iter().zip(&table.half_backlash);
+        let meshes = self.outputs.deflections[0].iter().zip(&table.half_backlash);
         let way = meshes.fold(T::ZERO, |sum, (deflection, half)| sum + *deflection - clamp(*deflection, -*half, *half));
         table.sun_torque * way
     }
 
-    fn shafts(&self, outputs: &Outputs<T, N>) -> Shafts<T> {
-        let table = self.table;
+    fn shafts(&self) -> Shafts<T> {
+        let (table, outputs) = (self.table, &self.outputs);
         let state = self.model.state();
         let [turns_of_motor, turns_of_link] = table.ratio;
         // Turns and their rest apart, so that neither overflows.
-        let turns = i64::from(outputs.carrier_turns).wrapping_mul(turns_of_motor.into());
-        let left = turns.checked_rem_euclid(turns_of_link.into()).unwrap_or(0) as u64;
         let rest = u64::from(outputs.carrier_fraction).wrapping_mul(turns_of_motor.into());
-        let rigid = (left << 32).wrapping_add(rest).checked_div(turns_of_link.into()).unwrap_or(0);
+        let rigid = if turns_of_link == 1 {
+            rest
+        } else {
+            let turns = i64::from(outputs.carrier_turns).wrapping_mul(turns_of_motor.into());
+            let left = turns.checked_rem_euclid(turns_of_link.into()).unwrap_or(0) as u64;
+            (left << 32).wrapping_add(rest).checked_div(turns_of_link.into()).unwrap_or(0)
+        };
         let motor_offset = (table.units_per_radian * outputs.motor_offset).to_i64();
         let link_offset = (table.units_per_radian * outputs.link_offset).to_i64();
         let carrier = (i64::from(outputs.carrier_turns) << 32) | i64::from(outputs.carrier_fraction);

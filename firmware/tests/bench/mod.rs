@@ -8,10 +8,10 @@ use std::rc::Rc;
 
 use embedded_hal::digital::{ErrorType, OutputPin};
 use firmware::budget::TickTimer;
-use firmware::control::Control;
+use firmware::control::{Control, Work};
 use firmware::conversation::{Conversation, LogEnd};
 use firmware::identity::{StartUp, hello};
-use firmware::plant::{Plant, PlantWords};
+use firmware::plant::Plant;
 use firmware::queues::Queues;
 use firmware::serial::{Line, Serial, Uart};
 use firmware::tables::{PLANETS, TABLES};
@@ -89,9 +89,9 @@ impl TickTimer for Timer {
 }
 
 /// A board on the bench.
-pub struct Bench {
-    control: Control<'static, Enable, Plant<'static, PLANETS>>,
-    conversation: Conversation<'static, PlantWords<PLANETS>>,
+pub struct Bench<W: Work = Plant<'static, PLANETS>> {
+    control: Control<'static, Enable, W>,
+    conversation: Conversation<'static, W::Words>,
     serial: Serial<'static, WireEnd>,
     receiver: Receiver,
     pub wire: Rc<RefCell<Wire>>,
@@ -106,6 +106,22 @@ impl Bench {
     }
 
     pub fn with_tables(tables: &'static Tables<f32, PLANETS>) -> Self {
+        Self::with(Plant::new(tables))
+    }
+
+    pub fn schedule(&self, sequence: u16, horizon: u32, commands: &[(u32, f32, f32)]) {
+        let command = |&(tick, drive_torque, load_torque)| Command { tick, drive_torque, load_torque };
+        let commands = commands.iter().map(command).collect();
+        self.send(&ToBoard::Schedule(Schedule { sequence, horizon, commands }));
+    }
+}
+
+impl<W: Work> Bench<W> {
+    /// A role's work on the bench.
+    pub fn with(work: W) -> Self
+    where
+        W::Words: 'static,
+    {
         let wire = Rc::new(RefCell::new(Wire::default()));
         let enable = Rc::new(Cell::new(true));
         let (tick_end, idle_end) = Box::leak(Box::new(Queues::new())).split();
@@ -119,9 +135,9 @@ impl Bench {
             watchdog_reset: false,
         };
         Self {
-            control: Control::new(Plant::new(tables), Enable(enable.clone()), PERIOD, tick_end),
+            control: Control::new(work, Enable(enable.clone()), PERIOD, tick_end),
             conversation: Conversation::new(
-                hello::<PlantWords<PLANETS>>(start_up, None),
+                hello::<W::Words>(start_up, None),
                 PERIOD,
                 idle_end,
                 line,
@@ -178,11 +194,5 @@ impl Bench {
         self.send(&ToBoard::Reset(RunSettings { mode, decimation, command_timeout }));
         self.run(2);
         assert!(matches!(self.said()[..], [FromBoard::Hello(_)]));
-    }
-
-    pub fn schedule(&self, sequence: u16, horizon: u32, commands: &[(u32, f32, f32)]) {
-        let command = |&(tick, drive_torque, load_torque)| Command { tick, drive_torque, load_torque };
-        let commands = commands.iter().map(command).collect();
-        self.send(&ToBoard::Schedule(Schedule { sequence, horizon, commands }));
     }
 }

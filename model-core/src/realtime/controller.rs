@@ -32,22 +32,19 @@ impl<T: Real> Answer<T> {
 pub struct Controller<'tables, T: Real> {
     observer: Observer<'tables, T, MAPPED>,
     compensation: Compensation<'tables, T>,
-    tables: (&'tables ObserverTables<T>, &'tables CompensationTables<T>),
+    tables: &'tables CompensationTables<T>,
 }
 
 impl<'tables, T: Real> Controller<'tables, T> {
     /// Both as they are after a reset.
     pub fn new(observer: &'tables ObserverTables<T>, compensation: &'tables CompensationTables<T>) -> Self {
-        Self {
-            observer: Observer::new(observer),
-            compensation: Compensation::new(compensation),
-            tables: (observer, compensation),
-        }
+        Self { observer: Observer::new(observer), compensation: Compensation::new(compensation), tables: compensation }
     }
 
     /// Forgets everything but what was designed.
     pub fn reset(&mut self) {
-        *self = Self::new(self.tables.0, self.tables.1);
+        self.observer.restart();
+        self.compensation = Compensation::new(self.tables);
     }
 
     /// One control period.

@@ -16,6 +16,7 @@ use firmware::queues::Queues;
 use firmware::serial::{Line, Serial, Uart};
 use firmware::tables::{PLANETS, TABLES};
 use firmware::timing_report::Resources;
+use firmware::words::Words;
 use heapless::spsc::Queue;
 use link::framing::{Receiver, encode};
 use link::messages::{Clock, Command, FromBoard, RunMode, RunSettings, Schedule, ToBoard};
@@ -89,7 +90,10 @@ impl TickTimer for Timer {
 }
 
 /// A board on the bench.
-pub struct Bench<W: Work = Plant<'static, PLANETS>> {
+pub struct Bench<W: Work = Plant<'static, PLANETS>>
+where
+    W::Words: Words<Command: 'static, Sample: 'static> + 'static,
+{
     control: Control<'static, Enable, W>,
     conversation: Conversation<'static, W::Words>,
     serial: Serial<'static, WireEnd>,
@@ -116,12 +120,12 @@ impl Bench {
     }
 }
 
-impl<W: Work> Bench<W> {
+impl<W: Work> Bench<W>
+where
+    W::Words: Words<Command: 'static, Sample: 'static> + 'static,
+{
     /// A role's work on the bench.
-    pub fn with(work: W) -> Self
-    where
-        W::Words: 'static,
-    {
+    pub fn with(work: W) -> Self {
         let wire = Rc::new(RefCell::new(Wire::default()));
         let enable = Rc::new(Cell::new(true));
         let (tick_end, idle_end) = Box::leak(Box::new(Queues::new())).split();

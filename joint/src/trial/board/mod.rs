@@ -218,9 +218,7 @@ impl<'w> Boards<'w> {
         };
         session.finish(u32::MAX)?;
         if there.digest != here.digest {
-            let both = here.run.samples.iter().zip(&there.run.samples);
-            let first = both.zip(here.sights.iter().zip(&there.sights)).position(|((a, b), (c, d))| a != b || c != d);
-            return Err(differs(first.unwrap_or_default() as u64, case));
+            return Err(difference(&here, &there, case));
         }
         let run = self.board_run(image, there.run.samples.len() as u32, session.recording.statistics.as_ref());
         Ok((there, run))
@@ -243,7 +241,7 @@ impl<'w> Boards<'w> {
             tick.checked_sub(1).and_then(|index| digests.get(index as usize)).is_some_and(|own| *own == digest)
         };
         if let Some(first) = samples.iter().find(|sample| !agrees(sample.tick, sample.digest)) {
-            return Err(differs(first.tick.into(), case));
+            return Err(differs(first.tick.into(), case, "the digest over joint and answers"));
         }
         let periods = samples.last().map_or(0, |sample| sample.tick);
         let run = self.board_run(image, periods, session.recording.statistics.as_ref());
@@ -289,7 +287,37 @@ fn read(text: &str) -> Outcome<JointFile> {
     })
 }
 
-fn differs(period: u64, case: &Case) -> RunError {
+/// The first period in which a board's run departs from the host's, and in what.
+fn difference(here: &Ran, there: &Ran, case: &Case) -> RunError {
+    let numbers = |ran: &Ran, index: usize| {
+        let (command, sight) = (ran.run.samples[index].command, ran.sights[index]);
+        [
+            ("torque", command),
+            ("gap", sight.gap.into()),
+            ("gap variance", sight.gap_variance.into()),
+            ("mesh torque", sight.mesh_torque.into()),
+            ("load torque", sight.load_torque.into()),
+            ("half-backlash", sight.half_backlash.into()),
+            ("compliance", sight.compliance.into()),
+            ("skew", sight.skew.into()),
+            ("trust", sight.trust.into()),
+        ]
+    };
+    let count = here.sights.len().min(there.sights.len());
+    for index in 0..count {
+        let both = numbers(here, index).into_iter().zip(numbers(there, index));
+        let apart = |((name, here), (_, there)): ((&str, f64), (&str, f64))| {
+            (here.to_bits() != there.to_bits()).then(|| format!("{name} {there:e} there, {here:e} here"))
+        };
+        let parts: Vec<String> = both.filter_map(apart).collect();
+        if !parts.is_empty() {
+            return differs(index as u64, case, &parts.join("; "));
+        }
+    }
+    differs(count as u64, case, "in nothing but the joint's own motion")
+}
+
+fn differs(period: u64, case: &Case, what: &str) -> RunError {
     let time = period as f64 / case.train.control_rate;
-    RunError::Broke(format!("board and host differ at t = {time:.4} s, control period {period}"))
+    RunError::Broke(format!("board and host differ at t = {time:.4} s, control period {period}: {what}"))
 }

@@ -122,7 +122,7 @@ mod measurement {
             observing.take(Exchange::new(tick, &samples, &command));
             observer.add(tick, counter.count(|| step(black_box(&mut observing))));
             whole.add(tick, counter.count(|| step(black_box(&mut looping))));
-            joint.advance(observing.sample(tick, 0).answer.shaped.torque, now.load_torque);
+            joint.advance(observing.sample(tick, 0).shaped.torque, now.load_torque);
             let acting = joint.acting();
             shadow.take(Command { tick, drive_torque: acting.drive, load_torque: acting.load });
             plant.add(tick, counter.count(|| step(black_box(&mut shadow))));

@@ -17,7 +17,7 @@ impl Words for ObserverWords {
     const ROLE: Role = Role::Observer;
     type Command = Exchange;
     type Timetable = Schedule<Exchange, EXCHANGES_PER_SCHEDULE>;
-    type Sample = RawAnswer;
+    type Sample = Answered;
     type Batch = AnswerBatch;
 
     fn timetable(message: ToBoard) -> Option<Self::Timetable> {
@@ -36,34 +36,15 @@ impl Timed for Exchange {
     }
 }
 
-/// An answer as the tick leaves it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RawAnswer {
-    /// Control periods done.
-    pub tick: u32,
-    /// Running digest over every answer so far.
-    pub digest: u64,
-    /// The answer.
-    pub answer: Answer<f32>,
-    /// Timer counts that the period took.
-    pub computation: u16,
-}
-
 /// One answer on its way: nobody could wait for a second.
 #[derive(Debug, Default)]
 pub struct AnswerBatch(Option<Answered>);
 
 impl Batch for AnswerBatch {
-    type Sample = RawAnswer;
+    type Sample = Answered;
 
-    fn add(&mut self, raw: &RawAnswer) {
-        self.0 = Some(Answered {
-            tick: raw.tick,
-            digest: raw.digest,
-            shaped: (&raw.answer.shaped).into(),
-            estimates: Some((&raw.answer.estimates).into()),
-            computation: raw.computation,
-        });
+    fn add(&mut self, answered: &Answered) {
+        self.0 = Some(answered.clone());
     }
 
     fn is_full(&self) -> bool {
@@ -134,7 +115,13 @@ impl<P: ControllerPort> Work for Observing<P> {
         self.answer.shaped.torque.is_finite()
     }
 
-    fn sample(&self, steps: u32, computation: u16) -> RawAnswer {
-        RawAnswer { tick: steps, digest: self.digest, answer: self.answer, computation }
+    fn sample(&self, steps: u32, computation: u16) -> Answered {
+        Answered {
+            tick: steps,
+            digest: self.digest,
+            shaped: (&self.answer.shaped).into(),
+            estimates: Some((&self.answer.estimates).into()),
+            computation,
+        }
     }
 }

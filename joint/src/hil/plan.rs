@@ -36,7 +36,7 @@ pub struct Arguments {
     /// Test files: runs observer and compensation on this machine, without a board
     #[arg(long, conflicts_with = "role")]
     pub host: bool,
-    /// Test files: what the board does, observer and compensation or the whole loop with the joint [default: observer]
+    /// Test files: what the board does, observer and compensation or the whole loop with the joint [default: loop]
     #[arg(long, value_enum)]
     pub role: Option<RoleName>,
     /// Test files: runs this seed in place of the file's

@@ -13,7 +13,7 @@ use crate::trial::plant::PlantName;
 /// What is asked of the tests in a file or folder.
 pub fn wanted(arguments: &Arguments) -> Outcome<Wanted<'_>> {
     let of_joints = [
-        ("mode", arguments.mode.is_some() && arguments.role != Some(RoleName::Loop)),
+        ("mode", arguments.mode.is_some() && (arguments.host || arguments.role == Some(RoleName::Observer))),
         ("duration", arguments.duration.is_some()),
         ("picture", arguments.picture.is_some()),
         ("no-reference", arguments.no_reference),
@@ -30,8 +30,8 @@ pub fn wanted(arguments: &Arguments) -> Outcome<Wanted<'_>> {
     }
     let boards = BoardWish {
         role: match arguments.role {
-            Some(RoleName::Loop) => Role::Loop,
-            Some(RoleName::Observer) | None => Role::Observer,
+            Some(RoleName::Observer) => Role::Observer,
+            Some(RoleName::Loop) | None => Role::Loop,
         },
         port: arguments.port.as_deref(),
         baud: arguments.baud,

@@ -49,6 +49,11 @@ pub struct Case {
     pub sample_rate: u32,
     /// First moment that counts [s].
     pub counts_from: f64,
+    /// First tick of every part of which the largest mesh force is compared.
+    pub parts: Vec<u64>,
+    /// Ticks at which a method is put back into the reference's state: a motion that is chaotic in the long run is judged
+    /// in windows. Only where the carrier's angle makes the mesh phase.
+    pub restarts: Vec<u64>,
     /// What counts.
     pub measure: Measure,
 }
@@ -70,6 +75,8 @@ impl Case {
             ticks: scenario.ticks,
             sample_rate,
             counts_from,
+            parts: vec![0],
+            restarts: Vec::new(),
             measure: Measure::Deflections,
         }
     }
@@ -86,6 +93,8 @@ impl Case {
             key: key.into(),
             title: title.into(),
             ticks: case.ticks() as u64,
+            parts: case.parts.iter().map(|part| part.first as u64).collect(),
+            restarts: case.windows.iter().map(|first| *first as u64).filter(|first| *first > 0).collect(),
             joint: case.joint,
             start: Start::Still,
             torques,

@@ -74,6 +74,8 @@ pub fn of_joint(joint: &JointParameters) -> Case {
         ticks: (LENGTH / frequency * f64::from(tick_rate)).ceil() as u64,
         sample_rate: 2 * tick_rate,
         counts_from: SETTLED / frequency,
+        parts: vec![0],
+        restarts: Vec::new(),
         measure: crate::case::Measure::Deflections,
     }
 }

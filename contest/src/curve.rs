@@ -8,7 +8,7 @@ use model_core::scales::Scales;
 use rayon::prelude::*;
 
 use crate::case::Case;
-use crate::course::{Course, Errors};
+use crate::course::{Course, Errors, Restart};
 use crate::method::Method;
 use crate::run::{self, Run};
 
@@ -85,8 +85,8 @@ impl Field {
             .par_iter()
             .map(|(case, course)| {
                 let run = match scalar {
-                    Scalar::Single => run_any::<f32>(case, method, (rate, substeps)),
-                    Scalar::Double => run_any::<f64>(case, method, (rate, substeps)),
+                    Scalar::Single => run_any::<f32>(case, course.restarts(), method, (rate, substeps)),
+                    Scalar::Double => run_any::<f64>(case, course.restarts(), method, (rate, substeps)),
                 }?;
                 Ok((course.errors(&run.readings), run.digest))
             })
@@ -98,11 +98,11 @@ impl Field {
     }
 }
 
-fn run_any<T: Real>(case: &Case, method: Method, rate: (u32, u32)) -> Result<Run, DesignError> {
+fn run_any<T: Real>(case: &Case, restarts: &[Restart], method: Method, rate: (u32, u32)) -> Result<Run, DesignError> {
     match case.joint.geometry.planets {
-        3 => run::run::<T, 3>(case, method, rate, &|| 0.0),
-        4 => run::run::<T, 4>(case, method, rate, &|| 0.0),
-        5 => run::run::<T, 5>(case, method, rate, &|| 0.0),
+        3 => run::run::<T, 3>(case, restarts, method, rate, &|| 0.0),
+        4 => run::run::<T, 4>(case, restarts, method, rate, &|| 0.0),
+        5 => run::run::<T, 5>(case, restarts, method, rate, &|| 0.0),
         given => Err(DesignError::PlanetCount { given }),
     }
 }

@@ -15,7 +15,7 @@ use peers::etd1::Etd1;
 use peers::euler::SemiImplicitEuler;
 use peers::instant::Rotor;
 use peers::motion::{Coordinates, Motion};
-use peers::peer::Peer;
+use peers::peer::{Peer, Start};
 use peers::plant::Plant;
 use peers::runge_kutta::RungeKutta4;
 use peers::scheme::Scheme as PeerScheme;
@@ -23,6 +23,7 @@ use peers::trapezoid::Trapezoid;
 use peers::two_mass::{Contact, TwoMass, TwoMassPeer};
 
 use crate::case::Case;
+use crate::course::Restart;
 use crate::method::{Method, SHARPNESS};
 use crate::reading::{Gauge, Reading};
 use crate::start::Deflected;
@@ -32,7 +33,7 @@ use crate::start::Deflected;
 pub struct Run {
     /// Readings with the number of the reference's sample.
     pub readings: Vec<(usize, Reading)>,
-    /// Digest over the last state.
+    /// Digest over the last state, and the last before every restart.
     pub digest: u64,
     /// What the clock said that the steps took.
     pub seconds: f64,
@@ -72,32 +73,39 @@ pub fn plant<T: Real, const N: usize>(joint: &JointParameters, method: Method, r
     plant
 }
 
-/// Moves a case by so many steps a second; the core's step takes each in so many sub-steps, of which the others know
-/// nothing. `N` must be the joint's number of planets. The clock, in seconds, is read before the first step and after the
-/// last.
+/// First steps, of a method at a rate, that come after the restarts of a case.
+pub fn restarts_by_step(case: &Case, rate: u32) -> impl Iterator<Item = u64> {
+    case.restarts.iter().map(move |tick| (tick * u64::from(rate)).div_ceil(u64::from(case.tick_rate)))
+}
+
+/// Moves a case by so many steps a second, put back wherever the case restarts; the core's step takes each in so many
+/// sub-steps, of which the others know nothing. `N` must be the joint's number of planets. The clock, in seconds, is
+/// read before the first step and after the last.
 pub fn run<T: Real, const N: usize>(
     case: &Case,
+    restarts: &[Restart],
     method: Method,
     (rate, substeps): (u32, u32),
     clock: &dyn Fn() -> f64,
 ) -> Result<Run, DesignError> {
-    let start = Deflected::<N>::new(&case.joint, &case.start);
+    let starts = Deflected::<N>::all(&case.joint, &case.start, restarts);
     Ok(match method {
         Method::Realtime => {
             let tables: Tables<T, N> = tables(&case.joint, rate, substeps)?;
             let mut model = Model::new(&tables);
-            model.set_state(start.state(&case.joint, &tables));
+            let starts: Vec<_> = starts.iter().map(|start| start.state(&case.joint, &tables)).collect();
+            model.set_state(starts[0]);
             let torques = Torques { drive: T::ZERO, load: T::ZERO };
-            follow(case, rate, clock, &mut Core { model, torques, gauge: Gauge::new(&case.joint), case, rate })
+            follow(case, rate, clock, &mut Core { model, starts, torques, gauge: Gauge::new(&case.joint), case, rate })
         }
-        Method::PaperEtd1 => whole::<T, N, Etd1<T>>(case, method, rate, clock, &start),
+        Method::PaperEtd1 => whole::<T, N, Etd1<T>>(case, method, rate, clock, &starts),
         Method::RungeKutta4 | Method::RungeKutta4Tanh => {
-            whole::<T, N, RungeKutta4<T, N>>(case, method, rate, clock, &start)
+            whole::<T, N, RungeKutta4<T, N>>(case, method, rate, clock, &starts)
         }
-        Method::Euler => whole::<T, N, SemiImplicitEuler>(case, method, rate, clock, &start),
-        Method::Trapezoid => whole::<T, N, Trapezoid<T, N>>(case, method, rate, clock, &start),
-        Method::TwoMassSpring => two_mass::<T, N>(case, Contact::SpringDamper, rate, clock, &start),
-        Method::TwoMassRestitution => two_mass::<T, N>(case, Contact::Restitution, rate, clock, &start),
+        Method::Euler => whole::<T, N, SemiImplicitEuler>(case, method, rate, clock, &starts),
+        Method::Trapezoid => whole::<T, N, Trapezoid<T, N>>(case, method, rate, clock, &starts),
+        Method::TwoMassSpring => two_mass::<T, N>(case, Contact::SpringDamper, rate, clock, &starts),
+        Method::TwoMassRestitution => two_mass::<T, N>(case, Contact::Restitution, rate, clock, &starts),
     })
 }
 
@@ -106,12 +114,13 @@ fn whole<T: Real, const N: usize, S: PeerScheme<T, N>>(
     method: Method,
     rate: u32,
     clock: &dyn Fn() -> f64,
-    start: &Deflected<N>,
+    starts: &[Deflected<N>],
 ) -> Run {
     let plant = plant(&case.joint, method, rate);
-    let peer: Peer<'_, T, N, S> = Peer::new(&plant, &start.peer(&case.joint, f64::from(rate)));
+    let starts: Vec<Start<T, N>> = starts.iter().map(|start| start.peer(&case.joint, f64::from(rate))).collect();
+    let peer: Peer<'_, T, N, S> = Peer::new(&plant, &starts[0]);
     let gauge = Gauge::new(&case.joint);
-    follow(case, rate, clock, &mut Whole { peer, gauge, carrier: 0.0, last: 0 })
+    follow(case, rate, clock, &mut Whole { peer, plant: &plant, starts, gauge, carrier: 0.0, last: 0 })
 }
 
 fn two_mass<T: Real, const N: usize>(
@@ -119,19 +128,25 @@ fn two_mass<T: Real, const N: usize>(
     contact: Contact,
     rate: u32,
     clock: &dyn Fn() -> f64,
-    start: &Deflected<N>,
+    starts: &[Deflected<N>],
 ) -> Run {
     let model = TwoMass::<T>::new(&case.joint, f64::from(rate), contact);
-    let (place, speed) = start.two_mass(&case.joint);
-    let peer = TwoMassPeer::new(&model, T::from_f64(place), T::from_f64(speed));
-    let carrier = RigidCarrier::new(&case.joint, start.speed, rate);
-    follow(case, rate, clock, &mut Gap { peer, carrier })
+    let start = |start: &Deflected<N>| {
+        let (place, speed) = start.two_mass(&case.joint);
+        let peer = TwoMassPeer::new(&model, T::from_f64(place), T::from_f64(speed));
+        (peer, RigidCarrier::new(&case.joint, TAU * start.turns, start.speed, rate))
+    };
+    let starts: Vec<_> = starts.iter().map(start).collect();
+    let (peer, carrier) = starts[0].clone();
+    follow(case, rate, clock, &mut Gap { peer, carrier, starts })
 }
 
 /// Something that moves in steps.
 trait Moving {
     /// All that a reading is made of.
     type Moment;
+    /// Puts it back, the so-many-th time.
+    fn restart(&mut self, count: usize);
     fn set_torques(&mut self, drive: f64, load: f64);
     fn step(&mut self);
     fn moment(&self) -> Self::Moment;
@@ -142,6 +157,9 @@ trait Moving {
 
 fn follow<M: Moving>(case: &Case, rate: u32, clock: &dyn Fn() -> f64, moving: &mut M) -> Run {
     let mut changes = torques_by_step(case, rate).into_iter().peekable();
+    let mut restarts = restarts_by_step(case, rate).zip(1..).peekable();
+    let mut torques = (0.0, 0.0);
+    let mut digest = digest::START;
     // Steps at which a sample of the reference falls.
     let divisor = greatest_divisor(rate, case.sample_rate);
     let (every, stride) = (u64::from(rate / divisor), (case.sample_rate / divisor) as usize);
@@ -155,8 +173,14 @@ fn follow<M: Moving>(case: &Case, rate: u32, clock: &dyn Fn() -> f64, moving: &m
             until_sample = every;
         }
         until_sample -= 1;
+        while let Some((_, count)) = restarts.next_if(|restart| restart.0 <= step) {
+            digest = digest::chain(digest, moving.digest());
+            moving.restart(count);
+            moving.set_torques(torques.0, torques.1);
+        }
         while let Some((_, drive, load)) = changes.next_if(|change| change.0 <= step) {
             moving.set_torques(drive, load);
+            torques = (drive, load);
         }
         if step < last {
             moving.step();
@@ -164,7 +188,7 @@ fn follow<M: Moving>(case: &Case, rate: u32, clock: &dyn Fn() -> f64, moving: &m
     }
     let seconds = clock() - start;
     let readings = moments.iter().enumerate().map(|(index, moment)| (index * stride, moving.read(moment))).collect();
-    Run { readings, digest: moving.digest(), seconds }
+    Run { readings, digest: digest::chain(digest, moving.digest()), seconds }
 }
 
 fn greatest_divisor(a: u32, b: u32) -> u32 {
@@ -173,6 +197,7 @@ fn greatest_divisor(a: u32, b: u32) -> u32 {
 
 struct Core<'a, T: Real, const N: usize> {
     model: Model<'a, T, N>,
+    starts: Vec<State<T, N>>,
     torques: Torques<T>,
     gauge: Gauge<N>,
     case: &'a Case,
@@ -181,6 +206,10 @@ struct Core<'a, T: Real, const N: usize> {
 
 impl<T: Real, const N: usize> Moving for Core<'_, T, N> {
     type Moment = State<T, N>;
+
+    fn restart(&mut self, count: usize) {
+        self.model.set_state(self.starts[count]);
+    }
 
     fn set_torques(&mut self, drive: f64, load: f64) {
         self.torques = Torques { drive: T::from_f64(drive), load: T::from_f64(load) };
@@ -226,6 +255,8 @@ const TURN: f64 = 18_446_744_073_709_551_616.0;
 
 struct Whole<'a, T: Real, const N: usize, S> {
     peer: Peer<'a, T, N, S>,
+    plant: &'a Plant<T, N>,
+    starts: Vec<Start<T, N>>,
     gauge: Gauge<N>,
     /// Angle of the rigid carrier, whole turns included.
     carrier: f64,
@@ -235,6 +266,10 @@ struct Whole<'a, T: Real, const N: usize, S> {
 
 impl<T: Real, const N: usize, S: PeerScheme<T, N>> Moving for Whole<'_, T, N, S> {
     type Moment = (Motion<T, N>, Clock<T>);
+
+    fn restart(&mut self, count: usize) {
+        self.peer = Peer::new(self.plant, &self.starts[count]);
+    }
 
     fn set_torques(&mut self, drive: f64, load: f64) {
         self.peer.set_torques(T::from_f64(drive), T::from_f64(load));
@@ -273,11 +308,16 @@ impl<T: Real, const N: usize, S: PeerScheme<T, N>> Moving for Whole<'_, T, N, S>
 struct Gap<'a, T: Real> {
     peer: TwoMassPeer<'a, T>,
     carrier: RigidCarrier,
+    starts: Vec<(TwoMassPeer<'a, T>, RigidCarrier)>,
 }
 
 impl<T: Real> Moving for Gap<'_, T> {
     /// Link angle and mesh force.
     type Moment = (f64, f64);
+
+    fn restart(&mut self, count: usize) {
+        (self.peer, self.carrier) = self.starts[count].clone();
+    }
 
     fn set_torques(&mut self, drive: f64, load: f64) {
         self.peer.set_torques(T::from_f64(drive), T::from_f64(load));
@@ -303,6 +343,7 @@ impl<T: Real> Moving for Gap<'_, T> {
 }
 
 /// The rigid motion beside a model that has none, exactly; at zero where the phase is prescribed.
+#[derive(Clone)]
 struct RigidCarrier {
     angle: f64,
     speed: f64,
@@ -312,13 +353,13 @@ struct RigidCarrier {
 }
 
 impl RigidCarrier {
-    fn new(joint: &JointParameters, speed: f64, rate: u32) -> Self {
+    fn new(joint: &JointParameters, angle: f64, speed: f64, rate: u32) -> Self {
         let (sun_lever, lever) = (joint.geometry.sun_base_radius, joint.geometry.carrier_base_radius());
         let mass = model_core::design::dynamics::MovingMasses::new(joint).rigid(joint.geometry.planets);
         let counts = matches!(joint.excitation, Excitation::Angle);
         let gains = [2.0 / (sun_lever * mass * lever), 1.0 / (lever * mass * lever)];
         Self {
-            angle: 0.0,
+            angle: if counts { angle } else { 0.0 },
             speed: if counts { speed } else { 0.0 },
             acceleration: 0.0,
             gains: if counts { gains } else { [0.0; 2] },

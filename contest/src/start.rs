@@ -1,24 +1,32 @@
 //! A case's start in the forms that the core and the peers take. The reference takes it as it is.
 
 use std::array;
+use std::f64::consts::TAU;
 
 use host_tests::reference::Start;
 use model_core::joint::{Excitation, JointParameters};
 use model_core::mesh::MeshKind;
 use model_core::real::Real;
-use model_core::realtime::{Relative, State};
+use model_core::realtime::{Relative, RigidBody, State};
 use model_core::scales::Scales;
 use model_core::tables::Tables;
 use peers::motion::Coordinates;
 use peers::peer;
 
-/// Sun-planet deflections (errors taken off), gap and wind-up [m], their rates [m/s], and the carrier's speed [rad/s].
+use crate::course::Restart;
+
+/// 2^64.
+const TURN: f64 = 18_446_744_073_709_551_616.0;
+
+/// Sun-planet deflections (errors taken off), gap and wind-up [m], their rates [m/s], and the rigid carrier.
 pub struct Deflected<const N: usize> {
     /// Coordinates.
     pub position: Coordinates<f64, N>,
     /// Rates.
     pub rate: Coordinates<f64, N>,
-    /// Speed of the rigid carrier.
+    /// Angle of the rigid carrier [turns].
+    pub turns: f64,
+    /// Its speed [rad/s].
     pub speed: f64,
 }
 
@@ -37,6 +45,7 @@ impl<const N: usize> Deflected<N> {
                     gap: given.gap_rate,
                     wind_up: given.wind_up_rate,
                 },
+                turns: 0.0,
                 speed: given.rigid_speed,
             },
             Start::Still => {
@@ -54,9 +63,24 @@ impl<const N: usize> Deflected<N> {
                     gap: 0.0,
                     wind_up: 0.0,
                 };
-                Self { position: at(0), rate: at(1), speed: 0.0 }
+                Self { position: at(0), rate: at(1), turns: 0.0, speed: 0.0 }
             }
         }
+    }
+
+    /// Where a case restarts.
+    pub fn again(joint: &JointParameters, restart: &Restart) -> Self {
+        Self { turns: restart.turns, ..Self::new(joint, &Start::Relative(restart.state.clone())) }
+    }
+
+    /// At the start of a case, and wherever it restarts.
+    pub fn all(joint: &JointParameters, start: &Start, restarts: &[Restart]) -> Vec<Self> {
+        std::iter::once(Self::new(joint, start)).chain(restarts.iter().map(|at| Self::again(joint, at))).collect()
+    }
+
+    /// What is left of the rigid carrier's whole turns [2^-64 turns].
+    fn place(&self) -> u64 {
+        ((self.turns - self.turns.floor()) * TURN) as u64
     }
 
     /// For the core.
@@ -69,12 +93,17 @@ impl<const N: usize> Deflected<N> {
         };
         let position = over(&self.position, scales.length);
         let rate = over(&self.rate, scales.length * scales.frequency);
-        State::from_deflections(tables, &position, &rate, T::from_f64(self.speed))
+        let rigid = RigidBody {
+            turns: self.turns.floor() as i32,
+            fraction: self.place(),
+            speed: (self.speed / (TAU * f64::from(tables.tick_rate)) * TURN) as i64,
+        };
+        State::with_rigid_body(tables, &position, &rate, rigid)
     }
 
     /// For a peer of so many steps a second.
     pub fn peer<T: Real>(&self, joint: &JointParameters, rate: f64) -> peer::Start<T, N> {
-        peer::Start::new(joint, rate, &self.position, &self.rate, self.speed)
+        peer::Start::new(joint, rate, &self.position, &self.rate, (self.place(), self.speed))
     }
 
     /// For the model of two masses, dimensionless: motor against link along the output's line of action, half the gap and

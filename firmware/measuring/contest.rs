@@ -38,6 +38,8 @@ mod contest {
         /// Ticks in a second.
         tick_rate: u32,
         torques: &'static [Change],
+        /// Ticks at whose beginning the next start is taken.
+        restarts: &'static [u32],
     }
 
     /// Samples in a second within which the work is summed too: control rates of joints.
@@ -77,6 +79,8 @@ mod contest {
 
     /// Something that moves in steps.
     trait Moving {
+        /// Puts it back to the so-many-th start.
+        fn restart(&mut self, count: usize);
         fn set_torques(&mut self, drive: f32, load: f32);
         fn step(&mut self);
         fn digest(&self) -> u64;
@@ -84,10 +88,10 @@ mod contest {
 
     impl Race {
         /// The core, by the scheme of its tables.
-        pub fn core<const N: usize>(&self, job: u32, tables: &Tables<f32, N>, start: &State<f32, N>, way: &Way) {
-            let mut model = Model::new(black_box(tables));
-            model.set_state(*black_box(start));
-            self.run(job, way, &mut Core { model, torques: Torques { drive: 0.0, load: 0.0 } });
+        pub fn core<const N: usize>(&self, job: u32, tables: &Tables<f32, N>, starts: &[State<f32, N>], way: &Way) {
+            let model = Model::new(black_box(tables));
+            let starts = black_box(starts);
+            self.run(job, way, &mut Core { model, starts, torques: Torques { drive: 0.0, load: 0.0 } });
         }
 
         /// A peer.
@@ -95,25 +99,38 @@ mod contest {
             &self,
             job: u32,
             plant: &Plant<f32, N>,
-            start: &Start<f32, N>,
+            starts: &[Start<f32, N>],
             way: &Way,
         ) {
-            self.run(job, way, &mut Peer::<f32, N, S>::new(black_box(plant), black_box(start)));
+            let (plant, starts) = (black_box(plant), black_box(starts));
+            let Some(start) = starts.first() else { return };
+            self.run(job, way, &mut Whole::<N, S> { peer: Peer::new(plant, start), plant, starts });
         }
 
-        /// The model of two masses, from a displacement and its rate.
-        pub fn two_mass(&self, job: u32, model: &TwoMass<f32>, place: f32, rate: f32, way: &Way) {
-            self.run(job, way, &mut TwoMassPeer::new(black_box(model), black_box(place), black_box(rate)));
+        /// The model of two masses, from displacements and their rates.
+        pub fn two_mass(&self, job: u32, model: &TwoMass<f32>, starts: &[[f32; 2]], way: &Way) {
+            let (model, starts) = (black_box(model), black_box(starts));
+            self.run(job, way, &mut Gap { peer: TwoMassPeer::new(model, 0.0, 0.0), model, starts });
         }
 
         fn run<M: Moving>(&self, job: u32, way: &Way, moving: &mut M) {
             let mut changes = black_box(way.torques).iter().peekable();
+            let mut restarts = black_box(way.restarts).iter().zip(1..).peekable();
+            let (mut drive, mut load) = (0.0, 0.0);
+            let mut digest = digest::START;
+            moving.restart(0);
             let begins = |tick: u32| (u64::from(tick) * u64::from(way.rate)).div_ceil(way.tick_rate.into());
             let (mut sum, mut most) = (0_u64, 0);
             let mut samples = SAMPLE_RATES.map(|sample_rate| Sample::new(way.rate, sample_rate));
             for step in 0..black_box(way.steps) {
+                while let Some((_, count)) = restarts.next_if(|(tick, _)| begins(**tick) <= step.into()) {
+                    digest = digest::chain(digest, moving.digest());
+                    moving.restart(count);
+                    moving.set_torques(drive, load);
+                }
                 while let Some(change) = changes.next_if(|change| begins(change.tick) <= step.into()) {
-                    moving.set_torques(change.drive, change.load);
+                    (drive, load) = (change.drive, change.load);
+                    moving.set_torques(drive, load);
                 }
                 let count = self.counter.count(|| call(moving));
                 sum += u64::from(count);
@@ -121,7 +138,7 @@ mod contest {
                 samples.iter_mut().for_each(|sample| sample.add(count));
             }
             let [slow, middle, fast] = samples.map(|sample| sample.most);
-            let digest = moving.digest();
+            let digest = digest::chain(digest, moving.digest());
             measuring::say(format_args!("{job},{},{sum},{most},{slow},{middle},{fast},{digest:016x}", way.steps));
         }
     }
@@ -134,10 +151,29 @@ mod contest {
 
     struct Core<'a, const N: usize> {
         model: Model<'a, f32, N>,
+        starts: &'a [State<f32, N>],
         torques: Torques<f32>,
     }
 
+    struct Whole<'a, const N: usize, S> {
+        peer: Peer<'a, f32, N, S>,
+        plant: &'a Plant<f32, N>,
+        starts: &'a [Start<f32, N>],
+    }
+
+    struct Gap<'a> {
+        peer: TwoMassPeer<'a, f32>,
+        model: &'a TwoMass<f32>,
+        starts: &'a [[f32; 2]],
+    }
+
     impl<const N: usize> Moving for Core<'_, N> {
+        fn restart(&mut self, count: usize) {
+            if let Some(start) = self.starts.get(count) {
+                self.model.set_state(*start);
+            }
+        }
+
         fn set_torques(&mut self, drive: f32, load: f32) {
             self.torques = Torques { drive, load };
         }
@@ -152,33 +188,45 @@ mod contest {
         }
     }
 
-    impl<const N: usize, S: Scheme<f32, N>> Moving for Peer<'_, f32, N, S> {
+    impl<const N: usize, S: Scheme<f32, N>> Moving for Whole<'_, N, S> {
+        fn restart(&mut self, count: usize) {
+            if let Some(start) = self.starts.get(count) {
+                self.peer = Peer::new(self.plant, start);
+            }
+        }
+
         fn set_torques(&mut self, drive: f32, load: f32) {
-            Peer::set_torques(self, drive, load);
+            self.peer.set_torques(drive, load);
         }
 
         #[inline(always)]
         fn step(&mut self) {
-            Peer::step(self);
+            self.peer.step();
         }
 
         fn digest(&self) -> u64 {
-            self.motion().digest()
+            self.peer.motion().digest()
         }
     }
 
-    impl Moving for TwoMassPeer<'_, f32> {
+    impl Moving for Gap<'_> {
+        fn restart(&mut self, count: usize) {
+            if let Some([place, rate]) = self.starts.get(count) {
+                self.peer = TwoMassPeer::new(self.model, *place, *rate);
+            }
+        }
+
         fn set_torques(&mut self, drive: f32, load: f32) {
-            TwoMassPeer::set_torques(self, drive, load);
+            self.peer.set_torques(drive, load);
         }
 
         #[inline(always)]
         fn step(&mut self) {
-            TwoMassPeer::step(self);
+            self.peer.step();
         }
 
         fn digest(&self) -> u64 {
-            digest::chain(digest::START, self.link_offset().to_bits().into())
+            digest::chain(digest::START, self.peer.link_offset().to_bits().into())
         }
     }
 

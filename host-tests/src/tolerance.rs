@@ -1,6 +1,7 @@
 //! Every bound that a test of this workspace holds a number against, with the value measured when it was set and the
 //! reason why it is not tighter. Tests keep no tolerances of their own.
 
+pub mod light_planets;
 pub mod observer;
 
 /// An upper limit on the size of an error.

@@ -80,6 +80,9 @@ pub trait Real:
     /// Square root of what is not negative, by Newton's iteration from the exponent halved: the same bits everywhere, and
     /// right to a few units in the last place. Zero and what is below it give zero.
     fn square_root(self) -> Self;
+    /// In the form in which a caller's floating-point mode cannot change it: zero if it is smaller than `LEAST`, `NAN` if
+    /// it is not finite. By whole numbers: flags of floating-point comparisons are slow to read on a Cortex-M4F.
+    fn settled(self) -> Self;
     /// Neither infinite nor NaN.
     fn is_finite(self) -> bool;
     /// Bits for a digest.
@@ -148,6 +151,16 @@ macro_rules! real {
                     self * inverse
                 } else {
                     0.0
+                }
+            }
+            fn settled(self) -> Self {
+                let size = self.abs().to_bits();
+                if size < Self::LEAST.to_bits() {
+                    0.0
+                } else if size < Self::INFINITY.to_bits() {
+                    self
+                } else {
+                    <Self as Real>::NAN
                 }
             }
             fn is_finite(self) -> bool {

@@ -21,6 +21,7 @@ pub mod phase;
 mod planets;
 mod pressed;
 mod runge_kutta;
+mod sharp;
 mod stages;
 mod state;
 mod substep;

@@ -35,8 +35,8 @@ pub struct Ahead<T> {
 }
 
 impl<T: Real> Clock<T> {
-    /// At phase and angle zero, the rigid carrier at a speed in 2^-64 turns a step.
-    pub fn new<const N: usize>(plant: &Plant<T, N>, speed: i64) -> Self {
+    /// At phase zero; where the rigid carrier makes the phase, at its angle [2^-64 turns] and speed [2^-64 turns a step].
+    pub fn new<const N: usize>(plant: &Plant<T, N>, place: u64, speed: i64) -> Self {
         let mut clock = Self {
             place: 0,
             speed,
@@ -46,7 +46,8 @@ impl<T: Real> Clock<T> {
             since: 0,
         };
         if clock.angle {
-            clock.rotor.rate = rate(plant, speed);
+            clock.place = place;
+            clock.rotor = carried(plant, place, speed);
         }
         clock
     }
@@ -84,18 +85,16 @@ impl<T: Real> Clock<T> {
             }
             return Ahead { middle, end: self.rotor };
         }
-        let at = |place: u64| sine_cosine((place.wrapping_mul(phase.periods_per_turn.into()) >> 32) as u32);
         let half = (self.speed >> 1).wrapping_add(self.change >> 3);
         let mid_place = self.place.wrapping_add(half as u64);
         let way = self.speed.wrapping_add(self.change >> 1);
         self.place = self.place.wrapping_add(way as u64);
         self.speed = self.speed.wrapping_add(self.change);
-        let (sine, cosine) = at(self.place);
-        self.rotor = Rotor { sine, cosine, rate: rate(plant, self.speed) };
+        self.rotor = carried(plant, self.place, self.speed);
         if !MIDDLE {
             return Ahead { middle: self.rotor, end: self.rotor };
         }
-        let (sine, cosine) = at(mid_place);
+        let (sine, cosine) = at(plant, mid_place);
         let middle = Rotor { sine, cosine, rate: T::HALF * (start.rate + self.rotor.rate) };
         Ahead { middle, end: self.rotor }
     }
@@ -109,6 +108,19 @@ fn turned<T: Real>(rotor: &Rotor<T>, [sine, cosine]: [T; 2]) -> Rotor<T> {
         cosine: rotor.cosine * cosine - rotor.sine * sine,
         rate: rotor.rate,
     }
+}
+
+/// Sine and cosine of the phase that the rigid carrier makes.
+#[inline(always)]
+fn at<T: Real, const N: usize>(plant: &Plant<T, N>, place: u64) -> (T, T) {
+    sine_cosine((place.wrapping_mul(plant.phase.periods_per_turn.into()) >> 32) as u32)
+}
+
+/// The same with its rate.
+#[inline(always)]
+fn carried<T: Real, const N: usize>(plant: &Plant<T, N>, place: u64, speed: i64) -> Rotor<T> {
+    let (sine, cosine) = at(plant, place);
+    Rotor { sine, cosine, rate: rate(plant, speed) }
 }
 
 /// Phase rate at a rigid speed.

@@ -172,14 +172,14 @@ fn mesh<T: Real>(parameters: &JointParameters, scales: &Scales, kind: MeshKind, 
 }
 
 impl<T: Real, const N: usize> Start<T, N> {
-    /// From sun-planet deflections, gap and wind-up [m], their rates [m/s] and a carrier speed [rad/s], for a plant of so
-    /// many steps a second.
+    /// From sun-planet deflections, gap and wind-up [m], their rates [m/s] and the rigid carrier's place [2^-64 turns] and
+    /// speed [rad/s], for a plant of so many steps a second.
     pub fn new(
         parameters: &JointParameters,
         rate: f64,
         position: &Coordinates<f64, N>,
         speed: &Coordinates<f64, N>,
-        carrier_speed: f64,
+        (carrier_place, carrier_speed): (u64, f64),
     ) -> Self {
         let scales = Scales::new(parameters);
         let over = |values: &Coordinates<f64, N>, unit: f64| Coordinates {
@@ -190,6 +190,7 @@ impl<T: Real, const N: usize> Start<T, N> {
         Self {
             position: over(position, scales.length),
             rate: over(speed, scales.length * scales.frequency),
+            rigid_place: carrier_place,
             rigid_speed: (carrier_speed / (TAU * rate) * WHOLE) as i64,
         }
     }

@@ -29,14 +29,16 @@ pub struct Start<T: Real, const N: usize> {
     pub position: Coordinates<T, N>,
     /// Their rates.
     pub rate: Coordinates<T, N>,
-    /// Speed of the rigid carrier [2^-64 turns a step].
+    /// Angle of the rigid carrier [2^-64 turns].
+    pub rigid_place: u64,
+    /// Its speed [2^-64 turns a step].
     pub rigid_speed: i64,
 }
 
 impl<'a, T: Real, const N: usize, S: Scheme<T, N>> Peer<'a, T, N, S> {
-    /// A joint at time zero without torques.
+    /// A joint without torques.
     pub fn new(plant: &'a Plant<T, N>, start: &Start<T, N>) -> Self {
-        let clock = Clock::new(plant, start.rigid_speed);
+        let clock = Clock::new(plant, start.rigid_place, start.rigid_speed);
         let instant = Instant::at(plant, clock.now());
         let mut motion = Motion { position: start.position, rate: start.rate };
         for i in 0..N {

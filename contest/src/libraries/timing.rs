@@ -66,13 +66,13 @@ pub fn times<const N: usize, const D: usize>(
             let rate = if method == Method::Realtime { (rate, substeps) } else { (rate * substeps, 1) };
             let step = frequency / f64::from(rate.0 * rate.1);
             all.push(timed(first, name, step, phases.len(), |phase| {
-                let case = &phases[phase].0;
+                let (case, course) = &phases[phase];
                 let done = match scalar {
-                    Scalar::Single => run::run::<f32, N>(case, method, rate, &now),
-                    Scalar::Double => run::run::<f64, N>(case, method, rate, &now),
+                    Scalar::Single => run::run::<f32, N>(case, course.restarts(), method, rate, &now),
+                    Scalar::Double => run::run::<f64, N>(case, course.restarts(), method, rate, &now),
                 };
                 let done = done.ok()?;
-                Some((done.seconds, phases[phase].1.errors(&done.readings)))
+                Some((done.seconds, course.errors(&done.readings)))
             }));
         }
     }

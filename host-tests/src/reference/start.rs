@@ -4,6 +4,7 @@
 use model_core::joint::{MAX_PLANETS, PerPlanet};
 
 use super::equations::JointEquations;
+use super::observation::Observation;
 use crate::integrator::{Entries, MAX_ENTRIES};
 
 /// Where a joint starts. The rigid-body carrier angle is zero in each.
@@ -46,6 +47,19 @@ impl RelativeState {
             wind_up: 0.0,
             wind_up_rate: 0.0,
             rigid_speed: 0.0,
+        }
+    }
+
+    /// What an observation shows; where the rigid body is stands beside it.
+    pub fn of(observation: &Observation) -> Self {
+        Self {
+            sun_planet: observation.deflections[0].clone(),
+            sun_planet_rate: observation.deflection_rates[0].clone(),
+            gap: observation.gap,
+            gap_rate: observation.gap_rate,
+            wind_up: observation.wind_up,
+            wind_up_rate: observation.wind_up_rate,
+            rigid_speed: observation.rigid_speed,
         }
     }
 }

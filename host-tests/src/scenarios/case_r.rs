@@ -2,17 +2,16 @@
 //! torques and three frequencies, struck at the link and left to fly in its gap, at ten thousand ticks a second. Open
 //! loop, without friction and sensors, so that two integrators can be held against each other.
 //!
-//! Q1's planets weigh 0.6 % of what moves with the motor and rattle without rule after every crossing of the gap: two
-//! integrators agree on the link's angle, on the gap and on the net force, hardly on a single planet's mesh.
+//! Q1's planets weigh 0.6 % of what moves with the motor and rattle without rule after every crossing of the gap, and the
+//! motion as a whole is chaotic: torques changed by a billionth end elsewhere in the gap. Hence the windows: wherever
+//! torques jump, whoever follows is put back into the reference's state, and is judged by what it does up to the next.
 
 use std::f64::consts::{PI, TAU};
-use std::ops::Range;
 
 use model_core::joint::JointParameters;
 use model_core::mesh::{DampingLaw, MeshPhases, StiffnessWave};
 
 use super::joints::{q1, same};
-use crate::reference::{Reference, ReferenceError, Start};
 
 /// Ticks in one second [Hz].
 pub const TICK_RATE: u32 = 10_000;
@@ -29,8 +28,21 @@ const RUN_TIME: f64 = 0.4;
 /// Frequency of the reversals [Hz], and how many periods of each.
 const REVERSALS: [(f64, f64); 3] = [(1.0, 1.0), (5.0, 2.0), (20.0, 4.0)];
 
+/// Those of the brief form.
+const BRIEF_REVERSALS: [(f64, f64); 2] = [(5.0, 0.5), (20.0, 1.0)];
+
+/// Length of what comes after the reversals, each [s].
+const PAUSE: f64 = 0.1;
+const BRIEF_PAUSE: f64 = 0.05;
+
+/// Length of an impact [s].
+const IMPACT: f64 = 0.01;
+
 /// Torque of the reversals over the rated one.
 const SHARES: [f64; 3] = [1.0, 0.2, 0.05];
+
+/// Torques jump where they change from one tick to the next by more than this part of their largest.
+const JUMP: f64 = 0.1;
 
 /// A joint, its torques tick by tick, and where each part of the motion begins and ends.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,6 +53,8 @@ pub struct CaseR {
     pub torques: Vec<[f64; 2]>,
     /// Parts of the motion, in order and without gaps.
     pub parts: Vec<Part>,
+    /// Ticks at which windows begin: with every part, and wherever torques jump.
+    pub windows: Vec<usize>,
 }
 
 /// A part of the motion.
@@ -48,32 +62,8 @@ pub struct CaseR {
 pub struct Part {
     /// What is done.
     pub name: String,
-    /// Its ticks.
-    pub ticks: Range<usize>,
-}
-
-/// What is compared, at the end of a tick.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sample {
-    /// Angle of the link [rad].
-    pub link_angle: f64,
-    /// Largest force in any mesh, whatever its sign [N].
-    pub mesh_force: f64,
-    /// Mesh forces that the sun feels, together [N].
-    pub sun_force: f64,
-}
-
-/// How far a motion is from the reference's.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Distance {
-    /// Root mean square of the error of the link's angle, over the lost motion.
-    pub angle_rms: f64,
-    /// Its largest size, likewise.
-    pub angle_worst: f64,
-    /// Error of the largest force in any mesh, for each part, over that force.
-    pub peaks: Vec<f64>,
-    /// Error of the largest net force on the sun, likewise.
-    pub sun_peaks: Vec<f64>,
+    /// Its first tick.
+    pub first: usize,
 }
 
 /// Case R on joint Q1 with stiffness ripple 0.15 and errors of 3 um, phases by tooth counts.
@@ -91,13 +81,22 @@ pub fn case_r() -> CaseR {
 
 /// The same motion on another joint: torques are parts of its rated one, the run is as fast.
 pub fn on(joint: JointParameters) -> CaseR {
+    moved(joint, &REVERSALS, PAUSE)
+}
+
+/// The same with fewer reversals and shorter pauses, a fifth of its length.
+pub fn brief(joint: JointParameters) -> CaseR {
+    moved(joint, &BRIEF_REVERSALS, BRIEF_PAUSE)
+}
+
+fn moved(joint: JointParameters, reversals: &[(f64, f64)], pause: f64) -> CaseR {
     let ratio = ratio(&joint);
     let rated = joint.rated_output_torque;
-    let mut case = CaseR { torques: Vec::new(), parts: Vec::new(), joint };
+    let mut case = CaseR { torques: Vec::new(), parts: Vec::new(), windows: Vec::new(), joint };
     // A sine of torque whose half wave takes the whole joint to its speed.
     let run = PI * RUN_SPEED * case.inertia() / RUN_TIME;
     case.part("run up and down", RUN_TIME, |time| [run * (TAU * time / RUN_TIME).sin() / ratio, 0.0]);
-    for (frequency, periods) in REVERSALS {
+    for (frequency, periods) in reversals {
         for share in SHARES {
             let name = format!("reversals of {:.0} % at {frequency:.0} Hz", 100.0 * share);
             let torque = share * rated / ratio;
@@ -107,11 +106,11 @@ pub fn on(joint: JointParameters) -> CaseR {
         }
     }
     let held = 0.5 * rated;
-    case.part("held at half torque", 0.1, |_| [held / ratio, held]);
+    case.part("held at half torque", pause, |_| [held / ratio, held]);
     for (name, impact) in [("impact against the drive", 3.0 * rated), ("impact along the drive", -3.0 * rated)] {
-        case.part(name, 0.1, |time| [held / ratio, if time < 0.01 { held + impact } else { held }]);
+        case.part(name, pause, |time| [held / ratio, if time < IMPACT { held + impact } else { held }]);
     }
-    case.part("free flight", 0.1, |_| [0.0, 0.0]);
+    case.part("free flight", pause, |_| [0.0, 0.0]);
     case
 }
 
@@ -123,57 +122,6 @@ impl CaseR {
     /// Length in ticks.
     pub fn ticks(&self) -> usize {
         self.torques.len()
-    }
-
-    /// Lost motion at the output, 2b / (r_c cos alpha) [rad].
-    pub fn lost_motion(&self) -> f64 {
-        2.0 * self.joint.sun_planet.half_backlash[0] / self.lever()
-    }
-
-    /// The reference's motion: one sample for the end of each tick.
-    pub fn reference(&self, start: &Start) -> Result<Vec<Sample>, ReferenceError> {
-        let mut reference = Reference::start(&self.joint, start)?;
-        let mut samples = Vec::with_capacity(self.ticks());
-        for (tick, [drive, load]) in self.torques.iter().enumerate() {
-            reference.advance((tick + 1) as f64 / f64::from(TICK_RATE), *drive, *load)?;
-            let now = reference.observe();
-            let forces = now.mesh_forces.iter().flatten();
-            samples.push(Sample {
-                link_angle: now.link_angle,
-                mesh_force: forces.fold(0.0, |peak: f64, force| peak.max(force.abs())),
-                sun_force: now.sun_force(),
-            });
-        }
-        Ok(samples)
-    }
-
-    /// How far a motion is from the reference's.
-    ///
-    /// # Panics
-    /// If either has not one sample for each tick.
-    pub fn distance(&self, reference: &[Sample], motion: &[Sample]) -> Distance {
-        assert_eq!(reference.len(), self.ticks(), "one sample a tick");
-        assert_eq!(motion.len(), self.ticks(), "one sample a tick");
-        let (mut squares, mut worst) = (0.0, 0.0);
-        for (right, found) in reference.iter().zip(motion) {
-            let error = (found.link_angle - right.link_angle) / self.lost_motion();
-            squares += error * error;
-            // Not `max`, which would pass over what is no number.
-            worst = if error.abs() <= worst { worst } else { error.abs() };
-        }
-        let peaks = |of: fn(&Sample) -> f64| -> Vec<f64> {
-            let peak = |samples: &[Sample]| samples.iter().fold(0.0, |peak: f64, sample| peak.max(of(sample).abs()));
-            self.parts
-                .iter()
-                .map(|part| peak(&motion[part.ticks.clone()]) / peak(&reference[part.ticks.clone()]) - 1.0)
-                .collect()
-        };
-        Distance {
-            angle_rms: (squares / self.ticks() as f64).sqrt(),
-            angle_worst: worst,
-            peaks: peaks(|sample| sample.mesh_force),
-            sun_peaks: peaks(|sample| sample.sun_force),
-        }
     }
 
     /// r_c cos(alpha) [m].
@@ -195,9 +143,14 @@ impl CaseR {
 
     /// Adds a part; torques are those in the middle of each tick.
     fn part(&mut self, name: &str, duration: f64, torques: impl Fn(f64) -> [f64; 2]) {
-        let from = self.ticks();
+        let first = self.ticks();
         let ticks = (duration * f64::from(TICK_RATE)).round() as usize;
-        self.torques.extend((0..ticks).map(|tick| torques((tick as f64 + 0.5) / f64::from(TICK_RATE))));
-        self.parts.push(Part { name: name.into(), ticks: from..self.ticks() });
+        let added: Vec<[f64; 2]> = (0..ticks).map(|tick| torques((tick as f64 + 0.5) / f64::from(TICK_RATE))).collect();
+        let least = [0, 1].map(|which| JUMP * added.iter().fold(0.0, |most: f64, pair| most.max(pair[which].abs())));
+        let jumps = |pair: &[[f64; 2]]| (0..2).any(|which| (pair[1][which] - pair[0][which]).abs() > least[which]);
+        self.windows.push(first);
+        self.windows.extend((1..ticks).filter(|tick| jumps(&added[tick - 1..=*tick])).map(|tick| first + tick));
+        self.torques.extend(added);
+        self.parts.push(Part { name: name.into(), first });
     }
 }

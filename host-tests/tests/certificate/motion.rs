@@ -43,14 +43,16 @@ fn model<T: Real, const N: usize>(case: &Case, tables: &'static Tables<T, N>, ch
     model
 }
 
-fn tables<T: Real, const N: usize>(case: &Case, rate: u32) -> &'static Tables<T, N> {
-    let tables = design_scheme(&case.joint, rate, Scheme::Realtime, Effort::Substeps(case.substeps));
+fn tables<T: Real, const N: usize>(case: &Case, rate: u32, effort: Effort) -> &'static Tables<T, N> {
+    let tables = design_scheme(&case.joint, rate, Scheme::Realtime, effort);
     Box::leak(Box::new(tables.expect("a sound joint")))
 }
 
 /// Follows a case at a tick rate; `None` if it cannot be predicted by anyone.
 pub fn follow<const N: usize>(case: &Case, rate: u32) -> Option<Outcome> {
-    let (coarse_tables, fine_tables) = (tables::<f32, N>(case, rate), tables::<f64, N>(case, FINER * rate));
+    let coarse_tables = tables::<f32, N>(case, rate, case.effort());
+    // Of corrected sub-steps in either case: leaps have nothing in common with them.
+    let fine_tables = tables::<f64, N>(case, FINER * rate, Effort::Substeps(case.parts.count()));
     let mut coarse = model(case, coarse_tables, 0.0);
     let (mut fine, mut changed) = (model(case, fine_tables, 0.0), model(case, fine_tables, CHANGE));
     let length = case.joint.characteristic_length;

@@ -5,6 +5,7 @@
 use std::f64::consts::TAU;
 
 use host_tests::scenarios::l1;
+use model_core::design::{Effort, Parts};
 use model_core::joint::{Compliance, Excitation, JointParameters, PerPlanet};
 use model_core::mesh::{DampingLaw, Mesh, MeshPhases, StiffnessWave};
 use model_core::scales::Scales;
@@ -24,9 +25,19 @@ pub struct Case {
     pub deflection: f64,
     /// Speed of the carrier at first [rad/s].
     pub speed: f64,
-    /// Phase of the fastest mode in a sub-step, about, and sub-steps of a tick.
+    /// Phase of the fastest mode in a part, about, and parts of a tick.
     pub phase: f64,
-    pub substeps: u32,
+    pub parts: Parts,
+}
+
+impl Case {
+    /// What makes a tick of these parts.
+    pub fn effort(&self) -> Effort {
+        match self.parts {
+            Parts::Substeps(substeps) => Effort::Substeps(substeps),
+            Parts::Leaps(leaps) => Effort::Leaps(leaps),
+        }
+    }
 }
 
 impl Chance {
@@ -125,8 +136,17 @@ impl Chance {
             deflection,
             speed,
             phase: self.scaled(0.08, 2.2),
-            substeps: self.whole(1, 6),
+            parts: Parts::Substeps(self.whole(1, 6)),
             joint,
         }
+    }
+
+    /// The next case with planets so light that leaps are taken.
+    pub fn light_case(&mut self) -> Case {
+        let mut case = self.case();
+        case.joint.bodies.planet_equivalent_mass = self.scaled(0.005, 0.05);
+        case.phase = self.between(0.5, 1.1);
+        case.parts = Parts::Leaps(self.whole(2, 10));
+        case
     }
 }

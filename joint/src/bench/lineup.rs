@@ -17,7 +17,7 @@ use crate::target::toolchain::Toolchain;
 /// Steps a second over a quarter of the case's sample rate, where the phase is prescribed.
 const MULTIPLES: [u32; 15] = [1, 2, 3, 4, 6, 8, 10, 12, 16, 20, 24, 32, 40, 48, 64];
 /// Steps a tick where torques change tick by tick.
-const STEPS_A_TICK: [u32; 7] = [1, 2, 3, 4, 6, 8, 16];
+const STEPS_A_TICK: [u32; 11] = [1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 32];
 /// Sub-steps that the core's step takes in a tick, and ticks a second over a quarter of the case's sample rate: a tick
 /// costs something of its own, and while contact holds it is all there is.
 const SUBSTEPS: [u32; 10] = [1, 2, 3, 4, 5, 6, 8, 10, 12, 16];
@@ -101,11 +101,15 @@ pub struct CaseFigures {
     pub title: String,
     /// What the error is of.
     pub measure: &'static str,
+    /// Whether that is the output angle.
+    pub by_link_angle: bool,
     /// Length [s].
     pub duration_s: f64,
     /// Phases in the envelope.
     pub phases: usize,
-    /// The measure of the reference itself once its start is moved by a millionth of b_c.
+    /// Windows that the motion is judged in, each begun in the reference's state.
+    pub windows: usize,
+    /// The measure of the reference itself once its start is moved by a millionth of b_c, without windows.
     pub sensitivity: f64,
 }
 
@@ -128,8 +132,10 @@ pub fn run(
             key: case.key.clone(),
             title: case.title.clone(),
             measure: measure(&case),
+            by_link_angle: case.measure == Measure::LinkAngle,
             duration_s: case.duration(),
             phases,
+            windows: 1 + case.restarts.len(),
             sensitivity: of_measure(&case, &sensitivity),
         });
         progress.stage(&format!("case {}: methods on the host", case.key));
@@ -139,7 +145,9 @@ pub fn run(
             .map(|(method, point, _)| {
                 let lost = finite(point.errors.link_rms).is_none();
                 let digest = (!lost).then_some(point.digest);
-                Job { case: &field.case, method: *method, rate: point.rate, substeps: point.substeps, digest }
+                let restarts = field.course().restarts();
+                let (rate, substeps) = (point.rate, point.substeps);
+                Job { case: &field.case, restarts, method: *method, rate, substeps, digest }
             })
             .collect();
         progress.stage(&format!("case {}: methods on the emulated core", case.key));

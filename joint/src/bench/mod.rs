@@ -1,8 +1,10 @@
 //! `joint bench`: the core's step against what people use, error by cost, on the emulated core and on the host. `lineup`
 //! runs the fixed-step methods, by `race` on the emulated core, `libraries` times what a host program would take from
-//! a library, `verdicts` draws the conclusions, `table`, `page` and `document` show them.
+//! a library, `verdicts` and `in_a_sample` draw the conclusions, `table`, `page` and `document` show them.
 
+mod columns;
 mod document;
+mod in_a_sample;
 mod libraries;
 mod lineup;
 mod page;
@@ -33,7 +35,8 @@ use crate::{check, interruption, output};
   joint bench --document docs/budget.md       rewrites the comparison in that file
 
 Error is that of the mesh deflections (RMS over their standard deviation), the worst over 8 phases of the
-excitation; where single meshes rattle without rule, that of the link angle over the lost motion.
+excitation; where single meshes rattle without rule, that of the link angle over the lost motion, in windows:
+wherever torques jump, every method is put back into the reference's state.
 Instructions are counted exactly on the emulated Cortex-M4F; host times are processor time of one process.")]
 pub struct Arguments {
     /// Joint file (TOML) or preset to compare on, in place of the named cases
@@ -67,6 +70,8 @@ pub struct Figures {
     pub methods: Vec<lineup::Entry>,
     /// Instructions at equal error.
     pub at_equal_error: Vec<verdicts::AtError>,
+    /// Robot joints: every method at the same cost.
+    pub in_a_sample: Vec<in_a_sample::InASample>,
     /// Least error in half a board.
     pub in_budget: Vec<verdicts::InBudget>,
     /// f32 beside f64.
@@ -133,6 +138,7 @@ fn gather(arguments: &Arguments, progress: &Progress) -> Outcome<Figures> {
     Ok(Figures {
         origin: document::origin(&toolchain, emulator),
         at_equal_error: verdicts::at_equal_error(&methods),
+        in_a_sample: in_a_sample::in_a_sample(&cases, &methods),
         in_budget: verdicts::in_budget(&methods),
         rounding: verdicts::rounding(&methods),
         host_at_equal_error: host.as_ref().map(|host| verdicts::host_at_equal_error(&host.times)).unwrap_or_default(),

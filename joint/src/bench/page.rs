@@ -5,8 +5,8 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::Figures;
 use super::lineup::CaseFigures;
-use super::pictures;
 use super::verdicts::{AtError, LEVELS};
+use super::{pictures, table};
 use crate::report::plot::Figure;
 use crate::report::plot::ink;
 
@@ -52,7 +52,7 @@ fn section(figures: &Figures, case: &CaseFigures) -> Markup {
             h2 { "Case " (case.key) ": " (case.title) }
             p.lead {
                 "Error: " (case.measure) ", worst of " (case.phases) " phases. A start moved by a millionth of b"
-                sub { "c" } " moves the reference itself by " (format!("{:.0e}", case.sensitivity)) "."
+                sub { "c" } " moves the reference itself by " (format!("{:.0e}", case.sensitivity)) "." (table::windows(case))
             }
             @if let Some(figure) = pictures::board(case, &figures.methods) { (picture(&figure)) }
             (equal("Instructions at equal error", &reached(&figures.at_equal_error), |cost| format!("{:.1} M/s", cost / 1e6)))

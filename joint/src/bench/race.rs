@@ -7,6 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use contest::case::Case;
+use contest::course::Restart;
 use contest::method::Method;
 use contest::run;
 use contest::start::Deflected;
@@ -20,6 +21,8 @@ use crate::target::{Say, image, measuring};
 pub struct Job<'a> {
     /// The case.
     pub case: &'a Case,
+    /// Where it restarts.
+    pub restarts: &'a [Restart],
     /// The method.
     pub method: Method,
     /// Steps a second.
@@ -65,10 +68,11 @@ pub fn run(jobs: &[Job<'_>], toolchain: &Toolchain, say: Say<'_>) -> Outcome<Vec
 /// Estimate of the flash that a job's numbers take.
 fn bytes(job: &Job<'_>) -> usize {
     let planets = job.case.joint.geometry.planets;
+    let starts = 1 + job.restarts.len();
     match job.method {
-        Method::Realtime => 3_000 + 300 * planets,
-        Method::TwoMassSpring | Method::TwoMassRestitution => 200,
-        _ => 900 + 200 * planets,
+        Method::Realtime => 3_000 + 300 * planets + starts * (44 + 8 * planets),
+        Method::TwoMassSpring | Method::TwoMassRestitution => 200 + 8 * starts,
+        _ => 900 + 200 * planets + starts * (32 + 8 * planets),
     }
 }
 
@@ -131,11 +135,14 @@ fn source(jobs: &[Job<'_>]) -> Outcome<String> {
     for (index, job) in jobs.iter().enumerate() {
         if !torques.contains(&job.case.key.as_str()) {
             torques.push(&job.case.key);
-            text += &torque_list(torques.len() - 1, job.case);
+            text += &lists(torques.len() - 1, job.case);
         }
         let list = torques.iter().position(|key| *key == job.case.key).unwrap_or_default();
         let (steps, rate, tick_rate) = (run::steps(job.case, job.rate), job.rate, job.case.tick_rate);
-        let way = format!("&Way {{ steps: {steps}, rate: {rate}, tick_rate: {tick_rate}, torques: &TORQUES_{list} }}");
+        let way = format!(
+            "&Way {{ steps: {steps}, rate: {rate}, tick_rate: {tick_rate}, torques: &TORQUES_{list}, \
+             restarts: &RESTARTS_{list} }}"
+        );
         let (statics, call) = match job.case.joint.geometry.planets {
             3 => numbers::<3>(index, job)?,
             4 => numbers::<4>(index, job)?,
@@ -149,50 +156,61 @@ fn source(jobs: &[Job<'_>]) -> Outcome<String> {
     Ok(text)
 }
 
-fn torque_list(index: usize, case: &Case) -> String {
+/// Torques and restarts of a case.
+fn lists(index: usize, case: &Case) -> String {
     let mut text = format!("static TORQUES_{index}: [Change; {}] = [\n", case.torques.len());
     for segment in &case.torques {
         let (tick, drive, load) = (segment.from_tick, segment.drive as f32, segment.load as f32);
         let _ = writeln!(text, "    Change {{ tick: {tick}, drive: {drive:?}, load: {load:?} }},");
     }
-    text + "];\n"
+    let (count, ticks) = (case.restarts.len(), &case.restarts);
+    text + &format!("];\nstatic RESTARTS_{index}: [u32; {count}] = {ticks:?};\n")
 }
 
 /// Statics of a job, and its call but for the way.
 fn numbers<const N: usize>(index: usize, job: &Job<'_>) -> Outcome<(String, String)> {
     let joint = &job.case.joint;
-    let start = Deflected::<N>::new(joint, &job.case.start);
+    let starts = Deflected::<N>::all(joint, &job.case.start, job.restarts);
+    let count = starts.len();
     let peer = |scheme: &str| {
         let plant = run::plant::<f32, N>(joint, job.method, job.rate);
-        let start = start.peer::<f32>(joint, f64::from(job.rate));
+        let starts: Vec<_> = starts.iter().map(|start| start.peer::<f32>(joint, f64::from(job.rate))).collect();
         // The core's tables have a flow too.
         let plant = format!("{plant:?}").replace("Flow {", "PlantFlow {");
         (
             format!(
-                "static PLANT_{index}: Plant<f32, {N}> = {plant};\nstatic START_{index}: Start<f32, {N}> = {start:?};\n"
+                "static PLANT_{index}: Plant<f32, {N}> = {plant};\n\
+                 static STARTS_{index}: [Start<f32, {N}>; {count}] = {starts:?};\n"
             ),
-            format!("race.peer::<{N}, {scheme}>({index}, &PLANT_{index}, &START_{index}"),
+            format!("race.peer::<{N}, {scheme}>({index}, &PLANT_{index}, &STARTS_{index}"),
         )
     };
     let two_mass = |contact: Contact| {
         let model = TwoMass::<f32>::new(joint, f64::from(job.rate), contact);
-        let (place, speed) = start.two_mass(joint);
+        let start = |start: &Deflected<N>| {
+            let (place, speed) = start.two_mass(joint);
+            [place as f32, speed as f32]
+        };
+        let starts: Vec<[f32; 2]> = starts.iter().map(start).collect();
         (
-            format!("static MODEL_{index}: TwoMass<f32> = {model:?};\n"),
-            format!("race.two_mass({index}, &MODEL_{index}, {:?}, {:?}", place as f32, speed as f32),
+            format!(
+                "static MODEL_{index}: TwoMass<f32> = {model:?};\n\
+                 static STARTS_{index}: [[f32; 2]; {count}] = {starts:?};\n"
+            ),
+            format!("race.two_mass({index}, &MODEL_{index}, &STARTS_{index}"),
         )
     };
     Ok(match job.method {
         Method::Realtime => {
             let tables = run::tables::<f32, N>(joint, job.rate, job.substeps)
                 .map_err(|error| Failure::new(format!("case {}: {error}", job.case.key)))?;
-            let state = start.state(joint, &tables);
+            let states: Vec<_> = starts.iter().map(|start| start.state(joint, &tables)).collect();
             (
                 format!(
                     "static TABLES_{index}: Tables<f32, {N}> = {tables:?};\n\
-                     static STATE_{index}: State<f32, {N}> = {state:?};\n"
+                     static STATES_{index}: [State<f32, {N}>; {count}] = {states:?};\n"
                 ),
-                format!("race.core::<{N}>({index}, &TABLES_{index}, &STATE_{index}"),
+                format!("race.core::<{N}>({index}, &TABLES_{index}, &STATES_{index}"),
             )
         }
         Method::RungeKutta4 | Method::RungeKutta4Tanh => peer(&format!("RungeKutta<{N}>")),

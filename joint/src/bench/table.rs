@@ -7,6 +7,8 @@ use contest::method::Method;
 use contest::run::AS_DESIGNED;
 
 use super::Figures;
+use super::columns::{scientific, table};
+use super::in_a_sample::{self, InASample};
 use super::lineup::{CaseFigures, Entry, Mark};
 use super::verdicts::{AtError, CLOCK, CYCLES, InBudget, LEVELS, front};
 
@@ -51,16 +53,21 @@ fn origin(figures: &Figures) -> String {
 fn case_tables(figures: &Figures, case: &CaseFigures, detail: Detail) -> String {
     let mut text = format!(
         "\n### Case {}: {}\n\nError: {}; worst of {} phases, {:.4} s. A start moved by a millionth of b_c moves the \
-         reference itself by {}.\n\n",
+         reference itself by {}.{}\n\n",
         case.key,
         case.title,
         case.measure,
         case.phases,
         case.duration_s,
-        scientific(Some(case.sensitivity))
+        scientific(Some(case.sensitivity)),
+        windows(case)
     );
     if detail == Detail::Steps {
         text += &steps(figures, case);
+    }
+    let found: Vec<&InASample> = figures.in_a_sample.iter().filter(|one| one.case == case.key).collect();
+    if !found.is_empty() {
+        text += &in_a_sample::layout(&found);
     }
     let reached: Vec<&AtError> = figures.at_equal_error.iter().filter(|at| at.case == case.key).collect();
     if reached.iter().any(|at| at.cost.is_some()) {
@@ -68,6 +75,18 @@ fn case_tables(figures: &Figures, case: &CaseFigures, detail: Detail) -> String 
         text += &equal(&reached, |cost| format!("{:.1} M", cost / 1e6));
     }
     text
+}
+
+/// What windows there are, as a sentence after another.
+pub fn windows(case: &CaseFigures) -> String {
+    if case.windows == 1 {
+        return String::new();
+    }
+    format!(
+        " The motion is judged in {} windows: wherever torques jump, every method is put back into the reference's state, as \
+         else the smallest error decides in the end where in its gap the joint goes on.",
+        case.windows
+    )
 }
 
 /// Every method at every step.
@@ -199,52 +218,4 @@ fn host(figures: &Figures) -> String {
         }
     }
     text
-}
-
-fn scientific(value: Option<f64>) -> String {
-    value.map_or_else(|| "lost".into(), |value| format!("{value:.1e}"))
-}
-
-/// A Markdown table whose columns line up: the first to the left, numbers to the right.
-fn table<H: AsRef<str>>(heads: &[H], rows: &[Vec<String>]) -> String {
-    let width = |column: usize| {
-        let cells = rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count());
-        cells.chain([heads[column].as_ref().chars().count(), 3]).max().unwrap_or(3)
-    };
-    let widths: Vec<usize> = (0..heads.len()).map(width).collect();
-    let words = |column: usize| {
-        rows.iter().all(|row| row.get(column).is_some_and(|cell| !cell.starts_with(|c: char| c.is_ascii_digit())))
-    };
-    let left: Vec<bool> = (0..heads.len()).map(words).collect();
-    let line = |cells: Vec<&str>| {
-        let cells = cells.iter().zip(&widths).zip(&left).map(|((cell, width), left)| match left {
-            true => format!(" {cell:<width$} "),
-            false => format!(" {cell:>width$} "),
-        });
-        format!("|{}|\n", cells.collect::<Vec<_>>().join("|"))
-    };
-    let rule = widths.iter().zip(&left).map(|(width, left)| match left {
-        true => "-".repeat(width + 2),
-        false => format!("{}:", "-".repeat(width + 1)),
-    });
-    let mut text = line(heads.iter().map(AsRef::as_ref).collect());
-    text += &format!("|{}|\n", rule.collect::<Vec<_>>().join("|"));
-    for row in rows {
-        text += &line(row.iter().map(String::as_str).collect());
-    }
-    text
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn columns_line_up() {
-        let rows = [vec!["a".to_owned(), "1.0".to_owned()], vec!["long name".to_owned(), "20".to_owned()]];
-        let text = table(&["method", "x"], &rows);
-        let widths: Vec<usize> = text.lines().map(str::len).collect();
-        assert!(widths.windows(2).all(|pair| pair[0] == pair[1]), "{text}");
-        assert!(text.contains("| long name |  20 |"), "{text}");
-    }
 }

@@ -110,7 +110,7 @@ pub fn front(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
 }
 
 /// The least over several curves.
-fn least_cost_at(curves: Vec<Vec<(f64, f64)>>, error: f64) -> Option<f64> {
+pub fn least_cost_at(curves: Vec<Vec<(f64, f64)>>, error: f64) -> Option<f64> {
     curves.iter().filter_map(|curve| cost_at(curve, error)).min_by(f64::total_cmp)
 }
 

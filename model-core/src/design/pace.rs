@@ -39,6 +39,8 @@ pub enum Effort {
     Accurate,
     /// So many sub-steps a tick, for comparisons; whether that is stable is the caller's concern.
     Substeps(u32),
+    /// So many leaps a tick, likewise.
+    Leaps(u32),
 }
 
 /// What sets the pace of a joint.
@@ -82,7 +84,7 @@ impl Pace {
 
     /// Sub-steps of a tick.
     pub fn substeps(&self, tick_rate: u32, effort: Effort) -> Result<u32, DesignError> {
-        if let Effort::Substeps(substeps) = effort {
+        if let Effort::Substeps(substeps) | Effort::Leaps(substeps) = effort {
             return Ok(substeps.clamp(1, MOST_SUBSTEPS as u32));
         }
         let lowest = self.lowest_rate(effort);
@@ -95,7 +97,7 @@ impl Pace {
             .max(libm::ceil(self.mesh_frequency / (rate * EXCITATION_PHASE))) as u32;
         let within = |processor: Processor| self.cost.affordable(processor.affordable(tick_rate));
         let affordable = match effort {
-            Effort::Accurate | Effort::Substeps(_) => MOST_SUBSTEPS as u32,
+            Effort::Accurate | Effort::Substeps(_) | Effort::Leaps(_) => MOST_SUBSTEPS as u32,
             Effort::Board => within(Processor::STM32F405),
             Effort::Within(processor) => within(processor),
         };
@@ -115,6 +117,7 @@ impl Pace {
             Effort::Board => Processor::STM32F405,
             Effort::Within(processor) => processor,
             Effort::Accurate | Effort::Substeps(_) => return Ok(Parts::Substeps(substeps)),
+            Effort::Leaps(leaps) => return Ok(Parts::Leaps(leaps.max(1))),
         };
         let leaps = Parts::Leaps(libm::ceil(self.phase(tick_rate, 1) / LEAP_PHASE) as u32);
         let resolved = self.phase(tick_rate, substeps) <= DAMPED_PHASE;
@@ -127,7 +130,7 @@ impl Pace {
         let reach = (1..).zip(self.largest_phases).map(|(substeps, largest)| f64::from(substeps) * MARGIN * largest);
         let stable = self.fastest / reach.fold(0.0, f64::max);
         let wanted = match effort {
-            Effort::Board | Effort::Within(_) | Effort::Substeps(_) => stable,
+            Effort::Board | Effort::Within(_) | Effort::Substeps(_) | Effort::Leaps(_) => stable,
             Effort::Accurate => stable.max(self.mesh_frequency / (EXCITATION_PHASE * MOST_SUBSTEPS as f64)),
         };
         libm::ceil(wanted).max(1.0) as u32

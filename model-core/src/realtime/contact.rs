@@ -22,6 +22,22 @@ impl<T: Real> Drive<T> {
     /// None at all: what is left is the response to forces.
     pub const NONE: Self = Self { sun: T::ZERO, carrier: T::ZERO, link: T::ZERO };
 
+    /// What it is beyond another.
+    pub fn less(&self, other: &Self) -> Self {
+        Self { sun: self.sun - other.sun, carrier: self.carrier - other.carrier, link: self.link - other.link }
+    }
+
+    /// Relative accelerations where planets feel no force.
+    #[inline(always)]
+    pub fn relative<const N: usize>(&self, mobility: &Mobility<T>) -> Relative<T, N> {
+        let apart = self.sun - self.carrier;
+        Relative {
+            planets: [apart; N],
+            gap: apart - self.carrier,
+            wind_up: mobility.wind_up * (self.carrier - self.link),
+        }
+    }
+
     /// In other units.
     pub fn times(&self, scale: T) -> Self {
         Self { sun: scale * self.sun, carrier: scale * self.carrier, link: scale * self.link }
@@ -180,15 +196,34 @@ impl<T: Real, const N: usize> Net<T, N> {
     /// Relative accelerations (eqs 1-3 in the coordinates of eqs 16 and 17).
     #[inline(always)]
     pub fn accelerations(&self, mobility: &Mobility<T>, drive: &Drive<T>, wind_up_force: T) -> Relative<T, N> {
-        let sun = drive.sun - mobility.sun * self.sun_planet;
-        let carrier = drive.carrier + mobility.carrier * (self.sun_planet + self.ring_planet - wind_up_force);
-        let link = drive.link + mobility.link * wind_up_force;
-        let apart = sun - carrier;
-        let mut planets = self.apart;
-        for planet in &mut planets {
-            *planet = apart - mobility.planet * *planet;
+        let own = self.drive(mobility, wind_up_force);
+        let all = Drive { sun: drive.sun + own.sun, carrier: drive.carrier + own.carrier, link: drive.link + own.link };
+        self.relative(mobility, &all)
+    }
+
+    /// What these forces alone cause.
+    #[inline(always)]
+    pub fn response(&self, mobility: &Mobility<T>, wind_up_force: T) -> Relative<T, N> {
+        self.relative(mobility, &self.drive(mobility, wind_up_force))
+    }
+
+    /// Accelerations of all bodies but the planets.
+    #[inline(always)]
+    fn drive(&self, mobility: &Mobility<T>, wind_up_force: T) -> Drive<T> {
+        Drive {
+            sun: -(mobility.sun * self.sun_planet),
+            carrier: mobility.carrier * (self.sun_planet + self.ring_planet - wind_up_force),
+            link: mobility.link * wind_up_force,
         }
-        Relative { planets, gap: apart - carrier, wind_up: mobility.wind_up * (carrier - link) }
+    }
+
+    #[inline(always)]
+    fn relative(&self, mobility: &Mobility<T>, all: &Drive<T>) -> Relative<T, N> {
+        let mut relative = all.relative(mobility);
+        for (planet, apart) in relative.planets.iter_mut().zip(&self.apart) {
+            *planet -= mobility.planet * *apart;
+        }
+        relative
     }
 }
 

@@ -6,75 +6,43 @@
 //! so its first three integrals over [t - s, t] are closed forms; they correct rate, position and the integral of the
 //! position. These corrections deform the other meshes too: one linear pass adds the forces that this causes.
 
-use crate::mesh::DampingLaw;
 use crate::real::Real;
-use crate::realtime::contact::{Drive, Law, Laws, Net};
+use crate::realtime::contact::{Law, Laws, Net};
 use crate::realtime::excitation::{Beat, PerMesh};
 use crate::realtime::frozen::{Frozen, Moment};
+use crate::realtime::planets::each_planet;
 use crate::realtime::substep::Course;
 
 /// The end of a step that was taken with one contact set throughout.
-pub struct End<'a, T: Real, const N: usize, const OVERTONES: bool> {
+pub struct End<'a, T: Real, const N: usize, const OVERTONES: usize> {
     /// The joint.
     pub frozen: &'a Frozen<'a, T, N, OVERTONES>,
     /// Way that the mesh phase goes in the step [rad].
     pub rate: T,
     /// The excitation.
-    pub beat: &'a Beat<T>,
+    pub beat: &'a Beat<T, OVERTONES>,
     /// Meshes whose law does not hold: those with more than zero.
     pub trespasses: &'a PerMesh<T, N>,
 }
 
-impl<T: Real, const N: usize, const OVERTONES: bool> End<'_, T, N, OVERTONES> {
+impl<T: Real, const N: usize, const OVERTONES: usize> End<'_, T, N, OVERTONES> {
     /// Corrects the motion for every law that does not hold, and the accelerations now and half a step before, which
     /// become those that the new laws would have caused on the same path.
     #[inline(never)]
     pub fn correct(&self, laws: &mut Laws<T, N>, course: &mut Course<T, N>) {
         let tables = self.frozen.tables;
-        // e'' = -rate^2 e for the sine of eq. 11.
-        let square = self.rate * self.rate;
-        let pushes_only = tables.damping_law == DampingLaw::Contact;
-        let (mut impulse, mut shift, mut jump, mut past) = (Net::NONE, Net::NONE, Net::NONE, Net::NONE);
-        let mut longest = T::ZERO;
-        for kind in 0..2 {
-            for i in 0..N {
-                let trespass = self.trespasses[kind][i];
-                if trespass <= T::ZERO {
-                    continue;
-                }
-                let planet = course.planets[i];
-                let (mut at, mut acceleration) = (planet.point(), planet.now);
-                if kind == 1 {
-                    (at, acceleration) = (course.gap.point().less(at), course.gap.now - acceleration);
-                }
-                let was = laws[kind][i];
-                let Moment { overlap: deflection, speed, stiffness, error, .. } =
-                    self.frozen.mesh(&Law::OPEN, (kind, i), self.beat, at);
-                let is = Law::of(tables, (kind, i), deflection, speed, stiffness);
-                laws[kind][i] = is;
-                // Without backlash both flanks are one.
-                if was.closed == is.closed && was.offset == is.offset {
-                    continue;
-                }
-                let harmonics = if OVERTONES { tables.excitation.harmonics } else { 1 };
-                let stiffness_rate = tables.meshes[kind][i].stiffness_rate(self.beat, harmonics);
-                let acceleration = T::SIX * acceleration + square * error;
-                // Damping that acts whatever the contact is not missed.
-                let base = if pushes_only { T::ZERO } else { tables.stage.damping[kind] };
-                let mesh = Crossing { deflection, speed, acceleration, stiffness, stiffness_rate, base };
-                let missed = mesh.missed(&was, &is);
-                impulse.add_one((kind, i), missed.impulse);
-                shift.add_one((kind, i), missed.shift);
-                jump.add_one((kind, i), missed.path.value);
-                past.add_one((kind, i), missed.path.at(T::HALF));
-                if missed.since > longest {
-                    longest = missed.since;
-                }
+        let mut missed = Sums::NONE;
+        each_planet!(N, i => {
+            if self.trespasses[0][i] > T::ZERO {
+                self.cross((0, i), laws, course, &mut missed);
             }
-        }
+            if self.trespasses[1][i] > T::ZERO {
+                self.cross((1, i), laws, course, &mut missed);
+            }
+        });
+        let Sums { impulse, shift, mut jump, past, longest } = missed;
         let mobility = &tables.stage.mobility;
-        let respond = |net: &Net<T, N>, wind_up: T| net.accelerations(mobility, &Drive::NONE, wind_up);
-        let (rate, position) = (respond(&impulse, T::ZERO), respond(&shift, T::ZERO));
+        let (rate, position) = (impulse.response(mobility, T::ZERO), shift.response(mobility, T::ZERO));
         // What the corrections bend: it acts from now on, and has acted since the crossing, where damping saw the
         // integral of the rate, which is the position, and springs about s/4 of the position: it grew with the third
         // power of time. Ripple is left out of it.
@@ -90,15 +58,66 @@ impl<T: Real, const N: usize, const OVERTONES: bool> End<'_, T, N, OVERTONES> {
             }
         }
         let wind_up = mobility.wind_up_stiffness * position.wind_up;
-        let jump = respond(&jump, wind_up + mobility.wind_up_damping * rate.wind_up);
+        let jump = jump.response(mobility, wind_up + mobility.wind_up_damping * rate.wind_up);
         let wind_up = quarter * wind_up + mobility.wind_up_damping * position.wind_up;
-        let later = respond(&later, T::SIX * wind_up);
+        let later = later.response(mobility, T::SIX * wind_up);
         course.each(&position, |coordinate, position| coordinate.position += position);
         course.each(&rate, |coordinate, rate| coordinate.rate += rate);
         course.each(&later, |coordinate, later| coordinate.rate += later);
         course.each(&jump, |coordinate, jump| coordinate.now += jump);
-        course.each(&respond(&past, T::ZERO), |coordinate, past| coordinate.before += past);
+        course.each(&past.response(mobility, T::ZERO), |coordinate, past| coordinate.before += past);
     }
+
+    /// Puts one mesh under the law that holds, and adds what the law before it missed.
+    #[inline(never)]
+    fn cross(&self, (kind, i): (usize, usize), laws: &mut Laws<T, N>, course: &Course<T, N>, sums: &mut Sums<T, N>) {
+        let tables = self.frozen.tables;
+        let planet = course.planets[i];
+        let (mut at, mut acceleration) = (planet.point(), planet.now);
+        if kind == 1 {
+            (at, acceleration) = (course.gap.point().less(at), course.gap.now - acceleration);
+        }
+        let was = laws[kind][i];
+        let Moment { overlap: deflection, speed, stiffness, error, .. } =
+            self.frozen.mesh(&Law::OPEN, (kind, i), self.beat, at);
+        let is = Law::of(tables, (kind, i), deflection, speed, stiffness);
+        laws[kind][i] = is;
+        // Without backlash both flanks are one.
+        if was.closed == is.closed && was.offset == is.offset {
+            return;
+        }
+        let stiffness_rate = tables.meshes[kind][i].stiffness_rate(self.beat, tables.excitation.harmonics);
+        // e'' = -rate^2 e for the sine of eq. 11.
+        let acceleration = T::SIX * acceleration + self.rate * self.rate * error;
+        // Damping that acts whatever the contact is not missed.
+        let base = self.frozen.adheres * tables.stage.damping[kind];
+        let mesh = Crossing { deflection, speed, acceleration, stiffness, stiffness_rate, base };
+        let missed = mesh.missed(&was, &is);
+        sums.impulse.add_one((kind, i), missed.impulse);
+        sums.shift.add_one((kind, i), missed.shift);
+        sums.jump.add_one((kind, i), missed.path.value);
+        sums.past.add_one((kind, i), missed.path.at(T::HALF));
+        if missed.since > sums.longest {
+            sums.longest = missed.since;
+        }
+    }
+}
+
+/// What frozen laws missed, over all meshes.
+struct Sums<T, const N: usize> {
+    impulse: Net<T, N>,
+    shift: Net<T, N>,
+    /// Forces at the end.
+    jump: Net<T, N>,
+    /// The same half a sub-step before, along the path that was taken.
+    past: Net<T, N>,
+    /// How long ago the first crossing was.
+    longest: T,
+}
+
+impl<T: Real, const N: usize> Sums<T, N> {
+    const NONE: Self =
+        Self { impulse: Net::NONE, shift: Net::NONE, jump: Net::NONE, past: Net::NONE, longest: T::ZERO };
 }
 
 /// One mesh at the end of a sub-step, on the path that the frozen laws gave.
@@ -132,6 +151,7 @@ struct Path<T> {
 }
 
 impl<T: Real> Crossing<T> {
+    #[inline(always)]
     fn missed(&self, before: &Law<T>, after: &Law<T>) -> Missed<T> {
         let (was_closed, is_closed) = (before.closed > T::ZERO, after.closed > T::ZERO);
         let mut missed = Missed {

@@ -1,6 +1,7 @@
 //! Stiffness and imposed error of every mesh at one instant (eqs 7 and 11), from one sine and one cosine: phases of
 //! the meshes are folded into the tables. Fig. 3's wave is a few harmonics of the same pair.
 
+use crate::mesh::MAX_HARMONICS;
 use crate::real::Real;
 use crate::realtime::phase::sine_cosine;
 use crate::tables::{Excitation, MeshTable, Tables};
@@ -74,20 +75,34 @@ pub fn mesh_way<T: Real>(excitation: &Excitation<T>, way: i64) -> T {
     }
 }
 
-/// The mesh phase at one moment and how fast it goes.
+/// Harmonics above the first that a joint may have.
+pub const MOST_OVERTONES: usize = MAX_HARMONICS - 1;
+
+/// The mesh phase at one moment and how fast it goes, and room for multiples of it, from the second on.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Beat<T> {
+pub struct Beat<T, const OVERTONES: usize> {
     /// Sine and cosine.
     pub rotor: Rotor<T>,
     /// Their rates.
     pub rates: Rotor<T>,
+    rate: T,
+    /// Sines and cosines of the multiples, as many as the joint has.
+    multiples: [Rotor<T>; OVERTONES],
 }
 
-impl<T: Real> Beat<T> {
+impl<T: Real, const OVERTONES: usize> Beat<T, OVERTONES> {
     /// At a phase that goes at `rate` [rad a unit of dimensionless time].
     #[inline]
-    pub fn new(rotor: Rotor<T>, rate: T) -> Self {
-        Self { rotor, rates: Rotor { sine: rate * rotor.cosine, cosine: -(rate * rotor.sine) } }
+    pub fn new(rotor: Rotor<T>, rate: T, harmonics: u32) -> Self {
+        let mut multiples = [rotor; OVERTONES];
+        if OVERTONES > 0 {
+            let mut multiple = rotor;
+            for place in multiples.iter_mut().take(harmonics.saturating_sub(1) as usize) {
+                multiple = multiple.turned(&rotor);
+                *place = multiple;
+            }
+        }
+        Self { rotor, rates: Rotor { sine: rate * rotor.cosine, cosine: -(rate * rotor.sine) }, rate, multiples }
     }
 }
 
@@ -103,15 +118,15 @@ pub struct MeshWave<T> {
 }
 
 impl<T: Real> MeshTable<T> {
-    /// At a moment; `mean` and `harmonics` are those of its kind.
+    /// At a moment; `mean` is that of its kind, `harmonics` that of the joint.
     #[inline(always)]
-    pub fn at(&self, beat: &Beat<T>, mean: T, harmonics: u32) -> MeshWave<T> {
-        let Beat { rotor, rates } = beat;
+    pub fn at<const OVERTONES: usize>(&self, beat: &Beat<T, OVERTONES>, mean: T, harmonics: u32) -> MeshWave<T> {
+        let Beat { rotor, rates, .. } = beat;
         let [error_sine, error_cosine] = self.error;
         let [first_sine, first_cosine] = self.ripple[0];
         let mut stiffness = mean + first_sine * rotor.sine + first_cosine * rotor.cosine;
-        if harmonics > 1 {
-            stiffness += self.overtones(harmonics, rotor);
+        if OVERTONES > 0 && harmonics > 1 {
+            stiffness += self.overtones(beat, harmonics);
         }
         MeshWave {
             stiffness,
@@ -122,31 +137,43 @@ impl<T: Real> MeshTable<T> {
 
     /// Rate of the stiffness.
     #[inline]
-    pub fn stiffness_rate(&self, beat: &Beat<T>, harmonics: u32) -> T {
-        let (mut sum, mut multiple, mut order) = (T::ZERO, beat.rates, T::ONE);
-        for [sine, cosine] in self.ripple.iter().take(harmonics as usize) {
-            sum += order * (*sine * multiple.sine + *cosine * multiple.cosine);
-            multiple = multiple.turned(&beat.rotor);
-            order += T::ONE;
+    pub fn stiffness_rate<const OVERTONES: usize>(&self, beat: &Beat<T, OVERTONES>, harmonics: u32) -> T {
+        let [sine, cosine] = self.ripple[0];
+        let mut sum = sine * beat.rates.sine + cosine * beat.rates.cosine;
+        if OVERTONES > 0 {
+            let mut order = T::ONE;
+            for ([sine, cosine], multiple) in self.above(beat, harmonics) {
+                order += T::ONE;
+                sum += order * beat.rate * (*sine * multiple.cosine - *cosine * multiple.sine);
+            }
         }
         sum
     }
 
     /// Sum of the harmonics above the first.
     #[inline(never)]
-    fn overtones(&self, harmonics: u32, rotor: &Rotor<T>) -> T {
-        let (mut sum, mut multiple) = (T::ZERO, *rotor);
-        for [sine, cosine] in self.ripple.iter().take(harmonics as usize).skip(1) {
-            multiple = multiple.turned(rotor);
-            sum += *sine * multiple.sine + *cosine * multiple.cosine;
-        }
-        sum
+    fn overtones<const OVERTONES: usize>(&self, beat: &Beat<T, OVERTONES>, harmonics: u32) -> T {
+        self.above(beat, harmonics)
+            .fold(T::ZERO, |sum, ([sine, cosine], multiple)| sum + *sine * multiple.sine + *cosine * multiple.cosine)
+    }
+
+    /// Harmonics above the first with their multiples of the phase.
+    #[inline(always)]
+    fn above<'a, const OVERTONES: usize>(
+        &'a self,
+        beat: &'a Beat<T, OVERTONES>,
+        harmonics: u32,
+    ) -> impl Iterator<Item = (&'a [T; 2], &'a Rotor<T>)> {
+        self.ripple.iter().skip(1).zip(&beat.multiples).take(harmonics.saturating_sub(1) as usize)
     }
 }
 
 /// Evaluates every mesh.
 #[inline]
-pub fn instant<T: Real, const N: usize>(tables: &Tables<T, N>, beat: &Beat<T>) -> Instant<T, N> {
+pub fn instant<T: Real, const N: usize, const OVERTONES: usize>(
+    tables: &Tables<T, N>,
+    beat: &Beat<T, OVERTONES>,
+) -> Instant<T, N> {
     let mut instant = Instant { stiffness: [[T::ZERO; N]; 2], error: [[T::ZERO; N]; 2], error_rate: [[T::ZERO; N]; 2] };
     for kind in 0..2 {
         for i in 0..N {

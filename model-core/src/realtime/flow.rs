@@ -28,7 +28,7 @@ pub enum Held<T, const N: usize> {
 
 /// One tick with the contact set of its start. `K` is the number of in-phase coordinates: 3 with compliance, 2 without.
 #[inline(never)]
-pub fn hold<T: Real, const N: usize, const K: usize, const OVERTONES: bool>(
+pub fn hold<T: Real, const N: usize, const K: usize, const OVERTONES: usize>(
     frozen: &Frozen<T, N, OVERTONES>,
     drive: &Drive<T>,
     phase: &MeshPhase<T>,
@@ -46,7 +46,7 @@ pub fn hold<T: Real, const N: usize, const K: usize, const OVERTONES: bool>(
     let (value, rate) = frozen.pseudo_force_at_start(phase, start, course);
     let modes = Modes::<T, N, K>::of(tables.planet_share, motion);
     let torques = [drive.sun, drive.carrier, drive.link];
-    let look = |part: T| Beat::new(phase.start.turned(&phase.over(part)), phase.rate);
+    let look = |part: T| Beat::new(phase.start.turned(&phase.over(part)), phase.rate, tables.excitation.harmonics);
 
     let [first, second] = &flow.early_inputs;
     let place = modes.place(&flow.early, &torques).with([(first, &value), (second, &rate)]);
@@ -67,7 +67,7 @@ pub fn hold<T: Real, const N: usize, const K: usize, const OVERTONES: bool>(
 
 /// The end of a tick in whose second half meshes have opened.
 #[inline(never)]
-pub fn corrected<T: Real, const N: usize, const OVERTONES: bool>(
+pub fn corrected<T: Real, const N: usize, const OVERTONES: usize>(
     frozen: &Frozen<T, N, OVERTONES>,
     laws: &mut Laws<T, N>,
     phase: &MeshPhase<T>,
@@ -75,7 +75,7 @@ pub fn corrected<T: Real, const N: usize, const OVERTONES: bool>(
 ) -> Motion<T, N> {
     let tables = frozen.tables;
     let rate = tables.substep * phase.rate;
-    let beat = Beat::new(phase.start.turned(&phase.over(T::ONE)), rate);
+    let beat = Beat::new(phase.start.turned(&phase.over(T::ONE)), rate, tables.excitation.harmonics);
     let mut course = Course::of(motion, tables.substep);
     let wind_up = frozen.wind_up_force(course.wind_up.point());
     let mut trespasses = [[T::ZERO; N]; 2];
@@ -92,7 +92,7 @@ pub fn corrected<T: Real, const N: usize, const OVERTONES: bool>(
     course.motion(tables.substep, tables.stage.rate, motion)
 }
 
-impl<T: Real, const N: usize, const OVERTONES: bool> Frozen<'_, T, N, OVERTONES> {
+impl<T: Real, const N: usize, const OVERTONES: usize> Frozen<'_, T, N, OVERTONES> {
     /// What the linear flow of the closed joint does not know of its forces at the start of a tick,
     /// k_mean x + c x' - F, and its rate, a sub-step.
     #[inline]
@@ -105,11 +105,11 @@ impl<T: Real, const N: usize, const OVERTONES: bool> Frozen<'_, T, N, OVERTONES>
         let tables = self.tables;
         let rate = tables.substep * phase.rate;
         let square = rate * rate;
-        let beat = Beat::new(phase.start, rate);
+        let beat = Beat::<T, OVERTONES>::new(phase.start, rate, tables.excitation.harmonics);
         let mesh = |(kind, i): (usize, usize), at: Point<T>| {
             let (spring, damping) = (tables.springs[kind].stiffness, tables.stage.damping[kind]);
             let Moment { overlap, speed, stiffness, error, force } = start.meshes[kind][i];
-            let harmonics = if OVERTONES { tables.excitation.harmonics } else { 1 };
+            let harmonics = tables.excitation.harmonics;
             let stiffness_rate = tables.meshes[kind][i].stiffness_rate(&beat, harmonics);
             // e'' = -rate^2 e.
             (
@@ -131,7 +131,7 @@ impl<T: Real, const N: usize, const OVERTONES: bool> Frozen<'_, T, N, OVERTONES>
     /// What the linear flow does not know of closed meshes: offset, imposed error, ripple; and more than zero when a
     /// mesh is beyond its flank.
     #[inline(never)]
-    fn pseudo_force(&self, laws: &Laws<T, N>, beat: &Beat<T>, place: &Place<T, N>) -> (Push<T, N>, T) {
+    fn pseudo_force(&self, laws: &Laws<T, N>, beat: &Beat<T, OVERTONES>, place: &Place<T, N>) -> (Push<T, N>, T) {
         let tables = self.tables;
         let (mut net, mut trespass) = (Net::NONE, T::ZERO);
         let mut mesh = |(kind, i): (usize, usize), position: T| {

@@ -46,9 +46,22 @@ impl<T: Real, const N: usize> Start<T, N> {
     pub const EMPTY: Self = Self { laws: [[Law::ZERO; N]; 2], meshes: [[Moment::ZERO; N]; 2], settled: false };
 }
 
+impl<T: Real, const N: usize> Start<T, N> {
+    /// Whether any mesh is under the law of the gap.
+    #[inline(always)]
+    pub fn is_open(&self) -> bool {
+        let [sun, ring] = &self.laws;
+        let mut open = T::ZERO;
+        each_planet!(N, i => {
+            open += sun[i].open + ring[i].open;
+        });
+        open > T::ZERO
+    }
+}
+
 /// What does not change over a tick.
 #[derive(Clone, Copy)]
-pub struct Frozen<'a, T: Real, const N: usize, const OVERTONES: bool> {
+pub struct Frozen<'a, T: Real, const N: usize, const OVERTONES: usize> {
     /// The joint.
     pub tables: &'a Tables<T, N>,
     /// Torques, as accelerations of a stage.
@@ -59,10 +72,10 @@ pub struct Frozen<'a, T: Real, const N: usize, const OVERTONES: bool> {
     pub adheres: T,
 }
 
-impl<T: Real, const N: usize, const OVERTONES: bool> Frozen<'_, T, N, OVERTONES> {
+impl<T: Real, const N: usize, const OVERTONES: usize> Frozen<'_, T, N, OVERTONES> {
     /// The joint at the start of a tick.
     #[inline(never)]
-    pub fn start(&self, beat: &Beat<T>, course: &Course<T, N>, start: &mut Start<T, N>) {
+    pub fn start(&self, beat: &Beat<T, OVERTONES>, course: &Course<T, N>, start: &mut Start<T, N>) {
         start.settled = true;
         let reach = self.tables.flow.reach * self.tables.stage.rate;
         for i in 0..N {
@@ -81,15 +94,15 @@ impl<T: Real, const N: usize, const OVERTONES: bool> Frozen<'_, T, N, OVERTONES>
 
     /// Stiffness and imposed error of one mesh.
     #[inline(always)]
-    pub fn wave(&self, (kind, i): (usize, usize), beat: &Beat<T>) -> MeshWave<T> {
+    pub fn wave(&self, (kind, i): (usize, usize), beat: &Beat<T, OVERTONES>) -> MeshWave<T> {
         let tables = self.tables;
-        let harmonics = if OVERTONES { tables.excitation.harmonics } else { 1 };
+        let harmonics = tables.excitation.harmonics;
         tables.meshes[kind][i].at(beat, tables.springs[kind].stiffness, harmonics)
     }
 
     /// One mesh under a law.
     #[inline(always)]
-    pub fn mesh(&self, law: &Law<T>, (kind, i): (usize, usize), beat: &Beat<T>, at: Point<T>) -> Moment<T> {
+    pub fn mesh(&self, law: &Law<T>, (kind, i): (usize, usize), beat: &Beat<T, OVERTONES>, at: Point<T>) -> Moment<T> {
         let MeshWave { stiffness, error, .. } = self.wave((kind, i), beat);
         let [sine, cosine] = self.tables.meshes[kind][i].error;
         let overlap = at.position - law.offset - sine * beat.rotor.sine - cosine * beat.rotor.cosine;
@@ -122,7 +135,7 @@ impl<T: Real, const N: usize, const OVERTONES: bool> Frozen<'_, T, N, OVERTONES>
     pub fn pull(
         &self,
         laws: &Laws<T, N>,
-        beat: &Beat<T>,
+        beat: &Beat<T, OVERTONES>,
         gap: Point<T>,
         wind_up_force: T,
         mut planet: impl FnMut(usize) -> Point<T>,

@@ -4,12 +4,14 @@
 //!
 //! A leapfrog does not damp what it cannot resolve, which Runge-Kutta methods do: bouncing planets keep their energy.
 //! Force, rate and position are exact to second order; the two largest remainders, curvature of the path and the rate
-//! at which damping is taken, are both proportional to the acceleration and are taken off together (`yielding`).
+//! at which damping is taken, are both proportional to the acceleration and are taken off together (`yielding`), as far
+//! as the planet's own acceleration goes. What sun and carrier add to it is left, as is damping in the gap under the law
+//! `paper`: mesh damping is therefore of first order, with a small factor.
 
 use crate::mesh::DampingLaw;
 use crate::real::Real;
 use crate::realtime::contact::Drive;
-use crate::realtime::excitation::{Beat, Instant, MeshPhase, instant};
+use crate::realtime::excitation::{Beat, Instant, MOST_OVERTONES, MeshPhase, instant};
 use crate::realtime::pressed;
 use crate::realtime::runge_kutta::Motion;
 use crate::tables::Tables;
@@ -22,7 +24,14 @@ pub fn tick<T: Real, const N: usize>(
     phase: &MeshPhase<T>,
     motion: &Motion<T, N>,
 ) -> Motion<T, N> {
-    let middle = instant(tables, &Beat::new(phase.start.turned(&phase.over(T::HALF)), phase.rate));
+    let middle = instant(
+        tables,
+        &Beat::<T, MOST_OVERTONES>::new(
+            phase.start.turned(&phase.over(T::HALF)),
+            phase.rate,
+            tables.excitation.harmonics,
+        ),
+    );
     if let Some(end) = pressed::hold(tables, drive, phase, &middle, motion) {
         return end;
     }

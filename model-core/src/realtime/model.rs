@@ -3,17 +3,15 @@
 
 use core::array;
 
-use crate::mesh::{ContactState, DampingLaw};
+use crate::mesh::ContactState;
 use crate::real::Real;
 use crate::realtime::contact::{Drive, contact, spread};
-use crate::realtime::excitation::{Beat, MeshPhase, PerMesh, Rotor, instant, mesh_way};
-use crate::realtime::flow::{self, Held};
-use crate::realtime::frozen::{Frozen, Start};
+use crate::realtime::excitation::{Beat, MOST_OVERTONES, MeshPhase, PerMesh, Rotor, instant, mesh_way};
 use crate::realtime::light;
 use crate::realtime::paper;
 use crate::realtime::runge_kutta::Motion;
+use crate::realtime::sharp::Sharp;
 use crate::realtime::state::State;
-use crate::realtime::substep::{self, Course};
 use crate::realtime::unfrozen;
 use crate::tables::{Scheme, Tables};
 
@@ -54,19 +52,18 @@ pub struct Outputs<T, const N: usize> {
 pub struct Model<'a, T: Real, const N: usize> {
     tables: &'a Tables<T, N>,
     state: State<T, N>,
-    /// What a tick starts from. Kept only for its place: on the stack it would have to be cleared in every tick.
-    start: Start<T, N>,
+    sharp: Sharp<T, N>,
 }
 
 impl<'a, T: Real, const N: usize> Model<'a, T, N> {
     /// At rest, undeformed, at angle and phase zero.
     pub const fn new(tables: &'a Tables<T, N>) -> Self {
-        Self { tables, state: State::REST, start: Start::EMPTY }
+        Self { tables, state: State::REST, sharp: Sharp::UNKNOWN }
     }
 
     /// Back to rest.
     pub fn reset(&mut self) {
-        self.state = State::REST;
+        self.set_state(State::REST);
     }
 
     /// The state.
@@ -77,6 +74,7 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
     /// Goes on from another state.
     pub fn set_state(&mut self, state: State<T, N>) {
         self.state = state;
+        self.sharp.forget();
     }
 
     /// Digest of every bit of the state.
@@ -112,9 +110,9 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
             Scheme::Realtime if tables.sharpness > T::ZERO => unfrozen::runge_kutta(tables, &drive, &phase, &motion),
             Scheme::Realtime if tables.light.substeps > 0 => light::tick(tables, &drive, &phase, &motion),
             Scheme::Realtime if tables.excitation.harmonics > 1 => {
-                tick::<T, N, true>(tables, &drive, &phase, &motion, &mut self.start)
+                self.sharp.tick::<MOST_OVERTONES>(tables, &drive, &phase, &motion)
             }
-            Scheme::Realtime => tick::<T, N, false>(tables, &drive, &phase, &motion, &mut self.start),
+            Scheme::Realtime => self.sharp.tick::<0>(tables, &drive, &phase, &motion),
         };
         (self.state.position, self.state.rate) = (position, rate);
         self.state.settle();
@@ -126,7 +124,7 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
         let units = &self.tables.units;
         let planets = position.planets.iter().fold(T::ZERO, |sum, planet| sum + *planet);
         let offset = |gains: &[T; 3]| gains[0] * planets + gains[1] * position.gap + gains[2] * position.wind_up;
-        let errors = instant(self.tables, &Beat::new(Rotor::at(self.phase()), T::ZERO)).error;
+        let errors = instant(self.tables, &Beat::<T, 0>::new(Rotor::at(self.phase()), T::ZERO, 1)).error;
         let meshes = spread(position);
         let deflections: PerMesh<T, N> = array::from_fn(|kind| array::from_fn(|i| meshes[kind][i] - errors[kind][i]));
         Outputs {
@@ -151,37 +149,4 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
             if periods == 0 { self.state.phase } else { self.state.rigid.fraction.wrapping_mul(periods.into()) };
         (phase >> 32) as u32
     }
-}
-
-/// One tick of the sharp dead zone: by exponential while its contact set holds, otherwise in sub-steps. Ripple of one
-/// harmonic has a copy of its own, which need not ask at every mesh whether there are more.
-fn tick<T: Real, const N: usize, const OVERTONES: bool>(
-    tables: &Tables<T, N>,
-    drive: &Drive<T>,
-    phase: &MeshPhase<T>,
-    motion: &Motion<T, N>,
-    start: &mut Start<T, N>,
-) -> Motion<T, N> {
-    let stage = &tables.stage;
-    let pushes_only = if tables.damping_law == DampingLaw::Contact { T::ONE } else { T::ZERO };
-    let frozen = Frozen::<T, N, OVERTONES> {
-        tables,
-        drive: drive.times(stage.square_sixth),
-        pushes_only,
-        adheres: T::ONE - pushes_only,
-    };
-    let mut course = Course::of(motion, tables.substep);
-    frozen.start(&Beat::new(phase.start, tables.substep * phase.rate), &course, start);
-    let held = if tables.mobility.wind_up > T::ZERO {
-        flow::hold::<T, N, 3, OVERTONES>(&frozen, drive, phase, start, &course, motion)
-    } else {
-        flow::hold::<T, N, 2, OVERTONES>(&frozen, drive, phase, start, &course, motion)
-    };
-    match held {
-        Held::Whole(end) => return end,
-        Held::Late(end) => return flow::corrected(&frozen, &mut start.laws, phase, &end),
-        Held::Not => {}
-    }
-    substep::advance(&frozen, phase, start, &mut course);
-    course.motion(tables.substep, stage.rate, motion)
 }

@@ -9,7 +9,7 @@ use nalgebra::SVector;
 
 use crate::real::Real;
 use crate::realtime::contact::{Drive, spread};
-use crate::realtime::excitation::{Beat, MeshPhase, PerMesh, instant};
+use crate::realtime::excitation::{Beat, MOST_OVERTONES, MeshPhase, PerMesh, instant};
 use crate::realtime::runge_kutta::Motion;
 use crate::realtime::state::Relative;
 use crate::realtime::unfrozen::forces;
@@ -25,7 +25,7 @@ pub fn step<T: Real, const N: usize>(
 ) -> Motion<T, N> {
     let half = phase.over(tables.half_part);
     let (mut motion, mut rotor) = (*motion, phase.start);
-    let mut now = instant(tables, &Beat::new(rotor, phase.rate));
+    let mut now = instant(tables, &Beat::<T, MOST_OVERTONES>::new(rotor, phase.rate, tables.excitation.harmonics));
     for _ in 0..tables.substeps {
         let (positions, rates) = (spread(&motion.position), spread(&motion.rate));
         let mut force = forces(tables, &positions, &rates, &now);
@@ -40,7 +40,7 @@ pub fn step<T: Real, const N: usize>(
         let free = Modes::of(tables.planet_share, &motion).free(&tables.flow.whole, drive);
         motion = free.with([(&tables.flow.whole_constant, &force)]).motion();
         rotor = rotor.turned(&half).turned(&half);
-        now = instant(tables, &Beat::new(rotor, phase.rate));
+        now = instant(tables, &Beat::<T, MOST_OVERTONES>::new(rotor, phase.rate, tables.excitation.harmonics));
     }
     motion
 }

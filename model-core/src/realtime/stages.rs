@@ -42,6 +42,9 @@ impl<T: Real> Point<T> {
 }
 
 impl<T: Real> Coordinate<T> {
+    /// At rest at zero.
+    pub const ZERO: Self = Self { position: T::ZERO, rate: T::ZERO, now: T::ZERO, before: T::ZERO };
+
     /// Where it is.
     #[inline(always)]
     pub fn point(&self) -> Point<T> {

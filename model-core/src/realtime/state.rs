@@ -5,7 +5,7 @@ use core::array;
 
 use crate::digest::{self, chain};
 use crate::real::Real;
-use crate::realtime::excitation::mesh_way;
+use crate::realtime::excitation::{Beat, Rotor, mesh_way};
 use crate::tables::{Rigid, Tables};
 
 /// Relative coordinates, or their rates or accelerations, in units of b_c.
@@ -40,16 +40,7 @@ impl<T: Real, const N: usize> Relative<T, N> {
     /// whatever is not finite in one form.
     #[inline]
     fn settled(&self) -> Self {
-        let settle = |value: T| {
-            if value >= T::LEAST || value <= -T::LEAST {
-                if value.is_finite() { value } else { T::NAN }
-            } else if value < T::LEAST {
-                T::ZERO
-            } else {
-                T::NAN
-            }
-        };
-        Self { planets: self.planets.map(settle), gap: settle(self.gap), wind_up: settle(self.wind_up) }
+        Self { planets: self.planets.map(T::settled), gap: self.gap.settled(), wind_up: self.wind_up.settled() }
     }
 
     fn is_finite(&self) -> bool {
@@ -123,12 +114,25 @@ impl<T: Real, const N: usize> State<T, N> {
         carrier_speed: T,
     ) -> Self {
         let speed = carrier_speed.over(tables.units.carrier_speed).to_i64();
-        let rigid = RigidBody { speed, ..RigidBody::REST };
+        Self::with_rigid_body(tables, deflections, rates, RigidBody { speed, ..RigidBody::REST })
+    }
+
+    /// The same with the rigid body at any angle.
+    pub fn with_rigid_body(
+        tables: &Tables<T, N>,
+        deflections: &Relative<T, N>,
+        rates: &Relative<T, N>,
+        rigid: RigidBody,
+    ) -> Self {
         let mut state = Self { position: *deflections, rate: *rates, rigid, phase: 0 };
-        let phase_rate = tables.excitation.rate * mesh_way(&tables.excitation, speed);
+        let excitation = &tables.excitation;
+        let phase = rigid.fraction.wrapping_mul(excitation.periods_per_turn.into());
+        let phase_rate = excitation.rate * mesh_way(excitation, rigid.speed);
+        let beat = Beat::<T, 0>::new(Rotor::at((phase >> 32) as u32), phase_rate, 1);
         for (i, mesh) in tables.meshes[0].iter().enumerate() {
-            state.position.planets[i] += mesh.error[1];
-            state.rate.planets[i] += mesh.error[0] * phase_rate;
+            let imposed = mesh.at(&beat, T::ZERO, 1);
+            state.position.planets[i] += imposed.error;
+            state.rate.planets[i] += imposed.error_rate;
         }
         state
     }

@@ -5,15 +5,17 @@
 use core::array;
 
 use crate::real::Real;
-use crate::realtime::contact::Net;
+use crate::realtime::contact::{Drive, Laws, Net};
 use crate::realtime::crossing::End;
 use crate::realtime::excitation::{Beat, MeshPhase, PerMesh};
 use crate::realtime::frozen::{Frozen, Start};
 use crate::realtime::runge_kutta::Motion;
 use crate::realtime::stages::Coordinate;
 use crate::realtime::state::Relative;
+use crate::tables::Mobility;
 
 /// All coordinates, with a sub-step as the unit of time.
+#[derive(Debug, Clone)]
 pub struct Course<T, const N: usize> {
     /// u_s - u_pi - u_c of every planet, without imposed error.
     pub planets: [Coordinate<T>; N],
@@ -23,12 +25,12 @@ pub struct Course<T, const N: usize> {
     pub wind_up: Coordinate<T>,
 }
 
-/// One tick; `start.laws` are brought up to date.
+/// One tick from laws and accelerations at its start; both are brought up to date.
 #[inline(never)]
-pub fn advance<T: Real, const N: usize, const OVERTONES: bool>(
+pub fn advance<T: Real, const N: usize, const OVERTONES: usize>(
     frozen: &Frozen<T, N, OVERTONES>,
     phase: &MeshPhase<T>,
-    start: &mut Start<T, N>,
+    laws: &mut Laws<T, N>,
     course: &mut Course<T, N>,
 ) {
     let tables = frozen.tables;
@@ -36,18 +38,16 @@ pub fn advance<T: Real, const N: usize, const OVERTONES: bool>(
     let half = phase.over(tables.half_part);
     let rate = tables.substep * phase.rate;
     let mut rotor = phase.start;
-    begin(frozen, start, &Beat::new(rotor.turned(&half), rate), course);
-    let laws = &mut start.laws;
     let mut trespasses: PerMesh<T, N> = [[T::ZERO; N]; 2];
     for _ in 0..tables.substeps {
         rotor = rotor.turned(&half);
-        let beat = Beat::new(rotor, rate);
+        let beat = Beat::new(rotor, rate, tables.excitation.harmonics);
         let gap = course.gap.middle();
         let wind_up = if compliant { frozen.wind_up_force(course.wind_up.middle()) } else { T::ZERO };
         let middle = frozen.pull(laws, &beat, gap, wind_up, |i| course.planets[i].middle(), |_, _| {});
 
         rotor = rotor.turned(&half);
-        let beat = Beat::new(rotor, rate);
+        let beat = Beat::new(rotor, rate, tables.excitation.harmonics);
         let gap = course.gap.arrive(middle.gap);
         let wind_up = if compliant { frozen.wind_up_force(course.wind_up.arrive(middle.wind_up)) } else { T::ZERO };
         let planets = &mut course.planets;
@@ -79,32 +79,50 @@ pub fn advance<T: Real, const N: usize, const OVERTONES: bool>(
 
 /// The accelerations at the start of a tick, and those of half a sub-step before from a first look at the middle.
 #[inline(never)]
-fn begin<T: Real, const N: usize, const OVERTONES: bool>(
+pub fn begin<T: Real, const N: usize, const OVERTONES: usize>(
     frozen: &Frozen<T, N, OVERTONES>,
     start: &Start<T, N>,
-    middle: &Beat<T>,
+    phase: &MeshPhase<T>,
     course: &mut Course<T, N>,
 ) {
+    let tables = frozen.tables;
+    let rotor = phase.start.turned(&phase.over(tables.half_part));
+    let middle = Beat::new(rotor, tables.substep * phase.rate, tables.excitation.harmonics);
     let wind_up = frozen.wind_up_force(course.wind_up.point());
-    let now =
-        Net::of(&start.meshes, |mesh| mesh.force).accelerations(&frozen.tables.stage.mobility, &frozen.drive, wind_up);
+    let now = Net::of(&start.meshes, |mesh| mesh.force).accelerations(&tables.stage.mobility, &frozen.drive, wind_up);
     course.each(&now, |coordinate, now| (coordinate.now, coordinate.before) = (now, now));
     let wind_up = frozen.wind_up_force(course.wind_up.middle());
     let gap = course.gap.middle();
-    let seen = frozen.pull(&start.laws, middle, gap, wind_up, |i| course.planets[i].middle(), |_, _| {});
+    let seen = frozen.pull(&start.laws, &middle, gap, wind_up, |i| course.planets[i].middle(), |_, _| {});
     course.each(&seen, |coordinate, seen| coordinate.before = coordinate.now + coordinate.now - seen);
 }
 
 impl<T: Real, const N: usize> Course<T, N> {
+    /// Nowhere yet.
+    pub const EMPTY: Self = Self { planets: [Coordinate::ZERO; N], gap: Coordinate::ZERO, wind_up: Coordinate::ZERO };
+
+    /// Takes position and rate from a motion; accelerations are left as they are.
+    #[inline(always)]
+    pub fn place(&mut self, motion: &Motion<T, N>, length: T) {
+        let Motion { position, rate } = motion;
+        self.each(position, |coordinate, position| coordinate.position = position);
+        self.each(rate, |coordinate, rate| coordinate.rate = length * rate);
+    }
+
+    /// Accelerations as if torques had always been larger by so much.
+    #[inline(always)]
+    pub fn pushed(&mut self, drive: &Drive<T>, mobility: &Mobility<T>) {
+        self.each(&drive.relative(mobility), |coordinate, more| {
+            coordinate.now += more;
+            coordinate.before += more;
+        });
+    }
+
     /// A motion whose accelerations are not yet known, in sub-steps of a length.
     pub fn of(motion: &Motion<T, N>, length: T) -> Self {
-        let Motion { position, rate } = motion;
-        let still = |position: T, rate: T| Coordinate { position, rate: length * rate, now: T::ZERO, before: T::ZERO };
-        Self {
-            planets: array::from_fn(|i| still(position.planets[i], rate.planets[i])),
-            gap: still(position.gap, rate.gap),
-            wind_up: still(position.wind_up, rate.wind_up),
-        }
+        let mut course = Self::EMPTY;
+        course.place(motion, length);
+        course
     }
 
     /// The motion without its accelerations, from sub-steps at a rate, after it was `before`. Rates are taken over as

@@ -5,7 +5,7 @@
 use crate::dead_zone;
 use crate::real::Real;
 use crate::realtime::contact::{Drive, Law, acceleration, spread, wind_up_force};
-use crate::realtime::excitation::{Beat, Instant, MeshPhase, PerMesh, instant};
+use crate::realtime::excitation::{Beat, Instant, MOST_OVERTONES, MeshPhase, PerMesh, instant};
 use crate::realtime::runge_kutta::{self, Motion};
 use crate::realtime::state::Relative;
 use crate::tables::Tables;
@@ -19,12 +19,12 @@ pub fn runge_kutta<T: Real, const N: usize>(
 ) -> Motion<T, N> {
     let half = phase.over(tables.half_part);
     let (mut motion, mut rotor) = (*motion, phase.start);
-    let mut start = instant(tables, &Beat::new(rotor, phase.rate));
+    let mut start = instant(tables, &Beat::<T, MOST_OVERTONES>::new(rotor, phase.rate, tables.excitation.harmonics));
     for _ in 0..tables.substeps {
         rotor = rotor.turned(&half);
-        let middle = instant(tables, &Beat::new(rotor, phase.rate));
+        let middle = instant(tables, &Beat::<T, MOST_OVERTONES>::new(rotor, phase.rate, tables.excitation.harmonics));
         rotor = rotor.turned(&half);
-        let end = instant(tables, &Beat::new(rotor, phase.rate));
+        let end = instant(tables, &Beat::<T, MOST_OVERTONES>::new(rotor, phase.rate, tables.excitation.harmonics));
         let nodes = [&start, &middle, &end];
         motion = runge_kutta::step(tables.substep, &motion, |node, position, rate| {
             forced(tables, drive, position, rate, nodes[node])
@@ -43,13 +43,13 @@ pub fn semi_implicit_euler<T: Real, const N: usize>(
 ) -> Motion<T, N> {
     let half = phase.over(tables.half_part);
     let (mut motion, mut rotor) = (*motion, phase.start);
-    let mut now = instant(tables, &Beat::new(rotor, phase.rate));
+    let mut now = instant(tables, &Beat::<T, MOST_OVERTONES>::new(rotor, phase.rate, tables.excitation.harmonics));
     for _ in 0..tables.substeps {
         let acceleration = forced(tables, drive, &motion.position, &motion.rate, &now);
         let rate = motion.rate.plus(tables.substep, &acceleration);
         motion = Motion { position: motion.position.plus(tables.substep, &rate), rate };
         rotor = rotor.turned(&half).turned(&half);
-        now = instant(tables, &Beat::new(rotor, phase.rate));
+        now = instant(tables, &Beat::<T, MOST_OVERTONES>::new(rotor, phase.rate, tables.excitation.harmonics));
     }
     motion
 }

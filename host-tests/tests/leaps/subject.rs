@@ -1,0 +1,134 @@
+//! Joint Q1 with light planets, ripple and errors, its tables in stated leaps, and one run of core and reference side by
+//! side. No bound is stated here.
+
+use contest::start::Deflected;
+use host_tests::reference::{Observation, Reference, RelativeState, Start};
+use host_tests::scenarios::{case_r, same};
+use model_core::design::dynamics::Dynamics;
+use model_core::design::{Effort, design_scheme, light_tables};
+use model_core::joint::JointParameters;
+use model_core::mesh::{DampingLaw, Mesh};
+use model_core::realtime::{Model, State, Torques};
+use model_core::scales::Scales;
+use model_core::tables::{Mobility, Scheme, Tables};
+
+/// Case R's joint with so many planets, under a damping law.
+pub fn joint(planets: usize, law: DampingLaw) -> JointParameters {
+    let mut joint = case_r::case_r().joint;
+    let (sun, planet, ring) = match planets {
+        3 => (15, 30, 75),
+        4 => (16, 28, 72),
+        _ => (20, 30, 80),
+    };
+    let geometry = &mut joint.geometry;
+    let per_tooth = geometry.sun_base_radius / f64::from(geometry.sun_teeth);
+    (geometry.planets, geometry.sun_teeth, geometry.planet_teeth, geometry.ring_teeth) = (planets, sun, planet, ring);
+    geometry.sun_base_radius = per_tooth * f64::from(sun);
+    geometry.planet_base_radius = per_tooth * f64::from(planet);
+    geometry.carrier_radius = per_tooth * f64::from(sun + planet) / geometry.working_pressure_angle.cos();
+    joint.damping_law = law;
+    for mesh in [&mut joint.sun_planet, &mut joint.ring_planet] {
+        mesh.half_backlash = same(planets, 40e-6);
+        mesh.transmission_error = same(planets, 3e-6);
+    }
+    joint
+}
+
+/// Tables in so many leaps a tick.
+pub fn tables<const N: usize>(joint: &JointParameters, rate: u32, leaps: u32) -> Tables<f64, N> {
+    let mut tables: Tables<f64, N> =
+        design_scheme(joint, rate, Scheme::Realtime, Effort::Substeps(16)).expect("a sound joint");
+    let scales = Scales::new(joint);
+    let dynamics = Dynamics::new(joint, &scales);
+    let (wind_up_stiffness, wind_up_damping) = dynamics.wind_up.expect("Q1 is compliant");
+    let unit = Mobility {
+        sun: dynamics.mobilities[0],
+        planet: dynamics.mobilities[1],
+        carrier: dynamics.mobilities[N + 1],
+        link: dynamics.mobilities[N + 2],
+        wind_up: 1.0,
+        wind_up_stiffness,
+        wind_up_damping,
+    };
+    tables.light = light_tables::light(joint, &unit, scales.frequency / f64::from(rate), leaps);
+    tables
+}
+
+/// The same without exponential ticks.
+pub fn leaping<const N: usize>(joint: &JointParameters, rate: u32, leaps: u32) -> Tables<f64, N> {
+    let mut tables = tables(joint, rate, leaps);
+    tables.flow.longest_way = -1.0;
+    tables
+}
+
+/// A start as the core takes it.
+pub fn state<const N: usize>(joint: &JointParameters, tables: &Tables<f64, N>, start: &RelativeState) -> State<f64, N> {
+    Deflected::new(joint, &Start::Relative(start.clone())).state(joint, tables)
+}
+
+/// All meshes pressed alike on the drive side [m], nothing moving.
+pub fn pressed(joint: &JointParameters, overlap: f64) -> RelativeState {
+    let planets = joint.geometry.planets;
+    let deflection = joint.sun_planet.half_backlash[0] + overlap;
+    RelativeState { sun_planet: same(planets, deflection), gap: 2.0 * deflection, ..RelativeState::centred(planets) }
+}
+
+/// All bodies at rest relative to each other under a drive torque and the load torque beside it that balances it.
+pub fn resting(joint: &JointParameters, drive: f64) -> (RelativeState, f64) {
+    let geometry = &joint.geometry;
+    let force = drive / (geometry.planets as f64 * geometry.sun_base_radius);
+    let load = drive * geometry.ratio_by_radii();
+    let at_rest = |mesh: &Mesh| mesh.half_backlash[0] * force.signum() + force / mesh.mean_stiffness;
+    let deflection = at_rest(&joint.sun_planet);
+    let torsion = joint.compliance.map_or(0.0, |compliance| load / compliance.stiffness);
+    let start = RelativeState {
+        sun_planet: same(geometry.planets, deflection),
+        gap: deflection + at_rest(&joint.ring_planet),
+        wind_up: torsion * geometry.carrier_base_radius(),
+        ..RelativeState::centred(geometry.planets)
+    };
+    (start, load)
+}
+
+/// What the reference does over so many ticks: the start, then the end of each.
+pub fn reference(
+    joint: &JointParameters,
+    start: &RelativeState,
+    torques: (f64, f64),
+    rate: u32,
+    ticks: u32,
+) -> Vec<Observation> {
+    let mut reference = Reference::start(joint, &Start::Relative(start.clone())).expect("a sound joint");
+    let mut seen = vec![reference.observe()];
+    for tick in 1..=ticks {
+        reference.advance(f64::from(tick) / f64::from(rate), torques.0, torques.1).expect("the reference follows");
+        seen.push(reference.observe());
+    }
+    seen
+}
+
+/// RMS over all mesh deflections at the reference's moments, over b_c.
+pub fn error<const N: usize>(
+    joint: &JointParameters,
+    tables: &Tables<f64, N>,
+    start: &RelativeState,
+    torques: (f64, f64),
+    expected: &[Observation],
+) -> f64 {
+    let mut model = Model::new(tables);
+    model.set_state(state(joint, tables, start));
+    let mut now = 0;
+    let mut squares = 0.0;
+    for seen in expected {
+        let ticks = (seen.time * f64::from(tables.tick_rate)).round() as u32;
+        for _ in now..ticks {
+            model.step(Torques { drive: torques.0, load: torques.1 });
+        }
+        now = ticks;
+        let found = model.outputs().deflections;
+        for (found, right) in found.iter().flatten().zip(seen.deflections.iter().flatten()) {
+            squares += ((found - right) / joint.characteristic_length).powi(2);
+        }
+    }
+    (squares / (2 * N * expected.len()) as f64).sqrt()
+}

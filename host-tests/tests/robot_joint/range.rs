@@ -1,0 +1,72 @@
+//! The same beyond case R's own joint: other mesh phases, teeth, planets, backlash, masses, springs, the other damping
+//! law.
+
+use host_tests::scenarios::{case_r, same};
+use host_tests::tolerance::light_planets::{
+    FAR_ROBOTS_LINK_RMS, FAR_ROBOTS_LINK_WORST, ROBOT_LINK_RMS, ROBOT_LINK_WORST, ROBOTS_PEAK_FORCE,
+};
+use model_core::joint::{JointParameters, PerPlanet};
+use model_core::mesh::DampingLaw;
+
+use crate::variants::{joint, with_meshes, with_teeth};
+use crate::windows::errors;
+
+fn check(joint: JointParameters, shift: f64) {
+    let errors = errors(case_r::brief(joint), shift);
+    ROBOT_LINK_RMS.check(errors.link_rms);
+    ROBOT_LINK_WORST.check(errors.link_worst);
+    ROBOTS_PEAK_FORCE.check(errors.peak_force);
+}
+
+fn check_far(joint: JointParameters) {
+    let errors = errors(case_r::brief(joint), 0.0);
+    FAR_ROBOTS_LINK_RMS.check(errors.link_rms);
+    FAR_ROBOTS_LINK_WORST.check(errors.link_worst);
+    ROBOTS_PEAK_FORCE.check(errors.peak_force);
+}
+
+#[test]
+fn other_mesh_phases_stay_with_the_reference() {
+    check(joint(), 0.3);
+    check(joint(), 0.6);
+}
+
+#[test]
+fn other_teeth_and_backlash_stay_with_the_reference() {
+    check(with_teeth(3, 27, 36, 99), 0.0);
+    check(with_meshes(|mesh| mesh.half_backlash = same(3, 20e-6)), 0.0);
+    check(with_meshes(|mesh| mesh.half_backlash = same(3, 80e-6)), 0.0);
+}
+
+#[test]
+fn other_bodies_and_springs_stay_with_the_reference() {
+    let mut light = joint();
+    light.link_inertia = 0.05;
+    check(light, 0.0);
+    let mut soft = joint();
+    if let Some(compliance) = &mut soft.compliance {
+        compliance.stiffness /= 3.0;
+    }
+    check(soft, 0.0);
+}
+
+#[test]
+fn the_other_damping_law_stays_with_the_reference() {
+    let mut joint = joint();
+    joint.damping_law = DampingLaw::Paper;
+    check(joint, 0.0);
+}
+
+#[test]
+fn planets_that_move_one_by_one_or_are_heavy_beside_the_link_stay_near_the_reference() {
+    // 25 / 5 is whole, 16 / 3 is not.
+    check_far(with_teeth(5, 25, 25, 75));
+    check_far(with_teeth(3, 16, 29, 74));
+    let mut unequal = joint();
+    unequal.sun_planet.half_backlash = [35e-6, 40e-6, 46e-6].into_iter().collect::<PerPlanet>();
+    check_far(unequal);
+    let mut heavy = joint();
+    heavy.link_inertia = 0.05;
+    heavy.bodies.planet_equivalent_mass = 0.06;
+    check_far(heavy);
+}

@@ -1,0 +1,37 @@
+//! The motion of case R in windows: how far the board's step, as designed for 10 kHz and in f32, is from the reference.
+
+use contest::case::Case;
+use contest::course::Errors;
+use contest::curve::{Field, Scalar};
+use contest::method::Method;
+use contest::run::AS_DESIGNED;
+use host_tests::scenarios::case_r::{self, CaseR, TICK_RATE};
+use host_tests::tolerance::light_planets::{ROBOT_LINK_RMS, ROBOT_LINK_WORST, ROBOT_PEAK_FORCE};
+
+use crate::variants::joint;
+
+/// Errors over a motion with all mesh phases further on by so many periods.
+pub fn errors(motion: CaseR, shift: f64) -> Errors {
+    let case = Case::of_robot_joint("R", "what a robot joint does", motion).shifted(shift);
+    let field = Field::new(case, 1).expect("the reference follows");
+    let point = field.point(Method::Realtime, Scalar::Single, TICK_RATE, AS_DESIGNED).expect("a sound joint");
+    println!("{:?}", point.errors);
+    point.errors
+}
+
+fn check(errors: &Errors) {
+    ROBOT_LINK_RMS.check(errors.link_rms);
+    ROBOT_LINK_WORST.check(errors.link_worst);
+    ROBOT_PEAK_FORCE.check(errors.peak_force);
+}
+
+#[test]
+fn output_angle_and_peak_mesh_force_stay_with_the_reference_in_every_window() {
+    check(&errors(case_r::brief(joint()), 0.0));
+}
+
+#[test]
+#[ignore = "half a minute: the reference through all of case R"]
+fn the_whole_of_case_r_stays_with_the_reference_in_every_window() {
+    check(&errors(case_r::case_r(), 0.0));
+}

@@ -1,0 +1,168 @@
+//! What a controller of a robot joint gets out of one sample, method by method at the same cost: output angle and peak
+//! mesh force. Only of cases that are judged by the output angle; other cases are left to `verdicts`.
+
+use serde::Serialize;
+
+use contest::method::Method;
+
+use super::columns::{scientific, table};
+use super::lineup::{CaseFigures, Entry, Mark};
+use super::verdicts::least_cost_at;
+
+/// Samples in a second [Hz].
+pub const SAMPLE_RATE: u32 = 10_000;
+/// Instructions that a sample may take, on average.
+pub const INSTRUCTIONS: f64 = 2_000.0;
+/// What is asked of the link angle over the lost motion, RMS and worst, and of the largest mesh force.
+pub const ASKED: [f64; 3] = [1e-3, 1e-2, 0.1];
+
+/// One method at its best within the cost.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct InASample {
+    /// Case.
+    pub case: String,
+    /// Method.
+    pub name: &'static str,
+    /// Its step with the least RMS error of those that fit; none if none fits or all get lost.
+    pub best: Option<Best>,
+    /// Instructions a sample at which its RMS error is that of this step; none if it never is.
+    pub at_equal_error: Option<f64>,
+}
+
+/// The best step of a method.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Best {
+    /// Steps a sample; sub-steps of this step; none where the design chose.
+    pub steps: Option<u32>,
+    /// Link angle over the lost motion, RMS.
+    pub link_rms: f64,
+    /// Worst.
+    pub link_worst: f64,
+    /// Largest mesh force, relative.
+    pub peak_force: f64,
+    /// Mean instructions a sample.
+    pub instructions: f64,
+    /// Greatest.
+    pub instructions_most: u32,
+}
+
+impl Best {
+    /// Whether it does all that is asked.
+    pub fn does(&self) -> bool {
+        [self.link_rms, self.link_worst, self.peak_force].iter().zip(ASKED).all(|(found, asked)| *found <= asked)
+    }
+}
+
+/// All methods on all cases that are judged by the output angle.
+pub fn in_a_sample(cases: &[CaseFigures], entries: &[Entry]) -> Vec<InASample> {
+    let judged = |entry: &&Entry| cases.iter().any(|case| case.key == entry.case && case.by_link_angle);
+    let own = |case: &str| {
+        let own = entries.iter().find(|entry| entry.case == case && entry.method == Method::Realtime)?;
+        best(own)
+    };
+    let one = |entry: &Entry| InASample {
+        case: entry.case.clone(),
+        name: entry.name,
+        best: best(entry),
+        at_equal_error: own(&entry.case)
+            .and_then(|own| least_cost_at(entry.series(), own.link_rms))
+            .map(|cost| cost / f64::from(SAMPLE_RATE)),
+    };
+    entries.iter().filter(judged).map(one).collect()
+}
+
+/// Those of one case as a table.
+pub fn layout(found: &[&InASample]) -> String {
+    let row = |one: &&InASample| {
+        let of = |cell: &dyn Fn(&Best) -> String| one.best.as_ref().map_or_else(|| "-".to_owned(), cell);
+        let steps = |best: &Best| best.steps.map_or_else(|| "as designed".into(), |steps| steps.to_string());
+        vec![
+            one.name.to_owned(),
+            one.best.as_ref().map_or_else(|| "none follows".into(), steps),
+            of(&|best| scientific(Some(best.link_rms))),
+            of(&|best| scientific(Some(best.link_worst))),
+            of(&|best| format!("{:.1} %", 100.0 * best.peak_force)),
+            of(&|best| format!("{:.0}", best.instructions)),
+            of(&|best| best.instructions_most.to_string()),
+            of(&|best| if best.does() { "yes" } else { "no" }.into()),
+            one.at_equal_error.map_or_else(|| "not reached".into(), |cost| format!("{cost:.0}")),
+        ]
+    };
+    let heads = [
+        "method",
+        "steps",
+        "link RMS",
+        "link worst",
+        "peak force",
+        "instr/sample",
+        "worst",
+        "all kept",
+        "at equal RMS",
+    ];
+    let [rms, worst, peak] = ASKED;
+    format!(
+        "\nEvery method at its best in at most {INSTRUCTIONS:.0} instructions a sample, on average, at {} kHz. Asked for: \
+         link angle within {rms:.0e} RMS and {worst:.0e} worst of the lost motion, peak mesh force of every part of the \
+         motion within {:.0} %. Last column: instructions a sample that bring a method down to the RMS error of this \
+         step.\n\n{}",
+        SAMPLE_RATE / 1000,
+        100.0 * peak,
+        table(&heads, &found.iter().map(row).collect::<Vec<_>>())
+    )
+}
+
+fn best(entry: &Entry) -> Option<Best> {
+    let of = |mark: &Mark| {
+        let steps = mark.rate_Hz / SAMPLE_RATE;
+        Some(Best {
+            steps: (mark.substeps > 0).then_some(steps * mark.substeps),
+            link_rms: mark.link_rms?,
+            link_worst: mark.link_worst?,
+            peak_force: mark.peak_force?,
+            instructions: mark.instructions * f64::from(steps),
+            instructions_most: mark.sample_instructions_most[0],
+        })
+    };
+    let whole = entry.marks.iter().filter(|mark| mark.rate_Hz.is_multiple_of(SAMPLE_RATE));
+    let fitting = whole.filter_map(of).filter(|best| best.instructions <= INSTRUCTIONS);
+    fitting.min_by(|a, b| a.link_rms.total_cmp(&b.link_rms))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn mark(steps: u32, instructions: f64, link_rms: f64) -> Mark {
+        Mark {
+            rate_Hz: steps * SAMPLE_RATE,
+            substeps: 1,
+            step: 1.0,
+            error: Some(link_rms),
+            error_f64: None,
+            link_rms: Some(link_rms),
+            link_worst: Some(5.0 * link_rms),
+            peak_force: Some(0.05),
+            instructions,
+            instructions_most: 900,
+            sample_instructions_most: [900 * steps, 0, 0],
+        }
+    }
+
+    fn entry(marks: Vec<Mark>) -> Entry {
+        Entry { case: "R".into(), method: Method::Euler, name: Method::Euler.name(), marks }
+    }
+
+    #[test]
+    fn the_best_step_is_the_one_with_the_least_error_of_those_that_fit() {
+        let found = best(&entry(vec![mark(1, 600.0, 0.1), mark(3, 600.0, 1e-3), mark(4, 600.0, 1e-4)])).unwrap();
+        assert_eq!(found.steps, Some(3));
+        assert_eq!(found.instructions_most, 2700);
+        assert!(found.does());
+    }
+
+    #[test]
+    fn a_method_that_gets_lost_at_every_step_that_fits_has_no_best_step() {
+        let lost = Mark { link_rms: None, ..mark(1, 600.0, 1.0) };
+        assert_eq!(best(&entry(vec![lost, mark(4, 600.0, 1e-4)])), None);
+    }
+}

@@ -21,6 +21,7 @@ mod problem;
 mod reader;
 mod section;
 mod spelling;
+mod surroundings;
 mod unknown;
 
 pub use change::{Refused, change, full_key, value};

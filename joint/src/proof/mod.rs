@@ -4,6 +4,7 @@
 
 pub mod costs;
 pub mod joints;
+pub mod roles;
 pub mod same_bits;
 pub mod tick;
 pub mod worst_case;

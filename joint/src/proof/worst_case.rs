@@ -16,7 +16,7 @@ use crate::target::{Say, measuring};
 /// on the average. The rest is for whatever else the board does.
 const WORST_SHARE: f64 = 0.75;
 /// Cycles an instruction of a Cortex-M4F in this code, from the timing tables of its manual weighted by a trace.
-const CYCLES_AN_INSTRUCTION: f64 = 1.4;
+pub const CYCLES_AN_INSTRUCTION: f64 = 1.4;
 
 /// Instructions of one sort of trials.
 #[derive(Debug, Clone, PartialEq)]

@@ -113,7 +113,9 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
         counts(&self.table.encoders[1], self.shafts.link, self.shafts.speeds[1]).1
     }
 
-    /// Moves on by one period under a torque command and a torque that brakes the link [N m].
+    /// Moves on by one period under a torque command and a torque that brakes the link [N m]. Not inlined: what its
+    /// caller needs beside it would lie on the stack below it.
+    #[inline(never)]
     pub fn advance(&mut self, command: T, disturbance: T) {
         let table = self.table;
         self.commands.rotate_right(1);

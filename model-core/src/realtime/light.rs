@@ -17,7 +17,7 @@ use crate::realtime::runge_kutta::Motion;
 use crate::tables::Tables;
 
 /// One tick.
-#[inline]
+#[inline(never)]
 pub fn tick<T: Real, const N: usize>(
     tables: &Tables<T, N>,
     drive: &Drive<T>,

@@ -87,7 +87,7 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
         self.state.is_finite()
     }
 
-    /// One tick.
+    /// One tick. Paths that a joint does not take have frames of their own, so that they cost the others no stack.
     pub fn step(&mut self, torques: Torques<T>) {
         let tables = self.tables;
         let units = &tables.units;

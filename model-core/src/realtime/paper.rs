@@ -17,6 +17,7 @@ use crate::tables::{Inputs, Tables, Transition};
 
 /// One tick of the paper's scheme: constant exponential, pseudo-force held over each sub-step (first-order
 /// exponential time differencing).
+#[inline(never)]
 pub fn step<T: Real, const N: usize>(
     tables: &Tables<T, N>,
     drive: &Drive<T>,

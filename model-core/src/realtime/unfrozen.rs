@@ -11,6 +11,7 @@ use crate::realtime::state::Relative;
 use crate::tables::Tables;
 
 /// One tick of the classical Runge-Kutta method.
+#[inline(never)]
 pub fn runge_kutta<T: Real, const N: usize>(
     tables: &Tables<T, N>,
     drive: &Drive<T>,
@@ -35,6 +36,7 @@ pub fn runge_kutta<T: Real, const N: usize>(
 }
 
 /// One tick of semi-implicit Euler: the rate first, then the position with the new rate.
+#[inline(never)]
 pub fn semi_implicit_euler<T: Real, const N: usize>(
     tables: &Tables<T, N>,
     drive: &Drive<T>,

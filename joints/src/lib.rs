@@ -23,7 +23,7 @@ mod section;
 mod spelling;
 mod unknown;
 
-pub use change::{Refused, change, full_key, value};
+pub use change::{Refused, change, change_noting, full_key, value};
 pub use drive_train::{DriveTrain, Encoder};
 pub use motion::Profile;
 pub use notes::Source;

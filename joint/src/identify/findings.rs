@@ -1,0 +1,266 @@
+//! What was found, each with its 95 % interval in the joint file's unit and the key that it belongs to, or the reason why
+//! the log does not show it. Fitting is left to `twist` and `friction`, showing to `table` and `page`.
+
+use nalgebra::DVector;
+use serde::Serialize;
+
+use super::friction;
+use super::log::Log;
+use super::plan::Plan;
+use super::regression::Solution;
+use super::rows::{Row, Rows};
+use super::twist::{self, Twist};
+
+/// A value counts as found if half of its interval is at most this share of it...
+const SHARE: f64 = 0.5;
+/// ... or, for what may be zero, this share of the largest torque.
+const SMALL: f64 = 0.02;
+/// An error by angle counts as found if the log narrows it to this share of what is expected anyway.
+const NARROWED: f64 = 0.1;
+/// Degrees in a radian.
+const DEGREES: f64 = 180.0 / std::f64::consts::PI;
+
+/// One parameter.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Finding {
+    /// What it is.
+    pub name: String,
+    /// Unit of the numbers.
+    pub unit: String,
+    /// Key of the joint file that it belongs to.
+    pub key: Option<String>,
+    /// Best value; absent if the log does not show it.
+    pub value: Option<f64>,
+    /// Lower and upper end of the 95 % interval.
+    pub interval: Option<[f64; 2]>,
+    /// Why the log does not show it, or what to know about the value.
+    pub note: String,
+}
+
+/// A value and half of its interval.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Estimate {
+    value: f64,
+    half: f64,
+}
+
+impl Estimate {
+    fn of(solution: &Solution, unknown: usize) -> Self {
+        Self { value: solution.values[unknown], half: solution.reach * solution.deviation(unknown) }
+    }
+
+    /// Any smooth function of a solution, by its slopes.
+    fn from(solution: &Solution, value: f64, slopes: &[(usize, f64)]) -> Self {
+        let mut slope = DVector::zeros(solution.values.len());
+        slopes.iter().for_each(|(unknown, by)| slope[*unknown] = *by);
+        let variance = (slope.transpose() * &solution.covariance * &slope)[(0, 0)];
+        Self { value, half: solution.reach * variance.max(0.0).sqrt() }
+    }
+
+    fn times(self, factor: f64) -> Self {
+        Self { value: self.value * factor, half: self.half * factor.abs() }
+    }
+
+    /// With a systematic part beside the scatter.
+    fn wider_by(self, systematic: f64) -> Self {
+        Self { half: self.half + systematic.abs(), ..self }
+    }
+}
+
+/// Everything that a log shows of a joint.
+pub fn gather(log: &Log, quick: &Rows, slow: &Rows, twist: &Twist, plan: &Plan) -> Vec<Finding> {
+    let mut findings = gap_and_compliance(twist, plan, log.output_torque.is_some());
+    findings.extend(frictions(quick, slow, twist, plan));
+    findings.extend(maps(twist));
+    let skew = Estimate::of(&twist.solution, twist::SKEW);
+    let why = "the joint must turn at different speeds";
+    let narrow = skew.half < 2.0 * NARROWED * twist::width(twist::SKEW);
+    findings.push(
+        finding("output encoder: age of a reading", "us", "drive_train.output_encoder.skew_us", skew.times(1e6))
+            .if_so(narrow, why),
+    );
+    findings
+}
+
+fn finding(name: &str, unit: &str, key: &str, estimate: Estimate) -> Finding {
+    let Estimate { value, half } = estimate;
+    Finding {
+        name: name.into(),
+        unit: unit.into(),
+        key: (!key.is_empty()).then(|| key.to_owned()),
+        value: Some(value),
+        interval: Some([value - half, value + half]),
+        note: String::new(),
+    }
+}
+
+impl Finding {
+    /// Nothing, for a reason, unless it is so.
+    fn if_so(self, so: bool, why: &str) -> Self {
+        let finite = self.value.is_some_and(f64::is_finite)
+            && self.interval.is_some_and(|ends| ends.iter().all(|end| end.is_finite()));
+        if so && finite {
+            return self;
+        }
+        Self { value: None, interval: None, note: format!("not identifiable from this log: {why}"), ..self }
+    }
+
+    fn noted(self, note: impl Into<String>) -> Self {
+        if self.value.is_none() { self } else { Self { note: note.into(), ..self } }
+    }
+
+    /// What cannot be negative, and with it its interval.
+    fn not_negative(mut self) -> Self {
+        self.value = self.value.map(|value| value.max(0.0));
+        self.interval = self.interval.map(|ends| ends.map(|end| end.max(0.0)));
+        self
+    }
+}
+
+fn gap_and_compliance(twist: &Twist, plan: &Plan, measured: bool) -> Vec<Finding> {
+    let solution = &twist.solution;
+    let half_gap = Estimate::of(solution, twist::HALF_GAP);
+    let compliance = Estimate::of(solution, twist::COMPLIANCE);
+    let torque_error = if measured { 0.0 } else { plan.torque_error };
+    let compliance = compliance.wider_by(torque_error * compliance.value);
+    let has_gap = half_gap.value > 0.0 && half_gap.half < SHARE * half_gap.value;
+    let bends = compliance.value > 0.0 && compliance.half < SHARE * compliance.value;
+    let why_gap =
+        "both flanks must carry torques well above the friction, and the gap must be wider than what the encoders tell";
+    let why_bends = "the torque on one flank must change by much, so that it bends the joint by several counts";
+    let mut findings = vec![
+        finding("half-backlash b", "um", "mesh.half_backlash_um", half_gap.times(1e6 * plan.lever))
+            .if_so(has_gap, why_gap),
+        finding("lost motion at the output", "mrad", "", half_gap.times(2e3)).if_so(has_gap, why_gap),
+        finding("compliance at the output", "urad/(N m)", "", compliance.times(1e6)).if_so(bends, why_bends),
+    ];
+    // What the teeth give is known better from the joint file than from the small part that they have in it.
+    let own = compliance.value - plan.mesh_compliance;
+    let stiffness = if plan.compliant {
+        let stiffness = Estimate { value: 1.0 / own, half: compliance.half / (own * own) };
+        let bends = bends && own > 0.0 && compliance.half < SHARE * own;
+        finding("stiffness behind the carrier", "N m/rad", "compliance.stiffness_N_m_per_rad", stiffness)
+            .if_so(bends, why_bends)
+    } else {
+        let stiffness = plan.mesh_stiffness * plan.mesh_compliance / compliance.value;
+        let estimate = Estimate { value: stiffness, half: stiffness * compliance.half / compliance.value };
+        finding("mean stiffness of a mesh", "N/m", "mesh.mean_stiffness_N_per_m", estimate).if_so(bends, why_bends)
+    };
+    findings.push(stiffness);
+    findings.push(damping(solution, plan, compliance, bends));
+    findings
+}
+
+/// From the time by which the torque runs ahead of the twist to the ratio that the joint file states.
+fn damping(solution: &Solution, plan: &Plan, compliance: Estimate, bends: bool) -> Finding {
+    let relaxation = Estimate::of(solution, twist::RELAXATION).times(-1.0);
+    let own = compliance.value - plan.mesh_compliance;
+    let (name, key, per_ratio) = if plan.compliant {
+        // D = 2 zeta sqrt(J / c), on the part of the twist that is not the teeth's.
+        let per_ratio =
+            2.0 * (plan.swinging_inertia() / own.max(f64::MIN_POSITIVE)).sqrt() * own * own / compliance.value;
+        ("damping ratio of the compliance", "compliance.damping_ratio", per_ratio)
+    } else {
+        ("damping ratio of the meshes", "mesh.damping_ratio", plan.mesh_relaxation_per_ratio)
+    };
+    let ratio = relaxation.times(1.0 / per_ratio);
+    let known = bends && per_ratio > 0.0 && ratio.value > 0.0 && ratio.half < SHARE * ratio.value;
+    finding(name, "-", key, ratio)
+        .if_so(known, "flanks must land so hard that the joint rings, and samples must follow the ringing")
+}
+
+fn frictions(quick: &Rows, slow: &Rows, twist: &Twist, plan: &Plan) -> Vec<Finding> {
+    let solution = &twist.solution;
+    let measured = quick.all.iter().any(|row| row.measured.is_some());
+    let small = SMALL * quick.greatest;
+    let found = |estimate: Estimate, least: f64| estimate.half < (SHARE * estimate.value.abs()).max(least);
+    let torque_error = |estimate: Estimate| {
+        let share = if measured { 0.0 } else { plan.torque_error };
+        estimate.wider_by(share * estimate.value)
+    };
+    let motor = if measured { friction::of_the_motor(quick, plan) } else { None };
+    let compliance = solution.values[twist::COMPLIANCE];
+    let motor_dry = match &motor {
+        Some(balance) => Estimate::of(balance, friction::MOTOR_DRY),
+        None => {
+            let value = -solution.values[twist::MOTOR_FRICTION] / compliance;
+            let slopes = [(twist::MOTOR_FRICTION, -1.0 / compliance), (twist::COMPLIANCE, -value / compliance)];
+            torque_error(Estimate::from(solution, value, &slopes))
+        }
+    };
+    let motor_known = found(motor_dry, small / plan.ratio());
+    let why_motor = "the motor must turn both ways on each flank, and bend the joint by several counts as it does";
+    let key = "drive_train.motor_coulomb_friction_N_m";
+    let mut findings =
+        vec![finding("dry friction of the motor", "N m", key, motor_dry).if_so(motor_known, why_motor).not_negative()];
+    if let Some(balance) = &motor {
+        let viscous = Estimate::of(balance, friction::MOTOR_VISCOUS);
+        let fastest = fastest(quick, |row| row.motor_speed);
+        let key = "drive_train.motor_viscous_friction_N_m_s_per_rad";
+        let known = found(viscous, small / plan.ratio() / fastest);
+        findings.push(
+            finding("viscous friction of the motor", "N m s/rad", key, viscous).if_so(known, why_motor).not_negative(),
+        );
+    }
+    let why_link =
+        "the output must move for a while, faster than its Stribeck speed, in both directions and at different speeds";
+    let names = ["dry friction of the link", "viscous friction of the link"];
+    let keys = ["drive_train.load_coulomb_friction_N_m", "drive_train.load_viscous_friction_N_m_s_per_rad"];
+    let units = ["N m", "N m s/rad"];
+    let Some(link) = friction::of_the_link(slow, plan) else {
+        let nothing = Estimate { value: f64::NAN, half: f64::NAN };
+        findings.extend(
+            [0, 1].map(|place| finding(names[place], units[place], keys[place], nothing).if_so(false, why_link)),
+        );
+        return findings;
+    };
+    let total = torque_error(Estimate::of(&link, friction::DRY));
+    // A torque that was measured behind the gears leaves the link's friction alone; else the motor's is taken off.
+    let (dry, note) = if measured {
+        (total, String::new())
+    } else {
+        let known = Estimate { value: plan.train.motor_coulomb_friction, half: 0.0 };
+        let (motor, whose) = if motor_known { (motor_dry, "") } else { (known, ", if the motor's is as stated") };
+        let motor = motor.times(plan.ratio() * plan.train.efficiency);
+        let note = format!("motor and link together {:.4} N m at the output{whose}", total.value);
+        (Estimate { value: total.value - motor.value, half: total.half.hypot(motor.half) }, note)
+    };
+    let viscous = torque_error(Estimate::of(&link, friction::VISCOUS));
+    let viscous_known = found(viscous, small / fastest(slow, |row| row.output_speed));
+    findings
+        .push(finding(names[0], units[0], keys[0], dry).if_so(found(dry, small), why_link).not_negative().noted(note));
+    let note = if measured { "" } else { "if the motor's is as stated" };
+    findings
+        .push(finding(names[1], units[1], keys[1], viscous).if_so(viscous_known, why_link).not_negative().noted(note));
+    findings
+}
+
+fn fastest(rows: &Rows, speed: impl Fn(&Row) -> f64) -> f64 {
+    rows.carrying().map(|row| speed(row).abs()).fold(0.0, f64::max)
+}
+
+/// Errors that come once and twice a turn of either encoder.
+fn maps(twist: &Twist) -> Vec<Finding> {
+    let solution = &twist.solution;
+    let mut findings = Vec::new();
+    for (encoder, first) in [("motor", twist::MOTOR_MAP), ("output", twist::OUTPUT_MAP)] {
+        for (order, word) in [(0, "once"), (1, "twice")] {
+            let [sine, cosine] = [first + 2 * order, first + 2 * order + 1];
+            let (along, across) = (solution.values[sine], solution.values[cosine]);
+            let amplitude = along.hypot(across);
+            let [by_sine, by_cosine] = [along / amplitude, across / amplitude];
+            let estimate = Estimate::from(solution, amplitude, &[(sine, by_sine), (cosine, by_cosine)]);
+            let narrow = [sine, cosine].iter().all(|part| solution.deviation(*part) < NARROWED * twist::width(first));
+            let phase = across.atan2(along) * DEGREES;
+            let reach = (estimate.half / amplitude).min(std::f64::consts::PI) * DEGREES;
+            let name = format!("{encoder} encoder: error {word} a turn");
+            let key = format!("drive_train.{encoder}_encoder.{word}_per_turn_error_deg");
+            let why = format!("the {encoder} must make a whole turn and more under torque");
+            let note = format!("phase at count zero {phase:.1} deg, +- {reach:.1}");
+            findings.push(
+                finding(&name, "deg", &key, estimate.times(DEGREES)).if_so(narrow, &why).not_negative().noted(note),
+            );
+        }
+    }
+    findings
+}

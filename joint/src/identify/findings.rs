@@ -60,16 +60,11 @@ impl Estimate {
     fn times(self, factor: f64) -> Self {
         Self { value: self.value * factor, half: self.half * factor.abs() }
     }
-
-    /// With a systematic part beside the scatter.
-    fn wider_by(self, systematic: f64) -> Self {
-        Self { half: self.half + systematic.abs(), ..self }
-    }
 }
 
 /// Everything that a log shows of a joint.
 pub fn gather(log: &Log, quick: &Rows, slow: &Rows, twist: &Twist, plan: &Plan) -> Vec<Finding> {
-    let mut findings = gap_and_compliance(twist, plan, log.output_torque.is_some());
+    let mut findings = gap_and_compliance(twist, plan);
     findings.extend(frictions(quick, slow, twist, plan));
     findings.extend(maps(twist));
     let skew = Estimate::of(&twist.solution, twist::SKEW);
@@ -117,12 +112,10 @@ impl Finding {
     }
 }
 
-fn gap_and_compliance(twist: &Twist, plan: &Plan, measured: bool) -> Vec<Finding> {
+fn gap_and_compliance(twist: &Twist, plan: &Plan) -> Vec<Finding> {
     let solution = &twist.solution;
     let half_gap = Estimate::of(solution, twist::HALF_GAP);
     let compliance = Estimate::of(solution, twist::COMPLIANCE);
-    let torque_error = if measured { 0.0 } else { plan.torque_error };
-    let compliance = compliance.wider_by(torque_error * compliance.value);
     let has_gap = half_gap.value > 0.0 && half_gap.half < SHARE * half_gap.value;
     let bends = compliance.value > 0.0 && compliance.half < SHARE * compliance.value;
     let why_gap =
@@ -174,10 +167,6 @@ fn frictions(quick: &Rows, slow: &Rows, twist: &Twist, plan: &Plan) -> Vec<Findi
     let measured = quick.all.iter().any(|row| row.measured.is_some());
     let small = SMALL * quick.greatest;
     let found = |estimate: Estimate, least: f64| estimate.half < (SHARE * estimate.value.abs()).max(least);
-    let torque_error = |estimate: Estimate| {
-        let share = if measured { 0.0 } else { plan.torque_error };
-        estimate.wider_by(share * estimate.value)
-    };
     let motor = if measured { friction::of_the_motor(quick, plan) } else { None };
     let compliance = solution.values[twist::COMPLIANCE];
     let motor_dry = match &motor {
@@ -185,7 +174,15 @@ fn frictions(quick: &Rows, slow: &Rows, twist: &Twist, plan: &Plan) -> Vec<Findi
         None => {
             let value = -solution.values[twist::MOTOR_FRICTION] / compliance;
             let slopes = [(twist::MOTOR_FRICTION, -1.0 / compliance), (twist::COMPLIANCE, -value / compliance)];
-            torque_error(Estimate::from(solution, value, &slopes))
+            Estimate::from(solution, value, &slopes)
+        }
+    };
+    let excess = match &motor {
+        Some(balance) => Estimate::of(balance, friction::TORQUE_ERROR),
+        None => {
+            let value = twist.torque_error();
+            let slopes = [(twist::TORQUE_ERROR, 1.0 / compliance), (twist::COMPLIANCE, -value / compliance)];
+            Estimate::from(solution, value, &slopes)
         }
     };
     let motor_known = found(motor_dry, small / plan.ratio());
@@ -193,6 +190,11 @@ fn frictions(quick: &Rows, slow: &Rows, twist: &Twist, plan: &Plan) -> Vec<Findi
     let key = "drive_train.motor_coulomb_friction_N_m";
     let mut findings =
         vec![finding("dry friction of the motor", "N m", key, motor_dry).if_so(motor_known, why_motor).not_negative()];
+    let narrower = excess.half < plan.torque_error;
+    let key = "drive_train.torque_constant_error_ratio";
+    let why = "flanks must land so hard that the motor's inertia shows";
+    let share = finding("true torque over the logged one, less 1", "-", key, excess).if_so(narrower, why);
+    findings.push(share.noted("by the inertia of the joint file"));
     if let Some(balance) = &motor {
         let viscous = Estimate::of(balance, friction::MOTOR_VISCOUS);
         let fastest = fastest(quick, |row| row.motor_speed);
@@ -207,14 +209,21 @@ fn frictions(quick: &Rows, slow: &Rows, twist: &Twist, plan: &Plan) -> Vec<Findi
     let names = ["dry friction of the link", "viscous friction of the link"];
     let keys = ["drive_train.load_coulomb_friction_N_m", "drive_train.load_viscous_friction_N_m_s_per_rad"];
     let units = ["N m", "N m s/rad"];
-    let Some(link) = friction::of_the_link(slow, plan) else {
+    let Some(link) = friction::of_the_link(slow, plan, excess.value) else {
         let nothing = Estimate { value: f64::NAN, half: f64::NAN };
         findings.extend(
             [0, 1].map(|place| finding(names[place], units[place], keys[place], nothing).if_so(false, why_link)),
         );
         return findings;
     };
-    let total = torque_error(Estimate::of(&link, friction::DRY));
+    // How far a torque that is still uncertain moves the balance is found by moving it.
+    let moved = friction::of_the_link(slow, plan, excess.value + excess.half);
+    let of_link = |unknown: usize| {
+        let shift = moved.as_ref().map_or(f64::NAN, |moved| moved.values[unknown] - link.values[unknown]);
+        let estimate = Estimate::of(&link, unknown);
+        Estimate { half: estimate.half.hypot(shift), ..estimate }
+    };
+    let total = of_link(friction::DRY);
     // A torque that was measured behind the gears leaves the link's friction alone; else the motor's is taken off.
     let (dry, note) = if measured {
         (total, String::new())
@@ -225,7 +234,7 @@ fn frictions(quick: &Rows, slow: &Rows, twist: &Twist, plan: &Plan) -> Vec<Findi
         let note = format!("motor and link together {:.4} N m at the output{whose}", total.value);
         (Estimate { value: total.value - motor.value, half: total.half.hypot(motor.half) }, note)
     };
-    let viscous = torque_error(Estimate::of(&link, friction::VISCOUS));
+    let viscous = of_link(friction::VISCOUS);
     let viscous_known = found(viscous, small / fastest(slow, |row| row.output_speed));
     findings
         .push(finding(names[0], units[0], keys[0], dry).if_so(found(dry, small), why_link).not_negative().noted(note));

@@ -6,9 +6,7 @@ use super::regression::{Equations, Solution};
 use super::rows::{Row, Rows};
 use super::twist::STRETCH;
 
-/// Unknowns of the link's balance by their place: inertia [kg m^2].
-pub const INERTIA: usize = 0;
-/// Dry friction [N m].
+/// Unknowns of the link's balance by their place, behind its inertia: dry friction [N m].
 pub const DRY: usize = 1;
 /// Viscous friction [N m s/rad].
 pub const VISCOUS: usize = 2;
@@ -16,6 +14,8 @@ pub const VISCOUS: usize = 2;
 pub const MOTOR_DRY: usize = 0;
 /// Viscous friction at the motor [N m s/rad].
 pub const MOTOR_VISCOUS: usize = 1;
+/// By which the motor's true torque exceeds the logged one, as a ratio.
+pub const TORQUE_ERROR: usize = 2;
 
 /// Below this speed dry friction is not what it is at speed [rad/s]; more if the joint file's Stribeck speed is high.
 const SLOWEST: f64 = 0.1;
@@ -24,8 +24,9 @@ const STRIBECK_SPEEDS: f64 = 5.0;
 /// Share of the largest torque within which an offset of the torque is expected.
 const BIAS: f64 = 0.02;
 
-/// Balance of the link: its own friction if the torque was measured behind the gears, else the whole joint's.
-pub fn of_the_link(rows: &Rows, plan: &Plan) -> Option<Solution> {
+/// Balance of the link: its own friction if the torque was measured behind the gears, else the whole joint's, with a
+/// motor torque that exceeds the logged one by a ratio.
+pub fn of_the_link(rows: &Rows, plan: &Plan, torque_error: f64) -> Option<Solution> {
     let slowest = SLOWEST.max(STRIBECK_SPEEDS * plan.train.load_stribeck_speed);
     let mut equations = Equations::default();
     for row in rows.carrying().filter(|row| row.output_speed.abs() > slowest && row.direction != 0.0) {
@@ -37,7 +38,8 @@ pub fn of_the_link(rows: &Rows, plan: &Plan) -> Option<Solution> {
             row.output.cos(),
             1.0,
         ];
-        equations.push(coefficients, row.torque(), stretch(row));
+        let torque = row.measured.unwrap_or(row.drive + torque_error * row.push);
+        equations.push(coefficients, torque, stretch(row));
     }
     let weight = rows.greatest;
     equations.solve(&[f64::INFINITY, f64::INFINITY, f64::INFINITY, weight, weight, BIAS * weight])
@@ -51,9 +53,9 @@ pub fn of_the_motor(rows: &Rows, plan: &Plan) -> Option<Solution> {
         // What the joint file says of the viscous part was taken off before.
         let known = plan.train.motor_viscous_friction * row.motor_speed;
         let left = (row.drive - measured) / row.leverage + known;
-        equations.push(vec![row.direction, row.motor_speed, 1.0], left, stretch(row));
+        equations.push(vec![row.direction, row.motor_speed, -row.push / row.leverage, 1.0], left, stretch(row));
     }
-    equations.solve(&[f64::INFINITY, f64::INFINITY, BIAS * rows.greatest / plan.ratio()])
+    equations.solve(&[f64::INFINITY, f64::INFINITY, plan.torque_error.max(1e-9), BIAS * rows.greatest / plan.ratio()])
 }
 
 fn stretch(row: &Row) -> usize {

@@ -22,11 +22,11 @@ pub struct Log {
     pub time: Vec<f64>,
     /// Sampling period [s].
     pub period: f64,
-    /// Motor encoder [rad].
+    /// Motor angle, as far as the encoder's errors are known [rad].
     pub motor: Vec<f64>,
-    /// Output encoder [rad].
+    /// Output angle, likewise [rad].
     pub output: Vec<f64>,
-    /// Motor over the ratio less output, exact on counts [rad].
+    /// Motor over the ratio less output, as the encoders read, exact on counts [rad].
     pub twist: Vec<f64>,
     /// Motor torque [N m].
     pub torque: Vec<f64>,
@@ -77,6 +77,14 @@ impl Log {
         };
         log.check(plan)?;
         Ok(log)
+    }
+
+    /// The same with errors of both encoders, by angle, taken off the angles: accelerations are sensitive to them.
+    pub fn without(&self, motor: impl Fn(f64) -> f64, output: impl Fn(f64) -> f64) -> Self {
+        let corrected = |angles: &[f64], error: &dyn Fn(f64) -> f64| {
+            angles.iter().map(|angle| angle - error(angle - error(*angle))).collect()
+        };
+        Self { motor: corrected(&self.motor, &motor), output: corrected(&self.output, &output), ..self.clone() }
     }
 
     fn check(&self, plan: &Plan) -> Outcome<()> {

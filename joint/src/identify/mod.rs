@@ -44,6 +44,9 @@ use crate::{interruption, output};
 /// Box of the kernel for frictions, which need no quick motion but exact accelerations [s].
 const SLOW_BOX: f64 = 4e-3;
 
+/// Fits one after the other, each with the encoder errors of the last taken off the accelerations.
+const ROUNDS: usize = 3;
+
 /// What identification leaves behind as JSON.
 #[derive(Debug, Serialize)]
 struct Findings<'a> {
@@ -123,17 +126,27 @@ fn run_once(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
 }
 
 fn identify(path: &Path, plan: &Plan) -> Outcome<Identified> {
-    let log = Log::read(path, plan)?;
-    let rows = Rows::quick(&log, plan);
-    refusal::check(&log, &rows, plan).map_err(|failure| failure.while_doing(path.display()))?;
+    let read = Log::read(path, plan)?;
+    let in_the_file = |failure: Failure| failure.while_doing(path.display());
+    let mut log = read.clone();
+    let mut rows = Rows::quick(&log, plan);
+    refusal::check(&log, &rows, plan).map_err(in_the_file)?;
+    let fit = |log: &Log, rows: &Rows| {
+        twist::fit(log, rows, plan).ok_or_else(|| {
+            in_the_file(Failure::new("the moments at which a flank carries do not determine a fit"))
+                .with_help("record more reversals with torques of different strength")
+        })
+    };
+    let mut twist = fit(&log, &rows)?;
+    for _ in 0..ROUNDS {
+        log = read.without(|angle| twist.error(twist::MOTOR_MAP, angle), |angle| twist.error(twist::OUTPUT_MAP, angle));
+        rows = Rows::quick(&log, plan);
+        twist = fit(&log, &rows)?;
+    }
     let slow = Rows::new(&log, plan, SLOW_BOX);
-    let twist = twist::fit(&log, &rows, plan).ok_or_else(|| {
-        Failure::new(format!("{}: the moments at which a flank carries do not determine a fit", path.display()))
-            .with_help("record more reversals with torques of different strength")
-    })?;
     let findings = findings::gather(&log, &rows, &slow, &twist, plan);
     if findings.iter().all(|finding| finding.value.is_none()) {
-        return Err(Failure::new(format!("{}: nothing is identifiable from this log", path.display()))
+        return Err(in_the_file(Failure::new("nothing is identifiable from this log"))
             .with_help("record more reversals, with torques well above the friction and of different strength"));
     }
     Ok(Identified { log, rows, twist, findings })
@@ -153,8 +166,8 @@ fn assumptions(plan: &Plan, log: &Log) -> Vec<String> {
         "Torque measured at the output; its own error is not in the intervals.".to_owned()
     } else {
         format!(
-            "Motor torque as logged, wrong by up to {:.1} %: that is in the intervals of compliance and friction. A log alone \
-             cannot tell a wrong torque constant from a softer joint.",
+            "Motor torque as logged, its scale expected to be right within {:.1} % (one standard deviation); what the log does \
+             not show of it is in the intervals.",
             100.0 * plan.torque_error
         )
     });

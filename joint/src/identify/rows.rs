@@ -44,6 +44,8 @@ pub struct Row {
     pub drive: f64,
     /// Output over motor torque: ratio, after the gears' losses.
     pub leverage: f64,
+    /// Motor torque alone, likewise at the output [N m].
+    pub push: f64,
     /// Rate of the motor torque, at the output [N m/s].
     pub drive_rate: f64,
     /// Measured at the output, if it was [N m].
@@ -116,10 +118,9 @@ fn row(log: &Log, plan: &Plan, kernel: &Kernel, sample: usize) -> Row {
         let middle = if order == 0 { signal[sample] } else { 0.0 };
         middle + kernel.at(|place| signal[place] - middle, sample, order)
     };
-    let motor_speed = smooth(&log.motor, 1);
-    let net = smooth(&log.torque, 0)
-        - plan.motor_inertia * smooth(&log.motor, 2)
-        - plan.train.motor_viscous_friction * motor_speed;
+    let [motor_speed, output_speed] = [&log.motor, &log.output].map(|angle| smooth(angle, 1));
+    let torque = smooth(&log.torque, 0);
+    let net = torque - plan.motor_inertia * smooth(&log.motor, 2) - plan.train.motor_viscous_friction * motor_speed;
     let direction = direction(log, plan, kernel, sample, motor_speed);
     // Losses that grow with the load: the link gets less than a driving motor gives, and more has to be braked.
     let efficiency = plan.train.efficiency;
@@ -133,14 +134,15 @@ fn row(log: &Log, plan: &Plan, kernel: &Kernel, sample: usize) -> Row {
         sample,
         time: log.time[sample],
         twist: smooth(&log.twist, 0),
-        twist_rate: smooth(&log.twist, 1),
+        twist_rate: motor_speed / plan.ratio() - output_speed,
         motor: smooth(&log.motor, 0),
         motor_speed,
         output: smooth(&log.output, 0),
-        output_speed: smooth(&log.output, 1),
+        output_speed,
         output_acceleration: smooth(&log.output, 2),
         drive: leverage * net,
         leverage,
+        push: leverage * torque,
         drive_rate: leverage * smooth(&log.torque, 1),
         measured: log.output_torque.as_ref().map(|torque| smooth(torque, 0)),
         direction,

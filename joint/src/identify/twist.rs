@@ -28,8 +28,10 @@ pub const MOTOR_MAP: usize = 7;
 pub const OUTPUT_MAP: usize = 11;
 /// Of the teeth's error, once and twice a tooth [rad].
 pub const TEETH: usize = 15;
+/// Compliance times the ratio by which the motor's true torque exceeds the logged one [rad/(N m)].
+pub const TORQUE_ERROR: usize = 19;
 /// All of them.
-pub const UNKNOWNS: usize = 19;
+pub const UNKNOWNS: usize = 20;
 
 /// Errors beyond these are not expected: what a log does not show stays within them.
 const MOTOR_MAP_WIDTH: f64 = 0.5 * DEGREE;
@@ -42,6 +44,9 @@ const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
 /// Length of the stretches whose residuals are taken for independent of one another [s].
 pub const STRETCH: f64 = 0.1;
+
+/// Takes an unknown out of a fit.
+const NONE: f64 = 1e-12;
 
 /// The fit and the moments that it is of.
 #[derive(Debug, Clone)]
@@ -75,7 +80,8 @@ pub fn fit(log: &Log, rows: &Rows, plan: &Plan) -> Option<Twist> {
     let mut widths: Vec<f64> = (0..UNKNOWNS).map(width).collect();
     // With the torque measured behind them, the motor's friction and its delay do not show in the twist.
     let measured = log.output_torque.is_some();
-    widths[MOTOR_FRICTION] = if measured { 1e-12 } else { plan.compliance * rows.greatest };
+    widths[MOTOR_FRICTION] = if measured { NONE } else { plan.compliance * rows.greatest };
+    widths[TORQUE_ERROR] = if measured { NONE } else { (plan.compliance * plan.torque_error).max(NONE) };
     let solution = equations.solve(&widths)?;
     Some(Twist { solution, rows: used })
 }
@@ -102,16 +108,29 @@ fn equation(log: &Log, rows: &Rows, plan: &Plan, row: &Row) -> Vec<f64> {
         equation.push(smooth(&|place| (order * teeth * log.output[place]).sin()));
         equation.push(smooth(&|place| (order * teeth * log.output[place]).cos()));
     }
+    equation.push(if row.measured.is_some() { 0.0 } else { row.push });
     equation
 }
 
 impl Twist {
+    /// By which the motor's true torque exceeds the logged one, as a ratio.
+    pub fn torque_error(&self) -> f64 {
+        self.solution.values[TORQUE_ERROR] / self.solution.values[COMPLIANCE]
+    }
+
+    /// Error of an encoder at an angle [rad]; `first` is the first unknown of its map.
+    pub fn error(&self, first: usize, angle: f64) -> f64 {
+        let part = |place: usize| self.solution.values[first + place];
+        let (once, twice) = (angle.sin_cos(), (2.0 * angle).sin_cos());
+        part(0) * once.0 + part(1) * once.1 + part(2) * twice.0 + part(3) * twice.1
+    }
+
     /// What is left of a moment's twist without encoder, tooth and skew errors: gap and wind-up alone [rad].
     pub fn cleaned(&self, log: &Log, rows: &Rows, plan: &Plan) -> Vec<(Row, f64)> {
         let cleaned = |row: &Row| {
             let coefficients = DVector::from_vec(equation(log, rows, plan, row));
             let errors: f64 = (0..UNKNOWNS)
-                .filter(|unknown| *unknown == OFFSET || *unknown >= SKEW)
+                .filter(|unknown| *unknown == OFFSET || (SKEW..TORQUE_ERROR).contains(unknown))
                 .map(|unknown| coefficients[unknown] * self.solution.values[unknown])
                 .sum();
             (*row, row.twist - errors)

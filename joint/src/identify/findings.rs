@@ -5,7 +5,6 @@ use nalgebra::DVector;
 use serde::Serialize;
 
 use super::friction;
-use super::log::Log;
 use super::plan::Plan;
 use super::regression::Solution;
 use super::rows::{Row, Rows};
@@ -63,7 +62,7 @@ impl Estimate {
 }
 
 /// Everything that a log shows of a joint.
-pub fn gather(log: &Log, quick: &Rows, slow: &Rows, twist: &Twist, plan: &Plan) -> Vec<Finding> {
+pub fn gather(quick: &Rows, slow: &Rows, twist: &Twist, plan: &Plan) -> Vec<Finding> {
     let mut findings = gap_and_compliance(twist, plan);
     findings.extend(frictions(quick, slow, twist, plan));
     findings.extend(maps(twist));
@@ -209,31 +208,30 @@ fn frictions(quick: &Rows, slow: &Rows, twist: &Twist, plan: &Plan) -> Vec<Findi
     let names = ["dry friction of the link", "viscous friction of the link"];
     let keys = ["drive_train.load_coulomb_friction_N_m", "drive_train.load_viscous_friction_N_m_s_per_rad"];
     let units = ["N m", "N m s/rad"];
-    let Some(link) = friction::of_the_link(slow, plan, excess.value) else {
+    // Without its own finding the motor's friction is taken from the joint file.
+    let (dry, note) = if measured || motor_known {
+        (motor_dry, "")
+    } else {
+        (Estimate { value: plan.train.motor_coulomb_friction, half: 0.0 }, "if the motor's is as stated")
+    };
+    let balance = |excess: f64, dry: f64| friction::of_the_link(slow, plan, excess, dry);
+    let Some(link) = balance(excess.value, dry.value) else {
         let nothing = Estimate { value: f64::NAN, half: f64::NAN };
         findings.extend(
             [0, 1].map(|place| finding(names[place], units[place], keys[place], nothing).if_so(false, why_link)),
         );
         return findings;
     };
-    // How far a torque that is still uncertain moves the balance is found by moving it.
-    let moved = friction::of_the_link(slow, plan, excess.value + excess.half);
+    // How far what is still uncertain moves the balance is found by moving it.
+    let moved = [balance(excess.value + excess.half, dry.value), balance(excess.value, dry.value + dry.half)];
     let of_link = |unknown: usize| {
-        let shift = moved.as_ref().map_or(f64::NAN, |moved| moved.values[unknown] - link.values[unknown]);
+        let shift = |moved: &Option<Solution>| {
+            moved.as_ref().map_or(f64::NAN, |moved| moved.values[unknown] - link.values[unknown])
+        };
         let estimate = Estimate::of(&link, unknown);
-        Estimate { half: estimate.half.hypot(shift), ..estimate }
+        Estimate { half: estimate.half.hypot(shift(&moved[0])).hypot(shift(&moved[1])), ..estimate }
     };
-    let total = of_link(friction::DRY);
-    // A torque that was measured behind the gears leaves the link's friction alone; else the motor's is taken off.
-    let (dry, note) = if measured {
-        (total, String::new())
-    } else {
-        let known = Estimate { value: plan.train.motor_coulomb_friction, half: 0.0 };
-        let (motor, whose) = if motor_known { (motor_dry, "") } else { (known, ", if the motor's is as stated") };
-        let motor = motor.times(plan.ratio() * plan.train.efficiency);
-        let note = format!("motor and link together {:.4} N m at the output{whose}", total.value);
-        (Estimate { value: total.value - motor.value, half: total.half.hypot(motor.half) }, note)
-    };
+    let dry = of_link(friction::DRY);
     let viscous = of_link(friction::VISCOUS);
     let viscous_known = found(viscous, small / fastest(slow, |row| row.output_speed));
     findings

@@ -24,9 +24,9 @@ const STRIBECK_SPEEDS: f64 = 5.0;
 /// Share of the largest torque within which an offset of the torque is expected.
 const BIAS: f64 = 0.02;
 
-/// Balance of the link: its own friction if the torque was measured behind the gears, else the whole joint's, with a
-/// motor torque that exceeds the logged one by a ratio.
-pub fn of_the_link(rows: &Rows, plan: &Plan, torque_error: f64) -> Option<Solution> {
+/// Balance of the link, with a motor torque that exceeds the logged one by a ratio and a motor of this dry friction, if
+/// no torque was measured behind them.
+pub fn of_the_link(rows: &Rows, plan: &Plan, torque_error: f64, motor_dry: f64) -> Option<Solution> {
     let slowest = SLOWEST.max(STRIBECK_SPEEDS * plan.train.load_stribeck_speed);
     let mut equations = Equations::default();
     for row in rows.carrying().filter(|row| row.output_speed.abs() > slowest && row.direction != 0.0) {
@@ -38,7 +38,8 @@ pub fn of_the_link(rows: &Rows, plan: &Plan, torque_error: f64) -> Option<Soluti
             row.output.cos(),
             1.0,
         ];
-        let torque = row.measured.unwrap_or(row.drive + torque_error * row.push);
+        let from_motor = row.drive + torque_error * row.push - row.leverage * row.direction * motor_dry;
+        let torque = row.measured.unwrap_or(from_motor);
         equations.push(coefficients, torque, stretch(row));
     }
     let weight = rows.greatest;

@@ -26,6 +26,8 @@ pub struct Log {
     pub motor: Vec<f64>,
     /// Output angle, likewise [rad].
     pub output: Vec<f64>,
+    /// Motor angle as it would be without errors of the teeth: planets and carrier follow it [rad].
+    pub carried: Vec<f64>,
     /// Motor over the ratio less output, as the encoders read, exact on counts [rad].
     pub twist: Vec<f64>,
     /// Motor torque [N m].
@@ -69,6 +71,7 @@ impl Log {
         let log = Self {
             time,
             period,
+            carried: motor.angles(plan.motor_bits),
             motor: motor.angles(plan.motor_bits),
             output: output.angles(plan.output_bits),
             twist,
@@ -79,12 +82,16 @@ impl Log {
         Ok(log)
     }
 
-    /// The same with errors of both encoders, by angle, taken off the angles: accelerations are sensitive to them.
-    pub fn without(&self, motor: impl Fn(f64) -> f64, output: impl Fn(f64) -> f64) -> Self {
-        let corrected = |angles: &[f64], error: &dyn Fn(f64) -> f64| {
+    /// The same with errors of both encoders and of the teeth, each by its angle, taken off the angles: accelerations are
+    /// sensitive to them.
+    pub fn without(&self, errors: [&dyn Fn(f64) -> f64; 3], plan: &Plan) -> Self {
+        let [motor, output, teeth] = errors;
+        let corrected = |angles: &[f64], error: &dyn Fn(f64) -> f64| -> Vec<f64> {
             angles.iter().map(|angle| angle - error(angle - error(*angle))).collect()
         };
-        Self { motor: corrected(&self.motor, &motor), output: corrected(&self.output, &output), ..self.clone() }
+        let (motor, output) = (corrected(&self.motor, motor), corrected(&self.output, output));
+        let carried = motor.iter().zip(&output).map(|(motor, output)| motor - plan.ratio() * teeth(*output)).collect();
+        Self { motor, output, carried, ..self.clone() }
     }
 
     fn check(&self, plan: &Plan) -> Outcome<()> {

@@ -44,7 +44,7 @@ use crate::{interruption, output};
 /// Box of the kernel for frictions, which need no quick motion but exact accelerations [s].
 const SLOW_BOX: f64 = 4e-3;
 
-/// Fits one after the other, each with the encoder errors of the last taken off the accelerations.
+/// Fits one after the other, each with the errors by angle of the last taken off the accelerations.
 const ROUNDS: usize = 3;
 
 /// What identification leaves behind as JSON.
@@ -90,7 +90,7 @@ fn run_once(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
         let value = joints::value(&loaded.text, finding.key.as_deref()?).ok()??;
         Some(value.to_owned())
     };
-    let patched = patch::patch(&loaded, &identified.findings, &name)?;
+    let patched = patch::patch(&loaded, &plan, &identified.findings, &name)?;
     let assumptions = assumptions(&plan, &identified.log);
     let Identified { log, rows, twist, findings } = &identified;
     let page = page::render(&page::Content {
@@ -139,12 +139,17 @@ fn identify(path: &Path, plan: &Plan) -> Outcome<Identified> {
     };
     let mut twist = fit(&log, &rows)?;
     for _ in 0..ROUNDS {
-        log = read.without(|angle| twist.error(twist::MOTOR_MAP, angle), |angle| twist.error(twist::OUTPUT_MAP, angle));
+        let teeth = f64::from(plan.ring_teeth);
+        let errors: [&dyn Fn(f64) -> f64; 3] =
+            [&|angle| twist.error(twist::MOTOR_MAP, angle), &|angle| twist.error(twist::OUTPUT_MAP, angle), &|angle| {
+                twist.error(twist::TEETH, teeth * angle)
+            }];
+        log = read.without(errors, plan);
         rows = Rows::quick(&log, plan);
         twist = fit(&log, &rows)?;
     }
     let slow = Rows::new(&log, plan, SLOW_BOX);
-    let findings = findings::gather(&log, &rows, &slow, &twist, plan);
+    let findings = findings::gather(&rows, &slow, &twist, plan);
     if findings.iter().all(|finding| finding.value.is_none()) {
         return Err(in_the_file(Failure::new("nothing is identifiable from this log"))
             .with_help("record more reversals, with torques well above the friction and of different strength"));

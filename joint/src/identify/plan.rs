@@ -22,7 +22,9 @@ pub struct Plan {
     pub output_bits: u32,
     /// r_c cos(alpha) [m].
     pub lever: f64,
-    /// What turns with the motor, at the motor [kg m^2].
+    /// Rotor and sun [kg m^2].
+    pub sun_inertia: f64,
+    /// All that turns with the motor, at the motor [kg m^2].
     pub motor_inertia: f64,
     /// What turns with the link [kg m^2].
     pub link_inertia: f64,
@@ -89,6 +91,7 @@ impl Plan {
             motor_bits: train.motor_encoder.bits,
             output_bits: train.output_encoder.bits,
             lever,
+            sun_inertia: sun * lever * lever / (ratio * ratio),
             motor_inertia: before * lever * lever / (ratio * ratio),
             link_inertia: joint.link_inertia + behind * lever * lever,
             mesh_compliance,

@@ -16,8 +16,12 @@ const CARRYING_SHARE: f64 = 0.03;
 const OVER_FRICTION: f64 = 1.5;
 /// A slow motor's direction is told from this long to either side [s]...
 const SLOW: f64 = 0.05;
-/// ... if it moves by so many counts.
-const SLOW_COUNTS: f64 = 4.0;
+/// ... if it moves by more than so many counts in every quarter of that.
+const SLOW_COUNTS: f64 = 2.0;
+/// Steps of a swing between looks at a motor's direction.
+const SWING_STEPS: f64 = 6.0;
+/// Counts that an encoder may be off by, from one reading to another.
+const QUICK_COUNTS: f64 = 1.01;
 
 /// One moment.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -121,7 +125,7 @@ fn row(log: &Log, plan: &Plan, kernel: &Kernel, sample: usize) -> Row {
     let [motor_speed, output_speed] = [&log.motor, &log.output].map(|angle| smooth(angle, 1));
     let torque = smooth(&log.torque, 0);
     let net = torque - plan.motor_inertia * smooth(&log.motor, 2) - plan.train.motor_viscous_friction * motor_speed;
-    let direction = direction(log, plan, kernel, sample, motor_speed);
+    let direction = direction(log, plan, kernel, sample);
     // Losses that grow with the load: the link gets less than a driving motor gives, and more has to be braked.
     let efficiency = plan.train.efficiency;
     let leverage = plan.ratio()
@@ -150,16 +154,20 @@ fn row(log: &Log, plan: &Plan, kernel: &Kernel, sample: usize) -> Row {
     }
 }
 
-fn direction(log: &Log, plan: &Plan, kernel: &Kernel, sample: usize, speed: f64) -> f64 {
+/// The way that the motor turns all the time: over the kernel's length in steps that no swing hides in, or over a longer
+/// time if it is too slow for those.
+fn direction(log: &Log, plan: &Plan, kernel: &Kernel, sample: usize) -> f64 {
     let count = std::f64::consts::TAU / f64::from(1_u32 << plan.motor_bits);
-    // Over the kernel's own length first, over a longer one if that is too little.
-    if speed.abs() * kernel.half() as f64 * log.period > SLOW_COUNTS * count {
-        return speed.signum();
-    }
-    let far = (SLOW / log.period) as usize;
-    let (from, to) = (sample.saturating_sub(far), (sample + far).min(log.motor.len() - 1));
-    let [before, now, after] = [from, sample, to].map(|place| log.motor[place]);
-    let [came, goes] = [now - before, after - now];
-    let moves = came.abs().min(goes.abs()) > 0.5 * SLOW_COUNTS * count && came * goes > 0.0;
-    if moves { came.signum() } else { 0.0 }
+    let turns = |half: usize, step: usize, way: f64, least: f64| {
+        let places = (sample.saturating_sub(half)..=(sample + half).min(log.motor.len() - 1)).step_by(step.max(1));
+        let mut pairs = places.clone().zip(places.skip(1));
+        pairs.all(|(before, after)| way * (log.motor[after] - log.motor[before]) > least * count)
+    };
+    let step = (plan.swing() / SWING_STEPS / log.period) as usize;
+    let (quick, slow) = (kernel.half(), (SLOW / log.period) as usize);
+    let sure = |way: &f64| {
+        turns(quick, step, *way, QUICK_COUNTS)
+            || (turns(slow, slow / 2, *way, SLOW_COUNTS) && turns(quick, step, *way, -QUICK_COUNTS))
+    };
+    [1.0, -1.0].into_iter().find(sure).unwrap_or(0.0)
 }

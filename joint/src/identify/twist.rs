@@ -118,7 +118,7 @@ impl Twist {
         self.solution.values[TORQUE_ERROR] / self.solution.values[COMPLIANCE]
     }
 
-    /// Error of an encoder at an angle [rad]; `first` is the first unknown of its map.
+    /// Error at an angle that comes once and twice in its turn [rad]; `first` is the first of its four unknowns.
     pub fn error(&self, first: usize, angle: f64) -> f64 {
         let part = |place: usize| self.solution.values[first + place];
         let (once, twice) = (angle.sin_cos(), (2.0 * angle).sin_cos());

@@ -12,6 +12,8 @@ use crate::failure::{Failure, Outcome};
 const LEAST_SAMPLES: usize = 500;
 /// A step of time may differ by this ratio from the usual one.
 const UNEVEN_RATIO: f64 = 0.5;
+/// The link's speed is taken over this time to either side [s].
+const SPEED_OVER: f64 = 1e-3;
 /// Turns that a motor cannot make between two samples.
 const JUMP_TURNS: f64 = 0.5;
 
@@ -82,14 +84,21 @@ impl Log {
         Ok(log)
     }
 
-    /// The same with errors of both encoders and of the teeth, each by its angle, taken off the angles: accelerations are
-    /// sensitive to them.
-    pub fn without(&self, errors: [&dyn Fn(f64) -> f64; 3], plan: &Plan) -> Self {
+    /// The same with errors of both encoders and of the teeth, each by its angle, taken off the angles, and with the output
+    /// at the motor's time: accelerations and the phase of the teeth are sensitive to them.
+    pub fn without(&self, errors: [&dyn Fn(f64) -> f64; 3], skew: f64, plan: &Plan) -> Self {
         let [motor, output, teeth] = errors;
         let corrected = |angles: &[f64], error: &dyn Fn(f64) -> f64| -> Vec<f64> {
             angles.iter().map(|angle| angle - error(angle - error(*angle))).collect()
         };
-        let (motor, output) = (corrected(&self.motor, motor), corrected(&self.output, output));
+        let (motor, read) = (corrected(&self.motor, motor), corrected(&self.output, output));
+        // The motor swings where the link does not: the link's own speed is what counts.
+        let around = (SPEED_OVER / self.period).ceil() as usize;
+        let speed = |sample: usize| {
+            let (before, after) = (sample.saturating_sub(around), (sample + around).min(read.len() - 1));
+            (read[after] - read[before]) / ((after - before) as f64 * self.period)
+        };
+        let output: Vec<f64> = (0..read.len()).map(|sample| read[sample] + skew * speed(sample)).collect();
         let carried = motor.iter().zip(&output).map(|(motor, output)| motor - plan.ratio() * teeth(*output)).collect();
         Self { motor, output, carried, ..self.clone() }
     }

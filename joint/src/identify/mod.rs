@@ -144,7 +144,7 @@ fn identify(path: &Path, plan: &Plan) -> Outcome<Identified> {
             [&|angle| twist.error(twist::MOTOR_MAP, angle), &|angle| twist.error(twist::OUTPUT_MAP, angle), &|angle| {
                 twist.error(twist::TEETH, teeth * angle)
             }];
-        log = read.without(errors, plan);
+        log = read.without(errors, twist.solution.values[twist::SKEW], plan);
         rows = Rows::quick(&log, plan);
         twist = fit(&log, &rows)?;
     }

@@ -84,6 +84,13 @@ impl Log {
         Ok(log)
     }
 
+    /// Phase of the teeth: whole periods at the ring, by the joint's angle as the inertias on either side weigh it [rad].
+    pub fn teeth(&self, sample: usize, plan: &Plan) -> f64 {
+        let share = plan.motor_share();
+        let joint = (1.0 - share) * self.output[sample] + share * self.motor[sample] / plan.ratio();
+        f64::from(plan.ring_teeth) * joint
+    }
+
     /// The same with errors of both encoders and of the teeth, each by its angle, taken off the angles, and with the output
     /// at the motor's time: accelerations and the phase of the teeth are sensitive to them.
     pub fn without(&self, errors: [&dyn Fn(f64) -> f64; 3], skew: f64, plan: &Plan) -> Self {
@@ -99,8 +106,10 @@ impl Log {
             (read[after] - read[before]) / ((after - before) as f64 * self.period)
         };
         let output: Vec<f64> = (0..read.len()).map(|sample| read[sample] + skew * speed(sample)).collect();
-        let carried = motor.iter().zip(&output).map(|(motor, output)| motor - plan.ratio() * teeth(*output)).collect();
-        Self { motor, output, carried, ..self.clone() }
+        let mut log = Self { motor, output, carried: Vec::new(), ..self.clone() };
+        let carried = |sample: usize| log.motor[sample] - plan.ratio() * teeth(log.teeth(sample, plan));
+        log.carried = (0..log.motor.len()).map(carried).collect();
+        log
     }
 
     fn check(&self, plan: &Plan) -> Outcome<()> {

@@ -139,10 +139,9 @@ fn identify(path: &Path, plan: &Plan) -> Outcome<Identified> {
     };
     let mut twist = fit(&log, &rows)?;
     for _ in 0..ROUNDS {
-        let teeth = f64::from(plan.ring_teeth);
         let errors: [&dyn Fn(f64) -> f64; 3] =
             [&|angle| twist.error(twist::MOTOR_MAP, angle), &|angle| twist.error(twist::OUTPUT_MAP, angle), &|angle| {
-                twist.error(twist::TEETH, teeth * angle)
+                twist.error(twist::TEETH, angle)
             }];
         log = read.without(errors, twist.solution.values[twist::SKEW], plan);
         rows = Rows::quick(&log, plan);

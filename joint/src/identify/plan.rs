@@ -109,6 +109,12 @@ impl Plan {
         f64::from(self.teeth[1]) / f64::from(self.teeth[0])
     }
 
+    /// Part of the joint's inertia that turns with the motor.
+    pub fn motor_share(&self) -> f64 {
+        let motor = self.motor_inertia * self.ratio() * self.ratio();
+        motor / (motor + self.link_inertia)
+    }
+
     /// Inertia that swings against the compliance: motor and link in series, at the output [kg m^2].
     pub fn swinging_inertia(&self) -> f64 {
         let motor = self.motor_inertia * self.ratio() * self.ratio();

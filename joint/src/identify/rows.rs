@@ -32,8 +32,8 @@ pub struct Row {
     pub time: f64,
     /// Motor over ratio less output [rad].
     pub twist: f64,
-    /// Its rate [rad/s].
-    pub twist_rate: f64,
+    /// Its rate, but for what errors of encoders and teeth have in it [rad/s].
+    pub wind_rate: f64,
     /// Motor angle [rad] and speed [rad/s].
     pub motor: f64,
     /// [rad/s].
@@ -138,7 +138,7 @@ fn row(log: &Log, plan: &Plan, kernel: &Kernel, sample: usize) -> Row {
         sample,
         time: log.time[sample],
         twist: smooth(&log.twist, 0),
-        twist_rate: motor_speed / plan.ratio() - output_speed,
+        wind_rate: smooth(&log.carried, 1) / plan.ratio() - output_speed,
         motor: smooth(&log.motor, 0),
         motor_speed,
         output: smooth(&log.output, 0),

@@ -91,7 +91,7 @@ fn equation(log: &Log, rows: &Rows, plan: &Plan, row: &Row) -> Vec<f64> {
     // Errors by angle are smoothed as the twist is: at speed the kernel takes a part of them.
     let smooth = |of: &dyn Fn(usize) -> f64| rows.kernel.at(of, row.sample, 0);
     let ratio = plan.ratio();
-    let mut equation = vec![1.0, row.side, row.torque(), row.twist_rate];
+    let mut equation = vec![1.0, row.side, row.torque(), row.wind_rate];
     equation.push(if row.measured.is_some() { 0.0 } else { row.leverage * row.direction });
     equation.push(row.output_speed);
     equation.push(if row.measured.is_some() { 0.0 } else { -plan.compliance * row.drive_rate });
@@ -103,10 +103,9 @@ fn equation(log: &Log, rows: &Rows, plan: &Plan, row: &Row) -> Vec<f64> {
         equation.push(-smooth(&|place| (order * log.output[place]).sin()));
         equation.push(-smooth(&|place| (order * log.output[place]).cos()));
     }
-    let teeth = f64::from(plan.ring_teeth);
     for order in [1.0, 2.0] {
-        equation.push(smooth(&|place| (order * teeth * log.output[place]).sin()));
-        equation.push(smooth(&|place| (order * teeth * log.output[place]).cos()));
+        equation.push(smooth(&|place| (order * log.teeth(place, plan)).sin()));
+        equation.push(smooth(&|place| (order * log.teeth(place, plan)).cos()));
     }
     equation.push(if row.measured.is_some() { 0.0 } else { row.push });
     equation

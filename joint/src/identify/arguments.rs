@@ -6,7 +6,7 @@ use std::path::PathBuf;
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = "LOG is a CSV file whose first line names the columns:
   time_s, motor_counts, output_counts, motor_torque_N_m and, if it was measured, output_torque_N_m
-(time_ms or time_us, motor_angle_rad and output_angle_rad are understood too), or a log that `joint hil` left (.mcap).
+(time_ms or time_us, motor_angle_rad and output_angle_rad are understood too).
 
 Examples:
   joint identify my_log.csv --joint my_joint.toml --motor-bits 14 --output-bits 18

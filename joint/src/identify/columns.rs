@@ -1,5 +1,5 @@
-//! Columns of numbers under names, from CSV or from a log that `joint hil` left: what is missing or no number is named.
-//! What the columns mean is the log's business.
+//! Columns of numbers under names, from CSV: what is missing or no number is named. What the columns mean is the log's
+//! business.
 
 use std::path::Path;
 
@@ -17,10 +17,8 @@ pub struct Columns {
     names: Vec<String>,
     /// One list for each name.
     values: Vec<Vec<f64>>,
-    /// Where each row stood.
+    /// Line of each row.
     lines: Vec<usize>,
-    /// What a row is called: a line or a message.
-    row: &'static str,
 }
 
 impl Columns {
@@ -38,19 +36,8 @@ impl Columns {
             return Err(failed("it is larger than 2 GB"));
         }
         let bytes = std::fs::read(path).map_err(|error| failed(&error.to_string()))?;
-        let columns = if bytes.starts_with(super::recorded::MAGIC) {
-            super::recorded::columns(&bytes)
-        } else {
-            let text = String::from_utf8(bytes).map_err(|_| failed("it is neither text (UTF-8) nor MCAP"))?;
-            Self::parse(&text)
-        };
-        columns.map_err(|failure| failure.while_doing(path.display()))
-    }
-
-    /// Of messages, each of which has all the numbers.
-    pub fn of_messages(names: Vec<String>, messages: &[Vec<f64>]) -> Self {
-        let values = (0..names.len()).map(|place| messages.iter().map(|message| message[place]).collect()).collect();
-        Self { names, values, lines: (1..=messages.len()).collect(), row: "message" }
+        let text = String::from_utf8(bytes).map_err(|_| failed("it is not text (UTF-8): export it as CSV"))?;
+        Self::parse(&text).map_err(|failure| failure.while_doing(path.display()))
     }
 
     /// Of CSV text.
@@ -63,7 +50,7 @@ impl Columns {
         if names.iter().all(|name| name.parse::<f64>().is_ok()) {
             return Err(Failure::new("the first line has numbers in place of names").with_help(HEADER_HELP));
         }
-        let mut columns = Self { values: vec![Vec::new(); names.len()], names, lines: Vec::new(), row: "line" };
+        let mut columns = Self { values: vec![Vec::new(); names.len()], names, lines: Vec::new() };
         for (line, text) in lines {
             let mut cells = text.split(',');
             for values in &mut columns.values {
@@ -77,7 +64,7 @@ impl Columns {
 
     /// Where a row stands.
     pub fn place(&self, row: usize) -> String {
-        format!("{} {}", self.row, self.lines.get(row).copied().unwrap_or_default())
+        format!("line {}", self.lines.get(row).copied().unwrap_or_default())
     }
 
     /// Time in seconds, in whichever unit it stands.

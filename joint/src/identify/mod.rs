@@ -1,7 +1,7 @@
 //! `joint identify`: from a recorded reversal test to a joint's backlash, compliance, damping, friction and encoder errors,
 //! each with its interval, and to a patched joint file. Learning on board is the observer's business.
 //!
-//! `columns` and `recorded` read a file, `log` turns it into checked samples, `plan` says what the joint file knows;
+//! `columns` reads a file, `log` turns it into checked samples, `plan` says what the joint file knows;
 //! `rows` are the moments at which a flank carries, smoothed by `kernel`; `twist` and `friction` are fitted to them by
 //! `regression`; `findings` is what comes of it, `table`, `page`, `pictures` and `patch` show it. `virtual_test` makes a
 //! log without hardware.
@@ -16,7 +16,6 @@ mod page;
 mod patch;
 mod pictures;
 mod plan;
-mod recorded;
 mod refusal;
 mod regression;
 mod rows;
@@ -148,7 +147,7 @@ fn identify(path: &Path, plan: &Plan) -> Outcome<Identified> {
         twist = fit(&log, &rows)?;
     }
     let slow = Rows::new(&log, plan, SLOW_BOX);
-    let findings = findings::gather(&rows, &slow, &twist, plan);
+    let findings = findings::gather(&log, &rows, &slow, &twist, plan);
     if findings.iter().all(|finding| finding.value.is_none()) {
         return Err(in_the_file(Failure::new("nothing is identifiable from this log"))
             .with_help("record more reversals, with torques well above the friction and of different strength"));
@@ -164,6 +163,9 @@ fn assumptions(plan: &Plan, log: &Log) -> Vec<String> {
             plan.teeth[1], plan.teeth[0]
         ),
         format!("Encoders of {} bits (motor) and {} bits (output).", plan.motor_bits, plan.output_bits),
+        "Motor's inertia right within 1.5 %, readings of motor and torque at the same time within 2 us: both are in the \
+         intervals."
+            .to_owned(),
         "Half-backlash is the mean over all meshes: a log cannot tell sun and ring apart.".to_owned(),
     ];
     list.push(if log.output_torque.is_some() {

@@ -24,6 +24,9 @@ pub struct Plan {
     pub lever: f64,
     /// Rotor and sun [kg m^2].
     pub sun_inertia: f64,
+    /// Planets and carrier, at the motor, as far as they bend the joint: their torque passes the teeth's compliance only
+    /// [kg m^2].
+    pub carrier_inertia: f64,
     /// All that turns with the motor, at the motor [kg m^2].
     pub motor_inertia: f64,
     /// What turns with the link [kg m^2].
@@ -92,6 +95,8 @@ impl Plan {
             output_bits: train.output_encoder.bits,
             lever,
             sun_inertia: sun * lever * lever / (ratio * ratio),
+            carrier_inertia: (before - sun) * lever * lever / (ratio * ratio)
+                * if compliant { own / (own + mesh_compliance) } else { 1.0 },
             motor_inertia: before * lever * lever / (ratio * ratio),
             link_inertia: joint.link_inertia + behind * lever * lever,
             mesh_compliance,

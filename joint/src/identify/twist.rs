@@ -30,8 +30,8 @@ pub const OUTPUT_MAP: usize = 11;
 pub const TEETH: usize = 15;
 /// Compliance times the ratio by which the motor's true torque exceeds the logged one [rad/(N m)].
 pub const TORQUE_ERROR: usize = 19;
-/// All of them.
-pub const UNKNOWNS: usize = 20;
+/// All of them; behind the torque's error, sine and cosine of what the teeth's error grows by with the square of speed.
+pub const UNKNOWNS: usize = 22;
 
 /// Errors beyond these are not expected: what a log does not show stays within them.
 const MOTOR_MAP_WIDTH: f64 = 0.5 * DEGREE;
@@ -60,6 +60,7 @@ pub struct Twist {
 /// Widths that are expected of the map unknowns.
 pub fn width(unknown: usize) -> f64 {
     match unknown {
+        TORQUE_ERROR => f64::INFINITY,
         RELAXATION => RELAXATION_WIDTH,
         SKEW => SKEW_WIDTH,
         DELAY => DELAY_WIDTH,
@@ -108,6 +109,10 @@ fn equation(log: &Log, rows: &Rows, plan: &Plan, row: &Row) -> Vec<f64> {
         equation.push(smooth(&|place| (order * log.teeth(place, plan)).cos()));
     }
     equation.push(if row.measured.is_some() { 0.0 } else { row.push });
+    // Teeth that pass near the swing's own frequency shake more than two inertias on a spring say.
+    let passing = f64::from(plan.ring_teeth) * row.output_speed * plan.swing() / std::f64::consts::TAU;
+    equation.push(passing * passing * smooth(&|place| log.teeth(place, plan).sin()));
+    equation.push(passing * passing * smooth(&|place| log.teeth(place, plan).cos()));
     equation
 }
 
@@ -129,7 +134,7 @@ impl Twist {
         let cleaned = |row: &Row| {
             let coefficients = DVector::from_vec(equation(log, rows, plan, row));
             let errors: f64 = (0..UNKNOWNS)
-                .filter(|unknown| *unknown == OFFSET || (SKEW..TORQUE_ERROR).contains(unknown))
+                .filter(|unknown| *unknown == OFFSET || (*unknown >= SKEW && *unknown != TORQUE_ERROR))
                 .map(|unknown| coefficients[unknown] * self.solution.values[unknown])
                 .sum();
             (*row, row.twist - errors)

@@ -1,14 +1,18 @@
 //! Turns a joint file into the tables that the image carries, and tells the linker about the board's memory. The joint
 //! file is named by `JOINT_FILE` (default: `joints/q1.toml` of the workspace), the tick rate by `JOINT_TICK_RATE` in Hz
-//! (default: 20000); what can be wrong with either is said as a build error. Measuring binaries carry the joints that
+//! (default: 20000); what can be wrong with either is said as a build error. Roles that control are made for one control
+//! period a tick, for the bandwidth `JOINT_BANDWIDTH` in rad/s (default: 60), without an output encoder where
+//! `JOINT_MOTOR_ONLY` is 1, and from the joint file `JOINT_TOLD` if a controller is to be told another joint than the true
+//! one. Measuring binaries carry the joints that
 //! `MEASURED_JOINTS` lists, in the manner of a search path, one module of tables for each.
 
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-use model_core::design::Processor;
+use model_core::design::{ControlWish, Processor, Told, control_source};
 
 const DEFAULT_TICK_RATE: u32 = 20_000;
+const DEFAULT_BANDWIDTH: f64 = 60.0;
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
@@ -41,7 +45,31 @@ fn write_tables() -> Result<(), String> {
         None => workspace().join("joints/q1.toml"),
     };
     println!("cargo::rerun-if-changed={}", file.display());
-    write("tables.rs", &source(&file, tick_rate()?)?)
+    write("tables.rs", &source(&file, tick_rate()?)?)?;
+    println!("cargo::rerun-if-env-changed=JOINT_TOLD");
+    let told = variable("JOINT_TOLD").map_or(file.clone(), |told| workspace().join(told));
+    println!("cargo::rerun-if-changed={}", told.display());
+    write("control.rs", &control(&file, &told)?)
+}
+
+/// Tables of the roles that control. A joint that cannot be controlled can still be simulated: only their binaries fail.
+fn control(file: &Path, told: &Path) -> Result<String, String> {
+    println!("cargo::rerun-if-env-changed=JOINT_BANDWIDTH");
+    println!("cargo::rerun-if-env-changed=JOINT_MOTOR_ONLY");
+    let bandwidth = match variable("JOINT_BANDWIDTH") {
+        Some(typed) => typed.parse().map_err(|_| format!("JOINT_BANDWIDTH={typed}: want a number of rad/s"))?,
+        None => DEFAULT_BANDWIDTH,
+    };
+    let tick_rate = tick_rate()?;
+    let wish = ControlWish { bandwidth, output_encoder: variable("JOINT_MOTOR_ONLY") != Some("1".into()) };
+    let (mut joint, mut told_joint) = (read(file)?, read(told)?);
+    [&mut joint, &mut told_joint].into_iter().for_each(|joint| joint.set_control_rate(tick_rate));
+    let told_around = told_joint.surroundings();
+    let told_as = Told { joint: &told_joint.parameters, surroundings: &told_around, wish };
+    match control_source(&joint.parameters, &joint.surroundings(), &told_as, &processor()?) {
+        Ok(source) => Ok(source.text),
+        Err(error) => Ok(format!("compile_error!({:?});\n", format!("{}: {error}", told.display()))),
+    }
 }
 
 /// Modules `joint_0`, `joint_1`, ... and `visit`, which shows their tables in this order.
@@ -66,13 +94,17 @@ fn write_measured() -> Result<(), String> {
 
 /// The tables of a joint file, as a module's text.
 fn source(file: &Path, tick_rate: u32) -> Result<String, String> {
-    let text = fs::read_to_string(file).map_err(|error| format!("joint file {}: {error}", file.display()))?;
-    let joint = joints::read(&text).map_err(|problems| {
-        let list: Vec<_> = problems.iter().map(|problem| format!("{}: {problem}", file.display())).collect();
-        format!("{}\nrun `cargo joint check {}` to see the places", list.join("\n"), file.display())
-    })?;
+    let joint = read(file)?;
     model_core::design::rust_source_for(&joint.parameters, tick_rate, &processor()?)
         .map_err(|error| format!("{}: {error}", file.display()))
+}
+
+fn read(file: &Path) -> Result<joints::JointFile, String> {
+    let text = fs::read_to_string(file).map_err(|error| format!("joint file {}: {error}", file.display()))?;
+    joints::read(&text).map_err(|problems| {
+        let list: Vec<_> = problems.iter().map(|problem| format!("{}: {problem}", file.display())).collect();
+        format!("{}\nrun `cargo joint check {}` to see the places", list.join("\n"), file.display())
+    })
 }
 
 /// What the board of this build has time for.

@@ -1,51 +1,68 @@
-//! One tick of the plant: take the torques that are due, step the model, extend the digest over its state, hand out a
-//! sample every so often, and watch the clock. Called at the tick rate at the highest priority, it must end before the
-//! next call: a miss is counted as an overrun. Nothing here allocates, panics, logs, loops without a bound or knows
-//! what board it is on.
+//! One tick of any role: obey what idle orders, take the command that is due, do the role's work, hand out a sample every
+//! so often, and watch the clock. Called at the tick rate at the highest priority, it must end before the next call: a
+//! miss is counted as an overrun. Nothing here allocates, panics, logs, loops without a bound or knows what board it is
+//! on; what the work is, is left to the roles.
 
 use core::convert::Infallible;
 use core::sync::atomic::Ordering::{Acquire, Relaxed, Release};
 
 use embedded_hal::digital::OutputPin;
 use link::messages::{Fault, RunMode, RunSettings};
-use model_core::digest;
-use model_core::realtime::Model;
-use model_core::tables::Tables;
 
 use crate::budget::{Monitor, TickTimer};
-use crate::queues::{COMMAND_CAPACITY, Event, Order, RawSample, TickEnd};
+use crate::queues::{COMMAND_CAPACITY, Event, Order, TickEnd};
 use crate::safe_state::{SafeState, State};
 use crate::schedule::{Schedule, Turn};
+use crate::words::Words;
 
 /// What a board is told before its first reset.
 const BEFORE_ANY_RUN: RunSettings = RunSettings { mode: RunMode::Lockstep, decimation: 1, command_timeout: 1 };
 
-/// The simulated joint, its commands and its watchmen.
-pub struct Plant<'a, E, const N: usize> {
-    model: Model<'a, f32, N>,
+/// What a role does in its tick.
+pub trait Work {
+    /// What it says and hears.
+    type Words: Words;
+    /// Whether it goes on by itself while the host is silent: a simulation does; who answers to a controller does not.
+    const GOES_ON: bool;
+
+    /// Whether its tables are what they were made to be.
+    fn is_sound(&self) -> bool;
+    /// Back to the start of a run.
+    fn reset(&mut self);
+    /// Takes the command of the step to come.
+    fn take(&mut self, command: <Self::Words as Words>::Command);
+    /// One step.
+    fn step(&mut self);
+    /// Whether the last step left numbers.
+    fn is_finite(&self) -> bool;
+    /// What there is to be reported after so many steps; the last one took so many timer counts so far.
+    fn sample(&self, steps: u32, computation: u16) -> <Self::Words as Words>::Sample;
+}
+
+/// A role's work with its commands and its watchmen.
+pub struct Control<'a, E, W: Work> {
+    work: W,
     steps: u32,
-    digest: u64,
     decimation: u16,
     until_sample: u16,
     schedule: Schedule,
     safe_state: SafeState<E>,
     monitor: Monitor,
     period: u32,
-    end: TickEnd<'a, N>,
+    end: TickEnd<'a, W::Words>,
 }
 
-impl<'a, E: OutputPin<Error = Infallible>, const N: usize> Plant<'a, E, N> {
-    /// A plant at rest with its enable output off; `period` is the tick's, in timer counts. Tables that do not match
-    /// their digest leave it in the safe state for good.
-    pub fn new(tables: &'a Tables<f32, N>, enable: E, period: u32, end: TickEnd<'a, N>) -> Self {
+impl<'a, E: OutputPin<Error = Infallible>, W: Work> Control<'a, E, W> {
+    /// Work at rest with the enable output off; `period` is the tick's, in timer counts. Tables that do not match their
+    /// digest leave it in the safe state for good.
+    pub fn new(work: W, enable: E, period: u32, end: TickEnd<'a, W::Words>) -> Self {
         let mut safe_state = SafeState::new(enable);
-        if !tables.digest_is_good() {
+        if !work.is_sound() {
             safe_state.trip(Fault::BadDigest);
         }
-        let plant = Self {
-            model: Model::new(tables),
+        let control = Self {
+            work,
             steps: 0,
-            digest: digest::START,
             decimation: BEFORE_ANY_RUN.decimation,
             until_sample: BEFORE_ANY_RUN.decimation,
             schedule: Schedule::new(BEFORE_ANY_RUN),
@@ -54,8 +71,8 @@ impl<'a, E: OutputPin<Error = Infallible>, const N: usize> Plant<'a, E, N> {
             period,
             end,
         };
-        plant.show_state();
-        plant
+        control.show_state();
+        control
     }
 
     /// What the board does.
@@ -107,15 +124,17 @@ impl<'a, E: OutputPin<Error = Infallible>, const N: usize> Plant<'a, E, N> {
     }
 
     fn reset(&mut self, settings: RunSettings) -> Event {
+        if settings.mode == RunMode::Realtime && !W::GOES_ON {
+            return Event::Refused(Fault::BadSettings);
+        }
         if let Err(fault) = self.safe_state.run() {
             return Event::Refused(fault);
         }
         for _ in 0..COMMAND_CAPACITY {
             self.end.commands.take();
         }
-        self.model.reset();
+        self.work.reset();
         self.steps = 0;
-        self.digest = digest::START;
         self.decimation = settings.decimation.max(1);
         self.until_sample = self.decimation;
         self.schedule = Schedule::new(settings);
@@ -124,7 +143,7 @@ impl<'a, E: OutputPin<Error = Infallible>, const N: usize> Plant<'a, E, N> {
         Event::ResetDone
     }
 
-    /// Steps the model if there is a step to do; says whether there was.
+    /// Steps if there is a step to do; says whether there was.
     fn advance(&mut self, timer: &impl TickTimer, lateness: u32) -> bool {
         let lockstep = self.schedule.mode() == RunMode::Lockstep;
         if lockstep && self.until_sample == 1 && !self.end.samples.has_room() {
@@ -132,8 +151,9 @@ impl<'a, E: OutputPin<Error = Infallible>, const N: usize> Plant<'a, E, N> {
             return false;
         }
         let horizon = self.end.progress.horizon.load(Acquire);
-        match self.schedule.turn(self.steps, horizon, &mut self.end.commands) {
-            Turn::Step => {}
+        match self.schedule.turn(self.steps, horizon, W::GOES_ON, &mut self.end.commands) {
+            Turn::Step(None) => {}
+            Turn::Step(Some(command)) => self.work.take(command),
             Turn::StarvedStep => self.monitor.starved = self.monitor.starved.saturating_add(1),
             Turn::Wait => {
                 self.monitor.waited = self.monitor.waited.saturating_add(lockstep.into());
@@ -144,12 +164,11 @@ impl<'a, E: OutputPin<Error = Infallible>, const N: usize> Plant<'a, E, N> {
                 return false;
             }
         }
-        self.model.step(self.schedule.torques());
-        self.digest = digest::chain(self.digest, self.model.state_digest());
+        self.work.step();
         self.steps = self.steps.wrapping_add(1);
         self.end.progress.steps.store(self.steps, Release);
         self.monitor.queue_low = self.monitor.queue_low.min(self.end.commands.count() as u16);
-        if !self.model.is_finite() {
+        if !self.work.is_finite() {
             self.trip(Fault::NotFinite { tick: self.steps });
         }
         self.until_sample -= 1;
@@ -163,12 +182,7 @@ impl<'a, E: OutputPin<Error = Infallible>, const N: usize> Plant<'a, E, N> {
     /// Kept out of line for the same reason.
     #[inline(never)]
     fn hand_out_sample(&mut self, computation: u32) {
-        let sample = RawSample {
-            tick: self.steps,
-            state_digest: self.digest,
-            outputs: self.model.outputs(),
-            computation: computation.min(u16::MAX.into()) as u16,
-        };
+        let sample = self.work.sample(self.steps, computation.min(u16::MAX.into()) as u16);
         if self.end.samples.give(sample).is_err() {
             self.monitor.lost_samples = self.monitor.lost_samples.saturating_add(1);
         }

@@ -7,14 +7,12 @@ use core::sync::atomic::Ordering::{Acquire, Release};
 use heapless::Vec;
 use heapless::spsc::Consumer;
 use link::framing::{MAX_FRAME, Receiver, encode};
-use link::messages::{
-    Accepted, Command, Fault, FromBoard, Hello, LOG_BYTES, Log, RunMode, RunSettings, Schedule, ToBoard,
-};
+use link::messages::{Accepted, Fault, FromBoard, Hello, LOG_BYTES, Log, RunMode, RunSettings, ToBoard};
 
 use crate::queues::{Event, IdleEnd, Order};
 use crate::serial::LineEnd;
-use crate::telemetry::Batcher;
 use crate::timing_report::{LineCounts, Resources, statistics};
+use crate::words::{Batch, Timed, Timetable, Words};
 
 /// The encoded log, as far as it waits to be sent.
 pub struct LogEnd<'a> {
@@ -25,28 +23,28 @@ pub struct LogEnd<'a> {
 }
 
 /// Both directions of the talk with the host.
-pub struct Conversation<'a, const N: usize> {
+pub struct Conversation<'a, W: Words> {
     hello: Hello,
     period: u32,
-    end: IdleEnd<'a, N>,
+    end: IdleEnd<'a, W>,
     line: LineEnd<'a>,
     log: LogEnd<'a>,
     receiver: Receiver,
-    batcher: Batcher,
+    batch: W::Batch,
     log_sequence: u16,
     awaiting: bool,
     cause: Option<Fault>,
     clear_with_report: bool,
     mode: RunMode,
-    held: Option<Schedule>,
+    held: Option<W::Timetable>,
     next_sequence: u16,
     lost_schedules: u32,
     cleared: LineCounts,
 }
 
-impl<'a, const N: usize> Conversation<'a, N> {
+impl<'a, W: Words> Conversation<'a, W> {
     /// Before the first word; `period` is the tick's, in timer counts.
-    pub fn new(hello: Hello, period: u32, end: IdleEnd<'a, N>, line: LineEnd<'a>, log: LogEnd<'a>) -> Self {
+    pub fn new(hello: Hello, period: u32, end: IdleEnd<'a, W>, line: LineEnd<'a>, log: LogEnd<'a>) -> Self {
         Self {
             hello,
             period,
@@ -54,7 +52,7 @@ impl<'a, const N: usize> Conversation<'a, N> {
             line,
             log,
             receiver: Receiver::new(),
-            batcher: Batcher::new(),
+            batch: W::Batch::default(),
             log_sequence: 0,
             awaiting: false,
             cause: None,
@@ -70,7 +68,7 @@ impl<'a, const N: usize> Conversation<'a, N> {
     /// Does one thing of each kind if there is one; says whether there was any. `resources` is asked when a report is
     /// due, with `true` if it should start afresh.
     pub fn attend(&mut self, resources: &mut dyn FnMut(bool) -> Resources) -> bool {
-        let sampled = self.has_room() && self.report_motion();
+        let sampled = self.has_room() && self.report_samples();
         let happened = self.has_room() && self.report_event(resources);
         let heard = !self.awaiting && self.has_room() && self.take_held_or_listen();
         let logged = self.has_room() && self.report_log();
@@ -93,17 +91,17 @@ impl<'a, const N: usize> Conversation<'a, N> {
     }
 
     /// Takes samples into the batch and sends it once it is full, or once there are no more to come for now.
-    fn report_motion(&mut self) -> bool {
+    fn report_samples(&mut self) -> bool {
         let mut taken = false;
-        while !self.batcher.is_full() {
+        while !self.batch.is_full() {
             let Some(sample) = self.end.samples.dequeue() else { break };
-            self.batcher.add(&sample);
+            self.batch.add(&sample);
             taken = true;
         }
         let at_rest = || !self.is_running() || self.has_caught_up();
-        if self.batcher.is_full() || (!self.batcher.is_empty() && at_rest() && !self.end.samples.ready()) {
-            let batch = self.batcher.take();
-            self.say(&FromBoard::Samples(batch));
+        if self.batch.is_full() || (!self.batch.is_empty() && at_rest() && !self.end.samples.ready()) {
+            let message = self.batch.take();
+            self.say(&message);
             return true;
         }
         taken
@@ -115,10 +113,10 @@ impl<'a, const N: usize> Conversation<'a, N> {
 
     /// Tells the host what the tick says. The end of a run is told after its last sample.
     fn report_event(&mut self, resources: &mut dyn FnMut(bool) -> Resources) -> bool {
-        let motion_left = self.end.samples.ready() || !self.batcher.is_empty();
+        let samples_left = self.end.samples.ready() || !self.batch.is_empty();
         match self.end.events.peek() {
             None => return false,
-            Some(Event::Stopped | Event::Tripped(_)) if motion_left => return false,
+            Some(Event::Stopped | Event::Tripped(_)) if samples_left => return false,
             Some(_) => {}
         }
         let Some(event) = self.end.events.dequeue() else { return false };
@@ -150,7 +148,7 @@ impl<'a, const N: usize> Conversation<'a, N> {
     /// Drops what is left of the run before a reset.
     fn forget_run(&mut self) {
         while self.end.samples.dequeue().is_some() {}
-        self.batcher = Batcher::new();
+        self.batch = W::Batch::default();
         self.cause = None;
         self.cleared = self.counts();
     }
@@ -206,12 +204,15 @@ impl<'a, const N: usize> Conversation<'a, N> {
         match message {
             ToBoard::Hello { .. } => self.say(&FromBoard::Hello(self.hello.clone())),
             ToBoard::Reset(settings) => self.reset(settings),
-            ToBoard::Schedule(schedule) => self.take(schedule),
             ToBoard::Statistics { reset } => {
                 self.clear_with_report = reset;
                 self.order(Order::Report { reset });
             }
             ToBoard::Stop => self.order(Order::Stop),
+            commands => match W::timetable(commands) {
+                Some(timetable) => self.take(timetable),
+                None => self.say(&FromBoard::Fault(Fault::WrongRole)),
+            },
         }
     }
 
@@ -239,15 +240,16 @@ impl<'a, const N: usize> Conversation<'a, N> {
     /// Queues a schedule's commands, or says why not. In lockstep a schedule that follows a gap is not taken: nothing
     /// is simulated on torques that never arrived, and the host may send again from the missing one on. Nor is one
     /// taken there before there is room for it: until then nothing more is read.
-    fn take(&mut self, schedule: Schedule) {
+    fn take(&mut self, timetable: W::Timetable) {
         if !self.is_running() {
             return self.say(&FromBoard::Fault(Fault::NotRunning));
         }
         let lockstep = self.mode == RunMode::Lockstep;
-        let gap = schedule.sequence.wrapping_sub(self.next_sequence);
+        let sequence = timetable.sequence();
+        let gap = sequence.wrapping_sub(self.next_sequence);
         let is_repeated = gap > u16::MAX / 2;
         if is_repeated {
-            return self.accept(schedule.sequence);
+            return self.accept(sequence);
         }
         if gap > 0 {
             self.lost_schedules = self.lost_schedules.saturating_add(gap.into());
@@ -255,22 +257,22 @@ impl<'a, const N: usize> Conversation<'a, N> {
                 return;
             }
         }
-        if let Err(fault) = self.check(&schedule) {
+        if let Err(fault) = self.check(&timetable) {
             return self.trip(fault);
         }
-        if schedule.commands.len() > self.queue_free() {
+        if timetable.commands().len() > self.queue_free() {
             if lockstep {
-                self.held = Some(schedule);
+                self.held = Some(timetable);
                 return;
             }
             return self.trip(Fault::QueueFull);
         }
-        for &command in &schedule.commands {
-            let _ = self.end.commands.enqueue(command);
+        for command in timetable.commands() {
+            let _ = self.end.commands.enqueue(command.clone());
         }
-        self.next_sequence = schedule.sequence.wrapping_add(1);
-        self.end.progress.horizon.store(schedule.horizon, Release);
-        self.accept(schedule.sequence);
+        self.next_sequence = sequence.wrapping_add(1);
+        self.end.progress.horizon.store(timetable.horizon(), Release);
+        self.accept(sequence);
     }
 
     fn accept(&mut self, sequence: u16) {
@@ -284,16 +286,17 @@ impl<'a, const N: usize> Conversation<'a, N> {
 
     /// Commands lie between the old horizon and the new one, in rising order: those before the old one would be late,
     /// those past the new one would block the queue.
-    fn check(&self, schedule: &Schedule) -> Result<(), Fault> {
+    fn check(&self, timetable: &W::Timetable) -> Result<(), Fault> {
         let mut earliest = self.end.progress.horizon.load(Acquire);
-        if schedule.horizon < earliest {
-            return Err(Fault::LateCommand { tick: schedule.horizon });
+        if timetable.horizon() < earliest {
+            return Err(Fault::LateCommand { tick: timetable.horizon() });
         }
-        for &Command { tick, drive_torque, load_torque } in &schedule.commands {
-            if !(drive_torque.is_finite() && load_torque.is_finite()) {
+        for command in timetable.commands() {
+            let tick = command.tick();
+            if !command.is_sound() {
                 return Err(Fault::BadCommand { tick });
             }
-            if tick < earliest || tick >= schedule.horizon {
+            if tick < earliest || tick >= timetable.horizon() {
                 return Err(Fault::LateCommand { tick });
             }
             earliest = tick + 1;

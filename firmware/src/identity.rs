@@ -3,10 +3,11 @@
 
 use heapless::String;
 use link::PROTOCOL_VERSION;
-use link::messages::{Clock, Hello, Role};
+use link::messages::{Clock, Hello};
 
 use crate::queues::COMMAND_CAPACITY;
 use crate::tables::{JOINT_NAME, PLANETS, TABLES};
+use crate::words::Words;
 
 /// What a start-up finds out.
 #[derive(Debug, Clone)]
@@ -23,12 +24,12 @@ pub struct StartUp {
     pub watchdog_reset: bool,
 }
 
-/// The hello of a board in a role.
-pub fn hello(role: Role, start_up: StartUp) -> Hello {
+/// The hello of a board in a role, with the digest of its controller's tables if it has any.
+pub fn hello<W: Words>(start_up: StartUp, control_digest: Option<u64>) -> Hello {
     Hello {
         protocol: PROTOCOL_VERSION,
         firmware_version: VERSION,
-        role,
+        role: W::ROLE,
         board: shortened(start_up.board),
         joint: shortened(JOINT_NAME),
         joint_digest: TABLES.digest,
@@ -40,6 +41,7 @@ pub fn hello(role: Role, start_up: StartUp) -> Hello {
         queue_capacity: COMMAND_CAPACITY,
         last_panic: start_up.last_panic,
         watchdog_reset: start_up.watchdog_reset,
+        control_digest,
     }
 }
 

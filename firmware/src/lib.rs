@@ -1,18 +1,24 @@
 #![cfg_attr(target_os = "none", no_std)]
 //! A joint simulated in the tick of a microcontroller, driven and watched over a serial line.
 //!
-//! `control` is the work of one tick: it takes torques from `schedule`, steps the model, keeps `budget`, the timing
-//! monitor, and falls back to `safe_state`. `queues` is all that connects it to the rest, by `ends` that
-//! cannot panic. `conversation`, run in idle,
-//! answers the host with the help of `identity`, `telemetry` and `timing_report`; `serial` moves its bytes.
+//! `control` is one tick of any role: it takes commands from `schedule`, steps the role's work, keeps `budget`, the
+//! timing monitor, and falls back to `safe_state`. The roles are `plant`, `observer` and `whole_loop`; `words` is what
+//! they differ in on the line. `queues` is all that connects the tick to the rest, by `ends` that cannot panic.
+//! `conversation`, run in idle, answers the host with the help of `identity`, `telemetry` and `timing_report`; `serial`
+//! moves its bytes. `port` is the seam between a motor controller and observer with compensation, `encoder` where
+//! counts come from.
 //! Everything so far is free of hardware and is tested on the host; `board`, `clock`, `logger`, `panic_message`,
 //! `stack` and `watch` exist on a board only; `measuring` in the emulator only. Physics is left to `model-core`, the words on the line to `link`.
 
 pub mod budget;
 pub mod control;
 pub mod conversation;
+pub mod encoder;
 pub mod ends;
 pub mod identity;
+pub mod observer;
+pub mod plant;
+pub mod port;
 pub mod queues;
 pub mod safe_state;
 pub mod schedule;
@@ -20,6 +26,8 @@ pub mod serial;
 pub mod status_light;
 pub mod telemetry;
 pub mod timing_report;
+pub mod whole_loop;
+pub mod words;
 
 /// The joint that this image is built from: `PLANETS`, `JOINT_NAME` and `TABLES`, written by the build script.
 pub mod tables {

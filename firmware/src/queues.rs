@@ -4,11 +4,11 @@
 use core::sync::atomic::{AtomicBool, AtomicU32};
 
 use heapless::spsc::{Consumer, Producer, Queue};
-use link::messages::{Command, Fault, RunSettings};
-use model_core::realtime::Outputs;
+use link::messages::{Fault, RunSettings};
 
 use crate::budget::Monitor;
 use crate::ends::{Giver, Taker};
+use crate::words::Words;
 
 /// Places for commands; one is lost to telling full from empty.
 const COMMANDS: usize = 128;
@@ -40,7 +40,7 @@ pub enum Order {
 #[derive(Debug, Clone, PartialEq)]
 #[allow(clippy::large_enum_variant, reason = "no allocator to box with")]
 pub enum Event {
-    /// The model is at rest, the command queue is empty.
+    /// Everything is at rest, the command queue is empty.
     ResetDone,
     /// The run has ended.
     Stopped,
@@ -50,19 +50,6 @@ pub enum Event {
     Tripped(Fault),
     /// How the tick's time was spent.
     Timing(Monitor),
-}
-
-/// The motion after a step, as the tick leaves it for idle to report.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RawSample<const N: usize> {
-    /// Steps done since the reset.
-    pub tick: u32,
-    /// Running digest over every state so far.
-    pub state_digest: u64,
-    /// The motion.
-    pub outputs: Outputs<f32, N>,
-    /// Timer counts that the step took.
-    pub computation: u16,
 }
 
 /// Counters that both sides see.
@@ -81,22 +68,22 @@ pub struct Progress {
 }
 
 /// The queues themselves.
-pub struct Queues<const N: usize> {
-    commands: Queue<Command, COMMANDS>,
+pub struct Queues<W: Words> {
+    commands: Queue<W::Command, COMMANDS>,
     orders: Queue<Order, NOTES>,
-    samples: Queue<RawSample<N>, SAMPLES>,
+    samples: Queue<W::Sample, SAMPLES>,
     events: Queue<Event, NOTES>,
     progress: Progress,
 }
 
 /// The tick's ends.
-pub struct TickEnd<'a, const N: usize> {
-    /// Torques to come.
-    pub commands: Taker<'a, Command, COMMANDS>,
+pub struct TickEnd<'a, W: Words> {
+    /// What is to come.
+    pub commands: Taker<'a, W::Command, COMMANDS>,
     /// What idle wants.
     pub orders: Taker<'a, Order, NOTES>,
-    /// Motion to be reported.
-    pub samples: Giver<'a, RawSample<N>, SAMPLES>,
+    /// What is to be reported.
+    pub samples: Giver<'a, W::Sample, SAMPLES>,
     /// What has happened.
     pub events: Giver<'a, Event, NOTES>,
     /// Shared counters.
@@ -104,20 +91,20 @@ pub struct TickEnd<'a, const N: usize> {
 }
 
 /// Idle's ends.
-pub struct IdleEnd<'a, const N: usize> {
-    /// Torques to come.
-    pub commands: Producer<'a, Command>,
+pub struct IdleEnd<'a, W: Words> {
+    /// What is to come.
+    pub commands: Producer<'a, W::Command>,
     /// What idle wants.
     pub orders: Producer<'a, Order>,
-    /// Motion to be reported.
-    pub samples: Consumer<'a, RawSample<N>>,
+    /// What is to be reported.
+    pub samples: Consumer<'a, W::Sample>,
     /// What has happened.
     pub events: Consumer<'a, Event>,
     /// Shared counters.
     pub progress: &'a Progress,
 }
 
-impl<const N: usize> Queues<N> {
+impl<W: Words> Queues<W> {
     /// Empty.
     pub const fn new() -> Self {
         Self {
@@ -136,7 +123,7 @@ impl<const N: usize> Queues<N> {
     }
 
     /// Hands each side its ends.
-    pub fn split(&mut self) -> (TickEnd<'_, N>, IdleEnd<'_, N>) {
+    pub fn split(&mut self) -> (TickEnd<'_, W>, IdleEnd<'_, W>) {
         let (commands_in, commands) = self.commands.split();
         let (orders_in, orders) = self.orders.split();
         let (samples, samples_out) = self.samples.split();
@@ -151,7 +138,7 @@ impl<const N: usize> Queues<N> {
     }
 }
 
-impl<const N: usize> Default for Queues<N> {
+impl<W: Words> Default for Queues<W> {
     fn default() -> Self {
         Self::new()
     }

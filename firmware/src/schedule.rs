@@ -1,18 +1,18 @@
-//! Which torques the next step uses, and whether there is a next step: commands by tick number, in lockstep with the
-//! host or by the board's own clock. Filling the queue, and refusing commands that are bad in themselves, is left to
-//! `conversation`.
+//! Which command is due, and whether there is a next step: commands by tick number, in lockstep with the host or by the
+//! board's own clock. Filling the queue, and refusing commands that are bad in themselves, is left to `conversation`;
+//! what a command does, to the role's work.
 
-use link::messages::{Command, Fault, RunMode, RunSettings};
-use model_core::realtime::Torques;
+use link::messages::{Fault, RunMode, RunSettings};
 
 use crate::ends::Taker;
+use crate::words::Timed;
 
 /// What a tick is to do.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Turn {
-    /// Step with the torques in force.
-    Step,
-    /// Step with the torques in force although the host has fallen behind (realtime).
+pub enum Turn<C> {
+    /// Step, with this command from now on if there is one.
+    Step(Option<C>),
+    /// Step as before although the host has fallen behind (realtime).
     StarvedStep,
     /// Do not step: the schedule for this tick is not known yet.
     Wait,
@@ -24,16 +24,13 @@ pub enum Turn {
 #[derive(Debug, Clone)]
 pub struct Schedule {
     settings: RunSettings,
-    torques: Torques<f32>,
     starved_in_a_row: u32,
 }
 
-const NO_TORQUE: Torques<f32> = Torques { drive: 0.0, load: 0.0 };
-
 impl Schedule {
-    /// At the start of a run: no torque, nothing known.
+    /// At the start of a run: nothing known.
     pub const fn new(settings: RunSettings) -> Self {
-        Self { settings, torques: NO_TORQUE, starved_in_a_row: 0 }
+        Self { settings, starved_in_a_row: 0 }
     }
 
     /// Who waits for whom.
@@ -41,49 +38,46 @@ impl Schedule {
         self.settings.mode
     }
 
-    /// The torques in force.
-    pub fn torques(&self) -> Torques<f32> {
-        self.torques
-    }
-
     /// Decides on the step from `tick` to `tick + 1`, everything before `horizon` being known. Ticks rise strictly
-    /// from command to command, so at most one can be due. A run begins with the first schedule, in either mode.
-    pub fn turn<const PLACES: usize>(
+    /// from command to command, so at most one can be due. A run begins with the first schedule, in either mode. In
+    /// lockstep a run that does not wait for ever (`patient` is false) ends when no schedule has come for the timeout.
+    pub fn turn<C: Timed, const PLACES: usize>(
         &mut self,
         tick: u32,
         horizon: u32,
-        commands: &mut Taker<'_, Command, PLACES>,
-    ) -> Turn {
+        patient: bool,
+        commands: &mut Taker<'_, C, PLACES>,
+    ) -> Turn<C> {
         let known = tick < horizon;
-        if !known && (horizon == 0 || self.settings.mode == RunMode::Lockstep) {
+        let lockstep = self.settings.mode == RunMode::Lockstep;
+        if !known && (horizon == 0 || (lockstep && patient)) {
             return Turn::Wait;
         }
-        if let Some(command) = commands.peek() {
-            let Command { tick: due, drive_torque, load_torque } = *command;
+        let mut now = None;
+        if let Some(due) = commands.peek().map(Timed::tick) {
             if due < tick {
                 return Turn::Trip(Fault::LateCommand { tick: due });
             }
             if due == tick {
-                self.torques = Torques { drive: drive_torque, load: load_torque };
-                commands.take();
+                now = commands.take();
             }
         }
         if known {
             self.starved_in_a_row = 0;
-            return Turn::Step;
+            return Turn::Step(now);
         }
-        self.starved_in_a_row += 1;
+        self.starved_in_a_row = self.starved_in_a_row.saturating_add(1);
         if self.starved_in_a_row > self.settings.command_timeout {
-            self.torques = NO_TORQUE;
             return Turn::Trip(Fault::CommandLoss { tick });
         }
-        Turn::StarvedStep
+        if lockstep { Turn::Wait } else { Turn::StarvedStep }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use heapless::spsc::Queue;
+    use link::messages::Command;
 
     use super::*;
 
@@ -91,6 +85,14 @@ mod tests {
 
     fn schedule(mode: RunMode) -> Schedule {
         Schedule::new(RunSettings { mode, decimation: 1, command_timeout: TIMEOUT })
+    }
+
+    /// Drive torque of a step with a new command.
+    fn new(turn: Turn<Command>) -> Option<f32> {
+        match turn {
+            Turn::Step(due) => due.map(|command| command.drive_torque),
+            other => panic!("{other:?}"),
+        }
     }
 
     fn command(tick: u32, drive_torque: f32) -> Command {
@@ -103,45 +105,53 @@ mod tests {
         let (_, commands) = queue.split();
         let mut commands = Taker::<_, 4>::new(commands);
         let mut schedule = schedule(RunMode::Lockstep);
-        assert_eq!(schedule.turn(0, 0, &mut commands), Turn::Wait);
-        assert_eq!(schedule.turn(0, 1, &mut commands), Turn::Step);
+        assert_eq!(schedule.turn(0, 0, true, &mut commands), Turn::Wait);
+        assert_eq!(schedule.turn(0, 1, true, &mut commands), Turn::Step(None));
         for _ in 0..10 * TIMEOUT {
-            assert_eq!(schedule.turn(1, 1, &mut commands), Turn::Wait);
+            assert_eq!(schedule.turn(1, 1, true, &mut commands), Turn::Wait);
         }
     }
 
     #[test]
-    fn a_torque_holds_from_its_tick_to_the_next_command() {
+    fn a_lockstep_run_that_may_not_wait_for_ever_trips_after_the_timeout() {
+        let mut queue = Queue::<Command, 4>::new();
+        let (_, commands) = queue.split();
+        let mut commands = Taker::<_, 4>::new(commands);
+        let mut schedule = schedule(RunMode::Lockstep);
+        assert_eq!(schedule.turn(0, 0, false, &mut commands), Turn::Wait);
+        assert_eq!(schedule.turn(0, 1, false, &mut commands), Turn::Step(None));
+        for _ in 0..TIMEOUT {
+            assert_eq!(schedule.turn(1, 1, false, &mut commands), Turn::Wait);
+        }
+        let lost = Turn::Trip(Fault::CommandLoss { tick: 1 });
+        assert_eq!(schedule.turn(1, 1, false, &mut commands), lost);
+    }
+
+    #[test]
+    fn a_command_is_given_at_its_tick_and_only_then() {
         let mut queue = Queue::<Command, 4>::new();
         let (mut entry, commands) = queue.split();
         let mut commands = Taker::<_, 4>::new(commands);
         entry.enqueue(command(1, 2.0)).unwrap();
         entry.enqueue(command(3, -1.0)).unwrap();
         let mut schedule = schedule(RunMode::Lockstep);
-        let drive: Vec<f32> = (0..5)
-            .map(|tick| {
-                assert_eq!(schedule.turn(tick, 5, &mut commands), Turn::Step);
-                schedule.torques().drive
-            })
-            .collect();
-        assert_eq!(drive, [0.0, 2.0, 2.0, -1.0, -1.0]);
+        let given: Vec<_> = (0..5).map(|tick| new(schedule.turn(tick, 5, true, &mut commands))).collect();
+        assert_eq!(given, [None, Some(2.0), None, Some(-1.0), None]);
     }
 
     #[test]
-    fn a_starved_run_holds_the_torque_until_the_timeout_and_then_trips() {
+    fn a_starved_run_goes_on_until_the_timeout_and_then_trips() {
         let mut queue = Queue::<Command, 4>::new();
         let (mut entry, commands) = queue.split();
         let mut commands = Taker::<_, 4>::new(commands);
         entry.enqueue(command(0, 2.0)).unwrap();
         let mut schedule = schedule(RunMode::Realtime);
-        assert_eq!(schedule.turn(0, 1, &mut commands), Turn::Step);
+        assert_eq!(new(schedule.turn(0, 1, true, &mut commands)), Some(2.0));
         for tick in 1..=TIMEOUT {
-            assert_eq!(schedule.turn(tick, 1, &mut commands), Turn::StarvedStep);
-            assert_eq!(schedule.torques().drive, 2.0);
+            assert_eq!(schedule.turn(tick, 1, true, &mut commands), Turn::StarvedStep);
         }
         let tick = TIMEOUT + 1;
-        assert_eq!(schedule.turn(tick, 1, &mut commands), Turn::Trip(Fault::CommandLoss { tick }));
-        assert_eq!(schedule.torques().drive, 0.0);
+        assert_eq!(schedule.turn(tick, 1, true, &mut commands), Turn::Trip(Fault::CommandLoss { tick }));
     }
 
     #[test]
@@ -151,8 +161,8 @@ mod tests {
         let mut commands = Taker::<_, 4>::new(commands);
         let mut schedule = schedule(RunMode::Realtime);
         for tick in (0..100).step_by(2) {
-            assert_eq!(schedule.turn(tick, tick + 1, &mut commands), Turn::Step);
-            assert_eq!(schedule.turn(tick + 1, tick + 1, &mut commands), Turn::StarvedStep);
+            assert_eq!(schedule.turn(tick, tick + 1, true, &mut commands), Turn::Step(None));
+            assert_eq!(schedule.turn(tick + 1, tick + 1, true, &mut commands), Turn::StarvedStep);
         }
     }
 
@@ -163,7 +173,7 @@ mod tests {
         let mut commands = Taker::<_, 4>::new(commands);
         let mut schedule = schedule(RunMode::Realtime);
         for _ in 0..10 * TIMEOUT {
-            assert_eq!(schedule.turn(0, 0, &mut commands), Turn::Wait);
+            assert_eq!(schedule.turn(0, 0, true, &mut commands), Turn::Wait);
         }
     }
 
@@ -174,6 +184,6 @@ mod tests {
         let mut commands = Taker::<_, 4>::new(commands);
         entry.enqueue(command(4, 2.0)).unwrap();
         let late = Turn::Trip(Fault::LateCommand { tick: 4 });
-        assert_eq!(schedule(RunMode::Realtime).turn(5, 9, &mut commands), late);
+        assert_eq!(schedule(RunMode::Realtime).turn(5, 9, true, &mut commands), late);
     }
 }

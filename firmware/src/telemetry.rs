@@ -1,51 +1,39 @@
-//! From the tick's raw samples to batches on the wire, numbered without gaps. When a batch is sent is decided by
+//! From the plant's raw samples to batches on the wire, numbered without gaps. When a batch is sent is decided by
 //! `conversation`, which knows how much room the line has.
 
 use heapless::Vec;
-use link::messages::{MAX_MESHES, SAMPLES_PER_BATCH, Sample, SampleBatch};
+use link::messages::{FromBoard, MAX_MESHES, SAMPLES_PER_BATCH, Sample, SampleBatch};
 use model_core::mesh::ContactState;
 
-use crate::queues::RawSample;
+use crate::plant::RawSample;
+use crate::words::Batch;
 
 /// Collects samples into batches.
-#[derive(Debug)]
-pub struct Batcher {
+#[derive(Debug, Default)]
+pub struct Batcher<const N: usize> {
     sequence: u16,
     samples: Vec<Sample, SAMPLES_PER_BATCH>,
 }
 
-impl Batcher {
-    /// Empty, with number 0 to come.
-    pub const fn new() -> Self {
-        Self { sequence: 0, samples: Vec::new() }
-    }
+impl<const N: usize> Batch for Batcher<N> {
+    type Sample = RawSample<N>;
 
-    /// Takes a sample unless the batch is full.
-    pub fn add<const N: usize>(&mut self, raw: &RawSample<N>) {
+    fn add(&mut self, raw: &RawSample<N>) {
         let _ = self.samples.push(sample(raw));
     }
 
-    /// Whether the batch is complete.
-    pub fn is_full(&self) -> bool {
+    fn is_full(&self) -> bool {
         self.samples.is_full()
     }
 
-    /// Whether there is nothing to send.
-    pub fn is_empty(&self) -> bool {
+    fn is_empty(&self) -> bool {
         self.samples.is_empty()
     }
 
-    /// The batch so far, under the next number.
-    pub fn take(&mut self) -> SampleBatch {
+    fn take(&mut self) -> FromBoard {
         let sequence = self.sequence;
         self.sequence = sequence.wrapping_add(1);
-        SampleBatch { sequence, samples: core::mem::take(&mut self.samples) }
-    }
-}
-
-impl Default for Batcher {
-    fn default() -> Self {
-        Self::new()
+        FromBoard::Samples(SampleBatch { sequence, samples: core::mem::take(&mut self.samples) })
     }
 }
 
@@ -96,9 +84,9 @@ mod tests {
 
     #[test]
     fn batches_are_numbered_without_gaps_and_come_out_empty_again() {
-        let mut batcher = Batcher::new();
+        let mut batcher = Batcher::<3>::default();
         for sequence in 0..3 {
-            assert_eq!(batcher.take().sequence, sequence);
+            assert!(matches!(batcher.take(), FromBoard::Samples(batch) if batch.sequence == sequence));
             assert!(batcher.is_empty());
         }
     }

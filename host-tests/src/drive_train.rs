@@ -15,6 +15,7 @@ mod encoder;
 mod friction;
 mod inside;
 mod parameters;
+mod surroundings;
 
 use std::f64::consts::TAU;
 

@@ -3,10 +3,12 @@
 
 use std::path::{Path, PathBuf};
 
+use clap::ValueEnum;
 use link::messages::Role;
 
 use crate::failure::Outcome;
 use crate::hil::Progress;
+use crate::proof::roles::CONTROL_RATE;
 use crate::target::board::Board;
 use crate::target::image::{self, Image};
 use crate::target::toolchain::Toolchain;
@@ -16,6 +18,7 @@ use crate::{check, interruption, output, target};
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   joint image                                 joint q1 for the stm32f405
+  joint image --role observer                 observer and compensation for it, beside a motor controller
   joint image joints/l1.toml --board stm32h743")]
 pub struct ImageArguments {
     /// Joint file (TOML), or the name of a preset: q1, s1, d2, l1, paper, paper_printed
@@ -24,9 +27,23 @@ pub struct ImageArguments {
     /// Board that the image is for
     #[arg(long, value_enum, default_value = "stm32f405")]
     board: Board,
-    /// Steps a second, in Hz
-    #[arg(long, value_name = "HZ", default_value_t = image::DEFAULT_TICK_RATE, value_parser = clap::value_parser!(u32).range(1..))]
-    rate: u32,
+    /// What the board does
+    #[arg(long, value_enum, default_value = "plant")]
+    role: ImageRole,
+    /// Steps a second, in Hz; a step of observer and loop is a control period [default: 20000 for plant, else 10000]
+    #[arg(long, value_name = "HZ", value_parser = clap::value_parser!(u32).range(1..))]
+    rate: Option<u32>,
+}
+
+/// What a board can be made to do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum ImageRole {
+    /// Simulates the joint
+    Plant,
+    /// Observer and compensation beside a motor controller
+    Observer,
+    /// Joint, motor, observer and compensation
+    Loop,
 }
 
 /// Arguments of `joint flash`.
@@ -54,12 +71,18 @@ pub fn flash(arguments: &FlashArguments) -> Outcome<()> {
 
 fn build(arguments: &ImageArguments) -> Outcome<Image> {
     let file = joint_file(&arguments.file, &check::load(&arguments.file)?);
+    let (role, usual) = match arguments.role {
+        ImageRole::Plant => (Role::Plant, image::DEFAULT_TICK_RATE),
+        ImageRole::Observer => (Role::Observer, CONTROL_RATE),
+        ImageRole::Loop => (Role::Loop, CONTROL_RATE),
+    };
+    let rate = arguments.rate.unwrap_or(usual);
     let progress = Progress::new();
     let say = |line: &str| progress.say(line);
     progress.stage("preparing the toolchain");
     let built = Toolchain::prepare(&say).and_then(|toolchain| {
         progress.stage("building the firmware");
-        image::build_image(&toolchain, &file, arguments.board, Role::Plant, arguments.rate, &say)
+        image::build_image(&toolchain, &file, arguments.board, role, rate, &say)
     });
     progress.clear();
     interruption::explain(built)

@@ -12,8 +12,6 @@ mod write;
 pub use checks::{Bound, Check, Source, Verdict};
 pub use sample::MotionSample;
 pub use samples::{CloseUp, Contact, ErrorSeries, Reference, Samples};
-#[cfg(test)]
-pub(crate) use schema::keys;
 pub use timing::{Counters, HistogramBin, MinMeanMax, TimingFigures};
 pub use write::write_text;
 

@@ -15,7 +15,7 @@ use joint::hil::session::{Expected, Session, Surroundings};
 use joint::hil::transport::Socket;
 use joint::hil::twin;
 use joint::target::board::Board;
-use link::messages::{Fault, RunMode, RunSettings};
+use link::messages::{Fault, Role, RunMode, RunSettings};
 
 /// A message is due within 2 s by design; a busy machine is given ten times that.
 const LIVENESS: Duration = Duration::from_secs(20);
@@ -51,6 +51,8 @@ fn expected() -> Expected {
         digest: twin::tables_digest(&joint(), Board::Stm32f405, TICK_RATE).expect("a good joint"),
         tick_rate: TICK_RATE,
         planets: 3,
+        role: Role::Plant,
+        control_digest: None,
         mend: "cargo joint flash q1".into(),
     }
 }

@@ -135,7 +135,9 @@ fn what_is_wrong_with_a_test_file_is_named_with_the_mend() {
 fn arguments_of_joints_and_of_tests_are_not_mixed_up() {
     let folder = folder();
     let file = test_file(folder.path(), "profile = \"T2\"");
-    joint(&["hil", text(&file)]).refused(&["cannot run on a board", "--host"]);
+    joint(&["hil", text(&file), "--host", "--role", "loop"]).refused(&["--host", "--role"]);
+    joint(&["hil", text(&file), "--role", "loop", "--plant", "reference"]).refused(&["does not run on a board"]);
+    joint(&["hil", "q1", "--role", "loop"]).refused(&["--role is for test files"]);
     joint(&["hil", text(&file), "--host", "--duration", "3"]).refused(&["--duration is for joints"]);
     joint(&["hil", "q1", "--host"]).refused(&["--host is for test files, and q1 is a joint"]);
     joint(&["hil", "none.toml", "--host"]).refused(&["there is no test file none.toml"]);

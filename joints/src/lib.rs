@@ -21,6 +21,7 @@ mod problem;
 mod reader;
 mod section;
 mod spelling;
+mod surroundings;
 mod unknown;
 
 pub use change::{Refused, change, change_noting, full_key, value};

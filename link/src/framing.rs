@@ -17,17 +17,42 @@ static CRC: Crc<u32, Table<1>> = Crc::<u32, Table<1>>::new(&CRC_32_ISO_HDLC);
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TooLong;
 
+/// Puts a message with its checksum at the start of a buffer; says how long both are.
+fn plain<M: Serialize>(message: &M, buffer: &mut [u8]) -> Result<usize, TooLong> {
+    let room = buffer.len().checked_sub(CRC_BYTES).ok_or(TooLong)?;
+    let length = postcard::to_slice(message, buffer.get_mut(..room).ok_or(TooLong)?).map_err(|_| TooLong)?.len();
+    let checksum = CRC.checksum(buffer.get(..length).ok_or(TooLong)?);
+    let place = buffer.get_mut(length..length + CRC_BYTES).ok_or(TooLong)?;
+    place.copy_from_slice(&checksum.to_le_bytes());
+    Ok(length + CRC_BYTES)
+}
+
 /// The frame that carries a message.
 pub fn encode<M: Serialize>(message: &M) -> Result<Vec<u8, MAX_FRAME>, TooLong> {
-    let mut plain = [0u8; MAX_MESSAGE];
-    let length = postcard::to_slice(message, &mut plain[..MAX_MESSAGE - CRC_BYTES]).map_err(|_| TooLong)?.len();
-    let checksum = CRC.checksum(&plain[..length]);
-    plain[length..length + CRC_BYTES].copy_from_slice(&checksum.to_le_bytes());
+    let mut buffer = [0u8; MAX_MESSAGE];
+    let length = plain(message, &mut buffer)?;
     let mut frame = Vec::new();
     frame.resize(MAX_FRAME, 0).map_err(|_| TooLong)?;
-    let stuffed = cobs::encode(&plain[..length + CRC_BYTES], &mut frame);
+    let stuffed = cobs::encode(&buffer[..length], &mut frame);
     frame.truncate(stuffed + 1);
     Ok(frame)
+}
+
+/// Fills a frame of fixed length, for buses that clock out as much as they clock in: the message, zeros, and the CRC over
+/// all of that.
+pub fn sealed<M: Serialize>(message: &M, frame: &mut [u8]) -> Result<(), TooLong> {
+    let (content, seal) = frame.split_last_chunk_mut::<CRC_BYTES>().ok_or(TooLong)?;
+    let used = postcard::to_slice(message, content).map_err(|_| TooLong)?.len();
+    content.iter_mut().skip(used).for_each(|byte| *byte = 0);
+    *seal = CRC.checksum(content).to_le_bytes();
+    Ok(())
+}
+
+/// The message in a frame of fixed length, if it came through unchanged.
+pub fn unsealed<M: DeserializeOwned>(frame: &[u8]) -> Option<M> {
+    let (content, seal) = frame.split_last_chunk::<CRC_BYTES>()?;
+    let good = CRC.checksum(content).to_le_bytes() == *seal;
+    postcard::take_from_bytes(content).ok().filter(|_| good).map(|(message, _)| message)
 }
 
 /// What a [`Receiver`] has thrown away.

@@ -1,10 +1,12 @@
 #![cfg_attr(not(test), no_std)]
-//! What a board and its host say to each other. `messages` holds the words, `framing` puts them on a byte stream:
-//! postcard, then CRC-32, then COBS, each frame ended by a zero byte. Transports, timeouts and policy are left to the
-//! two ends.
+//! What a board and its host say to each other. `messages` holds the words, with those of the roles that control in
+//! `controller` and `virtual_joint`; `framing` puts them on a byte stream: postcard, then CRC-32, then COBS, each frame
+//! ended by a zero byte. Transports, timeouts and policy are left to the two ends.
 
+pub mod controller;
 pub mod framing;
 pub mod messages;
+pub mod virtual_joint;
 
 /// Both ends must speak the same version; raised with every change of a message.
-pub const PROTOCOL_VERSION: u16 = 1;
+pub const PROTOCOL_VERSION: u16 = 2;

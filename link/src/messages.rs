@@ -4,6 +4,9 @@
 use heapless::{String, Vec};
 use serde::{Deserialize, Serialize};
 
+use crate::controller::{Answered, EXCHANGES_PER_SCHEDULE, Exchange};
+use crate::virtual_joint::{KNOTS_PER_SCHEDULE, Knot, LoopBatch};
+
 /// Most commands in one [`Schedule`].
 pub const COMMANDS_PER_SCHEDULE: usize = 24;
 /// Most samples in one [`SampleBatch`].
@@ -35,6 +38,10 @@ pub enum ToBoard {
     },
     /// End of the run: torque zero, enable off.
     Stop,
+    /// Samples and set-points, for the role that observes.
+    Exchanges(Schedule<Exchange, EXCHANGES_PER_SCHEDULE>),
+    /// Motion to come, for the role that runs the whole loop.
+    Course(Schedule<Knot, KNOTS_PER_SCHEDULE>),
 }
 
 /// How a run goes.
@@ -59,13 +66,13 @@ pub enum RunMode {
 
 /// Commands by tick number, in rising order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Schedule {
+pub struct Schedule<C = Command, const MOST: usize = COMMANDS_PER_SCHEDULE> {
     /// Rises by one with every schedule of a run, from 0 after a reset.
     pub sequence: u16,
     /// Everything before this tick is now known.
     pub horizon: u32,
-    /// Torques that change before the horizon.
-    pub commands: Vec<Command, COMMANDS_PER_SCHEDULE>,
+    /// What changes before the horizon.
+    pub commands: Vec<C, MOST>,
 }
 
 /// Torques from a tick on, held until the next command.
@@ -95,6 +102,10 @@ pub enum FromBoard {
     Fault(Fault),
     /// Encoded defmt bytes.
     Log(Log),
+    /// What observer and compensation make of an exchange.
+    Answer(Answered),
+    /// What joint and controller did.
+    Loop(LoopBatch),
 }
 
 /// Who the board is and what it runs.
@@ -128,6 +139,8 @@ pub struct Hello {
     pub last_panic: Option<String<96>>,
     /// The last reset came from the watchdog.
     pub watchdog_reset: bool,
+    /// Digest over the tables of observer, compensation and surroundings, for the roles that have them.
+    pub control_digest: Option<u64>,
 }
 
 /// What an image is for.
@@ -135,6 +148,10 @@ pub struct Hello {
 pub enum Role {
     /// The joint is simulated; torques in, motion out.
     Plant,
+    /// Observer and compensation beside a motor controller; samples and set-points in, estimates and torques out.
+    Observer,
+    /// The joint, its motor and both of them on one chip; motion asked for in, motion made out.
+    Loop,
 }
 
 /// Where the core clock comes from.
@@ -282,6 +299,8 @@ pub enum Fault {
     BadSettings,
     /// A schedule came before any reset, or after a fault.
     NotRunning,
+    /// A schedule for another role than the board's.
+    WrongRole,
 }
 
 /// Encoded defmt bytes, in order.

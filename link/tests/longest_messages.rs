@@ -38,6 +38,7 @@ fn the_longest_hello_arrives() {
         queue_capacity: u16::MAX,
         last_panic: Some(text()),
         watchdog_reset: true,
+        control_digest: Some(u64::MAX),
     }));
 }
 

@@ -1,6 +1,8 @@
 //! What is promised of a fixed step before it runs: error, instructions, memory, limits. Plain numbers that lie beside
 //! the tables; where they come from is in `design::certificate`, whether they suffice is the reader's judgement.
 
+use core::fmt;
+
 /// Parts of a tick in which contacts change.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Parts {
@@ -8,6 +10,15 @@ pub enum Parts {
     Substeps(u32),
     /// Leapfrog sub-steps, for light planets.
     Leaps(u32),
+}
+
+impl fmt::Display for Parts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Substeps(count) => write!(f, "{count} corrected sub-steps"),
+            Self::Leaps(count) => write!(f, "{count} leapfrog sub-steps"),
+        }
+    }
 }
 
 impl Parts {

@@ -4,6 +4,7 @@
 
 mod certificate;
 pub mod compensation;
+mod control_source;
 mod cost;
 pub mod dynamics;
 pub mod exponential;
@@ -17,6 +18,7 @@ mod processor;
 mod source;
 mod stability;
 mod validate;
+pub mod virtual_joint;
 
 use core::array;
 use core::f64::consts::TAU;
@@ -29,6 +31,7 @@ use crate::real::Real;
 use crate::scales::Scales;
 use crate::tables::{Excitation, MeshTable, Mobility, Rigid, Scheme, Spring, Stage, Tables, Units};
 pub use certificate::certificate;
+pub use control_source::{ControlSource, ControlWish, Told, control_source};
 pub use cost::Cost;
 use dynamics::{Dynamics, MovingMasses};
 pub use pace::{Effort, Pace, Parts};

@@ -22,4 +22,5 @@ pub mod mesh;
 pub mod real;
 pub mod realtime;
 pub mod scales;
+pub mod surroundings;
 pub mod tables;

@@ -7,6 +7,8 @@
 
 pub mod compensation;
 mod contact;
+pub mod controller;
+pub mod course;
 mod crossing;
 mod excitation;
 mod flow;
@@ -24,6 +26,7 @@ mod stages;
 mod state;
 mod substep;
 mod unfrozen;
+pub mod virtual_joint;
 
 pub use model::{Model, Outputs, Torques};
 pub use state::{Relative, RigidBody, State};

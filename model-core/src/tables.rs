@@ -4,6 +4,7 @@
 
 pub mod compensation;
 pub mod observer;
+pub mod virtual_joint;
 
 use core::fmt;
 

@@ -1,110 +1,24 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
-//! Role `plant`: the board simulates the joint; torques in, motion out. This file says who runs at which priority and
-//! who holds which end of which queue; the work is in the library.
+//! Role `plant`: the board simulates the joint; torques in, motion out. The application is that of every role, the work is
+//! in the library.
 
+/// What this image is: `role_app.rs` asks for it.
 #[cfg(target_os = "none")]
-#[rtic::app(device = firmware::board::pac)]
-mod app {
-    use firmware::board::{Board, Started, ThisBoard, Watchdog};
-    use firmware::clock::{self, IdleMeter, PERIOD};
-    use firmware::control::Plant;
-    use firmware::conversation::{Conversation, LogEnd};
-    use firmware::identity::{self, StartUp};
-    use firmware::logger::{self, LogQueue};
-    use firmware::queues::{Progress, Queues};
-    use firmware::serial::{Line, Serial};
-    use firmware::status_light::{Pattern, StatusLight};
+mod role {
+    use firmware::plant::{Plant, PlantWords};
     use firmware::tables::{PLANETS, TABLES};
-    use firmware::timing_report::Resources;
-    use firmware::{panic_message, stack};
-    use link::messages::Role;
 
-    #[shared]
-    struct Shared {
-        #[lock_free]
-        serial: Serial<'static, <ThisBoard as Board>::Port>,
-    }
+    pub const DIGEST: Option<u64> = None;
+    pub type RoleWords = PlantWords<PLANETS>;
+    pub type RoleWork = Plant<'static, PLANETS>;
 
-    #[local]
-    struct Local {
-        plant: Plant<'static, <ThisBoard as Board>::Enable, PLANETS>,
-        conversation: Conversation<'static, PLANETS>,
-        progress: &'static Progress,
-        light: StatusLight<<ThisBoard as Board>::Light>,
-        watchdog: Watchdog,
-    }
-
-    #[init(local = [queues: Queues<PLANETS> = Queues::new(), line: Line = Line::new(), log: LogQueue = LogQueue::new()])]
-    fn init(cx: init::Context) -> (Shared, Local) {
-        let last_panic = panic_message::take();
-        let mut core = cx.core;
-        let Started { clock, enable, light, port, watchdog, watchdog_reset } = ThisBoard::start(cx.device, &mut core);
-        let (tick_end, idle_end) = cx.local.queues.split();
-        let progress = idle_end.progress;
-        let (serial, line_end) = cx.local.line.split(port, ThisBoard::wake_serial);
-        let log_end = LogEnd { bytes: logger::start(cx.local.log), lost: logger::lost_bytes };
-
-        let board = ThisBoard::NAME;
-        let start_up = StartUp { board, timer_rate: ThisBoard::CORE_RATE, clock, last_panic, watchdog_reset };
-        let hello = identity::hello(Role::Plant, start_up);
-        defmt::info!("{=str} on {=str}, {=u32} Hz", hello.joint.as_str(), board, TABLES.tick_rate);
-
-        let plant = Plant::new(&TABLES, enable, PERIOD, tick_end);
-        let conversation = Conversation::new(hello, PERIOD, idle_end, line_end, log_end);
-        clock::start(&mut core.SYST);
-        (Shared { serial }, Local { plant, conversation, progress, light: StatusLight::new(light), watchdog })
-    }
-
-    /// The simulation, above everything else.
-    #[task(binds = SysTick, priority = 16, local = [plant])]
-    fn tick(cx: tick::Context) {
-        clock::in_tick(|timer| cx.local.plant.tick(timer));
-    }
-
-    /// The serial line of STM32F405.
-    #[cfg(feature = "stm32f405")]
-    #[task(binds = USART1, priority = 2, shared = [serial])]
-    fn usart1(cx: usart1::Context) {
-        clock::in_interrupt(|| cx.shared.serial.service());
-    }
-
-    /// The serial line of STM32G474.
-    #[cfg(feature = "stm32g474")]
-    #[task(binds = USART2, priority = 2, shared = [serial])]
-    fn usart2(cx: usart2::Context) {
-        clock::in_interrupt(|| cx.shared.serial.service());
-    }
-
-    /// The serial line of STM32H743.
-    #[cfg(feature = "stm32h743")]
-    #[task(binds = USART3, priority = 2, shared = [serial])]
-    fn usart3(cx: usart3::Context) {
-        clock::in_interrupt(|| cx.shared.serial.service());
-    }
-
-    /// The talk with the host, the light, and the watchdog, which is fed only while the ticks go on.
-    #[idle(local = [conversation, progress, light, watchdog])]
-    fn idle(cx: idle::Context) -> ! {
-        use core::sync::atomic::Ordering::Relaxed;
-        let idle::LocalResources { conversation, progress, light, watchdog, .. } = cx.local;
-        let mut meter = IdleMeter::start();
-        let mut last_beat = progress.beats.load(Relaxed);
-        loop {
-            let busy = conversation.attend(&mut |reset| Resources {
-                idle_permille: meter.permille(reset),
-                static_ram: stack::static_ram(),
-                stack_used: stack::deepest(),
-            });
-            light.show(Pattern::of(progress), clock::milliseconds());
-            let beat = progress.beats.load(Relaxed);
-            if beat != last_beat {
-                last_beat = beat;
-                watchdog.feed();
-            }
-            if busy { meter.pass() } else { meter.sleep() }
-        }
+    pub fn work() -> RoleWork {
+        Plant::new(&TABLES)
     }
 }
+
+#[cfg(target_os = "none")]
+include!("../role_app.rs");
 
 /// There is nothing to do on a host: this image is for a board.
 #[cfg(not(target_os = "none"))]

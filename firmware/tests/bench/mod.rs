@@ -8,16 +8,18 @@ use std::rc::Rc;
 
 use embedded_hal::digital::{ErrorType, OutputPin};
 use firmware::budget::TickTimer;
-use firmware::control::Plant;
+use firmware::control::{Control, Work};
 use firmware::conversation::{Conversation, LogEnd};
 use firmware::identity::{StartUp, hello};
+use firmware::plant::Plant;
 use firmware::queues::Queues;
 use firmware::serial::{Line, Serial, Uart};
 use firmware::tables::{PLANETS, TABLES};
 use firmware::timing_report::Resources;
+use firmware::words::Words;
 use heapless::spsc::Queue;
 use link::framing::{Receiver, encode};
-use link::messages::{Clock, Command, FromBoard, Role, RunMode, RunSettings, Schedule, ToBoard};
+use link::messages::{Clock, Command, FromBoard, RunMode, RunSettings, Schedule, ToBoard};
 use model_core::tables::Tables;
 
 /// Timer counts between two ticks.
@@ -88,9 +90,12 @@ impl TickTimer for Timer {
 }
 
 /// A board on the bench.
-pub struct Bench {
-    plant: Plant<'static, Enable, PLANETS>,
-    conversation: Conversation<'static, PLANETS>,
+pub struct Bench<W: Work = Plant<'static, PLANETS>>
+where
+    W::Words: Words<Command: 'static, Sample: 'static> + 'static,
+{
+    control: Control<'static, Enable, W>,
+    conversation: Conversation<'static, W::Words>,
     serial: Serial<'static, WireEnd>,
     receiver: Receiver,
     pub wire: Rc<RefCell<Wire>>,
@@ -105,6 +110,22 @@ impl Bench {
     }
 
     pub fn with_tables(tables: &'static Tables<f32, PLANETS>) -> Self {
+        Self::with(Plant::new(tables))
+    }
+
+    pub fn schedule(&self, sequence: u16, horizon: u32, commands: &[(u32, f32, f32)]) {
+        let command = |&(tick, drive_torque, load_torque)| Command { tick, drive_torque, load_torque };
+        let commands = commands.iter().map(command).collect();
+        self.send(&ToBoard::Schedule(Schedule { sequence, horizon, commands }));
+    }
+}
+
+impl<W: Work> Bench<W>
+where
+    W::Words: Words<Command: 'static, Sample: 'static> + 'static,
+{
+    /// A role's work on the bench.
+    pub fn with(work: W) -> Self {
         let wire = Rc::new(RefCell::new(Wire::default()));
         let enable = Rc::new(Cell::new(true));
         let (tick_end, idle_end) = Box::leak(Box::new(Queues::new())).split();
@@ -118,9 +139,9 @@ impl Bench {
             watchdog_reset: false,
         };
         Self {
-            plant: Plant::new(tables, Enable(enable.clone()), PERIOD, tick_end),
+            control: Control::new(work, Enable(enable.clone()), PERIOD, tick_end),
             conversation: Conversation::new(
-                hello(Role::Plant, start_up),
+                hello::<W::Words>(start_up, None),
                 PERIOD,
                 idle_end,
                 line,
@@ -154,7 +175,7 @@ impl Bench {
     }
 
     pub fn tick(&mut self) {
-        self.plant.tick(&Timer::new(self.timing.0, self.timing.1));
+        self.control.tick(&Timer::new(self.timing.0, self.timing.1));
     }
 
     /// Ticks, with idle in between.
@@ -177,11 +198,5 @@ impl Bench {
         self.send(&ToBoard::Reset(RunSettings { mode, decimation, command_timeout }));
         self.run(2);
         assert!(matches!(self.said()[..], [FromBoard::Hello(_)]));
-    }
-
-    pub fn schedule(&self, sequence: u16, horizon: u32, commands: &[(u32, f32, f32)]) {
-        let command = |&(tick, drive_torque, load_torque)| Command { tick, drive_torque, load_torque };
-        let commands = commands.iter().map(command).collect();
-        self.send(&ToBoard::Schedule(Schedule { sequence, horizon, commands }));
     }
 }

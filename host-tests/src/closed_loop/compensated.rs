@@ -4,7 +4,8 @@
 use std::f64::consts::TAU;
 
 use model_core::design::compensation::CompensationSettings;
-use model_core::design::observer::{EncoderSettings, ObserverSettings};
+use model_core::design::observer::ObserverSettings;
+use model_core::design::virtual_joint;
 use model_core::joint::JointParameters;
 use model_core::mesh::ContactState;
 use model_core::real::Real;
@@ -14,11 +15,8 @@ use model_core::tables::compensation::CompensationTables;
 use model_core::tables::observer::ObserverTables;
 
 use super::{Controller, Motion, SetPoint};
-use crate::drive_train::{DriveTrainParameters, EncoderParameters, Measurement, TrueTorques};
+use crate::drive_train::{DriveTrainParameters, Measurement, TrueTorques};
 use crate::reference::Observation;
-
-/// Ticks of the samples' clock in a control period.
-const TICKS: u32 = 1000;
 
 /// What the compensation sees by.
 #[derive(Debug, Clone)]
@@ -57,43 +55,12 @@ pub struct Compensated<'tables, T: Real> {
 
 /// Settings of an observer for a drive train: what data sheets say, sizes of errors but never their phases or signs.
 pub fn observer_settings(train: &DriveTrainParameters) -> ObserverSettings {
-    let encoder = |encoder: &EncoderParameters| EncoderSettings {
-        counts_per_turn: 1 << encoder.bits,
-        wraps_at: 1 << encoder.bits,
-        absolute: true,
-        harmonic_error: encoder.once_per_turn_error.max(encoder.twice_per_turn_error),
-    };
-    let limit = train.motor.torque_limit.min(1e3);
-    ObserverSettings {
-        control_rate: train.control_rate as u32,
-        clock_rate: TICKS * train.control_rate as u32,
-        motor_encoder: encoder(&train.motor_encoder),
-        output_encoder: Some(encoder(&train.output_encoder)),
-        fastest_motor: 300.0,
-        // The observer is shown the torque of the period before.
-        torque_delay: (train.delay_periods - 1.0).max(0.0),
-        torque_lag: train.motor.current_lag,
-        torque_limit: limit,
-        torque_noise_ratio: train.motor.torque_noise_ratio,
-        torque_uncertainty: 0.02 * limit,
-        torque_ripple: train.motor.cogging_torque,
-        efficiency: train.efficiency,
-        backlash_uncertainty: 0.5,
-        compliance_uncertainty: 0.3,
-        skew: 0.0,
-        skew_uncertainty: 60e-6,
-    }
+    virtual_joint::observer_settings(&train.surroundings())
 }
 
 /// Settings of a compensation for a drive train.
 pub fn compensation_settings(train: &DriveTrainParameters, bandwidth: f64) -> CompensationSettings {
-    CompensationSettings {
-        control_rate: train.control_rate as u32,
-        bandwidth,
-        torque_limit: train.motor.torque_limit.min(1e3),
-        torque_delay: train.delay_periods,
-        torque_lag: train.motor.current_lag,
-    }
+    virtual_joint::compensation_settings(&train.surroundings(), bandwidth)
 }
 
 impl<'tables, T: Real> Compensated<'tables, T> {
@@ -125,7 +92,7 @@ impl<'tables, T: Real> Compensated<'tables, T> {
 
 impl<T: Real> Observed<'_, T> {
     fn see(&mut self, measurement: &Measurement) -> Estimates<T> {
-        let time = (measurement.period as u32).wrapping_mul(TICKS);
+        let time = (measurement.period as u32).wrapping_mul(virtual_joint::CLOCK_TICKS);
         let reading = |counts: i64, range: i64| Reading { counts: counts.rem_euclid(range) as u32, time };
         let samples = Samples {
             time,

@@ -42,27 +42,28 @@ impl Bench {
             None => Self::emulated(arguments, plan, progress),
             Some(path) => {
                 let baud = arguments.baud.unwrap_or(arguments.board.baud_rate());
-                let port = Port::open(path, baud)?;
-                let image = match arguments.no_build {
-                    true => None,
-                    false => Some(build(arguments, plan, arguments.board, progress)?),
-                };
-                Ok(Self {
-                    line: Box::new(port),
-                    surroundings: Box::new(RealBoard),
-                    patience: SILENCE,
-                    transport: format!("{path} at {baud} baud"),
-                    image,
+                Self::on_port(path, baud, || match arguments.no_build {
+                    true => Ok(None),
+                    false => build(arguments, plan, arguments.board, progress).map(Some),
                 })
             }
         }
     }
 
-    fn emulated(arguments: &Arguments, plan: &Plan, progress: &Progress) -> Outcome<Self> {
-        progress.stage("finding the emulator");
-        let version = emulator::ensure(&|line| progress.say(line))?;
-        let image = build(arguments, plan, Board::Stm32f405, progress)?;
-        progress.stage("booting the emulated board");
+    /// The board behind a port, which is opened before its image is built.
+    pub fn on_port(path: &str, baud: u32, image: impl FnOnce() -> Outcome<Option<Image>>) -> Outcome<Self> {
+        let port = Port::open(path, baud)?;
+        Ok(Self {
+            line: Box::new(port),
+            surroundings: Box::new(RealBoard),
+            patience: SILENCE,
+            transport: format!("{path} at {baud} baud"),
+            image: image()?,
+        })
+    }
+
+    /// The emulator of a version with an image.
+    pub fn in_emulator(version: &str, image: Image) -> Outcome<Self> {
         let (emulator, stream) = Emulator::start(&image.elf)?;
         let line = Socket::new(stream, "the emulated board")
             .map_err(|error| Failure::new(format!("the emulator's serial line cannot be used: {error}")))?;
@@ -73,6 +74,14 @@ impl Bench {
             transport: format!("{version}, -M {}, -icount {}", emulator::MACHINE, emulator::CLOCK),
             image: Some(image),
         })
+    }
+
+    fn emulated(arguments: &Arguments, plan: &Plan, progress: &Progress) -> Outcome<Self> {
+        progress.stage("finding the emulator");
+        let version = emulator::ensure(&|line| progress.say(line))?;
+        let image = build(arguments, plan, Board::Stm32f405, progress)?;
+        progress.stage("booting the emulated board");
+        Self::in_emulator(&version, image)
     }
 }
 

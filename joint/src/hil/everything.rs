@@ -8,6 +8,7 @@ use link::messages::Role;
 use super::Progress;
 use crate::failure::{Failure, Outcome};
 use crate::output;
+use crate::proof::roles::{self, CONTROL_RATE};
 use crate::proof::{costs, same_bits, tick, worst_case};
 use crate::target::board::Board;
 use crate::target::image;
@@ -20,18 +21,20 @@ pub fn check(tick_rate: u32, progress: &Progress) -> Outcome<()> {
     progress.stage("preparing the toolchain");
     let toolchain = Toolchain::prepare(&say)?;
     for board in Board::ALL {
-        progress.stage(&format!("building the image for {}", board.name()));
-        let image = image::build_image(&toolchain, &image::preset_file("q1"), board, Role::Plant, tick_rate, &say)?;
-        let (flash, ram) = (image.flash_bytes, image.ram_bytes);
-        progress.clear();
-        output::print(&format!("ok       image for {}: {flash} B of flash, {ram} B of RAM\n", board.name()))?;
-        let reach = tick::reach(&image.elf)?;
-        tick::judge(&reach).map_err(|failure| failure.while_doing(format_args!("image for {}", board.name())))?;
-        let (functions, stack) = (reach.functions, tick::stack(&reach));
-        output::print(&format!(
-            "ok       tick for {}: {functions} functions, none can panic, at most {stack} B of stack\n",
-            board.name()
-        ))?;
+        for (role, rate) in [(Role::Plant, tick_rate), (Role::Observer, CONTROL_RATE), (Role::Loop, CONTROL_RATE)] {
+            let what = format!("role {} for {}", image::word(role), board.name());
+            progress.stage(&format!("building the image of {what}"));
+            let image = image::build_image(&toolchain, &image::preset_file("q1"), board, role, rate, &say)?;
+            let (flash, ram) = (image.flash_bytes, image.ram_bytes);
+            let reach = tick::reach(&image.elf)?;
+            tick::judge(&reach).map_err(|failure| failure.while_doing(format_args!("image of {what}")))?;
+            let (functions, stack) = (reach.functions, tick::stack(&reach));
+            progress.clear();
+            output::print(&format!(
+                "ok       image of {what}: {flash} B of flash, {ram} B of RAM; its tick: {functions} functions, none can \
+                 panic, at most {stack} B of stack\n"
+            ))?;
+        }
         progress.stage(&format!("linting the firmware for {}", board.name()));
         lint::clippy(&toolchain, board, &say)?;
         progress.clear();
@@ -59,6 +62,14 @@ fn proofs(toolchain: &Toolchain, progress: &Progress) -> Outcome<()> {
     progress.clear();
     output::print(&format!("{}\nok       instructions as promised\n", lines.join("\n")))?;
     worst_case::judge(&found)?;
+    progress.stage("counting the instructions of the roles on the emulated board");
+    let loads = roles::count(toolchain, &say)?;
+    progress.clear();
+    for load in &loads {
+        output::print(&format!("{load}\n"))?;
+    }
+    roles::judge(&loads)?;
+    output::print("ok       roles within their control period\n")?;
     output::print("ok       worst case of a step within its budget\n")
 }
 

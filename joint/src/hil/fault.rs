@@ -53,6 +53,12 @@ fn words(fault: &Fault) -> Words {
             "torques came for a run that was not started or has stopped",
             "the board was reset in mid-run: check its power, then run again",
         ),
+        Fault::WrongRole => (
+            "wrong_role",
+            None,
+            "commands came that are for another role than the board's",
+            "flash the image of the role that this run asks for",
+        ),
     };
     Words { name, tick, what, mend }
 }

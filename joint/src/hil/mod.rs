@@ -5,7 +5,7 @@
 //! `bench` builds the image and finds the board; `session` talks to it over a `transport` line and keeps a `recording`;
 //! `twin` and `comparison` compute the same run here, `checks` judges, `table` prints.
 
-mod bench;
+pub mod bench;
 pub mod checks;
 pub mod comparison;
 mod evaluation;
@@ -28,7 +28,7 @@ use bench::Bench;
 use evaluation::Ran;
 use files::Files;
 use plan::Plan;
-pub use plan::{Arguments, Mode};
+pub use plan::{Arguments, Mode, RoleName};
 pub use progress::Progress;
 use recording::Recording;
 use session::Session;

@@ -2,7 +2,7 @@
 
 use std::process::Command;
 
-use link::messages::{Clock, Hello, Role, RunMode};
+use link::messages::{Clock, Hello, RunMode};
 
 use super::plan::{Arguments, Plan};
 use crate::record::{Identity, Image, JointFigures, RunRecord, Settings};
@@ -30,8 +30,7 @@ pub fn record(arguments: &Arguments, plan: &Plan, transport: &str) -> RunRecord 
 /// Notes what the board says of itself.
 pub fn note_board(identity: &mut Identity, hello: &Hello) {
     let [major, minor, patch] = hello.firmware_version;
-    let Role::Plant = hello.role;
-    identity.role = "plant".to_owned();
+    identity.role = image::word(hello.role).to_owned();
     identity.board = hello.board.to_string();
     identity.firmware_version = format!("{major}.{minor}.{patch}");
     identity.clock = match hello.clock {

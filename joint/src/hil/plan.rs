@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 use joints::JointFile;
-use link::messages::{RunMode, RunSettings};
+use link::messages::{Role, RunMode, RunSettings};
 
 use super::profile::{BUILTIN, Profile};
 use super::session::Expected;
@@ -25,6 +25,7 @@ use crate::{check, images};
   joint hil q1 --port /dev/ttyUSB0            a real board, flashed before by `joint flash q1`
   joint hil hil --host --plant reference      all tests of observer and compensation in the folder hil
   joint hil hil/t2.toml --host --seed 7       one of them, with another seed
+  joint hil hil/t2.toml --role loop           the same with joint and controller on the emulated board
 
 Exit code: 0 if every check held, 1 if one did not, 2 for bad input or a bad environment, 130 after Ctrl-C.")]
 pub struct Arguments {
@@ -33,8 +34,11 @@ pub struct Arguments {
     #[arg(value_name = "FILE", default_value = "q1")]
     pub file: PathBuf,
     /// Test files: runs observer and compensation on this machine, without a board
-    #[arg(long)]
+    #[arg(long, conflicts_with = "role")]
     pub host: bool,
+    /// Test files: what the board does, observer and compensation or the whole loop with the joint [default: loop]
+    #[arg(long, value_enum)]
+    pub role: Option<RoleName>,
     /// Test files: runs this seed in place of the file's
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
@@ -91,6 +95,15 @@ pub struct Arguments {
     pub check: bool,
 }
 
+/// What a board does in tests of observer and compensation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum RoleName {
+    /// Observer and compensation; the joint is simulated here
+    Observer,
+    /// Joint, motor, observer and compensation
+    Loop,
+}
+
 /// Who waits for whom.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Mode {
@@ -144,6 +157,8 @@ impl Plan {
             digest,
             tick_rate: arguments.rate,
             planets: parameters.geometry.planets,
+            role: Role::Plant,
+            control_digest: None,
             mend: arguments.flash_command(),
         };
         let command_timeout = (COMMAND_TIMEOUT * f64::from(arguments.rate)).ceil() as u32;

@@ -56,6 +56,8 @@ impl Recording {
             FromBoard::Fault(Fault::NotRunning) if !self.faults.is_empty() => {}
             FromBoard::Fault(fault) => self.faults.push(fault),
             FromBoard::Log(log) => self.take_log(&log),
+            // Kept by whoever asked for them.
+            FromBoard::Answer(_) | FromBoard::Loop(_) => {}
         }
     }
 

@@ -1,6 +1,7 @@
 //! A conversation with a board: find it, reset it, stream torques within its queue, hear it out. Every wait has a
 //! deadline, and what was heard so far is kept whatever happens; nothing is judged here.
 
+mod control;
 mod identity;
 mod stream;
 

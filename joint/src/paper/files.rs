@@ -2,16 +2,15 @@
 //! found before anything is computed; each file is written whole or not at all.
 
 use std::fmt::Write as _;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::page;
-use super::pictures::{self, Picture, file_part};
+use super::pictures::{self, Picture};
 use super::record::{ClassRecord, Reading, StudyRecord};
 use crate::failure::{Failure, Outcome};
+use crate::folder::{self, file_part};
 use crate::record::write_text;
 use crate::report::page::standalone;
-use crate::target::toolchain::workspace;
 
 /// Where a study's files go.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -23,27 +22,8 @@ pub struct Files {
 impl Files {
     /// Makes the folder and tries to write to it.
     pub fn prepare(folder: Option<&Path>, json: Option<&Path>, joint: &str) -> Outcome<Self> {
-        let folder = folder.map_or_else(|| workspace().join("target/paper").join(file_part(joint)), Path::to_owned);
-        fs::create_dir_all(&folder).map_err(|error| {
-            Failure::new(format!("cannot make the folder {} for the report: {error}", folder.display()))
-                .with_help("name a folder that can be written by --out DIR")
-        })?;
-        let probe = folder.join(".can-be-written");
-        write_text(&probe, "")?;
-        // It was ours, and it was empty: nothing is lost if it stays.
-        let _ = fs::remove_file(&probe);
-        if let Some(json) = json {
-            let parent = json.parent().filter(|parent| !parent.as_os_str().is_empty());
-            if let Some(parent) = parent.filter(|parent| !parent.is_dir()) {
-                return Err(Failure::new(format!("there is no folder {} for --json", parent.display()))
-                    .with_help("create it first, or name another file"));
-            }
-            if json.is_dir() {
-                return Err(
-                    Failure::new(format!("--json {} is a folder", json.display())).with_help("name a file in it")
-                );
-            }
-        }
+        let folder = folder::prepare(folder, "paper", joint)?;
+        json.map_or(Ok(()), folder::check_json)?;
         Ok(Self { folder, json: json.map(Path::to_owned) })
     }
 

@@ -40,9 +40,8 @@ pub fn count(toolchain: &Toolchain, say: Say<'_>) -> Outcome<Vec<Counted>> {
 fn parse(line: &str) -> Option<Counted> {
     let mut fields = line.split(';');
     let name = fields.next()?.to_owned();
+    let parts = super::parts(&mut fields)?;
     let mut number = || fields.next()?.parse().ok();
-    let [substeps, leaps] = [number()?, number()?];
-    let parts = if leaps > 0 { Parts::Leaps(leaps) } else { Parts::Substeps(substeps) };
     Some(Counted { name, parts, holding: number()?, apart: number()? })
 }
 

@@ -4,6 +4,16 @@
 
 pub mod costs;
 pub mod joints;
+pub mod roles;
 pub mod same_bits;
 pub mod tick;
 pub mod worst_case;
+
+use model_core::certificate::Parts;
+
+/// How a joint's tick goes through contacts that change, as the measuring images say it: sub-steps, leaps or none.
+fn parts<'a>(fields: &mut impl Iterator<Item = &'a str>) -> Option<Parts> {
+    let mut number = || fields.next()?.parse().ok();
+    let (substeps, leaps) = (number()?, number()?);
+    Some(if leaps > 0 { Parts::Leaps(leaps) } else { Parts::Substeps(substeps) })
+}

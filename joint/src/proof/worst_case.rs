@@ -4,6 +4,8 @@
 use std::fmt;
 
 use super::joints::write_files;
+use model_core::certificate::Parts;
+
 use crate::failure::{Failure, Outcome};
 use crate::target::board::Board;
 use crate::target::image::{DEFAULT_TICK_RATE, build_measuring};
@@ -14,7 +16,7 @@ use crate::target::{Say, measuring};
 /// on the average. The rest is for whatever else the board does.
 const WORST_SHARE: f64 = 0.75;
 /// Cycles an instruction of a Cortex-M4F in this code, from the timing tables of its manual weighted by a trace.
-const CYCLES_AN_INSTRUCTION: f64 = 1.4;
+pub const CYCLES_AN_INSTRUCTION: f64 = 1.4;
 
 /// Instructions of one sort of trials.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,8 +40,8 @@ pub struct Search {
     pub name: String,
     /// Its planets.
     pub planets: u32,
-    /// Sub-steps of its tick.
-    pub substeps: u32,
+    /// How its tick goes through contacts that change.
+    pub parts: Parts,
     /// Seed of the trials.
     pub seed: u64,
     /// By what the contact set did.
@@ -90,9 +92,10 @@ fn parse(line: &str, found: &mut Vec<Search>) -> Option<()> {
     if sort == "joint" {
         let (classes, kinds, state) = (Vec::new(), Vec::new(), String::new());
         let name = fields.next()?.to_owned();
-        let (planets, substeps) = (fields.next()?.parse().ok()?, fields.next()?.parse().ok()?);
+        let planets = fields.next()?.parse().ok()?;
+        let parts = super::parts(&mut fields)?;
         let seed = fields.next()?.parse().ok()?;
-        found.push(Search { name, planets, substeps, seed, classes, kinds, state });
+        found.push(Search { name, planets, parts, seed, classes, kinds, state });
         return Some(());
     }
     let search = found.last_mut()?;
@@ -150,10 +153,10 @@ fn excess(search: &Search, budget: u32) -> String {
 
 impl fmt::Display for Search {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { name, planets, substeps, seed, .. } = self;
-        writeln!(f, "{name}: {planets} planets, {substeps} sub-steps a tick, {} states, seed {seed}", self.trials())?;
-        writeln!(f, "  instructions            states    a tick: mean    most   a sub-step: mean    most   trial")?;
-        let parts = f64::from((*substeps).max(1));
+        let Self { name, planets, parts, seed, .. } = self;
+        writeln!(f, "{name}: {planets} planets, {parts} a tick, {} states, seed {seed}", self.trials())?;
+        writeln!(f, "  instructions            states    a tick: mean    most    of a part: mean    most   trial")?;
+        let parts = f64::from(parts.count().max(1));
         for (index, Count { name, trials, mean, most, trial }) in self.classes.iter().chain(&self.kinds).enumerate() {
             if index == self.classes.len() {
                 writeln!(f, "  by origin")?;
@@ -174,7 +177,8 @@ mod tests {
 
     fn found() -> Vec<Search> {
         let mut found = Vec::new();
-        for line in ["joint;Q1;3;2;1", "class;apart;10;1000;4600;7", "kind;grazing;10;1000;4600;7", "state;X { y: 1 }"]
+        for line in
+            ["joint;Q1;3;2;0;1", "class;apart;10;1000;4600;7", "kind;grazing;10;1000;4600;7", "state;X { y: 1 }"]
         {
             parse(line, &mut found).unwrap();
         }

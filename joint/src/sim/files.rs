@@ -12,8 +12,7 @@ use super::csv::CsvFile;
 use super::log_file::LogFile;
 use super::moment::Moment;
 use crate::failure::{Failure, Outcome};
-use crate::record::write_text;
-use crate::target::toolchain::workspace;
+use crate::folder;
 
 /// Where a run's files go.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -24,16 +23,7 @@ pub struct Folder {
 impl Folder {
     /// Makes the folder and tries to write to it; `kind` names the part of `target` that is the default.
     pub fn prepare(wanted: Option<&Path>, kind: &str, joint: &str) -> Outcome<Self> {
-        let path = wanted.map_or_else(|| workspace().join("target").join(kind).join(plain(joint)), Path::to_owned);
-        fs::create_dir_all(&path).map_err(|error| {
-            Failure::new(format!("cannot make the folder {}: {error}", path.display()))
-                .with_help("name a folder that can be written by --out DIR")
-        })?;
-        let probe = path.join(".can-be-written");
-        write_text(&probe, "")?;
-        // It was ours, and it was empty: nothing is lost if it stays.
-        let _ = fs::remove_file(&probe);
-        Ok(Self { path })
+        Ok(Self { path: folder::prepare(wanted, kind, joint)? })
     }
 
     /// A file in it.
@@ -45,11 +35,6 @@ impl Folder {
     pub fn path(&self) -> &Path {
         &self.path
     }
-}
-
-/// A joint's name as the name of a folder.
-fn plain(joint: &str) -> String {
-    joint.chars().map(|letter| if letter.is_ascii_alphanumeric() { letter.to_ascii_lowercase() } else { '-' }).collect()
 }
 
 /// CSV and log of one run, growing.

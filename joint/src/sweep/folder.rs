@@ -8,6 +8,7 @@ use super::grid::Grid;
 use super::journal::{self, Points};
 use super::manifest::Manifest;
 use crate::failure::{Failure, Outcome};
+use crate::folder;
 use crate::record::write_text;
 
 /// What says which sweep it is.
@@ -26,10 +27,7 @@ pub struct Folder {
 impl Folder {
     /// Makes the folder of a sweep, or finds that it is there; refuses any other sweep's and any other folder.
     pub fn prepare(path: &Path, manifest: &Manifest) -> Outcome<Self> {
-        fs::create_dir_all(path).map_err(|error| {
-            Failure::new(format!("cannot make the folder {}: {error}", path.display()))
-                .with_help("name a folder that can be written by --out DIR")
-        })?;
+        folder::make(path)?;
         let foreign = foreign(path)?;
         // Asked after the listing: whoever makes a journal has made this file before.
         let there = path.join(MANIFEST).exists();

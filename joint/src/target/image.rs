@@ -54,16 +54,71 @@ pub fn build_image(
     let joint_file = joint_file.canonicalize().map_err(|error| {
         Failure::new(format!("joint file {}: {error}", joint_file.display())).with_help("name a file that can be read")
     })?;
-    if tick_rate == 0 || !board.core_rate().is_multiple_of(tick_rate) {
-        let (rate, name) = (board.core_rate(), board.name());
-        return Err(Failure::new(format!("a tick rate of {tick_rate} Hz cannot be made of {name}'s {rate} Hz"))
-            .with_help(format!("take one that divides it, such as {DEFAULT_TICK_RATE}")));
+    check_rate(board, tick_rate)?;
+    let place = file_name(&joint_file, board, role, tick_rate);
+    finish(toolchain, [&joint_file; 2], board, role, &Control::usual(tick_rate), &place, say)
+}
+
+/// What the image of a role that controls is made for, besides its joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Control {
+    /// Control periods, and ticks, a second [Hz].
+    pub rate: u32,
+    /// Bandwidth of the loop [rad/s].
+    pub bandwidth: f64,
+    /// Whether the observer is shown the output encoder.
+    pub output_encoder: bool,
+}
+
+impl Control {
+    /// At a rate, as the firmware's build takes it if nothing else is said.
+    pub fn usual(rate: u32) -> Self {
+        Self { rate, bandwidth: 60.0, output_encoder: true }
     }
-    let rate = tick_rate.to_string();
-    let environment = [("JOINT_FILE", joint_file.as_os_str()), ("JOINT_TICK_RATE", rate.as_ref())];
+}
+
+/// Builds the image of a role that controls, from the texts of two joint files: the true joint, and the joint as its
+/// controller is told it. Each pair has files of its own beside the images.
+pub fn build_control_image(
+    toolchain: &Toolchain,
+    [truth, told]: [&str; 2],
+    board: Board,
+    role: Role,
+    control: &Control,
+    say: Say<'_>,
+) -> Outcome<Image> {
+    check_rate(board, control.rate)?;
+    let digest = Sha256::digest(format!("{truth}{told}{control:?}"));
+    let name: String = digest.iter().take(6).map(|byte| format!("{byte:02x}")).collect();
+    let folder = toolchain.target_directory().join("images/control");
+    let [truth_file, told_file] = ["truth", "told"].map(|which| folder.join(format!("{name}-{which}.toml")));
+    store(&folder, &truth_file, truth.as_bytes())?;
+    store(&folder, &told_file, told.as_bytes())?;
+    let place = format!("control-{name}-{}-{}.elf", board.name(), word(role));
+    finish(toolchain, [&truth_file, &told_file], board, role, control, &place, say)
+}
+
+fn finish(
+    toolchain: &Toolchain,
+    [truth, told]: [&Path; 2],
+    board: Board,
+    role: Role,
+    control: &Control,
+    name: &str,
+    say: Say<'_>,
+) -> Outcome<Image> {
+    let (rate, bandwidth) = (control.rate.to_string(), control.bandwidth.to_string());
+    let motor_only = if control.output_encoder { "0" } else { "1" };
+    let environment: [(&str, &OsStr); 5] = [
+        ("JOINT_FILE", truth.as_os_str()),
+        ("JOINT_TOLD", told.as_os_str()),
+        ("JOINT_TICK_RATE", rate.as_ref()),
+        ("JOINT_BANDWIDTH", bandwidth.as_ref()),
+        ("JOINT_MOTOR_ONLY", motor_only.as_ref()),
+    ];
     let elf = compile(toolchain, binary(role), board.name(), &environment, say)?;
     let images = toolchain.target_directory().join("images");
-    let place = images.join(file_name(&joint_file, board, role, tick_rate));
+    let place = images.join(name);
     store(&images, &place, &elf)?;
     let (flash_bytes, ram_bytes) =
         sizes(&elf).map_err(|error| Failure::new(format!("{}: {error}", place.display())))?;
@@ -75,6 +130,15 @@ pub fn build_image(
         compiler: toolchain.compiler().to_owned(),
         flags: format!("profile {PROFILE} (opt-level 3, fat LTO), {}, board {}", toolchain.flags(), board.name()),
     })
+}
+
+fn check_rate(board: Board, tick_rate: u32) -> Outcome<()> {
+    if tick_rate == 0 || !board.core_rate().is_multiple_of(tick_rate) {
+        let (rate, name) = (board.core_rate(), board.name());
+        return Err(Failure::new(format!("a tick rate of {tick_rate} Hz cannot be made of {name}'s {rate} Hz"))
+            .with_help(format!("take one that divides it, such as {DEFAULT_TICK_RATE}")));
+    }
+    Ok(())
 }
 
 /// Builds a binary that measures in the emulator, with the tables of these joints; returns the ELF file.
@@ -136,10 +200,20 @@ pub fn preset_file(name: &str) -> PathBuf {
     workspace().join("joints").join(format!("{name}.toml"))
 }
 
-/// The firmware's binary for a role.
-fn binary(role: Role) -> &'static str {
+/// The word for a role.
+pub fn word(role: Role) -> &'static str {
     match role {
         Role::Plant => "plant",
+        Role::Observer => "observer",
+        Role::Loop => "loop",
+    }
+}
+
+/// The firmware's binary for a role: `loop` could not be a crate.
+fn binary(role: Role) -> &'static str {
+    match role {
+        Role::Loop => "whole_loop",
+        other => word(other),
     }
 }
 
@@ -158,7 +232,7 @@ fn file_name(joint_file: &Path, board: Board, role: Role, tick_rate: u32) -> Str
         }
     };
     let rate = if tick_rate == DEFAULT_TICK_RATE { String::new() } else { format!("-{tick_rate}hz") };
-    format!("{joint}{origin}-{}-{}{rate}.elf", board.name(), binary(role))
+    format!("{joint}{origin}-{}-{}{rate}.elf", board.name(), word(role))
 }
 
 fn lock(folder: &Path) -> Outcome<File> {

@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
+use super::board::Boards;
 use super::controller::ControllerName;
 use super::execution::{Order, RunError, execute};
 use super::log_file;
@@ -27,6 +28,8 @@ pub struct Conduct<'c> {
     pub seed: Option<u64>,
     /// The full lists of seeds.
     pub full: bool,
+    /// The boards that the tested controller runs on, if it does not run here.
+    pub boards: Option<&'c Boards<'c>>,
     /// Where logs go.
     pub logs: &'c Path,
     /// Told after every run how many are done.
@@ -126,14 +129,22 @@ pub fn run(test: &Test, conduct: &Conduct<'_>, before: &AtomicU32) -> Outcome<Te
         assertions,
         runs,
         shown_seed,
-        replay: format!("cargo joint hil {} --host --plant {} --seed {shown_seed}", test.name, conduct.plant.word()),
+        replay: format!(
+            "cargo joint hil {} {} --plant {} --seed {shown_seed}",
+            test.name,
+            conduct.boards.map_or("--host".to_owned(), Boards::arguments),
+            conduct.plant.word()
+        ),
         seconds: start.elapsed().as_secs_f64(),
     };
     Ok(Tested { record, shown })
 }
 
 fn one(test: &Test, conduct: &Conduct<'_>, job: &Job, deadline: Instant) -> Outcome<Done> {
-    let case = test.case(job.seed)?;
+    let mut case = test.case(job.seed)?;
+    if let Some(boards) = conduct.boards {
+        boards.tell(&mut case)?;
+    }
     let order = Order { controller: job.controller, plant: conduct.plant, without_gap: false };
     let mut run = TestRun {
         seed: job.seed,
@@ -142,8 +153,16 @@ fn one(test: &Test, conduct: &Conduct<'_>, job: &Job, deadline: Instant) -> Outc
         log: None,
         broken: None,
         figures: BTreeMap::new(),
+        board: None,
     };
-    let both = execute(&test.file, &case, job.seed, order, deadline).and_then(|ran| {
+    let ran = match conduct.boards.filter(|_| job.controller == test.file.controller) {
+        None => execute(&test.file, &case, job.seed, order, deadline),
+        Some(boards) => boards.run(test, &case, job.seed, order).map(|(ran, board)| {
+            run.board = Some(board);
+            ran
+        }),
+    };
+    let both = ran.and_then(|ran| {
         let wanted = test.file.gains.is_some() && job.controller.wants_gains();
         let other = Order { controller: job.controller.without_gap(), without_gap: true, ..order };
         let without_gap = wanted.then(|| execute(&test.file, &case, job.seed, other, deadline)).transpose()?;

@@ -37,6 +37,8 @@ pub struct Case {
     pub motion: Arc<dyn Reference + Send + Sync>,
     /// What pushes it.
     pub disturbances: Vec<Disturbance>,
+    /// Texts of the joint files: as controllers know the joint but for its backlash, and the truth.
+    texts: [String; 2],
 }
 
 /// What observer and compensation are designed to for a case.
@@ -56,7 +58,7 @@ impl Case {
     /// The case of a seed. `text` is the joint file's.
     pub fn new(file: &TestFile, text: &str, seed: u64, motion: Option<&Recorded>) -> Outcome<Self> {
         let mut pick = |name: &str, quantity: Quantity| quantity.draw(&mut Stream::new(seed, name));
-        let [known, truth] = texts(file, text, &mut pick).map_err(|problem| Failure::new(problem.to_string()))?;
+        let texts = texts(file, text, &mut pick).map_err(|problem| Failure::new(problem.to_string()))?;
         let read = |text: &str| {
             joints::read(text).map_err(|problems| {
                 let message = problems.first().map_or_else(String::new, ToString::to_string);
@@ -64,7 +66,8 @@ impl Case {
                     .with_help("narrow the ranges in [known] and [plant]")
             })
         };
-        let (known, truth) = (read(&known)?, read(&truth)?);
+        let [known, truth] = &texts;
+        let (known, truth) = (read(known)?, read(truth)?);
         let mut true_train = train(&truth);
         turn_encoders(&mut true_train, seed);
         // What nobody has measured is wrong by half, one way or the other.
@@ -84,7 +87,27 @@ impl Case {
             width_guess,
             motion: course(file, motion, seed),
             disturbances: disturbances(file, motion, rated),
+            texts,
         })
+    }
+
+    /// The joint file of the truth.
+    pub fn truth_text(&self) -> &str {
+        &self.texts[1]
+    }
+
+    /// The joint file that a controller is told.
+    pub fn told_text(&self) -> Outcome<String> {
+        let half_backlash = self.told.sun_planet.half_backlash.first().copied().unwrap_or_default();
+        joints::change(&self.texts[0], "mesh.half_backlash_um", &format!("{:?}", 1e6 * half_backlash))
+            .map_err(|refused| Failure::new(refused.message).with_help(refused.help))
+    }
+
+    /// Puts what a joint file says in the place of what controllers are told, so that a board that is built from the file
+    /// is told the same to the last bit.
+    pub fn tell(&mut self, told: &JointFile) {
+        self.told = told.parameters.clone();
+        self.told_train = train(told);
     }
 
     /// True half-backlash, mean over the planets [m].

@@ -16,9 +16,9 @@ use super::controller::{ControllerName, Driver};
 use super::file::TestFile;
 use super::injection::Injection;
 use super::plant::{Plant, PlantName, plant};
-use super::port::{Answer, HostPort, Translator};
+use super::port::{Answer, ControllerPort, HostPort, Translator};
 use super::sender::Sender;
-use crate::failure::Failure;
+use crate::failure::{Failure, Outcome};
 use crate::interruption;
 
 /// What happened.
@@ -118,23 +118,35 @@ pub struct Order {
 /// Periods between looks at the clock.
 const LOOK: u64 = 500;
 
-/// Runs one controller in one case.
+/// Makes the port to observer and compensation of a run.
+pub type MakePort<'p> = &'p dyn for<'d> Fn(&'d Designed) -> Outcome<Box<dyn ControllerPort + 'd>>;
+
+/// Runs one controller in one case, all of it on the host.
 pub fn execute(file: &TestFile, case: &Case, seed: u64, order: Order, deadline: Instant) -> Result<Ran, RunError> {
+    execute_with(file, case, seed, order, deadline, &|designed| {
+        Ok(Box::new(HostPort::new(&designed.observer, &designed.compensation)))
+    })
+}
+
+/// Runs one controller in one case; observer and compensation are where their port leads.
+pub fn execute_with(
+    file: &TestFile,
+    case: &Case,
+    seed: u64,
+    order: Order,
+    deadline: Instant,
+    port: MakePort<'_>,
+) -> Result<Ran, RunError> {
     let joint = if order.without_gap { case.joint_without_gap() } else { case.truth.parameters.clone() };
     let mut plant = plant(order.plant, &joint, &case.train, case.disturbances.clone(), seed)?;
     let designed = if order.controller.is_ours() { Some(case.design(file)?) } else { None };
-    let mut driver = driver(order.controller, case, designed.as_ref(), file.bandwidth);
+    let mut driver = driver(order.controller, case, designed.as_ref(), file.bandwidth, port)?;
     let faults = if order.without_gap { &[] } else { file.faults.as_slice() };
     let mut injection = Injection::new(faults, seed, case);
     let mut sender = Sender::new(file, case, order.controller, designed.as_ref());
     let period = 1.0 / case.train.control_rate;
     let periods = (file.duration * case.train.control_rate).round() as u64;
-    let mut ran = Ran {
-        run: Run { samples: Vec::with_capacity(periods as usize), period },
-        sights: Vec::new(),
-        truths: Vec::with_capacity(periods as usize),
-        digest: digest::START,
-    };
+    let mut ran = Ran::begin(period, periods);
     for index in 0..periods {
         if index % LOOK == 0 {
             if Instant::now() > deadline {
@@ -165,20 +177,35 @@ pub fn execute(file: &TestFile, case: &Case, seed: u64, order: Order, deadline: 
     Ok(ran)
 }
 
-fn driver<'d>(name: ControllerName, case: &Case, designed: Option<&'d Designed>, bandwidth: f64) -> Driver<'d> {
+fn driver<'d>(
+    name: ControllerName,
+    case: &Case,
+    designed: Option<&'d Designed>,
+    bandwidth: f64,
+    port: MakePort<'_>,
+) -> Outcome<Driver<'d>> {
     let knowledge: Knowledge = case.knowledge();
-    match designed {
+    Ok(match designed {
         Some(designed) => {
             let train: &DriveTrainParameters = &case.told_train;
             let bits = [train.motor_encoder.bits, train.output_encoder.bits];
-            let port = HostPort::new(&designed.observer, &designed.compensation);
-            Driver::Ours(Box::new(port), Translator::new(designed.ticks, bits))
+            Driver::Ours(port(designed)?, Translator::new(designed.ticks, bits))
         }
         None => Driver::rival(name, knowledge, bandwidth),
-    }
+    })
 }
 
 impl Ran {
+    /// Nothing has happened yet.
+    pub fn begin(period: f64, periods: u64) -> Self {
+        Self {
+            run: Run { samples: Vec::with_capacity(periods as usize), period },
+            sights: Vec::new(),
+            truths: Vec::with_capacity(periods as usize),
+            digest: digest::START,
+        }
+    }
+
     fn note(&mut self, plant: &Plant, case: &Case, injection: &Injection, command: f64, answer: Option<&Answer>) {
         let joint = plant.joint();
         let torques = plant.torques();
@@ -199,6 +226,11 @@ impl Ran {
             load_torque: torques.load_friction + torques.gravity + torques.disturbance,
             motor: joint.motor_angle,
         };
+        self.add(sample, truth, answer);
+    }
+
+    /// Adds a period.
+    pub fn add(&mut self, sample: Sample, truth: Truth, answer: Option<&Answer>) {
         for value in [sample.link, sample.mesh_force, sample.command, truth.gap, truth.motor] {
             self.digest = digest::chain(self.digest, value.to_bits());
         }

@@ -1,11 +1,12 @@
-//! `joint hil FILE.toml`: tests of observer and compensation that users write as files, run on the host against the f64
-//! reference or the core's own plant, and reported. Runs on a board are left to the role that a board will have.
+//! `joint hil FILE.toml`: tests of observer and compensation that users write as files, run against the f64 reference or
+//! the core's own plant, and reported. Observer and compensation run on the host or, by `board`, on a board.
 //!
 //! The order of a test: `file` reads what it says, `suite` finds it and its joint, `case` makes it concrete for a seed;
 //! `execution` closes the loop between `plant` and `controller` through the faults of `injection`, with observer and
 //! compensation behind `port`; `figures`, `values` and `sight` say what that was worth, `verdict` judges, `campaign` puts all seeds
 //! together; `page`, `junit`, `log_file` and `record` are what stays.
 
+pub mod board;
 mod campaign;
 pub mod case;
 pub mod controller;
@@ -39,6 +40,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicU32;
 use std::time::Instant;
 
+use board::{BoardWish, Boards};
 use campaign::{Conduct, Tested};
 use plant::PlantName;
 use record::{SCHEMA, TestsRecord};
@@ -58,6 +60,8 @@ pub struct Wanted<'w> {
     pub seed: Option<u64>,
     /// What is controlled.
     pub plant: PlantName,
+    /// The boards to run on; without them the host.
+    pub boards: Option<BoardWish<'w>>,
     /// The full lists of seeds, and files that are only for those.
     pub full: bool,
     /// Folder for everything that stays.
@@ -72,6 +76,7 @@ pub struct Wanted<'w> {
 pub fn run(wanted: &Wanted<'_>, progress: &Progress) -> Outcome<()> {
     let start = Instant::now();
     let tests = suite::load(wanted.path, wanted.full, wanted.plant)?;
+    let boards = wanted.boards.map(|wish| Boards::prepare(wish, &tests, wanted.plant, progress)).transpose()?;
     let name = wanted.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let folder = Folder::prepare(wanted.out, "hil/tests", &name)?;
     for path in [wanted.json, wanted.junit].into_iter().flatten() {
@@ -84,8 +89,14 @@ pub fn run(wanted: &Wanted<'_>, progress: &Progress) -> Outcome<()> {
         tests.iter().map(|test| test.seeds(wanted.seed, wanted.full).len() * test.controllers().len()).sum();
     progress.run("testing", runs as u32);
     let line = progress.handle();
-    let conduct =
-        Conduct { plant: wanted.plant, seed: wanted.seed, full: wanted.full, logs: &logs, done: &|runs| line.at(runs) };
+    let conduct = Conduct {
+        plant: wanted.plant,
+        seed: wanted.seed,
+        full: wanted.full,
+        boards: boards.as_ref(),
+        logs: &logs,
+        done: &|runs| line.at(runs),
+    };
     let before = AtomicU32::new(0);
     let mut tested: Vec<Tested> = Vec::new();
     for test in &tests {
@@ -97,7 +108,7 @@ pub fn run(wanted: &Wanted<'_>, progress: &Progress) -> Outcome<()> {
     let record = TestsRecord {
         schema: SCHEMA.to_owned(),
         passed: tested.iter().all(|test| test.record.passed),
-        on: "host".to_owned(),
+        on: boards.as_ref().map_or("host".to_owned(), Boards::label),
         plant: wanted.plant.word().to_owned(),
         full: wanted.full,
         host_version: env!("CARGO_PKG_VERSION").to_owned(),

@@ -4,8 +4,9 @@
 use std::f64::consts::TAU;
 
 use host_tests::closed_loop::{Motion, SetPoint};
-use model_core::realtime::compensation::{self, Command, Compensation, ImpedancePoint, Position, Shaped};
-use model_core::realtime::observer::{Estimates, MAPPED, Observer, Reading, Samples};
+use model_core::realtime::compensation::{self, Command, ImpedancePoint, Position};
+use model_core::realtime::controller::{self, Controller};
+use model_core::realtime::observer::{Reading, Samples};
 use model_core::tables::compensation::CompensationTables;
 use model_core::tables::observer::ObserverTables;
 
@@ -13,13 +14,7 @@ use super::injection::{Frame, Seen};
 use crate::failure::Outcome;
 
 /// What one control period came to.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Answer {
-    /// What the observer makes of the samples.
-    pub estimates: Estimates<f32>,
-    /// What the compensation makes of estimates and set-point.
-    pub shaped: Shaped<f32>,
-}
+pub type Answer = controller::Answer<f32>;
 
 /// Observer and compensation, wherever they run.
 pub trait ControllerPort {
@@ -29,23 +24,18 @@ pub trait ControllerPort {
 
 /// Observer and compensation in this process: the very code that a board runs.
 #[derive(Debug)]
-pub struct HostPort<'t> {
-    observer: Observer<'t, f32, MAPPED>,
-    compensation: Compensation<'t, f32>,
-}
+pub struct HostPort<'t>(Controller<'t, f32>);
 
 impl<'t> HostPort<'t> {
     /// Both as they are after a reset.
     pub fn new(observer: &'t ObserverTables<f32>, compensation: &'t CompensationTables<f32>) -> Self {
-        Self { observer: Observer::new(observer), compensation: Compensation::new(compensation) }
+        Self(Controller::new(observer, compensation))
     }
 }
 
 impl ControllerPort for HostPort<'_> {
     fn exchange(&mut self, samples: &Samples<f32>, command: &Command<f32>) -> Outcome<Answer> {
-        let estimates = *self.observer.step(samples);
-        let shaped = self.compensation.step(&estimates, command);
-        Ok(Answer { estimates, shaped })
+        Ok(self.0.step(samples, command))
     }
 }
 
@@ -65,6 +55,11 @@ impl Translator {
     /// For encoders of so many bits.
     pub fn new(ticks: u32, bits: [u32; 2]) -> Self {
         Self { ticks, ranges: bits.map(|bits| 1 << bits), first_turn: None, torque: 0.0 }
+    }
+
+    /// For set-points alone, whose observer counts the link's turns from this one.
+    pub fn from_turn(ticks: u32, first_turn: i32) -> Self {
+        Self { first_turn: Some(first_turn), ..Self::new(ticks, [0, 0]) }
     }
 
     /// Readings with their own times; the torque is that of the period before.

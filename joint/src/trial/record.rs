@@ -18,7 +18,7 @@ pub struct TestsRecord {
     pub schema: String,
     /// Every test passed.
     pub passed: bool,
-    /// Where controllers ran: `host`.
+    /// Where controllers ran: `host`, or role and board; rivals always on the host.
     pub on: String,
     /// What they controlled: `reference` or `core`.
     pub plant: String,
@@ -118,6 +118,30 @@ pub struct TestRun {
     pub broken: Option<String>,
     /// Its figures by their names.
     pub figures: BTreeMap<String, f64>,
+    /// The board that it ran on, if it did.
+    pub board: Option<BoardRun>,
+}
+
+/// A run on a board.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct BoardRun {
+    /// `observer` or `loop`.
+    pub role: String,
+    /// SHA-256 of its image.
+    pub elf_sha256: String,
+    /// Control periods that were the same in every bit on the board and on the host.
+    pub same_periods: u32,
+    /// Timer counts of the tick's work, mean.
+    pub computation_mean: u32,
+    /// The same, most.
+    pub computation_most: u32,
+    /// Timer counts in a control period.
+    pub period_counts: u32,
+    /// Ticks that took longer than their period.
+    pub overruns: u32,
+    /// Deepest stack [byte].
+    pub stack_bytes: u32,
 }
 
 impl AssertionRecord {

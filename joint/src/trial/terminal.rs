@@ -43,6 +43,20 @@ pub fn table(record: &TestsRecord) -> String {
                 rms.map_or("-".to_owned(), |rms| format!("{rms:.3}"))
             );
         }
+        for run in &test.runs {
+            let Some(board) = &run.board else { continue };
+            text += &format!(
+                "board:   {} periods the same in every bit; {} of {} timer counts a period, at most {}; {} overruns; \
+                 {} B of stack; image {}\n",
+                board.same_periods,
+                board.computation_mean,
+                board.period_counts,
+                board.computation_most,
+                board.overruns,
+                board.stack_bytes,
+                board.elf_sha256.get(..12).unwrap_or("not built here"),
+            );
+        }
         if !test.passed {
             text += &format!("again:   {}\n", test.replay);
         }

@@ -146,6 +146,7 @@ impl<'t, S: Read + Write> Board<'t, S> {
                 self.say_hello()
             }
             ToBoard::Schedule(schedule) => self.take(schedule),
+            ToBoard::Exchanges(_) | ToBoard::Course(_) => self.say(&FromBoard::Fault(Fault::WrongRole)),
             ToBoard::Statistics { .. } => {
                 let statistics = self.statistics();
                 self.say(&FromBoard::Statistics(statistics))
@@ -238,7 +239,7 @@ impl<'t, S: Read + Write> Board<'t, S> {
 
     fn say_hello(&mut self) -> Result<(), Gone> {
         if self.misbehaviour == Misbehaviour::AnotherRole {
-            return self.say(&(0u32, link::PROTOCOL_VERSION, [0u8, 1, 0], 1u32, "observer", 0u64));
+            return self.say(&(0u32, link::PROTOCOL_VERSION, [0u8, 1, 0], 9u32, "cook", 0u64));
         }
         let digest = self.tables.digest;
         let another = self.misbehaviour == Misbehaviour::AnotherDigest;
@@ -261,6 +262,7 @@ impl<'t, S: Read + Write> Board<'t, S> {
             queue_capacity: QUEUE_CAPACITY as u16,
             last_panic: None,
             watchdog_reset: false,
+            control_digest: None,
         }))
     }
 

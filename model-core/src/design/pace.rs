@@ -24,7 +24,7 @@ const EXCITATION_PHASE: f64 = 0.3;
 /// Beyond this phase of the fastest mode in a sub-step, Runge-Kutta steps damp it away and bounces of light planets with
 /// it; leapfrog sub-steps of at most the second take over [rad].
 const DAMPED_PHASE: f64 = 1.0;
-const LEAP_PHASE: f64 = 1.1;
+const LEAP_PHASE: f64 = 1.0;
 /// Most sub-steps a tick.
 const MOST_SUBSTEPS: usize = 16;
 
@@ -69,6 +69,8 @@ impl Pace {
         let relaxations =
             MESH_KINDS.map(|kind| parameters.damping_coefficient(kind) / parameters.mesh(kind).mean_stiffness);
         let damping_ratio = 0.5 * fastest * relaxations[0].max(relaxations[1]);
+        // Ticks may each begin anew, or go on from one another without end.
+        let without_end = stability::largest_phase(damping_ratio, stability::WITHOUT_END);
         Self {
             fastest,
             mesh_frequency: match parameters.excitation {
@@ -77,7 +79,7 @@ impl Pace {
             },
             cost: Cost::new(parameters),
             sharp: parameters.dead_zone == DeadZone::Sharp,
-            largest_phases: array::from_fn(|i| stability::largest_phase(damping_ratio, i as u32 + 1)),
+            largest_phases: array::from_fn(|i| without_end.min(stability::largest_phase(damping_ratio, i as u32 + 1))),
             largest_leap: stability::largest_leap(damping_ratio),
         }
     }
@@ -110,7 +112,7 @@ impl Pace {
     }
 
     /// Parts of a tick where contacts change. Leaps take over where sub-steps would damp the fastest mode away, if the
-    /// processor has time for them.
+    /// processor has time for them or they are the cheaper of two that it has no time for.
     pub fn parts(&self, tick_rate: u32, effort: Effort) -> Result<Parts, DesignError> {
         let substeps = self.substeps(tick_rate, effort)?;
         let processor = match effort {
@@ -119,10 +121,12 @@ impl Pace {
             Effort::Accurate | Effort::Substeps(_) => return Ok(Parts::Substeps(substeps)),
             Effort::Leaps(leaps) => return Ok(Parts::Leaps(leaps.max(1))),
         };
+        let substeps = Parts::Substeps(substeps);
         let leaps = Parts::Leaps(libm::ceil(self.phase(tick_rate, 1) / LEAP_PHASE) as u32);
-        let resolved = self.phase(tick_rate, substeps) <= DAMPED_PHASE;
-        let affordable = self.cost.all_crossing(leaps) <= processor.affordable(tick_rate);
-        Ok(if self.sharp && !resolved && affordable { leaps } else { Parts::Substeps(substeps) })
+        let resolved = self.phase(tick_rate, substeps.count()) <= DAMPED_PHASE;
+        let budget = processor.affordable(tick_rate).max(self.cost.all_crossing(substeps));
+        let affordable = self.cost.all_crossing(leaps) <= budget;
+        Ok(if self.sharp && !resolved && affordable { leaps } else { substeps })
     }
 
     /// Lowest tick rate that is accepted [Hz].

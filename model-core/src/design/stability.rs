@@ -1,6 +1,6 @@
-//! How long a sub-step or a leap may be: the spectral radius of its method on a damped oscillator, tick by tick, with
-//! the start of every tick as `realtime` makes it. Kinks and ripple are not in it: they bend a stable motion, but do
-//! not make it grow.
+//! How long a sub-step or a leap may be: the spectral radius of its method on a damped oscillator, from a start as
+//! `realtime` makes it over so many sub-steps. Kinks and ripple are not in it: they bend a stable motion, but do not
+//! make it grow.
 
 /// Largest phase that is looked at [rad]; no explicit method of two evaluations comes near it.
 const LARGEST: f64 = 4.0;
@@ -9,6 +9,8 @@ const GRID: f64 = 0.005;
 /// Joints that are damped less are judged as if damped so much [-]: without any damping, the order of the method leaves
 /// a growth that nothing real has.
 const LEAST_DAMPING: f64 = 0.02;
+/// So many sub-steps from one start that how they began no longer matters.
+pub const WITHOUT_END: u32 = 64;
 /// Part of the limit that is used: the damping of modes in contact is an estimate.
 pub const MARGIN: f64 = 0.95;
 
@@ -66,7 +68,7 @@ fn largest(damping_ratio: f64, growth: impl Fn(&Oscillator) -> f64) -> f64 {
     phases.take_while(|phase| growth(&Oscillator { phase: *phase, damping_ratio }) <= 1.0).last().unwrap_or(GRID)
 }
 
-/// Largest phase of a mode in a sub-step up to which no motion grows [rad], for so many sub-steps a tick.
+/// Largest phase of a mode in a sub-step up to which no motion grows [rad], for so many sub-steps from one start.
 pub fn largest_phase(damping_ratio: f64, substeps: u32) -> f64 {
     largest(damping_ratio, |oscillator| spectral_radius(|position, rate| oscillator.tick(position, rate, substeps)))
 }

@@ -12,7 +12,7 @@
 //!
 //! `docs/compensation.md` derives all of it and says where its limits are.
 
-mod arithmetic;
+pub(super) mod arithmetic;
 mod flank;
 mod impedance;
 mod intent;

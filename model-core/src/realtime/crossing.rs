@@ -31,16 +31,25 @@ impl<T: Real, const N: usize, const OVERTONES: usize> End<'_, T, N, OVERTONES> {
     #[inline(never)]
     pub fn correct(&self, laws: &mut Laws<T, N>, course: &mut Course<T, N>) {
         let tables = self.frozen.tables;
-        let mut missed = Sums::NONE;
+        let (mut impulse, mut shift, mut jump, mut past) = (Net::NONE, Net::NONE, Net::NONE, Net::NONE);
+        let mut longest = T::ZERO;
+        let mut add = |mesh: (usize, usize), missed: &Missed<T>| {
+            impulse.add_one(mesh, missed.impulse);
+            shift.add_one(mesh, missed.shift);
+            jump.add_one(mesh, missed.path.value);
+            past.add_one(mesh, missed.path.at(T::HALF));
+            if missed.since > longest {
+                longest = missed.since;
+            }
+        };
         each_planet!(N, i => {
             if self.trespasses[0][i] > T::ZERO {
-                self.cross((0, i), laws, course, &mut missed);
+                add((0, i), &self.cross((0, i), laws, course));
             }
             if self.trespasses[1][i] > T::ZERO {
-                self.cross((1, i), laws, course, &mut missed);
+                add((1, i), &self.cross((1, i), laws, course));
             }
         });
-        let Sums { impulse, shift, mut jump, past, longest } = missed;
         let mobility = &tables.stage.mobility;
         let (rate, position) = (impulse.response(mobility, T::ZERO), shift.response(mobility, T::ZERO));
         // What the corrections bend: it acts from now on, and has acted since the crossing, where damping saw the
@@ -68,9 +77,9 @@ impl<T: Real, const N: usize, const OVERTONES: usize> End<'_, T, N, OVERTONES> {
         course.each(&past.response(mobility, T::ZERO), |coordinate, past| coordinate.before += past);
     }
 
-    /// Puts one mesh under the law that holds, and adds what the law before it missed.
+    /// Puts one mesh under the law that holds; what the law before it missed.
     #[inline(never)]
-    fn cross(&self, (kind, i): (usize, usize), laws: &mut Laws<T, N>, course: &Course<T, N>, sums: &mut Sums<T, N>) {
+    fn cross(&self, (kind, i): (usize, usize), laws: &mut Laws<T, N>, course: &Course<T, N>) -> Missed<T> {
         let tables = self.frozen.tables;
         let planet = course.planets[i];
         let (mut at, mut acceleration) = (planet.point(), planet.now);
@@ -84,7 +93,7 @@ impl<T: Real, const N: usize, const OVERTONES: usize> End<'_, T, N, OVERTONES> {
         laws[kind][i] = is;
         // Without backlash both flanks are one.
         if was.closed == is.closed && was.offset == is.offset {
-            return;
+            return Missed::NOTHING;
         }
         let stiffness_rate = tables.meshes[kind][i].stiffness_rate(self.beat, tables.excitation.harmonics);
         // e'' = -rate^2 e for the sine of eq. 11.
@@ -92,32 +101,8 @@ impl<T: Real, const N: usize, const OVERTONES: usize> End<'_, T, N, OVERTONES> {
         // Damping that acts whatever the contact is not missed.
         let base = self.frozen.adheres * tables.stage.damping[kind];
         let mesh = Crossing { deflection, speed, acceleration, stiffness, stiffness_rate, base };
-        let missed = mesh.missed(&was, &is);
-        sums.impulse.add_one((kind, i), missed.impulse);
-        sums.shift.add_one((kind, i), missed.shift);
-        sums.jump.add_one((kind, i), missed.path.value);
-        sums.past.add_one((kind, i), missed.path.at(T::HALF));
-        if missed.since > sums.longest {
-            sums.longest = missed.since;
-        }
+        mesh.missed(&was, &is)
     }
-}
-
-/// What frozen laws missed, over all meshes.
-struct Sums<T, const N: usize> {
-    impulse: Net<T, N>,
-    shift: Net<T, N>,
-    /// Forces at the end.
-    jump: Net<T, N>,
-    /// The same half a sub-step before, along the path that was taken.
-    past: Net<T, N>,
-    /// How long ago the first crossing was.
-    longest: T,
-}
-
-impl<T: Real, const N: usize> Sums<T, N> {
-    const NONE: Self =
-        Self { impulse: Net::NONE, shift: Net::NONE, jump: Net::NONE, past: Net::NONE, longest: T::ZERO };
 }
 
 /// One mesh at the end of a sub-step, on the path that the frozen laws gave.
@@ -154,12 +139,7 @@ impl<T: Real> Crossing<T> {
     #[inline(always)]
     fn missed(&self, before: &Law<T>, after: &Law<T>) -> Missed<T> {
         let (was_closed, is_closed) = (before.closed > T::ZERO, after.closed > T::ZERO);
-        let mut missed = Missed {
-            impulse: T::ZERO,
-            shift: T::ZERO,
-            path: Path { value: T::ZERO, rate: T::ZERO, acceleration: T::ZERO },
-            since: T::ZERO,
-        };
+        let mut missed = Missed::NOTHING;
         if was_closed {
             let force = self.force(before);
             let gone = Path { value: -force.value, rate: -force.rate, acceleration: -force.acceleration };
@@ -224,6 +204,13 @@ impl<T: Real> Path<T> {
 }
 
 impl<T: Real> Missed<T> {
+    const NOTHING: Self = Self {
+        impulse: T::ZERO,
+        shift: T::ZERO,
+        path: Path { value: T::ZERO, rate: T::ZERO, acceleration: T::ZERO },
+        since: T::ZERO,
+    };
+
     /// Adds a force that has acted for the last `since`.
     fn add(&mut self, path: Path<T>, since: T) {
         let Path { value, rate, acceleration } = path;

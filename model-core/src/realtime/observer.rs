@@ -144,6 +144,30 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         observer
     }
 
+    /// Back to what was designed, part by part: a whole new observer would need as much stack again.
+    pub fn restart(&mut self) {
+        let tables = self.tables;
+        self.counts = Counts::default();
+        if !tables.counts.has_output {
+            self.counts.imply();
+        }
+        self.drive = DriveSide::default();
+        self.load = LoadSide::default();
+        self.bias = Bias::new(&tables.contact);
+        self.by_force = ByForce::default();
+        self.motion = Motion::new();
+        self.learner = Learner::new(&tables.learner);
+        self.knowledge = Knowledge::new(tables, &self.learner);
+        self.interval = Interval::new();
+        self.block = Block::new();
+        self.supervisor = Supervisor::new(tables.counts.has_output);
+        self.blind = Blind::default();
+        self.time = None;
+        self.from_meshes = T::ZERO;
+        self.estimates = Estimates::default();
+        self.say_learnt();
+    }
+
     /// Takes the samples of one control period and says what they mean.
     pub fn step(&mut self, samples: &Samples<T>) -> &Estimates<T> {
         self.follow(samples);

@@ -8,6 +8,7 @@ use link::messages::{Hello, Role};
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 
 use crate::failure::{Failure, Outcome};
+use crate::target::image::word;
 
 /// What the board must be.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,6 +21,10 @@ pub struct Expected {
     pub tick_rate: u32,
     /// Number of planets.
     pub planets: usize,
+    /// What it must do.
+    pub role: Role,
+    /// Digest over its controller's tables, if it has any.
+    pub control_digest: Option<u64>,
     /// Command that puts the right image onto the board.
     pub mend: String,
 }
@@ -29,7 +34,10 @@ impl Expected {
     pub fn verify(&self, hello: &Hello) -> Outcome<()> {
         verify_protocol(hello.protocol, &self.mend)?;
         let refuse = |what: String| Err(Failure::new(what).with_help(format!("flash the right image: {}", self.mend)));
-        let Role::Plant = hello.role;
+        if hello.role != self.role {
+            let (board, host) = (word(hello.role), word(self.role));
+            return refuse(format!("the board's image has the role `{board}`, this run asks for `{host}`"));
+        }
         if !hello.digest_good {
             return refuse(format!("the board's tables of joint `{}` do not match their own digest", hello.joint));
         }
@@ -41,6 +49,12 @@ impl Expected {
             return refuse(format!(
                 "the board's image was built from another joint: it has `{}` ({:016x}), the file gives `{}` ({:016x})",
                 hello.joint, hello.joint_digest, self.joint, self.digest
+            ));
+        }
+        if hello.control_digest != self.control_digest {
+            return refuse(format!(
+                "the board's image was built for another controller of joint `{}`: its tables differ",
+                hello.joint
             ));
         }
         Ok(())
@@ -72,15 +86,15 @@ impl HelloHead {
     /// Why a board with this head cannot be worked with, if its hello as a whole could not be read.
     pub fn refusal(self, mend: &str) -> Failure {
         let Err(failure) = verify_protocol(self.protocol, mend) else {
-            let message = format!("the board's image has another role (number {}), not `plant`", self.role);
-            return Failure::new(message).with_help(format!("flash the plant image: {mend}"));
+            let message = format!("the board's image has a role that this host does not know (number {})", self.role);
+            return Failure::new(message).with_help(format!("flash the right image: {mend}"));
         };
         failure
     }
 
     /// Whether a whole hello would have been read.
     pub fn is_foreign(self) -> bool {
-        self.protocol != PROTOCOL_VERSION || self.role != Role::Plant as u32
+        self.protocol != PROTOCOL_VERSION || self.role > Role::Loop as u32
     }
 }
 
@@ -137,12 +151,21 @@ mod tests {
             queue_capacity: 64,
             last_panic: None,
             watchdog_reset: false,
+            control_digest: None,
         }
     }
 
     fn expected() -> Expected {
         let mend = "cargo joint flash joints/q1.toml".to_owned();
-        Expected { joint: "q1".into(), digest: 0x1234, tick_rate: 20_000, planets: 3, mend }
+        Expected {
+            joint: "q1".into(),
+            digest: 0x1234,
+            tick_rate: 20_000,
+            planets: 3,
+            role: Role::Plant,
+            control_digest: None,
+            mend,
+        }
     }
 
     fn refused(change: impl FnOnce(&mut Hello)) -> Failure {
@@ -166,6 +189,8 @@ mod tests {
         assert!(refused(|hello| hello.protocol = PROTOCOL_VERSION + 1).message().contains("protocol"));
         assert!(refused(|hello| hello.digest_good = false).message().contains("tables"));
         assert!(refused(|hello| hello.planets = 4).message().contains("another joint"));
+        assert!(refused(|hello| hello.role = Role::Loop).message().contains("`loop`"));
+        assert!(refused(|hello| hello.control_digest = Some(1)).message().contains("another controller"));
     }
 
     fn head_of<M: serde::Serialize>(message: &M) -> Option<HelloHead> {
@@ -180,7 +205,7 @@ mod tests {
         assert!(!own.is_foreign());
         let other_role = head_of(&(0u32, PROTOCOL_VERSION, [1u8, 2, 3], 7u32, "with fields", 1.5f64)).expect("a head");
         assert!(other_role.is_foreign());
-        assert!(other_role.refusal("mend").message().contains("another role (number 7)"));
+        assert!(other_role.refusal("mend").message().contains("(number 7)"));
         let other_version = head_of(&(0u32, 9u16, [1u8, 2, 3], 0u32)).expect("a head");
         assert!(other_version.is_foreign());
         assert!(other_version.refusal("mend").message().contains("version 9"));

@@ -1,6 +1,7 @@
 //! The bifurcation diagram with the Lyapunov exponent below it. Points that would fall on one spot are drawn once.
 
-use super::{Picture, file_part, plain};
+use super::{Picture, plain};
+use crate::folder::file_part;
 use crate::paper::record::{ClassRecord, Reading, Sweep, SweepPoint};
 use crate::report::plot::ink::Ink;
 use crate::report::plot::mark::Mark;

@@ -43,8 +43,3 @@ pub fn dead_zone(record: &StudyRecord) -> [Picture; 2] {
         Picture { name: "figure-5-dead-zone-error".into(), figure: dead_zone::errors(&record.dead_zone) },
     ]
 }
-
-/// A joint's name or a number as part of a file name.
-pub fn file_part(text: &str) -> String {
-    text.chars().map(|letter| if letter.is_ascii_alphanumeric() { letter.to_ascii_lowercase() } else { '-' }).collect()
-}

@@ -1,6 +1,7 @@
 //! Figs 5 to 8: time history, phase portrait with Poincare points, and spectrum of X_sp.
 
-use super::{Picture, file_part, plain, points};
+use super::{Picture, plain, points};
+use crate::folder::file_part;
 use crate::paper::record::{AttractorRecord, ClassRecord, Reading};
 use crate::report::plot::ink::Ink;
 use crate::report::plot::mark::Mark;

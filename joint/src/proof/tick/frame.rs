@@ -141,7 +141,7 @@ fn conditional(function: &Function) -> BTreeSet<u32> {
 
 /// Where the table of a `tbb` or `tbh` leads, by distances from the instruction after it. The table follows, or its
 /// address was put into the register somewhere in the function: every such address is taken for one. A table ends
-/// with the last entry that leads to an instruction.
+/// with the last entry that leads to an instruction, or where instructions begin again.
 fn targets(functions: &Functions, function: &Function, next: u32, width: u32, base: u16) -> Vec<u32> {
     let loaded = function.code.values().filter_map(|instruction| instruction.address_of);
     let tables = match base {
@@ -149,7 +149,8 @@ fn targets(functions: &Functions, function: &Function, next: u32, width: u32, ba
         _ => loaded.filter(|(register, _)| *register == base).map(|(_, table)| table).collect(),
     };
     let entries = |table: u32| {
-        (table..function.end).step_by(width as usize).map_while(|entry| {
+        let constants = (table..function.end).step_by(width as usize);
+        constants.take_while(|entry| !function.code.contains_key(entry)).map_while(|entry| {
             let distance = if width == 1 { functions.byte(entry)?.into() } else { functions.half(entry)? };
             let to = next + 2 * u32::from(distance);
             function.code.contains_key(&to).then_some(to)

@@ -1,0 +1,136 @@
+#![cfg_attr(target_os = "none", no_std, no_main)]
+//! Counts the instructions of the roles that control, tick by tick, in a motion with reversals, pushes and an output
+//! encoder that falls silent: each role's own work, as its tick does it. How many are too many is the host's business.
+
+#[cfg(target_os = "none")]
+mod measurement {
+    use core::hint::black_box;
+
+    use cortex_m_rt::entry;
+    use firmware::control::Work;
+    use firmware::measuring::{self, InstructionCounter};
+    use firmware::observer::Observing;
+    use firmware::plant::Plant;
+    use firmware::port::Direct;
+    use firmware::tables::{JOINT_NAME, TABLES};
+    use firmware::whole_loop::WholeLoop;
+    use link::controller::Exchange;
+    use link::messages::Command;
+    use link::virtual_joint::{Knot, WireDemand};
+    use model_core::realtime::controller::Controller;
+    use model_core::realtime::phase::sine_cosine;
+    use model_core::realtime::virtual_joint::VirtualJoint;
+
+    mod control {
+        #![allow(dead_code, clippy::excessive_precision, reason = "generated numbers")]
+        include!(concat!(env!("OUT_DIR"), "/control.rs"));
+    }
+
+    /// Control periods: every parameter is learnt, and every flank met some twenty times.
+    const PERIODS: u32 = 30_000;
+    /// Periods between two knots of the motion.
+    const STRETCH: u32 = 50;
+    /// The output encoder is silent for a tenth of a second in the middle.
+    const SILENT: core::ops::Range<u32> = 15_000..16_000;
+    /// Amplitude [turns] and rate [1/s] of the motion.
+    const MOTION: [f32; 2] = [0.05, 1.0];
+
+    /// Instructions of one role.
+    struct Count {
+        name: &'static str,
+        sum: u64,
+        most: u32,
+        at: u32,
+    }
+
+    impl Count {
+        const fn of(name: &'static str) -> Self {
+            Self { name, sum: 0, most: 0, at: 0 }
+        }
+
+        fn add(&mut self, period: u32, instructions: u32) {
+            self.sum += u64::from(instructions);
+            if instructions > self.most {
+                (self.most, self.at) = (instructions, period);
+            }
+        }
+
+        fn tell(&self) {
+            measuring::say(format_args!(
+                "role;{};{JOINT_NAME};{PERIODS};{};{};{}",
+                self.name, self.sum, self.most, self.at
+            ));
+        }
+    }
+
+    #[inline(never)]
+    fn step(work: &mut impl Work) {
+        work.step();
+    }
+
+    /// What is asked for from a period on: a sine by its first three powers, with a push that changes sides.
+    fn knot(tick: u32) -> Knot {
+        let [amplitude, rate] = MOTION;
+        let turn = control::SURROUNDINGS.turn;
+        let phase = (control::SURROUNDINGS.period * tick as f32 * rate * 4_294_967_296.0) as u64 as u32;
+        let (sine, cosine) = sine_cosine::<f32>(phase);
+        let speed = turn * rate;
+        let powers = [
+            amplitude * sine,
+            amplitude * speed * cosine,
+            -0.5 * amplitude * speed * speed * sine,
+            -amplitude * speed * speed * speed * cosine / 6.0,
+            0.0,
+            0.0,
+        ];
+        let load_torque = if (tick / 1700).is_multiple_of(2) { 1.0 } else { -1.0 };
+        Knot { tick, load_torque, demand: WireDemand::Position((0, powers), Some((0, powers))) }
+    }
+
+    fn controller() -> Direct<'static> {
+        Direct(Controller::new(&control::OBSERVER, &control::COMPENSATION))
+    }
+
+    #[entry]
+    fn main() -> ! {
+        // Alone in this image, and called once.
+        if let Some(core) = cortex_m::Peripherals::take() {
+            measure(&InstructionCounter::start(core.SYST));
+        }
+        measuring::finish()
+    }
+
+    fn measure(counter: &InstructionCounter) {
+        let (mut observer, mut whole, mut plant) = (Count::of("observer"), Count::of("loop"), Count::of("plant"));
+        let mut joint = VirtualJoint::new(&TABLES, &control::SURROUNDINGS);
+        let mut shadow = Plant::new(&TABLES);
+        let mut observing = Observing::new(controller(), true);
+        let mut looping = WholeLoop::new(&TABLES, &control::SURROUNDINGS, controller());
+        let mut now = knot(0);
+        for tick in 0..PERIODS {
+            if tick.is_multiple_of(STRETCH) {
+                now = knot(tick);
+                looping.take(now);
+            }
+            let elapsed = control::SURROUNDINGS.period * (tick - now.tick) as f32;
+            let command =
+                model_core::realtime::course::Demand::from(now.demand).at(elapsed, control::SURROUNDINGS.turn);
+            let mut samples = joint.samples();
+            if SILENT.contains(&tick) {
+                samples.output = None;
+            }
+            observing.take(Exchange::new(tick, &samples, &command));
+            observer.add(tick, counter.count(|| step(black_box(&mut observing))));
+            whole.add(tick, counter.count(|| step(black_box(&mut looping))));
+            joint.advance(observing.sample(tick, 0).shaped.torque, now.load_torque);
+            let acting = joint.acting();
+            shadow.take(Command { tick, drive_torque: acting.drive, load_torque: acting.load });
+            plant.add(tick, counter.count(|| step(black_box(&mut shadow))));
+        }
+        [plant, observer, whole].iter().for_each(Count::tell);
+    }
+}
+
+/// There is nothing to run on a host.
+#[cfg(not(target_os = "none"))]
+fn main() {}

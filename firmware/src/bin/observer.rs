@@ -1,0 +1,32 @@
+#![cfg_attr(target_os = "none", no_std, no_main)]
+//! Role `observer`: observer and compensation beside a motor controller; samples and set-points in, estimates and torques
+//! out. The application is that of every role, the work is in the library.
+
+/// What this image is: `role_app.rs` asks for it.
+#[cfg(target_os = "none")]
+mod role {
+    pub use firmware::observer::ObserverWords as RoleWords;
+    use firmware::observer::Observing;
+    use firmware::port::Direct;
+    use firmware::tables::TABLES;
+    use model_core::realtime::controller::Controller;
+
+    #[allow(dead_code, clippy::excessive_precision, reason = "generated numbers; the surroundings are real here")]
+    mod control {
+        include!(concat!(env!("OUT_DIR"), "/control.rs"));
+    }
+
+    pub const DIGEST: Option<u64> = Some(control::CONTROL_DIGEST);
+    pub type RoleWork = Observing<Direct<'static>>;
+
+    pub fn work() -> RoleWork {
+        Observing::new(Direct(Controller::new(&control::OBSERVER, &control::COMPENSATION)), TABLES.digest_is_good())
+    }
+}
+
+#[cfg(target_os = "none")]
+include!("../role_app.rs");
+
+/// There is nothing to do on a host: this image is for a board.
+#[cfg(not(target_os = "none"))]
+fn main() {}

@@ -1,0 +1,33 @@
+#![cfg_attr(target_os = "none", no_std, no_main)]
+//! Role `loop`: joint, motor, observer and compensation on one chip; a motion in, what became of it out. The application
+//! is that of every role, the work is in the library.
+
+/// What this image is: `role_app.rs` asks for it.
+#[cfg(target_os = "none")]
+mod role {
+    use firmware::port::Direct;
+    use firmware::tables::{PLANETS, TABLES};
+    pub use firmware::whole_loop::LoopWords as RoleWords;
+    use firmware::whole_loop::WholeLoop;
+    use model_core::realtime::controller::Controller;
+
+    #[allow(clippy::excessive_precision, reason = "generated numbers")]
+    mod control {
+        include!(concat!(env!("OUT_DIR"), "/control.rs"));
+    }
+
+    pub const DIGEST: Option<u64> = Some(control::CONTROL_DIGEST);
+    pub type RoleWork = WholeLoop<'static, Direct<'static>, PLANETS>;
+
+    pub fn work() -> RoleWork {
+        let controller = Controller::new(&control::OBSERVER, &control::COMPENSATION);
+        WholeLoop::new(&TABLES, &control::SURROUNDINGS, Direct(controller))
+    }
+}
+
+#[cfg(target_os = "none")]
+include!("../role_app.rs");
+
+/// There is nothing to do on a host: this image is for a board.
+#[cfg(not(target_os = "none"))]
+fn main() {}

@@ -1,0 +1,127 @@
+//! Role `observer`: observer and compensation beside a motor controller; samples and a set-point in, estimates and a
+//! torque out, one exchange a tick at most. It never steps without samples: a controller that stops sending ends the run.
+
+use link::controller::{Answered, EXCHANGES_PER_SCHEDULE, Exchange};
+use link::messages::{FromBoard, Role, Schedule, ToBoard};
+use model_core::digest;
+use model_core::realtime::controller::Answer;
+
+use crate::control::Work;
+use crate::port::ControllerPort;
+use crate::words::{Batch, Timed, Words};
+
+/// What the role says and hears.
+pub struct ObserverWords;
+
+impl Words for ObserverWords {
+    const ROLE: Role = Role::Observer;
+    type Command = Exchange;
+    type Timetable = Schedule<Exchange, EXCHANGES_PER_SCHEDULE>;
+    type Sample = Answered;
+    type Batch = AnswerBatch;
+
+    fn timetable(message: ToBoard) -> Option<Self::Timetable> {
+        if let ToBoard::Exchanges(schedule) = message { Some(schedule) } else { None }
+    }
+}
+
+impl Timed for Exchange {
+    fn tick(&self) -> u32 {
+        self.tick
+    }
+
+    /// Observer and compensation flag numbers that are none themselves, and go on.
+    fn is_sound(&self) -> bool {
+        true
+    }
+}
+
+/// One answer on its way: nobody could wait for a second.
+#[derive(Debug, Default)]
+pub struct AnswerBatch(Option<Answered>);
+
+impl Batch for AnswerBatch {
+    type Sample = Answered;
+
+    fn add(&mut self, answered: &Answered) {
+        self.0 = Some(answered.clone());
+    }
+
+    fn is_full(&self) -> bool {
+        self.0.is_some()
+    }
+
+    fn is_empty(&self) -> bool {
+        self.0.is_none()
+    }
+
+    fn take(&mut self) -> FromBoard {
+        let empty = Answered {
+            tick: 0,
+            digest: 0,
+            shaped: (&Answer::default().shaped).into(),
+            estimates: None,
+            computation: 0,
+        };
+        FromBoard::Answer(self.0.take().unwrap_or(empty))
+    }
+}
+
+/// The controller at work.
+pub struct Observing<P> {
+    port: P,
+    /// Tables and their digest agree.
+    sound: bool,
+    next: Option<Exchange>,
+    answer: Answer<f32>,
+    digest: u64,
+}
+
+impl<P: ControllerPort> Observing<P> {
+    /// In front of a controller; `sound` is whether its tables are what they were made to be.
+    pub fn new(port: P, sound: bool) -> Self {
+        Self { port, sound, next: None, answer: Answer::default(), digest: digest::START }
+    }
+}
+
+impl<P: ControllerPort> Work for Observing<P> {
+    type Words = ObserverWords;
+    const GOES_ON: bool = false;
+
+    fn is_sound(&self) -> bool {
+        self.sound
+    }
+
+    fn reset(&mut self) {
+        self.port.reset();
+        self.next = None;
+        self.answer = Answer::default();
+        self.digest = digest::START;
+    }
+
+    fn take(&mut self, exchange: Exchange) {
+        self.next = Some(exchange);
+    }
+
+    fn step(&mut self) {
+        let Some(exchange) = self.next.take() else { return };
+        if let Ok(answer) = self.port.exchange(&exchange.samples(), &exchange.command()) {
+            self.answer = answer;
+        }
+        self.digest = self.answer.digest(self.digest);
+    }
+
+    fn is_finite(&self) -> bool {
+        self.answer.shaped.torque.is_finite()
+    }
+
+    fn sample(&self, steps: u32, computation: u16) -> Answered {
+        Answered {
+            tick: steps,
+            digest: self.digest,
+            shaped: (&self.answer.shaped).into(),
+            estimates: Some((&self.answer.estimates).into()),
+            computation,
+        }
+    }
+}

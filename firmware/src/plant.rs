@@ -1,0 +1,98 @@
+//! Role `plant`: the joint is simulated; torques in, motion out. When a step is due, and what becomes of its samples, is
+//! left to `control` and `telemetry`.
+
+use link::messages::{Command, Role, Schedule, ToBoard};
+use model_core::digest;
+use model_core::realtime::{Model, Outputs, Torques};
+use model_core::tables::Tables;
+
+use crate::control::Work;
+use crate::telemetry::Batcher;
+use crate::words::{Timed, Words};
+
+/// The motion after a step.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RawSample<const N: usize> {
+    /// Steps done since the reset.
+    pub tick: u32,
+    /// Running digest over every state so far.
+    pub state_digest: u64,
+    /// The motion.
+    pub outputs: Outputs<f32, N>,
+    /// Timer counts that the step took.
+    pub computation: u16,
+}
+
+/// What the plant says and hears.
+pub struct PlantWords<const N: usize>;
+
+impl<const N: usize> Words for PlantWords<N> {
+    const ROLE: Role = Role::Plant;
+    type Command = Command;
+    type Timetable = Schedule;
+    type Sample = RawSample<N>;
+    type Batch = Batcher<N>;
+
+    fn timetable(message: ToBoard) -> Option<Schedule> {
+        if let ToBoard::Schedule(schedule) = message { Some(schedule) } else { None }
+    }
+}
+
+impl Timed for Command {
+    fn tick(&self) -> u32 {
+        self.tick
+    }
+
+    fn is_sound(&self) -> bool {
+        self.drive_torque.is_finite() && self.load_torque.is_finite()
+    }
+}
+
+const NO_TORQUE: Torques<f32> = Torques { drive: 0.0, load: 0.0 };
+
+/// The simulated joint under torques that hold until the next command.
+pub struct Plant<'a, const N: usize> {
+    tables: &'a Tables<f32, N>,
+    model: Model<'a, f32, N>,
+    torques: Torques<f32>,
+    digest: u64,
+}
+
+impl<'a, const N: usize> Plant<'a, N> {
+    /// At rest.
+    pub fn new(tables: &'a Tables<f32, N>) -> Self {
+        Self { tables, model: Model::new(tables), torques: NO_TORQUE, digest: digest::START }
+    }
+}
+
+impl<const N: usize> Work for Plant<'_, N> {
+    type Words = PlantWords<N>;
+    const GOES_ON: bool = true;
+
+    fn is_sound(&self) -> bool {
+        self.tables.digest_is_good()
+    }
+
+    fn reset(&mut self) {
+        self.model.reset();
+        self.torques = NO_TORQUE;
+        self.digest = digest::START;
+    }
+
+    fn take(&mut self, command: Command) {
+        self.torques = Torques { drive: command.drive_torque, load: command.load_torque };
+    }
+
+    fn step(&mut self) {
+        self.model.step(self.torques);
+        self.digest = digest::chain(self.digest, self.model.state_digest());
+    }
+
+    fn is_finite(&self) -> bool {
+        self.model.is_finite()
+    }
+
+    fn sample(&self, steps: u32, computation: u16) -> RawSample<N> {
+        RawSample { tick: steps, state_digest: self.digest, outputs: self.model.outputs(), computation }
+    }
+}

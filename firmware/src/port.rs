@@ -1,0 +1,56 @@
+//! The seam between a motor controller and observer with compensation: samples (raw counts with their moments, motor
+//! torque) and a set-point in, estimates and the shaped set-point out, once a control tick. Behind it may be the
+//! controller itself, a guest in the same chip, or another chip on a line; each has a file of its own.
+//!
+//! | port | answer | time of a tick's work |
+//! |---|---|---|
+//! | [`Direct`] | to these samples | the controller's own |
+//! | [`SharedMemory`](shared_memory) | to the samples before | two moves through a queue |
+//! | [`SpiPort`] | to the samples before | [`spi::FRAME_BYTES`] bytes at the bus's rate: 67 us at 21 MHz |
+//! | [`SerialPort`] | to the last samples that were answered | bytes into and out of queues; [`serial::exchanges_per_second`] |
+//!
+//! A port that answers one tick late adds that tick to the loop's delay: `control_delay_periods` of the joint file.
+
+mod direct;
+pub mod serial;
+pub mod shared_memory;
+pub mod spi;
+
+use core::fmt;
+
+pub use direct::Direct;
+use model_core::realtime::compensation::Command;
+use model_core::realtime::controller::Answer;
+use model_core::realtime::observer::Samples;
+pub use serial::SerialPort;
+pub use spi::{SpiGuest, SpiPort};
+
+/// Observer and compensation, wherever they run.
+pub trait ControllerPort {
+    /// One control tick; bounded, and never waits for the other side.
+    fn exchange(&mut self, samples: &Samples<f32>, command: &Command<f32>) -> Result<Answer<f32>, PortError>;
+
+    /// Back to what was designed, as far as this side can do it.
+    fn reset(&mut self);
+}
+
+/// Why there is no answer in this tick: the motor controller goes on without compensation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PortError {
+    /// The other side has not answered yet.
+    Late,
+    /// The bus could not transfer.
+    Bus,
+    /// What came is no answer: cut off, or changed on the way.
+    Damaged,
+}
+
+impl fmt::Display for PortError {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::Late => "observer and compensation have not answered in time",
+            Self::Bus => "the bus to observer and compensation could not transfer",
+            Self::Damaged => "the answer of observer and compensation was damaged on its way",
+        })
+    }
+}

@@ -1,0 +1,22 @@
+//! Observer and compensation called where they are. Nothing is queued, so the answer is to the samples at hand.
+
+use model_core::realtime::compensation::Command;
+use model_core::realtime::controller::{Answer, Controller};
+use model_core::realtime::observer::Samples;
+
+use super::{ControllerPort, PortError};
+
+/// The controller itself.
+#[derive(Debug)]
+pub struct Direct<'t>(pub Controller<'t, f32>);
+
+impl ControllerPort for Direct<'_> {
+    #[inline]
+    fn exchange(&mut self, samples: &Samples<f32>, command: &Command<f32>) -> Result<Answer<f32>, PortError> {
+        Ok(self.0.step(samples, command))
+    }
+
+    fn reset(&mut self) {
+        self.0.reset();
+    }
+}

@@ -1,0 +1,167 @@
+//! Role `loop`: joint, motor, observer and compensation on one chip in real time; a motion asked for comes in, what became
+//! of it goes out. Observer and compensation are behind their port like those of any motor controller.
+
+use heapless::Vec;
+use link::messages::{FromBoard, Role, Schedule, ToBoard};
+use link::virtual_joint::{KNOTS_PER_SCHEDULE, Knot, LOOP_SAMPLES_PER_BATCH, LoopBatch, LoopSample};
+use model_core::digest;
+use model_core::realtime::controller::Answer;
+use model_core::realtime::course::Demand;
+use model_core::realtime::virtual_joint::VirtualJoint;
+use model_core::tables::Tables;
+use model_core::tables::virtual_joint::SurroundingsTable;
+
+use crate::control::Work;
+use crate::port::ControllerPort;
+use crate::words::{Batch, Timed, Words};
+
+/// Periods after which a demand that nothing follows stands still: three of the host's knots.
+const LONGEST_STRETCH: u16 = 150;
+
+/// What the role says and hears.
+pub struct LoopWords;
+
+impl Words for LoopWords {
+    const ROLE: Role = Role::Loop;
+    type Command = Knot;
+    type Timetable = Schedule<Knot, KNOTS_PER_SCHEDULE>;
+    type Sample = LoopSample;
+    type Batch = LoopBatcher;
+
+    fn timetable(message: ToBoard) -> Option<Self::Timetable> {
+        if let ToBoard::Course(schedule) = message { Some(schedule) } else { None }
+    }
+}
+
+impl Timed for Knot {
+    fn tick(&self) -> u32 {
+        self.tick
+    }
+
+    fn is_sound(&self) -> bool {
+        self.is_finite()
+    }
+}
+
+/// Collects samples into batches.
+#[derive(Debug, Default)]
+pub struct LoopBatcher {
+    sequence: u16,
+    samples: Vec<LoopSample, LOOP_SAMPLES_PER_BATCH>,
+}
+
+impl Batch for LoopBatcher {
+    type Sample = LoopSample;
+
+    fn add(&mut self, sample: &LoopSample) {
+        let _ = self.samples.push(*sample);
+    }
+
+    fn is_full(&self) -> bool {
+        self.samples.is_full()
+    }
+
+    fn is_empty(&self) -> bool {
+        self.samples.is_empty()
+    }
+
+    fn take(&mut self) -> FromBoard {
+        let sequence = self.sequence;
+        self.sequence = sequence.wrapping_add(1);
+        FromBoard::Loop(LoopBatch { sequence, samples: core::mem::take(&mut self.samples) })
+    }
+}
+
+/// The whole loop at work.
+pub struct WholeLoop<'t, P, const N: usize> {
+    tables: &'t Tables<f32, N>,
+    surroundings: &'t SurroundingsTable<f32>,
+    joint: VirtualJoint<'t, f32, N>,
+    port: P,
+    demand: Demand<f32>,
+    load_torque: f32,
+    /// Periods since the demand began.
+    elapsed: u16,
+    answer: Answer<f32>,
+    digest: u64,
+}
+
+impl<'t, P: ControllerPort, const N: usize> WholeLoop<'t, P, N> {
+    /// Everything at rest.
+    pub fn new(tables: &'t Tables<f32, N>, surroundings: &'t SurroundingsTable<f32>, port: P) -> Self {
+        Self {
+            tables,
+            surroundings,
+            joint: VirtualJoint::new(tables, surroundings),
+            port,
+            demand: Demand::HOLD,
+            load_torque: 0.0,
+            elapsed: 0,
+            answer: Answer::default(),
+            digest: digest::START,
+        }
+    }
+}
+
+impl<P: ControllerPort, const N: usize> Work for WholeLoop<'_, P, N> {
+    type Words = LoopWords;
+    const GOES_ON: bool = true;
+
+    fn is_sound(&self) -> bool {
+        self.tables.digest_is_good()
+    }
+
+    fn reset(&mut self) {
+        self.joint.reset();
+        self.port.reset();
+        self.demand = Demand::HOLD;
+        self.load_torque = 0.0;
+        self.elapsed = 0;
+        self.answer = Answer::default();
+        self.digest = digest::START;
+    }
+
+    fn take(&mut self, knot: Knot) {
+        self.demand = knot.demand.into();
+        self.load_torque = knot.load_torque;
+        self.elapsed = 0;
+    }
+
+    fn step(&mut self) {
+        let table = self.surroundings;
+        let command = self.demand.at(table.period * f32::from(self.elapsed), table.turn);
+        // A motion is a polynomial for a stretch only: one that nobody follows up holds at its last moment.
+        self.elapsed = self.elapsed.saturating_add(1).min(LONGEST_STRETCH);
+        let torque = match self.port.exchange(&self.joint.samples(), &command) {
+            Ok(answer) => {
+                self.answer = answer;
+                answer.shaped.torque
+            }
+            Err(_) => 0.0,
+        };
+        self.joint.advance(torque, self.load_torque);
+        self.digest = digest::chain(self.answer.digest(self.digest), self.joint.model().state_digest());
+    }
+
+    fn is_finite(&self) -> bool {
+        self.joint.model().is_finite()
+    }
+
+    fn sample(&self, steps: u32, computation: u16) -> LoopSample {
+        let outputs = self.joint.outputs();
+        let estimates = &self.answer.estimates;
+        LoopSample {
+            tick: steps,
+            digest: self.digest,
+            carrier: (outputs.carrier_turns, outputs.carrier_fraction),
+            link_offset: outputs.link_offset,
+            gaps: (outputs.gap, estimates.gap.value),
+            gap_valid: estimates.gap.valid,
+            half_backlash: estimates.half_backlash.value,
+            torque: self.answer.shaped.torque,
+            loads: (self.joint.acting().load, estimates.load_torque.value),
+            trust: self.answer.shaped.trust,
+            computation,
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! What a role says and hears: the one place where roles differ on the line, so that queues, conversation and tick are
+//! written once. What a role does in its tick is `control::Work`.
+
+use link::messages::{FromBoard, Role, Schedule, ToBoard};
+
+/// The words of a role.
+pub trait Words {
+    /// Which role.
+    const ROLE: Role;
+    /// What waits for its tick.
+    type Command: Timed + Clone;
+    /// Commands as they come over the line.
+    type Timetable: Timetable<Command = Self::Command>;
+    /// What the tick leaves for idle to report.
+    type Sample;
+    /// Samples on their way to the line.
+    type Batch: Batch<Sample = Self::Sample>;
+
+    /// Commands in a message, if it is one for this role.
+    fn timetable(message: ToBoard) -> Option<Self::Timetable>;
+}
+
+/// A command for a tick.
+pub trait Timed {
+    /// First tick that it is for.
+    fn tick(&self) -> u32;
+    /// Whether it may be obeyed: nothing in it is infinite or no number.
+    fn is_sound(&self) -> bool;
+}
+
+/// Commands in rising order, numbered, up to a horizon.
+pub trait Timetable {
+    /// What they are.
+    type Command;
+    /// Rises by one from schedule to schedule.
+    fn sequence(&self) -> u16;
+    /// Everything before this tick is known with it.
+    fn horizon(&self) -> u32;
+    /// The commands.
+    fn commands(&self) -> &[Self::Command];
+}
+
+impl<C, const MOST: usize> Timetable for Schedule<C, MOST> {
+    type Command = C;
+
+    fn sequence(&self) -> u16 {
+        self.sequence
+    }
+
+    fn horizon(&self) -> u32 {
+        self.horizon
+    }
+
+    fn commands(&self) -> &[C] {
+        &self.commands
+    }
+}
+
+/// Collects samples into messages.
+pub trait Batch: Default {
+    /// What it collects.
+    type Sample;
+    /// Takes a sample unless it is full.
+    fn add(&mut self, sample: &Self::Sample);
+    /// Whether it is complete.
+    fn is_full(&self) -> bool;
+    /// Whether there is nothing to send.
+    fn is_empty(&self) -> bool;
+    /// The samples so far as a message; empty afterwards.
+    fn take(&mut self) -> FromBoard;
+}

@@ -1,0 +1,100 @@
+//! The AS5047P driver against a bus that expects every byte: frames, parity, error flag, an encoder that is not there.
+//! Angles and errors are made up; no register is read that the driver does not need.
+
+use embedded_hal_mock::eh1::spi::{Mock, Transaction};
+use firmware::encoder::{As5047p, CountSource, EncoderFault};
+use model_core::realtime::observer::Reading;
+
+/// Read ANGLECOM: address 0x3fff, read bit, even parity.
+const ANGLE: u16 = 0xffff;
+/// Read ERRFL.
+const ERRORS: u16 = 0x4001;
+/// Read DIAAGC.
+const DIAGNOSTICS: u16 = 0xfffc;
+
+/// Even parity over an answer.
+fn answer(content: u16) -> u16 {
+    content | if content.count_ones().is_multiple_of(2) { 0 } else { 0x8000 }
+}
+
+/// An encoder that is sent these commands and answers so.
+fn encoder(frames: &[(u16, u16)]) -> As5047p<Mock<u8>> {
+    let transactions = frames.iter().flat_map(|(command, answer)| {
+        [
+            Transaction::transaction_start(),
+            Transaction::transfer_in_place(command.to_be_bytes().to_vec(), answer.to_be_bytes().to_vec()),
+            Transaction::transaction_end(),
+        ]
+    });
+    As5047p::new(Mock::new(&transactions.collect::<Vec<_>>()))
+}
+
+/// What a read in every tick gives; the clock goes on by ten in a tick.
+fn reads(frames: &[(u16, u16)], ticks: u32) -> Vec<Result<Reading, EncoderFault>> {
+    let mut encoder = encoder(frames);
+    let list = (0..ticks).map(|tick| encoder.read(10 * tick)).collect();
+    encoder.release().done();
+    list
+}
+
+#[test]
+fn an_angle_comes_a_tick_after_it_was_asked_for_with_the_time_of_asking() {
+    let frames = [(ANGLE, 0x1234), (ANGLE, answer(0x2abc)), (ANGLE, answer(0x0001)), (ANGLE, answer(0x3fff))];
+    let expected = [
+        Err(EncoderFault::Pending),
+        Ok(Reading { counts: 0x2abc, time: 0 }),
+        Ok(Reading { counts: 1, time: 10 }),
+        Ok(Reading { counts: 0x3fff, time: 20 }),
+    ];
+    assert_eq!(reads(&frames, 4), expected);
+}
+
+#[test]
+fn every_single_flipped_bit_is_found() {
+    for bit in 0..16 {
+        let frames = [(ANGLE, 0), (ANGLE, answer(0x1a5) ^ 1 << bit)];
+        assert_eq!(reads(&frames, 2)[1], Err(EncoderFault::Parity), "bit {bit}");
+    }
+}
+
+#[test]
+fn the_error_flag_is_cleared_by_reading_its_reason_and_the_next_angle_is_good() {
+    let frames = [
+        (ANGLE, 0),
+        (ANGLE, answer(0x4123)),
+        (ERRORS, answer(0x4123)),
+        (ANGLE, answer(0x0004)),
+        (ANGLE, answer(0x0777)),
+    ];
+    let expected =
+        [Err(EncoderFault::Pending), Err(EncoderFault::Reported(4)), Ok(Reading { counts: 0x777, time: 10 })];
+    assert_eq!(reads(&frames, 3), expected);
+}
+
+#[test]
+fn a_line_that_nobody_drives_is_no_encoder_whichever_way_it_is_pulled() {
+    assert_eq!(reads(&[(ANGLE, 0xffff), (ANGLE, 0xffff)], 2)[1], Err(EncoderFault::Missing));
+    let low = [(ANGLE, 0), (ANGLE, 0), (DIAGNOSTICS, 0), (ANGLE, 0)];
+    assert_eq!(reads(&low, 2)[1], Err(EncoderFault::Missing));
+}
+
+#[test]
+fn angle_zero_is_believed_once_the_diagnostics_answer() {
+    let frames = [(ANGLE, 0), (ANGLE, 0), (DIAGNOSTICS, 0), (ANGLE, answer(0x0180)), (ANGLE, answer(3))];
+    let expected =
+        [Err(EncoderFault::Pending), Ok(Reading { counts: 0, time: 0 }), Ok(Reading { counts: 3, time: 10 })];
+    assert_eq!(reads(&frames, 3), expected);
+}
+
+#[test]
+fn a_bad_reason_is_a_bad_reading_not_a_reason() {
+    let frames = [(ANGLE, 0), (ANGLE, answer(0x4123)), (ERRORS, answer(0x4123)), (ANGLE, 0x0001)];
+    assert_eq!(reads(&frames, 2)[1], Err(EncoderFault::Parity));
+}
+
+#[test]
+fn a_reading_is_given_the_time_of_its_own_asking_after_a_fault_too() {
+    let frames = [(ANGLE, 0), (ANGLE, answer(5) ^ 1), (ANGLE, answer(6))];
+    let expected = [Err(EncoderFault::Pending), Err(EncoderFault::Parity), Ok(Reading { counts: 6, time: 10 })];
+    assert_eq!(reads(&frames, 3), expected);
+}

@@ -1,0 +1,235 @@
+//! The controller's port in its kinds: each gives what the controller itself gives, at most a tick later, and says so when
+//! it cannot. Motions are made up; what an answer is worth is tested elsewhere.
+
+use std::cell::{Cell, RefCell};
+use std::collections::VecDeque;
+use std::convert::Infallible;
+use std::rc::Rc;
+
+use embedded_hal::spi::{ErrorType, Operation, SpiDevice};
+use firmware::port::shared_memory::SharedMemory;
+use firmware::port::{ControllerPort, Direct, PortError, SerialPort, SpiGuest, SpiPort, serial, spi};
+use firmware::serial::{Line, Uart};
+use link::controller::{Answered, Exchange};
+use link::framing::{Receiver, encode, sealed};
+use link::messages::{Accepted, FromBoard, Schedule, ToBoard};
+use model_core::realtime::compensation::{Command, Motion, Position};
+use model_core::realtime::controller::{Answer, Controller};
+use model_core::realtime::observer::{Reading, Samples};
+
+mod control {
+    #![allow(missing_docs, dead_code, clippy::all, clippy::excessive_precision, reason = "generated numbers")]
+    include!(concat!(env!("OUT_DIR"), "/control.rs"));
+}
+
+fn controller() -> Direct<'static> {
+    Direct(Controller::new(&control::OBSERVER, &control::COMPENSATION))
+}
+
+/// One tick of a motion to and fro.
+fn tick(number: u32) -> (Samples<f32>, Command<f32>) {
+    let time = 1000 * number;
+    let turned = (0.02 * number as f32).sin();
+    let reading = |range: f32| Reading { counts: ((turned * range) as i32).rem_euclid(range as i32) as u32, time };
+    let motion = Motion { position: Position { turns: 0, fraction: turned }, speed: 0.1, acceleration: 0.0 };
+    let samples = Samples { time, motor: reading(16384.0), output: Some(reading(131072.0)), torque: 0.1 * turned };
+    (samples, Command::Position { now: motion, ahead: Some(motion) })
+}
+
+/// What the controller itself says.
+fn expected(ticks: u32) -> Vec<Answer<f32>> {
+    let mut controller = controller();
+    (0..ticks).map(tick).map(|(samples, command)| controller.exchange(&samples, &command).unwrap()).collect()
+}
+
+#[test]
+fn a_guest_in_shared_memory_answers_a_tick_later_with_the_same_bits() {
+    let mut memory = SharedMemory::new();
+    let (mut host, mut guest) = memory.split();
+    let mut behind = controller();
+    let mut said = Vec::new();
+    for number in 0..50 {
+        let (samples, command) = tick(number);
+        said.push(host.exchange(&samples, &command));
+        assert!(guest.serve(&mut behind));
+    }
+    assert_eq!(said[0], Err(PortError::Late));
+    let said: Vec<_> = said.into_iter().skip(1).map(Result::unwrap).collect();
+    assert_eq!(said, expected(49));
+}
+
+#[test]
+fn a_guest_that_is_late_costs_ticks_without_an_answer_and_nothing_waits() {
+    let mut memory = SharedMemory::new();
+    let (mut host, mut guest) = memory.split();
+    let mut behind = controller();
+    for number in 0..20 {
+        let (samples, command) = tick(number);
+        assert_eq!(host.exchange(&samples, &command), Err(PortError::Late));
+    }
+    while guest.serve(&mut behind) {}
+    let (samples, command) = tick(20);
+    // Three questions had room: the newest answer is to the last of them.
+    assert_eq!(host.exchange(&samples, &command), Ok(expected(3)[2]));
+}
+
+/// A bus with a guest at its other end, which can change bytes on the way.
+struct Bus {
+    guest: SpiGuest<Direct<'static>>,
+    next: spi::Frame,
+    /// The byte to be changed in the next transfer, and whether it is on its way to the guest.
+    flip: Rc<Cell<Option<(usize, bool)>>>,
+}
+
+impl Bus {
+    fn new() -> Self {
+        Self { guest: SpiGuest::new(controller()), next: [0; spi::FRAME_BYTES], flip: Rc::default() }
+    }
+}
+
+impl ErrorType for Bus {
+    type Error = Infallible;
+}
+
+impl SpiDevice for Bus {
+    fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), Infallible> {
+        let [Operation::TransferInPlace(bytes)] = operations else { panic!("one transfer a tick") };
+        let mut frame: spi::Frame = bytes[..].try_into().expect("a whole frame");
+        bytes.copy_from_slice(&self.next);
+        match self.flip.take() {
+            Some((at, true)) => frame[at] ^= 4,
+            Some((at, false)) => bytes[at] ^= 4,
+            None => {}
+        }
+        self.next = self.guest.answer(&frame);
+        Ok(())
+    }
+}
+
+#[test]
+fn a_guest_on_spi_answers_a_tick_later_with_the_same_bits() {
+    let mut port = SpiPort::new(Bus::new());
+    let said: Vec<_> = (0..50).map(tick).map(|(samples, command)| port.exchange(&samples, &command)).collect();
+    assert_eq!(said[0], Err(PortError::Damaged), "an empty frame is no answer");
+    assert_eq!(said[1..].iter().map(|answer| answer.unwrap()).collect::<Vec<_>>(), expected(49));
+}
+
+#[test]
+fn a_byte_changed_on_spi_costs_one_answer_and_is_never_taken_for_one() {
+    for towards_guest in [true, false] {
+        for at in [0, 7, 60, spi::FRAME_BYTES - 1] {
+            let bus = Bus::new();
+            let flip = bus.flip.clone();
+            let mut port = SpiPort::new(bus);
+            let mut said = Vec::new();
+            for number in 0..10 {
+                let (samples, command) = tick(number);
+                flip.set((number == 5).then_some((at, towards_guest)));
+                said.push(port.exchange(&samples, &command));
+            }
+            let bad = if towards_guest { 6 } else { 5 };
+            for (number, answer) in said.iter().enumerate().skip(1) {
+                assert_eq!(answer.is_err(), number == bad, "tick {number}, byte {at}");
+            }
+        }
+    }
+}
+
+#[test]
+fn samples_and_answers_fit_into_the_frame_of_spi() {
+    let (samples, command) = tick(3);
+    let samples = Samples { time: u32::MAX, motor: Reading { counts: u32::MAX, time: u32::MAX }, ..samples };
+    assert!(sealed(&Exchange::new(u32::MAX, &samples, &command), &mut [0; spi::FRAME_BYTES]).is_ok());
+    assert!(sealed(&answered(u32::MAX), &mut [0; spi::FRAME_BYTES]).is_ok());
+}
+
+/// The longest answer.
+fn answered(tick: u32) -> Answered {
+    let mut estimates = Answer::<f32>::default().estimates;
+    (estimates.motor.turns, estimates.link.turns) = (i32::MIN, i32::MIN);
+    Answered {
+        tick,
+        digest: u64::MAX,
+        shaped: (&Answer::default().shaped).into(),
+        estimates: Some((&estimates).into()),
+        computation: u16::MAX,
+    }
+}
+
+#[test]
+fn the_rate_of_the_serial_line_is_that_of_the_longest_frames() {
+    let motion = Motion { position: Position { turns: i32::MIN, fraction: 0.0 }, speed: 0.0, acceleration: 0.0 };
+    let reading = Reading { counts: u32::MAX, time: u32::MAX };
+    let samples = Samples { time: u32::MAX, motor: reading, output: Some(reading), torque: 0.0 };
+    let command = Command::Position { now: motion, ahead: Some(motion) };
+    let commands = [Exchange::new(u32::MAX, &samples, &command)].into_iter().collect();
+    let there =
+        encode(&ToBoard::Exchanges(Schedule { sequence: u16::MAX, horizon: u32::MAX, commands })).unwrap().len();
+    let accepted = Accepted { sequence: u16::MAX, queue_free: u16::MAX, tick: u32::MAX };
+    let back = encode(&FromBoard::Accepted(accepted)).unwrap().len()
+        + encode(&FromBoard::Answer(answered(u32::MAX))).unwrap().len();
+    assert_eq!([there as u32, back as u32], serial::FRAME_BYTES);
+    assert_eq!([230_400, 921_600].map(serial::exchanges_per_second), [125, 500]);
+}
+
+/// Both ways of a line.
+#[derive(Default)]
+struct Wire {
+    out: VecDeque<u8>,
+    back: VecDeque<u8>,
+}
+
+struct End(Rc<RefCell<Wire>>);
+
+impl Uart for End {
+    fn read(&mut self) -> Option<u8> {
+        self.0.borrow_mut().back.pop_front()
+    }
+    fn overran(&mut self) -> bool {
+        false
+    }
+    fn can_write(&self) -> bool {
+        true
+    }
+    fn write(&mut self, byte: u8) {
+        self.0.borrow_mut().out.push_back(byte);
+    }
+    fn interrupt_on_read(&mut self, _: bool) {}
+    fn interrupt_on_write(&mut self, _: bool) {}
+    fn interrupt_again(&mut self) {}
+}
+
+#[test]
+fn a_board_on_a_line_is_asked_again_only_once_it_has_answered() {
+    let wire = Rc::new(RefCell::new(Wire::default()));
+    let mut line = Line::new();
+    let (mut uart, end) = line.split(End(wire.clone()), || {});
+    let mut port = SerialPort::new(end);
+    let mut behind = controller();
+    let mut receiver = Receiver::new();
+    let (mut asked, mut said) = (Vec::new(), Vec::new());
+    for number in 0..40 {
+        let (samples, command) = tick(number);
+        said.push(port.exchange(&samples, &command));
+        (0..40).for_each(|_| uart.service());
+        // The board takes two of the controller's ticks over every exchange.
+        let bytes: Vec<u8> = if number % 3 == 2 { wire.borrow_mut().out.drain(..).collect() } else { Vec::new() };
+        for byte in bytes {
+            let Some(ToBoard::Exchanges(schedule)) = receiver.push(byte) else { continue };
+            let [exchange] = &schedule.commands[..] else { panic!("one at a time") };
+            asked.push((exchange.tick, exchange.time));
+            let answer = behind.exchange(&exchange.samples(), &exchange.command()).unwrap();
+            let message = FromBoard::Answer(Answered {
+                tick: exchange.tick + 1,
+                shaped: (&answer.shaped).into(),
+                estimates: Some((&answer.estimates).into()),
+                ..answered(0)
+            });
+            wire.borrow_mut().back.extend(encode(&message).unwrap());
+        }
+        (0..40).for_each(|_| uart.service());
+    }
+    assert_eq!(asked[..3], [(0, 0), (1, 3000), (2, 6000)]);
+    assert_eq!(said.iter().filter(|answer| answer.is_ok()).count(), 13);
+    assert!(said.iter().all(|answer| matches!(answer, Ok(_) | Err(PortError::Late))));
+}

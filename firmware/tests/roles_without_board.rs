@@ -1,0 +1,181 @@
+//! The roles that control, without a board: their answers are those of observer and compensation called directly, in every
+//! bit, and a host that errs or falls silent leads where it should. What the answers are worth is tested elsewhere.
+
+#[allow(dead_code, reason = "shared with the tests of the plant")]
+mod bench;
+
+use bench::Bench;
+use firmware::observer::Observing;
+use firmware::port::Direct;
+use firmware::tables::TABLES;
+use firmware::whole_loop::WholeLoop;
+use link::controller::{Answered, Exchange};
+use link::messages::{Fault, FromBoard, RunMode, RunSettings, Schedule, ToBoard};
+use link::virtual_joint::{Knot, LoopSample, WireDemand};
+use model_core::digest;
+use model_core::realtime::compensation::Command;
+use model_core::realtime::controller::Controller;
+use model_core::realtime::course::Demand;
+use model_core::realtime::virtual_joint::VirtualJoint;
+
+mod control {
+    #![allow(missing_docs, dead_code, clippy::all, clippy::excessive_precision, reason = "generated numbers")]
+    include!(concat!(env!("OUT_DIR"), "/control.rs"));
+}
+
+fn controller() -> Controller<'static, f32> {
+    Controller::new(&control::OBSERVER, &control::COMPENSATION)
+}
+
+fn observer() -> Bench<Observing<Direct<'static>>> {
+    Bench::with(Observing::new(Direct(controller()), true))
+}
+
+fn whole_loop() -> Bench<WholeLoop<'static, Direct<'static>, { firmware::tables::PLANETS }>> {
+    Bench::with(WholeLoop::new(&TABLES, &control::SURROUNDINGS, Direct(controller())))
+}
+
+/// A turn of the link by and by, from a tick on.
+fn knot(tick: u32) -> Knot {
+    let demand = WireDemand::Position((0, [1e-4 * tick as f32, 0.5, 0.0, 0.0, 0.0, 0.0]), None);
+    Knot { tick, load_torque: 0.5, demand }
+}
+
+fn exchange(
+    tick: u32,
+    joint: &VirtualJoint<'_, f32, { firmware::tables::PLANETS }>,
+    command: &Command<f32>,
+) -> ToBoard {
+    let commands = [Exchange::new(tick, &joint.samples(), command)].into_iter().collect();
+    ToBoard::Exchanges(Schedule { sequence: tick as u16, horizon: tick + 1, commands })
+}
+
+fn answers(said: Vec<FromBoard>) -> Vec<Answered> {
+    let answer = |message| if let FromBoard::Answer(answered) = message { Some(answered) } else { None };
+    said.into_iter().filter_map(answer).collect()
+}
+
+fn samples(said: Vec<FromBoard>) -> Vec<LoopSample> {
+    let batch = |message| if let FromBoard::Loop(batch) = message { Some(batch.samples) } else { None };
+    said.into_iter().filter_map(batch).flatten().collect()
+}
+
+fn faults(said: &[FromBoard]) -> Vec<Fault> {
+    let fault = |message: &FromBoard| if let FromBoard::Fault(fault) = message { Some(*fault) } else { None };
+    said.iter().filter_map(fault).collect()
+}
+
+#[test]
+fn an_observer_on_a_line_answers_like_one_that_is_called_in_every_bit() {
+    let mut bench = observer();
+    bench.start(RunMode::Lockstep, 1, 1000);
+    let mut joint = VirtualJoint::new(&TABLES, &control::SURROUNDINGS);
+    let (mut own, mut running) = (controller(), digest::START);
+    for tick in 0..300 {
+        let command = Demand::from(knot(0).demand).at(1e-4 * tick as f32, control::SURROUNDINGS.turn);
+        bench.send(&exchange(tick, &joint, &command));
+        bench.run(2);
+        let expected = own.step(&joint.samples(), &command);
+        running = expected.digest(running);
+        let said = answers(bench.said());
+        let [answered] = &said[..] else { panic!("{said:?}") };
+        assert_eq!((answered.tick, answered.digest, answered.answer()), (tick + 1, running, Some(expected)));
+        joint.advance(expected.shaped.torque, 0.0);
+    }
+}
+
+#[test]
+fn an_observer_whose_controller_falls_silent_goes_to_the_safe_state() {
+    let mut bench = observer();
+    bench.start(RunMode::Lockstep, 1, 50);
+    let joint = VirtualJoint::new(&TABLES, &control::SURROUNDINGS);
+    bench.run(100);
+    assert!(bench.enable.get(), "a run begins with its first samples");
+    bench.send(&exchange(0, &joint, &Demand::HOLD.at(0.0, 1.0)));
+    bench.run(40);
+    assert!(bench.enable.get());
+    bench.run(40);
+    assert!(!bench.enable.get());
+    assert_eq!(faults(&bench.said()), [Fault::CommandLoss { tick: 1 }]);
+}
+
+#[test]
+fn an_observer_does_not_run_without_samples() {
+    let mut bench = observer();
+    let settings = RunSettings { mode: RunMode::Realtime, decimation: 1, command_timeout: 100 };
+    bench.send(&ToBoard::Reset(settings));
+    bench.run(3);
+    assert_eq!(faults(&bench.said()), [Fault::BadSettings]);
+}
+
+#[test]
+fn samples_that_are_no_numbers_are_flagged_and_the_torque_stays_finite() {
+    let mut bench = observer();
+    bench.start(RunMode::Lockstep, 1, 1000);
+    let joint = VirtualJoint::new(&TABLES, &control::SURROUNDINGS);
+    let command = Demand::HOLD.at(0.0, 1.0);
+    for tick in 0..10 {
+        let mut samples = joint.samples();
+        samples.time = tick * control::SURROUNDINGS.clock_ticks;
+        samples.torque = if tick > 5 { f32::NAN } else { 0.0 };
+        let commands = [Exchange::new(tick, &samples, &command)].into_iter().collect();
+        bench.send(&ToBoard::Exchanges(Schedule { sequence: tick as u16, horizon: tick + 1, commands }));
+        bench.run(2);
+        let answer = answers(bench.said())[0].answer().expect("estimates");
+        assert_eq!(answer.estimates.notices.torque_unknown, tick > 5);
+        assert!(answer.shaped.torque.is_finite());
+    }
+    assert!(bench.enable.get());
+}
+
+#[test]
+fn a_whole_loop_equals_its_parts_in_every_bit_in_both_modes() {
+    for mode in [RunMode::Lockstep, RunMode::Realtime] {
+        let mut bench = whole_loop();
+        bench.start(mode, 7, 1000);
+        let knots: Vec<Knot> = (0..6).map(|index| knot(50 * index)).collect();
+        let commands = knots.iter().copied().collect();
+        bench.send(&ToBoard::Course(Schedule { sequence: 0, horizon: 300, commands }));
+        bench.run(301);
+        let samples: Vec<LoopSample> = samples(bench.said()).into_iter().filter(|sample| sample.tick <= 300).collect();
+        assert_eq!(samples.len(), 300 / 7);
+        let mut joint = VirtualJoint::new(&TABLES, &control::SURROUNDINGS);
+        let (mut own, mut running, mut expected) = (controller(), digest::START, samples.iter());
+        for tick in 0..300_u32 {
+            let now = &knots[(tick / 50) as usize];
+            let elapsed = control::SURROUNDINGS.period * (tick - now.tick) as f32;
+            let command = Demand::from(now.demand).at(elapsed, control::SURROUNDINGS.turn);
+            let answer = own.step(&joint.samples(), &command);
+            joint.advance(answer.shaped.torque, now.load_torque);
+            running = digest::chain(answer.digest(running), joint.model().state_digest());
+            if (tick + 1) % 7 == 0 {
+                let sample = expected.next().expect("a sample");
+                assert_eq!((sample.tick, sample.digest), (tick + 1, running));
+                assert_eq!(sample.torque.to_bits(), answer.shaped.torque.to_bits());
+            }
+        }
+    }
+}
+
+#[test]
+fn words_for_another_role_are_refused_and_change_nothing() {
+    let mut bench = whole_loop();
+    bench.start(RunMode::Lockstep, 1, 1000);
+    bench.send(&ToBoard::Schedule(Schedule { sequence: 0, horizon: 10, commands: heapless::Vec::new() }));
+    bench.run(5);
+    let said = bench.said();
+    assert_eq!(faults(&said), [Fault::WrongRole]);
+    assert!(samples(said).is_empty() && bench.enable.get());
+}
+
+#[test]
+fn a_motion_with_a_number_that_is_none_trips_and_is_not_followed() {
+    let mut bench = whole_loop();
+    bench.start(RunMode::Lockstep, 1, 1000);
+    let commands = [Knot { load_torque: f32::NAN, ..knot(3) }].into_iter().collect();
+    bench.send(&ToBoard::Course(Schedule { sequence: 0, horizon: 10, commands }));
+    bench.run(20);
+    let said = bench.said();
+    assert_eq!(faults(&said), [Fault::BadCommand { tick: 3 }]);
+    assert!(samples(said).is_empty() && !bench.enable.get());
+}

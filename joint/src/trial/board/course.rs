@@ -1,0 +1,89 @@
+//! A motion as a board that runs the whole loop takes it: polynomials of fifth degree that meet position, speed and
+//! acceleration of the motion at their ends, or impedance points at their own rate, with the torque on the link.
+
+use std::f64::consts::TAU;
+
+use host_tests::closed_loop::{Motion, SetPoint};
+use link::virtual_joint::Knot;
+use model_core::realtime::course::{Demand, Stretch};
+
+use crate::trial::case::{Case, Designed};
+use crate::trial::file::TestFile;
+use crate::trial::port::Translator;
+use crate::trial::sender::Sender;
+
+/// Length of a polynomial [s]: a motion of 20 Hz is met to a millionth.
+const STRETCH: f64 = 5e-3;
+
+/// The knots of a test, `first_turn` being the turn from which the observer counts the link's.
+pub fn knots(file: &TestFile, case: &Case, designed: &Designed, first_turn: i32) -> Vec<Knot> {
+    let rate = case.told_train.control_rate;
+    let periods = (file.duration * rate).round() as u32;
+    let stretch = file.gains.map_or(STRETCH, |gains| 1.0 / gains.rate);
+    let every = (stretch * rate).round().max(1.0) as u32;
+    let mut sender = Sender::new(file, case, file.controller, Some(designed));
+    let translator = Translator::from_turn(designed.ticks, first_turn);
+    let lead = f64::from(designed.compensation.lead);
+    let mut list = Vec::new();
+    for tick in (0..periods).step_by(every as usize) {
+        let [start, end] = [tick, tick + every].map(|tick| f64::from(tick) / rate);
+        let demand = match sender.at(start, tick.into()).1 {
+            SetPoint::Position { ahead, .. } => {
+                let between = |from: f64, to: f64| polynomial(case.motion.at(from), case.motion.at(to), end - start);
+                let turned = |stretch: Stretch<f32>| Stretch { turns: stretch.turns - first_turn, ..stretch };
+                let ahead = ahead.map(|_| turned(between(start + lead, end + lead)));
+                Demand::Position { now: turned(between(start, end)), ahead }
+            }
+            impedance => match translator.command(&impedance) {
+                model_core::realtime::compensation::Command::Impedance(point) => Demand::Impedance(point),
+                model_core::realtime::compensation::Command::Position { .. } => Demand::HOLD,
+            },
+        };
+        let middle = 0.5 * (start + end);
+        let load_torque = case.disturbances.iter().map(|push| push.torque(middle)).sum::<f64>() as f32;
+        list.push(Knot { tick, load_torque, demand: (&demand).into() });
+    }
+    list
+}
+
+/// From one moment of a motion to another.
+fn polynomial(from: Motion, to: Motion, time: f64) -> Stretch<f32> {
+    let way = to.position - from.position - time * (from.speed + 0.5 * time * from.acceleration);
+    let gain = (to.speed - from.speed - time * from.acceleration) * time;
+    let bend = (to.acceleration - from.acceleration) * time * time;
+    let turns = (from.position / TAU).floor();
+    let powers = [
+        from.position - TAU * turns,
+        from.speed,
+        0.5 * from.acceleration,
+        (10.0 * way - 4.0 * gain + 0.5 * bend) / time.powi(3),
+        (-15.0 * way + 7.0 * gain - bend) / time.powi(4),
+        (6.0 * way - 3.0 * gain + 0.5 * bend) / time.powi(5),
+    ];
+    Stretch { turns: turns as i32, powers: powers.map(|power| (power / TAU) as f32) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_polynomial_meets_the_motion_between_its_ends_too() {
+        let at = |time: f64| {
+            let (sine, cosine) = (TAU * 20.0 * time).sin_cos();
+            let rate = TAU * 20.0;
+            Motion { position: 0.1 * sine - 7.0, speed: 0.1 * rate * cosine, acceleration: -0.1 * rate * rate * sine }
+        };
+        for start in [0.0, 0.013, 0.021] {
+            let stretch = polynomial(at(start), at(start + STRETCH), STRETCH);
+            for part in [0.0, 0.3, 0.5, 0.9] {
+                let (motion, wanted) = (stretch.at((part * STRETCH) as f32, TAU as f32), at(start + part * STRETCH));
+                let position = TAU * (f64::from(motion.position.turns) + f64::from(motion.position.fraction));
+                assert!((position - wanted.position).abs() < 2e-6, "{position} {}", wanted.position);
+                assert!((f64::from(motion.speed) - wanted.speed).abs() < 1e-3 * 0.1 * TAU * 20.0);
+                let error = (f64::from(motion.acceleration) - wanted.acceleration).abs();
+                assert!(error < 5e-3 * 0.1 * (TAU * 20.0).powi(2), "{error}");
+            }
+        }
+    }
+}

@@ -1,0 +1,323 @@
+//! Tests whose controller runs on a board: images for what each seed is told, a board for each run, and the same run here,
+//! which must be the same in every bit. Rivals stay on the host, as always.
+//!
+//! The role `observer` answers for observer and compensation, the plant stays here; the role `loop` has everything on the
+//! board, and its figures are read off its twin.
+
+mod course;
+mod port;
+mod twin;
+
+use std::cell::RefCell;
+use std::rc::Rc;
+use std::time::{Duration, Instant};
+
+use joints::JointFile;
+use link::messages::{Role, RunMode, RunSettings, Statistics};
+use model_core::design::{ControlWish, Told, control_source};
+use port::BoardPort;
+use twin::{Twin, Twinned};
+
+use super::case::Case;
+use super::execution::{Order, Ran, RunError, execute, execute_with};
+use super::plant::PlantName;
+use super::record::BoardRun;
+use super::suite::Test;
+use crate::failure::{Failure, Outcome};
+use crate::hil::Progress;
+use crate::hil::bench::Bench;
+use crate::hil::session::{Expected, Session};
+use crate::hil::twin::tables_digest;
+use crate::target::board::Board;
+use crate::target::emulator;
+use crate::target::image::{self, Control, word};
+use crate::target::toolchain::Toolchain;
+
+/// A run on a board in lockstep may take this long, whatever the test's time on the clock.
+const LONGEST: Duration = Duration::from_secs(4 * 3600);
+/// A sample of the whole loop every so many periods; the digest covers every period.
+const DECIMATION: u16 = 20;
+/// In real time a board without commands for so long goes to its safe state [s].
+const COMMAND_TIMEOUT: f64 = 0.1;
+
+/// Which boards tests are to run on.
+#[derive(Debug, Clone, Copy)]
+pub struct BoardWish<'w> {
+    /// What they do.
+    pub role: Role,
+    /// The port of a real one.
+    pub port: Option<&'w str>,
+    /// Its speed [baud].
+    pub baud: Option<u32>,
+    /// What is behind it.
+    pub board: Board,
+    /// Its image is there already.
+    pub no_build: bool,
+    /// Who waits for whom, of a whole loop.
+    pub mode: Option<RunMode>,
+}
+
+/// Boards that can be built for and reached.
+pub struct Boards<'w> {
+    wish: BoardWish<'w>,
+    toolchain: Option<Toolchain>,
+    version: String,
+}
+
+/// What a run needs of its case.
+struct Pair {
+    texts: [String; 2],
+    told: JointFile,
+    truth: JointFile,
+    control: Control,
+}
+
+impl<'w> Boards<'w> {
+    /// Finds toolchain and emulator, so that what is missing is known before anything runs.
+    pub fn prepare(wish: BoardWish<'w>, tests: &[Test], plant: PlantName, progress: &Progress) -> Outcome<Self> {
+        for test in tests {
+            may_run(&wish, test, plant)?;
+        }
+        let say = |line: &str| progress.say(line);
+        let version = match wish.port {
+            Some(_) => String::new(),
+            None => {
+                progress.stage("finding the emulator");
+                emulator::ensure(&say)?
+            }
+        };
+        let toolchain = if wish.no_build {
+            None
+        } else {
+            progress.stage("preparing the toolchain");
+            Some(Toolchain::prepare(&say)?)
+        };
+        progress.clear();
+        Ok(Self { wish, toolchain, version })
+    }
+
+    /// Where controllers run, for the record.
+    pub fn label(&self) -> String {
+        let place = self.wish.port.unwrap_or("emulated");
+        format!("{} on {} ({place})", word(self.wish.role), self.wish.board.name())
+    }
+
+    /// The arguments that ask for them again.
+    pub fn arguments(&self) -> String {
+        let port = self.wish.port.map_or_else(String::new, |port| format!(" --port {port}"));
+        format!("--role {}{port}", word(self.wish.role))
+    }
+
+    /// Tells the case's controllers what a joint file can say, to the last bit.
+    pub fn tell(&self, case: &mut Case) -> Outcome<()> {
+        let told = read(&case.told_text()?)?;
+        case.tell(&told);
+        Ok(())
+    }
+
+    /// Runs a case on a board and here; fails if they differ in any bit.
+    pub fn run(&self, test: &Test, case: &Case, seed: u64, order: Order) -> Result<(Ran, BoardRun), RunError> {
+        let pair = self.pair(test, case)?;
+        match self.wish.role {
+            Role::Loop => self.run_loop(test, case, &pair),
+            Role::Observer | Role::Plant => self.run_observer(test, case, seed, order, &pair),
+        }
+    }
+
+    fn pair(&self, test: &Test, case: &Case) -> Outcome<Pair> {
+        let told_text = case.told_text()?;
+        // Where only the controller is on the board, its image knows no other joint.
+        let truth_text = if self.wish.role == Role::Loop { case.truth_text().to_owned() } else { told_text.clone() };
+        let rate = case.told_train.control_rate as u32;
+        let (mut told, mut truth) = (read(&told_text)?, read(&truth_text)?);
+        [&mut told, &mut truth].into_iter().for_each(|joint| joint.set_control_rate(rate));
+        let control = Control { rate, bandwidth: test.file.bandwidth, output_encoder: test.file.output_encoder };
+        Ok(Pair { texts: [truth_text, told_text], told, truth, control })
+    }
+
+    /// Builds the image, finds the board and starts the run.
+    fn session(&self, pair: &Pair) -> Outcome<(Session<'static>, String)> {
+        let wish = &self.wish;
+        let image = || {
+            let build = |toolchain: &Toolchain| {
+                let texts = pair.texts.each_ref().map(String::as_str);
+                image::build_control_image(toolchain, texts, wish.board, wish.role, &pair.control, &|_| {})
+            };
+            self.toolchain.as_ref().map(build).transpose()
+        };
+        let bench = match wish.port {
+            Some(path) => Bench::on_port(path, wish.baud.unwrap_or(wish.board.baud_rate()), image)?,
+            None => {
+                let image = image()?.ok_or_else(|| Failure::new("the emulated board needs an image"))?;
+                Bench::in_emulator(&self.version, image)?
+            }
+        };
+        let place = bench.image.as_ref().map_or_else(String::new, |image| image.elf.display().to_string());
+        let expected = self.expected(pair, &place)?;
+        let sha256 = bench.image.map(|image| image.sha256).unwrap_or_default();
+        let mut session = Session::new(bench.line, bench.surroundings);
+        session.connect(&expected, bench.patience)?;
+        session.reset(self.settings(pair.control.rate))?;
+        Ok((session, sha256))
+    }
+
+    fn expected(&self, pair: &Pair, image: &str) -> Outcome<Expected> {
+        let Pair { told, truth, control, .. } = pair;
+        let wish = ControlWish { bandwidth: control.bandwidth, output_encoder: control.output_encoder };
+        let (told_around, board) = (told.surroundings(), self.wish.board);
+        let told = Told { joint: &told.parameters, surroundings: &told_around, wish };
+        let source = control_source(&truth.parameters, &truth.surroundings(), &told, &board.processor())
+            .map_err(|error| Failure::new(format!("joint `{}`: {error}", truth.parameters.name)))?;
+        let chip = board.chip();
+        Ok(Expected {
+            joint: truth.parameters.name.to_string(),
+            digest: tables_digest(&truth.parameters, board, control.rate)?,
+            tick_rate: control.rate,
+            planets: truth.parameters.geometry.planets,
+            role: self.wish.role,
+            control_digest: Some(source.digest),
+            mend: match image {
+                "" => "run without --no-build to have it built".to_owned(),
+                image => format!("probe-rs download --chip {chip} {image} && probe-rs reset --chip {chip}"),
+            },
+        })
+    }
+
+    fn settings(&self, rate: u32) -> RunSettings {
+        let real = self.wish.port.is_some();
+        let usual = if real && self.wish.role == Role::Loop { RunMode::Realtime } else { RunMode::Lockstep };
+        let mode = self.wish.mode.unwrap_or(usual);
+        // The emulated clock runs as fast as it can while the board waits for the host.
+        let timed = real || mode == RunMode::Realtime;
+        let command_timeout = if timed { (COMMAND_TIMEOUT * f64::from(rate)).ceil() as u32 } else { u32::MAX };
+        let decimation = if self.wish.role == Role::Loop { DECIMATION } else { 1 };
+        RunSettings { mode, decimation, command_timeout }
+    }
+
+    fn run_observer(
+        &self,
+        test: &Test,
+        case: &Case,
+        seed: u64,
+        order: Order,
+        pair: &Pair,
+    ) -> Result<(Ran, BoardRun), RunError> {
+        let deadline = Instant::now() + LONGEST;
+        let here = execute(&test.file, case, seed, order, deadline)?;
+        let (session, image) = self.session(pair)?;
+        let session = Rc::new(RefCell::new(session));
+        let there =
+            execute_with(&test.file, case, seed, order, deadline, &|_| Ok(Box::new(BoardPort::new(session.clone()))));
+        let mut session = session.borrow_mut();
+        let there = match there {
+            Ok(there) => there,
+            Err(error) => {
+                session.abandon();
+                return Err(error);
+            }
+        };
+        session.finish(u32::MAX)?;
+        if there.digest != here.digest {
+            return Err(difference(&here, &there, case));
+        }
+        let run = self.board_run(image, there.run.samples.len() as u32, session.recording.statistics.as_ref());
+        Ok((there, run))
+    }
+
+    fn run_loop(&self, test: &Test, case: &Case, pair: &Pair) -> Result<(Ran, BoardRun), RunError> {
+        let designed = case.design(&test.file)?;
+        let twin = Twin { file: &test.file, case, designed: &designed, truth: &pair.truth, board: self.wish.board };
+        let Twinned { knots, ran, digests } = twin.run()?;
+        let (mut session, image) = self.session(pair)?;
+        let samples = match session.follow(&knots, digests.len() as u32) {
+            Ok(samples) => samples,
+            Err(failure) => {
+                session.abandon();
+                return Err(failure.into());
+            }
+        };
+        session.finish(u32::MAX)?;
+        let agrees = |tick: u32, digest: u64| {
+            tick.checked_sub(1).and_then(|index| digests.get(index as usize)).is_some_and(|own| *own == digest)
+        };
+        if let Some(first) = samples.iter().find(|sample| !agrees(sample.tick, sample.digest)) {
+            return Err(differs(first.tick.into(), case, "the digest over joint and answers"));
+        }
+        let periods = samples.last().map_or(0, |sample| sample.tick);
+        let run = self.board_run(image, periods, session.recording.statistics.as_ref());
+        Ok((ran, run))
+    }
+
+    fn board_run(&self, image: String, same_periods: u32, statistics: Option<&Statistics>) -> BoardRun {
+        let figure = |of: &dyn Fn(&Statistics) -> u32| statistics.map_or(0, of);
+        BoardRun {
+            role: word(self.wish.role).to_owned(),
+            elf_sha256: image,
+            same_periods,
+            computation_mean: figure(&|statistics| statistics.computation.mean),
+            computation_most: figure(&|statistics| statistics.computation.max),
+            period_counts: figure(&|statistics| statistics.period),
+            overruns: figure(&|statistics| statistics.overruns),
+            stack_bytes: figure(&|statistics| statistics.stack_used),
+        }
+    }
+}
+
+/// Whether a test can run on such a board at all.
+fn may_run(wish: &BoardWish<'_>, test: &Test, plant: PlantName) -> Outcome<()> {
+    let name = &test.name;
+    if !test.file.controller.is_ours() {
+        let message = format!("{name} tests `{}`, which no board runs", test.file.controller.word());
+        return Err(Failure::new(message).with_help("run it with --host"));
+    }
+    if wish.role == Role::Loop && !test.file.faults.is_empty() {
+        return Err(Failure::new(format!("{name} has faults, and a whole loop on a board has none between its parts"))
+            .with_help("run it with --role observer, or with --host"));
+    }
+    if wish.role == Role::Loop && plant == PlantName::Reference {
+        return Err(Failure::new("the f64 reference does not run on a board").with_help("leave --plant out"));
+    }
+    Ok(())
+}
+
+fn read(text: &str) -> Outcome<JointFile> {
+    joints::read(text).map_err(|problems| {
+        let first = problems.first().map_or_else(String::new, ToString::to_string);
+        Failure::new(format!("the joint that a controller is told cannot be: {first}"))
+    })
+}
+
+/// The first period in which a board's run departs from the host's, and in what.
+fn difference(here: &Ran, there: &Ran, case: &Case) -> RunError {
+    let numbers = |ran: &Ran, index: usize| {
+        let (command, sight) = (ran.run.samples[index].command, ran.sights[index]);
+        [
+            ("torque", command),
+            ("gap", sight.gap.into()),
+            ("gap variance", sight.gap_variance.into()),
+            ("mesh torque", sight.mesh_torque.into()),
+            ("load torque", sight.load_torque.into()),
+            ("half-backlash", sight.half_backlash.into()),
+            ("compliance", sight.compliance.into()),
+            ("skew", sight.skew.into()),
+            ("trust", sight.trust.into()),
+        ]
+    };
+    let count = here.sights.len().min(there.sights.len());
+    for index in 0..count {
+        let both = numbers(here, index).into_iter().zip(numbers(there, index));
+        let apart = |((name, here), (_, there)): ((&str, f64), (&str, f64))| {
+            (here.to_bits() != there.to_bits()).then(|| format!("{name} {there:e} there, {here:e} here"))
+        };
+        let parts: Vec<String> = both.filter_map(apart).collect();
+        if !parts.is_empty() {
+            return differs(index as u64, case, &parts.join("; "));
+        }
+    }
+    differs(count as u64, case, "in nothing but the joint's own motion")
+}
+
+fn differs(period: u64, case: &Case, what: &str) -> RunError {
+    let time = period as f64 / case.train.control_rate;
+    RunError::Broke(format!("board and host differ at t = {time:.4} s, control period {period}: {what}"))
+}

@@ -1,0 +1,160 @@
+//! Samples, set-points, answers and motions come out of the wire's form as they went in, and their longest forms fit into
+//! a frame. Framing itself is tested beside.
+
+use link::controller::{Answered, EXCHANGES_PER_SCHEDULE, Exchange, WireEstimates};
+use link::framing::{Receiver, encode};
+use link::messages::{FromBoard, Schedule, ToBoard};
+use link::virtual_joint::{KNOTS_PER_SCHEDULE, Knot, LOOP_SAMPLES_PER_BATCH, LoopBatch, LoopSample, WireDemand};
+use model_core::mesh::ContactState;
+use model_core::realtime::compensation::{Command, ImpedancePoint, Motion, Position, Shaped, Stage};
+use model_core::realtime::controller::Answer;
+use model_core::realtime::course::{Demand, Stretch};
+use model_core::realtime::observer::{Doubt, Estimate, Estimates, Notices, Reading, Samples, Shaft, Source};
+
+const MOTION: Motion<f32> =
+    Motion { position: Position { turns: i32::MIN, fraction: 0.3 }, speed: -1.5, acceleration: f32::MAX };
+
+const IMPEDANCE: ImpedancePoint<f32> = ImpedancePoint {
+    position: Position { turns: -7, fraction: 0.9 },
+    speed: 2.0,
+    torque: -3.0,
+    stiffness: 100.0,
+    damping: 3.0,
+};
+
+fn samples() -> Samples<f32> {
+    let reading = |counts| Reading { counts, time: u32::MAX };
+    Samples { time: u32::MAX, motor: reading(u32::MAX), output: Some(reading(5)), torque: 0.7 }
+}
+
+fn estimates() -> Estimates<f32> {
+    let estimate = |value: f32| Estimate { value, variance: value * value, valid: value > 3.0 };
+    Estimates {
+        source: Source::MotorOnly(Doubt::Frozen),
+        notices: Notices { torque_unknown: true, out_of_time: false, motor_doubted: true, motor_jumped: false },
+        gap: estimate(1.0),
+        gap_rate: 2.0,
+        contact: ContactState::BackSide,
+        reported_contact: ContactState::DriveSide,
+        contact_valid: true,
+        settled: false,
+        mesh_torque: estimate(3.0),
+        load_torque: estimate(4.0),
+        half_backlash: estimate(5.0),
+        encoder_offset: estimate(6.0),
+        compliance: estimate(7.0),
+        skew: estimate(8.0),
+        torque_bias: estimate(9.0),
+        motor_friction: estimate(10.0),
+        motor: Shaft { turns: i32::MIN, fraction: 0.1, speed: 11.0 },
+        link: Shaft { turns: i32::MAX, fraction: 0.2, speed: 12.0 },
+    }
+}
+
+#[test]
+fn samples_and_set_points_come_out_as_they_went_in() {
+    let commands = [
+        Command::Position { now: MOTION, ahead: None },
+        Command::Position { now: MOTION, ahead: Some(Motion { speed: 9.0, ..MOTION }) },
+        Command::Impedance(IMPEDANCE),
+    ];
+    for command in commands {
+        for output in [samples().output, None] {
+            let samples = Samples { output, ..samples() };
+            let exchange = Exchange::new(7, &samples, &command);
+            assert_eq!((exchange.tick, exchange.samples(), exchange.command()), (7, samples, command));
+        }
+    }
+}
+
+#[test]
+fn answers_come_out_as_they_went_in() {
+    for stage in [Stage::Touching, Stage::Crossing, Stage::Landing, Stage::Plain] {
+        let shaped = Shaped { torque: 1.0, stage, side: -1.0, demand: 2.0, load: [3.0, 4.0], trust: 0.5 };
+        let answer = Answer { estimates: estimates(), shaped };
+        let wire = Answered {
+            tick: 1,
+            digest: 2,
+            shaped: (&shaped).into(),
+            estimates: Some((&answer.estimates).into()),
+            computation: 3,
+        };
+        assert_eq!(wire.answer(), Some(answer));
+    }
+    use Doubt::*;
+    let doubts = [Absent, Silent, Frozen, OutOfRange].map(Source::MotorOnly);
+    for source in doubts.into_iter().chain([Source::Both, Source::Nothing]) {
+        let one = Estimates { source, ..estimates() };
+        assert_eq!(Estimates::from(WireEstimates::from(&one)), one);
+    }
+}
+
+#[test]
+fn motions_come_out_as_they_went_in() {
+    let stretch = Stretch { turns: -3, powers: [0.1, 0.2, 0.3, 0.4, 0.5, 0.6] };
+    let demands = [
+        Demand::Position { now: stretch, ahead: None },
+        Demand::Position { now: stretch, ahead: Some(Stretch { turns: 4, ..stretch }) },
+        Demand::Impedance(IMPEDANCE),
+    ];
+    for demand in demands {
+        assert_eq!(Demand::from(WireDemand::from(&demand)), demand);
+    }
+}
+
+#[test]
+fn a_knot_with_a_number_that_is_none_is_told() {
+    let stretch = Stretch { turns: 0, powers: [0.0; 6] };
+    let good = Knot { tick: 0, load_torque: 0.0, demand: WireDemand::Position((0, stretch.powers), None) };
+    assert!(good.is_finite());
+    assert!(!Knot { load_torque: f32::NAN, ..good }.is_finite());
+    let mut powers = stretch.powers;
+    powers[5] = f32::INFINITY;
+    assert!(!Knot { demand: WireDemand::Position((0, powers), None), ..good }.is_finite());
+    assert!(!Knot { demand: WireDemand::Position((0, stretch.powers), Some((0, powers))), ..good }.is_finite());
+    let soft = ImpedancePoint { damping: f32::NAN, ..IMPEDANCE };
+    assert!(!Knot { demand: WireDemand::Impedance(soft.into()), ..good }.is_finite());
+}
+
+#[test]
+fn the_longest_forms_fit_into_a_frame() {
+    let exchange = Exchange {
+        tick: u32::MAX,
+        ..Exchange::new(0, &samples(), &Command::Position { now: MOTION, ahead: Some(MOTION) })
+    };
+    let commands = std::iter::repeat_n(exchange, EXCHANGES_PER_SCHEDULE).collect();
+    let exchanges = ToBoard::Exchanges(Schedule { sequence: u16::MAX, horizon: u32::MAX, commands });
+    let far = (i32::MIN, [f32::MAX; 6]);
+    let knot = Knot { tick: u32::MAX, load_torque: 1.0, demand: WireDemand::Position(far, Some(far)) };
+    let commands = std::iter::repeat_n(knot, KNOTS_PER_SCHEDULE).collect();
+    let course = ToBoard::Course(Schedule { sequence: u16::MAX, horizon: u32::MAX, commands });
+    for message in [exchanges, course] {
+        let mut receiver = Receiver::new();
+        assert_eq!(encode(&message).unwrap().iter().find_map(|&byte| receiver.push(byte)), Some(message));
+    }
+    let answer = FromBoard::Answer(Answered {
+        tick: u32::MAX,
+        digest: u64::MAX,
+        shaped: (&Shaped::default()).into(),
+        estimates: Some((&estimates()).into()),
+        computation: u16::MAX,
+    });
+    let sample = LoopSample {
+        tick: u32::MAX,
+        digest: u64::MAX,
+        carrier: (i32::MIN, u32::MAX),
+        link_offset: 1.0,
+        gaps: (1.0, 1.0),
+        gap_valid: true,
+        half_backlash: 1.0,
+        torque: 1.0,
+        loads: (1.0, 1.0),
+        trust: 1.0,
+        computation: u16::MAX,
+    };
+    let samples = std::iter::repeat_n(sample, LOOP_SAMPLES_PER_BATCH).collect();
+    for message in [answer, FromBoard::Loop(LoopBatch { sequence: u16::MAX, samples })] {
+        let mut receiver = Receiver::new();
+        assert_eq!(encode(&message).unwrap().iter().find_map(|&byte| receiver.push(byte)), Some(message));
+    }
+}

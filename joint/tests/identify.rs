@@ -43,6 +43,9 @@ fn found(record: &Value, key: &str) -> Option<(f64, [f64; 2])> {
 /// Keys and true values, with the largest half of an interval that is any use, as a share of the value.
 type Truths<'t> = &'t [(&'t str, f64, f64)];
 
+/// A preset, what is changed in it behind the fit's back, what is true then, and a seed.
+type Case<'c> = (&'c str, &'c [(&'c str, &'c str)], Vec<(&'c str, f64, f64)>, u64);
+
 const BACKLASH: &str = "mesh.half_backlash_um";
 const STIFFNESS: &str = "compliance.stiffness_N_m_per_rad";
 const DAMPING: &str = "compliance.damping_ratio";
@@ -103,7 +106,7 @@ fn true_values_lie_in_the_stated_intervals() {
     let l1 = [(BACKLASH, 60.0, 0.02), ("mesh.mean_stiffness_N_per_m", 1e8, 0.05)];
     let softer = [("half_backlash_um", "25"), ("stiffness_N_m_per_rad", "8000")];
     let worn = [("half_backlash_um", "60")];
-    let cases: [(&str, &[(&str, &str)], Vec<_>, u64); 6] = [
+    let cases: [Case<'_>; 6] = [
         ("q1", &[], q1(40.0, 10.3e3).to_vec(), 11),
         ("q1", &softer, q1(25.0, 8000.0).to_vec(), 12),
         ("q1", &worn, q1(60.0, 10.3e3).to_vec(), 13),

@@ -1,9 +1,9 @@
 //! What was found, each with its 95 % interval in the joint file's unit and the key that it belongs to, or the reason why
 //! the log does not show it. Fitting is left to `twist` and `friction`, showing to `table` and `page`.
 
-use nalgebra::DVector;
 use serde::Serialize;
 
+use super::estimate::Estimate;
 use super::friction;
 use super::log::Log;
 use super::plan::Plan;
@@ -21,6 +21,10 @@ const NARROWED: f64 = 0.1;
 const INERTIA_SHARE: f64 = 0.015;
 /// How well readings of motor and torque are taken at the same time [s]: a delay looks like damping.
 const SAME_TIME: f64 = 2e-6;
+/// Share of the largest torque that a balance of torques may feign as dry friction.
+const BALANCE_SHARE: f64 = 0.0015;
+/// Age of a reading that noise may feign [s].
+const FEIGNED_AGE: f64 = 1e-7;
 /// Samples of a swing from which its damping can be told.
 const SWING_SAMPLES: f64 = 16.0;
 /// What two inertias on a spring leave out of a joint, as a share of a value: widens every interval. Found on simulated
@@ -46,42 +50,12 @@ pub struct Finding {
     pub note: String,
 }
 
-/// A value and half of its interval.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Estimate {
-    value: f64,
-    half: f64,
-}
-
-impl Estimate {
-    fn of(solution: &Solution, unknown: usize) -> Self {
-        Self { value: solution.values[unknown], half: solution.reach * solution.deviation(unknown) }
-    }
-
-    /// Any smooth function of a solution, by its slopes.
-    fn from(solution: &Solution, value: f64, slopes: &[(usize, f64)]) -> Self {
-        let mut slope = DVector::zeros(solution.values.len());
-        slopes.iter().for_each(|(unknown, by)| slope[*unknown] = *by);
-        let variance = (slope.transpose() * &solution.covariance * &slope)[(0, 0)];
-        Self { value, half: solution.reach * variance.max(0.0).sqrt() }
-    }
-
-    /// With a systematic part beside the scatter.
-    fn wider_by(self, systematic: f64) -> Self {
-        Self { half: self.half + systematic.abs(), ..self }
-    }
-
-    fn times(self, factor: f64) -> Self {
-        Self { value: self.value * factor, half: self.half * factor.abs() }
-    }
-}
-
 /// Everything that a log shows of a joint.
 pub fn gather(log: &Log, quick: &Rows, slow: &Rows, twist: &Twist, plan: &Plan) -> Vec<Finding> {
     let mut findings = gap_and_compliance(log, twist, plan);
     findings.extend(frictions(quick, slow, twist, plan));
     findings.extend(maps(twist));
-    let skew = Estimate::of(&twist.solution, twist::SKEW);
+    let skew = Estimate::of(&twist.solution, twist::SKEW).wider_by(FEIGNED_AGE);
     let why = "the joint must turn at different speeds";
     let narrow = skew.half < 2.0 * NARROWED * twist::width(twist::SKEW);
     findings.push(
@@ -249,7 +223,7 @@ fn frictions(quick: &Rows, slow: &Rows, twist: &Twist, plan: &Plan) -> Vec<Findi
         let estimate = Estimate::of(&link, unknown);
         Estimate { half: estimate.half.hypot(shift(&moved[0])).hypot(shift(&moved[1])), ..estimate }
     };
-    let dry = of_link(friction::DRY);
+    let dry = of_link(friction::DRY).wider_by(BALANCE_SHARE * quick.greatest);
     let viscous = of_link(friction::VISCOUS);
     let viscous_known = found(viscous, small / fastest(slow, |row| row.output_speed));
     findings

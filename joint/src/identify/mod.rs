@@ -3,11 +3,12 @@
 //!
 //! `columns` reads a file, `log` turns it into checked samples, `plan` says what the joint file knows;
 //! `rows` are the moments at which a flank carries, smoothed by `kernel`; `twist` and `friction` are fitted to them by
-//! `regression`; `findings` is what comes of it, `table`, `page`, `pictures` and `patch` show it. `virtual_test` makes a
+//! `regression`; `findings` is what comes of it, with its `estimate`s; `table`, `page`, `pictures` and `patch` show it. `virtual_test` makes a
 //! log without hardware.
 
 mod arguments;
 mod columns;
+mod estimate;
 pub mod findings;
 mod friction;
 mod kernel;

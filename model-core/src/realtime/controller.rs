@@ -47,7 +47,8 @@ impl<'tables, T: Real> Controller<'tables, T> {
         self.compensation = Compensation::new(self.tables);
     }
 
-    /// One control period.
+    /// One control period. Not inlined: beside a plant that is stepped on the same chip its values would lie on the stack.
+    #[inline(never)]
     pub fn step(&mut self, samples: &Samples<T>, command: &Command<T>) -> Answer<T> {
         let estimates = *self.observer.step(samples);
         let shaped = self.compensation.step(&estimates, command);

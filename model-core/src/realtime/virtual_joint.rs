@@ -65,6 +65,7 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
     }
 
     /// Notes where everything is now.
+    #[inline(never)]
     fn look(&mut self) {
         self.outputs = self.model.outputs();
         self.shafts = self.shafts();
@@ -113,10 +114,19 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
         counts(&self.table.encoders[1], self.shafts.link, self.shafts.speeds[1]).1
     }
 
-    /// Moves on by one period under a torque command and a torque that brakes the link [N m]. Not inlined: what its
-    /// caller needs beside it would lie on the stack below it.
+    /// Moves on by one period under a torque command and a torque that brakes the link [N m]. Its parts are not inlined: each
+    /// needs much of the stack, and they take turns.
     #[inline(never)]
     pub fn advance(&mut self, command: T, disturbance: T) {
+        self.act(command, disturbance);
+        self.model.step(Torques { drive: self.acting.drive, load: self.acting.load });
+        self.periods = self.periods.wrapping_add(1);
+        self.look();
+    }
+
+    /// Finds the torques that act over the period.
+    #[inline(never)]
+    fn act(&mut self, command: T, disturbance: T) {
         let table = self.table;
         self.commands.rotate_right(1);
         let limit = table.current.limit;
@@ -137,9 +147,6 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
             from_sun * passed_on + from_wind_up * self.outputs.wind_up + from_rate * self.model.state().rate.wind_up;
         let rubbed = friction(&table.load_friction, link_speed, to_link - braking, T::ZERO);
         self.acting = Acting { air_gap, drive: driving - lost, load: braking + rubbed };
-        self.model.step(Torques { drive: self.acting.drive, load: self.acting.load });
-        self.periods = self.periods.wrapping_add(1);
-        self.look();
     }
 
     /// Mean torque in the air gap over this period.

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::failure::{EXIT_BAD_INPUT, Outcome};
-use crate::{bench, budget, check, hil, images, output, paper, sim, sweep};
+use crate::{bench, budget, check, hil, identify, images, output, paper, sim, sweep};
 
 /// Simulates a planetary robot joint with backlash on a microcontroller, drives it and checks it
 #[derive(Debug, Parser)]
@@ -33,6 +33,8 @@ enum Command {
     Sweep(sweep::Arguments),
     /// Put the shards of a sweep together, once none is missing
     Merge(sweep::MergeArguments),
+    /// Find backlash, compliance, damping, friction and encoder errors in a recorded reversal test
+    Identify(identify::Arguments),
     /// Build the firmware image of a joint and say where it is
     Image(images::ImageArguments),
     /// Build the firmware image of a joint and write it to a real board by probe-rs
@@ -59,6 +61,7 @@ pub fn main() -> ExitCode {
         Some(Command::Sim(arguments)) => sim::run(arguments),
         Some(Command::Sweep(arguments)) => sweep::run(arguments),
         Some(Command::Merge(arguments)) => sweep::merge(arguments),
+        Some(Command::Identify(arguments)) => identify::run(arguments),
         Some(Command::Image(arguments)) => images::image(arguments),
         Some(Command::Flash(arguments)) => images::flash(arguments),
     };

@@ -3,7 +3,8 @@
 //! a run leaves behind and `report` shows it, `sim` moves a joint on the host, `sweep` many of them, `bench` compares the
 //! step with what people use, `budget` says what is promised of it, `paper` redoes the paper with the numerics of
 //! `study`, `proof` holds the step that ships to what is promised of it, `trial` runs test files of observer and
-//! compensation; physics and wire format are left to `model-core` and `link`.
+//! compensation, `identify` finds a joint's parameters in a recorded test; physics and wire format are left to
+//! `model-core` and `link`.
 
 pub mod bench;
 pub mod budget;
@@ -12,6 +13,7 @@ pub mod cli;
 pub mod failure;
 mod folder;
 pub mod hil;
+pub mod identify;
 pub mod images;
 pub mod interruption;
 pub mod output;

@@ -43,7 +43,13 @@ pub fn value<'t>(text: &'t str, key: &str) -> Result<Option<&'t str>, Refused> {
 /// The text with a key set to a value, as typed after the equals sign; quotes around words may be left out, and an
 /// empty value leaves the key out. What the key meant so far is replaced, in whatever form it was stated.
 pub fn change(text: &str, key: &str, value: &str) -> Result<String, Refused> {
+    change_noting(text, key, value, REMARK)
+}
+
+/// The same, with a remark of one line behind the value that says where it comes from.
+pub fn change_noting(text: &str, key: &str, value: &str, remark: &str) -> Result<String, Refused> {
     let (path, known) = find(key)?;
+    let remark = format!(" # {}", remark.replace(char::is_control, " "));
     let (section, name) = path.rsplit_once('.').unwrap_or(("", &path));
     let mut text = text.to_owned();
     for other in replaced(section, name) {
@@ -56,10 +62,10 @@ pub fn change(text: &str, key: &str, value: &str) -> Result<String, Refused> {
     }
     let value = written(value.trim(), known);
     let candidates = [
-        replace(&text, &path, &value),
-        insert(&text, section, name, &value),
-        (!section.is_empty()).then(|| format!("{}\n\n[{section}]\n{name} = {value}{REMARK}\n", text.trim_end())),
-        Some(format!("{path} = {value}{REMARK}\n{text}")),
+        replace(&text, &path, &value, &remark),
+        insert(&text, section, name, &value, &remark),
+        (!section.is_empty()).then(|| format!("{}\n\n[{section}]\n{name} = {value}{remark}\n", text.trim_end())),
+        Some(format!("{path} = {value}{remark}\n{text}")),
     ];
     let set = |text: &String| lookup(text, &path).is_some_and(|(_, found)| text[found] == value);
     candidates.into_iter().flatten().find(set).ok_or_else(|| Refused {
@@ -69,7 +75,7 @@ pub fn change(text: &str, key: &str, value: &str) -> Result<String, Refused> {
 }
 
 /// Stands behind a changed value, in place of the source that the old one had.
-const REMARK: &str = " # set on the command line";
+const REMARK: &str = "set on the command line";
 
 fn in_the_way(path: &str) -> Refused {
     let message = format!("`{path}` is in the way, and cannot be taken out by itself");
@@ -188,10 +194,10 @@ fn rest_of_line(text: &str, end: usize) -> Option<usize> {
     (remark.is_empty() || remark.starts_with('#')).then_some(end + rest.trim_end_matches('\r').len())
 }
 
-fn replace(text: &str, path: &str, value: &str) -> Option<String> {
+fn replace(text: &str, path: &str, value: &str, remark: &str) -> Option<String> {
     let (_, old) = lookup(text, path)?;
     let (end, remark) = match rest_of_line(text, old.end) {
-        Some(end) => (end, REMARK),
+        Some(end) => (end, remark),
         None => (old.end, ""),
     };
     Some(format!("{}{value}{remark}{}", &text[..old.start], &text[end..]))
@@ -211,9 +217,9 @@ fn without(text: &str, path: &str) -> Option<String> {
 }
 
 /// As the first key of a section that is there.
-fn insert(text: &str, section: &str, name: &str, value: &str) -> Option<String> {
+fn insert(text: &str, section: &str, name: &str, value: &str, remark: &str) -> Option<String> {
     if section.is_empty() {
-        return Some(format!("{name} = {value}{REMARK}\n{text}"));
+        return Some(format!("{name} = {value}{remark}\n{text}"));
     }
     let table = DeTable::parse(text).ok()?;
     let (header, inside) = table_at(table.get_ref(), section)?;
@@ -224,7 +230,7 @@ fn insert(text: &str, section: &str, name: &str, value: &str) -> Option<String> 
     }
     let at = text[header.end..].find('\n').map_or(text.len(), |newline| header.end + newline + 1);
     let newline = if text[..at].ends_with('\n') { "" } else { "\n" };
-    Some(format!("{}{newline}{name} = {value}{REMARK}\n{}", &text[..at], &text[at..]))
+    Some(format!("{}{newline}{name} = {value}{remark}\n{}", &text[..at], &text[at..]))
 }
 
 #[cfg(test)]

@@ -24,7 +24,7 @@ mod spelling;
 mod surroundings;
 mod unknown;
 
-pub use change::{Refused, change, full_key, value};
+pub use change::{Refused, change, change_noting, full_key, value};
 pub use drive_train::{DriveTrain, Encoder};
 pub use motion::Profile;
 pub use notes::Source;

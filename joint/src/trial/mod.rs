@@ -29,7 +29,7 @@ mod schema;
 mod sender;
 mod sight;
 pub mod suite;
-mod surroundings;
+pub mod surroundings;
 mod terminal;
 mod trace;
 pub mod values;

@@ -1,0 +1,56 @@
+//! What `joint identify` may be asked for on the command line. What it means for a log is `plan`'s and `log`'s business.
+
+use std::path::PathBuf;
+
+/// Arguments of `joint identify`.
+#[derive(Debug, Clone, clap::Args)]
+#[command(after_help = "LOG is a CSV file whose first line names the columns:
+  time_s, motor_counts, output_counts, motor_torque_N_m and, if it was measured, output_torque_N_m
+(time_ms or time_us, motor_angle_rad and output_angle_rad are understood too).
+
+Examples:
+  joint identify my_log.csv --joint my_joint.toml --motor-bits 14 --output-bits 18
+  joint identify virtual.csv --joint q1 --simulate --seed 7    makes a log on the f64 reference, without hardware
+  joint identify virtual.csv --joint q1                        and what is found in it
+
+Exit code: 0 if something could be identified, 2 for bad input or a log that cannot tell, 130 after Ctrl-C.")]
+pub struct Arguments {
+    /// Recorded reversal test; with --simulate the file that is to be written
+    #[arg(value_name = "LOG")]
+    pub log: PathBuf,
+    /// Joint file (TOML) or preset that gives teeth, levers and inertias, and that is patched
+    #[arg(long, value_name = "FILE", default_value = "q1")]
+    pub joint: PathBuf,
+    /// Changes a value of the joint file first, such as link_inertia_kg_m2=0.2; may be repeated
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// Resolution of the motor encoder: 2^BITS counts a turn [default: as in the joint file]
+    #[arg(long, value_name = "BITS", value_parser = clap::value_parser!(u32).range(8..=30))]
+    pub motor_bits: Option<u32>,
+    /// Resolution of the output encoder [default: as in the joint file]
+    #[arg(long, value_name = "BITS", value_parser = clap::value_parser!(u32).range(8..=30))]
+    pub output_bits: Option<u32>,
+    /// How wrong the motor's torque may be, in percent of it [default: torque_constant_error_ratio of the joint file]
+    #[arg(long, value_name = "PERCENT", value_parser = percent)]
+    pub torque_error: Option<f64>,
+    /// Writes LOG instead of reading it: the recommended test, done by the f64 reference of the joint file
+    #[arg(long)]
+    pub simulate: bool,
+    /// Seed of a simulated test's noise and encoder phases
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "simulate")]
+    pub seed: u64,
+    /// Has a simulated test record the torque at the output too
+    #[arg(long, requires = "simulate")]
+    pub with_output_torque: bool,
+    /// Folder for report.html, joint.toml and findings.json [default: target/identify/<joint>]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Writes the findings as JSON to this file too
+    #[arg(long, value_name = "OUT")]
+    pub json: Option<PathBuf>,
+}
+
+fn percent(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| "write a number of percent".to_owned())?;
+    if (0.0..=50.0).contains(&value) { Ok(value) } else { Err("must be from 0 to 50 percent".to_owned()) }
+}

@@ -1,0 +1,37 @@
+//! A value with half of its 95 % interval, out of a solution. What a value means is the findings' business.
+
+use nalgebra::DVector;
+
+use super::regression::Solution;
+
+/// A value and half of its interval.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Estimate {
+    pub value: f64,
+    pub half: f64,
+}
+
+impl Estimate {
+    /// An unknown of a solution.
+    pub fn of(solution: &Solution, unknown: usize) -> Self {
+        Self { value: solution.values[unknown], half: solution.reach * solution.deviation(unknown) }
+    }
+
+    /// Any smooth function of a solution, by its slopes.
+    pub fn from(solution: &Solution, value: f64, slopes: &[(usize, f64)]) -> Self {
+        let mut slope = DVector::zeros(solution.values.len());
+        slopes.iter().for_each(|(unknown, by)| slope[*unknown] = *by);
+        let variance = (slope.transpose() * &solution.covariance * &slope)[(0, 0)];
+        Self { value, half: solution.reach * variance.max(0.0).sqrt() }
+    }
+
+    /// With a systematic part beside the scatter.
+    pub fn wider_by(self, systematic: f64) -> Self {
+        Self { half: self.half + systematic.abs(), ..self }
+    }
+
+    /// In another unit.
+    pub fn times(self, factor: f64) -> Self {
+        Self { value: self.value * factor, half: self.half * factor.abs() }
+    }
+}

@@ -1,0 +1,64 @@
+//! What brakes: the link's balance of torque gives dry and viscous friction where it moves, and with a torque measured
+//! at the output the motor's own balance too. Friction at rest is left out.
+
+use super::plan::Plan;
+use super::regression::{Equations, Solution};
+use super::rows::{Row, Rows};
+use super::twist::STRETCH;
+
+/// Unknowns of the link's balance by their place, behind its inertia: dry friction [N m].
+pub const DRY: usize = 1;
+/// Viscous friction [N m s/rad].
+pub const VISCOUS: usize = 2;
+/// Dry, viscous: places in the motor's balance.
+pub const MOTOR_DRY: usize = 0;
+/// Viscous friction at the motor [N m s/rad].
+pub const MOTOR_VISCOUS: usize = 1;
+/// By which the motor's true torque exceeds the logged one, as a ratio.
+pub const TORQUE_ERROR: usize = 2;
+
+/// Below this speed dry friction is not what it is at speed [rad/s]; more if the joint file's Stribeck speed is high.
+const SLOWEST: f64 = 0.1;
+/// Stribeck speeds after which the rise at rest is forgotten.
+const STRIBECK_SPEEDS: f64 = 5.0;
+/// Share of the largest torque within which an offset of the torque is expected.
+const BIAS: f64 = 0.02;
+
+/// Balance of the link, with a motor torque that exceeds the logged one by a ratio and a motor of this dry friction, if
+/// no torque was measured behind them.
+pub fn of_the_link(rows: &Rows, plan: &Plan, torque_error: f64, motor_dry: f64) -> Option<Solution> {
+    let slowest = SLOWEST.max(STRIBECK_SPEEDS * plan.train.load_stribeck_speed);
+    let mut equations = Equations::default();
+    for row in rows.carrying().filter(|row| row.output_speed.abs() > slowest && row.direction != 0.0) {
+        let coefficients = vec![
+            row.output_acceleration,
+            row.output_speed.signum(),
+            row.output_speed,
+            row.output.sin(),
+            row.output.cos(),
+            1.0,
+        ];
+        let from_motor = row.drive + torque_error * row.push - row.leverage * row.direction * motor_dry;
+        let torque = row.measured.unwrap_or(from_motor);
+        equations.push(coefficients, torque, stretch(row));
+    }
+    let weight = rows.greatest;
+    equations.solve(&[f64::INFINITY, f64::INFINITY, f64::INFINITY, weight, weight, BIAS * weight])
+}
+
+/// Balance of the motor against the measured output torque.
+pub fn of_the_motor(rows: &Rows, plan: &Plan) -> Option<Solution> {
+    let mut equations = Equations::default();
+    for row in rows.carrying().filter(|row| row.direction != 0.0) {
+        let Some(measured) = row.measured else { continue };
+        // What the joint file says of the viscous part was taken off before.
+        let known = plan.train.motor_viscous_friction * row.motor_speed;
+        let left = (row.drive - measured) / row.leverage + known;
+        equations.push(vec![row.direction, row.motor_speed, -row.push / row.leverage, 1.0], left, stretch(row));
+    }
+    equations.solve(&[f64::INFINITY, f64::INFINITY, plan.torque_error.max(1e-9), BIAS * rows.greatest / plan.ratio()])
+}
+
+fn stretch(row: &Row) -> usize {
+    (row.time / STRETCH) as usize
+}

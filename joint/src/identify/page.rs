@@ -1,0 +1,88 @@
+//! The findings as one HTML page that needs neither network nor scripts, in the style of the other reports. Figures are
+//! made elsewhere; this puts them in order.
+
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use super::findings::Finding;
+use super::table::number;
+use crate::report::plot::Figure;
+use crate::report::plot::ink;
+
+const STYLE: &str = include_str!("../report/style.css");
+
+/// What the page shows.
+pub struct Content<'a> {
+    /// Name of the joint.
+    pub joint: &'a str,
+    /// Name of the log.
+    pub log: &'a str,
+    /// How long it is [s].
+    pub duration: f64,
+    /// Changes of the carrying flank in it.
+    pub crossings: usize,
+    /// What was found.
+    pub findings: &'a [Finding],
+    /// What the joint file says for a finding.
+    pub stated: &'a dyn Fn(&Finding) -> Option<String>,
+    /// The pictures, first the most telling.
+    pub figures: &'a [Figure],
+    /// What the numbers rest on.
+    pub assumptions: &'a [String],
+}
+
+/// The whole page.
+pub fn render(content: &Content<'_>) -> String {
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="color-scheme" content="light dark";
+                title { "Joint " (content.joint) " identified" }
+                style { (PreEscaped(ink::style_sheet(":root"))) (PreEscaped(STYLE)) }
+            }
+            body { main {
+                header {
+                    div.title { h1 { "Joint " (content.joint) " identified" } }
+                    p.subtitle {
+                        (content.log) " · " (format!("{:.2} s", content.duration)) " · " (content.crossings)
+                        " crossings of the gap"
+                    }
+                }
+                section { h2 { "What was found" } (table(content)) }
+                section {
+                    h2 { "How it fits" }
+                    @for figure in content.figures { figure { (PreEscaped(figure.to_svg())) } }
+                }
+                section {
+                    h2 { "What it rests on" }
+                    ul { @for assumption in content.assumptions { li { (assumption) } } }
+                }
+                footer { "joint " (env!("CARGO_PKG_VERSION")) }
+            } }
+        }
+    };
+    page.into_string()
+}
+
+fn table(content: &Content<'_>) -> Markup {
+    html! {
+        table {
+            thead { tr {
+                th { "Parameter" } th.number { "found" } th.number { "95 % interval" } th { "unit" }
+                th.number { "joint file" } th { "note" }
+            } }
+            tbody { @for finding in content.findings { tr {
+                td { (finding.name) }
+                td.number { (finding.value.map_or_else(|| "–".into(), number)) }
+                td.number {
+                    (finding.interval.map_or_else(|| "–".into(), |[low, high]| format!("{} … {}", number(low), number(high))))
+                }
+                td { (finding.unit) }
+                td.number { ((content.stated)(finding).unwrap_or_else(|| "–".into())) }
+                td { (finding.note) }
+            } } }
+        }
+    }
+}

@@ -1,0 +1,173 @@
+//! Moments of a log at which one flank carries torque, with everything that the fits need, smoothed alike. A moment near
+//! a change of flank, or with a motor whose direction cannot be told, is left out.
+
+use super::kernel::Kernel;
+use super::log::Log;
+use super::plan::Plan;
+
+/// Box of the kernel is at most this long [s], and a sixth of the swing's period.
+const BOX: f64 = 1e-3;
+const SWING_PARTS: f64 = 6.0;
+/// What a torque may still be on its way, from command to air gap [s].
+const LAG: f64 = 1.5e-3;
+/// A flank carries when the torque on it is more than this share of the largest...
+const CARRYING_SHARE: f64 = 0.03;
+/// ... and more than this many times what friction may feign.
+const OVER_FRICTION: f64 = 1.5;
+/// A slow motor's direction is told from this long to either side [s]...
+const SLOW: f64 = 0.05;
+/// ... if it moves by more than so many counts in every quarter of that.
+const SLOW_COUNTS: f64 = 2.0;
+/// Steps of a swing between looks at a motor's direction.
+const SWING_STEPS: f64 = 6.0;
+/// Counts that an encoder may be off by, from one reading to another.
+const QUICK_COUNTS: f64 = 1.01;
+
+/// One moment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Row {
+    /// Its sample.
+    pub sample: usize,
+    /// [s].
+    pub time: f64,
+    /// Motor over ratio less output [rad].
+    pub twist: f64,
+    /// Its rate, but for what errors of encoders and teeth have in it [rad/s].
+    pub wind_rate: f64,
+    /// Motor angle [rad] and speed [rad/s].
+    pub motor: f64,
+    /// [rad/s].
+    pub motor_speed: f64,
+    /// [rad].
+    pub output: f64,
+    /// [rad/s].
+    pub output_speed: f64,
+    /// [rad/s^2].
+    pub output_acceleration: f64,
+    /// Motor torque less what accelerates the motor, at the output after the gears' losses [N m].
+    pub drive: f64,
+    /// Output over motor torque: ratio, after the gears' losses.
+    pub leverage: f64,
+    /// Motor torque alone, likewise at the output [N m].
+    pub push: f64,
+    /// Rate of the motor torque, at the output [N m/s].
+    pub drive_rate: f64,
+    /// Measured at the output, if it was [N m].
+    pub measured: Option<f64>,
+    /// Which way the motor turns: -1, 1, or 0 if that cannot be told.
+    pub direction: f64,
+    /// Flank that carries: 1 when the motor drives forwards, -1, or 0 near a change and in the gap.
+    pub side: f64,
+}
+
+/// The moments of a log, evenly spaced.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rows {
+    /// All of them, settled or not.
+    pub all: Vec<Row>,
+    /// Kernel that smoothed them.
+    pub kernel: Kernel,
+    /// Largest torque at the output, but for the highest twentieth [N m].
+    pub greatest: f64,
+    /// Changes from one carrying flank to the other.
+    pub crossings: usize,
+}
+
+impl Rows {
+    /// With a box of the kernel that follows the swing of the compliance.
+    pub fn quick(log: &Log, plan: &Plan) -> Self {
+        Self::new(log, plan, BOX.min(plan.swing() / SWING_PARTS))
+    }
+
+    /// With a box of a length [s].
+    pub fn new(log: &Log, plan: &Plan, length: f64) -> Self {
+        let samples = ((length / log.period).round() as usize).clamp(2, log.time.len() / 50);
+        let kernel = Kernel::new(samples, log.period);
+        let half = kernel.half();
+        let end = log.time.len().saturating_sub(half);
+        let mut all: Vec<Row> = (half..end).step_by(samples).map(|sample| row(log, plan, &kernel, sample)).collect();
+        let mut torques: Vec<f64> = all.iter().map(|row| row.torque().abs()).collect();
+        torques.sort_by(f64::total_cmp);
+        let greatest = torques.get(torques.len() * 19 / 20).copied().unwrap_or_default();
+        let friction = plan.ratio() * plan.train.motor_coulomb_friction;
+        let carrying = (CARRYING_SHARE * greatest).max(OVER_FRICTION * friction);
+        let guard = ((half as f64 + LAG / log.period) / samples as f64).ceil() as usize;
+        let sides: Vec<f64> =
+            all.iter().map(|row| if row.torque().abs() > carrying { row.torque().signum() } else { 0.0 }).collect();
+        for (index, row) in all.iter_mut().enumerate() {
+            let around = &sides[index.saturating_sub(guard)..(index + guard + 1).min(sides.len())];
+            row.side = if around.iter().all(|side| *side == sides[index]) { sides[index] } else { 0.0 };
+        }
+        let carried: Vec<f64> = all.iter().map(|row| row.side).filter(|side| *side != 0.0).collect();
+        let crossings = carried.windows(2).filter(|pair| pair[0] != pair[1]).count();
+        Self { all, kernel, greatest, crossings }
+    }
+
+    /// Moments at which a flank carries.
+    pub fn carrying(&self) -> impl Iterator<Item = &Row> {
+        self.all.iter().filter(|row| row.side != 0.0)
+    }
+}
+
+impl Row {
+    /// Torque from joint to link as far as it is known before any fit [N m].
+    pub fn torque(&self) -> f64 {
+        self.measured.unwrap_or(self.drive)
+    }
+}
+
+fn row(log: &Log, plan: &Plan, kernel: &Kernel, sample: usize) -> Row {
+    let smooth = |signal: &[f64], order: usize| {
+        // Differences to the middle keep their digits after many turns.
+        let middle = if order == 0 { signal[sample] } else { 0.0 };
+        middle + kernel.at(|place| signal[place] - middle, sample, order)
+    };
+    let [motor_speed, output_speed] = [&log.motor, &log.output].map(|angle| smooth(angle, 1));
+    let torque = smooth(&log.torque, 0);
+    let net = torque - plan.motor_inertia * smooth(&log.motor, 2) - plan.train.motor_viscous_friction * motor_speed;
+    let direction = direction(log, plan, kernel, sample);
+    // Losses that grow with the load: the link gets less than a driving motor gives, and more has to be braked.
+    let efficiency = plan.train.efficiency;
+    let leverage = plan.ratio()
+        * match net * direction {
+            power if power > 0.0 => efficiency,
+            power if power < 0.0 => 1.0 / efficiency,
+            _ => 1.0,
+        };
+    Row {
+        sample,
+        time: log.time[sample],
+        twist: smooth(&log.twist, 0),
+        wind_rate: smooth(&log.carried, 1) / plan.ratio() - output_speed,
+        motor: smooth(&log.motor, 0),
+        motor_speed,
+        output: smooth(&log.output, 0),
+        output_speed,
+        output_acceleration: smooth(&log.output, 2),
+        drive: leverage * net,
+        leverage,
+        push: leverage * torque,
+        drive_rate: leverage * smooth(&log.torque, 1),
+        measured: log.output_torque.as_ref().map(|torque| smooth(torque, 0)),
+        direction,
+        side: 0.0,
+    }
+}
+
+/// The way that the motor turns all the time: over the kernel's length in steps that no swing hides in, or over a longer
+/// time if it is too slow for those.
+fn direction(log: &Log, plan: &Plan, kernel: &Kernel, sample: usize) -> f64 {
+    let count = std::f64::consts::TAU / f64::from(1_u32 << plan.motor_bits);
+    let turns = |half: usize, step: usize, way: f64, least: f64| {
+        let places = (sample.saturating_sub(half)..=(sample + half).min(log.motor.len() - 1)).step_by(step.max(1));
+        let mut pairs = places.clone().zip(places.skip(1));
+        pairs.all(|(before, after)| way * (log.motor[after] - log.motor[before]) > least * count)
+    };
+    let step = (plan.swing() / SWING_STEPS / log.period) as usize;
+    let (quick, slow) = (kernel.half(), (SLOW / log.period) as usize);
+    let sure = |way: &f64| {
+        turns(quick, step, *way, QUICK_COUNTS)
+            || (turns(slow, slow / 2, *way, SLOW_COUNTS) && turns(quick, step, *way, -QUICK_COUNTS))
+    };
+    [1.0, -1.0].into_iter().find(sure).unwrap_or(0.0)
+}

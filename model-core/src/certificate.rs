@@ -75,7 +75,7 @@ pub struct Instructions {
     pub holding: u32,
     /// In parts that see no crossing.
     pub losing: u32,
-    /// An exponential tick is given up, then every mesh crosses once.
+    /// Every mesh crosses in two sub-steps, or in one after an exponential tick was given up; or touches in every leap.
     pub all_crossing: u32,
     /// Every mesh crosses its gap in every part: no state of a search through a million takes more.
     pub bound: u32,

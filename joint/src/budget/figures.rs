@@ -41,7 +41,7 @@ pub struct Figures {
     pub holding: Work,
     /// In parts, none of which sees a crossing.
     pub losing: Work,
-    /// Every mesh crosses once.
+    /// Every mesh crosses in two sub-steps, or touches in every leap.
     pub all_crossing: Work,
     /// Every mesh crosses in every part.
     pub bound: Work,

@@ -42,7 +42,7 @@ fn work(page: &mut Page, figures: &Figures) {
     };
     page.row("contact holds", of(figures.holding));
     page.row("parts, no crossing", of(figures.losing));
-    page.row("every mesh crosses once", of(figures.all_crossing));
+    page.row("every mesh crosses twice", of(figures.all_crossing));
     page.row("every mesh in every part", of(figures.bound));
     let megahertz = f64::from(figures.clock_Hz) / 1e6;
     page.row("processor", format!("{megahertz:.0} MHz, {:.1} cycles an instruction", figures.cycles_per_instruction));
@@ -69,7 +69,7 @@ fn limits(page: &mut Page, figures: &Figures) {
 }
 
 fn verdict(figures: &Figures) -> String {
-    let fits = "fits: a tick in which every mesh crosses leaves time";
+    let fits = "fits: a tick in which every mesh crosses twice leaves time";
     if figures.bound.part <= figures.share {
         return format!("{fits}, and so does one in which every mesh crosses in every part");
     }

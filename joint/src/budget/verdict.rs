@@ -1,5 +1,5 @@
 //! Whether a board can step a joint at a rate: the rate can be made of its clock, is stable, and leaves time for a tick in
-//! which every mesh crosses. Otherwise the nearest rate that can is found.
+//! which every mesh crosses twice. Otherwise the nearest rate that can is found.
 
 use model_core::design::{Effort, Pace, Processor};
 use model_core::joint::JointParameters;
@@ -35,7 +35,7 @@ fn obstacle(pace: &Pace, processor: &Processor, rate: u32) -> Option<String> {
     let part = processor.part(most, rate);
     (part > processor.share).then(|| {
         format!(
-            "a tick in which every mesh crosses takes {most:.0} instructions, {:.0} % of the period; {:.0} % are the limit",
+            "a tick in which every mesh crosses twice takes {most:.0} instructions, {:.0} % of the period; {:.0} % are the limit",
             100.0 * part,
             100.0 * processor.share
         )

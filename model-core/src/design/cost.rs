@@ -130,12 +130,14 @@ impl Cost {
         }
     }
 
-    /// An exponential tick is given up, and every mesh crosses in one of the sub-steps, or touches its flank in every
-    /// leap; or all cross late in an exponential tick.
+    /// Every mesh crosses in two of the sub-steps (joints that rattle come to that by themselves), or in one after an
+    /// exponential tick was given up, or late in an exponential tick; or touches its flank in every leap.
     pub fn all_crossing(&self, parts: Parts) -> f64 {
         match parts {
-            Parts::Substeps(_) => {
-                (self.given_up + self.losing(parts) + self.all()).max(self.hold + 0.5 * self.substep + self.all())
+            Parts::Substeps(substeps) => {
+                let twice = self.losing(parts) + f64::from(substeps.min(2)) * self.all();
+                let late = self.hold + 0.5 * self.substep + self.all();
+                twice.max(self.given_up + self.losing(parts) + self.all()).max(late)
             }
             Parts::Leaps(leaps) => self.leaping.given_up + self.losing(parts) + f64::from(leaps) * self.meshes * TOUCH,
         }
@@ -145,20 +147,17 @@ impl Cost {
     /// search takes.
     pub fn bound(&self, parts: Parts) -> f64 {
         let count = f64::from(parts.count().max(1));
-        let again = match parts {
-            Parts::Substeps(_) => (count - 1.0) * self.all() + count * self.meshes * LEAP,
-            Parts::Leaps(_) => count * self.meshes * NO_NUMBER,
-        };
-        self.all_crossing(parts) + again
+        match parts {
+            Parts::Substeps(_) => self.given_up + self.losing(parts) + count * (self.all() + self.meshes * LEAP),
+            Parts::Leaps(_) => self.all_crossing(parts) + count * self.meshes * NO_NUMBER,
+        }
     }
 
-    /// The most sub-steps with which `all_crossing` stays within so many instructions; zero if not even one does.
-    pub fn affordable(&self, instructions: f64) -> u32 {
-        if self.all_crossing(Parts::Substeps(1)) > instructions {
-            return 0;
-        }
-        let rest = instructions - self.given_up - self.fixed - self.all();
-        libm::floor(rest / self.substep).max(1.0) as u32
+    /// The most sub-steps, of so many, with which `all_crossing` stays within so many instructions; zero if not even one
+    /// does.
+    pub fn affordable(&self, instructions: f64, most: u32) -> u32 {
+        let fits = |substeps: &u32| self.all_crossing(Parts::Substeps(*substeps)) <= instructions;
+        (1..=most).take_while(fits).last().unwrap_or(0)
     }
 
     fn all(&self) -> f64 {

@@ -97,7 +97,7 @@ impl Pace {
         let accurate = libm::ceil(self.fastest / (rate * GOOD_PHASE))
             .min(USUAL_SUBSTEPS)
             .max(libm::ceil(self.mesh_frequency / (rate * EXCITATION_PHASE))) as u32;
-        let within = |processor: Processor| self.cost.affordable(processor.affordable(tick_rate));
+        let within = |processor: Processor| self.cost.affordable(processor.affordable(tick_rate), MOST_SUBSTEPS as u32);
         let affordable = match effort {
             Effort::Accurate | Effort::Substeps(_) | Effort::Leaps(_) => MOST_SUBSTEPS as u32,
             Effort::Board => within(Processor::STM32F405),

@@ -48,7 +48,7 @@ fn source<const N: usize>(
          /// Name of the joint.\n\
          pub const JOINT_NAME: &str = {name:?};\n\
          /// What is promised: error in nine motions of ten {holding:.1e} while contact holds and {losing:.1e} while it\n\
-         /// is lost; {most} instructions when every mesh crosses; {bytes} bytes of tables.\n\
+         /// is lost; {most} instructions when every mesh crosses twice; {bytes} bytes of tables.\n\
          pub const CERTIFICATE: Certificate = {certificate:#?};\n\
          /// Tables of the joint.\n\
          pub static TABLES: Tables<f32, {N}> = {tables:#?};\n"

@@ -1,7 +1,11 @@
-//! What the command prints: results on standard output, remarks on standard error. A reader that has gone away is no
+//! What the command gives out: results on standard output or in a file, remarks on standard error. A reader that has gone away is no
 //! error; progress lines are made elsewhere.
 
+use std::fs;
 use std::io::{self, Write};
+use std::path::Path;
+
+use serde::Serialize;
 
 use crate::failure::{Failure, Outcome};
 
@@ -14,6 +18,29 @@ pub fn print(text: &str) -> Outcome<()> {
         }
         _ => Ok(()),
     }
+}
+
+/// A record as JSON for people and programs; `what` names it if that cannot be.
+pub fn json(what: &str, record: &impl Serialize) -> Outcome<String> {
+    serde_json::to_string_pretty(record)
+        .map(|json| json + "\n")
+        .map_err(|error| Failure::new(format!("the {what} cannot be written as JSON: {error}")))
+}
+
+/// Gives out figures: as text on standard output, and as JSON in the file that is asked for; "-" is standard output, in
+/// place of the text.
+pub fn deliver(figures: &impl Serialize, text: &str, wanted: Option<&Path>) -> Outcome<()> {
+    if let Some(path) = wanted {
+        let json = json("figures", figures)?;
+        if path.as_os_str() == "-" {
+            return print(&json);
+        }
+        fs::write(path, json).map_err(|error| {
+            Failure::new(format!("cannot write {}: {error}", path.display()))
+                .with_help("name a file in a folder that exists and can be written to")
+        })?;
+    }
+    print(text)
 }
 
 /// Prints a remark on standard error, as far as anyone listens.

@@ -7,7 +7,7 @@ use std::path::Path;
 use super::{Figures, Origin, pictures, table};
 use crate::failure::{Failure, Outcome};
 use crate::hil::origin as run_origin;
-use crate::report::plot::ink;
+use crate::report::shell::standalone;
 use crate::target::emulator::MACHINE;
 use crate::target::image::PROFILE;
 use crate::target::toolchain::Toolchain;
@@ -42,7 +42,7 @@ pub fn update(path: &Path, figures: &Figures) -> Outcome<()> {
     for case in &figures.cases {
         let Some(figure) = pictures::board(case, &figures.methods) else { continue };
         let name = format!("error-by-cost-{}.svg", case.key.to_lowercase());
-        fs::write(path.with_file_name(&name), alone(&figure.to_svg())).map_err(failed)?;
+        fs::write(path.with_file_name(&name), standalone(&figure.to_svg())).map_err(failed)?;
         pictured += &format!("\n![Case {}: error by instructions]({name})\n", case.key);
     }
     let section = format!("{BEGIN}\n\n{}{pictured}\n{END}", table::layout(figures, table::Detail::Conclusions));
@@ -51,15 +51,4 @@ pub fn update(path: &Path, figures: &Figures) -> Outcome<()> {
         _ => format!("{}\n\n## Error against cost\n\n{section}\n", before.trim_end()),
     };
     fs::write(path, after).map_err(failed)
-}
-
-/// A picture that stands by itself: with its colours and a ground for a light and for a dark page.
-fn alone(svg: &str) -> String {
-    let grounds = "svg{font-family:system-ui,sans-serif;background:#fff}\n\
-                   @media screen and (prefers-color-scheme:dark){svg{background:#12171e}}\n";
-    let style = format!("\n<style>\n{}{grounds}</style>", ink::style_sheet("svg"));
-    match svg.find('>') {
-        Some(end) => format!("{}{style}{}", &svg[..=end], &svg[end + 1..]),
-        None => svg.to_owned(),
-    }
 }

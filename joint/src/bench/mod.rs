@@ -112,12 +112,11 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
         document::update(path, &figures)?;
     }
     let Some(path) = &arguments.json else { return output::print(&table::layout(&figures, table::Detail::Steps)) };
-    let json = serde_json::to_string_pretty(&figures)
-        .map_err(|error| Failure::new(format!("the figures cannot be written as JSON: {error}")))?;
+    let json = output::json("figures", &figures)?;
     if path.as_os_str() == "-" {
-        return output::print(&(json + "\n"));
+        return output::print(&json);
     }
-    write(path, &(json + "\n"))?;
+    write(path, &json)?;
     output::print(&table::layout(&figures, table::Detail::Steps))
 }
 

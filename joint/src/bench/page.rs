@@ -1,47 +1,33 @@
 //! The comparison as one HTML page that needs neither network nor scripts, in the style of the run reports. Figures are
 //! made elsewhere; this puts them in order.
 
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Markup, PreEscaped, html};
 
 use super::Figures;
 use super::lineup::CaseFigures;
 use super::verdicts::{AtError, LEVELS};
 use super::{pictures, table};
 use crate::report::plot::Figure;
-use crate::report::plot::ink;
-
-const STYLE: &str = include_str!("../report/style.css");
+use crate::report::shell::page;
 
 /// The whole page.
 pub fn render(figures: &Figures) -> String {
-    let page = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta name="color-scheme" content="light dark";
-                title { "Error against cost" }
-                style { (PreEscaped(ink::style_sheet(":root"))) (PreEscaped(STYLE)) }
+    let body = html! {
+        header {
+            div.title { h1 { "Error against cost" } }
+            p.subtitle {
+                "This step beside the methods that people use · instructions counted on the "
+                strong { "EMULATED" } " Cortex-M4F · error is the worst over phases of the excitation"
             }
-            body { main {
-                header {
-                    div.title { h1 { "Error against cost" } }
-                    p.subtitle {
-                        "This step beside the methods that people use · instructions counted on the "
-                        strong { "EMULATED" } " Cortex-M4F · error is the worst over phases of the excitation"
-                    }
-                }
-                @if let Some(reason) = figures.host.as_ref().and_then(|host| host.without_cvode.as_ref()) {
-                    div.notice { strong { "CVODE is not among the libraries: " } (reason) }
-                }
-                @for case in &figures.cases { (section(figures, case)) }
-                (origin(figures))
-                footer { "joint " (env!("CARGO_PKG_VERSION")) }
-            } }
         }
+        @if let Some(reason) = figures.host.as_ref().and_then(|host| host.without_cvode.as_ref()) {
+            div.notice { strong { "CVODE is not among the libraries: " } (reason) }
+        }
+        @for case in &figures.cases { (section(figures, case)) }
+        (origin(figures))
+        footer { "joint " (env!("CARGO_PKG_VERSION")) }
     };
-    page.into_string()
+    page("Error against cost", "", &body)
 }
 
 fn section(figures: &Figures, case: &CaseFigures) -> Markup {

@@ -9,8 +9,7 @@ mod layout;
 mod tests;
 mod verdict;
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use crate::failure::{Failure, Outcome};
 use crate::target::board::Board;
@@ -50,23 +49,5 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
     refuse(parameters, arguments.board, arguments.rate)?;
     let figures = figures(parameters, arguments.board, arguments.rate)
         .map_err(|error| Failure::new(format!("no fixed step for {}: {error}", parameters.name)))?;
-    match &arguments.json {
-        Some(out) if out.as_os_str() == "-" => return output::print(&json(&figures)?),
-        Some(out) => save(&figures, out)?,
-        None => {}
-    }
-    output::print(&layout(&figures))
-}
-
-fn json(figures: &Figures) -> Outcome<String> {
-    serde_json::to_string_pretty(figures)
-        .map(|json| json + "\n")
-        .map_err(|error| Failure::new(format!("the figures cannot be written as JSON: {error}")))
-}
-
-fn save(figures: &Figures, out: &Path) -> Outcome<()> {
-    fs::write(out, json(figures)?).map_err(|error| {
-        Failure::new(format!("cannot write {}: {error}", out.display()))
-            .with_help("name a file in a folder that exists and can be written to")
-    })
+    output::deliver(&figures, &layout(&figures), arguments.json.as_deref())
 }

@@ -6,10 +6,11 @@ use joints::PRESETS;
 use model_core::design::{Effort, Pace, certificate};
 use model_core::joint::JointParameters;
 
+use super::figures;
 use super::layout::layout;
 use super::verdict::{nearest, refuse};
-use super::{figures, json};
 use crate::check;
+use crate::output;
 use crate::target::board::Board;
 
 fn preset(name: &str) -> JointParameters {
@@ -94,7 +95,7 @@ fn errors_fall_with_the_rate_and_the_typical_one_is_the_smaller() {
 #[test]
 fn text_and_json_say_the_same() {
     let figures = figures(&preset("q1"), Board::Stm32f405, 20_000).expect("figures");
-    let (text, json) = (layout(&figures), json(&figures).expect("finite numbers"));
+    let (text, json) = (layout(&figures), output::json("figures", &figures).expect("finite numbers"));
     let instructions = figures.all_crossing.instructions.to_string();
     assert!(text.contains(&instructions) && json.contains(&instructions), "{text}{json}");
     assert!(json.contains("\"schema\": \"joint-budget/1\""), "{json}");

@@ -13,11 +13,10 @@ mod step;
 #[cfg(test)]
 mod tests;
 
-use std::fs;
-use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use crate::failure::{Failure, Outcome};
+use crate::failure::Outcome;
+use crate::output;
 pub use derive::figures;
 pub use figures::Figures;
 pub use layout::{Page, layout};
@@ -41,31 +40,5 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Outcome<()> {
     let loaded = load(&arguments.file)?;
     let figures = figures(&loaded, arguments.rate)?;
-    match &arguments.json {
-        Some(out) if out.as_os_str() == "-" => return print(&json(&figures)?),
-        Some(out) => save(&figures, out)?,
-        None => {}
-    }
-    print(&layout(&figures))
-}
-
-fn json(figures: &Figures) -> Outcome<String> {
-    serde_json::to_string_pretty(figures)
-        .map(|json| json + "\n")
-        .map_err(|error| Failure::new(format!("the figures cannot be written as JSON: {error}")))
-}
-
-fn save(figures: &Figures, out: &Path) -> Outcome<()> {
-    fs::write(out, json(figures)?).map_err(|error| {
-        Failure::new(format!("cannot write {}: {error}", out.display()))
-            .with_help("name a file in a folder that exists and can be written to")
-    })
-}
-
-/// A reader that has gone away is no error.
-fn print(text: &str) -> Outcome<()> {
-    match io::stdout().lock().write_all(text.as_bytes()) {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::new(format!("no output: {error}"))),
-        _ => Ok(()),
-    }
+    output::deliver(&figures, &layout(&figures), arguments.json.as_deref())
 }

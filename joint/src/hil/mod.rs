@@ -35,24 +35,18 @@ use session::Session;
 
 use crate::failure::{Failure, Outcome};
 use crate::record::{RunRecord, Verdict};
-use crate::{interruption, output, report, trial};
+use crate::{output, report, trial};
 
 /// Runs a joint on a board; succeeds only if every check held.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
-    interruption::watch()?;
-    let progress = Progress::new();
-    if trial::suite::is_of_tests(&arguments.file) {
-        let outcome = tests::wanted(arguments).and_then(|wanted| trial::run(&wanted, &progress));
-        progress.clear();
-        return interruption::explain(outcome);
-    }
-    tests::refuse_for_joints(arguments)?;
-    let outcome = run_once(arguments, &progress).and_then(|()| match arguments.check {
-        true => everything::check(arguments.rate, &progress),
-        false => Ok(()),
-    });
-    progress.clear();
-    interruption::explain(outcome)
+    Progress::during(|progress| {
+        if trial::suite::is_of_tests(&arguments.file) {
+            return trial::run(&tests::wanted(arguments)?, progress);
+        }
+        tests::refuse_for_joints(arguments)?;
+        run_once(arguments, progress)?;
+        if arguments.check { everything::check(arguments.rate, progress) } else { Ok(()) }
+    })
 }
 
 fn run_once(arguments: &Arguments, progress: &Progress) -> Outcome<()> {

@@ -6,6 +6,9 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::failure::Outcome;
+use crate::interruption;
+
 /// The line.
 pub struct Progress {
     bar: RefCell<Option<ProgressBar>>,
@@ -21,6 +24,15 @@ impl Progress {
     /// Nothing is shown yet.
     pub fn new() -> Self {
         Self { bar: RefCell::new(None) }
+    }
+
+    /// Work with such a line, which ends when the user wants it to.
+    pub fn during<T>(work: impl FnOnce(&Self) -> Outcome<T>) -> Outcome<T> {
+        interruption::watch()?;
+        let progress = Self::new();
+        let outcome = work(&progress);
+        progress.clear();
+        interruption::explain(outcome)
     }
 
     /// A stage begins whose length is not known.

@@ -37,9 +37,9 @@ use twist::Twist;
 use crate::check::{self, Loaded};
 use crate::failure::{Failure, Outcome};
 use crate::hil::Progress;
+use crate::output;
 use crate::record::write_text;
 use crate::sim::files::Folder;
-use crate::{interruption, output};
 
 /// Box of the kernel for frictions, which need no quick motion but exact accelerations [s].
 const SLOW_BOX: f64 = 4e-3;
@@ -69,11 +69,7 @@ struct Identified {
 
 /// Identifies a joint, or makes a log of one.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
-    interruption::watch()?;
-    let progress = Progress::new();
-    let outcome = run_once(arguments, &progress);
-    progress.clear();
-    interruption::explain(outcome)
+    Progress::during(|progress| run_once(arguments, progress))
 }
 
 fn run_once(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
@@ -112,9 +108,7 @@ fn run_once(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
         assumptions: &assumptions,
         findings,
     };
-    let json = serde_json::to_string_pretty(&record)
-        .map_err(|error| Failure::new(format!("the findings cannot be written as JSON: {error}")))?
-        + "\n";
+    let json = output::json("findings", &record)?;
     let [report, joint] = [folder.file("report.html"), folder.file("joint.toml")];
     write_text(&report, &page)?;
     write_text(&joint, &patched)?;

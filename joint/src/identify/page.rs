@@ -1,14 +1,12 @@
 //! The findings as one HTML page that needs neither network nor scripts, in the style of the other reports. Figures are
 //! made elsewhere; this puts them in order.
 
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Markup, PreEscaped, html};
 
 use super::findings::Finding;
 use super::table::number;
 use crate::report::plot::Figure;
-use crate::report::plot::ink;
-
-const STYLE: &str = include_str!("../report/style.css");
+use crate::report::shell::page;
 
 /// What the page shows.
 pub struct Content<'a> {
@@ -32,38 +30,26 @@ pub struct Content<'a> {
 
 /// The whole page.
 pub fn render(content: &Content<'_>) -> String {
-    let page = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta name="color-scheme" content="light dark";
-                title { "Joint " (content.joint) " identified" }
-                style { (PreEscaped(ink::style_sheet(":root"))) (PreEscaped(STYLE)) }
+    let body = html! {
+        header {
+            div.title { h1 { "Joint " (content.joint) " identified" } }
+            p.subtitle {
+                (content.log) " · " (format!("{:.2} s", content.duration)) " · " (content.crossings)
+                " crossings of the gap"
             }
-            body { main {
-                header {
-                    div.title { h1 { "Joint " (content.joint) " identified" } }
-                    p.subtitle {
-                        (content.log) " · " (format!("{:.2} s", content.duration)) " · " (content.crossings)
-                        " crossings of the gap"
-                    }
-                }
-                section { h2 { "What was found" } (table(content)) }
-                section {
-                    h2 { "How it fits" }
-                    @for figure in content.figures { figure { (PreEscaped(figure.to_svg())) } }
-                }
-                section {
-                    h2 { "What it rests on" }
-                    ul { @for assumption in content.assumptions { li { (assumption) } } }
-                }
-                footer { "joint " (env!("CARGO_PKG_VERSION")) }
-            } }
         }
+        section { h2 { "What was found" } (table(content)) }
+        section {
+            h2 { "How it fits" }
+            @for figure in content.figures { figure { (PreEscaped(figure.to_svg())) } }
+        }
+        section {
+            h2 { "What it rests on" }
+            ul { @for assumption in content.assumptions { li { (assumption) } } }
+        }
+        footer { "joint " (env!("CARGO_PKG_VERSION")) }
     };
-    page.into_string()
+    page(&format!("Joint {} identified", content.joint), "", &body)
 }
 
 fn table(content: &Content<'_>) -> Markup {

@@ -10,7 +10,7 @@ use super::record::{ClassRecord, Reading, StudyRecord};
 use crate::failure::{Failure, Outcome};
 use crate::folder::{self, file_part};
 use crate::record::write_text;
-use crate::report::page::standalone;
+use crate::report::shell::standalone;
 
 /// Where a study's files go.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -43,7 +43,7 @@ impl Files {
         for Picture { name, figure } in all_pictures(record) {
             self.put(&format!("{name}.svg"), &standalone(&figure.to_svg()))?;
         }
-        self.put("report.html", &page::render(record).into_string())?;
+        self.put("report.html", &page::render(record))?;
         Ok(self.folder.join("report.html"))
     }
 

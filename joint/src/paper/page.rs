@@ -2,16 +2,15 @@
 //! figures in the paper's order, diagrams and checks. Sentences are made from the record; `conclusion` has those that
 //! judge.
 
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Markup, PreEscaped, html};
 
 use super::conclusion;
 use super::pictures::{self, Picture};
 use super::record::{AttractorRecord, ClassRecord, Reading, StudyRecord, Sweep};
 use crate::record::Verdict;
-use crate::report::page::STYLE;
-use crate::report::plot::ink;
 use crate::report::plot::unit::figure as number;
 use crate::report::sections::{check_table, tile};
+use crate::report::shell::page;
 
 /// What this page needs beyond the style of all reports.
 const OWN_STYLE: &str = ".trio,.pair{display:grid;gap:4px;margin:0 0 6px}.trio{grid-template-columns:400fr 330fr 380fr}\
@@ -22,40 +21,25 @@ color:var(--muted)}details[open] summary{margin-bottom:10px}details+figure{margi
 @media (max-width:820px){.trio,.pair{grid-template-columns:1fr}}";
 
 /// The whole page.
-pub fn render(record: &StudyRecord) -> Markup {
-    html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta name="color-scheme" content="light dark";
-                title { "Joint " (record.identity.joint) ": backlash and regimes" }
-                style {
-                    (PreEscaped(ink::style_sheet(":root"))) (PreEscaped(STYLE)) (PreEscaped(OWN_STYLE))
-                }
-            }
-            body {
-                main {
-                    (header(record))
-                    (tiles(record))
-                    section { h2 { "What came out" } ul.findings {
-                        @for finding in conclusion::findings(record) { li { strong { (finding.head) " " } (finding.text) } }
-                    } }
-                    @for reading in &record.readings { (attractors(reading)) }
-                    (ingredients(record))
-                    @for reading in &record.readings { (regimes(reading)) }
-                    @for reading in &record.readings { (diagrams(reading)) }
-                    (checks(record))
-                    (identity(record))
-                    footer {
-                        "joint " (record.identity.host_version) " · schema version " (record.schema_version)
-                        " · every value of this page is in study.json, CSV and SVG files beside it"
-                    }
-                }
-            }
+pub fn render(record: &StudyRecord) -> String {
+    let body = html! {
+        (header(record))
+        (tiles(record))
+        section { h2 { "What came out" } ul.findings {
+            @for finding in conclusion::findings(record) { li { strong { (finding.head) " " } (finding.text) } }
+        } }
+        @for reading in &record.readings { (attractors(reading)) }
+        (ingredients(record))
+        @for reading in &record.readings { (regimes(reading)) }
+        @for reading in &record.readings { (diagrams(reading)) }
+        (checks(record))
+        (identity(record))
+        footer {
+            "joint " (record.identity.host_version) " · schema version " (record.schema_version)
+            " · every value of this page is in study.json, CSV and SVG files beside it"
         }
-    }
+    };
+    page(&format!("Joint {}: backlash and regimes", record.identity.joint), OWN_STYLE, &body)
 }
 
 /// b in micrometres, without the noise of the way to metres and back.

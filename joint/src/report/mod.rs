@@ -7,6 +7,7 @@ mod origin;
 pub(crate) mod page;
 pub(crate) mod plot;
 pub(crate) mod sections;
+pub(crate) mod shell;
 mod timing;
 
 pub use close_up::crossing;
@@ -20,7 +21,7 @@ use crate::record::{RunRecord, write_text};
 
 /// The report as one HTML page that needs neither network nor scripts.
 pub fn render(record: &RunRecord) -> String {
-    page::render(record).into_string()
+    page::render(record)
 }
 
 /// Writes the record as JSON and then the report as HTML; the JSON, which holds everything, is there first.
@@ -35,7 +36,7 @@ pub fn write(record: &RunRecord, json: Option<&Path>, html: Option<&Path>) -> Ou
 pub fn picture(record: &RunRecord) -> Option<String> {
     let view = close_up::view(record)?;
     let note = origin::in_one_line(record);
-    Some(page::standalone(&Figure { note, ..close_up::figure(&view) }.to_svg()))
+    Some(shell::standalone(&Figure { note, ..close_up::figure(&view) }.to_svg()))
 }
 
 /// Writes [`picture`] to a file.

@@ -1,65 +1,36 @@
 //! The page: head, verdict, notices and the order of the sections. What stands in a section is in
 //! `sections` and `origin`.
 
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Markup, html};
 
-use super::plot::ink;
 use super::plot::unit::figure as number;
+use super::shell::page;
 use super::{origin, sections};
 use crate::record::{Completeness, RunRecord, Verdict};
 
-pub(crate) const STYLE: &str = include_str!("style.css");
-
 /// The whole page.
-pub fn render(record: &RunRecord) -> Markup {
+pub fn render(record: &RunRecord) -> String {
     let identity = &record.identity;
-    html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta name="color-scheme" content="light dark";
-                title { "Joint " (identity.joint) ": " (verdict(record).1) }
-                style { (PreEscaped(ink::style_sheet(":root"))) (PreEscaped(STYLE)) }
-            }
-            body {
-                main {
-                    (header(record))
-                    (notices(record))
-                    (sections::tiles(record))
-                    (sections::checks(record))
-                    (sections::motion(record))
-                    (sections::timing(record))
-                    (origin::identity(record))
-                    (origin::log(record))
-                    footer {
-                        "joint " (identity.host_version) " · schema version " (record.schema_version)
-                        " · every value of this page is in the JSON file of the same run"
-                    }
-                }
-            }
+    let body = html! {
+        (header(record))
+        (notices(record))
+        (sections::tiles(record))
+        (sections::checks(record))
+        (sections::motion(record))
+        (sections::timing(record))
+        (origin::identity(record))
+        (origin::log(record))
+        footer {
+            "joint " (identity.host_version) " · schema version " (record.schema_version)
+            " · every value of this page is in the JSON file of the same run"
         }
-    }
+    };
+    page(&format!("Joint {}: {}", identity.joint, verdict(record).1), "", &body)
 }
 
 /// The mark on everything that an emulator measured.
 pub fn emulated(record: &RunRecord) -> Markup {
     html! { @if record.identity.emulated { " " span.emulated { "EMULATED" } } }
-}
-
-/// A picture as a file of its own.
-pub fn standalone(svg: &str) -> String {
-    let style = format!(
-        "<style>\n{}svg{{font-family:system-ui,sans-serif;background:#fff}}\n\
-         @media screen and (prefers-color-scheme:dark){{svg{{background:#12171e}}}}\n\
-         rect{{shape-rendering:crispEdges}}polyline{{stroke-linejoin:round}}\n</style>\n",
-        ink::style_sheet("svg")
-    );
-    match svg.split_once('\n') {
-        Some((open, rest)) => format!("{open}\n{style}{rest}"),
-        None => svg.to_owned(),
-    }
 }
 
 /// Style class and word for the outcome.

@@ -54,11 +54,7 @@ const PROGRESS: u32 = 1024;
 
 /// Simulates a joint.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
-    interruption::watch()?;
-    let progress = Progress::new();
-    let outcome = run_once(arguments, &progress);
-    progress.clear();
-    interruption::explain(outcome)
+    Progress::during(|progress| run_once(arguments, progress))
 }
 
 /// What a run has gathered.
@@ -119,7 +115,7 @@ fn run_once(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
     });
     let report = folder.file("report.html");
     write_text(&report, &page)?;
-    let json = json(&figures)?;
+    let json = output::json("figures", &figures)?;
     write_text(&folder.file("figures.json"), &json)?;
     if let Some(path) = arguments.json.as_ref().filter(|path| path.as_os_str() != "-") {
         write_text(path, &json)?;
@@ -207,12 +203,6 @@ fn remarks(arguments: &Arguments, plan: &Plan, scheme: SchemeName) -> BTreeMap<S
     ]
     .map(|(name, value)| (name.to_owned(), value))
     .into()
-}
-
-fn json(figures: &Figures) -> Outcome<String> {
-    serde_json::to_string_pretty(figures)
-        .map(|json| json + "\n")
-        .map_err(|error| Failure::new(format!("the figures cannot be written as JSON: {error}")))
 }
 
 /// The command that makes this run again.

@@ -1,7 +1,7 @@
 //! The report of a simulation: one HTML page that needs neither network nor scripts, in the style of the run reports.
 //! Pictures come from `pictures`, `portraits` and `judgement`, figures from `figures`.
 
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Markup, PreEscaped, html};
 
 use super::comparison::Comparison;
 use super::energy::Entry;
@@ -15,10 +15,8 @@ use super::scheme::SchemeName;
 use super::spectrum::Spectrum;
 use super::statistics::Point;
 use crate::report::plot::Figure;
-use crate::report::plot::ink;
 use crate::report::plot::unit::figure as number;
-
-const STYLE: &str = include_str!("../report/style.css");
+use crate::report::shell::page;
 
 /// What the page shows.
 pub struct Content<'a> {
@@ -45,31 +43,19 @@ pub struct Content<'a> {
 /// The whole page.
 pub fn render(content: &Content<'_>) -> String {
     let figures = content.figures;
-    let page = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta name="color-scheme" content="light dark";
-                title { "Joint " (figures.joint) ", simulated" }
-                style { (PreEscaped(ink::style_sheet(":root"))) (PreEscaped(STYLE)) }
-            }
-            body { main {
-                (header(content))
-                (notices(content))
-                (tiles(content))
-                (schemes(content))
-                (motion(content))
-                (portraits(content))
-                (contacts(content))
-                (energy(content))
-                (origin(content))
-                footer { "joint " (env!("CARGO_PKG_VERSION")) " · every sample is in history.csv and history.mcap" }
-            } }
-        }
+    let body = html! {
+        (header(content))
+        (notices(content))
+        (tiles(content))
+        (schemes(content))
+        (motion(content))
+        (portraits(content))
+        (contacts(content))
+        (energy(content))
+        (origin(content))
+        footer { "joint " (env!("CARGO_PKG_VERSION")) " · every sample is in history.csv and history.mcap" }
     };
-    page.into_string()
+    page(&format!("Joint {}, simulated", figures.joint), "", &body)
 }
 
 fn header(content: &Content<'_>) -> Markup {

@@ -9,6 +9,7 @@ use sha2::{Digest, Sha256};
 use super::grid::Grid;
 use super::metrics::Metric;
 use crate::failure::{Failure, Outcome};
+use crate::output;
 
 /// Says which fields there are; rises when one changes its meaning or goes.
 const SCHEMA: &str = "joint-sweep/1";
@@ -58,9 +59,7 @@ impl Manifest {
 
     /// As the file has it.
     pub fn text(&self) -> Outcome<String> {
-        serde_json::to_string_pretty(self)
-            .map(|json| json + "\n")
-            .map_err(|error| Failure::new(format!("the sweep cannot be written as JSON: {error}")))
+        output::json("sweep", self)
     }
 
     /// Reads `sweep.json` and sees whether it is whole.

@@ -27,10 +27,10 @@ use crate::check::{self, Loaded};
 use crate::failure::{Failure, Outcome};
 use crate::hil::Progress;
 use crate::hil::profile::BUILTIN;
+use crate::output;
 use crate::sim::arguments::{Motion, quoted};
 use crate::sim::scheme::{Choice, SchemeName};
 use crate::target::toolchain::workspace;
-use crate::{interruption, output};
 
 /// Arguments of `joint sweep`.
 #[derive(Debug, Clone, clap::Args)]
@@ -73,11 +73,7 @@ pub struct Arguments {
 
 /// Sweeps a grid.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
-    interruption::watch()?;
-    let progress = Progress::new();
-    let outcome = run_once(arguments, &progress);
-    progress.clear();
-    interruption::explain(outcome)
+    Progress::during(|progress| run_once(arguments, progress))
 }
 
 fn run_once(arguments: &Arguments, progress: &Progress) -> Outcome<()> {

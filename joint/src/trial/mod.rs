@@ -141,9 +141,7 @@ fn prepare_logs(folder: &Folder) -> Outcome<PathBuf> {
 }
 
 fn write(wanted: &Wanted<'_>, folder: &Folder, record: &TestsRecord, tested: &[Tested]) -> Outcome<()> {
-    let json = serde_json::to_string_pretty(record)
-        .map_err(|error| Failure::new(format!("the results cannot be written as JSON: {error}")))?
-        + "\n";
+    let json = output::json("results", record)?;
     let junit = junit::render(record);
     write_text(&folder.file("record.json"), &json)?;
     write_text(&folder.file("junit.xml"), &junit)?;

@@ -1,17 +1,17 @@
 //! The report of tests: one HTML page that needs neither network nor scripts, what failed first. Pictures come from
 //! `pictures`, the look from the run reports.
 
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Markup, PreEscaped, html};
 
 use super::campaign::Tested;
 use super::controller::ControllerName;
 use super::pictures;
 use super::record::{TestRecord, TestsRecord};
 use crate::record::Check;
-use crate::report::page::STYLE;
+use crate::report::plot::Figure;
 use crate::report::plot::unit::figure as number;
-use crate::report::plot::{Figure, ink};
 use crate::report::sections::{check_table, tile};
+use crate::report::shell::page;
 
 /// What is shown of every controller: name, heading, unit.
 const COMPARED: [(&str, &str, &str); 9] = [
@@ -30,28 +30,16 @@ const COMPARED: [(&str, &str, &str); 9] = [
 pub fn render(record: &TestsRecord, tested: &[Tested]) -> String {
     let (failed, passed): (Vec<&Tested>, Vec<&Tested>) = tested.iter().partition(|test| !test.record.passed);
     let title = if failed.is_empty() { "passed".to_owned() } else { format!("{} failed", failed.len()) };
-    let page = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta name="color-scheme" content="light dark";
-                title { "Tests: " (title) }
-                style { (PreEscaped(ink::style_sheet(":root"))) (PreEscaped(STYLE)) }
-            }
-            body { main {
-                (header(record, failed.len()))
-                (tiles(record))
-                @if !failed.is_empty() { (failures(record)) }
-                @if tested.len() > 1 { (overview(record)) }
-                @for test in failed.iter().chain(&passed) { (section(test)) }
-                (origin(record))
-                footer { "joint " (record.host_version) " · " (record.schema) " · every figure is in record.json, every run in runs/*.mcap" }
-            } }
-        }
+    let body = html! {
+        (header(record, failed.len()))
+        (tiles(record))
+        @if !failed.is_empty() { (failures(record)) }
+        @if tested.len() > 1 { (overview(record)) }
+        @for test in failed.iter().chain(&passed) { (section(test)) }
+        (origin(record))
+        footer { "joint " (record.host_version) " · " (record.schema) " · every figure is in record.json, every run in runs/*.mcap" }
     };
-    page.into_string()
+    page(&format!("Tests: {title}"), "", &body)
 }
 
 fn pill(passed: bool) -> Markup {

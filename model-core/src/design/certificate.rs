@@ -57,7 +57,8 @@ pub fn certificate(
     processor: &Processor,
 ) -> Result<Certificate, DesignError> {
     crate::design::validate::validate(parameters)?;
-    let (pace, cost) = (Pace::new(parameters), Cost::new(parameters));
+    let pace = Pace::new(parameters);
+    let cost = pace.cost();
     let parts = pace.parts(tick_rate, effort)?;
     let phase = pace.phase(tick_rate, parts.count());
     let whole = |instructions: f64| libm::ceil(instructions) as u32;
@@ -79,7 +80,7 @@ pub fn certificate(
         largest_phase: pace.largest_phase(parts),
         unseen: unseen(&pace, tick_rate, parts),
         lowest_rate: pace.lowest_rate(effort),
-        highest_rate: highest_rate(&cost, processor),
+        highest_rate: highest_rate(cost, processor),
     })
 }
 

@@ -42,6 +42,17 @@ pub struct Measurement {
     pub output_counts: i64,
 }
 
+impl Measurement {
+    /// The same with counts from where the encoders were homed.
+    pub fn homed(self, home: &Self) -> Self {
+        Self {
+            motor_counts: self.motor_counts - home.motor_counts,
+            output_counts: self.output_counts - home.output_counts,
+            ..self
+        }
+    }
+}
+
 /// What no controller is given: the torques of the last part of time [N m].
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct TrueTorques {

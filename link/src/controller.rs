@@ -113,8 +113,8 @@ pub struct WireEstimates {
     pub contacts: (u8, u8),
     /// [m].
     pub gap: WireEstimate,
-    /// [m/s].
-    pub gap_rate: f32,
+    /// Rate of the gap coordinate [m/s], shift of both flanks [m], its rate [m/s].
+    pub gap_course: [f32; 3],
     /// Mesh torque, load torque [N m], half-backlash [m], encoder offset [rad], compliance [rad/(N m)], skew [s], torque
     /// bias, motor friction [N m].
     pub others: [WireEstimate; 8],
@@ -268,7 +268,7 @@ impl From<&Estimates<f32>> for WireEstimates {
             flags: flags.iter().rev().fold(0, |bits, flag| bits << 1 | u8::from(*flag)),
             contacts: (contact(of.contact), contact(of.reported_contact)),
             gap: estimate(of.gap),
-            gap_rate: of.gap_rate,
+            gap_course: [of.gap_rate, of.flank_shift, of.flank_shift_rate],
             others: [
                 of.mesh_torque,
                 of.load_torque,
@@ -292,6 +292,7 @@ impl From<WireEstimates> for Estimates<f32> {
         let [mesh_torque, load_torque, half_backlash, encoder_offset, compliance, skew, torque_bias, motor_friction] =
             wire.others.map(estimated);
         let [motor, link] = wire.shafts.map(shaft);
+        let [gap_rate, flank_shift, flank_shift_rate] = wire.gap_course;
         Self {
             source: match wire.source {
                 0 => Source::Both,
@@ -308,7 +309,9 @@ impl From<WireEstimates> for Estimates<f32> {
                 motor_jumped: flag(3),
             },
             gap: estimated(wire.gap),
-            gap_rate: wire.gap_rate,
+            gap_rate,
+            flank_shift,
+            flank_shift_rate,
             contact: contacted(wire.contacts.0),
             reported_contact: contacted(wire.contacts.1),
             contact_valid: flag(4),

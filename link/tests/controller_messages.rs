@@ -34,6 +34,8 @@ fn estimates() -> Estimates<f32> {
         notices: Notices { torque_unknown: true, out_of_time: false, motor_doubted: true, motor_jumped: false },
         gap: estimate(1.0),
         gap_rate: 2.0,
+        flank_shift: 2.25,
+        flank_shift_rate: 2.5,
         contact: ContactState::BackSide,
         reported_contact: ContactState::DriveSide,
         contact_valid: true,

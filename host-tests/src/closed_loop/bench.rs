@@ -126,6 +126,8 @@ impl Bench {
         let half = self.joint.sun_planet.half_backlash.iter().sum::<f64>() / planets as f64;
         let mut samples = Vec::with_capacity(periods as usize);
         let mut held: Option<(u64, Motion)> = None;
+        // Encoders are homed where the run begins.
+        let home = train.measure();
         for index in 0..periods {
             let time = index as f64 * period;
             let set_point = match self.impedance {
@@ -148,7 +150,7 @@ impl Bench {
                 }
             };
             controller.witness(train.joint(), &train.torques());
-            let command = controller.period(&train.measure(), &set_point);
+            let command = controller.period(&train.measure().homed(&home), &set_point);
             if !command.is_finite() {
                 return Err(BenchError::NotATorque(time));
             }

@@ -34,6 +34,10 @@ const STRIKE: f64 = 0.5;
 /// Share of the largest torque that a crossing may take; the rest is for the feedback along it.
 const CROSSING_TORQUE: f64 = 0.8;
 
+/// Reaction times in which the damper on the motor slows the motor by 1/e: with fewer it would swing against the loop's
+/// delays.
+const MOTOR_DAMPING: f64 = 2.5;
+
 /// A crossing shorter than so many reaction times would be over before feedback has had a say.
 const REACTIONS_IN_A_CROSSING: f64 = 8.0;
 
@@ -128,6 +132,7 @@ pub fn design_compensation<T: Real>(
     let strike_torque = STRIKE * joint.rated_output_torque;
     let strike_per_half = 15.0 / 8.0 * 2.0 * body.strike_impedance;
     let crossing = (strike_per_half * half / strike_torque).max(shortest);
+    let motor_damping = (3.0 * inertia * pole).min(body.motor / (MOTOR_DAMPING * reaction));
     let landing_speed = LANDING * joint.rated_output_torque / libm::sqrt(body.stiffness * body.motor);
     let demand_left = libm::exp(-DEMAND_POLE * period / crossing);
     Ok(CompensationTables {
@@ -146,6 +151,9 @@ pub fn design_compensation<T: Real>(
         motor_share: real(body.motor / inertia),
         position_gain: real(3.0 * inertia * pole * pole),
         damping_gain: real(3.0 * inertia * pole),
+        motor_damping: real(motor_damping),
+        // Both poles of the motor alone in one place.
+        gap_stiffness: real(motor_damping * motor_damping / (4.0 * body.motor)),
         integral_gain: real(inertia * pole * pole * pole * period),
         back_calculation: real(pole * period),
         torque_limit: real(limit),

@@ -73,7 +73,7 @@ impl<'tables, T: Real> Compensation<'tables, T> {
         self.load.observe(tables, estimates, &situation);
         let (intent, plain) = match command {
             Command::Position { now, ahead } => (
-                self.position.intend(tables, &self.load, &situation, self.flank.patience(), now, ahead.as_ref()),
+                self.position.intend(tables, &self.load, &situation, now, ahead.as_ref()),
                 self.plain.follow(tables, &situation, now),
             ),
             Command::Impedance(point) => {

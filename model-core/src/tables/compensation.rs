@@ -34,8 +34,12 @@ pub struct CompensationTables<T: Real> {
     pub motor_share: T,
     /// Spring of the loop [N m/rad].
     pub position_gain: T,
-    /// Damper of the loop [N m s/rad].
+    /// Damper of the loop, on the link [N m s/rad].
     pub damping_gain: T,
+    /// Damper on the motor against the link, and on the way through the gap [N m s/rad].
+    pub motor_damping: T,
+    /// Spring on the way through the gap [N m/rad].
+    pub gap_stiffness: T,
     /// Integral of the plain loop over one period [N m/rad].
     pub integral_gain: T,
     /// Share of what the limit cut off that the integral gives back each period.

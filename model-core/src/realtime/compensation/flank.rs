@@ -67,11 +67,15 @@ impl<T: Real> Flank<T> {
 
     /// Torque of this period, limits aside [N m].
     pub fn step(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, intent: &Intent<T>) -> T {
-        let opened = situation.half - self.side * situation.gap;
+        let opened = situation.half - self.side * (situation.gap - situation.shift);
         // A force that seems to come from the far flank while the teeth are just leaving the near one does not.
         let touching = situation.contact * self.side > T::ZERO && opened < situation.half;
         let turned = self.side * (intent.demand_now + intent.demand_ahead) < -tables.hysteresis
             && self.side * intent.demand_ahead < -tables.hysteresis;
+        // What is only as large as its noise has to grow, and more so soon after a change of flank.
+        let later = intent.demand_ahead + intent.demand_ahead - intent.demand_now;
+        let doubt = tables.doubt * (tables.least_doubt + self.patience - T::ONE);
+        let turned = turned && self.side * later < -doubt;
         self.patience = T::ONE + tables.patience_left * (self.patience - T::ONE);
         match self.stage {
             Stage::Touching if turned && self.rise >= T::ONE => {
@@ -109,13 +113,17 @@ impl<T: Real> Flank<T> {
             let speed = tables.landing_speed + tables.landing_haste * self.elapsed;
             let closing = self.side * clamp(speed, T::ZERO, tables.fastest_landing);
             return tables.motor_inertia * intent.free_acceleration
-                + tables.damping_gain * (situation.link_speed + closing - situation.motor_speed);
+                + tables.motor_damping * (situation.link_speed + closing - situation.motor_speed)
+                + situation.lost(tables, situation.link_speed);
         }
-        let [target, rate, acceleration] = self.path.at(self.elapsed);
+        // Torque acts one reaction time after it is asked for.
+        let [target, rate, _] = self.path.at(self.elapsed);
+        let [_, _, acceleration] = self.path.at(self.elapsed + tables.reaction);
         let drift = tables.turn * situation.origin.less(self.origin.turns, self.origin.fraction);
         tables.motor_inertia * acceleration
-            + tables.position_gain * (target - drift - situation.motor)
-            + tables.damping_gain * (rate - situation.motor_speed)
+            + tables.gap_stiffness * (target - drift - situation.motor)
+            + tables.motor_damping * (rate - situation.motor_speed)
+            + situation.lost(tables, rate)
     }
 
     /// Torque that the load does not get now is owed to it.
@@ -131,15 +139,17 @@ impl<T: Real> Flank<T> {
 
     /// Lays a path to the flank where the load will be, left to itself, meeting it at a small speed.
     fn set_out(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, intent: &Intent<T>, stage: Stage) {
-        let time = intent.crossing;
+        let time = intent.crossing + tables.reaction;
         let speed = situation.link_speed + time * intent.free_acceleration;
         let place = time * T::HALF * (situation.link_speed + speed) - situation.error;
-        let end = [place + self.side * situation.half, speed + self.side * tables.landing_speed];
-        self.path = Path::new([situation.motor, situation.motor_speed], end, time);
+        let end = [place + situation.shift + self.side * situation.half, speed + self.side * tables.landing_speed];
+        let start = [situation.motor + tables.reaction * situation.motor_speed, situation.motor_speed];
+        self.path = Path::new(start, end, intent.crossing);
         self.patience = clamp(self.patience + self.patience + T::TWO, T::ONE, tables.most_patience);
         self.origin = situation.origin;
-        self.duration = time;
-        self.elapsed = T::ZERO;
+        self.duration = intent.crossing;
+        // What is measured in this period is the path's start.
+        self.elapsed = -tables.reaction - tables.period;
         self.stage = stage;
     }
 }

@@ -7,6 +7,7 @@ use crate::realtime::observer::{Estimates, Source};
 use crate::tables::compensation::CompensationTables;
 
 use super::arithmetic::clamp;
+use super::load::LoadModel;
 use super::set_point::{Command, Position};
 
 /// Where everything is; angles are less the set-point's position, so that they stay small at any number of turns.
@@ -24,9 +25,15 @@ pub(super) struct Situation<T: Real> {
     pub link_speed: T,
     /// Position of the set-point.
     pub origin: Position<T>,
+    /// Speed that the motor has by the gears' transmission error alone, felt at the link [rad/s].
+    pub error_speed: T,
+    /// Torque that the motor loses whatever its direction, and its dry friction, as far as both are known [N m].
+    pub losses: [T; 2],
     /// Half of the lost motion [rad].
     pub half: T,
-    /// Gap coordinate, felt at the link: from -half to half while every mesh is free [rad].
+    /// By how much the transmission error shifts both flanks, felt at the link [rad].
+    pub shift: T,
+    /// Gap coordinate, felt at the link: from -half to half about the shift while every mesh is free [rad].
     pub gap: T,
     /// 1 or -1 with a flank touching, else 0.
     pub contact: T,
@@ -51,6 +58,7 @@ impl<T: Real> Situation<T> {
             T::from_i64(whole) * tables.inverse_denominator + estimates.motor.fraction - tables.gear * origin.fraction;
         let motor = tables.turn * tables.inverse_gear * motor_turns - estimates.encoder_offset.value;
         let half = clamp(tables.inverse_lever * estimates.half_backlash.value, T::ZERO, tables.widest_half);
+        let at_link = T::HALF * tables.inverse_lever;
         let situation = Self {
             error: tables.turn * origin.less(estimates.link.turns, estimates.link.fraction),
             error_rate: speed - estimates.link.speed,
@@ -59,12 +67,28 @@ impl<T: Real> Situation<T> {
             link_speed: estimates.link.speed,
             origin,
             half,
-            gap: T::HALF * tables.inverse_lever * estimates.gap.value,
+            losses: [estimates.torque_bias, estimates.motor_friction]
+                .map(|loss| if loss.valid { tables.gear * loss.value } else { T::ZERO }),
+            error_speed: at_link * estimates.flank_shift_rate,
+            shift: at_link * estimates.flank_shift,
+            gap: at_link * estimates.gap.value,
             contact,
             sees: estimates.source == Source::Both && estimates.gap.valid && estimates.contact_valid,
         };
         let sum = situation.error + situation.error_rate + situation.motor + situation.motor_speed + situation.gap;
+        let sum = sum + situation.shift + situation.error_speed + situation.losses[0] + situation.losses[1];
         Self { sees: situation.sees && (sum + estimates.half_backlash.value).is_finite(), ..situation }
+    }
+
+    /// Torque that the motor loses at a speed [N m].
+    pub fn lost(&self, tables: &CompensationTables<T>, speed: T) -> T {
+        self.losses[0] + self.losses[1] * LoadModel::direction(tables, speed)
+    }
+
+    /// Torque of the damper on the motor against the link; what the transmission error makes it do is none of its
+    /// business [N m].
+    pub fn calm(&self, tables: &CompensationTables<T>) -> T {
+        tables.motor_damping * (self.link_speed + self.error_speed - self.motor_speed)
     }
 }
 

@@ -19,11 +19,15 @@ impl<T: Real> Path<T> {
         Self { start, end, duration, inverse }
     }
 
-    /// Position, rate and acceleration at a time since the start; past the end it goes on at the end's rate.
+    /// Position, rate and acceleration at a time since the start; before and past its ends it goes on at
+    /// their rates.
     pub fn at(&self, time: T) -> [T; 3] {
         let n = T::from_i32;
         if time >= self.duration {
             return [self.end[0] + (time - self.duration) * self.end[1], self.end[1], T::ZERO];
+        }
+        if time <= T::ZERO {
+            return [self.start[0] + time * self.start[1], self.start[1], T::ZERO];
         }
         let s = time * self.inverse;
         let way = self.end[0] - self.start[0];

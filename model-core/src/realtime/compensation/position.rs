@@ -42,7 +42,6 @@ impl<T: Real> PositionLaw<T> {
         tables: &CompensationTables<T>,
         load: &LoadModel<T>,
         situation: &Situation<T>,
-        patience: T,
         now: &Motion<T>,
         ahead: Option<&Motion<T>>,
     ) -> Intent<T> {
@@ -54,7 +53,9 @@ impl<T: Real> PositionLaw<T> {
             + load.even()
             + load.drag(tables, now.speed)
             + tables.position_gain * beyond(situation.error, let_be)
-            + tables.damping_gain * (now.speed - situation.motor_speed);
+            + tables.damping_gain * situation.error_rate
+            + situation.calm(tables)
+            + situation.lost(tables, now.speed);
         let level = load.even()
             + (load.drag(tables, situation.link_speed) - load.drag(tables, now.speed))
             + tables.position_gain * beyond(situation.error, let_be)
@@ -63,23 +64,21 @@ impl<T: Real> PositionLaw<T> {
         let news = level - self.level;
         let weight = tables.eagerness * news;
         self.level += clamp(tables.settling * clamp(weight * weight, T::ONE, tables.rate), T::ZERO, T::HALF) * news;
-        // What is measured has to ask for more than its noise, and for much more soon after a change of flank.
-        let dead = tables.doubt * (tables.least_doubt + patience - T::ONE);
-        let measured = beyond(self.level, dead);
         let planned = |time: T| {
             let part = time.over(known);
             let speed = now.speed + time * (now.acceleration + T::HALF * part * asked[1]);
             let speed = if ahead.is_some() { now.speed + part * asked[0] } else { speed };
             tables.load_inertia * (now.acceleration + part * asked[1]) + load.drag(tables, speed)
         };
-        let demand = |time: T| planned(time) + measured;
+        let level = self.level;
+        let demand = |time: T| planned(time) + level;
         let free = load.even() + load.drag(tables, situation.link_speed);
         // How hard the far flank will be needed says how fast to go there, and that again when to start.
         let unhurried = crossing_time(tables, situation.half, T::ZERO) + tables.reaction;
         let crossing = crossing_time(tables, situation.half, demand(unhurried));
         let lead = crossing + tables.reaction;
         let demand_ahead = demand(lead);
-        self.indulge(tables, rests, demand_ahead, situation.half);
+        self.indulge(tables, rests, beyond(demand_ahead, tables.doubt * tables.least_doubt), situation.half);
         Intent {
             law,
             demand_now: demand(T::ZERO),

@@ -75,6 +75,11 @@ pub struct Estimates<T: Real> {
     pub gap: Estimate<T>,
     /// Its rate [m/s].
     pub gap_rate: T,
+    /// By how much the gears' transmission error, as far as it is learnt, shifts both flanks along the gap coordinate now
+    /// [m].
+    pub flank_shift: T,
+    /// Its rate [m/s].
+    pub flank_shift_rate: T,
     /// Contact by the mesh force alone, with hysteresis and persistence: late, but needs no width. `Separated` also
     /// stands for unknown when `contact_valid` is false.
     pub contact: ContactState,

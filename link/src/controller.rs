@@ -113,7 +113,7 @@ pub struct WireEstimates {
     pub contacts: (u8, u8),
     /// [m].
     pub gap: WireEstimate,
-    /// Rate of the gap coordinate [m/s], shift of both flanks [m], its rate [m/s].
+    /// Rate of the gap coordinate [m/s], shift of both flanks [m], its slope [m/rad].
     pub gap_course: [f32; 3],
     /// Mesh torque, load torque [N m], half-backlash [m], encoder offset [rad], compliance [rad/(N m)], skew [s], torque
     /// bias, motor friction [N m].
@@ -268,7 +268,7 @@ impl From<&Estimates<f32>> for WireEstimates {
             flags: flags.iter().rev().fold(0, |bits, flag| bits << 1 | u8::from(*flag)),
             contacts: (contact(of.contact), contact(of.reported_contact)),
             gap: estimate(of.gap),
-            gap_course: [of.gap_rate, of.flank_shift, of.flank_shift_rate],
+            gap_course: [of.gap_rate, of.flank_shift, of.flank_shift_slope],
             others: [
                 of.mesh_torque,
                 of.load_torque,
@@ -292,7 +292,7 @@ impl From<WireEstimates> for Estimates<f32> {
         let [mesh_torque, load_torque, half_backlash, encoder_offset, compliance, skew, torque_bias, motor_friction] =
             wire.others.map(estimated);
         let [motor, link] = wire.shafts.map(shaft);
-        let [gap_rate, flank_shift, flank_shift_rate] = wire.gap_course;
+        let [gap_rate, flank_shift, flank_shift_slope] = wire.gap_course;
         Self {
             source: match wire.source {
                 0 => Source::Both,
@@ -311,7 +311,7 @@ impl From<WireEstimates> for Estimates<f32> {
             gap: estimated(wire.gap),
             gap_rate,
             flank_shift,
-            flank_shift_rate,
+            flank_shift_slope,
             contact: contacted(wire.contacts.0),
             reported_contact: contacted(wire.contacts.1),
             contact_valid: flag(4),

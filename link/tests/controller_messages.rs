@@ -35,7 +35,7 @@ fn estimates() -> Estimates<f32> {
         gap: estimate(1.0),
         gap_rate: 2.0,
         flank_shift: 2.25,
-        flank_shift_rate: 2.5,
+        flank_shift_slope: 2.5,
         contact: ContactState::BackSide,
         reported_contact: ContactState::DriveSide,
         contact_valid: true,

@@ -47,8 +47,8 @@ const LONGEST: f64 = 3.0;
 /// Landing at the end of a path may cause this share of the rated torque.
 const LANDING: f64 = 0.03;
 
-/// A landing that finds nothing quickens up to so many times its first speed.
-const LANDING_HASTE: f64 = 6.0;
+/// The same over the torque that the flank will carry, where that allows for more.
+const LANDING_UNDER_LOAD: f64 = 0.25;
 
 /// Reaction times in which the law's torque rises after a landing: slower than what the motor can follow, faster than
 /// joint and link swing.
@@ -60,6 +60,9 @@ const SETTLING: f64 = 15.0;
 
 /// Share of the half-gap that opens before the loss of a flank is believed: several times the observer's error.
 const OPENING: f64 = 0.3;
+
+/// Share of the half-gap within which a flank is as good as touched: what the observer's errors leave.
+const LANDED: f64 = 0.03;
 
 /// Planned torque over the largest, beyond which its change of sign counts.
 const HYSTERESIS: f64 = 0.005;
@@ -94,6 +97,9 @@ const FRICTION_SPEED: f64 = 0.01;
 
 /// Growth of the load's variance in one period over that of its reading: followed within a few milliseconds.
 const LOAD_GROWTH: f64 = 1e-3;
+
+/// Time in which the load's rate is learnt [s]: a weight swings in a second.
+const LOAD_RATE: f64 = 0.03;
 
 /// The same for its dry friction: known within a few reversals, then kept for seconds.
 const FRICTION_GROWTH: f64 = 1e-6;
@@ -133,7 +139,9 @@ pub fn design_compensation<T: Real>(
     let strike_per_half = 15.0 / 8.0 * 2.0 * body.strike_impedance;
     let crossing = (strike_per_half * half / strike_torque).max(shortest);
     let motor_damping = (3.0 * inertia * pole).min(body.motor / (MOTOR_DAMPING * reaction));
-    let landing_speed = LANDING * joint.rated_output_torque / libm::sqrt(body.stiffness * body.motor);
+    // The motor's mass against the joint's spring: torque of a blow for each rad/s.
+    let blow = libm::sqrt(body.stiffness * body.motor);
+    let landing_speed = LANDING * joint.rated_output_torque / blow;
     let demand_left = libm::exp(-DEMAND_POLE * period / crossing);
     Ok(CompensationTables {
         rate: real(f64::from(settings.control_rate)),
@@ -144,6 +152,8 @@ pub fn design_compensation<T: Real>(
         inverse_denominator: real(1.0 / f64::from(joint.geometry.sun_teeth)),
         turn: real(TAU),
         inverse_lever: real(1.0 / body.lever),
+        mesh_phase_per_radian: real(f64::from(joint.geometry.ring_teeth) / TAU * f64::powi(2.0, 32)),
+        radians_per_mesh: real(1.0 / f64::from(joint.geometry.ring_teeth)),
         widest_half: real(WIDEST * half),
         motor_inertia: real(body.motor),
         load_inertia: real(body.load),
@@ -165,10 +175,12 @@ pub fn design_compensation<T: Real>(
         longest_crossing: real(LONGEST * crossing),
         landing_speed: real(landing_speed),
         landing_haste: real(landing_speed / crossing),
-        fastest_landing: real(LANDING_HASTE * landing_speed),
+        landing_speed_per_torque: real(LANDING_UNDER_LOAD / blow),
+        fastest_landing: real((LANDING_UNDER_LOAD * limit / blow).max(landing_speed)),
         landing_rise: real(period / (RISE * reaction)),
         repayment: real(1.0 / (REPAYMENT * crossing)),
         opening: real(OPENING),
+        landed: real(LANDED),
         hysteresis: real(HYSTERESIS * limit),
         doubt: real(DOUBT * limit),
         settling: real(1.0 - libm::exp(-period / (SETTLING * reaction))),
@@ -181,6 +193,8 @@ pub fn design_compensation<T: Real>(
         last_indulgence: real(INDULGENCE[1]),
         forgiving: real(libm::exp(-period / FORGIVING)),
         load_learner: [real(LOAD_GROWTH), real(FRICTION_GROWTH), T::ONE],
+        load_rate_gain: real(1.0 / LOAD_RATE),
+        fastest_load: real(limit / LOAD_RATE),
         friction_slope: real(1.0 / FRICTION_SPEED),
         demand_gains: [real(1.0 - demand_left * demand_left), real((1.0 - demand_left) * (1.0 - demand_left) / period)],
         trust_step: real(period * pole / TRUST),

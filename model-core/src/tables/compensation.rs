@@ -22,6 +22,10 @@ pub struct CompensationTables<T: Real> {
     pub turn: T,
     /// 1 / (r_c cos alpha): from half-backlash to half the lost motion [1/m].
     pub inverse_lever: T,
+    /// Mesh phase for each radian of the link [2^-32 periods].
+    pub mesh_phase_per_radian: T,
+    /// Radians of the link for each radian of the mesh phase.
+    pub radians_per_mesh: T,
     /// Half the lost motion is never taken for more than this [rad].
     pub widest_half: T,
     /// What turns with the motor while the gap is open [kg m^2].
@@ -61,6 +65,8 @@ pub struct CompensationTables<T: Real> {
     pub longest_crossing: T,
     /// Speed against the load at which a flank is met [rad/s].
     pub landing_speed: T,
+    /// The same for each N m that the flank will carry, if that is more [rad/s/(N m)].
+    pub landing_speed_per_torque: T,
     /// By how much a landing quickens while it finds nothing [rad/s^2].
     pub landing_haste: T,
     /// Its highest speed [rad/s].
@@ -71,6 +77,8 @@ pub struct CompensationTables<T: Real> {
     pub repayment: T,
     /// Share of the half-gap that has to open before the loss of a flank is believed.
     pub opening: T,
+    /// Share of the half-gap within which a flank is as good as touched.
+    pub landed: T,
     /// Demand beyond which a change of its sign counts [N m].
     pub hysteresis: T,
     /// Measured torque below which no flank is changed for it soon after a change, for each unit of patience [N m].
@@ -95,6 +103,10 @@ pub struct CompensationTables<T: Real> {
     pub forgiving: T,
     /// Learner of the load: growth of variances in one period (even part, friction), variance of a reading.
     pub load_learner: [T; 3],
+    /// Rate of the load for each N m by which its even part is moved [1/s].
+    pub load_rate_gain: T,
+    /// The load's greatest rate [N m/s].
+    pub fastest_load: T,
     /// Inverse of the speed at which friction has its full size [s/rad].
     pub friction_slope: T,
     /// Tracking filter of the impedance law's demand: gains of value and rate.

@@ -50,11 +50,6 @@ impl<T: Real> Flank<T> {
         self.side
     }
 
-    /// 1, or more soon after a change of flank.
-    pub fn patience(&self) -> T {
-        self.patience
-    }
-
     /// Nothing is known: whatever flank touches is the one.
     pub fn forget(&mut self, situation: &Situation<T>) {
         self.stage = Stage::Touching;
@@ -69,7 +64,15 @@ impl<T: Real> Flank<T> {
     pub fn step(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, intent: &Intent<T>) -> T {
         let opened = situation.half - self.side * (situation.gap - situation.shift);
         // A force that seems to come from the far flank while the teeth are just leaving the near one does not.
-        let touching = situation.contact * self.side > T::ZERO && opened < situation.half;
+        let felt = situation.contact * self.side > T::ZERO && opened < situation.half;
+        // A flank that is met softly is seen before it is felt.
+        let seen = opened < tables.landed * situation.half;
+        // One that stops the motor's approach is there, wherever it was thought to be.
+        let closing = self.side * (situation.motor_speed - situation.link_speed);
+        let stopped = self.stage == Stage::Landing
+            && self.elapsed > tables.shortest_crossing
+            && closing < T::HALF * tables.landing_speed;
+        let touching = felt || seen || stopped;
         let turned = self.side * (intent.demand_now + intent.demand_ahead) < -tables.hysteresis
             && self.side * intent.demand_ahead < -tables.hysteresis;
         // What is only as large as its noise has to grow, and more so soon after a change of flank.
@@ -93,11 +96,11 @@ impl<T: Real> Flank<T> {
                 self.stage = Stage::Touching;
                 self.rise = T::ZERO;
             }
-            Stage::Crossing if self.elapsed >= self.duration => self.land(),
-            Stage::Landing if turned && self.elapsed >= self.duration => {
+            Stage::Crossing | Stage::Landing if turned => {
                 self.side = -self.side;
                 self.set_out(tables, situation, intent, Stage::Crossing);
             }
+            Stage::Crossing if self.elapsed >= self.duration => self.land(),
             _ => {}
         }
         if self.stage == Stage::Touching {
@@ -110,7 +113,7 @@ impl<T: Real> Flank<T> {
         self.owe(tables, intent.demand_now, intent);
         if self.stage == Stage::Landing {
             // Where the flank is does not enter, so that a wrong width costs time only; nor can it be chased for ever.
-            let speed = tables.landing_speed + tables.landing_haste * self.elapsed;
+            let speed = landing_speed(tables, intent.demand_now) + tables.landing_haste * self.elapsed;
             let closing = self.side * clamp(speed, T::ZERO, tables.fastest_landing);
             return tables.motor_inertia * intent.free_acceleration
                 + tables.motor_damping * (situation.link_speed + closing - situation.motor_speed)
@@ -140,9 +143,11 @@ impl<T: Real> Flank<T> {
     /// Lays a path to the flank where the load will be, left to itself, meeting it at a small speed.
     fn set_out(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, intent: &Intent<T>, stage: Stage) {
         let time = intent.crossing + tables.reaction;
-        let speed = situation.link_speed + time * intent.free_acceleration;
-        let place = time * T::HALF * (situation.link_speed + speed) - situation.error;
-        let end = [place + situation.shift + self.side * situation.half, speed + self.side * tables.landing_speed];
+        let [acceleration, jerk] = [intent.free_acceleration, intent.free_jerk];
+        let speed = situation.link_speed + time * (acceleration + T::HALF * time * jerk);
+        let way = time * (situation.link_speed + T::HALF * time * (acceleration + T::THIRD * time * jerk));
+        let place = way - situation.error + situation.shift_after(tables, way);
+        let end = [place + self.side * situation.half, speed + self.side * landing_speed(tables, intent.demand_ahead)];
         let start = [situation.motor + tables.reaction * situation.motor_speed, situation.motor_speed];
         self.path = Path::new(start, end, intent.crossing);
         self.patience = clamp(self.patience + self.patience + T::TWO, T::ONE, tables.most_patience);
@@ -152,4 +157,10 @@ impl<T: Real> Flank<T> {
         self.elapsed = -tables.reaction - tables.period;
         self.stage = stage;
     }
+}
+
+/// Speed against the load at which a flank is met: hard enough for what it shall carry, and no harder.
+fn landing_speed<T: Real>(tables: &CompensationTables<T>, demand: T) -> T {
+    let torque = if demand < T::ZERO { -demand } else { demand };
+    clamp(tables.landing_speed_per_torque * torque, tables.landing_speed, tables.fastest_landing)
 }

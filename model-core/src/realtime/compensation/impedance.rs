@@ -55,6 +55,7 @@ impl<T: Real> ImpedanceLaw<T> {
             demand_now,
             demand_ahead,
             free_acceleration: -free * tables.inverse_load_inertia,
+            free_jerk: -load.rate() * tables.inverse_load_inertia,
             crossing,
             repays: true,
         }

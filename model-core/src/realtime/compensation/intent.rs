@@ -4,6 +4,7 @@
 use crate::mesh::ContactState;
 use crate::real::Real;
 use crate::realtime::observer::{Estimates, Source};
+use crate::realtime::phase::sine_cosine;
 use crate::tables::compensation::CompensationTables;
 
 use super::arithmetic::clamp;
@@ -33,6 +34,8 @@ pub(super) struct Situation<T: Real> {
     pub half: T,
     /// By how much the transmission error shifts both flanks, felt at the link [rad].
     pub shift: T,
+    /// By how much that grows for each radian of the link.
+    pub shift_slope: T,
     /// Gap coordinate, felt at the link: from -half to half about the shift while every mesh is free [rad].
     pub gap: T,
     /// 1 or -1 with a flank touching, else 0.
@@ -69,8 +72,9 @@ impl<T: Real> Situation<T> {
             half,
             losses: [estimates.torque_bias, estimates.motor_friction]
                 .map(|loss| if loss.valid { tables.gear * loss.value } else { T::ZERO }),
-            error_speed: at_link * estimates.flank_shift_rate,
+            error_speed: at_link * estimates.flank_shift_slope * estimates.link.speed,
             shift: at_link * estimates.flank_shift,
+            shift_slope: at_link * estimates.flank_shift_slope,
             gap: at_link * estimates.gap.value,
             contact,
             sees: estimates.source == Source::Both && estimates.gap.valid && estimates.contact_valid,
@@ -78,6 +82,12 @@ impl<T: Real> Situation<T> {
         let sum = situation.error + situation.error_rate + situation.motor + situation.motor_speed + situation.gap;
         let sum = sum + situation.shift + situation.error_speed + situation.losses[0] + situation.losses[1];
         Self { sees: situation.sees && (sum + estimates.half_backlash.value).is_finite(), ..situation }
+    }
+
+    /// The shift of the flanks when the link will have turned so far [rad].
+    pub fn shift_after(&self, tables: &CompensationTables<T>, way: T) -> T {
+        let (sine, cosine) = sine_cosine((tables.mesh_phase_per_radian * way).to_phase());
+        self.shift * cosine + self.shift_slope * tables.radians_per_mesh * sine
     }
 
     /// Torque that the motor loses at a speed [N m].
@@ -103,6 +113,8 @@ pub(super) struct Intent<T: Real> {
     pub demand_ahead: T,
     /// Acceleration of the load left to itself [rad/s^2].
     pub free_acceleration: T,
+    /// Its rate [rad/s^3].
+    pub free_jerk: T,
     /// How long a crossing shall take [s].
     pub crossing: T,
     /// Whether an impulse that the load missed on the way is made good afterwards; a law stiff enough does it itself.

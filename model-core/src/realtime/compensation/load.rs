@@ -13,13 +13,15 @@ use crate::tables::compensation::CompensationTables;
 pub(super) struct LoadModel<T: Real> {
     even: T,
     friction: T,
+    /// Rate of the even part [N m/s].
+    rate: T,
     /// Variances of both and their covariance.
     variance: [T; 3],
 }
 
 impl<T: Real> LoadModel<T> {
     pub fn new() -> Self {
-        Self { even: T::ZERO, friction: T::ZERO, variance: [T::ONE, T::ONE, T::ZERO] }
+        Self { even: T::ZERO, friction: T::ZERO, rate: T::ZERO, variance: [T::ONE, T::ONE, T::ZERO] }
     }
 
     /// -1 to 1: what share of the dry friction brakes at a speed.
@@ -29,6 +31,11 @@ impl<T: Real> LoadModel<T> {
 
     pub fn even(&self) -> T {
         self.even
+    }
+
+    /// Rate of the even part: weight turns with the link [N m/s].
+    pub fn rate(&self) -> T {
+        self.rate
     }
 
     pub fn friction(&self) -> T {
@@ -42,6 +49,7 @@ impl<T: Real> LoadModel<T> {
 
     /// Takes the estimate of the load torque while a flank carries.
     pub fn observe(&mut self, tables: &CompensationTables<T>, estimates: &Estimates<T>, situation: &Situation<T>) {
+        self.even = clamp(self.even + tables.period * self.rate, -tables.torque_limit, tables.torque_limit);
         let torque = estimates.load_torque;
         if torque.valid && torque.value.is_finite() && situation.sees && situation.contact != T::ZERO {
             // More than the motor can hold is no load that it carries.
@@ -64,6 +72,9 @@ impl<T: Real> LoadModel<T> {
         let creeps = whole < T::HALF && whole > -T::HALF;
         let direction = if creeps { T::ZERO } else { whole + whole };
         let known = if creeps { self.drag(tables, speed) } else { self.friction * direction };
+        if creeps {
+            self.rate = T::ZERO;
+        }
         let [growth_even, growth_friction, noise] = tables.load_learner;
         let [even, friction, both] = self.variance;
         let (even, friction) = (even + growth_even, friction + growth_friction);
@@ -75,6 +86,8 @@ impl<T: Real> LoadModel<T> {
         let (gain_even, gain_friction) = (to_even.over(total), to_friction.over(total));
         let surprise = torque - self.even - known;
         self.even += gain_even * surprise;
+        self.rate =
+            clamp(self.rate + tables.load_rate_gain * gain_even * surprise, -tables.fastest_load, tables.fastest_load);
         self.friction = clamp(self.friction + gain_friction * surprise, T::ZERO, tables.torque_limit);
         self.variance =
             [even - gain_even * to_even, friction - gain_friction * to_friction, both - gain_even * to_friction];

@@ -61,6 +61,7 @@ impl<T: Real> PositionLaw<T> {
             + tables.position_gain * beyond(situation.error, let_be)
             + tables.damping_gain * situation.error_rate;
         // News that are large against the doubt are no noise, and are taken up faster.
+        self.level += tables.period * load.rate();
         let news = level - self.level;
         let weight = tables.eagerness * news;
         self.level += clamp(tables.settling * clamp(weight * weight, T::ONE, tables.rate), T::ZERO, T::HALF) * news;
@@ -71,7 +72,8 @@ impl<T: Real> PositionLaw<T> {
             tables.load_inertia * (now.acceleration + part * asked[1]) + load.drag(tables, speed)
         };
         let level = self.level;
-        let demand = |time: T| planned(time) + level;
+        let rate = load.rate();
+        let demand = |time: T| planned(time) + level + time * rate;
         let free = load.even() + load.drag(tables, situation.link_speed);
         // How hard the far flank will be needed says how fast to go there, and that again when to start.
         let unhurried = crossing_time(tables, situation.half, T::ZERO) + tables.reaction;
@@ -84,6 +86,7 @@ impl<T: Real> PositionLaw<T> {
             demand_now: demand(T::ZERO),
             demand_ahead,
             free_acceleration: -free * tables.inverse_load_inertia,
+            free_jerk: -load.rate() * tables.inverse_load_inertia,
             crossing,
             repays: false,
         }

@@ -78,8 +78,8 @@ pub struct Estimates<T: Real> {
     /// By how much the gears' transmission error, as far as it is learnt, shifts both flanks along the gap coordinate now
     /// [m].
     pub flank_shift: T,
-    /// Its rate [m/s].
-    pub flank_shift_rate: T,
+    /// By how much that grows for each radian of the link [m/rad].
+    pub flank_shift_slope: T,
     /// Contact by the mesh force alone, with hysteresis and persistence: late, but needs no width. `Separated` also
     /// stands for unknown when `contact_valid` is false.
     pub contact: ContactState,

@@ -26,14 +26,14 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let mesh_deviation = force_deviation * levers.output;
         let (motor, link) = self.shafts(now, both);
         let [sine, cosine] = now.mesh;
-        let shift_rate = self.error(&[cosine, -sine]) * link.speed * T::from_i32(tables.counts.meshes as i32);
+        let slope = self.error(&[cosine, -sine]) * T::from_i32(tables.counts.meshes as i32);
 
         let estimates = &mut self.estimates;
         estimates.source = self.supervisor.source();
         estimates.gap = gap;
         estimates.gap_rate = rate;
         estimates.flank_shift = now.shift;
-        estimates.flank_shift_rate = shift_rate;
+        estimates.flank_shift_slope = slope;
         // Without a width, force alone decides, and what it says is sure; so it is without an output encoder.
         estimates.contact_valid = touching || gap.valid;
         estimates.mesh_torque.variance = mesh_deviation * mesh_deviation;

@@ -44,6 +44,9 @@ const REACTIONS_IN_A_CROSSING: f64 = 8.0;
 /// A gap that turns out wider than guessed may be crossed in so many times the guess's time.
 const LONGEST: f64 = 3.0;
 
+/// Share of what is left of a crossing that has to do before it is hurried: demand that grows a little does not matter.
+const HURRY: f64 = 0.8;
+
 /// Landing at the end of a path may cause this share of the rated torque.
 const LANDING: f64 = 0.03;
 
@@ -173,6 +176,7 @@ pub fn design_compensation<T: Real>(
         strike_torque: real(strike_torque),
         shortest_crossing: real(shortest),
         longest_crossing: real(LONGEST * crossing),
+        hurry: real(HURRY),
         landing_speed: real(landing_speed),
         landing_haste: real(landing_speed / crossing),
         landing_speed_per_torque: real(LANDING_UNDER_LOAD / blow),

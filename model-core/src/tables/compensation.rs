@@ -63,6 +63,8 @@ pub struct CompensationTables<T: Real> {
     pub shortest_crossing: T,
     /// Longest crossing [s].
     pub longest_crossing: T,
+    /// A way through the gap is laid anew when less than this share of what is left of it would do.
+    pub hurry: T,
     /// Speed against the load at which a flank is met [rad/s].
     pub landing_speed: T,
     /// The same for each N m that the flank will carry, if that is more [rad/s/(N m)].

@@ -83,11 +83,11 @@ impl<T: Real> Flank<T> {
         match self.stage {
             Stage::Touching if turned && self.rise >= T::ONE => {
                 self.side = -self.side;
-                self.set_out(tables, situation, intent, Stage::Crossing);
+                self.set_out(tables, situation, intent);
             }
             Stage::Touching if !touching && opened > tables.opening * situation.half && self.rise >= T::ONE => {
                 if opened > T::HALF * situation.half {
-                    self.set_out(tables, situation, intent, Stage::Crossing);
+                    self.set_out(tables, situation, intent);
                 } else {
                     self.land();
                 }
@@ -98,9 +98,15 @@ impl<T: Real> Flank<T> {
             }
             Stage::Crossing | Stage::Landing if turned => {
                 self.side = -self.side;
-                self.set_out(tables, situation, intent, Stage::Crossing);
+                self.set_out(tables, situation, intent);
             }
             Stage::Crossing if self.elapsed >= self.duration => self.land(),
+            Stage::Crossing if intent.crossing < tables.hurry * (self.duration - self.elapsed) => {
+                let [place, speed, _] = self.path.at(self.elapsed + tables.reaction);
+                let start =
+                    [place - tables.turn * situation.origin.less(self.origin.turns, self.origin.fraction), speed];
+                self.lay(tables, situation, intent, start);
+            }
             _ => {}
         }
         if self.stage == Stage::Touching {
@@ -140,22 +146,28 @@ impl<T: Real> Flank<T> {
         self.elapsed = T::ZERO;
     }
 
-    /// Lays a path to the flank where the load will be, left to itself, meeting it at a small speed.
-    fn set_out(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, intent: &Intent<T>, stage: Stage) {
+    /// Leaves for the flank of `side`.
+    fn set_out(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, intent: &Intent<T>) {
+        self.stage = Stage::Crossing;
+        self.patience = clamp(self.patience + self.patience + T::TWO, T::ONE, tables.most_patience);
+        let start = [situation.motor + tables.reaction * situation.motor_speed, situation.motor_speed];
+        self.lay(tables, situation, intent, start);
+    }
+
+    /// Lays a path to the flank where the load will be, left to itself, meeting it at a small speed. It begins when
+    /// torque asked for now acts, at a place less the set-point and a speed.
+    fn lay(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, intent: &Intent<T>, start: [T; 2]) {
         let time = intent.crossing + tables.reaction;
         let [acceleration, jerk] = [intent.free_acceleration, intent.free_jerk];
         let speed = situation.link_speed + time * (acceleration + T::HALF * time * jerk);
         let way = time * (situation.link_speed + T::HALF * time * (acceleration + T::THIRD * time * jerk));
         let place = way - situation.error + situation.shift_after(tables, way);
         let end = [place + self.side * situation.half, speed + self.side * landing_speed(tables, intent.demand_ahead)];
-        let start = [situation.motor + tables.reaction * situation.motor_speed, situation.motor_speed];
         self.path = Path::new(start, end, intent.crossing);
-        self.patience = clamp(self.patience + self.patience + T::TWO, T::ONE, tables.most_patience);
         self.origin = situation.origin;
         self.duration = intent.crossing;
         // What is measured in this period is the path's start.
         self.elapsed = -tables.reaction - tables.period;
-        self.stage = stage;
     }
 }
 

@@ -49,13 +49,14 @@ impl<T: Real> PositionLaw<T> {
         let rests = now.speed == T::ZERO && now.acceleration == T::ZERO && asked == [T::ZERO; 2];
         let let_be = if rests { self.indulgence } else { T::ZERO };
 
-        let law = (tables.load_inertia + tables.motor_inertia) * now.acceleration
+        let asked_for = (tables.load_inertia + tables.motor_inertia) * now.acceleration
             + load.even()
             + load.drag(tables, now.speed)
             + tables.position_gain * beyond(situation.error, let_be)
             + tables.damping_gain * situation.error_rate
-            + situation.calm(tables)
             + situation.lost(tables, now.speed);
+        // What is beyond the limit must not drown the damper.
+        let law = clamp(asked_for, -tables.torque_limit, tables.torque_limit) + situation.calm(tables);
         let level = load.even()
             + (load.drag(tables, situation.link_speed) - load.drag(tables, now.speed))
             + tables.position_gain * beyond(situation.error, let_be)

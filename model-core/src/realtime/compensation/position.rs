@@ -81,7 +81,8 @@ impl<T: Real> PositionLaw<T> {
         let crossing = crossing_time(tables, situation.half, demand(unhurried));
         let lead = crossing + tables.reaction;
         let demand_ahead = demand(lead);
-        self.indulge(tables, rests, beyond(demand_ahead, tables.doubt * tables.least_doubt), situation.half);
+        let surely = beyond(demand_ahead, tables.doubt * tables.least_doubt);
+        self.indulge(tables, rests, [surely, load.even()], situation.half);
         Intent {
             law,
             demand_now: demand(T::ZERO),
@@ -105,14 +106,16 @@ impl<T: Real> PositionLaw<T> {
 
     /// Doubles the error that is let be whenever a joint at rest asks for the other flank soon after it asked for this
     /// one, which no load does but a loop that hunts; forgives it slowly, and at once when the joint is to move.
-    fn indulge(&mut self, tables: &CompensationTables<T>, rests: bool, demand: T, half: T) {
+    fn indulge(&mut self, tables: &CompensationTables<T>, rests: bool, [demand, load]: [T; 2], half: T) {
         self.since = clamp(self.since + tables.period, T::ZERO, tables.hunting);
         if !rests {
             self.indulgence = T::ZERO;
             self.asked = T::ZERO;
             return;
         }
-        self.indulgence *= tables.forgiving;
+        // A load that is felt has its reasons, and a flank that carries it rests.
+        let loaded = beyond(load, tables.doubt) != T::ZERO;
+        self.indulgence = if loaded { T::ZERO } else { self.indulgence * tables.forgiving };
         if self.asked * demand < T::ZERO {
             if self.since < tables.hunting {
                 let grown = self.indulgence + self.indulgence + tables.first_indulgence * half;

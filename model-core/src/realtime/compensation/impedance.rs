@@ -31,9 +31,8 @@ impl<T: Real> ImpedanceLaw<T> {
         point: &ImpedancePoint<T>,
     ) -> Intent<T> {
         let spring = point.torque + point.stiffness * situation.error;
-        let law = spring
-            + point.damping * (point.speed + situation.error_speed - situation.motor_speed)
-            + situation.lost(tables, point.speed);
+        // Friction of the motor stays: the law is that of a joint without a gap, not of one without losses.
+        let law = spring + point.damping * (point.speed + situation.error_speed - situation.motor_speed);
         let free = load.even() + load.drag(tables, situation.link_speed);
         // Law and load accelerate motor and load together; the teeth pass on what is not the motor's share.
         let asked = spring + point.damping * situation.error_rate;

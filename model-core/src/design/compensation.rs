@@ -113,6 +113,9 @@ const DEMAND_POLE: f64 = 2.0;
 /// Time in which a missed impulse is made good, over a crossing's time.
 const REPAYMENT: f64 = 1.15;
 
+/// Impedance set-points come 200 times a second at least, or are at rest [s].
+const LONGEST_HOLD: f64 = 5e-3;
+
 /// Time in which control goes over from plain to compensated, times the bandwidth.
 const TRUST: f64 = 1.2;
 
@@ -201,6 +204,7 @@ pub fn design_compensation<T: Real>(
         fastest_load: real(limit / LOAD_RATE),
         friction_slope: real(1.0 / FRICTION_SPEED),
         demand_gains: [real(1.0 - demand_left * demand_left), real((1.0 - demand_left) * (1.0 - demand_left) / period)],
+        longest_hold: real(LONGEST_HOLD),
         trust_step: real(period * pole / TRUST),
     })
 }

@@ -113,6 +113,8 @@ pub struct CompensationTables<T: Real> {
     pub friction_slope: T,
     /// Tracking filter of the impedance law's demand: gains of value and rate.
     pub demand_gains: [T; 2],
+    /// How long an impedance set-point may be held before it counts as standing still [s].
+    pub longest_hold: T,
     /// Change of the trust in the estimates in one period.
     pub trust_step: T,
 }

@@ -104,6 +104,9 @@ const LOAD_GROWTH: f64 = 1e-3;
 /// Time in which the load's rate is learnt [s]: a weight swings in a second.
 const LOAD_RATE: f64 = 0.03;
 
+/// Time in which a rate that is not seen again is forgotten [s].
+const LOAD_RATE_KEPT: f64 = 0.1;
+
 /// The same for its dry friction: known within a few reversals, then kept for seconds.
 const FRICTION_GROWTH: f64 = 1e-6;
 
@@ -201,6 +204,7 @@ pub fn design_compensation<T: Real>(
         forgiving: real(libm::exp(-period / FORGIVING)),
         load_learner: [real(LOAD_GROWTH), real(FRICTION_GROWTH), T::ONE],
         load_rate_gain: real(1.0 / LOAD_RATE),
+        load_rate_left: real(libm::exp(-period / LOAD_RATE_KEPT)),
         fastest_load: real(limit / LOAD_RATE),
         friction_slope: real(1.0 / FRICTION_SPEED),
         demand_gains: [real(1.0 - demand_left * demand_left), real((1.0 - demand_left) * (1.0 - demand_left) / period)],

@@ -107,6 +107,8 @@ pub struct CompensationTables<T: Real> {
     pub load_learner: [T; 3],
     /// Rate of the load for each N m by which its even part is moved [1/s].
     pub load_rate_gain: T,
+    /// What is left of the load's rate after one period.
+    pub load_rate_left: T,
     /// The load's greatest rate [N m/s].
     pub fastest_load: T,
     /// Inverse of the speed at which friction has its full size [s/rad].

@@ -49,12 +49,19 @@ impl<T: Real> LoadModel<T> {
 
     /// Takes the estimate of the load torque while a flank carries.
     pub fn observe(&mut self, tables: &CompensationTables<T>, estimates: &Estimates<T>, situation: &Situation<T>) {
+        // A weight turns with the link.
+        let direction = Self::direction(tables, T::HALF * situation.link_speed);
+        if direction * direction < T::QUARTER {
+            self.rate = T::ZERO;
+        }
         self.even = clamp(self.even + tables.period * self.rate, -tables.torque_limit, tables.torque_limit);
         let torque = estimates.load_torque;
         if torque.valid && torque.value.is_finite() && situation.sees && situation.contact != T::ZERO {
             // More than the motor can hold is no load that it carries.
             let held = clamp(torque.value, -tables.torque_limit, tables.torque_limit);
             self.learn(tables, held, situation.link_speed);
+        } else {
+            self.rate *= tables.load_rate_left;
         }
     }
 
@@ -72,9 +79,6 @@ impl<T: Real> LoadModel<T> {
         let creeps = whole < T::HALF && whole > -T::HALF;
         let direction = if creeps { T::ZERO } else { whole + whole };
         let known = if creeps { self.drag(tables, speed) } else { self.friction * direction };
-        if creeps {
-            self.rate = T::ZERO;
-        }
         let [growth_even, growth_friction, noise] = tables.load_learner;
         let [even, friction, both] = self.variance;
         let (even, friction) = (even + growth_even, friction + growth_friction);

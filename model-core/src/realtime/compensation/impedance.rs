@@ -61,7 +61,7 @@ impl<T: Real> ImpedanceLaw<T> {
             law,
             demand_now,
             demand_ahead,
-            free_acceleration: -free * tables.inverse_load_inertia,
+            free_acceleration: -load.free(tables, situation.link_speed) * tables.inverse_load_inertia,
             free_jerk: -load.rate() * tables.inverse_load_inertia,
             crossing,
             repays: true,

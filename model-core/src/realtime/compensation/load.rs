@@ -15,13 +15,15 @@ pub(super) struct LoadModel<T: Real> {
     friction: T,
     /// Rate of the even part [N m/s].
     rate: T,
+    /// What brakes a link that no flank carries [N m].
+    alone: Option<T>,
     /// Variances of both and their covariance.
     variance: [T; 3],
 }
 
 impl<T: Real> LoadModel<T> {
     pub fn new() -> Self {
-        Self { even: T::ZERO, friction: T::ZERO, rate: T::ZERO, variance: [T::ONE, T::ONE, T::ZERO] }
+        Self { even: T::ZERO, friction: T::ZERO, rate: T::ZERO, alone: None, variance: [T::ONE, T::ONE, T::ZERO] }
     }
 
     /// -1 to 1: what share of the dry friction brakes at a speed.
@@ -42,6 +44,11 @@ impl<T: Real> LoadModel<T> {
         self.friction
     }
 
+    /// What would brake the link now if no flank carried it.
+    pub fn free(&self, tables: &CompensationTables<T>, speed: T) -> T {
+        self.alone.unwrap_or(self.even + self.drag(tables, speed))
+    }
+
     /// Friction at a speed.
     pub fn drag(&self, tables: &CompensationTables<T>, speed: T) -> T {
         self.friction * Self::direction(tables, speed)
@@ -56,13 +63,16 @@ impl<T: Real> LoadModel<T> {
         }
         self.even = clamp(self.even + tables.period * self.rate, -tables.torque_limit, tables.torque_limit);
         let torque = estimates.load_torque;
-        if torque.valid && torque.value.is_finite() && situation.sees && situation.contact != T::ZERO {
-            // More than the motor can hold is no load that it carries.
-            let held = clamp(torque.value, -tables.torque_limit, tables.torque_limit);
+        let known = torque.valid && torque.value.is_finite() && situation.sees;
+        // More than the motor can hold is no load that it carries.
+        let held = clamp(torque.value, -tables.torque_limit, tables.torque_limit);
+        let carried = known && situation.contact != T::ZERO;
+        if carried {
             self.learn(tables, held, situation.link_speed);
         } else {
             self.rate *= tables.load_rate_left;
         }
+        self.alone = if known && !carried { Some(held) } else { None };
     }
 
     /// Integrates an error instead, where a flank should carry and no estimate says with what force.

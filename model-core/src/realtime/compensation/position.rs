@@ -75,7 +75,6 @@ impl<T: Real> PositionLaw<T> {
         let level = self.level;
         let rate = load.rate();
         let demand = |time: T| planned(time) + level + time * rate;
-        let free = load.even() + load.drag(tables, situation.link_speed);
         // How hard the far flank will be needed says how fast to go there, and that again when to start.
         let unhurried = crossing_time(tables, situation.half, T::ZERO) + tables.reaction;
         let crossing = crossing_time(tables, situation.half, demand(unhurried));
@@ -87,7 +86,7 @@ impl<T: Real> PositionLaw<T> {
             law,
             demand_now: demand(T::ZERO),
             demand_ahead,
-            free_acceleration: -free * tables.inverse_load_inertia,
+            free_acceleration: -load.free(tables, situation.link_speed) * tables.inverse_load_inertia,
             free_jerk: -load.rate() * tables.inverse_load_inertia,
             crossing,
             repays: false,

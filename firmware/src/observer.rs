@@ -74,13 +74,15 @@ pub struct Observing<P> {
     sound: bool,
     next: Option<Exchange>,
     answer: Answer<f32>,
+    /// The last exchange asked for estimates.
+    wants_estimates: bool,
     digest: u64,
 }
 
 impl<P: ControllerPort> Observing<P> {
     /// In front of a controller; `sound` is whether its tables are what they were made to be.
     pub fn new(port: P, sound: bool) -> Self {
-        Self { port, sound, next: None, answer: Answer::default(), digest: digest::START }
+        Self { port, sound, next: None, answer: Answer::default(), wants_estimates: false, digest: digest::START }
     }
 }
 
@@ -96,6 +98,7 @@ impl<P: ControllerPort> Work for Observing<P> {
         self.port.reset();
         self.next = None;
         self.answer = Answer::default();
+        self.wants_estimates = false;
         self.digest = digest::START;
     }
 
@@ -105,6 +108,7 @@ impl<P: ControllerPort> Work for Observing<P> {
 
     fn step(&mut self) {
         let Some(exchange) = self.next.take() else { return };
+        self.wants_estimates = exchange.wants_estimates;
         if let Ok(answer) = self.port.exchange(&exchange.samples(), &exchange.command()) {
             self.answer = answer;
         }
@@ -120,7 +124,7 @@ impl<P: ControllerPort> Work for Observing<P> {
             tick: steps,
             digest: self.digest,
             shaped: (&self.answer.shaped).into(),
-            estimates: Some((&self.answer.estimates).into()),
+            estimates: self.wants_estimates.then(|| (&self.answer.estimates).into()),
             computation,
         }
     }

@@ -1,13 +1,14 @@
 //! Role `plant`: the joint is simulated; torques in, motion out. When a step is due, and what becomes of its samples, is
 //! left to `control` and `telemetry`.
 
-use link::messages::{Command, Role, Schedule, ToBoard};
+use link::messages::{Command, Role, SAMPLES_PER_BATCH, Schedule, ToBoard};
 use model_core::digest;
 use model_core::realtime::{Model, Outputs, Torques};
 use model_core::tables::Tables;
 
+use crate::batcher::Batcher;
 use crate::control::Work;
-use crate::telemetry::Batcher;
+use crate::telemetry::PlantForm;
 use crate::words::{Timed, Words};
 
 /// The motion after a step.
@@ -31,7 +32,7 @@ impl<const N: usize> Words for PlantWords<N> {
     type Command = Command;
     type Timetable = Schedule;
     type Sample = RawSample<N>;
-    type Batch = Batcher<N>;
+    type Batch = Batcher<PlantForm<N>, SAMPLES_PER_BATCH>;
 
     fn timetable(message: ToBoard) -> Option<Schedule> {
         if let ToBoard::Schedule(schedule) = message { Some(schedule) } else { None }

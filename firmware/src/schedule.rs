@@ -41,6 +41,9 @@ impl Schedule {
     /// Decides on the step from `tick` to `tick + 1`, everything before `horizon` being known. Ticks rise strictly
     /// from command to command, so at most one can be due. A run begins with the first schedule, in either mode. In
     /// lockstep a run that does not wait for ever (`patient` is false) ends when no schedule has come for the timeout.
+    ///
+    /// The queue is filled before the horizon moves, and this may run in between: a command that is due says by itself
+    /// that its tick is known, and one that is not due stays where it is.
     pub fn turn<C: Timed, const PLACES: usize>(
         &mut self,
         tick: u32,
@@ -48,23 +51,18 @@ impl Schedule {
         patient: bool,
         commands: &mut Taker<'_, C, PLACES>,
     ) -> Turn<C> {
-        let known = tick < horizon;
-        let lockstep = self.settings.mode == RunMode::Lockstep;
-        if !known && (horizon == 0 || (lockstep && patient)) {
-            return Turn::Wait;
+        let next = commands.peek().map(Timed::tick);
+        if let Some(late) = next.filter(|next| *next < tick) {
+            return Turn::Trip(Fault::LateCommand { tick: late });
         }
-        let mut now = None;
-        if let Some(due) = commands.peek().map(Timed::tick) {
-            if due < tick {
-                return Turn::Trip(Fault::LateCommand { tick: due });
-            }
-            if due == tick {
-                now = commands.take();
-            }
-        }
-        if known {
+        let due = next == Some(tick);
+        if due || tick < horizon {
             self.starved_in_a_row = 0;
-            return Turn::Step(now);
+            return Turn::Step(if due { commands.take() } else { None });
+        }
+        let lockstep = self.settings.mode == RunMode::Lockstep;
+        if horizon == 0 || (lockstep && patient) {
+            return Turn::Wait;
         }
         self.starved_in_a_row = self.starved_in_a_row.saturating_add(1);
         if self.starved_in_a_row > self.settings.command_timeout {
@@ -137,6 +135,23 @@ mod tests {
         let mut schedule = schedule(RunMode::Lockstep);
         let given: Vec<_> = (0..5).map(|tick| new(schedule.turn(tick, 5, true, &mut commands))).collect();
         assert_eq!(given, [None, Some(2.0), None, Some(-1.0), None]);
+    }
+
+    #[test]
+    fn a_command_that_the_tick_sees_before_its_horizon_is_not_lost() {
+        for (mode, patient) in [(RunMode::Lockstep, false), (RunMode::Lockstep, true), (RunMode::Realtime, true)] {
+            let mut queue = Queue::<Command, 4>::new();
+            let (mut entry, commands) = queue.split();
+            let mut commands = Taker::<_, 4>::new(commands);
+            let mut schedule = schedule(mode);
+            // Idle has put the commands into the queue and is interrupted before it moves the horizon.
+            entry.enqueue(command(0, 2.0)).unwrap();
+            entry.enqueue(command(2, 3.0)).unwrap();
+            assert_eq!(new(schedule.turn(0, 0, patient, &mut commands)), Some(2.0));
+            assert_eq!(schedule.turn(1, 0, patient, &mut commands), Turn::Wait);
+            assert_eq!(schedule.turn(1, 3, patient, &mut commands), Turn::Step(None));
+            assert_eq!(new(schedule.turn(2, 3, patient, &mut commands)), Some(3.0));
+        }
     }
 
     #[test]

@@ -1,39 +1,25 @@
-//! From the plant's raw samples to batches on the wire, numbered without gaps. When a batch is sent is decided by
-//! `conversation`, which knows how much room the line has.
+//! The plant's raw samples in the wire's form. Collecting them is left to `batcher`.
 
 use heapless::Vec;
 use link::messages::{FromBoard, MAX_MESHES, SAMPLES_PER_BATCH, Sample, SampleBatch};
 use model_core::mesh::ContactState;
 
+use crate::batcher::WireForm;
 use crate::plant::RawSample;
-use crate::words::Batch;
 
-/// Collects samples into batches.
-#[derive(Debug, Default)]
-pub struct Batcher<const N: usize> {
-    sequence: u16,
-    samples: Vec<Sample, SAMPLES_PER_BATCH>,
-}
+/// The form of the plant's samples.
+pub struct PlantForm<const N: usize>;
 
-impl<const N: usize> Batch for Batcher<N> {
-    type Sample = RawSample<N>;
+impl<const N: usize> WireForm<SAMPLES_PER_BATCH> for PlantForm<N> {
+    type Raw = RawSample<N>;
+    type Wire = Sample;
 
-    fn add(&mut self, raw: &RawSample<N>) {
-        let _ = self.samples.push(sample(raw));
+    fn wire(raw: &RawSample<N>) -> Sample {
+        sample(raw)
     }
 
-    fn is_full(&self) -> bool {
-        self.samples.is_full()
-    }
-
-    fn is_empty(&self) -> bool {
-        self.samples.is_empty()
-    }
-
-    fn take(&mut self) -> FromBoard {
-        let sequence = self.sequence;
-        self.sequence = sequence.wrapping_add(1);
-        FromBoard::Samples(SampleBatch { sequence, samples: core::mem::take(&mut self.samples) })
+    fn message(sequence: u16, samples: Vec<Sample, SAMPLES_PER_BATCH>) -> FromBoard {
+        FromBoard::Samples(SampleBatch { sequence, samples })
     }
 }
 
@@ -80,14 +66,5 @@ mod tests {
     fn the_first_mesh_has_the_lowest_bits() {
         use ContactState::{BackSide, DriveSide, Separated};
         assert_eq!(contact_bits([DriveSide, Separated, BackSide].iter()), 0b10_00_01);
-    }
-
-    #[test]
-    fn batches_are_numbered_without_gaps_and_come_out_empty_again() {
-        let mut batcher = Batcher::<3>::default();
-        for sequence in 0..3 {
-            assert!(matches!(batcher.take(), FromBoard::Samples(batch) if batch.sequence == sequence));
-            assert!(batcher.is_empty());
-        }
     }
 }

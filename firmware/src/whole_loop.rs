@@ -11,9 +11,10 @@ use model_core::realtime::virtual_joint::VirtualJoint;
 use model_core::tables::Tables;
 use model_core::tables::virtual_joint::SurroundingsTable;
 
+use crate::batcher::{Batcher, WireForm};
 use crate::control::Work;
 use crate::port::ControllerPort;
-use crate::words::{Batch, Timed, Words};
+use crate::words::{Timed, Words};
 
 /// Periods after which a demand that nothing follows stands still: three of the host's knots.
 const LONGEST_STRETCH: u16 = 150;
@@ -26,7 +27,7 @@ impl Words for LoopWords {
     type Command = Knot;
     type Timetable = Schedule<Knot, KNOTS_PER_SCHEDULE>;
     type Sample = LoopSample;
-    type Batch = LoopBatcher;
+    type Batch = Batcher<LoopForm, LOOP_SAMPLES_PER_BATCH>;
 
     fn timetable(message: ToBoard) -> Option<Self::Timetable> {
         if let ToBoard::Course(schedule) = message { Some(schedule) } else { None }
@@ -43,32 +44,19 @@ impl Timed for Knot {
     }
 }
 
-/// Collects samples into batches.
-#[derive(Debug, Default)]
-pub struct LoopBatcher {
-    sequence: u16,
-    samples: Vec<LoopSample, LOOP_SAMPLES_PER_BATCH>,
-}
+/// The form of the loop's samples: the tick leaves them in the wire's.
+pub struct LoopForm;
 
-impl Batch for LoopBatcher {
-    type Sample = LoopSample;
+impl WireForm<LOOP_SAMPLES_PER_BATCH> for LoopForm {
+    type Raw = LoopSample;
+    type Wire = LoopSample;
 
-    fn add(&mut self, sample: &LoopSample) {
-        let _ = self.samples.push(*sample);
+    fn wire(raw: &LoopSample) -> LoopSample {
+        *raw
     }
 
-    fn is_full(&self) -> bool {
-        self.samples.is_full()
-    }
-
-    fn is_empty(&self) -> bool {
-        self.samples.is_empty()
-    }
-
-    fn take(&mut self) -> FromBoard {
-        let sequence = self.sequence;
-        self.sequence = sequence.wrapping_add(1);
-        FromBoard::Loop(LoopBatch { sequence, samples: core::mem::take(&mut self.samples) })
+    fn message(sequence: u16, samples: Vec<LoopSample, LOOP_SAMPLES_PER_BATCH>) -> FromBoard {
+        FromBoard::Loop(LoopBatch { sequence, samples })
     }
 }
 

@@ -85,6 +85,21 @@ fn an_observer_on_a_line_answers_like_one_that_is_called_in_every_bit() {
 }
 
 #[test]
+fn an_observer_that_is_not_asked_for_estimates_keeps_them_to_its_digest() {
+    let mut bench = observer();
+    bench.start(RunMode::Lockstep, 1, 1000);
+    let (joint, command) = (VirtualJoint::new(&TABLES, &control::SURROUNDINGS), Demand::HOLD.at(0.0, 1.0));
+    let expected = controller().step(&joint.samples(), &command);
+    let commands = [Exchange::new(0, &joint.samples(), &command).without_estimates()].into_iter().collect();
+    bench.send(&ToBoard::Exchanges(Schedule { sequence: 0, horizon: 1, commands }));
+    bench.run(2);
+    let said = answers(bench.said());
+    let [answered] = &said[..] else { panic!("{said:?}") };
+    assert_eq!((answered.estimates, answered.digest), (None, expected.digest(digest::START)));
+    assert_eq!(answered.shaped, (&expected.shaped).into());
+}
+
+#[test]
 fn an_observer_whose_controller_falls_silent_goes_to_the_safe_state() {
     let mut bench = observer();
     bench.start(RunMode::Lockstep, 1, 50);

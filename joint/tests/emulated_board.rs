@@ -16,8 +16,12 @@ const LIVENESS: Duration = Duration::from_secs(20);
 const BUILD: Duration = Duration::from_secs(900);
 
 fn hil(out: &Path) -> Command {
+    hil_of(Path::new("q1"), out)
+}
+
+fn hil_of(joint: &Path, out: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_joint"));
-    command.stdin(Stdio::null()).args(["hil", "--out"]).arg(out);
+    command.stdin(Stdio::null()).arg("hil").arg(joint).arg("--out").arg(out);
     command
 }
 
@@ -162,7 +166,7 @@ fn a_joint_file_that_is_not_in_the_repository_runs_beside_the_presets() {
     let file = out.path().join("mine.toml");
     let text = joints::preset("l1").expect("a preset").replace("name = \"L1\"", "name = \"Mine\"");
     fs::write(&file, text).expect("a file");
-    let (_, said) = finish(hil(out.path()).args(["--duration", "0.5", "--no-reference"]).arg(&file));
+    let (_, said) = finish(hil_of(&file, out.path()).args(["--duration", "0.5", "--no-reference"]));
     let record = record(&out);
     assert_eq!(record["identity"]["joint"], "Mine", "{said}");
     assert_eq!(check(&record, "differ from the host's f32 twin")["figure"], 0.0, "{said}");

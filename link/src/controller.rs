@@ -1,10 +1,11 @@
-//! What passes between a motor controller and observer with compensation: samples and set-points one way, estimates and
-//! shaped set-points the other, in the wire's own form. Times are ticks of the samples' clock; every field is SI.
+//! What passes between a motor controller and observer with compensation: samples and set-points one way, in the wire's own
+//! form; the other way is in `answer`. Times are ticks of the samples' clock; every field is SI.
 
-use model_core::mesh::ContactState;
-use model_core::realtime::compensation::{self, ImpedancePoint, Position, Shaped, Stage};
-use model_core::realtime::controller::Answer;
-use model_core::realtime::observer::{Doubt, Estimate, Estimates, Notices, Reading, Samples, Shaft, Source};
+mod answer;
+
+pub use answer::{Answered, WireEstimate, WireEstimates, WireShaped};
+use model_core::realtime::compensation::{self, ImpedancePoint, Position};
+use model_core::realtime::observer::{Reading, Samples};
 use serde::{Deserialize, Serialize};
 
 /// Most exchanges in one schedule: one control period each.
@@ -25,6 +26,8 @@ pub struct Exchange {
     pub torque: f32,
     /// What is asked for.
     pub set_point: SetPoint,
+    /// The answer shall bring all that the observer says; its torque and digest come in any case.
+    pub wants_estimates: bool,
 }
 
 /// What is asked for in one control period.
@@ -67,63 +70,8 @@ pub struct Impedance {
     pub damping: f32,
 }
 
-/// What a control period came to.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Answered {
-    /// Control periods done.
-    pub tick: u32,
-    /// Running digest over every answer so far.
-    pub digest: u64,
-    /// The shaped set-point: the torque to give, and what it is about.
-    pub shaped: WireShaped,
-    /// All that the observer says, every so many periods.
-    pub estimates: Option<WireEstimates>,
-    /// Computation time of this period, in timer counts.
-    pub computation: u16,
-}
-
-/// The compensation's answer.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct WireShaped {
-    /// Torque for the motor [N m].
-    pub torque: f32,
-    /// 0 touching, 1 crossing, 2 landing, 3 plain.
-    pub stage: u8,
-    /// The flank in use.
-    pub side: f32,
-    /// Torque that the teeth will have to pass on [N m].
-    pub demand: f32,
-    /// What brakes the link besides dry friction, and the dry friction [N m].
-    pub load: [f32; 2],
-    /// Share of the compensation.
-    pub trust: f32,
-}
-
-/// A value, its variance, and whether it may be used.
-pub type WireEstimate = (f32, f32, bool);
-
-/// The observer's answer.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct WireEstimates {
-    /// 0 both encoders; motor only since the output's is 1 absent, 2 silent, 3 frozen, 4 out of range; 5 nothing.
-    pub source: u8,
-    /// Bits, the first lowest: torque unknown, out of time, motor doubted, motor jumped, contact valid, settled.
-    pub flags: u8,
-    /// Contact by force and as reported: 0 separated, 1 drive side, 2 back side.
-    pub contacts: (u8, u8),
-    /// [m].
-    pub gap: WireEstimate,
-    /// Rate of the gap coordinate [m/s], shift of both flanks [m], its slope [m/rad].
-    pub gap_course: [f32; 3],
-    /// Mesh torque, load torque [N m], half-backlash [m], encoder offset [rad], compliance [rad/(N m)], skew [s], torque
-    /// bias, motor friction [N m].
-    pub others: [WireEstimate; 8],
-    /// Motor and link: whole turns, the rest, speed [rad/s].
-    pub shafts: [(i32, f32, f32); 2],
-}
-
 impl Exchange {
-    /// A control period's samples and set-point.
+    /// A control period's samples and set-point, to be answered with all estimates.
     pub fn new(tick: u32, samples: &Samples<f32>, command: &compensation::Command<f32>) -> Self {
         let reading = |reading: Reading| (reading.counts, reading.time);
         Self {
@@ -133,7 +81,13 @@ impl Exchange {
             output: samples.output.map(reading),
             torque: samples.torque,
             set_point: SetPoint::from(command),
+            wants_estimates: true,
         }
+    }
+
+    /// The same for who has the estimates from elsewhere: most of an answer's bytes stay off the line.
+    pub fn without_estimates(self) -> Self {
+        Self { wants_estimates: false, ..self }
     }
 
     /// The samples.
@@ -197,142 +151,5 @@ impl From<SetPoint> for compensation::Command<f32> {
             SetPoint::Position { now, ahead } => Self::Position { now: motion(now), ahead: ahead.map(motion) },
             SetPoint::Impedance(point) => Self::Impedance(point.into()),
         }
-    }
-}
-
-impl From<&Shaped<f32>> for WireShaped {
-    fn from(shaped: &Shaped<f32>) -> Self {
-        let Shaped { torque, stage, side, demand, load, trust } = *shaped;
-        Self { torque, stage: stage as u8, side, demand, load, trust }
-    }
-}
-
-impl From<WireShaped> for Shaped<f32> {
-    fn from(wire: WireShaped) -> Self {
-        let WireShaped { torque, stage, side, demand, load, trust } = wire;
-        let stage = match stage {
-            0 => Stage::Touching,
-            1 => Stage::Crossing,
-            2 => Stage::Landing,
-            _ => Stage::Plain,
-        };
-        Self { torque, stage, side, demand, load, trust }
-    }
-}
-
-fn estimate(of: Estimate<f32>) -> WireEstimate {
-    (of.value, of.variance, of.valid)
-}
-
-fn estimated((value, variance, valid): WireEstimate) -> Estimate<f32> {
-    Estimate { value, variance, valid }
-}
-
-fn contact(of: ContactState) -> u8 {
-    match of {
-        ContactState::Separated => 0,
-        ContactState::DriveSide => 1,
-        ContactState::BackSide => 2,
-    }
-}
-
-fn contacted(of: u8) -> ContactState {
-    match of {
-        1 => ContactState::DriveSide,
-        2 => ContactState::BackSide,
-        _ => ContactState::Separated,
-    }
-}
-
-impl From<&Estimates<f32>> for WireEstimates {
-    fn from(of: &Estimates<f32>) -> Self {
-        let notices = &of.notices;
-        let flags = [
-            notices.torque_unknown,
-            notices.out_of_time,
-            notices.motor_doubted,
-            notices.motor_jumped,
-            of.contact_valid,
-            of.settled,
-        ];
-        let shaft = |shaft: Shaft<f32>| (shaft.turns, shaft.fraction, shaft.speed);
-        Self {
-            source: match of.source {
-                Source::Both => 0,
-                Source::MotorOnly(Doubt::Absent) => 1,
-                Source::MotorOnly(Doubt::Silent) => 2,
-                Source::MotorOnly(Doubt::Frozen) => 3,
-                Source::MotorOnly(Doubt::OutOfRange) => 4,
-                Source::Nothing => 5,
-            },
-            flags: flags.iter().rev().fold(0, |bits, flag| bits << 1 | u8::from(*flag)),
-            contacts: (contact(of.contact), contact(of.reported_contact)),
-            gap: estimate(of.gap),
-            gap_course: [of.gap_rate, of.flank_shift, of.flank_shift_slope],
-            others: [
-                of.mesh_torque,
-                of.load_torque,
-                of.half_backlash,
-                of.encoder_offset,
-                of.compliance,
-                of.skew,
-                of.torque_bias,
-                of.motor_friction,
-            ]
-            .map(estimate),
-            shafts: [of.motor, of.link].map(shaft),
-        }
-    }
-}
-
-impl From<WireEstimates> for Estimates<f32> {
-    fn from(wire: WireEstimates) -> Self {
-        let flag = |bit: u8| wire.flags >> bit & 1 == 1;
-        let shaft = |(turns, fraction, speed)| Shaft { turns, fraction, speed };
-        let [mesh_torque, load_torque, half_backlash, encoder_offset, compliance, skew, torque_bias, motor_friction] =
-            wire.others.map(estimated);
-        let [motor, link] = wire.shafts.map(shaft);
-        let [gap_rate, flank_shift, flank_shift_slope] = wire.gap_course;
-        Self {
-            source: match wire.source {
-                0 => Source::Both,
-                1 => Source::MotorOnly(Doubt::Absent),
-                2 => Source::MotorOnly(Doubt::Silent),
-                3 => Source::MotorOnly(Doubt::Frozen),
-                4 => Source::MotorOnly(Doubt::OutOfRange),
-                _ => Source::Nothing,
-            },
-            notices: Notices {
-                torque_unknown: flag(0),
-                out_of_time: flag(1),
-                motor_doubted: flag(2),
-                motor_jumped: flag(3),
-            },
-            gap: estimated(wire.gap),
-            gap_rate,
-            flank_shift,
-            flank_shift_slope,
-            contact: contacted(wire.contacts.0),
-            reported_contact: contacted(wire.contacts.1),
-            contact_valid: flag(4),
-            settled: flag(5),
-            mesh_torque,
-            load_torque,
-            half_backlash,
-            encoder_offset,
-            compliance,
-            skew,
-            torque_bias,
-            motor_friction,
-            motor,
-            link,
-        }
-    }
-}
-
-impl Answered {
-    /// The answer, if it brings all of it.
-    pub fn answer(&self) -> Option<Answer<f32>> {
-        Some(Answer { estimates: self.estimates?.into(), shaped: self.shaped.into() })
     }
 }

@@ -40,13 +40,52 @@ use crate::{output, report, trial};
 /// Runs a joint on a board; succeeds only if every check held.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
     Progress::during(|progress| {
-        if trial::suite::is_of_tests(&arguments.file) {
+        if trial::suite::is_of_tests(arguments.file()) {
             return trial::run(&tests::wanted(arguments)?, progress);
         }
         tests::refuse_for_joints(arguments)?;
-        run_once(arguments, progress)?;
-        if arguments.check { everything::check(arguments.rate, progress) } else { Ok(()) }
+        let joint = run_once(arguments, progress);
+        if arguments.check {
+            return joint.and_then(|()| everything::check(arguments.rate, progress));
+        }
+        match (&arguments.file, &arguments.port) {
+            (Some(_), _) => joint,
+            (None, Some(port)) => joint.and_then(|()| say_how_to_go_on(port, arguments.board.name())),
+            (None, None) => run_tests(arguments, joint, progress),
+        }
     })
+}
+
+/// The tests of observer and compensation after the joint's own checks: what failed there does not keep them from running.
+fn run_tests(arguments: &Arguments, joint: Outcome<()>, progress: &Progress) -> Outcome<()> {
+    let check_failed = Failure::check_failed("").exit_code();
+    if let Err(failure) = joint.as_ref()
+        && failure.exit_code() != check_failed
+    {
+        return joint;
+    }
+    output::print("\n")?;
+    let tests = trial::run(&tests::wanted_of_all(arguments), progress);
+    if !arguments.full {
+        let left: Vec<String> = tests::left_out()?.iter().map(|path| path.display().to_string()).collect();
+        output::print(&format!("left to `joint hil --full`: {}\n", left.join(", ")))?;
+    }
+    match (joint, tests) {
+        (Ok(()), Ok(())) => output::print("passed:  the joint on the board, observer and compensation\n"),
+        (Err(joint), Err(tests)) if tests.exit_code() == check_failed => {
+            Err(Failure::check_failed(format!("{}; {}", joint.message(), tests.message()))
+                .with_help("the reports lead with what failed"))
+        }
+        (joint, tests) => tests.and(joint),
+    }
+}
+
+/// A real board keeps the image that it has until the user flashes another one.
+fn say_how_to_go_on(port: &str, board: &str) -> Outcome<()> {
+    output::print(&format!(
+        "tests of observer and compensation take an image of their own, which is built and named by\n\
+         joint hil hil/t2.toml --role loop --port {port} --board {board}\n"
+    ))
 }
 
 fn run_once(arguments: &Arguments, progress: &Progress) -> Outcome<()> {

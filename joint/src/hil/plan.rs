@@ -1,7 +1,7 @@
 //! What `joint hil` was asked to do, with everything that can be wrong with it found before anything is built or
 //! started: joint, profile, rates. Boards and files to be written are looked at later.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use joints::JointFile;
@@ -19,7 +19,8 @@ use crate::{check, images};
 /// Arguments of `joint hil`.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
-  joint hil                                   joint q1 on the emulated board
+  joint hil                                   the emulated board: joint q1, then observer and compensation
+  joint hil --full                            then every test, with all its seeds, around the f64 reference
   joint hil joints/l1.toml --duration 10      another joint, a longer run
   joint hil q1 --profile drive.csv --json out.json
   joint hil q1 --port /dev/ttyUSB0            a real board, flashed before by `joint flash q1`
@@ -30,9 +31,9 @@ use crate::{check, images};
 Exit code: 0 if every check held, 1 if one did not, 2 for bad input or a bad environment, 130 after Ctrl-C.")]
 pub struct Arguments {
     /// Joint file (TOML), or the name of a preset: q1, s1, d2, l1, paper, paper_printed; or a test file, or a folder
-    /// of them (docs/hil-file.md)
-    #[arg(value_name = "FILE", default_value = "q1")]
-    pub file: PathBuf,
+    /// of them (docs/hil-file.md) [default: joint q1, then the short run of the tests in hil]
+    #[arg(value_name = "FILE")]
+    pub file: Option<PathBuf>,
     /// Test files: runs observer and compensation on this machine, without a board
     #[arg(long, conflicts_with = "role")]
     pub host: bool,
@@ -45,7 +46,7 @@ pub struct Arguments {
     /// Test files: what is controlled [default: core]
     #[arg(long, value_enum)]
     pub plant: Option<PlantName>,
-    /// Test files: runs the full lists of seeds, and files that are only for those
+    /// Test files: runs the full lists of seeds, and files that are only for those; without FILE all of them
     #[arg(long)]
     pub full: bool,
     /// Test files: writes the results as JUnit XML to this file too
@@ -138,8 +139,8 @@ const COMMAND_TIMEOUT: f64 = 0.1;
 impl Plan {
     /// Reads and designs all that a run needs.
     pub fn new(arguments: &Arguments) -> Outcome<Self> {
-        let loaded = check::load(&arguments.file)?;
-        let path = images::joint_file(&arguments.file, &loaded);
+        let loaded = check::load(arguments.file())?;
+        let path = images::joint_file(arguments.file(), &loaded);
         let check::Loaded { name, file: joint, .. } = loaded;
         let parameters = &joint.parameters;
         let digest = twin::tables_digest(parameters, arguments.board, arguments.rate)?;
@@ -168,18 +169,23 @@ impl Plan {
 }
 
 impl Arguments {
+    /// The file, or the joint of a run that names none.
+    pub fn file(&self) -> &Path {
+        self.file.as_deref().unwrap_or(Path::new("q1"))
+    }
+
     /// The command that puts the right image onto the board.
     fn flash_command(&self) -> String {
         let rate = self.rate_option();
         match &self.port {
-            Some(_) => format!("cargo joint flash {} --board {}{rate}", self.file.display(), self.board.name()),
-            None => format!("cargo joint image {}{rate}", self.file.display()),
+            Some(_) => format!("cargo joint flash {} --board {}{rate}", self.file().display(), self.board.name()),
+            None => format!("cargo joint image {}{rate}", self.file().display()),
         }
     }
 
     /// The command that makes this run again.
     pub fn replay_command(&self) -> String {
-        let mut command = format!("cargo joint hil {}", self.file.display());
+        let mut command = format!("cargo joint hil {}", self.file().display());
         let mut option = |name: &str, value: Option<String>| {
             if let Some(value) = value {
                 command += &format!(" --{name} {value}");

@@ -71,13 +71,6 @@ impl Progress {
         }
     }
 
-    /// A line that stays above the moving one; on anything but a terminal results speak for themselves.
-    pub fn say_above(&self, line: &str) {
-        if let Some(bar) = self.bar.borrow().as_ref().filter(|bar| !bar.is_hidden()) {
-            bar.println(line);
-        }
-    }
-
     /// Nothing is under way any more.
     pub fn clear(&self) {
         if let Some(bar) = self.bar.take() {
@@ -100,6 +93,13 @@ impl Handle {
     pub fn at(&self, ticks: u32) {
         if let Some(bar) = &self.0 {
             bar.set_position(ticks.into());
+        }
+    }
+
+    /// A line that stays above the moving one; on anything but a terminal results speak for themselves.
+    pub fn say_above(&self, line: &str) {
+        if let Some(bar) = self.0.as_ref().filter(|bar| !bar.is_hidden()) {
+            bar.println(line);
         }
     }
 }

@@ -1,14 +1,18 @@
 //! Which arguments of `joint hil` belong to test files and which to joints; the wrong ones are named rather than
 //! ignored. Running tests is left to `trial`.
 
+use std::path::{Path, PathBuf};
+
 use link::messages::{Role, RunMode};
 
 use super::plan::{Arguments, Mode, RoleName};
 use super::profile::BUILTIN;
 use crate::failure::{Failure, Outcome};
-use crate::trial::Wanted;
+use crate::target::toolchain::workspace;
 use crate::trial::board::BoardWish;
 use crate::trial::plant::PlantName;
+use crate::trial::suite::{self, Choice};
+use crate::trial::{Part, Wanted};
 
 /// What is asked of the tests in a file or folder.
 pub fn wanted(arguments: &Arguments) -> Outcome<Wanted<'_>> {
@@ -21,18 +25,68 @@ pub fn wanted(arguments: &Arguments) -> Outcome<Wanted<'_>> {
         ("profile", arguments.profile != BUILTIN[0]),
     ];
     if let Some((name, _)) = of_joints.iter().find(|(_, given)| *given) {
-        let message = format!("--{name} is for joints, and {} holds tests", arguments.file.display());
+        let message = format!("--{name} is for joints, and {} holds tests", arguments.file().display());
         return Err(Failure::new(message).with_help("write it into the test file: docs/hil-file.md tells its keys"));
     }
     if let (true, Some(port)) = (arguments.host, &arguments.port) {
         return Err(Failure::new(format!("--host runs without a board, and --port {port} names one"))
             .with_help("leave one of them out"));
     }
-    let boards = BoardWish {
-        role: match arguments.role {
-            Some(RoleName::Observer) => Role::Observer,
-            Some(RoleName::Loop) | None => Role::Loop,
-        },
+    let role = match arguments.role {
+        Some(RoleName::Observer) => Role::Observer,
+        Some(RoleName::Loop) | None => Role::Loop,
+    };
+    let path = arguments.file().to_owned();
+    let part = Part {
+        choice: if arguments.full { Choice::Full } else { Choice::Short },
+        plant: arguments.plant.unwrap_or(PlantName::Core),
+        boards: (!arguments.host).then(|| boards(arguments, role)),
+        path,
+    };
+    let name = part.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    Ok(of_parts(arguments, vec![part], name, arguments.out.clone()))
+}
+
+/// What is asked of the tests that come with the program where no file is named: on the board those that say so, and with
+/// `--full` all of them around the f64 reference, which is where their bounds are stated.
+pub fn wanted_of_all(arguments: &Arguments) -> Wanted<'_> {
+    let part = |choice, plant, boards| Part { path: folder(), choice, plant, boards };
+    let on_board = |role, plant| part(Choice::OnBoard(role), plant, Some(boards(arguments, role)));
+    let mut parts = vec![on_board(Role::Loop, PlantName::Core), on_board(Role::Observer, PlantName::Reference)];
+    if arguments.full {
+        parts.push(part(Choice::Full, PlantName::Reference, None));
+    }
+    of_parts(arguments, parts, "all".to_owned(), arguments.out.as_ref().map(|out| out.join("tests")))
+}
+
+/// Files that a run without `--full` leaves out.
+pub fn left_out() -> Outcome<Vec<PathBuf>> {
+    suite::left_out(&folder())
+}
+
+/// The tests that come with the program; by the short path where that leads there too, as it does in the workspace.
+fn folder() -> PathBuf {
+    let whole = workspace().join("hil");
+    let short = Path::new("hil");
+    let same = short.canonicalize().is_ok_and(|short| whole.canonicalize().is_ok_and(|whole| short == whole));
+    if same { short.to_owned() } else { whole }
+}
+
+fn of_parts<'a>(arguments: &'a Arguments, parts: Vec<Part<'a>>, name: String, out: Option<PathBuf>) -> Wanted<'a> {
+    Wanted {
+        parts,
+        seed: arguments.seed,
+        full: arguments.full,
+        name,
+        out,
+        json: arguments.json.as_deref().filter(|_| arguments.file.is_some()),
+        junit: arguments.junit.as_deref(),
+    }
+}
+
+fn boards(arguments: &Arguments, role: Role) -> BoardWish<'_> {
+    BoardWish {
+        role,
         port: arguments.port.as_deref(),
         baud: arguments.baud,
         board: arguments.board,
@@ -41,17 +95,7 @@ pub fn wanted(arguments: &Arguments) -> Outcome<Wanted<'_>> {
             Mode::Lockstep => RunMode::Lockstep,
             Mode::Realtime => RunMode::Realtime,
         }),
-    };
-    Ok(Wanted {
-        path: &arguments.file,
-        seed: arguments.seed,
-        plant: arguments.plant.unwrap_or(PlantName::Core),
-        boards: (!arguments.host).then_some(boards),
-        full: arguments.full,
-        out: arguments.out.as_deref(),
-        json: arguments.json.as_deref(),
-        junit: arguments.junit.as_deref(),
-    })
+    }
 }
 
 /// Complains about arguments of tests when a joint was named.
@@ -61,12 +105,12 @@ pub fn refuse_for_joints(arguments: &Arguments) -> Outcome<()> {
         ("role", arguments.role.is_some()),
         ("seed", arguments.seed.is_some()),
         ("plant", arguments.plant.is_some()),
-        ("full", arguments.full),
-        ("junit", arguments.junit.is_some()),
+        ("full", arguments.full && arguments.file.is_some()),
+        ("junit", arguments.junit.is_some() && arguments.file.is_some()),
     ];
     let Some((name, _)) = of_tests.iter().find(|(_, given)| *given) else { return Ok(()) };
-    let file = arguments.file.display();
-    let message = match arguments.file.exists() || joints::preset(&file.to_string()).is_some() {
+    let file = arguments.file().display();
+    let message = match arguments.file().exists() || joints::preset(&file.to_string()).is_some() {
         true => format!("--{name} is for test files, and {file} is a joint"),
         false => format!("there is no test file {file}"),
     };

@@ -12,6 +12,7 @@ use object::{Object, ObjectSegment};
 use sha2::{Digest, Sha256};
 
 use super::board::Board;
+use super::sources::{self, hexadecimal};
 use super::toolchain::{TARGET, Toolchain, workspace};
 use super::{Say, tool};
 use crate::failure::{Failure, Outcome};
@@ -89,7 +90,7 @@ pub fn build_control_image(
 ) -> Outcome<Image> {
     check_rate(board, control.rate)?;
     let digest = Sha256::digest(format!("{truth}{told}{control:?}"));
-    let name: String = digest.iter().take(6).map(|byte| format!("{byte:02x}")).collect();
+    let name = hexadecimal(&digest[..6]);
     let folder = toolchain.target_directory().join("images/control");
     let [truth_file, told_file] = ["truth", "told"].map(|which| folder.join(format!("{name}-{which}.toml")));
     store(&folder, &truth_file, truth.as_bytes())?;
@@ -116,15 +117,21 @@ fn finish(
         ("JOINT_BANDWIDTH", bandwidth.as_ref()),
         ("JOINT_MOTOR_ONLY", motor_only.as_ref()),
     ];
-    let elf = compile(toolchain, binary(role), board.name(), &environment, say)?;
     let images = toolchain.target_directory().join("images");
     let place = images.join(name);
-    store(&images, &place, &elf)?;
+    let elf = sources::up_to_date(
+        toolchain,
+        &images,
+        &place,
+        [truth, told],
+        &format!("{role:?}{board:?}{control:?}"),
+        || compile(toolchain, binary(role), board.name(), &environment, say),
+    )?;
     let (flash_bytes, ram_bytes) =
         sizes(&elf).map_err(|error| Failure::new(format!("{}: {error}", place.display())))?;
     Ok(Image {
         elf: place,
-        sha256: Sha256::digest(&elf).iter().map(|byte| format!("{byte:02x}")).collect(),
+        sha256: hexadecimal(&Sha256::digest(&elf)),
         flash_bytes,
         ram_bytes,
         compiler: toolchain.compiler().to_owned(),
@@ -247,7 +254,7 @@ fn lock(folder: &Path) -> Outcome<File> {
 }
 
 /// Puts the whole file in place, or none of it.
-fn store(images: &Path, place: &Path, elf: &[u8]) -> Outcome<()> {
+pub(super) fn store(images: &Path, place: &Path, elf: &[u8]) -> Outcome<()> {
     let unfinished = place.with_extension(format!("unfinished-{}", std::process::id()));
     fs::create_dir_all(images)
         .and_then(|()| fs::write(&unfinished, elf))

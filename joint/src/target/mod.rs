@@ -11,6 +11,7 @@ pub mod image;
 pub mod lint;
 pub mod measuring;
 pub mod packages;
+mod sources;
 pub mod sysroot;
 pub mod tool;
 pub mod toolchain;

@@ -118,6 +118,8 @@ pub fn run(test: &Test, conduct: &Conduct<'_>, before: &AtomicU32) -> Outcome<Te
         title: test.file.title.clone(),
         joint: test.joint.file.parameters.name.to_string(),
         joint_sha256: test.joint_sha256(),
+        on: conduct.boards.map_or("host".to_owned(), Boards::label),
+        plant: conduct.plant.word().to_owned(),
         profile: test.file.profile.kind.to_owned(),
         controller: test.file.controller.word().to_owned(),
         duration_s: test.file.duration,

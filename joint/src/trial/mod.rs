@@ -43,7 +43,9 @@ use std::time::Instant;
 use board::{BoardWish, Boards};
 use campaign::{Conduct, Tested};
 use plant::PlantName;
+use rayon::prelude::*;
 use record::{SCHEMA, TestsRecord};
+use suite::{Choice, Test};
 
 use crate::failure::{Failure, Outcome};
 use crate::hil::{Progress, origin};
@@ -52,64 +54,64 @@ use crate::record::write_text;
 use crate::sim::files::Folder;
 
 /// What was asked for.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Wanted<'w> {
-    /// A test file, or a folder of them.
-    pub path: &'w Path,
+    /// Which tests, and where they run.
+    pub parts: Vec<Part<'w>>,
     /// One seed in place of the files'.
     pub seed: Option<u64>,
-    /// What is controlled.
-    pub plant: PlantName,
-    /// The boards to run on; without them the host.
-    pub boards: Option<BoardWish<'w>>,
-    /// The full lists of seeds, and files that are only for those.
+    /// The full lists of seeds.
     pub full: bool,
-    /// Folder for everything that stays.
-    pub out: Option<&'w Path>,
+    /// Name of the usual folder for everything that stays.
+    pub name: String,
+    /// Another folder.
+    pub out: Option<PathBuf>,
     /// The results as JSON, too.
     pub json: Option<&'w Path>,
     /// The results as JUnit XML, too.
     pub junit: Option<&'w Path>,
 }
 
-/// Runs tests on the host; succeeds only if all passed.
+/// Tests that run in one place.
+#[derive(Debug, Clone)]
+pub struct Part<'w> {
+    /// A test file, or a folder of them.
+    pub path: PathBuf,
+    /// Which of a folder.
+    pub choice: Choice,
+    /// What is controlled.
+    pub plant: PlantName,
+    /// The boards to run on; without them the host.
+    pub boards: Option<BoardWish<'w>>,
+}
+
+/// A part that can be run.
+struct Ready<'w> {
+    tests: Vec<Test>,
+    plant: PlantName,
+    boards: Option<Boards<'w>>,
+}
+
+/// Runs tests; succeeds only if all passed.
 pub fn run(wanted: &Wanted<'_>, progress: &Progress) -> Outcome<()> {
     let start = Instant::now();
-    let tests = suite::load(wanted.path, wanted.full, wanted.plant)?;
-    let boards = wanted.boards.map(|wish| Boards::prepare(wish, &tests, wanted.plant, progress)).transpose()?;
-    let name = wanted.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let folder = Folder::prepare(wanted.out, "hil/tests", &name)?;
+    let mut parts = Vec::new();
+    for Part { path, choice, plant, boards } in &wanted.parts {
+        let tests = suite::load(path, *choice, *plant)?;
+        let boards = boards.map(|wish| Boards::prepare(wish, &tests, *plant, progress)).transpose()?;
+        parts.push(Ready { tests, plant: *plant, boards });
+    }
+    let folder = Folder::prepare(wanted.out.as_deref(), "hil/tests", &wanted.name)?;
     for path in [wanted.json, wanted.junit].into_iter().flatten() {
         if let Some(parent) = path.parent().filter(|parent| !parent.as_os_str().is_empty() && !parent.is_dir()) {
             return Err(Failure::new(format!("there is no folder {} for {}", parent.display(), path.display())));
         }
     }
     let logs = prepare_logs(&folder)?;
-    let runs: usize =
-        tests.iter().map(|test| test.seeds(wanted.seed, wanted.full).len() * test.controllers().len()).sum();
-    progress.run("testing", runs as u32);
-    let line = progress.handle();
-    let conduct = Conduct {
-        plant: wanted.plant,
-        seed: wanted.seed,
-        full: wanted.full,
-        boards: boards.as_ref(),
-        logs: &logs,
-        done: &|runs| line.at(runs),
-    };
-    let before = AtomicU32::new(0);
-    let mut tested: Vec<Tested> = Vec::new();
-    for test in &tests {
-        let one = campaign::run(test, &conduct, &before)?;
-        progress.say_above(&terminal::line(&one.record));
-        tested.push(one);
-    }
-    progress.clear();
+    let tested = run_parts(&parts, wanted, &logs, progress)?;
     let record = TestsRecord {
         schema: SCHEMA.to_owned(),
         passed: tested.iter().all(|test| test.record.passed),
-        on: boards.as_ref().map_or("host".to_owned(), Boards::label),
-        plant: wanted.plant.word().to_owned(),
         full: wanted.full,
         host_version: env!("CARGO_PKG_VERSION").to_owned(),
         host: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
@@ -122,6 +124,39 @@ pub fn run(wanted: &Wanted<'_>, progress: &Progress) -> Outcome<()> {
     write(wanted, &folder, &record, &tested)?;
     output::print(&format!("report: {}\n", folder.file("report.html").display()))?;
     verdict(&record)
+}
+
+fn run_parts(parts: &[Ready<'_>], wanted: &Wanted<'_>, logs: &Path, progress: &Progress) -> Outcome<Vec<Tested>> {
+    let runs_of = |test: &Test| test.seeds(wanted.seed, wanted.full).len() * test.controllers().len();
+    let runs: usize = parts.iter().flat_map(|part| &part.tests).map(runs_of).sum();
+    progress.run("testing", runs as u32);
+    let line = progress.handle();
+    let before = AtomicU32::new(0);
+    let mut tested: Vec<Tested> = Vec::new();
+    for Ready { tests, plant, boards } in parts {
+        let conduct = Conduct {
+            plant: *plant,
+            seed: wanted.seed,
+            full: wanted.full,
+            boards: boards.as_ref(),
+            logs,
+            done: &|runs| line.at(runs),
+        };
+        let one = |test: &Test| {
+            let one = campaign::run(test, &conduct, &before)?;
+            line.say_above(&terminal::line(&one.record));
+            Ok(one)
+        };
+        // A test on the emulated board keeps one core busy at most; a test on the host keeps all of them busy by itself.
+        let emulated = boards.as_ref().is_some_and(Boards::are_emulated);
+        let done: Vec<Outcome<Tested>> =
+            if emulated { tests.par_iter().map(one).collect() } else { tests.iter().map(one).collect() };
+        for one in done {
+            tested.push(one?);
+        }
+    }
+    progress.clear();
+    Ok(tested)
 }
 
 /// An empty folder for logs: those of an older run would be taken for this one's.

@@ -56,11 +56,19 @@ fn header(record: &TestsRecord, failed: usize) -> Markup {
         header {
             div.title { h1 { "Observer and compensation" } span class={ "pill " (class) } { (word) } }
             p.subtitle {
-                "On the " (record.on) ", plant " strong { (record.plant) }
+                "On the " (each(record, |test| &test.on)) ", plant " strong { (each(record, |test| &test.plant)) }
                 @if record.full { " · full lists of seeds" } " · " (record.date)
             }
         }
     }
+}
+
+/// A word of every test, each word once.
+fn each(record: &TestsRecord, word: impl Fn(&TestRecord) -> &String) -> String {
+    let mut words: Vec<&str> = record.tests.iter().map(|test| word(test).as_str()).collect();
+    words.sort_unstable();
+    words.dedup();
+    words.join(" and ")
 }
 
 fn tiles(record: &TestsRecord) -> Markup {

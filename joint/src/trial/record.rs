@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::record::{Bound, Check, Source, Verdict};
 
 /// Name and version of the form.
-pub const SCHEMA: &str = "joint-hil-tests/1";
+pub const SCHEMA: &str = "joint-hil-tests/2";
 
 /// All tests of one command.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -18,10 +18,6 @@ pub struct TestsRecord {
     pub schema: String,
     /// Every test passed.
     pub passed: bool,
-    /// Where controllers ran: `host`, or role and board; rivals always on the host.
-    pub on: String,
-    /// What they controlled: `reference` or `core`.
-    pub plant: String,
     /// With the full lists of seeds.
     pub full: bool,
     /// Version of the host command.
@@ -52,6 +48,10 @@ pub struct TestRecord {
     pub joint: String,
     /// SHA-256 of the joint file's text, before any change.
     pub joint_sha256: String,
+    /// Where the tested controller ran: `host`, or role and board; rivals always on the host.
+    pub on: String,
+    /// What it controlled: `reference` or `core`.
+    pub plant: String,
     /// The motion's word.
     pub profile: String,
     /// The controller's word.

@@ -4,6 +4,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use link::messages::Role;
 use sha2::{Digest, Sha256};
 
 use super::case::{Case, check_changes, recorded};
@@ -32,11 +33,51 @@ pub fn is_of_tests(path: &Path) -> bool {
     path.is_dir() || fs::read_to_string(path).is_ok_and(|text| file::is_test_file(&text))
 }
 
-/// Reads a file, or every file of a folder that a run is for.
-pub fn load(path: &Path, full: bool, plant: PlantName) -> Outcome<Vec<Test>> {
+/// Which files of a folder a run is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Choice {
+    /// All but those that are for full runs only.
+    Short,
+    /// All.
+    Full,
+    /// Those of the run that names no file, in this role of a board.
+    OnBoard(Role),
+}
+
+impl Choice {
+    fn takes(self, file: &TestFile) -> bool {
+        match self {
+            Self::Short => !file.only_with_full,
+            Self::Full => true,
+            Self::OnBoard(role) => file.short_run == Some(role),
+        }
+    }
+}
+
+/// Reads a file, or the chosen ones of a folder.
+pub fn load(path: &Path, choice: Choice, plant: PlantName) -> Outcome<Vec<Test>> {
     if !path.is_dir() {
         return Ok(vec![load_one(path, plant)?]);
     }
+    let tests = files(path)?
+        .into_iter()
+        .filter_map(|(path, file)| choice.takes(&file).then(|| load_one(&path, plant)))
+        .collect::<Outcome<Vec<Test>>>()?;
+    if tests.is_empty() {
+        let help = "a test file is TOML, as docs/hil-file.md tells; those with only_with_full run with --full";
+        return Err(Failure::new(format!("there is no test to run in {}", path.display())).with_help(help));
+    }
+    Ok(tests)
+}
+
+/// The files of a folder that no board's role is named in: what a run without `--full` leaves out.
+pub fn left_out(folder: &Path) -> Outcome<Vec<PathBuf>> {
+    let files = files(folder)?;
+    Ok(files.into_iter().filter(|(_, file)| file.short_run.is_none()).map(|(path, _)| path).collect())
+}
+
+/// The test files of a folder, by name.
+fn files(path: &Path) -> Outcome<Vec<(PathBuf, TestFile)>> {
     let unreadable = |error| Failure::new(format!("cannot read the folder {}: {error}", path.display()));
     let mut paths: Vec<PathBuf> = Vec::new();
     for entry in fs::read_dir(path).map_err(unreadable)? {
@@ -46,31 +87,29 @@ pub fn load(path: &Path, full: bool, plant: PlantName) -> Outcome<Vec<Test>> {
         }
     }
     paths.sort();
-    let mut tests = Vec::new();
-    for path in &paths {
-        let test = load_one(path, plant)?;
-        if full || !test.file.only_with_full {
-            tests.push(test);
-        }
+    paths.into_iter().map(|path| read(&path).map(|(_, file)| (path, file))).collect()
+}
+
+/// A file's text and what it says.
+fn read(path: &Path) -> Outcome<(String, TestFile)> {
+    let name = path.display().to_string();
+    let text = fs::read_to_string(path).map_err(|error| Failure::new(format!("cannot read {name}: {error}")))?;
+    match file::read(&text) {
+        Ok(file) => Ok((text, file)),
+        Err(problems) => Err(Failure::from_report(diagnostic::report(&name, &text, &problems))),
     }
-    if tests.is_empty() {
-        let help = "a test file is TOML, as docs/hil-file.md tells; those with only_with_full run with --full";
-        return Err(Failure::new(format!("there is no test to run in {}", path.display())).with_help(help));
-    }
-    Ok(tests)
 }
 
 fn load_one(path: &Path, plant: PlantName) -> Outcome<Test> {
     let name = path.display().to_string();
-    let text = fs::read_to_string(path).map_err(|error| Failure::new(format!("cannot read {name}: {error}")))?;
-    let drawn = |problems: &[joints::Problem]| Failure::from_report(diagnostic::report(&name, &text, problems));
-    let file = file::read(&text).map_err(|problems| drawn(&problems))?;
+    let (text, file) = read(path)?;
     let folder = path.parent().unwrap_or(Path::new("."));
     let joint = joint(&file.joint, folder).map_err(|failure| match failure.message() {
         "" => failure,
         _ => failure.while_doing(&name),
     })?;
-    check_changes(&file, &joint.text).map_err(|problems| drawn(&problems))?;
+    check_changes(&file, &joint.text)
+        .map_err(|problems| Failure::from_report(diagnostic::report(&name, &text, &problems)))?;
     let broken_tooth = file.faults.iter().any(|fault| matches!(fault.kind, FaultKind::BrokenTooth(_)));
     if broken_tooth && plant == PlantName::Core {
         return Err(Failure::new(format!(

@@ -24,8 +24,8 @@ pub fn table(record: &TestsRecord) -> String {
             many => format!("{} seeds", many.len()),
         };
         text += &format!(
-            "{}: {} of joint {}, {}, plant {}, {seeds}\n",
-            test.file, test.profile, test.joint, test.controller, record.plant
+            "{}: {} of joint {}, {}, on {}, plant {}, {seeds}\n",
+            test.file, test.profile, test.joint, test.controller, test.on, test.plant
         );
         if !test.title.is_empty() {
             text += &format!("  {}\n", test.title);

@@ -1,25 +1,24 @@
 //! Tests whose controller runs on a board: images for what each seed is told, a board for each run, and the same run here,
 //! which must be the same in every bit. Rivals stay on the host, as always.
 //!
-//! The role `observer` answers for observer and compensation, the plant stays here; the role `loop` has everything on the
-//! board, and its figures are read off its twin.
+//! `wish` is what was asked for, `runs` a run of each role: `observer` answers for observer and compensation through
+//! `port`, the plant stays here; `loop` follows a `course` with everything on the board, and its figures are read off its
+//! `twin`.
 
 mod course;
 mod port;
+mod runs;
 mod twin;
-
-use std::cell::RefCell;
-use std::rc::Rc;
-use std::time::{Duration, Instant};
+mod wish;
 
 use joints::JointFile;
 use link::messages::{Role, RunMode, RunSettings, Statistics};
 use model_core::design::{ControlWish, Told, control_source};
-use port::BoardPort;
-use twin::{Twin, Twinned};
+pub use wish::BoardWish;
+use wish::may_run;
 
 use super::case::Case;
-use super::execution::{Order, Ran, RunError, execute, execute_with};
+use super::execution::{Order, Ran, RunError};
 use super::plant::PlantName;
 use super::record::BoardRun;
 use super::suite::Test;
@@ -28,34 +27,14 @@ use crate::hil::Progress;
 use crate::hil::bench::Bench;
 use crate::hil::session::{Expected, Session};
 use crate::hil::twin::tables_digest;
-use crate::target::board::Board;
 use crate::target::emulator;
 use crate::target::image::{self, Control, word};
 use crate::target::toolchain::Toolchain;
 
-/// A run on a board in lockstep may take this long, whatever the test's time on the clock.
-const LONGEST: Duration = Duration::from_secs(4 * 3600);
 /// A sample of the whole loop every so many periods; the digest covers every period.
 const DECIMATION: u16 = 20;
 /// In real time a board without commands for so long goes to its safe state [s].
 const COMMAND_TIMEOUT: f64 = 0.1;
-
-/// Which boards tests are to run on.
-#[derive(Debug, Clone, Copy)]
-pub struct BoardWish<'w> {
-    /// What they do.
-    pub role: Role,
-    /// The port of a real one.
-    pub port: Option<&'w str>,
-    /// Its speed [baud].
-    pub baud: Option<u32>,
-    /// What is behind it.
-    pub board: Board,
-    /// Its image is there already.
-    pub no_build: bool,
-    /// Who waits for whom, of a whole loop.
-    pub mode: Option<RunMode>,
-}
 
 /// Boards that can be built for and reached.
 pub struct Boards<'w> {
@@ -94,6 +73,11 @@ impl<'w> Boards<'w> {
         };
         progress.clear();
         Ok(Self { wish, toolchain, version })
+    }
+
+    /// Whether each run can have a board of its own.
+    pub fn are_emulated(&self) -> bool {
+        self.wish.port.is_none()
     }
 
     /// Where controllers run, for the record.
@@ -184,68 +168,15 @@ impl<'w> Boards<'w> {
     }
 
     fn settings(&self, rate: u32) -> RunSettings {
+        let role = self.wish.role;
         let real = self.wish.port.is_some();
-        let usual = if real && self.wish.role == Role::Loop { RunMode::Realtime } else { RunMode::Lockstep };
+        let usual = if real && role == Role::Loop { RunMode::Realtime } else { RunMode::Lockstep };
         let mode = self.wish.mode.unwrap_or(usual);
         // The emulated clock runs as fast as it can while the board waits for the host.
         let timed = real || mode == RunMode::Realtime;
         let command_timeout = if timed { (COMMAND_TIMEOUT * f64::from(rate)).ceil() as u32 } else { u32::MAX };
-        let decimation = if self.wish.role == Role::Loop { DECIMATION } else { 1 };
+        let decimation = if role == Role::Loop { DECIMATION } else { 1 };
         RunSettings { mode, decimation, command_timeout }
-    }
-
-    fn run_observer(
-        &self,
-        test: &Test,
-        case: &Case,
-        seed: u64,
-        order: Order,
-        pair: &Pair,
-    ) -> Result<(Ran, BoardRun), RunError> {
-        let deadline = Instant::now() + LONGEST;
-        let here = execute(&test.file, case, seed, order, deadline)?;
-        let (session, image) = self.session(pair)?;
-        let session = Rc::new(RefCell::new(session));
-        let there =
-            execute_with(&test.file, case, seed, order, deadline, &|_| Ok(Box::new(BoardPort::new(session.clone()))));
-        let mut session = session.borrow_mut();
-        let there = match there {
-            Ok(there) => there,
-            Err(error) => {
-                session.abandon();
-                return Err(error);
-            }
-        };
-        session.finish(u32::MAX)?;
-        if there.digest != here.digest {
-            return Err(difference(&here, &there, case));
-        }
-        let run = self.board_run(image, there.run.samples.len() as u32, session.recording.statistics.as_ref());
-        Ok((there, run))
-    }
-
-    fn run_loop(&self, test: &Test, case: &Case, pair: &Pair) -> Result<(Ran, BoardRun), RunError> {
-        let designed = case.design(&test.file)?;
-        let twin = Twin { file: &test.file, case, designed: &designed, truth: &pair.truth, board: self.wish.board };
-        let Twinned { knots, ran, digests } = twin.run()?;
-        let (mut session, image) = self.session(pair)?;
-        let samples = match session.follow(&knots, digests.len() as u32) {
-            Ok(samples) => samples,
-            Err(failure) => {
-                session.abandon();
-                return Err(failure.into());
-            }
-        };
-        session.finish(u32::MAX)?;
-        let agrees = |tick: u32, digest: u64| {
-            tick.checked_sub(1).and_then(|index| digests.get(index as usize)).is_some_and(|own| *own == digest)
-        };
-        if let Some(first) = samples.iter().find(|sample| !agrees(sample.tick, sample.digest)) {
-            return Err(differs(first.tick.into(), case, "the digest over joint and answers"));
-        }
-        let periods = samples.last().map_or(0, |sample| sample.tick);
-        let run = self.board_run(image, periods, session.recording.statistics.as_ref());
-        Ok((ran, run))
     }
 
     fn board_run(&self, image: String, same_periods: u32, statistics: Option<&Statistics>) -> BoardRun {
@@ -263,61 +194,9 @@ impl<'w> Boards<'w> {
     }
 }
 
-/// Whether a test can run on such a board at all.
-fn may_run(wish: &BoardWish<'_>, test: &Test, plant: PlantName) -> Outcome<()> {
-    let name = &test.name;
-    if !test.file.controller.is_ours() {
-        let message = format!("{name} tests `{}`, which no board runs", test.file.controller.word());
-        return Err(Failure::new(message).with_help("run it with --host"));
-    }
-    if wish.role == Role::Loop && !test.file.faults.is_empty() {
-        return Err(Failure::new(format!("{name} has faults, and a whole loop on a board has none between its parts"))
-            .with_help("run it with --role observer, or with --host"));
-    }
-    if wish.role == Role::Loop && plant == PlantName::Reference {
-        return Err(Failure::new("the f64 reference does not run on a board").with_help("leave --plant out"));
-    }
-    Ok(())
-}
-
 fn read(text: &str) -> Outcome<JointFile> {
     joints::read(text).map_err(|problems| {
         let first = problems.first().map_or_else(String::new, ToString::to_string);
         Failure::new(format!("the joint that a controller is told cannot be: {first}"))
     })
-}
-
-/// The first period in which a board's run departs from the host's, and in what.
-fn difference(here: &Ran, there: &Ran, case: &Case) -> RunError {
-    let numbers = |ran: &Ran, index: usize| {
-        let (command, sight) = (ran.run.samples[index].command, ran.sights[index]);
-        [
-            ("torque", command),
-            ("gap", sight.gap.into()),
-            ("gap variance", sight.gap_variance.into()),
-            ("mesh torque", sight.mesh_torque.into()),
-            ("load torque", sight.load_torque.into()),
-            ("half-backlash", sight.half_backlash.into()),
-            ("compliance", sight.compliance.into()),
-            ("skew", sight.skew.into()),
-            ("trust", sight.trust.into()),
-        ]
-    };
-    let count = here.sights.len().min(there.sights.len());
-    for index in 0..count {
-        let both = numbers(here, index).into_iter().zip(numbers(there, index));
-        let apart = |((name, here), (_, there)): ((&str, f64), (&str, f64))| {
-            (here.to_bits() != there.to_bits()).then(|| format!("{name} {there:e} there, {here:e} here"))
-        };
-        let parts: Vec<String> = both.filter_map(apart).collect();
-        if !parts.is_empty() {
-            return differs(index as u64, case, &parts.join("; "));
-        }
-    }
-    differs(count as u64, case, "in nothing but the joint's own motion")
-}
-
-fn differs(period: u64, case: &Case, what: &str) -> RunError {
-    let time = period as f64 / case.train.control_rate;
-    RunError::Broke(format!("board and host differ at t = {time:.4} s, control period {period}: {what}"))
 }

@@ -4,42 +4,53 @@
 use std::cell::RefCell;
 use std::rc::Rc;
 
-use link::controller::Exchange;
+use link::controller::{Exchange, WireShaped};
 use model_core::digest;
 use model_core::realtime::compensation::Command;
 use model_core::realtime::observer::Samples;
 
 use crate::failure::{Failure, Outcome};
 use crate::hil::session::Session;
-use crate::trial::port::{Answer, ControllerPort};
+use crate::trial::case::Designed;
+use crate::trial::port::{Answer, ControllerPort, HostPort};
 
-/// A board that answers.
-pub struct BoardPort<'s> {
-    session: Rc<RefCell<Session<'s>>>,
+/// A board that answers, and its twin here. The board's digest over all that it has answered so far, taken in the tick that
+/// made the answer, must be the twin's: then the twin's estimates are the board's, and need not come over the line.
+pub struct BoardPort<'d> {
+    session: Rc<RefCell<Session<'static>>>,
+    twin: HostPort<'d>,
     tick: u32,
-    /// Running digest over the answers as they came: the board takes its own in the tick that makes them.
     digest: u64,
 }
 
-impl<'s> BoardPort<'s> {
+impl<'d> BoardPort<'d> {
     /// A session whose run has begun and has done nothing yet.
-    pub fn new(session: Rc<RefCell<Session<'s>>>) -> Self {
-        Self { session, tick: 0, digest: digest::START }
+    pub fn new(session: Rc<RefCell<Session<'static>>>, designed: &'d Designed) -> Self {
+        let twin = HostPort::new(&designed.observer, &designed.compensation);
+        Self { session, twin, tick: 0, digest: digest::START }
     }
 }
 
 impl ControllerPort for BoardPort<'_> {
     fn exchange(&mut self, samples: &Samples<f32>, command: &Command<f32>) -> Outcome<Answer> {
-        let exchange = Exchange::new(self.tick, samples, command);
-        self.tick = self.tick.wrapping_add(1);
+        let exchange = Exchange::new(self.tick, samples, command).without_estimates();
         let answered = self.session.borrow_mut().exchange(exchange)?;
-        let answer = answered.answer().ok_or_else(|| Failure::check_failed("the board answered without estimates"))?;
+        let answer = self.twin.exchange(samples, command)?;
         self.digest = answer.digest(self.digest);
-        if self.digest == answered.digest {
-            return Ok(answer);
+        let own = WireShaped::from(&answer.shaped);
+        if answered.digest != self.digest || answered.shaped != own {
+            let (there, here) = (answered.shaped.torque, own.torque);
+            let what = if there == here {
+                "what was estimated".to_owned()
+            } else {
+                format!("torque {there:e} there, {here:e} here")
+            };
+            return Err(Failure::check_failed(format!(
+                "board and host differ in control period {}: {what}",
+                self.tick
+            )));
         }
-        let period = self.tick.wrapping_sub(1);
-        Err(Failure::check_failed(format!("the answer to control period {period} is not the one that the board made"))
-            .with_help("it was changed between the board's tick and here: look at the board's stack and interrupts"))
+        self.tick = self.tick.wrapping_add(1);
+        Ok(answer)
     }
 }

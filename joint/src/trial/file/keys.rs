@@ -103,6 +103,12 @@ pub(super) const KEYS: &[Key] = &[
     key("", "joint", Text, "a preset (q1, s1, d2, l1 ...) or the path of a joint file; q1 if left out"),
     key("", "seeds", Seeds, "a number of seeds, as in 5, or a list of them, as in [7, 12]"),
     key("", "full_seeds", Seeds, "the seeds of a run with --full; `seeds` if left out"),
+    key(
+        "",
+        "short_run",
+        Word(&["observer", "loop"]),
+        "the role in which a plain `joint hil` runs this file on the board",
+    ),
     key("", "only_with_full", Flag, "true keeps the file out of a folder's run without --full"),
     key("", "duration_s", Number(0.01, 3600.0), "length of a run in s"),
     key("", "settle_s", Number(0.0, 3600.0), "figures are taken from this time on; what comes before is for learning"),

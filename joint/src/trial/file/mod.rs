@@ -17,6 +17,7 @@ pub use faults::{EncoderName, Fault, FaultKind, FrameName};
 pub use motion::{Course, Load, Profile, Push, Wave};
 
 use joints::Problem;
+use link::messages::Role;
 use toml::de::{DeTable, DeValue};
 
 use super::controller::{ControllerName, Gains};
@@ -35,6 +36,8 @@ pub struct TestFile {
     pub seeds: Vec<u64>,
     /// Seeds of a full run.
     pub full_seeds: Vec<u64>,
+    /// A run without any file has this one, on a board in this role.
+    pub short_run: Option<Role>,
     /// Left out of a folder's run unless it is a full one.
     pub only_with_full: bool,
     /// Length of a run [s].
@@ -175,6 +178,10 @@ fn read_table(table: &DeTable<'_>, problems: &Problems) -> Option<TestFile> {
     Some(TestFile {
         title: if top.has("title") { top.text("title")? } else { String::new() },
         joint: if top.has("joint") { top.text("joint")? } else { "q1".to_owned() },
+        short_run: match top.has("short_run") {
+            true => Some(if top.word("short_run")? == "loop" { Role::Loop } else { Role::Observer }),
+            false => None,
+        },
         only_with_full: if top.has("only_with_full") { top.flag("only_with_full")? } else { false },
         timeout: number(&top, "timeout_s", TIMEOUT)?,
         bandwidth: number(&controller, "bandwidth_rad_per_s", BANDWIDTH)?,

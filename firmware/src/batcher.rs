@@ -1,0 +1,71 @@
+//! Samples on their way to the line: put into the wire's form, collected, and numbered without gaps. When a batch is sent is
+//! decided by `conversation`, which knows how much room the line has.
+
+use heapless::Vec;
+use link::messages::FromBoard;
+
+use crate::words::Batch;
+
+/// What batches of up to `MOST` samples look like, which differs from role to role.
+pub trait WireForm<const MOST: usize> {
+    /// What the tick leaves.
+    type Raw;
+    /// What goes over the line.
+    type Wire;
+
+    /// From the one to the other.
+    fn wire(raw: &Self::Raw) -> Self::Wire;
+    /// The message that carries them.
+    fn message(sequence: u16, samples: Vec<Self::Wire, MOST>) -> FromBoard;
+}
+
+/// Collects samples.
+pub struct Batcher<F: WireForm<MOST>, const MOST: usize> {
+    sequence: u16,
+    samples: Vec<F::Wire, MOST>,
+}
+
+impl<F: WireForm<MOST>, const MOST: usize> Default for Batcher<F, MOST> {
+    fn default() -> Self {
+        Self { sequence: 0, samples: Vec::new() }
+    }
+}
+
+impl<F: WireForm<MOST>, const MOST: usize> Batch for Batcher<F, MOST> {
+    type Sample = F::Raw;
+
+    fn add(&mut self, raw: &F::Raw) {
+        let _ = self.samples.push(F::wire(raw));
+    }
+
+    fn is_full(&self) -> bool {
+        self.samples.is_full()
+    }
+
+    fn is_empty(&self) -> bool {
+        self.samples.is_empty()
+    }
+
+    fn take(&mut self) -> FromBoard {
+        let sequence = self.sequence;
+        self.sequence = sequence.wrapping_add(1);
+        F::message(sequence, core::mem::take(&mut self.samples))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use link::messages::SAMPLES_PER_BATCH;
+
+    use super::*;
+    use crate::telemetry::PlantForm;
+
+    #[test]
+    fn batches_are_numbered_without_gaps_and_come_out_empty_again() {
+        let mut batcher = Batcher::<PlantForm<3>, SAMPLES_PER_BATCH>::default();
+        for sequence in 0..3 {
+            assert!(matches!(batcher.take(), FromBoard::Samples(batch) if batch.sequence == sequence));
+            assert!(batcher.is_empty());
+        }
+    }
+}

@@ -5,6 +5,9 @@ use model_core::realtime::observer::{MAPPED, Source};
 use crate::replay::{Figures, replay, with_encoders};
 use crate::trial::{Encoders, MOTIONS, Trial};
 
+/// First seed of the long run: none that anything was chosen on.
+const FIRST: u64 = 300;
+
 /// Seeds of the long run.
 const SEEDS: u64 = 20;
 
@@ -14,7 +17,7 @@ fn worst_of_many_seeds() {
     for (motion, _) in MOTIONS {
         let mut worst = [0; 3].map(|_| Figures::default());
         let mut alarms = 0;
-        for seed in 100..100 + SEEDS {
+        for seed in FIRST..FIRST + SEEDS {
             let half_backlash = Some(20e-6 + 60e-6 * ((seed * 7 % SEEDS) as f64 / (SEEDS - 1) as f64));
             let base = Trial::new("q1", motion, Encoders::Preset, half_backlash, seed);
             let log = base.record();

@@ -62,6 +62,8 @@ pub struct Run {
     pub duration: f64,
     /// A fifth of the motion until then, all of it half a second later [s].
     pub grows_at: Option<f64>,
+    /// From when on every mesh has another half-backlash, and which [s, m].
+    pub worn: Option<(f64, f64)>,
 }
 
 /// Position, speed and acceleration to follow.
@@ -153,6 +155,9 @@ impl Run {
         let mut moments = Vec::new();
         for k in 0..(self.duration / period).round() as u64 {
             let time = k as f64 * period;
+            if let Some((_, half_backlash)) = self.worn.filter(|(at, _)| (at / period).round() as u64 == k) {
+                train.inside().set_half_backlash(half_backlash);
+            }
             let part = self.grows_at.map_or(1.0, |at| 0.2 + 0.8 * ((time - at) / 0.5).clamp(0.0, 1.0));
             let [angle, speed, acceleration] = reference.at(time).map(|value| part * value);
             let measured = (train.measure().motor_counts as f64 + 0.5) * per_count;

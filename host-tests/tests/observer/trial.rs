@@ -67,7 +67,7 @@ impl Trial {
         }
         let settings = settings(&train);
         Self {
-            run: Run { joint, train, profile, disturbances: Vec::new(), seed, duration, grows_at: None },
+            run: Run { joint, train, profile, disturbances: Vec::new(), seed, duration, grows_at: None, worn: None },
             told,
             settings,
         }

@@ -45,6 +45,12 @@ const BLOCK: f64 = 8e-3;
 /// Time in which wear and warmth may change what was learnt by as much as is known of it [s].
 const MEMORY: f64 = 100.0;
 
+/// Time outside the possible range after which the output encoder has failed [s]: longer than impacts ring.
+const FAILED_AFTER: f64 = 4e-3;
+
+/// Counts that an output encoder cannot fail to show in that time.
+const STUCK_COUNTS: f64 = 4.0;
+
 /// Tables of the observer.
 pub fn design_observer<T: Real>(
     joint: &JointParameters,
@@ -158,13 +164,15 @@ pub fn design_observer<T: Real>(
             deviation: deviation.map(real),
             weight: real(1.0 / noise),
             noise: real(noise),
+            force_noise: real(force_variance / (periods * block) + 0.5 * ripple * ripple),
             forgetting: real(LEARNING_INTERVAL / MEMORY),
             mesh_compliance: real(body.mesh_compliance),
         },
         supervisor: SupervisorTable {
             silent_after: (10e-3 / step) as u32,
-            failed_after: (4e-3 / step) as u32,
+            failed_after: (FAILED_AFTER / step) as u32,
             trusted_after: (0.3 / LEARNING_INTERVAL) as u32,
+            stuck_speed: real(STUCK_COUNTS * output_count * body.ratio / FAILED_AFTER),
             margin: real(0.1 * half_gap + 0.1 * body.compliance * rated_force),
             widest_part: real(0.1),
         },

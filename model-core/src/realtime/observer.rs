@@ -9,15 +9,18 @@
 //! 3. `motion` tells crossing from rest without knowing the width; `bias` takes from open gaps what the motor's torque is
 //!    wrong by; `contact` decides which flank touches.
 //! 4. `learner` is one small recursive least squares, updated every few periods in settled contact, for half-backlash,
-//!    offset, compliance, skew and the encoders' error maps.
+//!    offset, compliance, skew and the encoders' error maps. `anchor` tells flanks without a force that stands out, and
+//!    `doubt` what no longer belongs to what was learnt.
 //! 5. `supervisor` watches the output encoder and falls back to the motor alone.
 //!
 //! `docs/observer.md` derives all of it and says what it cannot know.
 
+mod anchor;
 mod bias;
 mod block;
 mod contact;
 mod counts;
+mod doubt;
 mod drive_side;
 mod estimates;
 mod interval;
@@ -42,10 +45,12 @@ use crate::mesh::ContactState;
 use crate::real::Real;
 use crate::realtime::phase::sine_cosine;
 use crate::tables::observer::ObserverTables;
+use anchor::Anchor;
 use bias::Bias;
 use block::Block;
 use contact::{ByForce, ByPosition};
 use counts::{Advance, Counts};
+use doubt::Doubts;
 use drive_side::DriveSide;
 use interval::Interval;
 use knowledge::Knowledge;
@@ -80,6 +85,8 @@ pub struct Observer<'tables, T: Real, const P: usize> {
     learner: Learner<T, P>,
     interval: Interval<T, P>,
     block: Block<T, P>,
+    anchor: Anchor<T, P>,
+    doubts: Doubts,
     knowledge: Knowledge<T>,
     supervisor: Supervisor<T>,
     blind: Blind<T>,
@@ -134,6 +141,8 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
             learner,
             interval: Interval::new(),
             block: Block::new(),
+            anchor: Anchor::new(),
+            doubts: Doubts::default(),
             supervisor: Supervisor::new(tables.counts.has_output),
             blind: Blind::default(),
             time: None,
@@ -160,6 +169,8 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         self.knowledge = Knowledge::new(tables, &self.learner);
         self.interval = Interval::new();
         self.block = Block::new();
+        self.anchor = Anchor::new();
+        self.doubts = Doubts::default();
         self.supervisor = Supervisor::new(tables.counts.has_output);
         self.blind = Blind::default();
         self.time = None;
@@ -269,10 +280,10 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         let known = &self.knowledge;
         self.estimates.contact = self.by_force.step(now.force, known.force_deviation);
         let mut force = now.force;
-        self.estimates.reported_contact = if known.width_is_known && self.supervisor.source() == Source::Both {
+        self.estimates.reported_contact = if known.width_serves && self.supervisor.source() == Source::Both {
             let before = self.estimates.reported_contact;
             let (contact, both) =
-                self.by_position(now.way, now.soon, now.shift).contact(before, force, known.both_deviation);
+                self.by_position(now.way, now.soon, now.shift).reported(before, force, known.both_deviation);
             force = both;
             contact
         } else if self.supervisor.source() == Source::Both {

@@ -202,6 +202,8 @@ pub struct LearnerTable<T: Real> {
     pub weight: T,
     /// Standard deviation of one update's way by itself [m].
     pub noise: T,
+    /// Variance of one update's force [N^2].
+    pub force_noise: T,
     /// Growth of variances in one update, for what wears and warms [-].
     pub forgetting: T,
     /// Way under one newton in the meshes alone [m/N].
@@ -217,6 +219,8 @@ pub struct SupervisorTable<T: Real> {
     pub failed_after: u32,
     /// Learning intervals in a row in settled contact within the range after which it is taken back.
     pub trusted_after: u32,
+    /// Motor speed at which an output that does not move has failed [rad/s].
+    pub stuck_speed: T,
     /// Distance beyond the possible range that dynamics alone can bring [m].
     pub margin: T,
     /// Estimates of the gap are given out up to this standard deviation, as a part of the gap 4b [-].

@@ -26,11 +26,47 @@ pub(super) struct Block<T: Real, const P: usize> {
     touch: Touch<T>,
     free: Regressors<T, P>,
     raw: T,
+    /// Forces on the back side, then on the drive side.
+    forces: [Forces<T>; 2],
+}
+
+/// Blocks over which the mean of a force is taken: about half a second of contact.
+const FORCES: i32 = 64;
+
+/// Forces of the last blocks on one side.
+#[derive(Debug, Clone, Copy)]
+struct Forces<T: Real> {
+    blocks: i32,
+    /// [N].
+    mean: T,
+    /// [N^2].
+    variance: T,
+}
+
+impl<T: Real> Forces<T> {
+    const NONE: Self = Self { blocks: 0, mean: T::ZERO, variance: T::ZERO };
+
+    /// Takes in a block's force; gives what it most likely was. Its noise would pass for force that the way does not
+    /// follow, hence for a stiffer joint: what varies no more than noise does is taken for constant.
+    fn calibrated(&mut self, force: T, noise: T) -> T {
+        self.blocks = if self.blocks < FORCES { self.blocks + 1 } else { FORCES };
+        let share = T::ONE.over(T::from_i32(self.blocks));
+        let by = force - self.mean;
+        self.mean += by * share;
+        let beyond = force - self.mean;
+        self.variance += (by * beyond - self.variance) * share;
+        if self.variance > noise { self.mean + beyond * (T::ONE - noise.over(self.variance)) } else { self.mean }
+    }
 }
 
 impl<T: Real, const P: usize> Block<T, P> {
     pub fn new() -> Self {
-        Self { intervals: 0, touch: Touch::default(), free: [T::ZERO; P], raw: T::ZERO }
+        Self { intervals: 0, touch: Touch::default(), free: [T::ZERO; P], raw: T::ZERO, forces: [Forces::NONE; 2] }
+    }
+
+    /// Begins anew on a side.
+    fn clear(&mut self, side: T) {
+        *self = Self { forces: self.forces, touch: Touch { side, ..Touch::default() }, ..Self::new() };
     }
 
     /// Adds an interval; gives regressors and way when enough have passed on one side.
@@ -41,12 +77,11 @@ impl<T: Real, const P: usize> Block<T, P> {
         table: &LearnerTable<T>,
     ) -> Option<(Regressors<T, P>, T)> {
         let Some(side) = side else {
-            *self = Self::new();
+            self.clear(T::ZERO);
             return None;
         };
         if side != self.touch.side {
-            *self = Self::new();
-            self.touch.side = side;
+            self.clear(side);
         }
         let free = self.free.iter_mut().zip(mean.free);
         for (sum, value) in free.chain(self.touch.mesh.iter_mut().zip(mean.mesh)) {
@@ -58,9 +93,11 @@ impl<T: Real, const P: usize> Block<T, P> {
         if self.intervals < table.block {
             return None;
         }
+        let [back, drive] = &mut self.forces;
+        let forces = if side > T::ZERO { drive } else { back };
+        self.touch.force = forces.calibrated(self.touch.force, table.force_noise);
         let full = (self.touch.on(&self.free), self.raw);
-        *self = Self::new();
-        self.touch.side = side;
+        self.clear(side);
         Some(full)
     }
 }

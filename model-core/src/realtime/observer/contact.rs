@@ -80,6 +80,19 @@ impl<T: Real> ByPosition<T> {
         (contact, both)
     }
 
+    /// The same for a controller: teeth that rest within noise of a flank are reported as touching it, however light
+    /// their force, unless it pulls them off. Nothing can be learnt from that, but nothing would be done otherwise.
+    pub fn reported(&self, before: ContactState, force: T, deviation: T) -> (ContactState, T) {
+        let (contact, both) = self.contact(before, force, deviation);
+        let way = self.way - self.shift;
+        let (side, flank) =
+            if way < T::ZERO { (-T::ONE, ContactState::BackSide) } else { (T::ONE, ContactState::DriveSide) };
+        let band = T::TWO * T::TWENTIETH * self.half_gap;
+        let near = if self.blur < band { self.blur } else { band };
+        let rests = side * way - self.half_gap > -near && side * both > -deviation;
+        (if contact == ContactState::Separated && rests { flank } else { contact }, both)
+    }
+
     /// Gap coordinate with the wind-up taken out: beyond an edge only the meshes' own compliance is left. Needs no
     /// force.
     pub fn gap(&self, mesh_compliance: T) -> T {

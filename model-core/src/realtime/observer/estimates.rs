@@ -85,7 +85,8 @@ pub struct Estimates<T: Real> {
     pub contact: ContactState,
     /// Contact by force and gap coordinate: what a controller should use.
     pub reported_contact: ContactState,
-    /// Whether the reported contact may be used.
+    /// Whether the reported contact may be used: not where it is unknown, nor on teeth whose transmission error shifts a
+    /// flank over the middle of the gap.
     pub contact_valid: bool,
     /// Contact has held for long enough, with enough force, that the observer learns from it.
     pub settled: bool,

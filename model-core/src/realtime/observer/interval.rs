@@ -17,12 +17,6 @@ const SETTLED_AFTER: u32 = 3;
 /// Intervals well inside the gap after which the mesh force counts as gone from the motor side's estimate.
 const OPEN_AFTER: u32 = 3;
 
-/// Surprise, in standard deviations, that does not belong to the model.
-const GATE: i32 = 5;
-
-/// Surprises in a row after which what was learnt counts as wrong.
-const TOO_MANY: u32 = 12;
-
 /// Sums over the periods of an interval.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Interval<T: Real, const P: usize> {
@@ -37,10 +31,9 @@ pub(super) struct Interval<T: Real, const P: usize> {
     /// Side on which contact settled last, unless the teeth have left it since.
     side: T,
     /// Mesh force over a few intervals [N].
-    steady: T,
+    pub steady: T,
     /// Intervals in a row well inside the gap.
     open_for: u32,
-    surprises: u32,
 }
 
 impl<T: Real, const P: usize> Interval<T, P> {
@@ -57,7 +50,6 @@ impl<T: Real, const P: usize> Interval<T, P> {
             side: T::ZERO,
             steady: T::ZERO,
             open_for: 0,
-            surprises: 0,
         }
     }
 
@@ -85,13 +77,7 @@ impl<T: Real, const P: usize> Interval<T, P> {
         for sum in [&mut mean.raw, &mut mean.lost, &mut mean.force, &mut mean.direction, &mut mean.speed] {
             *sum *= per_periods;
         }
-        *self = Self {
-            side: self.side,
-            steady: self.steady,
-            open_for: self.open_for,
-            surprises: self.surprises,
-            ..Self::new()
-        };
+        *self = Self { side: self.side, steady: self.steady, open_for: self.open_for, ..Self::new() };
         mean
     }
 }
@@ -131,10 +117,15 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
             (None, _) => self.interval.side,
         };
         self.knowledge.settled = side.is_some();
+        self.contradict(way - shift, shown);
         let settled = Settled { free: &mean.free, mesh: &mean.mesh, raw: mean.raw, force: mean.force };
-        let seen = side.filter(|_| self.supervisor.source() == Source::Both);
+        // Teeth at rest are on a flank while the motor turns, even if no force says on which.
+        let [half_gap, _] = self.shape();
+        let told_by_way = rests(shown) && !self.knowledge.width_is_known && self.motion.is_sharp(half_gap);
+        let unknown = told_by_way.then_some(T::ZERO);
+        let seen = side.or(unknown).filter(|_| self.supervisor.source() == Source::Both);
         if let Some((regressors, way)) = self.block.add(&settled, seen, &tables.learner) {
-            self.take_way(&regressors, way);
+            self.take_rest(&regressors, way);
         }
         let nearer = if way < shift { -T::ONE } else { T::ONE };
         let mut seen = mean.free;
@@ -150,8 +141,7 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
 
     /// The side on which contact has settled, if any.
     fn settled_side(&self, mean: &Interval<T, P>, way: T, shift: T, shown: Shown<T>) -> Option<T> {
-        let still = matches!(shown, Shown::Still(intervals) if intervals >= SETTLED_AFTER);
-        if !still {
+        if !rests(shown) {
             return None;
         }
         let known = &self.knowledge;
@@ -195,21 +185,9 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
             self.bias.learn(contact, lost, direction);
         }
     }
+}
 
-    /// Takes a way in settled contact into the learner, unless it does not belong to the model.
-    fn take_way(&mut self, regressors: &Regressors<T, P>, way: T) {
-        let table = &self.tables.learner;
-        let surprise = way - self.learner.way(regressors);
-        let variance = self.learner.variance(table, regressors) + table.noise * table.noise;
-        if surprise * surprise > T::from_i32(GATE * GATE) * variance {
-            self.interval.surprises += 1;
-            if self.interval.surprises >= TOO_MANY {
-                self.interval.surprises = 0;
-                self.learner.reopen();
-            }
-            return;
-        }
-        self.interval.surprises = 0;
-        self.learner.learn(table, regressors, way);
-    }
+/// Whether the teeth have been at rest for long enough.
+pub(super) fn rests<T: Real>(shown: Shown<T>) -> bool {
+    matches!(shown, Shown::Still(intervals) if intervals >= SETTLED_AFTER)
 }

@@ -19,6 +19,8 @@ pub(super) struct Knowledge<T: Real> {
     pub mean_force_deviation: T,
     /// The same over the few intervals that contact takes to settle.
     pub steady_force_deviation: T,
+    /// What of its variance no mean takes away, with bias and without [N^2].
+    pub lasting_variance: [T; 2],
     /// The same with the position's help.
     pub both_deviation: T,
     /// Variance of the way with everything taken out that was learnt [m^2].
@@ -29,14 +31,19 @@ pub(super) struct Knowledge<T: Real> {
     pub edge_deviation: T,
     /// Variance of where a flank is: half-gap and transmission error [m^2].
     pub flank_variance: T,
+    /// Variance of everything that was learnt from forces, by what stays wrong of them, bias and ripple as wind-up: of the
+    /// way, and of a flank, whose distance from the other is free of bias [m^2].
+    pub wind_up_variance: [T; 2],
     /// Variances of half-gap [m^2], offset [m^2], compliance [m^2/N^2] and skew [m^2 s^2].
     pub variances: [T; 4],
     /// Distance from an edge that noise and ignorance can make [m].
     pub blur: T,
     /// Weight of the position beside the motor side in the mesh force.
     pub position_weight: T,
-    /// Whether positions decide about contact.
+    /// Whether positions decide about contact that is learnt from.
     pub width_is_known: bool,
+    /// Whether they decide about contact that is reported.
+    pub width_serves: bool,
     /// The last interval was in settled contact.
     pub settled: bool,
     /// What comes next.
@@ -51,14 +58,17 @@ impl<T: Real> Knowledge<T> {
             mean_force_deviation: T::ZERO,
             steady_force_deviation: T::ZERO,
             both_deviation: T::ZERO,
+            lasting_variance: [T::ZERO; 2],
             way_variance: T::ZERO,
             edge_variance: T::ZERO,
             edge_deviation: T::ZERO,
             flank_variance: T::ZERO,
+            wind_up_variance: [T::ZERO; 2],
             variances: [T::ZERO; 4],
             blur: T::ZERO,
             position_weight: T::ZERO,
             width_is_known: false,
+            width_serves: false,
             settled: false,
             turn: 0,
         };
@@ -75,6 +85,10 @@ impl<T: Real> Knowledge<T> {
     pub fn of_force(&mut self, tables: &ObserverTables<T>, bias: &Bias<T>, direction: T) {
         let contact = &tables.contact;
         let known = bias.variance_at(direction) + contact.ripple_variance;
+        let ripple = T::HALF * contact.ripple_variance;
+        let [_, friction, _] = bias.variance;
+        self.lasting_variance =
+            [bias.variance_at(direction) + ripple, direction * direction * friction * T::HALF + ripple];
         self.force_deviation = (known + contact.force_variance).square_root();
         let noise = contact.force_variance * tables.learner.per_periods * T::EIGHTH;
         self.steady_force_deviation = (known + noise).square_root();
@@ -109,6 +123,7 @@ impl<T: Real> Knowledge<T> {
         let edge = variance + tables.contact.way_variance;
         self.blur = T::TWO * edge.square_root();
         let compliance = learner.value(COMPLIANCE);
+        self.wind_up_variance = self.lasting_variance.map(|force| force * compliance * compliance);
         let force = self.force_deviation * self.force_deviation;
         // Weights in inverse proportion to the variances, both as way.
         let from_force = force * compliance * compliance;
@@ -116,5 +131,8 @@ impl<T: Real> Knowledge<T> {
         self.both_deviation = (force * (T::ONE - self.position_weight)).square_root();
         let part = learner.value(HALF_GAP) * tables.contact.known_part;
         self.width_is_known = variance < part * part;
+        // Once known it serves as long as it can: a place in the turn that the maps have not seen yet is no new joint.
+        let thrice = T::TWO * part + part;
+        self.width_serves = self.width_is_known || self.width_serves && variance < thrice * thrice;
     }
 }

@@ -139,6 +139,14 @@ impl<T: Real, const P: usize> Learner<T, P> {
         }
     }
 
+    /// Keeps the parameters and forgets how sure the half-gap is, and nothing else: it is the first of them, so its
+    /// entry on the diagonal is its own.
+    pub fn doubt_width(&mut self) {
+        if let Some(width) = self.factors.first_mut().and_then(|column| column.first_mut()) {
+            *width = T::ONE;
+        }
+    }
+
     /// Keeps the parameters and forgets how sure they are.
     pub fn reopen(&mut self) {
         for (index, column) in self.factors.iter_mut().enumerate() {

@@ -14,6 +14,8 @@ pub(super) struct Motion<T: Real> {
     forces: [(T, T); WINDOW + 1],
     known: usize,
     still_for: u32,
+    /// Way over the window below which nothing was seen to move [m].
+    limit: T,
 }
 
 /// What an interval showed.
@@ -29,7 +31,13 @@ pub(super) enum Shown<T: Real> {
 
 impl<T: Real> Motion<T> {
     pub fn new() -> Self {
-        Self { ways: [T::ZERO; WINDOW + 1], forces: [(T::ZERO, T::ZERO); WINDOW + 1], known: 0, still_for: 0 }
+        Self {
+            ways: [T::ZERO; WINDOW + 1],
+            forces: [(T::ZERO, T::ZERO); WINDOW + 1],
+            known: 0,
+            still_for: 0,
+            limit: T::ZERO,
+        }
     }
 
     /// Takes in one interval. `blur` is what error maps that are unknown can make of the motor's turning in an
@@ -48,6 +56,7 @@ impl<T: Real> Motion<T> {
         let [(newest_force, _), .., (oldest_force, _)] = self.forces;
         let limit =
             (table.still + blur) * T::from_i32(WINDOW as i32) + softness * magnitude(newest_force - oldest_force);
+        self.limit = limit;
         let [newest, .., oldest] = self.ways;
         let middle = self.ways.get(WINDOW / 2).copied().unwrap_or(newest);
         let whole = newest - oldest;
@@ -63,6 +72,13 @@ impl<T: Real> Motion<T> {
             }
             _ => Shown::Between,
         }
+    }
+}
+
+impl<T: Real> Motion<T> {
+    /// Whether standing still tells rest from a slow crossing of a gap: nothing as wide could have hidden in the noise.
+    pub fn is_sharp(&self, half_gap: T) -> bool {
+        self.limit < half_gap * T::QUARTER
     }
 }
 

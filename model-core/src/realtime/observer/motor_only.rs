@@ -8,6 +8,7 @@
 use super::contact::{sign, with_hysteresis};
 use super::motion::magnitude;
 use super::regressors::{self, Touch};
+use super::supervisor::{Agreement, Place, Verdict};
 use super::{Now, Observer, Source, small};
 use crate::mesh::ContactState;
 use crate::real::Real;
@@ -39,7 +40,15 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let wind_up = compliance * now.force;
         let upper = reach + if wind_up > T::ZERO { wind_up } else { T::ZERO };
         let lower = -reach + if wind_up < T::ZERO { wind_up } else { T::ZERO };
-        if self.supervisor.judge(table, now.way - now.shift < upper && now.way - now.shift > lower) {
+        let way = now.way - now.shift;
+        let place = if way < upper && way > lower {
+            Place::Possible
+        } else if way < upper + half_gap && way > lower - half_gap {
+            Place::Worn { turning: magnitude(self.drive.speed) > table.stuck_speed }
+        } else {
+            Place::Impossible
+        };
+        if self.supervisor.judge(table, way, place) {
             self.counts.imply();
             self.load.speed = self.drive.speed * self.tables.levers.per_ratio;
             self.load.torque = self.supervisor.torque_before();
@@ -130,11 +139,23 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
             let measured = tables.counts.length * small(self.counts.difference) + tables.levers.sun * self.drive.ahead;
             let expected = self.learner.way(&Touch { side, force, mesh: *mesh }.on(&free));
             let room = tables.supervisor.margin + T::TWO * self.knowledge.edge_deviation;
-            magnitude(measured - expected) < room
+            let apart = magnitude(measured - expected);
+            let [guess, ..] = tables.learner.mean;
+            if apart < room {
+                Agreement::Whole
+            } else if apart < room + T::FOUR * guess {
+                Agreement::Near
+            } else {
+                Agreement::None
+            }
         });
-        if self.supervisor.reconsider(&tables.supervisor, agrees) {
+        let verdict = self.supervisor.reconsider(&tables.supervisor, agrees);
+        if verdict != Verdict::Doubted {
             self.counts.trust();
             self.load.ahead = T::ZERO;
+        }
+        if verdict == Verdict::Mistaken {
+            self.learner.reopen();
         }
     }
 }

@@ -3,7 +3,7 @@
 
 use super::contact::sign;
 use super::counts::Counter;
-use super::regressors::{MAP, OFFSET, SKEW};
+use super::regressors::{ERROR, MAP, OFFSET, SKEW};
 use super::{MAPPED, Now, Observer, PLAIN, Source};
 use crate::mesh::ContactState;
 use crate::real::Real;
@@ -22,11 +22,12 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let gap = self.gap(now, both, touching, half_gap);
         let rate = if touching { T::ZERO } else { now.rate };
         let [_, load_variance] = tables.load.variance;
-        let force_deviation = if both && known.width_is_known { known.both_deviation } else { known.force_deviation };
+        let force_deviation = if both && known.width_serves { known.both_deviation } else { known.force_deviation };
         let mesh_deviation = force_deviation * levers.output;
         let (motor, link) = self.shafts(now, both);
         let [sine, cosine] = now.mesh;
         let slope = self.error(&[cosine, -sine]) * T::from_i32(tables.counts.meshes as i32);
+        let swap = self.flanks_swap();
 
         let estimates = &mut self.estimates;
         estimates.source = self.supervisor.source();
@@ -35,12 +36,21 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         estimates.flank_shift = now.shift;
         estimates.flank_shift_slope = slope;
         // Without a width, force alone decides, and what it says is sure; so it is without an output encoder.
-        estimates.contact_valid = touching || gap.valid;
+        // Flanks that the transmission error shifts over the middle of the gap hammer at every tooth: what touches now is
+        // over before anyone could act on it.
+        estimates.contact_valid = (touching || gap.valid) && !swap;
         estimates.mesh_torque.variance = mesh_deviation * mesh_deviation;
         estimates.mesh_torque.valid = estimates.contact_valid;
         estimates.load_torque = Estimate { value: self.load.torque, variance: load_variance, valid: both || touching };
         estimates.motor = motor;
         estimates.link = link;
+    }
+
+    /// Whether the transmission error shifts a flank over the middle of the gap.
+    fn flanks_swap(&self) -> bool {
+        let [half_gap, _] = self.shape();
+        let [sine, cosine] = [self.learner.value(ERROR), self.learner.value(ERROR + 1)];
+        sine * sine + cosine * cosine > half_gap * half_gap
     }
 
     /// What is learnt slowly, once an interval.
@@ -55,6 +65,8 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let [bias_variance, friction_variance, _] = self.bias.variance;
         let output_squared = levers.per_output * levers.per_output;
         let sun_squared = levers.sun * levers.sun;
+        let [_, of_flank] = known.wind_up_variance;
+        let half_gap_variance = half_gap_variance + of_flank;
         let rough = T::EIGHTH * half_gap;
         let bias_known = T::HALF * tables.contact.bias_prior;
 
@@ -113,8 +125,15 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
                 now.shift + felt * half_gap + tables.learner.mesh_compliance * force
             };
             (value, self.blind_variance())
-        } else if known.width_is_known {
-            let variance = if touching { known.flank_variance } else { known.way_variance };
+        } else if known.width_serves {
+            // What is said must last until the next period: teeth on their way do not stand still.
+            let goes_on = now.rate * tables.period;
+            let [of_way, of_flank] = known.wind_up_variance;
+            let variance = if touching {
+                known.flank_variance + of_flank
+            } else {
+                known.way_variance + of_way + goes_on * goes_on
+            };
             (position.gap(tables.learner.mesh_compliance), Some(variance + noise))
         } else {
             // Without a width: less the wind-up of the force.

@@ -3,6 +3,7 @@
 
 use super::counts::Advance;
 use super::estimates::{Doubt, Source};
+use super::motion::magnitude;
 use crate::real::Real;
 use crate::tables::observer::SupervisorTable;
 
@@ -14,11 +15,29 @@ pub(super) struct Supervisor<T: Real> {
     unmoved_for: u32,
     outside_for: u32,
     inside_for: u32,
+    beside_for: u32,
+    /// The way at the last period, and whether it leapt to where it is [m].
+    way: T,
+    leapt: bool,
     /// The output has moved since the last look.
     moved: bool,
     /// Load torque of the last and of the last but one look, before a failing encoder could spoil it [N m].
     torques: [T; 2],
     looked: u32,
+}
+
+/// Where a way lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Place {
+    /// Between the flanks, or as far beyond as forces wind up.
+    Possible,
+    /// Beyond that, by no more than teeth can have worn; whether the motor turns.
+    Worn {
+        /// The motor turns by more than the output could hide.
+        turning: bool,
+    },
+    /// Where no teeth could let it be.
+    Impossible,
 }
 
 /// Intervals between two looks at the load torque: longer than it takes to find a failure.
@@ -32,6 +51,9 @@ impl<T: Real> Supervisor<T> {
             unmoved_for: 0,
             outside_for: 0,
             inside_for: 0,
+            beside_for: 0,
+            way: T::ZERO,
+            leapt: false,
             moved: false,
             torques: [T::ZERO; 2],
             looked: 0,
@@ -63,24 +85,31 @@ impl<T: Real> Supervisor<T> {
         began
     }
 
-    /// Whether the way is one that teeth allow; true when the encoder is given up now.
-    pub fn judge(&mut self, table: &SupervisorTable<T>, possible: bool) -> bool {
+    /// Whether the way is one that teeth allow; true when the encoder is given up now. Teeth that have worn let the way
+    /// go on beyond where it could be, step by step; an encoder that slips leaps there.
+    pub fn judge(&mut self, table: &SupervisorTable<T>, way: T, place: Place) -> bool {
+        let by = way - core::mem::replace(&mut self.way, way);
         if self.source != Source::Both {
             return false;
         }
-        self.outside_for = if possible { 0 } else { self.outside_for + 1 };
+        let possible = place == Place::Possible;
+        self.leapt = !possible && (self.leapt || magnitude(by) > table.margin);
+        self.outside_for = if possible { 0 } else { self.outside_for.saturating_add(1) };
         let doubt = if self.silent_for > table.silent_after {
             Doubt::Silent
         } else if self.outside_for < table.failed_after {
             return false;
-        } else if self.unmoved_for >= table.failed_after {
+        } else if self.unmoved_for >= table.failed_after && place != (Place::Worn { turning: false }) {
             Doubt::Frozen
+        } else if matches!(place, Place::Worn { .. }) && !self.leapt {
+            return false;
         } else {
             Doubt::OutOfRange
         };
         self.source = Source::MotorOnly(doubt);
         self.outside_for = 0;
         self.inside_for = 0;
+        self.beside_for = 0;
         true
     }
 
@@ -100,19 +129,48 @@ impl<T: Real> Supervisor<T> {
     }
 
     /// Once an interval, without it: whether the encoder says what the motor implies, `None` where that cannot be told.
-    /// True when it is taken back now.
-    pub fn reconsider(&mut self, table: &SupervisorTable<T>, agrees: Option<bool>) -> bool {
+    pub fn reconsider(&mut self, table: &SupervisorTable<T>, agrees: Option<Agreement>) -> Verdict {
         let moved = self.moved && self.silent_for == 0;
         self.moved = false;
         match agrees {
-            Some(true) if moved => self.inside_for += 1,
-            Some(false) => self.inside_for = 0,
+            Some(Agreement::Whole) if moved => self.inside_for += 1,
+            Some(Agreement::Near) if moved => self.beside_for += 1,
+            Some(Agreement::None) => (self.inside_for, self.beside_for) = (0, 0),
             _ => {}
         }
-        let trusted = self.inside_for >= table.trusted_after && self.source != Source::MotorOnly(Doubt::Absent);
-        if trusted {
-            self.source = Source::Both;
+        if self.source == Source::MotorOnly(Doubt::Absent) {
+            return Verdict::Doubted;
         }
-        trusted
+        let verdict = if self.inside_for >= table.trusted_after {
+            Verdict::Trusted
+        } else if self.beside_for >= table.trusted_after {
+            Verdict::Mistaken
+        } else {
+            return Verdict::Doubted;
+        };
+        self.source = Source::Both;
+        verdict
     }
+}
+
+/// How an output encoder that is not in use agrees with what the motor implies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Agreement {
+    /// As well as can be told.
+    Whole,
+    /// Not, but by no more than a width that was learnt wrong could be the cause of.
+    Near,
+    /// Not at all.
+    None,
+}
+
+/// What becomes of an output encoder that is not in use.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Verdict {
+    /// It stays out of use.
+    Doubted,
+    /// It is taken back.
+    Trusted,
+    /// It is taken back: what had been learnt was wrong.
+    Mistaken,
 }

@@ -71,6 +71,7 @@ impl<T: Real> Flank<T> {
         let closing = self.side * (situation.motor_speed - situation.link_speed);
         let stopped = self.stage == Stage::Landing
             && self.elapsed > tables.shortest_crossing
+            && opened < tables.opening * situation.half
             && closing < T::HALF * tables.landing_speed;
         let touching = felt || seen || stopped;
         let turned = self.side * (intent.demand_now + intent.demand_ahead) < -tables.hysteresis

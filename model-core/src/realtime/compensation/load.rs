@@ -15,7 +15,7 @@ pub(super) struct LoadModel<T: Real> {
     friction: T,
     /// Rate of the even part [N m/s].
     rate: T,
-    /// What brakes a link that no flank carries [N m].
+    /// What brakes a link that no flank carries, smoothed [N m].
     alone: Option<T>,
     /// Variances of both and their covariance.
     variance: [T; 3],
@@ -72,7 +72,12 @@ impl<T: Real> LoadModel<T> {
         } else {
             self.rate *= tables.load_rate_left;
         }
-        self.alone = if known && !carried { Some(held) } else { None };
+        self.alone = if known && !carried {
+            let before = self.free(tables, situation.link_speed);
+            Some(before + tables.settling * (held - before))
+        } else {
+            None
+        };
     }
 
     /// Integrates an error instead, where a flank should carry and no estimate says with what force.

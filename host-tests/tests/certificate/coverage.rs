@@ -1,6 +1,6 @@
 //! In what share of random cases the measured error stays below the promised one.
 
-use host_tests::tolerance::{LEAST_COVERAGE, LEAST_COVERAGE_OF_A_KIND, MOST_COVERAGE_OF_TYPICAL};
+use host_tests::tolerance::certificate::{LEAST_COVERAGE, LEAST_COVERAGE_OF_A_KIND, MOST_COVERAGE_OF_TYPICAL};
 use model_core::design::{Pace, Processor, certificate};
 
 use super::motion::{Outcome, follow};

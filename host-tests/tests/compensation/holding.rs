@@ -3,7 +3,7 @@
 use host_tests::closed_loop::{Contender, Figures, Trial};
 use host_tests::drive_train::DriveTrainParameters;
 use host_tests::scenarios::q1;
-use host_tests::tolerance::{FREE_HOLD_SWING, HOLD_OVER_PID, HOLD_SWING_OVER_PID};
+use host_tests::tolerance::compensation::{FREE_HOLD_SWING, HOLD_OVER_PID, HOLD_SWING_OVER_PID};
 
 use super::{NO_PREVIEW, figures};
 

@@ -4,7 +4,7 @@ use host_tests::closed_loop::rivals::ImpedanceLaw;
 use host_tests::closed_loop::{Contender, Trial, deviation};
 use host_tests::drive_train::DriveTrainParameters;
 use host_tests::scenarios::q1;
-use host_tests::tolerance::{IMPEDANCE_DEVIATION, IMPEDANCE_TORQUE};
+use host_tests::tolerance::compensation::{IMPEDANCE_DEVIATION, IMPEDANCE_OVER_RIVAL, IMPEDANCE_TORQUE};
 
 use super::NO_PREVIEW;
 
@@ -14,6 +14,8 @@ fn comes_near_the_law_without_a_gap(trial: &Trial) {
     let (motor, _, motor_torque) = of(ImpedanceLaw::MotorSide, Contender::Impedance(ImpedanceLaw::MotorSide));
     // The compensation's law has its spring at the link and its damper at the motor.
     let (ours, _, torque) = of(ImpedanceLaw::LinkSpring, NO_PREVIEW);
+    let rival = of(ImpedanceLaw::LinkSpring, Contender::Impedance(ImpedanceLaw::LinkSpring)).0;
+    IMPEDANCE_OVER_RIVAL.check(ours / rival);
     IMPEDANCE_DEVIATION.check(ours / motor);
     IMPEDANCE_TORQUE.check(torque / motor_torque);
 }
@@ -30,4 +32,12 @@ fn a_stiff_spring_behaves_as_if_there_were_no_gap() {
     comes_near_the_law_without_a_gap(
         &Trial::random(&q1(), &DriveTrainParameters::q1(), 122).with_impedance(600.0, 3.0),
     );
+}
+
+#[test]
+fn a_stiff_spring_steps_and_holds_no_worse_than_its_best_rival() {
+    let (joint, train) = (q1(), DriveTrainParameters::q1());
+    for trial in [Trial::steps(&joint, &train, 123), Trial::disturbed_hold(&joint, &train, 124)] {
+        comes_near_the_law_without_a_gap(&trial.with_impedance(600.0, 3.0));
+    }
 }

@@ -4,7 +4,7 @@
 use host_tests::closed_loop::{Contender, Trial, random_plant};
 use host_tests::drive_train::DriveTrainParameters;
 use host_tests::scenarios::q1;
-use host_tests::tolerance::{PLANTS_GAIN, PLANTS_WORST};
+use host_tests::tolerance::compensation::{PLANTS_GAIN, PLANTS_WORST};
 
 use super::{NO_PREVIEW, PREVIEW, figures};
 

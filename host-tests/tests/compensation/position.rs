@@ -2,10 +2,10 @@
 
 use host_tests::closed_loop::{Contender, Trial};
 use host_tests::drive_train::DriveTrainParameters;
-use host_tests::scenarios::q1;
-use host_tests::tolerance::{
+use host_tests::scenarios::{l1, q1};
+use host_tests::tolerance::compensation::{
     COMPENSATED_OVER_PID, COMPENSATED_OVER_RIVAL, COMPENSATED_PEAK_OVER_PID, COMPENSATED_PEAK_OVER_RIVAL, LOST_MOTION,
-    PEAK_MESH_FORCE, STEPS_OVER_PID,
+    PEAK_MESH_FORCE, STEPS_OVER_PID, STEPS_PEAK_OVER_PID, STIFF_JOINT_OVER_PID,
 };
 
 use super::{NO_PREVIEW, PREVIEW, figures};
@@ -50,5 +50,22 @@ fn a_random_motion_loses_its_lost_motion() {
 #[test]
 fn fast_steps_that_nobody_foresaw_are_better_than_without_compensation() {
     let trial = Trial::steps(&q1(), &DriveTrainParameters::q1(), 105);
-    STEPS_OVER_PID.check(figures(&trial, NO_PREVIEW).rms / figures(&trial, Contender::MotorPid).rms);
+    let (ours, pid) = (figures(&trial, NO_PREVIEW), figures(&trial, Contender::MotorPid));
+    STEPS_OVER_PID.check(ours.rms / pid.rms);
+    STEPS_PEAK_OVER_PID.check(ours.peak / pid.peak);
+}
+
+#[test]
+fn a_large_stiff_joint_loses_most_of_its_lost_motion() {
+    let mut train = DriveTrainParameters { delay_periods: 1.0, ..DriveTrainParameters::ideal() };
+    train.motor.torque_limit = 120.0;
+    let trial = Trial::inertial(&l1(), &train, 106);
+    STIFF_JOINT_OVER_PID.check(figures(&trial, PREVIEW).rms / figures(&trial, Contender::MotorPid).rms);
+}
+
+#[test]
+fn a_torque_constant_that_is_wrong_costs_little() {
+    let mut train = DriveTrainParameters::q1();
+    train.motor.torque_constant_error_ratio = 0.05;
+    is_far_better(&Trial::inertial(&q1(), &train, 107));
 }

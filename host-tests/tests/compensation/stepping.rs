@@ -3,7 +3,7 @@
 use host_tests::closed_loop::{Contender, Trial};
 use host_tests::drive_train::{DriveTrainParameters, Stepping};
 use host_tests::scenarios::q1;
-use host_tests::tolerance::FIXED_STEPS;
+use host_tests::tolerance::compensation::FIXED_STEPS;
 
 #[test]
 fn fixed_steps_move_the_joint_as_adaptive_ones_do() {

@@ -1,0 +1,148 @@
+//! Bounds of the compensation in the loop with the fine-step plant, most of them ratios to a rival's figure in the same run.
+//! What was measured is the worst of the short tests; the long run over many seeds prints its own figures.
+
+use super::Bound;
+
+/// Fixed steps of the reference in a closed loop.
+pub const FIXED_STEPS: Bound = Bound {
+    of: "largest difference of the link between fixed and adaptive steps under motor PID, over the lost motion",
+    limit: 0.02,
+    measured: 0.006,
+    reason: "Feedback forgives what a step loses; a wrong force law would show as 1.",
+};
+
+/// Compensation against motor PID.
+pub const COMPENSATED_OVER_PID: Bound = Bound {
+    of: "RMS error with compensation over motor PID's",
+    limit: 0.08,
+    measured: 0.054,
+    reason: "A slow motion against friction is the worst: it has four reversals, and each costs the same; seeds scatter by a third.",
+};
+
+/// Its peak.
+pub const COMPENSATED_PEAK_OVER_PID: Bound = Bound {
+    of: "peak error with compensation over motor PID's",
+    limit: 0.3,
+    measured: 0.23,
+    reason: "Peaks scatter by a third from seed to seed.",
+};
+
+/// Compensation against the best rival.
+pub const COMPENSATED_OVER_RIVAL: Bound = Bound {
+    of: "RMS error with compensation over that of output integral, jump and feed-forward",
+    limit: 0.4,
+    measured: 0.2,
+    reason: "The rival is best at slow motions, where friction fed forward is most of the torque.",
+};
+
+/// Its peak.
+pub const COMPENSATED_PEAK_OVER_RIVAL: Bound = Bound {
+    of: "peak error with compensation over that of output integral, jump and feed-forward",
+    limit: 0.4,
+    measured: 0.19,
+    reason: "Peaks scatter by a third from seed to seed.",
+};
+
+/// Time spent in the gap.
+pub const LOST_MOTION: Bound = Bound {
+    of: "mean time from leaving one flank to touching the other [s]",
+    limit: 10e-3,
+    measured: 6.4e-3,
+    reason: "A missed landing costs another crossing of 9 ms.",
+};
+
+/// Force on the teeth.
+pub const PEAK_MESH_FORCE: Bound = Bound {
+    of: "peak net force of the sun's meshes over rated",
+    limit: 0.6,
+    measured: 0.41,
+    reason: "Planets struck on the way are designed for a half.",
+};
+
+/// Unforeseen fast steps.
+pub const STEPS_OVER_PID: Bound = Bound {
+    of: "RMS error of unforeseen steps of 0.05 rad in 60 ms with compensation over motor PID's",
+    limit: 0.3,
+    measured: 0.1,
+    reason: "Near saturation the start decides: on the wrong flank it costs a crossing at full torque.",
+};
+
+/// Their peak.
+pub const STEPS_PEAK_OVER_PID: Bound = Bound {
+    of: "peak error of unforeseen steps of 0.05 rad in 60 ms with compensation over motor PID's",
+    limit: 0.8,
+    measured: 0.4,
+    reason: "The step that begins on the wrong flank is the peak; never worse than without compensation is what is asked.",
+};
+
+/// Disturbed hold.
+pub const HOLD_OVER_PID: Bound = Bound {
+    of: "RMS error of a hold under +-1.5 N m with compensation over motor PID's",
+    limit: 0.1,
+    measured: 0.044,
+    reason: "Friction sticks and slips by chance.",
+};
+
+/// Its swing.
+pub const HOLD_SWING_OVER_PID: Bound = Bound {
+    of: "peak to peak of a hold under +-1.5 N m with compensation over motor PID's",
+    limit: 0.4,
+    measured: 0.18,
+    reason: "Friction sticks and slips by chance.",
+};
+
+/// Free hold without friction.
+pub const FREE_HOLD_SWING: Bound = Bound {
+    of: "peak to peak of a hold without friction, over the lost motion",
+    limit: 0.6,
+    measured: 0.24,
+    reason: "The error let be is at most half of it.",
+};
+
+/// Impedance mode: position.
+pub const IMPEDANCE_DEVIATION: Bound = Bound {
+    of: "deviation from the law without a gap over that of the motor-side law",
+    limit: 0.2,
+    measured: 0.1,
+    reason: "The law's own friction stops scatter.",
+};
+
+/// Impedance mode: torque.
+pub const IMPEDANCE_TORQUE: Bound = Bound {
+    of: "torque error against the law without a gap over that of the motor-side law",
+    limit: 1.0,
+    measured: 0.69,
+    reason: "No larger is what is asked.",
+};
+
+/// Impedance mode: against the best rival.
+pub const IMPEDANCE_OVER_RIVAL: Bound = Bound {
+    of: "deviation from the law without a gap over that of spring at the link and damper at the motor",
+    limit: 1.0,
+    measured: 0.7,
+    reason: "Never worse is what is asked; a soft spring that is pushed to and fro has little to gain.",
+};
+
+/// Another joint.
+pub const STIFF_JOINT_OVER_PID: Bound = Bound {
+    of: "RMS error of a large stiff joint with compensation over motor PID's",
+    limit: 0.4,
+    measured: 0.14,
+    reason: "Its gap is a third of the default joint's, and its encoders resolve it as much less.",
+};
+
+/// Random plants, median.
+pub const PLANTS_GAIN: Bound = Bound {
+    of: "median RMS error in random plants over motor PID's",
+    limit: 1.0 / 3.0,
+    measured: 0.346,
+    reason: "Three times better is asked and just missed: half of the trials are unforeseen steps near saturation (0.35 to 0.6).",
+};
+
+/// Random plants, worst.
+pub const PLANTS_WORST: Bound = Bound {
+    of: "worst RMS error in random plants over motor PID's",
+    limit: 1.0,
+    measured: 0.6,
+    reason: "Never worse is what is asked.",
+};

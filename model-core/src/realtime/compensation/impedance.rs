@@ -75,7 +75,8 @@ impl<T: Real> ImpedanceLaw<T> {
             Some((position, age, usual)) if position == point.position => {
                 (clamp(age + tables.period, T::ZERO, tables.longest_hold), usual)
             }
-            Some((_, age, _)) => (T::ZERO, age),
+            // One that was at rest says nothing of the sender's pace.
+            Some((_, age, usual)) => (T::ZERO, if age < tables.longest_hold { age } else { usual }),
             None => (T::ZERO, T::ZERO),
         };
         self.held = Some((point.position, age, usual));

@@ -110,9 +110,6 @@ const LOAD_RATE_KEPT: f64 = 0.1;
 /// The same for its dry friction: known within a few reversals, then kept for seconds.
 const FRICTION_GROWTH: f64 = 1e-6;
 
-/// Poles of the impedance demand's tracking filter times the crossing's time.
-const DEMAND_POLE: f64 = 2.0;
-
 /// Time in which a missed impulse is made good, over a crossing's time.
 const REPAYMENT: f64 = 1.15;
 
@@ -151,7 +148,6 @@ pub fn design_compensation<T: Real>(
     // The motor's mass against the joint's spring: torque of a blow for each rad/s.
     let blow = libm::sqrt(body.stiffness * body.motor);
     let landing_speed = LANDING * joint.rated_output_torque / blow;
-    let demand_left = libm::exp(-DEMAND_POLE * period / crossing);
     Ok(CompensationTables {
         rate: real(f64::from(settings.control_rate)),
         period: real(period),
@@ -207,7 +203,6 @@ pub fn design_compensation<T: Real>(
         load_rate_left: real(libm::exp(-period / LOAD_RATE_KEPT)),
         fastest_load: real(limit / LOAD_RATE),
         friction_slope: real(1.0 / FRICTION_SPEED),
-        demand_gains: [real(1.0 - demand_left * demand_left), real((1.0 - demand_left) * (1.0 - demand_left) / period)],
         longest_hold: real(LONGEST_HOLD),
         trust_step: real(period * pole / TRUST),
     })

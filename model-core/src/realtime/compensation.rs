@@ -20,6 +20,7 @@ mod load;
 mod path;
 mod plain;
 mod position;
+mod sender;
 mod set_point;
 
 pub use set_point::{Command, ImpedancePoint, Motion, Position, Shaped, Stage};

@@ -113,8 +113,6 @@ pub struct CompensationTables<T: Real> {
     pub fastest_load: T,
     /// Inverse of the speed at which friction has its full size [s/rad].
     pub friction_slope: T,
-    /// Tracking filter of the impedance law's demand: gains of value and rate.
-    pub demand_gains: [T; 2],
     /// How long an impedance set-point may be held before it counts as standing still [s].
     pub longest_hold: T,
     /// Change of the trust in the estimates in one period.

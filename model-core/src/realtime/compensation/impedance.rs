@@ -4,22 +4,20 @@
 use super::arithmetic::clamp;
 use super::intent::{Intent, Situation, crossing_time};
 use super::load::LoadModel;
-use super::set_point::{ImpedancePoint, Position};
+use super::sender::Sender;
+use super::set_point::ImpedancePoint;
 use crate::real::Real;
 use crate::tables::compensation::CompensationTables;
 
 /// What impedance mode remembers.
 #[derive(Debug, Clone)]
 pub(super) struct ImpedanceLaw<T: Real> {
-    /// Demand that does not come from spring and damper, smoothed over about a crossing, and its rate.
-    smooth: Option<[T; 2]>,
-    /// The set-point of one period ago for how long it has been held, and the one before it was [s].
-    held: Option<(Position<T>, T, T)>,
+    sender: Sender<T>,
 }
 
 impl<T: Real> ImpedanceLaw<T> {
     pub fn new() -> Self {
-        Self { smooth: None, held: None }
+        Self { sender: Sender::default() }
     }
 
     pub fn forget(&mut self) {
@@ -40,23 +38,16 @@ impl<T: Real> ImpedanceLaw<T> {
         let free = load.even() + load.drag(tables, situation.link_speed);
         // Law and load accelerate motor and load together; the teeth pass on what is not the motor's share.
         let load_share = T::ONE - tables.motor_share;
-        let error = situation.error + point.speed * self.overdue(tables, point);
-        let felt = load_share * (point.stiffness * error + point.damping * situation.error_rate);
-        let sent = load_share * point.torque + tables.motor_share * free;
-        let demand_now = felt + sent;
-
-        // How spring and damper go on is known; for the rest a tracking filter: value and rate.
-        let [value, rate] = self.smooth.unwrap_or([sent, T::ZERO]);
-        let predicted = value + tables.period * rate;
-        let off = sent - predicted;
-        let value = predicted + tables.demand_gains[0] * off;
-        let rate = rate + tables.demand_gains[1] * off;
-        self.smooth = Some([value, rate]);
-        let value = value + felt;
-        let rate = rate + load_share * point.stiffness * situation.error_rate;
+        self.sender.hear(tables, point);
+        let overdue = self.sender.overdue(tables);
+        let error = situation.error + point.speed * overdue;
+        let torque = point.torque + self.sender.torque_rate() * overdue;
+        let demand_now = load_share * (point.stiffness * error + point.damping * situation.error_rate + torque)
+            + tables.motor_share * free;
+        let rate = load_share * (point.stiffness * situation.error_rate + self.sender.torque_rate());
         let unhurried = crossing_time(tables, situation.half, T::ZERO) + tables.reaction;
-        let crossing = crossing_time(tables, situation.half, value + unhurried * rate);
-        let demand_ahead = value + (crossing + tables.reaction) * rate;
+        let crossing = crossing_time(tables, situation.half, demand_now + unhurried * rate);
+        let demand_ahead = demand_now + (crossing + tables.reaction) * rate;
         Intent {
             law,
             demand_now,
@@ -66,20 +57,5 @@ impl<T: Real> ImpedanceLaw<T> {
             crossing,
             repays: true,
         }
-    }
-
-    /// By how much longer than usual the set-point has been held: the sender is slower than the control, and its point
-    /// moves on meanwhile. One that has fallen silent stands still.
-    fn overdue(&mut self, tables: &CompensationTables<T>, point: &ImpedancePoint<T>) -> T {
-        let (age, usual) = match self.held {
-            Some((position, age, usual)) if position == point.position => {
-                (clamp(age + tables.period, T::ZERO, tables.longest_hold), usual)
-            }
-            // One that was at rest says nothing of the sender's pace.
-            Some((_, age, usual)) => (T::ZERO, if age < tables.longest_hold { age } else { usual }),
-            None => (T::ZERO, T::ZERO),
-        };
-        self.held = Some((point.position, age, usual));
-        if age < tables.longest_hold { age - T::HALF * usual } else { T::ZERO }
     }
 }

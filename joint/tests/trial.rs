@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use command::{Ended, joint, text};
 use joint::trial::plant::PlantName;
-use joint::trial::suite;
+use joint::trial::suite::{self, Choice};
 use serde_json::Value;
 
 /// A short test, with more lines at its end.
@@ -37,8 +37,8 @@ fn folder() -> tempfile::TempDir {
 #[test]
 fn every_shipped_test_can_be_read_and_designed() {
     let hil = Path::new(env!("CARGO_MANIFEST_DIR")).join("../hil");
-    let all = suite::load(&hil, true, PlantName::Reference).expect("all can be used").len();
-    let short = suite::load(&hil, false, PlantName::Reference).expect("all can be used").len();
+    let all = suite::load(&hil, Choice::Full, PlantName::Reference).expect("all can be used").len();
+    let short = suite::load(&hil, Choice::Short, PlantName::Reference).expect("all can be used").len();
     assert!(all > short && short > 10, "{all} tests, {short} of them short");
 }
 

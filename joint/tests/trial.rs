@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 
 use command::{Ended, joint, text};
 use joint::trial::plant::PlantName;
-use joint::trial::suite;
+use joint::trial::suite::{self, Choice};
+use link::messages::Role;
 use serde_json::Value;
 
 /// A short test, with more lines at its end.
@@ -37,9 +38,21 @@ fn folder() -> tempfile::TempDir {
 #[test]
 fn every_shipped_test_can_be_read_and_designed() {
     let hil = Path::new(env!("CARGO_MANIFEST_DIR")).join("../hil");
-    let all = suite::load(&hil, true, PlantName::Reference).expect("all can be used").len();
-    let short = suite::load(&hil, false, PlantName::Reference).expect("all can be used").len();
+    let all = suite::load(&hil, Choice::Full, PlantName::Reference).expect("all can be used").len();
+    let short = suite::load(&hil, Choice::Short, PlantName::Reference).expect("all can be used").len();
     assert!(all > short && short > 10, "{all} tests, {short} of them short");
+}
+
+#[test]
+fn the_run_without_a_file_has_tests_of_both_roles_and_none_that_its_board_would_refuse() {
+    let hil = Path::new(env!("CARGO_MANIFEST_DIR")).join("../hil");
+    for (role, plant) in [(Role::Loop, PlantName::Core), (Role::Observer, PlantName::Reference)] {
+        let tests = suite::load(&hil, Choice::OnBoard(role), plant).expect("some, and all can be used");
+        for test in tests {
+            assert!(test.file.controller.is_ours() && !test.file.only_with_full, "{}", test.name);
+            assert!(role == Role::Observer || test.file.faults.is_empty(), "{}", test.name);
+        }
+    }
 }
 
 #[test]
@@ -83,7 +96,7 @@ fn a_controller_that_does_nothing_fails_and_the_report_leads_with_it() {
     assert!(ended.out.contains("FAILED   rms_gain_over_pid"), "{ended:?}");
     assert!(ended.out.contains("again:   cargo joint hil"), "{ended:?}");
     let results = results(folder.path());
-    assert_eq!(results["schema"], "joint-hil-tests/1");
+    assert_eq!(results["schema"], "joint-hil-tests/2");
     assert_eq!(results["passed"], false);
     assert_eq!(results["tests"][0]["assertions"][1]["verdict"], "passed");
     let page = fs::read_to_string(folder.path().join("out/report.html")).expect("written");
@@ -128,6 +141,8 @@ fn what_is_wrong_with_a_test_file_is_named_with_the_mend() {
     refused("joint = \"q2\"\nprofile = \"T2\"", &["q2", "presets"]);
     refused("profile = \"T2\"\n[controller]\nrivals = [\"motor_side\"]", &["motor_side cannot run beside this"]);
     refused("profile = { kind = \"csv\", file = \"none.csv\" }", &["cannot read the motion", "none.csv"]);
+    refused("profile = \"T2\"\n[assert]\nrms_mrad = \"<= 8\"\n[controller]\nshort_run = \"loop\"", &["short_run"]);
+    refused("short_run = \"plant\"\nprofile = \"T2\"", &["observer", "loop"]);
     refused("settle_s = 1", &["not TOML"]);
 }
 

@@ -1,5 +1,4 @@
-//! A pin of a GPIO port as an output for embedded-hal. Each board says how its ports set and clear pins, and sets the
-//! pins up.
+//! A pin of a GPIO port as an output for embedded-hal. Each board names its ports, and sets the pins up.
 
 use core::convert::Infallible;
 
@@ -10,6 +9,19 @@ pub trait Port {
     /// Writes the bit set/reset register.
     fn set_reset(&mut self, bits: u32);
 }
+
+/// Makes ports of a board's device such ports.
+macro_rules! ports {
+    ($($port:ty),+) => {$(
+        impl $crate::board::output::Port for $port {
+            fn set_reset(&mut self, bits: u32) {
+                // SAFETY: every word is allowed; pins that are no outputs do not care.
+                self.bsrr().write(|w| unsafe { w.bits(bits) });
+            }
+        }
+    )+};
+}
+pub(super) use ports;
 
 /// One pin of a port that has no other output.
 #[derive(Debug)]

@@ -17,7 +17,7 @@ use cortex_m::peripheral::NVIC;
 use embedded_hal::digital::{ErrorType, OutputPin};
 use link::messages::Clock;
 
-use super::output::{Output, Port};
+use super::output::{Output, ports};
 use super::patience::wait_until;
 use super::{Board, Started, Watchdog};
 use crate::serial::Uart;
@@ -97,19 +97,7 @@ fn start_clock(rcc: &pac::RCC, flash: &pac::FLASH) -> Clock {
     if external { Clock::External } else { Clock::InternalFallback }
 }
 
-impl Port for pac::GPIOB {
-    fn set_reset(&mut self, bits: u32) {
-        // SAFETY: every word is allowed; pins that are no outputs do not care.
-        self.bsrr().write(|w| unsafe { w.bits(bits) });
-    }
-}
-
-impl Port for pac::GPIOC {
-    fn set_reset(&mut self, bits: u32) {
-        // SAFETY: every word is allowed; pins that are no outputs do not care.
-        self.bsrr().write(|w| unsafe { w.bits(bits) });
-    }
-}
+ports!(pac::GPIOB, pac::GPIOC);
 
 /// A light that shines when its pin is low.
 pub struct LowLight(Output<pac::GPIOC, 12>);

@@ -14,7 +14,7 @@ use cortex_m::peripheral::NVIC;
 use link::messages::Clock;
 
 use super::fifo_uart::FifoUart;
-use super::output::{Output, Port};
+use super::output::{Output, ports};
 use super::patience::wait_until;
 use super::{Board, Started, Watchdog};
 
@@ -103,16 +103,4 @@ fn start_clock(rcc: &pac::RCC, power: &pac::PWR, flash: &pac::FLASH) -> Clock {
     if external { Clock::External } else { Clock::InternalFallback }
 }
 
-impl Port for pac::GPIOA {
-    fn set_reset(&mut self, bits: u32) {
-        // SAFETY: every word is allowed; pins that are no outputs do not care.
-        self.bsrr().write(|w| unsafe { w.bits(bits) });
-    }
-}
-
-impl Port for pac::GPIOB {
-    fn set_reset(&mut self, bits: u32) {
-        // SAFETY: every word is allowed; pins that are no outputs do not care.
-        self.bsrr().write(|w| unsafe { w.bits(bits) });
-    }
-}
+ports!(pac::GPIOA, pac::GPIOB);

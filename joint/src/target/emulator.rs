@@ -64,6 +64,8 @@ impl Emulator {
         let socket = folder.path().join("serial");
         let log = File::create(folder.path().join("log")).map_err(|error| no_folder(&error))?;
         let mut command = mortal(program);
+        // The board's UART has room for one byte; a multiplexer before it takes the next ones meanwhile, which doubles the
+        // rate. Its escape character would be taken out of the stream: 256 is none.
         command
             .args(["-M", MACHINE, "-icount", CLOCK])
             .args(["-nodefaults", "-no-user-config", "-display", "none", "-monitor", "none"])

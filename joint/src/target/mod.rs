@@ -2,7 +2,8 @@
 //! is the session's business.
 //!
 //! The order of use: [`toolchain::Toolchain::prepare`], [`image::build_image`], then [`emulator::Emulator::start`] or
-//! [`flash::flash`]; or [`image::build_measuring`] and [`measuring::run`]. Each says what it is about to do, if that takes time or changes the machine, before it does it.
+//! [`flash::flash`]; or [`image::build_measuring`] and [`measuring::run`]. An image is built once for its `sources`. Each says
+//! what it is about to do, if that takes time or changes the machine, before it does it.
 
 pub mod board;
 pub mod emulator;

@@ -32,7 +32,7 @@ use crate::target::image::{self, Control, word};
 use crate::target::toolchain::Toolchain;
 
 /// A sample of the whole loop every so many periods; the digest covers every period.
-const DECIMATION: u16 = 20;
+const DECIMATION: u16 = 100;
 /// In real time a board without commands for so long goes to its safe state [s].
 const COMMAND_TIMEOUT: f64 = 0.1;
 

@@ -23,8 +23,9 @@ const CONTRADICTED: u32 = 24;
 /// Times that the width may be doubted before everything else is too.
 const DOUBTS: u32 = 3;
 
-/// Ways in a row without surprise after which doubts are forgotten: half a second of contact.
-const TRUSTED: u32 = 64;
+/// Ways without surprise on each flank after which a width counts as learnt, and doubts of it are forgotten: a quarter of
+/// a second of contact.
+const TRUSTED: u32 = 32;
 
 /// What speaks against what was learnt.
 #[derive(Debug, Clone, Copy, Default)]
@@ -33,8 +34,8 @@ pub(super) struct Doubts {
     contradicted: u32,
     /// Ways in a row that did not belong to the model.
     surprises: u32,
-    /// Ways without surprise since the width was doubted.
-    trusted: u32,
+    /// Ways without surprise on the back side and on the drive side since the width was doubted.
+    trusted: [u32; 2],
     /// How often it was.
     doubted: u32,
 }
@@ -54,11 +55,12 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         }
     }
 
-    /// The width is not what was learnt; if that has been said too often, nothing is.
+    /// The width is not what was learnt. If it had not been seen on both flanks for long, or that has been said too often,
+    /// nothing else is sure either.
     fn doubt(&mut self) {
-        self.doubts.trusted = 0;
+        let [back, drive] = core::mem::take(&mut self.doubts.trusted);
         self.doubts.doubted += 1;
-        if self.doubts.doubted > DOUBTS {
+        if back.min(drive) < TRUSTED || self.doubts.doubted > DOUBTS {
             self.doubts.doubted = 0;
             self.learner.reopen();
         } else {
@@ -105,8 +107,11 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
             return;
         }
         self.doubts.surprises = 0;
-        self.doubts.trusted = self.doubts.trusted.saturating_add(1);
-        if self.doubts.trusted > TRUSTED {
+        let drives = regressors.first().is_some_and(|side| *side > T::ZERO);
+        let [back, drive] = &mut self.doubts.trusted;
+        let trusted = if drives { &mut *drive } else { &mut *back };
+        *trusted = trusted.saturating_add(1);
+        if (*back).min(*drive) > TRUSTED {
             self.doubts.doubted = 0;
         }
         self.learner.learn(table, regressors, way);

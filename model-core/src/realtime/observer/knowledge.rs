@@ -129,10 +129,12 @@ impl<T: Real> Knowledge<T> {
         let from_force = force * compliance * compliance;
         self.position_weight = from_force.over(from_force + edge);
         self.both_deviation = (force * (T::ONE - self.position_weight)).square_root();
-        let part = learner.value(HALF_GAP) * tables.contact.known_part;
-        self.width_is_known = variance < part * part;
+        let half_gap = learner.value(HALF_GAP);
+        let part = half_gap * tables.contact.known_part;
+        self.width_is_known = half_gap > T::ZERO && variance < part * part;
         // Once known it serves as long as it can: a place in the turn that the maps have not seen yet is no new joint.
         let thrice = T::TWO * part + part;
-        self.width_serves = self.width_is_known || self.width_serves && variance < thrice * thrice;
+        self.width_serves =
+            self.width_is_known || self.width_serves && half_gap > T::ZERO && variance < thrice * thrice;
     }
 }

@@ -8,7 +8,7 @@
 use super::contact::{sign, with_hysteresis};
 use super::motion::magnitude;
 use super::regressors::{self, Touch};
-use super::supervisor::{Agreement, Place, Verdict};
+use super::supervisor::Place;
 use super::{Now, Observer, Source, small};
 use crate::mesh::ContactState;
 use crate::real::Real;
@@ -139,23 +139,11 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
             let measured = tables.counts.length * small(self.counts.difference) + tables.levers.sun * self.drive.ahead;
             let expected = self.learner.way(&Touch { side, force, mesh: *mesh }.on(&free));
             let room = tables.supervisor.margin + T::TWO * self.knowledge.edge_deviation;
-            let apart = magnitude(measured - expected);
-            let [guess, ..] = tables.learner.mean;
-            if apart < room {
-                Agreement::Whole
-            } else if apart < room + T::FOUR * guess {
-                Agreement::Near
-            } else {
-                Agreement::None
-            }
+            magnitude(measured - expected) < room
         });
-        let verdict = self.supervisor.reconsider(&tables.supervisor, agrees);
-        if verdict != Verdict::Doubted {
+        if self.supervisor.reconsider(&tables.supervisor, agrees) {
             self.counts.trust();
             self.load.ahead = T::ZERO;
-        }
-        if verdict == Verdict::Mistaken {
-            self.learner.reopen();
         }
     }
 }

@@ -75,7 +75,7 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         estimates.half_backlash = Estimate {
             value: half_gap * T::HALF,
             variance: half_gap_variance * T::HALF * T::HALF,
-            valid: half_gap_variance < rough * rough,
+            valid: half_gap > T::ZERO && half_gap_variance < rough * rough,
         };
         estimates.encoder_offset = Estimate {
             value: offset * levers.per_output,
@@ -144,7 +144,9 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         Estimate {
             value,
             variance: variance.unwrap_or(half_gap * half_gap),
-            valid: variance.is_some_and(|variance| variance < widest * widest),
+            valid: half_gap > T::ZERO
+                && !self.supervisor.is_at_odds(&tables.supervisor)
+                && variance.is_some_and(|variance| variance < widest * widest),
         }
     }
 

@@ -15,7 +15,6 @@ pub(super) struct Supervisor<T: Real> {
     unmoved_for: u32,
     outside_for: u32,
     inside_for: u32,
-    beside_for: u32,
     /// The way at the last period, and whether it leapt to where it is [m].
     way: T,
     leapt: bool,
@@ -51,7 +50,6 @@ impl<T: Real> Supervisor<T> {
             unmoved_for: 0,
             outside_for: 0,
             inside_for: 0,
-            beside_for: 0,
             way: T::ZERO,
             leapt: false,
             moved: false,
@@ -85,6 +83,11 @@ impl<T: Real> Supervisor<T> {
         began
     }
 
+    /// Whether the way has been where it could not be for longer than impacts ring: teeth have worn, or the encoder fails.
+    pub fn is_at_odds(&self, table: &SupervisorTable<T>) -> bool {
+        self.outside_for >= table.failed_after
+    }
+
     /// Whether the way is one that teeth allow; true when the encoder is given up now. Teeth that have worn let the way
     /// go on beyond where it could be, step by step; an encoder that slips leaps there.
     pub fn judge(&mut self, table: &SupervisorTable<T>, way: T, place: Place) -> bool {
@@ -109,7 +112,6 @@ impl<T: Real> Supervisor<T> {
         self.source = Source::MotorOnly(doubt);
         self.outside_for = 0;
         self.inside_for = 0;
-        self.beside_for = 0;
         true
     }
 
@@ -129,48 +131,19 @@ impl<T: Real> Supervisor<T> {
     }
 
     /// Once an interval, without it: whether the encoder says what the motor implies, `None` where that cannot be told.
-    pub fn reconsider(&mut self, table: &SupervisorTable<T>, agrees: Option<Agreement>) -> Verdict {
+    /// True when it is taken back now.
+    pub fn reconsider(&mut self, table: &SupervisorTable<T>, agrees: Option<bool>) -> bool {
         let moved = self.moved && self.silent_for == 0;
         self.moved = false;
         match agrees {
-            Some(Agreement::Whole) if moved => self.inside_for += 1,
-            Some(Agreement::Near) if moved => self.beside_for += 1,
-            Some(Agreement::None) => (self.inside_for, self.beside_for) = (0, 0),
+            Some(true) if moved => self.inside_for += 1,
+            Some(false) => self.inside_for = 0,
             _ => {}
         }
-        if self.source == Source::MotorOnly(Doubt::Absent) {
-            return Verdict::Doubted;
+        let trusted = self.inside_for >= table.trusted_after && self.source != Source::MotorOnly(Doubt::Absent);
+        if trusted {
+            self.source = Source::Both;
         }
-        let verdict = if self.inside_for >= table.trusted_after {
-            Verdict::Trusted
-        } else if self.beside_for >= table.trusted_after {
-            Verdict::Mistaken
-        } else {
-            return Verdict::Doubted;
-        };
-        self.source = Source::Both;
-        verdict
+        trusted
     }
-}
-
-/// How an output encoder that is not in use agrees with what the motor implies.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Agreement {
-    /// As well as can be told.
-    Whole,
-    /// Not, but by no more than a width that was learnt wrong could be the cause of.
-    Near,
-    /// Not at all.
-    None,
-}
-
-/// What becomes of an output encoder that is not in use.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Verdict {
-    /// It stays out of use.
-    Doubted,
-    /// It is taken back.
-    Trusted,
-    /// It is taken back: what had been learnt was wrong.
-    Mistaken,
 }

@@ -69,3 +69,12 @@ fn a_torque_constant_that_is_wrong_costs_little() {
     train.motor.torque_constant_error_ratio = 0.05;
     is_far_better(&Trial::inertial(&q1(), &train, 107));
 }
+
+#[test]
+fn gears_with_a_transmission_error_lose_their_lost_motion_as_well() {
+    let mut joint = q1();
+    for mesh in [&mut joint.sun_planet, &mut joint.ring_planet] {
+        mesh.transmission_error.iter_mut().for_each(|error| *error = 6e-6);
+    }
+    is_far_better(&Trial::weighty(&joint, &DriveTrainParameters::q1(), 1.5, 108));
+}

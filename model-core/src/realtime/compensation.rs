@@ -45,6 +45,8 @@ pub struct Compensation<'tables, T: Real> {
     position: PositionLaw<T>,
     impedance: ImpedanceLaw<T>,
     plain: Plain<T>,
+    /// By how much the motor's encoder leads the output's, as last vouched for; at the output [rad].
+    offset: T,
     /// 0: plain control; 1: compensation.
     trust: T,
 }
@@ -59,6 +61,7 @@ impl<'tables, T: Real> Compensation<'tables, T> {
             position: PositionLaw::new(),
             impedance: ImpedanceLaw::new(),
             plain: Plain::new(),
+            offset: T::ZERO,
             trust: T::ZERO,
         }
     }
@@ -66,7 +69,10 @@ impl<'tables, T: Real> Compensation<'tables, T> {
     /// Takes the estimates and the command of one control period. The torque is always finite and within its limit.
     pub fn step(&mut self, estimates: &Estimates<T>, command: &Command<T>) -> Shaped<T> {
         let tables = self.tables;
-        let situation = Situation::new(tables, estimates, command);
+        if estimates.encoder_offset.valid && estimates.encoder_offset.value.is_finite() {
+            self.offset = estimates.encoder_offset.value;
+        }
+        let situation = Situation::new(tables, estimates, self.offset, command);
         let leans = self.flank.stage() == Stage::Touching && situation.contact == T::ZERO && situation.sees;
         if leans && matches!(command, Command::Position { .. }) {
             self.load.lean(tables, self.position.heeded(&situation));

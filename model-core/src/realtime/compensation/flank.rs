@@ -82,7 +82,12 @@ impl<T: Real> Flank<T> {
         let turned = turned && self.side * later < -doubt;
         self.patience = T::ONE + tables.patience_left * (self.patience - T::ONE);
         match self.stage {
-            Stage::Touching if turned && self.rise >= T::ONE => {
+            // What has just been met is let carry first.
+            Stage::Touching if turned && (self.rise >= T::ONE || !felt) => {
+                self.side = -self.side;
+                self.set_out(tables, situation, intent);
+            }
+            Stage::Crossing | Stage::Landing if turned => {
                 self.side = -self.side;
                 self.set_out(tables, situation, intent);
             }
@@ -96,10 +101,6 @@ impl<T: Real> Flank<T> {
             Stage::Crossing | Stage::Landing if touching => {
                 self.stage = Stage::Touching;
                 self.rise = T::ZERO;
-            }
-            Stage::Crossing | Stage::Landing if turned => {
-                self.side = -self.side;
-                self.set_out(tables, situation, intent);
             }
             Stage::Crossing if self.elapsed >= self.duration => self.land(),
             Stage::Crossing if intent.crossing < tables.hurry * (self.duration - self.elapsed) => {

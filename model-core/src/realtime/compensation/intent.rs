@@ -45,7 +45,7 @@ pub(super) struct Situation<T: Real> {
 }
 
 impl<T: Real> Situation<T> {
-    pub fn new(tables: &CompensationTables<T>, estimates: &Estimates<T>, command: &Command<T>) -> Self {
+    pub fn new(tables: &CompensationTables<T>, estimates: &Estimates<T>, offset: T, command: &Command<T>) -> Self {
         let (origin, speed) = match command {
             Command::Position { now, .. } => (now.position, now.speed),
             Command::Impedance(point) => (point.position, point.speed),
@@ -59,7 +59,7 @@ impl<T: Real> Situation<T> {
         let whole = denominator * i64::from(estimates.motor.turns) - numerator * i64::from(origin.turns);
         let motor_turns =
             T::from_i64(whole) * tables.inverse_denominator + estimates.motor.fraction - tables.gear * origin.fraction;
-        let motor = tables.turn * tables.inverse_gear * motor_turns - estimates.encoder_offset.value;
+        let motor = tables.turn * tables.inverse_gear * motor_turns - offset;
         let half = clamp(tables.inverse_lever * estimates.half_backlash.value, T::ZERO, tables.widest_half);
         let at_link = T::HALF * tables.inverse_lever;
         let situation = Self {

@@ -19,7 +19,8 @@ pub fn figures(file: &TestFile, case: &Case, ran: &Ran) -> Vec<(&'static str, f6
     let mut sums = Sums::default();
     let mut landings = Landings::default();
     let (mut width_wrong_at, mut contact_then, mut contact) = (0.0, 0.0, 0.0);
-    for ((sample, truth), sight) in ran.run.samples.iter().zip(&ran.truths).zip(&ran.sights) {
+    // A sample is taken at its period's end, which is where the next period's estimates are made.
+    for ((sample, truth), sight) in ran.run.samples.iter().zip(&ran.truths).zip(ran.sights.iter().skip(1)) {
         let width = f64::from(sight.half_backlash) / truth.half_backlash - 1.0;
         let touching = sample.gap.abs() > 1.0 - BAND;
         if touching && sample.link_speed.abs() > MOVING {

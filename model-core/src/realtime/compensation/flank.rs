@@ -18,7 +18,6 @@ pub(super) struct Flank<T: Real> {
     /// Position of the set-point when the path was laid.
     origin: Position<T>,
     elapsed: T,
-    duration: T,
     /// How much of the law's torque is let through after a landing.
     rise: T,
     /// Impulse that the load has missed while no flank carried [N m s].
@@ -35,7 +34,6 @@ impl<T: Real> Flank<T> {
             path: Path::default(),
             origin: Position::default(),
             elapsed: T::ZERO,
-            duration: T::ZERO,
             rise: T::ONE,
             owed: T::ZERO,
             patience: T::ONE,
@@ -83,11 +81,7 @@ impl<T: Real> Flank<T> {
         self.patience = T::ONE + tables.patience_left * (self.patience - T::ONE);
         match self.stage {
             // What has just been met is let carry first.
-            Stage::Touching if turned && (self.rise >= T::ONE || !felt) => {
-                self.side = -self.side;
-                self.set_out(tables, situation, intent);
-            }
-            Stage::Crossing | Stage::Landing if turned => {
+            stage if turned && (stage != Stage::Touching || self.rise >= T::ONE || !felt) => {
                 self.side = -self.side;
                 self.set_out(tables, situation, intent);
             }
@@ -102,12 +96,10 @@ impl<T: Real> Flank<T> {
                 self.stage = Stage::Touching;
                 self.rise = T::ZERO;
             }
-            Stage::Crossing if self.elapsed >= self.duration => self.land(),
-            Stage::Crossing if intent.crossing < tables.hurry * (self.duration - self.elapsed) => {
+            Stage::Crossing if self.elapsed >= self.path.duration() => self.land(),
+            Stage::Crossing if intent.crossing < tables.hurry * (self.path.duration() - self.elapsed) => {
                 let [place, speed, _] = self.path.at(self.elapsed + tables.reaction);
-                let start =
-                    [place - tables.turn * situation.origin.less(self.origin.turns, self.origin.fraction), speed];
-                self.lay(tables, situation, intent, start);
+                self.lay(tables, situation, intent, [place - self.drift(tables, situation), speed]);
             }
             _ => {}
         }
@@ -130,11 +122,15 @@ impl<T: Real> Flank<T> {
         // Torque acts one reaction time after it is asked for.
         let [target, rate, _] = self.path.at(self.elapsed);
         let [_, _, acceleration] = self.path.at(self.elapsed + tables.reaction);
-        let drift = tables.turn * situation.origin.less(self.origin.turns, self.origin.fraction);
         tables.motor_inertia * acceleration
-            + tables.gap_stiffness * (target - drift - situation.motor)
+            + tables.gap_stiffness * (target - self.drift(tables, situation) - situation.motor)
             + tables.motor_damping * (rate - situation.motor_speed)
             + situation.lost(tables, rate)
+    }
+
+    /// How far the set-point has moved since the path was laid [rad].
+    fn drift(&self, tables: &CompensationTables<T>, situation: &Situation<T>) -> T {
+        tables.turn * situation.origin.less(self.origin.turns, self.origin.fraction)
     }
 
     /// Torque that the load does not get now is owed to it.
@@ -167,7 +163,6 @@ impl<T: Real> Flank<T> {
         let end = [place + self.side * situation.half, speed + self.side * landing_speed(tables, intent.demand_ahead)];
         self.path = Path::new(start, end, intent.crossing);
         self.origin = situation.origin;
-        self.duration = intent.crossing;
         // What is measured in this period is the path's start.
         self.elapsed = -tables.reaction - tables.period;
     }

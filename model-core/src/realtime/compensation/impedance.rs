@@ -2,7 +2,7 @@
 //! commanded torque on top. It comes without a preview, so what will be asked is extrapolated from its own course.
 
 use super::arithmetic::clamp;
-use super::intent::{Intent, Situation, crossing_time};
+use super::intent::{Intent, Situation};
 use super::load::LoadModel;
 use super::sender::Sender;
 use super::set_point::ImpedancePoint;
@@ -45,17 +45,6 @@ impl<T: Real> ImpedanceLaw<T> {
         let demand_now = load_share * (point.stiffness * error + point.damping * situation.error_rate + torque)
             + tables.motor_share * free;
         let rate = load_share * (point.stiffness * situation.error_rate + self.sender.torque_rate());
-        let unhurried = crossing_time(tables, situation.half, T::ZERO) + tables.reaction;
-        let crossing = crossing_time(tables, situation.half, demand_now + unhurried * rate);
-        let demand_ahead = demand_now + (crossing + tables.reaction) * rate;
-        Intent {
-            law,
-            demand_now,
-            demand_ahead,
-            free_acceleration: -load.free(tables, situation.link_speed) * tables.inverse_load_inertia,
-            free_jerk: -load.rate() * tables.inverse_load_inertia,
-            crossing,
-            repays: true,
-        }
+        Intent::new(tables, load, situation, law, |time| demand_now + time * rate, true)
     }
 }

@@ -122,6 +122,29 @@ pub(super) struct Intent<T: Real> {
 }
 
 impl<T: Real> Intent<T> {
+    /// An intent from the law's torque and from what the teeth will have to pass on after a time. How hard the far flank
+    /// will be needed says how fast to go there, and that again when to start.
+    pub fn new(
+        tables: &CompensationTables<T>,
+        load: &LoadModel<T>,
+        situation: &Situation<T>,
+        law: T,
+        demand: impl Fn(T) -> T,
+        repays: bool,
+    ) -> Self {
+        let unhurried = crossing_time(tables, situation.half, T::ZERO) + tables.reaction;
+        let crossing = crossing_time(tables, situation.half, demand(unhurried));
+        Self {
+            law,
+            demand_now: demand(T::ZERO),
+            demand_ahead: demand(crossing + tables.reaction),
+            free_acceleration: -load.free(tables, situation.link_speed) * tables.inverse_load_inertia,
+            free_jerk: -load.rate() * tables.inverse_load_inertia,
+            crossing,
+            repays,
+        }
+    }
+
     pub fn is_finite(&self) -> bool {
         (self.law + self.demand_now + self.demand_ahead + self.free_acceleration).is_finite()
     }
@@ -129,7 +152,7 @@ impl<T: Real> Intent<T> {
 
 /// How long a crossing takes. Planets that are struck on the way are struck no harder than the force that will be passed
 /// on anyway (`demand`), or than a set share of the rated one.
-pub(super) fn crossing_time<T: Real>(tables: &CompensationTables<T>, half: T, demand: T) -> T {
+fn crossing_time<T: Real>(tables: &CompensationTables<T>, half: T, demand: T) -> T {
     let force = clamp(if demand < T::ZERO { -demand } else { demand }, tables.strike_torque, tables.torque_limit);
     let by_strike = if force > T::ZERO { (tables.strike_per_half * half).over(force) } else { tables.longest_crossing };
     clamp(by_strike, tables.shortest_crossing, tables.longest_crossing)

@@ -31,6 +31,12 @@ impl<T: Real> LoadModel<T> {
         clamp(tables.friction_slope * speed, -T::ONE, T::ONE)
     }
 
+    /// Whether the link is so slow that it may rub with any part of its friction.
+    fn creeps(tables: &CompensationTables<T>, speed: T) -> bool {
+        let direction = Self::direction(tables, speed);
+        direction < T::ONE && direction > -T::ONE
+    }
+
     pub fn even(&self) -> T {
         self.even
     }
@@ -57,8 +63,7 @@ impl<T: Real> LoadModel<T> {
     /// Takes the estimate of the load torque while a flank carries.
     pub fn observe(&mut self, tables: &CompensationTables<T>, estimates: &Estimates<T>, situation: &Situation<T>) {
         // A weight turns with the link.
-        let direction = Self::direction(tables, T::HALF * situation.link_speed);
-        if direction * direction < T::QUARTER {
+        if Self::creeps(tables, situation.link_speed) {
             self.rate = T::ZERO;
         }
         self.even = clamp(self.even + tables.period * self.rate, -tables.torque_limit, tables.torque_limit);
@@ -89,11 +94,9 @@ impl<T: Real> LoadModel<T> {
     }
 
     fn learn(&mut self, tables: &CompensationTables<T>, torque: T, speed: T) {
-        // A link that creeps may rub with any part of its friction: that says nothing about the whole of it.
-        let whole = clamp(Self::direction(tables, T::HALF * speed), -T::HALF, T::HALF);
-        let creeps = whole < T::HALF && whole > -T::HALF;
-        let direction = if creeps { T::ZERO } else { whole + whole };
-        let known = if creeps { self.drag(tables, speed) } else { self.friction * direction };
+        // What rubs with any part of its friction says nothing about the whole of it.
+        let direction = if Self::creeps(tables, speed) { T::ZERO } else { Self::direction(tables, speed) };
+        let known = self.drag(tables, speed);
         let [growth_even, growth_friction, noise] = tables.load_learner;
         let [even, friction, both] = self.variance;
         let (even, friction) = (even + growth_even, friction + growth_friction);

@@ -19,6 +19,11 @@ impl<T: Real> Path<T> {
         Self { start, end, duration, inverse }
     }
 
+    /// How long it takes [s].
+    pub fn duration(&self) -> T {
+        self.duration
+    }
+
     /// Position, rate and acceleration at a time since the start; before and past its ends it goes on at
     /// their rates.
     pub fn at(&self, time: T) -> [T; 3] {

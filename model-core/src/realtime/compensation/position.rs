@@ -2,7 +2,7 @@
 //! load estimate takes the place of an integral.
 
 use super::arithmetic::{beyond, clamp};
-use super::intent::{Intent, Situation, crossing_time};
+use super::intent::{Intent, Situation};
 use super::load::LoadModel;
 use super::set_point::Motion;
 use crate::real::Real;
@@ -75,22 +75,10 @@ impl<T: Real> PositionLaw<T> {
         let level = self.level;
         let rate = load.rate();
         let demand = |time: T| planned(time) + level + time * rate;
-        // How hard the far flank will be needed says how fast to go there, and that again when to start.
-        let unhurried = crossing_time(tables, situation.half, T::ZERO) + tables.reaction;
-        let crossing = crossing_time(tables, situation.half, demand(unhurried));
-        let lead = crossing + tables.reaction;
-        let demand_ahead = demand(lead);
-        let surely = beyond(demand_ahead, tables.doubt * tables.least_doubt);
+        let intent = Intent::new(tables, load, situation, law, demand, false);
+        let surely = beyond(intent.demand_ahead, tables.doubt * tables.least_doubt);
         self.indulge(tables, rests, [surely, load.even()], situation.half);
-        Intent {
-            law,
-            demand_now: demand(T::ZERO),
-            demand_ahead,
-            free_acceleration: -load.free(tables, situation.link_speed) * tables.inverse_load_inertia,
-            free_jerk: -load.rate() * tables.inverse_load_inertia,
-            crossing,
-            repays: false,
-        }
+        intent
     }
 
     /// By how much speed and acceleration asked for will have changed after a time that is never zero: as the preview

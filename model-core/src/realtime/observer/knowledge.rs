@@ -133,7 +133,7 @@ impl<T: Real> Knowledge<T> {
         let part = half_gap * tables.contact.known_part;
         self.width_is_known = half_gap > T::ZERO && variance < part * part;
         // Once known it serves as long as it can: a place in the turn that the maps have not seen yet is no new joint.
-        let thrice = T::TWO * part + part;
+        let thrice = T::THREE * part;
         self.width_serves =
             self.width_is_known || self.width_serves && half_gap > T::ZERO && variance < thrice * thrice;
     }

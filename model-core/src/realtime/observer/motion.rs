@@ -73,9 +73,7 @@ impl<T: Real> Motion<T> {
             _ => Shown::Between,
         }
     }
-}
 
-impl<T: Real> Motion<T> {
     /// Whether standing still tells rest from a slow crossing of a gap: nothing as wide could have hidden in the noise.
     pub fn is_sharp(&self, half_gap: T) -> bool {
         self.limit < half_gap * T::QUARTER

@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 
 use host_tests::scenarios::{CASE_A_OMEGA, Scenario, case, regime, same};
-use host_tests::tolerance::{CORE_ENERGY, CORE_SHIFT};
+use host_tests::tolerance::core::{CORE_ENERGY, CORE_SHIFT};
 use model_core::design::{Effort, design_scheme};
 use model_core::joint::JointParameters;
 use model_core::mesh::{ContactState, DampingLaw};

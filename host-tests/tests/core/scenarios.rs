@@ -17,49 +17,49 @@ fn named(name: &str) -> Scenario {
 
 #[test]
 fn free_motion_follows_the_reference() {
-    check::<3>(&named("L1 contact, free motion"), Effort::Accurate, &tolerance::FREE_MOTION);
-    check::<3>(&named("L1 paper, free motion"), Effort::Accurate, &tolerance::FREE_MOTION);
-    check::<3>(&named("Q1 paper, free motion"), Effort::Accurate, &tolerance::FREE_MOTION);
+    check::<3>(&named("L1 contact, free motion"), Effort::Accurate, &tolerance::core::FREE_MOTION);
+    check::<3>(&named("L1 paper, free motion"), Effort::Accurate, &tolerance::core::FREE_MOTION);
+    check::<3>(&named("Q1 paper, free motion"), Effort::Accurate, &tolerance::core::FREE_MOTION);
 }
 
 #[test]
 fn a_step_load_follows_the_reference() {
     for joint in ["L1 contact", "L1 paper", "Q1 contact", "Q1 paper"] {
-        check::<3>(&named(&format!("{joint}, step load")), Effort::Board, &tolerance::STEP_LOAD);
+        check::<3>(&named(&format!("{joint}, step load")), Effort::Board, &tolerance::core::STEP_LOAD);
     }
 }
 
 #[test]
 fn a_reversal_follows_the_reference() {
     for joint in ["L1 contact", "L1 paper"] {
-        check::<3>(&named(&format!("{joint}, reversal through the gap")), Effort::Board, &tolerance::REVERSAL);
+        check::<3>(&named(&format!("{joint}, reversal through the gap")), Effort::Board, &tolerance::core::REVERSAL);
     }
-    check::<3>(&named("Q1 paper, reversal through the gap"), Effort::Accurate, &tolerance::REVERSAL);
+    check::<3>(&named("Q1 paper, reversal through the gap"), Effort::Accurate, &tolerance::core::REVERSAL);
 }
 
 #[test]
 fn a_start_with_all_teeth_separated_follows_the_reference() {
     for joint in ["L1 contact", "L1 paper"] {
-        check::<3>(&named(&format!("{joint}, all teeth separated")), Effort::Board, &tolerance::ALL_SEPARATED);
+        check::<3>(&named(&format!("{joint}, all teeth separated")), Effort::Board, &tolerance::core::ALL_SEPARATED);
     }
-    check::<3>(&named("Q1 paper, all teeth separated"), Effort::Accurate, &tolerance::ALL_SEPARATED);
+    check::<3>(&named("Q1 paper, all teeth separated"), Effort::Accurate, &tolerance::core::ALL_SEPARATED);
 }
 
 #[test]
 fn back_side_contact_follows_the_reference() {
     for joint in ["L1 contact", "L1 paper", "Q1 contact", "Q1 paper"] {
-        check::<3>(&named(&format!("{joint}, back-side contact")), Effort::Board, &tolerance::BACK_SIDE);
+        check::<3>(&named(&format!("{joint}, back-side contact")), Effort::Board, &tolerance::core::BACK_SIDE);
     }
 }
 
 #[test]
 fn the_paper_s_joint_without_backlash_follows_the_reference() {
-    check::<3>(&scenarios::regime("set P, b = 0", 0.0, 300.0), Effort::Accurate, &tolerance::REGIMES);
+    check::<3>(&scenarios::regime("set P, b = 0", 0.0, 300.0), Effort::Accurate, &tolerance::core::REGIMES);
 }
 
 #[test]
 fn the_paper_s_joint_at_10_um_follows_the_reference() {
-    check::<3>(&scenarios::regime("set P, b = 10 um", 10e-6, 300.0), Effort::Accurate, &tolerance::REGIMES);
+    check::<3>(&scenarios::regime("set P, b = 10 um", 10e-6, 300.0), Effort::Accurate, &tolerance::core::REGIMES);
 }
 
 /// From rest, 60 um passes through a chaotic transient; on its period-3 attractor the motion can be predicted.
@@ -74,20 +74,21 @@ fn the_paper_s_joint_at_60_um_follows_the_reference_on_its_attractor() {
         gap_rate: -6.2729 * speed,
         ..RelativeState::centred(3)
     });
-    check::<3>(&scenario, Effort::Accurate, &tolerance::REGIMES);
+    check::<3>(&scenario, Effort::Accurate, &tolerance::core::REGIMES);
 }
 
 /// Chaos parts any two integrators; until then they agree.
 #[test]
 fn the_paper_s_joint_at_120_um_follows_the_reference_until_chaos_parts_them() {
-    check::<3>(&scenarios::regime("set P, b = 120 um", 120e-6, 15.0), Effort::Accurate, &tolerance::REGIMES);
+    check::<3>(&scenarios::regime("set P, b = 120 um", 120e-6, 15.0), Effort::Accurate, &tolerance::core::REGIMES);
 }
 
 #[test]
 fn cases_a_and_q_follow_the_reference() {
-    for (name, omega, bound) in
-        [("A", scenarios::CASE_A_OMEGA, &tolerance::CASE_A), ("Q", scenarios::CASE_Q_OMEGA, &tolerance::CASE_Q)]
-    {
+    for (name, omega, bound) in [
+        ("A", scenarios::CASE_A_OMEGA, &tolerance::core::CASE_A),
+        ("Q", scenarios::CASE_Q_OMEGA, &tolerance::core::CASE_Q),
+    ] {
         let scenario = scenarios::case(name, omega);
         let from = (100.0 / scenarios::paper_natural_frequency() * f64::from(scenario.tick_rate)).ceil() as usize;
         let error = errors::<f32, 3>(&scenario, Scheme::Realtime, Effort::Accurate, from).deflection;
@@ -108,7 +109,7 @@ fn the_paper_s_scheme_is_exact_while_contact_holds_and_far_off_when_meshes_part(
     start.sun_planet = scenarios::same(3, 7.0 * scenarios::PAPER_LENGTH);
     start.sun_planet_rate = scenarios::same(3, 0.0);
     start.gap = 14.0 * scenarios::PAPER_LENGTH;
-    tolerance::PAPER_SCHEME_HELD.check(errors::<f64, 3>(&still, Scheme::PaperEtd1, Effort::Board, 0).deflection);
+    tolerance::core::PAPER_SCHEME_HELD.check(errors::<f64, 3>(&still, Scheme::PaperEtd1, Effort::Board, 0).deflection);
     let parting = scenarios::case("A", scenarios::CASE_A_OMEGA);
     let paper = errors::<f64, 3>(&parting, Scheme::PaperEtd1, Effort::Board, 0).deflection;
     let realtime = errors::<f64, 3>(&parting, Scheme::Realtime, Effort::Board, 0).deflection;

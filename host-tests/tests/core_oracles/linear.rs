@@ -3,9 +3,8 @@
 use std::f64::consts::TAU;
 
 use host_tests::scenarios::{PAPER_LENGTH, paper_natural_frequency, same};
-use host_tests::tolerance::{
-    CLOSED_FORM, CORE_ELLIPSE, CORE_MODE, CORE_STATIC, ELLIPSE, NATURAL_FREQUENCY, PRINTED_EIGENVALUE,
-};
+use host_tests::tolerance::core::{CORE_ELLIPSE, CORE_MODE, CORE_STATIC};
+use host_tests::tolerance::{CLOSED_FORM, ELLIPSE, NATURAL_FREQUENCY, PRINTED_EIGENVALUE};
 use model_core::design::dynamics::Dynamics;
 use model_core::design::{hamiltonian, modes};
 use model_core::mesh::DampingLaw;

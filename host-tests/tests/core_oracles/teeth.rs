@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 
 use host_tests::scenarios::{PAPER_LENGTH, same};
-use host_tests::tolerance::CORE_TOOTH_PHASE;
+use host_tests::tolerance::core::CORE_TOOTH_PHASE;
 use model_core::joint::{Excitation, JointParameters};
 use model_core::mesh::{MeshPhases, StiffnessWave};
 

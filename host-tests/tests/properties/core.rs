@@ -2,7 +2,7 @@
 //! never pulling under the law `contact`. Its digest is looked at elsewhere.
 
 use host_tests::scenarios::{Scenario, same};
-use host_tests::tolerance::{MOMENTUM, PASSIVITY};
+use host_tests::tolerance::core::{MOMENTUM, PASSIVITY};
 use model_core::dead_zone::DeadZone;
 use model_core::design::{DesignError, Effort, design_scheme};
 use model_core::joint::JointParameters;

@@ -236,7 +236,7 @@ mod tests {
                 worst[2] = worst[2].max((moment.link_offset - read.link_offset).abs());
             });
             println!("{}: {worst:?}", joint.name);
-            worst.into_iter().for_each(|error| tolerance::READ_OFF.check(error));
+            worst.into_iter().for_each(|error| tolerance::core::READ_OFF.check(error));
         }
     }
 
@@ -263,7 +263,7 @@ mod tests {
         let [realtime, runge_kutta, euler] =
             [SchemeName::Realtime, SchemeName::RungeKutta4, SchemeName::Euler].map(residual);
         println!("realtime {realtime:.1e}, Runge-Kutta {runge_kutta:.1e}, Euler {euler:.1e}");
-        tolerance::BOOKS_OF_THE_BOARD.check(realtime);
+        tolerance::core::BOOKS_OF_THE_BOARD.check(realtime);
         assert!(realtime < runge_kutta && runge_kutta < euler);
     }
 

@@ -98,6 +98,9 @@ const FORGIVING: f64 = 30.0;
 /// Speed at which dry friction has its full size [rad/s], for want of a better number: what encoders resolve.
 const FRICTION_SPEED: f64 = 0.01;
 
+/// The same for a planned speed [rad/s]: what a motion passes in a few control periods.
+const PLANNED_FRICTION_SPEED: f64 = 1e-3;
+
 /// Growth of the load's variance in one period over that of its reading: followed within a few milliseconds.
 const LOAD_GROWTH: f64 = 1e-3;
 
@@ -199,10 +202,13 @@ pub fn design_compensation<T: Real>(
         last_indulgence: real(INDULGENCE[1]),
         forgiving: real(libm::exp(-period / FORGIVING)),
         load_learner: [real(LOAD_GROWTH), real(FRICTION_GROWTH), T::ONE],
+        // Of a random walk in noise, as far as it grows much more slowly than it is read.
+        load_gain: real(libm::sqrt(LOAD_GROWTH)),
         load_rate_gain: real(1.0 / LOAD_RATE),
         load_rate_left: real(libm::exp(-period / LOAD_RATE_KEPT)),
         fastest_load: real(limit / LOAD_RATE),
         friction_slope: real(1.0 / FRICTION_SPEED),
+        planned_friction_slope: real(1.0 / PLANNED_FRICTION_SPEED),
         longest_hold: real(LONGEST_HOLD),
         trust_step: real(period * pole / TRUST),
     })

@@ -105,6 +105,8 @@ pub struct CompensationTables<T: Real> {
     pub forgiving: T,
     /// Learner of the load: growth of variances in one period (even part, friction), variance of a reading.
     pub load_learner: [T; 3],
+    /// Share of a reading that the even part takes up in the long run.
+    pub load_gain: T,
     /// Rate of the load for each N m by which its even part is moved [1/s].
     pub load_rate_gain: T,
     /// What is left of the load's rate after one period.
@@ -113,6 +115,8 @@ pub struct CompensationTables<T: Real> {
     pub fastest_load: T,
     /// Inverse of the speed at which friction has its full size [s/rad].
     pub friction_slope: T,
+    /// The same for a speed that is planned [s/rad].
+    pub planned_friction_slope: T,
     /// How long an impedance set-point may be held before it counts as standing still [s].
     pub longest_hold: T,
     /// Change of the trust in the estimates in one period.

@@ -28,7 +28,8 @@ pub(super) struct Situation<T: Real> {
     pub origin: Position<T>,
     /// Speed that the motor has by the gears' transmission error alone, felt at the link [rad/s].
     pub error_speed: T,
-    /// Torque that the motor loses whatever its direction, and its dry friction, as far as both are known [N m].
+    /// Torque that the motor loses whatever its direction, and its dry friction [N m]: as the observer has it, sure or
+    /// not, for it leaves out of the load torque what it puts down to them.
     pub losses: [T; 2],
     /// Half of the lost motion [rad].
     pub half: T,
@@ -70,8 +71,7 @@ impl<T: Real> Situation<T> {
             link_speed: estimates.link.speed,
             origin,
             half,
-            losses: [estimates.torque_bias, estimates.motor_friction]
-                .map(|loss| if loss.valid { tables.gear * loss.value } else { T::ZERO }),
+            losses: [estimates.torque_bias, estimates.motor_friction].map(|loss| tables.gear * loss.value),
             error_speed: at_link * estimates.flank_shift_slope * estimates.link.speed,
             shift: at_link * estimates.flank_shift,
             shift_slope: at_link * estimates.flank_shift_slope,
@@ -92,7 +92,7 @@ impl<T: Real> Situation<T> {
 
     /// Torque that the motor loses at a speed [N m].
     pub fn lost(&self, tables: &CompensationTables<T>, speed: T) -> T {
-        self.losses[0] + self.losses[1] * LoadModel::direction(tables, speed)
+        self.losses[0] + self.losses[1] * LoadModel::planned_direction(tables, speed)
     }
 
     /// Torque of the damper on the motor against the link; what the transmission error makes it do is none of its

@@ -8,6 +8,7 @@ use crate::realtime::phase::sine_cosine;
 use crate::tables::compensation::CompensationTables;
 
 use super::arithmetic::clamp;
+use super::crossing::Crossing;
 use super::load::LoadModel;
 use super::set_point::{Command, Position};
 
@@ -116,7 +117,7 @@ pub(super) struct Intent<T: Real> {
     /// Its rate [rad/s^3].
     pub free_jerk: T,
     /// How long a crossing shall take [s].
-    pub crossing: T,
+    pub crossing: Crossing<T>,
     /// Whether an impulse that the load missed on the way is made good afterwards; a law stiff enough does it itself.
     pub repays: bool,
 }
@@ -132,12 +133,12 @@ impl<T: Real> Intent<T> {
         demand: impl Fn(T) -> T,
         repays: bool,
     ) -> Self {
-        let unhurried = crossing_time(tables, situation.half, T::ZERO) + tables.reaction;
-        let crossing = crossing_time(tables, situation.half, demand(unhurried));
+        let unhurried = Crossing::new(tables, situation.half, T::ZERO).duration + tables.reaction;
+        let crossing = Crossing::new(tables, situation.half, demand(unhurried));
         Self {
             law,
             demand_now: demand(T::ZERO),
-            demand_ahead: demand(crossing + tables.reaction),
+            demand_ahead: demand(crossing.duration + tables.reaction),
             free_acceleration: -load.free(tables, situation.link_speed) * tables.inverse_load_inertia,
             free_jerk: -load.rate() * tables.inverse_load_inertia,
             crossing,
@@ -148,12 +149,4 @@ impl<T: Real> Intent<T> {
     pub fn is_finite(&self) -> bool {
         (self.law + self.demand_now + self.demand_ahead + self.free_acceleration).is_finite()
     }
-}
-
-/// How long a crossing takes. Planets that are struck on the way are struck no harder than the force that will be passed
-/// on anyway (`demand`), or than a set share of the rated one.
-fn crossing_time<T: Real>(tables: &CompensationTables<T>, half: T, demand: T) -> T {
-    let force = clamp(if demand < T::ZERO { -demand } else { demand }, tables.strike_torque, tables.torque_limit);
-    let by_strike = if force > T::ZERO { (tables.strike_per_half * half).over(force) } else { tables.longest_crossing };
-    clamp(by_strike, tables.shortest_crossing, tables.longest_crossing)
 }

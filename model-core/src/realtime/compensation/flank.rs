@@ -96,8 +96,11 @@ impl<T: Real> Flank<T> {
                     self.land(opened);
                 }
             }
-            // Teeth that are seen to meet before the motor has been braked are about to be struck: braking comes first.
-            Stage::Crossing if touching && closing < T::TWO * landing_speed(tables, intent.demand_now) => self.touch(),
+            // Teeth that meet before the motor has been braked are about to be struck: braking comes first, unless the blow
+            // is no harder than what is to be carried.
+            Stage::Crossing if touching && closing < T::from_i32(4) * landing_speed(tables, intent.demand_now) => {
+                self.touch();
+            }
             Stage::Landing if touching => self.touch(),
             Stage::Crossing if self.elapsed >= self.path.duration() => self.land(opened),
             Stage::Crossing if intent.crossing.duration < tables.hurry * (self.path.duration() - self.elapsed) => {

@@ -48,8 +48,8 @@ const MEMORY: f64 = 100.0;
 /// Time outside the possible range after which the output encoder has failed [s]: longer than impacts ring.
 const FAILED_AFTER: f64 = 4e-3;
 
-/// Counts that an output encoder cannot fail to show in that time.
-const STUCK_COUNTS: f64 = 4.0;
+/// Counts by which an output encoder has turned for sure: noise flickers by less.
+const MOVED_COUNTS: f64 = 4.0;
 
 /// Tables of the observer.
 pub fn design_observer<T: Real>(
@@ -172,7 +172,7 @@ pub fn design_observer<T: Real>(
             silent_after: (10e-3 / step) as u32,
             failed_after: (FAILED_AFTER / step) as u32,
             trusted_after: (0.3 / LEARNING_INTERVAL) as u32,
-            stuck_speed: real(STUCK_COUNTS * output_count * body.ratio / FAILED_AFTER),
+            moved: libm::ldexp(MOVED_COUNTS * output_count / TAU, 32) as u32,
             margin: real(0.1 * half_gap + 0.1 * body.compliance * rated_force),
             widest_part: real(0.1),
         },

@@ -219,8 +219,8 @@ pub struct SupervisorTable<T: Real> {
     pub failed_after: u32,
     /// Learning intervals in a row in settled contact within the range after which it is taken back.
     pub trusted_after: u32,
-    /// Motor speed at which an output that does not move has failed [rad/s].
-    pub stuck_speed: T,
+    /// Angle by which an output has turned for sure [2^-32 turns].
+    pub moved: u32,
     /// Distance beyond the possible range that dynamics alone can bring [m].
     pub margin: T,
     /// Estimates of the gap are given out up to this standard deviation, as a part of the gap 4b [-].

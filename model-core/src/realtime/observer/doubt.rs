@@ -75,7 +75,9 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let tables = self.tables;
         let lever = tables.levers.output;
         let side = if told == T::ZERO {
-            self.anchor.side(&tables.learner, &self.learner, regressors, way, lever)
+            let side = self.anchor.side(&tables.learner, &self.learner, regressors, way, lever);
+            // Teeth also turn round inside the gap, for a moment at rest: then they carry nothing.
+            if side * self.interval.steady > self.knowledge.steady_force_deviation { side } else { T::ZERO }
         } else {
             told
         };

@@ -8,8 +8,8 @@
 use super::contact::{sign, with_hysteresis};
 use super::motion::magnitude;
 use super::regressors::{self, Touch};
-use super::supervisor::Place;
-use super::{Now, Observer, Source, small};
+use super::supervisor::{Place, Return};
+use super::{Anchor, Now, Observer, Source, small};
 use crate::mesh::ContactState;
 use crate::real::Real;
 
@@ -44,7 +44,7 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let place = if way < upper && way > lower {
             Place::Possible
         } else if way < upper + half_gap && way > lower - half_gap {
-            Place::Worn { turning: magnitude(self.drive.speed) > table.stuck_speed }
+            Place::Worn
         } else {
             Place::Impossible
         };
@@ -129,21 +129,23 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         (bounce * bounce + lever * lever * speed_variance + by_torque * by_torque * torque_variance) * time * time
     }
 
-    /// Once an interval: takes the output encoder back when it says again what the motor implies.
+    /// Once an interval: takes the output encoder back when it turns with the motor again. If it does so elsewhere than
+    /// was learnt, everything is learnt anew.
     pub(super) fn reconsider(&mut self, settled: Option<T>, mesh: &[T; 2], force: T) {
         let tables = self.tables;
-        let agrees = settled.map(|side| {
-            let phase = self.counts.motor.phase(&tables.counts.motor);
-            let output = self.counts.output.phase(&tables.counts.output);
-            let free = regressors::free(self.load.speed, phase, Some(output));
-            let measured = tables.counts.length * small(self.counts.difference) + tables.levers.sun * self.drive.ahead;
-            let expected = self.learner.way(&Touch { side, force, mesh: *mesh }.on(&free));
-            let room = tables.supervisor.margin + T::TWO * self.knowledge.edge_deviation;
-            magnitude(measured - expected) < room
-        });
-        if self.supervisor.reconsider(&tables.supervisor, agrees) {
-            self.counts.trust();
-            self.load.ahead = T::ZERO;
+        let Some(side) = settled else { return };
+        let phase = self.counts.motor.phase(&tables.counts.motor);
+        let output = self.counts.output.phase(&tables.counts.output);
+        let free = regressors::free(self.load.speed, phase, Some(output));
+        let measured = tables.counts.length * small(self.counts.difference) + tables.levers.sun * self.drive.ahead;
+        let beyond = measured - self.learner.way(&Touch { side, force, mesh: *mesh }.on(&free));
+        let room = tables.supervisor.margin + T::TWO * self.knowledge.edge_deviation;
+        let Some(back) = self.supervisor.reconsider(&tables.supervisor, side, beyond, output, room) else { return };
+        self.counts.trust();
+        self.load.ahead = T::ZERO;
+        if back == Return::Otherwise {
+            self.anchor = Anchor::new();
+            self.learner.reopen();
         }
     }
 }

@@ -3,7 +3,7 @@
 
 use super::Bias;
 use super::learner::{Learner, Regressors};
-use super::regressors::{self, COMPLIANCE, HALF_GAP, OFFSET, SKEW, Touch};
+use super::regressors::{self, COMPLIANCE, ERROR, HALF_GAP, OFFSET, SKEW, Touch};
 use crate::real::Real;
 use crate::tables::observer::ObserverTables;
 
@@ -44,6 +44,20 @@ pub(super) struct Knowledge<T: Real> {
     pub width_is_known: bool,
     /// Whether they decide about contact that is reported.
     pub width_serves: bool,
+    /// 1 over the compliance [N/m].
+    pub stiffness: T,
+    /// Part of the compliance that the meshes have.
+    pub mesh_share: T,
+    /// By how much the compliance may be wrong: two standard deviations [m/N].
+    pub softness: T,
+    /// Furthest from the middle of the gap that the way can be without wind-up [m].
+    pub reach: T,
+    /// Variance of the gap coordinate that is said while teeth touch, and while they do not [m^2].
+    pub gap_variance: [T; 2],
+    /// Up to which it is vouched for; zero without a width [m^2].
+    pub widest_variance: T,
+    /// Whether the transmission error shifts a flank over the middle of the gap.
+    pub flanks_swap: bool,
     /// The last interval was in settled contact.
     pub settled: bool,
     /// What comes next.
@@ -69,6 +83,13 @@ impl<T: Real> Knowledge<T> {
             position_weight: T::ZERO,
             width_is_known: false,
             width_serves: false,
+            stiffness: T::ZERO,
+            mesh_share: T::ZERO,
+            softness: T::ZERO,
+            reach: T::ZERO,
+            gap_variance: [T::ZERO; 2],
+            widest_variance: T::ZERO,
+            flanks_swap: false,
             settled: false,
             turn: 0,
         };
@@ -78,6 +99,7 @@ impl<T: Real> Knowledge<T> {
         for _ in 0..PARTS {
             knowledge.next(tables, learner, &free, &touch);
         }
+        knowledge.of_learnt(tables, learner);
         knowledge
     }
 
@@ -136,5 +158,22 @@ impl<T: Real> Knowledge<T> {
         let thrice = T::THREE * part;
         self.width_serves =
             self.width_is_known || self.width_serves && half_gap > T::ZERO && variance < thrice * thrice;
+    }
+
+    /// What follows for every period until the next interval.
+    pub fn of_learnt<const P: usize>(&mut self, tables: &ObserverTables<T>, learner: &Learner<T, P>) {
+        let (half_gap, compliance) = (learner.value(HALF_GAP), learner.value(COMPLIANCE));
+        let [_, _, compliance_variance, _] = self.variances;
+        self.stiffness = if compliance > T::ZERO { T::ONE.over(compliance) } else { T::ZERO };
+        self.mesh_share = tables.learner.mesh_compliance * self.stiffness;
+        self.softness = T::TWO * compliance_variance.square_root();
+        self.reach = T::THREE * self.edge_deviation + tables.supervisor.margin + half_gap;
+        let noise = tables.contact.way_variance;
+        let [of_way, of_flank] = self.wind_up_variance;
+        self.gap_variance = [self.flank_variance + of_flank + noise, self.way_variance + of_way + noise];
+        let widest = T::TWO * half_gap * tables.supervisor.widest_part;
+        self.widest_variance = if half_gap > T::ZERO { widest * widest } else { T::ZERO };
+        let [sine, cosine] = [learner.value(ERROR), learner.value(ERROR + 1)];
+        self.flanks_swap = sine * sine + cosine * cosine > half_gap * half_gap;
     }
 }

@@ -26,6 +26,17 @@ pub(super) struct Learner<T: Real, const P: usize> {
     pub values: [T; P],
 }
 
+/// A way beside what was expected of it, both in standard deviations of one way's noise.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Weighed<T: Real, const P: usize> {
+    /// Regressors turned into the factors' coordinates, U^T h.
+    turned: [T; P],
+    /// What the way is beyond what was expected.
+    pub surprise: T,
+    /// Variance of that.
+    pub expected: T,
+}
+
 impl<T: Real, const P: usize> Learner<T, P> {
     pub fn new(table: &LearnerTable<T>) -> Self {
         let mut learner = Self { moved: [T::ZERO; P], factors: [[T::ZERO; P]; P], values: [T::ZERO; P] };
@@ -97,19 +108,29 @@ impl<T: Real, const P: usize> Learner<T, P> {
         }
     }
 
-    /// Takes in one way.
-    pub fn learn(&mut self, table: &LearnerTable<T>, regressors: &Regressors<T, P>, way: T) {
+    /// Weighs a way before it is taken in.
+    pub fn weigh(&self, table: &LearnerTable<T>, regressors: &Regressors<T, P>, way: T) -> Weighed<T, P> {
         let scaled = Self::scaled(table, regressors, table.weight);
-        let surprise = (way - self.way(regressors)) * table.weight;
+        let mut weighed = Weighed { turned: [T::ZERO; P], surprise: T::ZERO, expected: T::ONE };
+        weighed.surprise = (way - self.way(regressors)) * table.weight;
+        for (j, turned) in weighed.turned.iter_mut().enumerate() {
+            let (f, d) = self.column(&scaled, j);
+            *turned = f;
+            weighed.expected += d * f * f;
+        }
+        weighed
+    }
+
+    /// Takes a weighed way in.
+    pub fn learn(&mut self, table: &LearnerTable<T>, weighed: &Weighed<T, P>) {
         let mut gain = [T::ZERO; P];
         let mut alpha = T::ONE;
-        for j in 0..P {
-            let (f, d) = self.column(&scaled, j);
-            let v = d * f;
+        for (j, (column, f)) in self.factors.iter_mut().zip(&weighed.turned).enumerate() {
+            let d = column.get(j).copied().unwrap_or(T::ZERO);
+            let v = d * *f;
             let before = alpha;
-            alpha += f * v;
+            alpha += *f * v;
             let rise = -f.over(before);
-            let Some(column) = self.factors.get_mut(j) else { break };
             for (entry, carried) in column.iter_mut().zip(gain.iter_mut()).take(j) {
                 let u = *entry;
                 *entry = u + rise * *carried;
@@ -120,7 +141,7 @@ impl<T: Real, const P: usize> Learner<T, P> {
                 *g = v;
             }
         }
-        let step = surprise.over(alpha);
+        let step = weighed.surprise.over(alpha);
         for (moved, gain) in self.moved.iter_mut().zip(&gain) {
             *moved += *gain * step;
         }

@@ -101,6 +101,7 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         }
         self.learner = learner;
         self.bias = bias;
+        self.find_places();
         if self.tables.counts.absolute {
             self.counts.refer_to(start, &self.tables.counts);
         } else {

@@ -78,6 +78,11 @@ impl<T: Real> Supervisor<T> {
         self.source
     }
 
+    /// Whether both encoders are used.
+    pub fn sees_both(&self) -> bool {
+        matches!(self.source, Source::Both)
+    }
+
     /// What the encoder gave in this period. True when it is there for the first time.
     pub fn hear(&mut self, advance: Option<Advance>) -> bool {
         match advance {
@@ -106,12 +111,16 @@ impl<T: Real> Supervisor<T> {
     /// that is too small looks like a frozen encoder, until the way goes further than teeth can be worn.
     pub fn judge(&mut self, table: &SupervisorTable<T>, way: T, place: Place) -> bool {
         let by = way - core::mem::replace(&mut self.way, way);
-        if self.source != Source::Both {
+        if !self.sees_both() {
             return false;
         }
-        let possible = place == Place::Possible;
-        self.leapt = !possible && (self.leapt || magnitude(by) > table.margin);
-        self.outside_for = if possible { 0 } else { self.outside_for.saturating_add(1) };
+        if place == Place::Possible {
+            self.leapt = false;
+            self.outside_for = 0;
+        } else {
+            self.leapt |= magnitude(by) > table.margin;
+            self.outside_for = self.outside_for.saturating_add(1);
+        }
         let doubt = if self.silent_for > table.silent_after {
             Doubt::Silent
         } else if self.outside_for < table.failed_after {

@@ -53,6 +53,8 @@ pub(super) struct ByPosition<T: Real> {
     pub half_gap: T,
     /// Distance from an edge that noise and ignorance can make [m].
     pub blur: T,
+    /// Distance from an edge within which light contact is taken for granted [m].
+    pub near: T,
     /// 1 over the compliance [N/m].
     pub stiffness: T,
     /// Weight of the position in the force beside the motor side's.
@@ -67,17 +69,17 @@ impl<T: Real> ByPosition<T> {
     }
 
     /// The same for a controller: teeth that rest within noise of a flank are reported as touching it, however light
-    /// their force, unless it pulls them off. Nothing can be learnt from that, but nothing would be done otherwise.
-    pub fn reported(&self, before: ContactState, force: T, deviation: T) -> (ContactState, T) {
+    /// their force, unless the motor side's, whose standard deviation is `alone`, pulls them off. Nothing can be learnt
+    /// from that, but nothing would be done otherwise.
+    pub fn reported(&self, before: ContactState, force: T, alone: T, deviation: T) -> (ContactState, T) {
         let (contact, both, beyond) = self.all(before, force, deviation);
         if contact != ContactState::Separated {
             return (contact, both);
         }
-        let band = T::TWO * T::TWENTIETH * self.half_gap;
-        let near = if self.blur < band { self.blur } else { band };
         let drives = self.way > T::ZERO;
-        let pulled = if drives { -both } else { both };
-        let rests = beyond > -near && pulled < deviation;
+        let pulled = if drives { -force } else { force };
+        // On their way the teeth are at the flank in a moment, or off it: that is seen as soon as it happens.
+        let rests = self.soon == T::ZERO && beyond > -self.near && pulled < alone;
         (if rests { flank(drives) } else { contact }, both)
     }
 
@@ -94,7 +96,9 @@ impl<T: Real> ByPosition<T> {
         } else if beyond < -self.blur {
             ContactState::Separated
         } else {
-            with_hysteresis(before, both, T::TWO * deviation, deviation)
+            // Whatever the force: teeth at one flank do not touch the other.
+            let felt = with_hysteresis(before, both, T::TWO * deviation, deviation);
+            if felt == flank(drives) { felt } else { ContactState::Separated }
         };
         (contact, both, beyond)
     }

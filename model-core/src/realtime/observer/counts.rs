@@ -32,6 +32,7 @@ pub(super) enum Advance {
 }
 
 impl Counter {
+    #[inline]
     pub fn take<T: Real>(&mut self, table: &EncoderTable<T>, raw: u32) -> Advance {
         // Raw counts outside their range are brought into it.
         let raw = if raw > table.last { raw.checked_rem(table.wraps_at).unwrap_or(raw) } else { raw };

@@ -30,9 +30,8 @@ impl<T: Real> DriveSide<T> {
         if let Some(place) = self.on_the_way.get_mut((self.newest & RING) as usize) {
             *place = command;
         }
-        let at = |ago: u32| {
-            self.on_the_way.get((self.newest.wrapping_sub(ago) & RING) as usize).copied().unwrap_or(command)
-        };
+        let at =
+            |ago: u32| self.on_the_way.get((self.newest.wrapping_sub(ago) & RING) as usize).copied().unwrap_or(command);
         let sooner = at(current.whole_delay);
         let wanted = sooner + current.part_delay * (at(current.whole_delay + 1) - sooner);
         let [from_speed, from_taken, from_air_gap, from_wanted] = table.angle;

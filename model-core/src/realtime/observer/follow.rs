@@ -1,10 +1,10 @@
 //! From samples to the two sides: counts, motor side and load side go on by one control period. What follows of both
 //! together is left to `present`.
 
+use super::Observer;
 use super::counts::Advance;
 use super::estimates::Notices;
 use super::samples::Samples;
-use super::Observer;
 use crate::real::Real;
 
 /// Periods beyond which the age of a reading is not believed.
@@ -18,9 +18,9 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let command = if known { samples.torque } else { T::ZERO };
         let taken = self.counts.take(&tables.counts, samples.motor, samples.output);
         let [shortest, longest] = tables.period_ticks;
-        let lasted = self.time.map(|before| samples.time.wrapping_sub(before));
+        let lasted = self.time.map_or(longest, |before| samples.time.wrapping_sub(before));
         self.time = Some(samples.time);
-        let out_of_time = lasted.is_some_and(|ticks| !(shortest..=longest).contains(&ticks));
+        let out_of_time = lasted.wrapping_sub(shortest) > longest.wrapping_sub(shortest);
         let motor_by = if let Advance::By(by) = taken.motor { by } else { 0 };
         self.estimates.notices = Notices::default();
         if !known || out_of_time || !matches!(taken.motor, Advance::By(_)) {
@@ -50,7 +50,8 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         if began {
             self.load.ahead = T::ZERO;
         }
-        if let (true, Some(reading), Some(Advance::By(_))) = (self.supervisor.sees_both(), samples.output, taken.output) {
+        if let (true, Some(reading), Some(Advance::By(_))) = (self.supervisor.sees_both(), samples.output, taken.output)
+        {
             let surprise = self.load.speed * self.age(samples, reading.time) - self.load.ahead;
             self.load.correct(&tables.load.gain, surprise);
         }

@@ -163,7 +163,11 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let tables = self.tables;
         self.interval.part = match self.interval.part {
             Part::Tell => {
-                if self.tell_flank() { Part::Learn } else { Part::Know }
+                if self.tell_flank() {
+                    Part::Learn
+                } else {
+                    Part::Know
+                }
             }
             Part::Learn => {
                 self.take_rest();
@@ -190,7 +194,8 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
             *offset = T::ZERO;
         }
         let touch = Touch { side: self.interval.nearer, force: T::ZERO, mesh: self.places.mesh_then };
-        self.knowledge.of_force(self.tables, &self.bias, self.interval.direction);
+        let [_, compliance] = self.shape();
+        self.knowledge.of_force(self.tables, &self.bias, compliance, self.interval.direction);
         self.knowledge.next(self.tables, &self.learner, &seen, &touch);
     }
 

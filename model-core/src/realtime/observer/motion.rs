@@ -57,8 +57,7 @@ impl<T: Real> Motion<T> {
         }
         let (oldest, oldest_force) = self.ago(WINDOW, way, force);
         let (middle, middle_force) = self.ago(WINDOW / 2, way, force);
-        let limit =
-            (table.still + blur) * T::from_i32(WINDOW as i32) + softness * magnitude(force.0 - oldest_force.0);
+        let limit = (table.still + blur) * T::from_i32(WINDOW as i32) + softness * magnitude(force.0 - oldest_force.0);
         self.limit = limit;
         let whole = way - oldest;
         if magnitude(whole) < limit {

@@ -7,9 +7,9 @@
 
 use super::contact::{sign, with_hysteresis};
 use super::motion::magnitude;
+use super::present::small;
 use super::regressors::{self, Touch};
 use super::supervisor::{Place, Return};
-use super::present::small;
 use super::{Anchor, Now, Observer};
 use crate::mesh::ContactState;
 use crate::real::Real;
@@ -37,7 +37,8 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
     pub(super) fn watch(&mut self, now: &Now<T>) {
         let table = &self.tables.supervisor;
         let way = now.way - now.shift;
-        let place = if magnitude(way) < self.knowledge.reach { Place::Possible } else { self.far_place(way, now.force) };
+        let place =
+            if magnitude(way) < self.knowledge.reach { Place::Possible } else { self.far_place(way, now.force) };
         if self.supervisor.judge(table, way, place) {
             self.counts.imply();
             self.load.speed = self.drive.speed * self.tables.levers.per_ratio;

@@ -112,8 +112,7 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let both = self.supervisor.sees_both();
         let link_speed = if both { self.load.speed } else { T::ZERO };
         let output_phase = output.phase(&table.output);
-        let free =
-            regressors::free(link_speed, self.counts.motor.phase(&table.motor), both.then_some(output_phase));
+        let free = regressors::free(link_speed, self.counts.motor.phase(&table.motor), both.then_some(output_phase));
         let (sine, cosine) = sine_cosine(output_phase.wrapping_mul(table.meshes));
         (free, [sine, cosine])
     }

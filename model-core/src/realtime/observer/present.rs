@@ -32,6 +32,7 @@ pub(super) struct Now<T: Real> {
 
 impl<T: Real, const P: usize> Observer<'_, T, P> {
     /// Puts the two sides together.
+    #[inline]
     pub(super) fn now(&self) -> Now<T> {
         let tables = self.tables;
         let levers = &tables.levers;
@@ -60,8 +61,9 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
             self.contact_unseen(now)
         } else if known.width_serves {
             let before = self.estimates.reported_contact;
+            let (alone, together) = (known.force_deviation, known.both_deviation);
             let (contact, both) =
-                self.by_position(now.way, now.soon, now.shift).reported(before, force, known.both_deviation);
+                self.by_position(now.way, now.soon, now.shift).reported(before, force, alone, together);
             force = both;
             contact
         } else {
@@ -77,8 +79,15 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
     pub(super) fn by_position(&self, way: T, soon: T, shift: T) -> ByPosition<T> {
         let [half_gap, _] = self.shape();
         let known = &self.knowledge;
-        let stiffness = known.stiffness;
-        ByPosition { way: way - shift, soon, half_gap, blur: known.blur, stiffness, weight: known.position_weight }
+        ByPosition {
+            way: way - shift,
+            soon,
+            half_gap,
+            blur: known.blur,
+            near: known.near,
+            stiffness: known.stiffness,
+            weight: known.position_weight,
+        }
     }
 
     /// Transmission error at a mesh phase [m].

@@ -16,10 +16,10 @@ pub(super) struct Supervisor<T: Real> {
     outside_for: u32,
     /// Intervals in motion in which it said what was learnt.
     inside_for: u32,
-    /// Intervals in motion in which it said the same as before, and that: the way beyond what was learnt, on the back side
+    /// Intervals in motion in which it said the same as before, and what: the way beyond what was learnt, on the back side
     /// and on the drive side [m].
     steady_for: u32,
-    steady: [Option<T>; 2],
+    steady: [T; 2],
     /// The way at the last period, and whether it leapt to where it is [m].
     way: T,
     leapt: bool,
@@ -65,7 +65,7 @@ impl<T: Real> Supervisor<T> {
             outside_for: 0,
             inside_for: 0,
             steady_for: 0,
-            steady: [None; 2],
+            steady: [T::ZERO; 2],
             way: T::ZERO,
             leapt: false,
             place: 0,
@@ -136,7 +136,7 @@ impl<T: Real> Supervisor<T> {
         self.outside_for = 0;
         self.inside_for = 0;
         self.steady_for = 0;
-        self.steady = [None; 2];
+        self.steady = [T::ZERO; 2];
         true
     }
 
@@ -158,11 +158,18 @@ impl<T: Real> Supervisor<T> {
     /// Once an interval in settled contact, without it: by how much the way that it would give is beyond what was learnt
     /// on that side of the teeth, where the output is [2^-32 turns], and what may be between ways that agree. Says when
     /// it is taken back.
-    pub fn reconsider(&mut self, table: &SupervisorTable<T>, side: T, beyond: T, place: u32, room: T) -> Option<Return> {
+    pub fn reconsider(
+        &mut self,
+        table: &SupervisorTable<T>,
+        side: T,
+        beyond: T,
+        place: u32,
+        room: T,
+    ) -> Option<Return> {
         let [back, drive] = &mut self.steady;
         let steady = if side > T::ZERO { drive } else { back };
-        if magnitude(beyond - *steady.get_or_insert(beyond)) > room {
-            *steady = Some(beyond);
+        if magnitude(beyond - *steady) > room {
+            *steady = beyond;
             self.steady_for = 0;
         }
         let agrees = magnitude(beyond) < room;

@@ -150,7 +150,10 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let [half_gap, _] = self.shape();
         let told_by_way = rests(shown) && !self.knowledge.width_is_known && self.motion.is_sharp(half_gap);
         let unknown = told_by_way.then_some(T::ZERO);
-        let seen = side.or(unknown).filter(|_| self.supervisor.sees_both());
+        // A motor that stands still says the same again and again, rounded by its encoder, under a force that its friction
+        // hides: nothing can be learnt from that.
+        let turns = magnitude(mean.direction) > T::HALF;
+        let seen = side.or(unknown).filter(|_| turns && self.supervisor.sees_both());
         let settled = Settled { free: &free, mesh: &mesh, raw: mean.raw, force: mean.force };
         let full = self.block.add(&settled, seen, &tables.learner);
         self.interval.part = if full { Part::Tell } else { Part::Know };

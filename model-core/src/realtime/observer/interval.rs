@@ -41,6 +41,8 @@ pub(super) struct Interval<T: Real> {
     direction: T,
     /// Nearer side of the gap then.
     nearer: T,
+    /// Side of the last rest that was learnt from.
+    learnt_side: T,
     /// Side on which contact settled last, unless the teeth have left it since.
     side: T,
     /// Mesh force over a few intervals [N].
@@ -70,6 +72,7 @@ impl<T: Real> Interval<T> {
             part: Part::Done,
             direction: T::ZERO,
             nearer: T::ONE,
+            learnt_side: T::ZERO,
             side: T::ZERO,
             steady: T::ZERO,
             open_for: 0,
@@ -151,9 +154,11 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let told_by_way = rests(shown) && !self.knowledge.width_is_known && self.motion.is_sharp(half_gap);
         let unknown = told_by_way.then_some(T::ZERO);
         // A motor that stands still says the same again and again, rounded by its encoder, under a force that its friction
-        // hides: nothing can be learnt from that.
+        // hides: that is worth learning once on either flank.
         let turns = magnitude(mean.direction) > T::HALF;
-        let seen = side.or(unknown).filter(|_| turns && self.supervisor.sees_both());
+        let seen = side.or(unknown).filter(|side| {
+            self.supervisor.sees_both() && (turns || *side != T::ZERO && *side != self.interval.learnt_side)
+        });
         let settled = Settled { free: &free, mesh: &mesh, raw: mean.raw, force: mean.force };
         let full = self.block.add(&settled, seen, &tables.learner);
         self.interval.part = if full { Part::Tell } else { Part::Know };
@@ -173,6 +178,7 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
                 }
             }
             Part::Learn => {
+                self.interval.learnt_side = self.block.side();
                 self.take_rest();
                 Part::Know
             }

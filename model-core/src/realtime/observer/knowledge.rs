@@ -177,7 +177,7 @@ impl<T: Real> Knowledge<T> {
         let error = (sine * sine + cosine * cosine).square_root();
         self.flanks_swap = error > half_gap;
         // The planets' errors differ: some teeth meet before the others, by half of it on the mean, and noise hides when.
-        let (first, most) = (self.blur + T::HALF * error, T::TWENTIETH * half_gap);
+        let (first, most) = (self.blur, T::TWENTIETH * half_gap);
         self.near = if first < most { first } else { most };
     }
 }

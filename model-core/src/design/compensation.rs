@@ -79,6 +79,10 @@ const LEAST_DOUBT: f64 = 0.3;
 /// Largest doubt after several changes, over the first.
 const MOST_PATIENCE: f64 = 6.0;
 
+/// The most that doubt grows by, over what half the lost motion asks for as an error: a flank that is waited for any
+/// longer costs more than one changed in vain.
+const MOST_DOUBT: f64 = 0.3;
+
 /// Time over which patience is lost again, times the bandwidth: a transient of the loop is over by then.
 const PATIENCE: f64 = 3.0;
 
@@ -97,6 +101,9 @@ const FORGIVING: f64 = 30.0;
 
 /// Speed at which dry friction has its full size [rad/s], for want of a better number: what encoders resolve.
 const FRICTION_SPEED: f64 = 0.01;
+
+/// The same for a planned speed [rad/s]: what a motion passes in a few control periods.
+const PLANNED_FRICTION_SPEED: f64 = 1e-3;
 
 /// Growth of the load's variance in one period over that of its reading: followed within a few milliseconds.
 const LOAD_GROWTH: f64 = 1e-3;
@@ -138,12 +145,15 @@ pub fn design_compensation<T: Real>(
     let half = body.half_backlash / body.lever;
     let reaction = period * (1.0 + settings.torque_delay) + settings.torque_lag;
 
-    // A least-jerk path needs 10/sqrt(3) way/time^2 of acceleration and reaches 15/8 of its mean speed.
-    let pull = 10.0 / libm::sqrt(3.0) * 2.0 * half * body.motor / (CROSSING_TORQUE * limit);
-    let shortest = libm::sqrt(pull).max(REACTIONS_IN_A_CROSSING * reaction);
+    // A ramp without a jump in its acceleration has one and a half times its mean.
+    let ramp_per_speed = 1.5 * body.motor / (CROSSING_TORQUE * limit);
+    let shortest_ramp = 0.5 * REACTIONS_IN_A_CROSSING * reaction;
     let strike_torque = STRIKE * joint.rated_output_torque;
-    let strike_per_half = 15.0 / 8.0 * 2.0 * body.strike_impedance;
-    let crossing = (strike_per_half * half / strike_torque).max(shortest);
+    let strike_speed = strike_torque / body.strike_impedance;
+    let along = 2.0 * half / strike_speed;
+    let steepest = ramp_per_speed * strike_speed;
+    let ramp = if steepest > along { libm::sqrt(ramp_per_speed * 2.0 * half) } else { steepest }.max(shortest_ramp);
+    let crossing = (ramp + along).max(2.0 * ramp);
     let motor_damping = (3.0 * inertia * pole).min(body.motor / (MOTOR_DAMPING * reaction));
     // The motor's mass against the joint's spring: torque of a blow for each rad/s.
     let blow = libm::sqrt(body.stiffness * body.motor);
@@ -174,9 +184,10 @@ pub fn design_compensation<T: Real>(
         torque_limit: real(limit),
         lead: real(crossing + reaction),
         reaction: real(reaction),
-        strike_per_half: real(strike_per_half),
+        strike_speed_per_torque: real(1.0 / body.strike_impedance),
         strike_torque: real(strike_torque),
-        shortest_crossing: real(shortest),
+        shortest_ramp: real(shortest_ramp),
+        ramp_per_speed: real(ramp_per_speed),
         longest_crossing: real(LONGEST * crossing),
         hurry: real(HURRY),
         landing_speed: real(landing_speed),
@@ -194,15 +205,19 @@ pub fn design_compensation<T: Real>(
         least_doubt: real(LEAST_DOUBT),
         patience_left: real(libm::exp(-period * pole / PATIENCE)),
         most_patience: real(MOST_PATIENCE),
+        most_doubt: real(MOST_DOUBT * 3.0 * inertia * pole * pole),
         hunting: real(HUNTING / pole),
         first_indulgence: real(INDULGENCE[0]),
         last_indulgence: real(INDULGENCE[1]),
         forgiving: real(libm::exp(-period / FORGIVING)),
         load_learner: [real(LOAD_GROWTH), real(FRICTION_GROWTH), T::ONE],
+        // Of a random walk in noise, as far as it grows much more slowly than it is read.
+        load_gain: real(libm::sqrt(LOAD_GROWTH)),
         load_rate_gain: real(1.0 / LOAD_RATE),
         load_rate_left: real(libm::exp(-period / LOAD_RATE_KEPT)),
         fastest_load: real(limit / LOAD_RATE),
         friction_slope: real(1.0 / FRICTION_SPEED),
+        planned_friction_slope: real(1.0 / PLANNED_FRICTION_SPEED),
         longest_hold: real(LONGEST_HOLD),
         trust_step: real(period * pole / TRUST),
     })

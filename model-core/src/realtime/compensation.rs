@@ -5,7 +5,7 @@
 //! 1. `position` and `impedance` turn a set-point into an [`Intent`](intent::Intent): the torque that the control law
 //!    gives while a flank carries, and the torque that the teeth will have to pass on, now and one crossing later.
 //! 2. `flank` decides from that which flank shall carry, and when to leave for it.
-//! 3. `path` takes the motor through the gap to where the load will be, and softly onto the flank.
+//! 3. `crossing` and `path` take the motor through the gap to where the load will be, and softly onto the flank.
 //! 4. `load` knows what brakes the link and how that changes when the motion turns round.
 //! 5. `plain` is the same control law on the motor alone, without compensation; it takes over, blended, where the
 //!    estimates are not valid.
@@ -13,6 +13,7 @@
 //! `docs/compensation.md` derives all of it and says where its limits are.
 
 pub(super) mod arithmetic;
+mod crossing;
 mod flank;
 mod impedance;
 mod intent;
@@ -45,7 +46,8 @@ pub struct Compensation<'tables, T: Real> {
     position: PositionLaw<T>,
     impedance: ImpedanceLaw<T>,
     plain: Plain<T>,
-    /// By how much the motor's encoder leads the output's, as last vouched for; at the output [rad].
+    /// By how much the motor's encoder leads the output's, as last vouched for alone or as part of the gap coordinate; at
+    /// the output [rad].
     offset: T,
     /// 0: plain control; 1: compensation.
     trust: T,
@@ -69,7 +71,8 @@ impl<'tables, T: Real> Compensation<'tables, T> {
     /// Takes the estimates and the command of one control period. The torque is always finite and within its limit.
     pub fn step(&mut self, estimates: &Estimates<T>, command: &Command<T>) -> Shaped<T> {
         let tables = self.tables;
-        if estimates.encoder_offset.valid && estimates.encoder_offset.value.is_finite() {
+        let vouched = estimates.encoder_offset.valid || estimates.gap.valid;
+        if vouched && estimates.encoder_offset.value.is_finite() {
             self.offset = estimates.encoder_offset.value;
         }
         let situation = Situation::new(tables, estimates, self.offset, command);

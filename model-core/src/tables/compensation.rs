@@ -54,13 +54,14 @@ pub struct CompensationTables<T: Real> {
     pub lead: T,
     /// From deciding to the torque's effect [s].
     pub reaction: T,
-    /// Duration of a crossing times the torque that the struck planets stand for, for each radian of half the lost
-    /// motion [N m s/rad].
-    pub strike_per_half: T,
+    /// Speed against the link at which planets that are struck stand for a torque, for each N m of it [rad/s/(N m)].
+    pub strike_speed_per_torque: T,
     /// That torque at little demand [N m].
     pub strike_torque: T,
-    /// Shortest crossing that torque and delays allow [s].
-    pub shortest_crossing: T,
+    /// Shortest ramp of a crossing's speed that delays allow [s].
+    pub shortest_ramp: T,
+    /// Time that torque needs on the ramp for each rad/s [s^2/rad].
+    pub ramp_per_speed: T,
     /// Longest crossing [s].
     pub longest_crossing: T,
     /// A way through the gap is laid anew when less than this share of what is left of it would do.
@@ -95,6 +96,8 @@ pub struct CompensationTables<T: Real> {
     pub patience_left: T,
     /// The most patience: how many times the feedback torque above.
     pub most_patience: T,
+    /// The most that the doubt grows by, for each radian of half the lost motion [N m/rad].
+    pub most_doubt: T,
     /// A joint at rest that asks for the other flank within this time hunts [s].
     pub hunting: T,
     /// Error let be after the first crossing that feedback alone has caused, over half the lost motion.
@@ -105,6 +108,8 @@ pub struct CompensationTables<T: Real> {
     pub forgiving: T,
     /// Learner of the load: growth of variances in one period (even part, friction), variance of a reading.
     pub load_learner: [T; 3],
+    /// Share of a reading that the even part takes up in the long run.
+    pub load_gain: T,
     /// Rate of the load for each N m by which its even part is moved [1/s].
     pub load_rate_gain: T,
     /// What is left of the load's rate after one period.
@@ -113,6 +118,8 @@ pub struct CompensationTables<T: Real> {
     pub fastest_load: T,
     /// Inverse of the speed at which friction has its full size [s/rad].
     pub friction_slope: T,
+    /// The same for a speed that is planned [s/rad].
+    pub planned_friction_slope: T,
     /// How long an impedance set-point may be held before it counts as standing still [s].
     pub longest_hold: T,
     /// Change of the trust in the estimates in one period.

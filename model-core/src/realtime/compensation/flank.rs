@@ -18,6 +18,8 @@ pub(super) struct Flank<T: Real> {
     /// Position of the set-point when the path was laid.
     origin: Position<T>,
     elapsed: T,
+    /// How far the flank was when the landing began [rad].
+    opened: T,
     /// How much of the law's torque is let through after a landing.
     rise: T,
     /// Impulse that the load has missed while no flank carried [N m s].
@@ -34,6 +36,7 @@ impl<T: Real> Flank<T> {
             path: Path::default(),
             origin: Position::default(),
             elapsed: T::ZERO,
+            opened: T::ZERO,
             rise: T::ONE,
             owed: T::ZERO,
             patience: T::ONE,
@@ -66,17 +69,18 @@ impl<T: Real> Flank<T> {
         // A flank that is met softly is seen before it is felt.
         let seen = opened < tables.landed * situation.half;
         // One that stops the motor's approach is there, wherever it was thought to be.
-        let closing = self.side * (situation.motor_speed - situation.link_speed);
         let stopped = self.stage == Stage::Landing
-            && self.elapsed > tables.shortest_crossing
+            && self.elapsed > tables.shortest_ramp + tables.shortest_ramp
             && opened < tables.opening * situation.half
-            && closing < T::HALF * tables.landing_speed;
+            && self.opened - opened < T::HALF * tables.landing_speed * self.elapsed;
+        let closing = self.side * (situation.motor_speed - situation.link_speed);
         let touching = felt || seen || stopped;
         let turned = self.side * (intent.demand_now + intent.demand_ahead) < -tables.hysteresis
             && self.side * intent.demand_ahead < -tables.hysteresis;
         // What is only as large as its noise has to grow, and more so soon after a change of flank.
         let later = intent.demand_ahead + intent.demand_ahead - intent.demand_now;
-        let doubt = tables.doubt * (tables.least_doubt + self.patience - T::ONE);
+        let grown = clamp(tables.doubt * (self.patience - T::ONE), T::ZERO, tables.most_doubt * situation.half);
+        let doubt = tables.doubt * tables.least_doubt + grown;
         let turned = turned && self.side * later < -doubt;
         self.patience = T::ONE + tables.patience_left * (self.patience - T::ONE);
         match self.stage {
@@ -89,15 +93,14 @@ impl<T: Real> Flank<T> {
                 if opened > T::HALF * situation.half {
                     self.set_out(tables, situation, intent);
                 } else {
-                    self.land();
+                    self.land(opened);
                 }
             }
-            Stage::Crossing | Stage::Landing if touching => {
-                self.stage = Stage::Touching;
-                self.rise = T::ZERO;
-            }
-            Stage::Crossing if self.elapsed >= self.path.duration() => self.land(),
-            Stage::Crossing if intent.crossing < tables.hurry * (self.path.duration() - self.elapsed) => {
+            // Teeth that are seen to meet before the motor has been braked are about to be struck: braking comes first.
+            Stage::Crossing if touching && closing < T::TWO * landing_speed(tables, intent.demand_now) => self.touch(),
+            Stage::Landing if touching => self.touch(),
+            Stage::Crossing if self.elapsed >= self.path.duration() => self.land(opened),
+            Stage::Crossing if intent.crossing.duration < tables.hurry * (self.path.duration() - self.elapsed) => {
                 let [place, speed, _] = self.path.at(self.elapsed + tables.reaction);
                 self.lay(tables, situation, intent, [place - self.drift(tables, situation), speed]);
             }
@@ -139,9 +142,15 @@ impl<T: Real> Flank<T> {
         self.owed = if intent.repays { clamp(self.owed + tables.period * torque, -most, most) } else { T::ZERO };
     }
 
-    fn land(&mut self) {
+    fn touch(&mut self) {
+        self.stage = Stage::Touching;
+        self.rise = T::ZERO;
+    }
+
+    fn land(&mut self, opened: T) {
         self.stage = Stage::Landing;
         self.elapsed = T::ZERO;
+        self.opened = opened;
     }
 
     /// Leaves for the flank of `side`.
@@ -155,7 +164,7 @@ impl<T: Real> Flank<T> {
     /// Lays a path to the flank where the load will be, left to itself, meeting it at a small speed. It begins when
     /// torque asked for now acts, at a place less the set-point and a speed.
     fn lay(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, intent: &Intent<T>, start: [T; 2]) {
-        let time = intent.crossing + tables.reaction;
+        let time = intent.crossing.duration + tables.reaction;
         let [acceleration, jerk] = [intent.free_acceleration, intent.free_jerk];
         let speed = situation.link_speed + time * (acceleration + T::HALF * time * jerk);
         let way = time * (situation.link_speed + T::HALF * time * (acceleration + T::THIRD * time * jerk));

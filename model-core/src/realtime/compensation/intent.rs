@@ -8,6 +8,7 @@ use crate::realtime::phase::sine_cosine;
 use crate::tables::compensation::CompensationTables;
 
 use super::arithmetic::clamp;
+use super::crossing::Crossing;
 use super::load::LoadModel;
 use super::set_point::{Command, Position};
 
@@ -28,7 +29,8 @@ pub(super) struct Situation<T: Real> {
     pub origin: Position<T>,
     /// Speed that the motor has by the gears' transmission error alone, felt at the link [rad/s].
     pub error_speed: T,
-    /// Torque that the motor loses whatever its direction, and its dry friction, as far as both are known [N m].
+    /// Torque that the motor loses whatever its direction, and its dry friction [N m]: as the observer has it, sure or
+    /// not, for it leaves out of the load torque what it puts down to them.
     pub losses: [T; 2],
     /// Half of the lost motion [rad].
     pub half: T,
@@ -70,8 +72,7 @@ impl<T: Real> Situation<T> {
             link_speed: estimates.link.speed,
             origin,
             half,
-            losses: [estimates.torque_bias, estimates.motor_friction]
-                .map(|loss| if loss.valid { tables.gear * loss.value } else { T::ZERO }),
+            losses: [estimates.torque_bias, estimates.motor_friction].map(|loss| tables.gear * loss.value),
             error_speed: at_link * estimates.flank_shift_slope * estimates.link.speed,
             shift: at_link * estimates.flank_shift,
             shift_slope: at_link * estimates.flank_shift_slope,
@@ -92,7 +93,7 @@ impl<T: Real> Situation<T> {
 
     /// Torque that the motor loses at a speed [N m].
     pub fn lost(&self, tables: &CompensationTables<T>, speed: T) -> T {
-        self.losses[0] + self.losses[1] * LoadModel::direction(tables, speed)
+        self.losses[0] + self.losses[1] * LoadModel::planned_direction(tables, speed)
     }
 
     /// Torque of the damper on the motor against the link; what the transmission error makes it do is none of its
@@ -116,7 +117,7 @@ pub(super) struct Intent<T: Real> {
     /// Its rate [rad/s^3].
     pub free_jerk: T,
     /// How long a crossing shall take [s].
-    pub crossing: T,
+    pub crossing: Crossing<T>,
     /// Whether an impulse that the load missed on the way is made good afterwards; a law stiff enough does it itself.
     pub repays: bool,
 }
@@ -132,12 +133,12 @@ impl<T: Real> Intent<T> {
         demand: impl Fn(T) -> T,
         repays: bool,
     ) -> Self {
-        let unhurried = crossing_time(tables, situation.half, T::ZERO) + tables.reaction;
-        let crossing = crossing_time(tables, situation.half, demand(unhurried));
+        let unhurried = Crossing::new(tables, situation.half, T::ZERO).duration + tables.reaction;
+        let crossing = Crossing::new(tables, situation.half, demand(unhurried));
         Self {
             law,
             demand_now: demand(T::ZERO),
-            demand_ahead: demand(crossing + tables.reaction),
+            demand_ahead: demand(crossing.duration + tables.reaction),
             free_acceleration: -load.free(tables, situation.link_speed) * tables.inverse_load_inertia,
             free_jerk: -load.rate() * tables.inverse_load_inertia,
             crossing,
@@ -148,12 +149,4 @@ impl<T: Real> Intent<T> {
     pub fn is_finite(&self) -> bool {
         (self.law + self.demand_now + self.demand_ahead + self.free_acceleration).is_finite()
     }
-}
-
-/// How long a crossing takes. Planets that are struck on the way are struck no harder than the force that will be passed
-/// on anyway (`demand`), or than a set share of the rated one.
-fn crossing_time<T: Real>(tables: &CompensationTables<T>, half: T, demand: T) -> T {
-    let force = clamp(if demand < T::ZERO { -demand } else { demand }, tables.strike_torque, tables.torque_limit);
-    let by_strike = if force > T::ZERO { (tables.strike_per_half * half).over(force) } else { tables.longest_crossing };
-    clamp(by_strike, tables.shortest_crossing, tables.longest_crossing)
 }

@@ -19,11 +19,31 @@ pub(super) struct LoadModel<T: Real> {
     alone: Option<T>,
     /// Variances of both and their covariance.
     variance: [T; 3],
+    /// 1 or -1: where the link last moved to, 0 before it has.
+    direction: T,
+    /// How it began to creep, while it does.
+    creep: Option<Creep<T>>,
+}
+
+/// What was known before the link began to creep.
+#[derive(Debug, Clone, Copy)]
+struct Creep<T: Real> {
+    even: T,
+    /// By how much the even part's variance has grown since.
+    variance: T,
 }
 
 impl<T: Real> LoadModel<T> {
     pub fn new() -> Self {
-        Self { even: T::ZERO, friction: T::ZERO, rate: T::ZERO, alone: None, variance: [T::ONE, T::ONE, T::ZERO] }
+        Self {
+            even: T::ZERO,
+            friction: T::ZERO,
+            rate: T::ZERO,
+            alone: None,
+            variance: [T::ONE, T::ONE, T::ZERO],
+            direction: T::ZERO,
+            creep: None,
+        }
     }
 
     /// -1 to 1: what share of the dry friction brakes at a speed.
@@ -55,7 +75,17 @@ impl<T: Real> LoadModel<T> {
         self.alone.unwrap_or(self.even + self.drag(tables, speed))
     }
 
-    /// Friction at a speed.
+    /// The same at a speed that is planned: no noise hides its sign.
+    pub fn planned_direction(tables: &CompensationTables<T>, speed: T) -> T {
+        clamp(tables.planned_friction_slope * speed, -T::ONE, T::ONE)
+    }
+
+    /// Friction at a speed that is planned.
+    pub fn planned_drag(&self, tables: &CompensationTables<T>, speed: T) -> T {
+        self.friction * Self::planned_direction(tables, speed)
+    }
+
+    /// Friction at a speed that is measured.
     pub fn drag(&self, tables: &CompensationTables<T>, speed: T) -> T {
         self.friction * Self::direction(tables, speed)
     }
@@ -93,25 +123,48 @@ impl<T: Real> LoadModel<T> {
         }
     }
 
+    /// Learns from a reading while a flank carries. A link that creeps may rub with any part of its friction: what brakes
+    /// it is followed then without asking which part it is, until it moves again.
     fn learn(&mut self, tables: &CompensationTables<T>, torque: T, speed: T) {
-        // What rubs with any part of its friction says nothing about the whole of it.
-        let direction = if Self::creeps(tables, speed) { T::ZERO } else { Self::direction(tables, speed) };
-        let known = self.drag(tables, speed);
         let [growth_even, growth_friction, noise] = tables.load_learner;
+        // Once it creeps, a speed that noise may have made does not say that it moves.
+        let least = if self.creep.is_some() { T::THIRD * speed } else { speed };
+        if Self::creeps(tables, least) {
+            let creep = self.creep.get_or_insert(Creep { even: self.even, variance: T::ZERO });
+            creep.variance += growth_even;
+            self.even += tables.load_gain * (torque - self.even - self.drag(tables, speed));
+            return;
+        }
+        let direction = Self::direction(tables, speed);
+        if let Some(creep) = self.creep.take()
+            && self.direction * direction < T::ZERO
+        {
+            let followed = self.even + self.friction * direction;
+            self.even = creep.even;
+            self.variance[0] += creep.variance;
+            self.split(tables, followed, direction, tables.load_gain * noise);
+        }
+        self.direction = direction;
+        self.variance[0] += growth_even;
+        self.variance[1] += growth_friction;
+        let by = self.split(tables, torque, direction, noise);
+        self.rate = clamp(self.rate + tables.load_rate_gain * by, -tables.fastest_load, tables.fastest_load);
+    }
+
+    /// Shares out what a moving link is braked with, read with the given variance; gives what the even part gets.
+    fn split(&mut self, tables: &CompensationTables<T>, torque: T, direction: T, noise: T) -> T {
         let [even, friction, both] = self.variance;
-        let (even, friction) = (even + growth_even, friction + growth_friction);
         let (to_even, to_friction) = (even + both * direction, both + friction * direction);
         let total = to_even + to_friction * direction + noise;
         if total <= T::ZERO || !total.is_finite() {
-            return;
+            return T::ZERO;
         }
         let (gain_even, gain_friction) = (to_even.over(total), to_friction.over(total));
-        let surprise = torque - self.even - known;
+        let surprise = torque - self.even - self.friction * direction;
         self.even += gain_even * surprise;
-        self.rate =
-            clamp(self.rate + tables.load_rate_gain * gain_even * surprise, -tables.fastest_load, tables.fastest_load);
         self.friction = clamp(self.friction + gain_friction * surprise, T::ZERO, tables.torque_limit);
         self.variance =
             [even - gain_even * to_even, friction - gain_friction * to_friction, both - gain_even * to_friction];
+        gain_even * surprise
     }
 }

@@ -1,6 +1,8 @@
-//! The path of a crossing: the polynomial of fifth degree from one position and speed to another with no acceleration at
-//! either end; between points at rest it is the one of least jerk.
+//! The path of a crossing: up to a steady speed, along, and down to the speed of arrival. Planets hang loose in the gap
+//! and are struck somewhere on the way, so that the steady speed is what a crossing's force depends on, and a path
+//! that rises above it anywhere would be slower for the same blow. How long a crossing may take is left to `crossing`.
 
+use super::crossing::Crossing;
 use crate::real::Real;
 
 /// A path over time.
@@ -8,43 +10,59 @@ use crate::real::Real;
 pub(super) struct Path<T: Real> {
     start: [T; 2],
     end: [T; 2],
-    duration: T,
-    inverse: T,
+    /// Speed between the ramps.
+    steady: T,
+    crossing: Crossing<T>,
+    inverse_ramp: T,
 }
 
 impl<T: Real> Path<T> {
     /// From position and rate to position and rate.
-    pub fn new(start: [T; 2], end: [T; 2], duration: T) -> Self {
-        let inverse = if duration > T::ZERO { T::ONE.over(duration) } else { T::ZERO };
-        Self { start, end, duration, inverse }
+    pub fn new(start: [T; 2], end: [T; 2], crossing: Crossing<T>) -> Self {
+        let Crossing { duration, ramp } = crossing;
+        let long = duration - ramp;
+        let at_full = end[0] - start[0] - T::HALF * ramp * (start[1] + end[1]);
+        let steady = if long > T::ZERO { at_full.over(long) } else { T::ZERO };
+        let inverse_ramp = if ramp > T::ZERO { T::ONE.over(ramp) } else { T::ZERO };
+        Self { start, end, steady, crossing, inverse_ramp }
     }
 
     /// How long it takes [s].
     pub fn duration(&self) -> T {
-        self.duration
+        self.crossing.duration
     }
 
     /// Position, rate and acceleration at a time since the start; before and past its ends it goes on at
     /// their rates.
     pub fn at(&self, time: T) -> [T; 3] {
-        let n = T::from_i32;
-        if time >= self.duration {
-            return [self.end[0] + (time - self.duration) * self.end[1], self.end[1], T::ZERO];
+        let Crossing { duration, ramp } = self.crossing;
+        let left = duration - time;
+        let [from, to] = [self.start, self.end];
+        if left <= T::ZERO {
+            [to[0] - left * to[1], to[1], T::ZERO]
+        } else if time <= T::ZERO {
+            [from[0] + time * from[1], from[1], T::ZERO]
+        } else if time < ramp {
+            let [way, rate, acceleration] = self.rise(time, from[1]);
+            [from[0] + way, rate, acceleration]
+        } else if left < ramp {
+            let [way, rate, acceleration] = self.rise(left, to[1]);
+            [to[0] - way, rate, -acceleration]
+        } else {
+            let way = T::HALF * ramp * (from[1] + self.steady) + (time - ramp) * self.steady;
+            [from[0] + way, self.steady, T::ZERO]
         }
-        if time <= T::ZERO {
-            return [self.start[0] + time * self.start[1], self.start[1], T::ZERO];
-        }
-        let s = time * self.inverse;
-        let way = self.end[0] - self.start[0];
-        let (v0, v1) = (self.start[1] * self.duration, self.end[1] * self.duration);
-        let c3 = n(10) * way - n(6) * v0 - n(4) * v1;
-        let c4 = n(-15) * way + n(8) * v0 + n(7) * v1;
-        let c5 = n(6) * way - n(3) * (v0 + v1);
+    }
+
+    /// Way, rate and acceleration on the ramp from a rate to the steady one, with no acceleration at either end.
+    fn rise(&self, time: T, from: T) -> [T; 3] {
+        let s = time * self.inverse_ramp;
+        let by = self.steady - from;
         let square = s * s;
         [
-            self.start[0] + s * (v0 + square * (c3 + s * (c4 + s * c5))),
-            (v0 + square * (n(3) * c3 + s * (n(4) * c4 + s * n(5) * c5))) * self.inverse,
-            s * (n(6) * c3 + s * (n(12) * c4 + s * n(20) * c5)) * self.inverse * self.inverse,
+            time * (from + by * square * (T::ONE - T::HALF * s)),
+            from + by * square * (T::THREE - T::TWO * s),
+            T::from_i32(6) * by * s * (T::ONE - s) * self.inverse_ramp,
         ]
     }
 }

@@ -51,14 +51,14 @@ impl<T: Real> PositionLaw<T> {
 
         let asked_for = (tables.load_inertia + tables.motor_inertia) * now.acceleration
             + load.even()
-            + load.drag(tables, now.speed)
+            + load.planned_drag(tables, now.speed)
             + tables.position_gain * beyond(situation.error, let_be)
             + tables.damping_gain * situation.error_rate
             + situation.lost(tables, now.speed);
         // What is beyond the limit must not drown the damper.
         let law = clamp(asked_for, -tables.torque_limit, tables.torque_limit) + situation.calm(tables);
         let level = load.even()
-            + (load.drag(tables, situation.link_speed) - load.drag(tables, now.speed))
+            + (load.drag(tables, situation.link_speed) - load.planned_drag(tables, now.speed))
             + tables.position_gain * beyond(situation.error, let_be)
             + tables.damping_gain * situation.error_rate;
         // News that are large against the doubt are no noise, and are taken up faster.
@@ -70,7 +70,7 @@ impl<T: Real> PositionLaw<T> {
             let part = time.over(known);
             let speed = now.speed + time * (now.acceleration + T::HALF * part * asked[1]);
             let speed = if ahead.is_some() { now.speed + part * asked[0] } else { speed };
-            tables.load_inertia * (now.acceleration + part * asked[1]) + load.drag(tables, speed)
+            tables.load_inertia * (now.acceleration + part * asked[1]) + load.planned_drag(tables, speed)
         };
         let level = self.level;
         let rate = load.rate();

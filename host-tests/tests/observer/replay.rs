@@ -129,6 +129,9 @@ pub fn replay<T: Real, const P: usize>(
     mut watch: impl FnMut(usize, &Moment, &Estimates<T>),
 ) -> Figures {
     let mut observer = Observer::<T, P>::new(tables);
+    let largest_of = |errors: &[f64]| errors.iter().fold(0.0, |most: f64, error| most.max(error.abs()));
+    let [of_sun, of_ring] = [&joint.sun_planet, &joint.ring_planet].map(|mesh| largest_of(&mesh.transmission_error));
+    let shift = of_sun + of_ring;
     let half_backlash = joint.sun_planet.half_backlash[0];
     let gap = 4.0 * half_backlash;
     let rated_force = joint.rated_output_torque / (2.0 * joint.geometry.carrier_base_radius());
@@ -192,8 +195,8 @@ pub fn replay<T: Real, const P: usize>(
             right += usize::from(side == estimates.reported_contact);
         }
         // A landing: the first force beyond the band on the flank opposite to the last one. A planet that bumps about
-        // in the middle of the gap is none.
-        let at_flank = moment.gap * moment.sun_force > 0.0 && moment.gap.abs() > 0.45 * gap;
+        // before its neighbours have closed their gaps too is none.
+        let at_flank = moment.gap * moment.sun_force > 0.0 && moment.gap.abs() > 0.5 * gap - shift;
         if at_flank && moment.sun_force.abs() > 0.05 * rated_force && side != side_before {
             if side_before != ContactState::Separated {
                 missed += usize::from(landing.is_some());

@@ -48,8 +48,8 @@ const MEMORY: f64 = 100.0;
 /// Time outside the possible range after which the output encoder has failed [s]: longer than impacts ring.
 const FAILED_AFTER: f64 = 4e-3;
 
-/// Counts that an output encoder cannot fail to show in that time.
-const STUCK_COUNTS: f64 = 4.0;
+/// Counts by which an output encoder has turned for sure: noise flickers by less.
+const MOVED_COUNTS: f64 = 4.0;
 
 /// Tables of the observer.
 pub fn design_observer<T: Real>(
@@ -144,19 +144,20 @@ pub fn design_observer<T: Real>(
             still_per_speed: real(
                 2.0 * (2.2 * motor_harmonic + (output_harmonic + meshes * body.transmission_error) / body.ratio),
             ),
-            turning: real(3.0 * libm::sqrt(drive.quiet[1])),
+            per_turning: real(1.0 / (3.0 * libm::sqrt(drive.quiet[1]))),
             rate_deviation: real(libm::sqrt(
                 drive.quiet[1] * body.sun_lever.powi(2) + load.quiet[1] * body.output_lever.powi(2),
             )),
             lag: real(LAG * step),
             smoothing: real(-libm::expm1(-step / (1.5 * LEARNING_INTERVAL))),
             known_part: real(0.08),
-            efficiency: real(settings.efficiency),
-            per_efficiency: real(1.0 / settings.efficiency),
+            loss_driving: real(settings.efficiency - 1.0),
+            loss_driven: real(1.0 / settings.efficiency - 1.0),
         },
         learner: LearnerTable {
             periods: periods as u32,
             per_periods: real(1.0 / periods),
+            middle: periods as u32 / 2 + 1,
             block: block as u32,
             per_block: real(1.0 / block),
             span: real(periods * step),
@@ -172,7 +173,7 @@ pub fn design_observer<T: Real>(
             silent_after: (10e-3 / step) as u32,
             failed_after: (FAILED_AFTER / step) as u32,
             trusted_after: (0.3 / LEARNING_INTERVAL) as u32,
-            stuck_speed: real(STUCK_COUNTS * output_count * body.ratio / FAILED_AFTER),
+            moved: libm::ldexp(MOVED_COUNTS * output_count / TAU, 32) as u32,
             margin: real(0.1 * half_gap + 0.1 * body.compliance * rated_force),
             widest_part: real(0.1),
         },
@@ -197,6 +198,7 @@ fn counts<T: Real>(
     let encoder = |encoder: EncoderSettings, fastest: f64| EncoderTable {
         turn: encoder.counts_per_turn,
         wraps_at: encoder.wraps_at,
+        last: encoder.wraps_at.wrapping_sub(1),
         phase: (libm::ldexp(1.0, 64) / f64::from(encoder.counts_per_turn)) as u64,
         // Twice what the speed allows, and never more than what could not be told from the other way round.
         fastest: (libm::ceil(2.0 * fastest * step / TAU * f64::from(encoder.counts_per_turn)) as u32 + 2)
@@ -215,6 +217,7 @@ fn counts<T: Real>(
         output_weight: weights.output,
         modulus: weights.modulus,
         meshes: geometry.ring_teeth,
+        mesh_periods: T::from_f64(geometry.ring_teeth.into()),
         length: T::from_f64(unit * geometry.sun_base_radius),
     })
 }

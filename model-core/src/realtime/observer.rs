@@ -3,14 +3,14 @@
 //!
 //! The structure, front to back:
 //! 1. `counts` unwraps raw counts and forms motor less ratio times output in whole numbers: exact over any number of
-//!    turns and over wrap-around.
+//!    turns and over wrap-around. `places` knows what the encoders' and the gears' errors are there.
 //! 2. `drive_side`, a disturbance observer on the motor, gives the mesh force; `load_side`, the same on the link,
 //!    position, speed and load torque. Both are linear flows from tables.
 //! 3. `motion` tells crossing from rest without knowing the width; `bias` takes from open gaps what the motor's torque is
 //!    wrong by; `contact` decides which flank touches.
 //! 4. `learner` is one small recursive least squares, updated every few periods in settled contact, for half-backlash,
 //!    offset, compliance, skew and the encoders' error maps. `anchor` tells flanks without a force that stands out, and
-//!    `doubt` what no longer belongs to what was learnt.
+//!    `doubt` what no longer belongs to what was learnt. `interval` gives each period a part of that work.
 //! 5. `supervisor` watches the output encoder and falls back to the motor alone.
 //!
 //! `docs/observer.md` derives all of it and says what it cannot know.
@@ -23,6 +23,7 @@ mod counts;
 mod doubt;
 mod drive_side;
 mod estimates;
+mod follow;
 mod interval;
 mod knowledge;
 mod learner;
@@ -30,6 +31,8 @@ mod load_side;
 mod memory;
 mod motion;
 mod motor_only;
+mod places;
+mod present;
 mod probe;
 mod regressors;
 mod samples;
@@ -41,24 +44,24 @@ pub use memory::{MEMORY_BYTES, Memory, MemoryError};
 pub use probe::{Probe, Progress, Refusal};
 pub use samples::{Reading, Samples};
 
-use crate::mesh::ContactState;
 use crate::real::Real;
-use crate::realtime::phase::sine_cosine;
 use crate::tables::observer::ObserverTables;
 use anchor::Anchor;
 use bias::Bias;
 use block::Block;
-use contact::{ByForce, ByPosition};
-use counts::{Advance, Counts};
+use contact::ByForce;
+use counts::Counts;
 use doubt::Doubts;
 use drive_side::DriveSide;
 use interval::Interval;
 use knowledge::Knowledge;
-use learner::{Learner, Regressors};
+use learner::Learner;
 use load_side::LoadSide;
-use motion::{Motion, magnitude};
+use motion::Motion;
 use motor_only::Blind;
-use regressors::{COMPLIANCE, ERROR, HALF_GAP};
+use places::Places;
+use present::Now;
+use regressors::{COMPLIANCE, HALF_GAP};
 use supervisor::Supervisor;
 
 /// Parameters learnt when the encoders count as free of harmonics: half-gap, offset, compliance, skew, and sine and cosine
@@ -68,9 +71,6 @@ pub const PLAIN: usize = 6;
 /// Parameters learnt with the error maps: the plain ones, then sine and cosine once and twice a turn of the motor, once
 /// and twice a turn of the output.
 pub const MAPPED: usize = PLAIN + 8;
-
-/// Periods beyond which the age of a reading is not believed.
-const OLDEST: u32 = 64;
 
 /// The observer of one joint. `P` is [`PLAIN`] or [`MAPPED`].
 #[derive(Debug, Clone)]
@@ -83,7 +83,8 @@ pub struct Observer<'tables, T: Real, const P: usize> {
     by_force: ByForce,
     motion: Motion<T>,
     learner: Learner<T, P>,
-    interval: Interval<T, P>,
+    places: Places<T, P>,
+    interval: Interval<T>,
     block: Block<T, P>,
     anchor: Anchor<T, P>,
     doubts: Doubts,
@@ -94,31 +95,6 @@ pub struct Observer<'tables, T: Real, const P: usize> {
     /// Torque that the meshes put on the load side, by the motor side alone [N m].
     from_meshes: T,
     estimates: Estimates<T>,
-}
-
-/// What one period comes to before anything is decided.
-#[derive(Debug, Clone, Copy)]
-struct Now<T: Real, const P: usize> {
-    /// What the way depends on, teeth left out.
-    free: Regressors<T, P>,
-    /// Sine and cosine of the mesh phase.
-    mesh: [T; 2],
-    /// Transmission error [m].
-    shift: T,
-    /// Motor less ratio times link along the line of action, as measured [m].
-    raw: T,
-    /// The same with everything taken out that was learnt, wind-up left in [m].
-    way: T,
-    /// Rate of either [m/s].
-    rate: T,
-    /// Way that goes on while what is measured lags behind, where it is more than noise [m].
-    soon: T,
-    /// Force that the motor loses, friction and bias included [N].
-    lost: T,
-    /// Direction of the motor's dry friction.
-    direction: T,
-    /// Mesh force from the motor side [N].
-    force: T,
 }
 
 impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
@@ -139,6 +115,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
             motion: Motion::new(),
             knowledge: Knowledge::new(tables, &learner),
             learner,
+            places: Places::new(),
             interval: Interval::new(),
             block: Block::new(),
             anchor: Anchor::new(),
@@ -149,6 +126,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
             from_meshes: T::ZERO,
             estimates: Estimates::default(),
         };
+        observer.find_places();
         observer.say_learnt();
         observer
     }
@@ -167,6 +145,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         self.motion = Motion::new();
         self.learner = Learner::new(&tables.learner);
         self.knowledge = Knowledge::new(tables, &self.learner);
+        self.places = Places::new();
         self.interval = Interval::new();
         self.block = Block::new();
         self.anchor = Anchor::new();
@@ -176,6 +155,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         self.time = None;
         self.from_meshes = T::ZERO;
         self.estimates = Estimates::default();
+        self.find_places();
         self.say_learnt();
     }
 
@@ -185,8 +165,8 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         let now = self.now();
         self.decide(&now);
         self.watch(&now);
-        self.learn(&now);
         self.say(&now);
+        self.learn(&now);
         &self.estimates
     }
 
@@ -195,127 +175,8 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         &self.estimates
     }
 
-    /// Counts, motor side and load side go on by one period.
-    fn follow(&mut self, samples: &Samples<T>) {
-        let tables = self.tables;
-        let known = samples.torque.is_finite();
-        let command = if known { samples.torque } else { T::ZERO };
-        let taken = self.counts.take(&tables.counts, samples.motor, samples.output);
-        let [shortest, longest] = tables.period_ticks;
-        let lasted = self.time.map(|before| samples.time.wrapping_sub(before));
-        self.time = Some(samples.time);
-        self.estimates.notices = Notices {
-            torque_unknown: !known,
-            out_of_time: lasted.is_some_and(|ticks| !(shortest..=longest).contains(&ticks)),
-            motor_doubted: taken.motor == Advance::Doubted,
-            motor_jumped: matches!(taken.motor, Advance::Jumped(_)),
-        };
-        // A reading older than a few periods says little of now; one from the future nothing.
-        let age = |time: u32| {
-            let ticks = samples.time.wrapping_sub(time);
-            if ticks <= longest.saturating_mul(OLDEST) { T::from_i32(ticks as i32) * tables.tick } else { T::ZERO }
-        };
-
-        let motor_by = if let Advance::By(by) = taken.motor { by } else { 0 };
-        self.drive.predict(&tables.drive, &tables.current, command, tables.counts.motor.angle * T::from_i32(motor_by));
-        match taken.motor {
-            Advance::By(_) => self.drive.correct(&tables.drive, age(samples.motor.time)),
-            Advance::Began => self.drive.ahead = T::ZERO,
-            Advance::Jumped(_) => {
-                self.drive.ahead = T::ZERO;
-                self.learner.reopen();
-            }
-            Advance::Doubted => {}
-        }
-
-        self.load.predict(&tables.load, self.from_meshes, tables.counts.output.angle * T::from_i32(taken.turned));
-        if self.supervisor.hear(taken.output) {
-            self.load.ahead = T::ZERO;
-        }
-        let both = self.supervisor.source() == Source::Both;
-        if let (true, Some(reading), Some(Advance::By(_))) = (both, samples.output, taken.output) {
-            let surprise = self.load.speed * age(reading.time) - self.load.ahead;
-            self.load.correct(&tables.load.gain, surprise);
-        }
-    }
-
-    /// Puts the two sides together.
-    fn now(&self) -> Now<T, P> {
-        let tables = self.tables;
-        let levers = &tables.levers;
-        let (output, difference) = self.counts.used();
-        let motor_phase = self.counts.motor.phase(&tables.counts.motor);
-        let both = self.supervisor.source() == Source::Both;
-        let link_speed = if both { self.load.speed } else { T::ZERO };
-        let free = regressors::free(link_speed, motor_phase, both.then(|| output.phase(&tables.counts.output)));
-        let (sine, cosine) = sine_cosine(output.phase(&tables.counts.output).wrapping_mul(tables.counts.meshes));
-        let shift = self.error(&[sine, cosine]);
-        let raw =
-            tables.counts.length * small(difference) + levers.sun * self.drive.ahead - levers.output * self.load.ahead;
-        let lost = self.drive.taken * levers.per_sun;
-        let direction = Bias::direction(&tables.contact, self.drive.speed);
-        let net = lost - self.bias.at(direction);
-        // Losses in proportion to the load are friction too: they take from what drives and add to what holds back.
-        let gain = if net * direction > T::ZERO { tables.contact.efficiency } else { tables.contact.per_efficiency };
-        let force = net + net * magnitude(direction) * (gain - T::ONE);
-        let rate = levers.sun * self.drive.speed - levers.output * self.load.speed;
-        let soon = if magnitude(rate) > tables.contact.rate_deviation { rate * tables.contact.lag } else { T::ZERO };
-        Now {
-            free,
-            mesh: [sine, cosine],
-            shift,
-            raw,
-            rate,
-            soon,
-            way: raw - self.learner.way(&free),
-            lost,
-            direction,
-            force,
-        }
-    }
-
-    /// Contact, and what the meshes pass on.
-    fn decide(&mut self, now: &Now<T, P>) {
-        let tables = self.tables;
-        let known = &self.knowledge;
-        self.estimates.contact = self.by_force.step(now.force, known.force_deviation);
-        let mut force = now.force;
-        self.estimates.reported_contact = if known.width_serves && self.supervisor.source() == Source::Both {
-            let before = self.estimates.reported_contact;
-            let (contact, both) =
-                self.by_position(now.way, now.soon, now.shift).reported(before, force, known.both_deviation);
-            force = both;
-            contact
-        } else if self.supervisor.source() == Source::Both {
-            self.estimates.contact
-        } else {
-            self.contact_unseen(now)
-        };
-        let touching = self.estimates.reported_contact != ContactState::Separated;
-        let torque = |force: T| if touching { force * tables.levers.output } else { T::ZERO };
-        self.from_meshes = torque(now.force);
-        self.estimates.mesh_torque.value = torque(force);
-    }
-
-    /// What a way says of the teeth.
-    fn by_position(&self, way: T, soon: T, shift: T) -> ByPosition<T> {
-        let [half_gap, compliance] = self.shape();
-        let known = &self.knowledge;
-        ByPosition { way, soon, shift, half_gap, blur: known.blur, compliance, weight: known.position_weight }
-    }
-
     /// Half-gap [m] and compliance [m/N] as learnt so far.
     fn shape(&self) -> [T; 2] {
         [self.learner.value(HALF_GAP), self.learner.value(COMPLIANCE)]
     }
-
-    /// Transmission error at a mesh phase [m].
-    fn error(&self, mesh: &[T; 2]) -> T {
-        mesh[0] * self.learner.value(ERROR) + mesh[1] * self.learner.value(ERROR + 1)
-    }
-}
-
-/// A difference of counts, which teeth keep small, as a number: wide whole numbers take a chip without them long to turn.
-fn small<T: Real>(difference: i64) -> T {
-    T::from_i32(difference.clamp(i32::MIN.into(), i32::MAX.into()) as i32)
 }

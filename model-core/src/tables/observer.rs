@@ -8,6 +8,7 @@ pub const MOST_PARAMETERS: usize = 14;
 
 /// Commands that may be on their way to the motor.
 pub const MOST_DELAY: usize = 4;
+const _: () = assert!(MOST_DELAY.is_power_of_two());
 
 /// Tables of the observer of one joint with its encoders at one control rate.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,6 +48,8 @@ pub struct EncoderTable<T: Real> {
     pub turn: u32,
     /// Raw counts are modulo this; 0 stands for 2^32.
     pub wraps_at: u32,
+    /// The largest raw count.
+    pub last: u32,
     /// 2^64 over the counts in a turn, from which a place in the turn becomes a phase.
     pub phase: u64,
     /// Counts in a control period beyond which a reading is not believed.
@@ -78,6 +81,8 @@ pub struct CountTable<T: Real> {
     pub modulus: i64,
     /// Mesh periods in a turn of the output: teeth of the ring.
     pub meshes: u32,
+    /// The same as a number.
+    pub mesh_periods: T,
     /// Way along the line of action in a unit of the difference [m].
     pub length: T,
 }
@@ -171,14 +176,14 @@ pub struct ContactTable<T: Real> {
     pub still: T,
     /// Likewise for each radian that the motor turns while the error maps are unknown [m/rad].
     pub still_per_speed: T,
-    /// Motor speed above which dry friction has its full size [rad/s].
-    pub turning: T,
+    /// 1 over the motor speed above which dry friction has its full size [s/rad].
+    pub per_turning: T,
     /// Positions decide about contact once an edge is known to this part of the half-gap [-].
     pub known_part: T,
-    /// Mechanical efficiency while the motor drives.
-    pub efficiency: T,
-    /// 1 over it.
-    pub per_efficiency: T,
+    /// Part of the torque that the gears add while the motor drives: efficiency less one [-].
+    pub loss_driving: T,
+    /// The same while it is driven [-].
+    pub loss_driven: T,
 }
 
 /// What is learnt: way = side * half-gap + offset + compliance * force + skew * speed + error maps.
@@ -188,6 +193,8 @@ pub struct LearnerTable<T: Real> {
     pub periods: u32,
     /// 1 over them.
     pub per_periods: T,
+    /// The period in their middle, from 1.
+    pub middle: u32,
     /// Intervals that make up one way to learn from.
     pub block: u32,
     /// 1 over them.
@@ -219,8 +226,8 @@ pub struct SupervisorTable<T: Real> {
     pub failed_after: u32,
     /// Learning intervals in a row in settled contact within the range after which it is taken back.
     pub trusted_after: u32,
-    /// Motor speed at which an output that does not move has failed [rad/s].
-    pub stuck_speed: T,
+    /// Angle by which an output has turned for sure [2^-32 turns].
+    pub moved: u32,
     /// Distance beyond the possible range that dynamics alone can bring [m].
     pub margin: T,
     /// Estimates of the gap are given out up to this standard deviation, as a part of the gap 4b [-].

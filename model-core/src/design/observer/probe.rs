@@ -51,7 +51,7 @@ pub fn design_probe<T: Real>(
         torque: real(0.5 * torque),
         rise: real(-libm::expm1(-step / RISE)),
         damping: real(body.motor_inertia * DAMPING),
-        moving: real((2.0 * tables.contact.turning).max(count / body.sun_lever / STILL)),
+        moving: real((2.0 / tables.contact.per_turning).max(count / body.sun_lever / STILL)),
         loaded: real(0.5 * torque * body.ratio),
         furthest: real((widest + 4.0 * wind_up) / body.sun_lever),
         longest: periods(LONGEST),

@@ -12,7 +12,7 @@ use crate::tables::observer::{CurrentTable, DriveTable};
 
 /// Time in which the load torque may change by as much as the motor can hold [s]. Friction that turns round and
 /// collisions are faster, gravity slower; a filter for this follows the first with a lag of a few milliseconds.
-const LOAD_CHANGE: f64 = 2.0;
+const LOAD_CHANGE: f64 = 3.0;
 
 /// Shortest half swing that the motor side follows [control periods].
 const FASTEST_SWING: f64 = 20.0;

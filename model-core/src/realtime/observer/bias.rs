@@ -23,8 +23,7 @@ impl<T: Real> Bias<T> {
 
     /// Direction of dry friction at a motor speed: from -1 to 1, in proportion where noise hides the sign.
     pub fn direction(table: &ContactTable<T>, speed: T) -> T {
-        let part = speed.over(table.turning);
-        clamp(part, T::ONE)
+        clamp(speed * table.per_turning, T::ONE)
     }
 
     /// Force that is none, for a direction.

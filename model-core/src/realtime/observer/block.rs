@@ -69,18 +69,13 @@ impl<T: Real, const P: usize> Block<T, P> {
         *self = Self { forces: self.forces, touch: Touch { side, ..Touch::default() }, ..Self::new() };
     }
 
-    /// Adds an interval; gives regressors and way when enough have passed on one side.
-    pub fn add(
-        &mut self,
-        mean: &Settled<'_, T, P>,
-        side: Option<T>,
-        table: &LearnerTable<T>,
-    ) -> Option<(Regressors<T, P>, T)> {
+    /// Adds an interval; true when enough have passed on one side.
+    pub fn add(&mut self, mean: &Settled<'_, T, P>, side: Option<T>, table: &LearnerTable<T>) -> bool {
         let Some(side) = side else {
             self.clear(T::ZERO);
-            return None;
+            return false;
         };
-        if side != self.touch.side {
+        if side != self.touch.side || self.intervals >= table.block {
             self.clear(side);
         }
         let free = self.free.iter_mut().zip(mean.free);
@@ -91,13 +86,26 @@ impl<T: Real, const P: usize> Block<T, P> {
         self.touch.force += mean.force * table.per_block;
         self.intervals += 1;
         if self.intervals < table.block {
-            return None;
+            return false;
         }
         let [back, drive] = &mut self.forces;
         let forces = if side > T::ZERO { drive } else { back };
         self.touch.force = forces.calibrated(self.touch.force, table.force_noise);
-        let full = (self.touch.on(&self.free), self.raw);
-        self.clear(side);
-        Some(full)
+        true
+    }
+
+    /// Regressors and way of a full one.
+    pub fn full(&self) -> (Regressors<T, P>, T) {
+        (self.touch.on(&self.free), self.raw)
+    }
+
+    /// Side of a full one; 0 for unknown.
+    pub fn side(&self) -> T {
+        self.touch.side
+    }
+
+    /// Tells the side of a full one.
+    pub fn tell(&mut self, side: T) {
+        self.touch.side = side;
     }
 }

@@ -1,6 +1,7 @@
 //! Which flank touches: from the mesh force alone, with hysteresis and persistence, and from force and gap coordinate
 //! together. What is made of it is left to the observer.
 
+use super::motion::magnitude;
 use crate::mesh::ContactState;
 use crate::real::Real;
 
@@ -44,18 +45,18 @@ pub(super) fn with_hysteresis<T: Real>(state: ContactState, force: T, on: T, off
 /// What the position says of the teeth, once the width is known well enough.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ByPosition<T: Real> {
-    /// Gap coordinate with the wind-up still in it [m].
+    /// Gap coordinate less the transmission error, with the wind-up still in it [m].
     pub way: T,
     /// How far it goes on while what is measured lags behind; zero where that is within noise [m].
     pub soon: T,
     /// Half-gap [m].
     pub half_gap: T,
-    /// Transmission error: by how much both edges are shifted [m].
-    pub shift: T,
     /// Distance from an edge that noise and ignorance can make [m].
     pub blur: T,
-    /// Compliance as way per force [m/N].
-    pub compliance: T,
+    /// Distance from an edge within which light contact is taken for granted [m].
+    pub near: T,
+    /// 1 over the compliance [N/m].
+    pub stiffness: T,
     /// Weight of the position in the force beside the motor side's.
     pub weight: T,
 }
@@ -63,49 +64,61 @@ pub(super) struct ByPosition<T: Real> {
 impl<T: Real> ByPosition<T> {
     /// Contact and mesh force, from the motor side's force and the standard deviation of both together.
     pub fn contact(&self, before: ContactState, force: T, deviation: T) -> (ContactState, T) {
-        let way = self.way - self.shift;
-        let side = if way < T::ZERO { -T::ONE } else { T::ONE };
-        let beyond = side * way - self.half_gap;
-        let both = force + self.weight * (side * beyond.over(self.compliance) - force);
-        // Teeth about to meet count as met: what is measured lags behind them by that much.
-        let lands = side * self.soon > T::ZERO && beyond + side * self.soon > T::ZERO;
-        let flank = if side > T::ZERO { ContactState::DriveSide } else { ContactState::BackSide };
-        let contact = if lands && (before == flank || before == ContactState::Separated) {
-            flank
-        } else if beyond < -self.blur {
-            ContactState::Separated
-        } else {
-            with_hysteresis(before, both, T::TWO * deviation, deviation)
-        };
+        let (contact, both, _) = self.all(before, force, deviation);
         (contact, both)
     }
 
     /// The same for a controller: teeth that rest within noise of a flank are reported as touching it, however light
-    /// their force, unless it pulls them off. Nothing can be learnt from that, but nothing would be done otherwise.
-    pub fn reported(&self, before: ContactState, force: T, deviation: T) -> (ContactState, T) {
-        let (contact, both) = self.contact(before, force, deviation);
-        let way = self.way - self.shift;
-        let (side, flank) =
-            if way < T::ZERO { (-T::ONE, ContactState::BackSide) } else { (T::ONE, ContactState::DriveSide) };
-        let band = T::TWO * T::TWENTIETH * self.half_gap;
-        let near = if self.blur < band { self.blur } else { band };
-        let rests = side * way - self.half_gap > -near && side * both > -deviation;
-        (if contact == ContactState::Separated && rests { flank } else { contact }, both)
+    /// their force, unless the motor side's, whose standard deviation is `alone`, pulls them off. Nothing can be learnt
+    /// from that, but nothing would be done otherwise.
+    pub fn reported(&self, before: ContactState, force: T, alone: T, deviation: T) -> (ContactState, T) {
+        let (contact, both, beyond) = self.all(before, force, deviation);
+        if contact != ContactState::Separated {
+            return (contact, both);
+        }
+        let drives = self.way > T::ZERO;
+        let pulled = if drives { -force } else { force };
+        // On their way the teeth are at the flank in a moment, or off it: that is seen as soon as it happens.
+        let rests = self.soon == T::ZERO && beyond > -self.near && pulled < alone;
+        (if rests { flank(drives) } else { contact }, both)
     }
 
-    /// Gap coordinate with the wind-up taken out: beyond an edge only the meshes' own compliance is left. Needs no
-    /// force.
-    pub fn gap(&self, mesh_compliance: T) -> T {
-        let share = mesh_compliance.over(self.compliance);
-        let (upper, lower) = (self.shift + self.half_gap, self.shift - self.half_gap);
-        if self.way > upper {
-            upper + share * (self.way - upper)
-        } else if self.way < lower {
-            lower + share * (self.way - lower)
+    /// Contact, force, and way beyond the nearer edge.
+    fn all(&self, before: ContactState, force: T, deviation: T) -> (ContactState, T, T) {
+        let beyond = magnitude(self.way) - self.half_gap;
+        let drives = self.way > T::ZERO;
+        let (bent, soon) = if drives { (beyond, self.soon) } else { (-beyond, -self.soon) };
+        let both = force + self.weight * (bent * self.stiffness - force);
+        // Teeth about to meet count as met: what is measured lags behind them by that much.
+        let lands = soon > T::ZERO && beyond + soon > T::ZERO;
+        let contact = if lands && (before == flank(drives) || before == ContactState::Separated) {
+            flank(drives)
+        } else if beyond < -self.blur {
+            ContactState::Separated
         } else {
+            // Whatever the force: teeth at one flank do not touch the other.
+            let felt = with_hysteresis(before, both, T::TWO * deviation, deviation);
+            if felt == flank(drives) { felt } else { ContactState::Separated }
+        };
+        (contact, both, beyond)
+    }
+
+    /// Gap coordinate less the transmission error, with the wind-up taken out: beyond an edge only the part of the
+    /// compliance is left that the meshes have. Needs no force.
+    pub fn gap(&self, mesh_share: T) -> T {
+        let beyond = magnitude(self.way) - self.half_gap;
+        if beyond < T::ZERO {
             self.way
+        } else {
+            let gap = self.half_gap + mesh_share * beyond;
+            if self.way > T::ZERO { gap } else { -gap }
         }
     }
+}
+
+/// The flank on a side.
+fn flank(drives: bool) -> ContactState {
+    if drives { ContactState::DriveSide } else { ContactState::BackSide }
 }
 
 /// Sign of a contact: 1, 0 or -1.

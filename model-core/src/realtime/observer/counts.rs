@@ -32,24 +32,34 @@ pub(super) enum Advance {
 }
 
 impl Counter {
+    #[inline]
     pub fn take<T: Real>(&mut self, table: &EncoderTable<T>, raw: u32) -> Advance {
+        // Raw counts outside their range are brought into it.
+        let raw = if raw > table.last { raw.checked_rem(table.wraps_at).unwrap_or(raw) } else { raw };
+        let by = difference(raw, self.raw, table);
+        if !self.began || by.unsigned_abs() > table.fastest {
+            return self.take_odd(table, raw, by);
+        }
+        self.move_to(table, raw, by);
+        Advance::By(by)
+    }
+
+    /// The first reading, or one that is far away.
+    #[cold]
+    fn take_odd<T: Real>(&mut self, table: &EncoderTable<T>, raw: u32, by: i32) -> Advance {
         if !self.began {
             self.began = true;
             self.raw = raw;
             self.place = raw.checked_rem(table.turn).unwrap_or(0);
             return Advance::Began;
         }
-        let by = difference(raw, self.raw, table.wraps_at);
-        if by.unsigned_abs() > table.fastest.saturating_mul(u32::from(self.doubted) + 1) {
-            if self.doubted < PATIENCE {
-                self.doubted += 1;
-                return Advance::Doubted;
-            }
-            self.move_to(table, raw, by);
-            return Advance::Jumped(by);
+        let within = by.unsigned_abs() <= table.fastest.saturating_mul(u32::from(self.doubted) + 1);
+        if !within && self.doubted < PATIENCE {
+            self.doubted += 1;
+            return Advance::Doubted;
         }
         self.move_to(table, raw, by);
-        Advance::By(by)
+        if within { Advance::By(by) } else { Advance::Jumped(by) }
     }
 
     fn move_to<T: Real>(&mut self, table: &EncoderTable<T>, raw: u32, by: i32) {
@@ -60,15 +70,23 @@ impl Counter {
 
     /// Goes on by so many counts.
     fn advance<T: Real>(&mut self, table: &EncoderTable<T>, by: i32) {
-        let turn = i64::from(table.turn);
-        let mut place = i64::from(self.place) + i64::from(by);
-        // The division is for the few periods in which a turn ends.
-        if place >= turn || place < 0 {
-            let turns = place.checked_div_euclid(turn).unwrap_or(0);
-            place -= turns * turn;
-            self.turns = self.turns.wrapping_add(turns as i32);
+        let place = self.place.wrapping_add(by as u32);
+        // Places before the turn's beginning are huge here.
+        if place < table.turn {
+            self.place = place;
+        } else {
+            self.turn(table, by);
         }
-        self.place = place as u32;
+    }
+
+    /// Goes on by so many counts into another turn.
+    #[cold]
+    fn turn<T: Real>(&mut self, table: &EncoderTable<T>, by: i32) {
+        let turn = i64::from(table.turn);
+        let place = i64::from(self.place) + i64::from(by);
+        let turns = place.checked_div_euclid(turn).unwrap_or(0);
+        self.place = (place - turns * turn) as u32;
+        self.turns = self.turns.wrapping_add(turns as i32);
     }
 
     /// Place within the turn in 2^-32 turns.
@@ -87,23 +105,11 @@ impl Counter {
     }
 }
 
-/// From `before` to `now` the shorter way round.
-fn difference(now: u32, before: u32, wraps_at: u32) -> i32 {
-    let by = now.wrapping_sub(before);
-    if wraps_at == 0 {
-        return by as i32;
-    }
-    // Raw counts outside their range are brought into it.
-    let by = i64::from(now % wraps_at) - i64::from(before % wraps_at);
-    let (half, range) = (i64::from(wraps_at / 2), i64::from(wraps_at));
-    let by = if by > half {
-        by - range
-    } else if by < -half {
-        by + range
-    } else {
-        by
-    };
-    by as i32
+/// From `before` to `now` the shorter way round; both within their range.
+fn difference<T: Real>(now: u32, before: u32, table: &EncoderTable<T>) -> i32 {
+    let up = now.wrapping_sub(before);
+    let up = if now < before { up.wrapping_add(table.wraps_at) } else { up };
+    (if up > table.last / 2 { up.wrapping_sub(table.wraps_at) } else { up }) as i32
 }
 
 /// Both shafts, and the output as the motor implies it while its encoder is not trusted.
@@ -135,42 +141,45 @@ pub(super) struct Taken {
 
 impl Counts {
     pub fn take<T: Real>(&mut self, table: &CountTable<T>, motor: Reading, output: Option<Reading>) -> Taken {
-        let began_before = self.output.began;
+        let begins = !self.output.began;
         let motor = self.motor.take(&table.motor, motor.counts);
         let by = if let Advance::By(by) = motor { i64::from(by).wrapping_mul(table.motor_weight) } else { 0 };
-        self.difference = self.difference.wrapping_add(by);
-        let fresh = output.filter(|reading| table.has_output && !(began_before && reading.time == self.fresh_time));
+        let fresh = output.filter(|reading| table.has_output && (begins || reading.time != self.fresh_time));
         let output = fresh.map(|reading| {
             self.fresh_time = reading.time;
-            let advance = self.output.take(&table.output, reading.counts);
-            if let Advance::By(by) | Advance::Jumped(by) = advance {
-                self.difference = self.difference.wrapping_sub(i64::from(by).wrapping_mul(table.output_weight));
-            }
-            advance
+            self.output.take(&table.output, reading.counts)
         });
-        if !began_before && self.output.began {
-            let absolute = i64::from(self.motor.place)
-                .wrapping_mul(table.motor_weight)
-                .wrapping_sub(i64::from(self.output.place).wrapping_mul(table.output_weight));
-            let reference =
-                core::mem::replace(&mut self.start, absolute.checked_rem_euclid(table.modulus).unwrap_or(0));
-            self.difference = 0;
-            if self.referred {
-                self.refer_to(reference, table);
-            }
+        let turned = if let Some(Advance::By(by) | Advance::Jumped(by)) = output { by } else { 0 };
+        self.difference =
+            self.difference.wrapping_add(by).wrapping_sub(i64::from(turned).wrapping_mul(table.output_weight));
+        if begins && self.output.began {
+            self.begin(table);
         }
-        let turned = match (&mut self.implied, output) {
-            (Some((implied, rest)), _) => {
-                let sum = rest.wrapping_add(by);
-                let counts = sum.checked_div(table.output_weight).unwrap_or(0);
-                *rest = sum.wrapping_sub(counts.wrapping_mul(table.output_weight));
-                implied.advance(&table.output, counts as i32);
-                counts as i32
-            }
-            (None, Some(Advance::By(by) | Advance::Jumped(by))) => by,
-            (None, _) => 0,
-        };
+        let turned = if self.implied.is_some() { self.follow(table, by) } else { turned };
         Taken { motor, output, turned }
+    }
+
+    /// Both encoders are there for the first time.
+    #[cold]
+    fn begin<T: Real>(&mut self, table: &CountTable<T>) {
+        let absolute = i64::from(self.motor.place)
+            .wrapping_mul(table.motor_weight)
+            .wrapping_sub(i64::from(self.output.place).wrapping_mul(table.output_weight));
+        let reference = core::mem::replace(&mut self.start, absolute.checked_rem_euclid(table.modulus).unwrap_or(0));
+        self.difference = 0;
+        if self.referred {
+            self.refer_to(reference, table);
+        }
+    }
+
+    /// Lets the implied output follow the motor; by how many counts it did.
+    fn follow<T: Real>(&mut self, table: &CountTable<T>, by: i64) -> i32 {
+        let Some((implied, rest)) = &mut self.implied else { return 0 };
+        let sum = rest.wrapping_add(by);
+        let counts = sum.checked_div(table.output_weight).unwrap_or(0);
+        *rest = sum.wrapping_sub(counts.wrapping_mul(table.output_weight));
+        implied.advance(&table.output, counts as i32);
+        counts as i32
     }
 
     /// Counts the difference from where the encoders' zeros were before, as far as whole turns leave that open.

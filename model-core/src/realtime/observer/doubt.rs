@@ -3,9 +3,7 @@
 
 use super::Observer;
 use super::interval::rests;
-use super::learner::Regressors;
 use super::motion::{Shown, magnitude};
-use super::regressors::HALF_GAP;
 use crate::real::Real;
 
 /// Surprise, in standard deviations, that does not belong to the model.
@@ -68,52 +66,47 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         }
     }
 
-    /// Learns from teeth at rest, if it is known on which flank: by force, or by how they came there.
-    pub(super) fn take_rest(&mut self, regressors: &Regressors<T, P>, way: T) {
-        let [told, ..] = regressors.as_slice() else { return };
-        let told = *told;
+    /// On which flank teeth came to rest: by force, or by how they came there. True if it is known.
+    pub(super) fn tell_flank(&mut self) -> bool {
         let tables = self.tables;
-        let lever = tables.levers.output;
+        let (regressors, way) = self.block.full();
+        let told = self.block.side();
         let side = if told == T::ZERO {
-            self.anchor.side(&tables.learner, &self.learner, regressors, way, lever)
+            let side = self.anchor.side(&tables.learner, &self.learner, &regressors, way, tables.levers.output);
+            // Teeth also turn round inside the gap, for a moment at rest: then they carry nothing.
+            if side * self.interval.steady > self.knowledge.steady_force_deviation { side } else { T::ZERO }
         } else {
             told
         };
-        self.anchor.put(regressors, way, side);
-        if side != T::ZERO {
-            let mut regressors = *regressors;
-            if let Some(half_gap) = regressors.get_mut(HALF_GAP) {
-                *half_gap = side;
-            }
-            self.take_way(&regressors, way);
-        }
+        self.anchor.put(&regressors, way, side);
+        self.block.tell(side);
+        side != T::ZERO
     }
 
     /// Takes a way in settled contact into the learner, unless it does not belong to the model.
-    fn take_way(&mut self, regressors: &Regressors<T, P>, way: T) {
+    pub(super) fn take_rest(&mut self) {
         let table = &self.tables.learner;
         let [half_gap, _] = self.shape();
-        let worth = half_gap * self.tables.contact.known_part;
-        let surprise = way - self.learner.way(regressors);
-        let variance = self.learner.variance(table, regressors) + table.noise * table.noise;
-        if surprise * surprise > T::from_i32(GATE * GATE) * variance {
+        let (regressors, way) = self.block.full();
+        let weighed = self.learner.weigh(table, &regressors, way);
+        if weighed.surprise * weighed.surprise > T::from_i32(GATE * GATE) * weighed.expected {
             self.doubts.surprises += 1;
+            let worth = half_gap * self.tables.contact.known_part;
             if self.doubts.surprises >= TOO_MANY {
                 self.doubts.surprises = 0;
                 self.learner.reopen();
-            } else if self.doubts.surprises == FEW && magnitude(surprise) > worth {
+            } else if self.doubts.surprises == FEW && magnitude(weighed.surprise) * table.noise > worth {
                 self.doubt();
             }
             return;
         }
         self.doubts.surprises = 0;
-        let drives = regressors.first().is_some_and(|side| *side > T::ZERO);
         let [back, drive] = &mut self.doubts.trusted;
-        let trusted = if drives { &mut *drive } else { &mut *back };
+        let trusted = if self.block.side() > T::ZERO { &mut *drive } else { &mut *back };
         *trusted = trusted.saturating_add(1);
         if (*back).min(*drive) > TRUSTED {
             self.doubts.doubted = 0;
         }
-        self.learner.learn(table, regressors, way);
+        self.places.relearn(&mut self.learner, |learner| learner.learn(table, &weighed));
     }
 }

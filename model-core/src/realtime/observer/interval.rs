@@ -1,12 +1,11 @@
-//! Learning interval by interval: means over a few periods, what they show, and what is made of it. The learning itself
-//! is left to `learner` and `bias`.
+//! Learning interval by interval: means over a few periods, what they show, and what is made of it, a part a period so that
+//! no period has to do it all. The learning itself is left to `learner` and `bias`.
 
 use super::block::Settled;
 use super::contact::sign;
-use super::learner::Regressors;
 use super::motion::{Shown, magnitude};
 use super::regressors::{OFFSET, Touch};
-use super::{Now, Observer, Source};
+use super::{Now, Observer};
 use crate::mesh::ContactState;
 use crate::real::Real;
 
@@ -17,17 +16,33 @@ const SETTLED_AFTER: u32 = 3;
 /// Intervals well inside the gap after which the mesh force counts as gone from the motor side's estimate.
 const OPEN_AFTER: u32 = 3;
 
-/// Sums over the periods of an interval.
+/// What of an interval's work is next: each period does a part of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Part {
+    /// Nothing is left.
+    Done,
+    /// On which flank the teeth came to rest.
+    Tell,
+    /// Learning it, if it belongs to what was learnt.
+    Learn,
+    /// How much is known now.
+    Know,
+    /// Saying it.
+    Say,
+}
+
+/// Sums over the periods of an interval, and what lasts longer.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Interval<T: Real, const P: usize> {
+pub(super) struct Interval<T: Real> {
     periods: u32,
-    free: Regressors<T, P>,
-    mesh: [T; 2],
-    raw: T,
-    lost: T,
-    force: T,
+    sums: Mean<T>,
+    part: Part,
+    /// Direction of the motor's dry friction, mean over the last interval.
     direction: T,
-    speed: T,
+    /// Nearer side of the gap then.
+    nearer: T,
+    /// Side of the last rest that was learnt from.
+    learnt_side: T,
     /// Side on which contact settled last, unless the teeth have left it since.
     side: T,
     /// Mesh force over a few intervals [N].
@@ -36,81 +51,97 @@ pub(super) struct Interval<T: Real, const P: usize> {
     open_for: u32,
 }
 
-impl<T: Real, const P: usize> Interval<T, P> {
+/// What is averaged.
+#[derive(Debug, Clone, Copy)]
+struct Mean<T: Real> {
+    raw: T,
+    lost: T,
+    force: T,
+    direction: T,
+}
+
+impl<T: Real> Mean<T> {
+    const NONE: Self = Self { raw: T::ZERO, lost: T::ZERO, force: T::ZERO, direction: T::ZERO };
+}
+
+impl<T: Real> Interval<T> {
     pub fn new() -> Self {
         Self {
             periods: 0,
-            free: [T::ZERO; P],
-            mesh: [T::ZERO; 2],
-            raw: T::ZERO,
-            lost: T::ZERO,
-            force: T::ZERO,
+            sums: Mean::NONE,
+            part: Part::Done,
             direction: T::ZERO,
-            speed: T::ZERO,
+            nearer: T::ONE,
+            learnt_side: T::ZERO,
             side: T::ZERO,
             steady: T::ZERO,
             open_for: 0,
         }
     }
 
-    /// Adds a period; true when the interval is full.
-    fn add(&mut self, now: &Now<T, P>, speed: T, periods: u32) -> bool {
-        for (sum, value) in self.free.iter_mut().zip(&now.free) {
-            *sum += *value;
-        }
-        for (sum, value) in self.mesh.iter_mut().zip(&now.mesh) {
-            *sum += *value;
-        }
-        self.raw += now.raw;
-        self.lost += now.lost;
-        self.force += now.force;
-        self.direction += now.direction;
-        self.speed += speed;
+    fn add(&mut self, now: &Now<T>) {
+        self.sums.raw += now.raw;
+        self.sums.lost += now.lost;
+        self.sums.force += now.force;
+        self.sums.direction += now.direction;
         self.periods += 1;
-        self.periods >= periods
     }
 
     /// Sums become means.
-    fn close(&mut self, per_periods: T) -> Self {
-        let mut mean = *self;
-        mean.free.iter_mut().chain(&mut mean.mesh).for_each(|sum| *sum *= per_periods);
-        for sum in [&mut mean.raw, &mut mean.lost, &mut mean.force, &mut mean.direction, &mut mean.speed] {
-            *sum *= per_periods;
+    fn close(&mut self, per_periods: T) -> Mean<T> {
+        let Mean { raw, lost, force, direction } = core::mem::replace(&mut self.sums, Mean::NONE);
+        self.periods = 0;
+        Mean {
+            raw: raw * per_periods,
+            lost: lost * per_periods,
+            force: force * per_periods,
+            direction: direction * per_periods,
         }
-        *self = Self { side: self.side, steady: self.steady, open_for: self.open_for, ..Self::new() };
-        mean
     }
 }
 
 impl<T: Real, const P: usize> Observer<'_, T, P> {
-    /// Adds the period to the interval and learns at its end.
-    pub(super) fn learn(&mut self, now: &Now<T, P>) {
-        let tables = self.tables;
-        if !self.interval.add(now, self.drive.speed, tables.learner.periods) {
-            return;
+    /// Adds the period to the interval, and does a part of what the last one gave to do.
+    pub(super) fn learn(&mut self, now: &Now<T>) {
+        let table = &self.tables.learner;
+        self.interval.add(now);
+        if self.interval.periods == table.middle {
+            // Where few periods make an interval, the rest of the last one's work is due now.
+            while self.interval.part != Part::Done {
+                self.go_on_learning();
+            }
+            self.keep_places();
+        } else if self.interval.part != Part::Done {
+            self.go_on_learning();
         }
+        if self.interval.periods >= table.periods {
+            self.close_interval();
+        }
+    }
+
+    /// What the interval showed.
+    fn close_interval(&mut self) {
+        let tables = self.tables;
         let mean = self.interval.close(tables.learner.per_periods);
-        let way = mean.raw - self.learner.way(&mean.free);
+        let (free, mesh) = (self.places.free, self.places.mesh_then);
+        let way = mean.raw - self.learner.way(&free);
         let [_, compliance] = self.shape();
         let unmapped = if self.knowledge.width_is_known { T::EIGHTH } else { T::ONE };
-        let turned = magnitude(mean.speed) * tables.learner.span;
+        let turned = magnitude(self.drive.speed) * tables.learner.span;
         let blur = tables.contact.still_per_speed * unmapped * turned;
         let less_wind_up = way - compliance * mean.force;
-        let [_, _, compliance_variance, _] = self.knowledge.variances;
-        let softness = T::TWO * compliance_variance.square_root();
         let read = (mean.lost, mean.direction);
-        let shown = self.motion.step(&tables.contact, less_wind_up, read, blur, softness);
-        self.interval.steady += (mean.force - self.interval.steady) * T::HALF * T::HALF;
-        let shift = self.error(&mean.mesh);
+        let shown = self.motion.step(&tables.contact, less_wind_up, read, blur, self.knowledge.softness);
+        self.interval.steady += (mean.force - self.interval.steady) * T::QUARTER;
+        let shift = self.error(&mesh);
         let side = self.settled_side(&mean, way, shift, shown);
-        if self.supervisor.source() == Source::Both {
+        if self.supervisor.sees_both() {
             self.supervisor.remember(self.load.torque);
         } else {
-            self.reconsider(side, &mean.mesh, mean.force);
+            self.reconsider(side, &mesh, mean.force);
         }
         self.take_bias(&mean, way - shift, shown);
         self.bias.age(&tables.contact);
-        self.learner.forget(tables.learner.forgetting);
         self.interval.side = match (side, shown) {
             (Some(side), _) => side,
             (None, Shown::Crossing(..)) => T::ZERO,
@@ -118,34 +149,72 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         };
         self.knowledge.settled = side.is_some();
         self.contradict(way - shift, shown);
-        let settled = Settled { free: &mean.free, mesh: &mean.mesh, raw: mean.raw, force: mean.force };
         // Teeth at rest are on a flank while the motor turns, even if no force says on which.
         let [half_gap, _] = self.shape();
         let told_by_way = rests(shown) && !self.knowledge.width_is_known && self.motion.is_sharp(half_gap);
         let unknown = told_by_way.then_some(T::ZERO);
-        let seen = side.or(unknown).filter(|_| self.supervisor.source() == Source::Both);
-        if let Some((regressors, way)) = self.block.add(&settled, seen, &tables.learner) {
-            self.take_rest(&regressors, way);
-        }
-        let nearer = if way < shift { -T::ONE } else { T::ONE };
-        let mut seen = mean.free;
-        if let (Some(offset), false) = (seen.get_mut(OFFSET), self.supervisor.source() == Source::Both) {
+        // A motor that stands still says the same again and again, rounded by its encoder, under a force that its friction
+        // hides: that is worth learning once on either flank.
+        let turns = magnitude(mean.direction) > T::HALF;
+        let seen = side.or(unknown).filter(|side| {
+            self.supervisor.sees_both() && (turns || *side != T::ZERO && *side != self.interval.learnt_side)
+        });
+        let settled = Settled { free: &free, mesh: &mesh, raw: mean.raw, force: mean.force };
+        let full = self.block.add(&settled, seen, &tables.learner);
+        self.interval.part = if full { Part::Tell } else { Part::Know };
+        self.interval.direction = mean.direction;
+        self.interval.nearer = if way < shift { -T::ONE } else { T::ONE };
+    }
+
+    /// The next part of what is to be done after an interval.
+    fn go_on_learning(&mut self) {
+        let tables = self.tables;
+        self.interval.part = match self.interval.part {
+            Part::Tell => {
+                if self.tell_flank() {
+                    Part::Learn
+                } else {
+                    Part::Know
+                }
+            }
+            Part::Learn => {
+                self.interval.learnt_side = self.block.side();
+                self.take_rest();
+                Part::Know
+            }
+            Part::Know => {
+                self.learner.forget(tables.learner.forgetting);
+                self.know();
+                Part::Say
+            }
+            Part::Say | Part::Done => {
+                self.knowledge.of_learnt(tables, &self.learner);
+                self.say_learnt();
+                Part::Done
+            }
+        };
+    }
+
+    /// How much is known after an interval.
+    fn know(&mut self) {
+        let mut seen = self.places.free;
+        if let (Some(offset), false) = (seen.get_mut(OFFSET), self.supervisor.sees_both()) {
             // Without an output encoder there is no offset to be wrong.
             *offset = T::ZERO;
         }
-        let touch = Touch { side: nearer, force: T::ZERO, mesh: mean.mesh };
-        self.knowledge.of_force(tables, &self.bias, mean.direction);
-        self.knowledge.next(tables, &self.learner, &seen, &touch);
-        self.say_learnt();
+        let touch = Touch { side: self.interval.nearer, force: T::ZERO, mesh: self.places.mesh_then };
+        let [_, compliance] = self.shape();
+        self.knowledge.of_force(self.tables, &self.bias, compliance, self.interval.direction);
+        self.knowledge.next(self.tables, &self.learner, &seen, &touch);
     }
 
     /// The side on which contact has settled, if any.
-    fn settled_side(&self, mean: &Interval<T, P>, way: T, shift: T, shown: Shown<T>) -> Option<T> {
+    fn settled_side(&self, mean: &Mean<T>, way: T, shift: T, shown: Shown<T>) -> Option<T> {
         if !rests(shown) {
             return None;
         }
         let known = &self.knowledge;
-        if known.width_is_known && self.supervisor.source() == Source::Both {
+        if known.width_is_known && self.supervisor.sees_both() {
             let (contact, _) = self.by_position(way, T::ZERO, shift).contact(
                 ContactState::Separated,
                 mean.force,
@@ -169,14 +238,14 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
     }
 
     /// Reads the torque bias where the gap is open for sure.
-    fn take_bias(&mut self, mean: &Interval<T, P>, way: T, shown: Shown<T>) {
+    fn take_bias(&mut self, mean: &Mean<T>, way: T, shown: Shown<T>) {
         let contact = &self.tables.contact;
         let [half_gap, _] = self.shape();
         let inside = half_gap - self.knowledge.blur - self.knowledge.blur;
         let open = self.knowledge.width_is_known && magnitude(way) < inside;
         self.interval.open_for = if open { self.interval.open_for.saturating_add(1) } else { 0 };
         let read = match shown {
-            _ if self.supervisor.source() != Source::Both => None,
+            _ if !self.supervisor.sees_both() => None,
             _ if self.interval.open_for >= OPEN_AFTER => Some((mean.lost, mean.direction)),
             Shown::Crossing(lost, direction) if !self.knowledge.width_is_known => Some((lost, direction)),
             _ => None,

@@ -3,7 +3,7 @@
 
 use super::Bias;
 use super::learner::{Learner, Regressors};
-use super::regressors::{self, COMPLIANCE, HALF_GAP, OFFSET, SKEW, Touch};
+use super::regressors::{self, COMPLIANCE, ERROR, HALF_GAP, OFFSET, SKEW, Touch};
 use crate::real::Real;
 use crate::tables::observer::ObserverTables;
 
@@ -19,8 +19,6 @@ pub(super) struct Knowledge<T: Real> {
     pub mean_force_deviation: T,
     /// The same over the few intervals that contact takes to settle.
     pub steady_force_deviation: T,
-    /// What of its variance no mean takes away, with bias and without [N^2].
-    pub lasting_variance: [T; 2],
     /// The same with the position's help.
     pub both_deviation: T,
     /// Variance of the way with everything taken out that was learnt [m^2].
@@ -38,12 +36,28 @@ pub(super) struct Knowledge<T: Real> {
     pub variances: [T; 4],
     /// Distance from an edge that noise and ignorance can make [m].
     pub blur: T,
+    /// Distance from an edge within which teeth count as touching unless they are pulled off [m].
+    pub near: T,
     /// Weight of the position beside the motor side in the mesh force.
     pub position_weight: T,
     /// Whether positions decide about contact that is learnt from.
     pub width_is_known: bool,
     /// Whether they decide about contact that is reported.
     pub width_serves: bool,
+    /// 1 over the compliance [N/m].
+    pub stiffness: T,
+    /// Part of the compliance that the meshes have.
+    pub mesh_share: T,
+    /// By how much the compliance may be wrong: two standard deviations [m/N].
+    pub softness: T,
+    /// Furthest from the middle of the gap that the way can be without wind-up [m].
+    pub reach: T,
+    /// Variance of the gap coordinate that is said while teeth touch, and while they do not [m^2].
+    pub gap_variance: [T; 2],
+    /// Up to which it is vouched for; zero without a width [m^2].
+    pub widest_variance: T,
+    /// Whether the transmission error shifts a flank over the middle of the gap.
+    pub flanks_swap: bool,
     /// The last interval was in settled contact.
     pub settled: bool,
     /// What comes next.
@@ -58,7 +72,6 @@ impl<T: Real> Knowledge<T> {
             mean_force_deviation: T::ZERO,
             steady_force_deviation: T::ZERO,
             both_deviation: T::ZERO,
-            lasting_variance: [T::ZERO; 2],
             way_variance: T::ZERO,
             edge_variance: T::ZERO,
             edge_deviation: T::ZERO,
@@ -66,29 +79,39 @@ impl<T: Real> Knowledge<T> {
             wind_up_variance: [T::ZERO; 2],
             variances: [T::ZERO; 4],
             blur: T::ZERO,
+            near: T::ZERO,
             position_weight: T::ZERO,
             width_is_known: false,
             width_serves: false,
+            stiffness: T::ZERO,
+            mesh_share: T::ZERO,
+            softness: T::ZERO,
+            reach: T::ZERO,
+            gap_variance: [T::ZERO; 2],
+            widest_variance: T::ZERO,
+            flanks_swap: false,
             settled: false,
             turn: 0,
         };
         let free = regressors::free(T::ZERO, 0, Some(0));
         let touch = Touch { side: T::ONE, ..Touch::default() };
-        knowledge.of_force(tables, &Bias::new(&tables.contact), T::ZERO);
+        knowledge.of_force(tables, &Bias::new(&tables.contact), learner.value(COMPLIANCE), T::ZERO);
         for _ in 0..PARTS {
             knowledge.next(tables, learner, &free, &touch);
         }
+        knowledge.of_learnt(tables, learner);
         knowledge
     }
 
     /// How well the motor side knows the mesh force.
-    pub fn of_force(&mut self, tables: &ObserverTables<T>, bias: &Bias<T>, direction: T) {
+    pub fn of_force(&mut self, tables: &ObserverTables<T>, bias: &Bias<T>, compliance: T, direction: T) {
         let contact = &tables.contact;
         let known = bias.variance_at(direction) + contact.ripple_variance;
         let ripple = T::HALF * contact.ripple_variance;
         let [_, friction, _] = bias.variance;
-        self.lasting_variance =
-            [bias.variance_at(direction) + ripple, direction * direction * friction * T::HALF + ripple];
+        // What of the force's variance no mean takes away, with bias and without.
+        let lasting = [bias.variance_at(direction) + ripple, direction * direction * friction * T::HALF + ripple];
+        self.wind_up_variance = lasting.map(|force| force * compliance * compliance);
         self.force_deviation = (known + contact.force_variance).square_root();
         let noise = contact.force_variance * tables.learner.per_periods * T::EIGHTH;
         self.steady_force_deviation = (known + noise).square_root();
@@ -123,7 +146,6 @@ impl<T: Real> Knowledge<T> {
         let edge = variance + tables.contact.way_variance;
         self.blur = T::TWO * edge.square_root();
         let compliance = learner.value(COMPLIANCE);
-        self.wind_up_variance = self.lasting_variance.map(|force| force * compliance * compliance);
         let force = self.force_deviation * self.force_deviation;
         // Weights in inverse proportion to the variances, both as way.
         let from_force = force * compliance * compliance;
@@ -136,5 +158,26 @@ impl<T: Real> Knowledge<T> {
         let thrice = T::THREE * part;
         self.width_serves =
             self.width_is_known || self.width_serves && half_gap > T::ZERO && variance < thrice * thrice;
+    }
+
+    /// What follows for every period until the next interval.
+    pub fn of_learnt<const P: usize>(&mut self, tables: &ObserverTables<T>, learner: &Learner<T, P>) {
+        let (half_gap, compliance) = (learner.value(HALF_GAP), learner.value(COMPLIANCE));
+        let [_, _, compliance_variance, _] = self.variances;
+        self.stiffness = if compliance > T::ZERO { T::ONE.over(compliance) } else { T::ZERO };
+        self.mesh_share = tables.learner.mesh_compliance * self.stiffness;
+        self.softness = T::TWO * compliance_variance.square_root();
+        self.reach = T::THREE * self.edge_deviation + tables.supervisor.margin + half_gap;
+        let noise = tables.contact.way_variance;
+        let [of_way, of_flank] = self.wind_up_variance;
+        self.gap_variance = [self.flank_variance + of_flank + noise, self.way_variance + of_way + noise];
+        let widest = T::TWO * half_gap * tables.supervisor.widest_part;
+        self.widest_variance = if half_gap > T::ZERO { widest * widest } else { T::ZERO };
+        let [sine, cosine] = [learner.value(ERROR), learner.value(ERROR + 1)];
+        let error = (sine * sine + cosine * cosine).square_root();
+        self.flanks_swap = error > half_gap;
+        // The planets' errors differ: some teeth meet before the others, by half of it on the mean, and noise hides when.
+        let (first, most) = (self.blur, T::TWENTIETH * half_gap);
+        self.near = if first < most { first } else { most };
     }
 }

@@ -2,9 +2,9 @@
 //! compliance, skew and, with `P` = [`MAPPED`](super::MAPPED), the error maps. When contact is settled is left to
 //! `contact`.
 //!
-//! Way = side * half-gap + offset + compliance * force + skew * speed + maps. Parameters are kept in units of their
-//! standard deviations beforehand and the covariance as U D U^T (Bierman), so that it stays positive in single
-//! precision whatever happens.
+//! Way = side * half-gap + offset + compliance * force + skew * speed + maps. The covariance is kept in units of the
+//! parameters' standard deviations beforehand and as U D U^T (Bierman), so that it stays positive in single precision
+//! whatever happens.
 
 use core::array;
 
@@ -18,19 +18,28 @@ pub(super) type Regressors<T, const P: usize> = [T; P];
 /// Parameters with their covariance.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Learner<T: Real, const P: usize> {
-    /// In standard deviations beforehand, from the mean beforehand.
-    moved: [T; P],
     /// U above the diagonal, D on it; the row of a column's entries is contiguous.
     factors: [[T; P]; P],
     /// Parameters, in SI.
     pub values: [T; P],
 }
 
+/// A way beside what was expected of it, both in standard deviations of one way's noise.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Weighed<T: Real, const P: usize> {
+    /// Regressors turned into the factors' coordinates, U^T h.
+    turned: [T; P],
+    /// What the way is beyond what was expected.
+    pub surprise: T,
+    /// Variance of that.
+    pub expected: T,
+}
+
 impl<T: Real, const P: usize> Learner<T, P> {
     pub fn new(table: &LearnerTable<T>) -> Self {
-        let mut learner = Self { moved: [T::ZERO; P], factors: [[T::ZERO; P]; P], values: [T::ZERO; P] };
+        let values = array::from_fn(|parameter| table.mean.get(parameter).copied().unwrap_or(T::ZERO));
+        let mut learner = Self { factors: [[T::ZERO; P]; P], values };
         learner.reopen();
-        learner.settle(table);
         learner
     }
 
@@ -71,16 +80,15 @@ impl<T: Real, const P: usize> Learner<T, P> {
     /// Everything that is learnt: parameters, then each column of the factors down to its diagonal.
     pub fn numbers(&self) -> impl Iterator<Item = T> {
         let columns = self.factors.iter().enumerate().flat_map(|(index, column)| column.iter().take(index + 1));
-        self.moved.iter().chain(columns).copied()
+        self.values.iter().chain(columns).copied()
     }
 
     /// Takes the same back.
-    pub fn set_numbers(&mut self, table: &LearnerTable<T>, next: &mut impl FnMut() -> T) {
-        self.moved.iter_mut().for_each(|moved| *moved = next());
+    pub fn set_numbers(&mut self, next: &mut impl FnMut() -> T) {
+        self.values.iter_mut().for_each(|value| *value = next());
         for (index, column) in self.factors.iter_mut().enumerate() {
             column.iter_mut().take(index + 1).for_each(|factor| *factor = next());
         }
-        self.settle(table);
     }
 
     /// Forgets how sure everything is that depends on where the encoders' zeros are.
@@ -97,19 +105,29 @@ impl<T: Real, const P: usize> Learner<T, P> {
         }
     }
 
-    /// Takes in one way.
-    pub fn learn(&mut self, table: &LearnerTable<T>, regressors: &Regressors<T, P>, way: T) {
+    /// Weighs a way before it is taken in.
+    pub fn weigh(&self, table: &LearnerTable<T>, regressors: &Regressors<T, P>, way: T) -> Weighed<T, P> {
         let scaled = Self::scaled(table, regressors, table.weight);
-        let surprise = (way - self.way(regressors)) * table.weight;
+        let mut weighed = Weighed { turned: [T::ZERO; P], surprise: T::ZERO, expected: T::ONE };
+        weighed.surprise = (way - self.way(regressors)) * table.weight;
+        for (j, turned) in weighed.turned.iter_mut().enumerate() {
+            let (f, d) = self.column(&scaled, j);
+            *turned = f;
+            weighed.expected += d * f * f;
+        }
+        weighed
+    }
+
+    /// Takes a weighed way in.
+    pub fn learn(&mut self, table: &LearnerTable<T>, weighed: &Weighed<T, P>) {
         let mut gain = [T::ZERO; P];
         let mut alpha = T::ONE;
-        for j in 0..P {
-            let (f, d) = self.column(&scaled, j);
-            let v = d * f;
+        for (j, (column, f)) in self.factors.iter_mut().zip(&weighed.turned).enumerate() {
+            let d = column.get(j).copied().unwrap_or(T::ZERO);
+            let v = d * *f;
             let before = alpha;
-            alpha += f * v;
+            alpha += *f * v;
             let rise = -f.over(before);
-            let Some(column) = self.factors.get_mut(j) else { break };
             for (entry, carried) in column.iter_mut().zip(gain.iter_mut()).take(j) {
                 let u = *entry;
                 *entry = u + rise * *carried;
@@ -120,11 +138,10 @@ impl<T: Real, const P: usize> Learner<T, P> {
                 *g = v;
             }
         }
-        let step = surprise.over(alpha);
-        for (moved, gain) in self.moved.iter_mut().zip(&gain) {
-            *moved += *gain * step;
+        let step = weighed.surprise.over(alpha);
+        for ((value, gain), deviation) in self.values.iter_mut().zip(&gain).zip(&table.deviation) {
+            *value += *deviation * (*gain * step);
         }
-        self.settle(table);
     }
 
     /// Lets what was learnt grow uncertain, up to what was known beforehand.
@@ -172,15 +189,5 @@ impl<T: Real, const P: usize> Learner<T, P> {
             (Some(regressor), Some(deviation)) => *regressor * *deviation * weight,
             _ => T::ZERO,
         })
-    }
-
-    fn settle(&mut self, table: &LearnerTable<T>) {
-        for (i, value) in self.values.iter_mut().enumerate() {
-            if let (Some(mean), Some(deviation), Some(moved)) =
-                (table.mean.get(i), table.deviation.get(i), self.moved.get(i))
-            {
-                *value = *mean + *deviation * *moved;
-            }
-        }
     }
 }

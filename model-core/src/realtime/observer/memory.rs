@@ -17,7 +17,7 @@ pub const MEMORY_BYTES: usize = 544;
 pub type Memory = [u8; MEMORY_BYTES];
 
 const MARK: u32 = u32::from_le_bytes(*b"JOBS");
-const VERSION: u16 = 1;
+const VERSION: u16 = 2;
 const DIGEST_AT: usize = MEMORY_BYTES - 8;
 
 /// Why a memory is not taken.
@@ -94,13 +94,14 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
             finite &= number.is_finite();
             T::from_f64(number.into())
         };
-        learner.set_numbers(&self.tables.learner, &mut next);
+        learner.set_numbers(&mut next);
         bias.set_numbers(&mut next);
         if !finite {
             return Err(MemoryError::NotFinite);
         }
         self.learner = learner;
         self.bias = bias;
+        self.find_places();
         if self.tables.counts.absolute {
             self.counts.refer_to(start, &self.tables.counts);
         } else {

@@ -12,6 +12,8 @@ const WINDOW: usize = 8;
 pub(super) struct Motion<T: Real> {
     ways: [T; WINDOW + 1],
     forces: [(T, T); WINDOW + 1],
+    /// Where the newest of them is.
+    at: usize,
     known: usize,
     still_for: u32,
     /// Way over the window below which nothing was seen to move [m].
@@ -34,6 +36,7 @@ impl<T: Real> Motion<T> {
         Self {
             ways: [T::ZERO; WINDOW + 1],
             forces: [(T::ZERO, T::ZERO); WINDOW + 1],
+            at: 0,
             known: 0,
             still_for: 0,
             limit: T::ZERO,
@@ -43,9 +46,8 @@ impl<T: Real> Motion<T> {
     /// Takes in one interval. `blur` is what error maps that are unknown can make of the motor's turning in an
     /// interval [m], and `softness` by how much the compliance may be wrong [m/N].
     pub fn step(&mut self, table: &ContactTable<T>, way: T, force: (T, T), blur: T, softness: T) -> Shown<T> {
-        self.ways.rotate_right(1);
-        self.forces.rotate_right(1);
-        if let (Some(newest_way), Some(newest_force)) = (self.ways.first_mut(), self.forces.first_mut()) {
+        self.at = if self.at < WINDOW { self.at + 1 } else { 0 };
+        if let (Some(newest_way), Some(newest_force)) = (self.ways.get_mut(self.at), self.forces.get_mut(self.at)) {
             *newest_way = way;
             *newest_force = force;
         }
@@ -53,25 +55,29 @@ impl<T: Real> Motion<T> {
             self.known += 1;
             return Shown::Between;
         }
-        let [(newest_force, _), .., (oldest_force, _)] = self.forces;
-        let limit =
-            (table.still + blur) * T::from_i32(WINDOW as i32) + softness * magnitude(newest_force - oldest_force);
+        let (oldest, oldest_force) = self.ago(WINDOW, way, force);
+        let (middle, middle_force) = self.ago(WINDOW / 2, way, force);
+        let limit = (table.still + blur) * T::from_i32(WINDOW as i32) + softness * magnitude(force.0 - oldest_force.0);
         self.limit = limit;
-        let [newest, .., oldest] = self.ways;
-        let middle = self.ways.get(WINDOW / 2).copied().unwrap_or(newest);
-        let whole = newest - oldest;
+        let whole = way - oldest;
         if magnitude(whole) < limit {
             self.still_for = self.still_for.saturating_add(1);
             return Shown::Still(self.still_for);
         }
         self.still_for = 0;
         let on = |part: T| part > limit && whole > T::ZERO || -part > limit && whole < T::ZERO;
-        match self.forces.get(WINDOW / 2) {
-            Some((force, direction)) if on(newest - middle) && on(middle - oldest) => {
-                Shown::Crossing(*force, *direction)
-            }
-            _ => Shown::Between,
+        if on(way - middle) && on(middle - oldest) {
+            let (force, direction) = middle_force;
+            Shown::Crossing(force, direction)
+        } else {
+            Shown::Between
         }
+    }
+
+    /// Way and force of some intervals ago.
+    fn ago(&self, intervals: usize, way: T, force: (T, T)) -> (T, (T, T)) {
+        let at = if self.at >= intervals { self.at - intervals } else { self.at + WINDOW + 1 - intervals };
+        (self.ways.get(at).copied().unwrap_or(way), self.forces.get(at).copied().unwrap_or(force))
     }
 
     /// Whether standing still tells rest from a slow crossing of a gap: nothing as wide could have hidden in the noise.
@@ -82,5 +88,5 @@ impl<T: Real> Motion<T> {
 
 /// |value|.
 pub(super) fn magnitude<T: Real>(value: T) -> T {
-    if value < T::ZERO { -value } else { value }
+    value.abs()
 }

@@ -7,9 +7,10 @@
 
 use super::contact::{sign, with_hysteresis};
 use super::motion::magnitude;
+use super::present::small;
 use super::regressors::{self, Touch};
-use super::supervisor::Place;
-use super::{Now, Observer, Source, small};
+use super::supervisor::{Place, Return};
+use super::{Anchor, Now, Observer};
 use crate::mesh::ContactState;
 use crate::real::Real;
 
@@ -33,21 +34,11 @@ pub(super) struct Blind<T: Real> {
 
 impl<T: Real, const P: usize> Observer<'_, T, P> {
     /// Gives the output encoder up where it cannot be right, and does without it.
-    pub(super) fn watch(&mut self, now: &Now<T, P>) {
+    pub(super) fn watch(&mut self, now: &Now<T>) {
         let table = &self.tables.supervisor;
-        let [half_gap, compliance] = self.shape();
-        let reach = T::TWO * self.knowledge.edge_deviation + self.knowledge.edge_deviation + table.margin + half_gap;
-        let wind_up = compliance * now.force;
-        let upper = reach + if wind_up > T::ZERO { wind_up } else { T::ZERO };
-        let lower = -reach + if wind_up < T::ZERO { wind_up } else { T::ZERO };
         let way = now.way - now.shift;
-        let place = if way < upper && way > lower {
-            Place::Possible
-        } else if way < upper + half_gap && way > lower - half_gap {
-            Place::Worn { turning: magnitude(self.drive.speed) > table.stuck_speed }
-        } else {
-            Place::Impossible
-        };
+        let place =
+            if magnitude(way) < self.knowledge.reach { Place::Possible } else { self.far_place(way, now.force) };
         if self.supervisor.judge(table, way, place) {
             self.counts.imply();
             self.load.speed = self.drive.speed * self.tables.levers.per_ratio;
@@ -55,16 +46,33 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
             self.blind = Blind::default();
             // The link is where the teeth allow it to be; where exactly, the next contact shows.
             let side: T = sign(self.estimates.contact);
+            let [half_gap, _] = self.shape();
             let implied = self.now();
             self.load.ahead += (implied.way - implied.shift - side * half_gap).over(self.tables.levers.output);
         }
-        if self.supervisor.source() != Source::Both {
+        if !self.supervisor.sees_both() {
             self.feel(now);
         }
     }
 
+    /// What a way beyond the flanks is.
+    #[cold]
+    fn far_place(&self, way: T, force: T) -> Place {
+        let [half_gap, compliance] = self.shape();
+        let (beyond, force) = if way > T::ZERO { (way, force) } else { (-way, -force) };
+        let wind_up = if force > T::ZERO { compliance * force } else { T::ZERO };
+        let beyond = beyond - wind_up - self.knowledge.reach;
+        if beyond < T::ZERO {
+            Place::Possible
+        } else if beyond < half_gap {
+            Place::Worn
+        } else {
+            Place::Impossible
+        }
+    }
+
     /// Contact: by force where there is enough of it; otherwise it lasts until the link has left the flank for sure.
-    pub(super) fn contact_unseen(&self, now: &Now<T, P>) -> ContactState {
+    pub(super) fn contact_unseen(&self, now: &Now<T>) -> ContactState {
         if self.blind.felt != ContactState::Separated {
             return self.blind.felt;
         }
@@ -76,7 +84,7 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
     }
 
     /// Corrects the load side by what contact shows.
-    fn feel(&mut self, now: &Now<T, P>) {
+    fn feel(&mut self, now: &Now<T>) {
         let levers = &self.tables.levers;
         let [half_gap, compliance] = self.shape();
         self.blind.force += (now.force - self.blind.force) * self.tables.contact.smoothing;
@@ -129,21 +137,24 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         (bounce * bounce + lever * lever * speed_variance + by_torque * by_torque * torque_variance) * time * time
     }
 
-    /// Once an interval: takes the output encoder back when it says again what the motor implies.
+    /// Once an interval: takes the output encoder back when it turns with the motor again. If it does so elsewhere than
+    /// was learnt, everything is learnt anew.
     pub(super) fn reconsider(&mut self, settled: Option<T>, mesh: &[T; 2], force: T) {
         let tables = self.tables;
-        let agrees = settled.map(|side| {
-            let phase = self.counts.motor.phase(&tables.counts.motor);
-            let output = self.counts.output.phase(&tables.counts.output);
-            let free = regressors::free(self.load.speed, phase, Some(output));
-            let measured = tables.counts.length * small(self.counts.difference) + tables.levers.sun * self.drive.ahead;
-            let expected = self.learner.way(&Touch { side, force, mesh: *mesh }.on(&free));
-            let room = tables.supervisor.margin + T::TWO * self.knowledge.edge_deviation;
-            magnitude(measured - expected) < room
-        });
-        if self.supervisor.reconsider(&tables.supervisor, agrees) {
-            self.counts.trust();
-            self.load.ahead = T::ZERO;
+        let Some(side) = settled else { return };
+        let phase = self.counts.motor.phase(&tables.counts.motor);
+        let output = self.counts.output.phase(&tables.counts.output);
+        let free = regressors::free(self.load.speed, phase, Some(output));
+        let measured = tables.counts.length * small(self.counts.difference) + tables.levers.sun * self.drive.ahead;
+        let beyond = measured - self.learner.way(&Touch { side, force, mesh: *mesh }.on(&free));
+        let room = tables.supervisor.margin + T::TWO * self.knowledge.edge_deviation;
+        let Some(back) = self.supervisor.reconsider(&tables.supervisor, side, beyond, output, room) else { return };
+        self.counts.trust();
+        self.load.ahead = T::ZERO;
+        self.find_places();
+        if back == Return::Otherwise {
+            self.anchor = Anchor::new();
+            self.learner.reopen();
         }
     }
 }

@@ -14,12 +14,17 @@ pub(super) struct Supervisor<T: Real> {
     silent_for: u32,
     unmoved_for: u32,
     outside_for: u32,
+    /// Intervals in motion in which it said what was learnt.
     inside_for: u32,
+    /// Intervals in motion in which it said the same as before, and what: the way beyond what was learnt, on the back side
+    /// and on the drive side [m].
+    steady_for: u32,
+    steady: [T; 2],
     /// The way at the last period, and whether it leapt to where it is [m].
     way: T,
     leapt: bool,
-    /// The output has moved since the last look.
-    moved: bool,
+    /// Where the output was when it moved last [2^-32 turns].
+    place: u32,
     /// Load torque of the last and of the last but one look, before a failing encoder could spoil it [N m].
     torques: [T; 2],
     looked: u32,
@@ -30,14 +35,23 @@ pub(super) struct Supervisor<T: Real> {
 pub(super) enum Place {
     /// Between the flanks, or as far beyond as forces wind up.
     Possible,
-    /// Beyond that, by no more than teeth can have worn; whether the motor turns.
-    Worn {
-        /// The motor turns by more than the output could hide.
-        turning: bool,
-    },
+    /// Beyond that, by no more than teeth can have worn.
+    Worn,
     /// Where no teeth could let it be.
     Impossible,
 }
+
+/// How the output encoder comes back.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Return {
+    /// It says what was learnt.
+    AsLearnt,
+    /// It turns with the motor, but something else was learnt.
+    Otherwise,
+}
+
+/// An encoder that turns with the motor must do so this many times longer if it says anything else than what was learnt.
+const OTHERWISE: u32 = 3;
 
 /// Intervals between two looks at the load torque: longer than it takes to find a failure.
 const LOOK: u32 = 16;
@@ -50,9 +64,11 @@ impl<T: Real> Supervisor<T> {
             unmoved_for: 0,
             outside_for: 0,
             inside_for: 0,
+            steady_for: 0,
+            steady: [T::ZERO; 2],
             way: T::ZERO,
             leapt: false,
-            moved: false,
+            place: 0,
             torques: [T::ZERO; 2],
             looked: 0,
         }
@@ -60,6 +76,11 @@ impl<T: Real> Supervisor<T> {
 
     pub fn source(&self) -> Source {
         self.source
+    }
+
+    /// Whether both encoders are used.
+    pub fn sees_both(&self) -> bool {
+        matches!(self.source, Source::Both)
     }
 
     /// What the encoder gave in this period. True when it is there for the first time.
@@ -70,10 +91,7 @@ impl<T: Real> Supervisor<T> {
                 return false;
             }
             Some(Advance::By(0)) => self.unmoved_for = self.unmoved_for.saturating_add(1),
-            Some(_) => {
-                self.unmoved_for = 0;
-                self.moved = true;
-            }
+            Some(_) => self.unmoved_for = 0,
         }
         self.silent_for = 0;
         let began = advance == Some(Advance::Began);
@@ -89,29 +107,36 @@ impl<T: Real> Supervisor<T> {
     }
 
     /// Whether the way is one that teeth allow; true when the encoder is given up now. Teeth that have worn let the way
-    /// go on beyond where it could be, step by step; an encoder that slips leaps there.
+    /// go on beyond where it could be, step by step; an encoder that slips leaps there. A link that sticks beyond a width
+    /// that is too small looks like a frozen encoder, until the way goes further than teeth can be worn.
     pub fn judge(&mut self, table: &SupervisorTable<T>, way: T, place: Place) -> bool {
         let by = way - core::mem::replace(&mut self.way, way);
-        if self.source != Source::Both {
+        if !self.sees_both() {
             return false;
         }
-        let possible = place == Place::Possible;
-        self.leapt = !possible && (self.leapt || magnitude(by) > table.margin);
-        self.outside_for = if possible { 0 } else { self.outside_for.saturating_add(1) };
+        if place == Place::Possible {
+            self.leapt = false;
+            self.outside_for = 0;
+        } else {
+            self.leapt |= magnitude(by) > table.margin;
+            self.outside_for = self.outside_for.saturating_add(1);
+        }
         let doubt = if self.silent_for > table.silent_after {
             Doubt::Silent
         } else if self.outside_for < table.failed_after {
             return false;
-        } else if self.unmoved_for >= table.failed_after && place != (Place::Worn { turning: false }) {
-            Doubt::Frozen
-        } else if matches!(place, Place::Worn { .. }) && !self.leapt {
+        } else if place == Place::Worn && !self.leapt {
             return false;
+        } else if self.unmoved_for >= table.failed_after {
+            Doubt::Frozen
         } else {
             Doubt::OutOfRange
         };
         self.source = Source::MotorOnly(doubt);
         self.outside_for = 0;
         self.inside_for = 0;
+        self.steady_for = 0;
+        self.steady = [T::ZERO; 2];
         true
     }
 
@@ -130,20 +155,45 @@ impl<T: Real> Supervisor<T> {
         }
     }
 
-    /// Once an interval, without it: whether the encoder says what the motor implies, `None` where that cannot be told.
-    /// True when it is taken back now.
-    pub fn reconsider(&mut self, table: &SupervisorTable<T>, agrees: Option<bool>) -> bool {
-        let moved = self.moved && self.silent_for == 0;
-        self.moved = false;
-        match agrees {
-            Some(true) if moved => self.inside_for += 1,
-            Some(false) => self.inside_for = 0,
-            _ => {}
+    /// Once an interval in settled contact, without it: by how much the way that it would give is beyond what was learnt
+    /// on that side of the teeth, where the output is [2^-32 turns], and what may be between ways that agree. Says when
+    /// it is taken back.
+    pub fn reconsider(
+        &mut self,
+        table: &SupervisorTable<T>,
+        side: T,
+        beyond: T,
+        place: u32,
+        room: T,
+    ) -> Option<Return> {
+        let [back, drive] = &mut self.steady;
+        let steady = if side > T::ZERO { drive } else { back };
+        if magnitude(beyond - *steady) > room {
+            *steady = beyond;
+            self.steady_for = 0;
         }
-        let trusted = self.inside_for >= table.trusted_after && self.source != Source::MotorOnly(Doubt::Absent);
-        if trusted {
-            self.source = Source::Both;
+        let agrees = magnitude(beyond) < room;
+        if !agrees {
+            self.inside_for = 0;
         }
-        trusted
+        // An encoder that stands still and flickers does not turn.
+        let went = place.wrapping_sub(self.place) as i32;
+        if self.silent_for == 0 && went.unsigned_abs() >= table.moved {
+            self.place = place;
+            self.steady_for += 1;
+            self.inside_for += u32::from(agrees);
+        }
+        let back = if self.inside_for >= table.trusted_after {
+            Return::AsLearnt
+        } else if self.steady_for >= table.trusted_after.saturating_mul(OTHERWISE) {
+            Return::Otherwise
+        } else {
+            return None;
+        };
+        if self.source == Source::MotorOnly(Doubt::Absent) {
+            return None;
+        }
+        self.source = Source::Both;
+        Some(back)
     }
 }

@@ -1,0 +1,73 @@
+//! From samples to the two sides: counts, motor side and load side go on by one control period. What follows of both
+//! together is left to `present`.
+
+use super::Observer;
+use super::counts::Advance;
+use super::estimates::Notices;
+use super::samples::Samples;
+use crate::real::Real;
+
+/// Periods beyond which the age of a reading is not believed.
+const OLDEST: u32 = 64;
+
+impl<T: Real, const P: usize> Observer<'_, T, P> {
+    /// Takes the samples of one period in.
+    pub(super) fn follow(&mut self, samples: &Samples<T>) {
+        let tables = self.tables;
+        let known = samples.torque.is_finite();
+        let command = if known { samples.torque } else { T::ZERO };
+        let taken = self.counts.take(&tables.counts, samples.motor, samples.output);
+        let [shortest, longest] = tables.period_ticks;
+        let lasted = self.time.map_or(longest, |before| samples.time.wrapping_sub(before));
+        self.time = Some(samples.time);
+        let out_of_time = lasted.wrapping_sub(shortest) > longest.wrapping_sub(shortest);
+        let motor_by = if let Advance::By(by) = taken.motor { by } else { 0 };
+        self.estimates.notices = Notices::default();
+        if !known || out_of_time || !matches!(taken.motor, Advance::By(_)) {
+            self.estimates.notices = Notices {
+                torque_unknown: !known,
+                out_of_time,
+                motor_doubted: taken.motor == Advance::Doubted,
+                motor_jumped: matches!(taken.motor, Advance::Jumped(_)),
+            };
+        }
+
+        let motor_turned = tables.counts.motor.angle * T::from_i32(motor_by);
+        self.drive.predict(&tables.drive, &tables.current, command, motor_turned);
+        match taken.motor {
+            Advance::By(_) => self.drive.correct(&tables.drive, self.age(samples, samples.motor.time)),
+            Advance::Began => self.drive.ahead = T::ZERO,
+            Advance::Jumped(_) => {
+                self.drive.ahead = T::ZERO;
+                self.learner.reopen();
+            }
+            Advance::Doubted => {}
+        }
+
+        let output_turned = tables.counts.output.angle * T::from_i32(taken.turned);
+        self.load.predict(&tables.load, self.from_meshes, output_turned);
+        let began = self.supervisor.hear(taken.output);
+        if began {
+            self.load.ahead = T::ZERO;
+        }
+        if let (true, Some(reading), Some(Advance::By(_))) = (self.supervisor.sees_both(), samples.output, taken.output)
+        {
+            let surprise = self.load.speed * self.age(samples, reading.time) - self.load.ahead;
+            self.load.correct(&tables.load.gain, surprise);
+        }
+        let far = self.places.go_on(motor_turned, output_turned, tables.counts.mesh_periods);
+        if far || began || !matches!(taken.motor, Advance::By(_)) {
+            self.find_places();
+        }
+    }
+
+    /// Age of a reading [s]. One older than a few periods says little of now; one from the future nothing.
+    fn age(&self, samples: &Samples<T>, time: u32) -> T {
+        let ticks = samples.time.wrapping_sub(time);
+        let [_, longest] = self.tables.period_ticks;
+        if ticks == 0 || ticks > longest.saturating_mul(OLDEST) {
+            return T::ZERO;
+        }
+        T::from_i32(ticks as i32) * self.tables.tick
+    }
+}

@@ -1,0 +1,109 @@
+//! What one control period comes to: both sides put together, and which flank touches. What is learnt of it is left to
+//! `interval`, what is said to `saying`.
+
+use super::Observer;
+use super::bias::Bias;
+use super::contact::ByPosition;
+use super::motion::magnitude;
+use super::regressors::ERROR;
+use crate::mesh::ContactState;
+use crate::real::Real;
+
+/// What one period comes to before anything is decided.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Now<T: Real> {
+    /// Transmission error [m].
+    pub shift: T,
+    /// Motor less ratio times link along the line of action, as measured [m].
+    pub raw: T,
+    /// The same with everything taken out that was learnt, wind-up left in [m].
+    pub way: T,
+    /// Rate of either [m/s].
+    pub rate: T,
+    /// Way that goes on while what is measured lags behind, where it is more than noise [m].
+    pub soon: T,
+    /// Force that the motor loses, friction and bias included [N].
+    pub lost: T,
+    /// Direction of the motor's dry friction.
+    pub direction: T,
+    /// Mesh force from the motor side [N].
+    pub force: T,
+}
+
+impl<T: Real, const P: usize> Observer<'_, T, P> {
+    /// Puts the two sides together.
+    #[inline]
+    pub(super) fn now(&self) -> Now<T> {
+        let tables = self.tables;
+        let levers = &tables.levers;
+        let (_, difference) = self.counts.used();
+        let shift = self.error(&self.places.mesh);
+        let raw =
+            tables.counts.length * small(difference) + levers.sun * self.drive.ahead - levers.output * self.load.ahead;
+        let lost = self.drive.taken * levers.per_sun;
+        let direction = Bias::direction(&tables.contact, self.drive.speed);
+        let net = lost - self.bias.at(direction);
+        // Losses in proportion to the load are friction too: they take from what drives and add to what holds back.
+        let loss = if net * direction > T::ZERO { tables.contact.loss_driving } else { tables.contact.loss_driven };
+        let force = net + net * magnitude(direction) * loss;
+        let rate = levers.sun * self.drive.speed - levers.output * self.load.speed;
+        let soon = if magnitude(rate) > tables.contact.rate_deviation { rate * tables.contact.lag } else { T::ZERO };
+        Now { shift, raw, rate, soon, way: raw - self.beside_teeth(), lost, direction, force }
+    }
+
+    /// Contact, and what the meshes pass on.
+    pub(super) fn decide(&mut self, now: &Now<T>) {
+        let tables = self.tables;
+        let known = &self.knowledge;
+        self.estimates.contact = self.by_force.step(now.force, known.force_deviation);
+        let mut force = now.force;
+        self.estimates.reported_contact = if !self.supervisor.sees_both() {
+            self.contact_unseen(now)
+        } else if known.width_serves {
+            let before = self.estimates.reported_contact;
+            let (alone, together) = (known.force_deviation, known.both_deviation);
+            let (contact, both) =
+                self.by_position(now.way, now.soon, now.shift).reported(before, force, alone, together);
+            force = both;
+            contact
+        } else {
+            self.estimates.contact
+        };
+        let lever =
+            if self.estimates.reported_contact == ContactState::Separated { T::ZERO } else { tables.levers.output };
+        self.from_meshes = lever * now.force;
+        self.estimates.mesh_torque.value = lever * force;
+    }
+
+    /// What a way says of the teeth.
+    pub(super) fn by_position(&self, way: T, soon: T, shift: T) -> ByPosition<T> {
+        let [half_gap, _] = self.shape();
+        let known = &self.knowledge;
+        ByPosition {
+            way: way - shift,
+            soon,
+            half_gap,
+            blur: known.blur,
+            near: known.near,
+            stiffness: known.stiffness,
+            weight: known.position_weight,
+        }
+    }
+
+    /// Transmission error at a mesh phase [m].
+    pub(super) fn error(&self, mesh: &[T; 2]) -> T {
+        mesh[0] * self.learner.value(ERROR) + mesh[1] * self.learner.value(ERROR + 1)
+    }
+}
+
+/// A difference of counts, which teeth keep small, as a number: wide whole numbers take a chip without them long to turn.
+pub(super) fn small<T: Real>(difference: i64) -> T {
+    let narrow = difference as i32;
+    T::from_i32(if i64::from(narrow) == difference {
+        narrow
+    } else if difference < 0 {
+        i32::MIN
+    } else {
+        i32::MAX
+    })
+}

@@ -8,6 +8,7 @@ use core::sync::atomic::Ordering::{Acquire, Relaxed, Release};
 
 use embedded_hal::digital::OutputPin;
 use link::messages::{Fault, RunMode, RunSettings};
+use link::virtual_joint::WireUpset;
 
 use crate::budget::{Monitor, TickTimer};
 use crate::queues::{COMMAND_CAPACITY, Event, Order, TickEnd};
@@ -31,6 +32,10 @@ pub trait Work {
     fn reset(&mut self);
     /// Takes the command of the step to come.
     fn take(&mut self, command: <Self::Words as Words>::Command);
+    /// Takes a fault for the run to come; `false` if the role has none, or no room for another.
+    fn upset(&mut self, _upset: WireUpset) -> bool {
+        false
+    }
     /// One step.
     fn step(&mut self);
     /// Whether the last step left numbers.
@@ -109,6 +114,10 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> Control<'a, E, W> {
             Some(Order::Trip(fault)) => {
                 self.safe_state.trip(fault);
                 Event::Stopped
+            }
+            Some(Order::Upset(upset)) => {
+                let begins = matches!(self.state(), State::Running) && self.steps == 0;
+                Event::Upset { taken: begins && self.work.upset(upset) }
             }
             Some(Order::Report { reset }) => {
                 let report = Event::Timing(self.monitor.clone());

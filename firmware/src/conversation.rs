@@ -126,6 +126,7 @@ impl<'a, W: Words> Conversation<'a, W> {
                 self.forget_run();
                 self.say(&FromBoard::Hello(self.hello.clone()));
             }
+            Event::Upset { taken } => self.say(&FromBoard::Upset { taken }),
             Event::Refused(fault) | Event::Tripped(fault) => self.say(&FromBoard::Fault(fault)),
             Event::Stopped => {
                 if let Some(cause) = self.cause.take() {
@@ -209,6 +210,7 @@ impl<'a, W: Words> Conversation<'a, W> {
                 self.order(Order::Report { reset });
             }
             ToBoard::Stop => self.order(Order::Stop),
+            ToBoard::Upset(upset) => self.order(Order::Upset(upset)),
             commands => match W::timetable(commands) {
                 Some(timetable) => self.take(timetable),
                 None => self.say(&FromBoard::Fault(Fault::WrongRole)),

@@ -5,6 +5,7 @@ use core::sync::atomic::{AtomicBool, AtomicU32};
 
 use heapless::spsc::{Consumer, Producer, Queue};
 use link::messages::{Fault, RunSettings};
+use link::virtual_joint::WireUpset;
 
 use crate::budget::Monitor;
 use crate::ends::{Giver, Taker};
@@ -29,6 +30,8 @@ pub enum Order {
     Stop,
     /// Safe state for a reason that idle has found; answered by [`Event::Stopped`].
     Trip(Fault),
+    /// A fault between joint and controller; answered by [`Event::Upset`].
+    Upset(WireUpset),
     /// A copy of the timing monitor as [`Event::Timing`].
     Report {
         /// Then start it afresh.
@@ -48,6 +51,11 @@ pub enum Event {
     Refused(Fault),
     /// The tick itself has found a reason for the safe state: the only event that is no answer to an order.
     Tripped(Fault),
+    /// Whether a fault between joint and controller was taken.
+    Upset {
+        /// It was.
+        taken: bool,
+    },
     /// How the tick's time was spent.
     Timing(Monitor),
 }

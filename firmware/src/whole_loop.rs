@@ -3,10 +3,11 @@
 
 use heapless::Vec;
 use link::messages::{FromBoard, Role, Schedule, ToBoard};
-use link::virtual_joint::{KNOTS_PER_SCHEDULE, Knot, LOOP_SAMPLES_PER_BATCH, LoopBatch, LoopSample};
+use link::virtual_joint::{KNOTS_PER_SCHEDULE, Knot, LOOP_SAMPLES_PER_BATCH, LoopBatch, LoopSample, WireUpset};
 use model_core::digest;
 use model_core::realtime::controller::Answer;
 use model_core::realtime::course::Demand;
+use model_core::realtime::upset::Upsets;
 use model_core::realtime::virtual_joint::VirtualJoint;
 use model_core::tables::Tables;
 use model_core::tables::virtual_joint::SurroundingsTable;
@@ -65,6 +66,8 @@ pub struct WholeLoop<'t, P, const N: usize> {
     tables: &'t Tables<f32, N>,
     surroundings: &'t SurroundingsTable<f32>,
     joint: VirtualJoint<'t, f32, N>,
+    /// What goes wrong between joint and port.
+    upsets: Upsets<f32>,
     port: P,
     demand: Demand<f32>,
     load_torque: f32,
@@ -81,6 +84,7 @@ impl<'t, P: ControllerPort, const N: usize> WholeLoop<'t, P, N> {
             tables,
             surroundings,
             joint: VirtualJoint::new(tables, surroundings),
+            upsets: Upsets::default(),
             port,
             demand: Demand::HOLD,
             load_torque: 0.0,
@@ -101,6 +105,7 @@ impl<P: ControllerPort, const N: usize> Work for WholeLoop<'_, P, N> {
 
     fn reset(&mut self) {
         self.joint.reset();
+        self.upsets = Upsets::default();
         self.port.reset();
         self.demand = Demand::HOLD;
         self.load_torque = 0.0;
@@ -115,19 +120,24 @@ impl<P: ControllerPort, const N: usize> Work for WholeLoop<'_, P, N> {
         self.elapsed = 0;
     }
 
+    fn upset(&mut self, upset: WireUpset) -> bool {
+        self.upsets.add(upset.into())
+    }
+
     fn step(&mut self) {
         let table = self.surroundings;
         let command = self.demand.at(table.period * f32::from(self.elapsed), table.turn);
         // A motion is a polynomial for a stretch only: one that nobody follows up holds at its last moment.
         self.elapsed = self.elapsed.saturating_add(1).min(LONGEST_STRETCH);
-        let torque = match self.port.exchange(&self.joint.samples(), &command) {
+        let samples = self.upsets.sense(self.joint.samples(), table);
+        let torque = match self.port.exchange(&samples, &command) {
             Ok(answer) => {
                 self.answer = answer;
                 answer.shaped.torque
             }
             Err(_) => 0.0,
         };
-        self.joint.advance(torque, self.load_torque);
+        self.joint.advance(self.upsets.torque(torque), self.load_torque);
         self.digest = digest::chain(self.answer.digest(self.digest), self.joint.model().state_digest());
     }
 

@@ -11,11 +11,12 @@ use firmware::tables::TABLES;
 use firmware::whole_loop::WholeLoop;
 use link::controller::{Answered, Exchange};
 use link::messages::{Fault, FromBoard, RunMode, RunSettings, Schedule, ToBoard};
-use link::virtual_joint::{Knot, LoopSample, WireDemand};
+use link::virtual_joint::{Knot, LoopSample, WireDemand, WireKind, WireUpset};
 use model_core::digest;
 use model_core::realtime::compensation::Command;
 use model_core::realtime::controller::Controller;
 use model_core::realtime::course::Demand;
+use model_core::realtime::upset::MOST_UPSETS;
 use model_core::realtime::virtual_joint::VirtualJoint;
 
 mod control {
@@ -170,6 +171,53 @@ fn a_whole_loop_equals_its_parts_in_every_bit_in_both_modes() {
             }
         }
     }
+}
+
+#[test]
+fn a_whole_loop_takes_faults_before_its_first_period_only_and_no_more_than_fit() {
+    let mut bench = whole_loop();
+    let upset = |kind| ToBoard::Upset(WireUpset { start: 20, end: 40, seed: 1, kind });
+    let taken = |said: Vec<FromBoard>| {
+        let of = |message: &FromBoard| if let FromBoard::Upset { taken } = message { Some(*taken) } else { None };
+        said.iter().find_map(of).expect("an answer")
+    };
+    bench.send(&upset(WireKind::Saturation(0.0)));
+    bench.run(3);
+    assert!(!taken(bench.said()), "nothing runs yet");
+    bench.start(RunMode::Lockstep, 1, 1000);
+    for number in 0..=MOST_UPSETS {
+        bench.send(&upset(if number == 0 { WireKind::Frozen(false) } else { WireKind::Saturation(0.01) }));
+        bench.run(3);
+        assert_eq!(taken(bench.said()), number < MOST_UPSETS);
+    }
+    let commands = [knot(0)].into_iter().collect();
+    bench.send(&ToBoard::Course(Schedule { sequence: 0, horizon: 60, commands }));
+    bench.run(90);
+    let said = samples(bench.said());
+    let mut joint = VirtualJoint::new(&TABLES, &control::SURROUNDINGS);
+    let (mut own, mut running, mut held) = (controller(), digest::START, None);
+    for (tick, sample) in (0..60_u32).zip(&said) {
+        let command =
+            Demand::from(knot(0).demand).at(control::SURROUNDINGS.period * tick as f32, control::SURROUNDINGS.turn);
+        let (mut samples, on) = (joint.samples(), (20..40).contains(&tick));
+        held = if on { held.or(Some(samples.motor.counts)) } else { None };
+        samples.motor.counts = held.unwrap_or(samples.motor.counts);
+        samples.torque = own_torque(&said, tick);
+        let torque = own.step(&samples, &command);
+        let given = if on { torque.shaped.torque.clamp(-0.01, 0.01) } else { torque.shaped.torque };
+        joint.advance(given, knot(0).load_torque);
+        running = digest::chain(torque.digest(running), joint.model().state_digest());
+        assert_eq!((sample.tick, sample.digest), (tick + 1, running));
+    }
+    assert_eq!(said.len(), 60);
+    bench.send(&upset(WireKind::Saturation(0.0)));
+    bench.run(3);
+    assert!(!taken(bench.said()), "the run has begun");
+}
+
+/// What the motor was asked for in the period before.
+fn own_torque(said: &[LoopSample], tick: u32) -> f32 {
+    tick.checked_sub(1).map_or(0.0, |before| said[before as usize].torque)
 }
 
 #[test]

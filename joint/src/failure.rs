@@ -39,9 +39,11 @@ impl Failure {
         Self { exit_code: EXIT_INTERRUPTED, ..Self::new(message) }
     }
 
-    /// A diagnostic that underlines the place in a source text (exit code 2).
+    /// A diagnostic that underlines the places in a source text (exit code 2). Its message tells them without the text.
     pub fn from_report(report: miette::Report) -> Self {
-        Self { report: Some(report), ..Self::new("") }
+        let places: Vec<String> = report.related().into_iter().flatten().map(|place| place.to_string()).collect();
+        let message = if places.is_empty() { report.to_string() } else { format!("{report}: {}", places.join("; ")) };
+        Self { report: Some(report), ..Self::new(message) }
     }
 
     /// Says how to mend it.
@@ -66,6 +68,13 @@ impl Failure {
     /// How to mend it.
     pub fn help(&self) -> Option<&str> {
         self.help.as_deref()
+    }
+
+    /// How to mend it, place after place of a diagnostic.
+    pub fn mend(&self) -> Option<String> {
+        let places = self.report.iter().flat_map(|report| report.related().into_iter().flatten());
+        let of_places: Vec<String> = places.filter_map(|place| Some(place.help()?.to_string())).collect();
+        self.help.clone().or_else(|| (!of_places.is_empty()).then(|| of_places.join("; ")))
     }
 
     /// The process's exit code.

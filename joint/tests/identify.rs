@@ -140,7 +140,7 @@ fn log(folder: &Path, change: impl Fn(usize, &mut [String; 4])) -> Ended {
         let torque = if row / 300 % 2 == 0 { 1.0 } else { -1.0 };
         let counts = row as i64 * 12;
         let mut cells = [
-            format!("{:.4}", row as f64 * 1e-3),
+            format!("{:.4}", row as f64 * 2e-4),
             counts.to_string(),
             // 17 bits against 14, over a ratio of 6.
             (counts * 8 / 6).to_string(),
@@ -165,7 +165,7 @@ fn logs_that_cannot_tell_are_refused_by_name() {
         .refused(&["too few crossings", "1 times"]);
     log(&|row, cells| {
         if row == 700 {
-            cells[0] = "0.2".into();
+            cells[0] = "0.04".into();
         }
     })
     .refused(&["the time does not rise", "line 702"]);
@@ -187,14 +187,123 @@ fn logs_that_cannot_tell_are_refused_by_name() {
         }
     })
     .refused(&["output_counts", "no whole number", "line 42"]);
-    log(&|_, cells| cells[1] = "5".into()).refused(&["the motor does not move"]);
+    log(&|_, cells| cells[1] = "5".into()).refused(&["the motor does not move", "0.0 counts"]);
     log(&|row, cells| cells[2] = (row * 14).to_string()).refused(&["do not turn together", "--output-bits"]);
     log(&|row, cells| {
         if row > 700 {
-            cells[0] = format!("{:.4}", row as f64 * 1e-3 + 0.5);
+            cells[0] = format!("{:.4}", row as f64 * 2e-4 + 0.5);
         }
     })
     .refused(&["not evenly spaced", "line 703"]);
+    log(&|row, cells| cells[0] = format!("{:.4}", row as f64 * 1e-3)).refused(&[
+        "sampled too slowly: 1000 Hz",
+        "at least 2000 Hz",
+        "swings at",
+    ]);
+    log(&|row, cells| cells[0] = format!("{:.6}", row as f64 * 1e-4)).refused(&["too short: 0.300 s", "0.5 s"]);
+}
+
+/// An MCAP log of ROS 2 messages in CDR, or of JSON, with a topic beside that has nothing to do with it.
+fn mcap(path: &Path, csv: &str, encoding: &str, compression: mcap::Compression) {
+    let out = std::io::BufWriter::new(fs::File::create(path).expect("a file"));
+    let options = mcap::WriteOptions::new().compression(Some(compression));
+    let mut writer = mcap::Writer::with_options(out, options).expect("a log");
+    let form = "std_msgs/Header header\nstring[] name\nfloat64[] position\nint64 raw\nfloat32 torque\n===\n\
+                MSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n";
+    let schema = writer.add_schema("lab_msgs/msg/Drive", "ros2msg", form.as_bytes()).expect("a schema");
+    let mut channel = |topic: &str, encoding: &str| {
+        let schema = if encoding == "cdr" { schema } else { 0 };
+        writer.add_channel(schema, topic, encoding, &Default::default()).expect("a channel")
+    };
+    let (drive, other) = (channel("/lab/drive", encoding), channel("/lab/room", "json"));
+    let mut say = |channel_id: u16, index: u32, data: &[u8]| {
+        let time = 100_000 * u64::from(index);
+        let header = mcap::records::MessageHeader { channel_id, sequence: index, log_time: time, publish_time: time };
+        writer.write_to_known_channel(&header, data).expect("written");
+    };
+    for (index, line) in (0..).zip(csv.lines().skip(1)) {
+        let cells: Vec<&str> = line.split(',').collect();
+        let (time, torque): (f64, f32) = (cells[0].parse().expect("a time"), cells[3].parse().expect("a torque"));
+        let message = if encoding == "json" {
+            format!(
+                "{{\"time_s\": {time}, \"drive\": {{\"pos\": [{}, {}]}}, \"torque\": {torque}, \"on\": true}}",
+                cells[1], cells[2]
+            )
+            .into_bytes()
+        } else {
+            let nanoseconds = (time * 1e9).round() as u64;
+            let mut bytes = vec![0, 1, 0, 0];
+            bytes.extend(((nanoseconds / 1_000_000_000) as i32).to_le_bytes());
+            bytes.extend(((nanoseconds % 1_000_000_000) as u32).to_le_bytes());
+            // Frame of one letter; one name of three.
+            bytes.extend([2, 0, 0, 0, b'm', 0, 0, 0, 1, 0, 0, 0, 4, 0, 0, 0, b'o', b'u', b't', 0]);
+            // One number, on a multiple of eight behind the head.
+            bytes.extend([1, 0, 0, 0]);
+            bytes.extend(cells[2].parse::<f64>().expect("counts").to_le_bytes());
+            bytes.extend(cells[1].parse::<i64>().expect("counts").to_le_bytes());
+            bytes.extend(torque.to_le_bytes());
+            bytes
+        };
+        say(drive, index, &message);
+        if index % 100 == 0 {
+            say(other, index, br#"{"temperature": 21.5}"#);
+        }
+    }
+    writer.finish().expect("finished");
+}
+
+#[test]
+fn a_lab_s_own_mcap_log_says_what_the_same_log_as_csv_says() {
+    let folder = folder();
+    let preset = joints::preset("q1").expect("a preset");
+    let whole = record(&joints::read(preset).expect("a joint"), 41, &|_| {}).expect("followed").csv(false);
+    let csv: String = whole.lines().take(15_001).map(|line| format!("{line}\n")).collect();
+    let [plain, cdr, json] = ["log.csv", "cdr.mcap", "json.mcap"].map(|name| folder.path().join(name));
+    fs::write(&plain, &csv).expect("written");
+    mcap(&cdr, &csv, "cdr", mcap::Compression::Lz4);
+    mcap(&json, &csv, "json", mcap::Compression::Zstd);
+    let findings = |log: &Path, options: &[&str]| {
+        let out = folder.path().join("out");
+        joint(&[&["identify", text(log), "--out", text(&out)], options].concat()).well();
+        let record: Value =
+            serde_json::from_str(&fs::read_to_string(out.join("findings.json")).expect("written")).expect("JSON");
+        record["findings"].clone()
+    };
+    let wanted = findings(&plain, &[]);
+    let ros = ["motor_counts=raw", "output_counts=position[0]", "motor_torque_N_m=torque"];
+    let of_ros = ros.iter().flat_map(|column| ["--column", column]).collect::<Vec<_>>();
+    let of_json = ["motor_counts=drive.pos[0]", "output_counts=drive.pos[1]", "motor_torque_N_m=torque"];
+    let of_json = of_json.iter().flat_map(|column| ["--column", column]).collect::<Vec<_>>();
+    let close = |found: &Value| {
+        for (one, other) in wanted.as_array().expect("a list").iter().zip(found.as_array().expect("a list")) {
+            let [one, other] = [one, other].map(|finding| finding["value"].as_f64());
+            // The torque has seven digits here.
+            assert!(one.is_some() == other.is_some(), "{found}");
+            assert!(one.zip(other).is_none_or(|(one, other)| (one - other).abs() <= 1e-3 * one.abs()), "{found}");
+        }
+    };
+    close(&findings(&cdr, &of_ros));
+    close(&findings(&json, &[&["--topic", "/lab/drive"], &of_json[..]].concat()));
+    let refused = |log: &Path, options: &[&str], words: &[&str]| {
+        joint(&[&["identify", text(log)], options].concat()).refused(words);
+    };
+    refused(&cdr, &[], &["no topic has motor, output and torque", "/lab/drive", "position[0]", "--column"]);
+    refused(&cdr, &["--topic", "/lab/drives"], &["there is no topic `/lab/drives`", "was `/lab/drive` meant?"]);
+    refused(&plain, &["--topic", "/lab/drive"], &["no MCAP log", "leave --topic out"]);
+    refused(&plain, &["--column", "motor_count=raw"], &["`motor_count` is none of"]);
+    refused(&plain, &["--column", "motor_counts=ra"], &["there is no column `ra`"]);
+    let bytes = fs::read(&cdr).expect("written");
+    fs::write(&cdr, &bytes[..bytes.len() / 2]).expect("written");
+    refused(&cdr, &of_ros, &["cdr.mcap", "damaged or cut off after"]);
+}
+
+#[test]
+fn a_history_that_sim_has_written_can_be_identified() {
+    let folder = folder();
+    let out = folder.path().join("sim");
+    joint(&["sim", "q1", "--profile", "reversals", "--out", text(&out)]).well();
+    let ended = joint(&["identify", text(&out.join("history.mcap")), "--out", text(&folder.path().join("out"))]).well();
+    assert!(ended.out.contains("stiffness behind the carrier"), "{ended:?}");
 }
 
 #[test]
@@ -207,8 +316,8 @@ fn files_that_are_no_logs_are_refused() {
     };
     refused("", &["log.csv", "empty", "motor_counts"]);
     refused("0,1,2,3\n", &["numbers in place of names"]);
-    refused("time_s,motor_count,output_counts,motor_torque_N_m\n0,1,2,3\n", &["only 1 samples"]);
-    let rows: String = (0..600).map(|row| format!("{},1,2,3\n", f64::from(row) * 1e-3)).collect();
+    refused("time_s,motor_count,output_counts,motor_torque_N_m\n0,1,2,3\n", &["only 1 samples", "0.5 s"]);
+    let rows: String = (0..3000).map(|row| format!("{:.4},1,2,3\n", f64::from(row) * 2e-4)).collect();
     let header = "time_s,motor_count,output_counts,motor_torque_N_m\n";
     refused(&format!("{header}{rows}"), &["no column `motor_counts`", "`motor_count`"]);
     joint(&["identify", text(&folder.path().join("none.csv"))]).refused(&["none.csv", "--simulate"]);

@@ -38,8 +38,11 @@ fn folder() -> tempfile::TempDir {
 #[test]
 fn every_shipped_test_can_be_read_and_designed() {
     let hil = Path::new(env!("CARGO_MANIFEST_DIR")).join("../hil");
-    let all = suite::load(&hil, Choice::Full, PlantName::Reference).expect("all can be used").len();
-    let short = suite::load(&hil, Choice::Short, PlantName::Reference).expect("all can be used").len();
+    let [all, short] = [Choice::Full, Choice::Short].map(|choice| {
+        let suite = suite::load(&hil, choice, PlantName::Reference).expect("a folder of tests");
+        assert!(suite.not_run.is_empty(), "{:?}", suite.not_run);
+        suite.tests.len()
+    });
     assert!(all > short && short > 10, "{all} tests, {short} of them short");
 }
 
@@ -47,8 +50,9 @@ fn every_shipped_test_can_be_read_and_designed() {
 fn the_run_without_a_file_has_tests_of_both_roles_and_none_that_its_board_would_refuse() {
     let hil = Path::new(env!("CARGO_MANIFEST_DIR")).join("../hil");
     for (role, plant) in [(Role::Loop, PlantName::Core), (Role::Observer, PlantName::Reference)] {
-        let tests = suite::load(&hil, Choice::OnBoard(role), plant).expect("some, and all can be used");
-        for test in tests {
+        let suite = suite::load(&hil, Choice::OnBoard(role), plant).expect("a folder of tests");
+        assert!(!suite.tests.is_empty() && suite.not_run.is_empty(), "{:?}", suite.not_run);
+        for test in suite.tests {
             assert!(test.file.controller.is_ours() && !test.file.only_with_full, "{}", test.name);
             assert!(role == Role::Observer || test.file.faults.is_empty(), "{}", test.name);
         }
@@ -106,6 +110,63 @@ fn a_controller_that_does_nothing_fails_and_the_report_leads_with_it() {
     let log = folder.path().join("out").join(results["tests"][0]["runs"][0]["log"].as_str().expect("a log"));
     let messages = mcap::MessageStream::new(&fs::read(log).expect("a log")).expect("MCAP").count();
     assert_eq!(messages, 1200);
+}
+
+#[test]
+fn what_cannot_run_in_a_folder_is_named_and_the_rest_runs() {
+    let folder = folder();
+    let tests = folder.path().join("tests");
+    fs::create_dir(&tests).expect("a folder");
+    let head = "duration_s = 0.3\nsettle_s = 0.1\nprofile = \"T2\"\n";
+    let alone = "[controller]\nrivals = []\n";
+    let tooth = "[[fault]]\nkind = \"broken_tooth\"\nstiffness_ratio = 0.3\n";
+    let files = [
+        ("a-broken.toml", "title = \n".to_owned()),
+        ("b-misspelt.toml", head.replace("profile", "profil")),
+        ("c-no-joint.toml", format!("joint = \"q2\"\n{head}")),
+        ("d-tooth.toml", format!("{head}{tooth}")),
+        ("e-good.toml", format!("{head}{alone}[assert]\nrms_mrad = \"<= 1e9\"\n")),
+        ("f-motion.toml", "profile = { kind = \"csv\", file = \"none.csv\" }\n".to_owned()),
+        ("g-joint.toml", joints::preset("s1").expect("a preset").to_owned()),
+    ];
+    for (name, content) in files {
+        fs::write(tests.join(name), content).expect("a file");
+    }
+    let out = folder.path().join("out");
+    let ended = joint(&["hil", text(&tests), "--host", "--out", text(&out)]);
+    assert_eq!(ended.code, Some(2), "{ended:?}");
+    let words = ["a-broken.toml", "b-misspelt.toml", "c-no-joint.toml", "d-tooth.toml", "f-motion.toml"];
+    for word in words.into_iter().chain(["not TOML", "did you mean `profile`?", "presets", "--plant reference"]) {
+        assert!(ended.out.contains(word), "{word}: {ended:?}");
+    }
+    assert!(ended.out.contains("passed   rms_mrad") && !ended.out.contains("g-joint.toml"), "{ended:?}");
+    assert!(ended.err.contains("5 of 6 tests were not run"), "{ended:?}");
+    let record: Value =
+        serde_json::from_str(&fs::read_to_string(out.join("record.json")).expect("written")).expect("JSON");
+    assert_eq!((record["passed"].clone(), record["tests"][0]["passed"].clone()), (false.into(), true.into()));
+    let not_run = record["not_run"].as_array().expect("a list");
+    assert!(
+        not_run.len() == 5 && not_run.iter().all(|one| one["why"].is_string() && one["mend"].is_string()),
+        "{not_run:?}"
+    );
+    let junit = fs::read_to_string(out.join("junit.xml")).expect("written");
+    assert!(junit.contains("tests=\"6\" failures=\"0\" errors=\"0\" skipped=\"5\""), "{junit}");
+    assert_eq!(junit.matches("<skipped message=").count(), 5, "{junit}");
+    let page = fs::read_to_string(out.join("report.html")).expect("written");
+    assert!(page.contains("What was not run") && page.contains("5 TESTS NOT RUN"), "the report tells");
+}
+
+#[test]
+fn a_failure_counts_more_than_what_was_not_run() {
+    let folder = folder();
+    let tests = folder.path().join("tests");
+    fs::create_dir(&tests).expect("a folder");
+    let head = "duration_s = 0.3\nsettle_s = 0.1\nprofile = \"T2\"\n[controller]\nrivals = []\n";
+    fs::write(tests.join("a.toml"), "profile = \"T3\"\n").expect("a file");
+    fs::write(tests.join("b.toml"), format!("{head}[assert]\nrms_mrad = \"<= 0\"\n")).expect("a file");
+    let ended = joint(&["hil", text(&tests), "--host", "--out", text(&folder.path().join("out"))]);
+    assert_eq!(ended.code, Some(1), "{ended:?}");
+    assert!(ended.err.contains("1 of 2 tests failed") && ended.err.contains("a.toml was not run"), "{ended:?}");
 }
 
 #[test]

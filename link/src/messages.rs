@@ -5,7 +5,7 @@ use heapless::{String, Vec};
 use serde::{Deserialize, Serialize};
 
 use crate::controller::{Answered, EXCHANGES_PER_SCHEDULE, Exchange};
-use crate::virtual_joint::{KNOTS_PER_SCHEDULE, Knot, LoopBatch};
+use crate::virtual_joint::{KNOTS_PER_SCHEDULE, Knot, LoopBatch, WireUpset};
 
 /// Most commands in one [`Schedule`].
 pub const COMMANDS_PER_SCHEDULE: usize = 24;
@@ -42,6 +42,9 @@ pub enum ToBoard {
     Exchanges(Schedule<Exchange, EXCHANGES_PER_SCHEDULE>),
     /// Motion to come, for the role that runs the whole loop.
     Course(Schedule<Knot, KNOTS_PER_SCHEDULE>),
+    /// A fault between the virtual joint and its controller, for the same role, between a reset and the first motion.
+    /// Answered by [`FromBoard::Upset`].
+    Upset(WireUpset),
 }
 
 /// How a run goes.
@@ -106,6 +109,11 @@ pub enum FromBoard {
     Answer(Answered),
     /// What joint and controller did.
     Loop(LoopBatch),
+    /// Whether a fault was taken: there is room for some, before the first period only, in one role only.
+    Upset {
+        /// It was.
+        taken: bool,
+    },
 }
 
 /// Who the board is and what it runs.

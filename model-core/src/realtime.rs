@@ -26,6 +26,7 @@ mod stages;
 mod state;
 mod substep;
 mod unfrozen;
+pub mod upset;
 pub mod virtual_joint;
 
 pub use model::{Model, Outputs, Torques};

@@ -8,8 +8,8 @@ use super::{Figures, Origin, pictures, table};
 use crate::failure::{Failure, Outcome};
 use crate::hil::origin as run_origin;
 use crate::report::shell::standalone;
+use crate::target::compile::PROFILE;
 use crate::target::emulator::MACHINE;
-use crate::target::image::PROFILE;
 use crate::target::toolchain::Toolchain;
 
 const BEGIN: &str = "<!-- comparison: written by `cargo joint bench --document` -->";

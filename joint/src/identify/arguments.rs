@@ -2,22 +2,34 @@
 
 use std::path::PathBuf;
 
+use super::columns::KNOWN;
+
 /// Arguments of `joint identify`.
 #[derive(Debug, Clone, clap::Args)]
-#[command(after_help = "LOG is a CSV file whose first line names the columns:
+#[command(
+    after_help = "LOG is a CSV file whose first line names the columns, or an MCAP log with a topic of such fields:
   time_s, motor_counts, output_counts, motor_torque_N_m and, if it was measured, output_torque_N_m
-(time_ms or time_us, motor_angle_rad and output_angle_rad are understood too).
+(time_ms or time_us, motor_angle_rad and output_angle_rad are understood too; other names by --column).
 
 Examples:
   joint identify my_log.csv --joint my_joint.toml --motor-bits 14 --output-bits 18
+  joint identify lab.mcap --topic /joint_states --column motor_angle_rad=position[0] --column output_angle_rad=position[1]
+    --column motor_torque_N_m=effort[0]
   joint identify virtual.csv --joint q1 --simulate --seed 7    makes a log on the f64 reference, without hardware
   joint identify virtual.csv --joint q1                        and what is found in it
 
-Exit code: 0 if something could be identified, 2 for bad input or a log that cannot tell, 130 after Ctrl-C.")]
+Exit code: 0 if something could be identified, 2 for bad input or a log that cannot tell, 130 after Ctrl-C."
+)]
 pub struct Arguments {
     /// Recorded reversal test; with --simulate the file that is to be written
     #[arg(value_name = "LOG")]
     pub log: PathBuf,
+    /// Topic of an MCAP log [default: the one that has motor, output and torque]
+    #[arg(long, value_name = "TOPIC")]
+    pub topic: Option<String>,
+    /// Takes a column of another name, such as motor_counts=pos_raw; may be repeated
+    #[arg(long, value_name = "COLUMN=NAME", value_parser = renaming)]
+    pub column: Vec<(String, String)>,
     /// Joint file (TOML) or preset that gives teeth, levers and inertias, and that is patched
     #[arg(long, value_name = "FILE", default_value = "q1")]
     pub joint: PathBuf,
@@ -48,6 +60,15 @@ pub struct Arguments {
     /// Writes the findings as JSON to this file too
     #[arg(long, value_name = "OUT")]
     pub json: Option<PathBuf>,
+}
+
+fn renaming(text: &str) -> Result<(String, String), String> {
+    let (own, theirs) = text.split_once('=').ok_or("write COLUMN=NAME, as in motor_counts=pos_raw")?;
+    if KNOWN.iter().any(|(name, _)| *name == own) && !theirs.is_empty() {
+        return Ok((own.to_owned(), theirs.to_owned()));
+    }
+    let names: Vec<&str> = KNOWN.iter().map(|(name, _)| *name).collect();
+    Err(format!("`{own}` is none of {}", names.join(", ")))
 }
 
 fn percent(text: &str) -> Result<f64, String> {

@@ -43,6 +43,14 @@ impl Kernel {
         self.half
     }
 
+    /// Products of the weights of two orders, summed: how errors of single samples show in smoothed values, and together.
+    pub fn products(&self) -> [[f64; 3]; 3] {
+        let product = |one: usize, other: usize| -> f64 {
+            self.weights[one].iter().zip(&self.weights[other]).map(|(one, other)| one * other).sum()
+        };
+        [0, 1, 2].map(|one| [0, 1, 2].map(|other| product(one, other)))
+    }
+
     /// The smoothed derivative of an order (0, 1, 2) at a sample; the sample must be `half` away from either end.
     pub fn at(&self, signal: impl Fn(usize) -> f64, sample: usize, order: usize) -> f64 {
         let from = sample - self.half;

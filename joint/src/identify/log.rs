@@ -2,14 +2,22 @@
 //! whole counts. What the samples tell is left to `rows` and the fits.
 
 use std::f64::consts::TAU;
-use std::path::Path;
 
+use super::arguments::Arguments;
 use super::columns::Columns;
+use super::findings::gap;
+use super::noise::Noise;
 use super::plan::Plan;
 use crate::failure::{Failure, Outcome};
 
-/// Fewer samples cannot hold a reversal and what surrounds it.
-const LEAST_SAMPLES: usize = 500;
+/// A shorter log cannot hold reversals and what surrounds them [s].
+const LEAST_TIME: f64 = 0.5;
+/// Slower samples do not show what a landing does to the torque [Hz]...
+const LEAST_RATE: f64 = 2000.0;
+/// ... nor do less than so many of them in a swing of the joint on its compliance.
+const LEAST_IN_A_SWING: f64 = 3.0;
+/// Fewer counts of the motor may be its encoder's own scatter.
+const LEAST_TRAVEL: f64 = 8.0;
 /// A step of time may differ by this ratio from the usual one.
 const UNEVEN_RATIO: f64 = 0.5;
 /// The link's speed is taken over this time to either side [s].
@@ -36,6 +44,8 @@ pub struct Log {
     pub torque: Vec<f64>,
     /// Torque of the joint on its link, if it was measured [N m].
     pub output_torque: Option<Vec<f64>>,
+    /// How much motor and output readings scatter [rad^2].
+    pub noise: [Noise; 2],
 }
 
 /// Readings of one encoder.
@@ -46,36 +56,35 @@ enum Readings {
 
 impl Log {
     /// Reads a file.
-    pub fn read(path: &Path, plan: &Plan) -> Outcome<Self> {
-        let columns = Columns::read(path)?;
+    pub fn read(arguments: &Arguments, plan: &Plan) -> Outcome<Self> {
+        let path = arguments.log.as_path();
+        let columns = Columns::read(path, arguments.topic.as_deref(), &arguments.column)?;
         Self::of(&columns, plan).map_err(|failure| failure.while_doing(path.display()))
     }
 
     fn of(columns: &Columns, plan: &Plan) -> Outcome<Self> {
         let mut time = columns.time()?;
-        if time.len() < LEAST_SAMPLES {
-            return Err(Failure::new(format!("there are only {} samples", time.len()))
-                .with_help("record several reversals, with a thousand samples a second or more"));
-        }
-        let start = time[0];
+        let start = time.first().copied().unwrap_or_default();
         time.iter_mut().for_each(|time| *time -= start);
+        if time.len() < 2 {
+            return Err(Failure::new(format!("there are only {} samples", time.len()))
+                .with_help(format!("record several reversals, for {LEAST_TIME} s at the very least")));
+        }
         let period = sampling(&time, columns)?;
-        let motor = readings(columns, &["motor_counts"], &["motor_angle_rad", "motor_rad"], plan.motor_bits)?;
-        let output = readings(
-            columns,
-            &["output_counts", "link_counts"],
-            &["output_angle_rad", "link_angle_rad", "link_rad"],
-            plan.output_bits,
-        )?;
-        let torque = columns.one_of(&["motor_torque_N_m", "motor_torque_Nm", "motor_torque_nm", "drive_torque_Nm"])?;
+        check_time(period, time.len(), plan)?;
+        let motor = readings(columns, ["motor_counts", "motor_angle_rad"], plan.motor_bits)?;
+        let output = readings(columns, ["output_counts", "output_angle_rad"], plan.output_bits)?;
+        let (_, torque) = columns.named(&["motor_torque_N_m"])?;
         let output_torque = columns.maybe("output_torque_N_m")?;
         let twist = twist(&motor, &output, plan);
+        let (motor, output) = (motor.angles(plan.motor_bits), output.angles(plan.output_bits));
         let log = Self {
             time,
             period,
-            carried: motor.angles(plan.motor_bits),
-            motor: motor.angles(plan.motor_bits),
-            output: output.angles(plan.output_bits),
+            noise: [Noise::of(&motor), Noise::of(&output)],
+            carried: motor.clone(),
+            motor,
+            output,
             twist,
             torque,
             output_torque,
@@ -117,9 +126,12 @@ impl Log {
             let (least, most) = angles.iter().fold((f64::MAX, f64::MIN), |(a, b), &angle| (a.min(angle), b.max(angle)));
             most - least
         };
-        if travel(&self.motor) < 4.0 * TAU / f64::from(1_u32 << plan.motor_bits) {
-            return Err(Failure::new("the motor does not move in this log")
-                .with_help("the torque must overcome the friction, and turn the motor through the gap"));
+        let counts = travel(&self.motor) * f64::from(1_u32 << plan.motor_bits) / TAU;
+        if counts < LEAST_TRAVEL {
+            return Err(Failure::new(format!(
+                "the motor does not move in this log: by {counts:.1} counts of its encoder, {LEAST_TRAVEL} are the least"
+            ))
+            .with_help("the torque must overcome the friction, and turn the motor through the gap"));
         }
         // Where the output turns far, it must turn as the motor does.
         let (moved, of_motor) = (travel(&self.output), travel(&self.motor) / plan.ratio());
@@ -137,6 +149,28 @@ impl Log {
         }
         Ok(())
     }
+}
+
+/// Refuses a log that is too short, or sampled too slowly for the joint's swing.
+fn check_time(period: f64, samples: usize, plan: &Plan) -> Outcome<()> {
+    let (rate, time) = (1.0 / period, period * samples as f64);
+    let needed = LEAST_RATE.max(LEAST_IN_A_SWING / plan.swing());
+    if rate < 0.999 * needed {
+        let swing = 1.0 / plan.swing();
+        return Err(Failure::new(format!(
+            "the log is sampled too slowly: {rate:.0} Hz, at least {needed:.0} Hz are needed for a joint that swings at \
+             {swing:.0} Hz"
+        ))
+        .with_help(format!(
+            "record every control period; {:.0} Hz also show the damping",
+            (gap::SWING_SAMPLES * swing).max(needed)
+        )));
+    }
+    if time < LEAST_TIME {
+        return Err(Failure::new(format!("the log is too short: {time:.3} s, at least {LEAST_TIME} s are needed"))
+            .with_help("record several reversals to both sides; docs/identify.md tells a good test"));
+    }
+    Ok(())
 }
 
 impl Readings {
@@ -166,10 +200,10 @@ fn twist(motor: &Readings, output: &Readings, plan: &Plan) -> Vec<f64> {
     motor.iter().zip(&output).map(|(motor, output)| motor / plan.ratio() - output).collect()
 }
 
-fn readings(columns: &Columns, counts: &[&str], angles: &[&str], bits: u32) -> Outcome<Readings> {
-    let all = [counts, angles].concat();
-    let (name, values) = columns.named(&all)?;
-    if counts.contains(&name) {
+/// Counts, or else angles.
+fn readings(columns: &Columns, names: [&str; 2], bits: u32) -> Outcome<Readings> {
+    let (name, values) = columns.named(&names)?;
+    if name == names[0] {
         let turn = 1_i64 << bits;
         if let Some(line) = values.iter().position(|value| value.fract() != 0.0 || value.abs() > 9e15) {
             return Err(Failure::new(format!("{} of `{name}` is no whole number of counts", columns.place(line)))

@@ -1,7 +1,7 @@
 //! `joint identify`: from a recorded reversal test to a joint's backlash, compliance, damping, friction and encoder errors,
 //! each with its interval, and to a patched joint file. Learning on board is the observer's business.
 //!
-//! `columns` reads a file, `log` turns it into checked samples, `plan` says what the joint file knows;
+//! `columns` reads a file, an MCAP log by `mcap_log` and `ros_message`; `log` turns it into checked samples, `plan` says what the joint file knows;
 //! `rows` are the moments at which a flank carries, smoothed by `kernel`; `twist` and `friction` are fitted to them by
 //! `regression`; `findings` is what comes of it, with its `estimate`s; `table`, `page`, `pictures` and `patch` show it. `virtual_test` makes a
 //! log without hardware.
@@ -13,18 +13,19 @@ pub mod findings;
 mod friction;
 mod kernel;
 mod log;
+mod mcap_log;
+mod noise;
 mod page;
 mod patch;
 mod pictures;
 mod plan;
 mod refusal;
 mod regression;
+mod ros_message;
 mod rows;
 mod table;
 mod twist;
 pub mod virtual_test;
-
-use std::path::Path;
 
 pub use arguments::Arguments;
 use findings::Finding;
@@ -43,6 +44,16 @@ use crate::sim::files::Folder;
 
 /// Box of the kernel for frictions, which need no quick motion but exact accelerations [s].
 const SLOW_BOX: f64 = 4e-3;
+
+/// Box of the kernel for everything else: at most this long [s], and a sixth of the swing's period...
+const QUICK_BOX: f64 = 1e-3;
+const SWING_PARTS: f64 = 6.0;
+/// ... but longer, step by step, if the encoders' counts then are most of what an acceleration shows.
+const LONGER: f64 = 1.4;
+const LONGEST_BOX: f64 = 8e-3;
+const RELIABLE: f64 = 0.9;
+/// Below this they are most of it.
+const LEAST_RELIABLE: f64 = 0.5;
 
 /// Fits one after the other, each with the errors by angle of the last taken off the accelerations.
 const ROUNDS: usize = 3;
@@ -79,7 +90,7 @@ fn run_once(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
     }
     let plan = Plan::new(&loaded, arguments);
     progress.stage("fitting");
-    let identified = identify(&arguments.log, &plan)?;
+    let identified = identify(arguments, &plan)?;
     let folder = Folder::prepare(arguments.out.as_deref(), "identify", &plan.name)?;
     let name = arguments.log.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let stated = |finding: &Finding| {
@@ -119,27 +130,22 @@ fn run_once(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
     output::print(&format!("\nreport: {}\njoint file: {}\n", report.display(), joint.display()))
 }
 
-fn identify(path: &Path, plan: &Plan) -> Outcome<Identified> {
-    let read = Log::read(path, plan)?;
+fn identify(arguments: &Arguments, plan: &Plan) -> Outcome<Identified> {
+    let path = arguments.log.as_path();
+    let read = Log::read(arguments, plan)?;
     let in_the_file = |failure: Failure| failure.while_doing(path.display());
+    let shortest = QUICK_BOX.min(plan.swing() / SWING_PARTS);
+    let (length, mut rows, mut twist) = first_fit(&read, plan, shortest).map_err(in_the_file)?;
     let mut log = read.clone();
-    let mut rows = Rows::quick(&log, plan);
-    refusal::check(&log, &rows, plan).map_err(in_the_file)?;
-    let fit = |log: &Log, rows: &Rows| {
-        twist::fit(log, rows, plan).ok_or_else(|| {
-            in_the_file(Failure::new("the moments at which a flank carries do not determine a fit"))
-                .with_help("record more reversals with torques of different strength")
-        })
-    };
-    let mut twist = fit(&log, &rows)?;
     for _ in 0..ROUNDS {
         let errors: [&dyn Fn(f64) -> f64; 3] =
             [&|angle| twist.error(twist::MOTOR_MAP, angle), &|angle| twist.error(twist::OUTPUT_MAP, angle), &|angle| {
                 twist.error(twist::TEETH, angle)
             }];
-        log = read.without(errors, twist.solution.values[twist::SKEW], plan);
-        rows = Rows::quick(&log, plan);
-        twist = fit(&log, &rows)?;
+        let corrected = read.without(errors, twist.solution.values[twist::SKEW], plan);
+        let seen = Rows::new(&corrected, plan, length);
+        let Some(better) = twist::fit(&corrected, &seen, plan) else { break };
+        (log, rows, twist) = (corrected, seen, better);
     }
     let slow = Rows::new(&log, plan, SLOW_BOX);
     let findings = findings::gather(&log, &rows, &slow, &twist, plan);
@@ -148,6 +154,38 @@ fn identify(path: &Path, plan: &Plan) -> Outcome<Identified> {
             .with_help("record more reversals, with torques well above the friction and of different strength"));
     }
     Ok(Identified { log, rows, twist, findings })
+}
+
+/// The fit with the shortest box of the kernel at which encoder counts are not most of what an acceleration shows; the best
+/// there is if they always are.
+fn first_fit(log: &Log, plan: &Plan, shortest: f64) -> Outcome<(f64, Rows, Twist)> {
+    let mut best: Option<(f64, Rows, Twist)> = None;
+    let mut refused = None;
+    let mut length = shortest;
+    while length < LONGEST_BOX {
+        let rows = Rows::new(log, plan, length);
+        match refusal::check(log, &rows, plan) {
+            Ok(()) => {
+                let fitted = twist::fit(log, &rows, plan);
+                let reliability = fitted.as_ref().map_or(0.0, |twist| twist.solution.reliability);
+                if best.as_ref().is_none_or(|(_, _, best)| reliability > best.solution.reliability) {
+                    best = fitted.map(|twist| (length, rows, twist)).or(best);
+                }
+                if reliability > RELIABLE {
+                    break;
+                }
+            }
+            // A longer box may see what counts hide; why the shortest sees nothing is what a user can mend.
+            Err(failure) => refused = refused.or(Some(failure)),
+        }
+        length *= LONGER;
+    }
+    best.filter(|(_, _, best)| best.solution.reliability > LEAST_RELIABLE).ok_or_else(|| {
+        refused.unwrap_or_else(|| {
+            Failure::new("the moments at which a flank carries do not determine a fit")
+                .with_help("record more reversals with torques of different strength, or take finer encoders")
+        })
+    })
 }
 
 /// What the numbers take for granted.
@@ -177,10 +215,9 @@ fn assumptions(plan: &Plan, log: &Log) -> Vec<String> {
 
 fn simulate(arguments: &Arguments, loaded: &Loaded, progress: &Progress) -> Outcome<()> {
     let mut file = loaded.file.clone();
-    if let Some(train) = file.drive_train.as_mut() {
-        train.motor_encoder.bits = arguments.motor_bits.unwrap_or(train.motor_encoder.bits);
-        train.output_encoder.bits = arguments.output_bits.unwrap_or(train.output_encoder.bits);
-    }
+    let train = file.drive_train.get_or_insert_default();
+    train.motor_encoder.bits = arguments.motor_bits.unwrap_or(train.motor_encoder.bits);
+    train.output_encoder.bits = arguments.output_bits.unwrap_or(train.output_encoder.bits);
     progress.run("testing", 1000);
     let line = progress.handle();
     let recording = virtual_test::record(&file, arguments.seed, &|share| line.at((1000.0 * share) as u32))?;

@@ -65,10 +65,30 @@ fn table(content: &Content<'_>) -> Markup {
                 td.number {
                     (finding.interval.map_or_else(|| "–".into(), |[low, high]| format!("{} … {}", number(low), number(high))))
                 }
-                td { (finding.unit) }
-                td.number { ((content.stated)(finding).unwrap_or_else(|| "–".into())) }
+                td { (unit(&finding.unit)) }
+                @let stated = (content.stated)(finding);
+                td.number { @match &stated {
+                    Some(stated) if differs(finding, stated) => strong { (stated) },
+                    Some(stated) => (stated),
+                    None => "–",
+                } }
                 td { (finding.note) }
             } } }
         }
+        @if content.findings.iter().any(|finding| (content.stated)(finding).is_some_and(|stated| differs(finding, &stated))) {
+            p.note { "Bold: what the joint file says is outside of the interval." }
+        }
     }
+}
+
+/// Whether a stated value is outside of the interval.
+fn differs(finding: &Finding, stated: &str) -> bool {
+    let stated: Option<f64> = stated.replace('_', "").parse().ok();
+    stated.zip(finding.interval).is_some_and(|(stated, [low, high])| !(low..=high).contains(&stated))
+}
+
+/// As it is written where there are Greek letters.
+fn unit(unit: &str) -> String {
+    let micro = unit.strip_prefix('u').map_or(unit.to_owned(), |rest| format!("µ{rest}"));
+    micro.replace(' ', "·")
 }

@@ -8,6 +8,14 @@ const ROUNDS: usize = 8;
 /// Residuals beyond this many deviations count less (Huber); the usual constant for 95 % efficiency.
 const HUBER: f64 = 1.345;
 
+/// Coefficients of an equation that are measured and therefore scatter.
+pub const SCATTERING: usize = 3;
+
+/// How some coefficients of an equation and its value scatter: their covariance, the value last. Least squares alone would
+/// find unknowns with scattering coefficients too small.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Scatter(pub [[f64; SCATTERING + 1]; SCATTERING + 1]);
+
 /// Equations to be solved together.
 #[derive(Debug, Clone, Default)]
 pub struct Equations {
@@ -15,6 +23,10 @@ pub struct Equations {
     values: Vec<f64>,
     /// Stretch of time that an equation is of.
     stretches: Vec<usize>,
+    /// How coefficients scatter; nothing if none do.
+    scatters: Vec<Scatter>,
+    /// Which coefficients these are.
+    scattering: [usize; SCATTERING],
 }
 
 /// What came of them.
@@ -28,6 +40,8 @@ pub struct Solution {
     pub reach: f64,
     /// What the equations leave over.
     pub residuals: Vec<f64>,
+    /// Part of what the equations seem to say of an unknown with scattering coefficients that is no scatter; of the worst.
+    pub reliability: f64,
 }
 
 impl Equations {
@@ -36,6 +50,20 @@ impl Equations {
         self.rows.push(row);
         self.values.push(value);
         self.stretches.push(stretch);
+    }
+
+    /// One more equation whose coefficients of these unknowns scatter; all equations must be of this kind then.
+    pub fn push_scattering(
+        &mut self,
+        row: Vec<f64>,
+        value: f64,
+        stretch: usize,
+        scattering: [usize; SCATTERING],
+        scatter: Scatter,
+    ) {
+        self.scattering = scattering;
+        self.scatters.push(scatter);
+        self.push(row, value, stretch);
     }
 
     /// How many there are.
@@ -65,20 +93,33 @@ impl Equations {
         let mut solved = DVector::zeros(unknowns);
         let mut information = DMatrix::zeros(unknowns, unknowns);
         let mut residuals = values.clone();
+        let mut reliability = 1.0;
         for _ in 0..ROUNDS {
             let floor = 1e-12 * (1.0 + values.amax());
             let sharpness = 1.0 / (noise * noise).max(floor * floor);
             let weighted = DMatrix::from_fn(self.count(), unknowns, |row, column| {
                 matrix[(row, column)] * weights[row] * sharpness
             });
-            information = weighted.transpose() * &matrix + DMatrix::from_diagonal(&prior);
-            solved = information.clone().cholesky()?.solve(&(weighted.transpose() * &values));
+            let seen = weighted.transpose() * &matrix + DMatrix::from_diagonal(&prior);
+            let mut right = weighted.transpose() * &values;
+            information = seen.clone();
+            for (scatter, weight) in self.scatters.iter().zip(weights.iter()) {
+                self.take_off(scatter, weight * sharpness, &scales, &mut information, &mut right);
+            }
+            solved = information.clone().cholesky()?.solve(&right);
+            if !self.scatters.is_empty() {
+                let (seen, true_one) = (seen.cholesky()?.inverse(), information.clone().cholesky()?.inverse());
+                let part = |unknown: &usize| seen[(*unknown, *unknown)] / true_one[(*unknown, *unknown)];
+                reliability = self.scattering.iter().map(part).fold(1.0, f64::min);
+            }
             residuals = &values - &matrix * &solved;
             noise = spread(residuals.as_slice()).max(floor);
             weights = residuals.map(|residual| (HUBER * noise / residual.abs().max(1e-300)).min(1.0));
         }
         let inverse = information.cholesky()?.inverse();
-        let (meat, stretches) = self.scatter(&matrix, &weights, &residuals, noise);
+        let pulls =
+            Pulls { matrix: &matrix, weights: &weights, residuals: &residuals, solved: &solved, scales: &scales };
+        let (meat, stretches) = self.scatter(&pulls, noise);
         let covariance = &inverse * (meat + DMatrix::from_diagonal(&prior)) * &inverse;
         let freedom = stretches.saturating_sub(unknowns.min(stretches / 2)).max(3) as f64;
         Some(Solution {
@@ -87,17 +128,30 @@ impl Equations {
             // Student's 97.5 % quantile, by the first terms of its expansion.
             reach: 1.96 + 2.37 / freedom + 2.82 / (freedom * freedom),
             residuals: residuals.as_slice().to_vec(),
+            reliability,
         })
     }
 
-    /// Sum over stretches of time of the square of what each pulls, and how many there are.
-    fn scatter(
+    /// Takes what scatter alone puts into the sums out of them.
+    fn take_off(
         &self,
-        matrix: &DMatrix<f64>,
-        weights: &DVector<f64>,
-        residuals: &DVector<f64>,
-        noise: f64,
-    ) -> (DMatrix<f64>, usize) {
+        Scatter(scatter): &Scatter,
+        weight: f64,
+        scales: &[f64],
+        sums: &mut DMatrix<f64>,
+        right: &mut DVector<f64>,
+    ) {
+        for (place, &row) in self.scattering.iter().enumerate() {
+            for (other, &column) in self.scattering.iter().enumerate() {
+                sums[(row, column)] -= weight * scatter[place][other] / (scales[row] * scales[column]);
+            }
+            right[row] -= weight * scatter[place][SCATTERING] / scales[row];
+        }
+    }
+
+    /// Sum over stretches of time of the square of what each pulls, and how many there are.
+    fn scatter(&self, pulls: &Pulls<'_>, noise: f64) -> (DMatrix<f64>, usize) {
+        let Pulls { matrix, weights, residuals, solved, scales } = *pulls;
         let unknowns = matrix.ncols();
         let mut pulls: Vec<DVector<f64>> = Vec::new();
         let mut last = None;
@@ -107,7 +161,16 @@ impl Equations {
                 last = Some(self.stretches[row]);
             }
             if let Some(pull) = pulls.last_mut() {
-                *pull += matrix.row(row).transpose() * (weights[row] * residuals[row] / (noise * noise));
+                let weight = weights[row] / (noise * noise);
+                *pull += matrix.row(row).transpose() * (weight * residuals[row]);
+                // As in the sums, what scatter alone puts in is taken out.
+                let Some(Scatter(scatter)) = self.scatters.get(row) else { continue };
+                for (place, &unknown) in self.scattering.iter().enumerate() {
+                    let others = self.scattering.iter().enumerate();
+                    let of_others: f64 =
+                        others.map(|(other, &column)| scatter[place][other] * solved[column] / scales[column]).sum();
+                    pull[unknown] += weight * (of_others - scatter[place][SCATTERING]) / scales[unknown];
+                }
             }
         }
         // Each stretch has bent the solution towards itself.
@@ -117,6 +180,15 @@ impl Equations {
         pulls.iter().for_each(|pull| sum += pull * pull.transpose() * correction);
         (sum, pulls.len())
     }
+}
+
+/// What single equations pull with.
+struct Pulls<'p> {
+    matrix: &'p DMatrix<f64>,
+    weights: &'p DVector<f64>,
+    residuals: &'p DVector<f64>,
+    solved: &'p DVector<f64>,
+    scales: &'p [f64],
 }
 
 impl Solution {

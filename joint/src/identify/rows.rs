@@ -5,15 +5,18 @@ use super::kernel::Kernel;
 use super::log::Log;
 use super::plan::Plan;
 
-/// Box of the kernel is at most this long [s], and a sixth of the swing's period.
-const BOX: f64 = 1e-3;
-const SWING_PARTS: f64 = 6.0;
 /// What a torque may still be on its way, from command to air gap [s].
 const LAG: f64 = 1.5e-3;
 /// A flank carries when the torque on it is more than this share of the largest...
 const CARRYING_SHARE: f64 = 0.03;
-/// ... and more than this many times what friction may feign.
+/// ... more than this many times what friction may feign...
 const OVER_FRICTION: f64 = 1.5;
+/// ... and more than this many deviations of what the motor encoder's scatter feigns.
+const OVER_SCATTER: f64 = 4.0;
+/// A kernel's box that is longer than this part of a swing does not show it.
+const UNRESOLVED: f64 = 0.5;
+/// Teeth bounce so long after a change of flank [s].
+const BOUNCING: f64 = 0.07;
 /// A slow motor's direction is told from this long to either side [s]...
 const SLOW: f64 = 0.05;
 /// ... if it moves by more than so many counts in every quarter of that.
@@ -74,12 +77,7 @@ pub struct Rows {
 }
 
 impl Rows {
-    /// With a box of the kernel that follows the swing of the compliance.
-    pub fn quick(log: &Log, plan: &Plan) -> Self {
-        Self::new(log, plan, BOX.min(plan.swing() / SWING_PARTS))
-    }
-
-    /// With a box of a length [s].
+    /// With a box of the kernel of a length [s].
     pub fn new(log: &Log, plan: &Plan, length: f64) -> Self {
         let samples = ((length / log.period).round() as usize).clamp(2, log.time.len() / 50);
         let kernel = Kernel::new(samples, log.period);
@@ -92,20 +90,41 @@ impl Rows {
         let friction = plan.ratio() * plan.train.motor_coulomb_friction;
         let carrying = (CARRYING_SHARE * greatest).max(OVER_FRICTION * friction);
         let guard = ((half as f64 + LAG / log.period) / samples as f64).ceil() as usize;
-        let sides: Vec<f64> =
-            all.iter().map(|row| if row.torque().abs() > carrying { row.torque().signum() } else { 0.0 }).collect();
+        let per_reading = plan.ratio() * plan.motor_inertia * kernel.products()[2][2].sqrt();
+        let side = |row: &Row| {
+            let scatter = if row.measured.is_some() { 0.0 } else { per_reading * log.noise[0].at(row.sample).sqrt() };
+            let torque = row.torque();
+            if torque.abs() > carrying.max(OVER_SCATTER * scatter) { torque.signum() } else { 0.0 }
+        };
+        let sides: Vec<f64> = all.iter().map(side).collect();
         for (index, row) in all.iter_mut().enumerate() {
             let around = &sides[index.saturating_sub(guard)..(index + guard + 1).min(sides.len())];
             row.side = if around.iter().all(|side| *side == sides[index]) { sides[index] } else { 0.0 };
         }
         let carried: Vec<f64> = all.iter().map(|row| row.side).filter(|side| *side != 0.0).collect();
         let crossings = carried.windows(2).filter(|pair| pair[0] != pair[1]).count();
+        if length > UNRESOLVED * plan.swing() {
+            leave_out_landings(&mut all);
+        }
         Self { all, kernel, greatest, crossings }
     }
 
     /// Moments at which a flank carries.
     pub fn carrying(&self) -> impl Iterator<Item = &Row> {
         self.all.iter().filter(|row| row.side != 0.0)
+    }
+}
+
+/// Teeth that land bounce for a while: a kernel too long to show it would take their flight for a bend.
+fn leave_out_landings(rows: &mut [Row]) {
+    let (mut side, mut landed) = (0.0, f64::NEG_INFINITY);
+    for row in rows.iter_mut().filter(|row| row.side != 0.0) {
+        if row.side != side {
+            (side, landed) = (row.side, row.time);
+        }
+        if row.time - landed < BOUNCING {
+            row.side = 0.0;
+        }
     }
 }
 

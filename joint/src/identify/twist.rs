@@ -5,7 +5,7 @@ use nalgebra::DVector;
 
 use super::log::Log;
 use super::plan::Plan;
-use super::regression::{Equations, Solution};
+use super::regression::{Equations, SCATTERING, Scatter, Solution};
 use super::rows::{Row, Rows};
 
 /// Unknowns by their place.
@@ -75,8 +75,11 @@ pub fn width(unknown: usize) -> f64 {
 pub fn fit(log: &Log, rows: &Rows, plan: &Plan) -> Option<Twist> {
     let used: Vec<Row> = rows.carrying().filter(|row| row.direction != 0.0).copied().collect();
     let mut equations = Equations::default();
+    let products = rows.kernel.products();
     for row in &used {
-        equations.push(equation(log, rows, plan, row), row.twist, (row.time / STRETCH) as usize);
+        let stretch = (row.time / STRETCH) as usize;
+        let coefficients = equation(log, rows, plan, row);
+        equations.push_scattering(coefficients, row.twist, stretch, MEASURED, scatter(log, &products, plan, row));
     }
     let mut widths: Vec<f64> = (0..UNKNOWNS).map(width).collect();
     // With the torque measured behind them, the motor's friction and its delay do not show in the twist.
@@ -85,6 +88,30 @@ pub fn fit(log: &Log, rows: &Rows, plan: &Plan) -> Option<Twist> {
     widths[TORQUE_ERROR] = if measured { NONE } else { (plan.compliance * plan.torque_error).max(NONE) };
     let solution = equations.solve(&widths)?;
     Some(Twist { solution, rows: used })
+}
+
+/// Unknowns whose coefficients come from encoder readings by way of a rate or an acceleration.
+const MEASURED: [usize; SCATTERING] = [COMPLIANCE, RELAXATION, SKEW];
+
+/// How readings that scatter show in those coefficients and in the twist: what of each is their value, first and second
+/// derivative, by motor and output.
+fn scatter(log: &Log, products: &[[f64; 3]; 3], plan: &Plan, row: &Row) -> Scatter {
+    let ratio = plan.ratio();
+    let taken = if row.measured.is_some() { 0.0 } else { -row.leverage };
+    let torque = [0.0, taken * plan.train.motor_viscous_friction, taken * plan.motor_inertia];
+    let of_motor = [torque, [0.0, 1.0 / ratio, 0.0], [0.0; 3], [1.0 / ratio, 0.0, 0.0]];
+    let of_output = [[0.0; 3], [0.0, -1.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]];
+    let mut covariance = Scatter::default();
+    for (parts, noise) in [of_motor, of_output].iter().zip(&log.noise) {
+        let variance = noise.at(row.sample);
+        for (one, other) in (0..=SCATTERING).flat_map(|one| (0..=SCATTERING).map(move |other| (one, other))) {
+            let pairs = (0..3).flat_map(|order| (0..3).map(move |with| (order, with)));
+            let sum: f64 =
+                pairs.map(|(order, with)| parts[one][order] * parts[other][with] * products[order][with]).sum();
+            covariance.0[one][other] += variance * sum;
+        }
+    }
+    covariance
 }
 
 /// Coefficients of the unknowns at a moment.

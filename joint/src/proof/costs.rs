@@ -7,7 +7,7 @@ use model_core::joint::{Excitation, JointParameters};
 use super::joints::{TRIAL_JOINTS, write_files};
 use super::worst_case::Search;
 use crate::failure::{Failure, Outcome};
-use crate::target::image::{DEFAULT_TICK_RATE, build_measuring};
+use crate::target::image::DEFAULT_TICK_RATE;
 use crate::target::toolchain::Toolchain;
 use crate::target::{Say, measuring};
 
@@ -32,7 +32,7 @@ pub struct Counted {
 /// Counts on the emulated board.
 pub fn count(toolchain: &Toolchain, say: Say<'_>) -> Outcome<Vec<Counted>> {
     let files = write_files(toolchain.target_directory())?;
-    let elf = build_measuring(toolchain, "costs", &files, DEFAULT_TICK_RATE, say)?;
+    let elf = measuring::build_measuring(toolchain, "costs", &files, DEFAULT_TICK_RATE, say)?;
     let lines = measuring::run(&elf)?;
     lines.iter().map(|line| parse(line).ok_or_else(|| Failure::new(format!("the board said: {line}")))).collect()
 }

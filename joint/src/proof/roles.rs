@@ -7,7 +7,6 @@ use std::fmt;
 use super::worst_case::CYCLES_AN_INSTRUCTION;
 use crate::failure::{Failure, Outcome};
 use crate::target::board::Board;
-use crate::target::image::build_measuring;
 use crate::target::toolchain::Toolchain;
 use crate::target::{Say, measuring};
 
@@ -45,7 +44,7 @@ impl fmt::Display for Load {
 
 /// Counts on the emulated board.
 pub fn count(toolchain: &Toolchain, say: Say<'_>) -> Outcome<Vec<Load>> {
-    let elf = build_measuring(toolchain, "roles", &[], CONTROL_RATE, say)?;
+    let elf = measuring::build_measuring(toolchain, "roles", &[], CONTROL_RATE, say)?;
     let lines = measuring::run(&elf)?;
     lines.iter().map(|line| parse(line).ok_or_else(|| Failure::new(format!("the board said: {line}")))).collect()
 }

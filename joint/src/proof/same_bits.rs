@@ -10,7 +10,7 @@ use trials::motion;
 
 use super::joints::{TRIAL_JOINTS, TrialJoint, write_files};
 use crate::failure::{Failure, Outcome};
-use crate::target::image::{DEFAULT_TICK_RATE, build_measuring};
+use crate::target::image::DEFAULT_TICK_RATE;
 use crate::target::toolchain::Toolchain;
 use crate::target::{Say, measuring};
 
@@ -75,7 +75,7 @@ fn with_planets<const N: usize>(name: &str, parameters: &JointParameters, in_mod
 /// The digests of all joints by the emulated board, in every setting.
 pub fn on_board(toolchain: &Toolchain, say: Say<'_>) -> Outcome<Vec<OnBoard>> {
     let files = write_files(toolchain.target_directory())?;
-    let elf = build_measuring(toolchain, "same_bits", &files, DEFAULT_TICK_RATE, say)?;
+    let elf = measuring::build_measuring(toolchain, "same_bits", &files, DEFAULT_TICK_RATE, say)?;
     let lines = measuring::run(&elf)?;
     lines.iter().map(|line| parse(line).ok_or_else(|| Failure::new(format!("the board said: {line}")))).collect()
 }

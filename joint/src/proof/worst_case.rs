@@ -8,7 +8,7 @@ use model_core::certificate::Parts;
 
 use crate::failure::{Failure, Outcome};
 use crate::target::board::Board;
-use crate::target::image::{DEFAULT_TICK_RATE, build_measuring};
+use crate::target::image::DEFAULT_TICK_RATE;
 use crate::target::toolchain::Toolchain;
 use crate::target::{Say, measuring};
 
@@ -78,7 +78,7 @@ pub fn budget(board: Board, tick_rate: u32) -> u32 {
 /// Searches on the emulated board.
 pub fn search(toolchain: &Toolchain, say: Say<'_>) -> Outcome<Vec<Search>> {
     let files = write_files(toolchain.target_directory())?;
-    let elf = build_measuring(toolchain, "worst_case", &files, DEFAULT_TICK_RATE, say)?;
+    let elf = measuring::build_measuring(toolchain, "worst_case", &files, DEFAULT_TICK_RATE, say)?;
     let mut found = Vec::new();
     for line in measuring::run(&elf)? {
         parse(&line, &mut found).ok_or_else(|| Failure::new(format!("the board said: {line}")))?;

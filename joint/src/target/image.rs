@@ -1,24 +1,20 @@
 //! Firmware images: built for a joint, a board and a role, then copied to a name of their own, so that several joints
 //! lie side by side. What goes into an image is decided by the firmware's build script.
 
-use std::env;
 use std::ffi::OsStr;
-use std::fs::{self, File};
-use std::io;
 use std::path::{Path, PathBuf};
 
 use link::messages::Role;
 use object::{Object, ObjectSegment};
 use sha2::{Digest, Sha256};
 
+use super::Say;
 use super::board::Board;
+use super::compile::{PROFILE, compile, store};
 use super::sources::{self, hexadecimal};
-use super::toolchain::{TARGET, Toolchain, workspace};
-use super::{Say, tool};
+use super::toolchain::{Toolchain, workspace};
 use crate::failure::{Failure, Outcome};
 
-/// The cargo profile of images.
-pub const PROFILE: &str = "firmware";
 /// Fixed steps a second unless something else is asked for [Hz].
 pub const DEFAULT_TICK_RATE: u32 = 20_000;
 /// Where the flash of every board begins; RAM is at and beyond [`RAM`].
@@ -148,60 +144,6 @@ fn check_rate(board: Board, tick_rate: u32) -> Outcome<()> {
     Ok(())
 }
 
-/// Builds a binary that measures in the emulator, with the tables of these joints; returns the ELF file.
-pub fn build_measuring(
-    toolchain: &Toolchain,
-    binary: &str,
-    joints: &[PathBuf],
-    tick_rate: u32,
-    say: Say<'_>,
-) -> Outcome<PathBuf> {
-    let list = env::join_paths(joints)
-        .map_err(|error| Failure::new(format!("joint files cannot be listed for the firmware's build: {error}")))?;
-    let rate = tick_rate.to_string();
-    let environment = [("MEASURED_JOINTS", list.as_ref()), ("JOINT_TICK_RATE", rate.as_ref())];
-    let elf = compile(toolchain, binary, &measuring_features(), &environment, say)?;
-    let images = toolchain.target_directory().join("images");
-    let place = images.join(format!("{binary}.elf"));
-    store(&images, &place, &elf)?;
-    Ok(place)
-}
-
-/// The firmware's features for binaries that measure: the board that is emulated, and what they need.
-pub(super) fn measuring_features() -> String {
-    format!("{},measuring", Board::Stm32f405.name())
-}
-
-/// Builds the comparison of fixed-step methods, with the jobs in this file of Rust source; returns the ELF file.
-pub fn build_contest(toolchain: &Toolchain, jobs: &Path, say: Say<'_>) -> Outcome<PathBuf> {
-    let features = format!("{},contest", Board::Stm32f405.name());
-    let elf = compile(toolchain, "contest", &features, &[("CONTEST_JOBS", jobs.as_os_str())], say)?;
-    let images = toolchain.target_directory().join("images");
-    let place = images.join("contest.elf");
-    store(&images, &place, &elf)?;
-    Ok(place)
-}
-
-/// Compiles a binary of the firmware.
-fn compile(
-    toolchain: &Toolchain,
-    binary: &str,
-    features: &str,
-    environment: &[(&str, &OsStr)],
-    say: Say<'_>,
-) -> Outcome<Vec<u8>> {
-    // One build at a time in this folder, and none between a build and the copy of its result.
-    let _lock = lock(toolchain.folder())?;
-    let mut command = toolchain.cargo("build");
-    command
-        .args(["--package", "firmware", "--profile", PROFILE, "--bin", binary])
-        .args(["--no-default-features", "--features", features])
-        .envs(environment.iter().copied());
-    tool::follow(&mut command, "building the firmware", say)?;
-    let built = toolchain.folder().join(TARGET).join(PROFILE).join(binary);
-    fs::read(&built).map_err(|error| Failure::new(format!("{}: {error}", built.display())))
-}
-
 /// A preset of the workspace's `joints` folder, for a caller that has a name and no file.
 pub fn preset_file(name: &str) -> PathBuf {
     workspace().join("joints").join(format!("{name}.toml"))
@@ -240,31 +182,6 @@ fn file_name(joint_file: &Path, board: Board, role: Role, tick_rate: u32) -> Str
     };
     let rate = if tick_rate == DEFAULT_TICK_RATE { String::new() } else { format!("-{tick_rate}hz") };
     format!("{joint}{origin}-{}-{}{rate}.elf", board.name(), word(role))
-}
-
-fn lock(folder: &Path) -> Outcome<File> {
-    let path = folder.join(".one-at-a-time");
-    let open = || {
-        fs::create_dir_all(folder)?;
-        let file = File::create(&path)?;
-        file.lock()?;
-        Ok(file)
-    };
-    open().map_err(|error: io::Error| cannot_write(&path, &error))
-}
-
-/// Puts the whole file in place, or none of it.
-pub(super) fn store(images: &Path, place: &Path, elf: &[u8]) -> Outcome<()> {
-    let unfinished = place.with_extension(format!("unfinished-{}", std::process::id()));
-    fs::create_dir_all(images)
-        .and_then(|()| fs::write(&unfinished, elf))
-        .and_then(|()| fs::rename(&unfinished, place))
-        .map_err(|error| cannot_write(place, &error))
-}
-
-fn cannot_write(path: &Path, error: &io::Error) -> Failure {
-    Failure::new(format!("cannot write {}: {error}", path.display()))
-        .with_help("make room, or set CARGO_TARGET_DIR to a folder that can be written")
 }
 
 /// Bytes in flash (loaded segments) and in RAM (everything at RAM addresses).
@@ -309,12 +226,5 @@ mod tests {
     #[test]
     fn a_file_that_is_no_elf_has_no_sizes() {
         assert!(sizes(b"no elf").is_err());
-    }
-
-    #[test]
-    fn an_image_that_cannot_be_stored_is_named() {
-        let images = Path::new("/proc/none");
-        let failure = store(images, &images.join("x.elf"), b"").unwrap_err();
-        assert!(failure.message().contains("/proc/none/x.elf"), "{failure}");
     }
 }

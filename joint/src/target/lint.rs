@@ -2,7 +2,8 @@
 //! business.
 
 use super::board::Board;
-use super::image::{self, PROFILE};
+use super::compile::PROFILE;
+use super::measuring::measuring_features;
 use super::toolchain::Toolchain;
 use super::{Say, packages, tool};
 use crate::failure::{Failure, Outcome};
@@ -17,7 +18,7 @@ pub fn clippy(toolchain: &Toolchain, board: Board, say: Say<'_>) -> Outcome<()> 
         packages::ensure(&[PACKAGE], "to lint the firmware", say)?;
     }
     let features = match board {
-        Board::Stm32f405 => image::measuring_features(),
+        Board::Stm32f405 => measuring_features(),
         Board::Stm32g474 | Board::Stm32h743 => board.name().to_owned(),
     };
     let mut command = toolchain.cargo("clippy");

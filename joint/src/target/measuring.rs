@@ -1,15 +1,20 @@
-//! Binaries that measure in the emulator: run to their end without any serial line, their words taken by semihosting.
-//! What they measure, and what is to be thought of it, is their callers' business.
+//! Binaries that measure in the emulator: built for any joints, run to their end without any serial line, their words taken
+//! by semihosting. What they measure, and what is to be thought of it, is their callers' business.
 
+use std::env;
 use std::io::{BufRead, BufReader};
 use std::os::unix::process::CommandExt;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Stdio};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use super::Say;
+use super::board::Board;
+use super::compile::{compile, store};
 use super::emulator::{self, MACHINE};
+use super::toolchain::Toolchain;
 use crate::failure::{Failure, Outcome};
 use crate::interruption;
 
@@ -20,6 +25,40 @@ const END: &str = "end of measurement";
 /// Longest run; a healthy one takes a minute or two.
 const PATIENCE: Duration = Duration::from_secs(1200);
 const POLL: Duration = Duration::from_millis(100);
+
+/// Builds a binary that measures in the emulator, with the tables of these joints; returns the ELF file.
+pub fn build_measuring(
+    toolchain: &Toolchain,
+    binary: &str,
+    joints: &[PathBuf],
+    tick_rate: u32,
+    say: Say<'_>,
+) -> Outcome<PathBuf> {
+    let list = env::join_paths(joints)
+        .map_err(|error| Failure::new(format!("joint files cannot be listed for the firmware's build: {error}")))?;
+    let rate = tick_rate.to_string();
+    let environment = [("MEASURED_JOINTS", list.as_ref()), ("JOINT_TICK_RATE", rate.as_ref())];
+    let elf = compile(toolchain, binary, &measuring_features(), &environment, say)?;
+    let images = toolchain.target_directory().join("images");
+    let place = images.join(format!("{binary}.elf"));
+    store(&images, &place, &elf)?;
+    Ok(place)
+}
+
+/// The firmware's features for binaries that measure: the board that is emulated, and what they need.
+pub(super) fn measuring_features() -> String {
+    format!("{},measuring", Board::Stm32f405.name())
+}
+
+/// Builds the comparison of fixed-step methods, with the jobs in this file of Rust source; returns the ELF file.
+pub fn build_contest(toolchain: &Toolchain, jobs: &Path, say: Say<'_>) -> Outcome<PathBuf> {
+    let features = format!("{},contest", Board::Stm32f405.name());
+    let elf = compile(toolchain, "contest", &features, &[("CONTEST_JOBS", jobs.as_os_str())], say)?;
+    let images = toolchain.target_directory().join("images");
+    let place = images.join("contest.elf");
+    store(&images, &place, &elf)?;
+    Ok(place)
+}
 
 /// Runs a measuring binary and returns its lines.
 pub fn run(elf: &Path) -> Outcome<Vec<String>> {

@@ -2,10 +2,11 @@
 //! is the session's business.
 //!
 //! The order of use: [`toolchain::Toolchain::prepare`], [`image::build_image`], then [`emulator::Emulator::start`] or
-//! [`flash::flash`]; or [`image::build_measuring`] and [`measuring::run`]. An image is built once for its `sources`. Each says
+//! [`flash::flash`]; or [`measuring::build_measuring`] and [`measuring::run`]. An image is built once for its `sources`. Each says
 //! what it is about to do, if that takes time or changes the machine, before it does it.
 
 pub mod board;
+pub mod compile;
 pub mod emulator;
 pub mod flash;
 pub mod image;

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
 
-use super::image::store;
+use super::compile::store;
 use super::toolchain::{Toolchain, workspace};
 use crate::failure::{Failure, Outcome};
 

@@ -1,24 +1,26 @@
-//! The results as JUnit XML, for a lab's own test server: a suite for each file, a case for each assertion. What JUnit has
-//! no word for is in the JSON.
+//! The results as JUnit XML, for a lab's own test server: a suite for each file, a case for each assertion; a file that could
+//! not run is a case that was skipped. What JUnit has no word for is in the JSON.
 
 use std::fmt::Write;
 
-use super::record::{TestRecord, TestsRecord};
+use super::record::{NotRun, TestRecord, TestsRecord};
 use crate::record::{Bound, Verdict};
 
 /// The whole document.
 pub fn render(record: &TestsRecord) -> String {
     let mut xml = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
-    let tests: usize = record.tests.iter().map(cases).sum();
+    let skipped = record.not_run.len();
+    let tests = record.tests.iter().map(cases).sum::<usize>() + skipped;
     let failed: usize = record.tests.iter().map(|test| test.failed().count()).sum();
     let errors = record.tests.iter().filter(|test| test.broken.is_some()).count();
     // Writing to a string cannot fail.
     let _ = writeln!(
         xml,
-        "<testsuites name=\"joint hil\" tests=\"{tests}\" failures=\"{failed}\" errors=\"{errors}\" time=\"{:.3}\">",
+        "<testsuites name=\"joint hil\" tests=\"{tests}\" failures=\"{failed}\" errors=\"{errors}\" skipped=\"{skipped}\" time=\"{:.3}\">",
         record.seconds
     );
     record.tests.iter().for_each(|test| suite(&mut xml, test, &record.date));
+    record.not_run.iter().for_each(|not_run| left_out(&mut xml, not_run, &record.date));
     xml += "</testsuites>\n";
     xml
 }
@@ -34,7 +36,7 @@ fn suite(xml: &mut String, test: &TestRecord, date: &str) {
     let failed = test.failed().count();
     let _ = writeln!(
         xml,
-        "  <testsuite name=\"{name}\" tests=\"{}\" failures=\"{failed}\" errors=\"{errors}\" time=\"{:.3}\" timestamp=\"{}\">",
+        "  <testsuite name=\"{name}\" tests=\"{}\" failures=\"{failed}\" errors=\"{errors}\" skipped=\"0\" time=\"{:.3}\" timestamp=\"{}\">",
         cases(test),
         test.seconds,
         escaped(date)
@@ -67,6 +69,18 @@ fn suite(xml: &mut String, test: &TestRecord, date: &str) {
         }
     }
     let _ = writeln!(xml, "    <system-out>{}</system-out>\n  </testsuite>", escaped(&test.replay));
+}
+
+fn left_out(xml: &mut String, not_run: &NotRun, date: &str) {
+    let NotRun { file, why, mend } = not_run;
+    let (name, date) = (escaped(file), escaped(date));
+    let message = escaped(&mend.as_ref().map_or(why.clone(), |mend| format!("{why} ({mend})")));
+    let _ = writeln!(
+        xml,
+        "  <testsuite name=\"{name}\" tests=\"1\" failures=\"0\" errors=\"0\" skipped=\"1\" time=\"0\" timestamp=\"{date}\">\n    \
+         <testcase classname=\"{name}\" name=\"runs to its end\">\n      <skipped message=\"{message}\"/>\n    </testcase>\n  \
+         </testsuite>"
+    );
 }
 
 fn escaped(text: &str) -> String {

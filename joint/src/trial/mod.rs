@@ -44,10 +44,10 @@ use board::{BoardWish, Boards};
 use campaign::{Conduct, Tested};
 use plant::PlantName;
 use rayon::prelude::*;
-use record::{SCHEMA, TestsRecord};
-use suite::{Choice, Test};
+use record::{NotRun, SCHEMA, TestsRecord};
+use suite::{Choice, Suite, Test};
 
-use crate::failure::{Failure, Outcome};
+use crate::failure::{EXIT_INTERRUPTED, Failure, Outcome};
 use crate::hil::{Progress, origin};
 use crate::output;
 use crate::record::write_text;
@@ -87,19 +87,19 @@ pub struct Part<'w> {
 
 /// A part that can be run.
 struct Ready<'w> {
-    tests: Vec<Test>,
+    suite: Suite,
     plant: PlantName,
     boards: Option<Boards<'w>>,
 }
 
-/// Runs tests; succeeds only if all passed.
+/// Runs tests; succeeds only if all ran and passed.
 pub fn run(wanted: &Wanted<'_>, progress: &Progress) -> Outcome<()> {
     let start = Instant::now();
     let mut parts = Vec::new();
     for Part { path, choice, plant, boards } in &wanted.parts {
-        let tests = suite::load(path, *choice, *plant)?;
-        let boards = boards.map(|wish| Boards::prepare(wish, &tests, *plant, progress)).transpose()?;
-        parts.push(Ready { tests, plant: *plant, boards });
+        let mut suite = suite::load(path, *choice, *plant)?;
+        let boards = boards.map(|wish| Boards::prepare(wish, &mut suite, *plant, progress)).transpose()?;
+        parts.push(Ready { suite, plant: *plant, boards });
     }
     let folder = Folder::prepare(wanted.out.as_deref(), "hil/tests", &wanted.name)?;
     for path in [wanted.json, wanted.junit].into_iter().flatten() {
@@ -108,10 +108,10 @@ pub fn run(wanted: &Wanted<'_>, progress: &Progress) -> Outcome<()> {
         }
     }
     let logs = prepare_logs(&folder)?;
-    let tested = run_parts(&parts, wanted, &logs, progress)?;
+    let (tested, not_run) = run_parts(parts, wanted, &logs, progress)?;
     let record = TestsRecord {
         schema: SCHEMA.to_owned(),
-        passed: tested.iter().all(|test| test.record.passed),
+        passed: not_run.is_empty() && tested.iter().all(|test| test.record.passed),
         full: wanted.full,
         host_version: env!("CARGO_PKG_VERSION").to_owned(),
         host: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
@@ -119,6 +119,7 @@ pub fn run(wanted: &Wanted<'_>, progress: &Progress) -> Outcome<()> {
         date: origin::date(),
         seconds: start.elapsed().as_secs_f64(),
         tests: tested.iter().map(|test| test.record.clone()).collect(),
+        not_run,
     };
     output::print(&terminal::table(&record))?;
     write(wanted, &folder, &record, &tested)?;
@@ -126,16 +127,20 @@ pub fn run(wanted: &Wanted<'_>, progress: &Progress) -> Outcome<()> {
     verdict(&record)
 }
 
-fn run_parts(parts: &[Ready<'_>], wanted: &Wanted<'_>, logs: &Path, progress: &Progress) -> Outcome<Vec<Tested>> {
+/// What ran, and what could not.
+type RunOrNot = (Vec<Tested>, Vec<NotRun>);
+
+fn run_parts(parts: Vec<Ready<'_>>, wanted: &Wanted<'_>, logs: &Path, progress: &Progress) -> Outcome<RunOrNot> {
     let runs_of = |test: &Test| test.seeds(wanted.seed, wanted.full).len() * test.controllers().len();
-    let runs: usize = parts.iter().flat_map(|part| &part.tests).map(runs_of).sum();
+    let runs: usize = parts.iter().flat_map(|part| &part.suite.tests).map(runs_of).sum();
     progress.run("testing", runs as u32);
     let line = progress.handle();
     let before = AtomicU32::new(0);
-    let mut tested: Vec<Tested> = Vec::new();
-    for Ready { tests, plant, boards } in parts {
+    let (mut tested, mut not_run) = (Vec::new(), Vec::new());
+    for Ready { suite: Suite { tests, not_run: refused, .. }, plant, boards } in parts {
+        not_run.extend(refused);
         let conduct = Conduct {
-            plant: *plant,
+            plant,
             seed: wanted.seed,
             full: wanted.full,
             boards: boards.as_ref(),
@@ -143,20 +148,24 @@ fn run_parts(parts: &[Ready<'_>], wanted: &Wanted<'_>, logs: &Path, progress: &P
             done: &|runs| line.at(runs),
         };
         let one = |test: &Test| {
-            let one = campaign::run(test, &conduct, &before)?;
-            line.say_above(&terminal::line(&one.record));
-            Ok(one)
+            let one = campaign::run(test, &conduct, &before);
+            one.iter().for_each(|one| line.say_above(&terminal::line(&one.record)));
+            one
         };
         // A test on the emulated board keeps one core busy at most; a test on the host keeps all of them busy by itself.
         let emulated = boards.as_ref().is_some_and(Boards::are_emulated);
         let done: Vec<Outcome<Tested>> =
             if emulated { tests.par_iter().map(one).collect() } else { tests.iter().map(one).collect() };
-        for one in done {
-            tested.push(one?);
+        for (test, one) in tests.iter().zip(done) {
+            match one {
+                Ok(one) => tested.push(one),
+                Err(failure) if failure.exit_code() == EXIT_INTERRUPTED => return Err(failure),
+                Err(failure) => not_run.push(NotRun::new(test.name.clone(), &failure)),
+            }
         }
     }
     progress.clear();
-    Ok(tested)
+    Ok((tested, not_run))
 }
 
 /// An empty folder for logs: those of an older run would be taken for this one's.
@@ -187,9 +196,26 @@ fn write(wanted: &Wanted<'_>, folder: &Folder, record: &TestsRecord, tested: &[T
 
 fn verdict(record: &TestsRecord) -> Outcome<()> {
     let failed: Vec<&str> = record.tests.iter().filter(|test| !test.passed).map(|test| test.file.as_str()).collect();
-    if failed.is_empty() {
-        return Ok(());
+    let all = record.tests.len() + record.not_run.len();
+    let not_run = match record.not_run.as_slice() {
+        [] => None,
+        [one] => Some(format!("{} was not run: {}", one.file, one.why)),
+        many => {
+            let files: Vec<&str> = many.iter().map(|one| one.file.as_str()).collect();
+            Some(format!("{} of {all} tests were not run: {}", many.len(), files.join(", ")))
+        }
+    };
+    match (failed.is_empty(), not_run) {
+        (true, None) => Ok(()),
+        (true, Some(not_run)) => {
+            let mend = record.not_run.first().and_then(|one| one.mend.clone()).filter(|_| record.not_run.len() == 1);
+            Err(Failure::new(not_run)
+                .with_help(mend.unwrap_or_else(|| "each is named above with its reason".to_owned())))
+        }
+        (false, not_run) => {
+            let mut message = format!("{} of {all} tests failed: {}", failed.len(), failed.join(", "));
+            not_run.iter().for_each(|not_run| message += &format!("; {not_run}"));
+            Err(Failure::check_failed(message).with_help("the report leads with what failed, and how to run it again"))
+        }
     }
-    let message = format!("{} of {} tests failed: {}", failed.len(), record.tests.len(), failed.join(", "));
-    Err(Failure::check_failed(message).with_help("the report leads with what failed, and how to run it again"))
 }

@@ -6,7 +6,7 @@ use maud::{Markup, PreEscaped, html};
 use super::campaign::Tested;
 use super::controller::ControllerName;
 use super::pictures;
-use super::record::{TestRecord, TestsRecord};
+use super::record::{NotRun, TestRecord, TestsRecord};
 use crate::record::Check;
 use crate::report::plot::Figure;
 use crate::report::plot::unit::figure as number;
@@ -29,11 +29,16 @@ const COMPARED: [(&str, &str, &str); 9] = [
 /// The whole page.
 pub fn render(record: &TestsRecord, tested: &[Tested]) -> String {
     let (failed, passed): (Vec<&Tested>, Vec<&Tested>) = tested.iter().partition(|test| !test.record.passed);
-    let title = if failed.is_empty() { "passed".to_owned() } else { format!("{} failed", failed.len()) };
+    let title = match (failed.len(), record.not_run.len()) {
+        (0, 0) => "passed".to_owned(),
+        (0, not_run) => format!("{not_run} not run"),
+        (failed, _) => format!("{failed} failed"),
+    };
     let body = html! {
         (header(record, failed.len()))
         (tiles(record))
         @if !failed.is_empty() { (failures(record)) }
+        @if !record.not_run.is_empty() { (not_run(&record.not_run)) }
         @if tested.len() > 1 { (overview(record)) }
         @for test in failed.iter().chain(&passed) { (section(test)) }
         (origin(record))
@@ -47,16 +52,20 @@ fn pill(passed: bool) -> Markup {
 }
 
 fn header(record: &TestsRecord, failed: usize) -> Markup {
-    let (class, word) = match failed {
-        0 => ("passed", "PASSED".to_owned()),
-        1 => ("failed", "1 TEST FAILED".to_owned()),
-        many => ("failed", format!("{many} TESTS FAILED")),
+    let (class, word) = match (failed, record.not_run.len()) {
+        (0, 0) => ("passed", "PASSED".to_owned()),
+        (0, 1) => ("failed", "1 TEST NOT RUN".to_owned()),
+        (0, many) => ("failed", format!("{many} TESTS NOT RUN")),
+        (1, _) => ("failed", "1 TEST FAILED".to_owned()),
+        (many, _) => ("failed", format!("{many} TESTS FAILED")),
     };
     html! {
         header {
             div.title { h1 { "Observer and compensation" } span class={ "pill " (class) } { (word) } }
             p.subtitle {
-                "On the " (each(record, |test| &test.on)) ", plant " strong { (each(record, |test| &test.plant)) }
+                @if record.tests.is_empty() { "Nothing ran" } @else {
+                    "On the " (each(record, |test| &test.on)) ", plant " strong { (each(record, |test| &test.plant)) }
+                }
                 @if record.full { " · full lists of seeds" } " · " (record.date)
             }
         }
@@ -80,7 +89,7 @@ fn tiles(record: &TestsRecord) -> Markup {
     let of = |part: usize, whole: usize| html! { (part) span.of { " of " (whole) } };
     html! {
         section.tiles {
-            (tile("Tests passed", html! {}, of(passed, tests.len())))
+            (tile("Tests passed", html! {}, of(passed, tests.len() + record.not_run.len())))
             (tile("Assertions held", html! {}, of(asserted - failed, asserted)))
             (tile("Runs", html! {}, html! { (runs) }))
             (tile("On the clock", html! {}, html! { (number((10.0 * record.seconds).round() / 10.0)) span.of { " s" } }))
@@ -104,6 +113,22 @@ fn failures(record: &TestsRecord) -> Markup {
                         }
                     }
                     pre { (test.replay) }
+                }
+            }
+        }
+    }
+}
+
+/// What could not run, and what to do about it.
+fn not_run(files: &[NotRun]) -> Markup {
+    html! {
+        section {
+            h2 { "What was not run" }
+            @for NotRun { file, why, mend } in files {
+                div.notice.bad {
+                    strong { (file) }
+                    div { (why) }
+                    @if let Some(mend) = mend { div { (mend) } }
                 }
             }
         }

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::failure::Failure;
 use crate::record::{Bound, Check, Source, Verdict};
 
 /// Name and version of the form.
@@ -16,7 +17,7 @@ pub const SCHEMA: &str = "joint-hil-tests/2";
 pub struct TestsRecord {
     /// Name and version of this form.
     pub schema: String,
-    /// Every test passed.
+    /// Everything that was asked for ran and passed.
     pub passed: bool,
     /// With the full lists of seeds.
     pub full: bool,
@@ -32,6 +33,29 @@ pub struct TestsRecord {
     pub seconds: f64,
     /// The tests, in the order in which they ran.
     pub tests: Vec<TestRecord>,
+    /// Files that were asked for and could not run.
+    pub not_run: Vec<NotRun>,
+}
+
+/// A test file that could not run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct NotRun {
+    /// Path as the user named it.
+    pub file: String,
+    /// Why it could not.
+    pub why: String,
+    /// What to do about it.
+    pub mend: Option<String>,
+}
+
+impl NotRun {
+    /// What a failure says of a file.
+    pub fn new(file: String, failure: &Failure) -> Self {
+        let message = failure.message();
+        let why = message.strip_prefix(&file).map_or(message, |rest| rest.trim_start_matches([':', ' ']));
+        Self { why: why.to_owned(), mend: failure.mend(), file }
+    }
 }
 
 /// One test file.

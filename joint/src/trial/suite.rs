@@ -1,5 +1,6 @@
 //! Which test files a command is about: one file, or all of a folder, each read and checked against its joint before
-//! anything runs. Whether a file is one of tests at all is asked here too.
+//! anything runs; what cannot run does not keep the rest of a folder from running. Whether a file is one of tests at all is
+//! asked here too.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,6 +11,7 @@ use sha2::{Digest, Sha256};
 use super::case::{Case, check_changes, recorded};
 use super::file::{self, FaultKind, TestFile};
 use super::plant::PlantName;
+use super::record::NotRun;
 use super::recorded::Recorded;
 use crate::check::{self, Loaded, diagnostic};
 use crate::failure::{Failure, Outcome};
@@ -54,40 +56,73 @@ impl Choice {
     }
 }
 
-/// Reads a file, or the chosen ones of a folder.
-pub fn load(path: &Path, choice: Choice, plant: PlantName) -> Outcome<Vec<Test>> {
-    if !path.is_dir() {
-        return Ok(vec![load_one(path, plant)?]);
+/// The tests of a path.
+pub struct Suite {
+    /// Those that can run.
+    pub tests: Vec<Test>,
+    /// Those of a folder that cannot.
+    pub not_run: Vec<NotRun>,
+    /// One file was named: that it cannot run is the end of the command.
+    alone: bool,
+}
+
+impl Suite {
+    /// Keeps those that may run.
+    pub fn keep(&mut self, mut may_run: impl FnMut(&Test) -> Outcome<()>) -> Outcome<()> {
+        for test in std::mem::take(&mut self.tests) {
+            match may_run(&test) {
+                Ok(()) => self.tests.push(test),
+                Err(failure) if self.alone => return Err(failure),
+                Err(failure) => self.not_run.push(NotRun::new(test.name, &failure)),
+            }
+        }
+        Ok(())
     }
-    let tests = files(path)?
-        .into_iter()
-        .filter_map(|(path, file)| choice.takes(&file).then(|| load_one(&path, plant)))
-        .collect::<Outcome<Vec<Test>>>()?;
-    if tests.is_empty() {
+}
+
+/// Reads a file, or the chosen ones of a folder.
+pub fn load(path: &Path, choice: Choice, plant: PlantName) -> Outcome<Suite> {
+    if !path.is_dir() {
+        return Ok(Suite { tests: vec![load_one(path, plant)?], not_run: Vec::new(), alone: true });
+    }
+    let mut suite = Suite { tests: Vec::new(), not_run: Vec::new(), alone: false };
+    for path in paths(path)? {
+        let test = match read(&path) {
+            Ok((_, file)) if !choice.takes(&file) => continue,
+            Ok(_) => load_one(&path, plant),
+            Err(failure) => Err(failure),
+        };
+        match test {
+            Ok(test) => suite.tests.push(test),
+            Err(failure) => suite.not_run.push(NotRun::new(path.display().to_string(), &failure)),
+        }
+    }
+    if suite.tests.is_empty() && suite.not_run.is_empty() {
         let help = "a test file is TOML, as docs/hil-file.md tells; those with only_with_full run with --full";
         return Err(Failure::new(format!("there is no test to run in {}", path.display())).with_help(help));
     }
-    Ok(tests)
+    Ok(suite)
 }
 
 /// The files of a folder that no board's role is named in: what a run without `--full` leaves out.
 pub fn left_out(folder: &Path) -> Outcome<Vec<PathBuf>> {
-    let files = files(folder)?;
-    Ok(files.into_iter().filter(|(_, file)| file.short_run.is_none()).map(|(path, _)| path).collect())
+    let left = |path: &PathBuf| read(path).is_ok_and(|(_, file)| file.short_run.is_none());
+    Ok(paths(folder)?.into_iter().filter(left).collect())
 }
 
-/// The test files of a folder, by name.
-fn files(path: &Path) -> Outcome<Vec<(PathBuf, TestFile)>> {
+/// The test files of a folder, by name; joint files may lie beside them.
+fn paths(path: &Path) -> Outcome<Vec<PathBuf>> {
     let unreadable = |error| Failure::new(format!("cannot read the folder {}: {error}", path.display()));
     let mut paths: Vec<PathBuf> = Vec::new();
     for entry in fs::read_dir(path).map_err(unreadable)? {
         let path = entry.map_err(unreadable)?.path();
-        if path.extension().is_some_and(|extension| extension == "toml") {
+        let is_joint = || fs::read_to_string(&path).is_ok_and(|text| !file::is_test_file(&text));
+        if path.extension().is_some_and(|extension| extension == "toml") && !is_joint() {
             paths.push(path);
         }
     }
     paths.sort();
-    paths.into_iter().map(|path| read(&path).map(|(_, file)| (path, file))).collect()
+    Ok(paths)
 }
 
 /// A file's text and what it says.
@@ -104,10 +139,7 @@ fn load_one(path: &Path, plant: PlantName) -> Outcome<Test> {
     let name = path.display().to_string();
     let (text, file) = read(path)?;
     let folder = path.parent().unwrap_or(Path::new("."));
-    let joint = joint(&file.joint, folder).map_err(|failure| match failure.message() {
-        "" => failure,
-        _ => failure.while_doing(&name),
-    })?;
+    let joint = joint(&file.joint, folder).map_err(|failure| failure.while_doing(&name))?;
     check_changes(&file, &joint.text)
         .map_err(|problems| Failure::from_report(diagnostic::report(&name, &text, &problems)))?;
     let broken_tooth = file.faults.iter().any(|fault| matches!(fault.kind, FaultKind::BrokenTooth(_)));

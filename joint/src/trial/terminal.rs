@@ -1,7 +1,7 @@
 //! What tests say on a terminal: a line for each as it ends, then every assertion, failed ones first. The report shows the
 //! same with more room.
 
-use super::record::{TestRecord, TestsRecord};
+use super::record::{NotRun, TestRecord, TestsRecord};
 use crate::hil::table;
 use crate::record::{Check, Verdict};
 
@@ -18,6 +18,13 @@ pub fn table(record: &TestsRecord) -> String {
     let mut tests: Vec<&TestRecord> = record.tests.iter().collect();
     tests.sort_by_key(|test| test.passed);
     let mut text = String::new();
+    for NotRun { file, why, mend } in &record.not_run {
+        text += &format!("NOT RUN  {file}: {why}\n");
+        mend.iter().for_each(|mend| text += &format!("         {mend}\n"));
+    }
+    if !record.not_run.is_empty() {
+        text.push('\n');
+    }
     for test in tests {
         let seeds = match test.seeds.as_slice() {
             [one] => format!("seed {one}"),

@@ -146,7 +146,9 @@ impl<'t, S: Read + Write> Board<'t, S> {
                 self.say_hello()
             }
             ToBoard::Schedule(schedule) => self.take(schedule),
-            ToBoard::Exchanges(_) | ToBoard::Course(_) => self.say(&FromBoard::Fault(Fault::WrongRole)),
+            ToBoard::Exchanges(_) | ToBoard::Course(_) | ToBoard::Upset(_) => {
+                self.say(&FromBoard::Fault(Fault::WrongRole))
+            }
             ToBoard::Statistics { .. } => {
                 let statistics = self.statistics();
                 self.say(&FromBoard::Statistics(statistics))

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use link::controller::{Answered, Exchange};
 use link::messages::{FromBoard, RunMode, Schedule, ToBoard};
 use link::virtual_joint::{KNOTS_PER_SCHEDULE, Knot, LoopSample};
+use model_core::realtime::upset::Upset;
 
 use super::{SILENCE, Session};
 use crate::failure::{Failure, Outcome};
@@ -36,6 +37,33 @@ impl Session<'_> {
                 return Err(self.silent(&format!("no answer to control period {tick} came")));
             }
         }
+    }
+
+    /// Has faults between joint and controller, before the motion begins.
+    pub fn upset(&mut self, upsets: &[Upset<f32>]) -> Outcome<()> {
+        for upset in upsets {
+            self.send(&ToBoard::Upset(upset.into()))?;
+            let start = Instant::now();
+            let taken = loop {
+                let answer = self.hear()?.into_iter().find_map(|message| match message {
+                    FromBoard::Upset { taken } => Some(Ok(taken)),
+                    FromBoard::Fault(raised) => Some(Err(fault::failure(&raised))),
+                    _ => None,
+                });
+                match answer {
+                    Some(answer) => break answer?,
+                    None if start.elapsed() > SILENCE => {
+                        return Err(self.silent("no answer to a fault of the test came"));
+                    }
+                    None => {}
+                }
+            };
+            if !taken {
+                return Err(Failure::check_failed("the board does not take a fault of the test")
+                    .with_help("in real time it may have begun already: run with --mode lockstep"));
+            }
+        }
+        Ok(())
     }
 
     /// Streams a motion to its last period and returns the samples. In real time the last knot holds until the end.

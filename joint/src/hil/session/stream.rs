@@ -61,7 +61,11 @@ impl Session<'_> {
                         return Err(Failure::check_failed("the board has started anew in mid-run")
                             .with_help("a brown-out, a watchdog or a panic: see last_panic in the report's record"));
                     }
-                    FromBoard::Statistics(_) | FromBoard::Log(_) | FromBoard::Answer(_) | FromBoard::Loop(_) => {}
+                    FromBoard::Statistics(_)
+                    | FromBoard::Log(_)
+                    | FromBoard::Answer(_)
+                    | FromBoard::Loop(_)
+                    | FromBoard::Upset { .. } => {}
                 }
             }
             progress(stream.board_tick.min(profile.ticks));

@@ -9,19 +9,20 @@ mod course;
 mod port;
 mod runs;
 mod twin;
+mod upsets;
 mod wish;
 
 use joints::JointFile;
 use link::messages::{Role, RunMode, RunSettings, Statistics};
 use model_core::design::{ControlWish, Told, control_source};
 pub use wish::BoardWish;
-use wish::may_run;
+use wish::{can_be, may_run};
 
 use super::case::Case;
 use super::execution::{Order, Ran, RunError};
 use super::plant::PlantName;
 use super::record::BoardRun;
-use super::suite::Test;
+use super::suite::{Suite, Test};
 use crate::failure::{Failure, Outcome};
 use crate::hil::Progress;
 use crate::hil::bench::Bench;
@@ -52,11 +53,11 @@ struct Pair {
 }
 
 impl<'w> Boards<'w> {
-    /// Finds toolchain and emulator, so that what is missing is known before anything runs.
-    pub fn prepare(wish: BoardWish<'w>, tests: &[Test], plant: PlantName, progress: &Progress) -> Outcome<Self> {
-        for test in tests {
-            may_run(&wish, test, plant)?;
-        }
+    /// Finds toolchain and emulator, so that what is missing is known before anything runs. Tests that no board can run
+    /// are taken out.
+    pub fn prepare(wish: BoardWish<'w>, suite: &mut Suite, plant: PlantName, progress: &Progress) -> Outcome<Self> {
+        can_be(&wish, plant)?;
+        suite.keep(|test| may_run(&wish, test))?;
         let say = |line: &str| progress.say(line);
         let version = match wish.port {
             Some(_) => String::new(),
@@ -103,7 +104,7 @@ impl<'w> Boards<'w> {
     pub fn run(&self, test: &Test, case: &Case, seed: u64, order: Order) -> Result<(Ran, BoardRun), RunError> {
         let pair = self.pair(test, case)?;
         match self.wish.role {
-            Role::Loop => self.run_loop(test, case, &pair),
+            Role::Loop => self.run_loop(test, case, seed, &pair),
             Role::Observer | Role::Plant => self.run_observer(test, case, seed, order, &pair),
         }
     }

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use super::port::BoardPort;
 use super::twin::{Twin, Twinned};
+use super::upsets::upsets;
 use super::{Boards, Pair};
 use crate::failure::Failure;
 use crate::trial::case::Case;
@@ -44,12 +45,22 @@ impl Boards<'_> {
         Ok((ran, run))
     }
 
-    pub(super) fn run_loop(&self, test: &Test, case: &Case, pair: &Pair) -> Result<(Ran, BoardRun), RunError> {
+    pub(super) fn run_loop(
+        &self,
+        test: &Test,
+        case: &Case,
+        seed: u64,
+        pair: &Pair,
+    ) -> Result<(Ran, BoardRun), RunError> {
         let designed = case.design(&test.file)?;
-        let twin = Twin { file: &test.file, case, designed: &designed, truth: &pair.truth, board: self.wish.board };
+        let bits = [case.train.motor_encoder.bits, case.train.output_encoder.bits];
+        let upsets = upsets(&test.file.faults, case.told_train.control_rate, bits, seed)?;
+        let (truth, board) = (&pair.truth, self.wish.board);
+        let twin = Twin { file: &test.file, case, designed: &designed, truth, board, upsets: &upsets };
         let Twinned { knots, ran, digests } = twin.run()?;
         let (mut session, image) = self.session(pair)?;
-        let samples = match session.follow(&knots, digests.len() as u32) {
+        let taken = session.upset(&upsets);
+        let samples = match taken.and_then(|()| session.follow(&knots, digests.len() as u32)) {
             Ok(samples) => samples,
             Err(failure) => {
                 session.abandon();

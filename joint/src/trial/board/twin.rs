@@ -9,6 +9,7 @@ use model_core::design::{Effort, design_scheme};
 use model_core::digest;
 use model_core::realtime::controller::Controller;
 use model_core::realtime::course::Demand;
+use model_core::realtime::upset::{Upset, Upsets};
 use model_core::realtime::virtual_joint::VirtualJoint;
 use model_core::tables::virtual_joint::SurroundingsTable;
 use model_core::tables::{Scheme, Tables};
@@ -33,6 +34,8 @@ pub struct Twin<'t> {
     pub truth: &'t JointFile,
     /// The board whose image it is.
     pub board: Board,
+    /// What goes wrong between joint and controller.
+    pub upsets: &'t [Upset<f32>],
 }
 
 /// What a twin did.
@@ -67,6 +70,9 @@ impl Twin<'_> {
         let table: SurroundingsTable<f32> =
             design_surroundings(joint, &around, &tables).map_err(|error| refused(&error))?;
         let mut virtual_joint = VirtualJoint::new(&tables, &table);
+        let mut upsets = Upsets::default();
+        let all_taken = self.upsets.iter().all(|upset| upsets.add(*upset));
+        debug_assert!(all_taken, "more than fit were refused before");
         let mut controller = Controller::new(&self.designed.observer, &self.designed.compensation);
         let knots = course::knots(self.file, self.case, self.designed, virtual_joint.output_turn());
         let reader = Reader::new(joint, &tables);
@@ -83,8 +89,9 @@ impl Twin<'_> {
             }
             let elapsed = f32::from((period - since).min(u16::MAX.into()) as u16);
             let command = demand.at(table.period * elapsed, table.turn);
-            let answer = controller.step(&virtual_joint.samples(), &command);
-            virtual_joint.advance(answer.shaped.torque, load);
+            let samples = upsets.sense(virtual_joint.samples(), &table);
+            let answer = controller.step(&samples, &command);
+            virtual_joint.advance(upsets.torque(answer.shaped.torque), load);
             running = digest::chain(answer.digest(running), virtual_joint.model().state_digest());
             digests.push(running);
 

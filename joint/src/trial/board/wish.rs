@@ -3,6 +3,7 @@
 
 use link::messages::{Role, RunMode};
 
+use super::upsets::upsets;
 use crate::failure::{Failure, Outcome};
 use crate::target::board::Board;
 use crate::trial::plant::PlantName;
@@ -25,19 +26,23 @@ pub struct BoardWish<'w> {
     pub mode: Option<RunMode>,
 }
 
+/// Whether the wish itself can be met.
+pub fn can_be(wish: &BoardWish<'_>, plant: PlantName) -> Outcome<()> {
+    if wish.role == Role::Loop && plant == PlantName::Reference {
+        return Err(Failure::new("the f64 reference does not run on a board").with_help("leave --plant out"));
+    }
+    Ok(())
+}
+
 /// Whether a test can run on such a board at all.
-pub fn may_run(wish: &BoardWish<'_>, test: &Test, plant: PlantName) -> Outcome<()> {
+pub fn may_run(wish: &BoardWish<'_>, test: &Test) -> Outcome<()> {
     let name = &test.name;
     if !test.file.controller.is_ours() {
         let message = format!("{name} tests `{}`, which no board runs", test.file.controller.word());
         return Err(Failure::new(message).with_help("run it with --host"));
     }
-    if wish.role == Role::Loop && !test.file.faults.is_empty() {
-        return Err(Failure::new(format!("{name} has faults, and a whole loop on a board has none between its parts"))
-            .with_help("run it with --role observer, or with --host"));
-    }
-    if wish.role == Role::Loop && plant == PlantName::Reference {
-        return Err(Failure::new("the f64 reference does not run on a board").with_help("leave --plant out"));
+    if wish.role == Role::Loop {
+        upsets(&test.file.faults, 1.0, [0; 2], 0).map_err(|failure| failure.while_doing(name))?;
     }
     Ok(())
 }

@@ -1,0 +1,274 @@
+//! Numbers of messages whose form is ROS 2 message text and whose encoding is CDR, each by its path, as in
+//! `header.stamp.sec` or `position[0]`. Text is passed over; other encodings are left to the caller.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+/// Messages within messages: deeper ones are taken for a mistake.
+const DEEPEST: usize = 16;
+
+/// The form of a message.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Form {
+    /// Fields by the type's name; the message itself has none.
+    types: BTreeMap<String, Vec<Field>>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+struct Field {
+    name: String,
+    kind: Kind,
+    count: Count,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Kind {
+    Number(Number),
+    Text,
+    Message(String),
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Count {
+    One,
+    Fixed(u32),
+    List,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Number {
+    Unsigned(usize),
+    Signed(usize),
+    Float(usize),
+}
+
+impl Number {
+    fn of(word: &str) -> Option<Self> {
+        Some(match word {
+            "bool" | "byte" | "char" | "uint8" => Self::Unsigned(1),
+            "uint16" => Self::Unsigned(2),
+            "uint32" => Self::Unsigned(4),
+            "uint64" => Self::Unsigned(8),
+            "int8" => Self::Signed(1),
+            "int16" => Self::Signed(2),
+            "int32" => Self::Signed(4),
+            "int64" => Self::Signed(8),
+            "float32" => Self::Float(4),
+            "float64" => Self::Float(8),
+            _ => return None,
+        })
+    }
+
+    fn size(self) -> usize {
+        let (Self::Unsigned(size) | Self::Signed(size) | Self::Float(size)) = self;
+        size
+    }
+
+    /// From bits in the lower bytes.
+    fn value(self, bits: u64) -> f64 {
+        match self {
+            Self::Unsigned(_) => bits as f64,
+            Self::Signed(size) => {
+                let above = 64 - 8 * size as u32;
+                ((bits << above) as i64 >> above) as f64
+            }
+            Self::Float(4) => f32::from_bits(bits as u32).into(),
+            Self::Float(_) => f64::from_bits(bits),
+        }
+    }
+}
+
+impl Form {
+    /// Of ROS 2 message text: the message's own fields, then those of the messages in it behind lines of `=`.
+    pub fn read(text: &str) -> Result<Self, String> {
+        let (mut types, mut name) = (BTreeMap::new(), String::new());
+        types.insert(String::new(), Vec::new());
+        for line in text.lines() {
+            let line = line.split('#').next().unwrap_or_default().trim();
+            if line.is_empty() || line.starts_with("===") {
+                continue;
+            }
+            if let Some(next) = line.strip_prefix("MSG:") {
+                name = last_part(next.trim());
+                types.insert(name.clone(), Vec::new());
+            } else if let Some(field) = field(line).ok_or_else(|| format!("`{line}` is no field of a message"))? {
+                types.entry(name.clone()).or_insert_with(Vec::new).push(field);
+            }
+        }
+        // Always there, whether they are written down or not.
+        for stamp in ["Time", "Duration"] {
+            let part = |name: &str, number| Field { name: name.into(), kind: Kind::Number(number), count: Count::One };
+            let parts = vec![part("sec", Number::Signed(4)), part("nanosec", Number::Unsigned(4))];
+            types.entry(stamp.to_owned()).or_insert(parts);
+        }
+        Ok(Self { types })
+    }
+
+    /// Paths and values of all numbers in a message, in its order.
+    pub fn numbers(&self, message: &[u8]) -> Result<Vec<(String, f64)>, String> {
+        let [0, kind @ (0 | 1), _, _, body @ ..] = message else {
+            return Err("it is not in plain CDR".to_owned());
+        };
+        let mut reading = Reading { form: self, body, at: 0, big: *kind == 0, numbers: Vec::new() };
+        reading.message("", "", 0)?;
+        Ok(reading.numbers)
+    }
+}
+
+/// The name of a type without its package.
+fn last_part(name: &str) -> String {
+    name.rsplit('/').next().unwrap_or_default().to_owned()
+}
+
+/// A line's field; none for a constant.
+fn field(line: &str) -> Option<Option<Field>> {
+    let (kind, rest) = line.split_once(char::is_whitespace)?;
+    let name = rest.trim_start().split([' ', '\t']).next()?;
+    if name.contains('=') || rest.trim_start()[name.len()..].trim_start().starts_with('=') {
+        return Some(None);
+    }
+    let (kind, count) = match kind.split_once('[') {
+        None => (kind, Count::One),
+        Some((kind, "]")) => (kind, Count::List),
+        Some((kind, most)) if most.starts_with("<=") => (kind, Count::List),
+        Some((kind, number)) => (kind, Count::Fixed(number.strip_suffix(']')?.parse().ok()?)),
+    };
+    let kind = match kind.split("<=").next()? {
+        "string" => Kind::Text,
+        "wstring" => return None,
+        word => Number::of(word).map_or_else(|| Kind::Message(last_part(word)), Kind::Number),
+    };
+    Some(Some(Field { name: name.to_owned(), kind, count }))
+}
+
+/// A message that is being read.
+struct Reading<'r> {
+    form: &'r Form,
+    body: &'r [u8],
+    at: usize,
+    /// The most significant byte comes first.
+    big: bool,
+    numbers: Vec<(String, f64)>,
+}
+
+impl Reading<'_> {
+    fn message(&mut self, kind: &str, path: &str, depth: usize) -> Result<(), String> {
+        let form = self.form;
+        let fields = form.types.get(kind).ok_or_else(|| format!("the form of `{kind}` is not written down"))?;
+        if depth > DEEPEST {
+            return Err(format!("`{kind}` has itself in it"));
+        }
+        for field in fields {
+            let name = if path.is_empty() { field.name.clone() } else { format!("{path}.{}", field.name) };
+            let many = match field.count {
+                Count::One => {
+                    self.one(&field.kind, name, depth)?;
+                    continue;
+                }
+                Count::Fixed(many) => many,
+                Count::List => self.bits(4)? as u32,
+            };
+            // Everything takes a byte at least.
+            if many as usize > self.body.len() {
+                return Err("it is cut off".to_owned());
+            }
+            for place in 0..many {
+                let mut one = name.clone();
+                // Writing to a string cannot fail.
+                let _ = write!(one, "[{place}]");
+                self.one(&field.kind, one, depth)?;
+            }
+        }
+        if fields.is_empty() {
+            self.bits(1)?;
+        }
+        Ok(())
+    }
+
+    fn one(&mut self, kind: &Kind, name: String, depth: usize) -> Result<(), String> {
+        match kind {
+            Kind::Number(number) => {
+                let bits = self.bits(number.size())?;
+                self.numbers.push((name, number.value(bits)));
+                Ok(())
+            }
+            Kind::Text => {
+                let length = self.bits(4)? as usize;
+                self.at = self.at.saturating_add(length);
+                if self.at <= self.body.len() { Ok(()) } else { Err("it is cut off".to_owned()) }
+            }
+            Kind::Message(kind) => self.message(kind, &name, depth + 1),
+        }
+    }
+
+    /// So many bytes on a multiple of their number, the head not counted.
+    fn bits(&mut self, size: usize) -> Result<u64, String> {
+        let from = self.at.next_multiple_of(size);
+        let bytes = self.body.get(from..from + size).ok_or("it is cut off")?;
+        self.at = from + size;
+        let join = |bits: u64, byte: &u8| bits << 8 | u64::from(*byte);
+        Ok(if self.big { bytes.iter().fold(0, join) } else { bytes.iter().rev().fold(0, join) })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FORM: &str = "# a lab's own\nuint8 IDLE=0\nstd_msgs/Header header\nstring[] name\nfloat64[] position\nint16[2] raw 0 # \
+                        two\nbool on\nfloat32 current\n===\nMSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n";
+
+    /// By hand from the rules: every number on a multiple of its size behind the head.
+    fn message() -> Vec<u8> {
+        let mut bytes = vec![0, 1, 0, 0];
+        bytes.extend(7_i32.to_le_bytes());
+        bytes.extend(500_000_000_u32.to_le_bytes());
+        bytes.extend([2, 0, 0, 0, b'm', 0, 0, 0]);
+        bytes.extend([1, 0, 0, 0, 3, 0, 0, 0, b'a', b'b', 0, 0]);
+        bytes.extend([2, 0, 0, 0]);
+        bytes.extend(1.5_f64.to_le_bytes());
+        bytes.extend((-2.25_f64).to_le_bytes());
+        bytes.extend((-3_i16).to_le_bytes());
+        bytes.extend(4_i16.to_le_bytes());
+        bytes.extend([1, 0, 0, 0]);
+        bytes.extend(0.5_f32.to_le_bytes());
+        bytes
+    }
+
+    #[test]
+    fn every_number_of_a_message_has_its_path() {
+        let form = Form::read(FORM).expect("a form");
+        let numbers = form.numbers(&message()).expect("a message");
+        let wanted = [
+            ("header.stamp.sec", 7.0),
+            ("header.stamp.nanosec", 5e8),
+            ("position[0]", 1.5),
+            ("position[1]", -2.25),
+            ("raw[0]", -3.0),
+            ("raw[1]", 4.0),
+            ("on", 1.0),
+            ("current", 0.5),
+        ];
+        assert_eq!(numbers, wanted.map(|(path, value)| (path.to_owned(), value)));
+    }
+
+    #[test]
+    fn a_message_that_is_cut_off_anywhere_is_refused() {
+        let form = Form::read(FORM).expect("a form");
+        let whole = message();
+        for length in 0..whole.len() {
+            assert!(form.numbers(&whole[..length]).is_err(), "{length}");
+        }
+        let mut endless = whole;
+        endless[20..24].fill(0xff);
+        assert!(form.numbers(&endless).is_err());
+    }
+
+    #[test]
+    fn forms_that_cannot_be_are_refused() {
+        assert!(Form::read("float64").is_err() && Form::read("float64[x] a").is_err());
+        let own = Form::read("Own next\n===\nMSG: a/Own\nOwn next\n").expect("a form");
+        assert!(own.numbers(&[0, 1, 0, 0]).is_err());
+        assert!(Form::read("a/Other other\n").expect("a form").numbers(&[0, 1, 0, 0]).is_err());
+    }
+}

@@ -54,9 +54,9 @@ pub const LOST_MOTION: Bound = Bound {
 /// Force on the teeth.
 pub const PEAK_MESH_FORCE: Bound = Bound {
     of: "peak net force of the sun's meshes over rated",
-    limit: 0.6,
-    measured: 0.41,
-    reason: "Planets struck on the way are designed for a half.",
+    limit: 0.65,
+    measured: 0.58,
+    reason: "Planets struck on the way are designed for 0.4, and are struck again as they fly to and fro.",
 };
 
 /// Unforeseen fast steps.
@@ -129,6 +129,30 @@ pub const STIFF_JOINT_OVER_PID: Bound = Bound {
     limit: 0.4,
     measured: 0.14,
     reason: "Its gap is a third of the default joint's, and its encoders resolve it as much less.",
+};
+
+/// Its unforeseen steps.
+pub const STIFF_JOINT_STEPS_OVER_PID: Bound = Bound {
+    of: "RMS error of steps of a large stiff joint without friction, with compensation over motor PID's",
+    limit: 1.0,
+    measured: 0.8,
+    reason: "No worse is what is asked: nothing holds the link between two steps.",
+};
+
+/// Slow motion, peak.
+pub const SLOW_PEAK_OVER_PID: Bound = Bound {
+    of: "peak error of a slow motion against friction with ideal encoders over motor PID's",
+    limit: 0.18,
+    measured: 0.14,
+    reason: "Friction that is not told from weight costs 0.2: it turns round with the motion and has to be learnt anew.",
+};
+
+/// Slow motion.
+pub const SLOW_OVER_PID: Bound = Bound {
+    of: "RMS error of a slow motion against friction with ideal encoders over motor PID's",
+    limit: 0.03,
+    measured: 0.02,
+    reason: "Losses fed forward only while they are sure cost 0.04.",
 };
 
 /// Random plants, median.

@@ -5,13 +5,24 @@ use host_tests::drive_train::DriveTrainParameters;
 use host_tests::scenarios::{l1, q1};
 use host_tests::tolerance::compensation::{
     COMPENSATED_OVER_PID, COMPENSATED_OVER_RIVAL, COMPENSATED_PEAK_OVER_PID, COMPENSATED_PEAK_OVER_RIVAL, LOST_MOTION,
-    PEAK_MESH_FORCE, STEPS_OVER_PID, STEPS_PEAK_OVER_PID, STIFF_JOINT_OVER_PID,
+    PEAK_MESH_FORCE, SLOW_OVER_PID, SLOW_PEAK_OVER_PID, STEPS_OVER_PID, STEPS_PEAK_OVER_PID, STIFF_JOINT_OVER_PID,
+    STIFF_JOINT_STEPS_OVER_PID,
 };
 
 use super::{NO_PREVIEW, PREVIEW, figures};
 
 /// Rated net force of the sun's meshes: 15 N m at the link [N].
 const RATED_FORCE: f64 = 355.0;
+
+/// What the encoders get wrong is not the compensation's.
+fn with_ideal_encoders() -> DriveTrainParameters {
+    let ideal = DriveTrainParameters::ideal();
+    DriveTrainParameters {
+        motor_encoder: ideal.motor_encoder,
+        output_encoder: ideal.output_encoder,
+        ..DriveTrainParameters::q1()
+    }
+}
 
 fn is_far_better(trial: &Trial) {
     let (pid, rival) = (figures(trial, Contender::MotorPid), figures(trial, Contender::OutputIntegral));
@@ -61,6 +72,38 @@ fn a_large_stiff_joint_loses_most_of_its_lost_motion() {
     train.motor.torque_limit = 120.0;
     let trial = Trial::inertial(&l1(), &train, 106);
     STIFF_JOINT_OVER_PID.check(figures(&trial, PREVIEW).rms / figures(&trial, Contender::MotorPid).rms);
+}
+
+#[test]
+fn a_large_stiff_joint_is_stepped_no_worse_than_without_compensation() {
+    let mut train = DriveTrainParameters { delay_periods: 1.0, ..DriveTrainParameters::ideal() };
+    train.motor.torque_limit = 120.0;
+    let trial = Trial::steps(&l1(), &train, 109);
+    STIFF_JOINT_STEPS_OVER_PID.check(figures(&trial, PREVIEW).rms / figures(&trial, Contender::MotorPid).rms);
+}
+
+#[test]
+fn friction_is_told_from_weight_although_the_motion_turns_round_slowly() {
+    let trial = Trial::slow(&q1(), &with_ideal_encoders(), 110);
+    let (ours, pid) = (figures(&trial, PREVIEW), figures(&trial, Contender::MotorPid));
+    SLOW_PEAK_OVER_PID.check(ours.peak / pid.peak);
+}
+
+#[test]
+fn torque_put_down_to_the_motor_is_fed_forward_long_after_it_was_last_seen() {
+    let trial = Trial::slow(&q1(), &with_ideal_encoders(), 111);
+    let (ours, pid) = (figures(&trial, PREVIEW), figures(&trial, Contender::MotorPid));
+    SLOW_OVER_PID.check(ours.rms / pid.rms);
+}
+
+#[test]
+fn a_stiff_train_whose_encoder_offset_is_unsure_lands_softly() {
+    let mut joint = q1();
+    if let Some(compliance) = &mut joint.compliance {
+        compliance.stiffness = 34.4e3;
+    }
+    let trial = Trial::inertial(&joint, &DriveTrainParameters::q1(), 2);
+    PEAK_MESH_FORCE.check(figures(&trial, PREVIEW).peak_mesh_force / RATED_FORCE);
 }
 
 #[test]

@@ -27,9 +27,9 @@ pub struct CompensationSettings {
     pub torque_lag: f64,
 }
 
-/// Planets struck on the way through the gap may be struck with this share of the rated force: half, so that a peak of
-/// twice what the estimate says is still no more than rated.
-const STRIKE: f64 = 0.5;
+/// Planets struck on the way through the gap may be struck with this share of the rated force: struck again as they fly
+/// to and fro they take up to one and a half times what the first blow is estimated at, which leaves three fifths.
+const STRIKE: f64 = 0.4;
 
 /// Share of the largest torque that a crossing may take; the rest is for the feedback along it.
 const CROSSING_TORQUE: f64 = 0.8;

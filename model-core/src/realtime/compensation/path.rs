@@ -66,3 +66,43 @@ impl<T: Real> Path<T> {
         ]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CROSSING: Crossing<f64> = Crossing { duration: 6e-3, ramp: 1.5e-3 };
+
+    fn path() -> Path<f64> {
+        Path::new([0.1, 0.3], [0.104, 0.2], CROSSING)
+    }
+
+    #[test]
+    fn a_path_leads_from_one_end_to_the_other() {
+        for (time, place, rate) in [(0.0, 0.1, 0.3), (6e-3, 0.104, 0.2)] {
+            for beside in [-1e-9, 1e-9] {
+                let [at, speed, acceleration] = path().at(time + beside);
+                assert!((at - place).abs() < 1e-8 && (speed - rate).abs() < 1e-6, "{at} {speed}");
+                assert!(acceleration.abs() < 0.01, "{acceleration}");
+            }
+        }
+    }
+
+    #[test]
+    fn rate_and_acceleration_are_the_slopes_of_place_and_rate() {
+        let step = 1e-7;
+        for period in 1..60 {
+            let time = f64::from(period) * 1e-4 + 5e-5;
+            let [before, now, after] = [-step, 0.0, step].map(|by| path().at(time + by));
+            assert!(((after[0] - before[0]) / (2.0 * step) - now[1]).abs() < 1e-6);
+            assert!(((after[1] - before[1]) / (2.0 * step) - now[2]).abs() < 1e-2);
+        }
+    }
+
+    #[test]
+    fn no_speed_on_the_way_is_higher_than_the_steady_one() {
+        let rest = Path::new([0.0, 0.0], [3.78e-3, 0.0], CROSSING);
+        let highest = (0..600).map(|part| rest.at(f64::from(part) * 1e-5)[1]).fold(0.0, f64::max);
+        assert!((highest - 3.78e-3 / (CROSSING.duration - CROSSING.ramp)).abs() < 1e-12);
+    }
+}

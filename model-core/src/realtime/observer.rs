@@ -92,6 +92,8 @@ pub struct Observer<'tables, T: Real, const P: usize> {
     supervisor: Supervisor<T>,
     blind: Blind<T>,
     time: Option<u32>,
+    /// Teeth have settled since they came across the gap.
+    settled: bool,
     /// Torque that the meshes put on the load side, by the motor side alone [N m].
     from_meshes: T,
     estimates: Estimates<T>,
@@ -123,6 +125,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
             supervisor: Supervisor::new(tables.counts.has_output),
             blind: Blind::default(),
             time: None,
+            settled: false,
             from_meshes: T::ZERO,
             estimates: Estimates::default(),
         };
@@ -153,6 +156,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         self.supervisor = Supervisor::new(tables.counts.has_output);
         self.blind = Blind::default();
         self.time = None;
+        self.settled = false;
         self.from_meshes = T::ZERO;
         self.estimates = Estimates::default();
         self.find_places();

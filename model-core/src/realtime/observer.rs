@@ -10,7 +10,7 @@
 //!    wrong by; `contact` decides which flank touches.
 //! 4. `learner` is one small recursive least squares, updated every few periods in settled contact, for half-backlash,
 //!    offset, compliance, skew and the encoders' error maps. `anchor` tells flanks without a force that stands out, and
-//!    `doubt` what no longer belongs to what was learnt. `interval` gives each period a part of that work.
+//!    `doubt` what no longer belongs to what was learnt. `parts` gives each period some of that work.
 //! 5. `supervisor` watches the output encoder and falls back to the motor alone.
 //!
 //! `docs/observer.md` derives all of it and says what it cannot know.
@@ -31,6 +31,7 @@ mod load_side;
 mod memory;
 mod motion;
 mod motor_only;
+mod parts;
 mod places;
 mod present;
 mod probe;

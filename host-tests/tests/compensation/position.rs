@@ -6,8 +6,9 @@ use host_tests::scenarios::{l1, q1};
 use host_tests::tolerance::compensation::{
     COMPENSATED_OVER_PID, COMPENSATED_OVER_RIVAL, COMPENSATED_PEAK_OVER_PID, COMPENSATED_PEAK_OVER_RIVAL, LOST_MOTION,
     PEAK_MESH_FORCE, SLOW_OVER_PID, SLOW_PEAK_OVER_PID, STEPS_OVER_PID, STEPS_PEAK_OVER_PID, STIFF_JOINT_OVER_PID,
-    STIFF_JOINT_STEPS_OVER_PID,
+    STIFF_JOINT_STEPS_OVER_PID, TRANSMISSION_ERROR_OVER_PID,
 };
+use model_core::joint::JointParameters;
 
 use super::{NO_PREVIEW, PREVIEW, figures};
 
@@ -113,11 +114,28 @@ fn a_torque_constant_that_is_wrong_costs_little() {
     is_far_better(&Trial::inertial(&q1(), &train, 107));
 }
 
-#[test]
-fn gears_with_a_transmission_error_lose_their_lost_motion_as_well() {
+/// Q1 whose meshes have a transmission error of so much each [m].
+fn with_transmission_error(size: f64) -> JointParameters {
     let mut joint = q1();
     for mesh in [&mut joint.sun_planet, &mut joint.ring_planet] {
-        mesh.transmission_error.iter_mut().for_each(|error| *error = 6e-6);
+        mesh.transmission_error.iter_mut().for_each(|error| *error = size);
     }
-    is_far_better(&Trial::weighty(&joint, &DriveTrainParameters::q1(), 1.5, 108));
+    joint
+}
+
+#[test]
+fn gears_with_a_transmission_error_lose_their_lost_motion_as_well() {
+    is_far_better(&Trial::weighty(&with_transmission_error(6e-6), &DriveTrainParameters::q1(), 1.5, 108));
+}
+
+#[test]
+fn a_motor_follows_flanks_that_a_transmission_error_moves() {
+    // A motor that went at the link's pace alone would be late at every tooth.
+    let joint = with_transmission_error(12e-6);
+    let ratios = [108, 109, 110].map(|seed| {
+        let trial = Trial::inertial(&joint, &DriveTrainParameters::q1(), seed);
+        figures(&trial, PREVIEW).rms / figures(&trial, Contender::MotorPid).rms
+    });
+    println!("{ratios:?}");
+    TRANSMISSION_ERROR_OVER_PID.check(ratios.iter().sum::<f64>() / 3.0);
 }

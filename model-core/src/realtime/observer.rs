@@ -10,7 +10,7 @@
 //!    wrong by; `contact` decides which flank touches.
 //! 4. `learner` is one small recursive least squares, updated every few periods in settled contact, for half-backlash,
 //!    offset, compliance, skew and the encoders' error maps. `anchor` tells flanks without a force that stands out, and
-//!    `doubt` what no longer belongs to what was learnt. `interval` gives each period a part of that work.
+//!    `doubt` what no longer belongs to what was learnt. `parts` gives each period some of that work.
 //! 5. `supervisor` watches the output encoder and falls back to the motor alone.
 //!
 //! `docs/observer.md` derives all of it and says what it cannot know.
@@ -31,6 +31,7 @@ mod load_side;
 mod memory;
 mod motion;
 mod motor_only;
+mod parts;
 mod places;
 mod present;
 mod probe;
@@ -92,6 +93,8 @@ pub struct Observer<'tables, T: Real, const P: usize> {
     supervisor: Supervisor<T>,
     blind: Blind<T>,
     time: Option<u32>,
+    /// Teeth have settled since they came across the gap.
+    settled: bool,
     /// Torque that the meshes put on the load side, by the motor side alone [N m].
     from_meshes: T,
     estimates: Estimates<T>,
@@ -123,6 +126,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
             supervisor: Supervisor::new(tables.counts.has_output),
             blind: Blind::default(),
             time: None,
+            settled: false,
             from_meshes: T::ZERO,
             estimates: Estimates::default(),
         };
@@ -153,6 +157,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         self.supervisor = Supervisor::new(tables.counts.has_output);
         self.blind = Blind::default();
         self.time = None;
+        self.settled = false;
         self.from_meshes = T::ZERO;
         self.estimates = Estimates::default();
         self.find_places();

@@ -69,17 +69,28 @@ impl<T: Real> ByPosition<T> {
     }
 
     /// The same for a controller: teeth that rest within noise of a flank are reported as touching it, however light
-    /// their force, unless the motor side's, whose standard deviation is `alone`, pulls them off. Nothing can be learnt
-    /// from that, but nothing would be done otherwise.
-    pub fn reported(&self, before: ContactState, force: T, alone: T, deviation: T) -> (ContactState, T) {
+    /// their force, unless it pulls them off. Nothing can be learnt from that, but nothing would be done otherwise. Teeth
+    /// that come across the gap and have not settled yet may touch as soon as they are `near`, and again when they bounce:
+    /// then it takes a force of the motor side's, whose standard deviation is `alone`, to say that they do not.
+    pub fn reported(
+        &self,
+        before: ContactState,
+        force: T,
+        [alone, deviation]: [T; 2],
+        settled: bool,
+    ) -> (ContactState, T) {
         let (contact, both, beyond) = self.all(before, force, deviation);
         if contact != ContactState::Separated {
             return (contact, both);
         }
         let drives = self.way > T::ZERO;
-        let pulled = if drives { -force } else { force };
-        // On their way the teeth are at the flank in a moment, or off it: that is seen as soon as it happens.
-        let rests = self.soon == T::ZERO && beyond > -self.near && pulled < alone;
+        let off = |force: T| if drives { -force } else { force };
+        let rests = if settled {
+            beyond > -self.blur && off(both) < deviation
+        } else {
+            // Fast ones are there in a moment: that is seen as soon as it happens.
+            self.soon == T::ZERO && beyond > -self.near && off(force) < alone
+        };
         (if rests { flank(drives) } else { contact }, both)
     }
 

@@ -1,10 +1,10 @@
-//! Learning interval by interval: means over a few periods, what they show, and what is made of it, a part a period so that
-//! no period has to do it all. The learning itself is left to `learner` and `bias`.
+//! Learning interval by interval: means over a few periods, what they show, and what is made of it at once. What
+//! can wait is left to `parts`, the learning itself to `learner` and `bias`.
 
 use super::block::Settled;
 use super::contact::sign;
 use super::motion::{Shown, magnitude};
-use super::regressors::{OFFSET, Touch};
+use super::parts::Part;
 use super::{Now, Observer};
 use crate::mesh::ContactState;
 use crate::real::Real;
@@ -16,33 +16,18 @@ const SETTLED_AFTER: u32 = 3;
 /// Intervals well inside the gap after which the mesh force counts as gone from the motor side's estimate.
 const OPEN_AFTER: u32 = 3;
 
-/// What of an interval's work is next: each period does a part of it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Part {
-    /// Nothing is left.
-    Done,
-    /// On which flank the teeth came to rest.
-    Tell,
-    /// Learning it, if it belongs to what was learnt.
-    Learn,
-    /// How much is known now.
-    Know,
-    /// Saying it.
-    Say,
-}
-
 /// Sums over the periods of an interval, and what lasts longer.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Interval<T: Real> {
     periods: u32,
     sums: Mean<T>,
-    part: Part,
+    pub part: Part,
     /// Direction of the motor's dry friction, mean over the last interval.
-    direction: T,
+    pub direction: T,
     /// Nearer side of the gap then.
-    nearer: T,
+    pub nearer: T,
     /// Side of the last rest that was learnt from.
-    learnt_side: T,
+    pub learnt_side: T,
     /// Side on which contact settled last, unless the teeth have left it since.
     side: T,
     /// Mesh force over a few intervals [N].
@@ -164,48 +149,6 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         self.interval.part = if full { Part::Tell } else { Part::Know };
         self.interval.direction = mean.direction;
         self.interval.nearer = if way < shift { -T::ONE } else { T::ONE };
-    }
-
-    /// The next part of what is to be done after an interval.
-    fn go_on_learning(&mut self) {
-        let tables = self.tables;
-        self.interval.part = match self.interval.part {
-            Part::Tell => {
-                if self.tell_flank() {
-                    Part::Learn
-                } else {
-                    Part::Know
-                }
-            }
-            Part::Learn => {
-                self.interval.learnt_side = self.block.side();
-                self.take_rest();
-                Part::Know
-            }
-            Part::Know => {
-                self.learner.forget(tables.learner.forgetting);
-                self.know();
-                Part::Say
-            }
-            Part::Say | Part::Done => {
-                self.knowledge.of_learnt(tables, &self.learner);
-                self.say_learnt();
-                Part::Done
-            }
-        };
-    }
-
-    /// How much is known after an interval.
-    fn know(&mut self) {
-        let mut seen = self.places.free;
-        if let (Some(offset), false) = (seen.get_mut(OFFSET), self.supervisor.sees_both()) {
-            // Without an output encoder there is no offset to be wrong.
-            *offset = T::ZERO;
-        }
-        let touch = Touch { side: self.interval.nearer, force: T::ZERO, mesh: self.places.mesh_then };
-        let [_, compliance] = self.shape();
-        self.knowledge.of_force(self.tables, &self.bias, compliance, self.interval.direction);
-        self.knowledge.next(self.tables, &self.learner, &seen, &touch);
     }
 
     /// The side on which contact has settled, if any.

@@ -36,7 +36,7 @@ pub(super) struct Knowledge<T: Real> {
     pub variances: [T; 4],
     /// Distance from an edge that noise and ignorance can make [m].
     pub blur: T,
-    /// Distance from an edge within which teeth count as touching unless they are pulled off [m].
+    /// Distance from an edge within which teeth that come across the gap count as touching [m].
     pub near: T,
     /// Weight of the position beside the motor side in the mesh force.
     pub position_weight: T,
@@ -177,7 +177,7 @@ impl<T: Real> Knowledge<T> {
         let error = (sine * sine + cosine * cosine).square_root();
         self.flanks_swap = error > half_gap;
         // The planets' errors differ: some teeth meet before the others, by half of it on the mean, and noise hides when.
-        let (first, most) = (self.blur, T::TWENTIETH * half_gap);
+        let (first, most) = (self.blur + T::HALF * error, T::TWENTIETH * half_gap);
         self.near = if first < most { first } else { most };
     }
 }

@@ -61,9 +61,10 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
             self.contact_unseen(now)
         } else if known.width_serves {
             let before = self.estimates.reported_contact;
-            let (alone, together) = (known.force_deviation, known.both_deviation);
-            let (contact, both) =
-                self.by_position(now.way, now.soon, now.shift).reported(before, force, alone, together);
+            let deviations = [known.force_deviation, known.both_deviation];
+            let position = self.by_position(now.way, now.soon, now.shift);
+            self.settled = known.settled || self.settled && magnitude(position.way) > T::HALF * position.half_gap;
+            let (contact, both) = position.reported(before, force, deviations, self.settled);
             force = both;
             contact
         } else {

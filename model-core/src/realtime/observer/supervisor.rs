@@ -123,9 +123,7 @@ impl<T: Real> Supervisor<T> {
         }
         let doubt = if self.silent_for > table.silent_after {
             Doubt::Silent
-        } else if self.outside_for < table.failed_after {
-            return false;
-        } else if place == Place::Worn && !self.leapt {
+        } else if self.outside_for < table.failed_after || place == Place::Worn && !self.leapt {
             return false;
         } else if self.unmoved_for >= table.failed_after {
             Doubt::Frozen

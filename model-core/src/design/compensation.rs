@@ -249,6 +249,10 @@ impl Body {
         let teeth = 4.0 * lever * lever * planets * 0.5 * stiffness;
         let twist = 1.0 / teeth + joint.compliance.map_or(0.0, |compliance| 1.0 / compliance.stiffness);
         let planet = joint.bodies.planet_equivalent_mass;
+        // Motor and sun strike planets that hang loose: two bodies, with the sun's meshes in parallel between them.
+        let striking = joint.bodies.sun_equivalent_mass + joint.rotor_inertia / geometry.sun_base_radius.powi(2);
+        let struck = planets * planet;
+        let reduced = striking * struck / (striking + struck);
         Self {
             gear,
             lever,
@@ -256,8 +260,8 @@ impl Body {
             motor: gear * gear * (joint.rotor_inertia + sun),
             load: (planets * planet + joint.carrier_equivalent_mass()) * lever * lever + joint.link_inertia,
             stiffness: 1.0 / twist,
-            // A mass struck at a speed answers with that speed times sqrt(stiffness mass).
-            strike_impedance: planets * libm::sqrt(stiffness * planet) * 4.0 * lever * lever,
+            // Bodies that meet at a speed press with that speed times sqrt(stiffness mass).
+            strike_impedance: libm::sqrt(planets * stiffness * reduced) * 4.0 * lever * lever,
         }
     }
 }

@@ -38,6 +38,9 @@ const CROSSING_TORQUE: f64 = 0.8;
 /// delays.
 const MOTOR_DAMPING: f64 = 2.5;
 
+/// Share of that damper in impedance mode: what a commanded damper loses by the loop's delays.
+const IMPEDANCE_CALM: f64 = 0.1;
+
 /// A crossing shorter than so many reaction times would be over before feedback has had a say.
 const REACTIONS_IN_A_CROSSING: f64 = 8.0;
 
@@ -177,6 +180,7 @@ pub fn design_compensation<T: Real>(
         position_gain: real(3.0 * inertia * pole * pole),
         damping_gain: real(3.0 * inertia * pole),
         motor_damping: real(motor_damping),
+        impedance_calm: real(IMPEDANCE_CALM),
         // Both poles of the motor alone in one place.
         gap_stiffness: real(motor_damping * motor_damping / (4.0 * body.motor)),
         integral_gain: real(inertia * pole * pole * pole * period),

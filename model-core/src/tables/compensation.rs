@@ -42,6 +42,8 @@ pub struct CompensationTables<T: Real> {
     pub damping_gain: T,
     /// Damper on the motor against the link, and on the way through the gap [N m s/rad].
     pub motor_damping: T,
+    /// Share of that damper in impedance mode.
+    pub impedance_calm: T,
     /// Spring on the way through the gap [N m/rad].
     pub gap_stiffness: T,
     /// Integral of the plain loop over one period [N m/rad].

@@ -4,28 +4,18 @@
 //! Gains follow from inertias and bandwidth, times from the motor's torque, the loop's delays and the force that a
 //! landing may cause. What is left are shares, each a constant here with its reason.
 
+mod body;
+mod settings;
+
 use core::f64::consts::TAU;
 
 use crate::error::DesignError;
 use crate::joint::JointParameters;
-use crate::mesh::MeshKind;
 use crate::real::Real;
 use crate::tables::compensation::CompensationTables;
-
-/// What the compensation is designed from besides the joint. The joint's own half-backlash is a guess to start from.
-#[derive(Debug, Clone, PartialEq)]
-pub struct CompensationSettings {
-    /// Control periods a second [Hz].
-    pub control_rate: u32,
-    /// Bandwidth of the motor controller: its three poles [rad/s].
-    pub bandwidth: f64,
-    /// Largest torque of the motor [N m].
-    pub torque_limit: f64,
-    /// From commanding a torque to its first effect [control periods].
-    pub torque_delay: f64,
-    /// Time constant of the current loop after that [s].
-    pub torque_lag: f64,
-}
+use body::Body;
+pub use settings::CompensationSettings;
+use settings::check;
 
 /// Planets struck on the way through the gap may be struck with this share of the rated force: struck again as they fly
 /// to and fro they take up to one and a half times what the first blow is estimated at, which leaves three fifths.
@@ -225,61 +215,4 @@ pub fn design_compensation<T: Real>(
         longest_hold: real(LONGEST_HOLD),
         trust_step: real(period * pole / TRUST),
     })
-}
-
-/// The joint, felt at the link.
-struct Body {
-    gear: f64,
-    lever: f64,
-    half_backlash: f64,
-    /// What turns with the motor while the gap is open [kg m^2].
-    motor: f64,
-    /// The rest [kg m^2].
-    load: f64,
-    /// Between motor and link [N m/rad].
-    stiffness: f64,
-    /// Torque for each rad/s at which hanging planets are struck [N m s/rad].
-    strike_impedance: f64,
-}
-
-impl Body {
-    fn new(joint: &JointParameters) -> Self {
-        let geometry = &joint.geometry;
-        let (gear, lever) = (geometry.ratio_by_teeth(), geometry.carrier_base_radius());
-        let planets = geometry.planets as f64;
-        let sun = joint.bodies.sun_equivalent_mass * geometry.sun_base_radius * geometry.sun_base_radius;
-        let stiffness = joint.mesh(MeshKind::SunPlanet).mean_stiffness;
-        // Both meshes in series, all planets in parallel, along twice the carrier's way.
-        let teeth = 4.0 * lever * lever * planets * 0.5 * stiffness;
-        let twist = 1.0 / teeth + joint.compliance.map_or(0.0, |compliance| 1.0 / compliance.stiffness);
-        let planet = joint.bodies.planet_equivalent_mass;
-        // Motor and sun strike planets that hang loose: two bodies, with the sun's meshes in parallel between them.
-        let striking = joint.bodies.sun_equivalent_mass + joint.rotor_inertia / geometry.sun_base_radius.powi(2);
-        let struck = planets * planet;
-        let reduced = striking * struck / (striking + struck);
-        Self {
-            gear,
-            lever,
-            half_backlash: joint.sun_planet.half_backlash.iter().sum::<f64>() / planets,
-            motor: gear * gear * (joint.rotor_inertia + sun),
-            load: (planets * planet + joint.carrier_equivalent_mass()) * lever * lever + joint.link_inertia,
-            stiffness: 1.0 / twist,
-            // Bodies that meet at a speed press with that speed times sqrt(stiffness mass).
-            strike_impedance: libm::sqrt(planets * stiffness * reduced) * 4.0 * lever * lever,
-        }
-    }
-}
-
-/// Refuses settings that no gain can be made from.
-fn check(settings: &CompensationSettings) -> Result<(), DesignError> {
-    let must = |what: &'static str, given: f64, holds: bool, must_be: &'static str| {
-        if holds && given.is_finite() { Ok(()) } else { Err(DesignError::OutOfRange { what, given, must_be }) }
-    };
-    let CompensationSettings { bandwidth, torque_limit, torque_delay, torque_lag, .. } = *settings;
-    let rate = f64::from(settings.control_rate);
-    must("control rate", rate, rate > 0.0, "positive")?;
-    must("bandwidth", bandwidth, bandwidth > 0.0 && bandwidth < 0.1 * rate, "positive and below a tenth of the rate")?;
-    must("motor torque limit", torque_limit, torque_limit > 0.0, "positive")?;
-    must("torque delay", torque_delay, torque_delay >= 0.0, "zero or positive")?;
-    must("torque lag", torque_lag, torque_lag >= 0.0, "zero or positive")
 }

@@ -1,0 +1,33 @@
+//! What a compensation is designed from besides the joint, and which settings are refused. Gains are left to the tables'
+//! design.
+
+use crate::error::DesignError;
+
+/// What the compensation is designed from besides the joint. The joint's own half-backlash is a guess to start from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CompensationSettings {
+    /// Control periods a second [Hz].
+    pub control_rate: u32,
+    /// Bandwidth of the motor controller: its three poles [rad/s].
+    pub bandwidth: f64,
+    /// Largest torque of the motor [N m].
+    pub torque_limit: f64,
+    /// From commanding a torque to its first effect [control periods].
+    pub torque_delay: f64,
+    /// Time constant of the current loop after that [s].
+    pub torque_lag: f64,
+}
+
+/// Refuses settings that no gain can be made from.
+pub(super) fn check(settings: &CompensationSettings) -> Result<(), DesignError> {
+    let must = |what: &'static str, given: f64, holds: bool, must_be: &'static str| {
+        if holds && given.is_finite() { Ok(()) } else { Err(DesignError::OutOfRange { what, given, must_be }) }
+    };
+    let CompensationSettings { bandwidth, torque_limit, torque_delay, torque_lag, .. } = *settings;
+    let rate = f64::from(settings.control_rate);
+    must("control rate", rate, rate > 0.0, "positive")?;
+    must("bandwidth", bandwidth, bandwidth > 0.0 && bandwidth < 0.1 * rate, "positive and below a tenth of the rate")?;
+    must("motor torque limit", torque_limit, torque_limit > 0.0, "positive")?;
+    must("torque delay", torque_delay, torque_delay >= 0.0, "zero or positive")?;
+    must("torque lag", torque_lag, torque_lag >= 0.0, "zero or positive")
+}

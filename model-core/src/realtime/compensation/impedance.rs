@@ -35,7 +35,7 @@ impl<T: Real> ImpedanceLaw<T> {
         // Friction of the motor stays: the law is that of a joint without a gap, not of one without losses. So does the
         // swing of motor against link, but for what the loop's delays would add to it.
         let law = clamp(spring, -tables.torque_limit, tables.torque_limit)
-            + point.damping * (point.speed + situation.error_speed - situation.motor_speed)
+            + point.damping * (point.speed - situation.motor_speed)
             + tables.impedance_calm * situation.calm(tables);
         let free = load.even() + load.drag(tables, situation.link_speed);
         // Law and load accelerate motor and load together; the teeth pass on what is not the motor's share.

@@ -7,8 +7,9 @@ use core::convert::Infallible;
 use core::sync::atomic::Ordering::{Acquire, Relaxed, Release};
 
 use embedded_hal::digital::OutputPin;
-use link::messages::{Fault, RunMode, RunSettings};
+use link::messages::{Fault, Kept, RunMode, RunSettings};
 use link::virtual_joint::WireUpset;
+use model_core::realtime::observer::{Memory, MemoryError};
 
 use crate::budget::{Monitor, TickTimer};
 use crate::queues::{COMMAND_CAPACITY, Event, Order, TickEnd};
@@ -17,7 +18,8 @@ use crate::schedule::{Schedule, Turn};
 use crate::words::Words;
 
 /// What a board is told before its first reset.
-const BEFORE_ANY_RUN: RunSettings = RunSettings { mode: RunMode::Lockstep, decimation: 1, command_timeout: 1 };
+const BEFORE_ANY_RUN: RunSettings =
+    RunSettings { mode: RunMode::Lockstep, decimation: 1, command_timeout: 1, from_memory: false };
 
 /// What a role does in its tick.
 pub trait Work {
@@ -28,8 +30,16 @@ pub trait Work {
 
     /// Whether its tables are what they were made to be.
     fn is_sound(&self) -> bool;
-    /// Back to the start of a run.
-    fn reset(&mut self);
+    /// Back to the start of a run; from what is remembered, if that is wished for.
+    fn reset(&mut self, from_memory: bool);
+    /// What has been learnt, to be remembered from now on; nothing in a role that learns nothing.
+    fn memory(&mut self) -> Option<Memory> {
+        None
+    }
+    /// Remembers what was learnt before the board was switched on.
+    fn remember(&mut self, _memory: &Memory) -> Result<(), MemoryError> {
+        Err(MemoryError::OtherJoint)
+    }
     /// Takes the command of the step to come.
     fn take(&mut self, command: <Self::Words as Words>::Command);
     /// Takes a fault for the run to come; `false` if the role has none, or no room for another.
@@ -115,6 +125,10 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> Control<'a, E, W> {
                 self.safe_state.trip(fault);
                 Event::Stopped
             }
+            Some(Order::Keep) => match self.state() {
+                State::Running => Event::Memory(Err(Kept::Running)),
+                _ => Event::Memory(self.work.memory().ok_or(Kept::Nothing)),
+            },
             Some(Order::Upset(upset)) => {
                 let begins = matches!(self.state(), State::Running) && self.steps == 0;
                 Event::Upset { taken: begins && self.work.upset(upset) }
@@ -142,7 +156,7 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> Control<'a, E, W> {
         for _ in 0..COMMAND_CAPACITY {
             self.end.commands.take();
         }
-        self.work.reset();
+        self.work.reset(settings.from_memory);
         self.steps = 0;
         self.decimation = settings.decimation.max(1);
         self.until_sample = self.decimation;

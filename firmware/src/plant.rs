@@ -74,7 +74,7 @@ impl<const N: usize> Work for Plant<'_, N> {
         self.tables.digest_is_good()
     }
 
-    fn reset(&mut self) {
+    fn reset(&mut self, _: bool) {
         self.model.reset();
         self.torques = NO_TORQUE;
         self.digest = digest::START;

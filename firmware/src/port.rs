@@ -21,7 +21,7 @@ use core::fmt;
 pub use direct::Direct;
 use model_core::realtime::compensation::Command;
 use model_core::realtime::controller::Answer;
-use model_core::realtime::observer::Samples;
+use model_core::realtime::observer::{Memory, MemoryError, Samples};
 pub use serial::SerialPort;
 pub use spi::{SpiGuest, SpiPort};
 
@@ -32,6 +32,16 @@ pub trait ControllerPort {
 
     /// Back to what was designed, as far as this side can do it.
     fn reset(&mut self);
+
+    /// What has been learnt, where that is at hand.
+    fn memory(&self) -> Option<Memory> {
+        None
+    }
+
+    /// Goes on from what was learnt before; refused where it is not at hand.
+    fn recall(&mut self, _memory: &Memory) -> Result<(), MemoryError> {
+        Err(MemoryError::OtherJoint)
+    }
 }
 
 /// Why there is no answer in this tick: the motor controller goes on without compensation.

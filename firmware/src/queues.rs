@@ -4,8 +4,9 @@
 use core::sync::atomic::{AtomicBool, AtomicU32};
 
 use heapless::spsc::{Consumer, Producer, Queue};
-use link::messages::{Fault, RunSettings};
+use link::messages::{Fault, Kept, RunSettings};
 use link::virtual_joint::WireUpset;
+use model_core::realtime::observer::Memory;
 
 use crate::budget::Monitor;
 use crate::ends::{Giver, Taker};
@@ -30,6 +31,8 @@ pub enum Order {
     Stop,
     /// Safe state for a reason that idle has found; answered by [`Event::Stopped`].
     Trip(Fault),
+    /// What has been learnt as [`Event::Memory`].
+    Keep,
     /// A fault between joint and controller; answered by [`Event::Upset`].
     Upset(WireUpset),
     /// A copy of the timing monitor as [`Event::Timing`].
@@ -51,6 +54,8 @@ pub enum Event {
     Refused(Fault),
     /// The tick itself has found a reason for the safe state: the only event that is no answer to an order.
     Tripped(Fault),
+    /// What has been learnt, or why there is none.
+    Memory(Result<Memory, Kept>),
     /// Whether a fault between joint and controller was taken.
     Upset {
         /// It was.

@@ -7,6 +7,7 @@ use link::virtual_joint::{KNOTS_PER_SCHEDULE, Knot, LOOP_SAMPLES_PER_BATCH, Loop
 use model_core::digest;
 use model_core::realtime::controller::Answer;
 use model_core::realtime::course::Demand;
+use model_core::realtime::observer::{Memory, MemoryError};
 use model_core::realtime::upset::Upsets;
 use model_core::realtime::virtual_joint::VirtualJoint;
 use model_core::tables::Tables;
@@ -14,6 +15,7 @@ use model_core::tables::virtual_joint::SurroundingsTable;
 
 use crate::batcher::{Batcher, WireForm};
 use crate::control::Work;
+use crate::page::AtHand;
 use crate::port::ControllerPort;
 use crate::words::{Timed, Words};
 
@@ -69,6 +71,8 @@ pub struct WholeLoop<'t, P, const N: usize> {
     /// What goes wrong between joint and port.
     upsets: Upsets<f32>,
     port: P,
+    /// What runs may begin from.
+    at_hand: AtHand,
     demand: Demand<f32>,
     load_torque: f32,
     /// Periods since the demand began.
@@ -86,6 +90,7 @@ impl<'t, P: ControllerPort, const N: usize> WholeLoop<'t, P, N> {
             joint: VirtualJoint::new(tables, surroundings),
             upsets: Upsets::default(),
             port,
+            at_hand: AtHand::default(),
             demand: Demand::HOLD,
             load_torque: 0.0,
             elapsed: 0,
@@ -103,10 +108,14 @@ impl<P: ControllerPort, const N: usize> Work for WholeLoop<'_, P, N> {
         self.tables.digest_is_good()
     }
 
-    fn reset(&mut self) {
+    fn reset(&mut self, from_memory: bool) {
         self.joint.reset();
         self.upsets = Upsets::default();
         self.port.reset();
+        if let Some(memory) = self.at_hand.get().filter(|_| from_memory) {
+            // It was found good when it was remembered.
+            let _ = self.port.recall(memory);
+        }
         self.demand = Demand::HOLD;
         self.load_torque = 0.0;
         self.elapsed = 0;
@@ -122,6 +131,18 @@ impl<P: ControllerPort, const N: usize> Work for WholeLoop<'_, P, N> {
 
     fn upset(&mut self, upset: WireUpset) -> bool {
         self.upsets.add(upset.into())
+    }
+
+    fn memory(&mut self) -> Option<Memory> {
+        let memory = self.port.memory()?;
+        self.at_hand.set(&memory);
+        Some(memory)
+    }
+
+    fn remember(&mut self, memory: &Memory) -> Result<(), MemoryError> {
+        self.port.recall(memory)?;
+        self.at_hand.set(memory);
+        Ok(())
     }
 
     fn step(&mut self) {

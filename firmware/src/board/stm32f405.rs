@@ -6,6 +6,9 @@
 //! | motor enable | PB0 | high: on |
 //! | status light | PC12 | the light of Olimex STM32-H405, which is on when low |
 //!
+//! What the observer has learnt is kept in the first sector behind what an image may take, the ninth; while it is erased the
+//! core stands still for a second or two.
+//!
 //! This USART has room for one byte only, and the tick may hold its interrupt off for most of a period (50 us): at
 //! 230400 baud a byte takes 43 us. The emulated board heeds no baud rate. Nothing here has been run on silicon yet.
 
@@ -17,6 +20,7 @@ use cortex_m::peripheral::NVIC;
 use embedded_hal::digital::{ErrorType, OutputPin};
 use link::messages::Clock;
 
+use super::flash_page::{Flash, FlashPage, KEYS};
 use super::output::{Output, ports};
 use super::patience::wait_until;
 use super::{Board, Started, Watchdog};
@@ -37,6 +41,7 @@ impl Board for Stm32F405 {
     type Enable = Output<pac::GPIOB, 0>;
     type Light = LowLight;
     type Port = Usart;
+    type Page = FlashPage<SectorEight>;
 
     fn start(device: pac::Peripherals, _core: &mut cortex_m::Peripherals) -> Started<Self> {
         let clock = start_clock(&device.RCC, &device.FLASH);
@@ -54,6 +59,7 @@ impl Board for Stm32F405 {
             enable: Output::new(device.GPIOB),
             light: LowLight(Output::new(device.GPIOC)),
             port: Usart::open(device.USART1, usart_clock),
+            page: FlashPage(SectorEight(device.FLASH)),
             watchdog: Watchdog::start(device.IWDG),
             watchdog_reset,
         }
@@ -113,6 +119,45 @@ impl OutputPin for LowLight {
 
     fn set_high(&mut self) -> Result<(), Infallible> {
         self.0.set_low()
+    }
+}
+
+/// The sector of 128 KB at 512 KB.
+pub struct SectorEight(pac::FLASH);
+
+impl Flash for SectorEight {
+    const ADDRESS: usize = 0x0808_0000;
+    const TOGETHER: usize = 1;
+
+    fn unlock(&mut self) {
+        for key in KEYS {
+            // SAFETY: the key register takes every word.
+            self.0.keyr().write(|w| unsafe { w.bits(key) });
+        }
+        // SAFETY: ones clear the flags of errors.
+        self.0.sr().write(|w| unsafe { w.bits(0xf3) });
+    }
+
+    fn erase(&mut self) {
+        // SAFETY: sector erase (1), sector 8 (3), by words (8), start (16).
+        self.0.cr().write(|w| unsafe { w.bits(1 << 1 | 8 << 3 | 2 << 8 | 1 << 16) });
+    }
+
+    fn take_writes(&mut self, on: bool) {
+        // SAFETY: programming (0), by words (8).
+        self.0.cr().write(|w| unsafe { w.bits(u32::from(on) | 2 << 8) });
+    }
+
+    fn is_busy(&self) -> bool {
+        self.0.sr().read().bits() & 1 << 16 != 0
+    }
+
+    fn lock(&mut self) {
+        // SAFETY: the lock (31).
+        self.0.cr().write(|w| unsafe { w.bits(1 << 31) });
+        self.0.acr().modify(|_, w| w.dcen().clear_bit());
+        self.0.acr().modify(|_, w| w.dcrst().set_bit());
+        self.0.acr().modify(|_, w| w.dcrst().clear_bit().dcen().set_bit());
     }
 }
 

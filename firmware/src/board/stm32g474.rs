@@ -6,6 +6,8 @@
 //! | motor enable | PB0 | high: on |
 //! | status light | PA5 | the board's green light, on when high |
 //!
+//! What the observer has learnt is kept in the last page of 2 KB, in its second bank.
+//!
 //! The image is built and linted; it has been run neither on silicon nor in an emulator.
 
 pub use stm32g4::stm32g474 as pac;
@@ -14,6 +16,7 @@ use cortex_m::peripheral::NVIC;
 use link::messages::Clock;
 
 use super::fifo_uart::FifoUart;
+use super::flash_page::{Flash, FlashPage, KEYS};
 use super::output::{Output, ports};
 use super::patience::wait_until;
 use super::{Board, Started, Watchdog};
@@ -36,6 +39,7 @@ impl Board for Stm32G474 {
     type Enable = Output<pac::GPIOB, 0>;
     type Light = Output<pac::GPIOA, 5>;
     type Port = FifoUart;
+    type Page = FlashPage<LastPage>;
 
     fn start(device: pac::Peripherals, _core: &mut cortex_m::Peripherals) -> Started<Self> {
         let clock = start_clock(&device.RCC, &device.PWR, &device.FLASH);
@@ -52,6 +56,7 @@ impl Board for Stm32G474 {
             enable: Output::new(device.GPIOB),
             light: Output::new(device.GPIOA),
             port: FifoUart::open(device.USART2, usart_clock, BAUD_RATE),
+            page: FlashPage(LastPage(device.FLASH)),
             watchdog: Watchdog::start(device.IWDG),
             watchdog_reset,
         }
@@ -59,6 +64,45 @@ impl Board for Stm32G474 {
 
     fn wake_serial() {
         NVIC::pend(pac::Interrupt::USART2);
+    }
+}
+
+/// The last page of the second bank.
+pub struct LastPage(pac::FLASH);
+
+impl Flash for LastPage {
+    const ADDRESS: usize = 0x0807_f800;
+    const TOGETHER: usize = 2;
+
+    fn unlock(&mut self) {
+        for key in KEYS {
+            // SAFETY: the key register takes every word.
+            self.0.keyr().write(|w| unsafe { w.bits(key) });
+        }
+        // SAFETY: ones clear the flags of errors.
+        self.0.sr().write(|w| unsafe { w.bits(0xc3fb) });
+    }
+
+    fn erase(&mut self) {
+        // SAFETY: page erase (1), page 127 (3) of bank 2 (11), start (16).
+        self.0.cr().write(|w| unsafe { w.bits(1 << 1 | 127 << 3 | 1 << 11 | 1 << 16) });
+    }
+
+    fn take_writes(&mut self, on: bool) {
+        // SAFETY: programming (0).
+        self.0.cr().write(|w| unsafe { w.bits(on.into()) });
+    }
+
+    fn is_busy(&self) -> bool {
+        self.0.sr().read().bits() & 1 << 16 != 0
+    }
+
+    fn lock(&mut self) {
+        // SAFETY: the lock (31).
+        self.0.cr().write(|w| unsafe { w.bits(1 << 31) });
+        self.0.acr().modify(|_, w| w.dcen().clear_bit());
+        self.0.acr().modify(|_, w| w.dcrst().set_bit());
+        self.0.acr().modify(|_, w| w.dcrst().clear_bit().dcen().set_bit());
     }
 }
 

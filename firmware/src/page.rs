@@ -1,0 +1,62 @@
+//! Where what an observer has learnt outlives a reset: one page of flash, read at start, written between runs. What is read
+//! there is judged before it is used; how a page is erased and written is the board's business.
+
+use link::messages::Remembered;
+use model_core::realtime::observer::{MEMORY_BYTES, Memory, MemoryError};
+
+/// A place for one memory.
+pub trait Page {
+    /// What is there.
+    fn read(&self) -> Memory;
+
+    /// Erases and writes it. May hold everything up for a second or two.
+    fn write(&mut self, memory: &Memory);
+}
+
+/// What a page holds; nothing if it is empty, as after an erase, or where there is no flash at all.
+pub fn recall(page: &impl Page) -> Option<Memory> {
+    let memory = page.read();
+    let empty = [0xff, 0].into_iter().any(|level| memory.iter().all(|byte| *byte == level));
+    (!empty).then_some(memory)
+}
+
+/// Writes a memory, and says whether it now reads as it should.
+pub fn keep(page: &mut impl Page, memory: &Memory) -> bool {
+    // What is there already is not worn out by writing it again.
+    if page.read() != *memory {
+        page.write(memory);
+    }
+    page.read() == *memory
+}
+
+/// A judgement in the words of the line.
+pub fn judgement(judged: Option<Result<(), MemoryError>>) -> Remembered {
+    match judged {
+        None => Remembered::Nothing,
+        Some(Ok(())) => Remembered::Good,
+        Some(Err(MemoryError::NotAMemory)) => Remembered::NotAMemory,
+        Some(Err(MemoryError::WrongVersion)) => Remembered::WrongVersion,
+        Some(Err(MemoryError::Damaged)) => Remembered::Damaged,
+        Some(Err(MemoryError::OtherJoint)) => Remembered::OtherJoint,
+        Some(Err(MemoryError::NotFinite)) => Remembered::NotFinite,
+    }
+}
+
+/// What a role keeps at hand of a page, for the runs that begin from it.
+#[derive(Debug, Clone, Default)]
+pub struct AtHand(Option<Memory>);
+
+impl AtHand {
+    /// This, once it was found good.
+    pub fn set(&mut self, memory: &Memory) {
+        self.0 = Some(*memory);
+    }
+
+    /// What there is.
+    pub fn get(&self) -> Option<&Memory> {
+        self.0.as_ref()
+    }
+}
+
+// Whole words of every board's flash, of up to 32 bytes.
+const _: () = assert!(MEMORY_BYTES.is_multiple_of(32));

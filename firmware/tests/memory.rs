@@ -8,7 +8,7 @@ use bench::{Bench, Flash};
 use firmware::control::Work;
 use firmware::observer::Observing;
 use firmware::page::{judgement, recall};
-use firmware::port::{ControllerPort, Direct};
+use firmware::port::Direct;
 use firmware::tables::{PLANETS, TABLES};
 use link::controller::Exchange;
 use link::messages::{FromBoard, Kept, Remembered, RunMode, RunSettings, Schedule, ToBoard};

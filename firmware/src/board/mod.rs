@@ -21,6 +21,8 @@ compile_error!("one board at a time: build with --no-default-features --features
 pub mod flash_page;
 mod output;
 mod patience;
+#[cfg(feature = "stm32f405")]
+pub mod spi_slave;
 mod watchdog;
 
 pub use output::Output;

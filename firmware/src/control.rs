@@ -33,7 +33,7 @@ pub trait Work {
     /// Back to the start of a run; from what is remembered, if that is wished for.
     fn reset(&mut self, from_memory: bool);
     /// What has been learnt, to be remembered from now on; nothing in a role that learns nothing.
-    fn memory(&mut self) -> Option<Memory> {
+    fn memory(&mut self) -> Option<<Self::Words as Words>::Learnt> {
         None
     }
     /// Remembers what was learnt before the board was switched on.
@@ -127,7 +127,11 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> Control<'a, E, W> {
             }
             Some(Order::Keep) => match self.state() {
                 State::Running => Event::Memory(Err(Kept::Running)),
-                _ => Event::Memory(self.work.memory().ok_or(Kept::Nothing)),
+                // Idle has taken the memory before, if there was one.
+                _ => match self.work.memory().map(|memory| self.end.learnt.give(memory)) {
+                    Some(Ok(())) => Event::Memory(Ok(())),
+                    Some(Err(_)) | None => Event::Memory(Err(Kept::Nothing)),
+                },
             },
             Some(Order::Upset(upset)) => {
                 let begins = matches!(self.state(), State::Running) && self.steps == 0;

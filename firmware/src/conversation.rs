@@ -10,7 +10,6 @@ use link::framing::{MAX_FRAME, Receiver, encode};
 use link::messages::{
     Accepted, Fault, FromBoard, Hello, Kept, LOG_BYTES, Log, Remembered, RunMode, RunSettings, ToBoard,
 };
-use model_core::realtime::observer::Memory;
 
 use crate::queues::{Event, IdleEnd, Order};
 use crate::serial::LineEnd;
@@ -43,7 +42,6 @@ pub struct Conversation<'a, W: Words> {
     next_sequence: u16,
     lost_schedules: u32,
     cleared: LineCounts,
-    to_keep: Option<Memory>,
 }
 
 impl<'a, W: Words> Conversation<'a, W> {
@@ -66,13 +64,12 @@ impl<'a, W: Words> Conversation<'a, W> {
             next_sequence: 0,
             lost_schedules: 0,
             cleared: LineCounts::default(),
-            to_keep: None,
         }
     }
 
     /// What is to be written to flash now, and said to be by [`Conversation::kept`]: nothing runs until then.
-    pub fn to_keep(&mut self) -> Option<Memory> {
-        self.to_keep.take()
+    pub fn to_keep(&mut self) -> Option<W::Learnt> {
+        self.end.learnt.dequeue()
     }
 
     /// Says what became of it.
@@ -144,7 +141,8 @@ impl<'a, W: Words> Conversation<'a, W> {
                 self.forget_run();
                 self.say(&FromBoard::Hello(self.hello.clone()));
             }
-            Event::Memory(Ok(memory)) => self.to_keep = Some(memory),
+            // Said once it is written.
+            Event::Memory(Ok(())) => {}
             Event::Memory(Err(why)) => self.say(&FromBoard::Kept(why)),
             Event::Upset { taken } => self.say(&FromBoard::Upset { taken }),
             Event::Refused(fault) | Event::Tripped(fault) => self.say(&FromBoard::Fault(fault)),

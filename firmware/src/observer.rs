@@ -21,6 +21,7 @@ impl Words for ObserverWords {
     type Timetable = Schedule<Exchange, EXCHANGES_PER_SCHEDULE>;
     type Sample = Answered;
     type Batch = AnswerBatch;
+    type Learnt = Memory;
 
     fn timetable(message: ToBoard) -> Option<Self::Timetable> {
         if let ToBoard::Exchanges(schedule) = message { Some(schedule) } else { None }
@@ -108,9 +109,8 @@ impl<P: ControllerPort> Work for Observing<P> {
 
     fn reset(&mut self, from_memory: bool) {
         self.port.reset();
-        if let Some(memory) = self.at_hand.get().filter(|_| from_memory) {
-            // It was found good when it was remembered.
-            let _ = self.port.recall(memory);
+        if from_memory {
+            self.at_hand.give(&mut self.port);
         }
         self.next = None;
         self.answer = Answer::default();
@@ -123,15 +123,11 @@ impl<P: ControllerPort> Work for Observing<P> {
     }
 
     fn memory(&mut self) -> Option<Memory> {
-        let memory = self.port.memory()?;
-        self.at_hand.set(&memory);
-        Some(memory)
+        self.at_hand.learnt_by(&self.port)
     }
 
     fn remember(&mut self, memory: &Memory) -> Result<(), MemoryError> {
-        self.port.recall(memory)?;
-        self.at_hand.set(memory);
-        Ok(())
+        self.at_hand.take(memory, &mut self.port)
     }
 
     fn step(&mut self) {

@@ -1,8 +1,30 @@
 //! Where what an observer has learnt outlives a reset: one page of flash, read at start, written between runs. What is read
 //! there is judged before it is used; how a page is erased and written is the board's business.
 
+use core::convert::Infallible;
+
 use link::messages::Remembered;
 use model_core::realtime::observer::{MEMORY_BYTES, Memory, MemoryError};
+
+use crate::port::ControllerPort;
+
+/// What a role learns, if it learns anything: room is taken only where it does.
+pub trait Learnt {
+    /// As it is kept.
+    fn memory(&self) -> &Memory;
+}
+
+impl Learnt for Memory {
+    fn memory(&self) -> &Memory {
+        self
+    }
+}
+
+impl Learnt for Infallible {
+    fn memory(&self) -> &Memory {
+        match *self {}
+    }
+}
 
 /// A place for one memory.
 pub trait Page {
@@ -47,14 +69,25 @@ pub fn judgement(judged: Option<Result<(), MemoryError>>) -> Remembered {
 pub struct AtHand(Option<Memory>);
 
 impl AtHand {
-    /// This, once it was found good.
-    pub fn set(&mut self, memory: &Memory) {
-        self.0 = Some(*memory);
+    /// What a controller has learnt, at hand from now on.
+    pub fn learnt_by(&mut self, port: &impl ControllerPort) -> Option<Memory> {
+        self.0 = port.memory().or(self.0);
+        self.0
     }
 
-    /// What there is.
-    pub fn get(&self) -> Option<&Memory> {
-        self.0.as_ref()
+    /// Takes a memory that the controller finds good.
+    pub fn take(&mut self, memory: &Memory, port: &mut impl ControllerPort) -> Result<(), MemoryError> {
+        port.recall(memory)?;
+        self.0 = Some(*memory);
+        Ok(())
+    }
+
+    /// Has a controller that was reset go on from it.
+    pub fn give(&self, port: &mut impl ControllerPort) {
+        if let Some(memory) = &self.0 {
+            // It was found good when it was taken.
+            let _ = port.recall(memory);
+        }
     }
 }
 

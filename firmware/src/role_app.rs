@@ -8,7 +8,7 @@ mod app {
     use firmware::control::{Control, Work};
     use firmware::conversation::{Conversation, LogEnd};
     use firmware::identity::{self, StartUp};
-    use firmware::page;
+    use firmware::page::{self, Learnt};
     use firmware::logger::{self, LogQueue};
     use firmware::queues::{Progress, Queues};
     use firmware::serial::{Line, Serial};
@@ -16,6 +16,7 @@ mod app {
     use firmware::tables::TABLES;
     use firmware::timing_report::Resources;
     use firmware::{panic_message, stack};
+    use link::messages::Remembered;
 
     use crate::role::{DIGEST, RoleWords, RoleWork, work};
 
@@ -48,13 +49,7 @@ mod app {
 
         let board = ThisBoard::NAME;
         let mut work = work();
-        let judged = page::recall(&page).map(|memory| work.remember(&memory));
-        match judged {
-            Some(Err(error)) => defmt::warn!("what was kept is not used: {}", defmt::Display2Format(&error)),
-            Some(Ok(())) => defmt::info!("what was learnt in earlier runs is at hand"),
-            None => {}
-        }
-        let remembered = page::judgement(judged);
+        let remembered = remember(&mut work, &page);
         let timer_rate = ThisBoard::CORE_RATE;
         let start_up = StartUp { board, timer_rate, clock, last_panic, watchdog_reset, remembered };
         let hello = identity::hello::<RoleWords>(start_up, DIGEST);
@@ -65,6 +60,18 @@ mod app {
         clock::start(&mut core.SYST);
         let light = StatusLight::new(light);
         (Shared { serial }, Local { control, conversation, progress, light, watchdog, page })
+    }
+
+    /// Looks for what was learnt before. Its stack is given back.
+    #[inline(never)]
+    fn remember(work: &mut RoleWork, page: &<ThisBoard as Board>::Page) -> Remembered {
+        let judged = page::recall(page).map(|memory| work.remember(&memory));
+        match judged {
+            Some(Err(error)) => defmt::warn!("what was kept is not used: {}", defmt::Display2Format(&error)),
+            Some(Ok(())) => defmt::info!("what was learnt in earlier runs is at hand"),
+            None => {}
+        }
+        page::judgement(judged)
     }
 
     /// The role's work, above everything else.
@@ -108,7 +115,7 @@ mod app {
                 stack_used: stack::deepest(),
             });
             if let Some(memory) = conversation.to_keep() {
-                conversation.kept(watchdog.while_writing(|| page::keep(page, &memory)));
+                conversation.kept(watchdog.while_writing(|| page::keep(page, memory.memory())));
             }
             light.show(Pattern::of(progress), clock::milliseconds());
             let beat = progress.beats.load(Relaxed);

@@ -31,6 +31,7 @@ impl Words for LoopWords {
     type Timetable = Schedule<Knot, KNOTS_PER_SCHEDULE>;
     type Sample = LoopSample;
     type Batch = Batcher<LoopForm, LOOP_SAMPLES_PER_BATCH>;
+    type Learnt = Memory;
 
     fn timetable(message: ToBoard) -> Option<Self::Timetable> {
         if let ToBoard::Course(schedule) = message { Some(schedule) } else { None }
@@ -112,9 +113,8 @@ impl<P: ControllerPort, const N: usize> Work for WholeLoop<'_, P, N> {
         self.joint.reset();
         self.upsets = Upsets::default();
         self.port.reset();
-        if let Some(memory) = self.at_hand.get().filter(|_| from_memory) {
-            // It was found good when it was remembered.
-            let _ = self.port.recall(memory);
+        if from_memory {
+            self.at_hand.give(&mut self.port);
         }
         self.demand = Demand::HOLD;
         self.load_torque = 0.0;
@@ -134,15 +134,11 @@ impl<P: ControllerPort, const N: usize> Work for WholeLoop<'_, P, N> {
     }
 
     fn memory(&mut self) -> Option<Memory> {
-        let memory = self.port.memory()?;
-        self.at_hand.set(&memory);
-        Some(memory)
+        self.at_hand.learnt_by(&self.port)
     }
 
     fn remember(&mut self, memory: &Memory) -> Result<(), MemoryError> {
-        self.port.recall(memory)?;
-        self.at_hand.set(memory);
-        Ok(())
+        self.at_hand.take(memory, &mut self.port)
     }
 
     fn step(&mut self) {

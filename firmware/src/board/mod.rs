@@ -19,6 +19,8 @@ compile_error!("choose a board: one of the features stm32f405, stm32g474, stm32h
 compile_error!("one board at a time: build with --no-default-features --features <board>");
 
 pub mod flash_page;
+#[cfg(any(feature = "stm32f405", feature = "stm32g474"))]
+pub mod flash_unit;
 mod output;
 mod patience;
 #[cfg(feature = "stm32f405")]

@@ -20,7 +20,8 @@ use cortex_m::peripheral::NVIC;
 use embedded_hal::digital::{ErrorType, OutputPin};
 use link::messages::Clock;
 
-use super::flash_page::{Flash, FlashPage, KEYS};
+use super::flash_page::FlashPage;
+use super::flash_unit::{Bits, FlashUnit};
 use super::output::{Output, ports};
 use super::patience::wait_until;
 use super::{Board, Started, Watchdog};
@@ -59,7 +60,7 @@ impl Board for Stm32F405 {
             enable: Output::new(device.GPIOB),
             light: LowLight(Output::new(device.GPIOC)),
             port: Usart::open(device.USART1, usart_clock),
-            page: FlashPage(SectorEight(device.FLASH)),
+            page: FlashPage(FlashUnit::new(device.FLASH, SECTOR_EIGHT)),
             watchdog: Watchdog::start(device.IWDG),
             watchdog_reset,
         }
@@ -122,44 +123,10 @@ impl OutputPin for LowLight {
     }
 }
 
-/// The sector of 128 KB at 512 KB.
-pub struct SectorEight(pac::FLASH);
-
-impl Flash for SectorEight {
-    const ADDRESS: usize = 0x0808_0000;
-    const TOGETHER: usize = 1;
-
-    fn unlock(&mut self) {
-        for key in KEYS {
-            // SAFETY: the key register takes every word.
-            self.0.keyr().write(|w| unsafe { w.bits(key) });
-        }
-        // SAFETY: ones clear the flags of errors.
-        self.0.sr().write(|w| unsafe { w.bits(0xf3) });
-    }
-
-    fn erase(&mut self) {
-        // SAFETY: sector erase (1), sector 8 (3), by words (8), start (16).
-        self.0.cr().write(|w| unsafe { w.bits(1 << 1 | 8 << 3 | 2 << 8 | 1 << 16) });
-    }
-
-    fn take_writes(&mut self, on: bool) {
-        // SAFETY: programming (0), by words (8).
-        self.0.cr().write(|w| unsafe { w.bits(u32::from(on) | 2 << 8) });
-    }
-
-    fn is_busy(&self) -> bool {
-        self.0.sr().read().bits() & 1 << 16 != 0
-    }
-
-    fn lock(&mut self) {
-        // SAFETY: the lock (31).
-        self.0.cr().write(|w| unsafe { w.bits(1 << 31) });
-        self.0.acr().modify(|_, w| w.dcen().clear_bit());
-        self.0.acr().modify(|_, w| w.dcrst().set_bit());
-        self.0.acr().modify(|_, w| w.dcrst().clear_bit().dcen().set_bit());
-    }
-}
+/// The sector of 128 KB at 512 KB, by words.
+pub type SectorEight = FlashUnit<0x0808_0000, 1>;
+/// Sector erase (1) of sector 8 (3), words (8).
+const SECTOR_EIGHT: Bits = Bits { errors: 0xf3, erase: 1 << 1 | 8 << 3, size: 2 << 8 };
 
 /// USART1.
 pub struct Usart {

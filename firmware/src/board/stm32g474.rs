@@ -16,7 +16,8 @@ use cortex_m::peripheral::NVIC;
 use link::messages::Clock;
 
 use super::fifo_uart::FifoUart;
-use super::flash_page::{Flash, FlashPage, KEYS};
+use super::flash_page::FlashPage;
+use super::flash_unit::{Bits, FlashUnit};
 use super::output::{Output, ports};
 use super::patience::wait_until;
 use super::{Board, Started, Watchdog};
@@ -56,7 +57,7 @@ impl Board for Stm32G474 {
             enable: Output::new(device.GPIOB),
             light: Output::new(device.GPIOA),
             port: FifoUart::open(device.USART2, usart_clock, BAUD_RATE),
-            page: FlashPage(LastPage(device.FLASH)),
+            page: FlashPage(FlashUnit::new(device.FLASH, LAST_PAGE)),
             watchdog: Watchdog::start(device.IWDG),
             watchdog_reset,
         }
@@ -67,44 +68,10 @@ impl Board for Stm32G474 {
     }
 }
 
-/// The last page of the second bank.
-pub struct LastPage(pac::FLASH);
-
-impl Flash for LastPage {
-    const ADDRESS: usize = 0x0807_f800;
-    const TOGETHER: usize = 2;
-
-    fn unlock(&mut self) {
-        for key in KEYS {
-            // SAFETY: the key register takes every word.
-            self.0.keyr().write(|w| unsafe { w.bits(key) });
-        }
-        // SAFETY: ones clear the flags of errors.
-        self.0.sr().write(|w| unsafe { w.bits(0xc3fb) });
-    }
-
-    fn erase(&mut self) {
-        // SAFETY: page erase (1), page 127 (3) of bank 2 (11), start (16).
-        self.0.cr().write(|w| unsafe { w.bits(1 << 1 | 127 << 3 | 1 << 11 | 1 << 16) });
-    }
-
-    fn take_writes(&mut self, on: bool) {
-        // SAFETY: programming (0).
-        self.0.cr().write(|w| unsafe { w.bits(on.into()) });
-    }
-
-    fn is_busy(&self) -> bool {
-        self.0.sr().read().bits() & 1 << 16 != 0
-    }
-
-    fn lock(&mut self) {
-        // SAFETY: the lock (31).
-        self.0.cr().write(|w| unsafe { w.bits(1 << 31) });
-        self.0.acr().modify(|_, w| w.dcen().clear_bit());
-        self.0.acr().modify(|_, w| w.dcrst().set_bit());
-        self.0.acr().modify(|_, w| w.dcrst().clear_bit().dcen().set_bit());
-    }
-}
+/// The last page of the second bank, by double words.
+pub type LastPage = FlashUnit<0x0807_f800, 2>;
+/// Page erase (1) of page 127 (3) of bank 2 (11).
+const LAST_PAGE: Bits = Bits { errors: 0xc3fb, erase: 1 << 1 | 127 << 3 | 1 << 11, size: 0 };
 
 /// 170 MHz by the PLL: from the crystal, else from the internal oscillator. Above 150 MHz the regulator must be in its
 /// boost mode, and the bus clock is halved while that and the PLL come in.

@@ -11,7 +11,7 @@ use firmware::budget::TickTimer;
 use firmware::control::{Control, Work};
 use firmware::conversation::{Conversation, LogEnd};
 use firmware::identity::{StartUp, hello};
-use firmware::page::{Page, keep};
+use firmware::page::{Learnt, Page, keep};
 use firmware::plant::Plant;
 use firmware::queues::Queues;
 use firmware::serial::{Line, Serial, Uart};
@@ -197,7 +197,7 @@ where
             self.serial.service();
             let busy = self.conversation.attend(&mut |_| Resources::default());
             if let Some(memory) = self.conversation.to_keep() {
-                self.conversation.kept(keep(&mut self.flash, &memory));
+                self.conversation.kept(keep(&mut self.flash, memory.memory()));
             }
             nothing_to_do = if busy { 0 } else { nothing_to_do + 1 };
         }

@@ -33,7 +33,7 @@ pub trait Work {
     /// Back to the start of a run; from what is remembered, if that is wished for.
     fn reset(&mut self, from_memory: bool);
     /// What has been learnt, to be remembered from now on; nothing in a role that learns nothing.
-    fn memory(&mut self) -> Option<<Self::Words as Words>::Learnt> {
+    fn memory(&mut self) -> Option<&<Self::Words as Words>::Learnt> {
         None
     }
     /// Remembers what was learnt before the board was switched on.
@@ -127,11 +127,7 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> Control<'a, E, W> {
             }
             Some(Order::Keep) => match self.state() {
                 State::Running => Event::Memory(Err(Kept::Running)),
-                // Idle has taken the memory before, if there was one.
-                _ => match self.work.memory().map(|memory| self.end.learnt.give(memory)) {
-                    Some(Ok(())) => Event::Memory(Ok(())),
-                    Some(Err(_)) | None => Event::Memory(Err(Kept::Nothing)),
-                },
+                _ => self.hand_out_memory(),
             },
             Some(Order::Upset(upset)) => {
                 let begins = matches!(self.state(), State::Running) && self.steps == 0;
@@ -148,6 +144,17 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> Control<'a, E, W> {
         self.show_state();
         // Room is certain: idle takes the answer to an order before it gives the next.
         let _ = self.end.events.give(event);
+    }
+
+    /// Kept out of line for its stack, too.
+    #[inline(never)]
+    fn hand_out_memory(&mut self) -> Event {
+        let Some(memory) = self.work.memory() else { return Event::Memory(Err(Kept::Nothing)) };
+        // Idle has taken the one before.
+        match self.end.learnt.give(memory.clone()) {
+            Ok(()) => Event::Memory(Ok(())),
+            Err(_) => Event::Memory(Err(Kept::Nothing)),
+        }
     }
 
     fn reset(&mut self, settings: RunSettings) -> Event {

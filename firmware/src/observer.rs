@@ -122,7 +122,7 @@ impl<P: ControllerPort> Work for Observing<P> {
         self.next = Some(exchange);
     }
 
-    fn memory(&mut self) -> Option<Memory> {
+    fn memory(&mut self) -> Option<&Memory> {
         self.at_hand.learnt_by(&self.port)
     }
 

@@ -9,7 +9,7 @@ use model_core::realtime::observer::{MEMORY_BYTES, Memory, MemoryError};
 use crate::port::ControllerPort;
 
 /// What a role learns, if it learns anything: room is taken only where it does.
-pub trait Learnt {
+pub trait Learnt: Clone {
     /// As it is kept.
     fn memory(&self) -> &Memory;
 }
@@ -65,28 +65,39 @@ pub fn judgement(judged: Option<Result<(), MemoryError>>) -> Remembered {
 }
 
 /// What a role keeps at hand of a page, for the runs that begin from it.
-#[derive(Debug, Clone, Default)]
-pub struct AtHand(Option<Memory>);
+#[derive(Debug, Clone)]
+pub struct AtHand {
+    memory: Memory,
+    /// It holds something.
+    good: bool,
+}
+
+impl Default for AtHand {
+    fn default() -> Self {
+        Self { memory: [0; MEMORY_BYTES], good: false }
+    }
+}
 
 impl AtHand {
     /// What a controller has learnt, at hand from now on.
-    pub fn learnt_by(&mut self, port: &impl ControllerPort) -> Option<Memory> {
-        self.0 = port.memory().or(self.0);
-        self.0
+    #[inline(never)]
+    pub fn learnt_by(&mut self, port: &impl ControllerPort) -> Option<&Memory> {
+        self.good |= port.memory(&mut self.memory);
+        self.good.then_some(&self.memory)
     }
 
     /// Takes a memory that the controller finds good.
     pub fn take(&mut self, memory: &Memory, port: &mut impl ControllerPort) -> Result<(), MemoryError> {
         port.recall(memory)?;
-        self.0 = Some(*memory);
+        *self = Self { memory: *memory, good: true };
         Ok(())
     }
 
     /// Has a controller that was reset go on from it.
     pub fn give(&self, port: &mut impl ControllerPort) {
-        if let Some(memory) = &self.0 {
+        if self.good {
             // It was found good when it was taken.
-            let _ = port.recall(memory);
+            let _ = port.recall(&self.memory);
         }
     }
 }

@@ -34,9 +34,9 @@ pub trait ControllerPort {
     /// Back to what was designed, as far as this side can do it.
     fn reset(&mut self);
 
-    /// What has been learnt, where that is at hand.
-    fn memory(&self) -> Option<Memory> {
-        None
+    /// Writes down what has been learnt; `false` where that is not at hand.
+    fn memory(&self, _memory: &mut Memory) -> bool {
+        false
     }
 
     /// Goes on from what was learnt before; refused where it is not at hand.

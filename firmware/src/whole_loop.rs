@@ -133,7 +133,7 @@ impl<P: ControllerPort, const N: usize> Work for WholeLoop<'_, P, N> {
         self.upsets.add(upset.into())
     }
 
-    fn memory(&mut self) -> Option<Memory> {
+    fn memory(&mut self) -> Option<&Memory> {
         self.at_hand.learnt_by(&self.port)
     }
 

@@ -20,8 +20,9 @@ impl ControllerPort for Direct<'_> {
         self.0.reset();
     }
 
-    fn memory(&self) -> Option<Memory> {
-        Some(self.0.save())
+    fn memory(&self, memory: &mut Memory) -> bool {
+        *memory = self.0.save();
+        true
     }
 
     fn recall(&mut self, memory: &Memory) -> Result<(), MemoryError> {

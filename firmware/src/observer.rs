@@ -122,8 +122,12 @@ impl<P: ControllerPort> Work for Observing<P> {
         self.next = Some(exchange);
     }
 
-    fn memory(&mut self) -> Option<&Memory> {
-        self.at_hand.learnt_by(&self.port)
+    fn learn(&mut self) -> bool {
+        self.at_hand.learn_from(&self.port)
+    }
+
+    fn learnt(&self) -> Option<&Memory> {
+        self.at_hand.get()
     }
 
     fn remember(&mut self, memory: &Memory) -> Result<(), MemoryError> {

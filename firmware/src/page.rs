@@ -79,10 +79,16 @@ impl Default for AtHand {
 }
 
 impl AtHand {
-    /// What a controller has learnt, at hand from now on.
+    /// Takes what a controller has learnt; `false` if it is not at hand.
     #[inline(never)]
-    pub fn learnt_by(&mut self, port: &impl ControllerPort) -> Option<&Memory> {
-        self.good |= port.memory(&mut self.memory);
+    pub fn learn_from(&mut self, port: &impl ControllerPort) -> bool {
+        let learnt = port.memory(&mut self.memory);
+        self.good |= learnt;
+        learnt
+    }
+
+    /// What there is.
+    pub fn get(&self) -> Option<&Memory> {
         self.good.then_some(&self.memory)
     }
 

@@ -133,8 +133,12 @@ impl<P: ControllerPort, const N: usize> Work for WholeLoop<'_, P, N> {
         self.upsets.add(upset.into())
     }
 
-    fn memory(&mut self) -> Option<&Memory> {
-        self.at_hand.learnt_by(&self.port)
+    fn learn(&mut self) -> bool {
+        self.at_hand.learn_from(&self.port)
+    }
+
+    fn learnt(&self) -> Option<&Memory> {
+        self.at_hand.get()
     }
 
     fn remember(&mut self, memory: &Memory) -> Result<(), MemoryError> {

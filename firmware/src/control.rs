@@ -7,8 +7,9 @@ use core::convert::Infallible;
 use core::sync::atomic::Ordering::{Acquire, Relaxed, Release};
 
 use embedded_hal::digital::OutputPin;
-use link::messages::{Fault, RunMode, RunSettings};
+use link::messages::{Fault, Kept, RunMode, RunSettings};
 use link::virtual_joint::WireUpset;
+use model_core::realtime::observer::{Memory, MemoryError};
 
 use crate::budget::{Monitor, TickTimer};
 use crate::queues::{COMMAND_CAPACITY, Event, Order, TickEnd};
@@ -17,7 +18,8 @@ use crate::schedule::{Schedule, Turn};
 use crate::words::Words;
 
 /// What a board is told before its first reset.
-const BEFORE_ANY_RUN: RunSettings = RunSettings { mode: RunMode::Lockstep, decimation: 1, command_timeout: 1 };
+const BEFORE_ANY_RUN: RunSettings =
+    RunSettings { mode: RunMode::Lockstep, decimation: 1, command_timeout: 1, from_memory: false };
 
 /// What a role does in its tick.
 pub trait Work {
@@ -28,8 +30,20 @@ pub trait Work {
 
     /// Whether its tables are what they were made to be.
     fn is_sound(&self) -> bool;
-    /// Back to the start of a run.
-    fn reset(&mut self);
+    /// Back to the start of a run; from what is remembered, if that is wished for.
+    fn reset(&mut self, from_memory: bool);
+    /// Remembers what has been learnt so far; `false` in a role that learns nothing.
+    fn learn(&mut self) -> bool {
+        false
+    }
+    /// What is remembered.
+    fn learnt(&self) -> Option<&<Self::Words as Words>::Learnt> {
+        None
+    }
+    /// Remembers what was learnt before the board was switched on.
+    fn remember(&mut self, _memory: &Memory) -> Result<(), MemoryError> {
+        Err(MemoryError::OtherJoint)
+    }
     /// Takes the command of the step to come.
     fn take(&mut self, command: <Self::Words as Words>::Command);
     /// Takes a fault for the run to come; `false` if the role has none, or no room for another.
@@ -48,6 +62,8 @@ pub trait Work {
 pub struct Control<'a, E, W: Work> {
     work: W,
     steps: u32,
+    /// A reset was granted, and the work has not heard of it yet.
+    is_fresh: bool,
     decimation: u16,
     until_sample: u16,
     schedule: Schedule,
@@ -68,6 +84,7 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> Control<'a, E, W> {
         let control = Self {
             work,
             steps: 0,
+            is_fresh: false,
             decimation: BEFORE_ANY_RUN.decimation,
             until_sample: BEFORE_ANY_RUN.decimation,
             schedule: Schedule::new(BEFORE_ANY_RUN),
@@ -101,25 +118,43 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> Control<'a, E, W> {
         }
     }
 
-    /// Takes one order: idle has at most one under way. Kept out of line, since its stack is not needed while stepping.
-    #[inline(never)]
+    /// Takes one order: idle has at most one under way. Its parts are kept out of line, since their stack is not needed while
+    /// stepping, nor by one another.
     fn obey(&mut self) {
-        let event = match self.end.orders.take() {
-            None => return,
-            Some(Order::Reset(settings)) => self.reset(settings),
-            Some(Order::Stop) => {
+        match self.end.orders.take() {
+            None => {}
+            Some(Order::Keep) if !matches!(self.state(), State::Running) => {
+                let there_is = self.work.learn();
+                self.hand_out_memory(there_is);
+            }
+            Some(order) => {
+                self.answer(order);
+                if let (Order::Reset(settings), true) = (order, self.is_fresh) {
+                    self.is_fresh = false;
+                    self.work.reset(settings.from_memory);
+                }
+            }
+        }
+    }
+
+    #[inline(never)]
+    fn answer(&mut self, order: Order) {
+        let event = match order {
+            Order::Reset(settings) => self.reset(settings),
+            Order::Stop => {
                 self.safe_state.stop();
                 Event::Stopped
             }
-            Some(Order::Trip(fault)) => {
+            Order::Trip(fault) => {
                 self.safe_state.trip(fault);
                 Event::Stopped
             }
-            Some(Order::Upset(upset)) => {
+            Order::Keep => Event::Memory(Err(Kept::Running)),
+            Order::Upset(upset) => {
                 let begins = matches!(self.state(), State::Running) && self.steps == 0;
                 Event::Upset { taken: begins && self.work.upset(upset) }
             }
-            Some(Order::Report { reset }) => {
+            Order::Report { reset } => {
                 let report = Event::Timing(self.monitor.clone());
                 if reset {
                     self.monitor = Monitor::new(self.period);
@@ -132,6 +167,14 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> Control<'a, E, W> {
         let _ = self.end.events.give(event);
     }
 
+    #[inline(never)]
+    fn hand_out_memory(&mut self, there_is: bool) {
+        let memory = self.work.learnt().filter(|_| there_is);
+        // Idle has taken the one before.
+        let given = memory.is_some_and(|memory| self.end.learnt.give(memory.clone()).is_ok());
+        let _ = self.end.events.give(Event::Memory(if given { Ok(()) } else { Err(Kept::Nothing) }));
+    }
+
     fn reset(&mut self, settings: RunSettings) -> Event {
         if settings.mode == RunMode::Realtime && !W::GOES_ON {
             return Event::Refused(Fault::BadSettings);
@@ -142,7 +185,7 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> Control<'a, E, W> {
         for _ in 0..COMMAND_CAPACITY {
             self.end.commands.take();
         }
-        self.work.reset();
+        self.is_fresh = true;
         self.steps = 0;
         self.decimation = settings.decimation.max(1);
         self.until_sample = self.decimation;

@@ -7,7 +7,9 @@ use core::sync::atomic::Ordering::{Acquire, Release};
 use heapless::Vec;
 use heapless::spsc::Consumer;
 use link::framing::{MAX_FRAME, Receiver, encode};
-use link::messages::{Accepted, Fault, FromBoard, Hello, LOG_BYTES, Log, RunMode, RunSettings, ToBoard};
+use link::messages::{
+    Accepted, Fault, FromBoard, Hello, Kept, LOG_BYTES, Log, Remembered, RunMode, RunSettings, ToBoard,
+};
 
 use crate::queues::{Event, IdleEnd, Order};
 use crate::serial::LineEnd;
@@ -63,6 +65,19 @@ impl<'a, W: Words> Conversation<'a, W> {
             lost_schedules: 0,
             cleared: LineCounts::default(),
         }
+    }
+
+    /// What is to be written to flash now, and said to be by [`Conversation::kept`]: nothing runs until then.
+    pub fn to_keep(&mut self) -> Option<W::Learnt> {
+        self.end.learnt.dequeue()
+    }
+
+    /// Says what became of it.
+    pub fn kept(&mut self, stored: bool) {
+        if stored {
+            self.hello.remembered = Remembered::Good;
+        }
+        self.say(&FromBoard::Kept(if stored { Kept::Stored } else { Kept::NotWritten }));
     }
 
     /// Does one thing of each kind if there is one; says whether there was any. `resources` is asked when a report is
@@ -126,6 +141,9 @@ impl<'a, W: Words> Conversation<'a, W> {
                 self.forget_run();
                 self.say(&FromBoard::Hello(self.hello.clone()));
             }
+            // Said once it is written.
+            Event::Memory(Ok(())) => {}
+            Event::Memory(Err(why)) => self.say(&FromBoard::Kept(why)),
             Event::Upset { taken } => self.say(&FromBoard::Upset { taken }),
             Event::Refused(fault) | Event::Tripped(fault) => self.say(&FromBoard::Fault(fault)),
             Event::Stopped => {
@@ -210,6 +228,7 @@ impl<'a, W: Words> Conversation<'a, W> {
                 self.order(Order::Report { reset });
             }
             ToBoard::Stop => self.order(Order::Stop),
+            ToBoard::Keep => self.order(Order::Keep),
             ToBoard::Upset(upset) => self.order(Order::Upset(upset)),
             commands => match W::timetable(commands) {
                 Some(timetable) => self.take(timetable),

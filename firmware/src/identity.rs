@@ -3,7 +3,7 @@
 
 use heapless::String;
 use link::PROTOCOL_VERSION;
-use link::messages::{Clock, Hello};
+use link::messages::{Clock, Hello, Remembered};
 
 use crate::queues::COMMAND_CAPACITY;
 use crate::tables::{JOINT_NAME, PLANETS, TABLES};
@@ -22,6 +22,8 @@ pub struct StartUp {
     pub last_panic: Option<String<96>>,
     /// The last reset came from the watchdog.
     pub watchdog_reset: bool,
+    /// What is kept of earlier runs.
+    pub remembered: Remembered,
 }
 
 /// The hello of a board in a role, with the digest of its controller's tables if it has any.
@@ -42,6 +44,7 @@ pub fn hello<W: Words>(start_up: StartUp, control_digest: Option<u64>) -> Hello 
         last_panic: start_up.last_panic,
         watchdog_reset: start_up.watchdog_reset,
         control_digest,
+        remembered: start_up.remembered,
     }
 }
 

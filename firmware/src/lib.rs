@@ -6,7 +6,7 @@
 //! they differ in on the line. `queues` is all that connects the tick to the rest, by `ends` that cannot panic.
 //! `conversation`, run in idle, answers the host with the help of `identity`, `batcher`, `telemetry` and `timing_report`;
 //! `serial` moves its bytes. `port` is the seam between a motor controller and observer with compensation, `encoder`
-//! where counts come from.
+//! where counts come from, `page` where what was learnt is kept.
 //! Everything so far is free of hardware and is tested on the host; `board`, `clock`, `logger`, `panic_message` and
 //! `stack` exist on a board only; `measuring` in the emulator only. Physics is left to `model-core`, the words on the
 //! line to `link`.
@@ -19,6 +19,7 @@ pub mod encoder;
 pub mod ends;
 pub mod identity;
 pub mod observer;
+pub mod page;
 pub mod plant;
 pub mod port;
 pub mod queues;

@@ -5,8 +5,10 @@ use link::controller::{Answered, EXCHANGES_PER_SCHEDULE, Exchange};
 use link::messages::{FromBoard, Role, Schedule, ToBoard};
 use model_core::digest;
 use model_core::realtime::controller::Answer;
+use model_core::realtime::observer::{Memory, MemoryError};
 
 use crate::control::Work;
+use crate::page::AtHand;
 use crate::port::ControllerPort;
 use crate::words::{Batch, Timed, Words};
 
@@ -19,6 +21,7 @@ impl Words for ObserverWords {
     type Timetable = Schedule<Exchange, EXCHANGES_PER_SCHEDULE>;
     type Sample = Answered;
     type Batch = AnswerBatch;
+    type Learnt = Memory;
 
     fn timetable(message: ToBoard) -> Option<Self::Timetable> {
         if let ToBoard::Exchanges(schedule) = message { Some(schedule) } else { None }
@@ -70,6 +73,8 @@ impl Batch for AnswerBatch {
 /// The controller at work.
 pub struct Observing<P> {
     port: P,
+    /// What runs may begin from.
+    at_hand: AtHand,
     /// Tables and their digest agree.
     sound: bool,
     next: Option<Exchange>,
@@ -82,7 +87,15 @@ pub struct Observing<P> {
 impl<P: ControllerPort> Observing<P> {
     /// In front of a controller; `sound` is whether its tables are what they were made to be.
     pub fn new(port: P, sound: bool) -> Self {
-        Self { port, sound, next: None, answer: Answer::default(), wants_estimates: false, digest: digest::START }
+        Self {
+            port,
+            at_hand: AtHand::default(),
+            sound,
+            next: None,
+            answer: Answer::default(),
+            wants_estimates: false,
+            digest: digest::START,
+        }
     }
 }
 
@@ -94,8 +107,11 @@ impl<P: ControllerPort> Work for Observing<P> {
         self.sound
     }
 
-    fn reset(&mut self) {
+    fn reset(&mut self, from_memory: bool) {
         self.port.reset();
+        if from_memory {
+            self.at_hand.give(&mut self.port);
+        }
         self.next = None;
         self.answer = Answer::default();
         self.wants_estimates = false;
@@ -104,6 +120,18 @@ impl<P: ControllerPort> Work for Observing<P> {
 
     fn take(&mut self, exchange: Exchange) {
         self.next = Some(exchange);
+    }
+
+    fn learn(&mut self) -> bool {
+        self.at_hand.learn_from(&self.port)
+    }
+
+    fn learnt(&self) -> Option<&Memory> {
+        self.at_hand.get()
+    }
+
+    fn remember(&mut self, memory: &Memory) -> Result<(), MemoryError> {
+        self.at_hand.take(memory, &mut self.port)
     }
 
     fn step(&mut self) {

@@ -1,6 +1,8 @@
 //! Role `plant`: the joint is simulated; torques in, motion out. When a step is due, and what becomes of its samples, is
 //! left to `control` and `telemetry`.
 
+use core::convert::Infallible;
+
 use link::messages::{Command, Role, SAMPLES_PER_BATCH, Schedule, ToBoard};
 use model_core::digest;
 use model_core::realtime::{Model, Outputs, Torques};
@@ -33,6 +35,7 @@ impl<const N: usize> Words for PlantWords<N> {
     type Timetable = Schedule;
     type Sample = RawSample<N>;
     type Batch = Batcher<PlantForm<N>, SAMPLES_PER_BATCH>;
+    type Learnt = Infallible;
 
     fn timetable(message: ToBoard) -> Option<Schedule> {
         if let ToBoard::Schedule(schedule) = message { Some(schedule) } else { None }
@@ -74,7 +77,7 @@ impl<const N: usize> Work for Plant<'_, N> {
         self.tables.digest_is_good()
     }
 
-    fn reset(&mut self) {
+    fn reset(&mut self, _: bool) {
         self.model.reset();
         self.torques = NO_TORQUE;
         self.digest = digest::START;

@@ -6,7 +6,7 @@
 //! |---|---|---|
 //! | [`Direct`] | to these samples | the controller's own |
 //! | [`SharedMemory`](shared_memory) | to the samples before | two moves through a queue |
-//! | [`SpiPort`] | to the samples before | [`spi::FRAME_BYTES`] bytes at the bus's rate: 67 us at 21 MHz |
+//! | [`SpiPort`] | to the samples before | [`spi::FRAME_BYTES`] bytes at the bus's rate: 67 us at 21 MHz; [`spi_slave`] at its other end |
 //! | [`SerialPort`] | to the last samples that were answered | bytes into and out of queues; [`serial::exchanges_per_second`] |
 //!
 //! A port that answers one tick late adds that tick to the loop's delay: `control_delay_periods` of the joint file.
@@ -15,13 +15,14 @@ mod direct;
 pub mod serial;
 pub mod shared_memory;
 pub mod spi;
+pub mod spi_slave;
 
 use core::fmt;
 
 pub use direct::Direct;
 use model_core::realtime::compensation::Command;
 use model_core::realtime::controller::Answer;
-use model_core::realtime::observer::Samples;
+use model_core::realtime::observer::{Memory, MemoryError, Samples};
 pub use serial::SerialPort;
 pub use spi::{SpiGuest, SpiPort};
 
@@ -32,6 +33,16 @@ pub trait ControllerPort {
 
     /// Back to what was designed, as far as this side can do it.
     fn reset(&mut self);
+
+    /// Writes down what has been learnt; `false` where that is not at hand.
+    fn memory(&self, _memory: &mut Memory) -> bool {
+        false
+    }
+
+    /// Goes on from what was learnt before; refused where it is not at hand.
+    fn recall(&mut self, _memory: &Memory) -> Result<(), MemoryError> {
+        Err(MemoryError::OtherJoint)
+    }
 }
 
 /// Why there is no answer in this tick: the motor controller goes on without compensation.

@@ -4,7 +4,7 @@
 use core::sync::atomic::{AtomicBool, AtomicU32};
 
 use heapless::spsc::{Consumer, Producer, Queue};
-use link::messages::{Fault, RunSettings};
+use link::messages::{Fault, Kept, RunSettings};
 use link::virtual_joint::WireUpset;
 
 use crate::budget::Monitor;
@@ -18,6 +18,9 @@ const SAMPLES: usize = 16;
 /// Places for orders and for events: at most one order is under way at a time.
 const NOTES: usize = 4;
 
+/// Places for what was learnt: one, and one that is lost.
+const LEARNT: usize = 2;
+
 /// Most commands that can wait for their tick.
 pub const COMMAND_CAPACITY: u16 = COMMANDS as u16 - 1;
 
@@ -30,6 +33,8 @@ pub enum Order {
     Stop,
     /// Safe state for a reason that idle has found; answered by [`Event::Stopped`].
     Trip(Fault),
+    /// What has been learnt; answered by [`Event::Memory`].
+    Keep,
     /// A fault between joint and controller; answered by [`Event::Upset`].
     Upset(WireUpset),
     /// A copy of the timing monitor as [`Event::Timing`].
@@ -51,6 +56,8 @@ pub enum Event {
     Refused(Fault),
     /// The tick itself has found a reason for the safe state: the only event that is no answer to an order.
     Tripped(Fault),
+    /// What has been learnt is there to be taken, or why there is nothing.
+    Memory(Result<(), Kept>),
     /// Whether a fault between joint and controller was taken.
     Upset {
         /// It was.
@@ -81,6 +88,7 @@ pub struct Queues<W: Words> {
     orders: Queue<Order, NOTES>,
     samples: Queue<W::Sample, SAMPLES>,
     events: Queue<Event, NOTES>,
+    learnt: Queue<W::Learnt, LEARNT>,
     progress: Progress,
 }
 
@@ -94,6 +102,8 @@ pub struct TickEnd<'a, W: Words> {
     pub samples: Giver<'a, W::Sample, SAMPLES>,
     /// What has happened.
     pub events: Giver<'a, Event, NOTES>,
+    /// What is to be kept.
+    pub learnt: Giver<'a, W::Learnt, LEARNT>,
     /// Shared counters.
     pub progress: &'a Progress,
 }
@@ -108,6 +118,8 @@ pub struct IdleEnd<'a, W: Words> {
     pub samples: Consumer<'a, W::Sample>,
     /// What has happened.
     pub events: Consumer<'a, Event>,
+    /// What is to be kept.
+    pub learnt: Consumer<'a, W::Learnt>,
     /// Shared counters.
     pub progress: &'a Progress,
 }
@@ -120,6 +132,7 @@ impl<W: Words> Queues<W> {
             orders: Queue::new(),
             samples: Queue::new(),
             events: Queue::new(),
+            learnt: Queue::new(),
             progress: Progress {
                 horizon: AtomicU32::new(0),
                 steps: AtomicU32::new(0),
@@ -136,12 +149,20 @@ impl<W: Words> Queues<W> {
         let (orders_in, orders) = self.orders.split();
         let (samples, samples_out) = self.samples.split();
         let (events, events_out) = self.events.split();
+        let (learnt, learnt_out) = self.learnt.split();
         let progress = &self.progress;
         let (commands, orders) = (Taker::new(commands), Taker::new(orders));
-        let (samples, events) = (Giver::new(samples), Giver::new(events));
+        let (samples, events, learnt) = (Giver::new(samples), Giver::new(events), Giver::new(learnt));
         (
-            TickEnd { commands, orders, samples, events, progress },
-            IdleEnd { commands: commands_in, orders: orders_in, samples: samples_out, events: events_out, progress },
+            TickEnd { commands, orders, samples, events, learnt, progress },
+            IdleEnd {
+                commands: commands_in,
+                orders: orders_in,
+                samples: samples_out,
+                events: events_out,
+                learnt: learnt_out,
+                progress,
+            },
         )
     }
 }

@@ -5,9 +5,10 @@
 mod app {
     use firmware::board::{Board, Started, ThisBoard, Watchdog};
     use firmware::clock::{self, IdleMeter, PERIOD};
-    use firmware::control::Control;
+    use firmware::control::{Control, Work};
     use firmware::conversation::{Conversation, LogEnd};
     use firmware::identity::{self, StartUp};
+    use firmware::page::{self, Learnt};
     use firmware::logger::{self, LogQueue};
     use firmware::queues::{Progress, Queues};
     use firmware::serial::{Line, Serial};
@@ -15,6 +16,7 @@ mod app {
     use firmware::tables::TABLES;
     use firmware::timing_report::Resources;
     use firmware::{panic_message, stack};
+    use link::messages::Remembered;
 
     use crate::role::{DIGEST, RoleWords, RoleWork, work};
 
@@ -31,27 +33,45 @@ mod app {
         progress: &'static Progress,
         light: StatusLight<<ThisBoard as Board>::Light>,
         watchdog: Watchdog,
+        page: <ThisBoard as Board>::Page,
     }
 
     #[init(local = [queues: Queues<RoleWords> = Queues::new(), line: Line = Line::new(), log: LogQueue = LogQueue::new()])]
     fn init(cx: init::Context) -> (Shared, Local) {
         let last_panic = panic_message::take();
         let mut core = cx.core;
-        let Started { clock, enable, light, port, watchdog, watchdog_reset } = ThisBoard::start(cx.device, &mut core);
+        let started = ThisBoard::start(cx.device, &mut core);
+        let Started { clock, enable, light, port, page, watchdog, watchdog_reset } = started;
         let (tick_end, idle_end) = cx.local.queues.split();
         let progress = idle_end.progress;
         let (serial, line_end) = cx.local.line.split(port, ThisBoard::wake_serial);
         let log_end = LogEnd { bytes: logger::start(cx.local.log), lost: logger::lost_bytes };
 
         let board = ThisBoard::NAME;
-        let start_up = StartUp { board, timer_rate: ThisBoard::CORE_RATE, clock, last_panic, watchdog_reset };
+        let mut work = work();
+        let remembered = remember(&mut work, &page);
+        let timer_rate = ThisBoard::CORE_RATE;
+        let start_up = StartUp { board, timer_rate, clock, last_panic, watchdog_reset, remembered };
         let hello = identity::hello::<RoleWords>(start_up, DIGEST);
         defmt::info!("{=str} on {=str}, {=u32} Hz", hello.joint.as_str(), board, TABLES.tick_rate);
 
-        let control = Control::new(work(), enable, PERIOD, tick_end);
+        let control = Control::new(work, enable, PERIOD, tick_end);
         let conversation = Conversation::new(hello, PERIOD, idle_end, line_end, log_end);
         clock::start(&mut core.SYST);
-        (Shared { serial }, Local { control, conversation, progress, light: StatusLight::new(light), watchdog })
+        let light = StatusLight::new(light);
+        (Shared { serial }, Local { control, conversation, progress, light, watchdog, page })
+    }
+
+    /// Looks for what was learnt before. Its stack is given back.
+    #[inline(never)]
+    fn remember(work: &mut RoleWork, page: &<ThisBoard as Board>::Page) -> Remembered {
+        let judged = page::recall(page).map(|memory| work.remember(&memory));
+        match judged {
+            Some(Err(error)) => defmt::warn!("what was kept is not used: {}", defmt::Display2Format(&error)),
+            Some(Ok(())) => defmt::info!("what was learnt in earlier runs is at hand"),
+            None => {}
+        }
+        page::judgement(judged)
     }
 
     /// The role's work, above everything else.
@@ -82,10 +102,10 @@ mod app {
     }
 
     /// The talk with the host, the light, and the watchdog, which is fed only while the ticks go on.
-    #[idle(local = [conversation, progress, light, watchdog])]
+    #[idle(local = [conversation, progress, light, watchdog, page])]
     fn idle(cx: idle::Context) -> ! {
         use core::sync::atomic::Ordering::Relaxed;
-        let idle::LocalResources { conversation, progress, light, watchdog, .. } = cx.local;
+        let idle::LocalResources { conversation, progress, light, watchdog, page, .. } = cx.local;
         let mut meter = IdleMeter::start();
         let mut last_beat = progress.beats.load(Relaxed);
         loop {
@@ -94,6 +114,9 @@ mod app {
                 static_ram: stack::static_ram(),
                 stack_used: stack::deepest(),
             });
+            if let Some(memory) = conversation.to_keep() {
+                conversation.kept(watchdog.while_writing(|| page::keep(page, memory.memory())));
+            }
             light.show(Pattern::of(progress), clock::milliseconds());
             let beat = progress.beats.load(Relaxed);
             if beat != last_beat {

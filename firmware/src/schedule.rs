@@ -82,7 +82,7 @@ mod tests {
     const TIMEOUT: u32 = 3;
 
     fn schedule(mode: RunMode) -> Schedule {
-        Schedule::new(RunSettings { mode, decimation: 1, command_timeout: TIMEOUT })
+        Schedule::new(RunSettings { mode, decimation: 1, command_timeout: TIMEOUT, from_memory: false })
     }
 
     /// Drive torque of a step with a new command.

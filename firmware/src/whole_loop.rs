@@ -7,6 +7,7 @@ use link::virtual_joint::{KNOTS_PER_SCHEDULE, Knot, LOOP_SAMPLES_PER_BATCH, Loop
 use model_core::digest;
 use model_core::realtime::controller::Answer;
 use model_core::realtime::course::Demand;
+use model_core::realtime::observer::{Memory, MemoryError};
 use model_core::realtime::upset::Upsets;
 use model_core::realtime::virtual_joint::VirtualJoint;
 use model_core::tables::Tables;
@@ -14,6 +15,7 @@ use model_core::tables::virtual_joint::SurroundingsTable;
 
 use crate::batcher::{Batcher, WireForm};
 use crate::control::Work;
+use crate::page::AtHand;
 use crate::port::ControllerPort;
 use crate::words::{Timed, Words};
 
@@ -29,6 +31,7 @@ impl Words for LoopWords {
     type Timetable = Schedule<Knot, KNOTS_PER_SCHEDULE>;
     type Sample = LoopSample;
     type Batch = Batcher<LoopForm, LOOP_SAMPLES_PER_BATCH>;
+    type Learnt = Memory;
 
     fn timetable(message: ToBoard) -> Option<Self::Timetable> {
         if let ToBoard::Course(schedule) = message { Some(schedule) } else { None }
@@ -69,6 +72,8 @@ pub struct WholeLoop<'t, P, const N: usize> {
     /// What goes wrong between joint and port.
     upsets: Upsets<f32>,
     port: P,
+    /// What runs may begin from.
+    at_hand: AtHand,
     demand: Demand<f32>,
     load_torque: f32,
     /// Periods since the demand began.
@@ -86,6 +91,7 @@ impl<'t, P: ControllerPort, const N: usize> WholeLoop<'t, P, N> {
             joint: VirtualJoint::new(tables, surroundings),
             upsets: Upsets::default(),
             port,
+            at_hand: AtHand::default(),
             demand: Demand::HOLD,
             load_torque: 0.0,
             elapsed: 0,
@@ -103,10 +109,13 @@ impl<P: ControllerPort, const N: usize> Work for WholeLoop<'_, P, N> {
         self.tables.digest_is_good()
     }
 
-    fn reset(&mut self) {
+    fn reset(&mut self, from_memory: bool) {
         self.joint.reset();
         self.upsets = Upsets::default();
         self.port.reset();
+        if from_memory {
+            self.at_hand.give(&mut self.port);
+        }
         self.demand = Demand::HOLD;
         self.load_torque = 0.0;
         self.elapsed = 0;
@@ -122,6 +131,18 @@ impl<P: ControllerPort, const N: usize> Work for WholeLoop<'_, P, N> {
 
     fn upset(&mut self, upset: WireUpset) -> bool {
         self.upsets.add(upset.into())
+    }
+
+    fn learn(&mut self) -> bool {
+        self.at_hand.learn_from(&self.port)
+    }
+
+    fn learnt(&self) -> Option<&Memory> {
+        self.at_hand.get()
+    }
+
+    fn remember(&mut self, memory: &Memory) -> Result<(), MemoryError> {
+        self.at_hand.take(memory, &mut self.port)
     }
 
     fn step(&mut self) {

@@ -3,6 +3,8 @@
 
 use link::messages::{FromBoard, Role, Schedule, ToBoard};
 
+use crate::page::Learnt;
+
 /// The words of a role.
 pub trait Words {
     /// Which role.
@@ -15,6 +17,8 @@ pub trait Words {
     type Sample;
     /// Samples on their way to the line.
     type Batch: Batch<Sample = Self::Sample>;
+    /// What it learns, to be kept.
+    type Learnt: Learnt;
 
     /// Commands in a message, if it is one for this role.
     fn timetable(message: ToBoard) -> Option<Self::Timetable>;

@@ -8,10 +8,11 @@ use std::rc::Rc;
 
 use embedded_hal::spi::{ErrorType, Operation, SpiDevice};
 use firmware::port::shared_memory::SharedMemory;
+use firmware::port::spi_slave::{Broken, SlaveBus, SpiSlave, Transfers};
 use firmware::port::{ControllerPort, Direct, PortError, SerialPort, SpiGuest, SpiPort, serial, spi};
 use firmware::serial::{Line, Uart};
 use link::controller::{Answered, Exchange};
-use link::framing::{Receiver, encode, sealed};
+use link::framing::{Receiver, encode, sealed, unsealed};
 use link::messages::{Accepted, FromBoard, Schedule, ToBoard};
 use model_core::realtime::compensation::{Command, Motion, Position};
 use model_core::realtime::controller::{Answer, Controller};
@@ -101,7 +102,7 @@ impl SpiDevice for Bus {
             Some((at, false)) => bytes[at] ^= 4,
             None => {}
         }
-        self.next = self.guest.answer(&frame);
+        self.next = self.guest.answer(&frame).unwrap_or([0; spi::FRAME_BYTES]);
         Ok(())
     }
 }
@@ -132,6 +133,50 @@ fn a_byte_changed_on_spi_costs_one_answer_and_is_never_taken_for_one() {
                 assert_eq!(answer.is_err(), number == bad, "tick {number}, byte {at}");
             }
         }
+    }
+}
+
+/// A slave's hardware between transfers: what came, or why it did not, and what the next one brings.
+struct Wires(Rc<RefCell<(Result<spi::Frame, Broken>, spi::Frame)>>, spi::Frame);
+
+impl SlaveBus for Wires {
+    fn finish(&mut self) -> Result<&spi::Frame, Broken> {
+        self.1 = self.0.borrow().0?;
+        Ok(&self.1)
+    }
+
+    fn arm(&mut self, next: &spi::Frame) {
+        self.0.borrow_mut().1 = *next;
+    }
+}
+
+#[test]
+fn a_slave_recovers_from_short_overrun_and_damaged_transfers_with_the_next_good_one() {
+    let wires = Rc::new(RefCell::new((Err(Broken::Overrun), [9; spi::FRAME_BYTES])));
+    let mut slave = SpiSlave::new(Wires(wires.clone(), [0; spi::FRAME_BYTES]), controller());
+    assert_eq!(wires.borrow().1, [0; spi::FRAME_BYTES], "there is nothing to say yet");
+    let (mut own, mut said) = (controller(), Vec::new());
+    for number in 0..20 {
+        let (samples, command) = tick(number);
+        let mut frame = [0; spi::FRAME_BYTES];
+        sealed(&Exchange::new(number, &samples, &command), &mut frame).unwrap();
+        let broken = match number {
+            5 => Some(Broken::Short(20)),
+            6 => Some(Broken::Overrun),
+            _ => None,
+        };
+        frame[40] ^= u8::from(number == 9);
+        let answered: Option<Answered> = unsealed(&wires.borrow().1);
+        said.push(answered.map(|answered| (answered.tick, answered.answer().unwrap())));
+        wires.borrow_mut().0 = broken.map_or(Ok(frame), Err);
+        slave.serve();
+    }
+    assert_eq!(slave.transfers(), Transfers { answered: 17, damaged: 1, short: 1, overrun: 1 });
+    assert_eq!(said[0], None);
+    for (number, said) in (0..19).zip(&said[1..]) {
+        let (samples, command) = tick(number);
+        let expected = (!matches!(number, 5 | 6 | 9)).then(|| (number + 1, own.exchange(&samples, &command).unwrap()));
+        assert_eq!(*said, expected, "tick {number}");
     }
 }
 

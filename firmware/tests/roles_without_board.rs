@@ -118,7 +118,7 @@ fn an_observer_whose_controller_falls_silent_goes_to_the_safe_state() {
 #[test]
 fn an_observer_does_not_run_without_samples() {
     let mut bench = observer();
-    let settings = RunSettings { mode: RunMode::Realtime, decimation: 1, command_timeout: 100 };
+    let settings = RunSettings { mode: RunMode::Realtime, decimation: 1, command_timeout: 100, from_memory: false };
     bench.send(&ToBoard::Reset(settings));
     bench.run(3);
     assert_eq!(faults(&bench.said()), [Fault::BadSettings]);

@@ -195,7 +195,8 @@ fn a_fault_lasts_until_a_reset() {
 fn settings_that_cannot_be_run_with_are_refused() {
     for (decimation, command_timeout) in [(0, 1), (1, 0)] {
         let mut bench = Bench::new();
-        let settings = link::messages::RunSettings { mode: RunMode::Realtime, decimation, command_timeout };
+        let settings =
+            link::messages::RunSettings { mode: RunMode::Realtime, decimation, command_timeout, from_memory: false };
         bench.send(&ToBoard::Reset(settings));
         bench.run(3);
         assert_eq!(faults(&bench.said()), [Fault::BadSettings]);
@@ -225,6 +226,7 @@ fn tables_that_do_not_match_their_digest_are_never_run() {
         mode: RunMode::Lockstep,
         decimation: 1,
         command_timeout: 1,
+        from_memory: false,
     }));
     bench.run(3);
     assert_eq!(faults(&bench.said()), [Fault::BadDigest]);

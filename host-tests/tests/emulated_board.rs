@@ -90,7 +90,8 @@ fn schedule(sequence: u16) -> ToBoard {
 
 /// The whole run: samples in order.
 fn run(line: &mut Line) -> Vec<Sample> {
-    let settings = RunSettings { mode: RunMode::Lockstep, decimation: HOLD as u16, command_timeout: 1 };
+    let settings =
+        RunSettings { mode: RunMode::Lockstep, decimation: HOLD as u16, command_timeout: 1, from_memory: false };
     line.ask(&ToBoard::Reset(settings), hello);
     let (mut samples, mut next) = (Vec::new(), 0);
     let start = Instant::now();

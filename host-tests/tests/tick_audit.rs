@@ -3,7 +3,8 @@
 
 use joint::proof::tick;
 use joint::target::board::Board;
-use joint::target::image::{build_image, build_measuring, preset_file};
+use joint::target::image::{build_image, preset_file};
+use joint::target::measuring::build_measuring;
 use joint::target::toolchain::Toolchain;
 use link::messages::Role;
 

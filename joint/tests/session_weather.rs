@@ -72,7 +72,7 @@ fn run_with(
     let line = Socket::new(ours, "the fake board").expect("options");
     let mut session = Session::new(Box::new(line), Box::new(surroundings));
     let start = Instant::now();
-    let settings = RunSettings { mode, decimation: 50, command_timeout: TICK_RATE };
+    let settings = RunSettings { mode, decimation: 50, command_timeout: TICK_RATE, from_memory: false };
     let outcome = session
         .connect(&expected(), PATIENCE)
         .and_then(|_| session.reset(settings))

@@ -42,6 +42,8 @@ pub enum ToBoard {
     Exchanges(Schedule<Exchange, EXCHANGES_PER_SCHEDULE>),
     /// Motion to come, for the role that runs the whole loop.
     Course(Schedule<Knot, KNOTS_PER_SCHEDULE>),
+    /// Keep what the controller has learnt, in flash: between runs only. Answered by [`FromBoard::Kept`].
+    Keep,
     /// A fault between the virtual joint and its controller, for the same role, between a reset and the first motion.
     /// Answered by [`FromBoard::Upset`].
     Upset(WireUpset),
@@ -56,6 +58,9 @@ pub struct RunSettings {
     pub decimation: u16,
     /// Safe state after so many ticks without a schedule (realtime only); 0 is refused.
     pub command_timeout: u32,
+    /// The controller goes on from what the board keeps of earlier runs, if it keeps anything good; else it begins as it was
+    /// designed.
+    pub from_memory: bool,
 }
 
 /// Who waits for whom.
@@ -109,6 +114,8 @@ pub enum FromBoard {
     Answer(Answered),
     /// What joint and controller did.
     Loop(LoopBatch),
+    /// What became of what was to be kept.
+    Kept(Kept),
     /// Whether a fault was taken: there is room for some, before the first period only, in one role only.
     Upset {
         /// It was.
@@ -149,6 +156,40 @@ pub struct Hello {
     pub watchdog_reset: bool,
     /// Digest over the tables of observer, compensation and surroundings, for the roles that have them.
     pub control_digest: Option<u64>,
+    /// What it keeps of earlier runs.
+    pub remembered: Remembered,
+}
+
+/// What a board found where it keeps what its controller has learnt.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Remembered {
+    /// Nothing: its role learns nothing, or nothing was kept yet.
+    Nothing,
+    /// What can be gone on from.
+    Good,
+    /// Something that was never a memory.
+    NotAMemory,
+    /// A memory of another version.
+    WrongVersion,
+    /// A memory of which some was lost.
+    Damaged,
+    /// A memory of another joint or of other encoders.
+    OtherJoint,
+    /// A memory with a number that is none.
+    NotFinite,
+}
+
+/// What became of what was to be kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Kept {
+    /// It is in flash, and reads as it was written.
+    Stored,
+    /// The role learns nothing.
+    Nothing,
+    /// A run goes on: stop it first, since writing flash may hold the board up for a second.
+    Running,
+    /// It does not read as it was written: there is no such flash, or it is worn.
+    NotWritten,
 }
 
 /// What an image is for.

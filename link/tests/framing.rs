@@ -25,7 +25,7 @@ fn schedule() -> impl Strategy<Value = ToBoard> {
 fn message() -> impl Strategy<Value = ToBoard> {
     let settings = (any::<bool>(), any::<u16>(), any::<u32>()).prop_map(|(lockstep, decimation, command_timeout)| {
         let mode = if lockstep { RunMode::Lockstep } else { RunMode::Realtime };
-        ToBoard::Reset(RunSettings { mode, decimation, command_timeout })
+        ToBoard::Reset(RunSettings { mode, decimation, command_timeout, from_memory: false })
     });
     prop_oneof![
         any::<u16>().prop_map(|protocol| ToBoard::Hello { protocol }),

@@ -39,6 +39,7 @@ fn the_longest_hello_arrives() {
         last_panic: Some(text()),
         watchdog_reset: true,
         control_digest: Some(u64::MAX),
+        remembered: link::messages::Remembered::NotFinite,
     }));
 }
 

@@ -1,7 +1,7 @@
 //! The fixed step, in f32 on a board: `model` is the door; `flow` takes ticks in which contacts hold, `substep` and
 //! `crossing` those in which they may change; `pressed` and `light` do the same for planets that ring several times in a
 //! tick; `contact`, `excitation` and `phase` are what all stand on; `unfrozen` is the path of the tanh dead zone and
-//! what people use today, `paper` the paper's. `observer` and `compensation` run beside a motor controller instead.
+//! what people use today, `paper` the paper's. `virtual_joint` puts a motor around them, `upset` faults. `observer` and `compensation` run beside a motor controller instead.
 
 #![allow(clippy::needless_range_loop, reason = "one index walks several tables of the same mesh")]
 

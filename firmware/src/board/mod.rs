@@ -6,6 +6,7 @@ use core::convert::Infallible;
 use embedded_hal::digital::OutputPin;
 use link::messages::Clock;
 
+use crate::page::Page;
 use crate::serial::Uart;
 
 #[cfg(not(any(feature = "stm32f405", feature = "stm32g474", feature = "stm32h743")))]
@@ -17,8 +18,13 @@ compile_error!("choose a board: one of the features stm32f405, stm32g474, stm32h
 ))]
 compile_error!("one board at a time: build with --no-default-features --features <board>");
 
+pub mod flash_page;
+#[cfg(any(feature = "stm32f405", feature = "stm32g474"))]
+pub mod flash_unit;
 mod output;
 mod patience;
+#[cfg(feature = "stm32f405")]
+pub mod spi_slave;
 mod watchdog;
 
 pub use output::Output;
@@ -54,6 +60,8 @@ pub trait Board {
     type Light: OutputPin<Error = Infallible>;
     /// The line to the host.
     type Port: Uart;
+    /// Where what was learnt is kept.
+    type Page: Page;
 
     /// Sets up clock, pins, serial line and watchdog. Every wait is bounded.
     fn start(device: pac::Peripherals, core: &mut cortex_m::Peripherals) -> Started<Self>;
@@ -72,6 +80,8 @@ pub struct Started<B: Board + ?Sized> {
     pub light: B::Light,
     /// The line to the host, open.
     pub port: B::Port,
+    /// Where what was learnt is kept.
+    pub page: B::Page,
     /// Running.
     pub watchdog: Watchdog,
     /// The last reset came from the watchdog.

@@ -6,6 +6,9 @@
 //! | motor enable | PB0 | high: on |
 //! | status light | PC12 | the light of Olimex STM32-H405, which is on when low |
 //!
+//! What the observer has learnt is kept in the first sector behind what an image may take, the ninth; while it is erased the
+//! core stands still for a second or two.
+//!
 //! This USART has room for one byte only, and the tick may hold its interrupt off for most of a period (50 us): at
 //! 230400 baud a byte takes 43 us. The emulated board heeds no baud rate. Nothing here has been run on silicon yet.
 
@@ -17,6 +20,8 @@ use cortex_m::peripheral::NVIC;
 use embedded_hal::digital::{ErrorType, OutputPin};
 use link::messages::Clock;
 
+use super::flash_page::FlashPage;
+use super::flash_unit::{Bits, FlashUnit};
 use super::output::{Output, ports};
 use super::patience::wait_until;
 use super::{Board, Started, Watchdog};
@@ -37,6 +42,7 @@ impl Board for Stm32F405 {
     type Enable = Output<pac::GPIOB, 0>;
     type Light = LowLight;
     type Port = Usart;
+    type Page = FlashPage<SectorEight>;
 
     fn start(device: pac::Peripherals, _core: &mut cortex_m::Peripherals) -> Started<Self> {
         let clock = start_clock(&device.RCC, &device.FLASH);
@@ -54,6 +60,7 @@ impl Board for Stm32F405 {
             enable: Output::new(device.GPIOB),
             light: LowLight(Output::new(device.GPIOC)),
             port: Usart::open(device.USART1, usart_clock),
+            page: FlashPage(FlashUnit::new(device.FLASH, SECTOR_EIGHT)),
             watchdog: Watchdog::start(device.IWDG),
             watchdog_reset,
         }
@@ -115,6 +122,11 @@ impl OutputPin for LowLight {
         self.0.set_low()
     }
 }
+
+/// The sector of 128 KB at 512 KB, by words.
+pub type SectorEight = FlashUnit<0x0808_0000, 1>;
+/// Sector erase (1) of sector 8 (3), words (8).
+const SECTOR_EIGHT: Bits = Bits { errors: 0xf3, erase: 1 << 1 | 8 << 3, size: 2 << 8 };
 
 /// USART1.
 pub struct Usart {

@@ -6,6 +6,8 @@
 //! | motor enable | PB0 | high: on |
 //! | status light | PA5 | the board's green light, on when high |
 //!
+//! What the observer has learnt is kept in the last page of 2 KB, in its second bank.
+//!
 //! The image is built and linted; it has been run neither on silicon nor in an emulator.
 
 pub use stm32g4::stm32g474 as pac;
@@ -14,6 +16,8 @@ use cortex_m::peripheral::NVIC;
 use link::messages::Clock;
 
 use super::fifo_uart::FifoUart;
+use super::flash_page::FlashPage;
+use super::flash_unit::{Bits, FlashUnit};
 use super::output::{Output, ports};
 use super::patience::wait_until;
 use super::{Board, Started, Watchdog};
@@ -36,6 +40,7 @@ impl Board for Stm32G474 {
     type Enable = Output<pac::GPIOB, 0>;
     type Light = Output<pac::GPIOA, 5>;
     type Port = FifoUart;
+    type Page = FlashPage<LastPage>;
 
     fn start(device: pac::Peripherals, _core: &mut cortex_m::Peripherals) -> Started<Self> {
         let clock = start_clock(&device.RCC, &device.PWR, &device.FLASH);
@@ -52,6 +57,7 @@ impl Board for Stm32G474 {
             enable: Output::new(device.GPIOB),
             light: Output::new(device.GPIOA),
             port: FifoUart::open(device.USART2, usart_clock, BAUD_RATE),
+            page: FlashPage(FlashUnit::new(device.FLASH, LAST_PAGE)),
             watchdog: Watchdog::start(device.IWDG),
             watchdog_reset,
         }
@@ -61,6 +67,11 @@ impl Board for Stm32G474 {
         NVIC::pend(pac::Interrupt::USART2);
     }
 }
+
+/// The last page of the second bank, by double words.
+pub type LastPage = FlashUnit<0x0807_f800, 2>;
+/// Page erase (1) of page 127 (3) of bank 2 (11).
+const LAST_PAGE: Bits = Bits { errors: 0xc3fb, erase: 1 << 1 | 127 << 3 | 1 << 11, size: 0 };
 
 /// 170 MHz by the PLL: from the crystal, else from the internal oscillator. Above 150 MHz the regulator must be in its
 /// boost mode, and the bus clock is halved while that and the PLL come in.

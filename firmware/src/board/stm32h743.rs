@@ -6,6 +6,8 @@
 //! | motor enable | PC8 | high: on |
 //! | status light | PB0 | the board's green light, on when high |
 //!
+//! What the observer has learnt is kept in the first sector of the second bank.
+//!
 //! The image is built and linted; it has been run neither on silicon nor in an emulator.
 
 pub use stm32h7::stm32h743 as pac;
@@ -14,6 +16,7 @@ use cortex_m::peripheral::NVIC;
 use link::messages::Clock;
 
 use super::fifo_uart::FifoUart;
+use super::flash_page::{Flash, FlashPage, KEYS};
 use super::output::{Output, ports};
 use super::patience::wait_until;
 use super::{Board, Started, Watchdog};
@@ -36,6 +39,7 @@ impl Board for Stm32H743 {
     type Enable = Output<pac::GPIOC, 8>;
     type Light = Output<pac::GPIOB, 0>;
     type Port = FifoUart;
+    type Page = FlashPage<SecondBank>;
 
     fn start(device: pac::Peripherals, core: &mut cortex_m::Peripherals) -> Started<Self> {
         core.SCB.enable_icache();
@@ -55,6 +59,7 @@ impl Board for Stm32H743 {
             enable: Output::new(device.GPIOC),
             light: Output::new(device.GPIOB),
             port: FifoUart::open(device.USART3, usart_clock, BAUD_RATE),
+            page: FlashPage(SecondBank(device.FLASH)),
             watchdog: Watchdog::start(device.IWDG),
             watchdog_reset,
         }
@@ -62,6 +67,46 @@ impl Board for Stm32H743 {
 
     fn wake_serial() {
         NVIC::pend(pac::Interrupt::USART3);
+    }
+}
+
+/// The first sector of the second bank.
+pub struct SecondBank(pac::FLASH);
+
+impl Flash for SecondBank {
+    const ADDRESS: usize = 0x0810_0000;
+    const TOGETHER: usize = 8;
+
+    fn unlock(&mut self) {
+        for key in KEYS {
+            // SAFETY: the key register takes every word.
+            self.0.bank2().keyr().write(|w| unsafe { w.bits(key) });
+        }
+        // SAFETY: ones clear the flags of errors and of an end.
+        self.0.bank2().ccr().write(|w| unsafe { w.bits(0x0fef_0000) });
+    }
+
+    fn erase(&mut self) {
+        // SAFETY: sector erase (2), sector 0, by double words (4), start (7).
+        self.0.bank2().cr().write(|w| unsafe { w.bits(1 << 2 | 3 << 4 | 1 << 7) });
+    }
+
+    fn take_writes(&mut self, on: bool) {
+        // SAFETY: programming (1), by double words (4).
+        self.0.bank2().cr().write(|w| unsafe { w.bits(u32::from(on) << 1 | 3 << 4) });
+    }
+
+    fn is_busy(&self) -> bool {
+        // Busy (0), or with something in its queue (2).
+        self.0.bank2().sr().read().bits() & 0b101 != 0
+    }
+
+    fn lock(&mut self) {
+        // SAFETY: the lock (0).
+        self.0.bank2().cr().write(|w| unsafe { w.bits(1) });
+        // SAFETY: the cache is the core's alone, and nobody else has it in hand: idle runs below everything.
+        let mut core = unsafe { cortex_m::Peripherals::steal() };
+        core.SCB.clean_invalidate_dcache(&mut core.CPUID);
     }
 }
 

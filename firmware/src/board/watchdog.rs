@@ -7,6 +7,9 @@ use super::patience::wait_until;
 /// Milliseconds to the reset.
 const COUNTS: u16 = 500;
 
+/// Counts while flash is written, which may hold the core up for seconds; a count is then eight milliseconds.
+const WRITING: u16 = 1000;
+
 /// A running watchdog.
 pub struct Watchdog(IWDG);
 
@@ -23,6 +26,22 @@ impl Watchdog {
         let mut watchdog = Self(registers);
         watchdog.feed();
         watchdog
+    }
+
+    /// Has patience while flash is written, then no more than usual.
+    pub fn while_writing<T>(&mut self, write: impl FnOnce() -> T) -> T {
+        self.0.kr().write(|w| w.key().unlock());
+        self.0.pr().write(|w| w.pr().divide_by256());
+        self.0.rlr().write(|w| w.rl().set(WRITING));
+        let _ = wait_until(|| self.0.sr().read().bits() == 0);
+        self.feed();
+        let written = write();
+        self.0.kr().write(|w| w.key().unlock());
+        self.0.pr().write(|w| w.pr().divide_by32());
+        self.0.rlr().write(|w| w.rl().set(COUNTS));
+        let _ = wait_until(|| self.0.sr().read().bits() == 0);
+        self.feed();
+        written
     }
 
     /// Puts the reset off.

@@ -2,7 +2,7 @@
 
 use model_core::realtime::compensation::Command;
 use model_core::realtime::controller::{Answer, Controller};
-use model_core::realtime::observer::Samples;
+use model_core::realtime::observer::{Memory, MemoryError, Samples};
 
 use super::{ControllerPort, PortError};
 
@@ -18,5 +18,14 @@ impl ControllerPort for Direct<'_> {
 
     fn reset(&mut self) {
         self.0.reset();
+    }
+
+    fn memory(&self, memory: &mut Memory) -> bool {
+        *memory = self.0.save();
+        true
+    }
+
+    fn recall(&mut self, memory: &Memory) -> Result<(), MemoryError> {
+        self.0.load(memory)
     }
 }

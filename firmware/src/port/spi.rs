@@ -63,16 +63,15 @@ impl<P: ControllerPort> SpiGuest<P> {
         Self { controller, digest: model_core::digest::START }
     }
 
-    /// Works on a frame; the answer is for the next transfer. A damaged frame changes nothing and gives an empty one,
-    /// which the master finds damaged in turn.
-    pub fn answer(&mut self, frame: &Frame) -> Frame {
+    /// Works on a frame; the answer is for the next transfer. A damaged frame changes nothing and has no answer.
+    pub fn answer(&mut self, frame: &Frame) -> Option<Frame> {
         let mut next = [0; FRAME_BYTES];
-        let Some(exchange) = unsealed::<Exchange>(frame) else { return next };
+        let exchange = unsealed::<Exchange>(frame)?;
         if exchange.tick == 0 {
             self.controller.reset();
             self.digest = model_core::digest::START;
         }
-        let Ok(answer) = self.controller.exchange(&exchange.samples(), &exchange.command()) else { return next };
+        let answer = self.controller.exchange(&exchange.samples(), &exchange.command()).ok()?;
         self.digest = answer.digest(self.digest);
         let answered = Answered {
             tick: exchange.tick.wrapping_add(1),
@@ -82,7 +81,7 @@ impl<P: ControllerPort> SpiGuest<P> {
             computation: 0,
         };
         // The longest answer fits: tested.
-        let _ = sealed(&answered, &mut next);
-        next
+        sealed(&answered, &mut next).ok()?;
+        Some(next)
     }
 }

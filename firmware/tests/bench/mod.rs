@@ -11,6 +11,7 @@ use firmware::budget::TickTimer;
 use firmware::control::{Control, Work};
 use firmware::conversation::{Conversation, LogEnd};
 use firmware::identity::{StartUp, hello};
+use firmware::page::{Learnt, Page, keep};
 use firmware::plant::Plant;
 use firmware::queues::Queues;
 use firmware::serial::{Line, Serial, Uart};
@@ -19,7 +20,8 @@ use firmware::timing_report::Resources;
 use firmware::words::Words;
 use heapless::spsc::Queue;
 use link::framing::{Receiver, encode};
-use link::messages::{Clock, Command, FromBoard, RunMode, RunSettings, Schedule, ToBoard};
+use link::messages::{Clock, Command, FromBoard, Remembered, RunMode, RunSettings, Schedule, ToBoard};
+use model_core::realtime::observer::{MEMORY_BYTES, Memory};
 use model_core::tables::Tables;
 
 /// Timer counts between two ticks.
@@ -89,6 +91,27 @@ impl TickTimer for Timer {
     }
 }
 
+/// A page of flash that takes what is written, or does not.
+pub struct Flash {
+    pub memory: Memory,
+    pub works: bool,
+    /// How often it was erased.
+    pub erased: u32,
+}
+
+impl Page for Flash {
+    fn read(&self) -> Memory {
+        self.memory
+    }
+
+    fn write(&mut self, memory: &Memory) {
+        self.erased += 1;
+        if self.works {
+            self.memory = *memory;
+        }
+    }
+}
+
 /// A board on the bench.
 pub struct Bench<W: Work = Plant<'static, PLANETS>>
 where
@@ -100,6 +123,7 @@ where
     receiver: Receiver,
     pub wire: Rc<RefCell<Wire>>,
     pub enable: Rc<Cell<bool>>,
+    pub flash: Flash,
     /// First look at the timer in a tick, and what each look adds.
     pub timing: (u32, u32),
 }
@@ -137,6 +161,7 @@ where
             clock: Clock::NotModelled,
             last_panic: None,
             watchdog_reset: false,
+            remembered: Remembered::Nothing,
         };
         Self {
             control: Control::new(work, Enable(enable.clone()), PERIOD, tick_end),
@@ -151,6 +176,7 @@ where
             receiver: Receiver::new(),
             wire,
             enable,
+            flash: Flash { memory: [0xff; MEMORY_BYTES], works: true, erased: 0 },
             timing: (20, 100),
         }
     }
@@ -170,6 +196,9 @@ where
         while nothing_to_do < 200 {
             self.serial.service();
             let busy = self.conversation.attend(&mut |_| Resources::default());
+            if let Some(memory) = self.conversation.to_keep() {
+                self.conversation.kept(keep(&mut self.flash, memory.memory()));
+            }
             nothing_to_do = if busy { 0 } else { nothing_to_do + 1 };
         }
     }
@@ -195,7 +224,7 @@ where
 
     /// A run from rest; takes the hello that answers.
     pub fn start(&mut self, mode: RunMode, decimation: u16, command_timeout: u32) {
-        self.send(&ToBoard::Reset(RunSettings { mode, decimation, command_timeout }));
+        self.send(&ToBoard::Reset(RunSettings { mode, decimation, command_timeout, from_memory: false }));
         self.run(2);
         assert!(matches!(self.said()[..], [FromBoard::Hello(_)]));
     }

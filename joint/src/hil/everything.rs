@@ -35,6 +35,12 @@ pub fn check(tick_rate: u32, progress: &Progress) -> Outcome<()> {
                  panic, at most {stack} B of stack\n"
             ))?;
         }
+        if board == Board::Stm32f405 {
+            progress.stage("building the image of a slave on SPI");
+            let bytes = image::build_spi_slave(&toolchain, &say)?.flash_bytes;
+            progress.clear();
+            output::print(&format!("ok       image of a slave on SPI for {}: {bytes} B of flash\n", board.name()))?;
+        }
         progress.stage(&format!("linting the firmware for {}", board.name()));
         lint::clippy(&toolchain, board, &say)?;
         progress.clear();

@@ -163,7 +163,7 @@ impl Plan {
             mend: arguments.flash_command(),
         };
         let command_timeout = (COMMAND_TIMEOUT * f64::from(arguments.rate)).ceil() as u32;
-        let settings = RunSettings { mode, decimation: arguments.decimation, command_timeout };
+        let settings = RunSettings { mode, decimation: arguments.decimation, command_timeout, from_memory: false };
         Ok(Self { name, path, board: arguments.board, expected, profile, settings, joint })
     }
 }

@@ -57,7 +57,7 @@ impl Recording {
             FromBoard::Fault(fault) => self.faults.push(fault),
             FromBoard::Log(log) => self.take_log(&log),
             // Kept by whoever asked for them.
-            FromBoard::Answer(_) | FromBoard::Loop(_) | FromBoard::Upset { .. } => {}
+            FromBoard::Answer(_) | FromBoard::Loop(_) | FromBoard::Upset { .. } | FromBoard::Kept(_) => {}
         }
     }
 

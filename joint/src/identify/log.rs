@@ -5,21 +5,13 @@ use std::f64::consts::TAU;
 
 use super::arguments::Arguments;
 use super::columns::Columns;
-use super::findings::gap;
 use super::noise::Noise;
 use super::plan::Plan;
+use super::sampling::sampling;
 use crate::failure::{Failure, Outcome};
 
-/// A shorter log cannot hold reversals and what surrounds them [s].
-const LEAST_TIME: f64 = 0.5;
-/// Slower samples do not show what a landing does to the torque [Hz]...
-const LEAST_RATE: f64 = 2000.0;
-/// ... nor do less than so many of them in a swing of the joint on its compliance.
-const LEAST_IN_A_SWING: f64 = 3.0;
 /// Fewer counts of the motor may be its encoder's own scatter.
 const LEAST_TRAVEL: f64 = 8.0;
-/// A step of time may differ by this ratio from the usual one.
-const UNEVEN_RATIO: f64 = 0.5;
 /// The link's speed is taken over this time to either side [s].
 const SPEED_OVER: f64 = 1e-3;
 /// Turns that a motor cannot make between two samples.
@@ -66,12 +58,7 @@ impl Log {
         let mut time = columns.time()?;
         let start = time.first().copied().unwrap_or_default();
         time.iter_mut().for_each(|time| *time -= start);
-        if time.len() < 2 {
-            return Err(Failure::new(format!("there are only {} samples", time.len()))
-                .with_help(format!("record several reversals, for {LEAST_TIME} s at the very least")));
-        }
-        let period = sampling(&time, columns)?;
-        check_time(period, time.len(), plan)?;
+        let period = sampling(&time, columns, plan)?;
         let motor = readings(columns, ["motor_counts", "motor_angle_rad"], plan.motor_bits)?;
         let output = readings(columns, ["output_counts", "output_angle_rad"], plan.output_bits)?;
         let (_, torque) = columns.named(&["motor_torque_N_m"])?;
@@ -151,28 +138,6 @@ impl Log {
     }
 }
 
-/// Refuses a log that is too short, or sampled too slowly for the joint's swing.
-fn check_time(period: f64, samples: usize, plan: &Plan) -> Outcome<()> {
-    let (rate, time) = (1.0 / period, period * samples as f64);
-    let needed = LEAST_RATE.max(LEAST_IN_A_SWING / plan.swing());
-    if rate < 0.999 * needed {
-        let swing = 1.0 / plan.swing();
-        return Err(Failure::new(format!(
-            "the log is sampled too slowly: {rate:.0} Hz, at least {needed:.0} Hz are needed for a joint that swings at \
-             {swing:.0} Hz"
-        ))
-        .with_help(format!(
-            "record every control period; {:.0} Hz also show the damping",
-            (gap::SWING_SAMPLES * swing).max(needed)
-        )));
-    }
-    if time < LEAST_TIME {
-        return Err(Failure::new(format!("the log is too short: {time:.3} s, at least {LEAST_TIME} s are needed"))
-            .with_help("record several reversals to both sides; docs/identify.md tells a good test"));
-    }
-    Ok(())
-}
-
 impl Readings {
     fn angles(&self, bits: u32) -> Vec<f64> {
         match self {
@@ -239,27 +204,6 @@ fn unwrap(counts: &mut [i64], turn: i64) {
         let step = counts[index] - before;
         turns += if step > turn / 2 { -1 } else { i64::from(step < -turn / 2) };
         counts[index] += turns * turn;
-    }
-}
-
-/// The sampling period, if samples are evenly spaced.
-fn sampling(time: &[f64], columns: &Columns) -> Outcome<f64> {
-    let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    if let Some(line) = steps.iter().position(|&step| step <= 0.0) {
-        return Err(Failure::new(format!("the time does not rise in {}", columns.place(line + 1)))
-            .with_help("samples must be in the order in which they were taken, each with its own time"));
-    }
-    let unsorted = steps.clone();
-    steps.sort_by(f64::total_cmp);
-    let usual = steps[steps.len() / 2];
-    match unsorted.iter().position(|step| (step / usual - 1.0).abs() > UNEVEN_RATIO) {
-        Some(line) => Err(Failure::new(format!(
-            "samples are not evenly spaced: {:.3e} s before {}, usually {usual:.3e} s",
-            unsorted[line],
-            columns.place(line + 1)
-        ))
-        .with_help("samples were lost: cut the log there, or resample it")),
-        None => Ok((time[time.len() - 1] - time[0]) / (time.len() - 1) as f64),
     }
 }
 

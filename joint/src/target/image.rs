@@ -17,6 +17,8 @@ use crate::failure::{Failure, Outcome};
 
 /// Fixed steps a second unless something else is asked for [Hz].
 pub const DEFAULT_TICK_RATE: u32 = 20_000;
+/// Control periods a second of a slave on SPI: transfer and step fit one after the other [Hz].
+const SPI_RATE: u32 = 5000;
 /// Where the flash of every board begins; RAM is at and beyond [`RAM`].
 const FLASH: u64 = 0x0800_0000;
 const RAM: u64 = 0x2000_0000;
@@ -53,7 +55,7 @@ pub fn build_image(
     })?;
     check_rate(board, tick_rate)?;
     let place = file_name(&joint_file, board, role, tick_rate);
-    finish(toolchain, [&joint_file; 2], board, role, &Control::usual(tick_rate), &place, say)
+    finish(toolchain, [&joint_file; 2], board, binary(role), &Control::usual(tick_rate), &place, say)
 }
 
 /// What the image of a role that controls is made for, besides its joint.
@@ -92,14 +94,21 @@ pub fn build_control_image(
     store(&folder, &truth_file, truth.as_bytes())?;
     store(&folder, &told_file, told.as_bytes())?;
     let place = format!("control-{name}-{}-{}.elf", board.name(), word(role));
-    finish(toolchain, [&truth_file, &told_file], board, role, control, &place, say)
+    finish(toolchain, [&truth_file, &told_file], board, binary(role), control, &place, say)
+}
+
+/// Builds observer and compensation of joint q1 as a slave on SPI, for the board that has such a slave.
+pub fn build_spi_slave(toolchain: &Toolchain, say: Say<'_>) -> Outcome<Image> {
+    let (board, joint) = (Board::Stm32f405, preset_file("q1"));
+    let place = format!("q1-{}-spi-observer.elf", board.name());
+    finish(toolchain, [&joint; 2], board, "spi_observer", &Control::usual(SPI_RATE), &place, say)
 }
 
 fn finish(
     toolchain: &Toolchain,
     [truth, told]: [&Path; 2],
     board: Board,
-    role: Role,
+    binary: &str,
     control: &Control,
     name: &str,
     say: Say<'_>,
@@ -120,8 +129,8 @@ fn finish(
         &images,
         &place,
         [truth, told],
-        &format!("{role:?}{board:?}{control:?}"),
-        || compile(toolchain, binary(role), board.name(), &environment, say),
+        &format!("{binary}{board:?}{control:?}"),
+        || compile(toolchain, binary, board.name(), &environment, say),
     )?;
     let (flash_bytes, ram_bytes) =
         sizes(&elf).map_err(|error| Failure::new(format!("{}: {error}", place.display())))?;

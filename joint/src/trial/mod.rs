@@ -104,7 +104,12 @@ pub fn run(wanted: &Wanted<'_>, progress: &Progress) -> Outcome<()> {
     let folder = Folder::prepare(wanted.out.as_deref(), "hil/tests", &wanted.name)?;
     for path in [wanted.json, wanted.junit].into_iter().flatten() {
         if let Some(parent) = path.parent().filter(|parent| !parent.as_os_str().is_empty() && !parent.is_dir()) {
-            return Err(Failure::new(format!("there is no folder {} for {}", parent.display(), path.display())));
+            let message = format!("there is no folder {} for {}", parent.display(), path.display());
+            return Err(Failure::new(message).with_help("create it first, or name another path"));
+        }
+        if path.is_dir() {
+            let message = format!("{} is a folder, and results go to a file", path.display());
+            return Err(Failure::new(message).with_help("name a file in it"));
         }
     }
     let logs = prepare_logs(&folder)?;

@@ -147,7 +147,7 @@ fn load_one(path: &Path, plant: PlantName) -> Outcome<Test> {
         return Err(Failure::new(format!(
             "{name}: the core's planets share their stiffness, so no tooth of it can break"
         ))
-        .with_help("run it with --plant reference"));
+        .with_help("run it with --plant reference, with --host or --role observer"));
     }
     let motion = recorded(&file, folder).map_err(|failure| failure.while_doing(&name))?;
     let file = match (&motion, text.contains("duration_s")) {

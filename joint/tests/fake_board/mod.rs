@@ -146,7 +146,7 @@ impl<'t, S: Read + Write> Board<'t, S> {
                 self.say_hello()
             }
             ToBoard::Schedule(schedule) => self.take(schedule),
-            ToBoard::Exchanges(_) | ToBoard::Course(_) | ToBoard::Upset(_) => {
+            ToBoard::Exchanges(_) | ToBoard::Course(_) | ToBoard::Upset(_) | ToBoard::Keep => {
                 self.say(&FromBoard::Fault(Fault::WrongRole))
             }
             ToBoard::Statistics { .. } => {
@@ -265,6 +265,7 @@ impl<'t, S: Read + Write> Board<'t, S> {
             last_panic: None,
             watchdog_reset: false,
             control_digest: None,
+            remembered: link::messages::Remembered::Nothing,
         }))
     }
 

@@ -2,7 +2,7 @@
 //! period. Where the samples come from, and over which line, is left to whoever calls.
 
 use super::compensation::{Command, Compensation, Shaped};
-use super::observer::{Estimates, MAPPED, Observer, Samples};
+use super::observer::{Estimates, MAPPED, Memory, MemoryError, Observer, Samples};
 use crate::digest::chain;
 use crate::real::Real;
 use crate::tables::compensation::CompensationTables;
@@ -45,6 +45,16 @@ impl<'tables, T: Real> Controller<'tables, T> {
     pub fn reset(&mut self) {
         self.observer.restart();
         self.compensation = Compensation::new(self.tables);
+    }
+
+    /// What the observer has learnt so far.
+    pub fn save(&self) -> Memory {
+        self.observer.save()
+    }
+
+    /// Goes on from what was saved. Refused memories change nothing.
+    pub fn load(&mut self, memory: &[u8]) -> Result<(), MemoryError> {
+        self.observer.load(memory)
     }
 
     /// One control period. Not inlined: beside a plant that is stepped on the same chip its values would lie on the stack.

@@ -143,9 +143,10 @@ impl<T: Real> Active<T> {
             }
             Kind::Offset(of, offset) if of == shaft && on => angle.wrapping_add(offset as u32),
             Kind::Noise(of, deviation) if of == shaft && on => {
-                // Twelve even numbers from -1/2 to 1/2 have a variance of one; their sum in 2^-24.
-                let sum = (0..12).fold(0_i64, |sum, _| sum + i64::from(self.even() as i32)) >> 8;
-                angle.wrapping_add((sum.wrapping_mul(deviation.into()) >> 24) as u32)
+                // Twelve even numbers from -1/2 to 1/2 have a variance of one: the quarters of three words, in 2^-16.
+                let quarters = |word: u64| (0..4).map(move |place| i64::from((word >> (16 * place)) as i16));
+                let sum: i64 = (0..3).flat_map(|_| quarters(self.word())).sum();
+                angle.wrapping_add((sum.wrapping_mul(deviation.into()) >> 16) as u32)
             }
             Kind::Eccentric(of, amplitude) if of == shaft && on => {
                 angle.wrapping_add((amplitude * sine_cosine::<T>(angle).0).to_i64() as u32)
@@ -170,11 +171,16 @@ impl<T: Real> Active<T> {
         }
     }
 
-    /// A random word (splitmix64 after Steele, Lea and Flood, 2014; the upper half).
+    /// The upper half of a random word.
     fn even(&mut self) -> u32 {
+        (self.word() >> 32) as u32
+    }
+
+    /// A random word (splitmix64 after Steele, Lea and Flood, 2014).
+    fn word(&mut self) -> u64 {
         self.random = self.random.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let word = (self.random ^ (self.random >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         let word = (word ^ (word >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((word ^ (word >> 31)) >> 32) as u32
+        word ^ (word >> 31)
     }
 }

@@ -152,6 +152,7 @@ mod tests {
             last_panic: None,
             watchdog_reset: false,
             control_digest: None,
+            remembered: link::messages::Remembered::Nothing,
         }
     }
 

@@ -65,7 +65,8 @@ impl Session<'_> {
                     | FromBoard::Log(_)
                     | FromBoard::Answer(_)
                     | FromBoard::Loop(_)
-                    | FromBoard::Upset { .. } => {}
+                    | FromBoard::Upset { .. }
+                    | FromBoard::Kept(_) => {}
                 }
             }
             progress(stream.board_tick.min(profile.ticks));

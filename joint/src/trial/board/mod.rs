@@ -27,6 +27,7 @@ use crate::failure::{Failure, Outcome};
 use crate::hil::Progress;
 use crate::hil::bench::Bench;
 use crate::hil::session::{Expected, Session};
+use crate::hil::transport::Port;
 use crate::hil::twin::tables_digest;
 use crate::target::emulator;
 use crate::target::image::{self, Control, word};
@@ -60,7 +61,8 @@ impl<'w> Boards<'w> {
         suite.keep(|test| may_run(&wish, test))?;
         let say = |line: &str| progress.say(line);
         let version = match wish.port {
-            Some(_) => String::new(),
+            // Opened and closed again: that it is not there should be known before an image is built.
+            Some(path) => Port::open(path, wish.baud.unwrap_or(wish.board.baud_rate())).map(|_| String::new())?,
             None => {
                 progress.stage("finding the emulator");
                 emulator::ensure(&say)?
@@ -177,7 +179,7 @@ impl<'w> Boards<'w> {
         let timed = real || mode == RunMode::Realtime;
         let command_timeout = if timed { (COMMAND_TIMEOUT * f64::from(rate)).ceil() as u32 } else { u32::MAX };
         let decimation = if role == Role::Loop { DECIMATION } else { 1 };
-        RunSettings { mode, decimation, command_timeout }
+        RunSettings { mode, decimation, command_timeout, from_memory: false }
     }
 
     fn board_run(&self, image: String, same_periods: u32, statistics: Option<&Statistics>) -> BoardRun {

@@ -1,0 +1,112 @@
+//! Where what an observer has learnt outlives a reset: one page of flash, read at start, written between runs. What is read
+//! there is judged before it is used; how a page is erased and written is the board's business.
+
+use core::convert::Infallible;
+
+use link::messages::Remembered;
+use model_core::realtime::observer::{MEMORY_BYTES, Memory, MemoryError};
+
+use crate::port::ControllerPort;
+
+/// What a role learns, if it learns anything: room is taken only where it does.
+pub trait Learnt: Clone {
+    /// As it is kept.
+    fn memory(&self) -> &Memory;
+}
+
+impl Learnt for Memory {
+    fn memory(&self) -> &Memory {
+        self
+    }
+}
+
+impl Learnt for Infallible {
+    fn memory(&self) -> &Memory {
+        match *self {}
+    }
+}
+
+/// A place for one memory.
+pub trait Page {
+    /// What is there.
+    fn read(&self) -> Memory;
+
+    /// Erases and writes it. May hold everything up for a second or two.
+    fn write(&mut self, memory: &Memory);
+}
+
+/// What a page holds; nothing if it is empty, as after an erase, or where there is no flash at all.
+pub fn recall(page: &impl Page) -> Option<Memory> {
+    let memory = page.read();
+    let empty = [0xff, 0].into_iter().any(|level| memory.iter().all(|byte| *byte == level));
+    (!empty).then_some(memory)
+}
+
+/// Writes a memory, and says whether it now reads as it should.
+pub fn keep(page: &mut impl Page, memory: &Memory) -> bool {
+    // What is there already is not worn out by writing it again.
+    if page.read() != *memory {
+        page.write(memory);
+    }
+    page.read() == *memory
+}
+
+/// A judgement in the words of the line.
+pub fn judgement(judged: Option<Result<(), MemoryError>>) -> Remembered {
+    match judged {
+        None => Remembered::Nothing,
+        Some(Ok(())) => Remembered::Good,
+        Some(Err(MemoryError::NotAMemory)) => Remembered::NotAMemory,
+        Some(Err(MemoryError::WrongVersion)) => Remembered::WrongVersion,
+        Some(Err(MemoryError::Damaged)) => Remembered::Damaged,
+        Some(Err(MemoryError::OtherJoint)) => Remembered::OtherJoint,
+        Some(Err(MemoryError::NotFinite)) => Remembered::NotFinite,
+    }
+}
+
+/// What a role keeps at hand of a page, for the runs that begin from it.
+#[derive(Debug, Clone)]
+pub struct AtHand {
+    memory: Memory,
+    /// It holds something.
+    good: bool,
+}
+
+impl Default for AtHand {
+    fn default() -> Self {
+        Self { memory: [0; MEMORY_BYTES], good: false }
+    }
+}
+
+impl AtHand {
+    /// Takes what a controller has learnt; `false` if it is not at hand.
+    #[inline(never)]
+    pub fn learn_from(&mut self, port: &impl ControllerPort) -> bool {
+        let learnt = port.memory(&mut self.memory);
+        self.good |= learnt;
+        learnt
+    }
+
+    /// What there is.
+    pub fn get(&self) -> Option<&Memory> {
+        self.good.then_some(&self.memory)
+    }
+
+    /// Takes a memory that the controller finds good.
+    pub fn take(&mut self, memory: &Memory, port: &mut impl ControllerPort) -> Result<(), MemoryError> {
+        port.recall(memory)?;
+        *self = Self { memory: *memory, good: true };
+        Ok(())
+    }
+
+    /// Has a controller that was reset go on from it.
+    pub fn give(&self, port: &mut impl ControllerPort) {
+        if self.good {
+            // It was found good when it was taken.
+            let _ = port.recall(&self.memory);
+        }
+    }
+}
+
+// Whole words of every board's flash, of up to 32 bytes.
+const _: () = assert!(MEMORY_BYTES.is_multiple_of(32));

@@ -1,0 +1,148 @@
+//! What an observer has learnt outlives a reset of its board: kept in a page of flash between runs, judged when the board
+//! starts, gone on from where a run asks for it. What the memory is worth is tested elsewhere.
+
+#[allow(dead_code, reason = "shared with the tests of the roles")]
+mod bench;
+
+use bench::{Bench, Flash};
+use firmware::control::Work;
+use firmware::observer::Observing;
+use firmware::page::{judgement, recall};
+use firmware::port::Direct;
+use firmware::tables::{PLANETS, TABLES};
+use link::controller::Exchange;
+use link::messages::{FromBoard, Kept, Remembered, RunMode, RunSettings, Schedule, ToBoard};
+use model_core::realtime::compensation::{Command, Motion, Position};
+use model_core::realtime::controller::{Answer, Controller};
+use model_core::realtime::observer::{MEMORY_BYTES, Memory};
+use model_core::realtime::virtual_joint::VirtualJoint;
+
+mod control {
+    #![allow(missing_docs, dead_code, clippy::all, clippy::excessive_precision, reason = "generated numbers")]
+    include!(concat!(env!("OUT_DIR"), "/control.rs"));
+}
+
+fn controller() -> Direct<'static> {
+    Direct(Controller::new(&control::OBSERVER, &control::COMPENSATION))
+}
+
+/// To and fro through the gap, so that there is something to learn.
+fn command(tick: u32) -> Command<f32> {
+    let (sine, cosine) = (core::f32::consts::TAU * 4.0 * 1e-4 * tick as f32).sin_cos();
+    let position = Position { turns: 0, fraction: 0.01 * sine };
+    Command::Position { now: Motion { position, speed: 1.6 * cosine, acceleration: -40.0 * sine }, ahead: None }
+}
+
+/// Runs exchanges with a virtual joint at the other end of the line; the last answer.
+fn run(bench: &mut Bench<Observing<Direct<'static>>>, from_memory: bool, ticks: u32) -> Answer<f32> {
+    bench.send(&ToBoard::Reset(RunSettings {
+        mode: RunMode::Lockstep,
+        decimation: 1,
+        command_timeout: 1000,
+        from_memory,
+    }));
+    bench.run(2);
+    assert!(matches!(bench.said()[..], [FromBoard::Hello(_)]));
+    let mut joint = VirtualJoint::<f32, PLANETS>::new(&TABLES, &control::SURROUNDINGS);
+    let mut last = None;
+    for tick in 0..ticks {
+        let commands = [Exchange::new(tick, &joint.samples(), &command(tick))].into_iter().collect();
+        bench.send(&ToBoard::Exchanges(Schedule { sequence: tick as u16, horizon: tick + 1, commands }));
+        bench.run(2);
+        let said = bench.said();
+        let answer = said.iter().find_map(|message| match message {
+            FromBoard::Answer(answered) => answered.answer(),
+            _ => None,
+        });
+        last = answer.or(last);
+        joint.advance(answer.map_or(0.0, |answer| answer.shaped.torque), 0.0);
+    }
+    last.expect("answers")
+}
+
+fn kept(bench: &mut Bench<Observing<Direct<'static>>>) -> Kept {
+    bench.send(&ToBoard::Keep);
+    bench.run(3);
+    let kept = |message: FromBoard| if let FromBoard::Kept(kept) = message { Some(kept) } else { None };
+    bench.said().into_iter().find_map(kept).expect("an answer")
+}
+
+fn stop(bench: &mut Bench<Observing<Direct<'static>>>) {
+    bench.send(&ToBoard::Stop);
+    bench.run(3);
+}
+
+/// A board that starts with this in its flash, and what it says of it.
+fn started(memory: Memory) -> (Bench<Observing<Direct<'static>>>, Remembered) {
+    let mut work = Observing::new(controller(), true);
+    let flash = Flash { memory, works: true, erased: 0 };
+    let judged = recall(&flash).map(|memory| work.remember(&memory));
+    let mut bench = Bench::with(work);
+    bench.flash = flash;
+    (bench, judgement(judged))
+}
+
+#[test]
+fn what_was_learnt_is_kept_and_gone_on_from_after_the_next_start() {
+    let (mut bench, nothing) = started([0xff; MEMORY_BYTES]);
+    assert_eq!(nothing, Remembered::Nothing);
+    let learnt = run(&mut bench, false, 12_000).estimates;
+    assert_eq!(kept(&mut bench), Kept::Running, "flash is not written while a motor runs");
+    stop(&mut bench);
+    assert_eq!((kept(&mut bench), kept(&mut bench)), (Kept::Stored, Kept::Stored));
+    assert_eq!(bench.flash.erased, 1, "the same is not written twice");
+    let (mut again, found) = started(bench.flash.memory);
+    assert_eq!(found, Remembered::Good);
+    // Long enough to say what is known, too short to learn.
+    let [fresh, remembered] = [false, true].map(|from_memory| run(&mut again, from_memory, 50).estimates);
+    assert_ne!(learnt.half_backlash.value, fresh.half_backlash.value, "there was something to learn");
+    assert_eq!(remembered.half_backlash.value, learnt.half_backlash.value);
+    assert_ne!(remembered.compliance.value, fresh.compliance.value);
+}
+
+#[test]
+fn what_is_no_good_memory_is_told_and_not_used() {
+    let (mut bench, _) = started([0xff; MEMORY_BYTES]);
+    run(&mut bench, false, 100);
+    stop(&mut bench);
+    assert_eq!(kept(&mut bench), Kept::Stored);
+    let good = bench.flash.memory;
+    let changed = |at: usize| {
+        let mut memory = good;
+        memory[at] ^= 1;
+        memory
+    };
+    let cases = [
+        ([0; MEMORY_BYTES], Remembered::Nothing),
+        (changed(0), Remembered::NotAMemory),
+        (changed(4), Remembered::WrongVersion),
+        (changed(200), Remembered::Damaged),
+        (of_another_joint(good), Remembered::OtherJoint),
+    ];
+    for (memory, expected) in cases {
+        let (mut bench, found) = started(memory);
+        assert_eq!(found, expected);
+        let asked_for = run(&mut bench, true, 50);
+        let (mut other, _) = started([0xff; MEMORY_BYTES]);
+        assert_eq!(asked_for, run(&mut other, false, 50), "{found:?}: it begins as it was designed");
+    }
+}
+
+/// The same with another identity, and a digest that fits.
+fn of_another_joint(mut memory: Memory) -> Memory {
+    use model_core::digest;
+    memory[8] ^= 1;
+    let (content, stored) = memory.split_at_mut(MEMORY_BYTES - 8);
+    let digest = content.iter().fold(digest::START, |running, byte| digest::chain(running, (*byte).into()));
+    stored.copy_from_slice(&digest.to_le_bytes());
+    memory
+}
+
+#[test]
+fn flash_that_takes_nothing_is_found_out() {
+    let (mut bench, _) = started([0xff; MEMORY_BYTES]);
+    bench.flash.works = false;
+    run(&mut bench, false, 10);
+    stop(&mut bench);
+    assert_eq!(kept(&mut bench), Kept::NotWritten);
+}

@@ -1,0 +1,60 @@
+//! Forms and messages by hand from the rules of their encoding.
+
+use super::*;
+
+const FORM: &str = "# a lab's own\nuint8 IDLE=0\nstd_msgs/Header header\nstring[] name\nfloat64[] position\nint16[2] raw 0 # \
+                    two\nbool on\nfloat32 current\n===\nMSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n";
+
+/// By hand from the rules: every number on a multiple of its size behind the head.
+fn message() -> Vec<u8> {
+    let mut bytes = vec![0, 1, 0, 0];
+    bytes.extend(7_i32.to_le_bytes());
+    bytes.extend(500_000_000_u32.to_le_bytes());
+    bytes.extend([2, 0, 0, 0, b'm', 0, 0, 0]);
+    bytes.extend([1, 0, 0, 0, 3, 0, 0, 0, b'a', b'b', 0, 0]);
+    bytes.extend([2, 0, 0, 0]);
+    bytes.extend(1.5_f64.to_le_bytes());
+    bytes.extend((-2.25_f64).to_le_bytes());
+    bytes.extend((-3_i16).to_le_bytes());
+    bytes.extend(4_i16.to_le_bytes());
+    bytes.extend([1, 0, 0, 0]);
+    bytes.extend(0.5_f32.to_le_bytes());
+    bytes
+}
+
+#[test]
+fn every_number_of_a_message_has_its_path() {
+    let form = Form::read(FORM).expect("a form");
+    let numbers = form.numbers(&message()).expect("a message");
+    let wanted = [
+        ("header.stamp.sec", 7.0),
+        ("header.stamp.nanosec", 5e8),
+        ("position[0]", 1.5),
+        ("position[1]", -2.25),
+        ("raw[0]", -3.0),
+        ("raw[1]", 4.0),
+        ("on", 1.0),
+        ("current", 0.5),
+    ];
+    assert_eq!(numbers, wanted.map(|(path, value)| (path.to_owned(), value)));
+}
+
+#[test]
+fn a_message_that_is_cut_off_anywhere_is_refused() {
+    let form = Form::read(FORM).expect("a form");
+    let whole = message();
+    for length in 0..whole.len() {
+        assert!(form.numbers(&whole[..length]).is_err(), "{length}");
+    }
+    let mut endless = whole;
+    endless[20..24].fill(0xff);
+    assert!(form.numbers(&endless).is_err());
+}
+
+#[test]
+fn forms_that_cannot_be_are_refused() {
+    assert!(Form::read("float64").is_err() && Form::read("float64[x] a").is_err());
+    let own = Form::read("Own next\n===\nMSG: a/Own\nOwn next\n").expect("a form");
+    assert!(own.numbers(&[0, 1, 0, 0]).is_err());
+    assert!(Form::read("a/Other other\n").expect("a form").numbers(&[0, 1, 0, 0]).is_err());
+}

@@ -180,6 +180,7 @@ pub fn design_compensation<T: Real>(
         reaction: real(reaction),
         strike_speed_per_torque: real(1.0 / body.strike_impedance),
         strike_torque: real(strike_torque),
+        hardest_strike: real(joint.rated_output_torque),
         shortest_ramp: real(shortest_ramp),
         ramp_per_speed: real(ramp_per_speed),
         longest_crossing: real(LONGEST * crossing),

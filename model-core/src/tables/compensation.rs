@@ -60,6 +60,8 @@ pub struct CompensationTables<T: Real> {
     pub strike_speed_per_torque: T,
     /// That torque at little demand [N m].
     pub strike_torque: T,
+    /// The same however much is demanded [N m].
+    pub hardest_strike: T,
     /// Shortest ramp of a crossing's speed that delays allow [s].
     pub shortest_ramp: T,
     /// Time that torque needs on the ramp for each rad/s [s^2/rad].

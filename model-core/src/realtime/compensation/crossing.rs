@@ -14,11 +14,11 @@ pub(super) struct Crossing<T: Real> {
 }
 
 impl<T: Real> Crossing<T> {
-    /// The crossing of a gap of twice `half`. Planets that are struck on the way are struck no harder than the force that
-    /// will be passed on anyway (`demand`), or than a set share of the rated one; ramps are as steep as the motor's
-    /// torque and the loop's delays allow.
+    /// The crossing of a gap of twice `half`. Planets that are struck on the way are struck no harder than a set share of
+    /// the rated force or, up to the rated force, than what will be passed on anyway (`demand`); ramps are as steep as the
+    /// motor's torque and the loop's delays allow.
     pub fn new(tables: &CompensationTables<T>, half: T, demand: T) -> Self {
-        let force = clamp(demand.abs(), tables.strike_torque, tables.torque_limit);
+        let force = clamp(demand.abs(), tables.strike_torque, tables.hardest_strike);
         let speed = force * tables.strike_speed_per_torque;
         let way = half + half;
         let along = if speed > T::ZERO { way.over(speed) } else { tables.longest_crossing };

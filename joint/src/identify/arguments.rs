@@ -46,7 +46,7 @@ pub struct Arguments {
     #[arg(long, value_name = "PERCENT", value_parser = percent)]
     pub torque_error: Option<f64>,
     /// Writes LOG instead of reading it: the recommended test, done by the f64 reference of the joint file
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["topic", "column", "torque_error", "out", "json"])]
     pub simulate: bool,
     /// Seed of a simulated test's noise and encoder phases
     #[arg(long, value_name = "N", default_value_t = 1, requires = "simulate")]

@@ -19,6 +19,7 @@ pub mod digest;
 pub mod error;
 pub mod joint;
 pub mod mesh;
+pub mod random;
 pub mod real;
 pub mod realtime;
 pub mod scales;

@@ -53,7 +53,8 @@ pub(super) fn store(images: &Path, place: &Path, elf: &[u8]) -> Outcome<()> {
         .map_err(|error| cannot_write(place, &error))
 }
 
-fn cannot_write(path: &Path, error: &io::Error) -> Failure {
+/// A file of a build that cannot be written, with the mend.
+pub(super) fn cannot_write(path: &Path, error: &io::Error) -> Failure {
     Failure::new(format!("cannot write {}: {error}", path.display()))
         .with_help("make room, or set CARGO_TARGET_DIR to a folder that can be written")
 }

@@ -9,9 +9,10 @@ use std::process::Command;
 
 use sha2::{Digest, Sha256};
 
+use super::compile::cannot_write;
 use super::toolchain::{TARGET, clean};
 use super::{Say, tool};
-use crate::failure::{Failure, Outcome};
+use crate::failure::Outcome;
 
 /// Fat link-time optimisation needs the bitcode; the library is for everybody, so it may use unstable features.
 const RUSTFLAGS: &str = "-Cembed-bitcode=yes -Zforce-unstable-if-unmarked -Ctarget-cpu=cortex-m4";
@@ -84,11 +85,6 @@ fn publish(ready: &Path, sysroot: &Path) -> Outcome<()> {
         Err(error) if !sysroot.is_dir() => Err(cannot_write(sysroot, &error)),
         _ => Ok(()),
     }
-}
-
-fn cannot_write(path: &Path, error: &io::Error) -> Failure {
-    Failure::new(format!("cannot write {}: {error}", path.display()))
-        .with_help("make room, or set CARGO_TARGET_DIR to a folder that can be written")
 }
 
 #[cfg(test)]

@@ -1,6 +1,8 @@
 //! What differs from seed to seed: values drawn from ranges, each from a stream of its own, so that one more variation
 //! in a file leaves the others as they were. Noise of motor and encoders is the drive train's.
 
+use model_core::random::splitmix64;
+
 /// A number, or a range to draw from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Quantity {
@@ -45,10 +47,7 @@ impl Stream {
 
     /// 64 random bits.
     pub fn word(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let word = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let word = (word ^ (word >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        word ^ (word >> 31)
+        splitmix64(&mut self.0)
     }
 
     /// From 0 to below 1.

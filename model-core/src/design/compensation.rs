@@ -12,6 +12,7 @@ use core::f64::consts::TAU;
 use crate::error::DesignError;
 use crate::joint::JointParameters;
 use crate::real::Real;
+use crate::realtime::compensation::crossing::Crossing;
 use crate::tables::compensation::CompensationTables;
 use body::Body;
 pub use settings::CompensationSettings;
@@ -142,11 +143,8 @@ pub fn design_compensation<T: Real>(
     let ramp_per_speed = 1.5 * body.motor / (CROSSING_TORQUE * limit);
     let shortest_ramp = 0.5 * REACTIONS_IN_A_CROSSING * reaction;
     let strike_torque = STRIKE * joint.rated_output_torque;
-    let strike_speed = strike_torque / body.strike_impedance;
-    let along = 2.0 * half / strike_speed;
-    let steepest = ramp_per_speed * strike_speed;
-    let ramp = if steepest > along { libm::sqrt(ramp_per_speed * 2.0 * half) } else { steepest }.max(shortest_ramp);
-    let crossing = (ramp + along).max(2.0 * ramp);
+    let crossing =
+        Crossing::at(strike_torque / body.strike_impedance, 2.0 * half, ramp_per_speed, shortest_ramp).duration;
     let motor_damping = (3.0 * inertia * pole).min(body.motor / (MOTOR_DAMPING * reaction));
     // The motor's mass against the joint's spring: torque of a blow for each rad/s.
     let blow = libm::sqrt(body.stiffness * body.motor);

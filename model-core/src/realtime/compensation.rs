@@ -13,7 +13,7 @@
 //! `docs/compensation.md` derives all of it and says where its limits are.
 
 pub(super) mod arithmetic;
-mod crossing;
+pub(crate) mod crossing;
 mod flank;
 mod impedance;
 mod intent;

@@ -4,6 +4,7 @@
 use super::compensation::arithmetic::clamp;
 use super::observer::{Reading, Samples};
 use super::phase::sine_cosine;
+use crate::random::splitmix64;
 use crate::real::Real;
 use crate::tables::virtual_joint::SurroundingsTable;
 
@@ -97,9 +98,9 @@ impl<T: Real> Upsets<T> {
             return samples;
         }
         let [of_motor, of_link] = &table.encoders;
+        let output = samples.output;
         let mut seen =
-            [(samples.motor, of_motor.shift, true), (samples.output.unwrap_or_default(), of_link.shift, true)];
-        seen[1].2 = samples.output.is_some();
+            [(samples.motor, of_motor.shift, true), (output.unwrap_or_default(), of_link.shift, output.is_some())];
         for active in all.iter_mut().flatten() {
             let on = *period >= active.upset.start && *period < active.upset.end;
             for (shaft, (reading, shift, comes)) in [Shaft::Motor, Shaft::Link].into_iter().zip(&mut seen) {
@@ -145,7 +146,7 @@ impl<T: Real> Active<T> {
             Kind::Noise(of, deviation) if of == shaft && on => {
                 // Twelve even numbers from -1/2 to 1/2 have a variance of one: the quarters of three words, in 2^-16.
                 let quarters = |word: u64| (0..4).map(move |place| i64::from((word >> (16 * place)) as i16));
-                let sum: i64 = (0..3).flat_map(|_| quarters(self.word())).sum();
+                let sum: i64 = (0..3).flat_map(|_| quarters(splitmix64(&mut self.random))).sum();
                 angle.wrapping_add((sum.wrapping_mul(deviation.into()) >> 16) as u32)
             }
             Kind::Eccentric(of, amplitude) if of == shaft && on => {
@@ -173,14 +174,6 @@ impl<T: Real> Active<T> {
 
     /// The upper half of a random word.
     fn even(&mut self) -> u32 {
-        (self.word() >> 32) as u32
-    }
-
-    /// A random word (splitmix64 after Steele, Lea and Flood, 2014).
-    fn word(&mut self) -> u64 {
-        self.random = self.random.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let word = (self.random ^ (self.random >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let word = (word ^ (word >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        word ^ (word >> 31)
+        (splitmix64(&mut self.random) >> 32) as u32
     }
 }

@@ -6,7 +6,7 @@ use crate::tables::compensation::CompensationTables;
 
 /// Times of a crossing.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Crossing<T: Real> {
+pub(crate) struct Crossing<T: Real> {
     /// From setting out to arriving [s].
     pub duration: T,
     /// In which the motor comes to its steady speed, and from it [s]; at most half of the duration.
@@ -20,12 +20,23 @@ impl<T: Real> Crossing<T> {
     pub fn new(tables: &CompensationTables<T>, half: T, demand: T) -> Self {
         let force = clamp(demand.abs(), tables.strike_torque, tables.hardest_strike);
         let speed = force * tables.strike_speed_per_torque;
-        let way = half + half;
-        let along = if speed > T::ZERO { way.over(speed) } else { tables.longest_crossing };
+        let longest = tables.longest_crossing;
+        if speed <= T::ZERO {
+            return Self { duration: longest, ramp: tables.shortest_ramp };
+        }
+        let Self { duration, ramp } = Self::at(speed, half + half, tables.ramp_per_speed, tables.shortest_ramp);
+        Self { duration: clamp(duration, T::ZERO, longest), ramp: clamp(ramp, T::ZERO, T::HALF * longest) }
+    }
+
+    /// The crossing of a way at a speed, however long it takes. `ramp_per_speed` is the time that torque needs on the ramp
+    /// for each unit of speed.
+    pub fn at(speed: T, way: T, ramp_per_speed: T, shortest_ramp: T) -> Self {
+        let along = way.over(speed);
+        let steepest = ramp_per_speed * speed;
         // A gap that is crossed before that speed is reached has no more than two ramps.
-        let steepest = tables.ramp_per_speed * speed;
-        let ramp = if steepest > along { (tables.ramp_per_speed * way).square_root() } else { steepest };
-        let ramp = clamp(ramp, tables.shortest_ramp, T::HALF * tables.longest_crossing);
-        Self { duration: clamp(ramp + along, ramp + ramp, tables.longest_crossing), ramp }
+        let ramp = if steepest > along { (ramp_per_speed * way).square_root() } else { steepest };
+        let ramp = if ramp < shortest_ramp { shortest_ramp } else { ramp };
+        let (flat, twice) = (ramp + along, ramp + ramp);
+        Self { duration: if flat < twice { twice } else { flat }, ramp }
     }
 }

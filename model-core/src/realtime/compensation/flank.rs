@@ -182,6 +182,5 @@ impl<T: Real> Flank<T> {
 
 /// Speed against the load at which a flank is met: hard enough for what it shall carry, and no harder.
 fn landing_speed<T: Real>(tables: &CompensationTables<T>, demand: T) -> T {
-    let torque = if demand < T::ZERO { -demand } else { demand };
-    clamp(tables.landing_speed_per_torque * torque, tables.landing_speed, tables.fastest_landing)
+    clamp(tables.landing_speed_per_torque * demand.abs(), tables.landing_speed, tables.fastest_landing)
 }

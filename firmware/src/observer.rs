@@ -134,6 +134,10 @@ impl<P: ControllerPort> Work for Observing<P> {
         self.at_hand.take(memory, &mut self.port)
     }
 
+    fn forget(&mut self) {
+        self.at_hand.forget();
+    }
+
     fn step(&mut self) {
         let Some(exchange) = self.next.take() else { return };
         self.wants_estimates = exchange.wants_estimates;

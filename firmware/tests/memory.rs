@@ -168,7 +168,8 @@ fn told(bench: &mut Bench<Observing<Direct<'static>>>) -> Vec<u8> {
 /// Sends a memory, and hears what is made of it.
 fn brought(bench: &mut Bench<Observing<Direct<'static>>>, memory: &Memory) -> Vec<FromBoard> {
     let parts = memory.chunks(PART_BYTES).zip(0..);
-    let part = |(bytes, part): (&[u8], u8)| MemoryWish::Take(MemoryPart { part, bytes: bytes.iter().copied().collect() });
+    let part =
+        |(bytes, part): (&[u8], u8)| MemoryWish::Take(MemoryPart { part, bytes: bytes.iter().copied().collect() });
     parts.flat_map(|of| asked(bench, part(of))).collect()
 }
 

@@ -24,7 +24,7 @@ mod regression;
 mod ros_message;
 mod rows;
 mod sampling;
-mod table;
+pub mod table;
 mod twist;
 pub mod virtual_test;
 

@@ -12,7 +12,7 @@ use link::virtual_joint::WireUpset;
 use model_core::realtime::observer::{Memory, MemoryError};
 
 use crate::budget::{Monitor, TickTimer};
-use crate::page::{Learnt, judgement};
+use crate::page::judgement;
 use crate::queues::{COMMAND_CAPACITY, Event, Order, TickEnd};
 use crate::safe_state::{SafeState, State};
 use crate::schedule::{Schedule, Turn};
@@ -43,6 +43,10 @@ pub trait Work {
     }
     /// Remembers what was learnt before the board was switched on, or elsewhere.
     fn remember(&mut self, _memory: &Memory) -> Result<(), MemoryError> {
+        Err(MemoryError::OtherJoint)
+    }
+    /// The same in the role's own form.
+    fn remember_learnt(&mut self, _learnt: &<Self::Words as Words>::Learnt) -> Result<(), MemoryError> {
         Err(MemoryError::OtherJoint)
     }
     /// Remembers nothing any more.
@@ -188,8 +192,10 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> Control<'a, E, W> {
     /// Between runs only: idle asks for it at no other time.
     #[inline(never)]
     fn take_memory(&mut self) {
-        let Some(memory) = self.end.remembered.take() else { return };
-        let judged = self.work.remember(memory.memory());
+        // Looked at where it lies: the stack has no room for a copy.
+        let Some(learnt) = self.end.remembered.peek() else { return };
+        let judged = self.work.remember_learnt(learnt);
+        self.end.remembered.take();
         let _ = self.end.events.give(Event::Judged(judgement(Some(judged))));
     }
 

@@ -81,8 +81,10 @@ impl<'a, L: Learnt> Keeping<'a, L> {
             (self.next_part, self.is_good) = (0, false);
         }
         let index = usize::from(part.part);
-        let place =
-            self.brought.as_mut().and_then(|brought| brought.memory_mut().chunks_exact_mut(PART_BYTES).nth(index));
+        let place = self.brought.as_mut().and_then(|brought| {
+            let (places, _) = brought.memory_mut().as_chunks_mut::<PART_BYTES>();
+            places.get_mut(index)
+        });
         let (Some(place), true, PART_BYTES) = (place, part.part == self.next_part, part.bytes.len()) else {
             return Step::Say(FromBoard::Judged(Remembered::NotAMemory));
         };
@@ -121,8 +123,9 @@ impl<'a, L: Learnt> Keeping<'a, L> {
         match self.errand.take()? {
             Errand::Tell(part) => {
                 let memory = page.read();
-                let bytes = memory.chunks_exact(PART_BYTES).nth(part.into()).unwrap_or_default();
-                let bytes = Vec::from_slice(bytes).unwrap_or_default();
+                let (parts, _) = memory.as_chunks::<PART_BYTES>();
+                let bytes = parts.get(usize::from(part)).map(|bytes| bytes.iter().copied().collect());
+                let bytes: Vec<u8, PART_BYTES> = bytes.unwrap_or_default();
                 Some(Served { answer: FromBoard::Memory(MemoryPart { part, bytes }), remembered: None })
             }
             Errand::Write => {

@@ -120,7 +120,8 @@ impl AtHand {
     /// Takes a memory that the controller finds good.
     pub fn take(&mut self, memory: &Memory, port: &mut impl ControllerPort) -> Result<(), MemoryError> {
         port.recall(memory)?;
-        *self = Self { memory: *memory, good: true };
+        self.memory = *memory;
+        self.good = true;
         Ok(())
     }
 

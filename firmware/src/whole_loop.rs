@@ -145,6 +145,10 @@ impl<P: ControllerPort, const N: usize> Work for WholeLoop<'_, P, N> {
         self.at_hand.take(memory, &mut self.port)
     }
 
+    fn remember_learnt(&mut self, learnt: &Memory) -> Result<(), MemoryError> {
+        self.remember(learnt)
+    }
+
     fn forget(&mut self) {
         self.at_hand.forget();
     }

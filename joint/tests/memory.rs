@@ -48,7 +48,7 @@ fn what_was_learnt_is_shown_with_units_beside_the_joint_file() {
     let shown = joint(&["memory", "show", text(&path)]).well();
     let line = |name: &str| shown.out.lines().find(|line| line.starts_with(name)).unwrap_or_default().to_owned();
     let width = line("half-backlash b");
-    assert!(width.contains(" um ") && width.ends_with("40.0"), "{}", shown.out);
+    assert!(width.contains(" um ") && width.ends_with("40.00"), "{}", shown.out);
     assert!(line("compliance at the output").contains("urad/(N m)"), "{}", shown.out);
     assert!(line("output encoder: error twice a turn").contains("may well be zero"), "{}", shown.out);
     let json = joint(&["memory", "show", text(&path), "--json", "-"]).well();

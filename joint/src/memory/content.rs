@@ -68,8 +68,7 @@ impl Content {
         let mut text = String::new();
         // Writing to a string cannot fail.
         let _ = writeln!(text, "{name}: learnt of joint {} with {with}\n", self.joint);
-        let stated = |finding: &Finding| joints::value(&loaded.text, finding.key.as_deref()?).ok()?.map(str::to_owned);
-        text + &table::render(&self.values, stated)
+        text + &table::render(&self.values, |finding| table::stated(&loaded.text, finding))
     }
 
     /// A value by its name.
@@ -133,7 +132,7 @@ impl Learnt {
             unit: unit.to_owned(),
             key: (!key.is_empty()).then(|| key.to_owned()),
             value: learnt.then_some(self.value),
-            interval: learnt.then(|| [self.value - reach, self.value + reach]),
+            interval: learnt.then_some([self.value - reach, self.value + reach]),
             note: if learnt { note.to_owned() } else { "not learnt".to_owned() },
         }
     }

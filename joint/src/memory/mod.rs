@@ -19,9 +19,13 @@ use model_core::realtime::observer::{MEMORY_BYTES, Memory, MemoryError};
 use crate::check;
 use crate::failure::{Failure, Outcome};
 use crate::hil::Progress;
+use crate::hil::session::Session;
 use crate::output;
 use crate::sim::files::unwritten;
 use content::Content;
+
+/// What a board is asked to do with its flash.
+type Ask = fn(&mut Session<'static>) -> Outcome<Kept>;
 
 /// Does what is asked for.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
@@ -29,8 +33,10 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
         Command::Show { file, joint, json } => show(file, joint, json.as_deref()),
         Command::Read { file, place } => read(file, place, progress),
         Command::Write { file, place } => write(file, place, progress),
-        Command::Keep { place } => keep(place, progress),
-        Command::Erase { place } => erase(place, progress),
+        Command::Keep { place } => {
+            change(place, progress, Session::keep_memory, "keeps what it has learnt, in its flash")
+        }
+        Command::Erase { place } => change(place, progress, Session::erase_memory, "keeps no memory now"),
     })
 }
 
@@ -94,24 +100,14 @@ fn write(file: &Path, place: &Place, progress: &Progress) -> Outcome<()> {
     }
 }
 
-fn keep(place: &Place, progress: &Progress) -> Outcome<()> {
+/// Has a board do something with its own flash, and says what then is so.
+fn change(place: &Place, progress: &Progress, ask: Ask, done: &str) -> Outcome<()> {
     let loaded = check::load(&place.joint)?;
     let mut found = Found::call(place, &loaded, progress)?;
-    let kept = found.session.keep_memory()?;
+    let kept = ask(&mut found.session)?;
     progress.clear();
     match kept {
-        Kept::Stored => output::print(&format!("what {} has learnt is in its flash\n", found.name)),
-        _ => Err(found.not_written()),
-    }
-}
-
-fn erase(place: &Place, progress: &Progress) -> Outcome<()> {
-    let loaded = check::load(&place.joint)?;
-    let mut found = Found::call(place, &loaded, progress)?;
-    let kept = found.session.erase_memory()?;
-    progress.clear();
-    match kept {
-        Kept::Stored => output::print(&format!("{} keeps no memory now\n", found.name)),
+        Kept::Stored => output::print(&format!("{} {done}\n", found.name)),
         _ => Err(found.not_written()),
     }
 }

@@ -11,6 +11,7 @@ pub const MEMORY_PARTS: u8 = 2;
 pub const PART_BYTES: usize = MEMORY_BYTES / MEMORY_PARTS as usize;
 
 /// What a host wants of a memory. Answered by [`FromBoard::Kept`](super::FromBoard::Kept) with why if nothing comes of it.
+#[allow(clippy::large_enum_variant, reason = "a board has no allocator to box with")]
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum MemoryWish {
     /// Keep what the controller has learnt, in flash. Answered by [`FromBoard::Kept`](super::FromBoard::Kept).

@@ -3,7 +3,9 @@
 
 use std::time::Duration;
 
-use link::messages::{FromBoard, Kept, MEMORY_PARTS, MemoryPart, MemoryWish, PART_BYTES, Remembered, ToBoard};
+use link::messages::{
+    FromBoard, Kept, MEMORY_PARTS, MemoryPart, MemoryWish, PART_BYTES, Remembered, RunSettings, ToBoard,
+};
 use model_core::realtime::observer::{MEMORY_BYTES, Memory};
 
 use super::{SILENCE, Session};
@@ -16,7 +18,7 @@ impl Session<'_> {
     /// What the page of its flash holds.
     pub fn stored_memory(&mut self) -> Outcome<Memory> {
         let mut memory = [0; MEMORY_BYTES];
-        for (part, place) in (0..MEMORY_PARTS).zip(memory.chunks_exact_mut(PART_BYTES)) {
+        for (part, place) in (0..MEMORY_PARTS).zip(memory.as_chunks_mut::<PART_BYTES>().0) {
             let told = self.ask_about(MemoryWish::Tell { part }, SILENCE, |message| match message {
                 FromBoard::Memory(told) if told.part == part && told.bytes.len() == PART_BYTES => Some(told.bytes),
                 _ => None,
@@ -29,7 +31,7 @@ impl Session<'_> {
     /// Brings it a memory that runs may begin from; what its controller makes of it.
     pub fn bring_memory(&mut self, memory: &Memory) -> Outcome<Remembered> {
         let mut parts = (0..MEMORY_PARTS)
-            .zip(memory.chunks_exact(PART_BYTES))
+            .zip(memory.as_chunks::<PART_BYTES>().0)
             .map(|(part, bytes)| MemoryWish::Take(MemoryPart { part, bytes: bytes.iter().copied().collect() }));
         let last = parts.next_back();
         for part in parts {
@@ -51,6 +53,16 @@ impl Session<'_> {
     /// Has it write what it has learnt to its flash.
     pub fn keep_memory(&mut self) -> Outcome<Kept> {
         self.write(MemoryWish::Keep)
+    }
+
+    /// Ends a run, has what was learnt in it kept, and begins anew from that. Where there is no flash it is at hand until the
+    /// power is off.
+    pub fn begin_again(&mut self) -> Outcome<()> {
+        let settings = self.recording.settings.ok_or_else(|| Failure::new("nothing has run yet"))?;
+        self.send(&ToBoard::Stop)?;
+        self.drain()?;
+        self.keep_memory()?;
+        self.reset(RunSettings { from_memory: true, ..settings })
     }
 
     /// Has it forget what it has learnt, in its flash too.

@@ -12,7 +12,7 @@ use link::virtual_joint::WireUpset;
 use model_core::realtime::observer::{Memory, MemoryError};
 
 use crate::budget::{Monitor, TickTimer};
-use crate::page::judgement;
+use crate::page::{Learnt, judgement};
 use crate::queues::{COMMAND_CAPACITY, Event, Order, TickEnd};
 use crate::safe_state::{SafeState, State};
 use crate::schedule::{Schedule, Turn};
@@ -192,6 +192,9 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> Control<'a, E, W> {
     /// Between runs only: idle asks for it at no other time.
     #[inline(never)]
     fn take_memory(&mut self) {
+        if <W::Words as Words>::Learnt::EMPTY.is_none() {
+            return;
+        }
         // Looked at where it lies: the stack has no room for a copy.
         let Some(learnt) = self.end.remembered.peek() else { return };
         let judged = self.work.remember_learnt(learnt);

@@ -10,16 +10,16 @@ use crate::target::board::Board;
 /// Arguments of `joint memory`.
 #[derive(Debug, clap::Args)]
 #[command(
-    after_help = "A memory is what the observer on a board has learnt: half-backlash, compliance, offset, encoder error maps. It is
-good for the joint file and encoders that the board's image was built from, and for nothing else.
+    after_help = "A memory is what the observer on a board has learnt: half-backlash, compliance, offset, encoder errors. It \
+is good for the joint file and encoders that the board's image was built from, and for nothing else.
 
 Examples:
-  joint memory keep --port /dev/ttyACM0                  what the board has learnt in its last run goes to its flash
-  joint memory read q1.memory --port /dev/ttyACM0        from its flash to a file, and shown
-  joint memory show q1.memory --joint joints/q1.toml     what is in it
-  joint memory write q1.memory --port /dev/ttyACM0       to the flash of a board
-  joint memory write q1.memory --joint q1                only judged, by the firmware on the emulated board
-  joint memory erase --port /dev/ttyACM0
+  joint memory keep --port /dev/ttyACM0               what was learnt in the last run, to the flash
+  joint memory read q1.memory --port /dev/ttyACM0     from the flash to a file, and shown
+  joint memory show q1.memory --joint joints/q1.toml  what is in it
+  joint memory write q1.memory --port /dev/ttyACM0    to the flash of a board
+  joint memory write q1.memory --joint q1             judged by the firmware on the emulated board
+  joint memory erase --port /dev/ttyACM0              forgotten
 
 Exit code: 0 if it was done, 2 for bad input or a bad environment, 130 after Ctrl-C."
 )]

@@ -54,7 +54,8 @@ pub(super) fn maps(twist: &Twist, plan: &Plan) -> Vec<Finding> {
 /// How old the output's reading is. What counts and teeth feign of an angle looks like an age the more, the slower the output
 /// turns.
 pub(super) fn skew(log: &Log, twist: &Twist, plan: &Plan) -> Finding {
-    let feigned = FEIGNED_COUNTS * std::f64::consts::TAU / f64::from(1_u32 << plan.output_bits);
+    let count = |bits: u32| std::f64::consts::TAU / f64::from(1_u32 << bits);
+    let feigned = FEIGNED_COUNTS * (count(plan.motor_bits) / plan.ratio() + count(plan.output_bits));
     let skew = Estimate::of(&twist.solution, twist::SKEW).wider_by(feigned / usual_speed(log).max(f64::MIN_POSITIVE));
     let why = "the joint must turn at different speeds";
     let narrow = skew.half < 2.0 * NARROWED * twist::width(twist::SKEW);

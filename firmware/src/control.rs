@@ -12,6 +12,7 @@ use link::virtual_joint::WireUpset;
 use model_core::realtime::observer::{Memory, MemoryError};
 
 use crate::budget::{Monitor, TickTimer};
+use crate::page::{Learnt, judgement};
 use crate::queues::{COMMAND_CAPACITY, Event, Order, TickEnd};
 use crate::safe_state::{SafeState, State};
 use crate::schedule::{Schedule, Turn};
@@ -40,10 +41,16 @@ pub trait Work {
     fn learnt(&self) -> Option<&<Self::Words as Words>::Learnt> {
         None
     }
-    /// Remembers what was learnt before the board was switched on.
+    /// Remembers what was learnt before the board was switched on, or elsewhere.
     fn remember(&mut self, _memory: &Memory) -> Result<(), MemoryError> {
         Err(MemoryError::OtherJoint)
     }
+    /// The same in the role's own form.
+    fn remember_learnt(&mut self, _learnt: &<Self::Words as Words>::Learnt) -> Result<(), MemoryError> {
+        Err(MemoryError::OtherJoint)
+    }
+    /// Remembers nothing any more.
+    fn forget(&mut self) {}
     /// Takes the command of the step to come.
     fn take(&mut self, command: <Self::Words as Words>::Command);
     /// Takes a fault for the run to come; `false` if the role has none, or no room for another.
@@ -127,6 +134,7 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> Control<'a, E, W> {
                 let there_is = self.work.learn();
                 self.hand_out_memory(there_is);
             }
+            Some(Order::Remember) => self.take_memory(),
             Some(order) => {
                 self.answer(order);
                 if let (Order::Reset(settings), true) = (order, self.is_fresh) {
@@ -150,6 +158,12 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> Control<'a, E, W> {
                 Event::Stopped
             }
             Order::Keep => Event::Memory(Err(Kept::Running)),
+            // Has been obeyed: its stack is not needed here.
+            Order::Remember => return,
+            Order::Forget => {
+                self.work.forget();
+                Event::Forgotten
+            }
             Order::Upset(upset) => {
                 let begins = matches!(self.state(), State::Running) && self.steps == 0;
                 Event::Upset { taken: begins && self.work.upset(upset) }
@@ -173,6 +187,19 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> Control<'a, E, W> {
         // Idle has taken the one before.
         let given = memory.is_some_and(|memory| self.end.learnt.give(memory.clone()).is_ok());
         let _ = self.end.events.give(Event::Memory(if given { Ok(()) } else { Err(Kept::Nothing) }));
+    }
+
+    /// Between runs only: idle asks for it at no other time.
+    #[inline(never)]
+    fn take_memory(&mut self) {
+        if <W::Words as Words>::Learnt::EMPTY.is_none() {
+            return;
+        }
+        // Looked at where it lies: the stack has no room for a copy.
+        let Some(learnt) = self.end.remembered.peek() else { return };
+        let judged = self.work.remember_learnt(learnt);
+        self.end.remembered.take();
+        let _ = self.end.events.give(Event::Judged(judgement(Some(judged))));
     }
 
     fn reset(&mut self, settings: RunSettings) -> Event {

@@ -2,19 +2,20 @@
 //! and the timing monitor have to say. One thing at a time, and only when the line has room for the longest frame, so
 //! that nothing has to be dropped for want of room; when that matters to the tick, the queues tell it.
 
-use core::sync::atomic::Ordering::{Acquire, Release};
+use core::sync::atomic::Ordering::Acquire;
 
 use heapless::Vec;
-use heapless::spsc::Consumer;
+use heapless::spsc::{Consumer, Producer};
 use link::framing::{MAX_FRAME, Receiver, encode};
-use link::messages::{
-    Accepted, Fault, FromBoard, Hello, Kept, LOG_BYTES, Log, Remembered, RunMode, RunSettings, ToBoard,
-};
+use link::messages::{Fault, FromBoard, Hello, LOG_BYTES, Log, MemoryWish, RunSettings, ToBoard};
 
-use crate::queues::{Event, IdleEnd, Order};
+use crate::intake::{Intake, Taken};
+use crate::keeping::{Keeping, Step};
+use crate::page::Page;
+use crate::queues::{Event, IdleEnd, Order, Progress};
 use crate::serial::LineEnd;
 use crate::timing_report::{LineCounts, Resources, statistics};
-use crate::words::{Batch, Timed, Timetable, Words};
+use crate::words::{Batch, Words};
 
 /// The encoded log, as far as it waits to be sent.
 pub struct LogEnd<'a> {
@@ -28,7 +29,12 @@ pub struct LogEnd<'a> {
 pub struct Conversation<'a, W: Words> {
     hello: Hello,
     period: u32,
-    end: IdleEnd<'a, W>,
+    intake: Intake<'a, W>,
+    keeping: Keeping<'a, W::Learnt>,
+    orders: Producer<'a, Order>,
+    samples: Consumer<'a, W::Sample>,
+    events: Consumer<'a, Event>,
+    progress: &'a Progress,
     line: LineEnd<'a>,
     log: LogEnd<'a>,
     receiver: Receiver,
@@ -37,20 +43,22 @@ pub struct Conversation<'a, W: Words> {
     awaiting: bool,
     cause: Option<Fault>,
     clear_with_report: bool,
-    mode: RunMode,
-    held: Option<W::Timetable>,
-    next_sequence: u16,
-    lost_schedules: u32,
     cleared: LineCounts,
 }
 
 impl<'a, W: Words> Conversation<'a, W> {
     /// Before the first word; `period` is the tick's, in timer counts.
     pub fn new(hello: Hello, period: u32, end: IdleEnd<'a, W>, line: LineEnd<'a>, log: LogEnd<'a>) -> Self {
+        let IdleEnd { commands, orders, samples, events, learnt, remembered, progress } = end;
         Self {
             hello,
             period,
-            end,
+            intake: Intake::new(commands, progress),
+            keeping: Keeping::new(learnt, remembered),
+            orders,
+            samples,
+            events,
+            progress,
             line,
             log,
             receiver: Receiver::new(),
@@ -59,25 +67,20 @@ impl<'a, W: Words> Conversation<'a, W> {
             awaiting: false,
             cause: None,
             clear_with_report: false,
-            mode: RunMode::Lockstep,
-            held: None,
-            next_sequence: 0,
-            lost_schedules: 0,
             cleared: LineCounts::default(),
         }
     }
 
-    /// What is to be written to flash now, and said to be by [`Conversation::kept`]: nothing runs until then.
-    pub fn to_keep(&mut self) -> Option<W::Learnt> {
-        self.end.learnt.dequeue()
-    }
-
-    /// Says what became of it.
-    pub fn kept(&mut self, stored: bool) {
-        if stored {
-            self.hello.remembered = Remembered::Good;
+    /// Has the page of flash do what is to be done with it, if anything is: nothing runs until then. `writing` wraps what may
+    /// take a second or two.
+    pub fn serve_page(&mut self, page: &mut impl Page, writing: impl FnOnce(&mut dyn FnMut() -> bool) -> bool) {
+        if !self.has_room() {
+            return;
         }
-        self.say(&FromBoard::Kept(if stored { Kept::Stored } else { Kept::NotWritten }));
+        if let Some(served) = self.keeping.serve(page, writing) {
+            self.hello.remembered = served.remembered.unwrap_or(self.hello.remembered);
+            self.say(&served.answer);
+        }
     }
 
     /// Does one thing of each kind if there is one; says whether there was any. `resources` is asked when a report is
@@ -85,7 +88,7 @@ impl<'a, W: Words> Conversation<'a, W> {
     pub fn attend(&mut self, resources: &mut dyn FnMut(bool) -> Resources) -> bool {
         let sampled = self.has_room() && self.report_samples();
         let happened = self.has_room() && self.report_event(resources);
-        let heard = !self.awaiting && self.has_room() && self.take_held_or_listen();
+        let heard = !self.awaiting && !self.keeping.is_busy() && self.has_room() && self.take_held_or_listen();
         let logged = self.has_room() && self.report_log();
         sampled || happened || heard || logged
     }
@@ -102,19 +105,19 @@ impl<'a, W: Words> Conversation<'a, W> {
     }
 
     fn is_running(&self) -> bool {
-        self.end.progress.running.load(Acquire)
+        self.progress.running.load(Acquire)
     }
 
     /// Takes samples into the batch and sends it once it is full, or once there are no more to come for now.
     fn report_samples(&mut self) -> bool {
         let mut taken = false;
         while !self.batch.is_full() {
-            let Some(sample) = self.end.samples.dequeue() else { break };
+            let Some(sample) = self.samples.dequeue() else { break };
             self.batch.add(&sample);
             taken = true;
         }
-        let at_rest = || !self.is_running() || self.has_caught_up();
-        if self.batch.is_full() || (!self.batch.is_empty() && at_rest() && !self.end.samples.ready()) {
+        let at_rest = || !self.is_running() || self.intake.has_caught_up();
+        if self.batch.is_full() || (!self.batch.is_empty() && at_rest() && !self.samples.ready()) {
             let message = self.batch.take();
             self.say(&message);
             return true;
@@ -122,19 +125,15 @@ impl<'a, W: Words> Conversation<'a, W> {
         taken
     }
 
-    fn has_caught_up(&self) -> bool {
-        self.end.progress.steps.load(Acquire) >= self.end.progress.horizon.load(Acquire)
-    }
-
     /// Tells the host what the tick says. The end of a run is told after its last sample.
     fn report_event(&mut self, resources: &mut dyn FnMut(bool) -> Resources) -> bool {
-        let samples_left = self.end.samples.ready() || !self.batch.is_empty();
-        match self.end.events.peek() {
+        let samples_left = self.samples.ready() || !self.batch.is_empty();
+        match self.events.peek() {
             None => return false,
             Some(Event::Stopped | Event::Tripped(_)) if samples_left => return false,
             Some(_) => {}
         }
-        let Some(event) = self.end.events.dequeue() else { return false };
+        let Some(event) = self.events.dequeue() else { return false };
         self.awaiting &= matches!(event, Event::Tripped(_));
         match event {
             Event::ResetDone => {
@@ -144,6 +143,12 @@ impl<'a, W: Words> Conversation<'a, W> {
             // Said once it is written.
             Event::Memory(Ok(())) => {}
             Event::Memory(Err(why)) => self.say(&FromBoard::Kept(why)),
+            Event::Judged(judgement) => {
+                self.keeping.judged(judgement);
+                self.say(&FromBoard::Judged(judgement));
+            }
+            // Said once the page is erased.
+            Event::Forgotten => self.keeping.forgotten(),
             Event::Upset { taken } => self.say(&FromBoard::Upset { taken }),
             Event::Refused(fault) | Event::Tripped(fault) => self.say(&FromBoard::Fault(fault)),
             Event::Stopped => {
@@ -166,7 +171,7 @@ impl<'a, W: Words> Conversation<'a, W> {
 
     /// Drops what is left of the run before a reset.
     fn forget_run(&mut self) {
-        while self.end.samples.dequeue().is_some() {}
+        while self.samples.dequeue().is_some() {}
         self.batch = W::Batch::default();
         self.cause = None;
         self.cleared = self.counts();
@@ -174,7 +179,7 @@ impl<'a, W: Words> Conversation<'a, W> {
 
     fn counts(&self) -> LineCounts {
         LineCounts {
-            lost_schedules: self.lost_schedules,
+            lost_schedules: self.intake.lost(),
             bad_frames: self.receiver.dropped().frames,
             lost_bytes: self.line.lost(),
             lost_log_bytes: (self.log.lost)(),
@@ -197,13 +202,12 @@ impl<'a, W: Words> Conversation<'a, W> {
     }
 
     fn take_held_or_listen(&mut self) -> bool {
-        match self.held.take() {
-            None => self.listen(),
-            Some(schedule) => {
-                self.take(schedule);
-                self.held.is_none()
-            }
+        if !self.intake.holds() {
+            return self.listen();
         }
+        let taken = self.intake.take_held();
+        self.tell(taken);
+        !self.intake.holds()
     }
 
     /// Reads up to the end of a frame.
@@ -228,10 +232,13 @@ impl<'a, W: Words> Conversation<'a, W> {
                 self.order(Order::Report { reset });
             }
             ToBoard::Stop => self.order(Order::Stop),
-            ToBoard::Keep => self.order(Order::Keep),
+            ToBoard::Memory(wish) => self.begin(wish),
             ToBoard::Upset(upset) => self.order(Order::Upset(upset)),
             commands => match W::timetable(commands) {
-                Some(timetable) => self.take(timetable),
+                Some(timetable) => {
+                    let taken = self.intake.take(timetable);
+                    self.tell(taken);
+                }
                 None => self.say(&FromBoard::Fault(Fault::WrongRole)),
             },
         }
@@ -239,7 +246,7 @@ impl<'a, W: Words> Conversation<'a, W> {
 
     /// Gives the tick an order and listens to no frame before it is answered.
     fn order(&mut self, order: Order) {
-        let _ = self.end.orders.enqueue(order);
+        let _ = self.orders.enqueue(order);
         self.awaiting = true;
     }
 
@@ -252,76 +259,25 @@ impl<'a, W: Words> Conversation<'a, W> {
         if settings.decimation == 0 || settings.command_timeout == 0 {
             return self.trip(Fault::BadSettings);
         }
-        self.mode = settings.mode;
-        self.next_sequence = 0;
-        self.end.progress.horizon.store(0, Release);
+        self.intake.begin(settings.mode);
         self.order(Order::Reset(settings));
     }
 
-    /// Queues a schedule's commands, or says why not. In lockstep a schedule that follows a gap is not taken: nothing
-    /// is simulated on torques that never arrived, and the host may send again from the missing one on. Nor is one
-    /// taken there before there is room for it: until then nothing more is read.
-    fn take(&mut self, timetable: W::Timetable) {
-        if !self.is_running() {
-            return self.say(&FromBoard::Fault(Fault::NotRunning));
+    /// Tells the host what became of a schedule.
+    fn tell(&mut self, taken: Taken) {
+        match taken {
+            Taken::Accepted(accepted) => self.say(&FromBoard::Accepted(accepted)),
+            Taken::NotRunning => self.say(&FromBoard::Fault(Fault::NotRunning)),
+            Taken::Unfit(fault) => self.trip(fault),
+            Taken::Nothing => {}
         }
-        let lockstep = self.mode == RunMode::Lockstep;
-        let sequence = timetable.sequence();
-        let gap = sequence.wrapping_sub(self.next_sequence);
-        let is_repeated = gap > u16::MAX / 2;
-        if is_repeated {
-            return self.accept(sequence);
-        }
-        if gap > 0 {
-            self.lost_schedules = self.lost_schedules.saturating_add(gap.into());
-            if lockstep {
-                return;
-            }
-        }
-        if let Err(fault) = self.check(&timetable) {
-            return self.trip(fault);
-        }
-        if timetable.commands().len() > self.queue_free() {
-            if lockstep {
-                self.held = Some(timetable);
-                return;
-            }
-            return self.trip(Fault::QueueFull);
-        }
-        for command in timetable.commands() {
-            let _ = self.end.commands.enqueue(command.clone());
-        }
-        self.next_sequence = sequence.wrapping_add(1);
-        self.end.progress.horizon.store(timetable.horizon(), Release);
-        self.accept(sequence);
     }
 
-    fn accept(&mut self, sequence: u16) {
-        let queue_free = self.queue_free() as u16;
-        self.say(&FromBoard::Accepted(Accepted { sequence, queue_free, tick: self.end.progress.steps.load(Acquire) }));
-    }
-
-    fn queue_free(&self) -> usize {
-        self.end.commands.capacity() - self.end.commands.len()
-    }
-
-    /// Commands lie between the old horizon and the new one, in rising order: those before the old one would be late,
-    /// those past the new one would block the queue.
-    fn check(&self, timetable: &W::Timetable) -> Result<(), Fault> {
-        let mut earliest = self.end.progress.horizon.load(Acquire);
-        if timetable.horizon() < earliest {
-            return Err(Fault::LateCommand { tick: timetable.horizon() });
+    fn begin(&mut self, wish: MemoryWish) {
+        match self.keeping.begin(wish, self.is_running()) {
+            Step::Order(order) => self.order(order),
+            Step::Say(answer) => self.say(&answer),
+            Step::Wait => {}
         }
-        for command in timetable.commands() {
-            let tick = command.tick();
-            if !command.is_sound() {
-                return Err(Fault::BadCommand { tick });
-            }
-            if tick < earliest || tick >= timetable.horizon() {
-                return Err(Fault::LateCommand { tick });
-            }
-            earliest = tick + 1;
-        }
-        Ok(())
     }
 }

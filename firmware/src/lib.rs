@@ -4,8 +4,8 @@
 //! `control` is one tick of any role: it takes commands from `schedule`, steps the role's work, keeps `budget`, the
 //! timing monitor, and falls back to `safe_state`. The roles are `plant`, `observer` and `whole_loop`; `words` is what
 //! they differ in on the line. `queues` is all that connects the tick to the rest, by `ends` that cannot panic.
-//! `conversation`, run in idle, answers the host with the help of `identity`, `batcher`, `telemetry` and `timing_report`;
-//! `serial` moves its bytes. `port` is the seam between a motor controller and observer with compensation, `encoder`
+//! `conversation`, run in idle, answers the host with the help of `identity`, `intake`, `keeping`, `batcher`, `telemetry`
+//! and `timing_report`; `serial` moves its bytes. `port` is the seam between a motor controller and observer with compensation, `encoder`
 //! where counts come from, `page` where what was learnt is kept.
 //! Everything so far is free of hardware and is tested on the host; `board`, `clock`, `logger`, `panic_message` and
 //! `stack` exist on a board only; `measuring` in the emulator only. Physics is left to `model-core`, the words on the
@@ -18,6 +18,8 @@ pub mod conversation;
 pub mod encoder;
 pub mod ends;
 pub mod identity;
+pub mod intake;
+pub mod keeping;
 pub mod observer;
 pub mod page;
 pub mod plant;

@@ -134,6 +134,14 @@ impl<P: ControllerPort> Work for Observing<P> {
         self.at_hand.take(memory, &mut self.port)
     }
 
+    fn remember_learnt(&mut self, learnt: &Memory) -> Result<(), MemoryError> {
+        self.remember(learnt)
+    }
+
+    fn forget(&mut self) {
+        self.at_hand.forget();
+    }
+
     fn step(&mut self) {
         let Some(exchange) = self.next.take() else { return };
         self.wants_estimates = exchange.wants_estimates;

@@ -1,5 +1,5 @@
-//! Where what an observer has learnt outlives a reset: one page of flash, read at start, written between runs. What is read
-//! there is judged before it is used; how a page is erased and written is the board's business.
+//! Where what an observer has learnt outlives a reset: one page of flash, read at start, written and erased between runs.
+//! What is read there is judged before it is used; how a page is erased and written is the board's business.
 
 use core::convert::Infallible;
 
@@ -10,18 +10,34 @@ use crate::port::ControllerPort;
 
 /// What a role learns, if it learns anything: room is taken only where it does.
 pub trait Learnt: Clone {
+    /// Room for one; none where nothing is learnt.
+    const EMPTY: Option<Self>;
     /// As it is kept.
     fn memory(&self) -> &Memory;
+    /// The same, to be changed.
+    fn memory_mut(&mut self) -> &mut Memory;
 }
 
 impl Learnt for Memory {
+    const EMPTY: Option<Self> = Some([0; MEMORY_BYTES]);
+
     fn memory(&self) -> &Memory {
+        self
+    }
+
+    fn memory_mut(&mut self) -> &mut Memory {
         self
     }
 }
 
 impl Learnt for Infallible {
+    const EMPTY: Option<Self> = None;
+
     fn memory(&self) -> &Memory {
+        match *self {}
+    }
+
+    fn memory_mut(&mut self) -> &mut Memory {
         match *self {}
     }
 }
@@ -49,6 +65,15 @@ pub fn keep(page: &mut impl Page, memory: &Memory) -> bool {
         page.write(memory);
     }
     page.read() == *memory
+}
+
+/// Leaves nothing in it, and says whether nothing is there now.
+pub fn erase(page: &mut impl Page) -> bool {
+    // One that is empty is not worn out by erasing it again.
+    if recall(page).is_some() {
+        page.write(&[0xff; MEMORY_BYTES]);
+    }
+    recall(page).is_none()
 }
 
 /// A judgement in the words of the line.
@@ -95,8 +120,14 @@ impl AtHand {
     /// Takes a memory that the controller finds good.
     pub fn take(&mut self, memory: &Memory, port: &mut impl ControllerPort) -> Result<(), MemoryError> {
         port.recall(memory)?;
-        *self = Self { memory: *memory, good: true };
+        self.memory = *memory;
+        self.good = true;
         Ok(())
+    }
+
+    /// Nothing any more.
+    pub fn forget(&mut self) {
+        self.good = false;
     }
 
     /// Has a controller that was reset go on from it.

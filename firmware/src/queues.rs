@@ -4,7 +4,7 @@
 use core::sync::atomic::{AtomicBool, AtomicU32};
 
 use heapless::spsc::{Consumer, Producer, Queue};
-use link::messages::{Fault, Kept, RunSettings};
+use link::messages::{Fault, Kept, Remembered, RunSettings};
 use link::virtual_joint::WireUpset;
 
 use crate::budget::Monitor;
@@ -35,6 +35,10 @@ pub enum Order {
     Trip(Fault),
     /// What has been learnt; answered by [`Event::Memory`].
     Keep,
+    /// Take what is in the queue for it as learnt before; answered by [`Event::Judged`].
+    Remember,
+    /// Forget what runs may begin from; answered by [`Event::Forgotten`].
+    Forget,
     /// A fault between joint and controller; answered by [`Event::Upset`].
     Upset(WireUpset),
     /// A copy of the timing monitor as [`Event::Timing`].
@@ -58,6 +62,10 @@ pub enum Event {
     Tripped(Fault),
     /// What has been learnt is there to be taken, or why there is nothing.
     Memory(Result<(), Kept>),
+    /// What the role makes of a memory that it was given.
+    Judged(Remembered),
+    /// Nothing is remembered.
+    Forgotten,
     /// Whether a fault between joint and controller was taken.
     Upset {
         /// It was.
@@ -89,6 +97,7 @@ pub struct Queues<W: Words> {
     samples: Queue<W::Sample, SAMPLES>,
     events: Queue<Event, NOTES>,
     learnt: Queue<W::Learnt, LEARNT>,
+    remembered: Queue<W::Learnt, LEARNT>,
     progress: Progress,
 }
 
@@ -104,6 +113,8 @@ pub struct TickEnd<'a, W: Words> {
     pub events: Giver<'a, Event, NOTES>,
     /// What is to be kept.
     pub learnt: Giver<'a, W::Learnt, LEARNT>,
+    /// What was learnt before.
+    pub remembered: Taker<'a, W::Learnt, LEARNT>,
     /// Shared counters.
     pub progress: &'a Progress,
 }
@@ -120,6 +131,8 @@ pub struct IdleEnd<'a, W: Words> {
     pub events: Consumer<'a, Event>,
     /// What is to be kept.
     pub learnt: Consumer<'a, W::Learnt>,
+    /// What was learnt before.
+    pub remembered: Producer<'a, W::Learnt>,
     /// Shared counters.
     pub progress: &'a Progress,
 }
@@ -133,6 +146,7 @@ impl<W: Words> Queues<W> {
             samples: Queue::new(),
             events: Queue::new(),
             learnt: Queue::new(),
+            remembered: Queue::new(),
             progress: Progress {
                 horizon: AtomicU32::new(0),
                 steps: AtomicU32::new(0),
@@ -150,17 +164,19 @@ impl<W: Words> Queues<W> {
         let (samples, samples_out) = self.samples.split();
         let (events, events_out) = self.events.split();
         let (learnt, learnt_out) = self.learnt.split();
+        let (remembered_in, remembered) = self.remembered.split();
         let progress = &self.progress;
-        let (commands, orders) = (Taker::new(commands), Taker::new(orders));
+        let (commands, orders, remembered) = (Taker::new(commands), Taker::new(orders), Taker::new(remembered));
         let (samples, events, learnt) = (Giver::new(samples), Giver::new(events), Giver::new(learnt));
         (
-            TickEnd { commands, orders, samples, events, learnt, progress },
+            TickEnd { commands, orders, samples, events, learnt, remembered, progress },
             IdleEnd {
                 commands: commands_in,
                 orders: orders_in,
                 samples: samples_out,
                 events: events_out,
                 learnt: learnt_out,
+                remembered: remembered_in,
                 progress,
             },
         )

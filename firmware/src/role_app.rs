@@ -8,7 +8,7 @@ mod app {
     use firmware::control::{Control, Work};
     use firmware::conversation::{Conversation, LogEnd};
     use firmware::identity::{self, StartUp};
-    use firmware::page::{self, Learnt};
+    use firmware::page;
     use firmware::logger::{self, LogQueue};
     use firmware::queues::{Progress, Queues};
     use firmware::serial::{Line, Serial};
@@ -114,9 +114,7 @@ mod app {
                 static_ram: stack::static_ram(),
                 stack_used: stack::deepest(),
             });
-            if let Some(memory) = conversation.to_keep() {
-                conversation.kept(watchdog.while_writing(|| page::keep(page, memory.memory())));
-            }
+            conversation.serve_page(page, |write| watchdog.while_writing(write));
             light.show(Pattern::of(progress), clock::milliseconds());
             let beat = progress.beats.load(Relaxed);
             if beat != last_beat {

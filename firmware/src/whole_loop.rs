@@ -145,6 +145,14 @@ impl<P: ControllerPort, const N: usize> Work for WholeLoop<'_, P, N> {
         self.at_hand.take(memory, &mut self.port)
     }
 
+    fn remember_learnt(&mut self, learnt: &Memory) -> Result<(), MemoryError> {
+        self.remember(learnt)
+    }
+
+    fn forget(&mut self) {
+        self.at_hand.forget();
+    }
+
     fn step(&mut self) {
         let table = self.surroundings;
         let command = self.demand.at(table.period * f32::from(self.elapsed), table.turn);

@@ -11,7 +11,10 @@ use firmware::page::{judgement, recall};
 use firmware::port::Direct;
 use firmware::tables::{PLANETS, TABLES};
 use link::controller::Exchange;
-use link::messages::{FromBoard, Kept, Remembered, RunMode, RunSettings, Schedule, ToBoard};
+use link::messages::{
+    FromBoard, Kept, MEMORY_PARTS, MemoryPart, MemoryWish, PART_BYTES, Remembered, RunMode, RunSettings, Schedule,
+    ToBoard,
+};
 use model_core::realtime::compensation::{Command, Motion, Position};
 use model_core::realtime::controller::{Answer, Controller};
 use model_core::realtime::observer::{MEMORY_BYTES, Memory};
@@ -61,7 +64,7 @@ fn run(bench: &mut Bench<Observing<Direct<'static>>>, from_memory: bool, ticks: 
 }
 
 fn kept(bench: &mut Bench<Observing<Direct<'static>>>) -> Kept {
-    bench.send(&ToBoard::Keep);
+    bench.send(&ToBoard::Memory(MemoryWish::Keep));
     bench.run(3);
     let kept = |message: FromBoard| if let FromBoard::Kept(kept) = message { Some(kept) } else { None };
     bench.said().into_iter().find_map(kept).expect("an answer")
@@ -145,4 +148,84 @@ fn flash_that_takes_nothing_is_found_out() {
     run(&mut bench, false, 10);
     stop(&mut bench);
     assert_eq!(kept(&mut bench), Kept::NotWritten);
+}
+
+/// Asks for something about the memory, and hears the answer.
+fn asked(bench: &mut Bench<Observing<Direct<'static>>>, wish: MemoryWish) -> Vec<FromBoard> {
+    bench.send(&ToBoard::Memory(wish));
+    bench.run(3);
+    bench.said()
+}
+
+fn told(bench: &mut Bench<Observing<Direct<'static>>>) -> Vec<u8> {
+    let part = |part| match asked(bench, MemoryWish::Tell { part }).pop() {
+        Some(FromBoard::Memory(told)) if told.part == part => told.bytes,
+        other => panic!("{other:?}"),
+    };
+    (0..MEMORY_PARTS).flat_map(part).collect()
+}
+
+/// Sends a memory, and hears what is made of it.
+fn brought(bench: &mut Bench<Observing<Direct<'static>>>, memory: &Memory) -> Vec<FromBoard> {
+    let parts = memory.chunks(PART_BYTES).zip(0..);
+    let part =
+        |(bytes, part): (&[u8], u8)| MemoryWish::Take(MemoryPart { part, bytes: bytes.iter().copied().collect() });
+    parts.flat_map(|of| asked(bench, part(of))).collect()
+}
+
+/// A memory that a board has learnt.
+fn learnt() -> Memory {
+    let (mut bench, _) = started([0xff; MEMORY_BYTES]);
+    run(&mut bench, false, 3000);
+    stop(&mut bench);
+    assert_eq!(kept(&mut bench), Kept::Stored);
+    assert_eq!(told(&mut bench), bench.flash.memory, "it is told as it lies there");
+    bench.flash.memory
+}
+
+#[test]
+fn a_memory_moves_from_board_to_board_and_is_erased() {
+    let memory = learnt();
+    let (mut bench, _) = started([0; MEMORY_BYTES]);
+    assert_eq!(asked(&mut bench, MemoryWish::Write), [FromBoard::Kept(Kept::Nothing)], "there is nothing to write");
+    assert_eq!(brought(&mut bench, &memory), [FromBoard::Judged(Remembered::Good)]);
+    let from_memory = run(&mut bench, true, 50);
+    assert_eq!(asked(&mut bench, MemoryWish::Write), [FromBoard::Kept(Kept::Running)]);
+    stop(&mut bench);
+    assert_eq!(asked(&mut bench, MemoryWish::Write), [FromBoard::Kept(Kept::Stored)]);
+    assert_eq!(bench.flash.memory, memory);
+    let (mut other, found) = started(memory);
+    assert_eq!((found, run(&mut other, true, 50)), (Remembered::Good, from_memory), "as if it had learnt it itself");
+    stop(&mut bench);
+    assert_eq!(asked(&mut bench, MemoryWish::Erase), [FromBoard::Kept(Kept::Stored)]);
+    assert_eq!((bench.flash.memory, bench.flash.erased), ([0xff; MEMORY_BYTES], 2));
+    assert_eq!(asked(&mut bench, MemoryWish::Erase), [FromBoard::Kept(Kept::Stored)]);
+    assert_eq!(bench.flash.erased, 2, "what is empty is not worn out");
+    assert_ne!(run(&mut bench, true, 50), from_memory, "nothing is left to begin from");
+}
+
+#[test]
+fn a_memory_that_is_no_good_is_judged_and_never_written() {
+    let memory = learnt();
+    let (mut bench, _) = started([0xff; MEMORY_BYTES]);
+    let mut damaged = memory;
+    damaged[200] ^= 1;
+    let cases = [(damaged, Remembered::Damaged), (of_another_joint(memory), Remembered::OtherJoint)];
+    for (memory, judgement) in cases {
+        assert_eq!(brought(&mut bench, &memory), [FromBoard::Judged(judgement)]);
+        assert_eq!(asked(&mut bench, MemoryWish::Write), [FromBoard::Kept(Kept::Nothing)]);
+    }
+    let late = MemoryWish::Take(MemoryPart { part: 1, bytes: memory[PART_BYTES..].iter().copied().collect() });
+    assert_eq!(asked(&mut bench, late), [FromBoard::Judged(Remembered::NotAMemory)], "its first part never came");
+    assert_eq!(bench.flash.erased, 0);
+}
+
+#[test]
+fn a_role_that_learns_nothing_says_so() {
+    let mut bench = Bench::new();
+    for wish in [MemoryWish::Keep, MemoryWish::Tell { part: 0 }, MemoryWish::Write, MemoryWish::Erase] {
+        bench.send(&ToBoard::Memory(wish));
+        bench.run(3);
+        assert_eq!(bench.said(), [FromBoard::Kept(Kept::Nothing)]);
+    }
 }

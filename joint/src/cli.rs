@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::failure::{EXIT_BAD_INPUT, Outcome};
-use crate::{bench, budget, check, hil, identify, images, output, paper, sim, sweep};
+use crate::{bench, budget, check, hil, identify, images, memory, output, paper, sim, sweep};
 
 /// Simulates a planetary robot joint with backlash on a microcontroller, drives it and checks it
 #[derive(Debug, Parser)]
@@ -35,6 +35,8 @@ enum Command {
     Merge(sweep::MergeArguments),
     /// Find backlash, compliance, damping, friction and encoder errors in a recorded reversal test
     Identify(identify::Arguments),
+    /// Read what a board has learnt, show it, write it to a board, erase it
+    Memory(memory::Arguments),
     /// Build the firmware image of a joint and say where it is
     Image(images::ImageArguments),
     /// Build the firmware image of a joint and write it to a real board by probe-rs
@@ -62,6 +64,7 @@ pub fn main() -> ExitCode {
         Some(Command::Sweep(arguments)) => sweep::run(arguments),
         Some(Command::Merge(arguments)) => sweep::merge(arguments),
         Some(Command::Identify(arguments)) => identify::run(arguments),
+        Some(Command::Memory(arguments)) => memory::run(arguments),
         Some(Command::Image(arguments)) => images::image(arguments),
         Some(Command::Flash(arguments)) => images::flash(arguments),
     };

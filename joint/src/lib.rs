@@ -3,7 +3,7 @@
 //! a run leaves behind and `report` shows it, `sim` moves a joint on the host, `sweep` many of them, `bench` compares the
 //! step with what people use, `budget` says what is promised of it, `paper` redoes the paper with the numerics of
 //! `study`, `proof` holds the step that ships to what is promised of it, `trial` runs test files of observer and
-//! compensation, `identify` finds a joint's parameters in a recorded test; physics and wire format are left to
+//! compensation, `identify` finds a joint's parameters in a recorded test, `memory` moves what a board has learnt; physics and wire format are left to
 //! `model-core` and `link`.
 
 pub mod bench;
@@ -16,6 +16,7 @@ pub mod hil;
 pub mod identify;
 pub mod images;
 pub mod interruption;
+pub mod memory;
 pub mod output;
 pub mod paper;
 pub mod proof;

@@ -9,7 +9,7 @@ mod schema;
 mod timing;
 mod write;
 
-pub use checks::{Bound, Check, Source, Verdict};
+pub use checks::{Bound, Check, Source, Verdict, all_hold};
 pub use sample::MotionSample;
 pub use samples::{CloseUp, Contact, ErrorSeries, Reference, Samples};
 pub use timing::{Counters, HistogramBin, MinMeanMax, TimingFigures};

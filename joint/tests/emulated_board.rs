@@ -1,6 +1,9 @@
 //! The command on the emulated board: the real firmware, the real emulator, runs that succeed and runs that are cut
 //! off. These tests build images and take a while, so they are left out of a plain `cargo test`.
 
+#[allow(dead_code, reason = "every test binary uses its own part of it")]
+mod learning_board;
+
 use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -219,4 +222,29 @@ fn images_of_several_joints_lie_side_by_side() {
     let (one, other) = (image("q1"), image("l1"));
     assert_ne!(one, other);
     assert!(one.is_file() && other.is_file());
+}
+
+#[test]
+#[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
+fn a_memory_is_judged_by_the_firmware_of_the_emulated_board() {
+    let folder = folder();
+    let q1 = learning_board::joint(&[]);
+    let file = folder.path().join("learnt.memory");
+    fs::write(&file, learning_board::learnt(&q1, &q1, 1000).0).expect("a file");
+    let memory = |words: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_joint"));
+        let (output, said) = finish(command.env("COLUMNS", "400").arg("memory").args(words));
+        (output.status.code(), said)
+    };
+    let file = file.to_str().expect("a plain name");
+    for role in ["observer", "loop"] {
+        let (code, said) = memory(&["write", file, "--role", role]);
+        assert!(code == Some(0) && said.contains("is good") && said.contains("no flash"), "{said}");
+    }
+    let (code, said) = memory(&["write", file, "--joint", "l1"]);
+    assert!(code == Some(2) && said.contains("another joint"), "{said}");
+    let (code, said) = memory(&["read", file]);
+    assert!(code == Some(2) && said.contains("has no flash"), "{said}");
+    let (code, said) = memory(&["erase"]);
+    assert!(code == Some(0) && said.contains("keeps no memory now"), "{said}");
 }

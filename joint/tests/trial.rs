@@ -205,6 +205,17 @@ fn what_is_wrong_with_a_test_file_is_named_with_the_mend() {
     refused("profile = \"T2\"\n[assert]\nrms_mrad = \"<= 8\"\n[controller]\nshort_run = \"loop\"", &["short_run"]);
     refused("short_run = \"plant\"\nprofile = \"T2\"", &["observer", "loop"]);
     refused("settle_s = 1", &["not TOML"]);
+    refused("profile = \"T2\"\nseeds = -1", &["`seeds` names no seeds", "as in 5"]);
+    refused(
+        "profile = \"T2\"\n[[fault]]\nkind = \"torque_bias\"\ntorque_N_m = nan",
+        &["`torque_N_m` must be a number"],
+    );
+    refused("profile = \"T2\"\n[controller]\nmode = \"motor_pid\"\nfrom_memory = true", &["motor_pid learns nothing"]);
+    let late = "profile = \"T2\"\n[[fault]]\nkind = \"encoder_frozen\"\nstart_s = 1.2";
+    refused(late, &["this begins when the run is over, at 1.2 s", "duration_s"]);
+    for seed in ["-1", "1.5", "18446744073709551616"] {
+        run(folder().path(), "profile = \"T2\"", &["--seed", seed]).refused(&["a seed is a whole number from 0 to"]);
+    }
 }
 
 #[test]
@@ -230,4 +241,30 @@ fn a_recorded_motion_and_any_preset_can_be_tested() {
         let more = format!("joint = \"{preset}\"\nprofile = {{ kind = \"csv\", file = \"motion.csv\" }}");
         run(folder.path(), &more, &["--plant", "reference"]).well();
     }
+}
+
+#[test]
+fn a_run_from_memory_knows_the_width_at_once_and_its_rivals_are_the_same() {
+    let of = |from_memory: bool| {
+        let folder = folder();
+        let more = format!("profile = \"T2\"\n[controller]\nfrom_memory = {from_memory}");
+        run(folder.path(), &more, &["--seed", "4"]).well();
+        let runs = results(folder.path())["tests"][0]["runs"].clone();
+        let figure = |name: &str| runs[0]["figures"][name].as_f64().expect("a figure");
+        (figure("width_right_after_s"), runs[1]["digest"].clone())
+    };
+    let ((fresh, rival), (remembered, same)) = (of(false), of(true));
+    assert!(fresh > 0.1 && remembered < 0.01, "{fresh} s, then {remembered} s");
+    assert_eq!(rival, same, "a rival learns nothing");
+}
+
+#[test]
+fn the_example_of_the_documentation_passes() {
+    let document = include_str!("../../docs/hil-file.md");
+    let (_, rest) = document.split_once("```toml\n").expect("an example");
+    let (example, _) = rest.split_once("```").expect("its end");
+    let folder = folder();
+    let file = folder.path().join("example.toml");
+    fs::write(&file, example).expect("a file");
+    joint(&["hil", text(&file), "--host", "--plant", "reference", "--out", text(folder.path())]).well();
 }

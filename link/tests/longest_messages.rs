@@ -94,6 +94,16 @@ fn the_longest_log_acceptance_and_fault_arrive() {
 }
 
 #[test]
+fn a_part_of_a_memory_arrives_both_ways() {
+    let part = MemoryPart { part: u8::MAX, bytes: full(u8::MAX) };
+    arrives(FromBoard::Memory(part.clone()));
+    arrives(FromBoard::Judged(Remembered::NotFinite));
+    let message = ToBoard::Memory(MemoryWish::Take(part));
+    let mut receiver = Receiver::new();
+    assert_eq!(encode(&message).unwrap().iter().find_map(|&byte| receiver.push(byte)), Some(message));
+}
+
+#[test]
 fn the_longest_schedule_arrives() {
     let command = Command { tick: u32::MAX, drive_torque: f32::MAX, load_torque: f32::MAX };
     let message = ToBoard::Schedule(Schedule { sequence: u16::MAX, horizon: u32::MAX, commands: full(command) });

@@ -11,7 +11,7 @@ use firmware::budget::TickTimer;
 use firmware::control::{Control, Work};
 use firmware::conversation::{Conversation, LogEnd};
 use firmware::identity::{StartUp, hello};
-use firmware::page::{Learnt, Page, keep};
+use firmware::page::Page;
 use firmware::plant::Plant;
 use firmware::queues::Queues;
 use firmware::serial::{Line, Serial, Uart};
@@ -196,9 +196,7 @@ where
         while nothing_to_do < 200 {
             self.serial.service();
             let busy = self.conversation.attend(&mut |_| Resources::default());
-            if let Some(memory) = self.conversation.to_keep() {
-                self.conversation.kept(keep(&mut self.flash, memory.memory()));
-            }
+            self.conversation.serve_page(&mut self.flash, |write| write());
             nothing_to_do = if busy { 0 } else { nothing_to_do + 1 };
         }
     }

@@ -85,7 +85,7 @@ fn emulator_tests() -> Outcome<()> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let status = Command::new(cargo)
         .args(["test", "--workspace"])
-        .args(["emulated_board", "same_bits", "tick_audit"].iter().flat_map(|name| ["--test", name]))
+        .args(["emulated_board", "same_bits", "tick_audit", "bench"].iter().flat_map(|name| ["--test", name]))
         .args(["--", "--ignored"])
         .current_dir(workspace())
         .stdin(Stdio::null())

@@ -34,7 +34,7 @@ use recording::Recording;
 use session::Session;
 
 use crate::failure::{Failure, Outcome};
-use crate::record::{RunRecord, Verdict};
+use crate::record::{RunRecord, all_hold};
 use crate::{output, report, trial};
 
 /// Runs a joint on a board; succeeds only if every check held.
@@ -109,7 +109,7 @@ fn run_once(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
         (Ok(()), Ok(report)) => {
             output::print(&format!("report: {}\n", report.display()))?;
             let picture = arguments.picture.as_deref().map_or(Ok(()), |path| report::write_picture(&record, path));
-            verdict(&record).and(picture)
+            all_hold(&record.checks, "the report shows where the run departs from what was expected").and(picture)
         }
         (Err(failure), Ok(report)) => {
             let kept = format!("what was recorded until tick {} is in {}", recording.last_tick(), report.display());
@@ -149,18 +149,4 @@ fn show(record: &RunRecord) -> Outcome<()> {
     let identity = &record.identity;
     let head = format!("{} on {} ({})\n\n", identity.joint, identity.board, identity.transport);
     output::print(&(head + &table::table(&record.checks, identity.emulated) + "\n"))
-}
-
-fn verdict(record: &RunRecord) -> Outcome<()> {
-    let failed: Vec<&str> = record
-        .checks
-        .iter()
-        .filter(|check| check.verdict == Verdict::Failed)
-        .map(|check| check.name.as_str())
-        .collect();
-    if failed.is_empty() {
-        return Ok(());
-    }
-    let message = format!("{} of {} checks did not hold: {}", failed.len(), record.checks.len(), failed.join(", "));
-    Err(Failure::check_failed(message).with_help("the report shows where the run departs from what was expected"))
 }

@@ -41,7 +41,7 @@ pub struct Arguments {
     #[arg(long, value_enum)]
     pub role: Option<RoleName>,
     /// Test files: runs this seed in place of the file's
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = seed, allow_negative_numbers = true)]
     pub seed: Option<u64>,
     /// Test files: what is controlled [default: core]
     #[arg(long, value_enum)]
@@ -94,6 +94,10 @@ pub struct Arguments {
     /// Also builds the images of all boards, lints the firmware and runs the tests that need the emulated board
     #[arg(long, conflicts_with = "port")]
     pub check: bool,
+}
+
+fn seed(text: &str) -> Result<u64, String> {
+    text.parse().map_err(|_| format!("a seed is a whole number from 0 to {}", u64::MAX))
 }
 
 /// What a board does in tests of observer and compensation.

@@ -57,7 +57,12 @@ impl Recording {
             FromBoard::Fault(fault) => self.faults.push(fault),
             FromBoard::Log(log) => self.take_log(&log),
             // Kept by whoever asked for them.
-            FromBoard::Answer(_) | FromBoard::Loop(_) | FromBoard::Upset { .. } | FromBoard::Kept(_) => {}
+            FromBoard::Answer(_)
+            | FromBoard::Loop(_)
+            | FromBoard::Upset { .. }
+            | FromBoard::Kept(_)
+            | FromBoard::Memory(_)
+            | FromBoard::Judged(_) => {}
         }
     }
 

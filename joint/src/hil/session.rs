@@ -3,6 +3,7 @@
 
 mod control;
 mod identity;
+mod memory;
 mod stream;
 
 use std::time::{Duration, Instant};
@@ -65,6 +66,14 @@ impl<'a> Session<'a> {
 
     /// Calls the board until it answers, and refuses one that is not as expected.
     pub fn connect(&mut self, expected: &Expected, patience: Duration) -> Outcome<Hello> {
+        let hello = self.call(&expected.mend, patience)?;
+        expected.verify(&hello)?;
+        Ok(hello)
+    }
+
+    /// Calls the board until it answers, whatever it is as long as it can be understood; `mend` is the command that puts an
+    /// image onto it.
+    pub fn call(&mut self, mend: &str, patience: Duration) -> Outcome<Hello> {
         let deadline = Instant::now() + patience;
         let mut next_ping = Instant::now();
         while self.recording.hello.is_none() {
@@ -74,16 +83,14 @@ impl<'a> Session<'a> {
             }
             self.hear()?;
             if let Some(head) = self.foreign {
-                return Err(head.refusal(&expected.mend));
+                return Err(head.refusal(mend));
             }
             if Instant::now() > deadline {
-                return Err(self.no_answer(patience, &expected.mend));
+                return Err(self.no_answer(patience, mend));
             }
         }
         self.head_receiver = None;
-        let hello = self.recording.hello.clone().ok_or_else(|| Failure::new("the board gave no name"))?;
-        expected.verify(&hello)?;
-        Ok(hello)
+        self.recording.hello.clone().ok_or_else(|| Failure::new("the board gave no name"))
     }
 
     /// Brings the board to rest at tick 0, whatever it was doing, with all counts cleared.
@@ -191,6 +198,31 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
+    /// Sends a message and waits for its answer.
+    fn ask<T>(
+        &mut self,
+        message: &ToBoard,
+        what: &str,
+        patience: Duration,
+        answer: impl Fn(FromBoard) -> Option<T>,
+    ) -> Outcome<T> {
+        self.send(message)?;
+        let start = Instant::now();
+        loop {
+            for message in self.hear()? {
+                if let FromBoard::Fault(raised) = &message {
+                    return Err(super::fault::failure(raised));
+                }
+                if let Some(answer) = answer(message) {
+                    return Ok(answer);
+                }
+            }
+            if start.elapsed() > patience {
+                return Err(self.silent_for(patience, &format!("no {what} came")));
+            }
+        }
+    }
+
     /// Listens until nothing is under way any more.
     fn drain(&mut self) -> Outcome<()> {
         let deadline = Instant::now() + DRAIN;
@@ -218,12 +250,16 @@ impl<'a> Session<'a> {
     }
 
     fn silent(&self, what: &str) -> Failure {
+        self.silent_for(SILENCE, what)
+    }
+
+    fn silent_for(&self, patience: Duration, what: &str) -> Failure {
         let traffic = &self.recording.traffic;
         let message = format!(
             "the board on {} has fallen silent at tick {}: {what} for {} s ({} bad frames dropped)",
             self.line.name(),
             self.recording.last_tick(),
-            SILENCE.as_secs(),
+            patience.as_secs(),
             traffic.bad_frames
         );
         Failure::new(message).with_help("check the line and the board's power, reset the board and run again")

@@ -44,7 +44,7 @@ pub fn gather(log: &Log, quick: &Rows, slow: &Rows, twist: &Twist, plan: &Plan) 
     let mut findings = gap::gap_and_compliance(log, twist, plan);
     findings.extend(brakes::frictions(quick, slow, twist, plan));
     findings.extend(angles::maps(twist, plan));
-    findings.push(angles::skew(twist));
+    findings.push(angles::skew(log, twist, plan));
     findings
 }
 

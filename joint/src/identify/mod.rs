@@ -24,7 +24,7 @@ mod regression;
 mod ros_message;
 mod rows;
 mod sampling;
-mod table;
+pub mod table;
 mod twist;
 pub mod virtual_test;
 
@@ -94,10 +94,7 @@ fn run_once(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
     let identified = identify(arguments, &plan)?;
     let folder = Folder::prepare(arguments.out.as_deref(), "identify", &plan.name)?;
     let name = arguments.log.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let stated = |finding: &Finding| {
-        let value = joints::value(&loaded.text, finding.key.as_deref()?).ok()??;
-        Some(value.to_owned())
-    };
+    let stated = |finding: &Finding| table::stated(&loaded.text, finding);
     let patched = patch::patch(&loaded, &plan, &identified.findings, &name)?;
     let assumptions = assumptions(&plan, &identified.log);
     let Identified { log, rows, twist, findings } = &identified;

@@ -45,7 +45,7 @@ pub fn render(content: &Content<'_>) -> String {
         }
         section {
             h2 { "What it rests on" }
-            ul { @for assumption in content.assumptions { li { (assumption) } } }
+            ul { @for assumption in content.assumptions { li { (typeset(assumption)) } } }
         }
         footer { "joint " (env!("CARGO_PKG_VERSION")) }
     };
@@ -72,7 +72,7 @@ fn table(content: &Content<'_>) -> Markup {
                     Some(stated) => (stated),
                     None => "–",
                 } }
-                td { (finding.note) }
+                td { (typeset(&finding.note)) }
             } } }
         }
         @if content.findings.iter().any(|finding| (content.stated)(finding).is_some_and(|stated| differs(finding, &stated))) {
@@ -85,6 +85,11 @@ fn table(content: &Content<'_>) -> Markup {
 fn differs(finding: &Finding, stated: &str) -> bool {
     let stated: Option<f64> = stated.replace('_', "").parse().ok();
     stated.zip(finding.interval).is_some_and(|(stated, [low, high])| !(low..=high).contains(&stated))
+}
+
+/// Signs that a terminal may not have.
+fn typeset(text: &str) -> String {
+    text.replace("+- ", "± ").replace(" us", " µs")
 }
 
 /// As it is written where there are Greek letters.

@@ -29,6 +29,12 @@ pub fn render(findings: &[Finding], stated: impl Fn(&Finding) -> Option<String>)
     text
 }
 
+/// What a joint file says for a finding, as this table writes numbers.
+pub fn stated(text: &str, finding: &Finding) -> Option<String> {
+    let value = joints::value(text, finding.key.as_deref()?).ok()??;
+    Some(value.replace('_', "").parse().map_or_else(|_| value.to_owned(), number))
+}
+
 /// Four digits, in whichever form is short.
 pub fn number(value: f64) -> String {
     let size = value.abs();

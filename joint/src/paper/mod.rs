@@ -31,9 +31,9 @@ pub use record::{
     SCHEMA_VERSION, Smoothed, SpectrumRecord, StiffnessFigure, StudyRecord, Sweep, SweepPoint,
 };
 
-use crate::failure::{Failure, Outcome};
+use crate::failure::Outcome;
 use crate::hil::origin;
-use crate::record::Verdict;
+use crate::record::all_hold;
 use crate::{interruption, output};
 
 /// Redoes the study; succeeds only if every check held.
@@ -53,7 +53,7 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
             expectation::judge(&reading.joint, expected, &reading.attractors)?;
         }
     }
-    verdict(&record)
+    all_hold(&record.checks, "the report shows each with its figure and bound")
 }
 
 /// Computes everything that a plan asks for, and judges it.
@@ -77,18 +77,4 @@ pub fn study(plan: &Plan, progress: &Progress) -> Outcome<StudyRecord> {
         dead_zone,
         checks,
     })
-}
-
-fn verdict(record: &StudyRecord) -> Outcome<()> {
-    let failed: Vec<&str> = record
-        .checks
-        .iter()
-        .filter(|check| check.verdict == Verdict::Failed)
-        .map(|check| check.name.as_str())
-        .collect();
-    if failed.is_empty() {
-        return Ok(());
-    }
-    let message = format!("{} of {} checks did not hold: {}", failed.len(), record.checks.len(), failed.join("; "));
-    Err(Failure::check_failed(message).with_help("the report shows each with its figure and bound"))
 }

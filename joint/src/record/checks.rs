@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::failure::{Failure, Outcome};
+
 /// One line of the table of checks.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -100,6 +102,17 @@ impl Check {
         self.note = note.into();
         self
     }
+}
+
+/// Succeeds only if no check has failed; names those that have.
+pub fn all_hold(checks: &[Check], help: &str) -> Outcome<()> {
+    let failed = checks.iter().filter(|check| check.verdict == Verdict::Failed);
+    let failed: Vec<&str> = failed.map(|check| check.name.as_str()).collect();
+    if failed.is_empty() {
+        return Ok(());
+    }
+    let message = format!("{} of {} checks did not hold: {}", failed.len(), checks.len(), failed.join(", "));
+    Err(Failure::check_failed(message).with_help(help))
 }
 
 #[cfg(test)]

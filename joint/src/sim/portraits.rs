@@ -16,6 +16,8 @@ use crate::report::plot::{Figure, HorizontalAxis, Shape};
 const PORTRAIT: usize = 6000;
 /// Samples drawn of a phase portrait under a profile, which shows the whole run.
 const PROFILE_PORTRAIT: usize = 20_000;
+/// Part of the picture's size within which a sample is no new point; more where there are too many of them.
+const NEAR: f64 = 1e-3;
 /// Size of a Poincare point over the size of the picture, and of one among many.
 const DOT: [f64; 2] = [0.0085, 0.024];
 const SMALL_DOT: [f64; 2] = [0.0042, 0.012];
@@ -42,7 +44,6 @@ pub fn portrait(
     which: Portrait,
 ) -> Figure {
     let samples = if plan.constant { &samples[samples.len().saturating_sub(PORTRAIT)..] } else { samples };
-    let stride = if plan.constant { 1 } else { samples.len().div_ceil(PROFILE_PORTRAIT) };
     let of = |moment: &Moment| match which {
         Portrait::Deflection => (moment.teeth[0].deflection, moment.teeth[0].rate),
         Portrait::Gap => (moment.gap, moment.gap_rate),
@@ -51,9 +52,12 @@ pub fn portrait(
         Portrait::Deflection => (point.deflection, point.rate),
         Portrait::Gap => (point.gap, point.gap_rate),
     };
-    let curve: Vec<(f64, f64)> = samples.iter().step_by(stride.max(1)).map(of).collect();
+    let mut curve: Vec<(f64, f64)> = samples.iter().map(of).collect();
     let range = axis_range(curve.iter().map(|point| point.0));
     let up = axis_range(curve.iter().map(|point| point.1));
+    if !plan.constant {
+        curve = thinned(curve, (range.1 - range.0, up.1 - up.0));
+    }
     let size = if period.is_some_and(|period| period <= FEW) { DOT } else { SMALL_DOT };
     let (half_width, half_height) = (0.5 * size[0] * (range.1 - range.0), 0.5 * size[1] * (up.1 - up.0));
     let dot = |point: &Point| {
@@ -94,6 +98,25 @@ pub fn portrait(
         range,
         note: String::new(),
         panels: vec![Panel { height: 380, ..Panel::lines(format!("{title}: rate"), unit, marks) }],
+    }
+}
+
+/// Leaves out what lies near the point before: rest is one point, and quick motion keeps every sample.
+fn thinned(curve: Vec<(f64, f64)>, (width, height): (f64, f64)) -> Vec<(f64, f64)> {
+    let mut near = NEAR;
+    loop {
+        let mut kept: Vec<(f64, f64)> = Vec::new();
+        for point in &curve {
+            let is_new =
+                |last: &(f64, f64)| (point.0 - last.0).abs() > near * width || (point.1 - last.1).abs() > near * height;
+            if kept.last().is_none_or(is_new) {
+                kept.push(*point);
+            }
+        }
+        if kept.len() <= PROFILE_PORTRAIT {
+            return kept;
+        }
+        near *= 2.0;
     }
 }
 

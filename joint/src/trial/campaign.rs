@@ -42,6 +42,8 @@ pub struct Tested {
     pub record: TestRecord,
     /// The shown seed's runs, in the order of the record's controllers.
     pub shown: Vec<(ControllerName, Trace)>,
+    /// Faults by their words, with the times at which they begin and end [s].
+    pub faults: Vec<(&'static str, [f64; 2])>,
 }
 
 struct Job {
@@ -139,7 +141,8 @@ pub fn run(test: &Test, conduct: &Conduct<'_>, before: &AtomicU32) -> Outcome<Te
         ),
         seconds: start.elapsed().as_secs_f64(),
     };
-    Ok(Tested { record, shown })
+    let faults = test.file.faults.iter().map(|fault| (fault.word, [fault.start, fault.end])).collect();
+    Ok(Tested { record, shown, faults })
 }
 
 fn one(test: &Test, conduct: &Conduct<'_>, job: &Job, deadline: Instant) -> Outcome<Done> {

@@ -166,6 +166,15 @@ impl Driver<'_> {
         Self::Rival(controller, 0)
     }
 
+    /// Begins anew with what was learnt so far, as after the power was off; who learns nothing just goes on.
+    pub fn begin_again(&mut self) -> Outcome<()> {
+        if let Self::Ours(port, translator) = self {
+            port.begin_again()?;
+            translator.begin_again();
+        }
+        Ok(())
+    }
+
     /// Torque for the period that begins now [N m], and what a port answered.
     pub fn period(&mut self, seen: &Seen, set_point: &SetPoint) -> Outcome<(f64, Option<Answer>)> {
         match self {

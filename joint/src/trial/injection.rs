@@ -1,14 +1,18 @@
-//! Faults at work: what they do to counts, torques, frames and teeth while a run goes on. Which faults there are is the
-//! file's business; nothing here knows a controller.
+//! Faults at work: what they do to counts, torques, frames and teeth while a run goes on. Which faults there are is the file's
+//! business; nothing here knows a controller. One fault with what it remembers is `active`, what it does to teeth `teeth`.
+
+mod active;
+mod teeth;
 
 use std::collections::VecDeque;
-use std::f64::consts::TAU;
 
 use host_tests::closed_loop::SetPoint;
 use host_tests::drive_train::Measurement;
 use host_tests::reference::Observation;
 
-use super::draw::Stream;
+use active::Active;
+use teeth::ToothState;
+
 use super::file::{EncoderName, Fault, FaultKind, FrameName};
 use super::plant::Teeth;
 
@@ -47,46 +51,15 @@ pub struct Injection {
     teeth: ToothState,
 }
 
-#[derive(Debug, Clone)]
-struct Active {
-    fault: Fault,
-    stream: Stream,
-    /// Counts when the encoder froze, or counts that were lost.
-    held: Option<i64>,
-    lost: f64,
-    before: Option<i64>,
-    /// Fate of the last set-point that was sent.
-    dropped: Option<(u64, bool)>,
-}
-
-/// What the teeth were made to be.
-#[derive(Debug, Clone)]
-struct ToothState {
-    half_backlash: f64,
-    now: f64,
-    stiffness: f64,
-    soft: Vec<bool>,
-    sun_teeth: f64,
-}
-
 /// More than this is never remembered of readings and set-points [periods]: delays are a second at most.
 const MEMORY: usize = 100_000;
 
 impl Injection {
     /// The faults of a run.
     pub fn new(faults: &[Fault], seed: u64, case: &super::case::Case) -> Self {
-        let active = |(index, fault): (usize, &Fault)| Active {
-            fault: fault.clone(),
-            stream: Stream::new(seed, &format!("fault {index} {}", fault.word)),
-            held: None,
-            lost: 0.0,
-            before: None,
-            dropped: None,
-        };
-        let joint = &case.truth.parameters;
         let encoders = [&case.train.motor_encoder, &case.train.output_encoder];
         Self {
-            faults: faults.iter().enumerate().map(active).collect(),
+            faults: faults.iter().enumerate().map(|(index, fault)| Active::new(fault, index, seed)).collect(),
             period: 1.0 / case.train.control_rate,
             counts_per_turn: encoders.map(|encoder| (1_u64 << encoder.bits) as f64),
             home: None,
@@ -94,13 +67,7 @@ impl Injection {
             last: None,
             set_points: VecDeque::new(),
             given: None,
-            teeth: ToothState {
-                half_backlash: case.half_backlash(),
-                now: case.half_backlash(),
-                stiffness: joint.sun_planet.mean_stiffness,
-                soft: vec![false; joint.geometry.planets],
-                sun_teeth: f64::from(joint.geometry.sun_teeth),
-            },
+            teeth: ToothState::new(case),
         }
     }
 
@@ -204,78 +171,7 @@ impl Injection {
 
     /// Changes the teeth as faults begin, end, or meet.
     pub fn wear(&mut self, time: f64, joint: &Observation, inside: &mut dyn Teeth) {
-        let teeth = &mut self.teeth;
-        let (mut half_backlash, mut soft) = (teeth.half_backlash, 1.0);
-        for active in self.faults.iter().filter(|active| active.fault.is_on(time)) {
-            match active.fault.kind {
-                FaultKind::GrownBacklash(grown) => half_backlash = grown,
-                FaultKind::BrokenTooth(ratio) => soft = ratio,
-                _ => {}
-            }
-        }
-        if half_backlash != teeth.now {
-            inside.set_half_backlash(half_backlash);
-            teeth.now = half_backlash;
-        }
-        if soft == 1.0 && !teeth.soft.contains(&true) {
-            return;
-        }
-        let planets = teeth.soft.len();
-        for (planet, is_soft) in teeth.soft.iter_mut().enumerate() {
-            // The broken tooth meets each planet once in a turn of the sun against the carrier, for one pitch.
-            let angle = joint.motor_angle - joint.carrier_angle - TAU * planet as f64 / planets as f64;
-            let meets = soft < 1.0 && angle.rem_euclid(TAU) < TAU / teeth.sun_teeth;
-            if meets != *is_soft {
-                *is_soft = meets;
-                inside.set_sun_planet_stiffness(planet, teeth.stiffness * if meets { soft } else { 1.0 });
-            }
-        }
-    }
-}
-
-impl Fault {
-    /// Whether it is on at a time [s].
-    pub fn is_on(&self, time: f64) -> bool {
-        // Times are whole periods up to rounding.
-        (self.start - 1e-9..self.end - 1e-9).contains(&time)
-    }
-}
-
-impl Active {
-    /// What an encoder says in place of its counts.
-    fn count(&mut self, time: f64, encoder: EncoderName, counts: i64, counts_per_turn: f64) -> i64 {
-        let on = self.fault.is_on(time);
-        match self.fault.kind {
-            FaultKind::Frozen(of) if of == encoder => match (on, self.held) {
-                (false, _) => {
-                    self.held = None;
-                    counts
-                }
-                (true, Some(held)) => held,
-                (true, None) => {
-                    self.held = Some(counts);
-                    counts
-                }
-            },
-            FaultKind::Offset(of, offset, angle) if of == encoder && on => {
-                counts + (offset + angle / TAU * counts_per_turn).round() as i64
-            }
-            FaultKind::Noise(of, deviation) if of == encoder && on => {
-                counts + (deviation * self.stream.normal()).round() as i64
-            }
-            FaultKind::Eccentric(of, error) if of == encoder && on => {
-                let error = error * (counts as f64 / counts_per_turn * TAU).sin();
-                counts + (error / TAU * counts_per_turn).round() as i64
-            }
-            FaultKind::MissingCounts(of, share) if of == encoder => {
-                // What was not counted stays uncounted after the fault.
-                let moved = counts - self.before.unwrap_or(counts);
-                self.before = Some(counts);
-                self.lost += if on { share * moved as f64 } else { 0.0 };
-                counts - self.lost.trunc() as i64
-            }
-            _ => counts,
-        }
+        self.teeth.wear(&self.faults, time, joint, inside);
     }
 }
 

@@ -6,7 +6,7 @@ use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
 
-use super::execution::Ran;
+use super::ran::Ran;
 use crate::failure::Outcome;
 use crate::sim::files::unwritten;
 use crate::sim::log_file::Channel;

@@ -3,7 +3,7 @@
 //!
 //! The order of a test: `file` reads what it says, `suite` finds it and its joint, `case` makes it concrete for a seed;
 //! `execution` closes the loop between `plant` and `controller` through the faults of `injection`, with observer and
-//! compensation behind `port`; `figures`, `values` and `sight` say what that was worth, `verdict` judges, `campaign` puts all seeds
+//! compensation behind `port`, and `ran` keeps what happened; `figures`, `values` and `sight` say what that was worth, `verdict` judges, `campaign` puts all seeds
 //! together; `page`, `junit`, `log_file` and `record` are what stays.
 
 pub mod board;
@@ -22,6 +22,7 @@ mod pictures;
 pub mod plant;
 pub mod port;
 mod pushes;
+pub mod ran;
 pub mod record;
 pub mod recorded;
 #[cfg(test)]

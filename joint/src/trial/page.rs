@@ -1,30 +1,18 @@
 //! The report of tests: one HTML page that needs neither network nor scripts, what failed first. Pictures come from
 //! `pictures`, the look from the run reports.
 
-use maud::{Markup, PreEscaped, html};
+mod section;
+
+use maud::{Markup, html};
+use section::section;
 
 use super::campaign::Tested;
 use super::controller::ControllerName;
-use super::pictures;
 use super::record::{NotRun, TestRecord, TestsRecord};
 use crate::record::Check;
-use crate::report::plot::Figure;
 use crate::report::plot::unit::figure as number;
-use crate::report::sections::{check_table, tile};
+use crate::report::sections::tile;
 use crate::report::shell::page;
-
-/// What is shown of every controller: name, heading, unit.
-const COMPARED: [(&str, &str, &str); 9] = [
-    ("rms_mrad", "error RMS", "mrad"),
-    ("peak_mrad", "error peak", "mrad"),
-    ("reversal_error_mrad", "reversal error", "mrad"),
-    ("deviation_rms_mrad", "deviation RMS", "mrad"),
-    ("lost_motion_ms", "lost motion", "ms"),
-    ("crossings", "crossings", ""),
-    ("effort_N_m", "torque effort", "N m"),
-    ("peak_mesh_force_N", "peak mesh force", "N"),
-    ("peak_mesh_force_ratio", "over rated", ""),
-];
 
 /// The whole page.
 pub fn render(record: &TestsRecord, tested: &[Tested]) -> String {
@@ -108,8 +96,8 @@ fn failures(record: &TestsRecord) -> Markup {
                     @if let Some(why) = &test.broken { div { "Broken off: " (why) } }
                     @for assertion in test.failed() {
                         div {
-                            (assertion.check().name) " is " strong { (assertion.figure.map_or("none".into(), number)) } " " (assertion.unit)
-                            ", bound " (bound(&assertion.check())) @if let Some(seed) = assertion.seed { ", seed " (seed) }
+                            (assertion.check().name) " is " strong { (assertion.figure.map_or("none".into(), number)) } (spaced(&assertion.unit))
+                            ", bound " (bound(&assertion.check())) (spaced(&assertion.unit)) @if let Some(seed) = assertion.seed { ", seed " (seed) }
                         }
                     }
                     pre { (test.replay) }
@@ -117,6 +105,11 @@ fn failures(record: &TestsRecord) -> Markup {
             }
         }
     }
+}
+
+/// A unit behind a number.
+fn spaced(unit: &str) -> String {
+    if unit.is_empty() { String::new() } else { format!(" {unit}") }
 }
 
 /// What could not run, and what to do about it.
@@ -172,71 +165,6 @@ fn overview(record: &TestsRecord) -> Markup {
 
 fn anchor(test: &TestRecord) -> String {
     test.file.chars().map(|letter| if letter.is_ascii_alphanumeric() { letter } else { '-' }).collect()
-}
-
-fn section(tested: &Tested) -> Markup {
-    let test = &tested.record;
-    let checks: Vec<Check> = test.assertions.iter().map(|assertion| assertion.check()).collect();
-    html! {
-        section.names id=(anchor(test)) {
-            div.title { h2 { (test.file) } (pill(test.passed)) }
-            p.subtitle {
-                @if !test.title.is_empty() { strong { (test.title) } " · " }
-                "joint " (test.joint) " · profile " (test.profile) " · controller " (test.controller)
-                " · " (number(test.duration_s)) " s, figures from " (number(test.settle_s)) " s on"
-                @for fault in &test.faults { " · fault " (fault) }
-            }
-            @if let Some(why) = &test.broken { div.notice.bad role="alert" { strong { "BROKEN OFF. " } (why) } }
-            @if checks.is_empty() { p.none { "Nothing is asserted." } } @else { (check_table(&checks, &html! {})) }
-            (compared(test))
-            @if test.passed {
-                details { summary { "Pictures, seed " (test.shown_seed) } (all_pictures(tested)) }
-            } @else { (all_pictures(tested)) }
-            h3 { "Again" }
-            pre { (test.replay) }
-        }
-    }
-}
-
-/// Figures of every controller, worst of all seeds.
-fn compared(test: &TestRecord) -> Markup {
-    let controllers = test.controllers();
-    let shown: Vec<_> = COMPARED
-        .into_iter()
-        .filter(|(name, _, _)| controllers.iter().any(|controller| test.largest(controller, name).is_some()))
-        .collect();
-    html! {
-        h3 { "With compensation and without" }
-        table.wide {
-            thead { tr {
-                th { "Controller" }
-                @for (_, heading, unit) in &shown { th.number { (heading) @if !unit.is_empty() { " [" (unit) "]" } } }
-            } }
-            tbody { @for controller in &controllers {
-                tr {
-                    td { (ControllerName::of_word(controller, false).label()) }
-                    @for (name, _, _) in &shown { td.number { (test.largest(controller, name).map_or("–".into(), number)) } }
-                }
-            } }
-        }
-        @if test.seeds.len() > 1 { p.note { "Largest of " (test.seeds.len()) " seeds." } }
-    }
-}
-
-fn all_pictures(tested: &Tested) -> Markup {
-    html! {
-        @if let Some(whole) = pictures::whole(tested) {
-            (picture(&whole, html! { "Seed " (tested.record.shown_seed) ", least and greatest error of each stretch; lost motion is the time that each crossing took. Figures are taken from "
-                (number(tested.record.settle_s)) " s on." }))
-        }
-        @if let Some(close) = pictures::close(tested) {
-            (picture(&close, html! { strong { "Closely: " } "the longest crossing of the gap after " (number(tested.record.settle_s)) " s, a point each millisecond." }))
-        }
-    }
-}
-
-fn picture(figure: &Figure, caption: Markup) -> Markup {
-    html! { figure { (PreEscaped(figure.to_svg())) figcaption { (caption) } } }
 }
 
 /// Where it comes from: digests of files and runs.

@@ -27,7 +27,7 @@ pub fn whole(tested: &Tested) -> Option<Figure> {
         tested.shown.iter().flat_map(|(_, trace)| trace.points.last()).map(|point| point.time).fold(0.0, f32::max);
     let coarse = |(name, trace): &(ControllerName, Trace)| (*name, trace.coarse(trace.points.len() / BINS));
     let shown: Vec<_> = tested.shown.iter().map(coarse).collect();
-    let view = View { shown: &shown, range: (0.0, f64::from(end)) };
+    let view = View { shown: &shown, faults: &tested.faults, range: (0.0, f64::from(end)) };
     (end > 0.0).then(|| view.figure(format!("The whole run: {}", tested.record.file), true))
 }
 
@@ -40,7 +40,7 @@ pub fn close(tested: &Tested) -> Option<Figure> {
     };
     let (time, took) = tested.shown.iter().find_map(|(_, trace)| longest(trace))?;
     let from = (time - took.min(0.3) - CLOSE).max(0.0);
-    let view = View { shown: &tested.shown, range: (from, time + CLOSE) };
+    let view = View { shown: &tested.shown, faults: &tested.faults, range: (from, time + CLOSE) };
     Some(view.figure(format!("A crossing of the gap: {}", tested.record.file), false))
 }
 
@@ -52,6 +52,7 @@ enum Scale {
 
 struct View<'t> {
     shown: &'t [(ControllerName, Trace)],
+    faults: &'t [(&'static str, [f64; 2])],
     range: (f64, f64),
 }
 
@@ -67,6 +68,9 @@ impl View<'_> {
             panels.insert(0, self.position());
             panels.push(self.lost_motion());
         }
+        for (index, panel) in panels.iter_mut().enumerate() {
+            panel.marks.extend(self.fault_limits(index == 0));
+        }
         Figure {
             title,
             axis: "time".into(),
@@ -77,6 +81,24 @@ impl View<'_> {
             panels,
             note: String::new(),
         }
+    }
+
+    /// Where faults begin and end, named in the first panel: each of one fault, several of them by one name.
+    fn fault_limits(&self, named: bool) -> Vec<Mark> {
+        let inside = |time: f64| self.range.0 < time && time < self.range.1;
+        let ends = self
+            .faults
+            .iter()
+            .flat_map(|(word, [start, end])| [(*start, format!("{word} begins")), (*end, format!("{word} ends"))]);
+        let limits = ends.filter(|(at, _)| inside(*at)).enumerate().map(|(index, (at, label))| {
+            let label = match (named, self.faults.len(), index) {
+                (true, 1, _) => label,
+                (true, _, 0) => "a fault begins or ends".to_owned(),
+                _ => String::new(),
+            };
+            Mark::Deadline { at, label }
+        });
+        limits.collect()
     }
 
     /// The tested controller is drawn last, above the others.

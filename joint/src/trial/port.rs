@@ -11,7 +11,7 @@ use model_core::tables::compensation::CompensationTables;
 use model_core::tables::observer::ObserverTables;
 
 use super::injection::{Frame, Seen};
-use crate::failure::Outcome;
+use crate::failure::{Failure, Outcome};
 
 /// What one control period came to.
 pub type Answer = controller::Answer<f32>;
@@ -20,6 +20,9 @@ pub type Answer = controller::Answer<f32>;
 pub trait ControllerPort {
     /// One control period.
     fn exchange(&mut self, samples: &Samples<f32>, command: &Command<f32>) -> Outcome<Answer>;
+
+    /// Keeps what has been learnt, and begins anew from it.
+    fn begin_again(&mut self) -> Outcome<()>;
 }
 
 /// Observer and compensation in this process: the very code that a board runs.
@@ -37,6 +40,19 @@ impl ControllerPort for HostPort<'_> {
     fn exchange(&mut self, samples: &Samples<f32>, command: &Command<f32>) -> Outcome<Answer> {
         Ok(self.0.step(samples, command))
     }
+
+    fn begin_again(&mut self) -> Outcome<()> {
+        remember(&mut self.0)
+    }
+}
+
+/// A controller's start from what it has learnt, as a board has it after a reset.
+pub fn remember(controller: &mut Controller<'_, f32>) -> Outcome<()> {
+    let memory = controller.save();
+    controller.reset();
+    controller
+        .load(&memory)
+        .map_err(|error| Failure::check_failed(format!("what was learnt is not taken back: {error}")))
 }
 
 /// From a run's numbers to those of the port.
@@ -60,6 +76,11 @@ impl Translator {
     /// For set-points alone, whose observer counts the link's turns from this one.
     pub fn from_turn(ticks: u32, first_turn: i32) -> Self {
         Self { first_turn: Some(first_turn), ..Self::new(ticks, [0, 0]) }
+    }
+
+    /// The next reading is the first again.
+    pub fn begin_again(&mut self) {
+        (self.first_turn, self.torque) = (None, 0.0);
     }
 
     /// Readings with their own times; the torque is that of the period before.

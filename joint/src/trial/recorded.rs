@@ -11,6 +11,10 @@ use crate::failure::{Failure, Outcome};
 const COLUMNS: [&str; 2] = ["time_s", "position_rad"];
 /// The column that may be there.
 const LOAD: &str = "load_torque_N_m";
+/// What positions [rad], loads [N m] and speeds from row to row [rad/s] keep to: beyond them no joint can be meant.
+const FARTHEST: f64 = 1e4;
+const STRONGEST: f64 = 1e6;
+const FASTEST: f64 = 1e4;
 
 /// Rows of the file, in rising time from 0.
 #[derive(Debug, Clone, PartialEq)]
@@ -64,10 +68,26 @@ impl Recorded {
                         .with_help("write a finite number with a point, in every row")
                 })
             };
-            let row = Row { time: number(time)?, position: number(position)?, speed: 0.0, load: 0.0 };
-            let row = Row { load: load.map_or(Ok(0.0), number)?, ..row };
+            let within = |place: usize, most: f64| {
+                number(place).and_then(|value| match value.abs() <= most {
+                    true => Ok(value),
+                    false => {
+                        let name = header.get(place).copied().unwrap_or_default();
+                        Err(Failure::new(format!("line {line}: `{name}` is {value:e}"))
+                            .with_help(format!("it may be from -{most} to {most}: check the unit")))
+                    }
+                })
+            };
+            let row = Row { time: number(time)?, position: within(position, FARTHEST)?, speed: 0.0, load: 0.0 };
+            let row = Row { load: load.map_or(Ok(0.0), |load| within(load, STRONGEST))?, ..row };
             if rows.last().is_some_and(|last| last.time >= row.time) {
                 return Err(Failure::new(format!("line {line}: the time does not rise")).with_help("sort rows by time"));
+            }
+            if let Some(last) = rows.last().filter(|last| !row.is_reached_from(last)) {
+                let (way, time) = (row.position - last.position, row.time - last.time);
+                return Err(Failure::new(format!("line {line}: a jump of {way} rad in {time:e} s")).with_help(
+                    format!("no link is faster than {FASTEST} rad/s; profile \"steps\" with move_s = 0 jumps"),
+                ));
             }
             rows.push(row);
         }
@@ -91,6 +111,12 @@ impl Recorded {
     /// The rows.
     pub fn rows(&self) -> &[Row] {
         &self.rows
+    }
+}
+
+impl Row {
+    fn is_reached_from(&self, before: &Self) -> bool {
+        (self.position - before.position).abs() <= FASTEST * (self.time - before.time)
     }
 }
 
@@ -145,5 +171,11 @@ mod tests {
         assert!(refused("time_s,position_rad\n0,0\n0,1\n").contains("line 3"));
         assert!(refused("time_s,position_rad\n0,0\n1,NaN\n").contains("line 3"));
         assert!(refused("time_s,position_rad\n0,0\n").contains("two rows"));
+        assert!(refused("time_s,position_rad\n0,0\n1,1e300\n").contains("`position_rad` is 1e300"));
+        assert!(refused("time_s,position_rad\n0,0\n1e-6,1\n").contains("a jump of 1 rad in 1e-6 s"));
+        assert!(refused("time_s,position_rad\n0,0\n1e-300,1\n").contains("a jump"), "its acceleration has no bound");
+        assert!(refused("time_s,position_rad\n0,0\n1,inf\n").contains("line 3"));
+        assert!(refused("time_s,position_rad\n0,0\n2,1\n1,1\n").contains("line 4: the time does not rise"));
+        assert!(refused("time_s,position_rad,load_torque_N_m\n0,0,0\n1,0,nan\n").contains("`load_torque_N_m`"));
     }
 }

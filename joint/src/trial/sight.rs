@@ -1,8 +1,8 @@
 //! What the observer's estimates are worth against the truth. Figures of the motion are in `figures`.
 
 use super::case::Case;
-use super::execution::Ran;
 use super::file::{EncoderName, Fault, FaultKind, FrameName, TestFile};
+use super::ran::Ran;
 
 /// A width counts as right within this part.
 const WIDTH_RIGHT: f64 = 0.05;

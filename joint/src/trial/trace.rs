@@ -1,6 +1,6 @@
 //! A run thinned for pictures: a point each millisecond, and each crossing of the gap. Figures are never made from it.
 
-use super::execution::Ran;
+use super::ran::Ran;
 
 /// One point.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

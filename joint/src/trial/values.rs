@@ -4,9 +4,9 @@
 use host_tests::closed_loop::{Figures as Plain, Sample, deviation};
 
 use super::case::Case;
-use super::execution::{Ran, Truth};
 use super::figures::{FIGURES, Figure};
 use super::file::TestFile;
+use super::ran::{Ran, Truth};
 use super::sight;
 
 /// Values of all figures, where they could be had.

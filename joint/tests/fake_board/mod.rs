@@ -146,7 +146,7 @@ impl<'t, S: Read + Write> Board<'t, S> {
                 self.say_hello()
             }
             ToBoard::Schedule(schedule) => self.take(schedule),
-            ToBoard::Exchanges(_) | ToBoard::Course(_) | ToBoard::Upset(_) | ToBoard::Keep => {
+            ToBoard::Exchanges(_) | ToBoard::Course(_) | ToBoard::Upset(_) | ToBoard::Memory(_) => {
                 self.say(&FromBoard::Fault(Fault::WrongRole))
             }
             ToBoard::Statistics { .. } => {

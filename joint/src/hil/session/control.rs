@@ -42,22 +42,10 @@ impl Session<'_> {
     /// Has faults between joint and controller, before the motion begins.
     pub fn upset(&mut self, upsets: &[Upset<f32>]) -> Outcome<()> {
         for upset in upsets {
-            self.send(&ToBoard::Upset(upset.into()))?;
-            let start = Instant::now();
-            let taken = loop {
-                let answer = self.hear()?.into_iter().find_map(|message| match message {
-                    FromBoard::Upset { taken } => Some(Ok(taken)),
-                    FromBoard::Fault(raised) => Some(Err(fault::failure(&raised))),
-                    _ => None,
-                });
-                match answer {
-                    Some(answer) => break answer?,
-                    None if start.elapsed() > SILENCE => {
-                        return Err(self.silent("no answer to a fault of the test came"));
-                    }
-                    None => {}
-                }
-            };
+            let taken =
+                self.ask(&ToBoard::Upset(upset.into()), "answer to a fault of the test", SILENCE, |message| {
+                    if let FromBoard::Upset { taken } = message { Some(taken) } else { None }
+                })?;
             if !taken {
                 return Err(Failure::check_failed("the board does not take a fault of the test")
                     .with_help("in real time it may have begun already: run with --mode lockstep"));

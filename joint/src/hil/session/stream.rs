@@ -66,7 +66,9 @@ impl Session<'_> {
                     | FromBoard::Answer(_)
                     | FromBoard::Loop(_)
                     | FromBoard::Upset { .. }
-                    | FromBoard::Kept(_) => {}
+                    | FromBoard::Kept(_)
+                    | FromBoard::Memory(_)
+                    | FromBoard::Judged(_) => {}
                 }
             }
             progress(stream.board_tick.min(profile.ticks));

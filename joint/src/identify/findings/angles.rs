@@ -2,6 +2,7 @@
 
 use super::{Finding, finding};
 use crate::identify::estimate::Estimate;
+use crate::identify::log::Log;
 use crate::identify::plan::Plan;
 use crate::identify::twist::{self, Twist};
 
@@ -9,8 +10,8 @@ use crate::identify::twist::{self, Twist};
 const NARROWED: f64 = 0.1;
 /// Amplitude that counts and teeth may feign [counts]. Found on simulated logs of joints without such errors.
 const FEIGNED_COUNTS: f64 = 0.03;
-/// Age of a reading that noise may feign [s].
-const FEIGNED_AGE: f64 = 1e-7;
+/// Time over which a speed is taken [s].
+const SPAN: f64 = 0.01;
 /// Radius within which two parts lie in 95 of 100 cases, over the reach within which one does.
 const OF_BOTH: f64 = 1.25;
 /// Degrees in a radian.
@@ -50,11 +51,22 @@ pub(super) fn maps(twist: &Twist, plan: &Plan) -> Vec<Finding> {
     findings
 }
 
-/// How old the output's reading is.
-pub(super) fn skew(twist: &Twist) -> Finding {
-    let skew = Estimate::of(&twist.solution, twist::SKEW).wider_by(FEIGNED_AGE);
+/// How old the output's reading is. What counts and teeth feign of an angle looks like an age the more, the slower the output
+/// turns.
+pub(super) fn skew(log: &Log, twist: &Twist, plan: &Plan) -> Finding {
+    let count = |bits: u32| std::f64::consts::TAU / f64::from(1_u32 << bits);
+    let feigned = FEIGNED_COUNTS * (count(plan.motor_bits) / plan.ratio() + count(plan.output_bits));
+    let skew = Estimate::of(&twist.solution, twist::SKEW).wider_by(feigned / usual_speed(log).max(f64::MIN_POSITIVE));
     let why = "the joint must turn at different speeds";
     let narrow = skew.half < 2.0 * NARROWED * twist::width(twist::SKEW);
     finding("output encoder: age of a reading", "us", "drive_train.output_encoder.skew_us", skew.times(1e6))
         .if_so(narrow, why)
+}
+
+/// Speed of the output, root mean square [rad/s].
+fn usual_speed(log: &Log) -> f64 {
+    let samples = ((SPAN / log.period) as usize).max(1);
+    let places: Vec<f64> = log.output.iter().copied().step_by(samples).collect();
+    let squares: f64 = places.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).sum();
+    (squares / places.len().max(1) as f64).sqrt() / (samples as f64 * log.period)
 }

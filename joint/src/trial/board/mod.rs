@@ -19,8 +19,9 @@ pub use wish::BoardWish;
 use wish::{can_be, may_run};
 
 use super::case::Case;
-use super::execution::{Order, Ran, RunError};
+use super::execution::{Order, RunError};
 use super::plant::PlantName;
+use super::ran::Ran;
 use super::record::BoardRun;
 use super::suite::{Suite, Test};
 use crate::failure::{Failure, Outcome};

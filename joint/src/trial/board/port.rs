@@ -53,4 +53,10 @@ impl ControllerPort for BoardPort<'_> {
         self.tick = self.tick.wrapping_add(1);
         Ok(answer)
     }
+
+    fn begin_again(&mut self) -> Outcome<()> {
+        (self.tick, self.digest) = (0, digest::START);
+        self.session.borrow_mut().begin_again()?;
+        self.twin.begin_again()
+    }
 }

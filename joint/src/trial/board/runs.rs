@@ -10,8 +10,10 @@ use super::twin::{Twin, Twinned};
 use super::upsets::upsets;
 use super::{Boards, Pair};
 use crate::failure::Failure;
+use crate::hil::session::Session;
 use crate::trial::case::Case;
-use crate::trial::execution::{Order, Ran, RunError, execute_with};
+use crate::trial::execution::{Order, RunError, execute_with};
+use crate::trial::ran::Ran;
 use crate::trial::record::BoardRun;
 use crate::trial::suite::Test;
 
@@ -59,8 +61,15 @@ impl Boards<'_> {
         let twin = Twin { file: &test.file, case, designed: &designed, truth, board, upsets: &upsets };
         let Twinned { knots, ran, digests } = twin.run()?;
         let (mut session, image) = self.session(pair)?;
-        let taken = session.upset(&upsets);
-        let samples = match taken.and_then(|()| session.follow(&knots, digests.len() as u32)) {
+        let follow = |session: &mut Session<'_>| {
+            session.upset(&upsets)?;
+            session.follow(&knots, digests.len() as u32)
+        };
+        let followed = match test.file.from_memory {
+            true => follow(&mut session).and_then(|_| session.begin_again()).and_then(|()| follow(&mut session)),
+            false => follow(&mut session),
+        };
+        let samples = match followed {
             Ok(samples) => samples,
             Err(failure) => {
                 session.abandon();

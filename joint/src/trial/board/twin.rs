@@ -19,8 +19,9 @@ use crate::failure::{Failure, Outcome};
 use crate::sim::moment::Reader;
 use crate::target::board::Board;
 use crate::trial::case::{Case, Designed};
-use crate::trial::execution::{Ran, Truth};
 use crate::trial::file::TestFile;
+use crate::trial::port::remember;
+use crate::trial::ran::{Ran, Truth};
 
 /// What is run: the test, what was drawn for it, and the truth at the board's rate.
 pub struct Twin<'t> {
@@ -69,15 +70,30 @@ impl Twin<'_> {
             design_scheme(joint, around.control_rate, Scheme::Realtime, effort).map_err(|error| refused(&error))?;
         let table: SurroundingsTable<f32> =
             design_surroundings(joint, &around, &tables).map_err(|error| refused(&error))?;
-        let mut virtual_joint = VirtualJoint::new(&tables, &table);
+        let mut controller = Controller::new(&self.designed.observer, &self.designed.compensation);
+        if self.file.from_memory {
+            self.pass(&tables, &table, &mut controller);
+            remember(&mut controller)?;
+        }
+        Ok(self.pass(&tables, &table, &mut controller))
+    }
+
+    /// The run from its first period to its last.
+    fn pass<const N: usize>(
+        &self,
+        tables: &Tables<f32, N>,
+        table: &SurroundingsTable<f32>,
+        controller: &mut Controller<'_, f32>,
+    ) -> Twinned {
+        let mut virtual_joint = VirtualJoint::new(tables, table);
         let mut upsets = Upsets::default();
         let all_taken = self.upsets.iter().all(|upset| upsets.add(*upset));
         debug_assert!(all_taken, "more than fit were refused before");
-        let mut controller = Controller::new(&self.designed.observer, &self.designed.compensation);
         let knots = course::knots(self.file, self.case, self.designed, virtual_joint.output_turn());
-        let reader = Reader::new(joint, &tables);
+        let joint = &self.truth.parameters;
+        let reader = Reader::new(joint, tables);
 
-        let rate = f64::from(around.control_rate);
+        let rate = f64::from(tables.tick_rate);
         let periods = (self.file.duration * rate).round() as u32;
         let half = self.case.half_backlash();
         let mut ran = Ran::begin(1.0 / rate, periods.into());
@@ -89,7 +105,7 @@ impl Twin<'_> {
             }
             let elapsed = f32::from((period - since).min(u16::MAX.into()) as u16);
             let command = demand.at(table.period * elapsed, table.turn);
-            let samples = upsets.sense(virtual_joint.samples(), &table);
+            let samples = upsets.sense(virtual_joint.samples(), table);
             let answer = controller.step(&samples, &command);
             virtual_joint.advance(upsets.torque(answer.shaped.torque), load);
             running = digest::chain(answer.digest(running), virtual_joint.model().state_digest());
@@ -119,6 +135,6 @@ impl Twin<'_> {
             };
             ran.add(sample, truth, Some(&answer));
         }
-        Ok(Twinned { knots, ran, digests })
+        Twinned { knots, ran, digests }
     }
 }

@@ -143,6 +143,12 @@ pub(super) const KEYS: &[Key] = &[
         "guessed over true backlash; if left out 0.5 for even seeds and 1.5 for odd ones",
     ),
     key("controller", "output_encoder", Flag, "false hides the output encoder from the observer"),
+    key(
+        "controller",
+        "from_memory",
+        Flag,
+        "true has the run made twice: first to learn, then from what was kept of that; figures are of the second",
+    ),
     key("controller", "rivals", Words(RIVALS), "who runs beside, for comparison"),
     key("controller", "stiffness_N_m_per_rad", Number(0.0, 1e6), "spring of the impedance; 100 if left out"),
     key("controller", "damping_N_m_s_per_rad", Number(0.0, 1e5), "damper of the impedance; 3 if left out"),

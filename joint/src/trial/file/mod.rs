@@ -62,6 +62,8 @@ pub struct TestFile {
     pub width_guess: Option<Quantity>,
     /// Whether the observer has the output encoder.
     pub output_encoder: bool,
+    /// The run is made twice, the second time from what was learnt in the first.
+    pub from_memory: bool,
     /// Impedance set-points in place of positions.
     pub gains: Option<Gains>,
     /// Torques on the link beside the profile's.
@@ -159,8 +161,9 @@ fn read_table(table: &DeTable<'_>, problems: &Problems) -> Option<TestFile> {
         }
     }
     rivals.retain(|rival| Some(*rival) != name);
-    let pushes = top.tables("disturbance").iter().filter_map(motion::read_push).collect();
-    let faults = top.tables("fault").iter().filter_map(faults::read).collect();
+    let [push_sections, fault_sections] = ["disturbance", "fault"].map(|name| top.tables(name));
+    let pushes = push_sections.iter().filter_map(motion::read_push).collect();
+    let faults = fault_sections.iter().filter_map(faults::read).collect();
     let number = |section: &Section<'_>, name: &str, default: f64| {
         if section.has(name) { section.number(name) } else { Some(default) }
     };
@@ -174,6 +177,15 @@ fn read_table(table: &DeTable<'_>, problems: &Problems) -> Option<TestFile> {
     if settle >= duration {
         let help = "raise `duration_s`, or lower `settle_s`: figures are taken between the two";
         problems.error(top.span("settle_s"), format!("nothing is left of {duration} s after {settle} s"), help);
+    }
+    // How long a recorded motion is says its file, unless this one does.
+    if top.has("duration_s") || !matches!(profile.course, Course::File(_)) {
+        refuse_late(push_sections.iter().chain(&fault_sections), duration);
+    }
+    let from_memory = if controller.has("from_memory") { controller.flag("from_memory")? } else { false };
+    if let (true, Some(name)) = (from_memory, name.filter(|name| !name.is_ours())) {
+        let help = "write mode = \"preview\", \"no_preview\" or \"impedance\", or leave it out";
+        problems.error(controller.span("from_memory"), format!("{} learns nothing", name.word()), help);
     }
     Some(TestFile {
         title: if top.has("title") { top.text("title")? } else { String::new() },
@@ -190,6 +202,7 @@ fn read_table(table: &DeTable<'_>, problems: &Problems) -> Option<TestFile> {
             false => None,
         },
         output_encoder: if controller.has("output_encoder") { controller.flag("output_encoder")? } else { true },
+        from_memory,
         controller: name?,
         seeds,
         full_seeds,
@@ -204,6 +217,18 @@ fn read_table(table: &DeTable<'_>, problems: &Problems) -> Option<TestFile> {
         faults,
         assertions,
     })
+}
+
+/// Complains about what begins when the run is over.
+fn refuse_late<'s>(sections: impl Iterator<Item = &'s Section<'s>>, duration: f64) {
+    for section in sections {
+        let start = section.table.get("start_s").and_then(section::number);
+        if start.is_some_and(|start| start >= duration) {
+            let message = format!("this begins when the run is over, at {} s", (1e3 * duration).round() / 1e3);
+            let help = "raise `duration_s`, or let it begin earlier";
+            section.problems.error(section.span("start_s"), message, help);
+        }
+    }
 }
 
 /// Modes that are sent impedance set-points.

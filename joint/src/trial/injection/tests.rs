@@ -1,5 +1,7 @@
 //! Faults do what they say, each by itself against figures that follow by hand. Closed loops are left out.
 
+use std::f64::consts::TAU;
+
 use host_tests::closed_loop::Motion;
 
 use super::*;

@@ -1,0 +1,134 @@
+//! What becomes of commands that the host sends: queued for the tick in time and in order, held until there is room, or
+//! refused for a reason. Talking about it is left to `conversation`.
+
+use core::sync::atomic::Ordering::{Acquire, Release};
+
+use heapless::spsc::Producer;
+use link::messages::{Accepted, Fault, RunMode};
+
+use crate::queues::Progress;
+use crate::words::{Timed, Timetable, Words};
+
+/// What became of a schedule.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Taken {
+    /// It is queued, or was before.
+    Accepted(Accepted),
+    /// There is no run that it could be for.
+    NotRunning,
+    /// It cannot be obeyed: the run ends.
+    Unfit(Fault),
+    /// It follows a gap, or waits for room: nothing is to be said.
+    Nothing,
+}
+
+/// The way of commands to the tick.
+pub struct Intake<'a, W: Words> {
+    commands: Producer<'a, W::Command>,
+    progress: &'a Progress,
+    mode: RunMode,
+    held: Option<W::Timetable>,
+    next_sequence: u16,
+    lost: u32,
+}
+
+impl<'a, W: Words> Intake<'a, W> {
+    /// Before the first run.
+    pub fn new(commands: Producer<'a, W::Command>, progress: &'a Progress) -> Self {
+        Self { commands, progress, mode: RunMode::Lockstep, held: None, next_sequence: 0, lost: 0 }
+    }
+
+    /// A run is about to begin.
+    pub fn begin(&mut self, mode: RunMode) {
+        self.mode = mode;
+        self.next_sequence = 0;
+        self.progress.horizon.store(0, Release);
+    }
+
+    /// A schedule waits for room: until it is taken nothing more should be read.
+    pub fn holds(&self) -> bool {
+        self.held.is_some()
+    }
+
+    /// Tries the one that waits again.
+    pub fn take_held(&mut self) -> Taken {
+        self.held.take().map_or(Taken::Nothing, |held| self.take(held))
+    }
+
+    /// Schedules missing by sequence number.
+    pub fn lost(&self) -> u32 {
+        self.lost
+    }
+
+    /// Whether everything is done that was to be done so far.
+    pub fn has_caught_up(&self) -> bool {
+        self.progress.steps.load(Acquire) >= self.progress.horizon.load(Acquire)
+    }
+
+    /// Queues a schedule's commands, or says why not. In lockstep a schedule that follows a gap is not taken: nothing
+    /// is simulated on torques that never arrived, and the host may send again from the missing one on. Nor is one
+    /// taken there before there is room for it.
+    pub fn take(&mut self, timetable: W::Timetable) -> Taken {
+        if !self.progress.running.load(Acquire) {
+            return Taken::NotRunning;
+        }
+        let lockstep = self.mode == RunMode::Lockstep;
+        let sequence = timetable.sequence();
+        let gap = sequence.wrapping_sub(self.next_sequence);
+        let is_repeated = gap > u16::MAX / 2;
+        if is_repeated {
+            return self.accepted(sequence);
+        }
+        if gap > 0 {
+            self.lost = self.lost.saturating_add(gap.into());
+            if lockstep {
+                return Taken::Nothing;
+            }
+        }
+        if let Err(fault) = self.check(&timetable) {
+            return Taken::Unfit(fault);
+        }
+        if timetable.commands().len() > self.free() {
+            if lockstep {
+                self.held = Some(timetable);
+                return Taken::Nothing;
+            }
+            return Taken::Unfit(Fault::QueueFull);
+        }
+        for command in timetable.commands() {
+            let _ = self.commands.enqueue(command.clone());
+        }
+        self.next_sequence = sequence.wrapping_add(1);
+        self.progress.horizon.store(timetable.horizon(), Release);
+        self.accepted(sequence)
+    }
+
+    fn accepted(&self, sequence: u16) -> Taken {
+        let tick = self.progress.steps.load(Acquire);
+        Taken::Accepted(Accepted { sequence, queue_free: self.free() as u16, tick })
+    }
+
+    fn free(&self) -> usize {
+        self.commands.capacity() - self.commands.len()
+    }
+
+    /// Commands lie between the old horizon and the new one, in rising order: those before the old one would be late,
+    /// those past the new one would block the queue.
+    fn check(&self, timetable: &W::Timetable) -> Result<(), Fault> {
+        let mut earliest = self.progress.horizon.load(Acquire);
+        if timetable.horizon() < earliest {
+            return Err(Fault::LateCommand { tick: timetable.horizon() });
+        }
+        for command in timetable.commands() {
+            let tick = command.tick();
+            if !command.is_sound() {
+                return Err(Fault::BadCommand { tick });
+            }
+            if tick < earliest || tick >= timetable.horizon() {
+                return Err(Fault::LateCommand { tick });
+            }
+            earliest = tick + 1;
+        }
+        Ok(())
+    }
+}

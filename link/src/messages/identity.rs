@@ -1,0 +1,67 @@
+//! Who a board is and what it runs, said before anything else. What follows from that is for the host to decide.
+
+use heapless::String;
+use serde::{Deserialize, Serialize};
+
+use super::Remembered;
+
+/// Who the board is and what it runs.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Hello {
+    /// The board's [`crate::PROTOCOL_VERSION`].
+    pub protocol: u16,
+    /// Major, minor, patch.
+    pub firmware_version: [u8; 3],
+    /// What the image is for.
+    pub role: Role,
+    /// Board that the image was built for, such as `stm32f405`.
+    pub board: String<16>,
+    /// Name of the joint that the image was built from.
+    pub joint: String<32>,
+    /// Digest over parameters and tables.
+    pub joint_digest: u64,
+    /// The board's own check of its tables against that digest.
+    pub digest_good: bool,
+    /// Fixed steps a second [Hz].
+    pub tick_rate: u32,
+    /// Timer counts a second, the unit of every time in [`Statistics`] [Hz].
+    pub timer_rate: u32,
+    /// Where the core clock comes from.
+    pub clock: Clock,
+    /// Number of planets.
+    pub planets: u8,
+    /// Commands that the queue can hold.
+    pub queue_capacity: u16,
+    /// Message left by a panic before the last reset.
+    pub last_panic: Option<String<96>>,
+    /// The last reset came from the watchdog.
+    pub watchdog_reset: bool,
+    /// Digest over the tables of observer, compensation and surroundings, for the roles that have them.
+    pub control_digest: Option<u64>,
+    /// What it keeps of earlier runs.
+    pub remembered: Remembered,
+}
+
+/// What an image is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Role {
+    /// The joint is simulated; torques in, motion out.
+    Plant,
+    /// Observer and compensation beside a motor controller; samples and set-points in, estimates and torques out.
+    Observer,
+    /// The joint, its motor and both of them on one chip; motion asked for in, motion made out.
+    Loop,
+}
+
+/// Where the core clock comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Clock {
+    /// External crystal and PLL, as wanted.
+    External,
+    /// The crystal did not start in time; internal oscillator and PLL.
+    InternalFallback,
+    /// No PLL came up: the tick rate is not the stated one.
+    Failed,
+    /// No clock controller is there: an emulated board.
+    NotModelled,
+}

@@ -1,0 +1,48 @@
+//! The motion of a simulated joint as a board reports it. Motion of the whole loop has words of its own in
+//! `virtual_joint`.
+
+use heapless::Vec;
+use serde::{Deserialize, Serialize};
+
+/// Most samples in one [`SampleBatch`].
+pub const SAMPLES_PER_BATCH: usize = 4;
+/// Most meshes of a joint: two for each of five planets.
+pub const MAX_MESHES: usize = 10;
+
+/// Consecutive samples.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SampleBatch {
+    /// Rises by one with every batch of a run, from 0 after a reset.
+    pub sequence: u16,
+    /// The samples, oldest first.
+    pub samples: Vec<Sample, SAMPLES_PER_BATCH>,
+}
+
+/// The motion after a step.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Sample {
+    /// Steps done since the reset.
+    pub tick: u32,
+    /// Running digest over the whole state after every step so far.
+    pub state_digest: u64,
+    /// Whole turns of the rigid-body carrier angle.
+    pub carrier_turns: i32,
+    /// The rest of it, in 2^-32 turns.
+    pub carrier_fraction: u32,
+    /// Rate of the rigid-body carrier angle [rad/s].
+    pub carrier_speed: f32,
+    /// Motor angle less ratio times rigid carrier angle [rad].
+    pub motor_offset: f32,
+    /// Link angle less rigid carrier angle [rad].
+    pub link_offset: f32,
+    /// Gap coordinate u_s - 2 u_c along the line of action [m].
+    pub gap: f32,
+    /// Wind-up between carrier and link along the line of action [m].
+    pub wind_up: f32,
+    /// Mesh deflections [m]: sun-planet of every planet, then ring-planet.
+    pub deflections: Vec<f32, MAX_MESHES>,
+    /// Two bits a mesh in the same order: 0 separated, 1 drive side, 2 back side.
+    pub contacts: u32,
+    /// Computation time of this step, in timer counts.
+    pub computation: u16,
+}

@@ -1,0 +1,58 @@
+//! How a board's time and memory were spent, and what it lost. Whether that is good enough is judged by the host.
+
+use serde::{Deserialize, Serialize};
+
+/// Bins of the computation-time histogram.
+pub const HISTOGRAM_BINS: usize = 32;
+
+/// How the board's time was spent since the last clearing. Times are timer counts.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Statistics {
+    /// Steps done.
+    pub ticks: u32,
+    /// Computation time of the tick.
+    pub computation: Timing,
+    /// From the timer's expiry to the first instruction of the tick.
+    pub lateness: Timing,
+    /// Computation times: bin i counts steps in [i, i + 1) * `bin_width`; the last bin is open.
+    pub histogram: [u32; HISTOGRAM_BINS],
+    /// Width of a bin.
+    pub bin_width: u32,
+    /// Timer counts between two ticks.
+    pub period: u32,
+    /// Idle time, in thousandths of all time.
+    pub idle_permille: u16,
+    /// Ticks that ended after the next was due.
+    pub overruns: u32,
+    /// Ticks that found no schedule (realtime).
+    pub starved: u32,
+    /// Ticks that waited for the schedule (lockstep).
+    pub waited: u32,
+    /// Least number of commands in the queue while running.
+    pub queue_low: u16,
+    /// Schedules missing by sequence number.
+    pub lost_schedules: u32,
+    /// Frames dropped for a bad CRC, length or content.
+    pub bad_frames: u32,
+    /// Received bytes dropped because a buffer was full.
+    pub lost_bytes: u32,
+    /// Samples dropped because a buffer was full.
+    pub lost_samples: u32,
+    /// Log bytes dropped because a buffer was full.
+    pub lost_log_bytes: u32,
+    /// RAM in use by statics [byte].
+    pub static_ram: u32,
+    /// Deepest stack seen, by painting [byte].
+    pub stack_used: u32,
+}
+
+/// Least, mean and greatest of a time, in timer counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Timing {
+    /// Least.
+    pub min: u32,
+    /// Mean.
+    pub mean: u32,
+    /// Greatest.
+    pub max: u32,
+}

@@ -22,7 +22,7 @@ pub(super) struct Settled<'mean, T: Real, const P: usize> {
 /// a regressor would make the compliance look smaller than it is.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Block<T: Real, const P: usize> {
-    intervals: u32,
+    intervals: u8,
     touch: Touch<T>,
     free: Regressors<T, P>,
     raw: T,
@@ -75,7 +75,7 @@ impl<T: Real, const P: usize> Block<T, P> {
             self.clear(T::ZERO);
             return false;
         };
-        if side != self.touch.side || self.intervals >= table.block {
+        if side != self.touch.side || u32::from(self.intervals) >= table.block {
             self.clear(side);
         }
         let free = self.free.iter_mut().zip(mean.free);
@@ -85,7 +85,7 @@ impl<T: Real, const P: usize> Block<T, P> {
         self.raw += mean.raw * table.per_block;
         self.touch.force += mean.force * table.per_block;
         self.intervals += 1;
-        if self.intervals < table.block {
+        if u32::from(self.intervals) < table.block {
             return false;
         }
         let [back, drive] = &mut self.forces;

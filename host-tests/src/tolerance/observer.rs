@@ -99,6 +99,14 @@ pub const WIDTH: Bound = Bound {
     reason: "A guess wrong by half, corrected within the recording.",
 };
 
+/// Width after two short touches.
+pub const WIDTH_IN_PASSING: Bound = Bound {
+    of: "half-backlash after a push that sends the link from flank to flank, relative",
+    limit: 0.08,
+    measured: 0.05,
+    reason: "Two contacts of some 15 ms each; the width then counts as known.",
+};
+
 /// Time until the width is right to 5 % for good, counted from the first crossing's end.
 pub const WIDTH_AFTER: Bound = Bound {
     of: "time from first contact on both flanks until the width is right to 5 % for good [s]",

@@ -88,7 +88,8 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let table = &self.tables.learner;
         let [half_gap, _] = self.shape();
         let (regressors, way) = self.block.full();
-        let weighed = self.learner.weigh(table, &regressors, way);
+        let weight = if self.block.brief { table.weight * T::QUARTER } else { table.weight };
+        let weighed = self.learner.weigh(table, &regressors, way, weight);
         if weighed.surprise * weighed.surprise > T::from_i32(GATE * GATE) * weighed.expected {
             self.doubts.surprises += 1;
             let worth = half_gap * self.tables.contact.known_part;

@@ -145,7 +145,7 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
             self.supervisor.sees_both() && (turns || *side != T::ZERO && *side != self.interval.learnt_side)
         });
         let settled = Settled { free: &free, mesh: &mesh, raw: mean.raw, force: mean.force };
-        let full = self.block.add(&settled, seen, &tables.learner);
+        let full = self.block.add(&settled, seen, !self.knowledge.width_is_known, &tables.learner);
         self.interval.part = Part::Answer(full);
         self.interval.direction = mean.direction;
         self.interval.nearer = if way < shift { -T::ONE } else { T::ONE };

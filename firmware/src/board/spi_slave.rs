@@ -8,7 +8,7 @@
 //! | from the master | PA7 | DMA2 stream 0, channel 3 |
 //!
 //! The emulated board has neither DMA nor EXTI: this is compiled and linted, and only a board can show that it works. What
-//! is to be shown there: a frame of 176 bytes each way, a transfer cut short and one too long, each answered by the next
+//! is to be shown there: a frame of 192 bytes each way, a transfer cut short and one too long, each answered by the next
 //! good one, and the least time between transfers.
 
 use super::pac;

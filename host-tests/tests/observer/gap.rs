@@ -1,7 +1,8 @@
 //! Gap, contact, torques and width with both encoders: figures against their bounds on a few joints, widths and motions.
 
+use host_tests::drive_train::Disturbance;
 use host_tests::tolerance::observer::*;
-use model_core::realtime::observer::{MAPPED, PLAIN};
+use model_core::realtime::observer::{Estimate, MAPPED, PLAIN};
 
 use crate::motion::Moment;
 use crate::replay::{Figures, replay, with_encoders};
@@ -111,12 +112,39 @@ fn a_harmonic_that_is_not_in_the_map_costs_little() {
 }
 
 #[test]
-fn a_wrong_inertia_costs_the_load_torque_what_it_must() {
-    let mut trial = Trial::new("q1", "inertia", Encoders::Preset, Some(40e-6), 10).lasting(4.0);
-    trial.told.link_inertia *= 1.3;
-    let figures = figures_of(&trial, &trial.record());
-    GAP_COARSE.check(figures.gap);
-    LOAD_TORQUE_WRONG_INERTIA.check(figures.load_torque);
+fn an_inertia_that_is_wrong_is_learnt_from_landings() {
+    let right = Trial::new("q1", "inertia", Encoders::Preset, Some(40e-6), 10).lasting(4.0);
+    let log = right.record();
+    for wrong in [0.7, 1.3] {
+        let mut trial = right.clone();
+        trial.told.link_inertia *= wrong;
+        let mut learnt = Estimate::default();
+        let (tables, settings) = (trial.tables(), &trial.settings);
+        let figures = replay::<f64, MAPPED>(&trial.run.joint, &tables, settings, &log, 2.0, |_, _, estimates| {
+            learnt = estimates.link_inertia_ratio;
+        });
+        GAP_COARSE.check(figures.gap);
+        LOAD_TORQUE_WRONG_INERTIA.check(figures.load_torque);
+        LINK_INERTIA.check((learnt.value * wrong - 1.0).abs());
+        assert!(learnt.valid, "it is vouched for");
+    }
+}
+
+#[test]
+fn a_link_that_is_pushed_time_after_time_says_nothing_of_its_inertia() {
+    let mut trial = Trial::new("q1", "random", Encoders::Preset, Some(40e-6), 12).lasting(4.0);
+    let rated = trial.run.joint.rated_output_torque;
+    let push = |n: u32| Disturbance::Pulse {
+        start: 0.3 + 0.31 * f64::from(n),
+        duration: 0.1,
+        torque: if n % 3 == 1 { -0.3 * rated } else { 0.3 * rated },
+    };
+    trial.run.disturbances = (0..12).map(push).collect();
+    let (tables, settings) = (trial.tables(), &trial.settings);
+    replay::<f64, MAPPED>(&trial.run.joint, &tables, settings, &trial.record(), 1.0, |_, _, estimates| {
+        let learnt = estimates.link_inertia_ratio;
+        assert!(!learnt.valid && (learnt.value - 1.0).abs() < 0.1, "{learnt:?}");
+    });
 }
 
 #[test]

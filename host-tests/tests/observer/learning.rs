@@ -1,6 +1,7 @@
 //! What is learnt where learning is hard: teeth that wear, forces that do not stand out of what bias can be, teeth whose
 //! transmission error is larger than their gap. Figures of ordinary joints are in `gap`.
 
+use host_tests::drive_train::Disturbance;
 use host_tests::tolerance::observer::*;
 use model_core::realtime::observer::{MAPPED, Observer, Source};
 
@@ -27,6 +28,30 @@ fn teeth_that_wear_are_learnt_anew_and_the_encoder_is_kept() {
         GAP_COARSE.check(figures.gap);
         WIDTH.check(figures.width);
         assert!(kept, "wear is no failure of the encoder");
+    }
+}
+
+#[test]
+fn a_link_that_is_pushed_from_flank_to_flank_shows_the_width_though_it_never_rests_there() {
+    for half_backlash in [30e-6, 40e-6, 60e-6] {
+        let mut trial = Trial::new("q1", "hold", Encoders::Preset, Some(half_backlash), 37).lasting(0.6);
+        // Nothing brakes it, so it bounces.
+        trial.run.train.load.friction.coulomb = 0.0;
+        trial.run.train.load.friction.viscous = 0.0;
+        trial.run.train.motor.friction.coulomb = 0.0;
+        trial.run.train.motor.friction.viscous = 0.0;
+        trial.run.train.motor.cogging_torque = 0.0;
+        let torque = 0.125 * trial.run.joint.rated_output_torque;
+        trial.run.disturbances = vec![Disturbance::Pulse { start: 0.2, duration: 20e-3, torque }];
+        let log = trial.record();
+        let mut known = 0;
+        let figures =
+            replay::<f64, MAPPED>(&trial.run.joint, &trial.tables(), &trial.settings, &log, 0.5, |_, _, estimates| {
+                known += usize::from(estimates.half_backlash.valid);
+            });
+        println!("{half_backlash}: {figures:?}, known for {known} periods");
+        WIDTH_IN_PASSING.check(figures.width.abs());
+        assert!(known > 2000, "{half_backlash} was not learnt in passing");
     }
 }
 

@@ -3,6 +3,7 @@
 
 mod faults;
 mod gap;
+mod hour;
 mod learning;
 mod memory;
 mod monte_carlo;

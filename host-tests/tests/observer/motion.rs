@@ -67,10 +67,11 @@ pub struct Run {
 }
 
 /// Position, speed and acceleration to follow.
-struct Reference(Vec<[f64; 3]>);
+pub struct Reference(Vec<[f64; 3]>);
 
 impl Reference {
-    fn new(profile: &Profile, seed: u64) -> Self {
+    /// Of a profile.
+    pub fn new(profile: &Profile, seed: u64) -> Self {
         match *profile {
             Profile::Hold => Self(Vec::new()),
             Profile::Sine(amplitude, frequency) => Self(vec![[amplitude, TAU * frequency, 0.0]]),
@@ -91,7 +92,8 @@ impl Reference {
         }
     }
 
-    fn at(&self, time: f64) -> [f64; 3] {
+    /// At a time [rad, rad/s, rad/s^2].
+    pub fn at(&self, time: f64) -> [f64; 3] {
         // Begins at rest and is all there after 0.2 s.
         let s = (time / 0.2).min(1.0);
         let start = [
@@ -136,6 +138,63 @@ pub fn inertia_at_motor(joint: &JointParameters) -> f64 {
         + (joint.link_inertia + carrier) / geometry.ratio_by_teeth().powi(2)
 }
 
+/// The motor controller: a triple pole on the total inertia, with feed-forward and back-calculation, behind an observer of
+/// the motor alone.
+#[derive(Debug)]
+pub struct MotorController {
+    ratio: f64,
+    inertia: f64,
+    motor_inertia: f64,
+    limit: f64,
+    per_count: f64,
+    /// Control period [s].
+    pub period: f64,
+    integral: f64,
+    /// Angle, speed and disturbance of the motor.
+    tracked: [f64; 3],
+    before: f64,
+}
+
+impl MotorController {
+    /// For a joint at rest.
+    pub fn new(joint: &JointParameters, train: &DriveTrainParameters) -> Self {
+        Self {
+            ratio: joint.geometry.ratio_by_teeth(),
+            inertia: inertia_at_motor(joint),
+            motor_inertia: joint.rotor_inertia
+                + joint.bodies.sun_equivalent_mass * joint.geometry.sun_base_radius.powi(2),
+            limit: train.motor.torque_limit,
+            per_count: TAU / f64::from(1_u32 << train.motor_encoder.bits),
+            period: 1.0 / train.control_rate,
+            integral: 0.0,
+            tracked: [0.0; 3],
+            before: 0.0,
+        }
+    }
+
+    /// The command after a reading of the motor's counts, to follow the link's position, speed and acceleration.
+    pub fn step(&mut self, counts: i64, [angle, speed, acceleration]: [f64; 3]) -> f64 {
+        let (ratio, inertia, period) = (self.ratio, self.inertia, self.period);
+        let measured = (counts as f64 + 0.5) * self.per_count;
+        // Angle, speed and disturbance from counts and the last command, with a triple pole.
+        let tracked = &mut self.tracked;
+        let lacking = measured - tracked[0];
+        tracked[0] += (tracked[1] + 3.0 * TRACKING * lacking) * period;
+        tracked[1] += (self.before / self.motor_inertia + tracked[2] + 3.0 * TRACKING.powi(2) * lacking) * period;
+        tracked[2] += TRACKING.powi(3) * lacking * period;
+        let (position_error, speed_error) = (ratio * angle - tracked[0], ratio * speed - tracked[1]);
+        let wanted = inertia
+            * (ratio * acceleration
+                + 3.0 * BANDWIDTH * speed_error
+                + 3.0 * BANDWIDTH.powi(2) * position_error
+                + BANDWIDTH.powi(3) * self.integral);
+        let command = wanted.clamp(-self.limit, self.limit);
+        self.integral += position_error * period + (command - wanted) / (inertia * 3.0 * BANDWIDTH.powi(2)) * period;
+        self.before = command;
+        command
+    }
+}
+
 impl Run {
     /// Makes the recording.
     pub fn record(&self) -> Vec<Moment> {
@@ -143,15 +202,8 @@ impl Run {
             DriveTrain::new(&self.joint, &Start::Still, self.train.clone(), self.disturbances.clone(), self.seed)
                 .expect("a sound drive train");
         let reference = Reference::new(&self.profile, self.seed);
-        let ratio = self.joint.geometry.ratio_by_teeth();
-        let inertia = inertia_at_motor(&self.joint);
-        let per_count = TAU / f64::from(1_u32 << self.train.motor_encoder.bits);
-        let period = 1.0 / self.train.control_rate;
-        let mut integral = 0.0;
-        let mut tracked = [0.0; 3];
-        let mut before = 0.0;
-        let motor_inertia = self.joint.rotor_inertia
-            + self.joint.bodies.sun_equivalent_mass * self.joint.geometry.sun_base_radius.powi(2);
+        let mut controller = MotorController::new(&self.joint, &self.train);
+        let period = controller.period;
         let mut moments = Vec::new();
         for k in 0..(self.duration / period).round() as u64 {
             let time = k as f64 * period;
@@ -159,23 +211,8 @@ impl Run {
                 train.inside().set_half_backlash(half_backlash);
             }
             let part = self.grows_at.map_or(1.0, |at| 0.2 + 0.8 * ((time - at) / 0.5).clamp(0.0, 1.0));
-            let [angle, speed, acceleration] = reference.at(time).map(|value| part * value);
-            let measured = (train.measure().motor_counts as f64 + 0.5) * per_count;
-            // Angle, speed and disturbance from counts and the last command, with a triple pole.
-            let lacking = measured - tracked[0];
-            tracked[0] += (tracked[1] + 3.0 * TRACKING * lacking) * period;
-            tracked[1] += (before / motor_inertia + tracked[2] + 3.0 * TRACKING.powi(2) * lacking) * period;
-            tracked[2] += TRACKING.powi(3) * lacking * period;
-            let (position_error, speed_error) = (ratio * angle - tracked[0], ratio * speed - tracked[1]);
-            let wanted = inertia
-                * (ratio * acceleration
-                    + 3.0 * BANDWIDTH * speed_error
-                    + 3.0 * BANDWIDTH.powi(2) * position_error
-                    + BANDWIDTH.powi(3) * integral);
-            let limit = self.train.motor.torque_limit;
-            let command = wanted.clamp(-limit, limit);
-            integral += position_error * period + (command - wanted) / (inertia * 3.0 * BANDWIDTH.powi(2)) * period;
-            before = command;
+            let wanted = reference.at(time).map(|value| part * value);
+            let command = controller.step(train.measure().motor_counts, wanted);
             train.advance(command).expect("it runs");
             let (measurement, joint, torques) = (train.measure(), train.joint(), train.torques());
             moments.push(Moment {

@@ -56,8 +56,8 @@ pub struct WireEstimates {
     /// Rate of the gap coordinate [m/s], shift of both flanks [m], its slope [m/rad].
     pub gap_course: [f32; 3],
     /// Mesh torque, load torque [N m], half-backlash [m], encoder offset [rad], compliance [rad/(N m)], skew [s], torque
-    /// bias, motor friction [N m].
-    pub others: [WireEstimate; 8],
+    /// bias, motor friction [N m], inertia of the link over the designed one.
+    pub others: [WireEstimate; 9],
     /// Motor and link: whole turns, the rest, speed [rad/s].
     pub shafts: [(i32, f32, f32); 2],
 }
@@ -140,6 +140,7 @@ impl From<&Estimates<f32>> for WireEstimates {
                 of.skew,
                 of.torque_bias,
                 of.motor_friction,
+                of.link_inertia_ratio,
             ]
             .map(estimate),
             shafts: [of.motor, of.link].map(shaft),
@@ -151,8 +152,9 @@ impl From<WireEstimates> for Estimates<f32> {
     fn from(wire: WireEstimates) -> Self {
         let flag = |bit: u8| wire.flags >> bit & 1 == 1;
         let shaft = |(turns, fraction, speed)| Shaft { turns, fraction, speed };
-        let [mesh_torque, load_torque, half_backlash, encoder_offset, compliance, skew, torque_bias, motor_friction] =
+        let [mesh_torque, load_torque, half_backlash, encoder_offset, compliance, skew, rest @ ..] =
             wire.others.map(estimated);
+        let [torque_bias, motor_friction, link_inertia_ratio] = rest;
         let [motor, link] = wire.shafts.map(shaft);
         let [gap_rate, flank_shift, flank_shift_slope] = wire.gap_course;
         Self {
@@ -186,6 +188,7 @@ impl From<WireEstimates> for Estimates<f32> {
             skew,
             torque_bias,
             motor_friction,
+            link_inertia_ratio,
             motor,
             link,
         }

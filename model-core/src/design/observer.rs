@@ -7,6 +7,7 @@
 
 mod body;
 mod filter;
+mod inertia;
 mod integers;
 mod probe;
 mod settings;
@@ -132,6 +133,7 @@ pub fn design_observer<T: Real>(
             blind_variance: [real(blind.variance[1]), real(blind.variance[2])],
             way_per_torque: real(0.5 * body.output_lever / body.load_inertia),
         },
+        inertia: inertia::table(&load, settings, &body, periods as u32, step),
         contact: ContactTable {
             force_variance: real(force_variance),
             ripple_variance: real(ripple * ripple),
@@ -155,9 +157,9 @@ pub fn design_observer<T: Real>(
             loss_driven: real(1.0 / settings.efficiency - 1.0),
         },
         learner: LearnerTable {
-            periods: periods as u32,
+            periods: periods as u16,
             per_periods: real(1.0 / periods),
-            middle: periods as u32 / 2 + 1,
+            middle: periods as u16 / 2 + 1,
             block: block as u32,
             per_block: real(1.0 / block),
             span: real(periods * step),
@@ -170,9 +172,9 @@ pub fn design_observer<T: Real>(
             mesh_compliance: real(body.mesh_compliance),
         },
         supervisor: SupervisorTable {
-            silent_after: (10e-3 / step) as u32,
-            failed_after: (FAILED_AFTER / step) as u32,
-            trusted_after: (0.3 / LEARNING_INTERVAL) as u32,
+            silent_after: (10e-3 / step) as u16,
+            failed_after: (FAILED_AFTER / step) as u16,
+            trusted_after: (0.3 / LEARNING_INTERVAL) as u16,
             moved: libm::ldexp(MOVED_COUNTS * output_count / TAU, 32) as u32,
             margin: real(0.1 * half_gap + 0.1 * body.compliance * rated_force),
             widest_part: real(0.1),

@@ -24,6 +24,7 @@ mod doubt;
 mod drive_side;
 mod estimates;
 mod follow;
+mod inertia;
 mod interval;
 mod knowledge;
 mod learner;
@@ -54,6 +55,7 @@ use contact::ByForce;
 use counts::Counts;
 use doubt::Doubts;
 use drive_side::DriveSide;
+use inertia::Inertia;
 use interval::Interval;
 use knowledge::Knowledge;
 use learner::Learner;
@@ -80,6 +82,7 @@ pub struct Observer<'tables, T: Real, const P: usize> {
     counts: Counts,
     drive: DriveSide<T>,
     load: LoadSide<T>,
+    inertia: Inertia<T>,
     bias: Bias<T>,
     by_force: ByForce,
     motion: Motion<T>,
@@ -113,6 +116,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
             counts,
             drive: DriveSide::default(),
             load: LoadSide::default(),
+            inertia: Inertia::new(&tables.inertia),
             bias: Bias::new(&tables.contact),
             by_force: ByForce::default(),
             motion: Motion::new(),
@@ -144,6 +148,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         }
         self.drive = DriveSide::default();
         self.load = LoadSide::default();
+        self.inertia = Inertia::new(&tables.inertia);
         self.bias = Bias::new(&tables.contact);
         self.by_force = ByForce::default();
         self.motion = Motion::new();

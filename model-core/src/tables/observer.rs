@@ -1,9 +1,11 @@
 //! What the observer needs as plain numbers, made by `design::observer`: flows over one control period, gains, priors
 //! and thresholds. SI, lengths along the line of action; how the numbers come about is left to the design.
 
+mod inertia;
 mod probe;
 
 use crate::real::Real;
+pub use inertia::InertiaTable;
 pub use probe::ProbeTable;
 
 /// The most parameters that the learner may have.
@@ -36,6 +38,8 @@ pub struct ObserverTables<T: Real> {
     pub drive: DriveTable<T>,
     /// The load side.
     pub load: LoadTable<T>,
+    /// The link's inertia.
+    pub inertia: InertiaTable<T>,
     /// Contact and torque bias.
     pub contact: ContactTable<T>,
     /// What is learnt.
@@ -193,11 +197,11 @@ pub struct ContactTable<T: Real> {
 #[derive(Debug, Clone, PartialEq)]
 pub struct LearnerTable<T: Real> {
     /// Control periods between updates.
-    pub periods: u32,
+    pub periods: u16,
     /// 1 over them.
     pub per_periods: T,
     /// The period in their middle, from 1.
-    pub middle: u32,
+    pub middle: u16,
     /// Intervals that make up one way to learn from.
     pub block: u32,
     /// 1 over them.
@@ -224,11 +228,11 @@ pub struct LearnerTable<T: Real> {
 #[derive(Debug, Clone, PartialEq)]
 pub struct SupervisorTable<T: Real> {
     /// Periods without a fresh reading after which it is silent.
-    pub silent_after: u32,
+    pub silent_after: u16,
     /// Periods in a row outside the possible range after which it has failed.
-    pub failed_after: u32,
+    pub failed_after: u16,
     /// Learning intervals in a row in settled contact within the range after which it is taken back.
-    pub trusted_after: u32,
+    pub trusted_after: u16,
     /// Angle by which an output has turned for sure [2^-32 turns].
     pub moved: u32,
     /// Distance beyond the possible range that dynamics alone can bring [m].

@@ -77,7 +77,8 @@ impl<T: Real> Bias<T> {
     }
 }
 
-fn clamp<T: Real>(value: T, limit: T) -> T {
+/// A value within a limit on either side.
+pub(super) fn clamp<T: Real>(value: T, limit: T) -> T {
     if value > limit {
         limit
     } else if value < -limit {

@@ -22,7 +22,9 @@ pub(super) struct Settled<'mean, T: Real, const P: usize> {
 /// a regressor would make the compliance look smaller than it is.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Block<T: Real, const P: usize> {
-    intervals: u32,
+    intervals: u8,
+    /// A touch that ended early.
+    pub brief: bool,
     touch: Touch<T>,
     free: Regressors<T, P>,
     raw: T,
@@ -61,7 +63,14 @@ impl<T: Real> Forces<T> {
 
 impl<T: Real, const P: usize> Block<T, P> {
     pub fn new() -> Self {
-        Self { intervals: 0, touch: Touch::default(), free: [T::ZERO; P], raw: T::ZERO, forces: [Forces::NONE; 2] }
+        Self {
+            intervals: 0,
+            brief: false,
+            touch: Touch::default(),
+            free: [T::ZERO; P],
+            raw: T::ZERO,
+            forces: [Forces::NONE; 2],
+        }
     }
 
     /// Begins anew on a side.
@@ -69,13 +78,27 @@ impl<T: Real, const P: usize> Block<T, P> {
         *self = Self { forces: self.forces, touch: Touch { side, ..Touch::default() }, ..Self::new() };
     }
 
+    /// Sums of fewer intervals become means.
+    fn stretch(&mut self, by: T) {
+        let free = self.free.iter_mut().chain(&mut self.touch.mesh);
+        free.chain([&mut self.raw, &mut self.touch.force]).for_each(|sum| *sum *= by);
+    }
+
     /// Adds an interval; true when enough have passed on one side.
-    pub fn add(&mut self, mean: &Settled<'_, T, P>, side: Option<T>, table: &LearnerTable<T>) -> bool {
+    pub fn add(&mut self, mean: &Settled<'_, T, P>, side: Option<T>, brief: bool, table: &LearnerTable<T>) -> bool {
+        let full = table.block as u8;
         let Some(side) = side else {
+            let ends = brief && self.intervals < full && self.intervals + self.intervals >= full;
+            if ends && self.touch.side != T::ZERO {
+                self.stretch(T::from_i32(full.into()).over(T::from_i32(self.intervals.into())));
+                self.intervals = full;
+                self.brief = true;
+                return true;
+            }
             self.clear(T::ZERO);
             return false;
         };
-        if side != self.touch.side || self.intervals >= table.block {
+        if side != self.touch.side || u32::from(self.intervals) >= table.block {
             self.clear(side);
         }
         let free = self.free.iter_mut().zip(mean.free);
@@ -85,7 +108,7 @@ impl<T: Real, const P: usize> Block<T, P> {
         self.raw += mean.raw * table.per_block;
         self.touch.force += mean.force * table.per_block;
         self.intervals += 1;
-        if self.intervals < table.block {
+        if u32::from(self.intervals) < table.block {
             return false;
         }
         let [back, drive] = &mut self.forces;

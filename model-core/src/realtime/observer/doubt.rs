@@ -10,32 +10,32 @@ use crate::real::Real;
 const GATE: i32 = 5;
 
 /// Surprises in a row after which the width counts as wrong: one may be a blow.
-const FEW: u32 = 2;
+const FEW: u8 = 2;
 
 /// Surprises in a row after which everything that was learnt counts as wrong.
-const TOO_MANY: u32 = 12;
+const TOO_MANY: u8 = 12;
 
 /// Intervals with force between the flanks after which the width counts as wrong: three blocks.
-const CONTRADICTED: u32 = 24;
+const CONTRADICTED: u8 = 24;
 
 /// Times that the width may be doubted before everything else is too.
-const DOUBTS: u32 = 3;
+const DOUBTS: u8 = 3;
 
 /// Ways without surprise on each flank after which a width counts as learnt, and doubts of it are forgotten: a quarter of
 /// a second of contact.
-const TRUSTED: u32 = 32;
+const TRUSTED: u8 = 32;
 
 /// What speaks against what was learnt.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Doubts {
     /// Intervals in a row with force between the flanks.
-    contradicted: u32,
+    contradicted: u8,
     /// Ways in a row that did not belong to the model.
-    surprises: u32,
+    surprises: u8,
     /// Ways without surprise on the back side and on the drive side since the width was doubted.
-    trusted: [u32; 2],
+    trusted: [u8; 2],
     /// How often it was.
-    doubted: u32,
+    doubted: u8,
 }
 
 impl<T: Real, const P: usize> Observer<'_, T, P> {
@@ -88,7 +88,8 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let table = &self.tables.learner;
         let [half_gap, _] = self.shape();
         let (regressors, way) = self.block.full();
-        let weighed = self.learner.weigh(table, &regressors, way);
+        let weight = if self.block.brief { table.weight * T::QUARTER } else { table.weight };
+        let weighed = self.learner.weigh(table, &regressors, way, weight);
         if weighed.surprise * weighed.surprise > T::from_i32(GATE * GATE) * weighed.expected {
             self.doubts.surprises += 1;
             let worth = half_gap * self.tables.contact.known_part;

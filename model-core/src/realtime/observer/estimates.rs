@@ -107,6 +107,9 @@ pub struct Estimates<T: Real> {
     pub torque_bias: Estimate<T>,
     /// Dry friction of the motor, as far as it does not grow with the load [N m].
     pub motor_friction: Estimate<T>,
+    /// Inertia of link and carrier over what the joint file has; the motor's torque constant is in it, as it is in the
+    /// torques [-].
+    pub link_inertia_ratio: Estimate<T>,
     /// Motor shaft; encoder errors that were learnt are taken out.
     pub motor: Shaft<T>,
     /// Link; likewise. Motor only, this is what the motor implies.

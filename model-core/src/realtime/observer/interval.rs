@@ -11,15 +11,15 @@ use crate::real::Real;
 
 /// Intervals of rest on a flank after which contact counts as settled: the window of the speed has passed, and the
 /// swing of an impact with it.
-const SETTLED_AFTER: u32 = 3;
+const SETTLED_AFTER: u16 = 3;
 
 /// Intervals well inside the gap after which the mesh force counts as gone from the motor side's estimate.
-const OPEN_AFTER: u32 = 3;
+const OPEN_AFTER: u16 = 3;
 
 /// Sums over the periods of an interval, and what lasts longer.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Interval<T: Real> {
-    periods: u32,
+    periods: u16,
     sums: Mean<T>,
     pub part: Part,
     /// Direction of the motor's dry friction, mean over the last interval.
@@ -33,7 +33,7 @@ pub(super) struct Interval<T: Real> {
     /// Mesh force over a few intervals [N].
     pub steady: T,
     /// Intervals in a row well inside the gap.
-    open_for: u32,
+    open_for: u16,
 }
 
 /// What is averaged.
@@ -145,8 +145,8 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
             self.supervisor.sees_both() && (turns || *side != T::ZERO && *side != self.interval.learnt_side)
         });
         let settled = Settled { free: &free, mesh: &mesh, raw: mean.raw, force: mean.force };
-        let full = self.block.add(&settled, seen, &tables.learner);
-        self.interval.part = if full { Part::Tell } else { Part::Know };
+        let full = self.block.add(&settled, seen, !self.knowledge.width_is_known, &tables.learner);
+        self.interval.part = Part::Answer(full);
         self.interval.direction = mean.direction;
         self.interval.nearer = if way < shift { -T::ONE } else { T::ONE };
     }

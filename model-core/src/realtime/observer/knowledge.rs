@@ -8,7 +8,7 @@ use crate::real::Real;
 use crate::tables::observer::ObserverTables;
 
 /// Parts in which variances are brought up to date.
-const PARTS: u32 = 4;
+const PARTS: u8 = 4;
 
 /// What is known at the end of an interval and serves until the next.
 #[derive(Debug, Clone, Copy)]
@@ -23,12 +23,8 @@ pub(super) struct Knowledge<T: Real> {
     pub both_deviation: T,
     /// Variance of the way with everything taken out that was learnt [m^2].
     pub way_variance: T,
-    /// Variance of the way less the nearer edge [m^2].
-    pub edge_variance: T,
-    /// Its root [m].
+    /// Standard deviation of the way less the nearer edge [m].
     pub edge_deviation: T,
-    /// Variance of where a flank is: half-gap and transmission error [m^2].
-    pub flank_variance: T,
     /// Variance of everything that was learnt from forces, by what stays wrong of them, bias and ripple as wind-up: of the
     /// way, and of a flank, whose distance from the other is free of bias [m^2].
     pub wind_up_variance: [T; 2],
@@ -61,7 +57,7 @@ pub(super) struct Knowledge<T: Real> {
     /// The last interval was in settled contact.
     pub settled: bool,
     /// What comes next.
-    turn: u32,
+    turn: u8,
 }
 
 impl<T: Real> Knowledge<T> {
@@ -73,9 +69,7 @@ impl<T: Real> Knowledge<T> {
             steady_force_deviation: T::ZERO,
             both_deviation: T::ZERO,
             way_variance: T::ZERO,
-            edge_variance: T::ZERO,
             edge_deviation: T::ZERO,
-            flank_variance: T::ZERO,
             wind_up_variance: [T::ZERO; 2],
             variances: [T::ZERO; 4],
             blur: T::ZERO,
@@ -127,9 +121,15 @@ impl<T: Real> Knowledge<T> {
         touch: &Touch<T>,
     ) {
         let table = &tables.learner;
+        let noise = tables.contact.way_variance;
+        let [of_way, of_flank] = self.wind_up_variance;
+        let [touching, open] = &mut self.gap_variance;
         match self.turn {
-            0 => self.way_variance = learner.variance(table, free),
-            1 => self.flank_variance = learner.variance(table, &touch.on(&[T::ZERO; P])),
+            0 => {
+                self.way_variance = learner.variance(table, free);
+                *open = self.way_variance + of_way + noise;
+            }
+            1 => *touching = learner.variance(table, &touch.on(&[T::ZERO; P])) + of_flank + noise,
             2 => {
                 self.variances =
                     [HALF_GAP, OFFSET, COMPLIANCE, SKEW].map(|parameter| learner.variance_of(table, parameter));
@@ -141,7 +141,6 @@ impl<T: Real> Knowledge<T> {
 
     /// What follows from how well the nearer edge is known.
     fn of_edge<const P: usize>(&mut self, tables: &ObserverTables<T>, learner: &Learner<T, P>, variance: T) {
-        self.edge_variance = variance;
         self.edge_deviation = variance.square_root();
         let edge = variance + tables.contact.way_variance;
         self.blur = T::TWO * edge.square_root();
@@ -168,9 +167,6 @@ impl<T: Real> Knowledge<T> {
         self.mesh_share = tables.learner.mesh_compliance * self.stiffness;
         self.softness = T::TWO * compliance_variance.square_root();
         self.reach = T::THREE * self.edge_deviation + tables.supervisor.margin + half_gap;
-        let noise = tables.contact.way_variance;
-        let [of_way, of_flank] = self.wind_up_variance;
-        self.gap_variance = [self.flank_variance + of_flank + noise, self.way_variance + of_way + noise];
         let widest = T::TWO * half_gap * tables.supervisor.widest_part;
         self.widest_variance = if half_gap > T::ZERO { widest * widest } else { T::ZERO };
         let [sine, cosine] = [learner.value(ERROR), learner.value(ERROR + 1)];

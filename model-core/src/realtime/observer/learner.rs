@@ -106,10 +106,10 @@ impl<T: Real, const P: usize> Learner<T, P> {
     }
 
     /// Weighs a way before it is taken in.
-    pub fn weigh(&self, table: &LearnerTable<T>, regressors: &Regressors<T, P>, way: T) -> Weighed<T, P> {
-        let scaled = Self::scaled(table, regressors, table.weight);
+    pub fn weigh(&self, table: &LearnerTable<T>, regressors: &Regressors<T, P>, way: T, weight: T) -> Weighed<T, P> {
+        let scaled = Self::scaled(table, regressors, weight);
         let mut weighed = Weighed { turned: [T::ZERO; P], surprise: T::ZERO, expected: T::ONE };
-        weighed.surprise = (way - self.way(regressors)) * table.weight;
+        weighed.surprise = (way - self.way(regressors)) * weight;
         for (j, turned) in weighed.turned.iter_mut().enumerate() {
             let (f, d) = self.column(&scaled, j);
             *turned = f;

@@ -2,7 +2,8 @@
 //! damaged, of another version or of another joint. Where the bytes are kept is left to the firmware.
 //!
 //! Layout, little-endian: mark, version, number of parameters, identity of joint and encoders, where the encoders'
-//! zeros were, parameters, factors of their covariance, bias with its covariance, digest over all of it.
+//! zeros were, parameters, factors of their covariance, bias with its covariance, the link's mobility with its variance,
+//! digest over all of it.
 
 use core::fmt;
 
@@ -17,7 +18,7 @@ pub const MEMORY_BYTES: usize = 544;
 pub type Memory = [u8; MEMORY_BYTES];
 
 const MARK: u32 = u32::from_le_bytes(*b"JOBS");
-const VERSION: u16 = 2;
+const VERSION: u16 = 3;
 const DIGEST_AT: usize = MEMORY_BYTES - 8;
 
 /// Why a memory is not taken.
@@ -59,7 +60,11 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         writer.put(&(P as u16).to_le_bytes());
         writer.put(&self.tables.identity.to_le_bytes());
         writer.put(&self.counts.start.to_le_bytes());
-        self.learner.numbers().chain(self.bias.numbers()).for_each(|number| writer.number(number));
+        self.learner
+            .numbers()
+            .chain(self.bias.numbers())
+            .chain(self.inertia.numbers())
+            .for_each(|number| writer.number(number));
         let digest = digest_of(&memory);
         if let Some(place) = memory.get_mut(DIGEST_AT..) {
             place.copy_from_slice(&digest.to_le_bytes());
@@ -87,7 +92,7 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         if parameters != Some(P as u16) || identity != Some(self.tables.identity) {
             return Err(MemoryError::OtherJoint);
         }
-        let (mut learner, mut bias) = (self.learner, self.bias);
+        let (mut learner, mut bias, mut inertia) = (self.learner, self.bias, self.inertia);
         let mut finite = true;
         let mut next = || {
             let number = f32::from_le_bytes(reader.take().unwrap_or_default());
@@ -96,11 +101,13 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         };
         learner.set_numbers(&mut next);
         bias.set_numbers(&mut next);
+        inertia.set_numbers(&mut next);
         if !finite {
             return Err(MemoryError::NotFinite);
         }
         self.learner = learner;
         self.bias = bias;
+        self.inertia = inertia;
         self.find_places();
         if self.tables.counts.absolute {
             self.counts.refer_to(start, &self.tables.counts);

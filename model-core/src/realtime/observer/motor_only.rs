@@ -120,9 +120,8 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
 
     /// Variance of the gap coordinate without an output encoder [m^2]; `None` where nothing is known of it.
     pub(super) fn blind_variance(&self) -> Option<T> {
-        self.blind
-            .anchored
-            .then(|| self.knowledge.edge_variance + self.tables.contact.way_variance + self.drift_variance())
+        let edge = self.knowledge.edge_deviation;
+        self.blind.anchored.then(|| edge * edge + self.tables.contact.way_variance + self.drift_variance())
     }
 
     /// What has been added since contact was last felt [m^2].

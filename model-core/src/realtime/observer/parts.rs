@@ -10,6 +10,8 @@ use crate::real::Real;
 pub(super) enum Part {
     /// Nothing is left.
     Done,
+    /// What the link answered to the force; whether there is a rest to learn from besides.
+    Answer(bool),
     /// On which flank the teeth came to rest.
     Tell,
     /// Learning it, if it belongs to what was learnt.
@@ -25,6 +27,11 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
     pub(super) fn go_on_learning(&mut self) {
         let tables = self.tables;
         self.interval.part = match self.interval.part {
+            Part::Answer(rest) => {
+                let seen = self.supervisor.sees_both() && self.knowledge.width_serves;
+                self.inertia.learn(&tables.inertia, &mut self.load, seen);
+                if rest { Part::Tell } else { Part::Know }
+            }
             Part::Tell => {
                 if self.tell_flank() {
                     Part::Learn

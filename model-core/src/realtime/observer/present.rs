@@ -72,7 +72,7 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         };
         let lever =
             if self.estimates.reported_contact == ContactState::Separated { T::ZERO } else { tables.levers.output };
-        self.from_meshes = lever * now.force;
+        self.from_meshes = self.inertia.pass(lever * now.force);
         self.estimates.mesh_torque.value = lever * force;
     }
 

@@ -32,7 +32,7 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         // over before anyone could act on it.
         estimates.contact_valid = (touching || gap.valid) && !self.knowledge.flanks_swap;
         estimates.mesh_torque.valid = estimates.contact_valid;
-        estimates.load_torque.value = self.load.torque;
+        estimates.load_torque.value = self.load.torque * estimates.link_inertia_ratio.value;
         estimates.load_torque.valid = both || touching;
         estimates.motor = motor;
         estimates.link = link;
@@ -79,6 +79,9 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         };
         estimates.skew =
             Estimate { value: skew * levers.per_output, variance: skew_variance * output_squared, valid: both };
+        let [value, variance] = self.inertia.ratio();
+        estimates.link_inertia_ratio =
+            Estimate { value, variance, valid: variance < tables.inertia.known * value * value };
         estimates.torque_bias = Estimate {
             value: self.bias.bias * levers.sun,
             variance: bias_variance * sun_squared,

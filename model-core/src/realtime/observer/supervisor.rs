@@ -11,14 +11,14 @@ use crate::tables::observer::SupervisorTable;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Supervisor<T: Real> {
     source: Source,
-    silent_for: u32,
-    unmoved_for: u32,
-    outside_for: u32,
+    silent_for: u16,
+    unmoved_for: u16,
+    outside_for: u16,
     /// Intervals in motion in which it said what was learnt.
-    inside_for: u32,
+    inside_for: u16,
     /// Intervals in motion in which it said the same as before, and what: the way beyond what was learnt, on the back side
     /// and on the drive side [m].
-    steady_for: u32,
+    steady_for: u16,
     steady: [T; 2],
     /// The way at the last period, and whether it leapt to where it is [m].
     way: T,
@@ -27,7 +27,7 @@ pub(super) struct Supervisor<T: Real> {
     place: u32,
     /// Load torque of the last and of the last but one look, before a failing encoder could spoil it [N m].
     torques: [T; 2],
-    looked: u32,
+    looked: u16,
 }
 
 /// Where a way lies.
@@ -51,10 +51,10 @@ pub(super) enum Return {
 }
 
 /// An encoder that turns with the motor must do so this many times longer if it says anything else than what was learnt.
-const OTHERWISE: u32 = 3;
+const OTHERWISE: u16 = 3;
 
 /// Intervals between two looks at the load torque: longer than it takes to find a failure.
-const LOOK: u32 = 16;
+const LOOK: u16 = 16;
 
 impl<T: Real> Supervisor<T> {
     pub fn new(has_output: bool) -> Self {
@@ -178,8 +178,8 @@ impl<T: Real> Supervisor<T> {
         let went = place.wrapping_sub(self.place) as i32;
         if self.silent_for == 0 && went.unsigned_abs() >= table.moved {
             self.place = place;
-            self.steady_for += 1;
-            self.inside_for += u32::from(agrees);
+            self.steady_for = self.steady_for.saturating_add(1);
+            self.inside_for = self.inside_for.saturating_add(u16::from(agrees));
         }
         let back = if self.inside_for >= table.trusted_after {
             Return::AsLearnt

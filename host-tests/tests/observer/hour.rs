@@ -1,0 +1,73 @@
+//! An hour of motion on the core's own joint, several joints, motions and seeds: no healthy output encoder is given up.
+//! Ignored by default, for it takes minutes; what the estimates are worth is left to the tests on the fine-step plant.
+
+use std::f64::consts::TAU;
+
+use model_core::design::design;
+use model_core::design::virtual_joint::design_surroundings;
+
+use model_core::realtime::observer::{MAPPED, Observer, Source};
+use model_core::realtime::virtual_joint::VirtualJoint;
+
+use crate::motion::{MotorController, Reference, uniform};
+use crate::trial::{Encoders, Trial};
+
+/// How long each joint moves in each way [s].
+const LASTS: u32 = 240;
+
+/// Periods until both encoders have been read.
+const BEGINS: u64 = 10;
+
+#[test]
+#[ignore = "takes minutes: cargo test --release -p host-tests --test observer hour -- --ignored --nocapture"]
+fn an_hour_of_motion_gives_no_healthy_encoder_up() {
+    let mut seconds = 0;
+    let mut alarms = 0;
+    for (index, name) in ["q1", "d2", "l1"].into_iter().enumerate() {
+        for (place, motion) in ["slow", "inertia", "gravity", "random", "hold"].into_iter().enumerate() {
+            let seed = 800 + (5 * index + place) as u64;
+            alarms += given_up(name, motion, seed);
+            seconds += LASTS;
+        }
+    }
+    assert_eq!(seconds, 3600);
+    assert_eq!(alarms, 0, "false alarms");
+}
+
+/// How often the output encoder is given up. The weight of the hold changes to and fro; torque noise is the test's own.
+fn given_up(name: &str, motion: &str, seed: u64) -> usize {
+    let trial = Trial::new(name, motion, Encoders::Preset, None, seed);
+    let (joint, train) = (&trial.run.joint, &trial.run.train);
+    let rate = train.control_rate as u32;
+    let gears = design::<f32, 3>(joint, rate).expect("tables of the gears");
+    let around = design_surroundings::<f32, 3>(joint, &train.surroundings(), &gears).expect("surroundings");
+    let mut plant = VirtualJoint::new(&gears, &around);
+    let observer = trial.tables::<f32>();
+    let mut observer = Observer::<f32, MAPPED>::new(&observer);
+    let mut controller = MotorController::new(joint, train);
+    let reference = Reference::new(&trial.run.profile, seed);
+    let mut uniform = uniform(seed);
+    let turn = 1_i64 << train.motor_encoder.bits;
+    let (mut counts, mut alarms, mut seen, mut commanded) = (0_i64, 0, false, 0.0);
+    for period in 0..u64::from(LASTS * rate) {
+        let time = period as f64 * controller.period;
+        let mut samples = plant.samples();
+        samples.torque = commanded;
+        let by = (i64::from(samples.motor.counts) - counts).rem_euclid(turn);
+        counts += if by > turn / 2 { by - turn } else { by };
+        let said = observer.step(&samples);
+        if period > BEGINS && said.source != Source::Both {
+            alarms += usize::from(seen);
+        }
+        seen = said.source == Source::Both;
+        let command = controller.step(counts, reference.at(time));
+        commanded = command as f32;
+        let noise = 1.0 + train.motor.torque_noise_ratio * 3.46 * (uniform() - 0.5);
+        let pushed = if motion == "hold" { 0.125 * joint.rated_output_torque * (0.7 * TAU * time).sin() } else { 0.0 };
+        plant.advance((command * noise) as f32, pushed as f32);
+    }
+    let said = observer.estimates();
+    let width = f64::from(said.half_backlash.value) / joint.sun_planet.half_backlash[0] - 1.0;
+    println!("{name}, {motion}, seed {seed}: given up {alarms} times; half-backlash wrong by {width:.4} at the end");
+    alarms
+}

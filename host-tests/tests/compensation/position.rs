@@ -5,8 +5,8 @@ use host_tests::drive_train::DriveTrainParameters;
 use host_tests::scenarios::{l1, q1};
 use host_tests::tolerance::compensation::{
     COMPENSATED_OVER_PID, COMPENSATED_OVER_RIVAL, COMPENSATED_PEAK_OVER_PID, COMPENSATED_PEAK_OVER_RIVAL, LOST_MOTION,
-    PEAK_MESH_FORCE, SLOW_OVER_PID, SLOW_PEAK_OVER_PID, STEPS_OVER_PID, STEPS_PEAK_OVER_PID, STIFF_JOINT_OVER_PID,
-    STIFF_JOINT_STEPS_OVER_PID, TRANSMISSION_ERROR_OVER_PID,
+    PEAK_MESH_FORCE, SLOW_OVER_PID, SLOW_PEAK_OVER_PID, STEPS_MESH_FORCE, STEPS_OVER_PID, STEPS_PEAK_OVER_PID,
+    STIFF_JOINT_OVER_PID, STIFF_JOINT_STEPS_OVER_PID, TRANSMISSION_ERROR_OVER_PID,
 };
 use model_core::joint::JointParameters;
 
@@ -65,6 +65,7 @@ fn fast_steps_that_nobody_foresaw_are_better_than_without_compensation() {
     let (ours, pid) = (figures(&trial, NO_PREVIEW), figures(&trial, Contender::MotorPid));
     STEPS_OVER_PID.check(ours.rms / pid.rms);
     STEPS_PEAK_OVER_PID.check(ours.peak / pid.peak);
+    STEPS_MESH_FORCE.check(ours.peak_mesh_force / RATED_FORCE);
 }
 
 #[test]

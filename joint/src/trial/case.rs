@@ -8,7 +8,7 @@ use host_tests::closed_loop::rivals::Knowledge;
 use host_tests::closed_loop::{Profile as Standard, Reference, compensation_settings, observer_settings};
 use host_tests::drive_train::{Disturbance, DriveTrainParameters};
 use joints::{JointFile, Problem, Severity};
-use model_core::design::compensation::design_compensation;
+use model_core::design::compensation::{CompensationSettings, design_compensation};
 use model_core::design::observer::design_observer;
 use model_core::joint::JointParameters;
 use model_core::tables::compensation::CompensationTables;
@@ -139,8 +139,12 @@ impl Case {
             Failure::new(format!("no {what} can be designed for joint `{}`: {error}", self.told.name))
         };
         let observer = design_observer(&self.told, &settings).map_err(|error| refused("observer", &error))?;
-        let compensation = design_compensation(&self.told, &compensation_settings(&self.told_train, file.bandwidth))
-            .map_err(|error| refused("compensation", &error))?;
+        let settings_of_law = CompensationSettings {
+            peak_torque: file.peak_torque,
+            ..compensation_settings(&self.told_train, file.bandwidth)
+        };
+        let compensation =
+            design_compensation(&self.told, &settings_of_law).map_err(|error| refused("compensation", &error))?;
         Ok(Designed { observer, compensation, ticks: settings.clock_rate / settings.control_rate })
     }
 }

@@ -22,6 +22,23 @@ use settings::check;
 /// to and fro they take up to one and a half times what the first blow is estimated at, which leaves three fifths.
 const STRIKE: f64 = 0.4;
 
+/// The same over the peak torque, however hard the flank will be needed: a planet caught between sun and flank is struck
+/// harder each time.
+const HARDEST_STRIKE: f64 = 0.58;
+
+/// Share of the peak torque that the law may ask the teeth to pass on: torque constant, efficiency and what a swing does
+/// in the loop's delays each take a few hundredths.
+const MOST_PASSED: f64 = 0.9;
+
+/// What is left to that, over itself, as far as a swing is divided by it: less than what the torques are known to.
+const LEAST_ROOM: f64 = 0.1;
+
+/// Peak torque over the rated torque if neither settings nor motor say less: what catalogues of gears allow at least.
+const PEAK: f64 = 2.0;
+
+/// A compliance that comes out so many times smaller or larger than the joint file's is not believed.
+const COMPLIANCE: f64 = 4.0;
+
 /// Share of the largest torque that a crossing may take; the rest is for the feedback along it.
 const CROSSING_TORQUE: f64 = 0.8;
 
@@ -45,11 +62,10 @@ const HURRY: f64 = 0.8;
 const LANDING: f64 = 0.03;
 
 /// The same over the torque that the flank will carry, where that allows for more.
-const LANDING_UNDER_LOAD: f64 = 0.25;
+const LANDING_UNDER_LOAD: f64 = 0.4;
 
-/// Reaction times in which the law's torque rises after a landing: slower than what the motor can follow, faster than
-/// joint and link swing.
-const RISE: f64 = 5.0;
+/// Reaction times in which the law's torque rises after a landing; how far it rises is the limit's to say.
+const RISE: f64 = 1.0;
 
 /// Reaction times over which measured torque is smoothed before it decides: the observer's torques are wrong for a few
 /// milliseconds after every impact.
@@ -142,13 +158,17 @@ pub fn design_compensation<T: Real>(
     // A ramp without a jump in its acceleration has one and a half times its mean.
     let ramp_per_speed = 1.5 * body.motor / (CROSSING_TORQUE * limit);
     let shortest_ramp = 0.5 * REACTIONS_IN_A_CROSSING * reaction;
-    let strike_torque = STRIKE * joint.rated_output_torque;
+    let rated = joint.rated_output_torque;
+    let peak = settings.peak_torque.unwrap_or(limit.min(PEAK * rated));
+    let hardest_strike = HARDEST_STRIKE * peak;
+    let strike_torque = hardest_strike.min(STRIKE * rated);
+    let most_passed = MOST_PASSED * peak;
     let crossing =
         Crossing::at(strike_torque / body.strike_impedance, 2.0 * half, ramp_per_speed, shortest_ramp).duration;
     let motor_damping = (3.0 * inertia * pole).min(body.motor / (MOTOR_DAMPING * reaction));
     // The motor's mass against the joint's spring: torque of a blow for each rad/s.
     let blow = libm::sqrt(body.stiffness * body.motor);
-    let landing_speed = LANDING * joint.rated_output_torque / blow;
+    let landing_speed = LANDING * rated / blow;
     Ok(CompensationTables {
         rate: real(f64::from(settings.control_rate)),
         period: real(period),
@@ -164,7 +184,13 @@ pub fn design_compensation<T: Real>(
         motor_inertia: real(body.motor),
         load_inertia: real(body.load),
         inverse_load_inertia: real(1.0 / body.load),
-        motor_share: real(body.motor / inertia),
+        load_share: real(body.load / inertia),
+        inverse_load_share: real(inertia / body.load),
+        reduced_inertia: real(body.motor * body.load / inertia),
+        compliances: [real(COMPLIANCE / body.stiffness), real(1.0 / (COMPLIANCE * body.stiffness))],
+        gear_losses: [real(1.0 / settings.efficiency - 1.0), real(1.0 - settings.efficiency)],
+        most_passed: real(most_passed),
+        least_room: real(LEAST_ROOM * most_passed),
         position_gain: real(3.0 * inertia * pole * pole),
         damping_gain: real(3.0 * inertia * pole),
         motor_damping: real(motor_damping),
@@ -178,7 +204,7 @@ pub fn design_compensation<T: Real>(
         reaction: real(reaction),
         strike_speed_per_torque: real(1.0 / body.strike_impedance),
         strike_torque: real(strike_torque),
-        hardest_strike: real(joint.rated_output_torque),
+        hardest_strike: real(hardest_strike),
         shortest_ramp: real(shortest_ramp),
         ramp_per_speed: real(ramp_per_speed),
         longest_crossing: real(LONGEST * crossing),

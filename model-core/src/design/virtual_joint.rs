@@ -57,6 +57,8 @@ pub fn compensation_settings(of: &Surroundings, bandwidth: f64) -> CompensationS
         control_rate: of.control_rate,
         bandwidth,
         torque_limit: of.torque_limit.min(NO_LIMIT),
+        peak_torque: None,
+        efficiency: of.efficiency,
         torque_delay: of.delay,
         torque_lag: of.current_lag,
     }

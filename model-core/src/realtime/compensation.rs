@@ -6,8 +6,9 @@
 //!    gives while a flank carries, and the torque that the teeth will have to pass on, now and one crossing later.
 //! 2. `flank` decides from that which flank shall carry, and when to leave for it.
 //! 3. `crossing` and `path` take the motor through the gap to where the load will be, and softly onto the flank.
-//! 4. `load` knows what brakes the link and how that changes when the motion turns round.
-//! 5. `plain` is the same control law on the motor alone, without compensation; it takes over, blended, where the
+//! 4. `limit` keeps what the teeth pass on within bounds.
+//! 5. `load` knows what brakes the link and how that changes when the motion turns round.
+//! 6. `plain` is the same control law on the motor alone, without compensation; it takes over, blended, where the
 //!    estimates are not valid.
 //!
 //! `docs/compensation.md` derives all of it and says where its limits are.
@@ -17,6 +18,7 @@ pub(crate) mod crossing;
 mod flank;
 mod impedance;
 mod intent;
+mod limit;
 mod load;
 mod path;
 mod plain;

@@ -34,8 +34,20 @@ pub struct CompensationTables<T: Real> {
     pub load_inertia: T,
     /// Its inverse.
     pub inverse_load_inertia: T,
-    /// Motor inertia over all inertia.
-    pub motor_share: T,
+    /// Load inertia over all inertia.
+    pub load_share: T,
+    /// Its inverse.
+    pub inverse_load_share: T,
+    /// Of motor against load [kg m^2].
+    pub reduced_inertia: T,
+    /// Largest and smallest compliance that is believed [rad/(N m)].
+    pub compliances: [T; 2],
+    /// What the gears lose over what the teeth pass on, while the motor drives and while the load does.
+    pub gear_losses: [T; 2],
+    /// Most that the teeth shall pass on in position mode [N m].
+    pub most_passed: T,
+    /// What is left to that, at least, as far as a swing is divided by it [N m].
+    pub least_room: T,
     /// Spring of the loop [N m/rad].
     pub position_gain: T,
     /// Damper of the loop, on the link [N m s/rad].

@@ -138,6 +138,13 @@ pub(super) const KEYS: &[Key] = &[
     key("controller", "bandwidth_rad_per_s", Number(1.0, 1e4), "bandwidth of all controllers alike; 60 if left out"),
     key(
         "controller",
+        "peak_torque_N_m",
+        Number(1e-3, 1e6),
+        "most that the teeth shall pass on in position mode, at the link; if left out what the motor gives at its limit, but at \
+         most twice the rated torque",
+    ),
+    key(
+        "controller",
         "width_guess_ratio",
         Range(0.0, 10.0),
         "guessed over true backlash; if left out 0.5 for even seeds and 1.5 for odd ones",

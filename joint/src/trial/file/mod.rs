@@ -58,6 +58,8 @@ pub struct TestFile {
     pub rivals: Vec<ControllerName>,
     /// Bandwidth of all of them [rad/s].
     pub bandwidth: f64,
+    /// Most that the teeth shall pass on [N m]; `None` is what the motor gives.
+    pub peak_torque: Option<f64>,
     /// Guessed over true half-backlash; `None` is wrong by half, one way or the other by the seed.
     pub width_guess: Option<Quantity>,
     /// Whether the observer has the output encoder.
@@ -197,6 +199,10 @@ fn read_table(table: &DeTable<'_>, problems: &Problems) -> Option<TestFile> {
         only_with_full: if top.has("only_with_full") { top.flag("only_with_full")? } else { false },
         timeout: number(&top, "timeout_s", TIMEOUT)?,
         bandwidth: number(&controller, "bandwidth_rad_per_s", BANDWIDTH)?,
+        peak_torque: match controller.has("peak_torque_N_m") {
+            true => Some(controller.number("peak_torque_N_m")?),
+            false => None,
+        },
         width_guess: match controller.has("width_guess_ratio") {
             true => Some(controller.range("width_guess_ratio")?),
             false => None,

@@ -12,6 +12,12 @@ pub struct CompensationSettings {
     pub bandwidth: f64,
     /// Largest torque of the motor [N m].
     pub torque_limit: f64,
+    /// Most that the teeth shall pass on in position mode, felt at the link [N m]; if left out, what the motor gives at its
+    /// limit, but no more than twice the rated torque.
+    pub peak_torque: Option<f64>,
+    /// Efficiency of the gears as far as losses grow with the torque passed on: output over input power while the motor
+    /// drives.
+    pub efficiency: f64,
     /// From commanding a torque to its first effect [control periods].
     pub torque_delay: f64,
     /// Time constant of the current loop after that [s].
@@ -28,6 +34,15 @@ pub(super) fn check(settings: &CompensationSettings) -> Result<(), DesignError> 
     must("control rate", rate, rate > 0.0, "positive")?;
     must("bandwidth", bandwidth, bandwidth > 0.0 && bandwidth < 0.1 * rate, "positive and below a tenth of the rate")?;
     must("motor torque limit", torque_limit, torque_limit > 0.0, "positive")?;
+    if let Some(peak) = settings.peak_torque {
+        must("peak torque", peak, peak > 0.0, "positive")?;
+    }
+    must(
+        "efficiency",
+        settings.efficiency,
+        settings.efficiency > 0.0 && settings.efficiency <= 1.0,
+        "above 0, at most 1",
+    )?;
     must("torque delay", torque_delay, torque_delay >= 0.0, "zero or positive")?;
     must("torque lag", torque_lag, torque_lag >= 0.0, "zero or positive")
 }

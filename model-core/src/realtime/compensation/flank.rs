@@ -123,7 +123,7 @@ impl<T: Real> Flank<T> {
             let closing = self.side * clamp(speed, T::ZERO, tables.fastest_landing);
             return tables.motor_inertia * intent.free_acceleration
                 + tables.motor_damping * (situation.link_speed + closing - situation.motor_speed)
-                + situation.lost(tables, situation.link_speed);
+                + situation.lost(tables, situation.link_speed, T::ZERO);
         }
         // Torque acts one reaction time after it is asked for.
         let [target, rate, _] = self.path.at(self.elapsed);
@@ -131,7 +131,7 @@ impl<T: Real> Flank<T> {
         tables.motor_inertia * acceleration
             + tables.gap_stiffness * (target - self.drift(tables, situation) - situation.motor)
             + tables.motor_damping * (rate - situation.motor_speed)
-            + situation.lost(tables, rate)
+            + situation.lost(tables, rate, T::ZERO)
     }
 
     /// How far the set-point has moved since the path was laid [rad].

@@ -39,14 +39,13 @@ impl<T: Real> ImpedanceLaw<T> {
             + tables.impedance_calm * situation.calm(tables);
         let free = load.even() + load.drag(tables, situation.link_speed);
         // Law and load accelerate motor and load together; the teeth pass on what is not the motor's share.
-        let load_share = T::ONE - tables.motor_share;
         self.sender.hear(tables, point);
         let overdue = self.sender.overdue(tables);
         let error = situation.error + point.speed * overdue;
         let torque = point.torque + self.sender.torque_rate() * overdue;
-        let demand_now = load_share * (point.stiffness * error + point.damping * situation.error_rate + torque)
-            + tables.motor_share * free;
-        let rate = load_share * (point.stiffness * situation.error_rate + self.sender.torque_rate());
+        let demand_now = tables.load_share * (point.stiffness * error + point.damping * situation.error_rate + torque)
+            + (T::ONE - tables.load_share) * free;
+        let rate = tables.load_share * (point.stiffness * situation.error_rate + self.sender.torque_rate());
         Intent::new(tables, load, situation, law, |time| demand_now + time * rate, true)
     }
 }

@@ -34,6 +34,10 @@ pub(super) struct Situation<T: Real> {
     pub losses: [T; 2],
     /// Half of the lost motion [rad].
     pub half: T,
+    /// Torque in the teeth [N m].
+    pub mesh_torque: T,
+    /// Between motor and link [N m/rad].
+    pub stiffness: T,
     /// By how much the transmission error shifts both flanks, felt at the link [rad].
     pub shift: T,
     /// By how much that grows for each radian of the link.
@@ -63,6 +67,8 @@ impl<T: Real> Situation<T> {
             T::from_i64(whole) * tables.inverse_denominator + estimates.motor.fraction - tables.gear * origin.fraction;
         let motor = tables.turn * tables.inverse_gear * motor_turns - offset;
         let half = clamp(tables.inverse_lever * estimates.half_backlash.value, T::ZERO, tables.widest_half);
+        let [softest, stiffest] = tables.compliances;
+        let stiffness = T::ONE.over(clamp(estimates.compliance.value, stiffest, softest));
         let at_link = T::HALF * tables.inverse_lever;
         let situation = Self {
             error: tables.turn * origin.less(estimates.link.turns, estimates.link.fraction),
@@ -72,6 +78,8 @@ impl<T: Real> Situation<T> {
             link_speed: estimates.link.speed,
             origin,
             half,
+            mesh_torque: estimates.mesh_torque.value,
+            stiffness,
             losses: [estimates.torque_bias, estimates.motor_friction].map(|loss| tables.gear * loss.value),
             error_speed: at_link * estimates.flank_shift_slope * estimates.link.speed,
             shift: at_link * estimates.flank_shift,
@@ -82,6 +90,7 @@ impl<T: Real> Situation<T> {
         };
         let sum = situation.error + situation.error_rate + situation.motor + situation.motor_speed + situation.gap;
         let sum = sum + situation.shift + situation.error_speed + situation.losses[0] + situation.losses[1];
+        let sum = sum + situation.mesh_torque + situation.stiffness;
         Self { sees: situation.sees && (sum + estimates.half_backlash.value).is_finite(), ..situation }
     }
 
@@ -91,9 +100,12 @@ impl<T: Real> Situation<T> {
         self.shift * cosine + self.shift_slope * tables.radians_per_mesh * sine
     }
 
-    /// Torque that the motor loses at a speed [N m].
-    pub fn lost(&self, tables: &CompensationTables<T>, speed: T) -> T {
-        self.losses[0] + self.losses[1] * LoadModel::planned_direction(tables, speed)
+    /// Torque that is lost between motor and load at a speed, while the teeth pass on a torque [N m].
+    pub fn lost(&self, tables: &CompensationTables<T>, speed: T, passed: T) -> T {
+        let direction = LoadModel::planned_direction(tables, speed);
+        let [driving, driven] = tables.gear_losses;
+        let ratio = if passed * direction > T::ZERO { driving } else { driven };
+        self.losses[0] + (self.losses[1] + ratio * passed.abs()) * direction
     }
 
     /// Torque of the damper on the motor against the link; what the transmission error makes it do is none of its

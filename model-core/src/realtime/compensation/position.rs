@@ -3,6 +3,7 @@
 
 use super::arithmetic::{beyond, clamp};
 use super::intent::{Intent, Situation};
+use super::limit::{limited, passed};
 use super::load::LoadModel;
 use super::set_point::Motion;
 use crate::real::Real;
@@ -49,14 +50,19 @@ impl<T: Real> PositionLaw<T> {
         let rests = now.speed == T::ZERO && now.acceleration == T::ZERO && asked == [T::ZERO; 2];
         let let_be = if rests { self.indulgence } else { T::ZERO };
 
-        let asked_for = (tables.load_inertia + tables.motor_inertia) * now.acceleration
+        let useful = (tables.load_inertia + tables.motor_inertia) * now.acceleration
             + load.even()
             + load.planned_drag(tables, now.speed)
             + tables.position_gain * beyond(situation.error, let_be)
-            + tables.damping_gain * situation.error_rate
-            + situation.lost(tables, now.speed);
-        // What is beyond the limit must not drown the damper.
+            + tables.damping_gain * situation.error_rate;
+        // What is beyond the limits must not drown the damper.
+        let all = passed(tables, load, situation, useful);
+        let useful = useful - tables.inverse_load_share * beyond(all, tables.most_passed);
+        let passed = clamp(all, -tables.most_passed, tables.most_passed);
+        let asked_for = useful + situation.lost(tables, now.speed, passed);
         let law = clamp(asked_for, -tables.torque_limit, tables.torque_limit) + situation.calm(tables);
+        let lost = situation.lost(tables, situation.link_speed, passed);
+        let law = limited(tables, load, situation, law - lost) + lost;
         let level = load.even()
             + (load.drag(tables, situation.link_speed) - load.planned_drag(tables, now.speed))
             + tables.position_gain * beyond(situation.error, let_be)

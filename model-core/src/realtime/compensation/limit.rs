@@ -31,6 +31,9 @@ pub(super) fn limited<T: Real>(
     situation: &Situation<T>,
     useful: T,
 ) -> T {
+    if load.throws(tables) {
+        return useful;
+    }
     let passed = passed(tables, load, situation, useful);
     let side = if passed < T::ZERO { -T::ONE } else { T::ONE };
     let allowed = allowed(tables, situation, side);

@@ -17,6 +17,8 @@ pub(super) struct LoadModel<T: Real> {
     rate: T,
     /// What brakes a link that no flank carries, smoothed [N m].
     alone: Option<T>,
+    /// The hardest that the link was pushed of late, fading [N m].
+    hardest: T,
     /// Variances of both and their covariance.
     variance: [T; 3],
     /// 1 or -1: where the link last moved to, 0 before it has.
@@ -40,6 +42,7 @@ impl<T: Real> LoadModel<T> {
             friction: T::ZERO,
             rate: T::ZERO,
             alone: None,
+            hardest: T::ZERO,
             variance: [T::ONE, T::ONE, T::ZERO],
             direction: T::ZERO,
             creep: None,
@@ -68,6 +71,11 @@ impl<T: Real> LoadModel<T> {
 
     pub fn friction(&self) -> T {
         self.friction
+    }
+
+    /// Whether the link was pushed of late with more than the teeth shall pass on. Sparing them then is left to whoever pushes.
+    pub fn throws(&self, tables: &CompensationTables<T>) -> bool {
+        self.hardest > tables.most_passed
     }
 
     /// What would brake the link now if no flank carried it.
@@ -101,6 +109,11 @@ impl<T: Real> LoadModel<T> {
         let known = torque.valid && torque.value.is_finite() && situation.sees;
         // More than the motor can hold is no load that it carries.
         let held = clamp(torque.value, -tables.torque_limit, tables.torque_limit);
+        self.hardest *= tables.patience_left;
+        let push = clamp(torque.value.abs(), T::ZERO, tables.torque_limit + tables.torque_limit);
+        if known && push > self.hardest {
+            self.hardest = push;
+        }
         let carried = known && situation.contact != T::ZERO;
         if carried {
             self.learn(tables, held, situation.link_speed);

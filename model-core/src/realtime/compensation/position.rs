@@ -57,8 +57,9 @@ impl<T: Real> PositionLaw<T> {
             + tables.damping_gain * situation.error_rate;
         // What is beyond the limits must not drown the damper.
         let all = passed(tables, load, situation, useful);
-        let useful = useful - tables.inverse_load_share * beyond(all, tables.most_passed);
-        let passed = clamp(all, -tables.most_passed, tables.most_passed);
+        let most = if load.throws(tables) { all.abs() } else { tables.most_passed };
+        let passed = clamp(all, -most, most);
+        let useful = useful - tables.inverse_load_share * (all - passed);
         let asked_for = useful + situation.lost(tables, now.speed, passed);
         let law = clamp(asked_for, -tables.torque_limit, tables.torque_limit) + situation.calm(tables);
         let lost = situation.lost(tables, situation.link_speed, passed);

@@ -21,7 +21,7 @@ fn a_joint_file_that_is_not_there_is_named() {
 }
 
 #[test]
-#[ignore = "needs the emulated board and minutes: cargo test -p joint --test bench -- --ignored"]
+#[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
 fn the_peers_are_as_lean_as_their_advocates_would_have_them() {
     let folder = tempfile::tempdir().expect("a folder");
     let document = folder.path().join("budget.md");

@@ -30,7 +30,7 @@ fn no_input_makes_a_torque_that_is_none_or_too_large() {
     let tables =
         design_compensation::<f32>(&q1(), &compensation_settings(&DriveTrainParameters::q1(), 60.0)).expect("sound");
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, -1e30] {
-        let mut estimates = [sound(); 7];
+        let mut estimates = [sound(); 9];
         estimates[0].gap.value = bad;
         estimates[1].half_backlash.value = bad;
         estimates[2].load_torque.value = bad;
@@ -38,6 +38,8 @@ fn no_input_makes_a_torque_that_is_none_or_too_large() {
         estimates[4].link.speed = bad;
         estimates[5].link.fraction = bad;
         estimates[6].encoder_offset.value = bad;
+        estimates[7].mesh_torque.value = bad;
+        estimates[8].compliance.value = bad;
         let motion = Motion { acceleration: bad, speed: bad, ..Motion::default() };
         let commands = [
             at_rest(),
@@ -91,4 +93,6 @@ fn settings_that_no_gain_can_be_made_from_are_refused_with_the_mend() {
     };
     assert!(refusal(|settings| settings.bandwidth = 0.0).contains("bandwidth"));
     assert!(refusal(|settings| settings.torque_limit = f64::NAN).contains("torque limit"));
+    assert!(refusal(|settings| settings.peak_torque = Some(-1.0)).contains("peak torque"));
+    assert!(refusal(|settings| settings.efficiency = 0.0).contains("efficiency"));
 }

@@ -65,7 +65,20 @@ fn fast_steps_that_nobody_foresaw_are_better_than_without_compensation() {
     let (ours, pid) = (figures(&trial, NO_PREVIEW), figures(&trial, Contender::MotorPid));
     STEPS_OVER_PID.check(ours.rms / pid.rms);
     STEPS_PEAK_OVER_PID.check(ours.peak / pid.peak);
-    STEPS_MESH_FORCE.check(ours.peak_mesh_force / RATED_FORCE);
+}
+
+#[test]
+fn motor_and_link_that_swing_do_not_press_the_teeth_beyond_the_limit() {
+    for stiffness in [20e3, 6e3] {
+        let mut joint = q1();
+        if let Some(compliance) = &mut joint.compliance {
+            compliance.stiffness = stiffness;
+        }
+        let trial = Trial::steps(&joint, &DriveTrainParameters::q1(), 112);
+        let ours = figures(&trial, NO_PREVIEW);
+        println!("{stiffness}: {ours:?}");
+        STEPS_MESH_FORCE.check(ours.peak_mesh_force / RATED_FORCE);
+    }
 }
 
 #[test]

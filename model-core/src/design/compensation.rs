@@ -24,7 +24,7 @@ const STRIKE: f64 = 0.4;
 
 /// The same over the peak torque, however hard the flank will be needed: a planet caught between sun and flank is struck
 /// harder each time.
-const HARDEST_STRIKE: f64 = 0.56;
+const HARDEST_STRIKE: f64 = 0.58;
 
 /// Share of the peak torque that the law may ask the teeth to pass on: torque constant, efficiency and what a swing does
 /// in the loop's delays each take a few hundredths.

@@ -5,6 +5,7 @@
 
 #![allow(clippy::needless_range_loop, reason = "one index walks several tables of the same mesh")]
 
+mod arithmetic;
 pub mod compensation;
 mod contact;
 pub mod controller;

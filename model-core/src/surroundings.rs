@@ -34,6 +34,11 @@ pub struct Surroundings {
     pub output_encoder: AbsoluteEncoder,
 }
 
+/// What gears of an efficiency lose over what their teeth pass on, while the motor drives and while the load does.
+pub fn gear_losses(efficiency: f64) -> [f64; 2] {
+    [1.0 / efficiency - 1.0, 1.0 - efficiency]
+}
+
 /// Dry and viscous friction of a shaft.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Friction {

@@ -7,7 +7,7 @@ use model_core::joint::JointParameters;
 
 use super::{Controller, Motion, Reference, SetPoint};
 use crate::drive_train::{Disturbance, DriveTrain, DriveTrainError, DriveTrainParameters, Stepping};
-use crate::reference::{RelativeState, Start};
+use crate::reference::{Observation, RelativeState, Start};
 
 /// Stiffness, damping and sending rate of impedance set-points.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -62,6 +62,22 @@ pub struct Sample {
     pub transmitted: f64,
     /// Asked of the motor [N m].
     pub command: f64,
+}
+
+impl Sample {
+    /// Of a joint whose half-backlash is now so much [m], under a command [N m].
+    pub fn of(joint: &Observation, wanted: f64, half_backlash: f64, command: f64) -> Self {
+        Self {
+            time: joint.time,
+            wanted,
+            link: joint.link_angle,
+            link_speed: joint.link_speed,
+            gap: if half_backlash > 0.0 { joint.gap / (2.0 * half_backlash) } else { joint.gap.signum() },
+            mesh_force: joint.sun_force(),
+            transmitted: joint.wind_up_torque,
+            command,
+        }
+    }
 }
 
 /// What happened.
@@ -156,16 +172,7 @@ impl Bench {
             }
             train.advance(command)?;
             let joint = train.joint();
-            samples.push(Sample {
-                time: joint.time,
-                wanted: motion.at(joint.time).position,
-                link: joint.link_angle,
-                link_speed: joint.link_speed,
-                gap: if half > 0.0 { joint.gap / (2.0 * half) } else { joint.gap.signum() },
-                mesh_force: joint.sun_force(),
-                transmitted: joint.wind_up_torque,
-                command,
-            });
+            samples.push(Sample::of(joint, motion.at(joint.time).position, half, command));
         }
         Ok(Run { samples, period })
     }

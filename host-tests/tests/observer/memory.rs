@@ -1,6 +1,7 @@
 //! What was learnt outlives the observer: saved, loaded by another one that starts elsewhere, refused when it must be.
 
 use host_tests::tolerance::observer::GAP_COARSE;
+use model_core::digest;
 use model_core::realtime::observer::{MAPPED, MEMORY_BYTES, Memory, MemoryError, Observer, PLAIN};
 
 use crate::motion::Moment;
@@ -72,4 +73,26 @@ fn memories_that_do_not_fit_are_refused_and_change_nothing() {
     let tables = trial.tables();
     let mut plain = Observer::<f32, PLAIN>::new(&tables);
     assert_eq!(plain.load(&memory), Err(MemoryError::OtherJoint));
+}
+
+#[test]
+fn a_mobility_that_no_link_has_is_not_believed() {
+    let (trial, log, memory) = learnt();
+    let tables = trial.tables();
+    for mobility in [0.0_f32, -1.0, 1e30] {
+        let mut odd = memory;
+        let at = odd.len() - 8;
+        // The last number but one, before two spare words and the digest.
+        odd[520..524].copy_from_slice(&mobility.to_le_bytes());
+        let seal = odd[..at].iter().fold(digest::START, |running, byte| digest::chain(running, (*byte).into()));
+        odd[at..].copy_from_slice(&seal.to_le_bytes());
+        let mut observer = Observer::<f32, MAPPED>::new(&tables);
+        observer.load(&odd).expect("sealed as it should be");
+        for (period, moment) in log.iter().take(100).enumerate() {
+            observer.step(&samples(&trial.settings, moment, period));
+        }
+        let estimates = observer.estimates();
+        assert!((0.5..=11.0).contains(&estimates.link_inertia_ratio.value), "{:?}", estimates.link_inertia_ratio);
+        assert!(estimates.load_torque.value.is_finite());
+    }
 }

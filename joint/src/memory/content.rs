@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use model_core::design::observer::design_observer;
 use model_core::design::virtual_joint::observer_settings;
-use model_core::realtime::observer::{MAPPED, Memory, MemoryError, Observer};
+use model_core::realtime::observer::{MAPPED, Memory, MemoryError, Observer, memory_numbers};
 use model_core::tables::observer::{LeverTable, ObserverTables};
 use serde::Serialize;
 
@@ -13,8 +13,6 @@ use crate::check::Loaded;
 use crate::identify::findings::Finding;
 use crate::identify::table;
 
-/// Bytes before the first number: mark, version, number of parameters, identity, zeros.
-const HEAD: usize = 24;
 /// 95 of 100 values lie within so many standard deviations.
 const REACH: f64 = 1.96;
 /// What is not narrowed to this share of its standard deviation beforehand has not been learnt.
@@ -82,8 +80,7 @@ struct Numbers(Vec<f64>);
 
 impl Numbers {
     fn new(memory: &Memory) -> Self {
-        let (numbers, _) = memory[HEAD..].as_chunks();
-        Self(numbers.iter().map(|bytes| f64::from(f32::from_le_bytes(*bytes))).collect())
+        Self(memory_numbers(memory).map(f64::from).collect())
     }
 
     fn at(&self, index: usize) -> f64 {

@@ -87,16 +87,7 @@ impl Ran {
         let joint = plant.joint();
         let torques = plant.torques();
         let half = injection.half_backlash_now();
-        let sample = Sample {
-            time: joint.time,
-            wanted: case.motion.at(joint.time).position,
-            link: joint.link_angle,
-            link_speed: joint.link_speed,
-            gap: if half > 0.0 { joint.gap / (2.0 * half) } else { joint.gap.signum() },
-            mesh_force: joint.sun_force(),
-            transmitted: joint.wind_up_torque,
-            command,
-        };
+        let sample = Sample::of(joint, case.motion.at(joint.time).position, half, command);
         let truth = Truth {
             gap: joint.gap,
             half_backlash: half,

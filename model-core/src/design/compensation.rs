@@ -13,6 +13,7 @@ use crate::error::DesignError;
 use crate::joint::JointParameters;
 use crate::real::Real;
 use crate::realtime::compensation::crossing::Crossing;
+use crate::surroundings::gear_losses;
 use crate::tables::compensation::CompensationTables;
 use body::Body;
 pub use settings::CompensationSettings;
@@ -188,7 +189,7 @@ pub fn design_compensation<T: Real>(
         inverse_load_share: real(inertia / body.load),
         reduced_inertia: real(body.motor * body.load / inertia),
         compliances: [real(COMPLIANCE / body.stiffness), real(1.0 / (COMPLIANCE * body.stiffness))],
-        gear_losses: [real(1.0 / settings.efficiency - 1.0), real(1.0 - settings.efficiency)],
+        gear_losses: gear_losses(settings.efficiency).map(real),
         most_passed: real(most_passed),
         least_room: real(LEAST_ROOM * most_passed),
         position_gain: real(3.0 * inertia * pole * pole),

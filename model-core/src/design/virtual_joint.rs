@@ -9,7 +9,7 @@ use crate::error::DesignError;
 use crate::joint::JointParameters;
 use crate::real::Real;
 use crate::scales::Scales;
-use crate::surroundings::{AbsoluteEncoder, Friction, Surroundings};
+use crate::surroundings::{AbsoluteEncoder, Friction, Surroundings, gear_losses};
 use crate::tables::Tables;
 use crate::tables::virtual_joint::{
     COMMANDS_UNDER_WAY, CurrentLoopTable, EncoderErrorTable, FrictionTable, SurroundingsTable,
@@ -122,7 +122,7 @@ pub fn design_surroundings<T: Real, const N: usize>(
         cogging_periods: of.cogging_periods_per_turn,
         motor_friction: friction(&of.motor_friction, motor_inertia / period),
         load_friction: friction(&of.load_friction, link_inertia / period),
-        losses: [real(1.0 / of.efficiency - 1.0), real(1.0 - of.efficiency)],
+        losses: gear_losses(of.efficiency).map(real),
         half_backlash,
         sun_torque: real(joint.sun_planet.mean_stiffness * geometry.sun_base_radius),
         to_link: to_link.map(real),

@@ -13,7 +13,6 @@
 //!
 //! `docs/compensation.md` derives all of it and says where its limits are.
 
-pub(super) mod arithmetic;
 pub(crate) mod crossing;
 mod flank;
 mod impedance;
@@ -29,9 +28,9 @@ mod set_point;
 pub use set_point::{Command, ImpedancePoint, Motion, Position, Shaped, Stage};
 
 use crate::real::Real;
+use crate::realtime::arithmetic::clamp;
 use crate::realtime::observer::Estimates;
 use crate::tables::compensation::CompensationTables;
-use arithmetic::clamp;
 use flank::Flank;
 use impedance::ImpedanceLaw;
 use intent::Situation;

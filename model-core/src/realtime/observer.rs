@@ -42,7 +42,7 @@ mod saying;
 mod supervisor;
 
 pub use estimates::{Doubt, Estimate, Estimates, Notices, Shaft, Source};
-pub use memory::{MEMORY_BYTES, Memory, MemoryError};
+pub use memory::{MEMORY_BYTES, Memory, MemoryError, memory_numbers};
 pub use probe::{Probe, Progress, Refusal};
 pub use samples::{Reading, Samples};
 

@@ -1,7 +1,7 @@
 //! Faults between a virtual joint and its controller: encoders that stand still, slip or scatter, readings that do not come,
 //! a motor that gives another torque than it was asked for. What they are to prove, and faults of teeth, are left out.
 
-use super::compensation::arithmetic::clamp;
+use super::arithmetic::clamp;
 use super::observer::{Reading, Samples};
 use super::phase::sine_cosine;
 use crate::random::splitmix64;

@@ -2,7 +2,7 @@
 //! one control period at a time. Torques are held over a period, friction so that it sticks; noise is left out, so that
 //! the same commands give the same bits everywhere.
 
-use super::compensation::arithmetic::clamp;
+use super::arithmetic::clamp;
 use super::observer::{Reading, Samples};
 use super::phase::sine_cosine;
 use super::{Model, Outputs, Torques};

@@ -1,7 +1,7 @@
 //! How long a crossing takes. The path itself is left to `path`.
 
-use super::arithmetic::clamp;
 use crate::real::Real;
+use crate::realtime::arithmetic::clamp;
 use crate::tables::compensation::CompensationTables;
 
 /// Times of a crossing.

@@ -1,11 +1,11 @@
 //! Which flank carries, when to leave it, and the way across. What torque the law wants is given; how the load will
 //! behave in between is taken as ballistic.
 
-use super::arithmetic::clamp;
 use super::intent::{Intent, Situation};
 use super::path::Path;
 use super::set_point::{Position, Stage};
 use crate::real::Real;
+use crate::realtime::arithmetic::clamp;
 use crate::tables::compensation::CompensationTables;
 
 /// The flank in use and the way to the next.

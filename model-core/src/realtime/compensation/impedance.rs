@@ -1,12 +1,13 @@
 //! The control law of impedance mode: the commanded spring on the link, the commanded damper on the motor, the
 //! commanded torque on top. It comes without a preview, so what will be asked is extrapolated from its own course.
 
-use super::arithmetic::clamp;
 use super::intent::{Intent, Situation};
+use super::limit::passed;
 use super::load::LoadModel;
 use super::sender::Sender;
 use super::set_point::ImpedancePoint;
 use crate::real::Real;
+use crate::realtime::arithmetic::clamp;
 use crate::tables::compensation::CompensationTables;
 
 /// What impedance mode remembers.
@@ -38,13 +39,12 @@ impl<T: Real> ImpedanceLaw<T> {
             + point.damping * (point.speed - situation.motor_speed)
             + tables.impedance_calm * situation.calm(tables);
         let free = load.even() + load.drag(tables, situation.link_speed);
-        // Law and load accelerate motor and load together; the teeth pass on what is not the motor's share.
         self.sender.hear(tables, point);
         let overdue = self.sender.overdue(tables);
         let error = situation.error + point.speed * overdue;
         let torque = point.torque + self.sender.torque_rate() * overdue;
-        let demand_now = tables.load_share * (point.stiffness * error + point.damping * situation.error_rate + torque)
-            + (T::ONE - tables.load_share) * free;
+        let asked = point.stiffness * error + point.damping * situation.error_rate + torque;
+        let demand_now = passed(tables, free, asked);
         let rate = tables.load_share * (point.stiffness * situation.error_rate + self.sender.torque_rate());
         Intent::new(tables, load, situation, law, |time| demand_now + time * rate, true)
     }

@@ -3,11 +3,11 @@
 
 use crate::mesh::ContactState;
 use crate::real::Real;
+use crate::realtime::arithmetic::clamp;
 use crate::realtime::observer::{Estimates, Source};
 use crate::realtime::phase::sine_cosine;
 use crate::tables::compensation::CompensationTables;
 
-use super::arithmetic::clamp;
 use super::crossing::Crossing;
 use super::load::LoadModel;
 use super::set_point::{Command, Position};

@@ -6,21 +6,15 @@
 //! what is passed on now. That is no more than P if T <= (P + F)/2 - K I v^2 / (2 (P - F)). So teeth that have just met get
 //! half of it at once and all of it a quarter of a swing later, without overshoot and without waiting.
 
-use super::arithmetic::clamp;
 use super::intent::Situation;
 use super::load::LoadModel;
 use crate::real::Real;
+use crate::realtime::arithmetic::clamp;
 use crate::tables::compensation::CompensationTables;
 
-/// What the teeth pass on at rest under a torque that is not lost on the way: law and load accelerate motor and load
-/// together, and the motor's share stays behind [N m].
-pub(super) fn passed<T: Real>(
-    tables: &CompensationTables<T>,
-    load: &LoadModel<T>,
-    situation: &Situation<T>,
-    useful: T,
-) -> T {
-    let free = load.free(tables, situation.link_speed);
+/// What the teeth pass on at rest under a torque that is not lost on the way, with what brakes the link if left to itself:
+/// law and load accelerate motor and load together, and the motor's share stays behind [N m].
+pub(super) fn passed<T: Real>(tables: &CompensationTables<T>, free: T, useful: T) -> T {
     free + tables.load_share * (useful - free)
 }
 
@@ -34,7 +28,7 @@ pub(super) fn limited<T: Real>(
     if load.throws(tables) {
         return useful;
     }
-    let passed = passed(tables, load, situation, useful);
+    let passed = passed(tables, load.free(tables, situation.link_speed), useful);
     let side = if passed < T::ZERO { -T::ONE } else { T::ONE };
     let allowed = allowed(tables, situation, side);
     let asked = side * passed;

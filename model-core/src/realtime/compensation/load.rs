@@ -2,9 +2,9 @@
 //! friction, which changes its sign with it: a Kalman filter with two states. The split is what makes the torque after
 //! a reversal predictable.
 
-use super::arithmetic::clamp;
 use super::intent::Situation;
 use crate::real::Real;
+use crate::realtime::arithmetic::clamp;
 use crate::realtime::observer::Estimates;
 use crate::tables::compensation::CompensationTables;
 

@@ -1,10 +1,10 @@
 //! Control without compensation, on the motor's encoder alone: PID with all poles at the bandwidth in position mode,
 //! the commanded spring and damper at the motor in impedance mode. It is what remains when the gap cannot be seen.
 
-use super::arithmetic::clamp;
 use super::intent::Situation;
 use super::set_point::{ImpedancePoint, Motion};
 use crate::real::Real;
+use crate::realtime::arithmetic::clamp;
 use crate::tables::compensation::CompensationTables;
 
 /// The integral of the PID.

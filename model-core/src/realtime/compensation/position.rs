@@ -1,12 +1,12 @@
 //! The control law of position mode: spring on the link, damper on the motor, acceleration and load fed forward. The
 //! load estimate takes the place of an integral.
 
-use super::arithmetic::{beyond, clamp};
 use super::intent::{Intent, Situation};
 use super::limit::{limited, passed};
 use super::load::LoadModel;
 use super::set_point::Motion;
 use crate::real::Real;
+use crate::realtime::arithmetic::{beyond, clamp};
 use crate::tables::compensation::CompensationTables;
 
 /// What position mode remembers.
@@ -56,7 +56,7 @@ impl<T: Real> PositionLaw<T> {
             + tables.position_gain * beyond(situation.error, let_be)
             + tables.damping_gain * situation.error_rate;
         // What is beyond the limits must not drown the damper.
-        let all = passed(tables, load, situation, useful);
+        let all = passed(tables, load.free(tables, situation.link_speed), useful);
         let most = if load.throws(tables) { all.abs() } else { tables.most_passed };
         let passed = clamp(all, -most, most);
         let useful = useful - tables.inverse_load_share * (all - passed);

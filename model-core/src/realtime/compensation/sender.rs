@@ -1,9 +1,9 @@
 //! Whoever streams impedance set-points: at what pace, and how what is sent goes on between two of them. What a set-point
 //! asks for is left to `impedance`.
 
-use super::arithmetic::clamp;
 use super::set_point::ImpedancePoint;
 use crate::real::Real;
+use crate::realtime::arithmetic::clamp;
 use crate::tables::compensation::CompensationTables;
 
 /// What is remembered of the sender.

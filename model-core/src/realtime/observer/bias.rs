@@ -2,6 +2,7 @@
 //! squares for two numbers, both bounded. When the gap is open is left to `contact`.
 
 use crate::real::Real;
+use crate::realtime::arithmetic::clamp;
 use crate::tables::observer::ContactTable;
 
 /// Surprise, in standard deviations, that does not belong to the model.
@@ -23,7 +24,7 @@ impl<T: Real> Bias<T> {
 
     /// Direction of dry friction at a motor speed: from -1 to 1, in proportion where noise hides the sign.
     pub fn direction(table: &ContactTable<T>, speed: T) -> T {
-        clamp(speed * table.per_turning, T::ONE)
+        clamp(speed * table.per_turning, -T::ONE, T::ONE)
     }
 
     /// Force that is none, for a direction.
@@ -48,9 +49,9 @@ impl<T: Real> Bias<T> {
             return;
         }
         let (bias_gain, friction_gain) = (from_bias.over(expected), from_friction.over(expected));
-        self.bias = clamp(self.bias + bias_gain * surprise, table.bias_limit);
+        self.bias = clamp(self.bias + bias_gain * surprise, -table.bias_limit, table.bias_limit);
         // Friction never drives.
-        let friction_now = clamp(self.friction + friction_gain * surprise, table.bias_limit);
+        let friction_now = clamp(self.friction + friction_gain * surprise, -table.bias_limit, table.bias_limit);
         self.friction = if friction_now > T::ZERO { friction_now } else { T::ZERO };
         self.variance =
             [bias - bias_gain * from_bias, friction - friction_gain * from_friction, both - bias_gain * from_friction];
@@ -74,16 +75,5 @@ impl<T: Real> Bias<T> {
                 *variance += table.bias_drift;
             }
         }
-    }
-}
-
-/// A value within a limit on either side.
-pub(super) fn clamp<T: Real>(value: T, limit: T) -> T {
-    if value > limit {
-        limit
-    } else if value < -limit {
-        -limit
-    } else {
-        value
     }
 }

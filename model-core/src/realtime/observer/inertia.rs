@@ -6,10 +6,10 @@
 //! here, an interval at a time. So the answer of the link is known behind the very filter that the force has passed, and
 //! a new mobility can be put into the load side as if it had always been known.
 
-use super::bias::clamp;
 use super::load_side::LoadSide;
 use super::motion::magnitude;
 use crate::real::Real;
+use crate::realtime::arithmetic::clamp;
 use crate::tables::observer::InertiaTable;
 
 /// Surprise, in standard deviations, that does not belong to the model.
@@ -52,9 +52,10 @@ impl<T: Real> Inertia<T> {
         [self.mobility, self.variance].into_iter()
     }
 
-    /// Takes the same back.
-    pub fn set_numbers(&mut self, next: &mut impl FnMut() -> T) {
-        [&mut self.mobility, &mut self.variance].into_iter().for_each(|number| *number = next());
+    /// Takes the same back, as far as it may be: nothing is divided by a mobility of zero.
+    pub fn set_numbers(&mut self, table: &InertiaTable<T>, next: &mut impl FnMut() -> T) {
+        self.mobility = believed(table, next());
+        self.variance = next();
     }
 
     /// What the meshes pass on, as the load side takes it; once a period.
@@ -113,13 +114,18 @@ impl<T: Real> Inertia<T> {
         }
         let gain = self.variance * force.over(expected);
         let before = self.mobility;
-        self.mobility = T::ONE + clamp(before + gain * surprise - T::ONE, table.limit);
+        self.mobility = believed(table, before + gain * surprise);
         let by = self.mobility - before;
         self.variance -= gain * force * self.variance;
         load.ahead += by * self.still.ahead;
         load.speed += by * self.still.speed;
         load.torque += by * self.still.torque;
     }
+}
+
+/// A mobility within what is believed of a link.
+fn believed<T: Real>(table: &InertiaTable<T>, mobility: T) -> T {
+    T::ONE + clamp(mobility - T::ONE, -table.limit, table.limit)
 }
 
 /// What of a value is faster than a weight's changes; its slow parts follow.

@@ -20,6 +20,8 @@ pub type Memory = [u8; MEMORY_BYTES];
 const MARK: u32 = u32::from_le_bytes(*b"JOBS");
 const VERSION: u16 = 3;
 const DIGEST_AT: usize = MEMORY_BYTES - 8;
+/// Bytes before the parameters.
+const HEAD: usize = 24;
 
 /// Why a memory is not taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -101,7 +103,7 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         };
         learner.set_numbers(&mut next);
         bias.set_numbers(&mut next);
-        inertia.set_numbers(&mut next);
+        inertia.set_numbers(&self.tables.inertia, &mut next);
         if !finite {
             return Err(MemoryError::NotFinite);
         }
@@ -116,6 +118,14 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         }
         Ok(())
     }
+}
+
+/// The numbers in a memory, in their order: parameters, factors of their covariance, column by column down to the diagonal,
+/// bias and friction with their variances and covariance, mobility and its variance. Whether it is sound is left to
+/// [`Observer::load`].
+pub fn memory_numbers(memory: &Memory) -> impl Iterator<Item = f32> {
+    let (numbers, _) = memory.get(HEAD..).unwrap_or_default().as_chunks();
+    numbers.iter().map(|bytes| f32::from_le_bytes(*bytes))
 }
 
 /// Digest over all bytes but the digest's own.

@@ -3,7 +3,7 @@
 use crate::real::Real;
 
 /// The value, or the bound that it is beyond.
-pub(in crate::realtime) fn clamp<T: Real>(value: T, low: T, high: T) -> T {
+pub(super) fn clamp<T: Real>(value: T, low: T, high: T) -> T {
     if value < low {
         low
     } else if value > high {

@@ -46,7 +46,9 @@ pub(super) struct Situation<T: Real> {
     pub gap: T,
     /// 1 or -1 with a flank touching, else 0.
     pub contact: T,
-    /// Whether the estimates may be used.
+    /// Whether it is known which flank touches, if any, and how hard.
+    pub feels: bool,
+    /// Whether it is known where in the gap the motor is as well.
     pub sees: bool,
 }
 
@@ -86,12 +88,15 @@ impl<T: Real> Situation<T> {
             shift_slope: at_link * estimates.flank_shift_slope,
             gap: at_link * estimates.gap.value,
             contact,
-            sees: estimates.source == Source::Both && estimates.gap.valid && estimates.contact_valid,
+            feels: false,
+            sees: false,
         };
         let sum = situation.error + situation.error_rate + situation.motor + situation.motor_speed + situation.gap;
         let sum = sum + situation.shift + situation.error_speed + situation.losses[0] + situation.losses[1];
         let sum = sum + situation.mesh_torque + situation.stiffness;
-        Self { sees: situation.sees && (sum + estimates.half_backlash.value).is_finite(), ..situation }
+        let feels = estimates.source == Source::Both && estimates.contact_valid && sum.is_finite();
+        let knows = estimates.gap.valid && estimates.half_backlash.value.is_finite();
+        Self { feels, sees: feels && knows, ..situation }
     }
 
     /// The shift of the flanks when the link will have turned so far [rad].

@@ -106,7 +106,7 @@ impl<T: Real> LoadModel<T> {
         }
         self.even = clamp(self.even + tables.period * self.rate, -tables.torque_limit, tables.torque_limit);
         let torque = estimates.load_torque;
-        let known = torque.valid && torque.value.is_finite() && situation.sees;
+        let known = torque.valid && torque.value.is_finite() && situation.feels;
         // More than the motor can hold is no load that it carries.
         let held = clamp(torque.value, -tables.torque_limit, tables.torque_limit);
         self.hardest *= tables.patience_left;
@@ -150,7 +150,7 @@ impl<T: Real> LoadModel<T> {
         }
         let direction = Self::direction(tables, speed);
         if let Some(creep) = self.creep.take()
-            && self.direction * direction < T::ZERO
+            && self.direction * direction <= T::ZERO
         {
             let followed = self.even + self.friction * direction;
             self.even = creep.even;

@@ -73,8 +73,10 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let told = self.block.side();
         let side = if told == T::ZERO {
             let side = self.anchor.side(&tables.learner, &self.learner, &regressors, way, tables.levers.output);
-            // Teeth also turn round inside the gap, for a moment at rest: then they carry nothing.
-            if side * self.interval.steady > self.knowledge.steady_force_deviation { side } else { T::ZERO }
+            // Teeth also turn round inside the gap, for a moment at rest: then nothing has stopped them; and they leave a
+            // flank slowly, at rest for a while: then they carry nothing any more.
+            let force = if self.anchor.was_on(side) { self.interval.steady } else { self.interval.rested };
+            if side * force > self.knowledge.steady_force_deviation { side } else { T::ZERO }
         } else {
             told
         };

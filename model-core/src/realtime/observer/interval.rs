@@ -13,6 +13,9 @@ use crate::real::Real;
 /// swing of an impact with it.
 const SETTLED_AFTER: u16 = 3;
 
+/// Intervals over which the force of a rest is averaged at most.
+const LONG_REST: u16 = 16;
+
 /// Intervals well inside the gap after which the mesh force counts as gone from the motor side's estimate.
 const OPEN_AFTER: u16 = 3;
 
@@ -32,6 +35,8 @@ pub(super) struct Interval<T: Real> {
     side: T,
     /// Mesh force over a few intervals [N].
     pub steady: T,
+    /// Mesh force over the whole rest, landing included [N].
+    pub rested: T,
     /// Intervals in a row well inside the gap.
     open_for: u16,
 }
@@ -60,6 +65,7 @@ impl<T: Real> Interval<T> {
             learnt_side: T::ZERO,
             side: T::ZERO,
             steady: T::ZERO,
+            rested: T::ZERO,
             open_for: 0,
         }
     }
@@ -118,6 +124,8 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let read = (mean.lost, mean.direction);
         let shown = self.motion.step(&tables.contact, less_wind_up, read, blur, self.knowledge.softness);
         self.interval.steady += (mean.force - self.interval.steady) * T::QUARTER;
+        let rested = if let Shown::Still(intervals) = shown { i32::from(intervals.min(LONG_REST)) } else { 1 };
+        self.interval.rested += (mean.force - self.interval.rested).over(T::from_i32(rested));
         let shift = self.error(&mesh);
         let side = self.settled_side(&mean, way, shift, shown);
         if self.supervisor.sees_both() {

@@ -33,6 +33,8 @@ pub(super) struct Interval<T: Real> {
     pub learnt_side: T,
     /// Side on which contact settled last, unless the teeth have left it since.
     side: T,
+    /// Mesh force over the last interval [N].
+    force: T,
     /// Mesh force over a few intervals [N].
     pub steady: T,
     /// Mesh force over the whole rest, landing included [N].
@@ -64,6 +66,7 @@ impl<T: Real> Interval<T> {
             nearer: T::ONE,
             learnt_side: T::ZERO,
             side: T::ZERO,
+            force: T::ZERO,
             steady: T::ZERO,
             rested: T::ZERO,
             open_for: 0,
@@ -152,7 +155,9 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let seen = side.or(unknown).filter(|side| {
             self.supervisor.sees_both() && (turns || *side != T::ZERO && *side != self.interval.learnt_side)
         });
-        let settled = Settled { free: &free, mesh: &mesh, raw: mean.raw, force: mean.force };
+        let rise = mean.force - core::mem::replace(&mut self.interval.force, mean.force);
+        let force = mean.force + tables.learner.force_lag * rise;
+        let settled = Settled { free: &free, mesh: &mesh, raw: mean.raw, force };
         let full = self.block.add(&settled, seen, !self.knowledge.width_is_known, &tables.learner);
         self.interval.part = Part::Answer(full);
         self.interval.direction = mean.direction;

@@ -197,7 +197,9 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
     fn take_bias(&mut self, mean: &Mean<T>, way: T, shown: Shown<T>) {
         let contact = &self.tables.contact;
         let [half_gap, _] = self.shape();
-        let inside = half_gap - self.knowledge.blur - self.knowledge.blur;
+        // Near the flanks a motor that crosses in a moment brakes, and teeth land before the way says so.
+        let (blur, near) = (self.knowledge.blur, T::EIGHTH * half_gap);
+        let inside = half_gap - T::TWO * if blur > near { blur } else { near };
         let open = self.knowledge.width_is_known && magnitude(way) < inside;
         self.interval.open_for = if open { self.interval.open_for.saturating_add(1) } else { 0 };
         let read = match shown {

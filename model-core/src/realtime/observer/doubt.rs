@@ -49,7 +49,18 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         self.doubts.contradicted = if against { self.doubts.contradicted + 1 } else { 0 };
         if self.doubts.contradicted >= CONTRADICTED {
             self.doubts.contradicted = 0;
+            self.doubt_narrow();
+        }
+    }
+
+    /// The gap seems narrower than was learnt. Teeth do not grow: if it had been seen on both flanks for long, the output
+    /// encoder fails.
+    fn doubt_narrow(&mut self) {
+        let [back, drive] = self.doubts.trusted;
+        if back.min(drive) < TRUSTED {
             self.doubt();
+        } else {
+            self.disbelieve();
         }
     }
 
@@ -99,7 +110,11 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
                 self.doubts.surprises = 0;
                 self.learner.reopen();
             } else if self.doubts.surprises == FEW && magnitude(weighed.surprise) * table.noise > worth {
-                self.doubt();
+                if self.block.side() * weighed.surprise < T::ZERO {
+                    self.doubt_narrow();
+                } else {
+                    self.doubt();
+                }
             }
             return;
         }

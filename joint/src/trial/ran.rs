@@ -4,7 +4,7 @@
 use host_tests::closed_loop::{Run, Sample};
 use model_core::digest;
 use model_core::mesh::ContactState;
-use model_core::realtime::observer::{Progress, Source};
+use model_core::realtime::observer::{Progress, Refusal, Source};
 
 use super::case::Case;
 use super::injection::Injection;
@@ -74,6 +74,14 @@ impl Ran {
             sights: Vec::new(),
             truths: Vec::with_capacity(periods as usize),
             digest: digest::START,
+        }
+    }
+
+    /// Why the width probe said no width, if it refused.
+    pub fn refusal(&self) -> Option<Refusal> {
+        match self.sights.last()?.probed {
+            Some(Progress::Refused(refusal)) => Some(refusal),
+            _ => None,
         }
     }
 

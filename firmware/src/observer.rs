@@ -9,7 +9,7 @@ use model_core::realtime::observer::{Memory, MemoryError};
 
 use crate::control::Work;
 use crate::page::AtHand;
-use crate::port::ControllerPort;
+use crate::port::{ControllerPort, asked};
 use crate::words::{Batch, Timed, Words};
 
 /// What the role says and hears.
@@ -64,6 +64,7 @@ impl Batch for AnswerBatch {
             digest: 0,
             shaped: (&Answer::default().shaped).into(),
             estimates: None,
+            probed: None,
             computation: 0,
         };
         FromBoard::Answer(self.0.take().unwrap_or(empty))
@@ -145,7 +146,7 @@ impl<P: ControllerPort> Work for Observing<P> {
     fn step(&mut self) {
         let Some(exchange) = self.next.take() else { return };
         self.wants_estimates = exchange.wants_estimates;
-        if let Ok(answer) = self.port.exchange(&exchange.samples(), &exchange.command()) {
+        if let Ok(answer) = asked(&mut self.port, &exchange.samples(), exchange.command().as_ref()) {
             self.answer = answer;
         }
         self.digest = self.answer.digest(self.digest);
@@ -161,6 +162,7 @@ impl<P: ControllerPort> Work for Observing<P> {
             digest: self.digest,
             shaped: (&self.answer.shaped).into(),
             estimates: self.wants_estimates.then(|| (&self.answer.estimates).into()),
+            probed: self.answer.probed.map(Into::into),
             computation,
         }
     }

@@ -31,6 +31,11 @@ pub trait ControllerPort {
     /// One control tick; bounded, and never waits for the other side.
     fn exchange(&mut self, samples: &Samples<f32>, command: &Command<f32>) -> Result<Answer<f32>, PortError>;
 
+    /// One control tick of a width probe, the load being held; late for good where that is not at hand.
+    fn probe(&mut self, _samples: &Samples<f32>) -> Result<Answer<f32>, PortError> {
+        Err(PortError::Late)
+    }
+
     /// Back to what was designed, as far as this side can do it.
     fn reset(&mut self);
 
@@ -42,6 +47,18 @@ pub trait ControllerPort {
     /// Goes on from what was learnt before; refused where it is not at hand.
     fn recall(&mut self, _memory: &Memory) -> Result<(), MemoryError> {
         Err(MemoryError::OtherJoint)
+    }
+}
+
+/// One control tick of a port: a set-point's, or without one a width probe's.
+pub fn asked(
+    port: &mut impl ControllerPort,
+    samples: &Samples<f32>,
+    command: Option<&Command<f32>>,
+) -> Result<Answer<f32>, PortError> {
+    match command {
+        Some(command) => port.exchange(samples, command),
+        None => port.probe(samples),
     }
 }
 

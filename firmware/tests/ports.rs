@@ -11,12 +11,12 @@ use firmware::port::shared_memory::SharedMemory;
 use firmware::port::spi_slave::{Broken, SlaveBus, SpiSlave, Transfers};
 use firmware::port::{ControllerPort, Direct, PortError, SerialPort, SpiGuest, SpiPort, serial, spi};
 use firmware::serial::{Line, Uart};
-use link::controller::{Answered, Exchange};
+use link::controller::{Answered, Exchange, WireProbed};
 use link::framing::{Receiver, encode, sealed, unsealed};
 use link::messages::{Accepted, FromBoard, Schedule, ToBoard};
 use model_core::realtime::compensation::{Command, Motion, Position};
 use model_core::realtime::controller::{Answer, Controller};
-use model_core::realtime::observer::{Reading, Samples};
+use model_core::realtime::observer::{Progress, Reading, Samples};
 
 mod control {
     #![allow(missing_docs, dead_code, clippy::all, clippy::excessive_precision, reason = "generated numbers")]
@@ -24,7 +24,7 @@ mod control {
 }
 
 fn controller() -> Direct<'static> {
-    Direct(Controller::new(&control::OBSERVER, &control::COMPENSATION))
+    Direct(Controller::new(&control::OBSERVER, &control::COMPENSATION).with_probe(control::PROBE.as_ref()))
 }
 
 /// One tick of a motion to and fro.
@@ -41,6 +41,40 @@ fn tick(number: u32) -> (Samples<f32>, Command<f32>) {
 fn expected(ticks: u32) -> Vec<Answer<f32>> {
     let mut controller = controller();
     (0..ticks).map(tick).map(|(samples, command)| controller.exchange(&samples, &command).unwrap()).collect()
+}
+
+/// A joint at rest, as seen in a tick of a probe.
+fn still(number: u32) -> Samples<f32> {
+    let time = 1000 * number;
+    let reading = Reading { counts: 5, time };
+    Samples { time, motor: reading, output: Some(reading), torque: 0.0 }
+}
+
+#[test]
+fn a_probe_pushes_through_every_port_that_has_a_controller_behind_it() {
+    let ticks = 600;
+    let mut alone = controller();
+    let direct: Vec<_> = (0..ticks).map(|number| alone.probe(&still(number)).unwrap()).collect();
+    let pushing = direct.iter().position(|answer| answer.shaped.torque != 0.0).expect("it pushes");
+    // Fifty milliseconds to see the joint, and one period to look at it.
+    assert_eq!(pushing, 502);
+    assert!(direct.iter().all(|answer| answer.probed == Some(Progress::Running)));
+    let mut memory = SharedMemory::new();
+    let (mut host, mut guest) = memory.split();
+    let mut behind = controller();
+    for number in 0..ticks {
+        let said = host.probe(&still(number));
+        assert!(guest.serve(&mut behind));
+        assert_eq!(said.ok(), number.checked_sub(1).map(|before| direct[before as usize]));
+    }
+    let mut behind = SpiGuest::new(controller());
+    let mut frame = [0; spi::FRAME_BYTES];
+    for number in 0..ticks {
+        sealed(&Exchange::probing(number, &still(number)), &mut frame).unwrap();
+        let answered: Answered = unsealed(&behind.answer(&frame).unwrap()).unwrap();
+        assert_eq!(answered.answer(), Some(direct[number as usize]));
+    }
+    assert_eq!(alone.exchange(&still(ticks), &tick(0).1).unwrap().probed, None);
 }
 
 #[test]
@@ -197,6 +231,7 @@ fn answered(tick: u32) -> Answered {
         digest: u64::MAX,
         shaped: (&Answer::default().shaped).into(),
         estimates: Some((&estimates).into()),
+        probed: Some(WireProbed::Done((1.0, 1.0, true))),
         computation: u16::MAX,
     }
 }
@@ -263,11 +298,12 @@ fn a_board_on_a_line_is_asked_again_only_once_it_has_answered() {
             let Some(ToBoard::Exchanges(schedule)) = receiver.push(byte) else { continue };
             let [exchange] = &schedule.commands[..] else { panic!("one at a time") };
             asked.push((exchange.tick, exchange.time));
-            let answer = behind.exchange(&exchange.samples(), &exchange.command()).unwrap();
+            let answer = behind.exchange(&exchange.samples(), &exchange.command().unwrap()).unwrap();
             let message = FromBoard::Answer(Answered {
                 tick: exchange.tick + 1,
                 shaped: (&answer.shaped).into(),
                 estimates: Some((&answer.estimates).into()),
+                probed: None,
                 ..answered(0)
             });
             wire.borrow_mut().back.extend(encode(&message).unwrap());

@@ -3,7 +3,7 @@
 
 mod answer;
 
-pub use answer::{Answered, WireEstimate, WireEstimates, WireShaped};
+pub use answer::{Answered, WireEstimate, WireEstimates, WireProbed, WireShaped};
 use model_core::realtime::compensation::{self, ImpedancePoint, Position};
 use model_core::realtime::observer::{Reading, Samples};
 use serde::{Deserialize, Serialize};
@@ -42,6 +42,8 @@ pub enum SetPoint {
     },
     /// Be a spring and damper.
     Impedance(Impedance),
+    /// Probe the width: the load is held.
+    Probe,
 }
 
 /// A motion at one moment.
@@ -73,6 +75,15 @@ pub struct Impedance {
 impl Exchange {
     /// A control period's samples and set-point, to be answered with all estimates.
     pub fn new(tick: u32, samples: &Samples<f32>, command: &compensation::Command<f32>) -> Self {
+        Self::asking(tick, samples, SetPoint::from(command))
+    }
+
+    /// A control period of a width probe.
+    pub fn probing(tick: u32, samples: &Samples<f32>) -> Self {
+        Self::asking(tick, samples, SetPoint::Probe)
+    }
+
+    fn asking(tick: u32, samples: &Samples<f32>, set_point: SetPoint) -> Self {
         let reading = |reading: Reading| (reading.counts, reading.time);
         Self {
             tick,
@@ -80,7 +91,7 @@ impl Exchange {
             motor: reading(samples.motor),
             output: samples.output.map(reading),
             torque: samples.torque,
-            set_point: SetPoint::from(command),
+            set_point,
             wants_estimates: true,
         }
     }
@@ -96,9 +107,20 @@ impl Exchange {
         Samples { time: self.time, motor: reading(self.motor), output: self.output.map(reading), torque: self.torque }
     }
 
-    /// The set-point.
-    pub fn command(&self) -> compensation::Command<f32> {
-        self.set_point.into()
+    /// The set-point; none in a period of a width probe.
+    pub fn command(&self) -> Option<compensation::Command<f32>> {
+        let motion = |of: Motion| compensation::Motion {
+            position: position(of.position),
+            speed: of.speed,
+            acceleration: of.acceleration,
+        };
+        match self.set_point {
+            SetPoint::Position { now, ahead } => {
+                Some(compensation::Command::Position { now: motion(now), ahead: ahead.map(motion) })
+            }
+            SetPoint::Impedance(point) => Some(compensation::Command::Impedance(point.into())),
+            SetPoint::Probe => None,
+        }
     }
 }
 
@@ -136,20 +158,6 @@ impl From<&compensation::Command<f32>> for SetPoint {
                 Self::Position { now: motion(now), ahead: ahead.as_ref().map(motion) }
             }
             compensation::Command::Impedance(point) => Self::Impedance((*point).into()),
-        }
-    }
-}
-
-impl From<SetPoint> for compensation::Command<f32> {
-    fn from(set_point: SetPoint) -> Self {
-        let motion = |of: Motion| compensation::Motion {
-            position: position(of.position),
-            speed: of.speed,
-            acceleration: of.acceleration,
-        };
-        match set_point {
-            SetPoint::Position { now, ahead } => Self::Position { now: motion(now), ahead: ahead.map(motion) },
-            SetPoint::Impedance(point) => Self::Impedance(point.into()),
         }
     }
 }

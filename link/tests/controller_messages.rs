@@ -1,7 +1,7 @@
 //! Samples, set-points, answers and motions come out of the wire's form as they went in, and their longest forms fit into
 //! a frame. Framing itself is tested beside.
 
-use link::controller::{Answered, EXCHANGES_PER_SCHEDULE, Exchange, WireEstimates};
+use link::controller::{Answered, EXCHANGES_PER_SCHEDULE, Exchange, WireEstimates, WireProbed};
 use link::framing::{Receiver, encode};
 use link::messages::{FromBoard, Schedule, ToBoard};
 use link::virtual_joint::{KNOTS_PER_SCHEDULE, Knot, LOOP_SAMPLES_PER_BATCH, LoopBatch, LoopSample, WireDemand};
@@ -9,7 +9,9 @@ use model_core::mesh::ContactState;
 use model_core::realtime::compensation::{Command, ImpedancePoint, Motion, Position, Shaped, Stage};
 use model_core::realtime::controller::Answer;
 use model_core::realtime::course::{Demand, Stretch};
-use model_core::realtime::observer::{Doubt, Estimate, Estimates, Notices, Reading, Samples, Shaft, Source};
+use model_core::realtime::observer::{
+    Doubt, Estimate, Estimates, Notices, Progress, Reading, Refusal, Samples, Shaft, Source,
+};
 
 const MOTION: Motion<f32> =
     Motion { position: Position { turns: i32::MIN, fraction: 0.3 }, speed: -1.5, acceleration: f32::MAX };
@@ -65,24 +67,37 @@ fn samples_and_set_points_come_out_as_they_went_in() {
         for output in [samples().output, None] {
             let samples = Samples { output, ..samples() };
             let exchange = Exchange::new(7, &samples, &command);
-            assert_eq!((exchange.tick, exchange.samples(), exchange.command()), (7, samples, command));
+            assert_eq!((exchange.tick, exchange.samples(), exchange.command()), (7, samples, Some(command)));
+            let probing = Exchange::probing(7, &samples);
+            assert_eq!((probing.tick, probing.samples(), probing.command()), (7, samples, None));
         }
     }
+}
+
+/// No probe, and all that one may say.
+fn probes() -> Vec<Option<Progress<f32>>> {
+    use Refusal::*;
+    let refused = [NotAtRest, Loaded, NotHeld, Stuck, Unsteady, BadSamples].map(Progress::Refused);
+    let done = Progress::Done(Estimate { value: 40e-6, variance: 1e-12, valid: true });
+    [Progress::Running, done].into_iter().chain(refused).map(Some).chain([None]).collect()
 }
 
 #[test]
 fn answers_come_out_as_they_went_in() {
     for stage in [Stage::Touching, Stage::Crossing, Stage::Landing, Stage::Plain] {
         let shaped = Shaped { torque: 1.0, stage, side: -1.0, demand: 2.0, load: [3.0, 4.0], trust: 0.5 };
-        let answer = Answer { estimates: estimates(), shaped };
-        let wire = Answered {
-            tick: 1,
-            digest: 2,
-            shaped: (&shaped).into(),
-            estimates: Some((&answer.estimates).into()),
-            computation: 3,
-        };
-        assert_eq!(wire.answer(), Some(answer));
+        for probed in probes() {
+            let answer = Answer { estimates: estimates(), shaped, probed };
+            let wire = Answered {
+                tick: 1,
+                digest: 2,
+                shaped: (&shaped).into(),
+                estimates: Some((&answer.estimates).into()),
+                probed: probed.map(Into::into),
+                computation: 3,
+            };
+            assert_eq!(wire.answer(), Some(answer));
+        }
     }
     use Doubt::*;
     let doubts = [Absent, Silent, Frozen, OutOfRange].map(Source::MotorOnly);
@@ -140,6 +155,7 @@ fn the_longest_forms_fit_into_a_frame() {
         digest: u64::MAX,
         shaped: (&Shaped::default()).into(),
         estimates: Some((&estimates()).into()),
+        probed: Some(WireProbed::Done((1.0, 1.0, true))),
         computation: u16::MAX,
     });
     let sample = LoopSample {

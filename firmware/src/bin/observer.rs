@@ -20,7 +20,10 @@ mod role {
     pub type RoleWork = Observing<Direct<'static>>;
 
     pub fn work() -> RoleWork {
-        Observing::new(Direct(Controller::new(&control::OBSERVER, &control::COMPENSATION)), TABLES.digest_is_good())
+        Observing::new(
+            Direct(Controller::new(&control::OBSERVER, &control::COMPENSATION).with_probe(control::PROBE.as_ref())),
+            TABLES.digest_is_good(),
+        )
     }
 }
 

@@ -38,7 +38,8 @@ mod app {
         // pins are its own.
         let device = unsafe { pac::Peripherals::steal() };
         let bus = DmaSlave::start(device, cx.local.received, cx.local.sent);
-        let controller = Direct(Controller::new(&control::OBSERVER, &control::COMPENSATION));
+        let controller =
+            Direct(Controller::new(&control::OBSERVER, &control::COMPENSATION).with_probe(control::PROBE.as_ref()));
         (Shared {}, Local { slave: SpiSlave::new(bus, controller), watchdog })
     }
 

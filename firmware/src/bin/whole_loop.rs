@@ -11,7 +11,7 @@ mod role {
     use firmware::whole_loop::WholeLoop;
     use model_core::realtime::controller::Controller;
 
-    #[allow(clippy::excessive_precision, reason = "generated numbers")]
+    #[allow(dead_code, clippy::excessive_precision, reason = "generated numbers; a motion in knots asks for no probe")]
     mod control {
         include!(concat!(env!("OUT_DIR"), "/control.rs"));
     }

@@ -16,6 +16,10 @@ impl ControllerPort for Direct<'_> {
         Ok(self.0.step(samples, command))
     }
 
+    fn probe(&mut self, samples: &Samples<f32>) -> Result<Answer<f32>, PortError> {
+        Ok(self.0.probe(samples))
+    }
+
     fn reset(&mut self) {
         self.0.reset();
     }

@@ -57,6 +57,21 @@ impl<'a> SerialPort<'a> {
 impl ControllerPort for SerialPort<'_> {
     /// The answer to the samples that were sent last, once it has come; only then are these samples sent.
     fn exchange(&mut self, samples: &Samples<f32>, command: &Command<f32>) -> Result<Answer<f32>, PortError> {
+        self.ask(Exchange::new(self.asked, samples, command))
+    }
+
+    fn probe(&mut self, samples: &Samples<f32>) -> Result<Answer<f32>, PortError> {
+        self.ask(Exchange::probing(self.asked, samples))
+    }
+
+    fn reset(&mut self) {
+        (self.asked, self.answered) = (0, 0);
+        self.receiver.clear();
+    }
+}
+
+impl SerialPort<'_> {
+    fn ask(&mut self, exchange: Exchange) -> Result<Answer<f32>, PortError> {
         let answered = self.listen();
         if let Some(answered) = &answered {
             self.answered = answered.tick;
@@ -65,17 +80,12 @@ impl ControllerPort for SerialPort<'_> {
             let (sequence, horizon) = (self.asked as u16, self.asked.wrapping_add(1));
             let mut commands = heapless::Vec::new();
             // There is room for four.
-            let _ = commands.push(Exchange::new(self.asked, samples, command));
+            let _ = commands.push(exchange);
             let message = ToBoard::Exchanges(Schedule { sequence, horizon, commands });
             let frame = encode(&message).map_err(|_| PortError::Damaged)?;
             self.line.write(&frame);
             self.asked = horizon;
         }
         answered.and_then(|answered| answered.answer()).ok_or(PortError::Late)
-    }
-
-    fn reset(&mut self) {
-        (self.asked, self.answered) = (0, 0);
-        self.receiver.clear();
     }
 }

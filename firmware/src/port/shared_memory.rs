@@ -6,13 +6,13 @@ use model_core::realtime::compensation::Command;
 use model_core::realtime::controller::Answer;
 use model_core::realtime::observer::Samples;
 
-use super::{ControllerPort, PortError};
+use super::{ControllerPort, PortError, asked};
 
 /// Places in either direction; one is lost to telling full from empty.
 const PLACES: usize = 4;
 
-/// One control tick's worth.
-type Question = (Samples<f32>, Command<f32>);
+/// One control tick's worth; without a set-point one of a width probe.
+type Question = (Samples<f32>, Option<Command<f32>>);
 
 /// The memory that is shared.
 pub struct SharedMemory {
@@ -55,17 +55,27 @@ impl Default for SharedMemory {
 impl ControllerPort for Host<'_> {
     /// The newest answer is taken, older ones are dropped; a guest that has fallen behind loses these samples.
     fn exchange(&mut self, samples: &Samples<f32>, command: &Command<f32>) -> Result<Answer<f32>, PortError> {
+        self.ask((*samples, Some(*command)))
+    }
+
+    fn probe(&mut self, samples: &Samples<f32>) -> Result<Answer<f32>, PortError> {
+        self.ask((*samples, None))
+    }
+
+    fn reset(&mut self) {
+        while self.answers.dequeue().is_some() {}
+    }
+}
+
+impl Host<'_> {
+    fn ask(&mut self, question: Question) -> Result<Answer<f32>, PortError> {
         let mut newest = None;
         for _ in 0..PLACES {
             let Some(answer) = self.answers.dequeue() else { break };
             newest = Some(answer);
         }
-        let asked = self.questions.enqueue((*samples, *command)).is_ok();
+        let asked = self.questions.enqueue(question).is_ok();
         newest.filter(|_| asked).ok_or(PortError::Late)
-    }
-
-    fn reset(&mut self) {
-        while self.answers.dequeue().is_some() {}
     }
 }
 
@@ -77,7 +87,7 @@ impl Guest<'_> {
             return false;
         }
         let Some((samples, command)) = self.questions.dequeue() else { return false };
-        if let Ok(answer) = controller.exchange(&samples, &command) {
+        if let Ok(answer) = asked(controller, &samples, command.as_ref()) {
             let _ = self.answers.enqueue(answer);
         }
         true

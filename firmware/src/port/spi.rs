@@ -9,7 +9,7 @@ use model_core::realtime::compensation::Command;
 use model_core::realtime::controller::Answer;
 use model_core::realtime::observer::Samples;
 
-use super::{ControllerPort, PortError};
+use super::{ControllerPort, PortError, asked};
 
 /// Bytes of a frame either way: the longer of samples and answer, with its checksum.
 pub const FRAME_BYTES: usize = 192;
@@ -33,8 +33,22 @@ impl<S: SpiDevice> SpiPort<S> {
 
 impl<S: SpiDevice> ControllerPort for SpiPort<S> {
     fn exchange(&mut self, samples: &Samples<f32>, command: &Command<f32>) -> Result<Answer<f32>, PortError> {
+        self.transfer(&Exchange::new(self.tick, samples, command))
+    }
+
+    fn probe(&mut self, samples: &Samples<f32>) -> Result<Answer<f32>, PortError> {
+        self.transfer(&Exchange::probing(self.tick, samples))
+    }
+
+    fn reset(&mut self) {
+        self.tick = 0;
+    }
+}
+
+impl<S: SpiDevice> SpiPort<S> {
+    fn transfer(&mut self, exchange: &Exchange) -> Result<Answer<f32>, PortError> {
         let mut frame = [0; FRAME_BYTES];
-        sealed(&Exchange::new(self.tick, samples, command), &mut frame).map_err(|_| PortError::Damaged)?;
+        sealed(exchange, &mut frame).map_err(|_| PortError::Damaged)?;
         self.spi.transfer_in_place(&mut frame).map_err(|_| PortError::Bus)?;
         self.tick = self.tick.wrapping_add(1);
         let answered: Answered = unsealed(&frame).ok_or(PortError::Damaged)?;
@@ -43,10 +57,6 @@ impl<S: SpiDevice> ControllerPort for SpiPort<S> {
             return Err(PortError::Late);
         }
         answered.answer().ok_or(PortError::Late)
-    }
-
-    fn reset(&mut self) {
-        self.tick = 0;
     }
 }
 
@@ -71,13 +81,14 @@ impl<P: ControllerPort> SpiGuest<P> {
             self.controller.reset();
             self.digest = model_core::digest::START;
         }
-        let answer = self.controller.exchange(&exchange.samples(), &exchange.command()).ok()?;
+        let answer = asked(&mut self.controller, &exchange.samples(), exchange.command().as_ref()).ok()?;
         self.digest = answer.digest(self.digest);
         let answered = Answered {
             tick: exchange.tick.wrapping_add(1),
             digest: self.digest,
             shaped: (&answer.shaped).into(),
             estimates: Some((&answer.estimates).into()),
+            probed: answer.probed.map(Into::into),
             computation: 0,
         };
         // The longest answer fits: tested.

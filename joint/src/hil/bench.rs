@@ -38,13 +38,13 @@ pub struct Bench {
 impl Bench {
     /// Builds the image and finds the board. A port is opened first: what is wrong with it should not wait for a build.
     pub fn prepare(arguments: &Arguments, plan: &Plan, progress: &Progress) -> Outcome<Self> {
-        match &arguments.port {
+        match &arguments.line.port {
             None => Self::emulated(arguments, plan, progress),
             Some(path) => {
-                let baud = arguments.baud.unwrap_or(arguments.board.baud_rate());
+                let baud = arguments.line.baud_rate();
                 Self::on_port(path, baud, || match arguments.no_build {
                     true => Ok(None),
-                    false => build(arguments, plan, arguments.board, progress).map(Some),
+                    false => build(arguments, plan, arguments.line.board, progress).map(Some),
                 })
             }
         }

@@ -12,6 +12,7 @@ mod evaluation;
 pub mod everything;
 pub mod fault;
 mod files;
+mod line_options;
 pub mod logs;
 pub(crate) mod origin;
 mod plan;
@@ -27,6 +28,7 @@ pub mod twin;
 use bench::Bench;
 use evaluation::Ran;
 use files::Files;
+pub use line_options::LineOptions;
 use plan::Plan;
 pub use plan::{Arguments, Mode, RoleName};
 pub use progress::Progress;
@@ -48,9 +50,9 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
         if arguments.check {
             return joint.and_then(|()| everything::check(arguments.rate, progress));
         }
-        match (&arguments.file, &arguments.port) {
+        match (&arguments.file, &arguments.line.port) {
             (Some(_), _) => joint,
-            (None, Some(port)) => joint.and_then(|()| say_how_to_go_on(port, arguments.board.name())),
+            (None, Some(port)) => joint.and_then(|()| say_how_to_go_on(port, arguments.line.board.name())),
             (None, None) => run_tests(arguments, joint, progress),
         }
     })

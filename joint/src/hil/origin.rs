@@ -11,7 +11,7 @@ use crate::target::toolchain::workspace;
 
 /// A record in which nothing has happened yet.
 pub fn record(arguments: &Arguments, plan: &Plan, transport: &str) -> RunRecord {
-    let emulated = arguments.port.is_none();
+    let emulated = arguments.line.port.is_none();
     let identity = Identity {
         joint: plan.expected.joint.clone(),
         joint_file: plan.name.clone(),

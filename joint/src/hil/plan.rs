@@ -7,6 +7,7 @@ use clap::ValueEnum;
 use joints::JointFile;
 use link::messages::{Role, RunMode, RunSettings};
 
+use super::line_options::LineOptions;
 use super::profile::{BUILTIN, Profile};
 use super::session::Expected;
 use super::twin;
@@ -52,15 +53,9 @@ pub struct Arguments {
     /// Test files: writes the results as JUnit XML to this file too
     #[arg(long, value_name = "XML")]
     pub junit: Option<PathBuf>,
-    /// Serial port of a real board, such as /dev/ttyUSB0 [default: the emulated board]
-    #[arg(long, value_name = "PATH")]
-    pub port: Option<String>,
-    /// Speed of the serial port in baud [default: that of the board's image]
-    #[arg(long, value_name = "BAUD", requires = "port", value_parser = clap::value_parser!(u32).range(1..))]
-    pub baud: Option<u32>,
-    /// Board behind the port
-    #[arg(long, value_enum, default_value = "stm32f405", requires = "port")]
-    pub board: Board,
+    /// Which board, and how it is reached.
+    #[command(flatten)]
+    pub line: LineOptions,
     /// Who waits for whom [default: lockstep on the emulated board, realtime on a real one]
     #[arg(long, value_enum)]
     pub mode: Option<Mode>,
@@ -147,9 +142,9 @@ impl Plan {
         let path = images::joint_file(arguments.file(), &loaded);
         let check::Loaded { name, file: joint, .. } = loaded;
         let parameters = &joint.parameters;
-        let digest = twin::tables_digest(parameters, arguments.board, arguments.rate)?;
+        let digest = twin::tables_digest(parameters, arguments.line.board, arguments.rate)?;
         let profile = Profile::load(&arguments.profile, parameters, arguments.rate, arguments.duration)?;
-        let mode = match (arguments.mode, &arguments.port) {
+        let mode = match (arguments.mode, &arguments.line.port) {
             (Some(Mode::Lockstep), _) | (None, None) => RunMode::Lockstep,
             (Some(Mode::Realtime), _) | (None, Some(_)) => RunMode::Realtime,
         };
@@ -168,7 +163,7 @@ impl Plan {
         };
         let command_timeout = (COMMAND_TIMEOUT * f64::from(arguments.rate)).ceil() as u32;
         let settings = RunSettings { mode, decimation: arguments.decimation, command_timeout, from_memory: false };
-        Ok(Self { name, path, board: arguments.board, expected, profile, settings, joint })
+        Ok(Self { name, path, board: arguments.line.board, expected, profile, settings, joint })
     }
 }
 
@@ -181,8 +176,8 @@ impl Arguments {
     /// The command that puts the right image onto the board.
     fn flash_command(&self) -> String {
         let rate = self.rate_option();
-        match &self.port {
-            Some(_) => format!("cargo joint flash {} --board {}{rate}", self.file().display(), self.board.name()),
+        match &self.line.port {
+            Some(_) => format!("cargo joint flash {} --board {}{rate}", self.file().display(), self.line.board.name()),
             None => format!("cargo joint image {}{rate}", self.file().display()),
         }
     }
@@ -195,9 +190,9 @@ impl Arguments {
                 command += &format!(" --{name} {value}");
             }
         };
-        option("port", self.port.clone());
-        option("baud", self.baud.map(|baud| baud.to_string()));
-        option("board", self.port.as_ref().map(|_| self.board.name().to_owned()));
+        option("port", self.line.port.clone());
+        option("baud", self.line.baud.map(|baud| baud.to_string()));
+        option("board", self.line.port.as_ref().map(|_| self.line.board.name().to_owned()));
         option("mode", self.mode.and_then(|mode| mode.to_possible_value()).map(|mode| mode.get_name().to_owned()));
         option("profile", Some(self.profile.clone()));
         option("duration", self.duration.map(|duration| duration.to_string()));

@@ -28,7 +28,7 @@ pub fn wanted(arguments: &Arguments) -> Outcome<Wanted<'_>> {
         let message = format!("--{name} is for joints, and {} holds tests", arguments.file().display());
         return Err(Failure::new(message).with_help("write it into the test file: docs/hil-file.md tells its keys"));
     }
-    if let (true, Some(port)) = (arguments.host, &arguments.port) {
+    if let (true, Some(port)) = (arguments.host, &arguments.line.port) {
         return Err(Failure::new(format!("--host runs without a board, and --port {port} names one"))
             .with_help("leave one of them out"));
     }
@@ -87,9 +87,9 @@ fn of_parts<'a>(arguments: &'a Arguments, parts: Vec<Part<'a>>, name: String, ou
 fn boards(arguments: &Arguments, role: Role) -> BoardWish<'_> {
     BoardWish {
         role,
-        port: arguments.port.as_deref(),
-        baud: arguments.baud,
-        board: arguments.board,
+        port: arguments.line.port.as_deref(),
+        baud: arguments.line.baud,
+        board: arguments.line.board,
         no_build: arguments.no_build,
         mode: arguments.mode.map(|mode| match mode {
             Mode::Lockstep => RunMode::Lockstep,

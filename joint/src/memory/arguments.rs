@@ -4,8 +4,7 @@ use std::path::PathBuf;
 
 use clap::Subcommand;
 
-use crate::hil::RoleName;
-use crate::target::board::Board;
+use crate::hil::{LineOptions, RoleName};
 
 /// Arguments of `joint memory`.
 #[derive(Debug, clap::Args)]
@@ -73,15 +72,9 @@ pub(super) enum Command {
 /// Which board.
 #[derive(Debug, clap::Args)]
 pub(super) struct Place {
-    /// Serial port of a real board, such as /dev/ttyACM0 [default: the emulated board, which has no flash]
-    #[arg(long, value_name = "PATH")]
-    pub port: Option<String>,
-    /// Speed of the serial port in baud [default: that of the board's image]
-    #[arg(long, value_name = "BAUD", requires = "port", value_parser = clap::value_parser!(u32).range(1..))]
-    pub baud: Option<u32>,
-    /// Board behind the port
-    #[arg(long, value_enum, default_value = "stm32f405", requires = "port")]
-    pub board: Board,
+    /// Which board, and how it is reached.
+    #[command(flatten)]
+    pub line: LineOptions,
     /// Joint file (TOML) or preset of the board's image
     #[arg(long, value_name = "FILE", default_value = "q1")]
     pub joint: PathBuf,

@@ -31,25 +31,26 @@ impl Found {
     /// Finds the board and calls it.
     pub fn call(place: &Place, loaded: &Loaded, progress: &Progress) -> Outcome<Self> {
         let file = place.joint.display();
-        let (bench, options) = match &place.port {
+        let (bench, options) = match &place.line.port {
             Some(path) => {
-                let baud = place.baud.unwrap_or(place.board.baud_rate());
-                let options = format!(" --port {path} --board {}", place.board.name());
+                let baud = place.line.baud_rate();
+                let options = format!(" --port {path} --board {}", place.line.board.name());
                 (Bench::on_port(path, baud, || Ok(None))?, options)
             }
             None => (emulated(place, loaded, progress)?, String::new()),
         };
         progress.stage("calling the board");
-        let mend = format!("cargo joint flash {file} --role observer --board {}", place.board.name());
+        let mend = format!("cargo joint flash {file} --role observer --board {}", place.line.board.name());
         let mut session = Session::new(bench.line, bench.surroundings);
         let hello = session.call(&mend, bench.patience)?;
-        let name = place.port.as_ref().map_or("the emulated board".to_owned(), |path| format!("the board on {path}"));
+        let name =
+            place.line.port.as_ref().map_or("the emulated board".to_owned(), |path| format!("the board on {path}"));
         if hello.role == Role::Plant {
             let role = word(hello.role);
             return Err(Failure::new(format!("{name} has an image of role `{role}`, which learns nothing"))
                 .with_help(format!("flash one that does: {mend}")));
         }
-        Ok(Self { session, hello, name, options, emulated: place.port.is_none() })
+        Ok(Self { session, hello, name, options, emulated: place.line.port.is_none() })
     }
 
     /// Whether its flash is none.

@@ -18,6 +18,9 @@ const REACH: f64 = 1.96;
 /// What is not narrowed to this share of its standard deviation beforehand has not been learnt.
 const NARROWED: f64 = 0.9;
 
+/// Bias and friction, their variances, and their covariance.
+const MOTOR_NUMBERS: usize = 5;
+
 /// A memory of a known joint.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Content {
@@ -105,6 +108,18 @@ impl Numbers {
         let before = f64::from(tables.contact.bias_prior).sqrt();
         Learnt { value: self.at(first + index), deviation: self.at(first + 2 + index).max(0.0).sqrt(), before }
     }
+
+    /// Inertia of the link over the designed one: kept as its inverse.
+    fn inertia_ratio(&self, tables: &ObserverTables<f32>) -> Learnt {
+        let first = MAPPED + MAPPED * (MAPPED + 1) / 2 + MOTOR_NUMBERS;
+        let [mobility, variance] = [self.at(first), self.at(first + 1)];
+        let value = 1.0 / mobility;
+        Learnt {
+            value,
+            deviation: variance.max(0.0).sqrt() * value * value,
+            before: f64::from(tables.inertia.prior).sqrt(),
+        }
+    }
 }
 
 impl Learnt {
@@ -157,6 +172,7 @@ fn values(numbers: &Numbers, tables: &ObserverTables<f32>) -> Vec<Finding> {
             "drive_train.motor_coulomb_friction_N_m",
             "as far as it does not grow with the load",
         ),
+        numbers.inertia_ratio(tables).finding("inertia of the link over the joint file's", "-", "", ""),
     ];
     let maps = [
         ("gears: error along the line of action", "um", "", 4, 1e6),

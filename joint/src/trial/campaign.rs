@@ -157,6 +157,7 @@ fn one(test: &Test, conduct: &Conduct<'_>, job: &Job, deadline: Instant) -> Outc
         digest: String::new(),
         log: None,
         broken: None,
+        refusal: None,
         figures: BTreeMap::new(),
         board: None,
     };
@@ -176,6 +177,7 @@ fn one(test: &Test, conduct: &Conduct<'_>, job: &Job, deadline: Instant) -> Outc
     match both {
         Ok((ran, without_gap)) => {
             let values = Values::of(&test.file, &case, &ran, without_gap.as_ref());
+            run.refusal = ran.refusal().map(|refusal| refusal.to_string());
             run.digest = format!("{:016x}", ran.digest);
             run.figures = values.named().map(|(figure, value)| (figure.name(), value)).collect();
             let name = format!("{}-seed{}-{}.mcap", test.stem(), job.seed, run.controller);

@@ -9,10 +9,10 @@ use host_tests::closed_loop::{Profile as Standard, Reference, compensation_setti
 use host_tests::drive_train::{Disturbance, DriveTrainParameters};
 use joints::{JointFile, Problem, Severity};
 use model_core::design::compensation::{CompensationSettings, design_compensation};
-use model_core::design::observer::design_observer;
+use model_core::design::observer::{design_observer, design_usual_probe};
 use model_core::joint::JointParameters;
 use model_core::tables::compensation::CompensationTables;
-use model_core::tables::observer::ObserverTables;
+use model_core::tables::observer::{ObserverTables, ProbeTable};
 
 use super::draw::{Quantity, Stream};
 use super::file::{Change, Course, NewValue, TestFile};
@@ -47,6 +47,8 @@ pub struct Designed {
     pub observer: ObserverTables<f32>,
     /// Tables of the compensation.
     pub compensation: CompensationTables<f32>,
+    /// Table of the width probe, where one can be.
+    pub probe: Option<ProbeTable<f32>>,
     /// Clock ticks in a control period.
     pub ticks: u32,
 }
@@ -145,7 +147,8 @@ impl Case {
         };
         let compensation =
             design_compensation(&self.told, &settings_of_law).map_err(|error| refused("compensation", &error))?;
-        Ok(Designed { observer, compensation, ticks: settings.clock_rate / settings.control_rate })
+        let probe = design_usual_probe(&self.told, &settings).map_err(|error| refused("width probe", &error))?;
+        Ok(Designed { observer, compensation, probe, ticks: settings.clock_rate / settings.control_rate })
     }
 }
 

@@ -20,6 +20,8 @@ pub enum ControllerName {
     NoPreview,
     /// Observer and compensation with impedance set-points.
     Impedance,
+    /// The width probe of the observer: the load is held.
+    Probe,
     /// PID on the motor: position control without compensation.
     MotorPid,
     /// The same with an offset by the sign of the speed.
@@ -59,10 +61,11 @@ impl Default for Gains {
 
 impl ControllerName {
     /// All of them.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Preview,
         Self::NoPreview,
         Self::Impedance,
+        Self::Probe,
         Self::MotorPid,
         Self::VelocitySign,
         Self::LoadCascade,
@@ -85,6 +88,7 @@ impl ControllerName {
             Self::Preview => "preview",
             Self::NoPreview => "no_preview",
             Self::Impedance => "impedance",
+            Self::Probe => "probe",
             Self::MotorPid => "motor_pid",
             Self::VelocitySign => "velocity_sign",
             Self::LoadCascade => "load_cascade",
@@ -102,6 +106,7 @@ impl ControllerName {
             Self::Preview => "compensation, preview",
             Self::NoPreview => "compensation, no preview",
             Self::Impedance => "compensation, impedance",
+            Self::Probe => "width probe",
             Self::MotorPid => "motor PID",
             Self::VelocitySign => "velocity-sign offset",
             Self::LoadCascade => "load cascade",
@@ -115,7 +120,7 @@ impl ControllerName {
 
     /// Observer and compensation.
     pub fn is_ours(self) -> bool {
-        matches!(self, Self::Preview | Self::NoPreview | Self::Impedance)
+        matches!(self, Self::Preview | Self::NoPreview | Self::Impedance | Self::Probe)
     }
 
     /// Follows impedance set-points.
@@ -143,6 +148,8 @@ impl ControllerName {
 pub enum Driver<'p> {
     /// Observer and compensation.
     Ours(Box<dyn ControllerPort + 'p>, Translator),
+    /// The observer and its width probe.
+    Probe(Box<dyn ControllerPort + 'p>, Translator),
     /// A rival, and the last reading of the output encoder, which it holds while none comes.
     Rival(Box<dyn Controller>, i64),
     /// Nobody.
@@ -168,7 +175,7 @@ impl Driver<'_> {
 
     /// Begins anew with what was learnt so far, as after the power was off; who learns nothing just goes on.
     pub fn begin_again(&mut self) -> Outcome<()> {
-        if let Self::Ours(port, translator) = self {
+        if let Self::Ours(port, translator) | Self::Probe(port, translator) = self {
             port.begin_again()?;
             translator.begin_again();
         }
@@ -188,6 +195,11 @@ impl Driver<'_> {
             Self::Ours(port, translator) => {
                 let samples = translator.samples(seen);
                 let answer = port.exchange(&samples, &translator.command(set_point))?;
+                translator.note(&answer);
+                Ok((f64::from(answer.shaped.torque), Some(answer)))
+            }
+            Self::Probe(port, translator) => {
+                let answer = port.probe(&translator.samples(seen))?;
                 translator.note(&answer);
                 Ok((f64::from(answer.shaped.torque), Some(answer)))
             }

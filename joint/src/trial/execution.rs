@@ -67,9 +67,7 @@ pub type MakePort<'p> = &'p dyn for<'d> Fn(&'d Designed) -> Outcome<Box<dyn Cont
 
 /// Runs one controller in one case, all of it on the host.
 pub fn execute(file: &TestFile, case: &Case, seed: u64, order: Order, deadline: Instant) -> Result<Ran, RunError> {
-    execute_with(file, case, seed, order, deadline, &|designed| {
-        Ok(Box::new(HostPort::new(&designed.observer, &designed.compensation)))
-    })
+    execute_with(file, case, seed, order, deadline, &|designed| Ok(Box::new(HostPort::new(designed))))
 }
 
 /// Runs one controller in one case; observer and compensation are where their port leads.
@@ -155,7 +153,11 @@ fn driver<'d>(
         Some(designed) => {
             let train: &DriveTrainParameters = &case.told_train;
             let bits = [train.motor_encoder.bits, train.output_encoder.bits];
-            Driver::Ours(port(designed)?, Translator::new(designed.ticks, bits))
+            let translator = Translator::new(designed.ticks, bits);
+            match name {
+                ControllerName::Probe => Driver::Probe(port(designed)?, translator),
+                _ => Driver::Ours(port(designed)?, translator),
+            }
         }
         None => Driver::rival(name, knowledge, bandwidth),
     })

@@ -13,6 +13,8 @@ pub enum About {
     Impedance,
     /// One of observer and compensation.
     Sight,
+    /// One of the width probe.
+    Probe,
     /// A hysteresis loop.
     Loop,
 }
@@ -34,7 +36,7 @@ const fn figure(stem: &'static str, unit: &'static str, about: About, meaning: &
     Figure { stem, unit, about, meaning }
 }
 
-use About::{Impedance, Loop, Motion, Sight};
+use About::{Impedance, Loop, Motion, Probe, Sight};
 
 /// All figures that a run itself has.
 pub static FIGURES: &[Figure] = &[
@@ -94,6 +96,9 @@ pub static FIGURES: &[Figure] = &[
     ),
     figure("false_alarms", "", Sight, "falls back to the motor encoder while no fault was on"),
     figure("compensated", "percent", Sight, "mean share of the compensation in the torque"),
+    figure("probe_error", "percent", Probe, "half-backlash that the width probe found against the truth"),
+    figure("probe_time", "ms", Probe, "from the first torque of the width probe to its result"),
+    figure("probe_refused", "", Probe, "1 if the width probe refused to say a width, 0 if it said one"),
     figure("loop_lost_motion", "mrad", Loop, "opening of the hysteresis loop at 3 % of the rated torque"),
     figure("loop_stiffness", "N_m_per_rad", Loop, "slope of the loop between half and full torque"),
 ];

@@ -7,9 +7,8 @@ use host_tests::closed_loop::{Motion, SetPoint};
 use model_core::realtime::compensation::{self, Command, ImpedancePoint, Position};
 use model_core::realtime::controller::{self, Controller};
 use model_core::realtime::observer::{Reading, Samples};
-use model_core::tables::compensation::CompensationTables;
-use model_core::tables::observer::ObserverTables;
 
+use super::case::Designed;
 use super::injection::{Frame, Seen};
 use crate::failure::{Failure, Outcome};
 
@@ -21,6 +20,9 @@ pub trait ControllerPort {
     /// One control period.
     fn exchange(&mut self, samples: &Samples<f32>, command: &Command<f32>) -> Outcome<Answer>;
 
+    /// One control period of a width probe.
+    fn probe(&mut self, samples: &Samples<f32>) -> Outcome<Answer>;
+
     /// Keeps what has been learnt, and begins anew from it.
     fn begin_again(&mut self) -> Outcome<()>;
 }
@@ -31,14 +33,19 @@ pub struct HostPort<'t>(Controller<'t, f32>);
 
 impl<'t> HostPort<'t> {
     /// Both as they are after a reset.
-    pub fn new(observer: &'t ObserverTables<f32>, compensation: &'t CompensationTables<f32>) -> Self {
-        Self(Controller::new(observer, compensation))
+    pub fn new(designed: &'t Designed) -> Self {
+        let Designed { observer, compensation, probe, .. } = designed;
+        Self(Controller::new(observer, compensation).with_probe(probe.as_ref()))
     }
 }
 
 impl ControllerPort for HostPort<'_> {
     fn exchange(&mut self, samples: &Samples<f32>, command: &Command<f32>) -> Outcome<Answer> {
         Ok(self.0.step(samples, command))
+    }
+
+    fn probe(&mut self, samples: &Samples<f32>) -> Outcome<Answer> {
+        Ok(self.0.probe(samples))
     }
 
     fn begin_again(&mut self) -> Outcome<()> {

@@ -4,7 +4,7 @@
 use host_tests::closed_loop::{Run, Sample};
 use model_core::digest;
 use model_core::mesh::ContactState;
-use model_core::realtime::observer::Source;
+use model_core::realtime::observer::{Progress, Refusal, Source};
 
 use super::case::Case;
 use super::injection::Injection;
@@ -62,6 +62,8 @@ pub struct Sight {
     pub both: bool,
     /// Share of the compensation in the torque.
     pub trust: f32,
+    /// Where the width probe stands, if there is one.
+    pub probed: Option<Progress<f32>>,
 }
 
 impl Ran {
@@ -72,6 +74,14 @@ impl Ran {
             sights: Vec::new(),
             truths: Vec::with_capacity(periods as usize),
             digest: digest::START,
+        }
+    }
+
+    /// Why the width probe said no width, if it refused.
+    pub fn refusal(&self) -> Option<Refusal> {
+        match self.sights.last()?.probed {
+            Some(Progress::Refused(refusal)) => Some(refusal),
+            _ => None,
         }
     }
 
@@ -116,7 +126,7 @@ impl Ran {
 
 impl Sight {
     fn of(answer: &Answer) -> Self {
-        let Answer { estimates, shaped } = answer;
+        let Answer { estimates, shaped, probed } = *answer;
         Self {
             gap: estimates.gap.value,
             gap_variance: estimates.gap.variance,
@@ -133,6 +143,7 @@ impl Sight {
             skew: estimates.skew.value,
             both: estimates.source == Source::Both,
             trust: shaped.trust,
+            probed,
         }
     }
 }

@@ -140,6 +140,8 @@ pub struct TestRun {
     pub log: Option<String>,
     /// Why it ended early, if it did.
     pub broken: Option<String>,
+    /// Why the width probe refused to say a width, if it did.
+    pub refusal: Option<String>,
     /// Its figures by their names.
     pub figures: BTreeMap<String, f64>,
     /// The board that it ran on, if it did.

@@ -1,5 +1,7 @@
 //! What the observer's estimates are worth against the truth. Figures of the motion are in `figures`.
 
+use model_core::realtime::observer::Progress;
+
 use super::case::Case;
 use super::file::{EncoderName, Fault, FaultKind, FrameName, TestFile};
 use super::ran::Ran;
@@ -79,6 +81,21 @@ pub fn figures(file: &TestFile, case: &Case, ran: &Ran) -> Vec<(&'static str, f6
     list.extend(landings.delays());
     list.extend(at_the_end(case, ran));
     list.extend(alarms(file, ran));
+    list.extend(probed(ran));
+    list
+}
+
+/// What the width probe came to, if there was one and it ended.
+fn probed(ran: &Ran) -> Vec<(&'static str, f64)> {
+    let times = || ran.run.samples.iter().zip(&ran.sights);
+    let ended = times().find(|(_, sight)| !matches!(sight.probed, None | Some(Progress::Running)));
+    let (Some((sample, sight)), Some(truth)) = (ended, ran.truths.last()) else { return Vec::new() };
+    let first = times().find(|(sample, _)| sample.command != 0.0).map_or(sample.time, |(sample, _)| sample.time);
+    let mut list = vec![("probe_time", 1e3 * (sample.time - first)), ("probe_refused", 1.0)];
+    if let Some(Progress::Done(width)) = sight.probed {
+        list[1].1 = 0.0;
+        list.push(("probe_error", 100.0 * (f64::from(width.value) / truth.half_backlash - 1.0).abs()));
+    }
     list
 }
 

@@ -51,6 +51,10 @@ pub fn table(record: &TestsRecord) -> String {
             );
         }
         for run in &test.runs {
+            let Some(refusal) = &run.refusal else { continue };
+            text += &format!("refused: seed {}: {refusal}\n", run.seed);
+        }
+        for run in &test.runs {
             let Some(board) = &run.board else { continue };
             text += &format!(
                 "board:   {} periods the same in every bit; {} of {} timer counts a period, at most {}; {} overruns; \

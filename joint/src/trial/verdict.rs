@@ -45,7 +45,8 @@ fn one(file: &TestFile, assertion: &Assertion, results: &Results<'_>) -> Asserti
         note += &format!("; {} seeds from {} to {}", had.len(), short(least), short(greatest));
     }
     if let Some(first) = missing.first() {
-        note = format!("could not be had with seed {first}: the run has no such figure, or broke off; {note}");
+        let why = absence(assertion.figure.base().stem);
+        note = format!("could not be had with seed {first}: {why}; {note}");
     }
     AssertionRecord {
         name: assertion.name.clone(),
@@ -59,6 +60,18 @@ fn one(file: &TestFile, assertion: &Assertion, results: &Results<'_>) -> Asserti
         verdict: if holds { Verdict::Passed } else { Verdict::Failed },
         seed: missing.first().copied().or(worst.map(|(seed, _)| seed)),
         note,
+    }
+}
+
+/// Why a run has no such figure.
+fn absence(stem: &str) -> &'static str {
+    match stem {
+        "gap_error_valid" | "gap_surprise" => "the observer never vouched for the gap, or the run broke off",
+        "landing_delay_median" | "landing_delay_p95" => "no landing was reported, or the run broke off",
+        "reversal_error" => "the wanted motion has no reversal after settle_s, or the run broke off",
+        "probe_error" => "the width probe refused, or the run broke off",
+        "probe_time" | "probe_refused" => "the run ended before the width probe did",
+        _ => "the run has no such figure, or broke off",
     }
 }
 

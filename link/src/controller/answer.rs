@@ -4,7 +4,7 @@
 use model_core::mesh::ContactState;
 use model_core::realtime::compensation::{Shaped, Stage};
 use model_core::realtime::controller::Answer;
-use model_core::realtime::observer::{Doubt, Estimate, Estimates, Notices, Shaft, Source};
+use model_core::realtime::observer::{Doubt, Estimate, Estimates, Notices, Progress, Refusal, Shaft, Source};
 use serde::{Deserialize, Serialize};
 
 /// What a control period came to.
@@ -18,8 +18,48 @@ pub struct Answered {
     pub shaped: WireShaped,
     /// All that the observer says, if it was asked for.
     pub estimates: Option<WireEstimates>,
+    /// Where the width probe stands, in a period of one.
+    pub probed: Option<WireProbed>,
     /// Computation time of this period, in timer counts.
     pub computation: u16,
+}
+
+/// Where a width probe stands.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum WireProbed {
+    /// It goes on.
+    Running,
+    /// The half-backlash [m].
+    Done(WireEstimate),
+    /// No width: 0 the motor was turning, 1 loaded, 2 not held, 3 stuck, 4 unsteady, 5 bad samples.
+    Refused(u8),
+}
+
+impl From<Progress<f32>> for WireProbed {
+    fn from(progress: Progress<f32>) -> Self {
+        match progress {
+            Progress::Running => Self::Running,
+            Progress::Done(width) => Self::Done(estimate(width)),
+            Progress::Refused(refusal) => Self::Refused(refusal as u8),
+        }
+    }
+}
+
+impl From<WireProbed> for Progress<f32> {
+    fn from(wire: WireProbed) -> Self {
+        match wire {
+            WireProbed::Running => Self::Running,
+            WireProbed::Done(width) => Self::Done(estimated(width)),
+            WireProbed::Refused(refusal) => Self::Refused(match refusal {
+                0 => Refusal::NotAtRest,
+                1 => Refusal::Loaded,
+                2 => Refusal::NotHeld,
+                3 => Refusal::Stuck,
+                4 => Refusal::Unsteady,
+                _ => Refusal::BadSamples,
+            }),
+        }
+    }
 }
 
 /// The compensation's answer.
@@ -198,6 +238,7 @@ impl From<WireEstimates> for Estimates<f32> {
 impl Answered {
     /// The answer, if it brings all of it.
     pub fn answer(&self) -> Option<Answer<f32>> {
-        Some(Answer { estimates: self.estimates?.into(), shaped: self.shaped.into() })
+        let probed = self.probed.map(Progress::from);
+        Some(Answer { estimates: self.estimates?.into(), shaped: self.shaped.into(), probed })
     }
 }

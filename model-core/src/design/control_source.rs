@@ -39,7 +39,7 @@ pub struct Told<'t> {
 /// Tables as Rust source.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ControlSource {
-    /// The statics `OBSERVER`, `COMPENSATION` and `SURROUNDINGS` and the constant `CONTROL_DIGEST`, as a module's text.
+    /// The statics `OBSERVER`, `PROBE`, `COMPENSATION` and `SURROUNDINGS` and the constant `CONTROL_DIGEST`, as a module's text.
     pub text: String,
     /// The constant: a digest over the rest of the text.
     pub digest: u64,

@@ -25,7 +25,7 @@ use crate::tables::observer::{
     SupervisorTable,
 };
 use body::Body;
-pub use probe::design_probe;
+pub use probe::{design_probe, design_usual_probe};
 pub use settings::{EncoderSettings, ObserverSettings};
 use sides::{current, drive_filter, drive_lag, drive_table, load_filter};
 pub use source::observer_source;

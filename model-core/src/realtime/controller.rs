@@ -1,12 +1,13 @@
 //! Observer and compensation as one: samples and a set-point in, estimates and the shaped set-point out, once a control
-//! period. Where the samples come from, and over which line, is left to whoever calls.
+//! period; or the width probe in place of the compensation. Where the samples come from, and over which line, is left to
+//! whoever calls.
 
 use super::compensation::{Command, Compensation, Shaped};
-use super::observer::{Estimates, MAPPED, Memory, MemoryError, Observer, Samples};
+use super::observer::{Estimates, MAPPED, Memory, MemoryError, Observer, Probe, Progress, Samples};
 use crate::digest::chain;
 use crate::real::Real;
 use crate::tables::compensation::CompensationTables;
-use crate::tables::observer::ObserverTables;
+use crate::tables::observer::{ObserverTables, ProbeTable};
 
 /// What one control period came to.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -15,12 +16,18 @@ pub struct Answer<T: Real> {
     pub estimates: Estimates<T>,
     /// What the compensation makes of estimates and set-point.
     pub shaped: Shaped<T>,
+    /// Where the width probe stands, if this was a period of one.
+    pub probed: Option<Progress<T>>,
 }
 
 impl<T: Real> Answer<T> {
-    /// Extends a digest by what says most about the rest: torque, gap, width, load, trust.
+    /// Extends a digest by what says most about the rest: torque, gap, width, load, trust, the width that was probed.
     pub fn digest(&self, running: u64) -> u64 {
-        let Self { estimates, shaped } = self;
+        let Self { estimates, shaped, probed } = self;
+        let running = match probed {
+            Some(Progress::Done(width)) => chain(running, width.value.bits()),
+            _ => running,
+        };
         [shaped.torque, estimates.gap.value, estimates.half_backlash.value, estimates.load_torque.value, shaped.trust]
             .iter()
             .fold(running, |digest, value| chain(digest, value.bits()))
@@ -33,18 +40,39 @@ pub struct Controller<'tables, T: Real> {
     observer: Observer<'tables, T, MAPPED>,
     compensation: Compensation<'tables, T>,
     tables: &'tables CompensationTables<T>,
+    probe_table: Option<&'tables ProbeTable<T>>,
+    probing: Option<Probing<'tables, T>>,
+}
+
+/// A probe, and how long it waits until the observer has seen the joint.
+#[derive(Debug, Clone)]
+struct Probing<'tables, T: Real> {
+    probe: Probe<'tables, T>,
+    wait: u32,
 }
 
 impl<'tables, T: Real> Controller<'tables, T> {
     /// Both as they are after a reset.
     pub fn new(observer: &'tables ObserverTables<T>, compensation: &'tables CompensationTables<T>) -> Self {
-        Self { observer: Observer::new(observer), compensation: Compensation::new(compensation), tables: compensation }
+        Self {
+            observer: Observer::new(observer),
+            compensation: Compensation::new(compensation),
+            tables: compensation,
+            probe_table: None,
+            probing: None,
+        }
+    }
+
+    /// The same with a width probe, where one could be designed.
+    pub fn with_probe(self, table: Option<&'tables ProbeTable<T>>) -> Self {
+        Self { probe_table: table, ..self }
     }
 
     /// Forgets everything but what was designed.
     pub fn reset(&mut self) {
         self.observer.restart();
         self.compensation = Compensation::new(self.tables);
+        self.probing = None;
     }
 
     /// What the observer has learnt so far.
@@ -61,7 +89,28 @@ impl<'tables, T: Real> Controller<'tables, T> {
     #[inline(never)]
     pub fn step(&mut self, samples: &Samples<T>, command: &Command<T>) -> Answer<T> {
         let estimates = *self.observer.step(samples);
+        self.probing = None;
         let shaped = self.compensation.step(&estimates, command);
-        Answer { estimates, shaped }
+        Answer { estimates, shaped, probed: None }
+    }
+
+    /// One control period of a width probe, which begins with the first of them in a row and stays at its result until
+    /// [`step`](Self::step) is called again. Without a probe no torque is given and nothing is said.
+    #[inline(never)]
+    pub fn probe(&mut self, samples: &Samples<T>) -> Answer<T> {
+        let estimates = *self.observer.step(samples);
+        let still = Answer { estimates, ..Answer::default() };
+        let Some(table) = self.probe_table else { return still };
+        let Some(Probing { probe, wait }) = &mut self.probing else {
+            self.compensation = Compensation::new(self.tables);
+            self.probing = Some(Probing { probe: Probe::new(table), wait: table.settle });
+            return Answer { probed: Some(Progress::Running), ..still };
+        };
+        if *wait > 0 {
+            *wait -= 1;
+            return Answer { probed: Some(Progress::Running), ..still };
+        }
+        let (torque, progress) = probe.step(&estimates);
+        Answer { shaped: Shaped { torque, ..Shaped::default() }, probed: Some(progress), ..still }
     }
 }

@@ -26,19 +26,37 @@ pub struct BoardPort<'d> {
 impl<'d> BoardPort<'d> {
     /// A session whose run has begun and has done nothing yet.
     pub fn new(session: Rc<RefCell<Session<'static>>>, designed: &'d Designed) -> Self {
-        let twin = HostPort::new(&designed.observer, &designed.compensation);
+        let twin = HostPort::new(designed);
         Self { session, twin, tick: 0, digest: digest::START }
     }
 }
 
 impl ControllerPort for BoardPort<'_> {
     fn exchange(&mut self, samples: &Samples<f32>, command: &Command<f32>) -> Outcome<Answer> {
-        let exchange = Exchange::new(self.tick, samples, command).without_estimates();
-        let answered = self.session.borrow_mut().exchange(exchange)?;
-        let answer = self.twin.exchange(samples, command)?;
+        let own = self.twin.exchange(samples, command)?;
+        self.ask(Exchange::new(self.tick, samples, command), own)
+    }
+
+    fn probe(&mut self, samples: &Samples<f32>) -> Outcome<Answer> {
+        let own = self.twin.probe(samples)?;
+        self.ask(Exchange::probing(self.tick, samples), own)
+    }
+
+    fn begin_again(&mut self) -> Outcome<()> {
+        (self.tick, self.digest) = (0, digest::START);
+        self.session.borrow_mut().begin_again()?;
+        self.twin.begin_again()
+    }
+}
+
+impl BoardPort<'_> {
+    /// The board's answer to an exchange, which must be the twin's own.
+    fn ask(&mut self, exchange: Exchange, answer: Answer) -> Outcome<Answer> {
+        let answered = self.session.borrow_mut().exchange(exchange.without_estimates())?;
         self.digest = answer.digest(self.digest);
         let own = WireShaped::from(&answer.shaped);
-        if answered.digest != self.digest || answered.shaped != own {
+        if answered.digest != self.digest || answered.shaped != own || answered.probed.map(Into::into) != answer.probed
+        {
             let (there, here) = (answered.shaped.torque, own.torque);
             let what = if there == here {
                 "what was estimated".to_owned()
@@ -52,11 +70,5 @@ impl ControllerPort for BoardPort<'_> {
         }
         self.tick = self.tick.wrapping_add(1);
         Ok(answer)
-    }
-
-    fn begin_again(&mut self) -> Outcome<()> {
-        (self.tick, self.digest) = (0, digest::START);
-        self.session.borrow_mut().begin_again()?;
-        self.twin.begin_again()
     }
 }

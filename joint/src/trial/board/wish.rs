@@ -6,6 +6,7 @@ use link::messages::{Role, RunMode};
 use super::upsets::upsets;
 use crate::failure::{Failure, Outcome};
 use crate::target::board::Board;
+use crate::trial::controller::ControllerName;
 use crate::trial::plant::PlantName;
 use crate::trial::suite::Test;
 
@@ -42,6 +43,10 @@ pub fn may_run(wish: &BoardWish<'_>, test: &Test) -> Outcome<()> {
         return Err(Failure::new(message).with_help("run it with --host"));
     }
     if wish.role == Role::Loop {
+        if test.file.controller == ControllerName::Probe {
+            let message = format!("{name} tests `probe`, which the role `loop` does not know");
+            return Err(Failure::new(message).with_help("run it with --role observer, or with --host"));
+        }
         upsets(&test.file.faults, 1.0, [0; 2], 0).map_err(|failure| failure.while_doing(name))?;
     }
     Ok(())

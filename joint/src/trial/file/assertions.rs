@@ -129,6 +129,10 @@ fn out_of_place(figure: &Named, about: &About<'_>) -> Option<(&'static str, &'st
             "is about the observer, and this controller has none",
             "write mode = \"preview\", \"no_preview\" or \"impedance\" in [controller]",
         )),
+        Scope::Probe => about
+            .controller
+            .is_some_and(|controller| controller != ControllerName::Probe)
+            .then_some(("is about the width probe", "write mode = \"probe\" in [controller], or profile = \"held\"")),
         Scope::Loop => about
             .profile
             .is_some_and(|profile| profile.kind != "hysteresis")

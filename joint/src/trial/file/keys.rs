@@ -46,6 +46,7 @@ pub(super) const MODES: &[&str] = &[
     "preview",
     "no_preview",
     "impedance",
+    "probe",
     "none",
     "locked",
     "off",
@@ -75,6 +76,7 @@ pub(super) const PROFILES: &[&str] = &[
     "impact",
     "impedance",
     "hysteresis",
+    "held",
     "csv",
 ];
 
@@ -134,7 +136,12 @@ pub(super) const KEYS: &[Key] = &[
     key("profile", "pulse_s", Number(1e-4, 100.0), "length of a push"),
     key("profile", "file", Text, "a CSV with the columns time_s and position_rad, and load_torque_N_m if there is one"),
     // Controller
-    key("controller", "mode", Word(MODES), "preview, no_preview or impedance; none or a rival for a test of those"),
+    key(
+        "controller",
+        "mode",
+        Word(MODES),
+        "preview, no_preview, impedance or probe; none or a rival for a test of those",
+    ),
     key("controller", "bandwidth_rad_per_s", Number(1.0, 1e4), "bandwidth of all controllers alike; 60 if left out"),
     key(
         "controller",

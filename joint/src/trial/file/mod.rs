@@ -131,6 +131,7 @@ fn read_table(table: &DeTable<'_>, problems: &Problems) -> Option<TestFile> {
     let default_mode = match profile.as_ref().map(|profile| profile.kind) {
         Some("impedance") => "impedance",
         Some("hysteresis") => "locked",
+        Some("held") => "probe",
         _ => "preview",
     };
     let mode = if controller.has("mode") { controller.word("mode") } else { Some(default_mode) };
@@ -139,6 +140,8 @@ fn read_table(table: &DeTable<'_>, problems: &Problems) -> Option<TestFile> {
     let name = mode.map(|mode| ControllerName::of_word(mode, gains.is_some()));
     let rivals = if controller.has("rivals") {
         controller.words("rivals")
+    } else if name == Some(ControllerName::Probe) {
+        Some(Vec::new())
     } else if gains.is_some() {
         Some(vec!["motor_side", "link_spring"])
     } else {

@@ -82,6 +82,8 @@ pub struct Push {
 const FRICTION: f64 = 1.0 / 12.0;
 /// T2b has a weight of this part of the rated torque: 6 N m for Q1.
 const WEIGHT: f64 = 0.5;
+/// A brake that holds the link does so with this part of the rated torque: no probe comes near it.
+const BRAKE: f64 = 4.0;
 
 impl Profile {
     /// A motion as it is without further keys.
@@ -106,6 +108,7 @@ impl Profile {
             "free_hold" => Self { load: Load::Kick(None, 0.02), duration: 14.0, settle: 2.1, ..usual },
             "impact" => Self { load: Load::Impacts(None, 0.01), ..usual },
             "hysteresis" => Self { load: Load::Slow(None, 0.25), duration: 9.0, settle: 1.0, ..usual },
+            "held" => Self { friction: Some(BRAKE), duration: 1.0, settle: 0.0, ..usual },
             // A recording brings its own load, or none.
             _ => Self { gravity: None, ..usual },
         }

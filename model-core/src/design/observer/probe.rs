@@ -25,6 +25,30 @@ const RISE: f64 = 12e-3;
 /// Rate at which the damping torque takes the motor's speed out: slow against any current loop [rad/s].
 const DAMPING: f64 = TAU * 50.0;
 
+/// Part of the motor's limit that a probe uses where nothing else is said: firm beside friction, and no hard landing.
+const USUAL_SHARE: f64 = 0.2;
+
+/// Torque uncertainties that it uses at least: twice what a probe cannot do without.
+const USUAL_UNCERTAINTIES: f64 = 8.0;
+
+/// Table of the probe that a controller carries; none where friction leaves no torque to probe with.
+pub fn design_usual_probe<T: Real>(
+    joint: &JointParameters,
+    settings: &ObserverSettings,
+) -> Result<Option<ProbeTable<T>>, DesignError> {
+    let torque = (USUAL_SHARE * settings.torque_limit)
+        .max(USUAL_UNCERTAINTIES * settings.torque_uncertainty)
+        .min(settings.torque_limit);
+    match design_probe(joint, settings, torque) {
+        Ok(table) => Ok(Some(table)),
+        Err(DesignError::OutOfRange { what: TORQUE, .. }) => Ok(None),
+        Err(error) => Err(error),
+    }
+}
+
+/// What is out of range where a probe cannot be.
+const TORQUE: &str = "the torque of the width probe";
+
 /// Table of a probe that pushes with no more than `torque` at the motor [N m].
 pub fn design_probe<T: Real>(
     joint: &JointParameters,
@@ -36,7 +60,7 @@ pub fn design_probe<T: Real>(
     let least = 4.0 * settings.torque_uncertainty;
     if !(torque >= least && torque <= settings.torque_limit) {
         let must_be = "at least four times the torque uncertainty and at most the torque limit";
-        return Err(DesignError::OutOfRange { what: "the torque of the width probe", given: torque, must_be });
+        return Err(DesignError::OutOfRange { what: TORQUE, given: torque, must_be });
     }
     let body = Body::new(joint);
     let real = T::from_f64;

@@ -6,6 +6,8 @@
 //! second is where it would rest under none: the wind-up, whatever the compliance, is gone. A damping torque keeps
 //! landings soft.
 
+use core::fmt;
+
 use super::estimates::{Estimate, Estimates, Shaft};
 use super::motion::magnitude;
 use crate::real::Real;
@@ -29,6 +31,19 @@ pub enum Refusal {
     Unsteady,
     /// Samples were missing or wrong.
     BadSamples,
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::NotAtRest => "the motor was turning when the probe began: let it come to rest",
+            Self::Loaded => "the load pushes the teeth with more than the probe may use: take the load off",
+            Self::NotHeld => "the motor did not come to rest, or went further than the teeth allow: hold the load",
+            Self::Stuck => "the motor hardly moved: friction is more than the probe may use, or the joint is blocked",
+            Self::Unsteady => "the first and the last pass do not agree: something moved",
+            Self::BadSamples => "samples were missing or wrong",
+        })
+    }
 }
 
 /// Where a probe stands.

@@ -25,11 +25,11 @@ const STRIKE: f64 = 0.4;
 
 /// The same over the peak torque, however hard the flank will be needed: a planet caught between sun and flank is struck
 /// harder each time.
-const HARDEST_STRIKE: f64 = 0.58;
+const HARDEST_STRIKE: f64 = 0.56;
 
 /// Share of the peak torque that the law may ask the teeth to pass on: torque constant, efficiency and what a swing does
 /// in the loop's delays each take a few hundredths.
-const MOST_PASSED: f64 = 0.9;
+const MOST_PASSED: f64 = 0.89;
 
 /// What is left to that, over itself, as far as a swing is divided by it: less than what the torques are known to.
 const LEAST_ROOM: f64 = 0.1;

@@ -50,7 +50,7 @@ pub(super) struct Situation<T: Real> {
     pub contact: T,
     /// Whether the teeth are known to pass on nothing.
     pub open: bool,
-    /// Whether every number is one.
+    /// Whether both shafts are seen.
     pub feels: bool,
     /// Whether it is known where in the gap the motor is as well.
     pub sees: bool,
@@ -106,11 +106,8 @@ impl<T: Real> Situation<T> {
         let sum = situation.error + situation.error_rate + situation.motor + situation.motor_speed + situation.gap;
         let sum = sum + situation.shift + situation.error_speed + situation.losses[0] + situation.losses[1];
         let sum = sum + situation.mesh_torque + situation.stiffness;
-        let feels = sum.is_finite();
-        let knows = estimates.source == Source::Both
-            && estimates.contact_valid
-            && estimates.gap.valid
-            && estimates.half_backlash.value.is_finite();
+        let feels = estimates.source == Source::Both && sum.is_finite();
+        let knows = estimates.contact_valid && estimates.gap.valid && estimates.half_backlash.value.is_finite();
         Self { feels, sees: feels && knows, ..situation }
     }
 

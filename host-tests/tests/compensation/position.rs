@@ -4,9 +4,9 @@ use host_tests::closed_loop::{Contender, Trial};
 use host_tests::drive_train::DriveTrainParameters;
 use host_tests::scenarios::{l1, q1};
 use host_tests::tolerance::compensation::{
-    COMPENSATED_OVER_PID, COMPENSATED_OVER_RIVAL, COMPENSATED_PEAK_OVER_PID, COMPENSATED_PEAK_OVER_RIVAL, LOST_MOTION,
-    PEAK_MESH_FORCE, SLOW_OVER_PID, SLOW_PEAK_OVER_PID, STEPS_MESH_FORCE, STEPS_OVER_PID, STEPS_PEAK_OVER_PID,
-    STIFF_JOINT_OVER_PID, STIFF_JOINT_STEPS_OVER_PID, TRANSMISSION_ERROR_OVER_PID,
+    COMPENSATED_OVER_PID, COMPENSATED_OVER_RIVAL, COMPENSATED_PEAK_OVER_PID, COMPENSATED_PEAK_OVER_RIVAL,
+    HIDDEN_GAP_OVER_PID, LOST_MOTION, PEAK_MESH_FORCE, SLOW_OVER_PID, SLOW_PEAK_OVER_PID, STEPS_MESH_FORCE,
+    STEPS_OVER_PID, STEPS_PEAK_OVER_PID, STIFF_JOINT_OVER_PID, STIFF_JOINT_STEPS_OVER_PID, TRANSMISSION_ERROR_OVER_PID,
 };
 use model_core::joint::JointParameters;
 
@@ -143,6 +143,17 @@ fn with_transmission_error(size: f64) -> JointParameters {
 #[test]
 fn gears_with_a_transmission_error_lose_their_lost_motion_as_well() {
     is_far_better(&Trial::weighty(&with_transmission_error(6e-6), &DriveTrainParameters::q1(), 1.5, 108));
+}
+
+#[test]
+fn the_load_is_fed_forward_although_a_transmission_error_as_large_as_the_gap_hides_it() {
+    let mut joint = with_transmission_error(14e-6);
+    for mesh in [&mut joint.sun_planet, &mut joint.ring_planet] {
+        mesh.half_backlash.iter_mut().for_each(|half| *half = 7e-6);
+    }
+    let trial = Trial::weighty(&joint, &DriveTrainParameters::q1(), 1.5, 113);
+    let (ours, pid) = (figures(&trial, NO_PREVIEW), figures(&trial, Contender::MotorPid));
+    HIDDEN_GAP_OVER_PID.check(ours.rms / pid.rms);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Encoders that fail and samples that make no sense: found, said, bounded, recovered from.
 
-use host_tests::tolerance::observer::{FAILURE_FOUND, GAP_COARSE};
+use host_tests::tolerance::observer::{FAILURE_FOUND, GAP_COARSE, LOST_COUNTS_FOUND};
 use model_core::realtime::observer::{Doubt, Estimates, MAPPED, Observer, Samples, Source};
 
 use crate::motion::Moment;
@@ -53,6 +53,37 @@ fn an_output_encoder_that_slips_is_given_up() {
     let found = sources[at..].iter().position(|source| *source != Source::Both).expect("it is found");
     FAILURE_FOUND.check(found as f64 * 1e-4);
     assert_eq!(sources[at + found], Source::MotorOnly(Doubt::OutOfRange));
+}
+
+#[test]
+fn an_output_encoder_that_loses_counts_never_makes_a_width_less_than_none() {
+    let trial = Trial::new("q1", "inertia", Encoders::Preset, Some(40e-6), 902).lasting(2.5);
+    let mut log = trial.record();
+    let start = log[15_000].output_counts;
+    log[15_000..].iter_mut().for_each(|moment| {
+        moment.output_counts -= (0.01 * (moment.output_counts - start) as f64).round() as i64;
+    });
+    let (mut least, mut found) = (f64::INFINITY, false);
+    replay::<f64, MAPPED>(&trial.run.joint, &trial.tables(), &trial.settings, &log, 1.0, |k, _, estimates| {
+        least = least.min(estimates.half_backlash.value);
+        found |= k > 15_000 && estimates.source != Source::Both;
+    });
+    assert!(least >= 0.0, "the half-backlash goes to {least} m");
+    assert!(found, "the encoder is given up");
+}
+
+#[test]
+fn an_output_encoder_that_makes_the_gap_narrower_is_given_up_for_teeth_do_not_grow() {
+    let trial = Trial::new("q1", "inertia", Encoders::Preset, Some(40e-6), 24).lasting(3.0);
+    let mut log = trial.record();
+    let start = log[20_000].output_counts;
+    log[20_000..].iter_mut().for_each(|moment| {
+        moment.output_counts -= (0.003 * (moment.output_counts - start) as f64).round() as i64;
+    });
+    let sources = sources(&trial, &log);
+    let found = sources[20_000..].iter().position(|source| *source != Source::Both).expect("it is found");
+    LOST_COUNTS_FOUND.check(found as f64 * 1e-4);
+    assert!(sources[20_000 + found] == Source::MotorOnly(Doubt::OutOfRange));
 }
 
 /// Runs the observer with samples that a test may spoil.

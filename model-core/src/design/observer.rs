@@ -27,7 +27,7 @@ use crate::tables::observer::{
 use body::Body;
 pub use probe::{design_probe, design_usual_probe};
 pub use settings::{EncoderSettings, ObserverSettings};
-use sides::{current, drive_filter, drive_table, load_filter};
+use sides::{current, drive_filter, drive_lag, drive_table, load_filter};
 pub use source::observer_source;
 
 /// Length of a learning interval [s]: short against the motions in which contact settles, long against noise.
@@ -168,6 +168,7 @@ pub fn design_observer<T: Real>(
             weight: real(1.0 / noise),
             noise: real(noise),
             force_noise: real(force_variance / (periods * block) + 0.5 * ripple * ripple),
+            force_lag: real(drive_lag(&body, &drive, step) / (periods * step)),
             forgetting: real(LEARNING_INTERVAL / MEMORY),
             mesh_compliance: real(body.mesh_compliance),
         },

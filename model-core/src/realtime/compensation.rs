@@ -85,7 +85,7 @@ impl<'tables, T: Real> Compensation<'tables, T> {
         let (intent, plain) = match command {
             Command::Position { now, ahead } => (
                 self.position.intend(tables, &self.load, &situation, now, ahead.as_ref()),
-                self.plain.follow(tables, &situation, now),
+                self.plain.follow(tables, &self.load, &situation, now),
             ),
             Command::Impedance(point) => {
                 (self.impedance.intend(tables, &self.load, &situation, point), self.plain.yield_to(&situation, point))

@@ -218,6 +218,8 @@ pub struct LearnerTable<T: Real> {
     pub noise: T,
     /// Variance of one update's force [N^2].
     pub force_noise: T,
+    /// By how much the motor side's force lags behind a force that changes steadily, over the span of an interval [-].
+    pub force_lag: T,
     /// Growth of variances in one update, for what wears and warms [-].
     pub forgetting: T,
     /// Way under one newton in the meshes alone [m/N].

@@ -46,6 +46,12 @@ pub(super) fn drive_filter(body: &Body, settings: &ObserverSettings, count: f64,
     .filter(step)
 }
 
+/// By how much the taken torque lags behind one that rises steadily [s]: the surprise in the angle is then such that it
+/// makes good the rise of a period, and what it adds to the speed makes good the torque that is lacking on the mean of it.
+pub(super) fn drive_lag(body: &Body, filter: &Filter, step: f64) -> f64 {
+    -body.motor_inertia * filter.gain[1] / filter.gain[2] - 0.5 * step
+}
+
 /// State: angle, speed, load torque.
 pub(super) fn load_filter(body: &Body, settings: &ObserverSettings, measurement_noise: f64, step: f64) -> Filter {
     let per_inertia = 1.0 / body.load_inertia;
@@ -107,5 +113,64 @@ pub(super) fn current<T: Real>(settings: &ObserverSettings, step: f64) -> Curren
         part_delay: T::from_f64(settings.torque_delay - whole),
         rise: T::from_f64(rise),
         limit: T::from_f64(settings.torque_limit),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Body, drive_filter, drive_lag};
+    use crate::design::observer::settings::{EncoderSettings, ObserverSettings};
+
+    #[test]
+    fn the_motor_side_lags_behind_a_steady_rise_by_as_much_as_it_says() {
+        let body = Body {
+            sun_lever: 7e-3,
+            output_lever: 42e-3,
+            ratio: 6.0,
+            motor_inertia: 2.5e-4,
+            load_inertia: 0.16,
+            half_backlash: 40e-6,
+            compliance: 1.8e-7,
+            mesh_compliance: 7e-9,
+            transmission_error: 6e-6,
+        };
+        let encoder =
+            EncoderSettings { counts_per_turn: 1 << 14, wraps_at: 1 << 14, absolute: true, harmonic_error: 0.0 };
+        let settings = ObserverSettings {
+            control_rate: 10_000,
+            clock_rate: 10_000_000,
+            motor_encoder: encoder,
+            output_encoder: None,
+            fastest_motor: 300.0,
+            torque_delay: 0.0,
+            torque_lag: 0.0,
+            torque_limit: 2.5,
+            torque_noise_ratio: 0.015,
+            torque_uncertainty: 0.05,
+            torque_ripple: 0.02,
+            efficiency: 1.0,
+            backlash_uncertainty: 0.5,
+            compliance_uncertainty: 0.3,
+            skew: 0.0,
+            skew_uncertainty: 0.0,
+        };
+        let step = 1e-4;
+        let count = core::f64::consts::TAU / f64::from(encoder.counts_per_turn);
+        let filter = drive_filter(&body, &settings, count, step);
+        let (inertia, gain) = (body.motor_inertia, &filter.gain);
+        let [mut angle, mut speed, mut taken] = [0.0; 3];
+        let mut time = 0.0;
+        for _ in 0..2000 {
+            // Nothing drives; a torque that is the time takes.
+            time += step;
+            angle += step * speed - 0.5 * step * step / inertia * taken;
+            speed -= step / inertia * taken;
+            let surprise = -time.powi(3) / (6.0 * inertia) - angle;
+            angle += gain[0] * surprise;
+            speed += gain[1] * surprise;
+            taken += gain[2] * surprise;
+        }
+        let lag = time - taken;
+        assert!(lag > step && (drive_lag(&body, &filter, step) / lag - 1.0).abs() < 1e-6, "it lags by {lag} s");
     }
 }

@@ -38,7 +38,7 @@ impl<T: Real> ImpedanceLaw<T> {
         let law = clamp(spring, -tables.torque_limit, tables.torque_limit)
             + point.damping * (point.speed - situation.motor_speed)
             + tables.impedance_calm * situation.calm(tables);
-        let free = load.even() + load.drag(tables, situation.link_speed);
+        let free = load.even() + load.drag();
         self.sender.hear(tables, point);
         let overdue = self.sender.overdue(tables);
         let error = situation.error + point.speed * overdue;

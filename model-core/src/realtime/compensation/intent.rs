@@ -21,6 +21,8 @@ pub(super) struct Situation<T: Real> {
     pub error_rate: T,
     /// Motor, felt at the link with every tooth centred, less set-point [rad].
     pub motor: T,
+    /// The same as far as the link's place bears it out: what is more than the guess of the gap allows is wind-up [rad].
+    pub confirmed_motor: T,
     /// [rad/s].
     pub motor_speed: T,
     /// [rad/s].
@@ -46,7 +48,9 @@ pub(super) struct Situation<T: Real> {
     pub gap: T,
     /// 1 or -1 with a flank touching, else 0.
     pub contact: T,
-    /// Whether it is known which flank touches, if any, and how hard.
+    /// Whether the teeth are known to pass on nothing.
+    pub open: bool,
+    /// Whether every number is one.
     pub feels: bool,
     /// Whether it is known where in the gap the motor is as well.
     pub sees: bool,
@@ -72,10 +76,17 @@ impl<T: Real> Situation<T> {
         let [softest, stiffest] = tables.compliances;
         let stiffness = T::ONE.over(clamp(estimates.compliance.value, stiffest, softest));
         let at_link = T::HALF * tables.inverse_lever;
+        let error = tables.turn * origin.less(estimates.link.turns, estimates.link.fraction);
+        let confirmed_motor = if estimates.source == Source::Both && error.is_finite() {
+            clamp(motor, -error - half - half, half + half - error)
+        } else {
+            motor
+        };
         let situation = Self {
-            error: tables.turn * origin.less(estimates.link.turns, estimates.link.fraction),
+            error,
             error_rate: speed - estimates.link.speed,
             motor,
+            confirmed_motor,
             motor_speed: tables.inverse_gear * estimates.motor.speed,
             link_speed: estimates.link.speed,
             origin,
@@ -88,14 +99,18 @@ impl<T: Real> Situation<T> {
             shift_slope: at_link * estimates.flank_shift_slope,
             gap: at_link * estimates.gap.value,
             contact,
+            open: estimates.contact_valid && contact == T::ZERO,
             feels: false,
             sees: false,
         };
         let sum = situation.error + situation.error_rate + situation.motor + situation.motor_speed + situation.gap;
         let sum = sum + situation.shift + situation.error_speed + situation.losses[0] + situation.losses[1];
         let sum = sum + situation.mesh_torque + situation.stiffness;
-        let feels = estimates.source == Source::Both && estimates.contact_valid && sum.is_finite();
-        let knows = estimates.gap.valid && estimates.half_backlash.value.is_finite();
+        let feels = sum.is_finite();
+        let knows = estimates.source == Source::Both
+            && estimates.contact_valid
+            && estimates.gap.valid
+            && estimates.half_backlash.value.is_finite();
         Self { feels, sees: feels && knows, ..situation }
     }
 
@@ -156,7 +171,7 @@ impl<T: Real> Intent<T> {
             law,
             demand_now: demand(T::ZERO),
             demand_ahead: demand(crossing.duration + tables.reaction),
-            free_acceleration: -load.free(tables, situation.link_speed) * tables.inverse_load_inertia,
+            free_acceleration: -load.free() * tables.inverse_load_inertia,
             free_jerk: -load.rate() * tables.inverse_load_inertia,
             crossing,
             repays,

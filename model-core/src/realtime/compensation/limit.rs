@@ -28,7 +28,7 @@ pub(super) fn limited<T: Real>(
     if load.throws(tables) {
         return useful;
     }
-    let passed = passed(tables, load.free(tables, situation.link_speed), useful);
+    let passed = passed(tables, load.free(), useful);
     let side = if passed < T::ZERO { -T::ONE } else { T::ONE };
     let allowed = allowed(tables, situation, side);
     let asked = side * passed;

@@ -13,6 +13,10 @@ use crate::tables::compensation::CompensationTables;
 pub(super) struct LoadModel<T: Real> {
     even: T,
     friction: T,
+    /// By how much the link is slower than asked, smoothed [rad/s].
+    slip: T,
+    /// Its speed over that at which dry friction has its full size.
+    pace: T,
     /// Rate of the even part [N m/s].
     rate: T,
     /// What brakes a link that no flank carries, smoothed [N m].
@@ -22,7 +26,7 @@ pub(super) struct LoadModel<T: Real> {
     /// Variances of both and their covariance.
     variance: [T; 3],
     /// 1 or -1: where the link last moved to, 0 before it has.
-    direction: T,
+    moved: T,
     /// How it began to creep, while it does.
     creep: Option<Creep<T>>,
 }
@@ -40,24 +44,20 @@ impl<T: Real> LoadModel<T> {
         Self {
             even: T::ZERO,
             friction: T::ZERO,
+            slip: T::ZERO,
+            pace: T::ZERO,
             rate: T::ZERO,
             alone: None,
             hardest: T::ZERO,
             variance: [T::ONE, T::ONE, T::ZERO],
-            direction: T::ZERO,
+            moved: T::ZERO,
             creep: None,
         }
     }
 
-    /// -1 to 1: what share of the dry friction brakes at a speed.
-    pub fn direction(tables: &CompensationTables<T>, speed: T) -> T {
-        clamp(tables.friction_slope * speed, -T::ONE, T::ONE)
-    }
-
-    /// Whether the link is so slow that it may rub with any part of its friction.
-    fn creeps(tables: &CompensationTables<T>, speed: T) -> bool {
-        let direction = Self::direction(tables, speed);
-        direction < T::ONE && direction > -T::ONE
+    /// -1 to 1: what share of the dry friction brakes the link.
+    fn direction(&self) -> T {
+        clamp(self.pace, -T::ONE, T::ONE)
     }
 
     pub fn even(&self) -> T {
@@ -79,8 +79,8 @@ impl<T: Real> LoadModel<T> {
     }
 
     /// What would brake the link now if no flank carried it.
-    pub fn free(&self, tables: &CompensationTables<T>, speed: T) -> T {
-        self.alone.unwrap_or(self.even + self.drag(tables, speed))
+    pub fn free(&self) -> T {
+        self.alone.unwrap_or(self.even + self.drag())
     }
 
     /// The same at a speed that is planned: no noise hides its sign.
@@ -93,15 +93,16 @@ impl<T: Real> LoadModel<T> {
         self.friction * Self::planned_direction(tables, speed)
     }
 
-    /// Friction at a speed that is measured.
-    pub fn drag(&self, tables: &CompensationTables<T>, speed: T) -> T {
-        self.friction * Self::direction(tables, speed)
+    /// Friction at the speed that the link has.
+    pub fn drag(&self) -> T {
+        self.friction * self.direction()
     }
 
-    /// Takes the estimate of the load torque while a flank carries.
+    /// Takes the estimate of the load torque, unless the teeth are known to be open.
     pub fn observe(&mut self, tables: &CompensationTables<T>, estimates: &Estimates<T>, situation: &Situation<T>) {
+        self.follow(tables, situation);
         // A weight turns with the link.
-        if Self::creeps(tables, situation.link_speed) {
+        if creeps(self.pace) {
             self.rate = T::ZERO;
         }
         self.even = clamp(self.even + tables.period * self.rate, -tables.torque_limit, tables.torque_limit);
@@ -114,18 +115,20 @@ impl<T: Real> LoadModel<T> {
         if known && push > self.hardest {
             self.hardest = push;
         }
-        let carried = known && situation.contact != T::ZERO;
+        let carried = known && !situation.open;
         if carried {
-            self.learn(tables, held, situation.link_speed);
+            self.learn(tables, held);
         } else {
             self.rate *= tables.load_rate_left;
         }
-        self.alone = if known && !carried {
-            let before = self.free(tables, situation.link_speed);
-            Some(before + tables.settling * (held - before))
-        } else {
-            None
-        };
+        let before = self.free();
+        self.alone = (known && !carried).then(|| before + tables.settling * (held - before));
+        // What holds a link that rests alone is its friction.
+        if let Some(alone) = self.alone
+            && creeps(self.pace)
+        {
+            self.even = clamp(self.even, alone - self.friction, alone + self.friction);
+        }
     }
 
     /// Integrates an error instead, where a flank should carry and no estimate says with what force.
@@ -136,28 +139,37 @@ impl<T: Real> LoadModel<T> {
         }
     }
 
+    /// Follows the link's speed: what is asked for has no noise, and a link that is controlled keeps to it.
+    fn follow(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>) {
+        let asked = situation.link_speed + situation.error_rate;
+        let slip = self.slip + tables.settling * (situation.error_rate - self.slip);
+        let pace = tables.friction_slope * (asked - slip);
+        if pace.is_finite() {
+            (self.slip, self.pace) = (slip, pace);
+        }
+    }
+
     /// Learns from a reading while a flank carries. A link that creeps may rub with any part of its friction: what brakes
     /// it is followed then without asking which part it is, until it moves again.
-    fn learn(&mut self, tables: &CompensationTables<T>, torque: T, speed: T) {
+    fn learn(&mut self, tables: &CompensationTables<T>, torque: T) {
         let [growth_even, growth_friction, noise] = tables.load_learner;
         // Once it creeps, a speed that noise may have made does not say that it moves.
-        let least = if self.creep.is_some() { T::THIRD * speed } else { speed };
-        if Self::creeps(tables, least) {
+        if creeps(if self.creep.is_some() { T::THIRD * self.pace } else { self.pace }) {
             let creep = self.creep.get_or_insert(Creep { even: self.even, variance: T::ZERO });
             creep.variance += growth_even;
-            self.even += tables.load_gain * (torque - self.even - self.drag(tables, speed));
+            self.even += tables.load_gain * (torque - self.even - self.drag());
             return;
         }
-        let direction = Self::direction(tables, speed);
+        let direction = self.direction();
         if let Some(creep) = self.creep.take()
-            && self.direction * direction <= T::ZERO
+            && self.moved * direction <= T::ZERO
         {
             let followed = self.even + self.friction * direction;
             self.even = creep.even;
             self.variance[0] += creep.variance;
             self.split(tables, followed, direction, tables.load_gain * noise);
         }
-        self.direction = direction;
+        self.moved = direction;
         self.variance[0] += growth_even;
         self.variance[1] += growth_friction;
         let by = self.split(tables, torque, direction, noise);
@@ -180,4 +192,9 @@ impl<T: Real> LoadModel<T> {
             [even - gain_even * to_even, friction - gain_friction * to_friction, both - gain_even * to_friction];
         gain_even * surprise
     }
+}
+
+/// Whether a link of this pace is so slow that it may rub with any part of its friction.
+fn creeps<T: Real>(pace: T) -> bool {
+    pace < T::ONE && pace > -T::ONE
 }

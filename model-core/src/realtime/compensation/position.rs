@@ -56,7 +56,7 @@ impl<T: Real> PositionLaw<T> {
             + tables.position_gain * beyond(situation.error, let_be)
             + tables.damping_gain * situation.error_rate;
         // What is beyond the limits must not drown the damper.
-        let all = passed(tables, load.free(tables, situation.link_speed), useful);
+        let all = passed(tables, load.free(), useful);
         let most = if load.throws(tables) { all.abs() } else { tables.most_passed };
         let passed = clamp(all, -most, most);
         let useful = useful - tables.inverse_load_share * (all - passed);
@@ -65,7 +65,7 @@ impl<T: Real> PositionLaw<T> {
         let lost = situation.lost(tables, situation.link_speed, passed);
         let law = limited(tables, load, situation, law - lost) + lost;
         let level = load.even()
-            + (load.drag(tables, situation.link_speed) - load.planned_drag(tables, now.speed))
+            + (load.drag() - load.planned_drag(tables, now.speed))
             + tables.position_gain * beyond(situation.error, let_be)
             + tables.damping_gain * situation.error_rate;
         // News that are large against the doubt are no noise, and are taken up faster.

@@ -35,6 +35,11 @@ impl<T: Real, const P: usize> Anchor<T, P> {
         }
     }
 
+    /// Whether the teeth rested on a side last.
+    pub fn was_on(&self, side: T) -> bool {
+        self.side == side
+    }
+
     /// The side of another rest; 0 if the change is neither more than everything else could make of it, nor so little
     /// that it is the same flank. While the link hardly moves, nothing is said: motor and link may rest with open teeth.
     pub fn side(

@@ -98,9 +98,13 @@ impl<T: Real, const P: usize> Block<T, P> {
             self.clear(T::ZERO);
             return false;
         };
-        if side != self.touch.side || u32::from(self.intervals) >= table.block {
-            self.clear(side);
+        // One rest is on one flank, even while no force tells which.
+        let told = if side == T::ZERO { self.touch.side } else { side };
+        let other = told != self.touch.side && self.touch.side != T::ZERO;
+        if other || self.intervals >= full {
+            self.clear(told);
         }
+        self.touch.side = told;
         let free = self.free.iter_mut().zip(mean.free);
         for (sum, value) in free.chain(self.touch.mesh.iter_mut().zip(mean.mesh)) {
             *sum += *value * table.per_block;
@@ -112,7 +116,7 @@ impl<T: Real, const P: usize> Block<T, P> {
             return false;
         }
         let [back, drive] = &mut self.forces;
-        let forces = if side > T::ZERO { drive } else { back };
+        let forces = if told > T::ZERO { drive } else { back };
         self.touch.force = forces.calibrated(self.touch.force, table.force_noise);
         true
     }

@@ -49,7 +49,18 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         self.doubts.contradicted = if against { self.doubts.contradicted + 1 } else { 0 };
         if self.doubts.contradicted >= CONTRADICTED {
             self.doubts.contradicted = 0;
+            self.doubt_narrow();
+        }
+    }
+
+    /// The gap seems narrower than was learnt. Teeth do not grow: if it had been seen on both flanks for long, the output
+    /// encoder fails.
+    fn doubt_narrow(&mut self) {
+        let [back, drive] = self.doubts.trusted;
+        if back.min(drive) < TRUSTED {
             self.doubt();
+        } else {
+            self.disbelieve();
         }
     }
 
@@ -73,8 +84,10 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let told = self.block.side();
         let side = if told == T::ZERO {
             let side = self.anchor.side(&tables.learner, &self.learner, &regressors, way, tables.levers.output);
-            // Teeth also turn round inside the gap, for a moment at rest: then they carry nothing.
-            if side * self.interval.steady > self.knowledge.steady_force_deviation { side } else { T::ZERO }
+            // Teeth also turn round inside the gap, for a moment at rest: then nothing has stopped them; and they leave a
+            // flank slowly, at rest for a while: then they carry nothing any more.
+            let force = if self.anchor.was_on(side) { self.interval.steady } else { self.interval.rested };
+            if side * force > self.knowledge.steady_force_deviation { side } else { T::ZERO }
         } else {
             told
         };
@@ -97,7 +110,11 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
                 self.doubts.surprises = 0;
                 self.learner.reopen();
             } else if self.doubts.surprises == FEW && magnitude(weighed.surprise) * table.noise > worth {
-                self.doubt();
+                if self.block.side() * weighed.surprise < T::ZERO {
+                    self.doubt_narrow();
+                } else {
+                    self.doubt();
+                }
             }
             return;
         }

@@ -13,6 +13,9 @@ use crate::real::Real;
 /// swing of an impact with it.
 const SETTLED_AFTER: u16 = 3;
 
+/// Intervals over which the force of a rest is averaged at most.
+const LONG_REST: u16 = 16;
+
 /// Intervals well inside the gap after which the mesh force counts as gone from the motor side's estimate.
 const OPEN_AFTER: u16 = 3;
 
@@ -30,8 +33,12 @@ pub(super) struct Interval<T: Real> {
     pub learnt_side: T,
     /// Side on which contact settled last, unless the teeth have left it since.
     side: T,
+    /// Mesh force over the last interval [N].
+    force: T,
     /// Mesh force over a few intervals [N].
     pub steady: T,
+    /// Mesh force over the whole rest, landing included [N].
+    pub rested: T,
     /// Intervals in a row well inside the gap.
     open_for: u16,
 }
@@ -59,7 +66,9 @@ impl<T: Real> Interval<T> {
             nearer: T::ONE,
             learnt_side: T::ZERO,
             side: T::ZERO,
+            force: T::ZERO,
             steady: T::ZERO,
+            rested: T::ZERO,
             open_for: 0,
         }
     }
@@ -118,6 +127,8 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let read = (mean.lost, mean.direction);
         let shown = self.motion.step(&tables.contact, less_wind_up, read, blur, self.knowledge.softness);
         self.interval.steady += (mean.force - self.interval.steady) * T::QUARTER;
+        let rested = if let Shown::Still(intervals) = shown { i32::from(intervals.min(LONG_REST)) } else { 1 };
+        self.interval.rested += (mean.force - self.interval.rested).over(T::from_i32(rested));
         let shift = self.error(&mesh);
         let side = self.settled_side(&mean, way, shift, shown);
         if self.supervisor.sees_both() {
@@ -144,7 +155,9 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let seen = side.or(unknown).filter(|side| {
             self.supervisor.sees_both() && (turns || *side != T::ZERO && *side != self.interval.learnt_side)
         });
-        let settled = Settled { free: &free, mesh: &mesh, raw: mean.raw, force: mean.force };
+        let rise = mean.force - core::mem::replace(&mut self.interval.force, mean.force);
+        let force = mean.force + tables.learner.force_lag * rise;
+        let settled = Settled { free: &free, mesh: &mesh, raw: mean.raw, force };
         let full = self.block.add(&settled, seen, !self.knowledge.width_is_known, &tables.learner);
         self.interval.part = Part::Answer(full);
         self.interval.direction = mean.direction;
@@ -184,7 +197,9 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
     fn take_bias(&mut self, mean: &Mean<T>, way: T, shown: Shown<T>) {
         let contact = &self.tables.contact;
         let [half_gap, _] = self.shape();
-        let inside = half_gap - self.knowledge.blur - self.knowledge.blur;
+        // Near the flanks a motor that crosses in a moment brakes, and teeth land before the way says so.
+        let (blur, near) = (self.knowledge.blur, T::EIGHTH * half_gap);
+        let inside = half_gap - T::TWO * if blur > near { blur } else { near };
         let open = self.knowledge.width_is_known && magnitude(way) < inside;
         self.interval.open_for = if open { self.interval.open_for.saturating_add(1) } else { 0 };
         let read = match shown {

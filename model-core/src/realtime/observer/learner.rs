@@ -86,6 +86,7 @@ impl<T: Real, const P: usize> Learner<T, P> {
     /// Takes the same back.
     pub fn set_numbers(&mut self, next: &mut impl FnMut() -> T) {
         self.values.iter_mut().for_each(|value| *value = next());
+        self.keep_width();
         for (index, column) in self.factors.iter_mut().enumerate() {
             column.iter_mut().take(index + 1).for_each(|factor| *factor = next());
         }
@@ -141,6 +142,16 @@ impl<T: Real, const P: usize> Learner<T, P> {
         let step = weighed.surprise.over(alpha);
         for ((value, gain), deviation) in self.values.iter_mut().zip(&gain).zip(&table.deviation) {
             *value += *deviation * (*gain * step);
+        }
+        self.keep_width();
+    }
+
+    /// Teeth do not overlap, whatever a failing encoder shows.
+    fn keep_width(&mut self) {
+        if let Some(half_gap) = self.values.get_mut(HALF_GAP)
+            && *half_gap < T::ZERO
+        {
+            *half_gap = T::ZERO;
         }
     }
 

@@ -6,6 +6,7 @@
 //! coordinate grows with the square of time for the speed and with the fourth power for the torque.
 
 use super::contact::{sign, with_hysteresis};
+use super::estimates::Doubt;
 use super::motion::magnitude;
 use super::present::small;
 use super::regressors::{self, Touch};
@@ -40,19 +41,30 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let place =
             if magnitude(way) < self.knowledge.reach { Place::Possible } else { self.far_place(way, now.force) };
         if self.supervisor.judge(table, way, place) {
-            self.counts.imply();
-            self.load.speed = self.drive.speed * self.tables.levers.per_ratio;
-            self.load.torque = self.supervisor.torque_before();
-            self.blind = Blind::default();
-            // The link is where the teeth allow it to be; where exactly, the next contact shows.
-            let side: T = sign(self.estimates.contact);
-            let [half_gap, _] = self.shape();
-            let implied = self.now();
-            self.load.ahead += (implied.way - implied.shift - side * half_gap).over(self.tables.levers.output);
+            self.do_without();
         }
         if !self.supervisor.sees_both() {
             self.feel(now);
         }
+    }
+
+    /// The output encoder says that the teeth have grown: it is what fails.
+    pub(super) fn disbelieve(&mut self) {
+        self.supervisor.give_up(Doubt::OutOfRange);
+        self.do_without();
+    }
+
+    /// Goes on without the output encoder.
+    fn do_without(&mut self) {
+        self.counts.imply();
+        self.load.speed = self.drive.speed * self.tables.levers.per_ratio;
+        self.load.torque = self.supervisor.torque_before();
+        self.blind = Blind::default();
+        // The link is where the teeth allow it to be; where exactly, the next contact shows.
+        let side: T = sign(self.estimates.contact);
+        let [half_gap, _] = self.shape();
+        let implied = self.now();
+        self.load.ahead += (implied.way - implied.shift - side * half_gap).over(self.tables.levers.output);
     }
 
     /// What a way beyond the flanks is.

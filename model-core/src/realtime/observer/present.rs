@@ -70,8 +70,10 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         } else {
             self.estimates.contact
         };
-        let lever =
-            if self.estimates.reported_contact == ContactState::Separated { T::ZERO } else { tables.levers.output };
+        // Where a light contact cannot be told from none, what the motor side says of the force is the best guess.
+        let unsure = self.supervisor.sees_both() && !known.width_serves;
+        let open = self.estimates.reported_contact == ContactState::Separated && !unsure;
+        let lever = if open { T::ZERO } else { tables.levers.output };
         self.from_meshes = self.inertia.pass(lever * now.force);
         self.estimates.mesh_torque.value = lever * force;
     }

@@ -130,12 +130,17 @@ impl<T: Real> Supervisor<T> {
         } else {
             Doubt::OutOfRange
         };
+        self.give_up(doubt);
+        true
+    }
+
+    /// The encoder is not used from now on.
+    pub fn give_up(&mut self, doubt: Doubt) {
         self.source = Source::MotorOnly(doubt);
         self.outside_for = 0;
         self.inside_for = 0;
         self.steady_for = 0;
         self.steady = [T::ZERO; 2];
-        true
     }
 
     /// Load torque as it was before the last possible failure began.

@@ -45,7 +45,8 @@ pub trait Work {
     fn remember(&mut self, _memory: &Memory) -> Result<(), MemoryError> {
         Err(MemoryError::OtherJoint)
     }
-    /// The same in the role's own form.
+    /// The same in the role's own form. Never called in a role that learns nothing: a reference to its form, which has no
+    /// values, is taken by the compiler for a place that is not reached, and what would use it becomes a trap in the tick.
     fn remember_learnt(&mut self, _learnt: &<Self::Words as Words>::Learnt) -> Result<(), MemoryError> {
         Err(MemoryError::OtherJoint)
     }

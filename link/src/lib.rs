@@ -9,4 +9,4 @@ pub mod messages;
 pub mod virtual_joint;
 
 /// Both ends must speak the same version; raised with every change of a message.
-pub const PROTOCOL_VERSION: u16 = 5;
+pub const PROTOCOL_VERSION: u16 = 6;

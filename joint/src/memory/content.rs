@@ -220,3 +220,19 @@ fn values(numbers: &Numbers, tables: &ObserverTables<f32>) -> Vec<Finding> {
     }));
     values
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn before_anything_moves_inertia_is_as_designed_and_as_doubtful() {
+        let loaded = crate::check::load(std::path::Path::new("q1")).expect("a preset");
+        let settings = observer_settings(&loaded.file.surroundings());
+        let tables = design_observer::<f32>(&loaded.file.parameters, &settings).expect("tables");
+        let memory = Observer::<f32, MAPPED>::new(&tables).save();
+        let Learnt { value, deviation, before } = Numbers::new(&memory).inertia_ratio(&tables);
+        assert_eq!((value, deviation), (1.0, before));
+        assert!(before > 0.0);
+    }
+}

@@ -96,10 +96,17 @@ fn failures(record: &TestsRecord) -> Markup {
                     @if let Some(why) = &test.broken { div { "Broken off: " (why) } }
                     @for assertion in test.failed() {
                         div {
-                            (assertion.check().name) " is " strong { (assertion.figure.map_or("none".into(), number)) } (spaced(&assertion.unit))
+                            (assertion.check().name)
+                            @match assertion.figure {
+                                Some(figure) => { " is " strong { (number(figure)) } (spaced(&assertion.unit)) }
+                                None => { " " strong { "could not be had" } }
+                            }
                             ", bound " (bound(&assertion.check())) (spaced(&assertion.unit)) @if let Some(seed) = assertion.seed { ", seed " (seed) }
                         }
                     }
+                    @for run in &test.runs { @if let Some(why) = &run.refusal {
+                        div { "The width probe refused with seed " (run.seed) ": " (why) }
+                    } }
                     pre { (test.replay) }
                 }
             }
@@ -140,21 +147,25 @@ fn bound(check: &Check) -> String {
 
 /// One row for each test: with compensation, without, against the best rival.
 fn overview(record: &TestsRecord) -> Markup {
-    let worst = |test: &TestRecord, controller: &str| test.largest(controller, "rms_mrad").map_or("–".into(), number);
+    let worst = |test: &TestRecord, controller: ControllerName, impedance: bool| {
+        let figure = if impedance { "deviation_rms_mrad" } else { "rms_mrad" };
+        test.largest(controller.word(), figure).map_or("–".into(), number)
+    };
     html! {
         section {
             h2 { "All tests" }
-            p.lead { "Error of the link in mrad RMS, worst of all seeds." }
+            p.lead { "Error of the link in mrad RMS, worst of all seeds; of an impedance its deviation from the same law without a gap." }
             table {
                 thead { tr { th { "Verdict" } th { "Test" } th.number { "tested" } th.number { "baseline" } th.number { "best rival" } th.number { "seeds" } } }
                 tbody { @for test in &record.tests {
-                    @let impedance = ControllerName::of_word(&test.controller, false).wants_gains();
+                    @let tested = ControllerName::of_word(&test.controller, false);
+                    @let impedance = tested.wants_gains();
                     tr {
                         td.verdict { span class={ "mark " @if test.passed { "passed" } @else { "failed" } } { @if test.passed { "passed" } @else { "FAILED" } } }
                         td { a href={ "#" (anchor(test)) } { (test.file) } " " span.note { (test.title) } }
-                        td.number { (worst(test, &test.controller)) }
-                        td.number { (worst(test, ControllerName::baseline(impedance).word())) }
-                        td.number { (worst(test, ControllerName::best_rival(impedance).word())) }
+                        td.number { (worst(test, tested, impedance)) }
+                        td.number { (worst(test, ControllerName::baseline(impedance), impedance)) }
+                        td.number { (worst(test, ControllerName::best_rival(impedance), impedance)) }
                         td.number { (test.seeds.len()) }
                     }
                 } }

@@ -7,6 +7,7 @@
 mod assertions;
 mod changes;
 mod faults;
+mod gains;
 mod keys;
 mod motion;
 mod section;
@@ -136,7 +137,7 @@ fn read_table(table: &DeTable<'_>, problems: &Problems) -> Option<TestFile> {
     };
     let mode = if controller.has("mode") { controller.word("mode") } else { Some(default_mode) };
     let bare = matches!(mode, Some("none" | "locked" | "off"));
-    let gains = read_gains(&controller, (impedance_profile && bare) || mode.is_some_and(needs_gains));
+    let gains = gains::read(&controller, (impedance_profile && bare) || mode.is_some_and(gains::needed));
     let name = mode.map(|mode| ControllerName::of_word(mode, gains.is_some()));
     let rivals = if controller.has("rivals") {
         controller.words("rivals")
@@ -238,28 +239,4 @@ fn refuse_late<'s>(sections: impl Iterator<Item = &'s Section<'s>>, duration: f6
             section.problems.error(section.span("start_s"), message, help);
         }
     }
-}
-
-/// Modes that are sent impedance set-points.
-fn needs_gains(mode: &str) -> bool {
-    matches!(mode, "impedance" | "motor_side" | "link_spring" | "link_side")
-}
-
-fn read_gains(controller: &Section<'_>, needed: bool) -> Option<Gains> {
-    const KEYS: [&str; 4] = ["stiffness_N_m_per_rad", "damping_N_m_s_per_rad", "rate_Hz", "feed_forward_kg_m2"];
-    if !needed {
-        for name in KEYS.into_iter().filter(|name| controller.has(name)) {
-            let help = "write mode = \"impedance\", or leave it out";
-            controller.problems.error(controller.span(name), format!("`{name}` belongs to an impedance"), help);
-        }
-        return None;
-    }
-    let [stiffness, damping, rate, inertia] = KEYS.map(|name| controller.number(name));
-    let usual = Gains::default();
-    Some(Gains {
-        stiffness: stiffness.unwrap_or(usual.stiffness),
-        damping: damping.unwrap_or(usual.damping),
-        rate: rate.unwrap_or(usual.rate),
-        inertia,
-    })
 }

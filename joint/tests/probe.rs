@@ -1,0 +1,55 @@
+//! The width probe as a test file has it: a held link gives the width, any other a reason, and what has no probe says so.
+//! How good a width is on many seeds is left to the files in `hil`.
+
+mod command;
+
+use std::fs;
+use std::path::Path;
+
+use command::{Ended, joint, text};
+use serde_json::Value;
+
+fn run(folder: &Path, test: &str, options: &[&str]) -> Ended {
+    let file = folder.join("probe.toml");
+    fs::write(&file, test).expect("a file");
+    joint(&[&["hil", text(&file), "--out", text(&folder.join("out"))], options].concat())
+}
+
+fn first_run(folder: &Path) -> Value {
+    let json = fs::read_to_string(folder.join("out/record.json")).expect("written");
+    let record: Value = serde_json::from_str(&json).expect("JSON");
+    record["tests"][0]["runs"].as_array().expect("runs")[0].clone()
+}
+
+#[test]
+fn a_held_link_gives_the_width() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let test = "profile = \"held\"\n[assert]\nprobe_error_percent = \"<= 10\"\nprobe_time_ms = \"<= 500\"\n";
+    run(folder.path(), test, &["--host"]).well();
+    let run = first_run(folder.path());
+    assert_eq!((&run["controller"], &run["figures"]["probe_refused"]), (&"probe".into(), &0.0.into()));
+    assert!(run["refusal"].is_null(), "{run}");
+}
+
+#[test]
+fn a_link_that_nobody_holds_gives_the_reason() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let free =
+        "profile = \"held\"\n[known]\nload_coulomb_friction_N_m = 0.05\n[assert]\nprobe_error_percent = \"<= 10\"\n";
+    let ended = run(folder.path(), free, &["--host"]);
+    assert_eq!(ended.code, Some(1), "{ended:?}");
+    assert!(ended.out.contains("the width probe refused"), "{ended:?}");
+    assert!(ended.out.contains("refused: seed 1: ") && ended.out.contains("hold the load"), "{ended:?}");
+    assert_eq!(first_run(folder.path())["figures"]["probe_refused"], 1.0);
+}
+
+#[test]
+fn what_has_no_probe_says_so() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let loop_ = run(folder.path(), "profile = \"held\"\n", &["--role", "loop"]);
+    assert_eq!(loop_.code, Some(2), "{loop_:?}");
+    assert!(loop_.err.contains("the role `loop` does not know") && loop_.err.contains("--role observer"), "{loop_:?}");
+    let figure = run(folder.path(), "profile = \"T2\"\n[assert]\nprobe_refused = \"== 0\"\n", &["--host"]);
+    assert_eq!(figure.code, Some(2), "{figure:?}");
+    assert!(figure.err.contains("is about the width probe"), "{figure:?}");
+}

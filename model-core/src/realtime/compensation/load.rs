@@ -106,6 +106,10 @@ impl<T: Real> LoadModel<T> {
             self.rate = T::ZERO;
         }
         self.even = clamp(self.even + tables.period * self.rate, -tables.torque_limit, tables.torque_limit);
+        // Without a link to be seen the integral of plain control takes over.
+        if !situation.feels {
+            self.even -= tables.back_calculation * self.even;
+        }
         let torque = estimates.load_torque;
         let known = torque.valid && torque.value.is_finite() && situation.feels;
         // More than the motor can hold is no load that it carries.

@@ -1,12 +1,13 @@
 //! Position mode, with and without preview, against motor PID and the best rival.
 
-use host_tests::closed_loop::{Contender, Trial};
-use host_tests::drive_train::DriveTrainParameters;
+use host_tests::closed_loop::{Contender, Profile, Trial};
+use host_tests::drive_train::{Disturbance, DriveTrainParameters};
 use host_tests::scenarios::{l1, q1};
 use host_tests::tolerance::compensation::{
     COMPENSATED_OVER_PID, COMPENSATED_OVER_RIVAL, COMPENSATED_PEAK_OVER_PID, COMPENSATED_PEAK_OVER_RIVAL,
-    HIDDEN_GAP_OVER_PID, LOST_MOTION, PEAK_MESH_FORCE, SLOW_OVER_PID, SLOW_PEAK_OVER_PID, STEPS_MESH_FORCE,
-    STEPS_OVER_PID, STEPS_PEAK_OVER_PID, STIFF_JOINT_OVER_PID, STIFF_JOINT_STEPS_OVER_PID, TRANSMISSION_ERROR_OVER_PID,
+    HIDDEN_GAP_OVER_PID, LOST_MOTION, ONE_FLANK_OVER_PID, PEAK_MESH_FORCE, SLOW_OVER_PID, SLOW_PEAK_OVER_PID,
+    STEPS_MESH_FORCE, STEPS_OVER_PID, STEPS_PEAK_OVER_PID, STIFF_JOINT_OVER_PID, STIFF_JOINT_STEPS_OVER_PID,
+    TRANSMISSION_ERROR_OVER_PID,
 };
 use model_core::joint::JointParameters;
 
@@ -154,6 +155,15 @@ fn the_load_is_fed_forward_although_a_transmission_error_as_large_as_the_gap_hid
     let trial = Trial::weighty(&joint, &DriveTrainParameters::q1(), 1.5, 113);
     let (ours, pid) = (figures(&trial, NO_PREVIEW), figures(&trial, Contender::MotorPid));
     HIDDEN_GAP_OVER_PID.check(ours.rms / pid.rms);
+}
+
+#[test]
+fn a_load_that_never_lets_go_of_a_flank_is_put_where_it_should_be_although_the_gap_is_never_known() {
+    let mut trial = Trial::inertial(&q1(), &DriveTrainParameters::q1(), 114);
+    trial.motion = Profile::Sine { amplitude: 0.1, frequency: 0.5 };
+    trial.bench.disturbances.push(Disturbance::Pulse { start: 0.0, duration: 100.0, torque: 4.0 });
+    let (ours, pid) = (figures(&trial, NO_PREVIEW), figures(&trial, Contender::MotorPid));
+    ONE_FLANK_OVER_PID.check(ours.rms / pid.rms);
 }
 
 #[test]

@@ -56,6 +56,20 @@ fn a_swinging_weight_loses_its_lost_motion() {
 }
 
 #[test]
+fn a_slow_weight_is_seldom_taken_back_to_the_flank_that_it_has_left() {
+    // Seven reversals from three seconds on: what is crossed beyond those is crossed there and back.
+    let needless: usize = (301..309)
+        .map(|seed| {
+            let ours = figures(&Trial::weighty(&q1(), &DriveTrainParameters::q1(), 0.5, seed), NO_PREVIEW);
+            LOST_MOTION.check(ours.lost_motion_time);
+            ours.crossings - 7
+        })
+        .sum();
+    println!("{needless} needless crossings of 56");
+    assert!(needless <= 8, "{needless} needless crossings of 56");
+}
+
+#[test]
 fn a_random_motion_loses_its_lost_motion() {
     is_far_better(&Trial::random(&q1(), &DriveTrainParameters::q1(), 104));
 }

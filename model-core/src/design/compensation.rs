@@ -94,8 +94,9 @@ const MOST_PATIENCE: f64 = 6.0;
 /// longer costs more than one changed in vain.
 const MOST_DOUBT: f64 = 0.3;
 
-/// Time over which patience is lost again, times the bandwidth: a transient of the loop is over by then.
-const PATIENCE: f64 = 3.0;
+/// Time over which patience is lost again, times the bandwidth: a transient of the loop is over by then, and an error that
+/// a crossing too early has left was put right by the flank that it led to.
+const PATIENCE: f64 = 6.0;
 
 /// Changes of the wanted flank within this time, times the bandwidth, are hunting.
 const HUNTING: f64 = 15.0;

@@ -46,6 +46,7 @@ impl<T: Real> ImpedanceLaw<T> {
         let asked = point.stiffness * error + point.damping * situation.error_rate + torque;
         let demand_now = passed(tables, free, asked);
         let rate = tables.load_share * (point.stiffness * situation.error_rate + self.sender.torque_rate());
-        Intent::new(tables, load, situation, law, |time| demand_now + time * rate, true)
+        let demand = |time: T| demand_now + time * rate;
+        Intent::new(tables, load, situation, law, demand, demand, true)
     }
 }

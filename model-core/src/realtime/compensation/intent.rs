@@ -141,6 +141,8 @@ pub(super) struct Intent<T: Real> {
     pub demand_now: T,
     /// What they will have to pass on when a crossing that began now ends [N m].
     pub demand_ahead: T,
+    /// What they would have to pass on as much later again if no flank carried until then [N m].
+    pub demand_later: T,
     /// Acceleration of the load left to itself [rad/s^2].
     pub free_acceleration: T,
     /// Its rate [rad/s^3].
@@ -149,29 +151,36 @@ pub(super) struct Intent<T: Real> {
     pub crossing: Crossing<T>,
     /// Whether an impulse that the load missed on the way is made good afterwards; a law stiff enough does it itself.
     pub repays: bool,
+    /// Whether the joint is asked to rest and feels no load.
+    pub idles: bool,
 }
 
 impl<T: Real> Intent<T> {
-    /// An intent from the law's torque and from what the teeth will have to pass on after a time. How hard the far flank
-    /// will be needed says how fast to go there, and that again when to start.
+    /// An intent from the law's torque and from what the teeth will have to pass on after a time: `demand` if errors stay as
+    /// they are, `later` if no flank carries meanwhile. How hard the far flank will be needed says how fast to go there, and
+    /// that again when to start.
     pub fn new(
         tables: &CompensationTables<T>,
         load: &LoadModel<T>,
         situation: &Situation<T>,
         law: T,
         demand: impl Fn(T) -> T,
+        later: impl Fn(T) -> T,
         repays: bool,
     ) -> Self {
         let unhurried = Crossing::new(tables, situation.half, T::ZERO).duration + tables.reaction;
         let crossing = Crossing::new(tables, situation.half, demand(unhurried));
+        let ahead = crossing.duration + tables.reaction;
         Self {
             law,
             demand_now: demand(T::ZERO),
-            demand_ahead: demand(crossing.duration + tables.reaction),
+            demand_ahead: demand(ahead),
+            demand_later: later(ahead + ahead),
             free_acceleration: -load.free() * tables.inverse_load_inertia,
             free_jerk: -load.rate() * tables.inverse_load_inertia,
             crossing,
             repays,
+            idles: false,
         }
     }
 

@@ -98,11 +98,16 @@ impl<T: Real> LoadModel<T> {
         self.friction * self.direction()
     }
 
+    /// Whether the link is so slow that it may rub with any part of its friction.
+    pub fn creeps(&self) -> bool {
+        creeps(self.pace)
+    }
+
     /// Takes the estimate of the load torque, unless the teeth are known to be open.
     pub fn observe(&mut self, tables: &CompensationTables<T>, estimates: &Estimates<T>, situation: &Situation<T>) {
         self.follow(tables, situation);
         // A weight turns with the link.
-        if creeps(self.pace) {
+        if self.creeps() {
             self.rate = T::ZERO;
         }
         self.even = clamp(self.even + tables.period * self.rate, -tables.torque_limit, tables.torque_limit);
@@ -129,7 +134,7 @@ impl<T: Real> LoadModel<T> {
         self.alone = (known && !carried).then(|| before + tables.settling * (held - before));
         // What holds a link that rests alone is its friction.
         if let Some(alone) = self.alone
-            && creeps(self.pace)
+            && self.creeps()
         {
             self.even = clamp(self.even, alone - self.friction, alone + self.friction);
         }

@@ -82,9 +82,21 @@ impl<T: Real> PositionLaw<T> {
         let level = self.level;
         let rate = load.rate();
         let demand = |time: T| planned(time) + level + time * rate;
-        let intent = Intent::new(tables, load, situation, law, demand, false);
+        let load_now = load.even() + (load.drag() - load.planned_drag(tables, now.speed));
+        let later = |time: T| {
+            // Friction stops a link that creeps, whatever else acts on it.
+            if load.creeps() {
+                return demand(time);
+            }
+            let [before, after] = [load_now + planned(T::ZERO), load_now + planned(time) + time * rate];
+            let [error, error_rate] = left_alone(tables, situation, time, before, after);
+            after + tables.position_gain * beyond(error, let_be) + tables.damping_gain * error_rate
+        };
+        // A load that is felt has its reasons, and a flank that carries it rests.
+        let idles = rests && beyond(load.even(), tables.doubt) == T::ZERO;
+        let intent = Intent { idles, ..Intent::new(tables, load, situation, law, demand, later, false) };
         let surely = beyond(intent.demand_ahead, tables.doubt * tables.least_doubt);
-        self.indulge(tables, rests, [surely, load.even()], situation.half);
+        self.indulge(tables, rests, idles, surely, situation.half);
         intent
     }
 
@@ -100,16 +112,14 @@ impl<T: Real> PositionLaw<T> {
 
     /// Doubles the error that is let be whenever a joint at rest asks for the other flank soon after it asked for this
     /// one, which no load does but a loop that hunts; forgives it slowly, and at once when the joint is to move.
-    fn indulge(&mut self, tables: &CompensationTables<T>, rests: bool, [demand, load]: [T; 2], half: T) {
+    fn indulge(&mut self, tables: &CompensationTables<T>, rests: bool, idles: bool, demand: T, half: T) {
         self.since = clamp(self.since + tables.period, T::ZERO, tables.hunting);
         if !rests {
             self.indulgence = T::ZERO;
             self.asked = T::ZERO;
             return;
         }
-        // A load that is felt has its reasons, and a flank that carries it rests.
-        let loaded = beyond(load, tables.doubt) != T::ZERO;
-        self.indulgence = if loaded { T::ZERO } else { self.indulgence * tables.forgiving };
+        self.indulgence = if idles { self.indulgence * tables.forgiving } else { T::ZERO };
         if self.asked * demand < T::ZERO {
             if self.since < tables.hunting {
                 let grown = self.indulgence + self.indulgence + tables.first_indulgence * half;
@@ -121,4 +131,19 @@ impl<T: Real> PositionLaw<T> {
             self.asked = if demand > T::ZERO { T::ONE } else { -T::ONE };
         }
     }
+}
+
+/// The error and its rate after a time in which no flank carries what the motion asks for, which changes evenly meanwhile.
+fn left_alone<T: Real>(
+    tables: &CompensationTables<T>,
+    situation: &Situation<T>,
+    time: T,
+    before: T,
+    after: T,
+) -> [T; 2] {
+    let growth = tables.inverse_load_inertia * time;
+    [
+        situation.error + time * (situation.error_rate + T::THIRD * growth * (before + T::HALF * after)),
+        situation.error_rate + T::HALF * growth * (before + after),
+    ]
 }

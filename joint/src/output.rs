@@ -8,6 +8,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::failure::{Failure, Outcome};
+use crate::folder;
 
 /// Prints a result on standard output.
 pub fn print(text: &str) -> Outcome<()> {
@@ -28,8 +29,9 @@ pub fn json(what: &str, record: &impl Serialize) -> Outcome<String> {
 }
 
 /// Gives out figures: as text on standard output, and as JSON in the file that is asked for; "-" is standard output, in
-/// place of the text.
-pub fn deliver(figures: &impl Serialize, text: &str, wanted: Option<&Path>) -> Outcome<()> {
+/// place of the text. `read` is what they were made from.
+pub fn deliver(figures: &impl Serialize, text: &str, wanted: Option<&Path>, read: &[&Path]) -> Outcome<()> {
+    folder::check_files(&[("json", wanted)], read)?;
     if let Some(path) = wanted {
         let json = json("figures", figures)?;
         if path.as_os_str() == "-" {

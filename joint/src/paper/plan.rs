@@ -164,7 +164,7 @@ impl Subject {
         let mut parameters = loaded.file.parameters.clone();
         if let Some(omega) = omega {
             if !(1e-3..=100.0).contains(&omega) {
-                return Err(Failure::new(format!("--omega {omega}: no mesh frequency over omega_n"))
+                return Err(Failure::new(format!("--omega {omega:?}: no mesh frequency over omega_n"))
                     .with_help("give a ratio between 0.001 and 100, such as --omega 2.1, the paper's"));
             }
             parameters.excitation = Excitation::Time { mesh_frequency: omega * Scales::new(&parameters).frequency };

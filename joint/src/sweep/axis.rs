@@ -98,7 +98,8 @@ fn steps(vary: &str, texts: [&str; 3]) -> Outcome<Vec<String>> {
     // Long ways lose their last digits in the division.
     let count = (way * (1.0 + f64::EPSILON * 4.0) + ROUNDING).floor() + 1.0;
     if count > MOST_VALUES {
-        let message = format!("--vary {vary}: {count:.0} values on one axis, at most {MOST_VALUES} can be swept");
+        let count = if count < 1e15 { format!("{count:.0}") } else { format!("{count:e}") };
+        let message = format!("--vary {vary}: {count} values on one axis, at most {MOST_VALUES} can be swept");
         let help = coarser(from, to, 1000.0)
             .map_or_else(|| SHAPE.to_owned(), |step| format!("a step of {step} gives about a thousand"));
         return Err(Failure::new(message).with_help(help));

@@ -133,6 +133,12 @@ fn a_result_that_cannot_be_written_is_known_before_the_work() {
 }
 
 #[test]
+fn a_role_that_a_board_does_not_have_is_refused_with_those_that_do() {
+    let spi = ["image", "q1", "--role", "spi-observer", "--board", "stm32h743"];
+    joint(&spi).refused(&["stm32h743 is no slave on SPI", "stm32f405 or stm32g474", "--role observer"]);
+}
+
+#[test]
 fn numbers_that_cannot_be_are_refused_for_what_they_are() {
     let place = folder();
     let out = text(place.path());

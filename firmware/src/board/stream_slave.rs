@@ -48,6 +48,8 @@ impl DmaSlave {
         rcc.ahb1enr().modify(|_, w| w.gpioaen().set_bit().dma2en().set_bit());
         rcc.apb2enr().modify(|_, w| w.spi1en().set_bit().syscfgen().set_bit());
         gpio.afrl().modify(|_, w| w.afrl4().af5().afrl5().af5().afrl6().af5().afrl7().af5());
+        // At the speed after a reset the answer's edges would take longer than a bit.
+        gpio.ospeedr().modify(|_, w| w.ospeedr6().very_high_speed());
         gpio.moder()
             .modify(|_, w| w.moder4().alternate().moder5().alternate().moder6().alternate().moder7().alternate());
         // SAFETY: line 4 is that of port A (0); lines 5 to 7 are not used.

@@ -5,7 +5,8 @@
 #[cfg(target_os = "none")]
 #[rtic::app(device = firmware::board::pac)]
 mod app {
-    use firmware::board::{Board, DmaSlave, Started, ThisBoard, Watchdog, pac};
+    use firmware::board::dma_slave::DmaSlave;
+    use firmware::board::{Board, Started, ThisBoard, ThisSpi, Watchdog, pac};
     use firmware::port::Direct;
     use firmware::port::spi::{FRAME_BYTES, Frame};
     use firmware::port::spi_slave::SpiSlave;
@@ -23,7 +24,7 @@ mod app {
     #[shared]
     struct Shared {
         #[lock_free]
-        slave: SpiSlave<DmaSlave, Direct<'static>>,
+        slave: SpiSlave<DmaSlave<ThisSpi>, Direct<'static>>,
     }
 
     #[local]

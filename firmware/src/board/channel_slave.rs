@@ -8,13 +8,12 @@
 //! | to the master | PB14 | DMA1 channel 2 |
 //! | from the master | PB15 | DMA1 channel 1 |
 //!
-//! Compiled and linted like the whole image; it has been run neither on silicon nor in an emulator. What a board has to show
-//! is the same as for STM32F405.
+//! Compiled and linted like the whole image; it has been run neither on silicon nor in an emulator.
 
+use super::dma_slave::Unit;
 use super::pac;
 use super::patience::wait_until;
-use crate::port::spi::{FRAME_BYTES, Frame};
-use crate::port::spi_slave::{Broken, SlaveBus};
+use crate::port::spi::FRAME_BYTES;
 
 /// Channels of DMA1, counted from 0.
 const RECEIVING: usize = 0;
@@ -31,19 +30,39 @@ const FLAGS: u32 = 0xff;
 /// The line of the chip select.
 const LINE: u32 = 1 << 12;
 
-/// The slave's pins, DMA and buffers.
-pub struct DmaSlave {
+/// SPI2 and two channels of DMA1.
+pub struct Spi2 {
     spi: pac::SPI2,
     dma: pac::DMA1,
     exti: pac::EXTI,
     rcc: pac::RCC,
-    received: &'static mut Frame,
-    sent: &'static mut Frame,
 }
 
-impl DmaSlave {
-    /// Sets up pins, DMA and interrupt; nothing is armed yet. Clocks of ports are on.
-    pub fn start(device: pac::Peripherals, received: &'static mut Frame, sent: &'static mut Frame) -> Self {
+impl Spi2 {
+    /// Stops a channel; what it has begun it ends.
+    fn end(&self, channel: usize) {
+        let control = self.dma.ch(channel).cr();
+        // SAFETY: a channel that is off may have any settings.
+        control.write(|w| unsafe { w.bits(0) });
+        let _ = wait_until(|| control.read().bits() & ENABLE == 0);
+    }
+
+    /// Starts a channel between the data register and a buffer.
+    fn set(&self, channel: usize, buffer: u32, direction: u32) {
+        let registers = self.dma.ch(channel);
+        let data = self.spi.dr().as_ptr() as u32;
+        // SAFETY: the data register, a buffer of a frame's length that lives for ever, and that length.
+        unsafe {
+            registers.par().write(|w| w.bits(data));
+            registers.mar().write(|w| w.bits(buffer));
+            registers.ndtr().write(|w| w.bits(FRAME_BYTES as u32));
+            registers.cr().write(|w| w.bits(MEMORY_RISES | direction | ENABLE));
+        }
+    }
+}
+
+impl Unit for Spi2 {
+    fn start(device: pac::Peripherals) -> Self {
         let pac::Peripherals {
             SPI2: spi,
             DMA1: dma,
@@ -72,58 +91,36 @@ impl DmaSlave {
         exti.rtsr1().modify(|r, w| unsafe { w.bits(r.bits() | LINE) });
         // SAFETY: likewise.
         exti.imr1().modify(|r, w| unsafe { w.bits(r.bits() | LINE) });
-        Self { spi, dma, exti, rcc, received, sent }
+        Self { spi, dma, exti, rcc }
     }
 
-    /// Stops a channel; what it has begun it ends.
-    fn stop(&self, channel: usize) {
-        let control = self.dma.ch(channel).cr();
-        // SAFETY: a channel that is off may have any settings.
-        control.write(|w| unsafe { w.bits(0) });
-        let _ = wait_until(|| control.read().bits() & ENABLE == 0);
-    }
-
-    /// Starts a channel between the data register and a buffer.
-    fn begin(&self, channel: usize, buffer: u32, direction: u32) {
-        let registers = self.dma.ch(channel);
-        let data = self.spi.dr().as_ptr() as u32;
-        // SAFETY: the data register, a buffer of a frame's length that lives for ever, and that length.
-        unsafe {
-            registers.par().write(|w| w.bits(data));
-            registers.mar().write(|w| w.bits(buffer));
-            registers.ndtr().write(|w| w.bits(FRAME_BYTES as u32));
-            registers.cr().write(|w| w.bits(MEMORY_RISES | direction | ENABLE));
-        }
-    }
-}
-
-impl SlaveBus for DmaSlave {
-    fn finish(&mut self) -> Result<&Frame, Broken> {
+    fn acknowledge(&mut self) {
         // SAFETY: a one takes back this line's request.
         self.exti.pr1().write(|w| unsafe { w.bits(LINE) });
-        let missing = self.dma.ch(RECEIVING).ndtr().read().bits() as u16;
-        let overran = self.spi.sr().read().ovr().bit_is_set();
-        self.stop(RECEIVING);
-        self.stop(SENDING);
-        // What is left in its queues would come first in the next transfer: only a reset empties the outward one.
-        self.rcc.apb1rstr1().modify(|_, w| w.spi2rst().set_bit());
-        self.rcc.apb1rstr1().modify(|_, w| w.spi2rst().clear_bit());
-        match (overran, missing) {
-            (true, _) => Err(Broken::Overrun),
-            (false, 0) => Ok(self.received),
-            (false, missing) => Err(Broken::Short(missing)),
-        }
     }
 
-    fn arm(&mut self, next: &Frame) {
-        *self.sent = *next;
+    fn missing(&self) -> u16 {
+        self.dma.ch(RECEIVING).ndtr().read().bits() as u16
+    }
+
+    fn overran(&self) -> bool {
+        self.spi.sr().read().ovr().bit_is_set()
+    }
+
+    fn stop(&mut self) {
+        self.end(RECEIVING);
+        self.end(SENDING);
+        self.rcc.apb1rstr1().modify(|_, w| w.spi2rst().set_bit());
+        self.rcc.apb1rstr1().modify(|_, w| w.spi2rst().clear_bit());
+    }
+
+    fn begin(&mut self, received: u32, sent: u32) {
         // SAFETY: ones clear flags.
         self.dma.ifcr().write(|w| unsafe { w.bits(FLAGS) });
-        let [received, sent] = [self.received.as_ptr() as u32, self.sent.as_ptr() as u32];
-        self.begin(RECEIVING, received, 0);
+        self.set(RECEIVING, received, 0);
         // Every byte asks to be fetched, not every second one as after its reset.
         self.spi.cr2().modify(|_, w| w.frxth().quarter().rxdmaen().enabled().txdmaen().enabled());
-        self.begin(SENDING, sent, OUTWARDS);
+        self.set(SENDING, sent, OUTWARDS);
         // All else as after its reset: slave, mode 0, 8 bits, chip select by its pin.
         cortex_m::asm::dmb();
         self.spi.cr1().write(|w| w.spe().enabled());

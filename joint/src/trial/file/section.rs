@@ -9,6 +9,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::keys::{self, Key, Kind};
+use crate::output::typed;
 use crate::trial::draw::Quantity;
 
 /// Problems of one file, as they are found.
@@ -194,7 +195,7 @@ impl<'a> Section<'a> {
         let (Kind::Number(low, high) | Kind::Range(low, high)) = key.kind else { return None };
         let Some(number) = number(value) else { return self.wrong_type(value, key, "a number") };
         if !(low..=high).contains(&number) {
-            let message = format!("`{}` must be between {low} and {high}, not {number:?}", key.name);
+            let message = format!("`{}` must be between {low} and {high}, not {}", key.name, typed(number));
             self.problems.error(value.span(), message, key.hint);
             return None;
         }

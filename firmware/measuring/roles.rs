@@ -7,13 +7,13 @@ mod measurement {
     use core::hint::black_box;
 
     use cortex_m_rt::entry;
-    use firmware::control::Work;
     use firmware::measuring::{self, InstructionCounter};
     use firmware::observer::Observing;
     use firmware::plant::Plant;
     use firmware::port::Direct;
     use firmware::tables::{JOINT_NAME, TABLES};
     use firmware::whole_loop::WholeLoop;
+    use firmware::work::Work;
     use link::controller::Exchange;
     use link::messages::Command;
     use link::virtual_joint::{Knot, WireDemand};

@@ -1,7 +1,7 @@
 #![cfg_attr(target_os = "none", no_std)]
 //! A joint simulated in the tick of a microcontroller, driven and watched over a serial line.
 //!
-//! `control` is one tick of any role: it takes commands from `schedule`, steps the role's work, keeps `budget`, the
+//! `control` is one tick of any role: it takes commands from `schedule`, steps the role's `work`, keeps `budget`, the
 //! timing monitor, and falls back to `safe_state`. The roles are `plant`, `observer` and `whole_loop`; `words` is what
 //! they differ in on the line. `queues` is all that connects the tick to the rest, by `ends` that cannot panic.
 //! `conversation`, run in idle, answers the host with the help of `identity`, `intake`, `keeping`, `batcher`, `telemetry`
@@ -33,6 +33,7 @@ pub mod telemetry;
 pub mod timing_report;
 pub mod whole_loop;
 pub mod words;
+pub mod work;
 
 /// The joint that this image is built from: `PLANETS`, `JOINT_NAME` and `TABLES`, written by the build script.
 pub mod tables {

@@ -7,10 +7,10 @@ use model_core::digest;
 use model_core::realtime::controller::Answer;
 use model_core::realtime::observer::{Memory, MemoryError};
 
-use crate::control::Work;
 use crate::page::AtHand;
 use crate::port::{ControllerPort, asked};
 use crate::words::{Batch, Timed, Words};
+use crate::work::Work;
 
 /// What the role says and hears.
 pub struct ObserverWords;

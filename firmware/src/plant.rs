@@ -9,9 +9,9 @@ use model_core::realtime::{Model, Outputs, Torques};
 use model_core::tables::Tables;
 
 use crate::batcher::Batcher;
-use crate::control::Work;
 use crate::telemetry::PlantForm;
 use crate::words::{Timed, Words};
+use crate::work::Work;
 
 /// The motion after a step.
 #[derive(Debug, Clone, PartialEq)]

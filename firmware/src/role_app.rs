@@ -5,7 +5,7 @@
 mod app {
     use firmware::board::{Board, Started, ThisBoard, Watchdog};
     use firmware::clock::{self, IdleMeter, PERIOD};
-    use firmware::control::{Control, Work};
+    use firmware::control::Control;
     use firmware::conversation::{Conversation, LogEnd};
     use firmware::identity::{self, StartUp};
     use firmware::page;
@@ -15,6 +15,7 @@ mod app {
     use firmware::status_light::{Pattern, StatusLight};
     use firmware::tables::TABLES;
     use firmware::timing_report::Resources;
+    use firmware::work::Work;
     use firmware::{panic_message, stack};
     use link::messages::Remembered;
 

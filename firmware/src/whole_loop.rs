@@ -14,10 +14,10 @@ use model_core::tables::Tables;
 use model_core::tables::virtual_joint::SurroundingsTable;
 
 use crate::batcher::{Batcher, WireForm};
-use crate::control::Work;
 use crate::page::AtHand;
 use crate::port::ControllerPort;
 use crate::words::{Timed, Words};
+use crate::work::Work;
 
 /// Periods after which a demand that nothing follows stands still: three of the host's knots.
 const LONGEST_STRETCH: u16 = 150;

@@ -1,5 +1,5 @@
 //! What a role says and hears: the one place where roles differ on the line, so that queues, conversation and tick are
-//! written once. What a role does in its tick is `control::Work`.
+//! written once. What a role does in its tick is `work::Work`.
 
 use link::messages::{FromBoard, Role, Schedule, ToBoard};
 

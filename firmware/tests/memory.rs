@@ -5,11 +5,11 @@
 mod bench;
 
 use bench::{Bench, Flash};
-use firmware::control::Work;
 use firmware::observer::Observing;
 use firmware::page::{judgement, recall};
 use firmware::port::Direct;
 use firmware::tables::{PLANETS, TABLES};
+use firmware::work::Work;
 use link::controller::Exchange;
 use link::messages::{
     FromBoard, Kept, MEMORY_PARTS, MemoryPart, MemoryWish, PART_BYTES, Remembered, RunMode, RunSettings, Schedule,

@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use crate::failure::{EXIT_BAD_INPUT, Outcome};
 use crate::{bench, budget, check, hil, identify, images, memory, output, paper, sim, sweep};
@@ -45,14 +45,15 @@ enum Command {
 
 /// Parses the command line, runs it and turns the outcome into an exit code.
 pub fn main() -> ExitCode {
-    let cli = match Cli::try_parse() {
-        Ok(cli) => cli,
-        Err(error) => {
-            // A reader that has gone away is no further error.
-            let _ = error.print();
-            return ExitCode::from(if error.use_stderr() { EXIT_BAD_INPUT } else { 0 });
-        }
-    };
+    let cli =
+        match with_negative_numbers(Cli::command()).try_get_matches().and_then(|found| Cli::from_arg_matches(&found)) {
+            Ok(cli) => cli,
+            Err(error) => {
+                // A reader that has gone away is no further error.
+                let _ = error.print();
+                return ExitCode::from(if error.use_stderr() { EXIT_BAD_INPUT } else { 0 });
+            }
+        };
     let outcome = match &cli.command {
         None => show_help(),
         Some(Command::Hil(arguments)) => hil::run(arguments),
@@ -75,6 +76,16 @@ pub fn main() -> ExitCode {
             ExitCode::from(failure.exit_code())
         }
     }
+}
+
+/// Has every option take a number below zero as its value: that it cannot be is then said by who knows why.
+fn with_negative_numbers(command: clap::Command) -> clap::Command {
+    let names: Vec<String> = command.get_subcommands().map(|command| command.get_name().to_owned()).collect();
+    let command = names.into_iter().fold(command, |command, name| command.mut_subcommand(name, with_negative_numbers));
+    command.mut_args(|option| {
+        let takes_one = option.get_action().takes_values() && !option.is_positional();
+        option.allow_negative_numbers(takes_one)
+    })
 }
 
 fn show_help() -> Outcome<()> {

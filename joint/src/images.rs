@@ -19,6 +19,7 @@ use crate::{check, interruption, output, target};
 #[command(after_help = "Examples:
   joint image                                 joint q1 for the stm32f405
   joint image --role observer                 observer and compensation for it, beside a motor controller
+  joint image --role spi-observer --board stm32g474    the same as a slave on that controller's SPI
   joint image joints/l1.toml --board stm32h743")]
 pub struct ImageArguments {
     /// Joint file (TOML), or the name of a preset: q1, s1, d2, l1, paper, paper_printed
@@ -30,7 +31,8 @@ pub struct ImageArguments {
     /// What the board does
     #[arg(long, value_enum, default_value = "plant")]
     role: ImageRole,
-    /// Steps a second, in Hz; a step of observer and loop is a control period [default: 20000 for plant, else 10000]
+    /// Steps a second, in Hz; a step of all roles but plant is a control period [default: 20000 for plant, 5000 for
+    /// spi-observer, else 10000]
     #[arg(long, value_name = "HZ", value_parser = clap::value_parser!(u32).range(1..))]
     rate: Option<u32>,
 }
@@ -44,6 +46,8 @@ enum ImageRole {
     Observer,
     /// Joint, motor, observer and compensation
     Loop,
+    /// Observer and compensation as a slave on SPI beside a motor controller on another chip; not for stm32h743
+    SpiObserver,
 }
 
 /// Arguments of `joint flash`.
@@ -72,9 +76,10 @@ pub fn flash(arguments: &FlashArguments) -> Outcome<()> {
 fn build(arguments: &ImageArguments) -> Outcome<Image> {
     let file = joint_file(&arguments.file, &check::load(&arguments.file)?);
     let (role, usual) = match arguments.role {
-        ImageRole::Plant => (Role::Plant, image::DEFAULT_TICK_RATE),
-        ImageRole::Observer => (Role::Observer, CONTROL_RATE),
-        ImageRole::Loop => (Role::Loop, CONTROL_RATE),
+        ImageRole::Plant => (Some(Role::Plant), image::DEFAULT_TICK_RATE),
+        ImageRole::Observer => (Some(Role::Observer), CONTROL_RATE),
+        ImageRole::Loop => (Some(Role::Loop), CONTROL_RATE),
+        ImageRole::SpiObserver => (None, image::SPI_RATE),
     };
     let rate = arguments.rate.unwrap_or(usual);
     let progress = Progress::new();
@@ -82,7 +87,10 @@ fn build(arguments: &ImageArguments) -> Outcome<Image> {
     progress.stage("preparing the toolchain");
     let built = Toolchain::prepare(&say).and_then(|toolchain| {
         progress.stage("building the firmware");
-        image::build_image(&toolchain, &file, arguments.board, role, rate, &say)
+        match role {
+            Some(role) => image::build_image(&toolchain, &file, arguments.board, role, rate, &say),
+            None => image::build_spi_slave(&toolchain, &file, arguments.board, rate, &say),
+        }
     });
     progress.clear();
     interruption::explain(built)

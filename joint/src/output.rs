@@ -8,6 +8,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::failure::{Failure, Outcome};
+use crate::folder;
 
 /// Prints a result on standard output.
 pub fn print(text: &str) -> Outcome<()> {
@@ -28,8 +29,9 @@ pub fn json(what: &str, record: &impl Serialize) -> Outcome<String> {
 }
 
 /// Gives out figures: as text on standard output, and as JSON in the file that is asked for; "-" is standard output, in
-/// place of the text.
-pub fn deliver(figures: &impl Serialize, text: &str, wanted: Option<&Path>) -> Outcome<()> {
+/// place of the text. `read` is what they were made from.
+pub fn deliver(figures: &impl Serialize, text: &str, wanted: Option<&Path>, read: &[&Path]) -> Outcome<()> {
+    folder::check_files(&[("json", wanted)], read)?;
     if let Some(path) = wanted {
         let json = json("figures", figures)?;
         if path.as_os_str() == "-" {
@@ -43,7 +45,28 @@ pub fn deliver(figures: &impl Serialize, text: &str, wanted: Option<&Path>) -> O
     print(text)
 }
 
+/// A number as one would type it: whole ones without a point, very large and very small ones by their power of ten.
+pub fn typed(value: f64) -> String {
+    let size = value.abs();
+    if size == 0.0 || !size.is_finite() || (1e-6..1e15).contains(&size) {
+        value.to_string()
+    } else {
+        format!("{value:e}")
+    }
+}
+
 /// Prints a remark on standard error, as far as anyone listens.
 pub fn remark(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{text}");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::typed;
+
+    #[test]
+    fn numbers_are_told_as_one_would_type_them() {
+        let told = [0.0, -1.0, 0.25, 1e308, 1e-300, f64::NAN].map(typed);
+        assert_eq!(told, ["0", "-1", "0.25", "1e308", "1e-300", "NaN"]);
+    }
 }

@@ -226,6 +226,33 @@ fn images_of_several_joints_lie_side_by_side() {
 
 #[test]
 #[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
+fn the_whole_loop_has_the_faults_of_a_test_as_the_host_has_them() {
+    let out = folder();
+    let file = out.path().join("faults.toml");
+    let mut text = "duration_s = 0.5\nsettle_s = 0.1\nprofile = \"T2\"\n[controller]\nrivals = []\n".to_owned();
+    let faults = [
+        "kind = \"encoder_noise\"\nnoise_counts = 3\nencoder = \"motor\"",
+        "kind = \"encoder_eccentric\"\nerror_deg = 0.05",
+        "kind = \"encoder_missing_counts\"\nshare = 0.01",
+        "kind = \"encoder_offset\"\ncounts = -20",
+        "kind = \"torque_bias\"\nratio = 0.05\ntorque_N_m = 0.02",
+        "kind = \"torque_saturation\"\ntorque_N_m = 1.5",
+        "kind = \"lost_frames\"\nshare = 0.05",
+        "kind = \"encoder_frozen\"",
+    ];
+    for (number, fault) in faults.iter().enumerate() {
+        let start = 0.05 + 0.05 * number as f64;
+        text += &format!("[[fault]]\n{fault}\nstart_s = {start}\nend_s = {}\n", start + 0.1);
+    }
+    fs::write(&file, text + "[assert]\nfault_found_ms = \"<= 400\"\n").expect("a file");
+    let (output, said) = finish(hil_of(&file, out.path()).args(["--role", "loop"]));
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    let board = record(&out)["tests"][0]["runs"][0]["board"].clone();
+    assert_eq!((board["role"].as_str(), board["same_periods"].as_u64()), (Some("loop"), Some(5000)), "{said}");
+}
+
+#[test]
+#[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
 fn a_memory_is_judged_by_the_firmware_of_the_emulated_board() {
     let folder = folder();
     let q1 = learning_board::joint(&[]);

@@ -11,7 +11,7 @@ use fake_board::{Misbehaviour, TICK_RATE, joint};
 use joint::failure::{Failure, Outcome};
 use joint::hil::profile::Profile;
 use joint::hil::recording::Recording;
-use joint::hil::session::{Expected, Session, Surroundings};
+use joint::hil::session::{Expected, Mend, Session, Surroundings};
 use joint::hil::transport::Socket;
 use joint::hil::twin;
 use joint::target::board::Board;
@@ -53,7 +53,7 @@ fn expected() -> Expected {
         planets: 3,
         role: Role::Plant,
         control_digest: None,
-        mend: "cargo joint flash q1".into(),
+        mend: Mend::Flash("cargo joint flash q1".into()),
     }
 }
 

@@ -150,8 +150,13 @@ fn what_cannot_run_in_a_folder_is_named_and_the_rest_runs() {
         "{not_run:?}"
     );
     let junit = fs::read_to_string(out.join("junit.xml")).expect("written");
-    assert!(junit.contains("tests=\"6\" failures=\"0\" errors=\"0\" skipped=\"5\""), "{junit}");
-    assert_eq!(junit.matches("<skipped message=").count(), 5, "{junit}");
+    let all = junit.lines().find(|line| line.contains("<testsuites")).expect("all suites");
+    assert!(
+        all.contains("tests=\"6\" failures=\"0\" errors=\"0\" time="),
+        "{all}: what was skipped is told of each suite"
+    );
+    assert_eq!(junit.matches("skipped=\"1\"").count(), 5, "{junit}");
+    assert_eq!(junit.matches("<skipped type=\"not run\" message=").count(), 5, "{junit}");
     let page = fs::read_to_string(out.join("report.html")).expect("written");
     assert!(page.contains("What was not run") && page.contains("5 TESTS NOT RUN"), "the report tells");
 }
@@ -213,6 +218,13 @@ fn what_is_wrong_with_a_test_file_is_named_with_the_mend() {
     refused("profile = \"T2\"\n[controller]\nmode = \"motor_pid\"\nfrom_memory = true", &["motor_pid learns nothing"]);
     let late = "profile = \"T2\"\n[[fault]]\nkind = \"encoder_frozen\"\nstart_s = 1.2";
     refused(late, &["this begins when the run is over, at 1.2 s", "duration_s"]);
+    refused("profile = \"T2\"\nseeds = [3, 4, 3]", &["3 is named twice"]);
+    refused("profile = \"T2\"\n[controller]\nrivals = [\"motor_pid\", \"motor_pid\"]", &["motor_pid is named twice"]);
+    refused("profile = \"T2\"\n[plant]\nhalf_backlash_um = \"60\"", &["\"60\" is a text", "without quotes"]);
+    refused("profile = \"T2\"\n[assert]\nrms_mrad = {}", &["nothing is asked of `rms_mrad`"]);
+    let saturated = "profile = \"T2\"\n[[fault]]\nkind = \"torque_saturation\"\ntorque_N_m = -1";
+    refused(saturated, &["a limit of -1 N m is none"]);
+    refused("profile = \"T2\"\ntitle = \"once more\"", &["duplicate key", "leave one of the two out"]);
     for seed in ["-1", "1.5", "18446744073709551616"] {
         run(folder().path(), "profile = \"T2\"", &["--seed", seed]).refused(&["a seed is a whole number from 0 to"]);
     }
@@ -227,7 +239,7 @@ fn arguments_of_joints_and_of_tests_are_not_mixed_up() {
     joint(&["hil", "q1", "--role", "loop"]).refused(&["--role is for test files"]);
     joint(&["hil", text(&file), "--host", "--duration", "3"]).refused(&["--duration is for joints"]);
     joint(&["hil", "q1", "--host"]).refused(&["--host is for test files, and q1 is a joint"]);
-    joint(&["hil", "none.toml", "--host"]).refused(&["there is no test file none.toml"]);
+    joint(&["hil", "none.toml", "--host"]).refused(&["cannot read the test file none.toml"]);
     joint(&["hil", text(folder.path()), "--host", "--json", "/none/x.json"]).refused(&["no folder /none"]);
 }
 

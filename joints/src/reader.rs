@@ -40,7 +40,11 @@ pub fn read(text: &str) -> Result<JointFile, Vec<Problem>> {
         // One slip makes the parser stumble on for the rest of its line.
         if !blamed_lines.contains(&line) {
             blamed_lines.push(line);
-            notes.error(span, format!("not TOML: {}", error.message()), "write lines of the form key = value");
+            let help = match error.message() {
+                "duplicate key" => "leave one of the two out",
+                _ => "write lines of the form key = value",
+            };
+            notes.error(span, format!("not TOML: {}", error.message()), help);
         }
     }
     // What was recovered from broken syntax would be blamed for what the parser dropped.

@@ -5,8 +5,8 @@
 #[cfg(target_os = "none")]
 #[rtic::app(device = firmware::board::pac)]
 mod app {
-    use firmware::board::spi_slave::DmaSlave;
-    use firmware::board::{Board, Started, ThisBoard, Watchdog, pac};
+    use firmware::board::dma_slave::DmaSlave;
+    use firmware::board::{Board, Started, ThisBoard, ThisSpi, Watchdog, pac};
     use firmware::port::Direct;
     use firmware::port::spi::{FRAME_BYTES, Frame};
     use firmware::port::spi_slave::SpiSlave;
@@ -22,11 +22,13 @@ mod app {
     }
 
     #[shared]
-    struct Shared {}
+    struct Shared {
+        #[lock_free]
+        slave: SpiSlave<DmaSlave<ThisSpi>, Direct<'static>>,
+    }
 
     #[local]
     struct Local {
-        slave: SpiSlave<DmaSlave, Direct<'static>>,
         watchdog: Watchdog,
     }
 
@@ -34,19 +36,27 @@ mod app {
     fn init(cx: init::Context) -> (Shared, Local) {
         let mut core = cx.core;
         let Started { watchdog, .. } = ThisBoard::start(cx.device, &mut core);
-        // SAFETY: the board has set up clock and serial line, and keeps neither SPI1, DMA2 nor EXTI; of the ports only other
-        // pins are its own.
+        // SAFETY: the board has set up clock and serial line, and keeps neither the slave's SPI, DMA nor EXTI; of the
+        // ports only other pins are its own.
         let device = unsafe { pac::Peripherals::steal() };
         let bus = DmaSlave::start(device, cx.local.received, cx.local.sent);
         let controller =
             Direct(Controller::new(&control::OBSERVER, &control::COMPENSATION).with_probe(control::PROBE.as_ref()));
-        (Shared {}, Local { slave: SpiSlave::new(bus, controller), watchdog })
+        (Shared { slave: SpiSlave::new(bus, controller) }, Local { watchdog })
     }
 
-    /// The master has let go of the chip select.
-    #[task(binds = EXTI4, priority = 16, local = [slave])]
-    fn transferred(cx: transferred::Context) {
-        cx.local.slave.serve();
+    /// The master has let go of the chip select of STM32F405.
+    #[cfg(feature = "stm32f405")]
+    #[task(binds = EXTI4, priority = 16, shared = [slave])]
+    fn exti4(cx: exti4::Context) {
+        cx.shared.slave.serve();
+    }
+
+    /// The master has let go of the chip select of STM32G474.
+    #[cfg(feature = "stm32g474")]
+    #[task(binds = EXTI15_10, priority = 16, shared = [slave])]
+    fn exti15_10(cx: exti15_10::Context) {
+        cx.shared.slave.serve();
     }
 
     /// A master may be silent for as long as it likes; an interrupt that never ends would starve the watchdog.

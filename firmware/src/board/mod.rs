@@ -18,13 +18,13 @@ compile_error!("choose a board: one of the features stm32f405, stm32g474, stm32h
 ))]
 compile_error!("one board at a time: build with --no-default-features --features <board>");
 
+#[cfg(feature = "spi_slave")]
+pub mod dma_slave;
 pub mod flash_page;
 #[cfg(any(feature = "stm32f405", feature = "stm32g474"))]
 pub mod flash_unit;
 mod output;
 mod patience;
-#[cfg(feature = "stm32f405")]
-pub mod spi_slave;
 mod watchdog;
 
 pub use output::Output;
@@ -33,13 +33,21 @@ pub use watchdog::Watchdog;
 #[cfg(feature = "stm32f405")]
 mod stm32f405;
 #[cfg(feature = "stm32f405")]
+mod stream_slave;
+#[cfg(feature = "stm32f405")]
 pub use stm32f405::{Stm32F405 as ThisBoard, pac};
+#[cfg(feature = "stm32f405")]
+pub use stream_slave::Spi1 as ThisSpi;
 
 #[cfg(any(feature = "stm32g474", feature = "stm32h743"))]
 mod fifo_uart;
 
 #[cfg(feature = "stm32g474")]
+mod channel_slave;
+#[cfg(feature = "stm32g474")]
 mod stm32g474;
+#[cfg(feature = "stm32g474")]
+pub use channel_slave::Spi2 as ThisSpi;
 #[cfg(feature = "stm32g474")]
 pub use stm32g474::{Stm32G474 as ThisBoard, UsartRegisters, pac};
 

@@ -8,7 +8,7 @@ use std::rc::Rc;
 
 use embedded_hal::digital::{ErrorType, OutputPin};
 use firmware::budget::TickTimer;
-use firmware::control::{Control, Work};
+use firmware::control::Control;
 use firmware::conversation::{Conversation, LogEnd};
 use firmware::identity::{StartUp, hello};
 use firmware::page::Page;
@@ -18,6 +18,7 @@ use firmware::serial::{Line, Serial, Uart};
 use firmware::tables::{PLANETS, TABLES};
 use firmware::timing_report::Resources;
 use firmware::words::Words;
+use firmware::work::Work;
 use heapless::spsc::Queue;
 use link::framing::{Receiver, encode};
 use link::messages::{Clock, Command, FromBoard, Remembered, RunMode, RunSettings, Schedule, ToBoard};

@@ -31,13 +31,19 @@ pub fn origin(toolchain: &Toolchain, emulator: String) -> Origin {
     }
 }
 
+fn failed(path: &Path, error: &std::io::Error) -> Failure {
+    Failure::new(format!("{}: {error}", path.display())).with_help("name a Markdown file that can be read and written")
+}
+
+/// The file that the comparison is put into.
+pub fn read(path: &Path) -> Outcome<String> {
+    fs::read_to_string(path).map_err(|error| failed(path, &error))
+}
+
 /// Puts the comparison into the file, or at its end if it has none yet.
 pub fn update(path: &Path, figures: &Figures) -> Outcome<()> {
-    let failed = |error: std::io::Error| {
-        Failure::new(format!("{}: {error}", path.display()))
-            .with_help("name a Markdown file that can be read and written")
-    };
-    let before = fs::read_to_string(path).map_err(failed)?;
+    let before = read(path)?;
+    let failed = |error: std::io::Error| failed(path, &error);
     let mut pictured = String::new();
     for case in &figures.cases {
         let Some(figure) = pictures::board(case, &figures.methods) else { continue };

@@ -24,7 +24,7 @@ use crate::failure::{Failure, Outcome};
 use crate::hil::Progress;
 use crate::target::emulator;
 use crate::target::toolchain::Toolchain;
-use crate::{check, interruption, output};
+use crate::{check, folder, interruption, output};
 
 /// Arguments of `joint bench`.
 #[derive(Debug, clap::Args)]
@@ -101,6 +101,10 @@ pub struct Origin {
 
 /// Compares.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
+    let wanted = [("json", &arguments.json), ("html", &arguments.html), ("document", &arguments.document)];
+    let read: Vec<&Path> = arguments.file.as_deref().into_iter().collect();
+    folder::check_files(&wanted.map(|(option, file)| (option, file.as_deref())), &read)?;
+    arguments.document.as_deref().map_or(Ok(()), |document| document::read(document).map(drop))?;
     let progress = Progress::new();
     let figures = interruption::explain(gather(arguments, &progress));
     progress.clear();

@@ -49,5 +49,5 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
     refuse(parameters, arguments.board, arguments.rate)?;
     let figures = figures(parameters, arguments.board, arguments.rate)
         .map_err(|error| Failure::new(format!("no fixed step for {}: {error}", parameters.name)))?;
-    output::deliver(&figures, &layout(&figures), arguments.json.as_deref())
+    output::deliver(&figures, &layout(&figures), arguments.json.as_deref(), &[&arguments.file])
 }

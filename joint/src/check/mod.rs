@@ -40,5 +40,5 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Outcome<()> {
     let loaded = load(&arguments.file)?;
     let figures = figures(&loaded, arguments.rate)?;
-    output::deliver(&figures, &layout(&figures), arguments.json.as_deref())
+    output::deliver(&figures, &layout(&figures), arguments.json.as_deref(), &[&arguments.file])
 }

@@ -35,9 +35,10 @@ pub fn check(tick_rate: u32, progress: &Progress) -> Outcome<()> {
                  panic, at most {stack} B of stack\n"
             ))?;
         }
-        if board == Board::Stm32f405 {
+        if board.has_spi_slave() {
             progress.stage("building the image of a slave on SPI");
-            let bytes = image::build_spi_slave(&toolchain, &say)?.flash_bytes;
+            let joint = image::preset_file("q1");
+            let bytes = image::build_spi_slave(&toolchain, &joint, board, image::SPI_RATE, &say)?.flash_bytes;
             progress.clear();
             output::print(&format!("ok       image of a slave on SPI for {}: {bytes} B of flash\n", board.name()))?;
         }

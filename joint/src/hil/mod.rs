@@ -25,6 +25,8 @@ mod tests;
 pub mod transport;
 pub mod twin;
 
+use std::path::Path;
+
 use bench::Bench;
 use evaluation::Ran;
 use files::Files;
@@ -37,7 +39,7 @@ use session::Session;
 
 use crate::failure::{Failure, Outcome};
 use crate::record::{RunRecord, all_hold};
-use crate::{output, report, trial};
+use crate::{folder, output, report, trial};
 
 /// Runs a joint on a board; succeeds only if every check held.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
@@ -92,6 +94,8 @@ fn say_how_to_go_on(port: &str, board: &str) -> Outcome<()> {
 
 fn run_once(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
     let plan = Plan::new(arguments)?;
+    let wanted = [("json", arguments.json.as_deref()), ("picture", arguments.picture.as_deref())];
+    folder::check_files(&wanted, &[&plan.path, Path::new(&arguments.profile)])?;
     let files = Files::prepare(arguments.out.as_deref(), arguments.json.as_deref(), &plan.expected.joint)?;
     let bench = Bench::prepare(arguments, &plan, progress)?;
     let mut record = origin::record(arguments, &plan, &bench.transport);

@@ -9,7 +9,7 @@ use link::messages::{Role, RunMode, RunSettings};
 
 use super::line_options::LineOptions;
 use super::profile::{BUILTIN, Profile};
-use super::session::Expected;
+use super::session::{Expected, Mend};
 use super::twin;
 use crate::failure::{Failure, Outcome};
 use crate::target::board::Board;
@@ -159,7 +159,7 @@ impl Plan {
             planets: parameters.geometry.planets,
             role: Role::Plant,
             control_digest: None,
-            mend: arguments.flash_command(),
+            mend: arguments.mend(),
         };
         let command_timeout = (COMMAND_TIMEOUT * f64::from(arguments.rate)).ceil() as u32;
         let settings = RunSettings { mode, decimation: arguments.decimation, command_timeout, from_memory: false };
@@ -173,13 +173,14 @@ impl Arguments {
         self.file.as_deref().unwrap_or(Path::new("q1"))
     }
 
-    /// The command that puts the right image onto the board.
-    fn flash_command(&self) -> String {
-        let rate = self.rate_option();
-        match &self.line.port {
-            Some(_) => format!("cargo joint flash {} --board {}{rate}", self.file().display(), self.line.board.name()),
-            None => format!("cargo joint image {}{rate}", self.file().display()),
+    /// What to do about a board that is another one.
+    fn mend(&self) -> Mend {
+        if self.line.port.is_none() {
+            return Mend::Rebuild;
         }
+        let (file, board) = (self.file().display(), self.line.board.name());
+        let command = format!("cargo joint flash {file} --board {board}{}", self.rate_option());
+        if self.no_build { Mend::Flash(command) } else { Mend::FlashBuilt(command) }
     }
 
     /// The command that makes this run again.

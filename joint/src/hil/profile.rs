@@ -10,9 +10,14 @@ use link::messages::Command;
 use model_core::joint::JointParameters;
 
 use crate::failure::{Failure, Outcome};
+use crate::output::typed;
 
 pub use builtin::BUILTIN;
 
+/// No joint that this is for gives or takes more: it is a slip of the unit [N m].
+pub const STRONGEST: f64 = 1e6;
+/// No link or carrier turns faster [rad/s].
+pub const FASTEST: f64 = 1e4;
 /// Commands a second; torques hold in between [Hz].
 pub const COMMAND_RATE: u32 = 1000;
 
@@ -60,8 +65,12 @@ impl Profile {
     fn sampled(name: &str, tick_rate: u32, seconds: f64, mean: impl Fn(f64, f64) -> Torques) -> Outcome<Self> {
         let ticks = seconds * f64::from(tick_rate);
         if !(1.0..=f64::from(u32::MAX / 2)).contains(&ticks) {
-            return Err(Failure::new(format!("a run of {seconds} s at {tick_rate} Hz is {ticks} ticks"))
-                .with_help("give a duration of at least one tick and at most 2^31 ticks, such as --duration 5"));
+            return Err(Failure::new(format!(
+                "a run of {} s at {tick_rate} Hz is {} ticks",
+                typed(seconds),
+                typed(ticks)
+            ))
+            .with_help("give a duration of at least one tick and at most 2^31 ticks, such as --duration 5"));
         }
         let ticks = ticks.round() as u32;
         let mut commands: Vec<Command> = Vec::new();

@@ -1,6 +1,7 @@
 //! Which arguments of `joint hil` belong to test files and which to joints; the wrong ones are named rather than
 //! ignored. Running tests is left to `trial`.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use link::messages::{Role, RunMode};
@@ -110,9 +111,9 @@ pub fn refuse_for_joints(arguments: &Arguments) -> Outcome<()> {
     ];
     let Some((name, _)) = of_tests.iter().find(|(_, given)| *given) else { return Ok(()) };
     let file = arguments.file().display();
-    let message = match arguments.file().exists() || joints::preset(&file.to_string()).is_some() {
-        true => format!("--{name} is for test files, and {file} is a joint"),
-        false => format!("there is no test file {file}"),
+    let message = match (joints::preset(&file.to_string()), fs::read_to_string(arguments.file())) {
+        (Some(_), _) | (_, Ok(_)) => format!("--{name} is for test files, and {file} is a joint"),
+        (None, Err(error)) => format!("cannot read the test file {file}: {error}"),
     };
     Err(Failure::new(message)
         .with_help("name a test file such as hil/t2.toml; docs/hil-file.md tells how to write one"))

@@ -2,8 +2,9 @@
 //! running digest over the whole state covers the ticks between samples; closeness to the truth is the reference's.
 
 use link::messages::{Command, Sample};
-use model_core::design::{Effort, design_scheme};
+use model_core::design::{DesignError, Effort, design_scheme};
 use model_core::digest;
+
 use model_core::joint::JointParameters;
 use model_core::mesh::ContactState;
 use model_core::realtime::{Model, Torques};
@@ -95,8 +96,15 @@ fn for_planets<W: ForPlanets>(joint: &JointParameters, work: W) -> Outcome<W::Re
 }
 
 fn tables<const N: usize>(joint: &JointParameters, board: Board, tick_rate: u32) -> Outcome<Tables<f32, N>> {
-    design_scheme(joint, tick_rate, Scheme::Realtime, Effort::Within(board.processor()))
-        .map_err(|error| Failure::new(format!("joint `{}` cannot be designed for {tick_rate} Hz: {error}", joint.name)))
+    design_scheme(joint, tick_rate, Scheme::Realtime, Effort::Within(board.processor())).map_err(|error| {
+        let failure = Failure::new(format!("joint `{}` cannot be designed for {tick_rate} Hz: {error}", joint.name));
+        match error {
+            DesignError::RateTooLow { lowest, .. } => {
+                failure.with_help(format!("give --rate {lowest} or more; in a test file control_rate_Hz in [known]"))
+            }
+            _ => failure,
+        }
+    })
 }
 
 struct Digest<'a> {

@@ -9,6 +9,8 @@ use super::noise::Noise;
 use super::plan::Plan;
 use super::sampling::sampling;
 use crate::failure::{Failure, Outcome};
+use crate::hil::profile::STRONGEST;
+use crate::output::typed;
 
 /// Fewer counts of the motor may be its encoder's own scatter.
 const LEAST_TRAVEL: f64 = 8.0;
@@ -63,6 +65,13 @@ impl Log {
         let output = readings(columns, ["output_counts", "output_angle_rad"], plan.output_bits)?;
         let (_, torque) = columns.named(&["motor_torque_N_m"])?;
         let output_torque = columns.maybe("output_torque_N_m")?;
+        for (name, torques) in [("motor_torque_N_m", Some(&torque)), ("output_torque_N_m", output_torque.as_ref())] {
+            let torques = torques.into_iter().flatten();
+            if let Some((row, torque)) = torques.enumerate().find(|(_, torque)| torque.abs() > STRONGEST) {
+                return Err(Failure::new(format!("{}: `{name}` is {}", columns.place(row), typed(*torque)))
+                    .with_help(format!("it may be from -{STRONGEST} to {STRONGEST} N m: check the unit")));
+            }
+        }
         let twist = twist(&motor, &output, plan);
         let (motor, output) = (motor.angles(plan.motor_bits), output.angles(plan.output_bits));
         let log = Self {

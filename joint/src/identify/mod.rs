@@ -38,6 +38,7 @@ use twist::Twist;
 
 use crate::check::{self, Loaded};
 use crate::failure::{Failure, Outcome};
+use crate::folder;
 use crate::hil::Progress;
 use crate::output;
 use crate::record::write_text;
@@ -90,6 +91,7 @@ fn run_once(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
         return simulate(arguments, &loaded, progress);
     }
     let plan = Plan::new(&loaded, arguments);
+    folder::check_files(&[("json", arguments.json.as_deref())], &[&arguments.log, &arguments.joint])?;
     progress.stage("fitting");
     let identified = identify(arguments, &plan)?;
     let folder = Folder::prepare(arguments.out.as_deref(), "identify", &plan.name)?;
@@ -212,6 +214,7 @@ fn assumptions(plan: &Plan, log: &Log) -> Vec<String> {
 }
 
 fn simulate(arguments: &Arguments, loaded: &Loaded, progress: &Progress) -> Outcome<()> {
+    folder::check_file("simulate", &arguments.log, &[&arguments.joint])?;
     let mut file = loaded.file.clone();
     let train = file.drive_train.get_or_insert_default();
     train.motor_encoder.bits = arguments.motor_bits.unwrap_or(train.motor_encoder.bits);

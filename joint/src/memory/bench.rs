@@ -7,7 +7,7 @@ use super::arguments::Place;
 use crate::check::Loaded;
 use crate::failure::{Failure, Outcome};
 use crate::hil::bench::Bench;
-use crate::hil::session::Session;
+use crate::hil::session::{Mend, Session};
 use crate::hil::{Progress, RoleName};
 use crate::images;
 use crate::proof::roles::CONTROL_RATE;
@@ -40,7 +40,8 @@ impl Found {
             None => (emulated(place, loaded, progress)?, String::new()),
         };
         progress.stage("calling the board");
-        let mend = format!("cargo joint flash {file} --role observer --board {}", place.line.board.name());
+        let flash = format!("cargo joint flash {file} --role observer --board {}", place.line.board.name());
+        let mend = if place.line.port.is_some() { Mend::Flash(flash.clone()) } else { Mend::Rebuild };
         let mut session = Session::new(bench.line, bench.surroundings);
         let hello = session.call(&mend, bench.patience)?;
         let name =
@@ -48,7 +49,7 @@ impl Found {
         if hello.role == Role::Plant {
             let role = word(hello.role);
             return Err(Failure::new(format!("{name} has an image of role `{role}`, which learns nothing"))
-                .with_help(format!("flash one that does: {mend}")));
+                .with_help(format!("flash one that does: {flash}")));
         }
         Ok(Self { session, hello, name, options, emulated: place.line.port.is_none() })
     }

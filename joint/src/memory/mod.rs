@@ -44,7 +44,7 @@ fn show(file: &Path, joint: &Path, json: Option<&Path>) -> Outcome<()> {
     let (memory, loaded) = (load(file)?, check::load(joint)?);
     let content = Content::of(&memory, &loaded).map_err(|error| refused(&file.display().to_string(), error))?;
     let text = content.text(&file.display().to_string(), &loaded);
-    output::deliver(&content, &text, json)
+    output::deliver(&content, &text, json, &[file, joint])
 }
 
 fn read(file: &Path, place: &Place, progress: &Progress) -> Outcome<()> {
@@ -112,11 +112,13 @@ fn change(place: &Place, progress: &Progress, ask: Ask, done: &str) -> Outcome<(
     }
 }
 
+/// How to come by one.
+const READ_ONE: &str = "read one off a board: joint memory read FILE --port PATH";
+
 /// The bytes of a file.
 fn load(file: &Path) -> Outcome<Memory> {
     let name = file.display();
-    let help = "read one off a board: joint memory read FILE --port PATH";
-    let failed = |why: String| Failure::new(format!("cannot read the memory {name}: {why}")).with_help(help);
+    let failed = |why: String| Failure::new(format!("cannot read the memory {name}: {why}")).with_help(READ_ONE);
     if file.is_dir() {
         return Err(failed("it is a folder".to_owned()));
     }
@@ -126,7 +128,7 @@ fn load(file: &Path) -> Outcome<Memory> {
         Failure::new(format!(
             "{name} is no memory of an observer: it has {count} bytes, and a memory has {MEMORY_BYTES}"
         ))
-        .with_help(help)
+        .with_help(READ_ONE)
     })
 }
 
@@ -140,8 +142,12 @@ fn refused(name: &str, error: MemoryError) -> Failure {
 fn parts(error: MemoryError) -> (String, String) {
     let text = error.to_string();
     let (what, mend) = text.split_once(": ").unwrap_or((&text, ""));
-    let own = "; the same joint file, backlash included, and the same encoders".to_owned();
-    (what.to_owned(), mend.to_owned() + if error == MemoryError::OtherJoint { &own } else { "" })
+    let mend = match error {
+        MemoryError::NotAMemory => READ_ONE.to_owned(),
+        MemoryError::OtherJoint => format!("{mend}; the same joint file, backlash included, and the same encoders"),
+        _ => mend.to_owned(),
+    };
+    (what.to_owned(), mend)
 }
 
 /// A judgement of a board, unless it is good.

@@ -20,10 +20,10 @@ pub struct Files {
 }
 
 impl Files {
-    /// Makes the folder and tries to write to it.
-    pub fn prepare(folder: Option<&Path>, json: Option<&Path>, joint: &str) -> Outcome<Self> {
+    /// Makes the folder and tries to write to it; `read` is what the study is made of.
+    pub fn prepare(folder: Option<&Path>, json: Option<&Path>, joint: &str, read: &[&Path]) -> Outcome<Self> {
+        folder::check_files(&[("json", json)], read)?;
         let folder = folder::prepare(folder, "paper", joint)?;
-        json.map_or(Ok(()), folder::check_json)?;
         Ok(Self { folder, json: json.map(Path::to_owned) })
     }
 

@@ -23,6 +23,8 @@ mod table;
 mod windows;
 mod witness;
 
+use std::path::Path;
+
 use files::Files;
 pub use plan::{Arguments, Plan, StartChoice, Subject, SweepStart};
 pub use progress::Progress;
@@ -40,7 +42,8 @@ use crate::{interruption, output};
 pub fn run(arguments: &Arguments) -> Outcome<()> {
     interruption::watch()?;
     let plan = Plan::new(arguments)?;
-    let files = Files::prepare(arguments.out.as_deref(), arguments.json.as_deref(), plan.name())?;
+    let read: Vec<&Path> = arguments.file.as_deref().into_iter().collect();
+    let files = Files::prepare(arguments.out.as_deref(), arguments.json.as_deref(), plan.name(), &read)?;
     let progress = Progress::new();
     let studied = study(&plan, &progress);
     progress.clear();

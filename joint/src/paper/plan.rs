@@ -11,6 +11,7 @@ use super::expectation::{self, Expectation};
 use super::grid;
 use crate::check::{self, Loaded};
 use crate::failure::{Failure, Outcome};
+use crate::output::typed;
 use crate::study::system::{StudyError, System};
 
 /// Half-backlashes of Figs 5-8 over that of the joint file: 0, 10, 60, 120 um where the file has 60.
@@ -164,7 +165,7 @@ impl Subject {
         let mut parameters = loaded.file.parameters.clone();
         if let Some(omega) = omega {
             if !(1e-3..=100.0).contains(&omega) {
-                return Err(Failure::new(format!("--omega {omega}: no mesh frequency over omega_n"))
+                return Err(Failure::new(format!("--omega {}: no mesh frequency over omega_n", typed(omega)))
                     .with_help("give a ratio between 0.001 and 100, such as --omega 2.1, the paper's"));
             }
             parameters.excitation = Excitation::Time { mesh_frequency: omega * Scales::new(&parameters).frequency };

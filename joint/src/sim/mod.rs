@@ -27,6 +27,7 @@ mod table;
 
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
+use std::path::Path;
 
 pub use arguments::Arguments;
 use comparison::Comparison;
@@ -43,7 +44,7 @@ use statistics::Statistics;
 use crate::failure::{Failure, Outcome};
 use crate::hil::Progress;
 use crate::record::write_text;
-use crate::{check, interruption, output};
+use crate::{check, folder, interruption, output};
 
 /// Samples that are kept at most unless `--every` says how many ticks apart they are.
 const USUAL_SAMPLES: u32 = 200_000;
@@ -71,6 +72,8 @@ fn run_once(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
     let plan = Plan::new(loaded, &arguments.motion)?;
     let every = every(&plan, arguments.every)?;
     let scheme = arguments.scheme.shown();
+    let profile = arguments.motion.profile.as_deref().unwrap_or_default();
+    folder::check_files(&[("json", arguments.json.as_deref())], &[&arguments.file, Path::new(profile)])?;
     let folder = Folder::prepare(arguments.out.as_deref(), "sim", &plan.parameters().name)?;
     let mut files = HistoryFiles::begin(&folder, plan.parameters(), remarks(arguments, &plan, scheme))?;
     progress.run("simulating", plan.ticks);

@@ -14,7 +14,8 @@ use super::follow::Run;
 use super::start::StartName;
 use crate::check::Loaded;
 use crate::failure::{Failure, Outcome};
-use crate::hil::profile::Profile;
+use crate::hil::profile::{FASTEST, Profile, STRONGEST};
+use crate::output::typed;
 
 /// Rate of the board, and of any run without a reason for another [Hz].
 const BOARD_RATE: u32 = 20_000;
@@ -74,6 +75,11 @@ impl Plan {
                 .with_help(format!("give a finite number, such as --{what} 1"))),
             value => Ok(value),
         };
+        let within = |what: &str, value: Option<f64>, most: f64, unit: &str| match given(what, value)? {
+            Some(value) if value.abs() > most => Err(Failure::new(format!("--{what} is {}", typed(value)))
+                .with_help(format!("it may be from -{most} to {most} {unit}: check the unit"))),
+            value => Ok(value),
+        };
         let duration = given("duration", motion.duration)?;
         let (torques, ticks, torques_name) = match &motion.profile {
             Some(profile) => {
@@ -83,7 +89,8 @@ impl Plan {
             None => {
                 let usual = frequency.map_or(DURATION, |frequency| MESH_PERIODS / frequency);
                 let ticks = count(duration.unwrap_or(usual), tick_rate)?;
-                let (drive, load) = (given("drive", motion.drive)?, given("load", motion.load)?);
+                let drive = within("drive", motion.drive, STRONGEST, "N m")?;
+                let load = within("load", motion.load, STRONGEST, "N m")?;
                 let command = constant(&joint, drive, load);
                 let (drive, load) = (command.drive_torque, command.load_torque);
                 (vec![command], ticks, format!("constant torques of {drive} N m against {load} N m"))
@@ -108,7 +115,7 @@ impl Plan {
             (true, None) => StartName::Seated,
         });
         let turning = if constant && frequency.is_none() { SPEED } else { 0.0 };
-        let speed = given("speed", motion.speed)?.unwrap_or(turning);
+        let speed = within("speed", motion.speed, FASTEST, "rad/s")?.unwrap_or(turning);
         let first = torques.first().map_or((0.0, 0.0), |first| (first.drive_torque.into(), first.load_torque.into()));
         let start = start_name.of(parameters, speed, first);
         let effort = if motion.accurate { Effort::Accurate } else { Effort::Board };
@@ -172,7 +179,7 @@ fn default_rate(frequency: Option<f64>) -> u32 {
 fn count(seconds: f64, tick_rate: u32) -> Outcome<u32> {
     let ticks = seconds * f64::from(tick_rate);
     if !(1.0..=MOST_TICKS.min(f64::from(u32::MAX / 2))).contains(&ticks) {
-        return Err(Failure::new(format!("a run of {seconds} s at {tick_rate} Hz is {ticks} ticks"))
+        return Err(Failure::new(format!("a run of {} s at {tick_rate} Hz is {} ticks", typed(seconds), typed(ticks)))
             .with_help("give a duration of at least one tick and at most 2^31 ticks, such as --duration 1"));
     }
     Ok(ticks.round() as u32)

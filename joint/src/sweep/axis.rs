@@ -2,6 +2,7 @@
 //! file. How axes make a grid is `grid`'s business.
 
 use crate::failure::{Failure, Outcome};
+use crate::output::typed;
 
 /// More values than this on one axis are a slip of the keyboard.
 pub const MOST_VALUES: f64 = 1e6;
@@ -98,7 +99,7 @@ fn steps(vary: &str, texts: [&str; 3]) -> Outcome<Vec<String>> {
     // Long ways lose their last digits in the division.
     let count = (way * (1.0 + f64::EPSILON * 4.0) + ROUNDING).floor() + 1.0;
     if count > MOST_VALUES {
-        let message = format!("--vary {vary}: {count:.0} values on one axis, at most {MOST_VALUES} can be swept");
+        let message = format!("--vary {vary}: {} values on one axis, at most {MOST_VALUES} can be swept", typed(count));
         let help = coarser(from, to, 1000.0)
             .map_or_else(|| SHAPE.to_owned(), |step| format!("a step of {step} gives about a thousand"));
         return Err(Failure::new(message).with_help(help));

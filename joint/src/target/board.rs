@@ -54,6 +54,11 @@ impl Board {
         }
     }
 
+    /// Whether its firmware can be the slave of a motor controller on SPI.
+    pub fn has_spi_slave(self) -> bool {
+        matches!(self, Self::Stm32f405 | Self::Stm32g474)
+    }
+
     /// Speed of its serial line [baud]: where the UART has no FIFO, the tick must not outlast a byte.
     pub fn baud_rate(self) -> u32 {
         match self {

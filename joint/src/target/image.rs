@@ -18,7 +18,9 @@ use crate::failure::{Failure, Outcome};
 /// Fixed steps a second unless something else is asked for [Hz].
 pub const DEFAULT_TICK_RATE: u32 = 20_000;
 /// Control periods a second of a slave on SPI: transfer and step fit one after the other [Hz].
-const SPI_RATE: u32 = 5000;
+pub const SPI_RATE: u32 = 5000;
+/// The binary of that slave.
+const SPI_BINARY: &str = "spi_observer";
 /// Where the flash of every board begins; RAM is at and beyond [`RAM`].
 const FLASH: u64 = 0x0800_0000;
 const RAM: u64 = 0x2000_0000;
@@ -50,11 +52,9 @@ pub fn build_image(
     tick_rate: u32,
     say: Say<'_>,
 ) -> Outcome<Image> {
-    let joint_file = joint_file.canonicalize().map_err(|error| {
-        Failure::new(format!("joint file {}: {error}", joint_file.display())).with_help("name a file that can be read")
-    })?;
+    let joint_file = readable(joint_file)?;
     check_rate(board, tick_rate)?;
-    let place = file_name(&joint_file, board, role, tick_rate);
+    let place = file_name(&joint_file, board, word(role), tick_rate);
     finish(toolchain, [&joint_file; 2], board, binary(role), &Control::usual(tick_rate), &place, say)
 }
 
@@ -97,11 +97,33 @@ pub fn build_control_image(
     finish(toolchain, [&truth_file, &told_file], board, binary(role), control, &place, say)
 }
 
-/// Builds observer and compensation of joint q1 as a slave on SPI, for the board that has such a slave.
-pub fn build_spi_slave(toolchain: &Toolchain, say: Say<'_>) -> Outcome<Image> {
-    let (board, joint) = (Board::Stm32f405, preset_file("q1"));
-    let place = format!("q1-{}-spi-observer.elf", board.name());
-    finish(toolchain, [&joint; 2], board, "spi_observer", &Control::usual(SPI_RATE), &place, say)
+/// Builds observer and compensation of a joint as a slave on SPI, for a board that can be one.
+pub fn build_spi_slave(
+    toolchain: &Toolchain,
+    joint_file: &Path,
+    board: Board,
+    rate: u32,
+    say: Say<'_>,
+) -> Outcome<Image> {
+    if !board.has_spi_slave() {
+        let message =
+            format!("{} is no slave on SPI: its SPI is of another kind, and nobody has written that", board.name());
+        let able: Vec<&str> = Board::ALL.into_iter().filter(|board| board.has_spi_slave()).map(Board::name).collect();
+        return Err(Failure::new(message).with_help(format!(
+            "take {}; beside a motor controller on the same chip or on a serial line, --role observer is for every board",
+            able.join(" or ")
+        )));
+    }
+    let joint_file = readable(joint_file)?;
+    let place = file_name(&joint_file, board, SPI_BINARY, rate);
+    finish(toolchain, [&joint_file; 2], board, SPI_BINARY, &Control::usual(rate), &place, say)
+}
+
+/// The whole path of a joint file.
+fn readable(joint_file: &Path) -> Outcome<PathBuf> {
+    joint_file.canonicalize().map_err(|error| {
+        Failure::new(format!("joint file {}: {error}", joint_file.display())).with_help("name a file that can be read")
+    })
 }
 
 fn finish(
@@ -177,7 +199,7 @@ fn binary(role: Role) -> &'static str {
 
 /// Joint, board, role, and the tick rate if it is not the usual one. Files of the same name in different folders are
 /// told apart by a digest of the path.
-fn file_name(joint_file: &Path, board: Board, role: Role, tick_rate: u32) -> String {
+fn file_name(joint_file: &Path, board: Board, role: &str, tick_rate: u32) -> String {
     let joint = joint_file.file_stem().unwrap_or_default().to_string_lossy();
     let presets = workspace().join("joints");
     let presets = presets.canonicalize().unwrap_or(presets);
@@ -190,7 +212,7 @@ fn file_name(joint_file: &Path, board: Board, role: Role, tick_rate: u32) -> Str
         }
     };
     let rate = if tick_rate == DEFAULT_TICK_RATE { String::new() } else { format!("-{tick_rate}hz") };
-    format!("{joint}{origin}-{}-{}{rate}.elf", board.name(), word(role))
+    format!("{joint}{origin}-{}-{role}{rate}.elf", board.name())
 }
 
 /// Bytes in flash (loaded segments) and in RAM (everything at RAM addresses).
@@ -215,7 +237,7 @@ mod tests {
     use super::*;
 
     fn name(path: &Path) -> String {
-        file_name(path, Board::Stm32f405, Role::Plant, DEFAULT_TICK_RATE)
+        file_name(path, Board::Stm32f405, "plant", DEFAULT_TICK_RATE)
     }
 
     #[test]
@@ -224,7 +246,7 @@ mod tests {
         assert_eq!(name(&preset), "q1-stm32f405-plant.elf");
         assert_ne!(name(&preset), name(&preset_file("s1")));
         assert_ne!(name(Path::new("/a/q1.toml")), name(Path::new("/b/q1.toml")));
-        assert_eq!(file_name(&preset, Board::Stm32h743, Role::Plant, 10_000), "q1-stm32h743-plant-10000hz.elf");
+        assert_eq!(file_name(&preset, Board::Stm32h743, "plant", 10_000), "q1-stm32h743-plant-10000hz.elf");
     }
 
     #[test]

@@ -45,6 +45,8 @@ pub struct Injection {
     /// What the encoders read at the start, where they are homed: what they say is counted from there.
     home: Option<[i64; 2]>,
     past: [VecDeque<Frame>; 2],
+    /// Periods of the last readings that came.
+    come: [Option<u64>; 2],
     last: Option<Seen>,
     set_points: VecDeque<(u64, SetPoint)>,
     given: Option<(u64, SetPoint)>,
@@ -64,6 +66,7 @@ impl Injection {
             counts_per_turn: encoders.map(|encoder| (1_u64 << encoder.bits) as f64),
             home: None,
             past: Default::default(),
+            come: [None; 2],
             last: None,
             set_points: VecDeque::new(),
             given: None,
@@ -96,8 +99,11 @@ impl Injection {
                     FaultKind::LateFrames(of, delay) if of == name => {
                         let late = (delay / self.period).round() as usize;
                         keep = keep.max(late);
+                        // What has come before does not come again: while a delay begins, nothing comes.
+                        let known = self.come[index];
                         if fault.fault.is_on(time) {
-                            *frame = past.iter().rev().nth(late).or(past.front()).copied();
+                            let arrived = past.iter().rev().nth(late).copied();
+                            *frame = arrived.filter(|arrived| known.is_none_or(|known| arrived.period > known));
                         }
                     }
                     FaultKind::LostFrames(of, share)
@@ -111,6 +117,7 @@ impl Injection {
             while past.len() > keep + 1 {
                 past.pop_front();
             }
+            self.come[index] = frame.map(|frame| frame.period).or(self.come[index]);
         }
         // A motor encoder that says nothing leaves its last word standing, with the time at which it was said.
         let motor = frames[0].or(self.last.map(|last| last.motor)).unwrap_or(Frame { counts: 0, period: 0 });
@@ -150,7 +157,8 @@ impl Injection {
         while self.set_points.len() > keep {
             self.set_points.pop_front();
         }
-        self.given = arrived.or(self.given).or(Some((number, set_point)));
+        let is_new = |(number, _): &(u64, SetPoint)| self.given.is_none_or(|(known, _)| *number >= known);
+        self.given = arrived.filter(is_new).or(self.given).or(Some((number, set_point)));
         self.given.map_or(set_point, |(_, set_point)| set_point)
     }
 

@@ -9,14 +9,13 @@ use crate::record::{Bound, Verdict};
 /// The whole document.
 pub fn render(record: &TestsRecord) -> String {
     let mut xml = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
-    let skipped = record.not_run.len();
-    let tests = record.tests.iter().map(cases).sum::<usize>() + skipped;
+    let tests = record.tests.iter().map(cases).sum::<usize>() + record.not_run.len();
     let failed: usize = record.tests.iter().map(|test| test.failed().count()).sum();
     let errors = record.tests.iter().filter(|test| test.broken.is_some()).count();
-    // Writing to a string cannot fail.
+    // What was skipped stands with each suite: the schema of Jenkins knows it there only. Writing to a string cannot fail.
     let _ = writeln!(
         xml,
-        "<testsuites name=\"joint hil\" tests=\"{tests}\" failures=\"{failed}\" errors=\"{errors}\" skipped=\"{skipped}\" time=\"{:.3}\">",
+        "<testsuites name=\"joint hil\" tests=\"{tests}\" failures=\"{failed}\" errors=\"{errors}\" time=\"{:.3}\">",
         record.seconds
     );
     record.tests.iter().for_each(|test| suite(&mut xml, test, &record.date));
@@ -45,7 +44,11 @@ fn suite(xml: &mut String, test: &TestRecord, date: &str) {
         let _ = write!(xml, "    <testcase classname=\"{name}\" name=\"runs to its end\"");
         match &test.broken {
             Some(why) => {
-                let _ = writeln!(xml, ">\n      <error message=\"{}\"/>\n    </testcase>", escaped(why));
+                let _ = writeln!(
+                    xml,
+                    ">\n      <error type=\"broken off\" message=\"{}\"/>\n    </testcase>",
+                    escaped(why)
+                );
             }
             None => *xml += "/>\n",
         }
@@ -63,7 +66,7 @@ fn suite(xml: &mut String, test: &TestRecord, date: &str) {
             let figure = assertion.figure.map_or("none".to_owned(), |figure| figure.to_string());
             let seed = assertion.seed.map_or(String::new(), |seed| format!(", seed {seed}"));
             let message = escaped(&format!("{figure} {}{seed}. {}", assertion.unit, assertion.note));
-            let _ = writeln!(xml, ">\n      <failure message=\"{message}\"/>\n    </testcase>");
+            let _ = writeln!(xml, ">\n      <failure type=\"bound\" message=\"{message}\"/>\n    </testcase>");
         } else {
             *xml += "/>\n";
         }
@@ -78,7 +81,7 @@ fn left_out(xml: &mut String, not_run: &NotRun, date: &str) {
     let _ = writeln!(
         xml,
         "  <testsuite name=\"{name}\" tests=\"1\" failures=\"0\" errors=\"0\" skipped=\"1\" time=\"0\" timestamp=\"{date}\">\n    \
-         <testcase classname=\"{name}\" name=\"runs to its end\">\n      <skipped message=\"{message}\"/>\n    </testcase>\n  \
+         <testcase classname=\"{name}\" name=\"runs to its end\">\n      <skipped type=\"not run\" message=\"{message}\"/>\n    </testcase>\n  \
          </testsuite>"
     );
 }

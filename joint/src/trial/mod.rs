@@ -49,6 +49,7 @@ use record::{NotRun, SCHEMA, TestsRecord};
 use suite::{Choice, Suite, Test};
 
 use crate::failure::{EXIT_INTERRUPTED, Failure, Outcome};
+use crate::folder;
 use crate::hil::{Progress, origin};
 use crate::output;
 use crate::record::write_text;
@@ -102,17 +103,10 @@ pub fn run(wanted: &Wanted<'_>, progress: &Progress) -> Outcome<()> {
         let boards = boards.map(|wish| Boards::prepare(wish, &mut suite, *plant, progress)).transpose()?;
         parts.push(Ready { suite, plant: *plant, boards });
     }
+    let read: Vec<PathBuf> = parts.iter().flat_map(|part| &part.suite.tests).flat_map(Test::files).collect();
+    let read: Vec<&Path> = read.iter().map(PathBuf::as_path).collect();
+    folder::check_files(&[("json", wanted.json), ("junit", wanted.junit)], &read)?;
     let folder = Folder::prepare(wanted.out.as_deref(), "hil/tests", &wanted.name)?;
-    for path in [wanted.json, wanted.junit].into_iter().flatten() {
-        if let Some(parent) = path.parent().filter(|parent| !parent.as_os_str().is_empty() && !parent.is_dir()) {
-            let message = format!("there is no folder {} for {}", parent.display(), path.display());
-            return Err(Failure::new(message).with_help("create it first, or name another path"));
-        }
-        if path.is_dir() {
-            let message = format!("{} is a folder, and results go to a file", path.display());
-            return Err(Failure::new(message).with_help("name a file in it"));
-        }
-    }
     let logs = prepare_logs(&folder)?;
     let (tested, not_run) = run_parts(parts, wanted, &logs, progress)?;
     let record = TestsRecord {

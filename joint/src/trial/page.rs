@@ -35,12 +35,24 @@ pub fn render(record: &TestsRecord, tested: &[Tested]) -> String {
     page(&format!("Tests: {title}"), "", &body)
 }
 
-fn pill(passed: bool) -> Markup {
-    html! { span class={ "pill " @if passed { "passed" } @else { "failed" } } { @if passed { "PASSED" } @else { "FAILED" } } }
+/// What came of a test, as a class and a word: one that asserts nothing has nothing to pass.
+fn verdict(test: &TestRecord) -> (&'static str, &'static str) {
+    match (test.passed, test.assertions.is_empty()) {
+        (false, _) => ("failed", "FAILED"),
+        (true, true) => ("open", "ran"),
+        (true, false) => ("passed", "passed"),
+    }
+}
+
+fn pill(test: &TestRecord) -> Markup {
+    let (class, word) = verdict(test);
+    html! { span class={ "pill " (class) } { (word.to_uppercase()) } }
 }
 
 fn header(record: &TestsRecord, failed: usize) -> Markup {
+    let nothing_asserted = record.tests.iter().all(|test| test.assertions.is_empty());
     let (class, word) = match (failed, record.not_run.len()) {
+        (0, 0) if nothing_asserted => ("open", "RAN, NOTHING ASSERTED".to_owned()),
         (0, 0) => ("passed", "PASSED".to_owned()),
         (0, 1) => ("failed", "1 TEST NOT RUN".to_owned()),
         (0, many) => ("failed", format!("{many} TESTS NOT RUN")),
@@ -77,7 +89,7 @@ fn tiles(record: &TestsRecord) -> Markup {
     let of = |part: usize, whole: usize| html! { (part) span.of { " of " (whole) } };
     html! {
         section.tiles {
-            (tile("Tests passed", html! {}, of(passed, tests.len() + record.not_run.len())))
+            (tile(if asserted > 0 { "Tests passed" } else { "Tests ran" }, html! {}, of(passed, tests.len() + record.not_run.len())))
             (tile("Assertions held", html! {}, of(asserted - failed, asserted)))
             (tile("Runs", html! {}, html! { (runs) }))
             (tile("On the clock", html! {}, html! { (number((10.0 * record.seconds).round() / 10.0)) span.of { " s" } }))
@@ -160,8 +172,9 @@ fn overview(record: &TestsRecord) -> Markup {
                 tbody { @for test in &record.tests {
                     @let tested = ControllerName::of_word(&test.controller, false);
                     @let impedance = tested.wants_gains();
+                    @let (class, word) = verdict(test);
                     tr {
-                        td.verdict { span class={ "mark " @if test.passed { "passed" } @else { "failed" } } { @if test.passed { "passed" } @else { "FAILED" } } }
+                        td.verdict { span class={ "mark " (class) } { (word) } }
                         td { a href={ "#" (anchor(test)) } { (test.file) } " " span.note { (test.title) } }
                         td.number { (worst(test, tested, impedance)) }
                         td.number { (worst(test, ControllerName::baseline(impedance), impedance)) }

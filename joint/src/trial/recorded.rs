@@ -6,15 +6,14 @@ use std::path::Path;
 use host_tests::closed_loop::{Motion, Reference};
 
 use crate::failure::{Failure, Outcome};
+use crate::hil::profile::{FASTEST, STRONGEST};
 
 /// Columns that must be there.
 const COLUMNS: [&str; 2] = ["time_s", "position_rad"];
 /// The column that may be there.
 const LOAD: &str = "load_torque_N_m";
-/// What positions [rad], loads [N m] and speeds from row to row [rad/s] keep to: beyond them no joint can be meant.
+/// What positions keep to, as loads and speeds keep to theirs: beyond them no joint can be meant [rad].
 const FARTHEST: f64 = 1e4;
-const STRONGEST: f64 = 1e6;
-const FASTEST: f64 = 1e4;
 
 /// Rows of the file, in rising time from 0.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,6 +52,10 @@ impl Recorded {
         let (_, header) = lines.next().ok_or_else(|| Failure::new("the motion is empty").with_help(header_help))?;
         let header: Vec<&str> = header.split(',').map(|name| name.trim().trim_matches('"')).collect();
         let place = |name: &str| header.iter().position(|column| *column == name);
+        let twice = |name: &&&str| header.iter().filter(|column| *column == *name).count() > 1;
+        if let Some(name) = COLUMNS.iter().chain([&LOAD]).find(twice) {
+            return Err(Failure::new(format!("there are two columns `{name}`")).with_help(header_help));
+        }
         let [time, position] = COLUMNS.map(|name| {
             place(name).ok_or_else(|| Failure::new(format!("there is no column `{name}`")).with_help(header_help))
         });
@@ -168,6 +171,7 @@ mod tests {
         let refused = |text: &str| Recorded::parse(text).expect_err(text).message().to_owned();
         assert!(refused("").contains("empty"));
         assert!(refused("time_s,angle\n0,0\n").contains("position_rad"));
+        assert!(refused("time_s,position_rad,position_rad\n0,0,0\n1,1,2\n").contains("two columns `position_rad`"));
         assert!(refused("time_s,position_rad\n0,0\n0,1\n").contains("line 3"));
         assert!(refused("time_s,position_rad\n0,0\n1,NaN\n").contains("line 3"));
         assert!(refused("time_s,position_rad\n0,0\n").contains("two rows"));

@@ -9,7 +9,7 @@ use link::messages::Role;
 use sha2::{Digest, Sha256};
 
 use super::case::{Case, check_changes, recorded};
-use super::file::{self, FaultKind, TestFile};
+use super::file::{self, Course, FaultKind, TestFile};
 use super::plant::PlantName;
 use super::record::NotRun;
 use super::recorded::Recorded;
@@ -150,7 +150,7 @@ fn load_one(path: &Path, plant: PlantName) -> Outcome<Test> {
         .with_help("run it with --plant reference, with --host or --role observer"));
     }
     let motion = recorded(&file, folder).map_err(|failure| failure.while_doing(&name))?;
-    let file = match (&motion, text.contains("duration_s")) {
+    let file = match (&motion, file.states_duration) {
         // A recorded motion is as long as it is, unless the file says otherwise.
         (Some(motion), false) => TestFile { duration: motion.duration().max(file.settle + 0.1), ..file },
         _ => file,
@@ -184,6 +184,19 @@ impl Test {
             case.design(&self.file).map_err(|failure| failure.while_doing(&self.name))?;
         }
         Ok(())
+    }
+
+    /// The files that it is made of.
+    pub fn files(&self) -> Vec<PathBuf> {
+        let test = PathBuf::from(&self.name);
+        let motion = match &self.file.profile.course {
+            Course::File(name) => Some(test.with_file_name(name)),
+            _ => None,
+        };
+        [test.clone(), test.with_file_name(&self.file.joint), PathBuf::from(&self.file.joint)]
+            .into_iter()
+            .chain(motion)
+            .collect()
     }
 
     /// SHA-256 of the joint file's text.

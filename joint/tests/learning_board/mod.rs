@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex};
 
 use embedded_hal::digital::{ErrorType, OutputPin};
 use firmware::budget::TickTimer;
-use firmware::control::{Control, Work};
+use firmware::control::Control;
 use firmware::conversation::{Conversation, LogEnd};
 use firmware::identity::{StartUp, hello};
 use firmware::observer::{ObserverWords, Observing};
@@ -17,6 +17,7 @@ use firmware::port::Direct;
 use firmware::queues::Queues;
 use firmware::serial::{Line, Serial, Uart};
 use firmware::timing_report::Resources;
+use firmware::work::Work;
 use heapless::spsc::Queue;
 use joints::JointFile;
 use link::messages::Clock;

@@ -4,8 +4,9 @@
 
 use std::path::Path;
 
-use super::Torques;
+use super::{STRONGEST, Torques};
 use crate::failure::{Failure, Outcome};
+use crate::output::typed;
 
 /// Columns of the file, in any order; others are ignored.
 pub const COLUMNS: [&str; 3] = ["time_s", "motor_torque_Nm", "load_torque_Nm"];
@@ -27,8 +28,10 @@ struct Row {
 impl Recording {
     /// Reads a file; the first row is time 0 of the run, whatever its time.
     pub fn read(path: &Path) -> Outcome<Self> {
-        let text = std::fs::read_to_string(path)
-            .map_err(|error| Failure::new(format!("cannot read the profile {}: {error}", path.display())))?;
+        let text = std::fs::read_to_string(path).map_err(|error| {
+            Failure::new(format!("cannot read the profile {}: {error}", path.display()))
+                .with_help(format!("name a CSV file, as text in UTF-8; {}", wanted_header()))
+        })?;
         Self::parse(&text).map_err(|failure| failure.while_doing(path.display()))
     }
 
@@ -121,9 +124,13 @@ fn push(rows: &mut Vec<Row>, start: f64, line: u64, [time, drive, load]: [f64; 3
 
 fn number(line: u64, column: &str, text: &str) -> Outcome<f64> {
     match text.parse::<f64>() {
-        Ok(value) if value.is_finite() && (value as f32).is_finite() => Ok(value),
-        Ok(value) => Err(Failure::new(format!("line {line}: {column} is {value}"))
+        Ok(value) if !value.is_finite() => Err(Failure::new(format!("line {line}: {column} is {value}"))
             .with_help("every value must be a finite number: remove the row or fill it in")),
+        Ok(value) if column != COLUMNS[0] && value.abs() > STRONGEST => {
+            Err(Failure::new(format!("line {line}: {column} is {}", typed(value)))
+                .with_help(format!("it may be from -{STRONGEST} to {STRONGEST} N m: check the unit")))
+        }
+        Ok(value) => Ok(value),
         Err(_) => Err(Failure::new(format!("line {line}: {column} is `{text}`, not a number"))
             .with_help("write numbers with a decimal point, and commas between columns")),
     }

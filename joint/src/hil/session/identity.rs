@@ -7,6 +7,7 @@ use link::PROTOCOL_VERSION;
 use link::messages::{Hello, Role};
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 
+use super::Mend;
 use crate::failure::{Failure, Outcome};
 use crate::target::image::word;
 
@@ -25,15 +26,15 @@ pub struct Expected {
     pub role: Role,
     /// Digest over its controller's tables, if it has any.
     pub control_digest: Option<u64>,
-    /// Command that puts the right image onto the board.
-    pub mend: String,
+    /// What to do about a board that is none of this.
+    pub mend: Mend,
 }
 
 impl Expected {
     /// Refuses a board that is another one.
     pub fn verify(&self, hello: &Hello) -> Outcome<()> {
         verify_protocol(hello.protocol, &self.mend)?;
-        let refuse = |what: String| Err(Failure::new(what).with_help(format!("flash the right image: {}", self.mend)));
+        let refuse = |what: String| Err(Failure::new(what).with_help(self.mend.of_another_image()));
         if hello.role != self.role {
             let (board, host) = (word(hello.role), word(self.role));
             return refuse(format!("the board's image has the role `{board}`, this run asks for `{host}`"));
@@ -61,18 +62,8 @@ impl Expected {
     }
 }
 
-fn verify_protocol(protocol: u16, mend: &str) -> Outcome<()> {
-    if protocol == PROTOCOL_VERSION {
-        return Ok(());
-    }
-    let message =
-        format!("the board speaks version {protocol} of the link protocol, this host version {PROTOCOL_VERSION}");
-    let help = if protocol > PROTOCOL_VERSION {
-        format!("the board's firmware is newer: update this checkout, or flash this one's image: {mend}")
-    } else {
-        format!("the board's firmware is older: flash this checkout's image: {mend}")
-    };
-    Err(Failure::new(message).with_help(help))
+fn verify_protocol(protocol: u16, mend: &Mend) -> Outcome<()> {
+    if protocol == PROTOCOL_VERSION { Ok(()) } else { Err(mend.of_protocol(protocol)) }
 }
 
 /// The first fields of a hello, which keep their places in every version.
@@ -84,10 +75,10 @@ pub struct HelloHead {
 
 impl HelloHead {
     /// Why a board with this head cannot be worked with, if its hello as a whole could not be read.
-    pub fn refusal(self, mend: &str) -> Failure {
+    pub fn refusal(self, mend: &Mend) -> Failure {
         let Err(failure) = verify_protocol(self.protocol, mend) else {
             let message = format!("the board's image has a role that this host does not know (number {})", self.role);
-            return Failure::new(message).with_help(format!("flash the right image: {mend}"));
+            return Failure::new(message).with_help(mend.of_another_image());
         };
         failure
     }
@@ -157,7 +148,7 @@ mod tests {
     }
 
     fn expected() -> Expected {
-        let mend = "cargo joint flash joints/q1.toml".to_owned();
+        let mend = Mend::Flash("cargo joint flash joints/q1.toml".to_owned());
         Expected {
             joint: "q1".into(),
             digest: 0x1234,
@@ -206,10 +197,10 @@ mod tests {
         assert!(!own.is_foreign());
         let other_role = head_of(&(0u32, PROTOCOL_VERSION, [1u8, 2, 3], 7u32, "with fields", 1.5f64)).expect("a head");
         assert!(other_role.is_foreign());
-        assert!(other_role.refusal("mend").message().contains("(number 7)"));
+        assert!(other_role.refusal(&Mend::Rebuild).message().contains("(number 7)"));
         let other_version = head_of(&(0u32, 9u16, [1u8, 2, 3], 0u32)).expect("a head");
         assert!(other_version.is_foreign());
-        assert!(other_version.refusal("mend").message().contains("version 9"));
+        assert!(other_version.refusal(&Mend::Rebuild).message().contains("version 9"));
     }
 
     #[test]

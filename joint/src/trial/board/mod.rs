@@ -27,11 +27,11 @@ use super::suite::{Suite, Test};
 use crate::failure::{Failure, Outcome};
 use crate::hil::Progress;
 use crate::hil::bench::Bench;
-use crate::hil::session::{Expected, Session};
+use crate::hil::session::{Expected, Mend, Session};
 use crate::hil::transport::Port;
 use crate::hil::twin::tables_digest;
 use crate::target::emulator;
-use crate::target::image::{self, Control, word};
+use crate::target::image::{self, Control, Image, word};
 use crate::target::toolchain::Toolchain;
 
 /// A sample of the whole loop every so many periods; the digest covers every period.
@@ -140,8 +140,7 @@ impl<'w> Boards<'w> {
                 Bench::in_emulator(&self.version, image)?
             }
         };
-        let place = bench.image.as_ref().map_or_else(String::new, |image| image.elf.display().to_string());
-        let expected = self.expected(pair, &place)?;
+        let expected = self.expected(pair, bench.image.as_ref())?;
         let sha256 = bench.image.map(|image| image.sha256).unwrap_or_default();
         let mut session = Session::new(bench.line, bench.surroundings);
         session.connect(&expected, bench.patience)?;
@@ -149,7 +148,7 @@ impl<'w> Boards<'w> {
         Ok((session, sha256))
     }
 
-    fn expected(&self, pair: &Pair, image: &str) -> Outcome<Expected> {
+    fn expected(&self, pair: &Pair, image: Option<&Image>) -> Outcome<Expected> {
         let Pair { told, truth, control, .. } = pair;
         let wish = ControlWish { bandwidth: control.bandwidth, output_encoder: control.output_encoder };
         let (told_around, board) = (told.surroundings(), self.wish.board);
@@ -164,9 +163,13 @@ impl<'w> Boards<'w> {
             planets: truth.parameters.geometry.planets,
             role: self.wish.role,
             control_digest: Some(source.digest),
-            mend: match image {
-                "" => "run without --no-build to have it built".to_owned(),
-                image => format!("probe-rs download --chip {chip} {image} && probe-rs reset --chip {chip}"),
+            mend: match (image, self.wish.port) {
+                (_, None) => Mend::Rebuild,
+                (Some(Image { elf, .. }), Some(_)) => {
+                    let elf = elf.display();
+                    Mend::FlashBuilt(format!("probe-rs download --chip {chip} {elf} && probe-rs reset --chip {chip}"))
+                }
+                (None, Some(_)) => Mend::Flash("run without --no-build, which builds and names it".to_owned()),
             },
         })
     }

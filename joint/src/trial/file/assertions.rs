@@ -86,6 +86,10 @@ pub(super) fn read(top: &Section<'_>, about: &About<'_>) -> Vec<Assertion> {
         };
         match value.get_ref() {
             DeValue::Table(inner) => {
+                if inner.is_empty() {
+                    let message = format!("nothing is asked of `{word}`");
+                    top.problems.error(value.span(), message, "write a bound, such as { median = \">= 3\" }");
+                }
                 for (aggregate, value) in inner {
                     match aggregate.get_ref().as_ref() {
                         "worst" => add(Aggregate::Worst, value),

@@ -60,6 +60,10 @@ fn collect(table: &DeTable<'_>, path: &str, section: &str, problems: &Problems, 
             continue;
         }
         let new = match value.get_ref() {
+            DeValue::String(text) if text.trim().parse::<f64>().is_ok() => {
+                problems.error(value.span(), format!("\"{text}\" is a text"), "write the number without quotes");
+                None
+            }
             DeValue::String(text) => Some(NewValue::Text(text.to_string())),
             // Two numbers are a range; planets are three at least.
             DeValue::Array(list) if list.len() != 2 => {

@@ -118,7 +118,14 @@ pub(super) fn read(section: &Section<'_>) -> Option<Fault> {
             let [ratio, torque] = one_of(["ratio", "torque_N_m"]);
             FaultKind::TorqueBias(ratio, torque)
         }
-        "torque_saturation" => FaultKind::Saturation(needed("torque_N_m")?.abs()),
+        "torque_saturation" => {
+            let limit = needed("torque_N_m")?;
+            if limit < 0.0 {
+                let help = "write the most that the motor gives, to either side";
+                section.problems.error(section.span("torque_N_m"), format!("a limit of {limit} N m is none"), help);
+            }
+            FaultKind::Saturation(limit)
+        }
         "lost_frames" => FaultKind::LostFrames(frames, needed("share")?),
         "late_frames" => FaultKind::LateFrames(frames, needed("delay_ms")? / 1e3),
         "grown_backlash" => FaultKind::GrownBacklash(needed("half_backlash_um")? / 1e6),

@@ -43,6 +43,8 @@ pub struct TestFile {
     pub only_with_full: bool,
     /// Length of a run [s].
     pub duration: f64,
+    /// The file says so itself.
+    pub states_duration: bool,
     /// Figures are taken from here on [s].
     pub settle: f64,
     /// On the clock [s].
@@ -100,7 +102,11 @@ pub fn read(text: &str) -> Result<TestFile, Vec<Problem>> {
     let (table, syntax) = DeTable::parse_recoverable(text);
     for error in syntax.iter().take(1) {
         let span = error.span().unwrap_or(0..0);
-        problems.error(span, format!("not TOML: {}", error.message()), "write lines of the form key = value");
+        let help = match error.message() {
+            "duplicate key" => "leave one of the two out",
+            _ => "write lines of the form key = value",
+        };
+        problems.error(span, format!("not TOML: {}", error.message()), help);
     }
     // What was recovered from broken syntax would be blamed for what the parser dropped.
     let file = if syntax.is_empty() { read_table(table.get_ref(), &problems) } else { None };
@@ -217,6 +223,7 @@ fn read_table(table: &DeTable<'_>, problems: &Problems) -> Option<TestFile> {
         seeds,
         full_seeds,
         duration,
+        states_duration: top.has("duration_s"),
         settle,
         known,
         plant,

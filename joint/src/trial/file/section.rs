@@ -9,6 +9,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::keys::{self, Key, Kind};
+use crate::output::typed;
 use crate::trial::draw::Quantity;
 
 /// Problems of one file, as they are found.
@@ -116,10 +117,12 @@ impl<'a> Section<'a> {
     /// A list of such words.
     pub fn words(&self, name: &str) -> Option<Vec<&'static str>> {
         let (value, key) = self.value(name)?;
-        match value.get_ref() {
+        let words: Option<Vec<&'static str>> = match value.get_ref() {
             DeValue::Array(list) => list.iter().map(|item| self.word_of(item, key)).collect(),
             _ => self.wrong_type(value, key, "a list of names"),
-        }
+        };
+        words.iter().for_each(|words| self.refuse_twice(value, words));
+        words
     }
 
     /// A word in place of a section, or a key of a section.
@@ -174,17 +177,25 @@ impl<'a> Section<'a> {
             _ => seed(value).filter(|count| *count <= 10_000).map(|count| (1..=count).collect()),
         };
         let good = seeds.filter(|seeds| !seeds.is_empty());
-        if good.is_none() {
-            self.problems.error(value.span(), format!("`{name}` names no seeds"), key.hint);
+        match &good {
+            None => self.problems.error(value.span(), format!("`{name}` names no seeds"), key.hint),
+            Some(seeds) => self.refuse_twice(value, seeds),
         }
         good
+    }
+
+    /// Complains about what a list names more than once.
+    fn refuse_twice<T: PartialEq + std::fmt::Display>(&self, value: &Spanned<DeValue<'_>>, list: &[T]) {
+        if let Some((_, twice)) = list.iter().enumerate().find(|(place, item)| list[..*place].contains(item)) {
+            self.problems.error(value.span(), format!("{twice} is named twice"), "name it once: the same runs once");
+        }
     }
 
     pub fn bounded(&self, value: &Spanned<DeValue<'_>>, key: &Key) -> Option<f64> {
         let (Kind::Number(low, high) | Kind::Range(low, high)) = key.kind else { return None };
         let Some(number) = number(value) else { return self.wrong_type(value, key, "a number") };
         if !(low..=high).contains(&number) {
-            let message = format!("`{}` must be between {low} and {high}, not {number}", key.name);
+            let message = format!("`{}` must be between {low} and {high}, not {}", key.name, typed(number));
             self.problems.error(value.span(), message, key.hint);
             return None;
         }

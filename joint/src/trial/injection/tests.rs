@@ -62,6 +62,8 @@ fn frames_are_lost_as_often_as_stated_and_late_ones_keep_their_time() {
     let late = counts("[[fault]]\nkind = \"late_frames\"\ndelay_ms = 0.5\nstart_s = 0.001", 30, 3);
     assert_eq!(late[9], Some(Frame { counts: 27, period: 9 }));
     assert_eq!(late[20], Some(Frame { counts: 45, period: 15 }));
+    assert_eq!(late[10..15], [None; 5], "a reading that came does not come again");
+    assert_eq!(late[15], Some(Frame { counts: 30, period: 10 }));
 }
 
 #[test]
@@ -72,6 +74,16 @@ fn a_set_point_that_is_lost_leaves_the_one_before() {
     let received: Vec<f64> =
         (0..30).map(|k| injection.receive(1e-4 * f64::from(k), k as u64, at(f64::from(k))).motion().position).collect();
     assert_eq!((received[9], received[10], received[19], received[20]), (9.0, 9.0, 9.0, 20.0));
+}
+
+#[test]
+fn a_set_point_that_comes_late_leaves_the_one_before_until_then() {
+    let fault = "[[fault]]\nkind = \"late_frames\"\nframes = \"set_points\"\ndelay_ms = 0.5\nstart_s = 0.001";
+    let (mut injection, _) = injection(fault);
+    let at = |position: f64| SetPoint::Position { now: Motion { position, ..Motion::default() }, ahead: None };
+    let received: Vec<f64> =
+        (0..30).map(|k| injection.receive(1e-4 * f64::from(k), k as u64, at(f64::from(k))).motion().position).collect();
+    assert_eq!((received[9], received[10], received[14], received[15]), (9.0, 9.0, 9.0, 10.0));
 }
 
 #[test]

@@ -23,7 +23,7 @@ const COMPARED: [(&str, &str, &str); 9] = [
     ("crossings", "crossings", ""),
     ("effort_N_m", "torque effort", "N m"),
     ("peak_mesh_force_N", "peak mesh force", "N"),
-    ("peak_mesh_force_ratio", "of rated", ""),
+    ("peak_mesh_force_ratio", "over rated", ""),
 ];
 
 /// Everything about a test.
@@ -32,7 +32,7 @@ pub(super) fn section(tested: &Tested) -> Markup {
     let checks: Vec<Check> = test.assertions.iter().map(|assertion| assertion.check()).collect();
     html! {
         section.names id=(anchor(test)) {
-            div.title { h2 { (test.file) } (pill(test.passed)) }
+            div.title { h2 { (test.file) } (pill(test)) }
             p.subtitle {
                 @if !test.title.is_empty() { strong { (test.title) } " · " }
                 "joint " (test.joint) " · profile " (test.profile) " · controller " (test.controller)
@@ -63,7 +63,7 @@ fn compared(test: &TestRecord) -> Markup {
         table.wide {
             thead { tr {
                 th { "Controller" }
-                @for (_, heading, unit) in &shown { th.number { (heading) @if !unit.is_empty() { " [" (unit) "]" } } }
+                @for (_, heading, unit) in &shown { th.number { (heading) @if !unit.is_empty() { " " span.whole { "[" (unit) "]" } } } }
             } }
             tbody { @for controller in &controllers {
                 tr {

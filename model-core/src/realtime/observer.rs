@@ -23,6 +23,7 @@ mod counts;
 mod doubt;
 mod drive_side;
 mod estimates;
+mod firm;
 mod follow;
 mod inertia;
 mod interval;

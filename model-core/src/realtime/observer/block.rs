@@ -23,8 +23,8 @@ pub(super) struct Settled<'mean, T: Real, const P: usize> {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Block<T: Real, const P: usize> {
     intervals: u8,
-    /// A touch that ended early.
-    pub brief: bool,
+    /// Intervals of which the means are, where a touch ended early; else 0.
+    brief: u8,
     touch: Touch<T>,
     free: Regressors<T, P>,
     raw: T,
@@ -65,7 +65,7 @@ impl<T: Real, const P: usize> Block<T, P> {
     pub fn new() -> Self {
         Self {
             intervals: 0,
-            brief: false,
+            brief: 0,
             touch: Touch::default(),
             free: [T::ZERO; P],
             raw: T::ZERO,
@@ -84,15 +84,14 @@ impl<T: Real, const P: usize> Block<T, P> {
         free.chain([&mut self.raw, &mut self.touch.force]).for_each(|sum| *sum *= by);
     }
 
-    /// Adds an interval; true when enough have passed on one side.
-    pub fn add(&mut self, mean: &Settled<'_, T, P>, side: Option<T>, brief: bool, table: &LearnerTable<T>) -> bool {
+    /// Adds an interval; true when enough have passed on one side, or at least so many and the touch has ended.
+    pub fn add(&mut self, mean: &Settled<'_, T, P>, side: Option<T>, least: u8, table: &LearnerTable<T>) -> bool {
         let full = table.block as u8;
         let Some(side) = side else {
-            let ends = brief && self.intervals < full && self.intervals + self.intervals >= full;
-            if ends && self.touch.side != T::ZERO {
-                self.stretch(T::from_i32(full.into()).over(T::from_i32(self.intervals.into())));
+            if (least..full).contains(&self.intervals) && self.touch.side != T::ZERO {
+                self.brief = self.intervals;
+                self.stretch(T::from_i32(full.into()).over(T::from_i32(self.brief.into())));
                 self.intervals = full;
-                self.brief = true;
                 return true;
             }
             self.clear(T::ZERO);
@@ -124,6 +123,18 @@ impl<T: Real, const P: usize> Block<T, P> {
     /// Regressors and way of a full one.
     pub fn full(&self) -> (Regressors<T, P>, T) {
         (self.touch.on(&self.free), self.raw)
+    }
+
+    /// Part of a way's usual weight that a full one has. The means of a touch that ended early are noisier, and teeth that
+    /// leave or land are not at rest; while the `width_is_known` not, it may have been no touch at all.
+    pub fn worth(&self, table: &LearnerTable<T>, width_is_known: bool) -> T {
+        if self.brief == 0 {
+            T::ONE
+        } else if width_is_known {
+            T::HALF * (T::from_i32(self.brief.into()) * table.per_block).square_root()
+        } else {
+            T::QUARTER
+        }
     }
 
     /// Side of a full one; 0 for unknown.

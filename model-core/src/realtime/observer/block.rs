@@ -25,6 +25,8 @@ pub(super) struct Block<T: Real, const P: usize> {
     intervals: u8,
     /// Intervals of which the means are, where a touch ended early; else 0.
     brief: u8,
+    /// Blocks on the back side and on the drive side that their forces are taken over.
+    taken: [u8; 2],
     touch: Touch<T>,
     free: Regressors<T, P>,
     raw: T,
@@ -33,12 +35,11 @@ pub(super) struct Block<T: Real, const P: usize> {
 }
 
 /// Blocks over which the mean of a force is taken: about half a second of contact.
-const FORCES: i32 = 64;
+const FORCES: u8 = 64;
 
 /// Forces of the last blocks on one side.
 #[derive(Debug, Clone, Copy)]
 struct Forces<T: Real> {
-    blocks: i32,
     /// [N].
     mean: T,
     /// [N^2].
@@ -46,13 +47,12 @@ struct Forces<T: Real> {
 }
 
 impl<T: Real> Forces<T> {
-    const NONE: Self = Self { blocks: 0, mean: T::ZERO, variance: T::ZERO };
+    const NONE: Self = Self { mean: T::ZERO, variance: T::ZERO };
 
     /// Takes in a block's force; gives what it most likely was. Its noise would pass for force that the way does not
     /// follow, hence for a stiffer joint: what varies no more than noise does is taken for constant.
-    fn calibrated(&mut self, force: T, noise: T) -> T {
-        self.blocks = if self.blocks < FORCES { self.blocks + 1 } else { FORCES };
-        let share = T::ONE.over(T::from_i32(self.blocks));
+    fn calibrated(&mut self, blocks: u8, force: T, noise: T) -> T {
+        let share = T::ONE.over(T::from_i32(blocks.into()));
         let by = force - self.mean;
         self.mean += by * share;
         let beyond = force - self.mean;
@@ -66,6 +66,7 @@ impl<T: Real, const P: usize> Block<T, P> {
         Self {
             intervals: 0,
             brief: 0,
+            taken: [0; 2],
             touch: Touch::default(),
             free: [T::ZERO; P],
             raw: T::ZERO,
@@ -75,7 +76,8 @@ impl<T: Real, const P: usize> Block<T, P> {
 
     /// Begins anew on a side.
     fn clear(&mut self, side: T) {
-        *self = Self { forces: self.forces, touch: Touch { side, ..Touch::default() }, ..Self::new() };
+        *self =
+            Self { taken: self.taken, forces: self.forces, touch: Touch { side, ..Touch::default() }, ..Self::new() };
     }
 
     /// Sums of fewer intervals become means.
@@ -114,9 +116,11 @@ impl<T: Real, const P: usize> Block<T, P> {
         if u32::from(self.intervals) < table.block {
             return false;
         }
-        let [back, drive] = &mut self.forces;
-        let forces = if told > T::ZERO { drive } else { back };
-        self.touch.force = forces.calibrated(self.touch.force, table.force_noise);
+        let index = usize::from(told > T::ZERO);
+        if let (Some(forces), Some(taken)) = (self.forces.get_mut(index), self.taken.get_mut(index)) {
+            *taken = (*taken + 1).min(FORCES);
+            self.touch.force = forces.calibrated(*taken, self.touch.force, table.force_noise);
+        }
         true
     }
 

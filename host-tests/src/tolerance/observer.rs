@@ -102,8 +102,8 @@ pub const WIDTH: Bound = Bound {
 /// Width after steps.
 pub const WIDTH_IN_STEPS: Bound = Bound {
     of: "half-backlash after 8 s of steps between two places under the compensation, relative",
-    limit: 0.04,
-    measured: 0.016,
+    limit: 0.02,
+    measured: 0.011,
     reason: "Each flank is met mostly at one of the places; near the middle, where teeth part and land, both are.",
 };
 
@@ -167,7 +167,7 @@ pub const FAILURE_FOUND: Bound = Bound {
 pub const FAILURE_FOUND_AT_SPEED: Bound = Bound {
     of: "time until an output encoder that freezes or jumps is given up while the link turns by 0.4 rad/s or more [s]",
     limit: 1e-3,
-    measured: 0.6e-3,
+    measured: 0.4e-3,
     reason: "A link goes on for that long whatever it runs into; until then the law is driven by what is not.",
 };
 

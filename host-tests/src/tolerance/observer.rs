@@ -99,6 +99,14 @@ pub const WIDTH: Bound = Bound {
     reason: "A guess wrong by half, corrected within the recording.",
 };
 
+/// Width after steps.
+pub const WIDTH_IN_STEPS: Bound = Bound {
+    of: "half-backlash after 8 s of steps between two places under the compensation, relative",
+    limit: 0.02,
+    measured: 0.011,
+    reason: "Each flank is met mostly at one of the places; near the middle, where teeth part and land, both are.",
+};
+
 /// Width after two short touches.
 pub const WIDTH_IN_PASSING: Bound = Bound {
     of: "half-backlash after a push that sends the link from flank to flank, relative",
@@ -153,6 +161,14 @@ pub const FAILURE_FOUND: Bound = Bound {
     limit: 15e-3,
     measured: 4.4e-3,
     reason: "Four milliseconds are waited, so that no impact looks like a failure.",
+};
+
+/// Time until a frozen or jumping output encoder is given up at speed.
+pub const FAILURE_FOUND_AT_SPEED: Bound = Bound {
+    of: "time until an output encoder that freezes or jumps is given up while the link turns by 0.4 rad/s or more [s]",
+    limit: 1e-3,
+    measured: 0.4e-3,
+    reason: "A link goes on for that long whatever it runs into; until then the law is driven by what is not.",
 };
 
 /// Finding an output encoder that loses few counts.

@@ -1,9 +1,10 @@
 //! Encoders that fail and samples that make no sense: found, said, bounded, recovered from.
 
-use host_tests::tolerance::observer::{FAILURE_FOUND, GAP_COARSE, LOST_COUNTS_FOUND};
+use host_tests::drive_train::Disturbance;
+use host_tests::tolerance::observer::{FAILURE_FOUND, FAILURE_FOUND_AT_SPEED, GAP_COARSE, LOST_COUNTS_FOUND};
 use model_core::realtime::observer::{Doubt, Estimates, MAPPED, Observer, Samples, Source};
 
-use crate::motion::Moment;
+use crate::motion::{Moment, uniform};
 use crate::replay::{replay, samples};
 use crate::trial::{Encoders, Trial};
 
@@ -16,8 +17,13 @@ fn turning() -> (Trial, Vec<Moment>) {
 
 /// First moment from `from` seconds on in which the link turns fast.
 fn fast(log: &[Moment], from: f64) -> usize {
-    (from * 10e3) as usize
-        + log.iter().skip((from * 10e3) as usize).position(|moment| moment.link[1].abs() > 1.0).expect("it turns")
+    turns_by(log, from, 1.0)
+}
+
+/// First moment from `from` seconds on in which the link turns by so much [rad/s].
+fn turns_by(log: &[Moment], from: f64, speed: f64) -> usize {
+    let first = (from * 10e3) as usize;
+    first + log.iter().skip(first).position(|moment| moment.link[1].abs() > speed).expect("it turns")
 }
 
 /// Source after every period.
@@ -42,6 +48,72 @@ fn a_frozen_output_encoder_is_given_up_soon_and_taken_back_when_it_turns_again()
     FAILURE_FOUND.check(found as f64 * 1e-4);
     assert_eq!(sources[at + found], Source::MotorOnly(Doubt::Frozen));
     assert_eq!(sources.last(), Some(&Source::Both), "it is taken back");
+}
+
+#[test]
+fn an_encoder_that_freezes_or_jumps_at_speed_is_given_up_within_a_millisecond() {
+    for (name, seed) in [("q1", 22), ("d2", 23)] {
+        let trial = Trial::new(name, "gravity", Encoders::Preset, None, seed).lasting(2.6);
+        let healthy = trial.record();
+        for (speed, jump) in [(0.45, 0), (1.0, 0), (1.0, 40), (0.1, -400)] {
+            let mut log = healthy.clone();
+            let at = turns_by(&log, 1.9, speed);
+            let frozen = log[at].output_counts;
+            log[at..].iter_mut().for_each(|moment| {
+                moment.output_counts = if jump == 0 { frozen } else { moment.output_counts + jump };
+            });
+            let sources = sources(&trial, &log);
+            assert!(sources[10..at].iter().all(|source| *source == Source::Both), "a false alarm");
+            let found = sources[at..].iter().position(|source| *source != Source::Both).expect("it is found");
+            println!("{name} at {speed} rad/s, jump of {jump} counts: after {found} periods");
+            FAILURE_FOUND_AT_SPEED.check(found as f64 * 1e-4);
+            let doubt = if jump == 0 { Doubt::Frozen } else { Doubt::OutOfRange };
+            assert_eq!(sources[at + found], Source::MotorOnly(doubt));
+        }
+    }
+}
+
+#[test]
+fn noise_glitches_blows_coarse_counts_and_late_or_lost_readings_are_no_failure() {
+    let mut trial = Trial::new("q1", "gravity", Encoders::Preset, Some(40e-6), 25).lasting(3.0);
+    let rated = trial.run.joint.rated_output_torque;
+    let blow = |start, torque| Disturbance::Pulse { start, duration: 10e-3, torque };
+    trial.run.disturbances = vec![blow(1.2, 3.0 * rated), blow(1.55, -3.0 * rated), blow(2.3, 3.0 * rated)];
+    let log = trial.record();
+    let mut noise = uniform(7);
+    let mut normal = move || (0..4).map(|_| noise() - 0.5).sum::<f64>() * 3.0_f64.sqrt();
+    let mut lost = uniform(8);
+    let range = 1_u32 << 17;
+    type Spoil<'a> = &'a mut dyn FnMut(usize, &mut Samples<f64>);
+    let noisy: Spoil = &mut |_, samples| shift(samples, (3.0 * normal()).round() as i32, range);
+    let glitches: Spoil = &mut |k, samples| shift(samples, if k % 777 == 5 { 64 } else { 0 }, range);
+    let losing: Spoil = &mut |_, samples| samples.output = samples.output.filter(|_| lost() > 0.2);
+    let late: Spoil = &mut |k, samples| {
+        if k > 15_000 {
+            samples.output =
+                Some(self::samples(&trial.settings, &log[k - 3], k - 3)).and_then(|late: Samples<f64>| late.output);
+        }
+    };
+    for (name, spoil) in [("noise", noisy), ("glitches", glitches), ("lost", losing), ("late", late)] {
+        let tables = trial.tables();
+        let mut observer = Observer::<f64, MAPPED>::new(&tables);
+        for (k, moment) in log.iter().enumerate() {
+            let mut samples = samples(&trial.settings, moment, k);
+            spoil(k, &mut samples);
+            let source = observer.step(&samples).source;
+            assert!(k < 10 || source == Source::Both, "a false alarm at period {k} under {name}");
+        }
+    }
+    let coarse = Trial::new("q1", "gravity", Encoders::Bits(14, 12), Some(40e-6), 25).lasting(3.0);
+    let sources = sources(&coarse, &coarse.record());
+    assert!(sources[10..].iter().all(|source| *source == Source::Both), "a false alarm with 12 bits");
+}
+
+/// Moves the output's reading.
+fn shift(samples: &mut Samples<f64>, by: i32, range: u32) {
+    if let Some(output) = &mut samples.output {
+        output.counts = output.counts.wrapping_add_signed(by) % range;
+    }
 }
 
 #[test]

@@ -13,4 +13,5 @@ mod precision;
 mod presets;
 mod probe;
 mod replay;
+mod steps;
 mod trial;

@@ -49,6 +49,13 @@ const MEMORY: f64 = 100.0;
 /// Time outside the possible range after which the output encoder has failed [s]: longer than impacts ring.
 const FAILED_AFTER: f64 = 4e-3;
 
+/// Shortest time in which a link is stopped by what it runs into, whatever its speed [s]: a quarter of a swing of 250 Hz,
+/// stiffer than an arm against a wall.
+const STOP: f64 = 1e-3;
+
+/// Largest torque of teeth and load against the link beside that, over the motor's largest at the output.
+const BRAKE: f64 = 2.0;
+
 /// Counts by which an output encoder has turned for sure: noise flickers by less.
 const MOVED_COUNTS: f64 = 4.0;
 
@@ -84,6 +91,7 @@ pub fn design_observer<T: Real>(
     let noise = libm::sqrt(way_variance + wind_up_variance + unmodelled * unmodelled);
     let block = libm::round(BLOCK / LEARNING_INTERVAL).max(1.0);
 
+    let stop = libm::round(STOP / step).clamp(1.0, 250.0);
     let half_gap = 2.0 * body.half_backlash;
     let harmonics = |encoder: Option<EncoderSettings>, lever: f64| {
         encoder.map_or(0.0, |encoder| encoder.harmonic_error) * lever / core::f64::consts::SQRT_2
@@ -175,6 +183,11 @@ pub fn design_observer<T: Real>(
         supervisor: SupervisorTable {
             silent_after: (10e-3 / step) as u16,
             failed_after: (FAILED_AFTER / step) as u16,
+            stop: stop as u8,
+            per_stops: real(0.5 / stop),
+            brake: real(
+                0.5 * BRAKE * settings.torque_limit * body.ratio / body.load_inertia * step * step / output_count,
+            ),
             trusted_after: (0.3 / LEARNING_INTERVAL) as u16,
             moved: libm::ldexp(MOVED_COUNTS * output_count / TAU, 32) as u32,
             margin: real(0.1 * half_gap + 0.1 * body.compliance * rated_force),

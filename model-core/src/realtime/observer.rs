@@ -11,7 +11,7 @@
 //! 4. `learner` is one small recursive least squares, updated every few periods in settled contact, for half-backlash,
 //!    offset, compliance, skew and the encoders' error maps. `anchor` tells flanks without a force that stands out, and
 //!    `doubt` what no longer belongs to what was learnt. `parts` gives each period some of that work.
-//! 5. `supervisor` watches the output encoder and falls back to the motor alone.
+//! 5. `pace` and `supervisor` watch the output encoder and fall back to the motor alone.
 //!
 //! `docs/observer.md` derives all of it and says what it cannot know.
 
@@ -23,6 +23,7 @@ mod counts;
 mod doubt;
 mod drive_side;
 mod estimates;
+mod firm;
 mod follow;
 mod inertia;
 mod interval;
@@ -32,6 +33,7 @@ mod load_side;
 mod memory;
 mod motion;
 mod motor_only;
+mod pace;
 mod parts;
 mod places;
 mod present;
@@ -62,6 +64,7 @@ use learner::Learner;
 use load_side::LoadSide;
 use motion::Motion;
 use motor_only::Blind;
+use pace::Pace;
 use places::Places;
 use present::Now;
 use regressors::{COMPLIANCE, HALF_GAP};
@@ -94,6 +97,7 @@ pub struct Observer<'tables, T: Real, const P: usize> {
     doubts: Doubts,
     knowledge: Knowledge<T>,
     supervisor: Supervisor<T>,
+    pace: Pace,
     blind: Blind<T>,
     time: Option<u32>,
     /// Teeth have settled since they came across the gap.
@@ -128,6 +132,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
             anchor: Anchor::new(),
             doubts: Doubts::default(),
             supervisor: Supervisor::new(tables.counts.has_output),
+            pace: Pace::new(),
             blind: Blind::default(),
             time: None,
             settled: false,
@@ -160,6 +165,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         self.anchor = Anchor::new();
         self.doubts = Doubts::default();
         self.supervisor = Supervisor::new(tables.counts.has_output);
+        self.pace = Pace::new();
         self.blind = Blind::default();
         self.time = None;
         self.settled = false;

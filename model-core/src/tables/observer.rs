@@ -233,6 +233,13 @@ pub struct SupervisorTable<T: Real> {
     pub silent_after: u16,
     /// Periods in a row outside the possible range after which it has failed.
     pub failed_after: u16,
+    /// Periods in which whatever the link runs into may stop it; readings that stay the same for longer are judged by the
+    /// way alone.
+    pub stop: u8,
+    /// Half of 1 over them.
+    pub per_stops: T,
+    /// Half of the counts by which teeth and load may slow the link down in a period, for each period.
+    pub brake: T,
     /// Learning intervals in a row in settled contact within the range after which it is taken back.
     pub trusted_after: u16,
     /// Angle by which an output has turned for sure [2^-32 turns].

@@ -23,8 +23,10 @@ pub(super) struct Settled<'mean, T: Real, const P: usize> {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Block<T: Real, const P: usize> {
     intervals: u8,
-    /// A touch that ended early.
-    pub brief: bool,
+    /// Intervals of which the means are, where a touch ended early; else 0.
+    brief: u8,
+    /// Blocks on the back side and on the drive side that their forces are taken over.
+    taken: [u8; 2],
     touch: Touch<T>,
     free: Regressors<T, P>,
     raw: T,
@@ -33,12 +35,11 @@ pub(super) struct Block<T: Real, const P: usize> {
 }
 
 /// Blocks over which the mean of a force is taken: about half a second of contact.
-const FORCES: i32 = 64;
+const FORCES: u8 = 64;
 
 /// Forces of the last blocks on one side.
 #[derive(Debug, Clone, Copy)]
 struct Forces<T: Real> {
-    blocks: i32,
     /// [N].
     mean: T,
     /// [N^2].
@@ -46,13 +47,12 @@ struct Forces<T: Real> {
 }
 
 impl<T: Real> Forces<T> {
-    const NONE: Self = Self { blocks: 0, mean: T::ZERO, variance: T::ZERO };
+    const NONE: Self = Self { mean: T::ZERO, variance: T::ZERO };
 
     /// Takes in a block's force; gives what it most likely was. Its noise would pass for force that the way does not
     /// follow, hence for a stiffer joint: what varies no more than noise does is taken for constant.
-    fn calibrated(&mut self, force: T, noise: T) -> T {
-        self.blocks = if self.blocks < FORCES { self.blocks + 1 } else { FORCES };
-        let share = T::ONE.over(T::from_i32(self.blocks));
+    fn calibrated(&mut self, blocks: u8, force: T, noise: T) -> T {
+        let share = T::ONE.over(T::from_i32(blocks.into()));
         let by = force - self.mean;
         self.mean += by * share;
         let beyond = force - self.mean;
@@ -65,7 +65,8 @@ impl<T: Real, const P: usize> Block<T, P> {
     pub fn new() -> Self {
         Self {
             intervals: 0,
-            brief: false,
+            brief: 0,
+            taken: [0; 2],
             touch: Touch::default(),
             free: [T::ZERO; P],
             raw: T::ZERO,
@@ -75,7 +76,8 @@ impl<T: Real, const P: usize> Block<T, P> {
 
     /// Begins anew on a side.
     fn clear(&mut self, side: T) {
-        *self = Self { forces: self.forces, touch: Touch { side, ..Touch::default() }, ..Self::new() };
+        *self =
+            Self { taken: self.taken, forces: self.forces, touch: Touch { side, ..Touch::default() }, ..Self::new() };
     }
 
     /// Sums of fewer intervals become means.
@@ -84,15 +86,14 @@ impl<T: Real, const P: usize> Block<T, P> {
         free.chain([&mut self.raw, &mut self.touch.force]).for_each(|sum| *sum *= by);
     }
 
-    /// Adds an interval; true when enough have passed on one side.
-    pub fn add(&mut self, mean: &Settled<'_, T, P>, side: Option<T>, brief: bool, table: &LearnerTable<T>) -> bool {
+    /// Adds an interval; true when enough have passed on one side, or at least so many and the touch has ended.
+    pub fn add(&mut self, mean: &Settled<'_, T, P>, side: Option<T>, least: u8, table: &LearnerTable<T>) -> bool {
         let full = table.block as u8;
         let Some(side) = side else {
-            let ends = brief && self.intervals < full && self.intervals + self.intervals >= full;
-            if ends && self.touch.side != T::ZERO {
-                self.stretch(T::from_i32(full.into()).over(T::from_i32(self.intervals.into())));
+            if (least..full).contains(&self.intervals) && self.touch.side != T::ZERO {
+                self.brief = self.intervals;
+                self.stretch(T::from_i32(full.into()).over(T::from_i32(self.brief.into())));
                 self.intervals = full;
-                self.brief = true;
                 return true;
             }
             self.clear(T::ZERO);
@@ -115,15 +116,29 @@ impl<T: Real, const P: usize> Block<T, P> {
         if u32::from(self.intervals) < table.block {
             return false;
         }
-        let [back, drive] = &mut self.forces;
-        let forces = if told > T::ZERO { drive } else { back };
-        self.touch.force = forces.calibrated(self.touch.force, table.force_noise);
+        let index = usize::from(told > T::ZERO);
+        if let (Some(forces), Some(taken)) = (self.forces.get_mut(index), self.taken.get_mut(index)) {
+            *taken = (*taken + 1).min(FORCES);
+            self.touch.force = forces.calibrated(*taken, self.touch.force, table.force_noise);
+        }
         true
     }
 
     /// Regressors and way of a full one.
     pub fn full(&self) -> (Regressors<T, P>, T) {
         (self.touch.on(&self.free), self.raw)
+    }
+
+    /// Part of a way's usual weight that a full one has. The means of a touch that ended early are noisier, and teeth that
+    /// leave or land are not at rest; while the `width_is_known` not, it may have been no touch at all.
+    pub fn worth(&self, table: &LearnerTable<T>, width_is_known: bool) -> T {
+        if self.brief == 0 {
+            T::ONE
+        } else if width_is_known {
+            T::HALF * (T::from_i32(self.brief.into()) * table.per_block).square_root()
+        } else {
+            T::QUARTER
+        }
     }
 
     /// Side of a full one; 0 for unknown.

@@ -135,6 +135,8 @@ pub(super) struct Taken {
     pub motor: Advance,
     /// `None` when there was no fresh reading.
     pub output: Option<Advance>,
+    /// Ticks since the fresh reading before, by their own times.
+    pub apart: u32,
     /// By how many counts the output went on that is in use.
     pub turned: i32,
 }
@@ -145,6 +147,7 @@ impl Counts {
         let motor = self.motor.take(&table.motor, motor.counts);
         let by = if let Advance::By(by) = motor { i64::from(by).wrapping_mul(table.motor_weight) } else { 0 };
         let fresh = output.filter(|reading| table.has_output && (begins || reading.time != self.fresh_time));
+        let apart = fresh.map_or(0, |reading| reading.time.wrapping_sub(self.fresh_time));
         let output = fresh.map(|reading| {
             self.fresh_time = reading.time;
             self.output.take(&table.output, reading.counts)
@@ -156,7 +159,7 @@ impl Counts {
             self.begin(table);
         }
         let turned = if self.implied.is_some() { self.follow(table, by) } else { turned };
-        Taken { motor, output, turned }
+        Taken { motor, output, apart, turned }
     }
 
     /// Both encoders are there for the first time.

@@ -101,7 +101,7 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let table = &self.tables.learner;
         let [half_gap, _] = self.shape();
         let (regressors, way) = self.block.full();
-        let weight = if self.block.brief { table.weight * T::QUARTER } else { table.weight };
+        let weight = table.weight * self.block.worth(table, self.knowledge.width_is_known);
         let weighed = self.learner.weigh(table, &regressors, way, weight);
         if weighed.surprise * weighed.surprise > T::from_i32(GATE * GATE) * weighed.expected {
             self.doubts.surprises += 1;

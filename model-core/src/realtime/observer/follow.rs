@@ -2,13 +2,17 @@
 //! together is left to `present`.
 
 use super::Observer;
-use super::counts::Advance;
+use super::counts::{Advance, Taken};
 use super::estimates::Notices;
+use super::pace::Verdict;
 use super::samples::Samples;
 use crate::real::Real;
 
 /// Periods beyond which the age of a reading is not believed.
 const OLDEST: u32 = 64;
+
+/// Periods between two readings over which the pace is taken to go on.
+const MISSED: u32 = 4;
 
 impl<T: Real, const P: usize> Observer<'_, T, P> {
     /// Takes the samples of one period in.
@@ -50,14 +54,44 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         if began {
             self.load.ahead = T::ZERO;
         }
-        if let (true, Some(reading), Some(Advance::By(_))) = (self.supervisor.sees_both(), samples.output, taken.output)
-        {
+        let follows = self.keep_pace(&taken);
+        if let (true, Some(reading)) = (follows, samples.output) {
             let surprise = self.load.speed * self.age(samples, reading.time) - self.load.ahead;
             self.load.correct(&tables.load.gain, surprise);
         }
         let far = self.places.go_on(motor_turned, output_turned, tables.counts.mesh_periods);
         if far || began || !matches!(taken.motor, Advance::By(_)) {
             self.find_places();
+        }
+    }
+
+    /// Gives the output encoder up where no link could follow its readings; whether the last of them is used.
+    #[inline]
+    fn keep_pace(&mut self, taken: &Taken) -> bool {
+        let tables = self.tables;
+        let both = self.supervisor.sees_both();
+        let Some(Advance::By(by)) = taken.output else {
+            if both && matches!(taken.output, Some(Advance::Jumped(_))) {
+                self.pace.lose();
+                self.fall_behind();
+            }
+            return false;
+        };
+        let [shortest, longest] = tables.period_ticks;
+        if taken.apart.wrapping_sub(shortest) > longest.wrapping_sub(shortest) {
+            self.pace.miss(by, taken.apart.wrapping_sub(shortest) > longest.saturating_mul(MISSED));
+            return both;
+        }
+        match self.pace.take(&tables.supervisor, by) {
+            Verdict::Sound => both,
+            Verdict::Doubted => false,
+            Verdict::Broken => {
+                if both {
+                    self.fall_behind();
+                }
+                self.pace.lose();
+                false
+            }
         }
     }
 

@@ -35,6 +35,8 @@ pub(super) struct Interval<T: Real> {
     side: T,
     /// Mesh force over the last interval [N].
     force: T,
+    /// Flank on which the teeth were pressed then.
+    pressed: ContactState,
     /// Mesh force over a few intervals [N].
     pub steady: T,
     /// Mesh force over the whole rest, landing included [N].
@@ -67,6 +69,7 @@ impl<T: Real> Interval<T> {
             learnt_side: T::ZERO,
             side: T::ZERO,
             force: T::ZERO,
+            pressed: ContactState::Separated,
             steady: T::ZERO,
             rested: T::ZERO,
             open_for: 0,
@@ -152,13 +155,19 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         // A motor that stands still says the same again and again, rounded by its encoder, under a force that its friction
         // hides: that is worth learning once on either flank.
         let turns = magnitude(mean.direction) > T::HALF;
-        let seen = side.or(unknown).filter(|side| {
+        let rise = mean.force - core::mem::replace(&mut self.interval.force, mean.force);
+        let pressed = self.pressed(way - shift, mean.force, rise);
+        let pressed_before = core::mem::replace(&mut self.interval.pressed, pressed);
+        // The first millisecond of a landing is not learnt from.
+        let pressed = (pressed != ContactState::Separated && pressed == pressed_before).then(|| sign(pressed));
+        let told_by_force = side.or(pressed).filter(|side| self.lasts(*side, mean.force, rise));
+        let seen = told_by_force.or(unknown).filter(|side| {
             self.supervisor.sees_both() && (turns || *side != T::ZERO && *side != self.interval.learnt_side)
         });
-        let rise = mean.force - core::mem::replace(&mut self.interval.force, mean.force);
         let force = mean.force + tables.learner.force_lag * rise;
         let settled = Settled { free: &free, mesh: &mesh, raw: mean.raw, force };
-        let full = self.block.add(&settled, seen, !self.knowledge.width_is_known, &tables.learner);
+        let least = self.least_intervals();
+        let full = self.block.add(&settled, seen, least, &tables.learner);
         self.interval.part = Part::Answer(full);
         self.interval.direction = mean.direction;
         self.interval.nearer = if way < shift { -T::ONE } else { T::ONE };

@@ -16,13 +16,13 @@ use crate::mesh::ContactState;
 use crate::real::Real;
 
 /// Periods by which contact may have gone before the smoothed force says so.
-const GONE_BEFORE: u32 = 30;
+const GONE_BEFORE: i32 = 30;
 
 /// What is known of the load without seeing it.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Blind<T: Real> {
-    /// Periods since contact was last felt for sure.
-    open_for: u32,
+    /// Periods since contact was last felt for sure, as far as they count.
+    open_for: u16,
     /// Contact has been felt since the output encoder was given up.
     anchored: bool,
     /// Contact that is felt for sure now.
@@ -52,6 +52,21 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
     pub(super) fn disbelieve(&mut self) {
         self.supervisor.give_up(Doubt::OutOfRange);
         self.do_without();
+    }
+
+    /// The output encoder's readings are no link's: it is where it was going at the pace of those before, if that is known.
+    #[cold]
+    pub(super) fn fall_behind(&mut self) {
+        let pace = self.pace.rate::<T>();
+        let frozen = pace.is_some() && self.pace.stands_still();
+        self.supervisor.give_up(if frozen { Doubt::Frozen } else { Doubt::OutOfRange });
+        self.do_without();
+        if let Some(pace) = pace {
+            let count = self.tables.counts.output.angle;
+            self.load.ahead = count * self.pace.ahead::<T>();
+            self.load.speed = count * pace.over(self.tables.period);
+            self.blind.anchored = true;
+        }
     }
 
     /// Goes on without the output encoder.
@@ -139,8 +154,8 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
     /// What has been added since contact was last felt [m^2].
     fn drift_variance(&self) -> T {
         let load = &self.tables.load;
-        let open_for = if self.blind.open_for > 0 { self.blind.open_for.saturating_add(GONE_BEFORE) } else { 0 };
-        let time = self.tables.period * T::from_i32(open_for.min(1 << 20) as i32);
+        let open_for = if self.blind.open_for > 0 { i32::from(self.blind.open_for) + GONE_BEFORE } else { 0 };
+        let time = self.tables.period * T::from_i32(open_for);
         let [speed_variance, torque_variance] = load.blind_variance;
         let lever = self.tables.levers.output;
         let bounce = self.blind.bounce;

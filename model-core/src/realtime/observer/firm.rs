@@ -1,0 +1,53 @@
+//! Teeth that are pressed together for sure, at rest or not: what is learnt from them before they leave and soon after they
+//! have landed, where one flank is met next to the other. What settled contact shows is left to `interval`.
+
+use super::Observer;
+use super::contact::sign;
+use super::motion::magnitude;
+use crate::mesh::ContactState;
+use crate::real::Real;
+
+/// Intervals of a touch that ended early from which it is learnt, once the width is known.
+const LEAST: u8 = 2;
+
+/// Standard deviations of one way's noise by which a force that changes may move the way while its estimate lags behind.
+const LAGGING: i32 = 4;
+
+/// The same by which the wind-up changes in an interval where teeth may part.
+const FALLING: i32 = 2;
+
+impl<T: Real, const P: usize> Observer<'_, T, P> {
+    /// The flank on which teeth are pressed by more than any bias, while the force does not change so fast that the lag of
+    /// its estimate would matter; `Separated` where that is not sure. The way is less the transmission error [m], and the
+    /// force with its rise is an interval's [N].
+    pub(super) fn pressed(&self, way: T, force: T, rise: T) -> ContactState {
+        let known = &self.knowledge;
+        let table = &self.tables.learner;
+        let [_, compliance] = self.shape();
+        let firm = magnitude(force) > T::THREE * known.mean_force_deviation;
+        let lags = magnitude(rise) * compliance * table.force_lag;
+        if !known.width_is_known || !firm || lags > T::from_i32(LAGGING) * table.noise {
+            return ContactState::Separated;
+        }
+        let position = self.by_position(way, T::ZERO, T::ZERO);
+        let (contact, _) = position.contact(ContactState::Separated, force, known.both_deviation);
+        if sign::<T>(contact) * force > T::ZERO { contact } else { ContactState::Separated }
+    }
+
+    /// Whether teeth that are felt on a side stay there until the interval is over: what is measured of the force lags, so
+    /// teeth that part seem to be pressed still. Once the width is known, the way says so sooner.
+    pub(super) fn lasts(&self, side: T, force: T, rise: T) -> bool {
+        let known = &self.knowledge;
+        let table = &self.tables.learner;
+        let [_, compliance] = self.shape();
+        let falls = -side * rise * compliance > T::from_i32(FALLING) * table.noise;
+        let ahead = force + (T::ONE + table.force_lag) * rise;
+        known.width_is_known || !falls || side * ahead > known.force_deviation
+    }
+
+    /// Intervals of a touch that ended early from which it is learnt. Until the width is known, half a block of rest counts
+    /// too: a link that is thrown to and fro rests no longer than that on a flank.
+    pub(super) fn least_intervals(&self) -> u8 {
+        if self.knowledge.width_is_known { LEAST } else { (self.tables.learner.block as u8).div_ceil(2) }
+    }
+}

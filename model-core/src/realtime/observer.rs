@@ -28,6 +28,7 @@ mod follow;
 mod inertia;
 mod interval;
 mod knowledge;
+mod late;
 mod learner;
 mod load_side;
 mod memory;
@@ -60,6 +61,7 @@ use drive_side::DriveSide;
 use inertia::Inertia;
 use interval::Interval;
 use knowledge::Knowledge;
+use late::Past;
 use learner::Learner;
 use load_side::LoadSide;
 use motion::Motion;
@@ -85,6 +87,7 @@ pub struct Observer<'tables, T: Real, const P: usize> {
     counts: Counts,
     drive: DriveSide<T>,
     load: LoadSide<T>,
+    past: Past<T>,
     inertia: Inertia<T>,
     bias: Bias<T>,
     by_force: ByForce,
@@ -120,6 +123,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
             counts,
             drive: DriveSide::default(),
             load: LoadSide::default(),
+            past: Past::new(),
             inertia: Inertia::new(&tables.inertia),
             bias: Bias::new(&tables.contact),
             by_force: ByForce::default(),
@@ -153,6 +157,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         }
         self.drive = DriveSide::default();
         self.load = LoadSide::default();
+        self.past = Past::new();
         self.inertia = Inertia::new(&tables.inertia);
         self.bias = Bias::new(&tables.contact);
         self.by_force = ByForce::default();

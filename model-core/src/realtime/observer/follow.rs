@@ -50,14 +50,19 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
 
         let output_turned = tables.counts.output.angle * T::from_i32(taken.turned);
         self.load.predict(&tables.load, self.from_meshes, output_turned);
+        self.past.push(self.from_meshes);
         let began = self.supervisor.hear(taken.output);
         if began {
             self.load.ahead = T::ZERO;
         }
         let follows = self.keep_pace(&taken);
         if let (true, Some(reading)) = (follows, samples.output) {
-            let surprise = self.load.speed * self.age(samples, reading.time) - self.load.ahead;
-            self.load.correct(&tables.load.gain, surprise);
+            let age = self.age(samples, reading.time);
+            if age < tables.period {
+                self.load.correct(&tables.load.gain, self.load.speed * age - self.load.ahead);
+            } else {
+                self.past.correct(&mut self.load, &tables.load, age.over(tables.period));
+            }
         }
         let far = self.places.go_on(motor_turned, output_turned, tables.counts.mesh_periods);
         if far || began || !matches!(taken.motor, Advance::By(_)) {

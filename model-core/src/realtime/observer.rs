@@ -61,7 +61,7 @@ use drive_side::DriveSide;
 use inertia::Inertia;
 use interval::Interval;
 use knowledge::Knowledge;
-use late::Past;
+use late::Heard;
 use learner::Learner;
 use load_side::LoadSide;
 use motion::Motion;
@@ -87,7 +87,6 @@ pub struct Observer<'tables, T: Real, const P: usize> {
     counts: Counts,
     drive: DriveSide<T>,
     load: LoadSide<T>,
-    past: Past<T>,
     inertia: Inertia<T>,
     bias: Bias<T>,
     by_force: ByForce,
@@ -123,7 +122,6 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
             counts,
             drive: DriveSide::default(),
             load: LoadSide::default(),
-            past: Past::new(),
             inertia: Inertia::new(&tables.inertia),
             bias: Bias::new(&tables.contact),
             by_force: ByForce::default(),
@@ -157,7 +155,6 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         }
         self.drive = DriveSide::default();
         self.load = LoadSide::default();
-        self.past = Past::new();
         self.inertia = Inertia::new(&tables.inertia);
         self.bias = Bias::new(&tables.contact);
         self.by_force = ByForce::default();
@@ -182,12 +179,20 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
 
     /// Takes the samples of one control period and says what they mean.
     pub fn step(&mut self, samples: &Samples<T>) -> &Estimates<T> {
-        self.follow(samples);
+        let heard = self.follow(samples);
+        if heard == Heard::Not {
+            self.hold();
+            return &self.estimates;
+        }
         let now = self.now();
         self.decide(&now);
         self.watch(&now);
         self.say(&now);
-        self.learn(&now);
+        if heard == Heard::Now {
+            self.learn(&now);
+        } else {
+            self.vouch_for_nothing();
+        }
         &self.estimates
     }
 

@@ -1,57 +1,48 @@
-//! Readings of the output encoder that come late, by their own time: what the link was at then is compared with them, and
-//! what they teach of then is carried on to now. How old a reading may be is said here; where it came from is not known.
+//! Readings that come late, by their own time: what a side was then is compared with them, and what they teach of then is
+//! carried on to now. How old a reading may be is said here; what is done without one is left to `follow`.
 //!
 //! A filter that took the surprise of then for one of now would answer its own answers, and swing up as soon as readings
 //! are about as old as it is fast.
 
-use super::load_side::LoadSide;
 use crate::real::Real;
-use crate::tables::observer::LoadTable;
 
-/// Periods up to which the past is kept: an older reading counts as lost.
-pub(super) const KEPT: u32 = 16;
-const _: () = assert!(KEPT.is_power_of_two());
+/// Periods up to which torques that are known now serve for the time since a reading: an older one counts as lost.
+pub(super) const OLDEST: u32 = 10;
 
-/// Torques that the meshes passed on in the last periods.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Past<T: Real> {
-    /// In a ring [N m].
-    torques: [T; KEPT as usize],
-    newest: u32,
+/// How the motor was heard of in a period.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Heard {
+    /// As it is now.
+    Now,
+    /// As it was: the force in between is a guess, so nothing that stands on it is vouched for, or learnt from.
+    Late,
+    /// Not, or as it was too long ago.
+    Not,
 }
 
-impl<T: Real> Past<T> {
-    pub fn new() -> Self {
-        Self { torques: [T::ZERO; KEPT as usize], newest: 0 }
+/// One side between a reading and now.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Since<T: Real> {
+    /// How old the reading is, in periods.
+    pub periods: T,
+    /// Length of one [s].
+    pub period: T,
+    /// Change of speed in a period [rad/s].
+    pub quickening: T,
+    /// The same for each newton metre of the torque that is estimated [rad/(s N m)].
+    pub by_torque: T,
+}
+
+impl<T: Real> Since<T> {
+    /// By how much the shaft is beyond the reading, if it goes so fast now [rad].
+    pub fn went(&self, speed: T) -> T {
+        self.periods * self.period * (speed - T::HALF * self.periods * self.quickening)
     }
 
-    /// One more period, under a torque.
-    pub fn push(&mut self, torque: T) {
-        self.newest = self.newest.wrapping_add(1) % KEPT;
-        if let Some(place) = self.torques.get_mut(self.newest as usize) {
-            *place = torque;
-        }
-    }
-
-    /// Corrects the load side by a reading that is so many periods old.
-    #[cold]
-    pub fn correct(&self, load: &mut LoadSide<T>, table: &LoadTable<T>, periods: T) {
-        let [period, _] = table.angle;
-        // From the middle of each period back to the reading.
-        let mut since = periods - T::HALF;
-        let mut bent = T::ZERO;
-        for ago in 0..KEPT {
-            if since < T::ZERO {
-                break;
-            }
-            let torque = self.torques.get((self.newest.wrapping_sub(ago) % KEPT) as usize).copied();
-            bent += since * (torque.unwrap_or(T::ZERO) - load.torque);
-            since -= T::ONE;
-        }
-        let surprise = periods * period * load.speed - table.speed * period * bent - load.ahead;
-        let [angle, speed, torque] = table.gain;
-        let slowed = periods * table.speed * torque;
-        let gain = [angle + periods * period * (speed - T::HALF * slowed), speed - slowed, torque];
-        load.correct(&gain, surprise);
+    /// What corrections of angle, speed and torque then come to now.
+    pub fn carried(&self, gain: &[T; 3]) -> [T; 3] {
+        let [angle, speed, torque] = *gain;
+        let quicker = self.periods * self.by_torque * torque;
+        [angle + self.periods * self.period * (speed + T::HALF * quicker), speed + quicker, torque]
     }
 }

@@ -1,5 +1,5 @@
 //! Readings that come late, by their own time: no estimate runs away, and what cannot be known is not vouched
-//! for. Encoders that fail otherwise are left to `faults`.
+//! for; and an encoder that comes back. Those that fail otherwise are left to `faults`.
 
 use host_tests::tolerance::observer::GAP_WORST;
 use model_core::realtime::observer::{Doubt, Estimates, MAPPED, Observer, Samples, Source};
@@ -87,4 +87,16 @@ fn late_readings_of_the_motor_are_bounded_and_not_vouched_for() {
         assert_eq!(nothing, late == 30);
         assert!(said.last().is_some_and(|estimates| estimates.source != Source::Nothing), "it is heard again");
     }
+}
+
+#[test]
+fn an_output_encoder_that_turns_again_is_taken_back_though_teeth_are_hardly_pressed() {
+    let (trial, mut log) = to_and_fro("l1", Profile::Sine(0.2, 1.0));
+    let counts = log[13_000].output_counts;
+    log[13_000..20_000].iter_mut().for_each(|moment| moment.output_counts = counts);
+    let said = said(&trial, &log, |_, _| {});
+    assert!(matches!(said[19_999].source, Source::MotorOnly(_)), "it is given up");
+    let back = said[20_000..].iter().position(|estimates| estimates.source == Source::Both);
+    println!("taken back after {back:?} periods");
+    assert!(back.is_some_and(|periods| periods < 6_000), "it is taken back");
 }

@@ -4,6 +4,7 @@
 mod faults;
 mod gap;
 mod hour;
+mod late;
 mod learning;
 mod memory;
 mod monte_carlo;

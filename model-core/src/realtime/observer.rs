@@ -28,6 +28,7 @@ mod follow;
 mod inertia;
 mod interval;
 mod knowledge;
+mod late;
 mod learner;
 mod load_side;
 mod memory;
@@ -60,6 +61,7 @@ use drive_side::DriveSide;
 use inertia::Inertia;
 use interval::Interval;
 use knowledge::Knowledge;
+use late::Heard;
 use learner::Learner;
 use load_side::LoadSide;
 use motion::Motion;
@@ -177,12 +179,20 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
 
     /// Takes the samples of one control period and says what they mean.
     pub fn step(&mut self, samples: &Samples<T>) -> &Estimates<T> {
-        self.follow(samples);
+        let heard = self.follow(samples);
+        if heard == Heard::Not {
+            self.hold();
+            return &self.estimates;
+        }
         let now = self.now();
         self.decide(&now);
         self.watch(&now);
         self.say(&now);
-        self.learn(&now);
+        if heard == Heard::Now {
+            self.learn(&now);
+        } else {
+            self.vouch_for_nothing();
+        }
         &self.estimates
     }
 

@@ -4,6 +4,7 @@
 //! State: angle beyond the counts, speed, taken torque, air-gap torque. Over a period the state follows the linear flow
 //! of the tables (current loop included), then a part of the surprise in the angle is added to each.
 
+use super::late::Since;
 use crate::real::Real;
 use crate::tables::observer::{CurrentTable, DriveTable, MOST_DELAY};
 
@@ -45,10 +46,35 @@ impl<T: Real> DriveSide<T> {
 
     /// Takes in a reading that was `age` old [s].
     pub fn correct(&mut self, table: &DriveTable<T>, age: T) {
-        let surprise = self.speed * age - self.ahead;
-        let [angle, speed, taken] = table.gain;
+        let [period, ..] = table.angle;
+        if age < period {
+            return self.take(&table.gain, self.speed * age - self.ahead);
+        }
+        self.correct_late(table, age);
+    }
+
+    /// The same where what has changed since the reading matters.
+    #[cold]
+    fn correct_late(&mut self, table: &DriveTable<T>, age: T) {
+        let [period, ..] = table.angle;
+        let [by_torque, ..] = table.speed;
+        let quickening = by_torque * (self.taken - self.air_gap);
+        let since = Since { periods: age.over(period), period, quickening, by_torque };
+        self.take(&since.carried(&table.gain), since.went(self.speed) - self.ahead);
+    }
+
+    /// Takes in by how much the measured angle exceeds the expected one [rad].
+    fn take(&mut self, gain: &[T; 3], surprise: T) {
+        let [angle, speed, taken] = *gain;
         self.ahead += angle * surprise;
         self.speed += speed * surprise;
         self.taken += taken * surprise;
+    }
+
+    /// Nothing has been heard of the motor: it stands where its counts were, as far as anyone knows.
+    pub fn hold(&mut self) {
+        self.ahead = T::ZERO;
+        self.speed = T::ZERO;
+        self.taken = T::ZERO;
     }
 }

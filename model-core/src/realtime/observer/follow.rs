@@ -4,23 +4,23 @@
 use super::Observer;
 use super::counts::{Advance, Taken};
 use super::estimates::Notices;
+use super::late::{Heard, OLDEST};
 use super::pace::Verdict;
 use super::samples::Samples;
 use crate::real::Real;
-
-/// Periods beyond which the age of a reading is not believed.
-const OLDEST: u32 = 64;
 
 /// Periods between two readings over which the pace is taken to go on.
 const MISSED: u32 = 4;
 
 impl<T: Real, const P: usize> Observer<'_, T, P> {
-    /// Takes the samples of one period in.
-    pub(super) fn follow(&mut self, samples: &Samples<T>) {
+    /// Takes the samples of one period in; how the motor was heard of.
+    pub(super) fn follow(&mut self, samples: &Samples<T>) -> Heard {
         let tables = self.tables;
         let known = samples.torque.is_finite();
         let command = if known { samples.torque } else { T::ZERO };
-        let taken = self.counts.take(&tables.counts, samples.motor, samples.output);
+        let age = self.age(samples, samples.motor.time);
+        let output = samples.output.filter(|reading| self.age(samples, reading.time).is_some());
+        let taken = self.counts.take(&tables.counts, samples.motor, output);
         let [shortest, longest] = tables.period_ticks;
         let lasted = self.time.map_or(longest, |before| samples.time.wrapping_sub(before));
         self.time = Some(samples.time);
@@ -39,7 +39,11 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let motor_turned = tables.counts.motor.angle * T::from_i32(motor_by);
         self.drive.predict(&tables.drive, &tables.current, command, motor_turned);
         match taken.motor {
-            Advance::By(_) => self.drive.correct(&tables.drive, self.age(samples, samples.motor.time)),
+            Advance::By(_) => {
+                if let Some(age) = age {
+                    self.drive.correct(&tables.drive, age);
+                }
+            }
             Advance::Began => self.drive.ahead = T::ZERO,
             Advance::Jumped(_) => {
                 self.drive.ahead = T::ZERO;
@@ -56,12 +60,17 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         }
         let follows = self.keep_pace(&taken);
         if let (true, Some(reading)) = (follows, samples.output) {
-            let surprise = self.load.speed * self.age(samples, reading.time) - self.load.ahead;
-            self.load.correct(&tables.load.gain, surprise);
+            let age = self.age(samples, reading.time).unwrap_or(T::ZERO);
+            self.load.correct(&tables.load, age, self.from_meshes);
         }
         let far = self.places.go_on(motor_turned, output_turned, tables.counts.mesh_periods);
         if far || began || !matches!(taken.motor, Advance::By(_)) {
             self.find_places();
+        }
+        match age {
+            Some(age) if age < tables.period => Heard::Now,
+            Some(_) => Heard::Late,
+            None => Heard::Not,
         }
     }
 
@@ -95,13 +104,14 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         }
     }
 
-    /// Age of a reading [s]. One older than a few periods says little of now; one from the future nothing.
-    fn age(&self, samples: &Samples<T>, time: u32) -> T {
-        let ticks = samples.time.wrapping_sub(time);
-        let [_, longest] = self.tables.period_ticks;
-        if ticks == 0 || ticks > longest.saturating_mul(OLDEST) {
-            return T::ZERO;
+    /// Age of a reading [s]; `None` for one that is too old to say anything of now. One from the future is of now.
+    fn age(&self, samples: &Samples<T>, time: u32) -> Option<T> {
+        let ticks = samples.time.wrapping_sub(time) as i32;
+        let [shortest, longest] = self.tables.period_ticks;
+        if ticks <= 0 {
+            return Some(T::ZERO);
         }
-        T::from_i32(ticks as i32) * self.tables.tick
+        let oldest = (shortest.saturating_add(longest) / 2).saturating_mul(OLDEST);
+        (ticks.unsigned_abs() <= oldest).then(|| T::from_i32(ticks) * self.tables.tick)
     }
 }

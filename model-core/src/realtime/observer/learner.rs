@@ -8,9 +8,14 @@
 
 use core::array;
 
-use super::regressors::{COMPLIANCE, HALF_GAP, SKEW};
+use super::regressors::{COMPLIANCE, HALF_GAP, OFFSET, SKEW};
 use crate::real::Real;
+use crate::realtime::arithmetic::clamp;
 use crate::tables::observer::LearnerTable;
+
+/// Standard deviations beforehand beyond which nothing is believed of a parameter, whatever a failing encoder shows; but
+/// an offset may be any.
+const FURTHEST: i32 = 16;
 
 /// What the way depends on, one for each parameter.
 pub(super) type Regressors<T, const P: usize> = [T; P];
@@ -140,8 +145,13 @@ impl<T: Real, const P: usize> Learner<T, P> {
             }
         }
         let step = weighed.surprise.over(alpha);
-        for ((value, gain), deviation) in self.values.iter_mut().zip(&gain).zip(&table.deviation) {
+        for (index, ((value, gain), deviation)) in self.values.iter_mut().zip(&gain).zip(&table.deviation).enumerate() {
             *value += *deviation * (*gain * step);
+            if index != OFFSET {
+                let mean = table.mean.get(index).copied().unwrap_or(T::ZERO);
+                let most = T::from_i32(FURTHEST) * *deviation;
+                *value = clamp(*value, mean - most, mean + most);
+            }
         }
         self.keep_width();
     }

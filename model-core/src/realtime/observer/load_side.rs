@@ -4,6 +4,7 @@
 //! The state's angle is relative to a reference that the caller moves: the output counts, or, motor only, the motor's
 //! counts over the ratio.
 
+use super::late::Since;
 use crate::real::Real;
 use crate::tables::observer::LoadTable;
 
@@ -27,8 +28,26 @@ impl<T: Real> LoadSide<T> {
         self.speed += table.speed * net;
     }
 
+    /// Takes in that the reading is where the reference is, and was `age` old [s], under a torque from the meshes.
+    pub fn correct(&mut self, table: &LoadTable<T>, age: T, from_meshes: T) {
+        let [period, _] = table.angle;
+        if age < period {
+            return self.take(&table.gain, self.speed * age - self.ahead);
+        }
+        self.correct_late(table, age, from_meshes);
+    }
+
+    /// The same where what has changed since the reading matters.
+    #[cold]
+    fn correct_late(&mut self, table: &LoadTable<T>, age: T, from_meshes: T) {
+        let [period, _] = table.angle;
+        let quickening = table.speed * (from_meshes - self.torque);
+        let since = Since { periods: age.over(period), period, quickening, by_torque: -table.speed };
+        self.take(&since.carried(&table.gain), since.went(self.speed) - self.ahead);
+    }
+
     /// Takes in by how much the measured angle exceeds the expected one [rad].
-    pub fn correct(&mut self, gain: &[T; 3], surprise: T) {
+    pub fn take(&mut self, gain: &[T; 3], surprise: T) {
         let [angle, speed, torque] = *gain;
         self.ahead += angle * surprise;
         self.speed += speed * surprise;

@@ -132,7 +132,7 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
                 self.load.speed = self.drive.speed * levers.per_ratio;
             }
         } else if self.blind.felt == held {
-            self.load.correct(&self.tables.load.blind_gain, surprise);
+            self.load.take(&self.tables.load.blind_gain, surprise);
             self.blind.open_for = 0;
             self.blind.bounce -= self.blind.bounce * self.tables.contact.smoothing * T::EIGHTH;
         } else {
@@ -167,14 +167,19 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
     /// was learnt, everything is learnt anew.
     pub(super) fn reconsider(&mut self, settled: Option<T>, mesh: &[T; 2], force: T) {
         let tables = self.tables;
-        let Some(side) = settled else { return };
         let phase = self.counts.motor.phase(&tables.counts.motor);
         let output = self.counts.output.phase(&tables.counts.output);
         let free = regressors::free(self.load.speed, phase, Some(output));
         let measured = tables.counts.length * small(self.counts.difference) + tables.levers.sun * self.drive.ahead;
-        let beyond = measured - self.learner.way(&Touch { side, force, mesh: *mesh }.on(&free));
         let room = tables.supervisor.margin + T::TWO * self.knowledge.edge_deviation;
-        let Some(back) = self.supervisor.reconsider(&tables.supervisor, side, beyond, output, room) else { return };
+        let settled = settled.map(|side| {
+            let beyond = measured - self.learner.way(&Touch { side, force, mesh: *mesh }.on(&free));
+            (side, beyond, room)
+        });
+        // A link that turns with the motor between the flanks is seen as it was, whether or not teeth are felt.
+        let way = measured - self.learner.way(&free) - self.error(mesh);
+        let between = self.far_place(way, force) == Place::Possible;
+        let Some(back) = self.supervisor.reconsider(&tables.supervisor, settled, between, output) else { return };
         self.counts.trust();
         self.load.ahead = T::ZERO;
         self.find_places();

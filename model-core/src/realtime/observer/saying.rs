@@ -7,7 +7,7 @@ use super::regressors::{OFFSET, SKEW};
 use super::{MAPPED, Now, Observer};
 use crate::mesh::ContactState;
 use crate::real::Real;
-use crate::realtime::observer::{Estimate, Shaft};
+use crate::realtime::observer::{Estimate, Shaft, Source};
 use crate::tables::observer::EncoderTable;
 
 impl<T: Real, const P: usize> Observer<'_, T, P> {
@@ -36,6 +36,25 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         estimates.load_torque.valid = both || touching;
         estimates.motor = motor;
         estimates.link = link;
+    }
+
+    /// Nothing has been heard of the motor: everything is held.
+    #[cold]
+    pub(super) fn hold(&mut self) {
+        self.drive.hold();
+        self.estimates.source = Source::Nothing;
+        self.vouch_for_nothing();
+    }
+
+    /// What was said stays, but may be wrong.
+    #[cold]
+    pub(super) fn vouch_for_nothing(&mut self) {
+        let estimates = &mut self.estimates;
+        estimates.contact_valid = false;
+        estimates.settled = false;
+        for estimate in [&mut estimates.gap, &mut estimates.mesh_torque, &mut estimates.load_torque] {
+            estimate.valid = false;
+        }
     }
 
     /// What is learnt slowly, once an interval.

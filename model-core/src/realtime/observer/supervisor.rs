@@ -158,24 +158,27 @@ impl<T: Real> Supervisor<T> {
         }
     }
 
-    /// Once an interval in settled contact, without it: by how much the way that it would give is beyond what was learnt
-    /// on that side of the teeth, where the output is [2^-32 turns], and what may be between ways that agree. Says when
-    /// it is taken back.
+    /// Once an interval without it: in settled contact the side of the teeth, by how much the way that it would give is
+    /// beyond what was learnt there, and what may be between ways that agree; elsewhere whether that way is between the
+    /// flanks. Besides, where the output is [2^-32 turns]. Says when it is taken back.
     pub fn reconsider(
         &mut self,
         table: &SupervisorTable<T>,
-        side: T,
-        beyond: T,
+        settled: Option<(T, T, T)>,
+        between: bool,
         place: u32,
-        room: T,
     ) -> Option<Return> {
-        let [back, drive] = &mut self.steady;
-        let steady = if side > T::ZERO { drive } else { back };
-        if magnitude(beyond - *steady) > room {
-            *steady = beyond;
-            self.steady_for = 0;
-        }
-        let agrees = magnitude(beyond) < room;
+        let agrees = if let Some((side, beyond, room)) = settled {
+            let [back, drive] = &mut self.steady;
+            let steady = if side > T::ZERO { drive } else { back };
+            if magnitude(beyond - *steady) > room {
+                *steady = beyond;
+                self.steady_for = 0;
+            }
+            magnitude(beyond) < room
+        } else {
+            between
+        };
         if !agrees {
             self.inside_for = 0;
         }
@@ -183,7 +186,7 @@ impl<T: Real> Supervisor<T> {
         let went = place.wrapping_sub(self.place) as i32;
         if self.silent_for == 0 && went.unsigned_abs() >= table.moved {
             self.place = place;
-            self.steady_for = self.steady_for.saturating_add(1);
+            self.steady_for = self.steady_for.saturating_add(u16::from(settled.is_some()));
             self.inside_for = self.inside_for.saturating_add(u16::from(agrees));
         }
         let back = if self.inside_for >= table.trusted_after {

@@ -1,0 +1,102 @@
+//! Readings that come late, by their own time: no estimate runs away, and what cannot be known is not vouched
+//! for; and an encoder that comes back. Those that fail otherwise are left to `faults`.
+
+use host_tests::tolerance::observer::GAP_WORST;
+use model_core::realtime::observer::{Doubt, Estimates, MAPPED, Observer, Samples, Source};
+
+use crate::motion::{Moment, Profile};
+use crate::replay::samples;
+use crate::trial::{Encoders, Trial};
+
+/// When readings begin to be late, and when they are on time again [periods].
+const LATE: core::ops::Range<usize> = 15_000..20_000;
+
+/// What the observer says of a recording with samples that a test may spoil.
+fn said(trial: &Trial, log: &[Moment], spoil: impl Fn(usize, &mut Samples<f32>)) -> Vec<Estimates<f32>> {
+    let tables = trial.tables();
+    let mut observer = Observer::<f32, MAPPED>::new(&tables);
+    let step = |(period, moment): (usize, &Moment)| {
+        let mut samples = samples(&trial.settings, moment, period);
+        spoil(period, &mut samples);
+        *observer.step(&samples)
+    };
+    log.iter().enumerate().map(step).collect()
+}
+
+/// A recording of a joint to and fro, about inertia alone.
+fn to_and_fro(name: &str, profile: Profile) -> (Trial, Vec<Moment>) {
+    let mut trial = Trial::new(name, "inertia", Encoders::Preset, None, 31).lasting(3.0);
+    trial.run.profile = profile;
+    let log = trial.record();
+    (trial, log)
+}
+
+/// Samples of so many periods ago.
+fn ago(trial: &Trial, log: &[Moment], period: usize, late: usize) -> Samples<f32> {
+    samples(&trial.settings, &log[period - late], period - late)
+}
+
+#[test]
+fn late_readings_of_the_output_say_where_the_gap_is_now() {
+    for name in ["q1", "l1", "d2"] {
+        let (trial, log) = to_and_fro(name, Profile::Sine(0.5, 1.0));
+        let gap = 4.0 * trial.run.joint.sun_planet.half_backlash[0];
+        for late in [2, 5, 10] {
+            let said = said(&trial, &log, |period, samples| {
+                if LATE.contains(&period) {
+                    samples.output = ago(&trial, &log, period, late).output;
+                }
+            });
+            let of = |period: usize| (f64::from(said[period].gap.value) - log[period].gap).abs() / gap;
+            let worst = LATE.map(of).fold(0.0, f64::max);
+            println!("{name}, {late} periods late: {worst:.4} of the gap");
+            GAP_WORST.check(worst);
+            assert!(LATE.clone().all(|period| said[period].source == Source::Both), "{name}: given up");
+        }
+    }
+}
+
+#[test]
+fn readings_of_the_output_that_are_too_old_count_as_lost() {
+    let (trial, log) = to_and_fro("q1", Profile::Sine(0.5, 1.0));
+    let said = said(&trial, &log, |period, samples| {
+        if LATE.contains(&period) {
+            samples.output = ago(&trial, &log, period, 30).output;
+        }
+    });
+    assert_eq!(said[LATE.start + 150].source, Source::MotorOnly(Doubt::Silent));
+    assert_eq!(said[LATE.end - 1].source, Source::MotorOnly(Doubt::Silent));
+    assert_eq!(said.last().map(|estimates| estimates.source), Some(Source::Both), "it is taken back");
+}
+
+#[test]
+fn late_readings_of_the_motor_are_bounded_and_not_vouched_for() {
+    for (name, late) in [("q1", 3), ("l1", 3), ("s1", 3), ("l1", 10), ("l1", 30)] {
+        let (trial, log) = to_and_fro(name, Profile::Sine(0.5, 1.0));
+        let said = said(&trial, &log, |period, samples| {
+            if LATE.contains(&period) {
+                samples.motor = ago(&trial, &log, period, late).motor;
+            }
+        });
+        assert!(LATE.clone().all(|period| !said[period].gap.valid && !said[period].contact_valid));
+        let fastest = LATE.map(|period| log[period].motor[1].abs()).fold(0.0, f64::max);
+        let said_fastest = LATE.map(|period| f64::from(said[period].motor.speed).abs()).fold(0.0, f64::max);
+        println!("{name}, {late} periods late: {said_fastest:.1} in place of {fastest:.1} rad/s");
+        assert!(said_fastest < 2.0 * fastest, "{name}, {late} periods late: the motor runs away");
+        let nothing = LATE.clone().all(|period| said[period].source == Source::Nothing);
+        assert_eq!(nothing, late == 30);
+        assert!(said.last().is_some_and(|estimates| estimates.source != Source::Nothing), "it is heard again");
+    }
+}
+
+#[test]
+fn an_output_encoder_that_turns_again_is_taken_back_though_teeth_are_hardly_pressed() {
+    let (trial, mut log) = to_and_fro("l1", Profile::Sine(0.2, 1.0));
+    let counts = log[13_000].output_counts;
+    log[13_000..20_000].iter_mut().for_each(|moment| moment.output_counts = counts);
+    let said = said(&trial, &log, |_, _| {});
+    assert!(matches!(said[19_999].source, Source::MotorOnly(_)), "it is given up");
+    let back = said[20_000..].iter().position(|estimates| estimates.source == Source::Both);
+    println!("taken back after {back:?} periods");
+    assert!(back.is_some_and(|periods| periods < 6_000), "it is taken back");
+}

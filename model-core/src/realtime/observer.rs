@@ -61,7 +61,7 @@ use drive_side::DriveSide;
 use inertia::Inertia;
 use interval::Interval;
 use knowledge::Knowledge;
-use late::Heard;
+use late::{Heard, Lateness};
 use learner::Learner;
 use load_side::LoadSide;
 use motion::Motion;
@@ -85,6 +85,7 @@ pub const MAPPED: usize = PLAIN + 8;
 pub struct Observer<'tables, T: Real, const P: usize> {
     tables: &'tables ObserverTables<T>,
     counts: Counts,
+    lateness: Lateness,
     drive: DriveSide<T>,
     load: LoadSide<T>,
     inertia: Inertia<T>,
@@ -120,6 +121,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         let mut observer = Self {
             tables,
             counts,
+            lateness: Lateness::default(),
             drive: DriveSide::default(),
             load: LoadSide::default(),
             inertia: Inertia::new(&tables.inertia),
@@ -153,6 +155,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         if !tables.counts.has_output {
             self.counts.imply();
         }
+        self.lateness = Lateness::default();
         self.drive = DriveSide::default();
         self.load = LoadSide::default();
         self.inertia = Inertia::new(&tables.inertia);
@@ -188,10 +191,13 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         self.decide(&now);
         self.watch(&now);
         self.say(&now);
-        if heard == Heard::Now {
+        if matches!(heard, Heard::Now | Heard::Missed) && !self.lateness.lasts() {
             self.learn(&now);
         } else {
             self.vouch_for_nothing();
+            if self.lateness.lasts() {
+                self.estimates.source = Source::Nothing;
+            }
         }
         &self.estimates
     }

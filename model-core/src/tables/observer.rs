@@ -133,6 +133,8 @@ pub struct DriveTable<T: Real> {
     pub speed: [T; 3],
     /// Corrections of angle, speed and taken torque for a radian of surprise.
     pub gain: [T; 3],
+    /// The same for readings that are older than a period.
+    pub late_gain: [T; 3],
     /// Variances of angle and taken torque once settled.
     pub variance: [T; 2],
 }

@@ -26,6 +26,10 @@ const IMPACT_ERROR: f64 = 0.05;
 /// How long an impact's error lasts [s].
 const IMPACT: f64 = 1e-3;
 
+/// Where all three poles of the motor side are while its readings are late [rad/s]: the teeth's own swings, which nobody
+/// could foresee until now, must not be carried on.
+const LATE_POLES: f64 = 1000.0;
+
 /// State: angle, speed, taken torque. The taken torque wanders so that it may change by the largest torque in half a
 /// swing of motor against load; the torque noise acts on the speed.
 pub(super) fn drive_filter(body: &Body, settings: &ObserverSettings, count: f64, step: f64) -> Filter {
@@ -44,6 +48,13 @@ pub(super) fn drive_filter(body: &Body, settings: &ObserverSettings, count: f64,
         measurement_noise: count * count / 12.0,
     }
     .filter(step)
+}
+
+/// Gains with which readings are taken in that are older than a period: all poles in one place.
+fn late_gain(body: &Body, step: f64) -> [f64; 3] {
+    let left = libm::exp(-LATE_POLES * step);
+    let gone = 1.0 - left;
+    [1.0 - left.powi(3), 1.5 * gone * gone * (1.0 + left) / step, -body.motor_inertia * gone.powi(3) / (step * step)]
 }
 
 /// By how much the taken torque lags behind one that rises steadily [s]: the surprise in the angle is then such that it
@@ -101,6 +112,7 @@ pub(super) fn drive_table<T: Real>(
         angle: [change[(0, 1)], change[(0, 2)], change[(0, 3)], response[0]].map(real),
         speed: [change[(1, 2)], change[(1, 3)], response[1]].map(real),
         gain: [0, 1, 2].map(|state| real(filter.gain[state])),
+        late_gain: late_gain(body, step).map(real),
         variance: [real(filter.variance[0]), real(filter.variance[2])],
     }
 }

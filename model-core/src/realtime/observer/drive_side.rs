@@ -44,23 +44,19 @@ impl<T: Real> DriveSide<T> {
         self.air_gap += current.rise * (wanted - self.air_gap);
     }
 
-    /// Takes in a reading that was `age` old [s].
+    /// Takes in a reading of this period, `age` old [s].
     pub fn correct(&mut self, table: &DriveTable<T>, age: T) {
-        let [period, ..] = table.angle;
-        if age < period {
-            return self.take(&table.gain, self.speed * age - self.ahead);
-        }
-        self.correct_late(table, age);
+        self.take(&table.gain, self.speed * age - self.ahead);
     }
 
-    /// The same where what has changed since the reading matters.
+    /// Takes in an older one, where what has changed since matters.
     #[cold]
-    fn correct_late(&mut self, table: &DriveTable<T>, age: T) {
+    pub fn correct_late(&mut self, table: &DriveTable<T>, age: T) {
         let [period, ..] = table.angle;
         let [by_torque, ..] = table.speed;
         let quickening = by_torque * (self.taken - self.air_gap);
         let since = Since { periods: age.over(period), period, quickening, by_torque };
-        self.take(&since.carried(&table.gain), since.went(self.speed) - self.ahead);
+        self.take(&since.carried(&table.late_gain), since.went(self.speed) - self.ahead);
     }
 
     /// Takes in by how much the measured angle exceeds the expected one [rad].

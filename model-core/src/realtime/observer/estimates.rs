@@ -33,7 +33,7 @@ pub enum Source {
     Both,
     /// The motor encoder alone, and why. The load cannot be seen while the gap is open.
     MotorOnly(Doubt),
-    /// No motor encoder either: everything is held and nothing is valid.
+    /// No motor encoder either, or one that is late time after time: nothing is valid, and what is not heard of is held.
     #[default]
     Nothing,
 }

@@ -19,6 +19,7 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let known = samples.torque.is_finite();
         let command = if known { samples.torque } else { T::ZERO };
         let age = self.age(samples, samples.motor.time);
+        let heard = self.lateness.hear(samples.motor.time, age, tables.period);
         let output = samples.output.filter(|reading| self.age(samples, reading.time).is_some());
         let taken = self.counts.take(&tables.counts, samples.motor, output);
         let [shortest, longest] = tables.period_ticks;
@@ -40,8 +41,11 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         self.drive.predict(&tables.drive, &tables.current, command, motor_turned);
         match taken.motor {
             Advance::By(_) => {
-                if let Some(age) = age {
-                    self.drive.correct(&tables.drive, age);
+                let age = age.unwrap_or(T::ZERO);
+                match heard {
+                    Heard::Now => self.drive.correct(&tables.drive, age),
+                    Heard::Late => self.drive.correct_late(&tables.drive, age),
+                    Heard::Missed | Heard::Missing | Heard::Not => {}
                 }
             }
             Advance::Began => self.drive.ahead = T::ZERO,
@@ -67,11 +71,7 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         if far || began || !matches!(taken.motor, Advance::By(_)) {
             self.find_places();
         }
-        match age {
-            Some(age) if age < tables.period => Heard::Now,
-            Some(_) => Heard::Late,
-            None => Heard::Not,
-        }
+        heard
     }
 
     /// Gives the output encoder up where no link could follow its readings; whether the last of them is used.

@@ -9,15 +9,59 @@ use crate::real::Real;
 /// Periods up to which torques that are known now serve for the time since a reading: an older one counts as lost.
 pub(super) const OLDEST: u32 = 10;
 
+/// Late readings in a row after which it is the line that is late.
+const FEW: u8 = 4;
+
+/// Periods in which readings must be on time again until that is over: what the motor side took the forces for has faded.
+const OVER: u8 = 32;
+
 /// How the motor was heard of in a period.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Heard {
     /// As it is now.
     Now,
-    /// As it was: the force in between is a guess, so nothing that stands on it is vouched for, or learnt from.
+    /// Not in this period, or that and the one before: it goes on as it went.
+    Missed,
+    /// Not for longer: the force since is a guess, so nothing that stands on it is vouched for, or learnt from.
+    Missing,
+    /// As it was: likewise.
     Late,
     /// Not, or as it was too long ago.
     Not,
+}
+
+/// How late readings of the motor have been.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Lateness {
+    /// When the last was taken.
+    taken: u32,
+    /// Late ones in a row or, once they are more than few, periods until they are forgotten.
+    many: u8,
+}
+
+impl Lateness {
+    /// Takes a reading's time and age, `None` for one that is too old.
+    pub fn hear<T: Real>(&mut self, time: u32, age: Option<T>, period: T) -> Heard {
+        let again = core::mem::replace(&mut self.taken, time).wrapping_sub(time) as i32 >= 0;
+        let heard = match age {
+            Some(age) if age < period => Heard::Now,
+            Some(age) if again && age < (T::THREE - T::HALF) * period => Heard::Missed,
+            Some(_) if again => Heard::Missing,
+            Some(_) => Heard::Late,
+            None => Heard::Not,
+        };
+        self.many = match heard {
+            Heard::Now | Heard::Missed => self.many.saturating_sub(1),
+            Heard::Missing | Heard::Late if self.many < FEW => self.many + 1,
+            _ => FEW + OVER,
+        };
+        heard
+    }
+
+    /// Whether they have been late for long.
+    pub fn lasts(&self) -> bool {
+        self.many > FEW
+    }
 }
 
 /// One side between a reading and now.

@@ -21,7 +21,7 @@ Examples:
 Exit code: 0 if something could be identified, 2 for bad input or a log that cannot tell, 130 after Ctrl-C."
 )]
 pub struct Arguments {
-    /// Recorded reversal test; with --simulate the file that is to be written
+    /// Recorded reversal test; with --simulate the new file that is to be written
     #[arg(value_name = "LOG")]
     pub log: PathBuf,
     /// Topic of an MCAP log [default: the one that has motor, output and torque]

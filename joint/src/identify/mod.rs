@@ -215,6 +215,11 @@ fn assumptions(plan: &Plan, log: &Log) -> Vec<String> {
 
 fn simulate(arguments: &Arguments, loaded: &Loaded, progress: &Progress) -> Outcome<()> {
     folder::check_file("simulate", &arguments.log, &[&arguments.joint])?;
+    // What lies there may be a recorded test, which nobody can make again.
+    if arguments.log.exists() {
+        return Err(Failure::new(format!("--simulate would write over {}", arguments.log.display()))
+            .with_help("name a new file, or remove this one if it is not needed"));
+    }
     let mut file = loaded.file.clone();
     let train = file.drive_train.get_or_insert_default();
     train.motor_encoder.bits = arguments.motor_bits.unwrap_or(train.motor_encoder.bits);

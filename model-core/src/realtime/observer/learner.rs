@@ -6,6 +6,9 @@
 //! parameters' standard deviations beforehand and as U D U^T (Bierman), so that it stays positive in single precision
 //! whatever happens.
 
+#[cfg(test)]
+mod tests;
+
 use core::array;
 
 use super::regressors::{COMPLIANCE, HALF_GAP, OFFSET, SKEW};

@@ -102,7 +102,8 @@ pub struct Observer<'tables, T: Real, const P: usize> {
     supervisor: Supervisor<T>,
     pace: Pace,
     blind: Blind<T>,
-    time: Option<u32>,
+    /// When the last samples were taken, in ticks.
+    time: u32,
     /// Teeth have settled since they came across the gap.
     settled: bool,
     /// Torque that the meshes put on the load side, by the motor side alone [N m].
@@ -138,7 +139,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
             supervisor: Supervisor::new(tables.counts.has_output),
             pace: Pace::new(),
             blind: Blind::default(),
-            time: None,
+            time: 0,
             settled: false,
             from_meshes: T::ZERO,
             estimates: Estimates::default(),
@@ -172,7 +173,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         self.supervisor = Supervisor::new(tables.counts.has_output);
         self.pace = Pace::new();
         self.blind = Blind::default();
-        self.time = None;
+        self.time = 0;
         self.settled = false;
         self.from_meshes = T::ZERO;
         self.estimates = Estimates::default();

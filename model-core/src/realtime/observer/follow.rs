@@ -19,12 +19,12 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let known = samples.torque.is_finite();
         let command = if known { samples.torque } else { T::ZERO };
         let age = self.age(samples, samples.motor.time);
-        let heard = self.lateness.hear(samples.motor.time, age, tables.period);
+        let [shortest, longest] = tables.period_ticks;
+        let heard = self.lateness.hear(age, self.period_ticks());
         let output = samples.output.filter(|reading| self.age(samples, reading.time).is_some());
         let taken = self.counts.take(&tables.counts, samples.motor, output);
-        let [shortest, longest] = tables.period_ticks;
-        let lasted = self.time.map_or(longest, |before| samples.time.wrapping_sub(before));
-        self.time = Some(samples.time);
+        let before = core::mem::replace(&mut self.time, samples.time);
+        let lasted = if taken.motor == Advance::Began { longest } else { samples.time.wrapping_sub(before) };
         let out_of_time = lasted.wrapping_sub(shortest) > longest.wrapping_sub(shortest);
         let motor_by = if let Advance::By(by) = taken.motor { by } else { 0 };
         self.estimates.notices = Notices::default();
@@ -41,7 +41,7 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         self.drive.predict(&tables.drive, &tables.current, command, motor_turned);
         match taken.motor {
             Advance::By(_) => {
-                let age = age.unwrap_or(T::ZERO);
+                let age = self.seconds(age.unwrap_or(0));
                 match heard {
                     Heard::Now => self.drive.correct(&tables.drive, age),
                     Heard::Late => self.drive.correct_late(&tables.drive, age),
@@ -64,7 +64,7 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         }
         let follows = self.keep_pace(&taken);
         if let (true, Some(reading)) = (follows, samples.output) {
-            let age = self.age(samples, reading.time).unwrap_or(T::ZERO);
+            let age = self.seconds(self.age(samples, reading.time).unwrap_or(0));
             self.load.correct(&tables.load, age, self.from_meshes);
         }
         let far = self.places.go_on(motor_turned, output_turned, tables.counts.mesh_periods);
@@ -104,14 +104,21 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         }
     }
 
-    /// Age of a reading [s]; `None` for one that is too old to say anything of now. One from the future is of now.
-    fn age(&self, samples: &Samples<T>, time: u32) -> Option<T> {
+    /// Age of a reading in ticks; `None` for one that is too old to say anything of now. One from the future is of now.
+    fn age(&self, samples: &Samples<T>, time: u32) -> Option<u32> {
         let ticks = samples.time.wrapping_sub(time) as i32;
+        let age = ticks.max(0).unsigned_abs();
+        (age <= self.period_ticks().saturating_mul(OLDEST)).then_some(age)
+    }
+
+    /// Ticks of a control period.
+    fn period_ticks(&self) -> u32 {
         let [shortest, longest] = self.tables.period_ticks;
-        if ticks <= 0 {
-            return Some(T::ZERO);
-        }
-        let oldest = (shortest.saturating_add(longest) / 2).saturating_mul(OLDEST);
-        (ticks.unsigned_abs() <= oldest).then(|| T::from_i32(ticks) * self.tables.tick)
+        shortest.saturating_add(longest) / 2
+    }
+
+    /// Ticks as seconds.
+    fn seconds(&self, ticks: u32) -> T {
+        T::from_i32(ticks as i32) * self.tables.tick
     }
 }

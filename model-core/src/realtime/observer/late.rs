@@ -9,6 +9,9 @@ use crate::real::Real;
 /// Periods up to which torques that are known now serve for the time since a reading: an older one counts as lost.
 pub(super) const OLDEST: u32 = 10;
 
+/// Periods over which motor and link go on as they went.
+const MISSING: u32 = 2;
+
 /// Late readings in a row after which it is the line that is late.
 const FEW: u8 = 4;
 
@@ -33,19 +36,40 @@ pub(super) enum Heard {
 /// How late readings of the motor have been.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Lateness {
-    /// When the last was taken.
-    taken: u32,
+    /// Age of the last, in parts of a period.
+    age: u8,
     /// Late ones in a row or, once they are more than few, periods until they are forgotten.
     many: u8,
 }
 
+/// Parts of a period.
+const PARTS: u32 = 16;
+
+/// Parts of a period by which a reading is older than the one before, if it is the same again.
+const AGAIN: u32 = 12;
+
 impl Lateness {
-    /// Takes a reading's time and age, `None` for one that is too old.
-    pub fn hear<T: Real>(&mut self, time: u32, age: Option<T>, period: T) -> Heard {
-        let again = core::mem::replace(&mut self.taken, time).wrapping_sub(time) as i32 >= 0;
+    /// Takes a reading's age, `None` for one that is too old, and the length of a period; both in ticks.
+    #[inline]
+    pub fn hear(&mut self, age: Option<u32>, period: u32) -> Heard {
+        match age {
+            Some(age) if age < period => {
+                self.age = 0;
+                self.many = self.many.saturating_sub(1);
+                Heard::Now
+            }
+            _ => self.hear_late(age, period),
+        }
+    }
+
+    #[cold]
+    fn hear_late(&mut self, age: Option<u32>, period: u32) -> Heard {
+        let parts =
+            age.and_then(|age| age.saturating_mul(PARTS).checked_div(period)).map_or(u8::MAX, |parts| parts as u8);
+        let before = u32::from(core::mem::replace(&mut self.age, parts));
+        let again = u32::from(parts) >= before + AGAIN;
         let heard = match age {
-            Some(age) if age < period => Heard::Now,
-            Some(age) if again && age < (T::THREE - T::HALF) * period => Heard::Missed,
+            Some(age) if again && age < period.saturating_mul(MISSING).saturating_add(period / 2) => Heard::Missed,
             Some(_) if again => Heard::Missing,
             Some(_) => Heard::Late,
             None => Heard::Not,

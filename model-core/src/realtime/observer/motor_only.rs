@@ -38,8 +38,15 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
     pub(super) fn watch(&mut self, now: &Now<T>) {
         let table = &self.tables.supervisor;
         let way = now.way - now.shift;
-        let place =
-            if magnitude(way) < self.knowledge.reach { Place::Possible } else { self.far_place(way, now.force) };
+        let [half_gap, compliance] = self.shape();
+        let went_on = magnitude(self.supervisor.went_on(way - compliance * now.force));
+        let place = if went_on > half_gap && self.outruns(went_on, now.force) {
+            Place::Impossible
+        } else if magnitude(way) < self.knowledge.reach {
+            Place::Possible
+        } else {
+            self.far_place(way, now.force)
+        };
         if self.supervisor.judge(table, way, place) {
             self.do_without();
         }
@@ -80,6 +87,19 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let [half_gap, _] = self.shape();
         let implied = self.now();
         self.load.ahead += (implied.way - implied.shift - side * half_gap).over(self.tables.levers.output);
+    }
+
+    /// Whether the motor has gone on by more than gap and shafts let it while the output's counts stood still: a link that
+    /// sticks does not let it, wherever the teeth are, which may not be known yet.
+    #[cold]
+    fn outruns(&self, went_on: T, force: T) -> bool {
+        let tables = self.tables;
+        let known = &self.knowledge;
+        let [half_gap, _] = self.shape();
+        let [width_variance, ..] = known.variances;
+        let count = tables.counts.output.angle * tables.levers.output;
+        let gap = T::TWO * (half_gap + T::THREE * width_variance.square_root());
+        went_on > gap + count + T::TWO * (tables.supervisor.margin + known.softness * magnitude(force))
     }
 
     /// What a way beyond the flanks is.

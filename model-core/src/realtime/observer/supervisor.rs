@@ -23,6 +23,8 @@ pub(super) struct Supervisor<T: Real> {
     /// The way at the last period, and whether it leapt to where it is [m].
     way: T,
     leapt: bool,
+    /// The way less wind-up when its counts moved last [m].
+    stood_at: T,
     /// Where the output was when it moved last [2^-32 turns].
     place: u32,
     /// Load torque of the last and of the last but one look, before a failing encoder could spoil it [N m].
@@ -68,6 +70,7 @@ impl<T: Real> Supervisor<T> {
             steady: [T::ZERO; 2],
             way: T::ZERO,
             leapt: false,
+            stood_at: T::ZERO,
             place: 0,
             torques: [T::ZERO; 2],
             looked: 0,
@@ -99,6 +102,14 @@ impl<T: Real> Supervisor<T> {
             self.source = Source::Both;
         }
         began
+    }
+
+    /// By how much the way less wind-up has gone on since the encoder's counts moved last.
+    pub fn went_on(&mut self, way: T) -> T {
+        if self.unmoved_for == 0 {
+            self.stood_at = way;
+        }
+        way - self.stood_at
     }
 
     /// Whether the way has been where it could not be for longer than impacts ring: teeth have worn, or the encoder fails.

@@ -29,7 +29,7 @@ const HARDEST_STRIKE: f64 = 0.56;
 
 /// Share of the peak torque that the law may ask the teeth to pass on: torque constant, efficiency and what a swing does
 /// in the loop's delays each take a few hundredths.
-const MOST_PASSED: f64 = 0.89;
+const MOST_PASSED: f64 = 0.88;
 
 /// What is left to that, over itself, as far as a swing is divided by it: less than what the torques are known to.
 const LEAST_ROOM: f64 = 0.1;

@@ -1,6 +1,7 @@
 //! Which flank carries, when to leave it, and the way across. What torque the law wants is given; how the load will
 //! behave in between is taken as ballistic.
 
+use super::crossing::Crossing;
 use super::intent::{Intent, Situation};
 use super::path::Path;
 use super::set_point::{Position, Stage};
@@ -107,9 +108,12 @@ impl<T: Real> Flank<T> {
             }
             Stage::Landing if touching => self.touch(),
             Stage::Crossing if self.elapsed >= self.path.duration() => self.land(opened),
-            Stage::Crossing if intent.crossing.duration < tables.hurry * (self.path.duration() - self.elapsed) => {
-                let [place, speed, _] = self.path.at(self.elapsed + tables.reaction);
-                self.lay(tables, situation, intent, [place - self.drift(tables, situation), speed]);
+            Stage::Crossing => {
+                let crossing = self.rest_of_way(tables, situation, intent);
+                if crossing.duration < tables.hurry * (self.path.duration() - self.elapsed) {
+                    let [place, speed, _] = self.path.at(self.elapsed + tables.reaction);
+                    self.lay(tables, situation, intent, crossing, [place - self.drift(tables, situation), speed]);
+                }
             }
             _ => {}
         }
@@ -162,22 +166,44 @@ impl<T: Real> Flank<T> {
 
     /// Leaves for the flank of `side`.
     fn set_out(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, intent: &Intent<T>) {
+        let crossing = if self.stage == Stage::Touching {
+            Crossing::new(tables, situation.half, intent.haste)
+        } else {
+            self.rest_of_way(tables, situation, intent)
+        };
         self.stage = Stage::Crossing;
         self.patience = clamp(self.patience + self.patience + T::TWO, T::ONE, tables.most_patience);
         let start = [situation.motor + tables.reaction * situation.motor_speed, situation.motor_speed];
-        self.lay(tables, situation, intent, start);
+        self.lay(tables, situation, intent, crossing, start);
+    }
+
+    /// The crossing of what is left of the gap on the way to the flank of `side`: one that turns round on its way has less
+    /// of it before it, and what it still goes the other way.
+    fn rest_of_way(&self, tables: &CompensationTables<T>, situation: &Situation<T>, intent: &Intent<T>) -> Crossing<T> {
+        let opened = situation.half - self.side * (situation.gap - situation.shift);
+        let opening = self.side * (situation.link_speed - situation.motor_speed);
+        let still = tables.shortest_ramp * clamp(opening, T::ZERO, opening.abs());
+        let half = clamp(T::HALF * (opened + still), T::ZERO, situation.half);
+        Crossing::new(tables, half, intent.haste)
     }
 
     /// Lays a path to the flank where the load will be, left to itself, meeting it at a small speed. It begins when
     /// torque asked for now acts, at a place less the set-point and a speed.
-    fn lay(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, intent: &Intent<T>, start: [T; 2]) {
-        let time = intent.crossing.duration + tables.reaction;
+    fn lay(
+        &mut self,
+        tables: &CompensationTables<T>,
+        situation: &Situation<T>,
+        intent: &Intent<T>,
+        crossing: Crossing<T>,
+        start: [T; 2],
+    ) {
+        let time = crossing.duration + tables.reaction;
         let [acceleration, jerk] = [intent.free_acceleration, intent.free_jerk];
         let speed = situation.link_speed + time * (acceleration + T::HALF * time * jerk);
         let way = time * (situation.link_speed + T::HALF * time * (acceleration + T::THIRD * time * jerk));
         let place = way - situation.error + situation.shift_after(tables, way);
         let end = [place + self.side * situation.half, speed + self.side * landing_speed(tables, intent.demand_ahead)];
-        self.path = Path::new(start, end, intent.crossing);
+        self.path = Path::new(start, end, crossing);
         self.origin = situation.origin;
         // What is measured in this period is the path's start.
         self.elapsed = -tables.reaction - tables.period;

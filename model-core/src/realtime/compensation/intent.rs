@@ -147,8 +147,8 @@ pub(super) struct Intent<T: Real> {
     pub free_acceleration: T,
     /// Its rate [rad/s^3].
     pub free_jerk: T,
-    /// How long a crossing shall take [s].
-    pub crossing: Crossing<T>,
+    /// How hard the far flank will be needed, which says how fast to go there [N m].
+    pub haste: T,
     /// Whether an impulse that the load missed on the way is made good afterwards; a law stiff enough does it itself.
     pub repays: bool,
     /// Whether the joint is asked to rest and feels no load.
@@ -169,7 +169,8 @@ impl<T: Real> Intent<T> {
         repays: bool,
     ) -> Self {
         let unhurried = Crossing::new(tables, situation.half, T::ZERO).duration + tables.reaction;
-        let crossing = Crossing::new(tables, situation.half, demand(unhurried));
+        let haste = demand(unhurried);
+        let crossing = Crossing::new(tables, situation.half, haste);
         let ahead = crossing.duration + tables.reaction;
         Self {
             law,
@@ -178,7 +179,7 @@ impl<T: Real> Intent<T> {
             demand_later: later(ahead + ahead),
             free_acceleration: -load.free() * tables.inverse_load_inertia,
             free_jerk: -load.rate() * tables.inverse_load_inertia,
-            crossing,
+            haste,
             repays,
             idles: false,
         }

@@ -9,8 +9,8 @@
 //! 3. `motion` tells crossing from rest without knowing the width; `bias` takes from open gaps what the motor's torque is
 //!    wrong by; `contact` decides which flank touches.
 //! 4. `learner` is one small recursive least squares, updated every few periods in settled contact, for half-backlash,
-//!    offset, compliance, skew and the encoders' error maps. `anchor` tells flanks without a force that stands out, and
-//!    `doubt` what no longer belongs to what was learnt. `parts` gives each period some of that work.
+//!    offset, compliance, skew and the encoders' error maps. `anchor` and `ride` tell flanks without a force that stands
+//!    out, and `doubt` what no longer belongs to what was learnt. `parts` gives each period some of that work.
 //! 5. `pace` and `supervisor` watch the output encoder and fall back to the motor alone.
 //!
 //! `docs/observer.md` derives all of it and says what it cannot know.
@@ -40,6 +40,7 @@ mod places;
 mod present;
 mod probe;
 mod regressors;
+mod ride;
 mod samples;
 mod saying;
 mod supervisor;

@@ -1,11 +1,12 @@
 //! On which flank teeth came to rest, by how the way has changed since they rested last: upwards is the drive side,
-//! whatever force and bias are. Whether they rest at all is left to `motion`.
+//! whatever force and bias are. Whether they rest at all is left to `motion`, and whether on a flank to `ride`.
 
 use core::array;
 
-use super::learner::{Learner, Regressors};
+use super::learner::{Learner, Regressors, Weighed};
 use super::motion::magnitude;
 use super::regressors::{HALF_GAP, SKEW};
+use super::ride::{Change, Ride};
 use crate::real::Real;
 use crate::tables::observer::LearnerTable;
 
@@ -15,60 +16,90 @@ const SURE: i32 = 4;
 /// Where the teeth rested last.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Anchor<T: Real, const P: usize> {
-    free: Regressors<T, P>,
+    /// What the way depended on; the side among it is 1, -1, or 0 for unknown.
+    then: Regressors<T, P>,
     way: T,
-    /// 1, -1, or 0 for unknown.
-    side: T,
+    ride: Ride<T>,
     held: bool,
+    /// Nothing has interrupted the rest since.
+    goes_on: bool,
 }
 
 impl<T: Real, const P: usize> Anchor<T, P> {
     pub fn new() -> Self {
-        Self { free: [T::ZERO; P], way: T::ZERO, side: T::ZERO, held: false }
+        Self { then: [T::ZERO; P], way: T::ZERO, ride: Ride::NONE, held: false, goes_on: false }
     }
 
     /// Remembers a rest.
     pub fn put(&mut self, regressors: &Regressors<T, P>, way: T, side: T) {
-        *self = Self { free: *regressors, way, side, held: true };
-        if let Some(half_gap) = self.free.get_mut(HALF_GAP) {
-            *half_gap = T::ZERO;
+        *self = Self { then: *regressors, way, ride: self.ride, held: true, goes_on: true };
+        if let Some(half_gap) = self.then.get_mut(HALF_GAP) {
+            *half_gap = side;
         }
+    }
+
+    /// The teeth are not at rest.
+    pub fn interrupt(&mut self) {
+        self.goes_on = false;
+    }
+
+    /// What is known of the rest without a force.
+    pub fn ride(&mut self) -> &mut Ride<T> {
+        &mut self.ride
     }
 
     /// Whether the teeth rested on a side last.
     pub fn was_on(&self, side: T) -> bool {
-        self.side == side
+        self.then.get(HALF_GAP) == Some(&side)
     }
 
-    /// The side of another rest; 0 if the change is neither more than everything else could make of it, nor so little
-    /// that it is the same flank. While the link hardly moves, nothing is said: motor and link may rest with open teeth.
-    pub fn side(
+    /// By how much the way of another rest is beyond what the last one's would be there; `None` if there was none. Teeth
+    /// that stay on a flank, whichever it is, show by that what the way depends on besides.
+    pub fn weigh(
         &self,
         table: &LearnerTable<T>,
         learner: &Learner<T, P>,
         regressors: &Regressors<T, P>,
         way: T,
-        lever: T,
-    ) -> T {
-        let half_gap = learner.value(HALF_GAP);
-        let speed = regressors.get(SKEW).copied().unwrap_or(T::ZERO);
-        let went = magnitude(speed) * lever * table.span * T::from_i32(table.block as i32);
-        if !self.held || went < half_gap {
-            return T::ZERO;
-        }
-        let between: Regressors<T, P> = array::from_fn(|i| match (regressors.get(i), self.free.get(i)) {
+    ) -> Option<Weighed<T, P>> {
+        let between: Regressors<T, P> = array::from_fn(|i| match (regressors.get(i), self.then.get(i)) {
             (Some(now), Some(before)) if i != HALF_GAP => *now - *before,
             _ => T::ZERO,
         });
-        let moved = way - self.way - learner.way(&between);
-        let variance = learner.variance(table, &between) + T::TWO * table.noise * table.noise;
-        let sure = T::from_i32(SURE * SURE) * variance;
-        if moved * moved > sure && magnitude(moved) > half_gap * T::HALF {
-            if moved > T::ZERO { T::ONE } else { -T::ONE }
-        } else if moved * moved < sure && sure < half_gap * half_gap {
-            self.side
+        // Either way has its noise.
+        self.held.then(|| learner.weigh(table, &between, way - self.way, table.weight * T::HALF.square_root()))
+    }
+
+    /// The side of that rest; 0 if the change is neither more than everything else could make of it, nor so little
+    /// that it is the same flank. While the link hardly moves, nothing is said: motor and link may rest with open teeth.
+    pub fn side(
+        &mut self,
+        table: &LearnerTable<T>,
+        weighed: &Weighed<T, P>,
+        regressors: &Regressors<T, P>,
+        half_gap: T,
+        lever: T,
+    ) -> T {
+        let speed = regressors.get(SKEW).copied().unwrap_or(T::ZERO);
+        let went = speed * lever * table.span * T::from_i32(table.block as i32);
+        let noise = table.noise * T::TWO.square_root();
+        let moved = weighed.surprise * noise;
+        let sure = T::from_i32(SURE * SURE) * weighed.expected * noise * noise;
+        let change = if moved * moved >= sure {
+            if magnitude(moved) > half_gap * T::HALF { Change::Crossed } else { Change::Unsure }
+        } else if sure < half_gap * half_gap {
+            Change::Stays
         } else {
-            T::ZERO
+            Change::Hidden
+        };
+        let moves = magnitude(went) >= half_gap;
+        self.ride.step(change, moved, went, self.goes_on, moves);
+        match change {
+            _ if !moves => T::ZERO,
+            Change::Crossed if moved > T::ZERO => T::ONE,
+            Change::Crossed => -T::ONE,
+            Change::Stays => self.then.get(HALF_GAP).copied().unwrap_or(T::ZERO),
+            Change::Unsure | Change::Hidden => T::ZERO,
         }
     }
 }

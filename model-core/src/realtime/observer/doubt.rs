@@ -3,6 +3,7 @@
 
 use super::Observer;
 use super::interval::rests;
+use super::learner::Regressors;
 use super::motion::{Shown, magnitude};
 use crate::real::Real;
 
@@ -79,21 +80,41 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
 
     /// On which flank teeth came to rest: by force, or by how they came there. True if it is known.
     pub(super) fn tell_flank(&mut self) -> bool {
-        let tables = self.tables;
         let (regressors, way) = self.block.full();
         let told = self.block.side();
         let side = if told == T::ZERO {
-            let side = self.anchor.side(&tables.learner, &self.learner, &regressors, way, tables.levers.output);
-            // Teeth also turn round inside the gap, for a moment at rest: then nothing has stopped them; and they leave a
-            // flank slowly, at rest for a while: then they carry nothing any more.
-            let force = if self.anchor.was_on(side) { self.interval.steady } else { self.interval.rested };
-            if side * force > self.knowledge.steady_force_deviation { side } else { T::ZERO }
+            self.tell_by_way(&regressors, way)
         } else {
+            self.anchor.ride().told(told);
             told
         };
         self.anchor.put(&regressors, way, side);
         self.block.tell(side);
         side != T::ZERO
+    }
+
+    /// On which flank teeth came to rest, by the way; 0 if that is not known. Then what the way depends on beside the flank
+    /// is learnt, if it is known at least that it is one.
+    fn tell_by_way(&mut self, regressors: &Regressors<T, P>, way: T) -> T {
+        let tables = self.tables;
+        let [half_gap, _] = self.shape();
+        let Some(weighed) = self.anchor.weigh(&tables.learner, &self.learner, regressors, way) else { return T::ZERO };
+        let side = self.anchor.side(&tables.learner, &weighed, regressors, half_gap, tables.levers.output);
+        if self.motion.is_sharp(half_gap) {
+            // Teeth also turn round inside the gap, for a moment at rest: then nothing has stopped them; and they leave a
+            // flank slowly, at rest for a while: then they carry nothing any more.
+            let force = if self.anchor.was_on(side) { self.interval.steady } else { self.interval.rested };
+            let felt = side * force > self.knowledge.steady_force_deviation;
+            let side = if felt { side } else { self.anchor.ride().side() };
+            if side != T::ZERO {
+                return side;
+            }
+        }
+        let belongs = weighed.surprise * weighed.surprise < T::from_i32(GATE * GATE) * weighed.expected;
+        if belongs && self.anchor.ride().lasts(half_gap) {
+            self.places.relearn(&mut self.learner, |learner| learner.learn(&tables.learner, &weighed));
+        }
+        T::ZERO
     }
 
     /// Takes a way in settled contact into the learner, unless it does not belong to the model.

@@ -123,12 +123,18 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let (free, mesh) = (self.places.free, self.places.mesh_then);
         let way = mean.raw - self.learner.way(&free);
         let [_, compliance] = self.shape();
-        let unmapped = if self.knowledge.width_is_known { T::EIGHTH } else { T::ONE };
         let turned = magnitude(self.drive.speed) * tables.learner.span;
-        let blur = tables.contact.still_per_speed * unmapped * turned;
-        let less_wind_up = way - compliance * mean.force;
+        // Until the width is known, what is learnt of the transmission error hides no crossing; it is left in afterwards.
+        let (unlearnt, blur, known_shift) = if self.knowledge.width_is_known {
+            (T::ZERO, tables.contact.still_per_speed * T::EIGHTH, T::ZERO)
+        } else {
+            let (unlearnt, learnt) = self.learner.error_deviation(&tables.learner);
+            let per_turned = T::TWO * tables.counts.mesh_periods * tables.levers.per_ratio;
+            (unlearnt, tables.contact.still_per_speed - per_turned * learnt, self.error(&mesh))
+        };
+        let less_wind_up = way - compliance * mean.force - known_shift;
         let read = (mean.lost, mean.direction);
-        let shown = self.motion.step(&tables.contact, less_wind_up, read, blur, self.knowledge.softness);
+        let shown = self.motion.step(&tables.contact, less_wind_up, read, blur * turned, self.knowledge.softness);
         self.interval.steady += (mean.force - self.interval.steady) * T::QUARTER;
         let rested = if let Shown::Still(intervals) = shown { i32::from(intervals.min(LONG_REST)) } else { 1 };
         self.interval.rested += (mean.force - self.interval.rested).over(T::from_i32(rested));
@@ -148,9 +154,12 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         };
         self.knowledge.settled = side.is_some();
         self.contradict(way - shift, shown);
-        // Teeth at rest are on a flank while the motor turns, even if no force says on which.
+        // Teeth at rest are on a flank while the motor turns, even if no force says on which. Where the transmission error
+        // could hide a crossing, it has to be learnt before that can be said of any rest.
         let [half_gap, _] = self.shape();
-        let told_by_way = rests(shown) && !self.knowledge.width_is_known && self.motion.is_sharp(half_gap);
+        let told_by_way = rests(shown)
+            && !self.knowledge.width_is_known
+            && (unlearnt > half_gap * T::QUARTER || self.motion.is_sharp(half_gap));
         let unknown = told_by_way.then_some(T::ZERO);
         // A motor that stands still says the same again and again, rounded by its encoder, under a force that its friction
         // hides: that is worth learning once on either flank.
@@ -164,6 +173,9 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let seen = told_by_force.or(unknown).filter(|side| {
             self.supervisor.sees_both() && (turns || *side != T::ZERO && *side != self.interval.learnt_side)
         });
+        if seen.is_none() {
+            self.anchor.interrupt();
+        }
         let force = mean.force + tables.learner.force_lag * rise;
         let settled = Settled { free: &free, mesh: &mesh, raw: mean.raw, force };
         let least = self.least_intervals();

@@ -11,7 +11,7 @@ mod tests;
 
 use core::array;
 
-use super::regressors::{COMPLIANCE, HALF_GAP, OFFSET, SKEW};
+use super::regressors::{COMPLIANCE, ERROR, HALF_GAP, OFFSET, SKEW};
 use crate::real::Real;
 use crate::realtime::arithmetic::clamp;
 use crate::tables::observer::LearnerTable;
@@ -83,6 +83,15 @@ impl<T: Real, const P: usize> Learner<T, P> {
         }
         let deviation = table.deviation.get(parameter).copied().unwrap_or(T::ZERO);
         sum * deviation * deviation
+    }
+
+    /// Standard deviation that the transmission error has, and by how much less that is than beforehand [m].
+    pub fn error_deviation(&self, table: &LearnerTable<T>) -> (T, T) {
+        let [sine, cosine] = [ERROR, ERROR + 1].map(|parameter| self.variance_of(table, parameter));
+        let before = [ERROR, ERROR + 1].map(|parameter| table.deviation.get(parameter).copied().unwrap_or(T::ZERO));
+        let before = (before[0] * before[0] + before[1] * before[1]).square_root();
+        let now = (sine + cosine).square_root();
+        (now, if now < before { before - now } else { T::ZERO })
     }
 
     /// Everything that is learnt: parameters, then each column of the factors down to its diagonal.

@@ -132,6 +132,17 @@ fn flank(drives: bool) -> ContactState {
     if drives { ContactState::DriveSide } else { ContactState::BackSide }
 }
 
+/// Contact on a side: 1, -1, or 0 for none.
+pub(super) fn on<T: Real>(side: T) -> ContactState {
+    if side > T::ZERO {
+        ContactState::DriveSide
+    } else if side < T::ZERO {
+        ContactState::BackSide
+    } else {
+        ContactState::Separated
+    }
+}
+
 /// Sign of a contact: 1, 0 or -1.
 pub(super) fn sign<T: Real>(contact: ContactState) -> T {
     match contact {

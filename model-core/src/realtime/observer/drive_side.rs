@@ -18,21 +18,16 @@ pub(super) struct DriveSide<T: Real> {
     /// Torque taken from the motor by meshes and friction [N m].
     pub taken: T,
     air_gap: T,
-    /// Commands on their way to the motor, in a ring, and where the newest is.
+    /// Commands on their way to the motor, the newest first.
     on_the_way: [T; MOST_DELAY],
-    newest: u32,
 }
 
 impl<T: Real> DriveSide<T> {
     /// Over one period, under the command in force during it; `turned` is by how much the counts moved [rad].
     pub fn predict(&mut self, table: &DriveTable<T>, current: &CurrentTable<T>, command: T, turned: T) {
-        const RING: u32 = MOST_DELAY as u32 - 1;
-        self.newest = self.newest.wrapping_add(1) & RING;
-        if let Some(place) = self.on_the_way.get_mut((self.newest & RING) as usize) {
-            *place = command;
-        }
-        let at =
-            |ago: u32| self.on_the_way.get((self.newest.wrapping_sub(ago) & RING) as usize).copied().unwrap_or(command);
+        self.on_the_way.rotate_right(1);
+        self.on_the_way[0] = command;
+        let at = |ago: u32| self.on_the_way.get(ago as usize).copied().unwrap_or(command);
         let sooner = at(current.whole_delay);
         let wanted = sooner + current.part_delay * (at(current.whole_delay + 1) - sooner);
         let [from_speed, from_taken, from_air_gap, from_wanted] = table.angle;

@@ -11,13 +11,13 @@ use crate::real::Real;
 
 /// Intervals of rest on a flank after which contact counts as settled: the window of the speed has passed, and the
 /// swing of an impact with it.
-const SETTLED_AFTER: u16 = 3;
+const SETTLED_AFTER: u8 = 3;
 
 /// Intervals over which the force of a rest is averaged at most.
-const LONG_REST: u16 = 16;
+const LONG_REST: u8 = 16;
 
 /// Intervals well inside the gap after which the mesh force counts as gone from the motor side's estimate.
-const OPEN_AFTER: u16 = 3;
+const OPEN_AFTER: u8 = 3;
 
 /// Sums over the periods of an interval, and what lasts longer.
 #[derive(Debug, Clone, Copy)]
@@ -29,8 +29,8 @@ pub(super) struct Interval<T: Real> {
     pub direction: T,
     /// Nearer side of the gap then.
     pub nearer: T,
-    /// Side of the last rest that was learnt from.
-    pub learnt_side: T,
+    /// Flank of the last rest that was learnt from.
+    pub learnt_on: ContactState,
     /// Side on which contact settled last, unless the teeth have left it since.
     side: T,
     /// Mesh force over the last interval [N].
@@ -42,7 +42,7 @@ pub(super) struct Interval<T: Real> {
     /// Mesh force over the whole rest, landing included [N].
     pub rested: T,
     /// Intervals in a row well inside the gap.
-    open_for: u16,
+    open_for: u8,
 }
 
 /// What is averaged.
@@ -66,7 +66,7 @@ impl<T: Real> Interval<T> {
             part: Part::Done,
             direction: T::ZERO,
             nearer: T::ONE,
-            learnt_side: T::ZERO,
+            learnt_on: ContactState::Separated,
             side: T::ZERO,
             force: T::ZERO,
             pressed: ContactState::Separated,
@@ -171,7 +171,7 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let pressed = (pressed != ContactState::Separated && pressed == pressed_before).then(|| sign(pressed));
         let told_by_force = side.or(pressed).filter(|side| self.lasts(*side, mean.force, rise));
         let seen = told_by_force.or(unknown).filter(|side| {
-            self.supervisor.sees_both() && (turns || *side != T::ZERO && *side != self.interval.learnt_side)
+            self.supervisor.sees_both() && (turns || *side != T::ZERO && *side != sign(self.interval.learnt_on))
         });
         if seen.is_none() {
             self.anchor.interrupt();

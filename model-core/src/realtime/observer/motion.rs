@@ -20,7 +20,7 @@ pub(super) struct Motion<T: Real> {
     /// Where the newest of them is.
     at: u8,
     known: u8,
-    still_for: u16,
+    still_for: u8,
     /// Way over the window below which nothing was seen to move [m].
     limit: T,
 }
@@ -29,7 +29,7 @@ pub(super) struct Motion<T: Real> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Shown<T: Real> {
     /// At rest for so many intervals.
-    Still(u16),
+    Still(u8),
     /// Through the gap half a window ago; force and direction then.
     Crossing(T, T),
     /// Neither for sure.

@@ -2,6 +2,7 @@
 //! to `interval`.
 
 use super::Observer;
+use super::contact::on;
 use super::regressors::{OFFSET, Touch};
 use crate::real::Real;
 
@@ -40,7 +41,7 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
                 }
             }
             Part::Learn => {
-                self.interval.learnt_side = self.block.side();
+                self.interval.learnt_on = on(self.block.side());
                 self.take_rest();
                 Part::Know
             }

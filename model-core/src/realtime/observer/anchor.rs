@@ -85,9 +85,10 @@ impl<T: Real, const P: usize> Anchor<T, P> {
         let noise = table.noise * T::TWO.square_root();
         let moved = weighed.surprise * noise;
         let sure = T::from_i32(SURE * SURE) * weighed.expected * noise * noise;
+        let wide = self.ride.half_gap_at_least(half_gap);
         let change = if moved * moved >= sure {
             if magnitude(moved) > half_gap * T::HALF { Change::Crossed } else { Change::Unsure }
-        } else if sure < half_gap * half_gap {
+        } else if sure < wide * wide {
             Change::Stays
         } else {
             Change::Hidden

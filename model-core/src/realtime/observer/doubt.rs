@@ -100,7 +100,7 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let [half_gap, _] = self.shape();
         let Some(weighed) = self.anchor.weigh(&tables.learner, &self.learner, regressors, way) else { return T::ZERO };
         let side = self.anchor.side(&tables.learner, &weighed, regressors, half_gap, tables.levers.output);
-        if self.motion.is_sharp(half_gap) {
+        if self.motion.is_sharp(self.anchor.ride().half_gap_at_least(half_gap)) {
             // Teeth also turn round inside the gap, for a moment at rest: then nothing has stopped them; and they leave a
             // flank slowly, at rest for a while: then they carry nothing any more.
             let force = if self.anchor.was_on(side) { self.interval.steady } else { self.interval.rested };

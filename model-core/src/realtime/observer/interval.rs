@@ -157,9 +157,10 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         // Teeth at rest are on a flank while the motor turns, even if no force says on which. Where the transmission error
         // could hide a crossing, it has to be learnt before that can be said of any rest.
         let [half_gap, _] = self.shape();
+        let wide = self.anchor.ride().half_gap_at_least(half_gap);
         let told_by_way = rests(shown)
             && !self.knowledge.width_is_known
-            && (unlearnt > half_gap * T::QUARTER || self.motion.is_sharp(half_gap));
+            && (unlearnt > wide * T::QUARTER || self.motion.is_sharp(wide));
         let unknown = told_by_way.then_some(T::ZERO);
         // A motor that stands still says the same again and again, rounded by its encoder, under a force that its friction
         // hides: that is worth learning once on either flank.

@@ -55,6 +55,13 @@ impl<T: Real> Ride<T> {
         }
     }
 
+    /// The half-gap as it is said, or what the teeth were seen to cross if that is more: a gap is no narrower. A quarter is
+    /// left for what the crossing may have been wrong by, at four standard deviations.
+    pub fn half_gap_at_least(&self, said: T) -> T {
+        let seen = (T::QUARTER + T::EIGHTH) * magnitude(self.span);
+        if seen > said { seen } else { said }
+    }
+
     /// The force has told on which side this rest is.
     pub fn told(&mut self, side: T) {
         if side * self.span < T::ZERO {

@@ -96,7 +96,7 @@ fn lost_readings_of_the_motor_cost_little() {
         let (trial, log) = to_and_fro(name, Profile::Sine(0.5, 1.0));
         let gap = 4.0 * trial.run.joint.sun_planet.half_backlash[0];
         // Each ninth, and after each seventieth one more.
-        let lost = |period: usize| LATE.contains(&period) && (period % 9 == 0 || period % 70 < 2);
+        let lost = |period: usize| LATE.contains(&period) && (period.is_multiple_of(9) || period % 70 < 2);
         let said = said(&trial, &log, |period, samples| {
             if lost(period) {
                 let before = (0..period).rev().find(|before| !lost(*before)).unwrap_or(0);

@@ -5,9 +5,9 @@ use host_tests::drive_train::{Disturbance, DriveTrainParameters};
 use host_tests::scenarios::{l1, q1};
 use host_tests::tolerance::compensation::{
     COMPENSATED_OVER_PID, COMPENSATED_OVER_RIVAL, COMPENSATED_PEAK_OVER_PID, COMPENSATED_PEAK_OVER_RIVAL,
-    HIDDEN_GAP_OVER_PID, LOST_MOTION, ONE_FLANK_OVER_PID, PEAK_MESH_FORCE, SLOW_OVER_PID, SLOW_PEAK_OVER_PID,
-    STEPS_MESH_FORCE, STEPS_OVER_PID, STEPS_PEAK_OVER_PID, STIFF_JOINT_OVER_PID, STIFF_JOINT_STEPS_OVER_PID,
-    TRANSMISSION_ERROR_OVER_PID,
+    HIDDEN_GAP_OVER_PID, LOST_MOTION, LOST_MOTION_WITHOUT_PREVIEW, ONE_FLANK_OVER_PID, PEAK_MESH_FORCE, SLOW_OVER_PID,
+    SLOW_PEAK_OVER_PID, STEPS_MESH_FORCE, STEPS_OVER_PID, STEPS_PEAK_OVER_PID, STIFF_JOINT_OVER_PID,
+    STIFF_JOINT_STEPS_OVER_PID, TRANSMISSION_ERROR_OVER_PID,
 };
 use model_core::joint::JointParameters;
 
@@ -58,15 +58,17 @@ fn a_swinging_weight_loses_its_lost_motion() {
 #[test]
 fn a_slow_weight_is_seldom_taken_back_to_the_flank_that_it_has_left() {
     // Seven reversals from three seconds on: what is crossed beyond those is crossed there and back.
-    let needless: usize = (301..309)
-        .map(|seed| {
-            let ours = figures(&Trial::weighty(&q1(), &DriveTrainParameters::q1(), 0.5, seed), NO_PREVIEW);
-            LOST_MOTION.check(ours.lost_motion_time);
-            ours.crossings - 7
-        })
-        .sum();
-    println!("{needless} needless crossings of 56");
-    assert!(needless <= 8, "{needless} needless crossings of 56");
+    let seeds = 301..325;
+    let ours: Vec<_> =
+        seeds.map(|seed| figures(&Trial::weighty(&q1(), &DriveTrainParameters::q1(), 0.5, seed), NO_PREVIEW)).collect();
+    let needless: usize = ours.iter().map(|ours| ours.crossings - 7).sum();
+    println!("{needless} needless crossings of 168");
+    assert!(needless <= 24, "{needless} needless crossings of 168");
+    // Each of them lengthens the mean of its own few crossings, so the mean of all is what the bar is held to.
+    LOST_MOTION.check(ours.iter().map(|ours| ours.lost_motion_time).sum::<f64>() / 24.0);
+    for ours in ours {
+        LOST_MOTION_WITHOUT_PREVIEW.check(ours.lost_motion_time);
+    }
 }
 
 #[test]

@@ -27,6 +27,8 @@ pub(super) struct Flank<T: Real> {
     owed: T,
     /// How much more than usual feedback has to ask for before the flank is changed for it: grows with every change.
     patience: T,
+    /// Whether the flank in use has been asked for since the motor set out for it, or the joint to rest.
+    asked: bool,
 }
 
 impl<T: Real> Flank<T> {
@@ -41,11 +43,17 @@ impl<T: Real> Flank<T> {
             rise: T::ONE,
             owed: T::ZERO,
             patience: T::ONE,
+            asked: true,
         }
     }
 
     pub fn stage(&self) -> Stage {
         self.stage
+    }
+
+    /// Whether a flank has been met that is not asked for yet: the motor is early there.
+    pub fn waits(&self) -> bool {
+        self.stage == Stage::Touching && !self.asked
     }
 
     pub fn side(&self) -> T {
@@ -55,6 +63,7 @@ impl<T: Real> Flank<T> {
     /// Nothing is known: whatever flank touches is the one.
     pub fn forget(&mut self, situation: &Situation<T>) {
         self.stage = Stage::Touching;
+        self.asked = true;
         self.rise = T::ONE;
         self.owed = T::ZERO;
         if situation.contact != T::ZERO {
@@ -121,7 +130,13 @@ impl<T: Real> Flank<T> {
             self.rise = clamp(self.rise + tables.landing_rise, T::ZERO, T::ONE);
             let repaid = self.rise * self.owed * tables.repayment;
             self.owe(tables, (T::ONE - self.rise) * intent.demand_now - repaid, intent);
-            return self.rise * intent.law + repaid;
+            let torque = self.rise * intent.law + repaid;
+            self.asked |= intent.rests || self.side * intent.demand_now > T::ZERO;
+            // What only the flank that was left could give takes an early motor nowhere but off the one that will be needed.
+            let along = tables.motor_inertia * intent.free_acceleration
+                + situation.calm(tables)
+                + situation.lost(tables, situation.link_speed, T::ZERO);
+            return if self.waits() && self.side * (torque - along) < T::ZERO { along } else { torque };
         }
         self.elapsed += tables.period;
         self.owe(tables, intent.demand_now, intent);
@@ -172,6 +187,7 @@ impl<T: Real> Flank<T> {
             self.rest_of_way(tables, situation, intent)
         };
         self.stage = Stage::Crossing;
+        self.asked = false;
         self.patience = clamp(self.patience + self.patience + T::TWO, T::ONE, tables.most_patience);
         let start = [situation.motor + tables.reaction * situation.motor_speed, situation.motor_speed];
         self.lay(tables, situation, intent, crossing, start);

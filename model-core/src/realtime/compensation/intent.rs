@@ -153,6 +153,8 @@ pub(super) struct Intent<T: Real> {
     pub repays: bool,
     /// Whether the joint is asked to rest and feels no load.
     pub idles: bool,
+    /// Whether the joint is asked to rest.
+    pub rests: bool,
 }
 
 impl<T: Real> Intent<T> {
@@ -182,6 +184,7 @@ impl<T: Real> Intent<T> {
             haste,
             repays,
             idles: false,
+            rests: false,
         }
     }
 

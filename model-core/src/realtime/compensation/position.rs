@@ -94,7 +94,7 @@ impl<T: Real> PositionLaw<T> {
         };
         // A load that is felt has its reasons, and a flank that carries it rests.
         let idles = rests && beyond(load.even(), tables.doubt) == T::ZERO;
-        let intent = Intent { idles, ..Intent::new(tables, load, situation, law, demand, later, false) };
+        let intent = Intent { idles, rests, ..Intent::new(tables, load, situation, law, demand, later, false) };
         let surely = beyond(intent.demand_ahead, tables.doubt * tables.least_doubt);
         self.indulge(tables, rests, idles, surely, situation.half);
         intent

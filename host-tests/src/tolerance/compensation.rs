@@ -62,7 +62,7 @@ pub const LOST_MOTION: Bound = Bound {
 /// The same of a motion that nobody has announced, of a single record.
 pub const LOST_MOTION_WITHOUT_PREVIEW: Bound = Bound {
     of: "mean time from leaving one flank to touching the other, not known ahead [s]",
-    limit: 20e-3,
+    limit: 12e-3,
     measured: 10.6e-3,
     reason: "A record of seven reversals, of which each that is crossed there and back adds several milliseconds.",
 };

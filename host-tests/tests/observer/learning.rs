@@ -7,7 +7,7 @@ use model_core::realtime::observer::{MAPPED, Observer, Source};
 
 use crate::motion::Profile;
 use crate::presets::with_backlash;
-use crate::replay::{replay, samples};
+use crate::replay::{Figures, replay, samples};
 use crate::trial::{Encoders, Trial};
 
 #[test]
@@ -75,15 +75,19 @@ fn a_link_that_is_pushed_from_flank_to_flank_shows_the_width_though_it_never_res
     }
 }
 
+/// Figures of a trial from a moment on, where bias can be a tenth of the largest torque: three of that are more than the
+/// motion takes.
+fn under_a_wide_bias(mut trial: Trial, from: f64) -> Figures {
+    trial.settings.torque_uncertainty = 0.1 * trial.settings.torque_limit;
+    let log = trial.record();
+    replay::<f64, MAPPED>(&trial.run.joint, &trial.tables(), &trial.settings, &log, from, |_, _, _| {})
+}
+
 #[test]
 fn flanks_are_told_without_a_force_that_stands_out_of_bias() {
     for (name, seed) in [("l1", 34), ("q1", 35)] {
-        let mut trial = Trial::new(name, "inertia", Encoders::Preset, None, seed).lasting(4.0);
-        // A tenth of the largest torque: three of that are more than the motion takes.
-        trial.settings.torque_uncertainty = 0.1 * trial.settings.torque_limit;
-        let log = trial.record();
-        let figures =
-            replay::<f64, MAPPED>(&trial.run.joint, &trial.tables(), &trial.settings, &log, 2.5, |_, _, _| {});
+        let trial = Trial::new(name, "inertia", Encoders::Preset, None, seed).lasting(4.0);
+        let figures = under_a_wide_bias(trial, 2.5);
         println!("{name}: {figures:?}");
         GAP_COARSE.check(figures.gap);
         WIDTH.check(figures.width);
@@ -100,10 +104,7 @@ fn a_joint_that_hardly_feels_its_load_shows_the_width_by_where_its_link_goes() {
     {
         let mut trial = Trial::new(name, "inertia", Encoders::Preset, Some(half_backlash), seed).lasting(5.0);
         trial.run.profile = Profile::Sine(0.5, frequency);
-        trial.settings.torque_uncertainty = 0.1 * trial.settings.torque_limit;
-        let log = trial.record();
-        let figures =
-            replay::<f64, MAPPED>(&trial.run.joint, &trial.tables(), &trial.settings, &log, 3.5, |_, _, _| {});
+        let figures = under_a_wide_bias(trial, 3.5);
         println!("{name} {half_backlash} {seed}: {figures:?}");
         WIDTH.check(figures.width);
         assert!(figures.valid > 0.99, "{name} is not vouched for");

@@ -78,10 +78,8 @@ impl<'tables, T: Real> Compensation<'tables, T> {
         }
         let situation = Situation::new(tables, estimates, self.offset, command);
         // Teeth that lie by a flank too early are felt now and then, but carry nothing of the load.
-        let waits = self.flank.waits();
-        let situation = Situation { open: situation.open || waits, ..situation };
-        let touches = situation.contact != T::ZERO && !waits;
-        let leans = self.flank.stage() == Stage::Touching && !touches && situation.sees;
+        let situation = Situation { open: situation.open || self.flank.waits(), ..situation };
+        let leans = self.flank.stage() == Stage::Touching && situation.open && situation.sees;
         if leans && matches!(command, Command::Position { .. }) {
             self.load.lean(tables, self.position.heeded(&situation));
         }

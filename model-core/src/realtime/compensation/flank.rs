@@ -73,7 +73,7 @@ impl<T: Real> Flank<T> {
 
     /// Torque of this period, limits aside [N m].
     pub fn step(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, intent: &Intent<T>) -> T {
-        let opened = situation.half - self.side * (situation.gap - situation.shift);
+        let opened = self.opened_to(situation);
         // A force that seems to come from the far flank while the teeth are just leaving the near one does not.
         let felt = situation.contact * self.side > T::ZERO && opened < situation.half;
         // A flank that is met softly is seen before it is felt.
@@ -133,9 +133,7 @@ impl<T: Real> Flank<T> {
             let torque = self.rise * intent.law + repaid;
             self.asked |= intent.rests || self.side * intent.demand_now > T::ZERO;
             // What only the flank that was left could give takes an early motor nowhere but off the one that will be needed.
-            let along = tables.motor_inertia * intent.free_acceleration
-                + situation.calm(tables)
-                + situation.lost(tables, situation.link_speed, T::ZERO);
+            let along = along(tables, situation, intent, situation.error_speed);
             return if self.waits() && self.side * (torque - along) < T::ZERO { along } else { torque };
         }
         self.elapsed += tables.period;
@@ -144,9 +142,7 @@ impl<T: Real> Flank<T> {
             // Where the flank is does not enter, so that a wrong width costs time only; nor can it be chased for ever.
             let speed = landing_speed(tables, intent.demand_now) + tables.landing_haste * self.elapsed;
             let closing = self.side * clamp(speed, T::ZERO, tables.fastest_landing);
-            return tables.motor_inertia * intent.free_acceleration
-                + tables.motor_damping * (situation.link_speed + closing - situation.motor_speed)
-                + situation.lost(tables, situation.link_speed, T::ZERO);
+            return along(tables, situation, intent, closing);
         }
         // Torque acts one reaction time after it is asked for.
         let [target, rate, _] = self.path.at(self.elapsed);
@@ -155,6 +151,11 @@ impl<T: Real> Flank<T> {
             + tables.gap_stiffness * (target - self.drift(tables, situation) - situation.motor)
             + tables.motor_damping * (rate - situation.motor_speed)
             + situation.lost(tables, rate, T::ZERO)
+    }
+
+    /// How far the flank in use is from the teeth, felt at the link [rad].
+    fn opened_to(&self, situation: &Situation<T>) -> T {
+        situation.half - self.side * (situation.gap - situation.shift)
     }
 
     /// How far the set-point has moved since the path was laid [rad].
@@ -196,7 +197,7 @@ impl<T: Real> Flank<T> {
     /// The crossing of what is left of the gap on the way to the flank of `side`: one that turns round on its way has less
     /// of it before it, and what it still goes the other way.
     fn rest_of_way(&self, tables: &CompensationTables<T>, situation: &Situation<T>, intent: &Intent<T>) -> Crossing<T> {
-        let opened = situation.half - self.side * (situation.gap - situation.shift);
+        let opened = self.opened_to(situation);
         let opening = self.side * (situation.link_speed - situation.motor_speed);
         let still = tables.shortest_ramp * clamp(opening, T::ZERO, opening.abs());
         let half = clamp(T::HALF * (opened + still), T::ZERO, situation.half);
@@ -224,6 +225,13 @@ impl<T: Real> Flank<T> {
         // What is measured in this period is the path's start.
         self.elapsed = -tables.reaction - tables.period;
     }
+}
+
+/// Torque of a motor that goes along with the free link, and by so much faster [N m].
+fn along<T: Real>(tables: &CompensationTables<T>, situation: &Situation<T>, intent: &Intent<T>, faster: T) -> T {
+    tables.motor_inertia * intent.free_acceleration
+        + tables.motor_damping * (situation.link_speed + faster - situation.motor_speed)
+        + situation.lost(tables, situation.link_speed, T::ZERO)
 }
 
 /// Speed against the load at which a flank is met: hard enough for what it shall carry, and no harder.

@@ -123,6 +123,14 @@ pub const FREE_HOLD_SWING: Bound = Bound {
     reason: "The error let be is at most half of it.",
 };
 
+/// The same with a width that has to be learnt from the push.
+pub const UNKNOWN_FREE_HOLD_SWING: Bound = Bound {
+    of: "peak to peak of a hold without friction and with unknown backlash, over the lost motion",
+    limit: 1.0,
+    measured: 0.96,
+    reason: "The bar is the lost motion; the first swing is plain control's.",
+};
+
 /// Impedance mode: position.
 pub const IMPEDANCE_DEVIATION: Bound = Bound {
     of: "deviation from the law without a gap over that of the motor-side law",

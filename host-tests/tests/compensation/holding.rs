@@ -3,9 +3,14 @@
 use host_tests::closed_loop::{Contender, Figures, Trial};
 use host_tests::drive_train::DriveTrainParameters;
 use host_tests::scenarios::q1;
-use host_tests::tolerance::compensation::{FREE_HOLD_SWING, HOLD_OVER_PID, HOLD_SWING_OVER_PID};
+use host_tests::tolerance::compensation::{
+    FREE_HOLD_SWING, HOLD_OVER_PID, HOLD_SWING_OVER_PID, UNKNOWN_FREE_HOLD_SWING,
+};
 
 use super::{NO_PREVIEW, figures};
+
+/// Q1's, 4b over twice the carrier's lever [rad].
+const LOST_MOTION: f64 = 3.78e-3;
 
 #[test]
 fn a_disturbed_hold_moves_a_fraction_of_what_it_did() {
@@ -31,6 +36,16 @@ fn without_any_friction_a_known_gap_is_crossed_seldom_and_swings_less_than_it_is
     let ours = after(Contender::PerfectSight { preview: false });
     let cascade = after(Contender::LoadCascade);
     assert!(ours.crossings < cascade.crossings / 4, "{} crossings against {}", ours.crossings, cascade.crossings);
-    // 4b over twice the carrier's lever.
-    FREE_HOLD_SWING.check(ours.peak_to_peak / 3.78e-3);
+    FREE_HOLD_SWING.check(ours.peak_to_peak / LOST_MOTION);
+}
+
+#[test]
+fn without_any_friction_a_gap_that_is_not_known_yet_is_learnt_from_the_first_soft_touches() {
+    for seed in 114..120 {
+        let trial = Trial::free_hold(&q1(), &DriveTrainParameters::q1(), 0.0, seed);
+        let after = |contender| Figures::of(&trial.run(contender).expect("the trial runs"), 2.1);
+        let (ours, cascade) = (after(NO_PREVIEW), after(Contender::LoadCascade));
+        assert!(ours.crossings < cascade.crossings, "{} crossings against {}", ours.crossings, cascade.crossings);
+        UNKNOWN_FREE_HOLD_SWING.check(ours.peak_to_peak / LOST_MOTION);
+    }
 }

@@ -135,7 +135,8 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let less_wind_up = way - compliance * mean.force - known_shift;
         let read = (mean.lost, mean.direction);
         let shown = self.motion.step(&tables.contact, less_wind_up, read, blur * turned, self.knowledge.softness);
-        self.interval.steady += (mean.force - self.interval.steady) * T::QUARTER;
+        let steady_rise = (mean.force - self.interval.steady) * T::QUARTER;
+        self.interval.steady += steady_rise;
         let rested = if let Shown::Still(intervals) = shown { i32::from(intervals.min(LONG_REST)) } else { 1 };
         self.interval.rested += (mean.force - self.interval.rested).over(T::from_i32(rested));
         let shift = self.error(&mesh);
@@ -170,7 +171,7 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let pressed_before = core::mem::replace(&mut self.interval.pressed, pressed);
         // The first millisecond of a landing is not learnt from.
         let pressed = (pressed != ContactState::Separated && pressed == pressed_before).then(|| sign(pressed));
-        let told_by_force = side.or(pressed).filter(|side| self.lasts(*side, mean.force, rise));
+        let told_by_force = side.or(pressed).filter(|side| self.lasts(*side, steady_rise));
         let seen = told_by_force.or(unknown).filter(|side| {
             self.supervisor.sees_both() && (turns || *side != T::ZERO && *side != sign(self.interval.learnt_on))
         });

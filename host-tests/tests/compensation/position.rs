@@ -63,7 +63,8 @@ fn a_slow_weight_is_seldom_taken_back_to_the_flank_that_it_has_left() {
         seeds.map(|seed| figures(&Trial::weighty(&q1(), &DriveTrainParameters::q1(), 0.5, seed), NO_PREVIEW)).collect();
     let needless: usize = ours.iter().map(|ours| ours.crossings - 7).sum();
     println!("{needless} needless crossings of 168");
-    assert!(needless <= 24, "{needless} needless crossings of 168");
+    // Fourteen; twenty-six if a motor that is early did not stay by its flank.
+    assert!(needless <= 19, "{needless} needless crossings of 168");
     // Each of them lengthens the mean of its own few crossings, so the mean of all is what the bar is held to.
     LOST_MOTION.check(ours.iter().map(|ours| ours.lost_motion_time).sum::<f64>() / 24.0);
     for ours in ours {

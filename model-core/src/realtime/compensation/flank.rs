@@ -91,9 +91,7 @@ impl<T: Real> Flank<T> {
         let later = intent.demand_ahead + intent.demand_ahead - intent.demand_now;
         let grown = clamp(tables.doubt * (self.patience - T::ONE), T::ZERO, tables.most_doubt * situation.half);
         let doubt = tables.doubt * tables.least_doubt + grown;
-        // An error that mends itself on the way is not worth the way there and back.
-        let lasts = self.side * intent.demand_later < -tables.hysteresis;
-        let turned = turned && lasts && self.side * later < -doubt;
+        let turned = turned && self.side * later < -doubt;
         // Of a joint that idles nothing but a flank puts the error right.
         let left = if intent.idles { tables.patience_left * tables.patience_left } else { tables.patience_left };
         self.patience = T::ONE + left * (self.patience - T::ONE);

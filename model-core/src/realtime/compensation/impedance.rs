@@ -47,6 +47,6 @@ impl<T: Real> ImpedanceLaw<T> {
         let demand_now = passed(tables, free, asked);
         let rate = tables.load_share * (point.stiffness * situation.error_rate + self.sender.torque_rate());
         let demand = |time: T| demand_now + time * rate;
-        Intent::new(tables, load, situation, law, demand, demand, true)
+        Intent::new(tables, load, situation, law, demand, true)
     }
 }

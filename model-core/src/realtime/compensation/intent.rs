@@ -141,8 +141,6 @@ pub(super) struct Intent<T: Real> {
     pub demand_now: T,
     /// What they will have to pass on when a crossing that began now ends [N m].
     pub demand_ahead: T,
-    /// What they would have to pass on as much later again if no flank carried until then [N m].
-    pub demand_later: T,
     /// Acceleration of the load left to itself [rad/s^2].
     pub free_acceleration: T,
     /// Its rate [rad/s^3].
@@ -158,16 +156,14 @@ pub(super) struct Intent<T: Real> {
 }
 
 impl<T: Real> Intent<T> {
-    /// An intent from the law's torque and from what the teeth will have to pass on after a time: `demand` if errors stay as
-    /// they are, `later` if no flank carries meanwhile. How hard the far flank will be needed says how fast to go there, and
-    /// that again when to start.
+    /// An intent from the law's torque and from what the teeth will have to pass on after a time. How hard the far flank will
+    /// be needed says how fast to go there, and that again when to start.
     pub fn new(
         tables: &CompensationTables<T>,
         load: &LoadModel<T>,
         situation: &Situation<T>,
         law: T,
         demand: impl Fn(T) -> T,
-        later: impl Fn(T) -> T,
         repays: bool,
     ) -> Self {
         let unhurried = Crossing::new(tables, situation.half, T::ZERO).duration + tables.reaction;
@@ -178,7 +174,6 @@ impl<T: Real> Intent<T> {
             law,
             demand_now: demand(T::ZERO),
             demand_ahead: demand(ahead),
-            demand_later: later(ahead + ahead),
             free_acceleration: -load.free() * tables.inverse_load_inertia,
             free_jerk: -load.rate() * tables.inverse_load_inertia,
             haste,

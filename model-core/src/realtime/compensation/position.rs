@@ -82,19 +82,9 @@ impl<T: Real> PositionLaw<T> {
         let level = self.level;
         let rate = load.rate();
         let demand = |time: T| planned(time) + level + time * rate;
-        let load_now = load.even() + (load.drag() - load.planned_drag(tables, now.speed));
-        let later = |time: T| {
-            // Friction stops a link that creeps, whatever else acts on it.
-            if load.creeps() {
-                return demand(time);
-            }
-            let [before, after] = [load_now + planned(T::ZERO), load_now + planned(time) + time * rate];
-            let [error, error_rate] = left_alone(tables, situation, time, before, after);
-            after + tables.position_gain * beyond(error, let_be) + tables.damping_gain * error_rate
-        };
         // A load that is felt has its reasons, and a flank that carries it rests.
         let idles = rests && beyond(load.even(), tables.doubt) == T::ZERO;
-        let intent = Intent { idles, rests, ..Intent::new(tables, load, situation, law, demand, later, false) };
+        let intent = Intent { idles, rests, ..Intent::new(tables, load, situation, law, demand, false) };
         let surely = beyond(intent.demand_ahead, tables.doubt * tables.least_doubt);
         self.indulge(tables, rests, idles, surely, situation.half);
         intent
@@ -131,19 +121,4 @@ impl<T: Real> PositionLaw<T> {
             self.asked = if demand > T::ZERO { T::ONE } else { -T::ONE };
         }
     }
-}
-
-/// The error and its rate after a time in which no flank carries what the motion asks for, which changes evenly meanwhile.
-fn left_alone<T: Real>(
-    tables: &CompensationTables<T>,
-    situation: &Situation<T>,
-    time: T,
-    before: T,
-    after: T,
-) -> [T; 2] {
-    let growth = tables.inverse_load_inertia * time;
-    [
-        situation.error + time * (situation.error_rate + T::THIRD * growth * (before + T::HALF * after)),
-        situation.error_rate + T::HALF * growth * (before + after),
-    ]
 }

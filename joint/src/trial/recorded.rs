@@ -1,5 +1,6 @@
-//! A motion from a CSV file: positions at any times, with a load torque if there is one. Between rows the link goes on
-//! cubics through the positions, with speeds from neighbouring rows; it rests at the last one.
+//! A motion from a CSV file: positions at any times, with a load torque if there is one. Between rows the link goes on the
+//! cubic spline through the positions, whose acceleration has no jumps; it rests where three rows or more are the same, at
+//! the first and at the last one.
 
 use std::path::Path;
 
@@ -99,10 +100,7 @@ impl Recorded {
         }
         let start = rows[0].time;
         rows.iter_mut().for_each(|row| row.time -= start);
-        for index in 1..rows.len() - 1 {
-            let (before, after) = (rows[index - 1], rows[index + 1]);
-            rows[index].speed = (after.position - before.position) / (after.time - before.time);
-        }
+        set_speeds(&mut rows);
         Ok(Self { rows })
     }
 
@@ -120,6 +118,28 @@ impl Recorded {
 impl Row {
     fn is_reached_from(&self, before: &Self) -> bool {
         (self.position - before.position).abs() <= FASTEST * (self.time - before.time)
+    }
+}
+
+/// Speeds that make the acceleration continuous: h2 v0 + 2 (h1 + h2) v1 + h1 v2 = 3 (h2 d1 + h1 d2) at every row that is no
+/// rest, with the widths h and the slopes d before and after it.
+fn set_speeds(rows: &mut [Row]) {
+    // Speed of a row as a constant less a share of the next one's, from the front.
+    let mut constant_and_share = vec![(0.0, 0.0); rows.len()];
+    for index in 1..rows.len() - 1 {
+        let [before, here, after] = [rows[index - 1], rows[index], rows[index + 1]];
+        if before.position == here.position && here.position == after.position {
+            continue;
+        }
+        let (h1, h2) = (here.time - before.time, after.time - here.time);
+        let (d1, d2) = ((here.position - before.position) / h1, (after.position - here.position) / h2);
+        let (constant, share) = constant_and_share[index - 1];
+        let pivot = 2.0 * (h1 + h2) - h2 * share;
+        constant_and_share[index] = ((3.0 * (h2 * d1 + h1 * d2) - h2 * constant) / pivot, h1 / pivot);
+    }
+    for index in (1..rows.len() - 1).rev() {
+        let (constant, share) = constant_and_share[index];
+        rows[index].speed = constant - share * rows[index + 1].speed;
     }
 }
 
@@ -164,6 +184,34 @@ mod tests {
             assert!((at.speed - 3.0 * (3.0 * time).cos()).abs() < 3e-3, "{at:?}");
         }
         assert_eq!(motion.at(9.0).speed, 0.0);
+    }
+
+    #[test]
+    fn acceleration_has_no_jumps_and_its_rate_is_the_motions() {
+        let mut text = String::from("time_s,position_rad\n");
+        let mut time = 0.0_f64;
+        for k in 0..=400 {
+            time += if k % 2 == 0 { 0.004 } else { 0.006 };
+            text += &format!("{time},{}\n", (9.0 * time).sin());
+        }
+        let motion = Recorded::parse(&text).expect("a good file");
+        for k in 0..1000 {
+            let time = 0.5 + 0.001 * f64::from(k);
+            let [before, after] = [time, time + 1e-3].map(|time| motion.at(time).acceleration);
+            let rate = -729.0 * (9.0 * (time + 0.5e-3 + 0.004)).cos();
+            assert!(((after - before) / 1e-3 - rate).abs() < 0.05 * 729.0, "{time}: {before} {after} {rate}");
+        }
+    }
+
+    #[test]
+    fn a_motion_rests_where_its_rows_do() {
+        let text = "time_s,position_rad\n0,0\n1,0\n2,0\n3,0.1\n4,0.3\n5,0.3\n6,0.3\n7,0.3\n8,0\n";
+        let motion = Recorded::parse(text).expect("a good file");
+        for time in [0.2, 0.9, 5.5, 5.7] {
+            let at = motion.at(time);
+            assert_eq!((at.speed, at.acceleration), (0.0, 0.0), "{time}");
+        }
+        assert!(motion.at(4.5).position > 0.3, "it comes to rest beyond its place and goes back to it");
     }
 
     #[test]

@@ -7,7 +7,7 @@
 //! 2. `flank` decides from that which flank shall carry, and when to leave for it.
 //! 3. `crossing` and `path` take the motor through the gap to where the load will be, and softly onto the flank.
 //! 4. `limit` keeps what the teeth pass on within bounds.
-//! 5. `load` knows what brakes the link and how that changes when the motion turns round.
+//! 5. `load` knows what brakes the link and how that changes when the motion turns round, `habit` how motions start.
 //! 6. `plain` is the same control law on the motor alone, without compensation; it takes over, blended, where the
 //!    estimates are not valid.
 //!
@@ -15,6 +15,7 @@
 
 pub(crate) mod crossing;
 mod flank;
+mod habit;
 mod impedance;
 mod intent;
 mod limit;

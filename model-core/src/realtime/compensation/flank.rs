@@ -85,13 +85,13 @@ impl<T: Real> Flank<T> {
             && self.opened - opened < T::HALF * tables.landing_speed * self.elapsed;
         let closing = self.side * (situation.motor_speed - situation.link_speed);
         let touching = felt || seen || stopped;
-        let turned = self.side * (intent.demand_now + intent.demand_ahead) < -tables.hysteresis
-            && self.side * intent.demand_ahead < -tables.hysteresis;
+        let [now, ahead] = [intent.demand_now, intent.demand_ahead].map(|demand| self.side * (demand + intent.expects));
+        let turned = now + ahead < -tables.hysteresis && ahead < -tables.hysteresis;
         // What is only as large as its noise has to grow, and more so soon after a change of flank.
-        let later = intent.demand_ahead + intent.demand_ahead - intent.demand_now;
+        let later = ahead + ahead - now;
         let grown = clamp(tables.doubt * (self.patience - T::ONE), T::ZERO, tables.most_doubt * situation.half);
         let doubt = tables.doubt * tables.least_doubt + grown;
-        let turned = turned && self.side * later < -doubt;
+        let turned = turned && later < -doubt;
         // Of a joint that idles nothing but a flank puts the error right.
         let left = if intent.idles { tables.patience_left * tables.patience_left } else { tables.patience_left };
         self.patience = T::ONE + left * (self.patience - T::ONE);
@@ -132,7 +132,8 @@ impl<T: Real> Flank<T> {
             self.asked |= intent.rests || self.side * intent.demand_now > T::ZERO;
             // What only the flank that was left could give takes an early motor nowhere but off the one that will be needed.
             let along = along(tables, situation, intent, situation.error_speed);
-            return if self.waits() && self.side * (torque - along) < T::ZERO { along } else { torque };
+            let stays = self.waits() || self.side * intent.expects > T::ZERO;
+            return if stays && self.side * (torque - along) < T::ZERO { along } else { torque };
         }
         self.elapsed += tables.period;
         self.owe(tables, intent.demand_now, intent);

@@ -153,6 +153,8 @@ pub(super) struct Intent<T: Real> {
     pub idles: bool,
     /// Whether the joint is asked to rest.
     pub rests: bool,
+    /// What a joint that idles is likely to be asked for first, as far as that decides on the flank it waits on [N m].
+    pub expects: T,
 }
 
 impl<T: Real> Intent<T> {
@@ -180,6 +182,7 @@ impl<T: Real> Intent<T> {
             repays,
             idles: false,
             rests: false,
+            expects: T::ZERO,
         }
     }
 

@@ -1,6 +1,7 @@
 //! The control law of position mode: spring on the link, damper on the motor, acceleration and load fed forward. The
 //! load estimate takes the place of an integral.
 
+use super::habit::Habit;
 use super::intent::{Intent, Situation};
 use super::limit::{limited, passed};
 use super::load::LoadModel;
@@ -8,6 +9,9 @@ use super::set_point::Motion;
 use crate::real::Real;
 use crate::realtime::arithmetic::{beyond, clamp};
 use crate::tables::compensation::CompensationTables;
+
+/// How much faster the growth of what is asked for is smoothed than torque that is measured.
+const SOONER: i32 = 8;
 
 /// What position mode remembers.
 #[derive(Debug, Clone)]
@@ -22,11 +26,23 @@ pub(super) struct PositionLaw<T: Real> {
     since: T,
     /// Demand as far as it is measured and not planned, smoothed [N m].
     level: T,
+    /// How the motion usually starts.
+    habit: Habit<T>,
+    /// By how much the acceleration asked for grows in a period, smoothed: planners send it in coarser steps [rad/s^2].
+    growth: T,
 }
 
 impl<T: Real> PositionLaw<T> {
     pub fn new() -> Self {
-        Self { before: None, indulgence: T::ZERO, asked: T::ZERO, since: T::ZERO, level: T::ZERO }
+        Self {
+            before: None,
+            indulgence: T::ZERO,
+            asked: T::ZERO,
+            since: T::ZERO,
+            level: T::ZERO,
+            habit: Habit::new(),
+            growth: T::ZERO,
+        }
     }
 
     pub fn forget(&mut self) {
@@ -47,7 +63,7 @@ impl<T: Real> PositionLaw<T> {
         ahead: Option<&Motion<T>>,
     ) -> Intent<T> {
         let (asked, known) = self.course(tables, now, ahead);
-        let rests = now.speed == T::ZERO && now.acceleration == T::ZERO && asked == [T::ZERO; 2];
+        let rests = now.speed == T::ZERO && now.acceleration == T::ZERO && (ahead.is_none() || asked == [T::ZERO; 2]);
         let let_be = if rests { self.indulgence } else { T::ZERO };
 
         let useful = (tables.load_inertia + tables.motor_inertia) * now.acceleration
@@ -84,7 +100,12 @@ impl<T: Real> PositionLaw<T> {
         let demand = |time: T| planned(time) + level + time * rate;
         // A load that is felt has its reasons, and a flank that carries it rests.
         let idles = rests && beyond(load.even(), tables.doubt) == T::ZERO;
-        let intent = Intent { idles, rests, ..Intent::new(tables, load, situation, law, demand, false) };
+        let likely = self.habit.follow(tables, situation, now, rests);
+        // What friction can hold needs no flank; what the start will ask for goes against friction, too.
+        let held = beyond(load.even(), tables.doubt + load.friction()) == T::ZERO;
+        let first = T::TWO * tables.doubt + load.friction();
+        let expects = if held && ahead.is_none() { likely * first } else { T::ZERO };
+        let intent = Intent { idles, rests, expects, ..Intent::new(tables, load, situation, law, demand, false) };
         let surely = beyond(intent.demand_ahead, tables.doubt * tables.least_doubt);
         self.indulge(tables, rests, idles, surely, situation.half);
         intent
@@ -96,7 +117,11 @@ impl<T: Real> PositionLaw<T> {
         let before = self.before.replace(now.acceleration);
         match ahead {
             Some(ahead) => ([ahead.speed - now.speed, ahead.acceleration - now.acceleration], tables.lead),
-            None => ([T::ZERO, before.map_or(T::ZERO, |before| now.acceleration - before)], tables.period),
+            None => {
+                let by = before.map_or(T::ZERO, |before| now.acceleration - before);
+                self.growth += T::from_i32(SOONER) * tables.settling * (by - self.growth);
+                ([T::ZERO, self.growth], tables.period)
+            }
         }
     }
 

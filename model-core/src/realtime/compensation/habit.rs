@@ -1,0 +1,64 @@
+//! Which way a joint at rest is likely to start: on or back, as it did the last time. Most motions that nobody foresees go
+//! to and fro or on and on, and which of them it is the last start tells. What is made of it is left to `flank`.
+
+use super::intent::Situation;
+use super::set_point::Motion;
+use crate::real::Real;
+use crate::realtime::arithmetic::clamp;
+use crate::tables::compensation::CompensationTables;
+
+/// What the last rests and starts were like.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Habit<T: Real> {
+    /// 1 or -1: the way that the motion went last; 0 before it has.
+    came: T,
+    /// 1 if it went on from its last rest, -1 if it went back, 0 before it has done either.
+    goes_on: T,
+    rests: bool,
+    /// For how long the link has stood still, as far as that matters [s].
+    stood: T,
+}
+
+impl<T: Real> Habit<T> {
+    pub fn new() -> Self {
+        Self { came: T::ZERO, goes_on: T::ZERO, rests: false, stood: T::ZERO }
+    }
+
+    /// Takes in a period; 1 or -1: the way that a joint at rest is likely to start, 0 if nothing tells or if its link does
+    /// not stand still: one that no friction holds needs its flank for itself.
+    pub fn follow(
+        &mut self,
+        tables: &CompensationTables<T>,
+        situation: &Situation<T>,
+        now: &Motion<T>,
+        rests: bool,
+    ) -> T {
+        if rests {
+            self.rests = true;
+            let enough = T::QUARTER * tables.hunting;
+            let still = tables.hunting * situation.link_speed.abs() < T::EIGHTH * situation.half;
+            self.stood = if still { clamp(self.stood + tables.period, T::ZERO, enough) } else { T::ZERO };
+            return if self.stood < enough { T::ZERO } else { self.came * self.goes_on };
+        }
+        self.stood = T::ZERO;
+        let goes = direction(if now.speed == T::ZERO { now.acceleration } else { now.speed });
+        if goes != T::ZERO {
+            if self.rests {
+                self.goes_on = self.came * goes;
+            }
+            (self.came, self.rests) = (goes, false);
+        }
+        T::ZERO
+    }
+}
+
+/// 1, -1 or 0.
+fn direction<T: Real>(value: T) -> T {
+    if value > T::ZERO {
+        T::ONE
+    } else if value < T::ZERO {
+        -T::ONE
+    } else {
+        T::ZERO
+    }
+}

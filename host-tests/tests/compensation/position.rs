@@ -66,7 +66,7 @@ fn a_slow_weight_is_seldom_taken_back_to_the_flank_that_it_has_left() {
     // Fourteen; twenty-six if a motor that is early did not stay by its flank.
     assert!(needless <= 19, "{needless} needless crossings of 168");
     // Each of them lengthens the mean of its own few crossings, so the mean of all is what the bar is held to.
-    LOST_MOTION.check(ours.iter().map(|ours| ours.lost_motion_time).sum::<f64>() / 24.0);
+    LOST_MOTION.check(ours.iter().map(|ours| ours.lost_motion_time).sum::<f64>() / ours.len() as f64);
     for ours in ours {
         LOST_MOTION_WITHOUT_PREVIEW.check(ours.lost_motion_time);
     }

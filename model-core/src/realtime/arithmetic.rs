@@ -17,3 +17,14 @@ pub(super) fn clamp<T: Real>(value: T, low: T, high: T) -> T {
 pub(super) fn beyond<T: Real>(value: T, band: T) -> T {
     value - clamp(value, -band, band)
 }
+
+/// 1, -1, or 0 for zero.
+pub(super) fn sign<T: Real>(value: T) -> T {
+    if value > T::ZERO {
+        T::ONE
+    } else if value < T::ZERO {
+        -T::ONE
+    } else {
+        T::ZERO
+    }
+}

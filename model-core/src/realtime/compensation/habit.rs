@@ -4,7 +4,7 @@
 use super::intent::Situation;
 use super::set_point::Motion;
 use crate::real::Real;
-use crate::realtime::arithmetic::clamp;
+use crate::realtime::arithmetic::{clamp, sign};
 use crate::tables::compensation::CompensationTables;
 
 /// What the last rests and starts were like.
@@ -14,6 +14,7 @@ pub(super) struct Habit<T: Real> {
     came: T,
     /// 1 if it went on from its last rest, -1 if it went back, 0 before it has done either.
     goes_on: T,
+    /// Whether it has been asked to rest since it went.
     rests: bool,
     /// For how long the link has stood still, as far as that matters [s].
     stood: T,
@@ -41,24 +42,13 @@ impl<T: Real> Habit<T> {
             return if self.stood < enough { T::ZERO } else { self.came * self.goes_on };
         }
         self.stood = T::ZERO;
-        let goes = direction(if now.speed == T::ZERO { now.acceleration } else { now.speed });
+        let goes = sign(if now.speed == T::ZERO { now.acceleration } else { now.speed });
         if goes != T::ZERO {
             if self.rests {
                 self.goes_on = self.came * goes;
             }
             (self.came, self.rests) = (goes, false);
         }
-        T::ZERO
-    }
-}
-
-/// 1, -1 or 0.
-fn direction<T: Real>(value: T) -> T {
-    if value > T::ZERO {
-        T::ONE
-    } else if value < T::ZERO {
-        -T::ONE
-    } else {
         T::ZERO
     }
 }

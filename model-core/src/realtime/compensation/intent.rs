@@ -153,7 +153,7 @@ pub(super) struct Intent<T: Real> {
     pub idles: bool,
     /// Whether the joint is asked to rest.
     pub rests: bool,
-    /// What a joint that idles is likely to be asked for first, as far as that decides on the flank it waits on [N m].
+    /// What a joint that friction holds is likely to be asked for first; it decides on the flank to wait on [N m].
     pub expects: T,
 }
 

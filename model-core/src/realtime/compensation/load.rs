@@ -99,7 +99,7 @@ impl<T: Real> LoadModel<T> {
     }
 
     /// Whether the link is so slow that it may rub with any part of its friction.
-    pub fn creeps(&self) -> bool {
+    fn creeps(&self) -> bool {
         creeps(self.pace)
     }
 

@@ -7,7 +7,7 @@ use super::limit::{limited, passed};
 use super::load::LoadModel;
 use super::set_point::Motion;
 use crate::real::Real;
-use crate::realtime::arithmetic::{beyond, clamp};
+use crate::realtime::arithmetic::{beyond, clamp, sign};
 use crate::tables::compensation::CompensationTables;
 
 /// How much faster the growth of what is asked for is smoothed than torque that is measured.
@@ -143,7 +143,7 @@ impl<T: Real> PositionLaw<T> {
             self.since = T::ZERO;
         }
         if demand != T::ZERO {
-            self.asked = if demand > T::ZERO { T::ONE } else { -T::ONE };
+            self.asked = sign(demand);
         }
     }
 }

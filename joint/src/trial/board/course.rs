@@ -8,11 +8,12 @@ use link::virtual_joint::Knot;
 use model_core::realtime::course::{Demand, Stretch};
 
 use crate::trial::case::{Case, Designed};
+use crate::trial::controller::ControllerName;
 use crate::trial::file::TestFile;
 use crate::trial::port::Translator;
 use crate::trial::sender::Sender;
 
-/// Length of a polynomial [s]: a motion of 20 Hz is met to a millionth.
+/// Length of a polynomial at most [s]: a motion of 20 Hz is met to a millionth.
 const STRETCH: f64 = 5e-3;
 
 /// The knots of a test, `first_turn` being the turn from which the observer counts the link's.
@@ -24,9 +25,15 @@ pub fn knots(file: &TestFile, case: &Case, designed: &Designed, first_turn: i32)
     let mut sender = Sender::new(file, case, file.controller, Some(designed));
     let translator = Translator::from_turn(designed.ticks, first_turn);
     let lead = f64::from(designed.compensation.lead);
-    let mut list = Vec::new();
-    for tick in (0..periods).step_by(every as usize) {
-        let [start, end] = [tick, tick + every].map(|tick| f64::from(tick) / rate);
+    let rests = |tick: u32| {
+        let at = |time: f64| still(case.motion.at(time));
+        let time = f64::from(tick) / rate;
+        [at(time), file.controller == ControllerName::Preview && at(time + lead)]
+    };
+    let (mut list, mut tick) = (Vec::new(), 0);
+    while tick < periods {
+        let next = if file.gains.is_some() { tick + every } else { end_of_stretch(tick, every, rests) };
+        let [start, end] = [tick, next].map(|tick| f64::from(tick) / rate);
         let demand = match sender.at(start, tick.into()).1 {
             SetPoint::Position { ahead, .. } => {
                 let between = |from: f64, to: f64| polynomial(case.motion.at(from), case.motion.at(to), end - start);
@@ -42,8 +49,28 @@ pub fn knots(file: &TestFile, case: &Case, designed: &Designed, first_turn: i32)
         let middle = 0.5 * (start + end);
         let load_torque = case.disturbances.iter().map(|push| push.torque(middle)).sum::<f64>() as f32;
         list.push(Knot { tick, load_torque, demand: (&demand).into() });
+        tick = next;
     }
     list
+}
+
+fn still(motion: Motion) -> bool {
+    motion.speed == 0.0 && motion.acceleration == 0.0
+}
+
+/// The tick that ends a stretch: where one of the motions comes to rest or still does for the last time, and after `every`
+/// periods at the latest. A polynomial over such a moment would begin by going back.
+fn end_of_stretch(tick: u32, every: u32, rests: impl Fn(u32) -> [bool; 2]) -> u32 {
+    let mut here = rests(tick + 1);
+    let mut before = rests(tick);
+    for next in tick + 1..tick + every {
+        let after = rests(next + 1);
+        if (0..2).any(|motion| here[motion] && !(before[motion] && after[motion])) {
+            return next;
+        }
+        (before, here) = (here, after);
+    }
+    tick + every
 }
 
 /// From one moment of a motion to another.
@@ -65,6 +92,8 @@ fn polynomial(from: Motion, to: Motion, time: f64) -> Stretch<f32> {
 
 #[cfg(test)]
 mod tests {
+    use host_tests::closed_loop::{Profile, Reference};
+
     use super::*;
 
     #[test]
@@ -84,6 +113,32 @@ mod tests {
                 let error = (f64::from(motion.acceleration) - wanted.acceleration).abs();
                 assert!(error < 5e-3 * 0.1 * (TAU * 20.0).powi(2), "{error}");
             }
+        }
+    }
+
+    #[test]
+    fn a_motion_out_of_rest_does_not_begin_by_going_back() {
+        let (height, duration) = (0.05, 0.12);
+        let rate = 10e3;
+        for seed in 0..5 {
+            let motion = Profile::Steps { height, duration, rest: 0.2137, seed };
+            let at = |tick: u32| motion.at(f64::from(tick) / rate);
+            let (mut tick, mut stretches, largest) = (0, 0, 5.8 * height / duration.powi(2));
+            while tick < 20_000 {
+                let next = end_of_stretch(tick, 50, |tick| [still(at(tick)); 2]);
+                let stretch = polynomial(at(tick), at(next), f64::from(next - tick) / rate);
+                for between in tick..next {
+                    let planned = stretch.at((f64::from(between - tick) / rate) as f32, TAU as f32);
+                    let error = f64::from(planned.acceleration) - at(between).acceleration;
+                    assert!(error.abs() < 0.02 * largest, "seed {seed}, tick {between}: {error}");
+                    if still(at(between)) && still(at(between + 1)) {
+                        assert_eq!([planned.speed, planned.acceleration], [0.0; 2], "seed {seed}, tick {between}");
+                    }
+                }
+                (tick, stretches) = (next, stretches + 1);
+            }
+            // Few more than without: a line carries only so many.
+            assert!(stretches < 420, "{stretches}");
         }
     }
 }

@@ -1,6 +1,7 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 //! Counts the instructions of the roles that control, tick by tick, in a motion with reversals, pushes and an output
-//! encoder that falls silent: each role's own work, as its tick does it. How many are too many is the host's business.
+//! encoder that falls silent: each role's own work, as its tick does it, and the observer's alone, with error maps and
+//! without. How many are too many is the host's business.
 
 #[cfg(target_os = "none")]
 mod measurement {
@@ -18,6 +19,7 @@ mod measurement {
     use link::messages::Command;
     use link::virtual_joint::{Knot, WireDemand};
     use model_core::realtime::controller::Controller;
+    use model_core::realtime::observer::{MAPPED, Observer, PLAIN, Samples};
     use model_core::realtime::phase::sine_cosine;
     use model_core::realtime::virtual_joint::VirtualJoint;
 
@@ -38,14 +40,16 @@ mod measurement {
     /// Instructions of one role.
     struct Count {
         name: &'static str,
+        /// What it keeps in memory [B].
+        bytes: usize,
         sum: u64,
         most: u32,
         at: u32,
     }
 
     impl Count {
-        const fn of(name: &'static str) -> Self {
-            Self { name, sum: 0, most: 0, at: 0 }
+        const fn of<W>(name: &'static str, _work: &W) -> Self {
+            Self { name, bytes: size_of::<W>(), sum: 0, most: 0, at: 0 }
         }
 
         fn add(&mut self, period: u32, instructions: u32) {
@@ -57,8 +61,8 @@ mod measurement {
 
         fn tell(&self) {
             measuring::say(format_args!(
-                "role;{};{JOINT_NAME};{PERIODS};{};{};{}",
-                self.name, self.sum, self.most, self.at
+                "role;{};{JOINT_NAME};{PERIODS};{};{};{};{}",
+                self.name, self.sum, self.most, self.at, self.bytes
             ));
         }
     }
@@ -66,6 +70,11 @@ mod measurement {
     #[inline(never)]
     fn step(work: &mut impl Work) {
         work.step();
+    }
+
+    #[inline(never)]
+    fn observe<const P: usize>(observer: &mut Observer<'_, f32, P>, samples: &Samples<f32>) {
+        observer.step(samples);
     }
 
     /// What is asked for from a period on: a sine by its first three powers, with a push that changes sides.
@@ -101,11 +110,19 @@ mod measurement {
     }
 
     fn measure(counter: &InstructionCounter) {
-        let (mut observer, mut whole, mut plant) = (Count::of("observer"), Count::of("loop"), Count::of("plant"));
         let mut joint = VirtualJoint::new(&TABLES, &control::SURROUNDINGS);
         let mut shadow = Plant::new(&TABLES);
         let mut observing = Observing::new(controller(), true);
         let mut looping = WholeLoop::new(&TABLES, &control::SURROUNDINGS, controller());
+        let mut plain = Observer::<f32, PLAIN>::new(&control::OBSERVER);
+        let mut mapped = Observer::<f32, MAPPED>::new(&control::OBSERVER);
+        let mut counts = [
+            Count::of("plant", &shadow),
+            Count::of("observer", &observing),
+            Count::of("loop", &looping),
+            Count::of("observer alone without error maps", &plain),
+            Count::of("observer alone with error maps", &mapped),
+        ];
         let mut now = knot(0);
         for tick in 0..PERIODS {
             if tick.is_multiple_of(STRETCH) {
@@ -120,14 +137,17 @@ mod measurement {
                 samples.output = None;
             }
             observing.take(Exchange::new(tick, &samples, &command));
-            observer.add(tick, counter.count(|| step(black_box(&mut observing))));
-            whole.add(tick, counter.count(|| step(black_box(&mut looping))));
+            let [of_plant, of_observer, of_loop, of_plain, of_mapped] = &mut counts;
+            of_observer.add(tick, counter.count(|| step(black_box(&mut observing))));
+            of_loop.add(tick, counter.count(|| step(black_box(&mut looping))));
+            of_plain.add(tick, counter.count(|| observe(black_box(&mut plain), &samples)));
+            of_mapped.add(tick, counter.count(|| observe(black_box(&mut mapped), &samples)));
             joint.advance(observing.sample(tick, 0).shaped.torque, now.load_torque);
             let acting = joint.acting();
             shadow.take(Command { tick, drive_torque: acting.drive, load_torque: acting.load });
-            plant.add(tick, counter.count(|| step(black_box(&mut shadow))));
+            of_plant.add(tick, counter.count(|| step(black_box(&mut shadow))));
         }
-        [plant, observer, whole].iter().for_each(Count::tell);
+        counts.iter().for_each(Count::tell);
     }
 }
 

@@ -1,5 +1,5 @@
-//! Instructions of the roles that control, counted tick by tick on the emulated board over a motion with reversals, pushes
-//! and a silent encoder, and held against the time that a control period leaves. Bounds of the plant's step over all
+//! Instructions of the roles that control, and of the observer alone, counted tick by tick on the emulated board over a
+//! motion with reversals, pushes and a silent encoder, and held against the time that a control period leaves. Bounds of the plant's step over all
 //! states are `worst_case`'s.
 
 use std::fmt;
@@ -28,16 +28,18 @@ pub struct Load {
     pub most: u32,
     /// The period that took the most.
     pub at: u32,
+    /// What it keeps in memory [B].
+    pub bytes: u32,
 }
 
 impl fmt::Display for Load {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { role, joint, periods, mean, most, at } = self;
+        let Self { role, joint, periods, mean, most, at, bytes } = self;
         let [usual, worst] = [*mean, f64::from(*most)].map(|instructions| 100.0 * part(instructions));
         write!(
             f,
             "role {role}, {joint}: {mean:.0} instructions a tick, at most {most} (period {at} of {periods}): {usual:.0} % and \
-             {worst:.0} % of a control period"
+             {worst:.0} % of a control period; it keeps {bytes} B"
         )
     }
 }
@@ -54,8 +56,9 @@ fn parse(line: &str) -> Option<Load> {
     let (role, joint) = (fields.next()?.to_owned(), fields.next()?.to_owned());
     let periods: u32 = fields.next()?.parse().ok()?;
     let sum: f64 = fields.next()?.parse().ok()?;
-    let (most, at) = (fields.next()?.parse().ok()?, fields.next()?.parse().ok()?);
-    Some(Load { role, joint, periods, mean: sum / f64::from(periods.max(1)), most, at })
+    let mut number = || fields.next()?.parse().ok();
+    let (most, at, bytes) = (number()?, number()?, number()?);
+    Some(Load { role, joint, periods, mean: sum / f64::from(periods.max(1)), most, at, bytes })
 }
 
 /// Part of a control period that a role's worst tick may take: an observer leaves a quarter to the motor controller that
@@ -87,8 +90,8 @@ mod tests {
 
     #[test]
     fn what_the_board_says_is_taken_in_and_held_against_the_period() {
-        let load = parse("role;loop;Q1;100;200000;12001;7").unwrap();
-        assert_eq!((load.mean, load.most, load.at), (2000.0, 12001, 7));
+        let load = parse("role;loop;Q1;100;200000;12001;7;640").unwrap();
+        assert_eq!((load.mean, load.most, load.at, load.bytes), (2000.0, 12001, 7, 640));
         let failure = judge(std::slice::from_ref(&load)).unwrap_err();
         assert!(failure.message().contains("role loop, Q1"), "{failure}");
         assert!(judge(&[Load { most: 12_000, ..load.clone() }]).is_ok());

@@ -21,14 +21,21 @@ use crate::error::DesignError;
 use crate::joint::JointParameters;
 use crate::real::Real;
 use crate::tables::observer::{
-    ContactTable, CountTable, EncoderTable, LearnerTable, LeverTable, LoadTable, MOST_PARAMETERS, ObserverTables,
-    SupervisorTable,
+    ClockTable, ContactTable, CountTable, EncoderTable, LearnerTable, LeverTable, LoadTable, MOST_PARAMETERS,
+    ObserverTables, SupervisorTable,
 };
 use body::Body;
 pub use probe::{design_probe, design_usual_probe};
 pub use settings::{EncoderSettings, ObserverSettings};
 use sides::{current, drive_filter, drive_lag, drive_table, load_filter};
 pub use source::observer_source;
+
+/// Length of a control period on the clock of the samples, at least and at most, that is no loss of any [control periods].
+const PERIOD_TO_PERIOD: [f64; 2] = [0.5, 1.5];
+
+/// Time up to which torques that are known now serve for the time since a reading: an older one counts as lost
+/// [control periods].
+const OLDEST: f64 = 10.0;
 
 /// Length of a learning interval [s]: short against the motions in which contact settles, long against noise.
 const LEARNING_INTERVAL: f64 = 1e-3;
@@ -119,8 +126,7 @@ pub fn design_observer<T: Real>(
             .fold(identity(joint, settings), |running, number| digest::chain(running, number.to_bits())),
         control_rate: settings.control_rate,
         period: real(step),
-        period_ticks: [0.5, 1.5].map(|part| libm::round(part * step * f64::from(settings.clock_rate)) as u32),
-        tick: real(1.0 / f64::from(settings.clock_rate)),
+        clock: clock(step, settings.clock_rate),
         counts,
         levers: LeverTable {
             sun: real(body.sun_lever),
@@ -236,6 +242,19 @@ fn counts<T: Real>(
         mesh_periods: T::from_f64(geometry.ring_teeth.into()),
         length: T::from_f64(unit * geometry.sun_base_radius),
     })
+}
+
+/// The clock of moments beside control periods so long [s].
+fn clock<T: Real>(period: f64, rate: u32) -> ClockTable<T> {
+    let ticks = |periods: f64| libm::round(periods * period * f64::from(rate)) as u32;
+    let [shortest, longest] = PERIOD_TO_PERIOD.map(ticks);
+    ClockTable {
+        tick: T::from_f64(1.0 / f64::from(rate)),
+        period: ticks(1.0),
+        shortest,
+        longer: longest - shortest,
+        oldest: ticks(OLDEST),
+    }
 }
 
 /// Digest of what a learnt memory belongs to.

@@ -24,10 +24,8 @@ pub struct ObserverTables<T: Real> {
     pub control_rate: u32,
     /// Control period [s].
     pub period: T,
-    /// Clock ticks that a control period is expected to last, at least and at most.
-    pub period_ticks: [u32; 2],
-    /// Length of a clock tick [s].
-    pub tick: T,
+    /// The clock of its moments.
+    pub clock: ClockTable<T>,
     /// From counts to one whole number and to angles.
     pub counts: CountTable<T>,
     /// Levers.
@@ -46,6 +44,21 @@ pub struct ObserverTables<T: Real> {
     pub learner: LearnerTable<T>,
     /// When the output encoder is given up and taken back.
     pub supervisor: SupervisorTable<T>,
+}
+
+/// The clock that says when samples were taken, in its ticks.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ClockTable<T: Real> {
+    /// Length of a tick [s].
+    pub tick: T,
+    /// Control period.
+    pub period: u32,
+    /// That is expected to last at least so long,
+    pub shortest: u32,
+    /// and by so much longer at most.
+    pub longer: u32,
+    /// Readings older than this count as lost.
+    pub oldest: u32,
 }
 
 /// One encoder.

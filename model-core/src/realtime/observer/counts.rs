@@ -142,6 +142,8 @@ pub(super) struct Taken {
 }
 
 impl Counts {
+    // A call and what it hands over cost 32 of some 950 instructions of a period.
+    #[inline(always)]
     pub fn take<T: Real>(&mut self, table: &CountTable<T>, motor: Reading, output: Option<Reading>) -> Taken {
         let begins = !self.output.began;
         let motor = self.motor.take(&table.motor, motor.counts);

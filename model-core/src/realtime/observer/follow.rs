@@ -4,13 +4,13 @@
 use super::Observer;
 use super::counts::{Advance, Taken};
 use super::estimates::Notices;
-use super::late::{Heard, OLDEST};
+use super::late::Heard;
 use super::pace::Verdict;
-use super::samples::Samples;
+use super::samples::{Reading, Samples};
 use crate::real::Real;
 
 /// Periods between two readings over which the pace is taken to go on.
-const MISSED: u32 = 4;
+const MISSED: u32 = 6;
 
 impl<T: Real, const P: usize> Observer<'_, T, P> {
     /// Takes the samples of one period in; how the motor was heard of.
@@ -18,14 +18,15 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         let tables = self.tables;
         let known = samples.torque.is_finite();
         let command = if known { samples.torque } else { T::ZERO };
-        let age = self.age(samples, samples.motor.time);
-        let [shortest, longest] = tables.period_ticks;
-        let heard = self.lateness.hear(age, self.period_ticks());
-        let output = samples.output.filter(|reading| self.age(samples, reading.time).is_some());
+        let clock = &tables.clock;
+        let motor_age = age(samples.time, &samples.motor);
+        let heard = self.lateness.hear((motor_age <= clock.oldest).then_some(motor_age), clock.period);
+        let output_age = samples.output.map_or(0, |reading| age(samples.time, &reading));
+        let output = samples.output.filter(|_| output_age <= clock.oldest);
         let taken = self.counts.take(&tables.counts, samples.motor, output);
         let before = core::mem::replace(&mut self.time, samples.time);
-        let lasted = if taken.motor == Advance::Began { longest } else { samples.time.wrapping_sub(before) };
-        let out_of_time = lasted.wrapping_sub(shortest) > longest.wrapping_sub(shortest);
+        let lasted = if taken.motor == Advance::Began { clock.shortest } else { samples.time.wrapping_sub(before) };
+        let out_of_time = lasted.wrapping_sub(clock.shortest) > clock.longer;
         let motor_by = if let Advance::By(by) = taken.motor { by } else { 0 };
         self.estimates.notices = Notices::default();
         if !known || out_of_time || !matches!(taken.motor, Advance::By(_)) {
@@ -41,7 +42,7 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         self.drive.predict(&tables.drive, &tables.current, command, motor_turned);
         match taken.motor {
             Advance::By(_) => {
-                let age = self.seconds(age.unwrap_or(0));
+                let age = self.seconds(motor_age);
                 match heard {
                     Heard::Now => self.drive.correct(&tables.drive, age),
                     Heard::Late => self.drive.correct_late(&tables.drive, age),
@@ -63,9 +64,8 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
             self.load.ahead = T::ZERO;
         }
         let follows = self.keep_pace(&taken);
-        if let (true, Some(reading)) = (follows, samples.output) {
-            let age = self.seconds(self.age(samples, reading.time).unwrap_or(0));
-            self.load.correct(&tables.load, age, self.from_meshes);
+        if follows {
+            self.load.correct(&tables.load, self.seconds(output_age), self.from_meshes);
         }
         let far = self.places.go_on(motor_turned, output_turned, tables.counts.mesh_periods);
         if far || began || !matches!(taken.motor, Advance::By(_)) {
@@ -86,9 +86,10 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
             }
             return false;
         };
-        let [shortest, longest] = tables.period_ticks;
-        if taken.apart.wrapping_sub(shortest) > longest.wrapping_sub(shortest) {
-            self.pace.miss(by, taken.apart.wrapping_sub(shortest) > longest.saturating_mul(MISSED));
+        let clock = &tables.clock;
+        let beyond = taken.apart.wrapping_sub(clock.shortest);
+        if beyond > clock.longer {
+            self.pace.miss(by, beyond > clock.period.saturating_mul(MISSED));
             return both;
         }
         match self.pace.take(&tables.supervisor, by) {
@@ -104,21 +105,13 @@ impl<T: Real, const P: usize> Observer<'_, T, P> {
         }
     }
 
-    /// Age of a reading in ticks; `None` for one that is too old to say anything of now. One from the future is of now.
-    fn age(&self, samples: &Samples<T>, time: u32) -> Option<u32> {
-        let ticks = samples.time.wrapping_sub(time) as i32;
-        let age = ticks.max(0).unsigned_abs();
-        (age <= self.period_ticks().saturating_mul(OLDEST)).then_some(age)
-    }
-
-    /// Ticks of a control period.
-    fn period_ticks(&self) -> u32 {
-        let [shortest, longest] = self.tables.period_ticks;
-        shortest.saturating_add(longest) / 2
-    }
-
     /// Ticks as seconds.
     fn seconds(&self, ticks: u32) -> T {
-        T::from_i32(ticks as i32) * self.tables.tick
+        T::from_i32(ticks as i32) * self.tables.clock.tick
     }
+}
+
+/// Age of a reading in ticks. One from the future is of now.
+fn age(now: u32, reading: &Reading) -> u32 {
+    (now.wrapping_sub(reading.time) as i32).max(0).unsigned_abs()
 }

@@ -1,13 +1,10 @@
 //! Readings that come late, by their own time: what a side was then is compared with them, and what they teach of then is
-//! carried on to now. How old a reading may be is said here; what is done without one is left to `follow`.
+//! carried on to now. What is done without one is left to `follow`.
 //!
 //! A filter that took the surprise of then for one of now would answer its own answers, and swing up as soon as readings
 //! are about as old as it is fast.
 
 use crate::real::Real;
-
-/// Periods up to which torques that are known now serve for the time since a reading: an older one counts as lost.
-pub(super) const OLDEST: u32 = 10;
 
 /// Periods over which motor and link go on as they went.
 const MISSING: u32 = 2;

@@ -95,11 +95,19 @@ impl<T: Real> Flank<T> {
         // Of a joint that idles nothing but a flank puts the error right.
         let left = if intent.idles { tables.patience_left * tables.patience_left } else { tables.patience_left };
         self.patience = T::ONE + left * (self.patience - T::ONE);
+        // A spring needs no flank but the one that it asks for: while that is in doubt, its own torque finds it.
+        let against = intent.repays && now < T::ZERO && ahead < T::ZERO;
         match self.stage {
             // What has just been met is let carry first.
             stage if turned && (stage != Stage::Touching || self.rise >= T::ONE || !felt) => {
                 self.side = -self.side;
                 self.set_out(tables, situation, intent);
+            }
+            Stage::Touching | Stage::Landing if against => {
+                self.stage = Stage::Touching;
+                if situation.contact * self.side < T::ZERO && opened > situation.half {
+                    self.side = -self.side;
+                }
             }
             Stage::Touching if !touching && opened > tables.opening * situation.half && self.rise >= T::ONE => {
                 if opened > T::HALF * situation.half {
@@ -132,7 +140,7 @@ impl<T: Real> Flank<T> {
             self.asked |= intent.rests || self.side * intent.demand_now > T::ZERO;
             // What only the flank that was left could give takes an early motor nowhere but off the one that will be needed.
             let along = along(tables, situation, intent, situation.error_speed);
-            let stays = self.waits() || self.side * intent.expects > T::ZERO;
+            let stays = self.waits() && !against || self.side * intent.expects > T::ZERO;
             return if stays && self.side * (torque - along) < T::ZERO { along } else { torque };
         }
         self.elapsed += tables.period;

@@ -2,7 +2,6 @@
 //! to and fro or on and on, and which of them it is the last start tells. What is made of it is left to `flank`.
 
 use super::intent::Situation;
-use super::set_point::Motion;
 use crate::real::Real;
 use crate::realtime::arithmetic::{clamp, sign};
 use crate::tables::compensation::CompensationTables;
@@ -16,33 +15,31 @@ pub(super) struct Habit<T: Real> {
     goes_on: T,
     /// Whether it has been asked to rest since it went.
     rests: bool,
-    /// For how long the link has stood still, as far as that matters [s].
+    /// For how long the link has stood still, as far as that matters [s], and how far from the set-point [rad].
     stood: T,
+    place: T,
 }
 
 impl<T: Real> Habit<T> {
     pub fn new() -> Self {
-        Self { came: T::ZERO, goes_on: T::ZERO, rests: false, stood: T::ZERO }
+        Self { came: T::ZERO, goes_on: T::ZERO, rests: false, stood: T::ZERO, place: T::ZERO }
     }
 
-    /// Takes in a period; 1 or -1: the way that a joint at rest is likely to start, 0 if nothing tells or if its link does
+    /// Takes in a period and which way it is asked to go; 1 or -1: the way that a joint at rest is likely to start, 0 if nothing tells or if its link does
     /// not stand still: one that no friction holds needs its flank for itself.
-    pub fn follow(
-        &mut self,
-        tables: &CompensationTables<T>,
-        situation: &Situation<T>,
-        now: &Motion<T>,
-        rests: bool,
-    ) -> T {
+    pub fn follow(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, course: T, rests: bool) -> T {
         if rests {
             self.rests = true;
             let enough = T::QUARTER * tables.hunting;
-            let still = tables.hunting * situation.link_speed.abs() < T::EIGHTH * situation.half;
-            self.stood = if still { clamp(self.stood + tables.period, T::ZERO, enough) } else { T::ZERO };
+            // Its speed is too rough: it flickers with the last count of the encoder.
+            if (situation.error - self.place).abs() > T::EIGHTH * situation.half {
+                (self.place, self.stood) = (situation.error, T::ZERO);
+            }
+            self.stood = clamp(self.stood + tables.period, T::ZERO, enough);
             return if self.stood < enough { T::ZERO } else { self.came * self.goes_on };
         }
         self.stood = T::ZERO;
-        let goes = sign(if now.speed == T::ZERO { now.acceleration } else { now.speed });
+        let goes = sign(course);
         if goes != T::ZERO {
             if self.rests {
                 self.goes_on = self.came * goes;

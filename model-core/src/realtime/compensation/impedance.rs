@@ -1,6 +1,7 @@
 //! The control law of impedance mode: the commanded spring on the link, the commanded damper on the motor, the
 //! commanded torque on top. It comes without a preview, so what will be asked is extrapolated from its own course.
 
+use super::habit::Habit;
 use super::intent::{Intent, Situation};
 use super::limit::passed;
 use super::load::LoadModel;
@@ -14,11 +15,13 @@ use crate::tables::compensation::CompensationTables;
 #[derive(Debug, Clone)]
 pub(super) struct ImpedanceLaw<T: Real> {
     sender: Sender<T>,
+    /// How the point usually starts.
+    habit: Habit<T>,
 }
 
 impl<T: Real> ImpedanceLaw<T> {
     pub fn new() -> Self {
-        Self { sender: Sender::default() }
+        Self { sender: Sender::default(), habit: Habit::new() }
     }
 
     pub fn forget(&mut self) {
@@ -47,6 +50,9 @@ impl<T: Real> ImpedanceLaw<T> {
         let demand_now = passed(tables, free, asked);
         let rate = tables.load_share * (point.stiffness * situation.error_rate + self.sender.torque_rate());
         let demand = |time: T| demand_now + time * rate;
-        Intent::new(tables, load, situation, law, demand, true)
+        let rests = point.speed == T::ZERO && self.sender.rests(tables);
+        let likely = self.habit.follow(tables, situation, self.sender.course(), rests);
+        let expects = likely * load.start(tables);
+        Intent { expects, ..Intent::new(tables, load, situation, law, demand, true) }
     }
 }

@@ -4,7 +4,7 @@
 
 use super::intent::Situation;
 use crate::real::Real;
-use crate::realtime::arithmetic::clamp;
+use crate::realtime::arithmetic::{beyond, clamp};
 use crate::realtime::observer::Estimates;
 use crate::tables::compensation::CompensationTables;
 
@@ -81,6 +81,13 @@ impl<T: Real> LoadModel<T> {
     /// What would brake the link now if no flank carried it.
     pub fn free(&self) -> T {
         self.alone.unwrap_or(self.even + self.drag())
+    }
+
+    /// What the start of a link at rest will ask for at least, if friction can hold it: what it can needs no flank before,
+    /// and is to be overcome then. 0 for a link that has to be held [N m].
+    pub fn start(&self, tables: &CompensationTables<T>) -> T {
+        let held = beyond(self.even, tables.doubt + self.friction) == T::ZERO;
+        if held { T::TWO * tables.doubt + self.friction } else { T::ZERO }
     }
 
     /// The same at a speed that is planned: no noise hides its sign.

@@ -100,11 +100,9 @@ impl<T: Real> PositionLaw<T> {
         let demand = |time: T| planned(time) + level + time * rate;
         // A load that is felt has its reasons, and a flank that carries it rests.
         let idles = rests && beyond(load.even(), tables.doubt) == T::ZERO;
-        let likely = self.habit.follow(tables, situation, now, rests);
-        // What friction can hold needs no flank; what the start will ask for goes against friction, too.
-        let held = beyond(load.even(), tables.doubt + load.friction()) == T::ZERO;
-        let first = T::TWO * tables.doubt + load.friction();
-        let expects = if held && ahead.is_none() { likely * first } else { T::ZERO };
+        let course = if now.speed == T::ZERO { now.acceleration } else { now.speed };
+        let likely = self.habit.follow(tables, situation, course, rests);
+        let expects = if ahead.is_none() { likely * load.start(tables) } else { T::ZERO };
         let intent = Intent { idles, rests, expects, ..Intent::new(tables, load, situation, law, demand, false) };
         let surely = beyond(intent.demand_ahead, tables.doubt * tables.least_doubt);
         self.indulge(tables, rests, idles, surely, situation.half);

@@ -16,6 +16,8 @@ pub(super) struct Sender<T: Real> {
     pace: T,
     /// Rate of the torque that is sent along [N m/s].
     torque_rate: T,
+    /// How far the point went from the set-point before to the last one [turns].
+    way: T,
 }
 
 impl<T: Real> Sender<T> {
@@ -30,13 +32,14 @@ impl<T: Real> Sender<T> {
             }
             Some(last) => {
                 // One that was at rest says nothing of the pace.
-                if !self.rests(tables) {
+                if self.age < tables.longest_hold {
                     self.pace = self.age + tables.period;
                 }
                 let between = if self.pace > tables.period { self.pace } else { tables.period };
                 let rate = (point.torque - last.torque).over(between);
                 // Half of the news: what jitters from one set-point to the next is no course.
                 self.torque_rate = T::HALF * (self.torque_rate + rate);
+                self.way = point.position.less(last.position.turns, last.position.fraction);
                 self.age = T::ZERO;
             }
             None => {}
@@ -49,6 +52,14 @@ impl<T: Real> Sender<T> {
         self.torque_rate
     }
 
+    /// Speed of the point or, of one that jumps without, which way it went.
+    pub fn course(&self) -> T {
+        match self.last {
+            Some(last) if last.speed != T::ZERO => last.speed,
+            _ => self.way,
+        }
+    }
+
     /// By how much longer than on the average the set-point has been held: its course goes on meanwhile, unless it rests
     /// [s].
     pub fn overdue(&self, tables: &CompensationTables<T>) -> T {
@@ -56,7 +67,8 @@ impl<T: Real> Sender<T> {
     }
 
     /// Held for so long that it stands still, or its sender has fallen silent.
-    fn rests(&self, tables: &CompensationTables<T>) -> bool {
-        self.age >= tables.longest_hold
+    pub fn rests(&self, tables: &CompensationTables<T>) -> bool {
+        let missed = self.pace > T::ZERO && self.age > T::TWO * self.pace;
+        missed || self.age >= tables.longest_hold
     }
 }

@@ -70,6 +70,17 @@ impl<'tables, T: Real> Compensation<'tables, T> {
         }
     }
 
+    /// Back to what was designed, part by part: a whole new compensation would need as much stack again.
+    pub fn restart(&mut self) {
+        self.load = LoadModel::new();
+        self.flank = Flank::new();
+        self.position.forget();
+        self.impedance.forget();
+        self.plain = Plain::new();
+        self.offset = T::ZERO;
+        self.trust = T::ZERO;
+    }
+
     /// Takes the estimates and the command of one control period. The torque is always finite and within its limit.
     pub fn step(&mut self, estimates: &Estimates<T>, command: &Command<T>) -> Shaped<T> {
         let tables = self.tables;

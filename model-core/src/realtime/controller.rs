@@ -39,7 +39,6 @@ impl<T: Real> Answer<T> {
 pub struct Controller<'tables, T: Real> {
     observer: Observer<'tables, T, MAPPED>,
     compensation: Compensation<'tables, T>,
-    tables: &'tables CompensationTables<T>,
     probe_table: Option<&'tables ProbeTable<T>>,
     probing: Option<Probing<'tables, T>>,
 }
@@ -57,7 +56,6 @@ impl<'tables, T: Real> Controller<'tables, T> {
         Self {
             observer: Observer::new(observer),
             compensation: Compensation::new(compensation),
-            tables: compensation,
             probe_table: None,
             probing: None,
         }
@@ -71,7 +69,7 @@ impl<'tables, T: Real> Controller<'tables, T> {
     /// Forgets everything but what was designed.
     pub fn reset(&mut self) {
         self.observer.restart();
-        self.compensation = Compensation::new(self.tables);
+        self.compensation.restart();
         self.probing = None;
     }
 
@@ -102,7 +100,7 @@ impl<'tables, T: Real> Controller<'tables, T> {
         let still = Answer { estimates, ..Answer::default() };
         let Some(table) = self.probe_table else { return still };
         let Some(Probing { probe, wait }) = &mut self.probing else {
-            self.compensation = Compensation::new(self.tables);
+            self.compensation.restart();
             self.probing = Some(Probing { probe: Probe::new(table), wait: table.settle });
             return Answer { probed: Some(Progress::Running), ..still };
         };

@@ -1,6 +1,6 @@
 //! Instructions of the roles that control, and of the observer alone, counted tick by tick on the emulated board over a
-//! motion with reversals, pushes and a silent encoder, and held against the time that a control period leaves. Bounds of the plant's step over all
-//! states are `worst_case`'s.
+//! motion with reversals, pushes and a silent encoder, and held against the time that a control period leaves. Bounds of
+//! the plant's step over all states are `worst_case`'s.
 
 use std::fmt;
 

@@ -25,8 +25,8 @@ impl<T: Real> Habit<T> {
         Self { came: T::ZERO, goes_on: T::ZERO, rests: false, stood: T::ZERO, place: T::ZERO }
     }
 
-    /// Takes in a period and which way it is asked to go; 1 or -1: the way that a joint at rest is likely to start, 0 if nothing tells or if its link does
-    /// not stand still: one that no friction holds needs its flank for itself.
+    /// Takes in a period and which way it is asked to go; 1 or -1: the way that a joint at rest is likely to start, 0 if
+    /// nothing tells or if its link does not stand still: one that no friction holds needs its flank for itself.
     pub fn follow(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, course: T, rests: bool) -> T {
         if rests {
             self.rests = true;

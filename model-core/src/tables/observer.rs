@@ -24,7 +24,7 @@ pub struct ObserverTables<T: Real> {
     pub control_rate: u32,
     /// Control period [s].
     pub period: T,
-    /// The clock of its moments.
+    /// The clock that says when samples were taken.
     pub clock: ClockTable<T>,
     /// From counts to one whole number and to angles.
     pub counts: CountTable<T>,
@@ -46,18 +46,18 @@ pub struct ObserverTables<T: Real> {
     pub supervisor: SupervisorTable<T>,
 }
 
-/// The clock that says when samples were taken, in its ticks.
+/// The clock that says when samples were taken, and what its ticks mean.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ClockTable<T: Real> {
     /// Length of a tick [s].
     pub tick: T,
-    /// Control period.
+    /// Control period [ticks].
     pub period: u32,
-    /// That is expected to last at least so long,
+    /// Shortest one that is expected [ticks].
     pub shortest: u32,
-    /// and by so much longer at most.
+    /// By how much longer than that one may last [ticks].
     pub longer: u32,
-    /// Readings older than this count as lost.
+    /// Age beyond which a reading counts as lost [ticks].
     pub oldest: u32,
 }
 

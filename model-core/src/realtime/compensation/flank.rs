@@ -96,7 +96,7 @@ impl<T: Real> Flank<T> {
         let left = if intent.idles { tables.patience_left * tables.patience_left } else { tables.patience_left };
         self.patience = T::ONE + left * (self.patience - T::ONE);
         // A spring needs no flank but the one that it asks for: while that is in doubt, its own torque finds it.
-        let against = intent.repays && now < T::ZERO && ahead < T::ZERO;
+        let against = intent.spring && now < T::ZERO && ahead < T::ZERO;
         match self.stage {
             // What has just been met is let carry first.
             stage if turned && (stage != Stage::Touching || self.rise >= T::ONE || !felt) => {
@@ -173,7 +173,7 @@ impl<T: Real> Flank<T> {
     /// Torque that the load does not get now is owed to it.
     fn owe(&mut self, tables: &CompensationTables<T>, torque: T, intent: &Intent<T>) {
         let most = tables.torque_limit * tables.longest_crossing;
-        self.owed = if intent.repays { clamp(self.owed + tables.period * torque, -most, most) } else { T::ZERO };
+        self.owed = if intent.spring { clamp(self.owed + tables.period * torque, -most, most) } else { T::ZERO };
     }
 
     fn touch(&mut self) {

@@ -15,8 +15,9 @@ pub(super) struct Habit<T: Real> {
     goes_on: T,
     /// Whether it has been asked to rest since it went.
     rests: bool,
-    /// For how long the link has stood still, as far as that matters [s], and how far from the set-point [rad].
+    /// For how long the link has stood still, as far as that matters [s].
     stood: T,
+    /// Where, from the set-point [rad].
     place: T,
 }
 

@@ -147,8 +147,9 @@ pub(super) struct Intent<T: Real> {
     pub free_jerk: T,
     /// How hard the far flank will be needed, which says how fast to go there [N m].
     pub haste: T,
-    /// Whether an impulse that the load missed on the way is made good afterwards; a law stiff enough does it itself.
-    pub repays: bool,
+    /// Whether the law is a spring that was asked for: an impulse that the load missed on the way is made good afterwards,
+    /// which a law stiff enough does itself, and a flank that is in doubt is left to it.
+    pub spring: bool,
     /// Whether the joint is asked to rest and feels no load.
     pub idles: bool,
     /// Whether the joint is asked to rest.
@@ -166,7 +167,7 @@ impl<T: Real> Intent<T> {
         situation: &Situation<T>,
         law: T,
         demand: impl Fn(T) -> T,
-        repays: bool,
+        spring: bool,
     ) -> Self {
         let unhurried = Crossing::new(tables, situation.half, T::ZERO).duration + tables.reaction;
         let haste = demand(unhurried);
@@ -179,7 +180,7 @@ impl<T: Real> Intent<T> {
             free_acceleration: -load.free() * tables.inverse_load_inertia,
             free_jerk: -load.rate() * tables.inverse_load_inertia,
             haste,
-            repays,
+            spring,
             idles: false,
             rests: false,
             expects: T::ZERO,

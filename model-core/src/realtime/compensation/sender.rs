@@ -31,7 +31,7 @@ impl<T: Real> Sender<T> {
                 }
             }
             Some(last) => {
-                // One that was at rest says nothing of the pace.
+                // One that was held longest says nothing of the pace; one that was held for longer than usual tells a new one.
                 if self.age < tables.longest_hold {
                     self.pace = self.age + tables.period;
                 }

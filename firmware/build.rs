@@ -99,9 +99,9 @@ fn source(file: &Path, tick_rate: u32) -> Result<String, String> {
         .map_err(|error| format!("{}: {error}", file.display()))
 }
 
-fn read(file: &Path) -> Result<joints::JointFile, String> {
+fn read(file: &Path) -> Result<joint_file::JointFile, String> {
     let text = fs::read_to_string(file).map_err(|error| format!("joint file {}: {error}", file.display()))?;
-    joints::read(&text).map_err(|problems| {
+    joint_file::read(&text).map_err(|problems| {
         let list: Vec<_> = problems.iter().map(|problem| format!("{}: {problem}", file.display())).collect();
         format!("{}\nrun `cargo joint check {}` to see the places", list.join("\n"), file.display())
     })

@@ -215,38 +215,6 @@ pub const MESH_FORCE: Bound = Bound {
     reason: "Deflections of micrometres between coordinates of millimetres.",
 };
 
-/// Link angle of a board, after a whole run on joint Q1.
-pub const HIL_LINK_ANGLE: Bound = Bound {
-    of: "link angle of a board against the reference, over the standard deviation",
-    limit: 1e-4,
-    measured: 7.2e-6,
-    reason: "The rigid body is exact but for the rounding of torque gains to f32; the rest is the mesh's.",
-};
-
-/// Twist of motor against link on a board.
-pub const HIL_TWIST: Bound = Bound {
-    of: "twist of a board against the reference, over the standard deviation",
-    limit: 1e-2,
-    measured: 5.7e-3,
-    reason: "Planets bounce for milliseconds after every crossing of the gap, which amplifies the step's own error.",
-};
-
-/// Gap coordinate of a board.
-pub const HIL_GAP: Bound = Bound {
-    of: "gap of a board against the reference, over the standard deviation",
-    limit: 1e-2,
-    measured: 2.5e-3,
-    reason: "As for the twist; 1 % is the most that is asked of 20 kHz anywhere.",
-};
-
-/// Mesh deflections of a board.
-pub const HIL_DEFLECTIONS: Bound = Bound {
-    of: "mesh deflections of a board against the reference, over the standard deviation",
-    limit: 1e-2,
-    measured: 6.5e-3,
-    reason: "As for the twist; the planets' own motion is the fastest of all.",
-};
-
 /// Eq. 19's matrices, derived against written out.
 pub const DERIVATION: Bound = Bound {
     of: "entries of K and C of eq. 19, dimensionless",

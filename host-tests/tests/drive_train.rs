@@ -3,13 +3,13 @@
 
 use std::f64::consts::TAU;
 
-use host_tests::drive_train::{
-    Disturbance, DriveTrain, DriveTrainParameters, EncoderParameters, FrictionParameters, Measurement,
-};
-use host_tests::reference::{RelativeState, Start};
-use host_tests::scenarios::{l1, q1};
 use host_tests::tolerance::{DRIVE_TRAIN, DRIVE_TRAIN_PARTS, EFFICIENCY};
 use model_core::joint::JointParameters;
+use reference::drive_train::{
+    Disturbance, DriveTrain, DriveTrainParameters, EncoderParameters, FrictionParameters, Measurement,
+};
+use reference::joint::{RelativeState, Start};
+use reference::scenarios::{l1, q1};
 
 const RATIO: f64 = 6.0;
 

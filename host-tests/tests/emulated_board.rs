@@ -6,11 +6,11 @@ use std::io::{ErrorKind, Read, Write};
 use std::os::unix::net::UnixStream;
 use std::time::{Duration, Instant};
 
-use host_tests::scenarios;
-use joint::target::board::Board;
-use joint::target::emulator::{self, Emulator};
-use joint::target::image::{build_image, preset_file};
-use joint::target::toolchain::Toolchain;
+use board::target::board::Board;
+use board::target::emulator;
+use board::target::emulator::Emulator;
+use board::target::image::{build_image, preset_file};
+use board::target::toolchain::Toolchain;
 use link::PROTOCOL_VERSION;
 use link::framing::{Receiver, encode};
 use link::messages::{Clock, Command, FromBoard, Hello, Role, RunMode, RunSettings, Sample, Schedule, ToBoard};
@@ -18,6 +18,7 @@ use model_core::design::design;
 use model_core::digest::{self, chain};
 use model_core::realtime::{Model, Torques};
 use model_core::tables::Tables;
+use reference::scenarios;
 
 const TICK_RATE: u32 = 20_000;
 const TICKS: u32 = 4000;
@@ -127,7 +128,7 @@ fn the_board_s_state_is_the_core_s_in_every_bit() {
     let mut line = Line::new(stream);
 
     let text = std::fs::read_to_string(&file).expect("the preset");
-    let joint = joints::read(&text).expect("a sound joint").parameters;
+    let joint = joint_file::read(&text).expect("a sound joint").parameters;
     let tables: Tables<f32, 3> = design(&joint, TICK_RATE).expect("a sound joint");
     let board = line.ask(&ToBoard::Hello { protocol: PROTOCOL_VERSION }, hello);
     assert_eq!((board.protocol, board.role, board.planets), (PROTOCOL_VERSION, Role::Plant, 3));

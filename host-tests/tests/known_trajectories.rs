@@ -1,9 +1,9 @@
 //! The reference against mesh deflections that another integrator found: cases A and Q of the data folder. How the
 //! core follows the reference is asked elsewhere.
 
-use host_tests::integrator::Counters;
-use host_tests::scenarios::{CASE_A_OMEGA, CASE_Q_OMEGA, PAPER_LENGTH, case, paper_natural_frequency, run_at};
 use host_tests::tolerance::CASE_DATA;
+use reference::integrator::Counters;
+use reference::scenarios::{CASE_A_OMEGA, CASE_Q_OMEGA, PAPER_LENGTH, case, paper_natural_frequency, run_at};
 
 const CASE_A: &str = include_str!("../data/case_a.csv");
 const CASE_Q: &str = include_str!("../data/case_q.csv");

@@ -4,10 +4,10 @@
 
 use std::f64::consts::TAU;
 
-use host_tests::scenarios::{paper_joint, same};
 use host_tests::tolerance::{PUBLISHED_FREQUENCY, TORSIONAL_PART};
 use model_core::design::modes::natural_frequencies;
 use nalgebra::{DMatrix, DVector};
+use reference::scenarios::{paper_joint, same};
 
 /// Pressure angle [rad].
 fn alpha() -> f64 {

@@ -1,9 +1,9 @@
 //! The two damping laws at single moments: a joint is set into a state and its mesh forces are read. No time passes.
 
-use host_tests::reference::{Reference, RelativeState, Start};
-use host_tests::scenarios::{l1, same};
 use host_tests::tolerance::MESH_FORCE;
 use model_core::mesh::{ContactState, DampingLaw};
+use reference::joint::{Reference, RelativeState, Start};
+use reference::scenarios::{l1, same};
 
 const HALF_BACKLASH: f64 = 60e-6;
 

@@ -3,8 +3,8 @@
 
 use std::f64::consts::TAU;
 
-use host_tests::integrator::{Entries, Guards, Integrator, MAX_ENTRIES, SwitchedSystem};
 use host_tests::tolerance::FREE_PERIOD;
+use reference::integrator::{Entries, Guards, Integrator, MAX_ENTRIES, SwitchedSystem};
 
 /// x'' = force - f(x, half_backlash), mass and stiffness one.
 struct Mass {

@@ -2,14 +2,14 @@
 
 use std::f64::consts::TAU;
 
-use host_tests::integrator::Counters;
-use host_tests::reference::{Reference, RelativeState, Start};
-use host_tests::scenarios::{
-    PAPER_LENGTH, Scenario, paper_joint, paper_natural_frequency, poincare_point, regime, run, run_at, same,
-};
 use host_tests::tolerance::{POINCARE, TOOTH_PHASE};
 use model_core::dead_zone::DeadZone;
 use model_core::mesh::{DampingLaw, MeshPhases, StiffnessWave};
+use reference::integrator::Counters;
+use reference::joint::{Reference, RelativeState, Start};
+use reference::scenarios::{
+    PAPER_LENGTH, Scenario, paper_joint, paper_natural_frequency, poincare_point, regime, run, run_at, same,
+};
 
 /// omega/omega_n of set P.
 const OMEGA: f64 = 2.1;

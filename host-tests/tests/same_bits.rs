@@ -5,10 +5,10 @@
 use std::fs;
 use std::path::Path;
 
-use joint::proof::joints::TRIAL_JOINTS;
-use joint::proof::same_bits::{InMode, compare, on_board, on_host};
-use joint::target::emulator;
-use joint::target::toolchain::Toolchain;
+use board::target::emulator;
+use board::target::toolchain::Toolchain;
+use proof::joints::TRIAL_JOINTS;
+use proof::same_bits::{InMode, compare, on_board, on_host};
 
 /// Digests that were found before, on whatever machine.
 const KNOWN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/step_digests.csv");

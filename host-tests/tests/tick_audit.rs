@@ -1,12 +1,12 @@
 //! The linked image of every role: its tick cannot reach a panic, and its stack is bounded; an image in which that is not
 //! so is refused.
 
-use joint::proof::tick;
-use joint::target::board::Board;
-use joint::target::image::{build_image, preset_file};
-use joint::target::measuring::build_measuring;
-use joint::target::toolchain::Toolchain;
+use board::target::board::Board;
+use board::target::image::{build_image, preset_file};
+use board::target::measuring::build_measuring;
+use board::target::toolchain::Toolchain;
 use link::messages::Role;
+use proof::tick;
 
 #[test]
 #[ignore = "needs the compiler for the board: run by `cargo joint hil --check`"]

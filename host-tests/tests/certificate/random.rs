@@ -4,13 +4,13 @@
 
 use std::f64::consts::TAU;
 
-use host_tests::scenarios::l1;
 use model_core::design::{Effort, Parts};
 use model_core::joint::{Compliance, Excitation, JointParameters, PerPlanet};
 use model_core::mesh::{DampingLaw, Mesh, MeshPhases, StiffnessWave};
 use model_core::scales::Scales;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
+use reference::scenarios::l1;
 
 /// Chance that repeats itself.
 pub struct Chance(ChaCha8Rng);

@@ -1,11 +1,11 @@
 //! What the compensation does with estimates and set-points that are no numbers, not there, or nonsense.
 
-use host_tests::closed_loop::compensation_settings;
-use host_tests::drive_train::DriveTrainParameters;
-use host_tests::scenarios::q1;
 use model_core::design::compensation::{CompensationSettings, design_compensation};
 use model_core::realtime::compensation::{Command, Compensation, ImpedancePoint, Motion, Stage};
 use model_core::realtime::observer::{Doubt, Estimate, Estimates, Source};
+use reference::drive_train::DriveTrainParameters;
+use reference::scenarios::q1;
+use scenario::compensated::compensation_settings;
 
 const LIMIT: f32 = 2.5;
 

@@ -1,11 +1,12 @@
 //! Holding a position: under a disturbance, and after a push with and without dry friction.
 
-use host_tests::closed_loop::{Contender, Figures, Trial};
-use host_tests::drive_train::DriveTrainParameters;
-use host_tests::scenarios::q1;
 use host_tests::tolerance::compensation::{
     FREE_HOLD_SWING, HOLD_OVER_PID, HOLD_SWING_OVER_PID, UNKNOWN_FREE_HOLD_SWING,
 };
+use reference::closed_loop::Figures;
+use reference::drive_train::DriveTrainParameters;
+use reference::scenarios::q1;
+use scenario::trial::{Contender, Trial};
 
 use super::{NO_PREVIEW, figures};
 

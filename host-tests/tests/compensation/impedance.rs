@@ -1,12 +1,13 @@
 //! Impedance mode: how far the link and its torque are from what the same law does on teeth without backlash.
 
-use host_tests::closed_loop::rivals::ImpedanceLaw;
-use host_tests::closed_loop::{Contender, ImpedanceGains, Trial, deviation};
-use host_tests::drive_train::DriveTrainParameters;
-use host_tests::scenarios::{l1, q1};
 use host_tests::tolerance::compensation::{
     IMPEDANCE_DEVIATION, IMPEDANCE_OVER_RIVAL, IMPEDANCE_TORQUE, SOFT_SPRING_SWING,
 };
+use reference::closed_loop::rivals::ImpedanceLaw;
+use reference::closed_loop::{ImpedanceGains, deviation};
+use reference::drive_train::DriveTrainParameters;
+use reference::scenarios::{l1, q1};
+use scenario::trial::{Contender, Trial};
 
 use super::NO_PREVIEW;
 

@@ -8,7 +8,8 @@ mod monte_carlo;
 mod position;
 mod stepping;
 
-use host_tests::closed_loop::{Contender, Figures, Trial};
+use reference::closed_loop::Figures;
+use scenario::trial::{Contender, Trial};
 
 /// Figures of one contender at a trial.
 fn figures(trial: &Trial, contender: Contender) -> Figures {

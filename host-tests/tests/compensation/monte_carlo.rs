@@ -1,10 +1,11 @@
 //! The long form: twenty seeds of every trial and fifty random plants. It prints each figure; run it with
 //! `cargo test --release -p host-tests --test compensation -- --ignored --nocapture`.
 
-use host_tests::closed_loop::{Contender, Trial, random_plant};
-use host_tests::drive_train::DriveTrainParameters;
-use host_tests::scenarios::q1;
 use host_tests::tolerance::compensation::{PLANTS_GAIN, PLANTS_WORST};
+use reference::closed_loop::random_plant;
+use reference::drive_train::DriveTrainParameters;
+use reference::scenarios::q1;
+use scenario::trial::{Contender, Trial};
 
 use super::{NO_PREVIEW, PREVIEW, figures};
 

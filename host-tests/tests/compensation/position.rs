@@ -1,8 +1,5 @@
 //! Position mode, with and without preview, against motor PID and the best rival.
 
-use host_tests::closed_loop::{Contender, Profile, Trial};
-use host_tests::drive_train::{Disturbance, DriveTrainParameters};
-use host_tests::scenarios::{l1, q1};
 use host_tests::tolerance::compensation::{
     COMPENSATED_OVER_PID, COMPENSATED_OVER_RIVAL, COMPENSATED_PEAK_OVER_PID, COMPENSATED_PEAK_OVER_RIVAL,
     HIDDEN_GAP_OVER_PID, LOST_MOTION, LOST_MOTION_WITHOUT_PREVIEW, ONE_FLANK_OVER_PID, PEAK_MESH_FORCE, SLOW_OVER_PID,
@@ -10,6 +7,10 @@ use host_tests::tolerance::compensation::{
     STIFF_JOINT_STEPS_OVER_PID, TRANSMISSION_ERROR_OVER_PID,
 };
 use model_core::joint::JointParameters;
+use reference::closed_loop::Profile;
+use reference::drive_train::{Disturbance, DriveTrainParameters};
+use reference::scenarios::{l1, q1};
+use scenario::trial::{Contender, Trial};
 
 use super::{NO_PREVIEW, PREVIEW, figures};
 

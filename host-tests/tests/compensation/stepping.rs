@@ -1,9 +1,9 @@
 //! The fixed fine steps that closed loops run on, against the adaptive ones.
 
-use host_tests::closed_loop::{Contender, Trial};
-use host_tests::drive_train::{DriveTrainParameters, Stepping};
-use host_tests::scenarios::q1;
 use host_tests::tolerance::compensation::FIXED_STEPS;
+use reference::drive_train::{DriveTrainParameters, Stepping};
+use reference::scenarios::q1;
+use scenario::trial::{Contender, Trial};
 
 #[test]
 fn fixed_steps_move_the_joint_as_adaptive_ones_do() {

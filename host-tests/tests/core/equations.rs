@@ -1,7 +1,6 @@
 //! The design's matrices against the paper's equations written out by hand, with the misprints corrected, and against
 //! eigenvalues known from closed forms.
 
-use host_tests::scenarios;
 use host_tests::tolerance;
 use model_core::design::dynamics::Dynamics;
 use model_core::design::exponential::exponential_minus_identity;
@@ -9,6 +8,7 @@ use model_core::design::hamiltonian;
 use model_core::joint::JointParameters;
 use model_core::scales::Scales;
 use nalgebra::DMatrix;
+use reference::scenarios;
 
 /// The paper's joint with other masses and stiffnesses, and n planets (radii do not enter the relative equations).
 fn joint(planets: usize) -> JointParameters {

@@ -1,7 +1,6 @@
 //! What the core promises of itself, whatever the joint: teeth only push, nothing is silent, the same input gives the
 //! same bits, the digest sees everything.
 
-use host_tests::scenarios;
 use host_tests::tolerance;
 use model_core::dead_zone::DeadZone;
 use model_core::design::{DesignError, Effort, design, design_scheme, rust_source};
@@ -9,6 +8,7 @@ use model_core::joint::JointParameters;
 use model_core::mesh::ContactState;
 use model_core::realtime::{Model, Torques};
 use model_core::tables::{Scheme, Tables};
+use reference::scenarios;
 
 fn q1_tables() -> Tables<f32, 3> {
     design(&scenarios::q1(), 20_000).expect("q1 is sound")

@@ -1,12 +1,13 @@
 //! The core against the reference beyond the usual joint: four and five planets, unequal backlash, the rectangular
 //! stiffness wave, meshes out of phase, the joint turning backwards.
 
-use host_tests::reference::{RelativeState, Start};
-use host_tests::scenarios::{self, Scenario, TorqueSegment};
 use host_tests::tolerance;
 use model_core::design::Effort;
 use model_core::joint::{JointParameters, PerPlanet};
 use model_core::mesh::{DampingLaw, MeshPhases, StiffnessWave};
+use reference::joint::{RelativeState, Start};
+use reference::scenarios;
+use reference::scenarios::{Scenario, TorqueSegment};
 
 use crate::comparison::check;
 

@@ -1,11 +1,12 @@
 //! The core's fixed step at 20 kHz against the independent reference, scenario by scenario, in f32 as on a board and
 //! in f64 from the same source. Errors are RMS over the motion's own standard deviation; bounds stand in `tolerance`.
 
-use host_tests::reference::{RelativeState, Start};
-use host_tests::scenarios::{self, Scenario};
 use host_tests::tolerance;
 use model_core::design::Effort;
 use model_core::tables::Scheme;
+use reference::joint::{RelativeState, Start};
+use reference::scenarios;
+use reference::scenarios::Scenario;
 
 use crate::comparison::{check, errors};
 

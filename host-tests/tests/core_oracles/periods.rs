@@ -3,10 +3,10 @@
 
 use std::f64::consts::{PI, TAU};
 
-use host_tests::scenarios::{PAPER_LENGTH, same};
 use host_tests::tolerance::core::CORE_FREE_PERIOD;
 use model_core::joint::JointParameters;
 use model_core::realtime::Relative;
+use reference::scenarios::{PAPER_LENGTH, same};
 
 use crate::closed_forms::joint;
 use crate::{Start, run};

@@ -1,8 +1,8 @@
 //! Eq. 19 term by term as the paper prints it, with the sum that its second row lost, in the paper's own X: deflections
 //! of the sun-planet meshes (errors taken off) and the gap coordinate.
 
-use host_tests::integrator::{Entries, Guards, MAX_ENTRIES, SwitchedSystem};
 use model_core::joint::MAX_PLANETS;
+use reference::integrator::{Entries, Guards, MAX_ENTRIES, SwitchedSystem};
 
 use crate::joint::{Deflections, Joint, Moving};
 

@@ -1,7 +1,6 @@
 //! The reduced model (n + 1 relative coordinates) against the full one (n + 2 bodies, one more of each with a
 //! compliance): flow of the one, read in the coordinates of the other. Linear: contact is closed throughout.
 
-use host_tests::scenarios::{paper_joint, q1};
 use host_tests::tolerance::REDUCED;
 use model_core::design::dynamics::Dynamics;
 use model_core::design::exponential::exponential_minus_identity;
@@ -9,6 +8,7 @@ use model_core::design::hamiltonian;
 use model_core::joint::JointParameters;
 use model_core::scales::Scales;
 use nalgebra::{DMatrix, DVector};
+use reference::scenarios::{paper_joint, q1};
 
 /// Bodies in the order sun, planets, carrier, link: mass matrix, damping and stiffness of eqs 1-6 by hand, and the
 /// relative coordinates of eqs 16 and 17.

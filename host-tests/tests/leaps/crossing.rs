@@ -1,11 +1,11 @@
 //! What can happen between two ticks: a tooth parts and returns, or crosses its whole gap within one leap.
 
-use host_tests::reference::{Observation, RelativeState};
-use host_tests::scenarios::same;
 use host_tests::tolerance::light_planets::{LEAP_ACROSS_THE_GAP, LEAP_THROUGH_THE_MIDDLE, PARTED_WITHIN_A_TICK};
 use model_core::joint::JointParameters;
 use model_core::mesh::{ContactState, DampingLaw};
 use model_core::realtime::{Model, Torques};
+use reference::joint::{Observation, RelativeState};
+use reference::scenarios::same;
 
 use crate::subject::{joint, leaping, pressed, reference, state};
 

@@ -2,10 +2,10 @@
 //! for 3, 4 and 5 planets and both damping laws. Ticks shrink with the leaps, as in a tick ripple and errors are taken
 //! from its middle.
 
-use host_tests::reference::RelativeState;
 use host_tests::tolerance::light_planets::{LEAPS, ORDER_OF_LEAPS};
 use model_core::joint::JointParameters;
 use model_core::mesh::{ContactState, DampingLaw};
+use reference::joint::RelativeState;
 
 use crate::subject::{error, joint, leaping, pressed, reference};
 

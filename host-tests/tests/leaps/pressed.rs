@@ -1,12 +1,12 @@
 //! Exponential ticks of light planets: taken where every tooth keeps pressing, and refused where one opens within the
 //! tick. A refused tick is one in leaps, in every bit.
 
-use host_tests::reference::RelativeState;
 use host_tests::tolerance::light_planets::{HELD_OVER_AN_OPENING, PRESSED};
 use model_core::joint::JointParameters;
 use model_core::mesh::{ContactState, DampingLaw};
 use model_core::realtime::{Model, Torques};
 use model_core::tables::Tables;
+use reference::joint::RelativeState;
 
 use crate::subject::{joint, leaping, reference, resting, state, tables};
 

@@ -2,8 +2,6 @@
 //! side. No bound is stated here.
 
 use contest::start::Deflected;
-use host_tests::reference::{Observation, Reference, RelativeState, Start};
-use host_tests::scenarios::{case_r, same};
 use model_core::design::dynamics::Dynamics;
 use model_core::design::{Effort, design_scheme, light_tables};
 use model_core::joint::JointParameters;
@@ -11,6 +9,8 @@ use model_core::mesh::{DampingLaw, Mesh};
 use model_core::realtime::{Model, State, Torques};
 use model_core::scales::Scales;
 use model_core::tables::{Mobility, Scheme, Tables};
+use reference::joint::{Observation, Reference, RelativeState, Start};
+use reference::scenarios::{case_r, same};
 
 /// Case R's joint with so many planets, under a damping law.
 pub fn joint(planets: usize, law: DampingLaw) -> JointParameters {

@@ -1,8 +1,8 @@
 //! Encoders that fail and samples that make no sense: found, said, bounded, recovered from.
 
-use host_tests::drive_train::Disturbance;
 use host_tests::tolerance::observer::{FAILURE_FOUND, FAILURE_FOUND_AT_SPEED, GAP_COARSE, LOST_COUNTS_FOUND};
 use model_core::realtime::observer::{Doubt, Estimates, MAPPED, Observer, Samples, Source};
+use reference::drive_train::Disturbance;
 
 use crate::motion::{Moment, Profile, uniform};
 use crate::replay::{replay, samples};

@@ -1,9 +1,9 @@
 //! What is learnt where learning is hard: teeth that wear, forces that do not stand out of what bias can be, teeth whose
 //! transmission error is larger than their gap. Figures of ordinary joints are in `gap`.
 
-use host_tests::drive_train::Disturbance;
 use host_tests::tolerance::observer::*;
 use model_core::realtime::observer::{MAPPED, Observer, Source};
+use reference::drive_train::Disturbance;
 
 use crate::motion::Profile;
 use crate::presets::with_backlash;

@@ -3,9 +3,9 @@
 
 use std::f64::consts::TAU;
 
-use host_tests::drive_train::{Disturbance, DriveTrain, DriveTrainParameters};
-use host_tests::reference::Start;
 use model_core::joint::JointParameters;
+use reference::drive_train::{Disturbance, DriveTrain, DriveTrainParameters};
+use reference::joint::Start;
 
 /// Poles of the motor controller [rad/s].
 const BANDWIDTH: f64 = 60.0;

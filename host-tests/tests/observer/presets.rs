@@ -2,20 +2,20 @@
 
 use std::f64::consts::TAU;
 
-use host_tests::drive_train::{
+use model_core::joint::JointParameters;
+use reference::drive_train::{
     DriveTrainParameters, EncoderParameters, FrictionParameters, LoadParameters, MotorParameters,
 };
-use host_tests::scenarios::same;
-use model_core::joint::JointParameters;
+use reference::scenarios::same;
 
 use crate::motion::uniform;
 
 /// A preset, with its ripple and transmission error, and its drive train.
 pub fn preset(name: &str, seed: u64) -> (JointParameters, DriveTrainParameters) {
-    let file = joints::read(joints::preset(name).expect("a preset")).expect("a good preset");
+    let file = joint_file::read(joint_file::preset(name).expect("a preset")).expect("a good preset");
     let train = file.drive_train.unwrap_or_default();
     let mut uniform = uniform(seed ^ 0x5eed);
-    let mut encoder = |encoder: joints::Encoder| EncoderParameters {
+    let mut encoder = |encoder: joint_file::Encoder| EncoderParameters {
         bits: encoder.bits,
         once_per_turn_error: encoder.once_per_turn_error,
         once_per_turn_phase: TAU * uniform(),

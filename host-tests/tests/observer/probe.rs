@@ -1,11 +1,11 @@
 //! The width probe in the loop with a plant: a held load gives the width, everything else a refusal.
 
-use host_tests::drive_train::{Disturbance, DriveTrain};
-use host_tests::reference::Start;
 use host_tests::tolerance::observer::PROBED_WIDTH;
 use model_core::design::observer::{design_observer, design_probe};
 use model_core::realtime::observer::{MAPPED, Observer, Probe, Progress, Refusal};
 use model_core::tables::observer::{ObserverTables, ProbeTable};
+use reference::drive_train::{Disturbance, DriveTrain};
+use reference::joint::Start;
 
 use crate::motion::Moment;
 use crate::replay::samples;

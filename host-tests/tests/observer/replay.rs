@@ -2,13 +2,13 @@
 
 use std::f64::consts::TAU;
 
-use host_tests::drive_train::DriveTrainParameters;
 use model_core::design::observer::{EncoderSettings, ObserverSettings};
 use model_core::joint::JointParameters;
 use model_core::mesh::ContactState;
 use model_core::real::Real;
 use model_core::realtime::observer::{Estimates, Observer, Reading, Samples};
 use model_core::tables::observer::ObserverTables;
+use reference::drive_train::DriveTrainParameters;
 
 use crate::motion::Moment;
 
@@ -17,7 +17,7 @@ pub const CLOCK_RATE: u32 = 10_000_000;
 
 /// What a data sheet says of a drive train: sizes, never the phases or signs of its errors.
 pub fn settings(train: &DriveTrainParameters) -> ObserverSettings {
-    let encoder = |encoder: &host_tests::drive_train::EncoderParameters| EncoderSettings {
+    let encoder = |encoder: &reference::drive_train::EncoderParameters| EncoderSettings {
         counts_per_turn: 1 << encoder.bits,
         wraps_at: 1 << encoder.bits,
         absolute: true,
@@ -231,7 +231,7 @@ pub fn replay<T: Real, const P: usize>(
 
 /// Readings of other encoders in the same motion: the truth at the control periods, older by the skew at the speed then.
 pub fn with_encoders(log: &[Moment], train: &DriveTrainParameters) -> Vec<Moment> {
-    let read = |[angle, speed]: [f64; 2], encoder: &host_tests::drive_train::EncoderParameters| {
+    let read = |[angle, speed]: [f64; 2], encoder: &reference::drive_train::EncoderParameters| {
         let angle = angle - encoder.skew * speed;
         let error = encoder.once_per_turn_error * (angle + encoder.once_per_turn_phase).sin()
             + encoder.twice_per_turn_error * (2.0 * angle + encoder.twice_per_turn_phase).sin();

@@ -1,10 +1,12 @@
 //! The width in steps between two places, in the loop with the compensation, whose soft landings leave little to learn from.
 //! Motions under a plain motor controller are in `gap`.
 
-use host_tests::closed_loop::{Bench, Compensated, Trial, compensation_settings, observer_settings};
 use host_tests::tolerance::observer::{WIDTH_AFTER, WIDTH_IN_STEPS, WIDTH_IN_STEPS_WORST};
 use model_core::design::compensation::design_compensation;
 use model_core::design::observer::design_observer;
+use reference::closed_loop::Bench;
+use scenario::compensated::{Compensated, compensation_settings, observer_settings};
+use scenario::trial::Trial;
 
 use crate::presets::{preset, with_backlash};
 

@@ -1,11 +1,11 @@
 //! One trial: a joint in motion, and an observer that was told a wrong width and compliance and nothing of offset, skew
 //! and error maps. What must come of it is the tests' business.
 
-use host_tests::drive_train::{DriveTrainParameters, EncoderParameters};
 use model_core::design::observer::{ObserverSettings, design_observer};
 use model_core::joint::JointParameters;
 use model_core::real::Real;
 use model_core::tables::observer::ObserverTables;
+use reference::drive_train::{DriveTrainParameters, EncoderParameters};
 
 use crate::motion::{Moment, Profile, Run, uniform};
 use crate::presets::{preset, with_backlash};

@@ -1,13 +1,13 @@
 //! Errors against 50 digits: |E found - E| / max(1, |E|) in units of u max(1, |A h|), u = 2^-53, where norms are largest
 //! column sums. Speed is not judged.
 
-use host_tests::scenarios::{paper_joint, q1, same};
 use host_tests::tolerance::{DERIVATION, NALGEBRA_EXPONENTIAL, PRECISE_INTEGRALS, PRECISE_INTEGRATION};
 use model_core::design::dynamics::Dynamics;
 use model_core::design::exponential::{exponential_minus_identity, flow, norm};
 use model_core::design::hamiltonian;
 use model_core::scales::Scales;
 use nalgebra::DMatrix;
+use reference::scenarios::{paper_joint, q1, same};
 
 use crate::fixtures::{Expected, Fixture, models, others};
 

@@ -1,12 +1,12 @@
 //! The reference's books: momentum against torques, energy against work, and no tooth that pulls.
 
-use host_tests::reference::{Observation, Start};
-use host_tests::scenarios::{Scenario, TorqueSegment, run};
 use host_tests::tolerance::ENERGY;
 use host_tests::tolerance::core::MOMENTUM;
 use model_core::joint::JointParameters;
 use model_core::mesh::{ContactState, DampingLaw};
 use proptest::prelude::*;
+use reference::joint::{Observation, Start};
+use reference::scenarios::{Scenario, TorqueSegment, run};
 
 use crate::random::{config, scenario};
 

@@ -1,7 +1,6 @@
 //! The core on random joints: finite and repeatable in f32, passive without excitation, and
 //! never pulling under the law `contact`. Its digest is looked at elsewhere.
 
-use host_tests::scenarios::{Scenario, same};
 use host_tests::tolerance::core::{MOMENTUM, PASSIVITY};
 use model_core::dead_zone::DeadZone;
 use model_core::design::{DesignError, Effort, design_scheme};
@@ -12,6 +11,7 @@ use model_core::realtime::{Model, Relative, State, Torques};
 use model_core::scales::Scales;
 use model_core::tables::{Scheme, Tables};
 use proptest::prelude::*;
+use reference::scenarios::{Scenario, same};
 
 use crate::books::rigid_gains;
 use crate::random::{TICK_RATE, config, joint, scenario};

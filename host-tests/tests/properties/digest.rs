@@ -1,11 +1,11 @@
 //! The digest of the tables, on random joints: no parameter changes without it.
 
-use host_tests::scenarios::same;
 use model_core::dead_zone::DeadZone;
 use model_core::design::Effort;
 use model_core::joint::{Excitation, JointParameters};
 use model_core::mesh::{DampingLaw, MeshPhases, StiffnessWave};
 use proptest::prelude::*;
+use reference::scenarios::same;
 
 use crate::core::tables;
 use crate::random::{TICK_RATE, config, joint};

@@ -3,12 +3,12 @@
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-use host_tests::reference::{RelativeState, Start};
-use host_tests::scenarios::{Scenario, TorqueSegment, l1, same};
 use model_core::joint::{Compliance, Excitation, JointParameters, PerPlanet};
 use model_core::mesh::{DampingLaw, Mesh, MeshPhases, StiffnessWave};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
+use reference::joint::{RelativeState, Start};
+use reference::scenarios::{Scenario, TorqueSegment, l1, same};
 
 /// Ticks a second of every scenario.
 pub const TICK_RATE: u32 = 20_000;

@@ -1,10 +1,10 @@
 //! That the motion of case R is chaotic, and that its windows are not: the reference beside itself under torques that
 //! differ by a billionth.
 
-use host_tests::reference::Reference;
-use host_tests::scenarios::case_r::{CaseR, TICK_RATE, brief, case_r};
 use host_tests::tolerance::light_planets::NOISE_IN_WINDOWS;
 use model_core::joint::JointParameters;
+use reference::joint::Reference;
+use reference::scenarios::case_r::{CaseR, TICK_RATE, brief, case_r};
 
 use crate::variants::joint;
 

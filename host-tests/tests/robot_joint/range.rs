@@ -1,12 +1,12 @@
 //! The same beyond case R's own joint: other mesh phases, teeth, planets, backlash, masses, springs, the other damping
 //! law.
 
-use host_tests::scenarios::{case_r, same};
 use host_tests::tolerance::light_planets::{
     FAR_ROBOTS_LINK_RMS, FAR_ROBOTS_LINK_WORST, ROBOT_LINK_RMS, ROBOT_LINK_WORST, ROBOTS_PEAK_FORCE,
 };
 use model_core::joint::{JointParameters, PerPlanet};
 use model_core::mesh::DampingLaw;
+use reference::scenarios::{case_r, same};
 
 use crate::variants::{joint, with_meshes, with_teeth};
 use crate::windows::errors;

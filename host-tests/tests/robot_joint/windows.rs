@@ -5,8 +5,9 @@ use contest::course::Errors;
 use contest::curve::{Field, Scalar};
 use contest::method::Method;
 use contest::run::AS_DESIGNED;
-use host_tests::scenarios::case_r::{self, CaseR, TICK_RATE};
 use host_tests::tolerance::light_planets::{ROBOT_LINK_RMS, ROBOT_LINK_WORST, ROBOT_PEAK_FORCE};
+use reference::scenarios::case_r;
+use reference::scenarios::case_r::{CaseR, TICK_RATE};
 
 use crate::variants::joint;
 

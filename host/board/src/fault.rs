@@ -1,0 +1,89 @@
+//! Faults of a board in words: what happened and what to do. When a fault is raised is the firmware's business.
+
+use link::messages::Fault;
+
+use report::failure::Failure;
+use serde::{Deserialize, Serialize};
+
+/// A fault that the board reported.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct FaultEntry {
+    /// Its tick, where it has one.
+    pub tick: Option<u32>,
+    /// Short name, such as `command_loss`.
+    pub name: String,
+    /// What it means and what to do.
+    pub text: String,
+}
+
+struct Words {
+    name: &'static str,
+    tick: Option<u32>,
+    what: &'static str,
+    mend: &'static str,
+}
+
+fn words(fault: &Fault) -> Words {
+    let (name, tick, what, mend) = match *fault {
+        Fault::CommandLoss { tick } => (
+            "command_loss",
+            Some(tick),
+            "no torques came for longer than the command timeout",
+            "check the line, or run with --mode lockstep",
+        ),
+        Fault::NotFinite { tick } => (
+            "not_finite",
+            Some(tick),
+            "the simulated state is not finite any more",
+            "check joint file and profile: `joint check` tells the highest stable step",
+        ),
+        Fault::BadCommand { tick } => {
+            ("bad_command", Some(tick), "a commanded torque is not finite", "check the profile's torques")
+        }
+        Fault::LateCommand { tick } => (
+            "late_command",
+            Some(tick),
+            "a command came out of order or for a tick that has passed",
+            "the host or the line is too slow for --mode realtime: lower the load or run with --mode lockstep",
+        ),
+        Fault::BadDigest => {
+            ("bad_digest", None, "the tables on the board do not match their digest", "flash the image again")
+        }
+        Fault::QueueFull => (
+            "queue_full",
+            None,
+            "more commands came than the board's queue holds",
+            "board and host disagree about the queue: flash this checkout's image",
+        ),
+        Fault::BadSettings => {
+            ("bad_settings", None, "the board cannot run with these settings", "check --decimation and --mode")
+        }
+        Fault::NotRunning => (
+            "not_running",
+            None,
+            "torques came for a run that was not started or has stopped",
+            "the board was reset in mid-run: check its power, then run again",
+        ),
+        Fault::WrongRole => (
+            "wrong_role",
+            None,
+            "commands came that are for another role than the board's",
+            "flash the image of the role that this run asks for",
+        ),
+    };
+    Words { name, tick, what, mend }
+}
+
+/// A fault as the end of a run.
+pub fn failure(fault: &Fault) -> Failure {
+    let Words { name, tick, what, mend } = words(fault);
+    let place = tick.map(|tick| format!(" at tick {tick}")).unwrap_or_default();
+    Failure::check_failed(format!("the board went into its safe state{place}: {what} ({name})")).with_help(mend)
+}
+
+/// A fault as a line of the record.
+pub fn entry(fault: &Fault) -> FaultEntry {
+    let Words { name, tick, what, mend } = words(fault);
+    FaultEntry { tick, name: name.to_owned(), text: format!("{what}; {mend}") }
+}

@@ -1,0 +1,132 @@
+//! What is asked of the joint: torques by tick number, built in or read from a CSV. Nothing here knows a board; both
+//! sides of the comparison get the same f32 bits, since torques are rounded once, here.
+
+mod builtin;
+mod recorded;
+
+use std::path::Path;
+
+use link::messages::Command;
+use model_core::joint::JointParameters;
+
+use report::failure::{Failure, Outcome};
+use report::output::typed;
+
+pub use builtin::BUILTIN;
+
+/// No joint that this is for gives or takes more: it is a slip of the unit [N m].
+pub const STRONGEST: f64 = 1e6;
+/// No link or carrier turns faster [rad/s].
+pub const FASTEST: f64 = 1e4;
+/// Commands a second; torques hold in between [Hz].
+pub const COMMAND_RATE: u32 = 1000;
+
+/// A torque profile on the board's tick grid.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Profile {
+    /// Name of the built-in profile, or path of the CSV.
+    pub name: String,
+    /// Torque changes, in rising order of ticks, from tick 0.
+    pub commands: Vec<Command>,
+    /// Length in ticks.
+    pub ticks: u32,
+}
+
+/// Torques at one time: drive on the sun shaft, load that brakes the link [N m].
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Torques {
+    drive: f64,
+    load: f64,
+}
+
+impl Profile {
+    /// A built-in profile by name, or a CSV by path. `duration` cuts the profile or stretches its last torque [s].
+    pub fn load(name: &str, joint: &JointParameters, tick_rate: u32, duration: Option<f64>) -> Outcome<Self> {
+        if BUILTIN.contains(&name) {
+            let seconds = duration.unwrap_or(builtin::DURATION);
+            return Self::sampled(name, tick_rate, seconds, |from, to| builtin::reversals(joint, 0.5 * (from + to)));
+        }
+        let path = Path::new(name);
+        if !path.exists() {
+            let message = format!("there is no profile `{name}`, neither built in nor as a file");
+            let help = format!(
+                "built in: {}; or name a CSV file with columns {}",
+                BUILTIN.join(", "),
+                recorded::COLUMNS.join(", ")
+            );
+            return Err(Failure::new(message).with_help(help));
+        }
+        let recording = recorded::Recording::read(path)?;
+        let seconds = duration.unwrap_or(recording.duration());
+        Self::sampled(name, tick_rate, seconds, |from, to| recording.mean(from, to))
+    }
+
+    /// Takes torques on the command grid, from the mean that `mean(from, to)` gives for every interval.
+    fn sampled(name: &str, tick_rate: u32, seconds: f64, mean: impl Fn(f64, f64) -> Torques) -> Outcome<Self> {
+        let ticks = seconds * f64::from(tick_rate);
+        if !(1.0..=f64::from(u32::MAX / 2)).contains(&ticks) {
+            return Err(Failure::new(format!(
+                "a run of {} s at {tick_rate} Hz is {} ticks",
+                typed(seconds),
+                typed(ticks)
+            ))
+            .with_help("give a duration of at least one tick and at most 2^31 ticks, such as --duration 5"));
+        }
+        let ticks = ticks.round() as u32;
+        let mut commands: Vec<Command> = Vec::new();
+        for index in 0u32.. {
+            let tick = grid_tick(index, tick_rate);
+            if tick >= ticks {
+                break;
+            }
+            let from = f64::from(tick) / f64::from(tick_rate);
+            let to = f64::from(grid_tick(index + 1, tick_rate)) / f64::from(tick_rate);
+            let Torques { drive, load } = mean(from, to);
+            let command = Command { tick, drive_torque: drive as f32, load_torque: load as f32 };
+            let same = |last: &Command| {
+                (last.drive_torque.to_bits(), last.load_torque.to_bits())
+                    == (command.drive_torque.to_bits(), command.load_torque.to_bits())
+            };
+            if !commands.last().is_some_and(same) {
+                commands.push(command);
+            }
+        }
+        Ok(Self { name: name.to_owned(), commands, ticks })
+    }
+}
+
+/// First tick at or after the start of a command interval.
+fn grid_tick(index: u32, tick_rate: u32) -> u32 {
+    (u64::from(index) * u64::from(tick_rate)).div_ceil(u64::from(COMMAND_RATE)) as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HELD: Torques = Torques { drive: 0.5, load: 3.0 };
+
+    #[test]
+    fn a_torque_that_does_not_change_is_sent_once() {
+        let profile = Profile::sampled("held", 20_000, 1.0, |_, _| HELD).expect("a profile");
+        assert_eq!(profile.commands, [Command { tick: 0, drive_torque: 0.5, load_torque: 3.0 }]);
+        assert_eq!(profile.ticks, 20_000);
+    }
+
+    #[test]
+    fn commands_rise_and_stay_inside_the_run_at_any_tick_rate() {
+        for tick_rate in [999, 1000, 20_000, 40_001] {
+            let ramp = |from: f64, _| Torques { drive: from, load: -from };
+            let profile = Profile::sampled("ramp", tick_rate, 0.1, ramp).expect("a profile");
+            assert!(profile.commands.windows(2).all(|pair| pair[0].tick < pair[1].tick), "{tick_rate}");
+            assert!(profile.commands.iter().all(|command| command.tick < profile.ticks), "{tick_rate}");
+        }
+    }
+
+    #[test]
+    fn a_run_without_a_tick_is_refused() {
+        for seconds in [0.0, -1.0, f64::NAN, 1e9] {
+            assert!(Profile::sampled("none", 20_000, seconds, |_, _| HELD).is_err(), "{seconds}");
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! The built-in profile: torque steps of both signs through the gap on a joint that turns. It is made from the joint's
+//! own rated torque, ratio and inertia, so that any joint may run it.
+
+use std::f64::consts::TAU;
+
+use model_core::joint::JointParameters;
+
+use super::Torques;
+
+/// Names of the built-in profiles.
+pub const BUILTIN: [&str; 1] = ["reversals"];
+/// Length of the built-in profile; longer runs repeat it [s].
+pub const DURATION: f64 = 5.0;
+
+/// Load levels over the rated torque, each from its time on [s]; drive and load are balanced. Reversals cross the gap at
+/// full torque: at a small one the planets rattle for so long that nothing could be compared afterwards.
+const LEVELS: [(f64, f64); 11] = [
+    (0.0, 1.0),
+    (0.5, 0.5),
+    (0.8, 1.0),
+    (1.2, -1.0),
+    (1.7, -0.5),
+    (2.0, -1.0),
+    (2.5, 1.0),
+    (3.0, 0.3),
+    (3.4, 1.0),
+    (4.0, -1.0),
+    (4.5, 1.0),
+];
+/// Rise of a step, in rated torques a second: from full torque one way to the other in 50 ms.
+const SLEW: f64 = 40.0;
+/// Speed of the link after the run-up: a quarter turn a second [rad/s].
+const SPEED: f64 = TAU / 4.0;
+/// The drive torque bears what accelerates the joint, beside the steps, for so long [s].
+const RUN_UP: f64 = 0.3;
+
+/// Torques at a time.
+pub fn reversals(joint: &JointParameters, time: f64) -> Torques {
+    let ratio = joint.geometry.ratio_by_radii();
+    let load = joint.rated_output_torque * level(time);
+    let acceleration = if time < RUN_UP { SPEED / RUN_UP } else { 0.0 };
+    Torques { drive: (load + inertia_at_link(joint) * acceleration) / ratio, load }
+}
+
+/// Load over rated torque: steps with straight flanks.
+fn level(time: f64) -> f64 {
+    let time_in_period = time.rem_euclid(DURATION);
+    let step = LEVELS.partition_point(|&(start, _)| start <= time_in_period).saturating_sub(1);
+    let (start, to) = LEVELS[step];
+    // The last level goes on over the end of a period; before the very first step there is no torque.
+    let from = match step {
+        0 if time < DURATION => 0.0,
+        0 => LEVELS[LEVELS.len() - 1].1,
+        _ => LEVELS[step - 1].1,
+    };
+    let way = to - from;
+    from + way.clamp(-SLEW * (time_in_period - start), SLEW * (time_in_period - start))
+}
+
+/// Inertia of the whole joint, felt at the link [kg m^2].
+fn inertia_at_link(joint: &JointParameters) -> f64 {
+    let geometry = &joint.geometry;
+    let lever = geometry.carrier_base_radius();
+    let ratio = geometry.ratio_by_radii();
+    let sun = joint.bodies.sun_equivalent_mass * geometry.sun_base_radius.powi(2) + joint.rotor_inertia;
+    // A rigid planet moves along the line of action as the carrier does: u_p = u_c.
+    let planets = geometry.planets as f64 * joint.bodies.planet_equivalent_mass * lever.powi(2);
+    let carrier = joint.carrier_equivalent_mass() * lever.powi(2) + joint.link_inertia;
+    sun * ratio.powi(2) + planets + carrier
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn joints() -> impl Iterator<Item = JointParameters> {
+        joint_file::PRESETS.iter().map(|name| {
+            let text = joint_file::preset(name).expect("a preset");
+            joint_file::read(text).expect("a good preset").parameters
+        })
+    }
+
+    #[test]
+    fn torques_reverse_both_ways_and_keep_to_the_rated_torque_after_the_run_up() {
+        for joint in joints() {
+            let rated = joint.rated_output_torque;
+            let loads: Vec<f64> = (0..50_000).map(|k| reversals(&joint, 1e-4 * f64::from(k)).load).collect();
+            let reversals = loads.windows(2).filter(|pair| pair[0] * pair[1] < 0.0 || pair[1] == 0.0).count();
+            assert!(reversals >= 4, "{}: {reversals}", joint.name);
+            assert!(loads.iter().all(|load| load.abs() <= rated * 1.000_001), "{}", joint.name);
+        }
+    }
+
+    #[test]
+    fn drive_and_load_are_balanced_once_the_joint_turns() {
+        for joint in joints() {
+            for time in [0.31, 1.22, 2.6, 7.3] {
+                let torques = reversals(&joint, time);
+                let balanced = joint.balanced_load_torque(torques.drive);
+                assert!((torques.load - balanced).abs() <= 1e-12 * balanced.abs(), "{}", joint.name);
+            }
+        }
+    }
+
+    #[test]
+    fn a_longer_run_goes_on_without_a_jump() {
+        let before = level(DURATION - 1e-9);
+        assert!((level(DURATION + 1e-9) - before).abs() < 1e-6);
+    }
+}

@@ -1,0 +1,216 @@
+//! A recorded drive: a CSV with time, motor torque and load torque at any sampling rate, even an uneven one. Between
+//! rows torques are taken as straight lines, and a command is their mean over its interval, so that impulses are kept
+//! at any rate; nothing is extrapolated but the last row, which holds.
+
+use std::path::Path;
+
+use super::{STRONGEST, Torques};
+use report::failure::{Failure, Outcome};
+use report::output::typed;
+
+/// Columns of the file, in any order; others are ignored.
+pub const COLUMNS: [&str; 3] = ["time_s", "motor_torque_Nm", "load_torque_Nm"];
+
+/// Rows of the file, in rising time from 0.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recording {
+    rows: Vec<Row>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Row {
+    time: f64,
+    torques: Torques,
+    /// Integral of the torques from the first row to here [N m s].
+    integral: Torques,
+}
+
+impl Recording {
+    /// Reads a file; the first row is time 0 of the run, whatever its time.
+    pub fn read(path: &Path) -> Outcome<Self> {
+        let text = std::fs::read_to_string(path).map_err(|error| {
+            Failure::new(format!("cannot read the profile {}: {error}", path.display()))
+                .with_help(format!("name a CSV file, as text in UTF-8; {}", wanted_header()))
+        })?;
+        Self::parse(&text).map_err(|failure| failure.while_doing(path.display()))
+    }
+
+    fn parse(text: &str) -> Outcome<Self> {
+        // Numbers are never quoted: a comma always ends a value. Spreadsheets put a byte-order mark in front.
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let mut lines = (1u64..).zip(text.lines().map(str::trim));
+        let mut lines = lines.by_ref().filter(|(_, text)| !text.is_empty() && !text.starts_with('#'));
+        let (line, header) =
+            lines.next().ok_or_else(|| Failure::new("the profile is empty").with_help(wanted_header()))?;
+        let header = values(header);
+        let mut places = [0; COLUMNS.len()];
+        for (place, wanted) in places.iter_mut().zip(COLUMNS) {
+            let found = header.iter().position(|column| *column == wanted);
+            *place = found.ok_or_else(|| missing_column(line, wanted, &header))?;
+        }
+        let mut rows: Vec<Row> = Vec::new();
+        let mut start = None;
+        for (line, text) in lines {
+            let row = values(text);
+            if row.len() != header.len() {
+                let message = format!("line {line} has {} values, the header has {}", row.len(), header.len());
+                return Err(Failure::new(message).with_help("give every row a value for every column"));
+            }
+            let mut numbers = [0.0; COLUMNS.len()];
+            for ((value, column), place) in numbers.iter_mut().zip(COLUMNS).zip(places) {
+                *value = number(line, column, row[place])?;
+            }
+            push(&mut rows, *start.get_or_insert(numbers[0]), line, numbers)?;
+        }
+        let too_few = |what: &str| Failure::new(what).with_help("give at least two rows of numbers");
+        match rows.len() {
+            0 => Err(too_few("the profile holds no rows")),
+            1 => Err(too_few("the profile holds a single row")),
+            _ => Ok(Self { rows }),
+        }
+    }
+
+    /// From the first row to the last [s].
+    pub fn duration(&self) -> f64 {
+        self.rows.last().map_or(0.0, |row| row.time)
+    }
+
+    /// Mean torques over an interval [s].
+    pub fn mean(&self, from: f64, to: f64) -> Torques {
+        let (start, end) = (self.integral(from), self.integral(to));
+        let mean = |start: f64, end: f64| (end - start) / (to - from);
+        Torques { drive: mean(start.drive, end.drive), load: mean(start.load, end.load) }
+    }
+
+    /// Integral of the straight lines from 0 [N m s].
+    fn integral(&self, time: f64) -> Torques {
+        let after = self.rows.partition_point(|row| row.time <= time);
+        let left = self.rows[after.saturating_sub(1)];
+        let elapsed = time - left.time;
+        let slope = |pick: fn(&Torques) -> f64| {
+            self.rows
+                .get(after)
+                .map_or(0.0, |right| (pick(&right.torques) - pick(&left.torques)) / (right.time - left.time))
+        };
+        let area = |pick: fn(&Torques) -> f64| {
+            pick(&left.integral) + elapsed * (pick(&left.torques) + 0.5 * elapsed * slope(pick))
+        };
+        Torques { drive: area(|torques| torques.drive), load: area(|torques| torques.load) }
+    }
+}
+
+/// Takes one line of the file; refuses what cannot be a recording.
+fn push(rows: &mut Vec<Row>, start: f64, line: u64, [time, drive, load]: [f64; 3]) -> Outcome<()> {
+    let torques = Torques { drive, load };
+    let time = time - start;
+    let integral = match rows.last() {
+        None => Torques { drive: 0.0, load: 0.0 },
+        Some(last) if time > last.time => {
+            let half = 0.5 * (time - last.time);
+            Torques {
+                drive: last.integral.drive + half * (last.torques.drive + drive),
+                load: last.integral.load + half * (last.torques.load + load),
+            }
+        }
+        Some(last) => {
+            let (before, now) = (last.time + start, time + start);
+            return Err(Failure::new(format!("line {line}: time_s does not rise: {now} s follows {before} s"))
+                .with_help("sort the rows by time and remove repeated ones"));
+        }
+    };
+    rows.push(Row { time, torques, integral });
+    Ok(())
+}
+
+fn number(line: u64, column: &str, text: &str) -> Outcome<f64> {
+    match text.parse::<f64>() {
+        Ok(value) if !value.is_finite() => Err(Failure::new(format!("line {line}: {column} is {value}"))
+            .with_help("every value must be a finite number: remove the row or fill it in")),
+        Ok(value) if column != COLUMNS[0] && value.abs() > STRONGEST => {
+            Err(Failure::new(format!("line {line}: {column} is {}", typed(value)))
+                .with_help(format!("it may be from -{STRONGEST} to {STRONGEST} N m: check the unit")))
+        }
+        Ok(value) => Ok(value),
+        Err(_) => Err(Failure::new(format!("line {line}: {column} is `{text}`, not a number"))
+            .with_help("write numbers with a decimal point, and commas between columns")),
+    }
+}
+
+fn values(line: &str) -> Vec<&str> {
+    line.split(',').map(|value| value.trim().trim_matches('"')).collect()
+}
+
+fn missing_column(line: u64, wanted: &str, header: &[&str]) -> Failure {
+    let there = header.join(", ");
+    Failure::new(format!("line {line}: there is no column `{wanted}`; columns are: {there}")).with_help(wanted_header())
+}
+
+fn wanted_header() -> String {
+    format!("the first line must name the columns {}", COLUMNS.join(","))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refused(text: &str) -> String {
+        Recording::parse(text).expect_err("a bad file").message().to_owned()
+    }
+
+    #[test]
+    fn bad_rows_are_refused_by_line_number() {
+        let header = "time_s,motor_torque_Nm,load_torque_Nm\n0,1,6\n";
+        assert!(refused(&format!("{header}0.1,NaN,6\n")).starts_with("line 3: motor_torque_Nm is NaN"));
+        assert!(refused(&format!("{header}0.1,1,inf\n")).starts_with("line 3: load_torque_Nm is inf"));
+        assert!(refused(&format!("{header}0.1,1e60,6\n")).starts_with("line 3: motor_torque_Nm is 1"));
+        assert!(refused(&format!("{header}0.1,1,6\n0.1,1,6\n")).starts_with("line 4: time_s does not rise"));
+        assert!(refused(&format!("{header}-0.1,1,6\n")).starts_with("line 3: time_s does not rise"));
+        assert!(refused(&format!("{header}0.1,1\n")).starts_with("line 3 has 2 values"));
+        assert!(refused(&format!("{header}\n\n0.1,,6\n")).starts_with("line 5: motor_torque_Nm is ``"));
+        assert!(refused(&format!("{header}0.1,1.5x,6\n")).starts_with("line 3: motor_torque_Nm is `1.5x`"));
+    }
+
+    #[test]
+    fn files_without_columns_or_rows_are_refused() {
+        assert!(refused("").contains("is empty"));
+        assert!(refused("time_s,motor_torque_Nm\n0,1\n").contains("no column `load_torque_Nm`"));
+        assert!(refused("time_s,motor_torque_Nm,load_torque_Nm\n").contains("no rows"));
+        assert!(refused("time_s,motor_torque_Nm,load_torque_Nm\n0,1,6\n").contains("a single row"));
+    }
+
+    #[test]
+    fn columns_may_stand_in_any_order_beside_others_and_comments() {
+        let text =
+            "\u{feff}# a drive's log\r\nload_torque_Nm, \"time_s\", phase, motor_torque_Nm\r\n6,10,x,1\n12,11,y,2\n";
+        let recording = Recording::parse(text).expect("a good file");
+        assert_eq!(recording.duration(), 1.0);
+        assert_eq!(recording.mean(0.0, 1.0), Torques { drive: 1.5, load: 9.0 });
+    }
+
+    #[test]
+    fn the_impulse_of_a_recording_survives_resampling_at_any_rate() {
+        let mut text = String::from("time_s,motor_torque_Nm,load_torque_Nm\n");
+        let times: Vec<f64> = (0..=700).map(|k| 0.001_43 * f64::from(k) + 0.0003 * f64::from(k % 3)).collect();
+        for time in &times {
+            text += &format!("{time},{},{}\n", (40.0 * time).sin(), time * time);
+        }
+        let recording = Recording::parse(&text).expect("a good file");
+        let rows: f64 =
+            times.windows(2).map(|t| 0.5 * (t[1] - t[0]) * ((40.0 * t[0]).sin() + (40.0 * t[1]).sin())).sum();
+        let duration = recording.duration();
+        for commands in [13, 1000, 7777] {
+            let width = duration / f64::from(commands);
+            let impulse: f64 = (0..commands)
+                .map(|k| width * recording.mean(width * f64::from(k), width * f64::from(k + 1)).drive)
+                .sum();
+            assert!((impulse - rows).abs() < 1e-12, "{commands}: {impulse} for {rows}");
+        }
+    }
+
+    #[test]
+    fn after_the_last_row_its_torque_holds() {
+        let text = "time_s,motor_torque_Nm,load_torque_Nm\n0,0,0\n1,2,3\n";
+        let recording = Recording::parse(text).expect("a good file");
+        assert_eq!(recording.mean(5.0, 6.0), Torques { drive: 2.0, load: 3.0 });
+    }
+}

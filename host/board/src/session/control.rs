@@ -1,0 +1,112 @@
+//! Runs of the roles that control: one exchange after the other with an observer, or a motion streamed to a whole loop.
+//! Every wait has a deadline; what the answers are worth is left to whoever asked.
+
+use std::time::{Duration, Instant};
+
+use link::controller::{Answered, Exchange};
+use link::messages::{FromBoard, RunMode, Schedule, ToBoard};
+use link::virtual_joint::{KNOTS_PER_SCHEDULE, Knot, LoopSample};
+use model_core::realtime::upset::Upset;
+
+use super::{SILENCE, Session};
+use crate::fault;
+use report::failure::{Failure, Outcome};
+
+/// Schedules under way at once: the board's receive buffer holds two frames at least.
+const UNDER_WAY: usize = 2;
+/// In real time the host says this often that it is alive.
+const ALIVE: Duration = Duration::from_millis(30);
+
+impl Session<'_> {
+    /// Sends the samples and set-point of a control period and waits for the answer.
+    pub fn exchange(&mut self, exchange: Exchange) -> Outcome<Answered> {
+        let tick = exchange.tick;
+        let commands = [exchange].into_iter().collect();
+        self.send(&ToBoard::Exchanges(Schedule { sequence: tick as u16, horizon: tick.wrapping_add(1), commands }))?;
+        let start = Instant::now();
+        loop {
+            for message in self.hear()? {
+                match message {
+                    FromBoard::Answer(answered) if answered.tick == tick.wrapping_add(1) => return Ok(answered),
+                    FromBoard::Fault(raised) => return Err(fault::failure(&raised)),
+                    FromBoard::Hello(_) => return Err(started_anew()),
+                    _ => {}
+                }
+            }
+            if start.elapsed() > SILENCE {
+                return Err(self.silent(&format!("no answer to control period {tick} came")));
+            }
+        }
+    }
+
+    /// Has faults between joint and controller, before the motion begins.
+    pub fn upset(&mut self, upsets: &[Upset<f32>]) -> Outcome<()> {
+        for upset in upsets {
+            let taken =
+                self.ask(&ToBoard::Upset(upset.into()), "answer to a fault of the test", SILENCE, |message| {
+                    if let FromBoard::Upset { taken } = message { Some(taken) } else { None }
+                })?;
+            if !taken {
+                return Err(Failure::check_failed("the board does not take a fault of the test")
+                    .with_help("in real time it may have begun already: run with --mode lockstep"));
+            }
+        }
+        Ok(())
+    }
+
+    /// Streams a motion to its last period and returns the samples. In real time the last knot holds until the end.
+    pub fn follow(&mut self, knots: &[Knot], periods: u32) -> Outcome<Vec<LoopSample>> {
+        let settings = self.recording.settings.ok_or_else(|| Failure::new("a motion needs a reset before it"))?;
+        let capacity = self.recording.hello.as_ref().map_or(0, |hello| usize::from(hello.queue_capacity));
+        let beyond = if settings.mode == RunMode::Realtime { periods } else { 0 };
+        let last = periods - periods % u32::from(settings.decimation);
+        let (mut samples, mut next_batch) = (Vec::<LoopSample>::new(), 0_u16);
+        let (mut next, mut sequence, mut board_tick) = (0, 0_u16, 0);
+        let (mut heard, mut said) = (Instant::now(), Instant::now());
+        while samples.last().map_or(0, |sample| sample.tick) < last {
+            while self.unanswered.count() < UNDER_WAY {
+                let waiting = knots[..next].iter().rev().take_while(|knot| knot.tick >= board_tick).count();
+                let count = capacity.saturating_sub(waiting).min(KNOTS_PER_SCHEDULE).min(knots.len() - next);
+                let whole = count == KNOTS_PER_SCHEDULE || (count > 0 && count == knots.len() - next);
+                if !whole && (said.elapsed() < ALIVE || settings.mode == RunMode::Lockstep) {
+                    break;
+                }
+                let commands = knots[next..next + count].iter().copied().collect();
+                next += count;
+                let horizon = knots.get(next).map_or(periods + beyond, |knot| knot.tick);
+                self.unanswered.sent(sequence, &[]);
+                self.send(&ToBoard::Course(Schedule { sequence, horizon, commands }))?;
+                sequence = sequence.wrapping_add(1);
+                said = Instant::now();
+            }
+            for message in self.hear()? {
+                heard = Instant::now();
+                match message {
+                    FromBoard::Accepted(accepted) => board_tick = accepted.tick.max(board_tick),
+                    FromBoard::Loop(batch) => {
+                        if batch.sequence != next_batch {
+                            return Err(Failure::check_failed("samples of the loop were lost on the line")
+                                .with_help("check the line, or run with a larger --decimation"));
+                        }
+                        next_batch = next_batch.wrapping_add(1);
+                        samples.extend(batch.samples);
+                        board_tick = samples.last().map_or(board_tick, |sample| sample.tick.max(board_tick));
+                    }
+                    FromBoard::Fault(raised) => return Err(fault::failure(&raised)),
+                    FromBoard::Hello(_) => return Err(started_anew()),
+                    _ => {}
+                }
+            }
+            if heard.elapsed() > SILENCE {
+                return Err(self.silent("nothing valid came"));
+            }
+        }
+        samples.retain(|sample| sample.tick <= last);
+        Ok(samples)
+    }
+}
+
+fn started_anew() -> Failure {
+    Failure::check_failed("the board has started anew in mid-run")
+        .with_help("a brown-out, a watchdog or a panic: run again, with a log of the board's supply")
+}

@@ -1,0 +1,157 @@
+//! What goes over the line and what is waited for: every wait has a deadline, and who waits in vain is told what to look at.
+//! What is said and what an answer means is the parent's business.
+
+use std::time::{Duration, Instant};
+
+use link::framing::encode;
+use link::messages::{FromBoard, ToBoard};
+
+use super::{DRAIN, HelloHead, Mend, SILENCE, Session};
+use crate::fault;
+use crate::recording::Recording;
+use report::failure::{Failure, Outcome};
+
+/// A line that has been quiet for so long has nothing more under way.
+const QUIET: Duration = Duration::from_millis(100);
+
+impl Session<'_> {
+    pub(super) fn send(&mut self, message: &ToBoard) -> Outcome<()> {
+        let frame = encode(message).map_err(|_| Failure::new("a message to the board is longer than a frame"))?;
+        match self.line.send(&frame) {
+            Ok(()) => {
+                self.recording.traffic.sent_bytes += frame.len() as u64;
+                Ok(())
+            }
+            Err(error) => {
+                // What had come before the line broke is still there to be heard.
+                let deadline = Instant::now() + DRAIN;
+                while Instant::now() < deadline && self.hear_regardless().is_ok_and(|messages| !messages.is_empty()) {}
+                Err(self.lost(&error))
+            }
+        }
+    }
+
+    /// Takes what has come within a slice of time.
+    pub(super) fn hear(&mut self) -> Outcome<Vec<FromBoard>> {
+        if self.surroundings.interrupted() {
+            return Err(Failure::interrupted("stopped by the user"));
+        }
+        self.hear_regardless()
+    }
+
+    pub(super) fn hear_regardless(&mut self) -> Outcome<Vec<FromBoard>> {
+        let mut buffer = [0; 4096];
+        let count = match self.line.receive(&mut buffer) {
+            Ok(count) => count,
+            Err(error) => return Err(self.lost(&error)),
+        };
+        self.recording.traffic.received_bytes += count as u64;
+        let mut messages = Vec::new();
+        for &byte in &buffer[..count] {
+            if let Some(message) = self.receiver.push::<FromBoard>(byte) {
+                if let FromBoard::Accepted(accepted) = &message {
+                    self.recording.accepted.extend(self.unanswered.answered(*accepted));
+                }
+                self.recording.take(message.clone());
+                messages.push(message);
+            }
+            if let Some(head) = self.head_receiver.as_mut().and_then(|receiver| receiver.push::<HelloHead>(byte)) {
+                self.foreign = Some(head).filter(|head| head.is_foreign());
+            }
+        }
+        self.recording.traffic.bad_frames = self.receiver.dropped().frames - self.dropped_before;
+        Ok(messages)
+    }
+
+    /// Waits for something to be heard; gives up after [`SILENCE`].
+    pub(super) fn wait(&mut self, what: &str, done: impl Fn(&Recording) -> bool) -> Outcome<()> {
+        let start = Instant::now();
+        while !done(&self.recording) {
+            self.hear()?;
+            if let Some(fault) = self.recording.faults.first() {
+                return Err(fault::failure(fault));
+            }
+            if start.elapsed() > SILENCE {
+                return Err(self.silent(&format!("no {what} came")));
+            }
+        }
+        Ok(())
+    }
+
+    /// Sends a message and waits for its answer.
+    pub(super) fn ask<T>(
+        &mut self,
+        message: &ToBoard,
+        what: &str,
+        patience: Duration,
+        answer: impl Fn(FromBoard) -> Option<T>,
+    ) -> Outcome<T> {
+        self.send(message)?;
+        let start = Instant::now();
+        loop {
+            for message in self.hear()? {
+                if let FromBoard::Fault(raised) = &message {
+                    return Err(fault::failure(raised));
+                }
+                if let Some(answer) = answer(message) {
+                    return Ok(answer);
+                }
+            }
+            if start.elapsed() > patience {
+                return Err(self.silent_for(patience, &format!("no {what} came")));
+            }
+        }
+    }
+
+    /// Listens until nothing is under way any more.
+    pub(super) fn drain(&mut self) -> Outcome<()> {
+        let deadline = Instant::now() + DRAIN;
+        let mut last = Instant::now();
+        while last.elapsed() < QUIET && Instant::now() < deadline {
+            let before = self.recording.traffic.received_bytes;
+            self.hear()?;
+            if self.recording.traffic.received_bytes != before {
+                last = Instant::now();
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn no_answer(&self, patience: Duration, mend: &Mend) -> Failure {
+        let (name, seconds) = (self.line.name(), patience.as_secs_f64());
+        let bytes = self.recording.traffic.received_bytes;
+        if bytes == 0 {
+            let message = format!("no board answers on {name}: nothing came in {seconds} s");
+            return Failure::new(message).with_help(mend.of_silence("check power, wiring (TX to RX) and port"));
+        }
+        let message = format!("no board answers on {name}: {bytes} bytes came in {seconds} s, but no valid frame");
+        Failure::new(message).with_help(mend.of_silence("check --baud, and that this checkout's image is on the board"))
+    }
+
+    pub(super) fn silent(&self, what: &str) -> Failure {
+        self.silent_for(SILENCE, what)
+    }
+
+    pub(super) fn silent_for(&self, patience: Duration, what: &str) -> Failure {
+        let traffic = &self.recording.traffic;
+        let message = format!(
+            "the board on {} has fallen silent at tick {}: {what} for {} s ({} bad frames dropped)",
+            self.line.name(),
+            self.recording.last_tick(),
+            patience.as_secs(),
+            traffic.bad_frames
+        );
+        Failure::new(message).with_help("check the line and the board's power, reset the board and run again")
+    }
+
+    pub(super) fn lost(&mut self, error: &std::io::Error) -> Failure {
+        let name = self.line.name().to_owned();
+        let tick = self.recording.last_tick();
+        match self.surroundings.gone() {
+            Some(why) => Failure::new(format!("{name} is gone at tick {tick}: {why}"))
+                .with_help("run again; if it happens again its last words are above or in the run's log"),
+            None => Failure::new(format!("the line to {name} was lost at tick {tick}: {error}"))
+                .with_help("check the cable and the board's power, then run again"),
+        }
+    }
+}

@@ -1,0 +1,210 @@
+//! Whether the board is the one that the joint file asks for, and what to do if it is not. A board of another protocol
+//! version or role may say things this host cannot read, so the head of its hello is read on its own.
+
+use std::fmt;
+
+use link::PROTOCOL_VERSION;
+use link::messages::{Hello, Role};
+use serde::de::{Deserializer, Error, SeqAccess, Visitor};
+
+use super::Mend;
+use crate::target::image::word;
+use report::failure::{Failure, Outcome};
+
+/// What the board must be.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Expected {
+    /// Name of the joint.
+    pub joint: String,
+    /// Digest over its parameters and tables.
+    pub digest: u64,
+    /// Fixed steps a second [Hz].
+    pub tick_rate: u32,
+    /// Number of planets.
+    pub planets: usize,
+    /// What it must do.
+    pub role: Role,
+    /// Digest over its controller's tables, if it has any.
+    pub control_digest: Option<u64>,
+    /// What to do about a board that is none of this.
+    pub mend: Mend,
+}
+
+impl Expected {
+    /// Refuses a board that is another one.
+    pub fn verify(&self, hello: &Hello) -> Outcome<()> {
+        verify_protocol(hello.protocol, &self.mend)?;
+        let refuse = |what: String| Err(Failure::new(what).with_help(self.mend.of_another_image()));
+        if hello.role != self.role {
+            let (board, host) = (word(hello.role), word(self.role));
+            return refuse(format!("the board's image has the role `{board}`, this run asks for `{host}`"));
+        }
+        if !hello.digest_good {
+            return refuse(format!("the board's tables of joint `{}` do not match their own digest", hello.joint));
+        }
+        if hello.tick_rate != self.tick_rate {
+            let (board, host) = (hello.tick_rate, self.tick_rate);
+            return refuse(format!("the board's image steps at {board} Hz, this run asks for {host} Hz"));
+        }
+        if hello.joint_digest != self.digest || usize::from(hello.planets) != self.planets {
+            return refuse(format!(
+                "the board's image was built from another joint: it has `{}` ({:016x}), the file gives `{}` ({:016x})",
+                hello.joint, hello.joint_digest, self.joint, self.digest
+            ));
+        }
+        if hello.control_digest != self.control_digest {
+            return refuse(format!(
+                "the board's image was built for another controller of joint `{}`: its tables differ",
+                hello.joint
+            ));
+        }
+        Ok(())
+    }
+}
+
+fn verify_protocol(protocol: u16, mend: &Mend) -> Outcome<()> {
+    if protocol == PROTOCOL_VERSION { Ok(()) } else { Err(mend.of_protocol(protocol)) }
+}
+
+/// The first fields of a hello, which keep their places in every version.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct HelloHead {
+    protocol: u16,
+    role: u32,
+}
+
+impl HelloHead {
+    /// Why a board with this head cannot be worked with, if its hello as a whole could not be read.
+    pub fn refusal(self, mend: &Mend) -> Failure {
+        let Err(failure) = verify_protocol(self.protocol, mend) else {
+            let message = format!("the board's image has a role that this host does not know (number {})", self.role);
+            return Failure::new(message).with_help(mend.of_another_image());
+        };
+        failure
+    }
+
+    /// Whether a whole hello would have been read.
+    pub fn is_foreign(self) -> bool {
+        self.protocol != PROTOCOL_VERSION || self.role > Role::Loop as u32
+    }
+}
+
+impl<'de> serde::Deserialize<'de> for HelloHead {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        // More fields than a frame has bytes: the visitor takes the rest, whatever it is, until it ends.
+        deserializer.deserialize_tuple(link::framing::MAX_FRAME, HeadVisitor)
+    }
+}
+
+struct HeadVisitor;
+
+impl<'de> Visitor<'de> for HeadVisitor {
+    type Value = HelloHead;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("the head of a hello")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut fields: A) -> Result<HelloHead, A::Error> {
+        let short = || A::Error::custom("too short");
+        let variant: u32 = fields.next_element()?.ok_or_else(short)?;
+        if variant != 0 {
+            return Err(A::Error::custom("not a hello"));
+        }
+        let protocol = fields.next_element()?.ok_or_else(short)?;
+        let _version: [u8; 3] = fields.next_element()?.ok_or_else(short)?;
+        let role = fields.next_element()?.ok_or_else(short)?;
+        while let Ok(Some(_)) = fields.next_element::<u8>() {}
+        Ok(HelloHead { protocol, role })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use link::framing::{Receiver, encode};
+    use link::messages::{Clock, FromBoard};
+
+    use super::*;
+
+    fn hello() -> Hello {
+        Hello {
+            protocol: PROTOCOL_VERSION,
+            firmware_version: [0, 1, 0],
+            role: Role::Plant,
+            board: heapless::String::try_from("stm32f405").expect("room"),
+            joint: heapless::String::try_from("q1").expect("room"),
+            joint_digest: 0x1234,
+            digest_good: true,
+            tick_rate: 20_000,
+            timer_rate: 168_000_000,
+            clock: Clock::External,
+            planets: 3,
+            queue_capacity: 64,
+            last_panic: None,
+            watchdog_reset: false,
+            control_digest: None,
+            remembered: link::messages::Remembered::Nothing,
+        }
+    }
+
+    fn expected() -> Expected {
+        let mend = Mend::Flash("cargo joint flash joints/q1.toml".to_owned());
+        Expected {
+            joint: "q1".into(),
+            digest: 0x1234,
+            tick_rate: 20_000,
+            planets: 3,
+            role: Role::Plant,
+            control_digest: None,
+            mend,
+        }
+    }
+
+    fn refused(change: impl FnOnce(&mut Hello)) -> Failure {
+        let mut hello = hello();
+        change(&mut hello);
+        let failure = expected().verify(&hello).expect_err("another board");
+        assert!(failure.help().is_some_and(|help| help.contains("cargo joint flash joints/q1.toml")), "{failure}");
+        assert_eq!(failure.exit_code(), 2);
+        failure
+    }
+
+    #[test]
+    fn the_right_board_is_taken() {
+        expected().verify(&hello()).expect("the right board");
+    }
+
+    #[test]
+    fn another_board_is_refused_with_the_command_that_mends_it() {
+        assert!(refused(|hello| hello.joint_digest = 0x99).message().contains("0000000000000099"));
+        assert!(refused(|hello| hello.tick_rate = 10_000).message().contains("10000 Hz"));
+        assert!(refused(|hello| hello.protocol = PROTOCOL_VERSION + 1).message().contains("protocol"));
+        assert!(refused(|hello| hello.digest_good = false).message().contains("tables"));
+        assert!(refused(|hello| hello.planets = 4).message().contains("another joint"));
+        assert!(refused(|hello| hello.role = Role::Loop).message().contains("`loop`"));
+        assert!(refused(|hello| hello.control_digest = Some(1)).message().contains("another controller"));
+    }
+
+    fn head_of<M: serde::Serialize>(message: &M) -> Option<HelloHead> {
+        let frame = encode(message).expect("a short message");
+        let mut receiver = Receiver::new();
+        frame.into_iter().find_map(|byte| receiver.push(byte))
+    }
+
+    #[test]
+    fn the_head_of_an_unreadable_hello_is_read() {
+        let own = head_of(&FromBoard::Hello(hello())).expect("a head");
+        assert!(!own.is_foreign());
+        let other_role = head_of(&(0u32, PROTOCOL_VERSION, [1u8, 2, 3], 7u32, "with fields", 1.5f64)).expect("a head");
+        assert!(other_role.is_foreign());
+        assert!(other_role.refusal(&Mend::Rebuild).message().contains("(number 7)"));
+        let other_version = head_of(&(0u32, 9u16, [1u8, 2, 3], 0u32)).expect("a head");
+        assert!(other_version.is_foreign());
+        assert!(other_version.refusal(&Mend::Rebuild).message().contains("version 9"));
+    }
+
+    #[test]
+    fn other_messages_have_no_head() {
+        assert_eq!(head_of(&FromBoard::Fault(link::messages::Fault::BadDigest)), None);
+    }
+}

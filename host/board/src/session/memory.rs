@@ -1,0 +1,106 @@
+//! What a board has learnt, between runs: read off its flash, brought to it, written and erased there. What is in a memory
+//! does not matter here.
+
+use std::time::Duration;
+
+use link::messages::{
+    FromBoard, Kept, MEMORY_PARTS, MemoryPart, MemoryWish, PART_BYTES, Remembered, RunSettings, ToBoard,
+};
+use model_core::realtime::observer::{MEMORY_BYTES, Memory};
+
+use super::{SILENCE, Session};
+use report::failure::{Failure, Outcome};
+
+/// A large sector of flash takes up to four seconds to be erased; meanwhile its board says nothing.
+const WRITING: Duration = Duration::from_secs(10);
+
+impl Session<'_> {
+    /// What the page of its flash holds.
+    pub fn stored_memory(&mut self) -> Outcome<Memory> {
+        let mut memory = [0; MEMORY_BYTES];
+        for (part, place) in (0..MEMORY_PARTS).zip(memory.as_chunks_mut::<PART_BYTES>().0) {
+            let told = self.ask_about(MemoryWish::Tell { part }, SILENCE, |message| match message {
+                FromBoard::Memory(told) if told.part == part && told.bytes.len() == PART_BYTES => Some(told.bytes),
+                _ => None,
+            })?;
+            place.copy_from_slice(&told);
+        }
+        Ok(memory)
+    }
+
+    /// Brings it a memory that runs may begin from; what its controller makes of it.
+    pub fn bring_memory(&mut self, memory: &Memory) -> Outcome<Remembered> {
+        let mut parts = (0..MEMORY_PARTS)
+            .zip(memory.as_chunks::<PART_BYTES>().0)
+            .map(|(part, bytes)| MemoryWish::Take(MemoryPart { part, bytes: bytes.iter().copied().collect() }));
+        let last = parts.next_back();
+        for part in parts {
+            self.send(&ToBoard::Memory(part))?;
+        }
+        let last = last.ok_or_else(|| Failure::new("a memory has no part"))?;
+        self.ask_about(
+            last,
+            SILENCE,
+            |message| if let FromBoard::Judged(judged) = message { Some(judged) } else { None },
+        )
+    }
+
+    /// Has it write the memory that was brought to its flash.
+    pub fn write_memory(&mut self) -> Outcome<Kept> {
+        self.write(MemoryWish::Write)
+    }
+
+    /// Has it write what it has learnt to its flash.
+    pub fn keep_memory(&mut self) -> Outcome<Kept> {
+        self.write(MemoryWish::Keep)
+    }
+
+    /// Ends a run, has what was learnt in it kept, and begins anew from that. Where there is no flash it is at hand until the
+    /// power is off.
+    pub fn begin_again(&mut self) -> Outcome<()> {
+        let settings = self.recording.settings.ok_or_else(|| Failure::new("nothing has run yet"))?;
+        self.send(&ToBoard::Stop)?;
+        self.drain()?;
+        self.keep_memory()?;
+        self.reset(RunSettings { from_memory: true, ..settings })
+    }
+
+    /// Has it forget what it has learnt, in its flash too.
+    pub fn erase_memory(&mut self) -> Outcome<Kept> {
+        self.write(MemoryWish::Erase)
+    }
+
+    fn write(&mut self, wish: MemoryWish) -> Outcome<Kept> {
+        self.ask(&ToBoard::Memory(wish), "answer about the memory", WRITING, kept).and_then(unless_running)
+    }
+
+    /// Asks for something that flash need not be written for.
+    fn ask_about<T>(
+        &mut self,
+        wish: MemoryWish,
+        patience: Duration,
+        answer: impl Fn(FromBoard) -> Option<T>,
+    ) -> Outcome<T> {
+        let answered =
+            self.ask(&ToBoard::Memory(wish), "answer about the memory", patience, |message| match message {
+                FromBoard::Kept(why) => Some(Err(why)),
+                other => answer(other).map(Ok),
+            })?;
+        answered.or_else(|why| {
+            unless_running(why)?;
+            Err(Failure::new("the board's role learns nothing").with_help("flash an image of role observer or loop"))
+        })
+    }
+}
+
+fn kept(message: FromBoard) -> Option<Kept> {
+    if let FromBoard::Kept(kept) = message { Some(kept) } else { None }
+}
+
+fn unless_running(kept: Kept) -> Outcome<Kept> {
+    match kept {
+        Kept::Running => Err(Failure::new("a run goes on on the board, and its memory is for the time between runs")
+            .with_help("end the run first, or reset the board")),
+        kept => Ok(kept),
+    }
+}

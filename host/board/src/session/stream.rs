@@ -1,0 +1,146 @@
+//! Streaming a profile: schedules go out as far as the board's queue and buffers have room, samples come in. The window
+//! follows from the ticks that the board is known to have done, so nothing is ever sent on hope.
+
+use std::time::{Duration, Instant};
+
+use link::messages::{COMMANDS_PER_SCHEDULE, Command, FromBoard, RunMode, Schedule, ToBoard};
+
+use super::{SILENCE, Session};
+use crate::fault;
+use crate::profile::Profile;
+use report::failure::{Failure, Outcome};
+
+/// Schedules under way at once: the board's receive buffer holds two frames at least.
+const UNDER_WAY: usize = 2;
+/// An empty schedule asks how far the board is, if that is all that holds the stream up; in real time it also says
+/// that the host is alive.
+const POLL: Duration = Duration::from_millis(100);
+/// A board that answers, but whose ticks do not go on for so long, has lost a schedule.
+const STANDSTILL: Duration = Duration::from_secs(4);
+
+/// Where a stream stands.
+struct Progress<'p> {
+    profile: &'p Profile,
+    horizon_after_last: u32,
+    next_command: usize,
+    next_sequence: u16,
+    sent_any: bool,
+    board_tick: u32,
+    last_message: Instant,
+    last_sent: Instant,
+    last_advance: Instant,
+}
+
+impl Session<'_> {
+    /// Runs a profile to its last sample. `progress` is told the ticks done.
+    pub fn stream(&mut self, profile: &Profile, progress: &mut dyn FnMut(u32)) -> Outcome<()> {
+        let settings = self.recording.settings.ok_or_else(|| Failure::new("a stream needs a reset before it"))?;
+        let capacity = self.recording.hello.as_ref().map_or(0, |hello| usize::from(hello.queue_capacity));
+        let tick_rate = self.recording.hello.as_ref().map_or(1, |hello| hello.tick_rate);
+        if capacity == 0 {
+            return Err(Failure::new("the board states a command queue without places"));
+        }
+        let last_sample = profile.ticks - profile.ticks % u32::from(settings.decimation);
+        let mut stream = Progress::new(profile, settings.mode, tick_rate);
+        while self.recording.last_tick() < last_sample || stream.board_tick < last_sample {
+            while self.unanswered.count() < UNDER_WAY
+                && let Some(schedule) = stream.next_schedule(capacity)
+            {
+                self.unanswered.sent(schedule.sequence, &schedule.commands);
+                self.send(&ToBoard::Schedule(schedule))?;
+            }
+            for message in self.hear()? {
+                stream.last_message = Instant::now();
+                match message {
+                    FromBoard::Accepted(accepted) => stream.advance(accepted.tick),
+                    FromBoard::Samples(batch) => {
+                        stream.advance(batch.samples.last().map_or(0, |sample| sample.tick));
+                    }
+                    FromBoard::Fault(raised) => return Err(fault::failure(&raised)),
+                    FromBoard::Hello(_) => {
+                        return Err(Failure::check_failed("the board has started anew in mid-run")
+                            .with_help("a brown-out, a watchdog or a panic: see last_panic in the report's record"));
+                    }
+                    FromBoard::Statistics(_)
+                    | FromBoard::Log(_)
+                    | FromBoard::Answer(_)
+                    | FromBoard::Loop(_)
+                    | FromBoard::Upset { .. }
+                    | FromBoard::Kept(_)
+                    | FromBoard::Memory(_)
+                    | FromBoard::Judged(_) => {}
+                }
+            }
+            progress(stream.board_tick.min(profile.ticks));
+            if stream.last_message.elapsed() > SILENCE {
+                return Err(self.silent("nothing valid came"));
+            }
+            if stream.last_advance.elapsed() > STANDSTILL {
+                return Err(self.stands_still(&stream));
+            }
+        }
+        Ok(())
+    }
+
+    fn stands_still(&self, stream: &Progress<'_>) -> Failure {
+        let message = format!(
+            "the board on {} answers, but stays at tick {} of {} ({} schedules unanswered)",
+            self.line.name(),
+            stream.board_tick,
+            stream.profile.ticks,
+            self.unanswered.count()
+        );
+        Failure::check_failed(message).with_help("a schedule or a sample was lost on the line: check it and run again")
+    }
+}
+
+impl<'p> Progress<'p> {
+    fn new(profile: &'p Profile, mode: RunMode, tick_rate: u32) -> Self {
+        let now = Instant::now();
+        // In real time the board goes on until it is told to stop: the last torque is known to hold until then.
+        let beyond = match mode {
+            RunMode::Lockstep => 0,
+            RunMode::Realtime => 4 * tick_rate,
+        };
+        Self {
+            profile,
+            horizon_after_last: profile.ticks.saturating_add(beyond),
+            next_command: 0,
+            next_sequence: 0,
+            sent_any: false,
+            board_tick: 0,
+            last_message: now,
+            last_sent: now,
+            last_advance: now,
+        }
+    }
+
+    fn advance(&mut self, tick: u32) {
+        if tick > self.board_tick {
+            self.board_tick = tick;
+            self.last_advance = Instant::now();
+        }
+    }
+
+    /// The next schedule, if the board is known to have room for it.
+    fn next_schedule(&mut self, capacity: usize) -> Option<Schedule> {
+        let commands = &self.profile.commands;
+        // A command leaves the queue with the step that it is for.
+        let queued = commands[..self.next_command].iter().rev().take_while(|sent| sent.tick >= self.board_tick).count();
+        let room = capacity.saturating_sub(queued).min(COMMANDS_PER_SCHEDULE);
+        let left = commands.len() - self.next_command;
+        let worth_a_frame = left.min(COMMANDS_PER_SCHEDULE).min(capacity.div_ceil(2));
+        let count = if left > 0 && room >= worth_a_frame { room.min(left) } else { 0 };
+        if count == 0 && self.sent_any && self.last_sent.elapsed() < POLL {
+            return None;
+        }
+        let chosen: &[Command] = &commands[self.next_command..self.next_command + count];
+        self.next_command += count;
+        let horizon = commands.get(self.next_command).map_or(self.horizon_after_last, |next| next.tick);
+        let sequence = self.next_sequence;
+        self.next_sequence = sequence.wrapping_add(1);
+        self.sent_any = true;
+        self.last_sent = Instant::now();
+        Some(Schedule { sequence, horizon, commands: heapless::Vec::from_slice(chosen).unwrap_or_default() })
+    }
+}

@@ -1,0 +1,72 @@
+//! Compiles the firmware's binaries, one at a time in a folder, and puts what came of it in place whole. What a binary is
+//! for is its callers' business.
+
+use std::ffi::OsStr;
+use std::fs::{self, File};
+use std::io;
+use std::path::Path;
+
+use super::toolchain::{TARGET, Toolchain};
+use super::{Say, tool};
+use report::failure::{Failure, Outcome};
+
+/// The cargo profile of images.
+pub const PROFILE: &str = "firmware";
+
+/// Compiles a binary of the firmware.
+pub(super) fn compile(
+    toolchain: &Toolchain,
+    binary: &str,
+    features: &str,
+    environment: &[(&str, &OsStr)],
+    say: Say<'_>,
+) -> Outcome<Vec<u8>> {
+    // One build at a time in this folder, and none between a build and the copy of its result.
+    let _lock = lock(toolchain.folder())?;
+    let mut command = toolchain.cargo("build");
+    command
+        .args(["--package", "firmware", "--profile", PROFILE, "--bin", binary])
+        .args(["--no-default-features", "--features", features])
+        .envs(environment.iter().copied());
+    tool::follow(&mut command, "building the firmware", say)?;
+    let built = toolchain.folder().join(TARGET).join(PROFILE).join(binary);
+    fs::read(&built).map_err(|error| Failure::new(format!("{}: {error}", built.display())))
+}
+
+fn lock(folder: &Path) -> Outcome<File> {
+    let path = folder.join(".one-at-a-time");
+    let open = || {
+        fs::create_dir_all(folder)?;
+        let file = File::create(&path)?;
+        file.lock()?;
+        Ok(file)
+    };
+    open().map_err(|error: io::Error| cannot_write(&path, &error))
+}
+
+/// Puts the whole file in place, or none of it.
+pub(super) fn store(images: &Path, place: &Path, elf: &[u8]) -> Outcome<()> {
+    let unfinished = place.with_extension(format!("unfinished-{}", std::process::id()));
+    fs::create_dir_all(images)
+        .and_then(|()| fs::write(&unfinished, elf))
+        .and_then(|()| fs::rename(&unfinished, place))
+        .map_err(|error| cannot_write(place, &error))
+}
+
+/// A file of a build that cannot be written, with the mend.
+pub(super) fn cannot_write(path: &Path, error: &io::Error) -> Failure {
+    Failure::new(format!("cannot write {}: {error}", path.display()))
+        .with_help("make room, or set CARGO_TARGET_DIR to a folder that can be written")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_image_that_cannot_be_stored_is_named() {
+        let images = Path::new("/proc/none");
+        let failure = store(images, &images.join("x.elf"), b"").unwrap_err();
+        assert!(failure.message().contains("/proc/none/x.elf"), "{failure}");
+    }
+}

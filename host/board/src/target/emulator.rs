@@ -1,0 +1,248 @@
+//! The emulated board: QEMU's `netduinoplus2` with its serial line on a Unix socket in a folder that only this user can
+//! enter. What is said on the line is the session's business.
+//!
+//! The emulator never outlives its owner. Dropping [`Emulator`] kills it and waits for it. It is in a process group of
+//! its own, so that Ctrl-C reaches the owner alone, who ends the run and then drops it. And where there is `setpriv`
+//! (util-linux) the kernel kills it when the thread that has started it dies, however that happens: start it on a
+//! thread that lives as long as the run.
+
+use std::fs::{self, File};
+use std::io;
+use std::os::unix::fs::PermissionsExt;
+use std::os::unix::net::UnixStream;
+use std::os::unix::process::CommandExt;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use tempfile::TempDir;
+
+use super::{Say, packages, tool};
+use report::failure::{Failure, Outcome};
+
+const PROGRAM: &str = "qemu-system-arm";
+/// Its Debian package has the same name.
+const PACKAGE: &str = PROGRAM;
+/// The emulated board: an STM32F405.
+pub const MACHINE: &str = "netduinoplus2";
+/// Eight nanoseconds an instruction, and no waiting for the host's clock while the processor sleeps: the board's time
+/// depends on its instructions alone.
+pub const CLOCK: &str = "shift=3,sleep=off";
+/// Longest wait for the emulator to open its line.
+const START_TIMEOUT: Duration = Duration::from_secs(20);
+const POLL: Duration = Duration::from_millis(5);
+/// Longest folder name that leaves room for the socket's: a socket's path is limited to some hundred bytes.
+const LONGEST_FOLDER: usize = 60;
+
+/// A running emulated board.
+#[derive(Debug)]
+pub struct Emulator {
+    child: Child,
+    folder: TempDir,
+    ended: Option<ExitStatus>,
+}
+
+/// Finds the emulator, or installs it; returns its own version line.
+pub fn ensure(say: Say<'_>) -> Outcome<String> {
+    if tool::find(PROGRAM).is_none() {
+        packages::ensure(&[PACKAGE], "to run the emulated board", say)?;
+    }
+    let version = tool::output_of(Command::new(program()?).arg("--version"))?;
+    Ok(version.lines().next().unwrap_or_default().to_owned())
+}
+
+impl Emulator {
+    /// Boots an image. The board starts once the returned end of its serial line is connected, so that nothing it says
+    /// is missed.
+    pub fn start(elf: &Path) -> Outcome<(Self, UnixStream)> {
+        Self::start_with(&program()?, elf)
+    }
+
+    fn start_with(program: &Path, elf: &Path) -> Outcome<(Self, UnixStream)> {
+        let folder = private_folder()?;
+        let socket = folder.path().join("serial");
+        let log = File::create(folder.path().join("log")).map_err(|error| no_folder(&error))?;
+        let mut command = mortal(program);
+        // The board's UART has room for one byte; a multiplexer before it takes the next ones meanwhile, which doubles the
+        // rate. Its escape character would be taken out of the stream: 256 is none.
+        command
+            .args(["-M", MACHINE, "-icount", CLOCK])
+            .args(["-nodefaults", "-no-user-config", "-display", "none", "-monitor", "none"])
+            .arg("-chardev")
+            .arg(format!("socket,id=line,server=on,wait=on,mux=on,path={}", socket.display()))
+            .args(["-echr", "256", "-serial", "chardev:line", "-kernel"])
+            .arg(elf)
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(log)
+            .process_group(0);
+        let child =
+            command.spawn().map_err(|error| Failure::new(format!("cannot run {}: {error}", program.display())))?;
+        let mut emulator = Self { child, folder, ended: None };
+        let line = emulator.connect(&socket)?;
+        Ok((emulator, line))
+    }
+
+    /// Fails if the emulator has ended; says what it said. Call it whenever the line is silent or gone: this is how a
+    /// death in mid-run is noticed at once.
+    pub fn check(&mut self) -> Outcome<()> {
+        if self.ended.is_none() {
+            self.ended = self.child.try_wait().ok().flatten();
+        }
+        match self.ended {
+            None => Ok(()),
+            Some(status) => Err(Failure::new(format!("the emulator has ended ({status}){}", self.last_words()))),
+        }
+    }
+
+    /// Its process.
+    pub fn process_id(&self) -> u32 {
+        self.child.id()
+    }
+
+    fn connect(&mut self, socket: &Path) -> Outcome<UnixStream> {
+        let deadline = Instant::now() + START_TIMEOUT;
+        loop {
+            match UnixStream::connect(socket) {
+                Ok(line) => return Ok(line),
+                Err(error) if Instant::now() > deadline => {
+                    let message = format!("the emulator did not open its serial line: {error}{}", self.last_words());
+                    return Err(Failure::new(message));
+                }
+                Err(_) => self.check()?,
+            }
+            thread::sleep(POLL);
+        }
+    }
+
+    /// What the emulator said on standard error, apart from its waiting for us.
+    fn last_words(&self) -> String {
+        let said = fs::read_to_string(self.folder.path().join("log")).unwrap_or_default();
+        said.lines().filter(|line| !line.contains("info: QEMU waiting")).map(|line| format!("\n{line}")).collect()
+    }
+}
+
+impl Drop for Emulator {
+    fn drop(&mut self) {
+        // It may have ended by itself; either way it is waited for.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// The emulator's program.
+pub(super) fn program() -> Outcome<PathBuf> {
+    tool::find(PROGRAM).ok_or_else(|| {
+        Failure::new(format!("{PROGRAM} is not on the search path")).with_help(format!("install {PACKAGE}"))
+    })
+}
+
+/// The program, to be killed by the kernel with its parent thread where that can be had.
+pub(super) fn mortal(program: &Path) -> Command {
+    match tool::find("setpriv") {
+        None => Command::new(program),
+        Some(setpriv) => {
+            let mut command = Command::new(setpriv);
+            command.args(["--pdeathsig", "KILL", "--"]).arg(program);
+            command
+        }
+    }
+}
+
+/// A new folder that nobody else can enter, with a short name.
+fn private_folder() -> Outcome<TempDir> {
+    let usual = std::env::temp_dir();
+    let place = if usual.as_os_str().len() > LONGEST_FOLDER { PathBuf::from("/tmp") } else { usual };
+    let for_us_alone = fs::Permissions::from_mode(0o700);
+    tempfile::Builder::new()
+        .prefix("joint-")
+        .permissions(for_us_alone)
+        .tempdir_in(place)
+        .map_err(|error| no_folder(&error))
+}
+
+fn no_folder(error: &io::Error) -> Failure {
+    Failure::new(format!("no temporary folder for the emulator's serial line: {error}"))
+        .with_help("set TMPDIR to a folder that can be written")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A stand-in for the emulator, as a shell script.
+    fn script(folder: &Path, text: &str) -> PathBuf {
+        let path = folder.join("stand-in");
+        fs::write(&path, format!("#!/bin/sh\n{text}\n")).unwrap();
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
+        path
+    }
+
+    fn is_alive(process: u32) -> bool {
+        Path::new("/proc").join(process.to_string()).exists()
+    }
+
+    #[test]
+    fn an_emulator_that_ends_at_once_is_reported_with_what_it_said() {
+        let folder = tempfile::tempdir().unwrap();
+        let program = script(folder.path(), "echo no such machine >&2; exit 1");
+        let failure = Emulator::start_with(&program, Path::new("x.elf")).map(|_| ()).unwrap_err();
+        assert!(failure.message().contains("no such machine"), "{failure}");
+        assert_eq!(failure.exit_code(), 2);
+    }
+
+    #[test]
+    fn a_dropped_emulator_leaves_no_process_and_no_folder() {
+        let folder = private_folder().unwrap();
+        let path = folder.path().to_owned();
+        let child = mortal(Path::new("/bin/sleep")).arg("600").process_group(0).spawn().unwrap();
+        let mut emulator = Emulator { child, folder, ended: None };
+        let process = emulator.process_id();
+        assert!(emulator.check().is_ok() && is_alive(process));
+        drop(emulator);
+        assert!(!is_alive(process) && !path.exists());
+    }
+
+    #[test]
+    fn a_death_in_mid_run_is_noticed_again_and_again() {
+        let child = Command::new("/bin/sh").args(["-c", "exit 7"]).spawn().unwrap();
+        let mut emulator = Emulator { child, folder: private_folder().unwrap(), ended: None };
+        let deadline = Instant::now() + START_TIMEOUT;
+        while emulator.check().is_ok() && Instant::now() < deadline {
+            thread::sleep(POLL);
+        }
+        assert!(emulator.check().unwrap_err().message().contains("exit status: 7"));
+        assert!(emulator.check().is_err());
+    }
+
+    #[test]
+    fn the_kernel_kills_the_emulator_when_its_starter_dies() {
+        if tool::find("setpriv").is_none() {
+            return;
+        }
+        let start = || {
+            let child = mortal(Path::new("/bin/sleep")).arg("600").process_group(0).spawn().unwrap();
+            let name = Path::new("/proc").join(child.id().to_string()).join("comm");
+            while fs::read_to_string(&name).unwrap() != "sleep\n" {
+                thread::sleep(POLL);
+            }
+            child
+        };
+        let mut child = thread::spawn(start).join().unwrap();
+        let deadline = Instant::now() + START_TIMEOUT;
+        while child.try_wait().unwrap().is_none() && Instant::now() < deadline {
+            thread::sleep(POLL);
+        }
+        let ended = child.try_wait().unwrap();
+        let _ = child.kill();
+        let _ = child.wait();
+        assert!(ended.is_some(), "still running");
+    }
+
+    #[test]
+    fn the_folder_is_private() {
+        let folder = private_folder().unwrap();
+        assert_eq!(folder.path().metadata().unwrap().permissions().mode() & 0o077, 0);
+    }
+}

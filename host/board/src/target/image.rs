@@ -1,0 +1,270 @@
+//! Firmware images: built for a joint, a board and a role, then copied to a name of their own, so that several joints
+//! lie side by side. What goes into an image is decided by the firmware's build script.
+
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+
+use link::messages::Role;
+use object::{Object, ObjectSegment};
+use sha2::{Digest, Sha256};
+
+use super::Say;
+use super::board::Board;
+use super::compile::{PROFILE, compile, store};
+use super::sources::{self, hexadecimal};
+use super::toolchain::Toolchain;
+use report::failure::{Failure, Outcome};
+use report::workspace::workspace;
+
+/// Fixed steps a second unless something else is asked for [Hz].
+pub const DEFAULT_TICK_RATE: u32 = 20_000;
+/// Control periods a second of the roles that control, unless something else is asked for [Hz].
+pub const CONTROL_RATE: u32 = 10_000;
+/// Control periods a second of a slave on SPI: transfer and step fit one after the other [Hz].
+pub const SPI_RATE: u32 = 5000;
+/// The binary of that slave.
+const SPI_BINARY: &str = "spi_observer";
+/// Where the flash of every board begins; RAM is at and beyond [`RAM`].
+const FLASH: u64 = 0x0800_0000;
+const RAM: u64 = 0x2000_0000;
+
+/// A finished image.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Image {
+    /// The ELF file.
+    pub elf: PathBuf,
+    /// SHA-256 of the ELF file, 64 hexadecimal digits.
+    pub sha256: String,
+    /// Flash used: code, constants and initial values [byte].
+    pub flash_bytes: u64,
+    /// RAM used by statics [byte].
+    pub ram_bytes: u64,
+    /// `rustc --version` of the compiler.
+    pub compiler: String,
+    /// Flags that change code: profile, target, board.
+    pub flags: String,
+}
+
+/// Builds the image of a joint, or finds that it is up to date. A relative `joint_file` is relative to the folder that
+/// the command runs in.
+pub fn build_image(
+    toolchain: &Toolchain,
+    joint_file: &Path,
+    board: Board,
+    role: Role,
+    tick_rate: u32,
+    say: Say<'_>,
+) -> Outcome<Image> {
+    let joint_file = readable(joint_file)?;
+    check_rate(board, tick_rate)?;
+    let place = file_name(&joint_file, board, word(role), tick_rate);
+    finish(toolchain, [&joint_file; 2], board, binary(role), &Control::usual(tick_rate), &place, say)
+}
+
+/// What the image of a role that controls is made for, besides its joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Control {
+    /// Control periods, and ticks, a second [Hz].
+    pub rate: u32,
+    /// Bandwidth of the loop [rad/s].
+    pub bandwidth: f64,
+    /// Whether the observer is shown the output encoder.
+    pub output_encoder: bool,
+}
+
+impl Control {
+    /// At a rate, as the firmware's build takes it if nothing else is said.
+    pub fn usual(rate: u32) -> Self {
+        Self { rate, bandwidth: 60.0, output_encoder: true }
+    }
+}
+
+/// Builds the image of a role that controls, from the texts of two joint files: the true joint, and the joint as its
+/// controller is told it. Each pair has files of its own beside the images.
+pub fn build_control_image(
+    toolchain: &Toolchain,
+    [truth, told]: [&str; 2],
+    board: Board,
+    role: Role,
+    control: &Control,
+    say: Say<'_>,
+) -> Outcome<Image> {
+    check_rate(board, control.rate)?;
+    let digest = Sha256::digest(format!("{truth}{told}{control:?}"));
+    let name = hexadecimal(&digest[..6]);
+    let folder = toolchain.target_directory().join("images/control");
+    let [truth_file, told_file] = ["truth", "told"].map(|which| folder.join(format!("{name}-{which}.toml")));
+    store(&folder, &truth_file, truth.as_bytes())?;
+    store(&folder, &told_file, told.as_bytes())?;
+    let place = format!("control-{name}-{}-{}.elf", board.name(), word(role));
+    finish(toolchain, [&truth_file, &told_file], board, binary(role), control, &place, say)
+}
+
+/// Builds observer and compensation of a joint as a slave on SPI, for a board that can be one.
+pub fn build_spi_slave(
+    toolchain: &Toolchain,
+    joint_file: &Path,
+    board: Board,
+    rate: u32,
+    say: Say<'_>,
+) -> Outcome<Image> {
+    if !board.has_spi_slave() {
+        let message =
+            format!("{} is no slave on SPI: its SPI is of another kind, and nobody has written that", board.name());
+        let able: Vec<&str> = Board::ALL.into_iter().filter(|board| board.has_spi_slave()).map(Board::name).collect();
+        return Err(Failure::new(message).with_help(format!(
+            "take {}; beside a motor controller on the same chip or on a serial line, --role observer is for every board",
+            able.join(" or ")
+        )));
+    }
+    let joint_file = readable(joint_file)?;
+    let place = file_name(&joint_file, board, SPI_BINARY, rate);
+    finish(toolchain, [&joint_file; 2], board, SPI_BINARY, &Control::usual(rate), &place, say)
+}
+
+/// The whole path of a joint file.
+fn readable(joint_file: &Path) -> Outcome<PathBuf> {
+    joint_file.canonicalize().map_err(|error| {
+        Failure::new(format!("joint file {}: {error}", joint_file.display())).with_help("name a file that can be read")
+    })
+}
+
+fn finish(
+    toolchain: &Toolchain,
+    [truth, told]: [&Path; 2],
+    board: Board,
+    binary: &str,
+    control: &Control,
+    name: &str,
+    say: Say<'_>,
+) -> Outcome<Image> {
+    let (rate, bandwidth) = (control.rate.to_string(), control.bandwidth.to_string());
+    let motor_only = if control.output_encoder { "0" } else { "1" };
+    let environment: [(&str, &OsStr); 5] = [
+        ("JOINT_FILE", truth.as_os_str()),
+        ("JOINT_TOLD", told.as_os_str()),
+        ("JOINT_TICK_RATE", rate.as_ref()),
+        ("JOINT_BANDWIDTH", bandwidth.as_ref()),
+        ("JOINT_MOTOR_ONLY", motor_only.as_ref()),
+    ];
+    let images = toolchain.target_directory().join("images");
+    let place = images.join(name);
+    let elf = sources::up_to_date(
+        toolchain,
+        &images,
+        &place,
+        [truth, told],
+        &format!("{binary}{board:?}{control:?}"),
+        || compile(toolchain, binary, board.name(), &environment, say),
+    )?;
+    let (flash_bytes, ram_bytes) =
+        sizes(&elf).map_err(|error| Failure::new(format!("{}: {error}", place.display())))?;
+    Ok(Image {
+        elf: place,
+        sha256: hexadecimal(&Sha256::digest(&elf)),
+        flash_bytes,
+        ram_bytes,
+        compiler: toolchain.compiler().to_owned(),
+        flags: format!("profile {PROFILE} (opt-level 3, fat LTO), {}, board {}", toolchain.flags(), board.name()),
+    })
+}
+
+fn check_rate(board: Board, tick_rate: u32) -> Outcome<()> {
+    if tick_rate == 0 || !board.core_rate().is_multiple_of(tick_rate) {
+        let (rate, name) = (board.core_rate(), board.name());
+        return Err(Failure::new(format!("a tick rate of {tick_rate} Hz cannot be made of {name}'s {rate} Hz"))
+            .with_help(format!("take one that divides it, such as {DEFAULT_TICK_RATE}")));
+    }
+    Ok(())
+}
+
+/// A preset of the workspace's `joints` folder, for a caller that has a name and no file.
+pub fn preset_file(name: &str) -> PathBuf {
+    workspace().join("joints").join(format!("{name}.toml"))
+}
+
+/// The file of a joint that was named on the command line, as the firmware's build wants it: presets are files too, found
+/// by their `name`.
+pub fn joint_file(file: &Path, name: &str) -> PathBuf {
+    if file.is_file() { file.to_owned() } else { preset_file(name) }
+}
+
+/// The word for a role.
+pub fn word(role: Role) -> &'static str {
+    match role {
+        Role::Plant => "plant",
+        Role::Observer => "observer",
+        Role::Loop => "loop",
+    }
+}
+
+/// The firmware's binary for a role: `loop` could not be a crate.
+fn binary(role: Role) -> &'static str {
+    match role {
+        Role::Loop => "whole_loop",
+        other => word(other),
+    }
+}
+
+/// Joint, board, role, and the tick rate if it is not the usual one. Files of the same name in different folders are
+/// told apart by a digest of the path.
+fn file_name(joint_file: &Path, board: Board, role: &str, tick_rate: u32) -> String {
+    let joint = joint_file.file_stem().unwrap_or_default().to_string_lossy();
+    let presets = workspace().join("joints");
+    let presets = presets.canonicalize().unwrap_or(presets);
+    let is_preset = joint_file.parent() == Some(&presets);
+    let origin = match is_preset {
+        true => String::new(),
+        false => {
+            let digest = Sha256::digest(joint_file.as_os_str().as_encoded_bytes());
+            format!("-{:02x}{:02x}", digest[0], digest[1])
+        }
+    };
+    let rate = if tick_rate == DEFAULT_TICK_RATE { String::new() } else { format!("-{tick_rate}hz") };
+    format!("{joint}{origin}-{}-{role}{rate}.elf", board.name())
+}
+
+/// Bytes in flash (loaded segments) and in RAM (everything at RAM addresses).
+fn sizes(elf: &[u8]) -> Result<(u64, u64), object::Error> {
+    let file = object::File::parse(elf)?;
+    let mut sizes = (0, 0);
+    for segment in file.segments() {
+        let loaded = segment.file_range().1;
+        if segment.address() >= RAM {
+            sizes.1 += segment.size();
+            // Initial values of RAM are kept in flash.
+            sizes.0 += loaded;
+        } else if segment.address() >= FLASH {
+            sizes.0 += loaded;
+        }
+    }
+    Ok(sizes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn name(path: &Path) -> String {
+        file_name(path, Board::Stm32f405, "plant", DEFAULT_TICK_RATE)
+    }
+
+    #[test]
+    fn joints_boards_and_rates_have_files_of_their_own() {
+        let preset = preset_file("q1");
+        assert_eq!(name(&preset), "q1-stm32f405-plant.elf");
+        assert_ne!(name(&preset), name(&preset_file("s1")));
+        assert_ne!(name(Path::new("/a/q1.toml")), name(Path::new("/b/q1.toml")));
+        assert_eq!(file_name(&preset, Board::Stm32h743, "plant", 10_000), "q1-stm32h743-plant-10000hz.elf");
+    }
+
+    #[test]
+    fn the_usual_tick_rate_can_be_made_on_every_board() {
+        assert!(Board::ALL.iter().all(|board| board.core_rate().is_multiple_of(DEFAULT_TICK_RATE)));
+    }
+
+    #[test]
+    fn a_file_that_is_no_elf_has_no_sizes() {
+        assert!(sizes(b"no elf").is_err());
+    }
+}

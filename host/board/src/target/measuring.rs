@@ -1,0 +1,122 @@
+//! Binaries that measure in the emulator: built for any joints, run to their end without any serial line, their words taken
+//! by semihosting. What they measure, and what is to be thought of it, is their callers' business.
+
+use std::env;
+use std::io::{BufRead, BufReader};
+use std::os::unix::process::CommandExt;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Stdio};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use super::Say;
+use super::board::Board;
+use super::compile::{compile, store};
+use super::emulator::{self, MACHINE};
+use super::toolchain::Toolchain;
+use report::failure::{Failure, Outcome};
+use report::interruption;
+
+/// 64 ns an instruction beside a timer of 168 MHz: 10.752 counts, so that whole instructions are found exactly.
+const CLOCK: &str = "shift=6,sleep=off";
+/// Last line of a run that came to its end; a panic or a reset leaves it out.
+const END: &str = "end of measurement";
+/// Longest run; a healthy one takes a minute or two.
+const PATIENCE: Duration = Duration::from_secs(1200);
+const POLL: Duration = Duration::from_millis(100);
+
+/// Builds a binary that measures in the emulator, with the tables of these joints; returns the ELF file.
+pub fn build_measuring(
+    toolchain: &Toolchain,
+    binary: &str,
+    joints: &[PathBuf],
+    tick_rate: u32,
+    say: Say<'_>,
+) -> Outcome<PathBuf> {
+    let list = env::join_paths(joints)
+        .map_err(|error| Failure::new(format!("joint files cannot be listed for the firmware's build: {error}")))?;
+    let rate = tick_rate.to_string();
+    let environment = [("MEASURED_JOINTS", list.as_ref()), ("JOINT_TICK_RATE", rate.as_ref())];
+    let elf = compile(toolchain, binary, &measuring_features(), &environment, say)?;
+    let images = toolchain.target_directory().join("images");
+    let place = images.join(format!("{binary}.elf"));
+    store(&images, &place, &elf)?;
+    Ok(place)
+}
+
+/// The firmware's features for binaries that measure: the board that is emulated, and what they need.
+pub(super) fn measuring_features() -> String {
+    format!("{},measuring", Board::Stm32f405.name())
+}
+
+/// Builds the comparison of fixed-step methods, with the jobs in this file of Rust source; returns the ELF file.
+pub fn build_contest(toolchain: &Toolchain, jobs: &Path, say: Say<'_>) -> Outcome<PathBuf> {
+    let features = format!("{},contest", Board::Stm32f405.name());
+    let elf = compile(toolchain, "contest", &features, &[("CONTEST_JOBS", jobs.as_os_str())], say)?;
+    let images = toolchain.target_directory().join("images");
+    let place = images.join("contest.elf");
+    store(&images, &place, &elf)?;
+    Ok(place)
+}
+
+/// Runs a measuring binary and returns its lines.
+pub fn run(elf: &Path) -> Outcome<Vec<String>> {
+    let mut command = emulator::mortal(&emulator::program()?);
+    command
+        .args(["-M", MACHINE, "-icount", CLOCK, "-no-reboot"])
+        .args(["-nodefaults", "-no-user-config", "-display", "none", "-monitor", "none", "-serial", "none"])
+        .args(["-semihosting-config", "enable=on,target=native", "-kernel"])
+        .arg(elf)
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .process_group(0);
+    let child = command.spawn().map_err(|error| Failure::new(format!("cannot run the emulator: {error}")))?;
+    let mut lines = Running(child).lines()?;
+    match lines.pop() {
+        Some(last) if last == END => Ok(lines),
+        last => {
+            let said: Vec<_> = lines.into_iter().chain(last).collect();
+            Err(Failure::new(format!("{} broke off in the emulator:\n{}", elf.display(), said.join("\n"))))
+        }
+    }
+}
+
+/// The emulator's process, which does not outlive its owner.
+struct Running(Child);
+
+impl Running {
+    /// All that it says until its end.
+    fn lines(mut self) -> Outcome<Vec<String>> {
+        let (sender, receiver) = mpsc::channel();
+        let stdout = self.0.stdout.take();
+        thread::spawn(move || {
+            let lines = stdout.into_iter().flat_map(|stdout| BufReader::new(stdout).lines());
+            lines.map_while(Result::ok).try_for_each(|line| sender.send(line))
+        });
+        let (mut lines, start) = (Vec::new(), Instant::now());
+        loop {
+            match receiver.recv_timeout(POLL) {
+                Ok(line) => lines.push(line),
+                Err(RecvTimeoutError::Disconnected) => return Ok(lines),
+                Err(RecvTimeoutError::Timeout) if interruption::requested() => {
+                    return Err(Failure::interrupted("stopped by the user"));
+                }
+                Err(RecvTimeoutError::Timeout) if start.elapsed() > PATIENCE => {
+                    let minutes = PATIENCE.as_secs() / 60;
+                    return Err(Failure::new(format!("no end in the emulator after {minutes} minutes")));
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+            }
+        }
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // It may have ended by itself; either way it is waited for.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}

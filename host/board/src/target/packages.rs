@@ -1,0 +1,98 @@
+//! Packages of a Debian-like system: installed if the user is root, else the exact line to run is shown. What a package
+//! is for is known to who asks for it; other systems are told what is missing.
+
+use std::fs;
+use std::os::unix::fs::MetadataExt;
+use std::process::Command;
+
+use super::{Say, tool};
+use report::failure::{Failure, Outcome};
+
+/// How packages can be got here.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Way {
+    /// apt-get, as root.
+    Install,
+    /// apt-get, but somebody else must be root.
+    Ask,
+    /// There is no apt-get.
+    Unknown,
+}
+
+/// Makes sure that packages are installed. `purpose` completes "... needed ...", such as "to build for the board".
+pub fn ensure(packages: &[&str], purpose: &str, say: Say<'_>) -> Outcome<()> {
+    let way = way();
+    let missing: Vec<&str> = match way {
+        Way::Unknown => packages.to_vec(),
+        _ => packages.iter().copied().filter(|package| !is_installed(package)).collect(),
+    };
+    if missing.is_empty() {
+        return Ok(());
+    }
+    let list = missing.join(" ");
+    if way != Way::Install {
+        return Err(absent(way, &list, purpose));
+    }
+    say(&format!("installing {list} with apt-get, needed {purpose}"));
+    tool::follow(apt_get().arg("update"), "apt-get update", say).map_err(|failure| with_line(failure, &list))?;
+    let mut install = apt_get();
+    install.args(["install", "--yes", "--no-install-recommends"]).args(&missing);
+    tool::follow(&mut install, &format!("installing {list}"), say).map_err(|failure| with_line(failure, &list))
+}
+
+fn with_line(failure: Failure, list: &str) -> Failure {
+    failure.with_help(format!("mend what apt-get complains about, then run: apt-get install {list}"))
+}
+
+fn absent(way: Way, list: &str, purpose: &str) -> Failure {
+    let failure = Failure::new(format!("not installed, but needed {purpose}: {list}"));
+    match way {
+        Way::Unknown => failure.with_help("install what these Debian packages hold, by your system's own means"),
+        _ => failure.with_help(format!("run: sudo apt-get update && sudo apt-get install {list}")),
+    }
+}
+
+fn way() -> Way {
+    match (tool::find("apt-get"), is_root()) {
+        (None, _) => Way::Unknown,
+        (Some(_), true) => Way::Install,
+        (Some(_), false) => Way::Ask,
+    }
+}
+
+/// The owner of this process's entry is the user that it runs as.
+fn is_root() -> bool {
+    fs::metadata("/proc/self").is_ok_and(|data| data.uid() == 0)
+}
+
+fn is_installed(package: &str) -> bool {
+    let status =
+        tool::output_of(Command::new("dpkg-query").args(["--show", "--showformat=${db:Status-Abbrev}", package]));
+    status.is_ok_and(|status| status.starts_with("ii"))
+}
+
+fn apt_get() -> Command {
+    let mut command = Command::new("apt-get");
+    command.env("DEBIAN_FRONTEND", "noninteractive");
+    command
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn who_is_not_root_gets_the_exact_line_and_exit_code_2() {
+        let failure = absent(Way::Ask, "lld qemu-system-arm", "to run the emulated board");
+        assert_eq!(failure.help(), Some("run: sudo apt-get update && sudo apt-get install lld qemu-system-arm"));
+        assert!(failure.message().contains("to run the emulated board"));
+        assert_eq!(failure.exit_code(), 2);
+    }
+
+    #[test]
+    fn without_apt_get_the_packages_are_named() {
+        let failure = absent(Way::Unknown, "lld", "to build for the board");
+        assert!(failure.message().contains("lld"), "{failure}");
+        assert!(!failure.help().unwrap_or_default().contains("apt-get"));
+    }
+}

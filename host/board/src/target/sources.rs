@@ -1,0 +1,114 @@
+//! What an image was made from, as one digest: every file that goes into a build, the compiler and its flags. An image whose
+//! digest is still that of now need not be built again; cargo would build it anew whenever another joint came between.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use sha2::{Digest, Sha256};
+
+use super::compile::store;
+use super::toolchain::Toolchain;
+use report::failure::{Failure, Outcome};
+use report::workspace::workspace;
+
+/// Folders and files of the workspace that the firmware is built from.
+const PARTS: [&str; 11] = [
+    "Cargo.lock",
+    "Cargo.toml",
+    "memory.x",
+    ".cargo",
+    "firmware/Cargo.toml",
+    "firmware/build.rs",
+    "firmware/src",
+    "host/joint-file",
+    "joints",
+    "link",
+    "model-core",
+];
+
+/// The image at its place, built if it is not there or was built from something else. A file beside it says from what.
+pub(super) fn up_to_date(
+    toolchain: &Toolchain,
+    images: &Path,
+    place: &Path,
+    joints: [&Path; 2],
+    settings: &str,
+    build: impl FnOnce() -> Outcome<Vec<u8>>,
+) -> Outcome<Vec<u8>> {
+    let texts = joints.map(|path| fs::read(path).map_err(|error| Failure::new(format!("{}: {error}", path.display()))));
+    let [truth, told] = texts;
+    let from = digest(toolchain, &[&truth?, &told?, settings.as_bytes()])?;
+    let note = place.with_extension("from");
+    let noted = |elf: &[u8]| format!("{from} {}\n", hexadecimal(&Sha256::digest(elf)));
+    if let Ok(elf) = fs::read(place)
+        && fs::read_to_string(&note).is_ok_and(|text| text == noted(&elf))
+    {
+        return Ok(elf);
+    }
+    let elf = build()?;
+    store(images, place, &elf)?;
+    store(images, &note, noted(&elf).as_bytes())?;
+    Ok(elf)
+}
+
+/// Bytes in hexadecimal digits.
+pub(super) fn hexadecimal(digest: &[u8]) -> String {
+    digest.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Digest over sources, toolchain and what else the caller names, 64 hexadecimal digits.
+fn digest(toolchain: &Toolchain, more: &[&[u8]]) -> Outcome<String> {
+    let mut hash = Sha256::new();
+    for part in PARTS {
+        let path = workspace().join(part);
+        add(&mut hash, &path).map_err(|error| Failure::new(format!("cannot read {}: {error}", path.display())))?;
+    }
+    for text in [toolchain.compiler().as_bytes(), toolchain.flags().as_bytes()].iter().chain(more) {
+        hash.update(text.len().to_le_bytes());
+        hash.update(text);
+    }
+    Ok(hexadecimal(&hash.finalize()))
+}
+
+/// A file, or all that is in a folder by name.
+fn add(hash: &mut Sha256, path: &Path) -> io::Result<()> {
+    if path.is_dir() {
+        let mut entries: Vec<PathBuf> =
+            fs::read_dir(path)?.map(|entry| entry.map(|entry| entry.path())).collect::<io::Result<_>>()?;
+        entries.sort();
+        return entries.iter().try_for_each(|entry| add(hash, entry));
+    }
+    let (name, content) = (path.as_os_str().as_encoded_bytes(), fs::read(path)?);
+    for bytes in [name, &content] {
+        hash.update(bytes.len().to_le_bytes());
+        hash.update(bytes);
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(folder: &Path) -> Vec<u8> {
+        let mut hash = Sha256::new();
+        add(&mut hash, folder).expect("readable");
+        hash.finalize().to_vec()
+    }
+
+    #[test]
+    fn a_change_of_any_file_changes_the_digest_and_nothing_else_does() {
+        let folder = tempfile::tempdir().expect("a folder");
+        fs::create_dir(folder.path().join("src")).expect("a folder");
+        let file = folder.path().join("src/a.rs");
+        fs::write(&file, "one").expect("written");
+        let before = of(folder.path());
+        assert_eq!(of(folder.path()), before);
+        fs::write(&file, "two").expect("written");
+        let after = of(folder.path());
+        assert_ne!(after, before);
+        fs::write(folder.path().join("src/b.rs"), "").expect("written");
+        assert_ne!(of(folder.path()), after);
+    }
+}

@@ -1,0 +1,100 @@
+//! Running other programs: finding them, following their output, and keeping all of it for an error. Which programs,
+//! and why, is the callers' business.
+
+use std::env;
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use super::Say;
+use report::failure::{Failure, Outcome};
+
+/// Most lines of a failed program's output that an error shows.
+const LINES_SHOWN: usize = 60;
+
+/// A program on the search path.
+pub fn find(name: &str) -> Option<PathBuf> {
+    env::split_paths(&env::var_os("PATH")?).map(|folder| folder.join(name)).find(|path| is_program(path))
+}
+
+/// A file that can be run.
+pub fn is_program(path: &Path) -> bool {
+    use std::os::unix::fs::PermissionsExt;
+    path.metadata().is_ok_and(|data| data.is_file() && data.permissions().mode() & 0o111 != 0)
+}
+
+/// Runs a program whose output is short and wanted.
+pub fn output_of(command: &mut Command) -> Outcome<String> {
+    let name = name_of(command);
+    let output = command.stdin(Stdio::null()).output().map_err(|error| cannot_run(&name, &error))?;
+    if !output.status.success() {
+        let said = String::from_utf8_lossy(&output.stderr);
+        return Err(Failure::new(format!("{name}: {}\n{}", output.status, said.trim_end())));
+    }
+    Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+}
+
+/// Runs a program that takes its time: what it says on standard error is passed on line by line, and shown again if it
+/// fails. `what` is what it was to do.
+pub fn follow(command: &mut Command, what: &str, say: Say<'_>) -> Outcome<()> {
+    let name = name_of(command);
+    let spawned = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped()).spawn();
+    let mut child = spawned.map_err(|error| cannot_run(&name, &error))?;
+    let mut lines = Vec::new();
+    if let Some(stderr) = child.stderr.take() {
+        for line in BufReader::new(stderr).split(b'\n').map_while(Result::ok) {
+            let line = String::from_utf8_lossy(&line).into_owned();
+            say(line.trim());
+            lines.push(line);
+        }
+    }
+    let status = child.wait().map_err(|error| cannot_run(&name, &error))?;
+    if status.success() {
+        return Ok(());
+    }
+    let shown = lines.len().saturating_sub(LINES_SHOWN);
+    Err(Failure::new(format!("{what} failed ({name}: {status})\n{}", lines[shown..].join("\n"))))
+}
+
+fn name_of(command: &Command) -> String {
+    command.get_program().to_string_lossy().into_owned()
+}
+
+fn cannot_run(name: &str, error: &std::io::Error) -> Failure {
+    Failure::new(format!("cannot run {name}: {error}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::RefCell;
+
+    use super::*;
+
+    fn shell(script: &str) -> Command {
+        let mut command = Command::new("sh");
+        command.args(["-c", script]);
+        command
+    }
+
+    #[test]
+    fn a_failed_program_is_shown_with_what_it_said() {
+        let failure = follow(&mut shell("echo no room >&2; exit 3"), "packing", &|_| {}).unwrap_err();
+        assert!(failure.message().starts_with("packing failed"), "{failure}");
+        assert!(failure.message().contains("no room"), "{failure}");
+        assert_eq!(failure.exit_code(), 2);
+    }
+
+    #[test]
+    fn what_a_program_says_is_passed_on() {
+        let said = RefCell::new(Vec::new());
+        let say = |line: &str| said.borrow_mut().push(line.to_owned());
+        follow(&mut shell("echo one >&2; echo unseen; echo two >&2"), "counting", &say).unwrap();
+        assert_eq!(*said.borrow(), ["one", "two"]);
+    }
+
+    #[test]
+    fn a_program_that_is_not_there_is_named() {
+        let failure = output_of(&mut Command::new("/no/such/program")).unwrap_err();
+        assert!(failure.message().contains("/no/such/program"), "{failure}");
+    }
+}

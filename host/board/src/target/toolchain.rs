@@ -1,0 +1,233 @@
+//! How to build for the board here: by the compiler in use if it has the target, else by a distribution's compiler and
+//! its library source with a private sysroot. What is built is left to `image` and `lint`; nothing is ever downloaded
+//! through rustup from here.
+
+use std::env;
+use std::ffi::OsString;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use report::workspace::workspace;
+
+use super::{Say, packages, sysroot, tool};
+use report::failure::{Failure, Outcome};
+
+/// The target of every board.
+pub const TARGET: &str = "thumbv7em-none-eabihf";
+
+/// Oldest compiler that the workspace builds with: its `rust-version`.
+const OLDEST: (u32, u32) = (1, 95);
+/// Debian's compiler, cargo, library source and linker.
+const PACKAGES: [&str; 4] = ["rustc-web", "cargo-web", "rust-web-src", "lld"];
+const DISTRIBUTION_CARGO: &str = "/usr/bin/cargo";
+const DISTRIBUTION_RUSTC: &str = "/usr/bin/rustc";
+const LIBRARY_SOURCE: &str = "/usr/lib/rustlib/src/rust/library/core/Cargo.toml";
+
+/// A way to build for the board.
+#[derive(Debug, Clone)]
+pub struct Toolchain {
+    cargo: PathBuf,
+    rustc: Option<PathBuf>,
+    sysroot: Option<PathBuf>,
+    version: String,
+    folder: PathBuf,
+    target_directory: PathBuf,
+}
+
+impl Toolchain {
+    /// Finds or makes one. May install packages and build a sysroot, and says so.
+    pub fn prepare(say: Say<'_>) -> Outcome<Self> {
+        let target_directory = target_directory();
+        match in_use(&target_directory) {
+            Some(toolchain) => Ok(toolchain),
+            None => distribution(target_directory, say),
+        }
+    }
+
+    /// First line of what the compiler says about itself.
+    pub fn compiler(&self) -> &str {
+        self.version.lines().next().unwrap_or_default()
+    }
+
+    /// Everything in the way of flags that changes the code, apart from the profile.
+    pub fn flags(&self) -> String {
+        let core = if self.sysroot.is_some() { "built here" } else { "as delivered" };
+        format!("--target {TARGET}, core library {core}")
+    }
+
+    /// Where images and other results go.
+    pub fn target_directory(&self) -> &Path {
+        &self.target_directory
+    }
+
+    /// Where cargo builds: cargo does not notice a change of compiler library, so each has a folder of its own.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// Whether clippy must be the distribution's: it has to match the compiler that built the core library.
+    pub fn is_distribution(&self) -> bool {
+        self.sysroot.is_some()
+    }
+
+    /// A cargo command in the workspace, for this toolchain. The subcommand comes first.
+    pub fn cargo(&self, subcommand: &str) -> Command {
+        let mut command = Command::new(&self.cargo);
+        clean(&mut command).current_dir(workspace());
+        if let (Some(rustc), Some(sysroot)) = (&self.rustc, &self.sysroot) {
+            // A plugin of cargo, such as clippy, is looked for on the path: the distribution's, not another's.
+            let path = env::var_os("PATH").unwrap_or_default();
+            let folders = [PathBuf::from("/usr/bin")].into_iter().chain(env::split_paths(&path));
+            if let Ok(path) = env::join_paths(folders) {
+                command.env("PATH", path);
+            }
+            let mut flags = OsString::from("--sysroot=");
+            flags.push(sysroot);
+            flags.push(" -Clinker=ld.lld -Clinker-flavor=ld.lld");
+            command.env("RUSTC", rustc).env("CARGO_TARGET_THUMBV7EM_NONE_EABIHF_RUSTFLAGS", flags);
+        }
+        command.arg(subcommand).args(["--target", TARGET, "--target-dir"]).arg(&self.folder);
+        command
+    }
+}
+
+fn target_directory() -> PathBuf {
+    let given = env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
+    workspace().join(given.unwrap_or_else(|| "target".into()))
+}
+
+/// Frees a cargo command from what an outer `cargo run` and the user's shell have set for the host.
+pub(super) fn clean(command: &mut Command) -> &mut Command {
+    for variable in
+        ["RUSTFLAGS", "CARGO_ENCODED_RUSTFLAGS", "CARGO_BUILD_TARGET", "CARGO_TARGET_DIR", "LD_LIBRARY_PATH"]
+    {
+        command.env_remove(variable);
+    }
+    command
+}
+
+/// The compiler in use, if it has the target.
+fn in_use(target_directory: &Path) -> Option<Toolchain> {
+    let rustc = env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+    // Asking must not make rustup fetch anything.
+    let ask = |argument: &[&str]| {
+        let mut command = Command::new(&rustc);
+        command.args(argument).env("RUSTUP_AUTO_INSTALL", "0").current_dir(workspace());
+        tool::output_of(&mut command).ok()
+    };
+    let sysroot = ask(&["--print", "sysroot"])?;
+    if !has_core(Path::new(sysroot.trim())) {
+        return None;
+    }
+    let version = ask(&["--version", "--verbose"])?;
+    is_new_enough(&version).then(|| Toolchain {
+        cargo: env::var_os("CARGO").map_or_else(|| "cargo".into(), PathBuf::from),
+        rustc: None,
+        sysroot: None,
+        version,
+        folder: target_directory.join("firmware/in-use"),
+        target_directory: target_directory.to_path_buf(),
+    })
+}
+
+fn has_core(sysroot: &Path) -> bool {
+    let libraries = sysroot.join("lib/rustlib").join(TARGET).join("lib");
+    fs::read_dir(libraries).is_ok_and(|entries| {
+        entries.flatten().any(|entry| {
+            let name = entry.file_name();
+            let name = name.to_string_lossy();
+            name.starts_with("libcore-") && name.ends_with(".rlib")
+        })
+    })
+}
+
+/// A distribution's compiler with a sysroot of our own.
+fn distribution(target_directory: PathBuf, say: Say<'_>) -> Outcome<Toolchain> {
+    let version = match distribution_version() {
+        Some(version) => version,
+        None => {
+            packages::ensure(&PACKAGES, "to build for the board", say).map_err(or_rustup)?;
+            distribution_version().ok_or_else(|| {
+                let (major, minor) = OLDEST;
+                let message = format!("{} do not hold a Rust compiler from {major}.{minor} on", PACKAGES.join(" "));
+                or_rustup(Failure::new(message))
+            })?
+        }
+    };
+    let (cargo, rustc) = (PathBuf::from(DISTRIBUTION_CARGO), PathBuf::from(DISTRIBUTION_RUSTC));
+    let sysroot = sysroot::prepare(&cargo, &rustc, &version, &target_directory, say)?;
+    let name = sysroot.file_name().unwrap_or_default();
+    let folder = target_directory.join("firmware").join(name);
+    Ok(Toolchain { cargo, rustc: Some(rustc), sysroot: Some(sysroot), version, folder, target_directory })
+}
+
+/// What the distribution's compiler says about itself, if all that is needed is there and new enough.
+fn distribution_version() -> Option<String> {
+    let complete = [DISTRIBUTION_CARGO, DISTRIBUTION_RUSTC].iter().all(|path| tool::is_program(Path::new(path)))
+        && Path::new(LIBRARY_SOURCE).exists()
+        && tool::find("ld.lld").is_some();
+    if !complete {
+        return None;
+    }
+    let version = tool::output_of(Command::new(DISTRIBUTION_RUSTC).args(["--version", "--verbose"])).ok()?;
+    is_new_enough(&version).then_some(version)
+}
+
+/// Adds the other way out.
+fn or_rustup(failure: Failure) -> Failure {
+    let other = format!("or, with rustup and its network: rustup target add {TARGET}");
+    let help = match failure.help() {
+        Some(help) => format!("{help}\n{other}"),
+        None => other,
+    };
+    failure.with_help(help)
+}
+
+fn is_new_enough(version: &str) -> bool {
+    version_number(version).is_some_and(|number| number >= OLDEST)
+}
+
+/// Major and minor of "rustc 1.96.0 (...)".
+fn version_number(version: &str) -> Option<(u32, u32)> {
+    let mut numbers = version.strip_prefix("rustc ")?.split('.');
+    Some((numbers.next()?.parse().ok()?, numbers.next()?.parse().ok()?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_compiler_is_new_enough_from_the_oldest_on() {
+        let (major, minor) = OLDEST;
+        assert!(is_new_enough(&format!("rustc {major}.{minor}.0 (abc 2026-01-01)")));
+        assert!(!is_new_enough(&format!("rustc {major}.{}.1 (abc 2026-01-01)", minor - 1)));
+        assert!(!is_new_enough("something else"));
+    }
+
+    #[test]
+    fn the_oldest_compiler_is_the_one_that_the_workspace_states() {
+        let manifest = fs::read_to_string(workspace().join("Cargo.toml")).unwrap();
+        let (major, minor) = OLDEST;
+        assert!(manifest.contains(&format!("rust-version = \"{major}.{minor}\"")));
+    }
+
+    #[test]
+    fn a_sysroot_without_the_target_is_not_taken() {
+        let folder = tempfile::tempdir().unwrap();
+        assert!(!has_core(folder.path()));
+        let libraries = folder.path().join("lib/rustlib").join(TARGET).join("lib");
+        fs::create_dir_all(&libraries).unwrap();
+        assert!(!has_core(folder.path()));
+        fs::write(libraries.join("libcore-0123.rlib"), "").unwrap();
+        assert!(has_core(folder.path()));
+    }
+
+    #[test]
+    fn both_ways_out_are_shown() {
+        let failure = or_rustup(Failure::new("no compiler").with_help("run: sudo apt-get install lld"));
+        let help = failure.help().unwrap();
+        assert!(help.contains("apt-get install") && help.contains("rustup target add thumbv7em-none-eabihf"), "{help}");
+    }
+}

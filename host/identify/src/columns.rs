@@ -1,0 +1,184 @@
+//! Columns of numbers under names, from CSV or MCAP: what is missing or no number is named. What the columns mean is the
+//! log's business.
+
+use std::path::Path;
+
+use super::mcap_log;
+use report::failure::{Failure, Outcome};
+
+/// Larger files are taken for a mistake.
+const LARGEST_FILE: u64 = 2 << 30;
+/// What to write in the first line.
+const HEADER_HELP: &str = "the first line names the columns: time_s,motor_counts,output_counts,motor_torque_N_m and, if it \
+                           was measured, output_torque_N_m; --column motor_counts=NAME takes another name";
+
+/// What a column is called here, and what it may be called in a log.
+pub const KNOWN: [(&str, &[&str]); 9] = [
+    ("time_s", &[]),
+    ("time_ms", &[]),
+    ("time_us", &[]),
+    ("motor_counts", &[]),
+    ("motor_angle_rad", &["motor_rad"]),
+    ("output_counts", &["link_counts"]),
+    ("output_angle_rad", &["link_angle_rad", "link_rad"]),
+    ("motor_torque_N_m", &["motor_torque_Nm", "motor_torque_nm", "drive_torque_Nm", "drive_torque_nm"]),
+    ("output_torque_N_m", &[]),
+];
+
+/// Columns by name.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Columns {
+    names: Vec<String>,
+    /// One list for each name.
+    values: Vec<Vec<f64>>,
+    /// Number of each row's line or message.
+    places: Vec<usize>,
+    /// What a row is called.
+    row: &'static str,
+}
+
+impl Columns {
+    /// Nothing yet, in rows that are called so.
+    pub fn of(row: &'static str) -> Self {
+        Self { names: Vec::new(), values: Vec::new(), places: Vec::new(), row }
+    }
+
+    /// Reads a file by what it is; `renamed` holds pairs of a name here and one in the log.
+    pub fn read(path: &Path, topic: Option<&str>, renamed: &[(String, String)]) -> Outcome<Self> {
+        let failed = |what: &str| {
+            Failure::new(format!("cannot read the log {}: {what}", path.display()))
+                .with_help("`joint identify LOG --simulate` makes one without hardware")
+        };
+        let data = std::fs::metadata(path).map_err(|error| failed(&error.to_string()))?;
+        if data.is_dir() {
+            return Err(failed("it is a folder"));
+        }
+        if data.len() > LARGEST_FILE {
+            return Err(failed("it is larger than 2 GB"));
+        }
+        let bytes = std::fs::read(path).map_err(|error| failed(&error.to_string()))?;
+        let columns = if mcap_log::is_mcap(&bytes) {
+            mcap_log::read(&bytes, topic, |columns| columns.clone().renamed(renamed).is_ok_and(|own| own.will_do()))
+        } else if let Some(topic) = topic {
+            let message = format!("it is no MCAP log, so it has no topic `{topic}`");
+            Err(Failure::new(message).with_help("leave --topic out"))
+        } else {
+            let text = String::from_utf8(bytes)
+                .map_err(|_| failed("it is neither MCAP nor text (UTF-8): export it as CSV"))?;
+            Self::parse(&text)
+        };
+        columns.and_then(|columns| columns.renamed(renamed)).map_err(|failure| failure.while_doing(path.display()))
+    }
+
+    /// Of CSV text.
+    pub fn parse(text: &str) -> Outcome<Self> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let lines = (1..).zip(text.lines().map(str::trim));
+        let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
+        let (_, header) = lines.next().ok_or_else(|| Failure::new("the log is empty").with_help(HEADER_HELP))?;
+        let names: Vec<String> = header.split(',').map(|name| name.trim().trim_matches('"').to_owned()).collect();
+        if names.iter().all(|name| name.parse::<f64>().is_ok()) {
+            return Err(Failure::new("the first line has numbers in place of names").with_help(HEADER_HELP));
+        }
+        let mut columns = Self { values: vec![Vec::new(); names.len()], names, ..Self::of("line") };
+        for (line, text) in lines {
+            let mut cells = text.split(',');
+            for values in &mut columns.values {
+                // A cell that is no number matters only in a column that is used.
+                values.push(cells.next().and_then(|cell| cell.trim().parse().ok()).unwrap_or(f64::NAN));
+            }
+            columns.places.push(line);
+        }
+        Ok(columns)
+    }
+
+    /// One more row, the first of which gives the names; `false` if it has other ones.
+    pub fn push(&mut self, place: usize, numbers: &[(String, f64)]) -> bool {
+        if self.places.is_empty() {
+            self.names = numbers.iter().map(|(name, _)| name.clone()).collect();
+            self.values = vec![Vec::new(); numbers.len()];
+        }
+        if self.names.len() != numbers.len() || self.names.iter().zip(numbers).any(|(known, (name, _))| known != name) {
+            return false;
+        }
+        self.values.iter_mut().zip(numbers).for_each(|(values, (_, value))| values.push(*value));
+        self.places.push(place);
+        true
+    }
+
+    /// Under the names that are known here.
+    fn renamed(mut self, renamed: &[(String, String)]) -> Outcome<Self> {
+        for (own, theirs) in renamed {
+            let Some(place) = self.names.iter().position(|name| name == theirs) else {
+                return Err(self.missing(theirs));
+            };
+            // A column of that name in the log is not the one that was meant.
+            self.names.iter_mut().filter(|name| *name == own).for_each(|name| name.insert(0, '~'));
+            self.names[place].clone_from(own);
+        }
+        Ok(self)
+    }
+
+    /// Whether motor, output and torque are there.
+    fn will_do(&self) -> bool {
+        let has = |wanted: &[&str]| {
+            let all = KNOWN.iter().filter(|(name, _)| wanted.contains(name));
+            all.flat_map(|(name, others)| others.iter().chain([name])).any(|name| self.names().any(|own| own == *name))
+        };
+        has(&["motor_counts", "motor_angle_rad"])
+            && has(&["output_counts", "output_angle_rad"])
+            && has(&["motor_torque_N_m"])
+    }
+
+    /// Names in their order.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.names.iter().map(String::as_str)
+    }
+
+    /// Where a row stands.
+    pub fn place(&self, row: usize) -> String {
+        format!("{} {}", self.row, self.places.get(row).copied().unwrap_or_default())
+    }
+
+    /// Time in seconds, in whichever unit it stands.
+    pub fn time(&self) -> Outcome<Vec<f64>> {
+        let (name, mut values) = self.named(&["time_s", "time_ms", "time_us"])?;
+        let second = match name {
+            "time_ms" => 1e-3,
+            "time_us" => 1e-6,
+            _ => 1.0,
+        };
+        values.iter_mut().for_each(|time| *time *= second);
+        Ok(values)
+    }
+
+    /// The values of the first of these columns that is there, by whichever of its names, and which one it is.
+    pub fn named<'n>(&self, columns: &[&'n str]) -> Outcome<(&'n str, Vec<f64>)> {
+        for &column in columns {
+            let others = KNOWN.iter().find(|(name, _)| *name == column).map_or(&[][..], |(_, others)| *others);
+            for name in std::iter::once(column).chain(others.iter().copied()) {
+                if let Some(values) = self.maybe(name)? {
+                    return Ok((column, values));
+                }
+            }
+        }
+        Err(self.missing(columns.first().copied().unwrap_or_default()))
+    }
+
+    fn missing(&self, wanted: &str) -> Failure {
+        let near = joint_file::nearest(wanted, self.names());
+        let there = near.map_or(String::new(), |near| format!("; was `{near}` meant for it?"));
+        Failure::new(format!("there is no column `{wanted}`{there}")).with_help(HEADER_HELP)
+    }
+
+    /// The values under a name, all of them finite.
+    pub fn maybe(&self, name: &str) -> Outcome<Option<Vec<f64>>> {
+        let Some(place) = self.names.iter().position(|known| known == name) else { return Ok(None) };
+        let values = &self.values[place];
+        match values.iter().position(|value| !value.is_finite()) {
+            Some(row) => Err(Failure::new(format!("{} has no finite number for `{name}`", self.place(row)))
+                .with_help("write a number with a point in every row, or cut the log there")),
+            None => Ok(Some(values.clone())),
+        }
+    }
+}

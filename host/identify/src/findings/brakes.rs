@@ -1,0 +1,102 @@
+//! What a log shows of the frictions of motor and link, and of the scale of the torque, which they rest on. The balances
+//! themselves are fitted elsewhere.
+
+use super::{Finding, INERTIA_SHARE, SHARE, finding};
+use crate::estimate::Estimate;
+use crate::friction;
+use crate::plan::Plan;
+use crate::regression::Solution;
+use crate::rows::{Row, Rows};
+use crate::twist;
+use crate::twist::Twist;
+
+/// What may be zero counts as found if half of its interval is at most this share of the largest torque.
+const SMALL: f64 = 0.02;
+/// Share of the largest torque that a balance of torques may feign as dry friction.
+const BALANCE_SHARE: f64 = 0.0015;
+
+/// Frictions of motor and link.
+pub(super) fn frictions(quick: &Rows, slow: &Rows, twist: &Twist, plan: &Plan) -> Vec<Finding> {
+    let solution = &twist.solution;
+    let measured = quick.all.iter().any(|row| row.measured.is_some());
+    let small = SMALL * quick.greatest;
+    let found = |estimate: Estimate, least: f64| estimate.half < (SHARE * estimate.value.abs()).max(least);
+    let motor = if measured { friction::of_the_motor(quick, plan) } else { None };
+    let compliance = solution.values[twist::COMPLIANCE];
+    let motor_dry = match &motor {
+        Some(balance) => Estimate::of(balance, friction::MOTOR_DRY),
+        None => {
+            let value = -solution.values[twist::MOTOR_FRICTION] / compliance;
+            let slopes = [(twist::MOTOR_FRICTION, -1.0 / compliance), (twist::COMPLIANCE, -value / compliance)];
+            Estimate::from(solution, value, &slopes).wider_by(INERTIA_SHARE * value)
+        }
+    };
+    let excess = match &motor {
+        Some(balance) => Estimate::of(balance, friction::TORQUE_ERROR),
+        None => {
+            let value = twist.torque_error();
+            let slopes = [(twist::TORQUE_ERROR, 1.0 / compliance), (twist::COMPLIANCE, -value / compliance)];
+            Estimate::from(solution, value, &slopes).wider_by(INERTIA_SHARE)
+        }
+    };
+    let motor_known = found(motor_dry, small / plan.ratio());
+    let why_motor = "the motor must turn both ways on each flank, and bend the joint by several counts as it does";
+    let key = "drive_train.motor_coulomb_friction_N_m";
+    let mut findings =
+        vec![finding("dry friction of the motor", "N m", key, motor_dry).if_so(motor_known, why_motor).not_negative()];
+    let narrower = excess.half < plan.torque_error;
+    let key = "drive_train.torque_constant_error_ratio";
+    let why = "flanks must land so hard that the motor's inertia shows";
+    let share = finding("true torque over the logged one, less 1", "-", key, excess).if_so(narrower, why);
+    findings.push(share.noted("by the inertia of the joint file"));
+    if let Some(balance) = &motor {
+        let viscous = Estimate::of(balance, friction::MOTOR_VISCOUS);
+        let fastest = fastest(quick, |row| row.motor_speed);
+        let key = "drive_train.motor_viscous_friction_N_m_s_per_rad";
+        let known = found(viscous, small / plan.ratio() / fastest);
+        findings.push(
+            finding("viscous friction of the motor", "N m s/rad", key, viscous).if_so(known, why_motor).not_negative(),
+        );
+    }
+    let why_link =
+        "the output must move for a while, faster than its Stribeck speed, in both directions and at different speeds";
+    let names = ["dry friction of the link", "viscous friction of the link"];
+    let keys = ["drive_train.load_coulomb_friction_N_m", "drive_train.load_viscous_friction_N_m_s_per_rad"];
+    let units = ["N m", "N m s/rad"];
+    // Without its own finding the motor's friction is taken from the joint file.
+    let (dry, note) = if measured || motor_known {
+        (motor_dry, "")
+    } else {
+        (Estimate { value: plan.train.motor_coulomb_friction, half: 0.0 }, "if the motor's is as stated")
+    };
+    let balance = |excess: f64, dry: f64| friction::of_the_link(slow, plan, excess, dry);
+    let Some(link) = balance(excess.value, dry.value) else {
+        let nothing = Estimate { value: f64::NAN, half: f64::NAN };
+        findings.extend(
+            [0, 1].map(|place| finding(names[place], units[place], keys[place], nothing).if_so(false, why_link)),
+        );
+        return findings;
+    };
+    // How far what is still uncertain moves the balance is found by moving it.
+    let moved = [balance(excess.value + excess.half, dry.value), balance(excess.value, dry.value + dry.half)];
+    let of_link = |unknown: usize| {
+        let shift = |moved: &Option<Solution>| {
+            moved.as_ref().map_or(f64::NAN, |moved| moved.values[unknown] - link.values[unknown])
+        };
+        let estimate = Estimate::of(&link, unknown);
+        Estimate { half: estimate.half.hypot(shift(&moved[0])).hypot(shift(&moved[1])), ..estimate }
+    };
+    let dry = of_link(friction::DRY).wider_by(BALANCE_SHARE * quick.greatest);
+    let viscous = of_link(friction::VISCOUS);
+    let viscous_known = found(viscous, small / fastest(slow, |row| row.output_speed));
+    findings
+        .push(finding(names[0], units[0], keys[0], dry).if_so(found(dry, small), why_link).not_negative().noted(note));
+    let note = if measured { "" } else { "if the motor's is as stated" };
+    findings
+        .push(finding(names[1], units[1], keys[1], viscous).if_so(viscous_known, why_link).not_negative().noted(note));
+    findings
+}
+
+fn fastest(rows: &Rows, speed: impl Fn(&Row) -> f64) -> f64 {
+    rows.carrying().map(|row| speed(row).abs()).fold(0.0, f64::max)
+}

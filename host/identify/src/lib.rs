@@ -1,0 +1,235 @@
+//! `joint identify`: from a recorded reversal test to a joint's backlash, compliance, damping, friction and encoder errors,
+//! each with its interval, and to a patched joint file. Learning on board is the observer's business.
+//!
+//! `columns` reads a file, an MCAP log by `mcap_log` and `ros_message`; `log` turns it into samples, checked by `sampling`,
+//! whose scatter is `noise`; `plan` says what the joint file knows; `rows` are the moments at which a flank carries, smoothed by `kernel`; `twist` and `friction` are fitted to them by
+//! `regression`; `findings` is what comes of it, with its `estimate`s; `table`, `page`, `pictures` and `patch` show it.
+//! `virtual_test` makes a log without hardware.
+
+mod arguments;
+mod columns;
+mod estimate;
+pub mod findings;
+mod friction;
+mod kernel;
+mod log;
+mod mcap_log;
+pub mod memory;
+mod noise;
+mod page;
+mod patch;
+mod pictures;
+mod plan;
+mod refusal;
+mod regression;
+mod ros_message;
+mod rows;
+mod sampling;
+pub mod table;
+mod twist;
+pub mod virtual_test;
+
+pub use arguments::Arguments;
+use findings::Finding;
+use log::Log;
+use plan::Plan;
+use rows::Rows;
+use serde::Serialize;
+use twist::Twist;
+
+use joint_file::named::{self, Loaded};
+use report::failure::{Failure, Outcome};
+use report::folder;
+use report::output;
+use report::progress::Progress;
+use report::write::write_text;
+use simulation::sim::files::Folder;
+
+/// Box of the kernel for frictions, which need no quick motion but exact accelerations [s].
+const SLOW_BOX: f64 = 4e-3;
+
+/// Box of the kernel for everything else: at most this long [s], and a sixth of the swing's period...
+const QUICK_BOX: f64 = 1e-3;
+const SWING_PARTS: f64 = 6.0;
+/// ... but longer, step by step, if the encoders' counts then are most of what an acceleration shows.
+const LONGER: f64 = 1.4;
+const LONGEST_BOX: f64 = 8e-3;
+const RELIABLE: f64 = 0.9;
+/// Below this they are most of it.
+const LEAST_RELIABLE: f64 = 0.5;
+
+/// Fits one after the other, each with the errors by angle of the last taken off the accelerations.
+const ROUNDS: usize = 3;
+
+/// What identification leaves behind as JSON.
+#[derive(Debug, Serialize)]
+struct Findings<'a> {
+    schema: &'static str,
+    joint: &'a str,
+    log: &'a str,
+    duration_s: f64,
+    crossings: usize,
+    assumptions: &'a [String],
+    findings: &'a [Finding],
+}
+
+/// What a log has shown.
+struct Identified {
+    log: Log,
+    rows: Rows,
+    twist: Twist,
+    findings: Vec<Finding>,
+}
+
+/// Identifies a joint, or makes a log of one.
+pub fn run(arguments: &Arguments) -> Outcome<()> {
+    Progress::during(|progress| run_once(arguments, progress))
+}
+
+fn run_once(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
+    let loaded = named::load_with(&arguments.joint, &arguments.set)?;
+    if arguments.simulate {
+        return simulate(arguments, &loaded, progress);
+    }
+    let plan = Plan::new(&loaded, arguments);
+    folder::check_files(&[("json", arguments.json.as_deref())], &[&arguments.log, &arguments.joint])?;
+    progress.stage("fitting");
+    let identified = identify(arguments, &plan)?;
+    let folder = Folder::prepare(arguments.out.as_deref(), "identify", &plan.name)?;
+    let name = arguments.log.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let stated = |finding: &Finding| table::stated(&loaded.text, finding);
+    let patched = patch::patch(&loaded, &plan, &identified.findings, &name)?;
+    let assumptions = assumptions(&plan, &identified.log);
+    let Identified { log, rows, twist, findings } = &identified;
+    let page = page::render(&page::Content {
+        joint: &plan.name,
+        log: &name,
+        duration: log.time.last().copied().unwrap_or_default(),
+        crossings: rows.crossings,
+        findings,
+        stated: &stated,
+        figures: &[pictures::loop_of(log, rows, twist, &plan), pictures::course(log, twist)],
+        assumptions: &assumptions,
+    });
+    let record = Findings {
+        schema: "joint-identify/1",
+        joint: &plan.name,
+        log: &name,
+        duration_s: log.time.last().copied().unwrap_or_default(),
+        crossings: rows.crossings,
+        assumptions: &assumptions,
+        findings,
+    };
+    let json = output::json("findings", &record)?;
+    let [report, joint] = [folder.file("report.html"), folder.file("joint.toml")];
+    write_text(&report, &page)?;
+    write_text(&joint, &patched)?;
+    write_text(&folder.file("findings.json"), &json)?;
+    arguments.json.as_ref().map_or(Ok(()), |path| write_text(path, &json))?;
+    progress.clear();
+    output::print(&table::render(findings, stated))?;
+    output::print(&format!("\nreport: {}\njoint file: {}\n", report.display(), joint.display()))
+}
+
+fn identify(arguments: &Arguments, plan: &Plan) -> Outcome<Identified> {
+    let path = arguments.log.as_path();
+    let read = Log::read(arguments, plan)?;
+    let in_the_file = |failure: Failure| failure.while_doing(path.display());
+    let shortest = QUICK_BOX.min(plan.swing() / SWING_PARTS);
+    let (length, mut rows, mut twist) = first_fit(&read, plan, shortest).map_err(in_the_file)?;
+    let mut log = read.clone();
+    for _ in 0..ROUNDS {
+        let errors: [&dyn Fn(f64) -> f64; 3] =
+            [&|angle| twist.error(twist::MOTOR_MAP, angle), &|angle| twist.error(twist::OUTPUT_MAP, angle), &|angle| {
+                twist.error(twist::TEETH, angle)
+            }];
+        let corrected = read.without(errors, twist.solution.values[twist::SKEW], plan);
+        let seen = Rows::new(&corrected, plan, length);
+        let Some(better) = twist::fit(&corrected, &seen, plan) else { break };
+        (log, rows, twist) = (corrected, seen, better);
+    }
+    let slow = Rows::new(&log, plan, SLOW_BOX);
+    let findings = findings::gather(&log, &rows, &slow, &twist, plan);
+    if findings.iter().all(|finding| finding.value.is_none()) {
+        return Err(in_the_file(Failure::new("nothing is identifiable from this log"))
+            .with_help("record more reversals, with torques well above the friction and of different strength"));
+    }
+    Ok(Identified { log, rows, twist, findings })
+}
+
+/// The fit with the shortest box of the kernel at which encoder counts are not most of what an acceleration shows; the best
+/// there is if they always are.
+fn first_fit(log: &Log, plan: &Plan, shortest: f64) -> Outcome<(f64, Rows, Twist)> {
+    let mut best: Option<(f64, Rows, Twist)> = None;
+    let mut refused = None;
+    let mut length = shortest;
+    while length < LONGEST_BOX {
+        let rows = Rows::new(log, plan, length);
+        match refusal::check(log, &rows, plan) {
+            Ok(()) => {
+                let fitted = twist::fit(log, &rows, plan);
+                let reliability = fitted.as_ref().map_or(0.0, |twist| twist.solution.reliability);
+                if best.as_ref().is_none_or(|(_, _, best)| reliability > best.solution.reliability) {
+                    best = fitted.map(|twist| (length, rows, twist)).or(best);
+                }
+                if reliability > RELIABLE {
+                    break;
+                }
+            }
+            // A longer box may see what counts hide; why the shortest sees nothing is what a user can mend.
+            Err(failure) => refused = refused.or(Some(failure)),
+        }
+        length *= LONGER;
+    }
+    best.filter(|(_, _, best)| best.solution.reliability > LEAST_RELIABLE).ok_or_else(|| {
+        refused.unwrap_or_else(|| {
+            Failure::new("the moments at which a flank carries do not determine a fit")
+                .with_help("record more reversals with torques of different strength, or take finer encoders")
+        })
+    })
+}
+
+/// What the numbers take for granted.
+fn assumptions(plan: &Plan, log: &Log) -> Vec<String> {
+    let mut list = vec![
+        format!(
+            "Ratio {} / {} by whole teeth; levers, inertias and efficiency as in the joint file.",
+            plan.teeth[1], plan.teeth[0]
+        ),
+        format!("Encoders of {} bits (motor) and {} bits (output).", plan.motor_bits, plan.output_bits),
+        "Motor's inertia right within 1.5 %, readings of motor and torque at the same time within 2 us: both are in the \
+         intervals."
+            .to_owned(),
+        "Half-backlash is the mean over all meshes: a log cannot tell sun and ring apart.".to_owned(),
+    ];
+    list.push(if log.output_torque.is_some() {
+        "Torque measured at the output; its own error is not in the intervals.".to_owned()
+    } else {
+        format!(
+            "Motor torque as logged, its scale expected to be right within {:.1} % (one standard deviation); what the log does \
+             not show of it is in the intervals.",
+            100.0 * plan.torque_error
+        )
+    });
+    list
+}
+
+fn simulate(arguments: &Arguments, loaded: &Loaded, progress: &Progress) -> Outcome<()> {
+    folder::check_file("simulate", &arguments.log, &[&arguments.joint])?;
+    // What lies there may be a recorded test, which nobody can make again.
+    if arguments.log.exists() {
+        return Err(Failure::new(format!("--simulate would write over {}", arguments.log.display()))
+            .with_help("name a new file, or remove this one if it is not needed"));
+    }
+    let mut file = loaded.file.clone();
+    let train = file.drive_train.get_or_insert_default();
+    train.motor_encoder.bits = arguments.motor_bits.unwrap_or(train.motor_encoder.bits);
+    train.output_encoder.bits = arguments.output_bits.unwrap_or(train.output_encoder.bits);
+    progress.run("testing", 1000);
+    let line = progress.handle();
+    let recording = virtual_test::record(&file, arguments.seed, &|share| line.at((1000.0 * share) as u32))?;
+    write_text(&arguments.log, &recording.csv(arguments.with_output_torque))?;
+    progress.clear();
+    let seconds = recording.samples.len() as f64 / recording.rate;
+    output::print(&format!("log: {} ({seconds:.2} s of joint {})\n", arguments.log.display(), file.parameters.name))
+}

@@ -1,0 +1,232 @@
+//! A recorded test as samples: read from columns by their names, checked, encoders as angles and their difference from
+//! whole counts. What the samples tell is left to `rows` and the fits.
+
+use std::f64::consts::TAU;
+
+use super::arguments::Arguments;
+use super::columns::Columns;
+use super::noise::Noise;
+use super::plan::Plan;
+use super::sampling::sampling;
+use board::profile::STRONGEST;
+use report::failure::{Failure, Outcome};
+use report::output::typed;
+
+/// Fewer counts of the motor may be its encoder's own scatter.
+const LEAST_TRAVEL: f64 = 8.0;
+/// The link's speed is taken over this time to either side [s].
+const SPEED_OVER: f64 = 1e-3;
+/// Turns that a motor cannot make between two samples.
+const JUMP_TURNS: f64 = 0.5;
+
+/// A recorded test.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Log {
+    /// From the first sample on [s].
+    pub time: Vec<f64>,
+    /// Sampling period [s].
+    pub period: f64,
+    /// Motor angle, as far as the encoder's errors are known [rad].
+    pub motor: Vec<f64>,
+    /// Output angle, likewise [rad].
+    pub output: Vec<f64>,
+    /// Motor angle as it would be without errors of the teeth: planets and carrier follow it [rad].
+    pub carried: Vec<f64>,
+    /// Motor over the ratio less output, as the encoders read, exact on counts [rad].
+    pub twist: Vec<f64>,
+    /// Motor torque [N m].
+    pub torque: Vec<f64>,
+    /// Torque of the joint on its link, if it was measured [N m].
+    pub output_torque: Option<Vec<f64>>,
+    /// How much motor and output readings scatter [rad^2].
+    pub noise: [Noise; 2],
+}
+
+/// Readings of one encoder.
+enum Readings {
+    Counts(Vec<i64>),
+    Angles(Vec<f64>),
+}
+
+impl Log {
+    /// Reads a file.
+    pub fn read(arguments: &Arguments, plan: &Plan) -> Outcome<Self> {
+        let path = arguments.log.as_path();
+        let columns = Columns::read(path, arguments.topic.as_deref(), &arguments.column)?;
+        Self::of(&columns, plan).map_err(|failure| failure.while_doing(path.display()))
+    }
+
+    fn of(columns: &Columns, plan: &Plan) -> Outcome<Self> {
+        let mut time = columns.time()?;
+        let start = time.first().copied().unwrap_or_default();
+        time.iter_mut().for_each(|time| *time -= start);
+        let period = sampling(&time, columns, plan)?;
+        let motor = readings(columns, ["motor_counts", "motor_angle_rad"], plan.motor_bits)?;
+        let output = readings(columns, ["output_counts", "output_angle_rad"], plan.output_bits)?;
+        let (_, torque) = columns.named(&["motor_torque_N_m"])?;
+        let output_torque = columns.maybe("output_torque_N_m")?;
+        for (name, torques) in [("motor_torque_N_m", Some(&torque)), ("output_torque_N_m", output_torque.as_ref())] {
+            let torques = torques.into_iter().flatten();
+            if let Some((row, torque)) = torques.enumerate().find(|(_, torque)| torque.abs() > STRONGEST) {
+                return Err(Failure::new(format!("{}: `{name}` is {}", columns.place(row), typed(*torque)))
+                    .with_help(format!("it may be from -{STRONGEST} to {STRONGEST} N m: check the unit")));
+            }
+        }
+        let twist = twist(&motor, &output, plan);
+        let (motor, output) = (motor.angles(plan.motor_bits), output.angles(plan.output_bits));
+        let log = Self {
+            time,
+            period,
+            noise: [Noise::of(&motor), Noise::of(&output)],
+            carried: motor.clone(),
+            motor,
+            output,
+            twist,
+            torque,
+            output_torque,
+        };
+        log.check(plan)?;
+        Ok(log)
+    }
+
+    /// Phase of the teeth: whole periods at the ring, by the joint's angle as the inertias on either side weigh it [rad].
+    pub fn teeth(&self, sample: usize, plan: &Plan) -> f64 {
+        let share = plan.motor_share();
+        let joint = (1.0 - share) * self.output[sample] + share * self.motor[sample] / plan.ratio();
+        f64::from(plan.ring_teeth) * joint
+    }
+
+    /// The same with errors of both encoders and of the teeth, each by its angle, taken off the angles, and with the output
+    /// at the motor's time: accelerations and the phase of the teeth are sensitive to them.
+    pub fn without(&self, errors: [&dyn Fn(f64) -> f64; 3], skew: f64, plan: &Plan) -> Self {
+        let [motor, output, teeth] = errors;
+        let corrected = |angles: &[f64], error: &dyn Fn(f64) -> f64| -> Vec<f64> {
+            angles.iter().map(|angle| angle - error(angle - error(*angle))).collect()
+        };
+        let (motor, read) = (corrected(&self.motor, motor), corrected(&self.output, output));
+        // The motor swings where the link does not: the link's own speed is what counts.
+        let around = (SPEED_OVER / self.period).ceil() as usize;
+        let speed = |sample: usize| {
+            let (before, after) = (sample.saturating_sub(around), (sample + around).min(read.len() - 1));
+            (read[after] - read[before]) / ((after - before) as f64 * self.period)
+        };
+        let output: Vec<f64> = (0..read.len()).map(|sample| read[sample] + skew * speed(sample)).collect();
+        let mut log = Self { motor, output, carried: Vec::new(), ..self.clone() };
+        let carried = |sample: usize| log.motor[sample] - plan.ratio() * teeth(log.teeth(sample, plan));
+        log.carried = (0..log.motor.len()).map(carried).collect();
+        log
+    }
+
+    fn check(&self, plan: &Plan) -> Outcome<()> {
+        let travel = |angles: &[f64]| {
+            let (least, most) = angles.iter().fold((f64::MAX, f64::MIN), |(a, b), &angle| (a.min(angle), b.max(angle)));
+            most - least
+        };
+        let counts = travel(&self.motor) * f64::from(1_u32 << plan.motor_bits) / TAU;
+        if counts < LEAST_TRAVEL {
+            return Err(Failure::new(format!(
+                "the motor does not move in this log: by {counts:.1} counts of its encoder, {LEAST_TRAVEL} are the least"
+            ))
+            .with_help("the torque must overcome the friction, and turn the motor through the gap"));
+        }
+        // Where the output turns far, it must turn as the motor does.
+        let (moved, of_motor) = (travel(&self.output), travel(&self.motor) / plan.ratio());
+        let twisted = travel(&self.twist);
+        if of_motor.max(moved) > 0.2 && twisted > 0.1 * of_motor.max(moved) {
+            return Err(Failure::new(format!(
+                "output and motor do not turn together: {moved:.3} rad and {of_motor:.3} rad (motor over its ratio of \
+                 {:.4}), apart by up to {twisted:.3} rad",
+                plan.ratio()
+            ))
+            .with_help(
+                "check --motor-bits, --output-bits, the teeth of the joint file, and that both encoders count up when \
+                 the joint turns forwards",
+            ));
+        }
+        Ok(())
+    }
+}
+
+impl Readings {
+    fn angles(&self, bits: u32) -> Vec<f64> {
+        match self {
+            Self::Counts(counts) => counts.iter().map(|&count| count as f64 * TAU / (1_u64 << bits) as f64).collect(),
+            Self::Angles(angles) => angles.clone(),
+        }
+    }
+}
+
+/// Motor over ratio less output: in whole numbers as long as both are counts, so that turns cost no digit.
+fn twist(motor: &Readings, output: &Readings, plan: &Plan) -> Vec<f64> {
+    if let (Readings::Counts(motor), Readings::Counts(output)) = (motor, output) {
+        let [sun, both] = plan.teeth.map(i128::from);
+        let turn = (both << (plan.motor_bits + plan.output_bits)) as f64;
+        let pair = motor.iter().zip(output);
+        return pair
+            .map(|(&motor, &output)| {
+                let apart =
+                    ((i128::from(motor) * sun) << plan.output_bits) - ((i128::from(output) * both) << plan.motor_bits);
+                apart as f64 / turn * TAU
+            })
+            .collect();
+    }
+    let (motor, output) = (motor.angles(plan.motor_bits), output.angles(plan.output_bits));
+    motor.iter().zip(&output).map(|(motor, output)| motor / plan.ratio() - output).collect()
+}
+
+/// Counts, or else angles.
+fn readings(columns: &Columns, names: [&str; 2], bits: u32) -> Outcome<Readings> {
+    let (name, values) = columns.named(&names)?;
+    if name == names[0] {
+        let turn = 1_i64 << bits;
+        if let Some(line) = values.iter().position(|value| value.fract() != 0.0 || value.abs() > 9e15) {
+            return Err(Failure::new(format!("{} of `{name}` is no whole number of counts", columns.place(line)))
+                .with_help("angles are understood in a column such as motor_angle_rad"));
+        }
+        let mut whole: Vec<i64> = values.iter().map(|&value| value as i64).collect();
+        if whole.iter().all(|count| (0..turn).contains(count)) {
+            unwrap(&mut whole, turn);
+        }
+        let jump = (JUMP_TURNS * turn as f64) as u64;
+        let jumps = whole.windows(2).position(|pair| pair[1].abs_diff(pair[0]) >= jump);
+        return match jumps {
+            Some(line) => Err(jumped(columns, name, line + 1)),
+            None => Ok(Readings::Counts(whole)),
+        };
+    }
+    match values.windows(2).position(|pair| (pair[1] - pair[0]).abs() >= JUMP_TURNS * TAU) {
+        Some(line) => Err(jumped(columns, name, line + 1)),
+        None => Ok(Readings::Angles(values)),
+    }
+}
+
+fn jumped(columns: &Columns, name: &str, line: usize) -> Failure {
+    Failure::new(format!("`{name}` jumps by half a turn or more in {}", columns.place(line)))
+        .with_help("a reading was lost or corrupted, or the encoder's resolution is not as stated")
+}
+
+/// Counts that begin anew every turn are taken for continuous ones.
+fn unwrap(counts: &mut [i64], turn: i64) {
+    let mut turns = 0;
+    for index in 1..counts.len() {
+        let before = counts[index - 1] - turns * turn;
+        let step = counts[index] - before;
+        turns += if step > turn / 2 { -1 } else { i64::from(step < -turn / 2) };
+        counts[index] += turns * turn;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_that_begin_anew_every_turn_become_continuous() {
+        let mut counts: Vec<i64> = (0..400).map(|step: i64| (step * 7).rem_euclid(256)).collect();
+        unwrap(&mut counts, 256);
+        assert_eq!(counts, (0..400).map(|step| step * 7).collect::<Vec<i64>>());
+        let mut back: Vec<i64> = (0..400).map(|step: i64| (-step * 7).rem_euclid(256)).collect();
+        unwrap(&mut back, 256);
+        assert_eq!(back, (0..400).map(|step| -step * 7).collect::<Vec<i64>>());
+    }
+}

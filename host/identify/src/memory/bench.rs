@@ -1,0 +1,98 @@
+//! The board whose memory is asked for: found, called, and refused if it learns nothing. What is asked of it then is the
+//! parent's business.
+
+use link::messages::{Hello, Role};
+
+use super::arguments::Place;
+use board::bench::Bench;
+use board::line_options::RoleName;
+use board::session::{Mend, Session};
+use board::target::board::Board;
+use board::target::emulator;
+use board::target::image;
+use board::target::image::CONTROL_RATE;
+use board::target::image::word;
+use board::target::toolchain::Toolchain;
+use joint_file::named::Loaded;
+use report::failure::{Failure, Outcome};
+use report::progress::Progress;
+
+/// A board that has answered.
+pub(super) struct Found {
+    pub session: Session<'static>,
+    pub hello: Hello,
+    /// As a user knows it.
+    pub name: String,
+    /// The options that name it again.
+    pub options: String,
+    emulated: bool,
+}
+
+impl Found {
+    /// Finds the board and calls it.
+    pub fn call(place: &Place, loaded: &Loaded, progress: &Progress) -> Outcome<Self> {
+        let file = place.joint.display();
+        let (bench, options) = match &place.line.port {
+            Some(path) => {
+                let baud = place.line.baud_rate();
+                let options = format!(" --port {path} --board {}", place.line.board.name());
+                (Bench::on_port(path, baud, || Ok(None))?, options)
+            }
+            None => (emulated(place, loaded, progress)?, String::new()),
+        };
+        progress.stage("calling the board");
+        let flash = format!("cargo joint flash {file} --role observer --board {}", place.line.board.name());
+        let mend = if place.line.port.is_some() { Mend::Flash(flash.clone()) } else { Mend::Rebuild };
+        let mut session = Session::new(bench.line, bench.surroundings);
+        let hello = session.call(&mend, bench.patience)?;
+        let name =
+            place.line.port.as_ref().map_or("the emulated board".to_owned(), |path| format!("the board on {path}"));
+        if hello.role == Role::Plant {
+            let role = word(hello.role);
+            return Err(Failure::new(format!("{name} has an image of role `{role}`, which learns nothing"))
+                .with_help(format!("flash one that does: {flash}")));
+        }
+        Ok(Self { session, hello, name, options, emulated: place.line.port.is_none() })
+    }
+
+    /// Whether its flash is none.
+    pub fn is_emulated(&self) -> bool {
+        self.emulated
+    }
+
+    /// Its flash is empty.
+    pub fn keeps_nothing(&self) -> Failure {
+        if self.emulated {
+            return Failure::new("the emulated board has no flash, so it keeps no memory")
+                .with_help("name a real board by --port");
+        }
+        Failure::new(format!("{} keeps no memory", self.name))
+            .with_help(format!("let it learn in a run, then have it kept: joint memory keep{}", self.options))
+    }
+
+    /// Its flash takes nothing.
+    pub fn not_written(&self) -> Failure {
+        if self.emulated {
+            return self.keeps_nothing();
+        }
+        Failure::new(format!("the flash of {} does not read as it was written", self.name))
+            .with_help("try again; if it stays so the page is worn out or write-protected (option bytes)")
+    }
+}
+
+fn emulated(place: &Place, loaded: &Loaded, progress: &Progress) -> Outcome<Bench> {
+    let say = |line: &str| progress.say(line);
+    progress.stage("finding the emulator");
+    let version = emulator::ensure(&say)?;
+    progress.stage("preparing the toolchain");
+    let toolchain = Toolchain::prepare(&say)?;
+    progress.stage("building the firmware");
+    let role = match place.role {
+        Some(RoleName::Loop) => Role::Loop,
+        Some(RoleName::Observer) | None => Role::Observer,
+    };
+    let joint = image::joint_file(&place.joint, &loaded.name);
+    let image = image::build_image(&toolchain, &joint, Board::Stm32f405, role, CONTROL_RATE, &say)?;
+    progress.stage("booting the emulated board");
+    Bench::in_emulator(&version, image)
+}

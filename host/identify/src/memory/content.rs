@@ -1,0 +1,238 @@
+//! What is in a memory: the observer's parameters with their covariances, in the units of the joint file. Which bytes are
+//! what is told by the observer that writes them.
+
+use std::fmt::Write as _;
+
+use model_core::design::observer::design_observer;
+use model_core::design::virtual_joint::observer_settings;
+use model_core::realtime::observer::{MAPPED, Memory, MemoryError, Observer, memory_numbers};
+use model_core::tables::observer::{LeverTable, ObserverTables};
+use serde::Serialize;
+
+use crate::findings::Finding;
+use crate::table;
+use joint_file::named::Loaded;
+
+/// 95 of 100 values lie within so many standard deviations.
+const REACH: f64 = 1.96;
+/// What is not narrowed to this share of its standard deviation beforehand has not been learnt.
+const NARROWED: f64 = 0.9;
+
+/// Bias and friction, their variances, and their covariance.
+const MOTOR_NUMBERS: usize = 5;
+
+/// A memory of a known joint.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Content {
+    schema: &'static str,
+    joint: String,
+    /// It was learnt with the output encoder.
+    output_encoder: bool,
+    values: Vec<Finding>,
+}
+
+/// One number, with its standard deviation and the one beforehand.
+#[derive(Debug, Clone, Copy)]
+struct Learnt {
+    value: f64,
+    deviation: f64,
+    before: f64,
+}
+
+impl Content {
+    /// Judges a memory as the observer of a joint does, and reads it.
+    pub fn of(memory: &Memory, loaded: &Loaded) -> Result<Self, MemoryError> {
+        let joint = &loaded.file.parameters;
+        let mut refused = MemoryError::OtherJoint;
+        for output_encoder in [true, false] {
+            let mut settings = observer_settings(&loaded.file.surroundings());
+            if !output_encoder {
+                settings.output_encoder = None;
+            }
+            // A joint that no observer can be designed for has learnt nothing.
+            let Ok(tables) = design_observer::<f32>(joint, &settings) else { continue };
+            match Observer::<f32, MAPPED>::new(&tables).load(memory) {
+                Ok(()) => {
+                    let values = values(&Numbers::new(memory), &tables);
+                    let joint = joint.name.to_string();
+                    return Ok(Self { schema: "joint-memory/1", joint, output_encoder, values });
+                }
+                Err(error) => refused = error,
+            }
+        }
+        Err(refused)
+    }
+
+    /// What there is, beside what the joint file says.
+    pub fn text(&self, name: &str, loaded: &Loaded) -> String {
+        let with = if self.output_encoder { "both encoders" } else { "the motor's encoder alone" };
+        let mut text = String::new();
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{name}: learnt of joint {} with {with}\n", self.joint);
+        text + &table::render(&self.values, |finding| table::stated(&loaded.text, finding))
+    }
+
+    /// A value by its name.
+    pub fn value(&self, name: &str) -> Option<f64> {
+        self.values.iter().find(|finding| finding.name == name)?.value
+    }
+}
+
+/// The numbers of a memory, in their order.
+struct Numbers(Vec<f64>);
+
+impl Numbers {
+    fn new(memory: &Memory) -> Self {
+        Self(memory_numbers(memory).map(f64::from).collect())
+    }
+
+    fn at(&self, index: usize) -> f64 {
+        self.0.get(index).copied().unwrap_or_default()
+    }
+
+    /// A parameter. Of its covariance U D U^T there is each column down to its diagonal, in standard deviations beforehand.
+    fn parameter(&self, tables: &ObserverTables<f32>, index: usize) -> Learnt {
+        let column = |j: usize| MAPPED + j * (j + 1) / 2;
+        let part = |j: usize| {
+            let factor = if j == index { 1.0 } else { self.at(column(j) + index) };
+            self.at(column(j) + j) * factor * factor
+        };
+        let variance: f64 = (index..MAPPED).map(part).sum();
+        let before = f64::from(tables.learner.deviation[index]);
+        Learnt { value: self.at(index), deviation: variance.max(0.0).sqrt() * before, before }
+    }
+
+    /// Torque bias and dry friction as force, with their variances.
+    fn of_motor(&self, tables: &ObserverTables<f32>, index: usize) -> Learnt {
+        let first = MAPPED + MAPPED * (MAPPED + 1) / 2;
+        let before = f64::from(tables.contact.bias_prior).sqrt();
+        Learnt { value: self.at(first + index), deviation: self.at(first + 2 + index).max(0.0).sqrt(), before }
+    }
+
+    /// Inertia of the link over the designed one: kept as its inverse.
+    fn inertia_ratio(&self, tables: &ObserverTables<f32>) -> Learnt {
+        let first = MAPPED + MAPPED * (MAPPED + 1) / 2 + MOTOR_NUMBERS;
+        let [mobility, variance] = [self.at(first), self.at(first + 1)];
+        let value = 1.0 / mobility;
+        Learnt {
+            value,
+            deviation: variance.max(0.0).sqrt() * value * value,
+            before: f64::from(tables.inertia.prior).sqrt(),
+        }
+    }
+}
+
+impl Learnt {
+    /// In another unit.
+    fn times(self, factor: f64) -> Self {
+        let size = factor.abs();
+        Self { value: self.value * factor, deviation: self.deviation * size, before: self.before * size }
+    }
+
+    /// Size of two parts.
+    fn size(along: Self, across: Self) -> Self {
+        let value = along.value.hypot(across.value);
+        let deviation = along.deviation.max(across.deviation);
+        Self { value, deviation, before: along.before }
+    }
+
+    fn finding(self, name: &str, unit: &str, key: &str, note: &str) -> Finding {
+        let learnt = self.deviation < NARROWED * self.before;
+        let reach = REACH * self.deviation;
+        Finding {
+            name: name.to_owned(),
+            unit: unit.to_owned(),
+            key: (!key.is_empty()).then(|| key.to_owned()),
+            value: learnt.then_some(self.value),
+            interval: learnt.then_some([self.value - reach, self.value + reach]),
+            note: if learnt { note.to_owned() } else { "not learnt".to_owned() },
+        }
+    }
+}
+
+fn values(numbers: &Numbers, tables: &ObserverTables<f32>) -> Vec<Finding> {
+    let LeverTable { sun, per_sun, per_output, .. } = &tables.levers;
+    let [sun, per_sun, per_output] = [sun, per_sun, per_output].map(|lever| f64::from(*lever));
+    let parameter = |index: usize| numbers.parameter(tables, index);
+    let motor = |index: usize| numbers.of_motor(tables, index).times(sun);
+    let mut values = vec![
+        parameter(0).times(0.5e6).finding("half-backlash b", "um", "mesh.half_backlash_um", ""),
+        parameter(2).times(1e6 * per_output * per_output).finding("compliance at the output", "urad/(N m)", "", ""),
+        parameter(1).times(1e3 * per_output).finding("encoder offset at the output", "mrad", "", ""),
+        parameter(3).times(1e6 * per_output).finding(
+            "output encoder: age of a reading",
+            "us",
+            "drive_train.output_encoder.skew_us",
+            "",
+        ),
+        motor(0).finding("torque bias of the motor", "N m", "", ""),
+        motor(1).finding(
+            "dry friction of the motor",
+            "N m",
+            "drive_train.motor_coulomb_friction_N_m",
+            "as far as it does not grow with the load",
+        ),
+        numbers.inertia_ratio(tables).finding("inertia of the link over the joint file's", "-", "", ""),
+    ];
+    let maps = [
+        ("gears: error along the line of action", "um", "", 4, 1e6),
+        (
+            "motor encoder: error once a turn",
+            "deg",
+            "drive_train.motor_encoder.once_per_turn_error_deg",
+            6,
+            per_sun.to_degrees(),
+        ),
+        (
+            "motor encoder: error twice a turn",
+            "deg",
+            "drive_train.motor_encoder.twice_per_turn_error_deg",
+            8,
+            per_sun.to_degrees(),
+        ),
+        (
+            "output encoder: error once a turn",
+            "deg",
+            "drive_train.output_encoder.once_per_turn_error_deg",
+            10,
+            per_output.to_degrees(),
+        ),
+        (
+            "output encoder: error twice a turn",
+            "deg",
+            "drive_train.output_encoder.twice_per_turn_error_deg",
+            12,
+            per_output.to_degrees(),
+        ),
+    ];
+    values.extend(maps.map(|(name, unit, key, first, factor)| {
+        let [along, across] = [first, first + 1].map(|index| parameter(index).times(factor));
+        let phase = across.value.atan2(along.value).to_degrees();
+        let size = Learnt::size(along, across);
+        let note = if size.value > REACH * size.deviation {
+            format!("phase at count zero {phase:.1} deg")
+        } else {
+            "may well be zero".to_owned()
+        };
+        let mut finding = size.finding(name, unit, key, &note);
+        finding.interval = finding.interval.map(|ends| ends.map(|end| end.max(0.0)));
+        finding
+    }));
+    values
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn before_anything_moves_inertia_is_as_designed_and_as_doubtful() {
+        let loaded = joint_file::named::load(std::path::Path::new("q1")).expect("a preset");
+        let settings = observer_settings(&loaded.file.surroundings());
+        let tables = design_observer::<f32>(&loaded.file.parameters, &settings).expect("tables");
+        let memory = Observer::<f32, MAPPED>::new(&tables).save();
+        let Learnt { value, deviation, before } = Numbers::new(&memory).inertia_ratio(&tables);
+        assert_eq!((value, deviation), (1.0, before));
+        assert!(before > 0.0);
+    }
+}

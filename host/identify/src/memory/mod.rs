@@ -1,0 +1,163 @@
+//! `joint memory`: what an observer has learnt of its joint, as a file: read off a board, shown, written to a board, kept and
+//! erased there. Learning is the observer's business, what goes over the line the session's.
+//!
+//! `arguments` is the command line, `bench` finds the board, `content` says what is in a memory.
+
+mod arguments;
+mod bench;
+pub mod content;
+
+use std::fs;
+use std::path::Path;
+
+pub use arguments::Arguments;
+use arguments::{Command, Place};
+use bench::Found;
+use link::messages::{Kept, Remembered};
+use model_core::realtime::observer::{MEMORY_BYTES, Memory, MemoryError};
+
+use board::session::Session;
+use content::Content;
+use joint_file::named;
+use report::failure::{Failure, Outcome};
+use report::output;
+use report::progress::Progress;
+use simulation::sim::files::unwritten;
+
+/// What a board is asked to do with its flash.
+type Ask = fn(&mut Session<'static>) -> Outcome<Kept>;
+
+/// Does what is asked for.
+pub fn run(arguments: &Arguments) -> Outcome<()> {
+    Progress::during(|progress| match &arguments.command {
+        Command::Show { file, joint, json } => show(file, joint, json.as_deref()),
+        Command::Read { file, place } => read(file, place, progress),
+        Command::Write { file, place } => write(file, place, progress),
+        Command::Keep { place } => {
+            change(place, progress, Session::keep_memory, "keeps what it has learnt, in its flash")
+        }
+        Command::Erase { place } => change(place, progress, Session::erase_memory, "keeps no memory now"),
+    })
+}
+
+fn show(file: &Path, joint: &Path, json: Option<&Path>) -> Outcome<()> {
+    let (memory, loaded) = (load(file)?, named::load(joint)?);
+    let content = Content::of(&memory, &loaded).map_err(|error| refused(&file.display().to_string(), error))?;
+    let text = content.text(&file.display().to_string(), &loaded);
+    output::deliver(&content, &text, json, &[file, joint])
+}
+
+fn read(file: &Path, place: &Place, progress: &Progress) -> Outcome<()> {
+    let loaded = named::load(&place.joint)?;
+    let mut found = Found::call(place, &loaded, progress)?;
+    let memory = found.session.stored_memory()?;
+    progress.clear();
+    if memory.iter().all(|byte| *byte == 0xff) || memory == [0; MEMORY_BYTES] {
+        return Err(found.keeps_nothing());
+    }
+    let content = Content::of(&memory, &loaded);
+    if let Err(error) = &content
+        && *error != MemoryError::OtherJoint
+    {
+        let what = format!("what {} keeps is not used by it", found.name);
+        return Err(Failure::new(format!("{what}: {}", parts(*error).0))
+            .with_help(format!("erase it: joint memory erase{}", found.options)));
+    }
+    fs::write(file, memory).map_err(|error| unwritten(file, &error))?;
+    let name = file.display().to_string();
+    match content {
+        Ok(content) => output::print(&content.text(&name, &loaded)),
+        Err(_) => output::print(&format!(
+            "{name} written; it is of another joint than {}, or of other encoders: show it with its own --joint\n",
+            loaded.name
+        )),
+    }
+}
+
+fn write(file: &Path, place: &Place, progress: &Progress) -> Outcome<()> {
+    let (memory, loaded) = (load(file)?, named::load(&place.joint)?);
+    let name = file.display().to_string();
+    // What is no memory at all is known before a board is asked.
+    match Content::of(&memory, &loaded) {
+        Err(error) if error != MemoryError::OtherJoint => return Err(refused(&name, error)),
+        _ => {}
+    }
+    let mut found = Found::call(place, &loaded, progress)?;
+    if let Some(error) = fault(found.session.bring_memory(&memory)?) {
+        progress.clear();
+        let joint = found.hello.joint.clone();
+        return Err(refused(&name, error).while_doing(format_args!("{}, joint {joint}", found.name)));
+    }
+    let kept = found.session.write_memory()?;
+    progress.clear();
+    match kept {
+        Kept::Stored => output::print(&format!("{name} is in the flash of {}: runs may begin from it\n", found.name)),
+        _ if found.is_emulated() => output::print(&format!(
+            "{name} is good: the firmware of {} takes it; nothing of it stays, since that board has no flash\n",
+            found.name
+        )),
+        _ => Err(found.not_written()),
+    }
+}
+
+/// Has a board do something with its own flash, and says what then is so.
+fn change(place: &Place, progress: &Progress, ask: Ask, done: &str) -> Outcome<()> {
+    let loaded = named::load(&place.joint)?;
+    let mut found = Found::call(place, &loaded, progress)?;
+    let kept = ask(&mut found.session)?;
+    progress.clear();
+    match kept {
+        Kept::Stored => output::print(&format!("{} {done}\n", found.name)),
+        _ => Err(found.not_written()),
+    }
+}
+
+/// How to come by one.
+const READ_ONE: &str = "read one off a board: joint memory read FILE --port PATH";
+
+/// The bytes of a file.
+fn load(file: &Path) -> Outcome<Memory> {
+    let name = file.display();
+    let failed = |why: String| Failure::new(format!("cannot read the memory {name}: {why}")).with_help(READ_ONE);
+    if file.is_dir() {
+        return Err(failed("it is a folder".to_owned()));
+    }
+    let bytes = fs::read(file).map_err(|error| failed(error.to_string()))?;
+    let count = bytes.len();
+    bytes.try_into().map_err(|_| {
+        Failure::new(format!(
+            "{name} is no memory of an observer: it has {count} bytes, and a memory has {MEMORY_BYTES}"
+        ))
+        .with_help(READ_ONE)
+    })
+}
+
+/// A memory that is not taken.
+fn refused(name: &str, error: MemoryError) -> Failure {
+    let (what, mend) = parts(error);
+    Failure::new(format!("{name}: {what}")).with_help(mend)
+}
+
+/// What is wrong, and how to mend it.
+fn parts(error: MemoryError) -> (String, String) {
+    let text = error.to_string();
+    let (what, mend) = text.split_once(": ").unwrap_or((&text, ""));
+    let mend = match error {
+        MemoryError::NotAMemory => READ_ONE.to_owned(),
+        MemoryError::OtherJoint => format!("{mend}; the same joint file, backlash included, and the same encoders"),
+        _ => mend.to_owned(),
+    };
+    (what.to_owned(), mend)
+}
+
+/// A judgement of a board, unless it is good.
+fn fault(judged: Remembered) -> Option<MemoryError> {
+    match judged {
+        Remembered::Good => None,
+        Remembered::Nothing | Remembered::NotAMemory => Some(MemoryError::NotAMemory),
+        Remembered::WrongVersion => Some(MemoryError::WrongVersion),
+        Remembered::Damaged => Some(MemoryError::Damaged),
+        Remembered::OtherJoint => Some(MemoryError::OtherJoint),
+        Remembered::NotFinite => Some(MemoryError::NotFinite),
+    }
+}

@@ -1,0 +1,43 @@
+//! The joint file with what was found in place of what it said. What was not found stays as it is.
+
+use super::findings::Finding;
+use super::plan::Plan;
+use super::table::number;
+use joint_file::named::{self, Loaded};
+use report::failure::{Failure, Outcome};
+
+/// Keys that may be negative.
+const SIGNED: [&str; 1] = ["drive_train.torque_constant_error_ratio"];
+
+/// The changed text; it can be read again. What may well be zero stays out of a file that does not speak of it.
+pub fn patch(loaded: &Loaded, plan: &Plan, findings: &[Finding], log: &str) -> Outcome<String> {
+    let log: String = log.chars().filter(|letter| !letter.is_control()).collect();
+    let mut text = loaded.text.clone();
+    for finding in findings {
+        let (Some(key), Some(value), Some([low, high])) = (&finding.key, finding.value, finding.interval) else {
+            continue;
+        };
+        let stated = joint_file::value(&loaded.text, key).ok().flatten().is_some();
+        if !stated && low <= 0.0 && high >= 0.0 {
+            continue;
+        }
+        let value = if SIGNED.contains(&key.as_str()) { value } else { value.max(0.0) };
+        let remark = format!("identified from {log}: {} to {} (95 %)", number(low), number(high));
+        for (encoder, bits) in [("motor", plan.motor_bits), ("output", plan.output_bits)] {
+            // An encoder that the file does not speak of yet begins with its resolution.
+            let section = format!("drive_train.{encoder}_encoder.");
+            let resolution = format!("{section}bits");
+            if key.starts_with(&section) && matches!(joint_file::value(&text, &resolution), Ok(None)) {
+                text = set(&text, &resolution, &bits.to_string(), &format!("as told for {log}"))?;
+            }
+        }
+        text = set(&text, key, &format!("{value:.6e}"), &remark)?;
+    }
+    named::read_changed(format!("{} with what was found", loaded.name), text.clone(), &[])?;
+    Ok(text)
+}
+
+fn set(text: &str, key: &str, value: &str, remark: &str) -> Outcome<String> {
+    joint_file::change_noting(text, key, value, remark)
+        .map_err(|refused| Failure::new(format!("{key}: {}", refused.message)).with_help(refused.help))
+}

@@ -1,0 +1,81 @@
+//! Pictures of the fit: twist over torque with both branches, and what is left over in time. Numbers are the table's.
+
+use super::log::Log;
+use super::plan::Plan;
+use super::rows::Rows;
+use super::twist::{self, Twist};
+use report::plot::ink::Ink;
+use report::plot::mark::Mark;
+use report::plot::panel::Panel;
+use report::plot::unit::{SECONDS, TORQUE, Unit};
+use report::plot::{Figure, HorizontalAxis, Shape};
+
+/// More points than this do not make a picture clearer.
+const POINTS: usize = 6000;
+
+/// Twist over torque: moments of either flank, those near a change, and the fitted branches.
+pub fn loop_of(log: &Log, rows: &Rows, twist: &Twist, plan: &Plan) -> Figure {
+    let cleaned = twist.cleaned(log, rows, plan);
+    let every = cleaned.len().div_ceil(POINTS).max(1);
+    let points = |side: f64| -> Vec<(f64, f64)> {
+        let own = cleaned.iter().filter(|(row, _)| row.side == side);
+        own.step_by(every).map(|(row, twist)| (row.torque(), *twist)).collect()
+    };
+    let [half_gap, compliance] = [twist::HALF_GAP, twist::COMPLIANCE].map(|unknown| twist.solution.values[unknown]);
+    let reach = 1.05 * rows.all.iter().map(|row| row.torque().abs()).fold(0.0, f64::max);
+    let branch = |side: f64| vec![(0.0, side * half_gap), (side * reach, side * (half_gap + compliance * reach))];
+    let dots =
+        |side: f64, ink: Ink, label: &str| Mark::Points { points: points(side), ink, label: label.into(), size: 2.5 };
+    let line =
+        |side: f64, label: &str| Mark::Line { points: branch(side), ink: Ink::Text, label: label.into(), width: 2.0 };
+    let marks = vec![
+        dots(0.0, Ink::Reference, "near a change, not used"),
+        dots(1.0, Ink::DriveSide, "drive side"),
+        dots(-1.0, Ink::BackSide, "back side"),
+        line(1.0, "fit"),
+        line(-1.0, ""),
+    ];
+    let unit = Unit::of_angle(half_gap.abs() + compliance.abs() * reach);
+    Figure {
+        title: "Twist over torque".into(),
+        axis: "torque at the output".into(),
+        unit: TORQUE,
+        range: (-reach, reach),
+        runs: HorizontalAxis::Linear,
+        shape: Shape::default(),
+        panels: vec![Panel { height: 420, ..Panel::lines("Motor over ratio less output", unit, marks) }],
+        note: "Encoder, tooth and skew errors that were found are taken off; the step between the branches is the lost motion."
+            .into(),
+    }
+}
+
+/// Torque and what the fit leaves over, in time.
+pub fn course(log: &Log, twist: &Twist) -> Figure {
+    let every = log.time.len().div_ceil(POINTS).max(1);
+    let torque = log.time.iter().copied().zip(log.torque.iter().copied()).step_by(every).collect();
+    let every = twist.rows.len().div_ceil(POINTS).max(1);
+    let left: Vec<(f64, f64)> =
+        twist.rows.iter().zip(&twist.solution.residuals).step_by(every).map(|(row, left)| (row.time, *left)).collect();
+    let greatest = left.iter().map(|point| point.1.abs()).fold(0.0, f64::max);
+    Figure {
+        title: "What the fit leaves over".into(),
+        axis: "time".into(),
+        unit: SECONDS,
+        range: (0.0, log.time.last().copied().unwrap_or(1.0)),
+        runs: HorizontalAxis::Linear,
+        shape: Shape::default(),
+        panels: vec![
+            Panel::lines(
+                "Motor torque",
+                TORQUE,
+                vec![Mark::Line { points: torque, ink: Ink::First, label: String::new(), width: 1.2 }],
+            ),
+            Panel::lines(
+                "Twist that the fit leaves over",
+                Unit::of_angle(greatest),
+                vec![Mark::Points { points: left, ink: Ink::Second, label: String::new(), size: 2.0 }],
+            ),
+        ],
+        note: String::new(),
+    }
+}

@@ -1,0 +1,69 @@
+//! Whether a log was sampled evenly, fast and long enough for its joint, with the figures of what is needed. What the samples
+//! hold is the log's business.
+
+use super::columns::Columns;
+use super::findings::gap;
+use super::plan::Plan;
+use report::failure::{Failure, Outcome};
+
+/// A shorter log cannot hold reversals and what surrounds them [s].
+const LEAST_TIME: f64 = 0.5;
+/// Slower samples do not show what a landing does to the torque [Hz]...
+const LEAST_RATE: f64 = 2000.0;
+/// ... nor do less than so many of them in a swing of the joint on its compliance.
+const LEAST_IN_A_SWING: f64 = 3.0;
+/// A step of time may differ by this ratio from the usual one.
+const UNEVEN_RATIO: f64 = 0.5;
+
+/// The sampling period of a log that is fast, long and even enough.
+pub fn sampling(time: &[f64], columns: &Columns, plan: &Plan) -> Outcome<f64> {
+    if time.len() < 2 {
+        return Err(Failure::new(format!("there are only {} samples", time.len()))
+            .with_help(format!("record several reversals, for {LEAST_TIME} s at the very least")));
+    }
+    let period = evenly_spaced(time, columns)?;
+    check_time(period, time.len(), plan)?;
+    Ok(period)
+}
+
+fn evenly_spaced(time: &[f64], columns: &Columns) -> Outcome<f64> {
+    let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    if let Some(line) = steps.iter().position(|&step| step <= 0.0) {
+        return Err(Failure::new(format!("the time does not rise in {}", columns.place(line + 1)))
+            .with_help("samples must be in the order in which they were taken, each with its own time"));
+    }
+    let unsorted = steps.clone();
+    steps.sort_by(f64::total_cmp);
+    let usual = steps[steps.len() / 2];
+    match unsorted.iter().position(|step| (step / usual - 1.0).abs() > UNEVEN_RATIO) {
+        Some(line) => Err(Failure::new(format!(
+            "samples are not evenly spaced: {:.3e} s before {}, usually {usual:.3e} s",
+            unsorted[line],
+            columns.place(line + 1)
+        ))
+        .with_help("samples were lost: cut the log there, or resample it")),
+        None => Ok((time[time.len() - 1] - time[0]) / (time.len() - 1) as f64),
+    }
+}
+
+/// Refuses a log that is too short, or sampled too slowly for the joint's swing.
+fn check_time(period: f64, samples: usize, plan: &Plan) -> Outcome<()> {
+    let (rate, time) = (1.0 / period, period * samples as f64);
+    let needed = LEAST_RATE.max(LEAST_IN_A_SWING / plan.swing());
+    if rate < 0.999 * needed {
+        let swing = 1.0 / plan.swing();
+        return Err(Failure::new(format!(
+            "the log is sampled too slowly: {rate:.0} Hz, at least {needed:.0} Hz are needed for a joint that swings at \
+             {swing:.0} Hz"
+        ))
+        .with_help(format!(
+            "record every control period; {:.0} Hz also show the damping",
+            (gap::SWING_SAMPLES * swing).max(needed)
+        )));
+    }
+    if time < LEAST_TIME {
+        return Err(Failure::new(format!("the log is too short: {time:.3} s, at least {LEAST_TIME} s are needed"))
+            .with_help("record several reversals to both sides; docs/identify.md tells a good test"));
+    }
+    Ok(())
+}

@@ -1,0 +1,118 @@
+//! The recommended test without hardware: the f64 reference of a joint file in its drive train, reversed by a torque that
+//! steps to and fro, recorded as a drive would. It shares nothing with the fits but the joint file.
+
+use std::fmt::Write as _;
+
+use joint_file::JointFile;
+use reference::drive_train::Measurement;
+
+use super::plan::Plan;
+use report::failure::{Failure, Outcome};
+use report::interruption;
+use scenario::plant::{PlantName, plant};
+use scenario::surroundings::{train, turn_encoders};
+
+/// Shares of the strongest torque for quick reversals: the compliance needs several.
+const SHARES: [f64; 4] = [1.0, 0.7, 0.45, 0.25];
+/// Quick reversals for each share.
+const REVERSALS: usize = 8;
+/// Time between two of them [s].
+const QUICK: f64 = 0.12;
+/// Speed that the output is not to exceed by quick reversals [rad/s].
+const FASTEST: f64 = 12.0;
+/// Time between two slow reversals, which turn the output [s].
+const SLOW: f64 = 1.5;
+/// Swing from one slow reversal to the next [rad].
+const SWING: f64 = 7.5;
+/// Speeds of the two series of slow reversals.
+const SLOW_SHARES: [f64; 2] = [1.0, 0.7];
+
+/// One sample.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    /// Motor and output counts.
+    pub seen: Measurement,
+    /// Torque that the motor is asked for [N m].
+    pub torque: f64,
+    /// Torque from the joint to its link [N m].
+    pub output_torque: f64,
+}
+
+/// A recorded test.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recording {
+    /// Samples in their order.
+    pub samples: Vec<Sample>,
+    /// Samples a second [Hz].
+    pub rate: f64,
+}
+
+/// Torques of the test: how long [s] and how much [N m].
+pub fn course(file: &JointFile) -> Vec<(f64, f64)> {
+    let plan = Plan::of(file);
+    let motor = plan.motor_inertia * plan.ratio() * plan.ratio();
+    let inertia = motor + plan.link_inertia;
+    let dry = plan.train.load_coulomb_friction + plan.ratio() * plan.train.motor_coulomb_friction;
+    let at_motor = |acceleration: f64, brake: f64| {
+        ((inertia * acceleration + brake) / plan.ratio()).min(file.profile.motor_torque_limit)
+    };
+    let strongest = at_motor(2.0 * FASTEST / QUICK, dry).min(file.profile.drive_torque.abs());
+    // From speed to opposite speed the output goes out and back by a parabola.
+    let brake = dry + 1.2 * plan.train.gravity_torque.abs();
+    let slow = at_motor(8.0 * SWING / (SLOW * SLOW), brake);
+    let mut course = vec![(0.05, 0.0)];
+    let mut series = |time: f64, torque: f64, reversals: usize| {
+        course.push((0.5 * time, torque));
+        course.extend((1..reversals).map(|index| (time, if index % 2 == 1 { -torque } else { torque })));
+        course.push((0.5 * time, if reversals % 2 == 1 { -torque } else { torque }));
+    };
+    SHARES.iter().for_each(|share| series(QUICK, share * strongest, REVERSALS));
+    SLOW_SHARES.iter().for_each(|share| series(SLOW, (share * slow).max(0.3 * slow + brake / plan.ratio()), 3));
+    course
+}
+
+/// Does the test.
+pub fn record(file: &JointFile, seed: u64, at: &dyn Fn(f64)) -> Outcome<Recording> {
+    let mut train = train(file);
+    turn_encoders(&mut train, seed);
+    let rate = train.control_rate;
+    let lever = file.parameters.geometry.carrier_base_radius();
+    let mut plant = plant(PlantName::Reference, &file.parameters, &train, Vec::new(), seed)?;
+    let course = course(file);
+    let whole: f64 = course.iter().map(|(time, _)| time).sum();
+    let mut samples = Vec::new();
+    for (time, torque) in course {
+        for _ in 0..(time * rate).round() as usize {
+            if samples.len() % 1000 == 0 {
+                at(samples.len() as f64 / rate / whole);
+                if interruption::requested() {
+                    return Err(Failure::interrupted("stopped by the user"));
+                }
+            }
+            let joint = plant.joint();
+            let output_torque = if file.parameters.compliance.is_some() {
+                joint.wind_up_torque
+            } else {
+                joint.mesh_forces.iter().flatten().sum::<f64>() * lever
+            };
+            samples.push(Sample { seen: plant.measure(), torque, output_torque });
+            plant.advance(torque).map_err(|error| Failure::new(format!("the joint cannot be followed: {error}")))?;
+        }
+    }
+    Ok(Recording { samples, rate })
+}
+
+impl Recording {
+    /// As a log.
+    pub fn csv(&self, with_output_torque: bool) -> String {
+        let more = if with_output_torque { ",output_torque_N_m" } else { "" };
+        let mut text = format!("time_s,motor_counts,output_counts,motor_torque_N_m{more}\n");
+        for Sample { seen, torque, output_torque } in &self.samples {
+            let time = seen.period as f64 / self.rate;
+            // Writing to a string cannot fail.
+            let _ = write!(text, "{time:.6},{},{},{torque:.6}", seen.motor_counts, seen.output_counts);
+            let _ = if with_output_torque { writeln!(text, ",{output_torque:.6}") } else { writeln!(text) };
+        }
+        text
+    }
+}

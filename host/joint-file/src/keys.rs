@@ -1,0 +1,370 @@
+//! Every key of a joint file: its section, its unit, its bound, and a hint for who got it wrong. How sections become
+//! parameters is left to the readers of the sections; docs/joint-file.md says the same in more words.
+
+use crate::bound::{Bound, Unit};
+
+/// What a key holds.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Kind {
+    /// A string.
+    Text,
+    /// One of these words.
+    Choice(&'static [&'static str]),
+    /// A whole number with both ends allowed.
+    Whole(u32, u32),
+    /// A number.
+    Number(Unit, Bound),
+    /// A number for all planets, or a list with one number for each.
+    PerPlanet(Unit, Bound),
+    /// A table of its own.
+    Section,
+}
+
+/// One key.
+#[derive(Debug)]
+pub(crate) struct Key {
+    /// The section that it stands in; empty at the top of the file. `[mesh.sun_planet]` has the keys of `[mesh]`.
+    pub section: &'static str,
+    pub name: &'static str,
+    pub kind: Kind,
+    /// Shown when the value is refused or missing.
+    pub hint: &'static str,
+}
+
+const fn key(section: &'static str, name: &'static str, kind: Kind, hint: &'static str) -> Key {
+    Key { section, name, kind, hint }
+}
+
+const fn section(parent: &'static str, name: &'static str, hint: &'static str) -> Key {
+    key(parent, name, Kind::Section, hint)
+}
+
+use Bound::{Between, FromToBelow, Inside, ZeroOr};
+use Kind::{Choice, Number, PerPlanet, Text, Whole};
+use Unit::{Degrees, Micro, Milli, Si};
+
+/// What a typing error may not leave: the board computes in f32.
+const MASS: Bound = Between(1e-6, 1e6);
+const INERTIA: Bound = Between(1e-12, 1e6);
+const TORQUE: Bound = Between(1e-6, 1e9);
+const MAY_BE_ABSENT: Bound = Between(0.0, 1e6);
+const RADIUS: Kind = Number(Milli, Between(0.5, 5000.0));
+const RADIUS_HINT: &str = "a radius in mm (40 mm is 40, not 0.04); or give `module_mm` and leave all radii out";
+const MASS_HINT: &str = "I / r^2 in kg, felt along the line of action: the \"Inertia\" of the paper's Table 1";
+const INERTIA_HINT: &str = "a moment of inertia in kg m^2, about the gear's own axis";
+const ANGLE: Kind = Number(Degrees, Between(5.0, 45.0));
+const TEETH: Kind = Whole(5, 1000);
+const PHASE: Kind = PerPlanet(Si, Between(-6.3, 6.3));
+const PHASE_HINT: &str = "in rad, within a turn: one number is the phase of planet 0 and the others follow from the teeth; a list states every planet's";
+const FRICTION_HINT: &str = "a torque in N m, 0 if there is none";
+
+/// All keys, in the order of the documentation.
+pub(crate) const KEYS: &[Key] = &[
+    key("", "name", Text, "a short name of letters, digits, spaces and -_.+(), at most 32 of them: name = \"Q1\""),
+    key("", "description", Text, "a sentence for reports"),
+    key("", "coherence", Choice(&["required", "warn"]), "\"warn\" uses gears that do not fit together as they stand"),
+    key(
+        "",
+        "rated_output_torque_N_m",
+        Number(Si, TORQUE),
+        "the torque at the link that profiles and reports scale with",
+    ),
+    key("", "characteristic_length_um", Number(Micro, Between(1e-3, 1e4)), "b_c of eq. 16; 10 if left out"),
+    section("", "geometry", "teeth, angles and radii: planets, sun_teeth, planet_teeth, ring_teeth, ..."),
+    section("", "bodies", "masses: sun_equivalent_mass_kg, planet_equivalent_mass_kg, planet_mass_kg, ..."),
+    section("", "compliance", "stiffness_N_m_per_rad and damping_ratio; leave it out to join carrier and link rigidly"),
+    section(
+        "",
+        "mesh",
+        "the gear meshes: mean_stiffness_N_per_m, stiffness_ratio, damping_ratio, half_backlash_um, ...",
+    ),
+    section("", "contact", "damping_law and dead_zone"),
+    section("", "excitation", "mode and, in mode \"time\", the mesh frequency"),
+    section("", "profile", "torques that the built-in motion profile scales with"),
+    section("", "drive_train", "friction, cogging, current loop and encoders around the joint"),
+    // Geometry
+    key("geometry", "planets", Whole(3, 5), "the model has 3, 4 or 5 equally spaced planets"),
+    key("geometry", "sun_teeth", TEETH, "the number of teeth of the sun"),
+    key("geometry", "planet_teeth", TEETH, "the number of teeth of one planet"),
+    key("geometry", "ring_teeth", TEETH, "the number of teeth of the fixed ring: sun_teeth + 2 planet_teeth"),
+    key("geometry", "working_pressure_angle_deg", ANGLE, "in degrees, commonly 20; not in rad"),
+    key(
+        "geometry",
+        "reference_pressure_angle_deg",
+        ANGLE,
+        "in degrees, used with `module_mm`; the working angle if left out",
+    ),
+    key(
+        "geometry",
+        "module_mm",
+        Number(Milli, Between(0.05, 50.0)),
+        "the module in mm; all radii follow from it and the teeth",
+    ),
+    key("geometry", "sun_base_radius_mm", RADIUS, RADIUS_HINT),
+    key("geometry", "planet_base_radius_mm", RADIUS, RADIUS_HINT),
+    key(
+        "geometry",
+        "carrier_radius_mm",
+        RADIUS,
+        "r_c, from the joint's axis to a planet's axis, in mm; never r_c cos(alpha)",
+    ),
+    key(
+        "geometry",
+        "carrier_base_radius_mm",
+        RADIUS,
+        "r_c cos(alpha), the carrier's lever on the line of action, in mm",
+    ),
+    // Bodies
+    key("bodies", "sun_equivalent_mass_kg", Number(Si, MASS), MASS_HINT),
+    key("bodies", "sun_inertia_kg_m2", Number(Si, INERTIA), INERTIA_HINT),
+    key("bodies", "planet_equivalent_mass_kg", Number(Si, MASS), MASS_HINT),
+    key("bodies", "planet_inertia_kg_m2", Number(Si, INERTIA), INERTIA_HINT),
+    key(
+        "bodies",
+        "planet_mass_kg",
+        Number(Si, MAY_BE_ABSENT),
+        "the mass of one planet in kg, carried round by the carrier",
+    ),
+    key(
+        "bodies",
+        "carrier_inertia_over_radius_squared_kg",
+        Number(Si, MASS),
+        "I_c / r_c^2 in kg without planets and link, as in the paper's Table 1",
+    ),
+    key(
+        "bodies",
+        "carrier_equivalent_mass_kg",
+        Number(Si, MASS),
+        "I_c / (r_c cos(alpha))^2 in kg, without planets and link",
+    ),
+    key(
+        "bodies",
+        "carrier_inertia_kg_m2",
+        Number(Si, INERTIA),
+        "I_c in kg m^2 about the joint's axis, without planets and link",
+    ),
+    key(
+        "bodies",
+        "rotor_inertia_kg_m2",
+        Number(Si, MAY_BE_ABSENT),
+        "motor rotor on the sun shaft in kg m^2; 0 if left out",
+    ),
+    key("bodies", "link_inertia_kg_m2", Number(Si, MAY_BE_ABSENT), "link on the carrier in kg m^2; 0 if left out"),
+    // Compliance
+    key(
+        "compliance",
+        "stiffness_N_m_per_rad",
+        Number(Si, Between(1.0, 1e9)),
+        "in N m/rad: 3 N m/arcmin are 10.3e3 N m/rad",
+    ),
+    key(
+        "compliance",
+        "damping_ratio",
+        Number(Si, FromToBelow(0.0, 1.0)),
+        "of the carrier-link oscillator; 2 % is 0.02",
+    ),
+    // Meshes
+    section("mesh", "sun_planet", "what differs for the sun-planet meshes"),
+    section("mesh", "ring_planet", "what differs for the ring-planet meshes"),
+    key(
+        "mesh",
+        "mean_stiffness_N_per_m",
+        Number(Si, Between(1e4, 1e12)),
+        "K_m in N/m, about 1e8 for steel teeth; 100 N/um are 1e8 N/m",
+    ),
+    key(
+        "mesh",
+        "stiffness_wave",
+        Choice(&["harmonic", "rectangular"]),
+        "\"harmonic\" (eq. 7) or \"rectangular\" (Fig. 3)",
+    ),
+    key(
+        "mesh",
+        "stiffness_ratio",
+        Number(Si, FromToBelow(0.0, 1.0)),
+        "K_a / K_m: half the stiffness range over its mean; 10 % is 0.1",
+    ),
+    key("mesh", "contact_ratio", Number(Si, Inside(1.0, 2.0)), "of the pair, for the rectangular wave; 1.6 is common"),
+    key("mesh", "order", Whole(1, 8), "the highest Fourier harmonic of the rectangular wave that is kept"),
+    key(
+        "mesh",
+        "damping_ratio",
+        Number(Si, FromToBelow(0.0, 1.0)),
+        "zeta of eqs 8-10, commonly 0.03 to 0.1; 5 % is 0.05",
+    ),
+    key(
+        "mesh",
+        "half_backlash_um",
+        PerPlanet(Micro, ZeroOr(0.5, 1000.0)),
+        "the half-backlash b in um, the teeth are free over 2b: 0.06 mm are 60 um, 6e-5 m are 60 um",
+    ),
+    key(
+        "mesh",
+        "backlash_um",
+        PerPlanet(Micro, ZeroOr(1.0, 2000.0)),
+        "the whole backlash 2b along the line of action in um: 0.12 mm are 120 um",
+    ),
+    key(
+        "mesh",
+        "transmission_error_um",
+        PerPlanet(Micro, Between(0.0, 1000.0)),
+        "the amplitude E of eq. 11 in um (half of peak to peak); 0 if there is none",
+    ),
+    key("mesh", "stiffness_phase_rad", PHASE, PHASE_HINT),
+    key("mesh", "error_phase_rad", PHASE, PHASE_HINT),
+    // Contact
+    key(
+        "contact",
+        "damping_law",
+        Choice(&["contact", "paper"]),
+        "\"contact\": teeth only push; \"paper\": C d' acts in the gap too",
+    ),
+    key("contact", "dead_zone", Choice(&["sharp", "tanh"]), "\"sharp\" (eq. 12) or \"tanh\" (eq. 13)"),
+    key(
+        "contact",
+        "sharpness",
+        Number(Si, Between(0.1, 1e6)),
+        "sigma of eq. 13, per unit of the dimensionless deflection",
+    ),
+    // Excitation
+    key(
+        "excitation",
+        "mode",
+        Choice(&["angle", "time"]),
+        "\"angle\" follows the joint; \"time\" runs at a stated frequency",
+    ),
+    key("excitation", "mesh_frequency_rad_per_s", Number(Si, Between(1e-3, 1e9)), "omega in rad/s"),
+    key("excitation", "mesh_frequency_Hz", Number(Si, Between(1e-3, 1e8)), "omega / 2 pi in Hz"),
+    key(
+        "excitation",
+        "mesh_frequency_over_omega_n",
+        Number(Si, Between(1e-6, 1e3)),
+        "Omega = omega / omega_n with omega_n of eq. 18",
+    ),
+    // Profile
+    key(
+        "profile",
+        "drive_torque_N_m",
+        Number(Si, TORQUE),
+        "the rated motor torque; balances the rated output torque if left out",
+    ),
+    key(
+        "profile",
+        "motor_torque_limit_N_m",
+        Number(Si, TORQUE),
+        "the motor's limit; twice the drive torque if left out",
+    ),
+    // Drive train
+    key("drive_train", "motor_coulomb_friction_N_m", Number(Si, MAY_BE_ABSENT), FRICTION_HINT),
+    key(
+        "drive_train",
+        "motor_viscous_friction_N_m_s_per_rad",
+        Number(Si, MAY_BE_ABSENT),
+        "in N m s/rad of motor speed",
+    ),
+    key("drive_train", "cogging_torque_N_m", Number(Si, MAY_BE_ABSENT), "the amplitude of the cogging torque"),
+    key("drive_train", "cogging_periods_per_turn", Whole(1, 10_000), "the least common multiple of slots and poles"),
+    key("drive_train", "load_coulomb_friction_N_m", Number(Si, MAY_BE_ABSENT), FRICTION_HINT),
+    key(
+        "drive_train",
+        "load_stribeck_rise_ratio",
+        Number(Si, Between(0.0, 10.0)),
+        "how much more friction there is at rest than in motion; 20 % is 0.2",
+    ),
+    key(
+        "drive_train",
+        "load_stribeck_speed_rad_per_s",
+        Number(Si, Between(1e-6, 1e3)),
+        "the speed at which the rise has decayed",
+    ),
+    key("drive_train", "load_viscous_friction_N_m_s_per_rad", Number(Si, MAY_BE_ABSENT), "in N m s/rad of link speed"),
+    key(
+        "drive_train",
+        "efficiency",
+        Number(Si, Between(0.1, 1.0)),
+        "of the gears, load-dependent losses only; 97 % is 0.97",
+    ),
+    key(
+        "drive_train",
+        "gravity_torque_N_m",
+        Number(Si, Between(-1e6, 1e6)),
+        "the torque of the link's weight, times sin(link angle)",
+    ),
+    key(
+        "drive_train",
+        "current_lag_ms",
+        Number(Milli, Between(0.0, 100.0)),
+        "the time constant of the current loop in ms",
+    ),
+    key("drive_train", "torque_noise_ratio", Number(Si, Between(0.0, 1.0)), "rms over the torque; 1.5 % is 0.015"),
+    key(
+        "drive_train",
+        "torque_constant_error_ratio",
+        Number(Si, Between(-0.5, 0.5)),
+        "true over nominal torque constant, less 1; 3 % is 0.03",
+    ),
+    key("drive_train", "control_rate_Hz", Number(Si, Between(1.0, 1e6)), "the rate of the controller around the joint"),
+    key(
+        "drive_train",
+        "control_delay_periods",
+        Number(Si, Between(0.0, 100.0)),
+        "from measuring to acting, in control periods",
+    ),
+    section("drive_train", "motor_encoder", "bits, once_per_turn_error_deg, twice_per_turn_error_deg, skew_us"),
+    section("drive_train", "output_encoder", "bits, once_per_turn_error_deg, twice_per_turn_error_deg, skew_us"),
+    key("encoder", "bits", Whole(8, 32), "the resolution: 14 bits are 16384 counts a turn"),
+    key("encoder", "once_per_turn_error_deg", Number(Degrees, Between(0.0, 10.0)), "an amplitude in degrees"),
+    key("encoder", "twice_per_turn_error_deg", Number(Degrees, Between(0.0, 10.0)), "an amplitude in degrees"),
+    key("encoder", "skew_us", Number(Micro, Between(0.0, 1e5)), "how late the reading is, in us"),
+];
+
+/// The keys of one section.
+pub(crate) fn of(section: &str) -> impl Iterator<Item = &'static Key> {
+    let section = section.to_owned();
+    KEYS.iter().filter(move |key| key.section == section)
+}
+
+/// The key of that name; every name that a reader asks for is in the list, as the tests see.
+pub(crate) fn find(section: &str, name: &str) -> &'static Key {
+    of(section).find(|key| key.name == name).expect("readers ask for listed keys only")
+}
+
+/// Whether a section has that name.
+pub(crate) fn find_section(name: &str) -> bool {
+    KEYS.iter().any(|key| matches!(key.kind, Kind::Section) && key.name == name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{KEYS, Kind};
+
+    #[test]
+    fn every_key_is_documented_with_its_bound() {
+        let document = include_str!("../../../docs/joint-file.md");
+        for key in KEYS {
+            let value = match key.kind {
+                Kind::Text => "text".to_owned(),
+                Kind::Choice(words) => {
+                    words.iter().map(|word| format!("`\"{word}\"`")).collect::<Vec<_>>().join(" or ")
+                }
+                Kind::Whole(low, high) => format!("between {low} and {high}"),
+                Kind::Number(_, bound) => bound.text(),
+                Kind::PerPlanet(_, bound) => format!("{}; number or list", bound.text()),
+                Kind::Section => continue,
+            };
+            let name = format!("| `{}` |", key.name);
+            let documented = document.lines().any(|line| line.starts_with(&name) && line.contains(&value));
+            assert!(documented, "no row `{name}` with `{value}`");
+        }
+    }
+
+    #[test]
+    fn every_section_is_documented() {
+        let document = include_str!("../../../docs/joint-file.md");
+        for key in KEYS.iter().filter(|key| matches!(key.kind, Kind::Section)) {
+            let path =
+                if key.section.is_empty() { key.name.to_owned() } else { format!("{}.{}", key.section, key.name) };
+            assert!(document.contains(&format!("`[{path}]`")), "{path}");
+        }
+    }
+}

@@ -1,0 +1,38 @@
+//! Joint files: TOML with the unit in every key's name, read into `JointParameters` with all problems of a file found
+//! at once, each with its place in the text. Drawing the underlined messages is left to the caller, so that build
+//! scripts can read joint files too.
+//!
+//! `keys` lists every key with its unit, bound and meaning; `section` takes values out of a table by that list; one
+//! file for each section of a joint file turns them into parameters; `coherence` asks whether the gears fit together.
+//! `change` sets single values in a file's text.
+
+mod bodies;
+mod bound;
+mod change;
+mod coherence;
+#[cfg(feature = "diagnostics")]
+pub mod diagnostic;
+mod drive_train;
+mod geometry;
+mod keys;
+mod meshes;
+mod motion;
+#[cfg(feature = "diagnostics")]
+pub mod named;
+mod notes;
+mod presets;
+mod problem;
+mod reader;
+mod section;
+mod spelling;
+mod surroundings;
+mod unknown;
+
+pub use change::{Refused, change, change_noting, full_key, value};
+pub use drive_train::{DriveTrain, Encoder};
+pub use motion::Profile;
+pub use notes::Source;
+pub use presets::{PRESETS, preset};
+pub use problem::{Problem, Severity};
+pub use reader::{JointFile, read};
+pub use spelling::nearest;

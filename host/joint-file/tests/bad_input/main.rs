@@ -1,0 +1,37 @@
+//! What is wrong with a joint file: each case asserts the message, the text that it underlines and the way to mend it.
+//! Every case is Q1's file with one thing spoilt, so that nothing else can be the cause.
+
+mod gears;
+mod keys;
+mod meshes;
+mod values;
+
+use joint_file::{Problem, Severity, preset, read};
+
+/// Q1's file with one piece of text exchanged.
+fn spoilt(from: &str, to: &str) -> String {
+    let text = preset("q1").expect("a preset");
+    assert_eq!(text.matches(from).count(), 1, "`{from}` is not in the file exactly once");
+    text.replace(from, to)
+}
+
+fn problems(text: &str) -> Vec<Problem> {
+    read(text).expect_err("the file is spoilt")
+}
+
+/// The only problem, by its message, the text that it underlines, and its help.
+fn only(text: &str) -> (String, String, String) {
+    let problems = problems(text);
+    assert_eq!(problems.len(), 1, "{problems:#?}");
+    let Problem { span, message, help, severity } = problems[0].clone();
+    assert_eq!(severity, Severity::Error);
+    (message, text[span].to_owned(), help)
+}
+
+/// Asserts message and underlined text of the only problem, and that its help says `mend`.
+#[track_caller]
+fn refused(text: &str, message: &str, underlined: &str, mend: &str) {
+    let (found, place, help) = only(text);
+    assert_eq!((found.as_str(), place.as_str()), (message, underlined));
+    assert!(help.contains(mend), "`{mend}` is not in `{help}`");
+}

@@ -1,0 +1,143 @@
+//! The joint files that come with the program: all are read, warn only of what is known, and give the numbers of the
+//! paper and of the robot joints. What is wrong with bad files is asserted in `bad_input`.
+
+use joint_file::{JointFile, PRESETS, preset, read};
+use model_core::scales::Scales;
+
+fn file(name: &str) -> JointFile {
+    match read(preset(name).expect("a preset")) {
+        Ok(file) => file,
+        Err(problems) => panic!("{name}: {problems:#?}"),
+    }
+}
+
+/// Equal within a relative distance.
+fn assert_close(value: f64, expected: f64, relative: f64) {
+    assert!((value - expected).abs() <= relative * expected.abs(), "{value} is not {expected}");
+}
+
+#[test]
+fn every_preset_is_read_and_carries_its_name() {
+    for name in PRESETS {
+        assert!(file(name).parameters.name.eq_ignore_ascii_case(name), "{name}");
+    }
+}
+
+#[test]
+fn robot_joints_are_read_without_a_warning() {
+    for name in ["q1", "s1", "d2", "l1"] {
+        assert_eq!(file(name).warnings, [], "{name}");
+        assert!(file(name).parameters.geometry.coherence == model_core::joint::Coherence::Required);
+    }
+}
+
+#[test]
+fn the_paper_warns_that_its_gears_are_not_coaxial() {
+    let messages: Vec<_> = file("paper").warnings.into_iter().map(|warning| warning.message).collect();
+    assert_eq!(
+        messages,
+        [
+            "not coaxial: the ring has 99 teeth, sun and planets need 27 + 2 x 35 = 97",
+            "the ratio is 4.59259 by base radii and 4.66667 by teeth",
+        ]
+    );
+}
+
+#[test]
+fn the_paper_as_printed_warns_of_its_carrier_radius_too() {
+    let messages: Vec<_> = file("paper_printed").warnings.into_iter().map(|warning| warning.message).collect();
+    assert_eq!(messages.len(), 3, "{messages:#?}");
+    assert_eq!(messages[1], "the ratio is 4.59259 by base radii and 4.66667 by teeth");
+    assert_eq!(messages[2], "r_c cos(alpha) = 84.1043 mm, but the base radii of sun and planet sum to 84.5590 mm");
+}
+
+#[test]
+fn the_paper_has_the_masses_and_the_frequency_that_follow_from_table_1() {
+    let paper = file("paper").parameters;
+    assert_close(paper.carrier_equivalent_mass(), 10.0035, 1e-5);
+    assert_close(file("paper_printed").parameters.carrier_equivalent_mass(), 6.0239, 1e-5);
+    assert_eq!(Scales::new(&paper).frequency.round(), 20502.0);
+    assert_close(paper.geometry.sun_base_radius, 36.8241e-3, 2e-6);
+    assert_close(paper.geometry.planet_base_radius, 47.7349e-3, 2e-6);
+    assert_close(paper.geometry.carrier_radius, 93.0e-3, 1e-12);
+    assert_close(paper.balanced_load_torque(80.0), 367.4, 3e-5);
+}
+
+#[test]
+fn the_papers_mesh_frequency_is_2_1_times_omega_n() {
+    let paper = file("paper").parameters;
+    let omega_n = Scales::new(&paper).frequency;
+    assert_eq!(paper.excitation, model_core::joint::Excitation::Time { mesh_frequency: 2.1 * omega_n });
+}
+
+#[test]
+fn the_papers_meshes_are_all_in_phase() {
+    let paper = file("paper").parameters;
+    for kind in model_core::mesh::MESH_KINDS {
+        for planet in 0..3 {
+            assert_eq!((paper.stiffness_phase(kind, planet), paper.error_phase(kind, planet)), (0.0, 0.0));
+        }
+    }
+}
+
+#[test]
+fn q1_has_the_radii_ratio_and_lost_motion_of_its_data_sheet() {
+    let q1 = file("q1").parameters;
+    assert_close(q1.geometry.sun_base_radius, 7.0477e-3, 1e-5);
+    assert_close(q1.geometry.planet_base_radius, 14.0954e-3, 1e-5);
+    assert_close(q1.geometry.carrier_base_radius(), 21.1431e-3, 1e-5);
+    assert_close(q1.geometry.ratio_by_radii(), 6.0, 1e-14);
+    assert_close(2.0 * q1.sun_planet.half_backlash[0] / q1.geometry.carrier_base_radius(), 3.78e-3, 1e-3);
+    let lever = q1.geometry.carrier_base_radius();
+    let carrier = q1.bodies.carrier_inertia_over_radius_squared * q1.geometry.carrier_radius.powi(2);
+    assert_close(carrier / (lever * lever), 0.15, 1e-12);
+}
+
+#[test]
+fn lost_motions_are_those_that_the_descriptions_claim() {
+    let arcmin = std::f64::consts::PI / 180.0 / 60.0;
+    for (name, lost) in [("s1", 3.0 * arcmin), ("d2", 7.0 * arcmin), ("l1", 1.329e-3)] {
+        let joint = file(name).parameters;
+        assert_close(2.0 * joint.ring_planet.half_backlash[0] / joint.geometry.carrier_base_radius(), lost, 1e-4);
+    }
+}
+
+#[test]
+fn ratios_by_radii_are_those_by_teeth() {
+    for (name, ratio) in [("q1", 6.0), ("s1", 5.0), ("d2", 6.0), ("l1", 14.0 / 3.0)] {
+        let geometry = file(name).parameters.geometry;
+        assert_close(geometry.ratio_by_radii(), ratio, 1e-12);
+        assert_close(geometry.ratio_by_teeth(), ratio, 1e-12);
+    }
+}
+
+#[test]
+fn every_number_of_every_preset_says_where_it_comes_from() {
+    for name in PRESETS {
+        let sources = file(name).sources;
+        assert!(sources.len() > 15, "{name}: {}", sources.len());
+        let silent: Vec<_> = sources.iter().filter(|source| source.remark.is_none()).collect();
+        assert!(silent.is_empty(), "{name}: {silent:#?}");
+    }
+}
+
+#[test]
+fn q1_has_its_drive_train_in_si() {
+    let drive_train = file("q1").drive_train.expect("a drive train");
+    assert_eq!(drive_train.current_lag, 0.2e-3);
+    assert_eq!(drive_train.output_encoder.skew, 50e-6);
+    assert_close(drive_train.output_encoder.once_per_turn_error, 0.35e-3, 3e-3);
+    assert_eq!((drive_train.motor_encoder.bits, drive_train.output_encoder.bits), (14, 17));
+    assert_eq!(file("q1").profile.motor_torque_limit, 2.5);
+}
+
+#[test]
+fn the_documented_example_is_a_joint() {
+    let document = include_str!("../../../docs/joint-file.md");
+    let example = document.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).expect("an example");
+    let file = read(example).expect("the example is good");
+    assert_eq!(file.warnings, []);
+    assert_eq!(file.drive_train, None);
+    assert_close(file.profile.drive_torque, 2.0, 1e-12);
+    assert_close(file.profile.motor_torque_limit, 4.0, 1e-12);
+}

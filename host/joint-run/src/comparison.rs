@@ -1,0 +1,219 @@
+//! The run against the f64 reference: the same torques through an independent integration, as far as the motion can be
+//! predicted at all. Both are computed beside the run; what the distances mean for the verdict is the checks' business.
+
+mod follow;
+mod row;
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::{self, JoinHandle};
+
+use follow::{DISTURBANCE, Follower, follow};
+use link::messages::{Command, Sample};
+use model_core::joint::JointParameters;
+use model_core::mesh::ContactState;
+use reference::joint::{Observation, ReferenceError};
+use row::{QUANTITIES, Row, spread};
+
+use crate::record::{self, MotionSample};
+use report::contacts::Contact;
+use report::failure::{Failure, Outcome};
+
+/// The reference is followed for so long at most [s]: computing it takes longer than the run itself.
+const LONGEST: f64 = 3.0;
+/// References under way, on threads of their own.
+pub struct UnderWay {
+    joint: JointParameters,
+    tick_rate: u32,
+    ticks: Vec<u32>,
+    stop: Arc<AtomicBool>,
+    followed: JoinHandle<Result<Vec<Observation>, ReferenceError>>,
+}
+
+/// How far a run is from the reference.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Comparison {
+    /// For the report.
+    pub reference: record::Reference,
+    /// End of the part that was compared [s].
+    pub until: f64,
+    /// End of the run [s].
+    pub of: f64,
+    /// Every quantity's root mean square error over its standard deviation, with its bound.
+    pub errors: Vec<QuantityError>,
+}
+
+/// One quantity's distance from the reference.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct QuantityError {
+    /// Which.
+    pub name: &'static str,
+    /// Root mean square of the error over the standard deviation of the reference.
+    pub error: f64,
+    /// Most that it may be.
+    pub limit: f64,
+}
+
+/// Starts two references on the torques of a run, one of them disturbed.
+pub fn start(joint: &JointParameters, tick_rate: u32, decimation: u32, run: (&[Command], u32)) -> UnderWay {
+    let (commands, ticks) = run;
+    let last = ticks.min((LONGEST * f64::from(tick_rate)) as u32);
+    let ticks: Vec<u32> = (1..=last / decimation).map(|sample| sample * decimation).collect();
+    let stop = Arc::new(AtomicBool::new(false));
+    let follower = |disturbance: f64| Follower::new(joint, tick_rate, commands, disturbance);
+    let (exact, disturbed) = (follower(0.0), follower(DISTURBANCE));
+    let followed = {
+        let (ticks, stop) = (ticks.clone(), Arc::clone(&stop));
+        thread::spawn(move || follow(exact?, disturbed?, &ticks, &stop))
+    };
+    UnderWay { joint: joint.clone(), tick_rate, ticks, stop, followed }
+}
+
+impl UnderWay {
+    /// Ends the references without their result.
+    pub fn abandon(self) {
+        self.stop.store(true, Ordering::Relaxed);
+        // Nobody waits for a result that nobody wants: the threads end by themselves within a sample.
+    }
+
+    /// Waits for the references and compares the samples of the run with them.
+    pub fn finish(self, samples: &[Sample], ratio: f64) -> Outcome<Comparison> {
+        let exact = match self.followed.join() {
+            Ok(Ok(observations)) => observations,
+            Ok(Err(error)) => return Err(Failure::new(format!("the reference does not take this joint: {error}"))),
+            Err(_) => return Err(Failure::new("the reference has failed")),
+        };
+        let board = rows_of_board(samples, &self.ticks, ratio);
+        let exact_rows: Vec<Row> = exact.iter().map(|observation| Row::of_reference(observation, ratio)).collect();
+        let predictable = exact_rows.len();
+        let mut motion = record::Samples::new(2 * self.joint.geometry.planets);
+        for (&tick, observation) in self.ticks.iter().zip(&exact) {
+            motion.push(&motion_sample(tick, observation), self.tick_rate, ratio);
+        }
+        let seconds = |count: usize| count.checked_sub(1).map_or(0.0, |last| motion.time_s[last]);
+        let mut errors = Vec::new();
+        let mut series = Vec::new();
+        for (place, quantity) in QUANTITIES.iter().enumerate() {
+            let spread = spread(&exact_rows, place);
+            let distances = || {
+                board.iter().zip(&exact_rows).enumerate().filter_map(move |(index, (board, exact))| {
+                    board.as_ref().map(|board| (index, board.distance(exact, place) / spread))
+                })
+            };
+            let count = distances().count();
+            let square: f64 = distances().map(|(_, distance)| distance * distance).sum();
+            errors.push(QuantityError {
+                name: quantity.name,
+                error: (square / count as f64).sqrt(),
+                limit: quantity.limit,
+            });
+            series.push(record::ErrorSeries {
+                quantity: quantity.name.to_owned(),
+                time_s: distances().map(|(index, _)| motion.time_s[index]).collect(),
+                error_percent: distances().map(|(_, distance)| 100.0 * distance).collect(),
+                bound_percent: 100.0 * quantity.limit,
+            });
+        }
+        let until = seconds(predictable);
+        let of = samples.last().map_or(0.0, |last| f64::from(last.tick) / f64::from(self.tick_rate));
+        let method =
+            "equations of motion in absolute coordinates, f64, adaptive order 8, restarted at every contact event";
+        let reference = record::Reference { method: method.to_owned(), samples: motion, errors: series };
+        Ok(Comparison { reference, until, of, errors })
+    }
+}
+
+/// The board's rows by place in the list of ticks; samples that were lost are missing.
+fn rows_of_board(samples: &[Sample], ticks: &[u32], ratio: f64) -> Vec<Option<Row>> {
+    let mut samples = samples.iter().peekable();
+    let row = |&tick: &u32| {
+        while samples.next_if(|sample| sample.tick < tick).is_some() {}
+        samples.next_if(|sample| sample.tick == tick).map(|sample| Row::of_board(sample, ratio))
+    };
+    ticks.iter().map(row).collect()
+}
+
+fn motion_sample(tick: u32, observation: &Observation) -> MotionSample {
+    let contact = |state: &ContactState| match state {
+        ContactState::DriveSide => Contact::DriveSide,
+        ContactState::Separated => Contact::Separated,
+        ContactState::BackSide => Contact::BackSide,
+    };
+    MotionSample {
+        tick,
+        carrier_angle: observation.rigid_turns * TAU,
+        motor_offset: observation.motor_offset,
+        link_offset: observation.link_offset,
+        carrier_speed: observation.rigid_speed as f32,
+        gap: observation.gap as f32,
+        wind_up: observation.wind_up as f32,
+        deflections: observation.deflections.iter().flatten().map(|deflection| *deflection as f32).collect(),
+        contacts: observation.contacts.iter().flatten().map(contact).collect(),
+        state_digest: None,
+        computation: None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use board::profile::Profile;
+    use board::target::board::Board;
+    use board::twin;
+
+    const TICK_RATE: u32 = 20_000;
+    const DECIMATION: u32 = 20;
+
+    fn joint(preset: &str) -> JointParameters {
+        joint_file::read(joint_file::preset(preset).expect("a preset")).expect("a good preset").parameters
+    }
+
+    /// The twin in the board's place, through the head of the built-in profile, spoilt by `spoil`.
+    fn comparison(preset: &str, seconds: f64, spoil: impl Fn(&mut Sample)) -> Comparison {
+        let joint = joint(preset);
+        let profile = Profile::load("reversals", &joint, TICK_RATE, Some(seconds)).expect("built in");
+        let under_way = start(&joint, TICK_RATE, DECIMATION, (&profile.commands, profile.ticks));
+        let ticks: Vec<u32> = (1..=profile.ticks / DECIMATION).map(|sample| sample * DECIMATION).collect();
+        let mut samples =
+            twin::replay(&joint, Board::Stm32f405, TICK_RATE, &profile.commands, &ticks).expect("a good joint");
+        samples.iter_mut().for_each(spoil);
+        under_way.finish(&samples, joint.geometry.ratio_by_radii()).expect("a joint for the reference")
+    }
+
+    fn failed(comparison: &Comparison) -> Vec<&'static str> {
+        let over =
+            comparison.errors.iter().filter(|quantity| quantity.error.is_nan() || quantity.error > quantity.limit);
+        over.map(|quantity| quantity.name).collect()
+    }
+
+    #[test]
+    fn the_step_is_within_every_bound_for_as_long_as_is_followed() {
+        let comparison = comparison("l1", 0.3, |_| {});
+        assert_eq!(failed(&comparison), [""; 0]);
+        assert_eq!((comparison.until, comparison.of), (0.3, 0.3));
+    }
+
+    #[test]
+    fn two_percent_of_error_in_one_quantity_are_over_its_bound_alone() {
+        let gap = comparison("l1", 0.1, |sample| sample.gap *= 1.02);
+        assert_eq!(failed(&gap), ["gap"]);
+        let meshes = comparison("l1", 0.1, |sample| sample.deflections.iter_mut().for_each(|mesh| *mesh *= 1.02));
+        assert_eq!(failed(&meshes), ["mesh deflections"]);
+        let turned = comparison("l1", 0.1, |sample| sample.carrier_fraction = sample.carrier_fraction.wrapping_mul(2));
+        assert_eq!(failed(&turned), ["link angle"]);
+    }
+
+    #[test]
+    fn a_chaotic_motion_is_compared_only_while_it_can_be_predicted() {
+        let comparison = comparison("paper", 0.5, |_| {});
+        assert!(comparison.until < 0.05, "{}", comparison.until);
+        assert!(comparison.reference.samples.len() < 100);
+    }
+
+    #[test]
+    fn a_lost_sample_is_left_out() {
+        let rows = rows_of_board(&[], &[20, 40], 6.0);
+        assert_eq!(rows, [None, None]);
+    }
+}

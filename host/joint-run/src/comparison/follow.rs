@@ -1,0 +1,109 @@
+//! The reference along a run, as far as the motion can be predicted: a second reference with torques that are a trace
+//! wrong goes beside it, and where the two part the motion is chaotic. What a board did is not known here.
+
+use std::collections::VecDeque;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+
+use link::messages::Command;
+use model_core::joint::JointParameters;
+use reference::joint::{Observation, Reference, ReferenceError};
+
+use super::row::{QUANTITIES, Row, spread};
+use report::interruption;
+
+/// A second reference gets torques that are wrong by this much, up and down in turn.
+pub const DISTURBANCE: f64 = 1e-6;
+/// Once that moves any compared quantity by more than this part of its standard deviation, the motion is chaotic: what
+/// comes later says nothing about the step any more.
+const PREDICTABLE: f64 = 1e-4;
+/// Samples between two looks at whether it still can be predicted.
+const BLOCK: usize = 100;
+
+/// The reference at the ends of the given ticks, as far as the disturbed one stays with it.
+pub fn follow(
+    mut exact: Follower,
+    mut disturbed: Follower,
+    ticks: &[u32],
+    stop: &AtomicBool,
+) -> Result<Vec<Observation>, ReferenceError> {
+    let mut observations = Vec::with_capacity(ticks.len());
+    let mut rows: [Vec<Row>; 2] = Default::default();
+    for block in ticks.chunks(BLOCK) {
+        if stop.load(Ordering::Relaxed) || interruption::requested() {
+            break;
+        }
+        let [here, there] = thread::scope(|scope| {
+            let there = scope.spawn(|| disturbed.block(block));
+            [exact.block(block), there.join().unwrap_or(Ok(Vec::new()))]
+        });
+        let (here, there) = (here?, there?);
+        let [exact_rows, disturbed_rows] = &mut rows;
+        exact_rows.extend(here.iter().map(|observation| Row::of_reference(observation, exact.ratio)));
+        disturbed_rows.extend(there.iter().map(|observation| Row::of_reference(observation, exact.ratio)));
+        observations.extend(here);
+        if let Some(departure) = departure(exact_rows, disturbed_rows, observations.len() - block.len()) {
+            observations.truncate(departure);
+            break;
+        }
+    }
+    Ok(observations)
+}
+
+/// A reference that is given a run's torques.
+pub struct Follower {
+    reference: Reference,
+    commands: VecDeque<Command>,
+    torques: (f64, f64),
+    tick_rate: f64,
+    factor: f64,
+    ratio: f64,
+}
+
+impl Follower {
+    /// At rest before the first torque; all torques are wrong by `disturbance`, up and down in turn.
+    pub fn new(
+        joint: &JointParameters,
+        tick_rate: u32,
+        commands: &[Command],
+        disturbance: f64,
+    ) -> Result<Self, ReferenceError> {
+        Ok(Self {
+            reference: Reference::new(joint)?,
+            commands: commands.iter().copied().collect(),
+            torques: (0.0, 0.0),
+            tick_rate: tick_rate.into(),
+            factor: 1.0 + disturbance,
+            ratio: joint.geometry.ratio_by_radii(),
+        })
+    }
+
+    fn block(&mut self, ticks: &[u32]) -> Result<Vec<Observation>, ReferenceError> {
+        ticks.iter().map(|&tick| self.observe_at(tick)).collect()
+    }
+
+    fn observe_at(&mut self, tick: u32) -> Result<Observation, ReferenceError> {
+        while let Some(command) = self.commands.pop_front_if(|command| command.tick < tick) {
+            self.advance(command.tick)?;
+            self.torques = (command.drive_torque.into(), command.load_torque.into());
+        }
+        self.advance(tick)?;
+        self.factor = 2.0 - self.factor;
+        Ok(self.reference.observe())
+    }
+
+    fn advance(&mut self, tick: u32) -> Result<(), ReferenceError> {
+        let (drive, load) = self.torques;
+        self.reference.advance(f64::from(tick) / self.tick_rate, self.factor * drive, self.factor * load)
+    }
+}
+
+/// The first sample, from a place on, at which the disturbed reference has departed from the other.
+fn departure(exact: &[Row], disturbed: &[Row], from: usize) -> Option<usize> {
+    let spreads: Vec<f64> = (0..QUANTITIES.len()).map(|place| spread(exact, place)).collect();
+    let departed = |(exact, disturbed): (&Row, &Row)| {
+        spreads.iter().enumerate().any(|(place, spread)| disturbed.distance(exact, place).abs() > PREDICTABLE * spread)
+    };
+    let later = exact.iter().zip(disturbed).skip(from).position(departed);
+    later.map(|place| from + place).or((disturbed.len() < exact.len()).then_some(disturbed.len()))
+}

@@ -1,0 +1,60 @@
+//! What a run leaves on disk: report, record and log in one folder. A folder that cannot be written is found before the
+//! run; if the disk is full after it, what was recorded goes elsewhere rather than nowhere.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::page;
+use crate::record::RunRecord;
+use board::logs;
+use report::failure::{Failure, Outcome};
+use report::folder;
+use report::write::write_text;
+
+/// Where a run's files go.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Files {
+    folder: PathBuf,
+    json: Option<PathBuf>,
+}
+
+impl Files {
+    /// Makes the folder and tries to write to it.
+    pub fn prepare(folder: Option<&Path>, json: Option<&Path>, joint: &str) -> Outcome<Self> {
+        let folder = folder::prepare(folder, "hil", joint)?;
+        Ok(Self { folder, json: json.map(Path::to_owned) })
+    }
+
+    /// Writes everything; returns where the report is.
+    pub fn write(&self, record: &RunRecord) -> Outcome<PathBuf> {
+        let kept = write_to(&self.folder, record);
+        let asked = self.json.as_ref().map_or(Ok(()), |json| report::write::write_record(json, record));
+        match (kept, asked) {
+            (Ok(report), Ok(())) => Ok(report),
+            (Ok(_), Err(failure)) => {
+                Err(failure.with_help(format!("the record is in {}", self.folder.join("record.json").display())))
+            }
+            (Err(failure), _) => Err(elsewhere(failure, record)),
+        }
+    }
+}
+
+/// A second place for what cannot be measured again.
+fn elsewhere(failure: Failure, record: &RunRecord) -> Failure {
+    let folder = std::env::temp_dir().join(format!("joint-hil-{}", std::process::id()));
+    let written = fs::create_dir_all(&folder).is_ok() && write_to(&folder, record).is_ok();
+    let help = match written {
+        true => {
+            format!("what was recorded is in {}; for the next run name another folder by --out DIR", folder.display())
+        }
+        false => "free some space, or name another folder by --out DIR, and run again".to_owned(),
+    };
+    failure.with_help(help)
+}
+
+fn write_to(folder: &Path, record: &RunRecord) -> Outcome<PathBuf> {
+    let html = folder.join("report.html");
+    write_text(&folder.join("log.txt"), &logs::text(&record.log))?;
+    page::write(record, Some(&folder.join("record.json")), Some(&html))?;
+    Ok(html)
+}

@@ -1,0 +1,116 @@
+//! A joint run on a board: driven through a torque profile, held against twin and reference, judged and reported.
+//!
+//! The order of a run: `plan` finds everything that is wrong with the request, `files` that the report can be written; the
+//! image is built and the board found, driven and heard by `board`; `comparison` computes the same run by the f64
+//! reference, `evaluation` fills the `record`, `checks` judges, `page` shows it.
+
+pub mod checks;
+pub mod comparison;
+mod evaluation;
+mod files;
+mod origin;
+pub mod page;
+pub mod plan;
+pub mod record;
+
+use std::path::Path;
+
+use board::bench::Bench;
+use board::recording::Recording;
+use board::session::Session;
+use board::target::board::Board;
+use board::target::image::{self, Image};
+use board::target::toolchain::Toolchain;
+use evaluation::Ran;
+use files::Files;
+use link::messages::Role;
+use plan::{Plan, Request};
+use record::RunRecord;
+use report::checks::all_hold;
+use report::failure::Outcome;
+use report::progress::Progress;
+use report::{folder, output, table};
+
+/// Runs a joint on a board; succeeds only if every check held.
+pub fn run(request: &Request<'_>, progress: &Progress) -> Outcome<()> {
+    let plan = Plan::new(request)?;
+    let wanted = [("json", request.json), ("picture", request.picture)];
+    folder::check_files(&wanted, &[&plan.path, Path::new(request.profile)])?;
+    let files = Files::prepare(request.out, request.json, &plan.expected.joint)?;
+    let bench = prepare(request, &plan, progress)?;
+    let mut record = origin::record(request, &plan, &bench.transport);
+    let image = bench.image.clone();
+    record.identity.image = image.as_ref().map(origin::image);
+    let references = (!request.no_reference).then(|| evaluation::start_references(&plan));
+    let (outcome, recording) = converse(bench, &plan, progress);
+    progress.stage("comparing with twin and reference");
+    let ran = Ran { plan: &plan, recording: &recording, image: image.as_ref(), outcome: &outcome };
+    let evaluated = evaluation::evaluate(&mut record, &ran, references);
+    progress.stage("writing the report");
+    let report = files.write(&record);
+    progress.clear();
+    evaluated?;
+    show(&record)?;
+    match (outcome, report) {
+        (Ok(()), Ok(report)) => {
+            output::print(&format!("report: {}\n", report.display()))?;
+            let picture = request.picture.map_or(Ok(()), |path| page::write_picture(&record, path));
+            all_hold(&record.checks, "the report shows where the run departs from what was expected").and(picture)
+        }
+        (Err(failure), Ok(report)) => {
+            let kept = format!("what was recorded until tick {} is in {}", recording.last_tick(), report.display());
+            let help = failure.help().map_or_else(|| kept.clone(), |help| format!("{help}\n{kept}"));
+            Err(failure.with_help(help))
+        }
+        (Err(failure), Err(unwritten)) => {
+            let help = format!("also: {unwritten}");
+            Err(failure.with_help(help))
+        }
+        (Ok(()), Err(unwritten)) => Err(unwritten),
+    }
+}
+
+/// The whole conversation with the board; what was heard is there whatever became of it.
+fn converse(bench: Bench, plan: &Plan, progress: &Progress) -> (Outcome<()>, Recording) {
+    let Bench { line, surroundings, patience, .. } = bench;
+    let mut session = Session::new(line, surroundings);
+    progress.stage("calling the board");
+    let outcome = session.connect(&plan.expected, patience).and_then(|_| session.reset(plan.settings));
+    let outcome = outcome.and_then(|()| {
+        progress.run("running", plan.profile.ticks);
+        session.stream(&plan.profile, &mut |ticks| progress.at(ticks))
+    });
+    let outcome = outcome.and_then(|()| session.finish(plan.profile.ticks));
+    if outcome.is_err() {
+        session.abandon();
+    }
+    (outcome, std::mem::take(&mut session.recording))
+}
+
+/// The table, unless nothing has been run.
+fn show(record: &RunRecord) -> Outcome<()> {
+    if record.samples.is_empty() {
+        return Ok(());
+    }
+    let identity = &record.identity;
+    let head = format!("{} on {} ({})\n\n", identity.joint, identity.board, identity.transport);
+    output::print(&(head + &table::table(&record.checks, identity.emulated) + "\n"))
+}
+
+/// Builds the image and finds the board. A port is opened first: what is wrong with it should not wait for a build.
+fn prepare(request: &Request<'_>, plan: &Plan, progress: &Progress) -> Outcome<Bench> {
+    match &request.line.port {
+        None => Bench::emulated(progress, |board| build(request, plan, board, progress)),
+        Some(path) => Bench::on_port(path, request.line.baud_rate(), || match request.no_build {
+            true => Ok(None),
+            false => build(request, plan, request.line.board, progress).map(Some),
+        }),
+    }
+}
+
+fn build(request: &Request<'_>, plan: &Plan, board: Board, progress: &Progress) -> Outcome<Image> {
+    progress.stage("preparing the toolchain");
+    let toolchain = Toolchain::prepare(&|line| progress.say(line))?;
+    progress.stage("building the firmware");
+    image::build_image(&toolchain, &plan.path, board, Role::Plant, request.rate, &|line| progress.say(line))
+}

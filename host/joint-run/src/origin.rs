@@ -1,0 +1,89 @@
+//! Who ran what: the head of a record. Everything here is told, nothing is measured.
+
+use link::messages::{Clock, Hello, RunMode};
+
+use crate::plan::{Plan, Request};
+use crate::record::{Identity, Image, JointFigures, RunRecord, Settings};
+use board::target::image;
+use report::provenance;
+
+/// A record in which nothing has happened yet.
+pub fn record(request: &Request<'_>, plan: &Plan, transport: &str) -> RunRecord {
+    let emulated = request.line.port.is_none();
+    let identity = Identity {
+        joint: plan.expected.joint.clone(),
+        joint_file: plan.name.clone(),
+        joint_digest: format!("{:016x}", plan.expected.digest),
+        emulated,
+        transport: transport.to_owned(),
+        git_commit: provenance::git_commit(),
+        host: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
+        host_version: env!("CARGO_PKG_VERSION").to_owned(),
+        date: provenance::date(),
+        ..Identity::default()
+    };
+    RunRecord::new(identity, joint_figures(plan), settings(request, plan))
+}
+
+/// Notes what the board says of itself.
+pub fn note_board(identity: &mut Identity, hello: &Hello) {
+    let [major, minor, patch] = hello.firmware_version;
+    identity.role = image::word(hello.role).to_owned();
+    identity.board = hello.board.to_string();
+    identity.firmware_version = format!("{major}.{minor}.{patch}");
+    identity.clock = match hello.clock {
+        Clock::External => "external crystal and PLL",
+        Clock::InternalFallback => "internal oscillator and PLL: the crystal did not start",
+        Clock::Failed => "failed: the tick rate is not the stated one",
+        Clock::NotModelled => "not modelled: emulated board",
+    }
+    .to_owned();
+    identity.emulated |= hello.clock == Clock::NotModelled;
+    identity.last_panic = hello.last_panic.as_ref().map(ToString::to_string);
+    identity.watchdog_reset = hello.watchdog_reset;
+}
+
+/// The image as the record keeps it.
+pub fn image(image: &image::Image) -> Image {
+    Image {
+        file: image.elf.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+        elf_sha256: image.sha256.clone(),
+        flash_bytes: image.flash_bytes,
+        ram_bytes: image.ram_bytes,
+        compiler: image.compiler.clone(),
+        flags: image.flags.clone(),
+    }
+}
+
+fn joint_figures(plan: &Plan) -> JointFigures {
+    let parameters = &plan.joint.parameters;
+    let half_backlash_m: Vec<f64> = [&parameters.sun_planet, &parameters.ring_planet]
+        .into_iter()
+        .flat_map(|mesh| mesh.half_backlash.clone())
+        .collect();
+    // Every mesh is free while the gap is within the sum of both meshes' half-backlash of every planet.
+    let planets = parameters.geometry.planets;
+    let reach = (0..planets).map(|planet| half_backlash_m[planet] + half_backlash_m[planets + planet]);
+    let reach = reach.fold(f64::INFINITY, f64::min);
+    JointFigures {
+        planets,
+        ratio: parameters.geometry.ratio_by_radii(),
+        half_backlash_m,
+        gap_band_m: [-reach, reach],
+        lost_motion_rad: reach / parameters.geometry.carrier_base_radius(),
+    }
+}
+
+fn settings(request: &Request<'_>, plan: &Plan) -> Settings {
+    let realtime = plan.settings.mode == RunMode::Realtime;
+    Settings {
+        mode: if realtime { "realtime" } else { "lockstep" }.to_owned(),
+        tick_rate_hz: request.rate,
+        decimation: plan.settings.decimation.into(),
+        ticks: plan.profile.ticks,
+        command_timeout_ticks: realtime.then_some(plan.settings.command_timeout),
+        profile: plan.profile.name.clone(),
+        seed: 0,
+        replay: request.replay_command(),
+    }
+}

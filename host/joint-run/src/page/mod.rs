@@ -1,0 +1,47 @@
+//! Reports of a recorded run: one self-contained HTML page with vector plots. Nothing is measured or judged here.
+
+mod close_up;
+mod motion;
+mod origin;
+mod sections;
+mod timing;
+mod whole;
+
+pub use close_up::crossing;
+
+use std::path::Path;
+
+use report::plot::Figure;
+
+use crate::record::RunRecord;
+use report::failure::{Failure, Outcome};
+use report::write::{write_record, write_text};
+
+/// The report as one HTML page that needs neither network nor scripts.
+pub fn render(record: &RunRecord) -> String {
+    whole::render(record)
+}
+
+/// Writes the record as JSON and then the report as HTML; the JSON, which holds everything, is there first.
+pub fn write(record: &RunRecord, json: Option<&Path>, html: Option<&Path>) -> Outcome<()> {
+    let json = json.map_or(Ok(()), |path| write_record(path, record));
+    let html = html.map_or(Ok(()), |path| write_text(path, &render(record)));
+    // A report that cannot be written must not cost the record, nor the other way round.
+    json.and(html)
+}
+
+/// One picture for a document: a reversal through the gap. None if the run has none.
+pub fn picture(record: &RunRecord) -> Option<String> {
+    let view = close_up::view(record)?;
+    let note = origin::in_one_line(record);
+    Some(report::shell::standalone(&Figure { note, ..close_up::figure(&view) }.to_svg()))
+}
+
+/// Writes [`picture`] to a file.
+pub fn write_picture(record: &RunRecord, path: &Path) -> Outcome<()> {
+    let svg = picture(record).ok_or_else(|| {
+        Failure::new(format!("there is nothing to draw in {}: the gap was not crossed", path.display()))
+            .with_help("choose a profile in which the load changes its sign, such as `--profile reversals`")
+    })?;
+    write_text(path, &svg)
+}

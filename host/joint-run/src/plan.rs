@@ -1,0 +1,133 @@
+//! What a run of a joint on a board was asked to be, with everything that can be wrong with it found before anything is
+//! built or started: joint, profile, rates. Boards and files to be written are looked at later.
+
+use std::path::{Path, PathBuf};
+
+use board::line_options::{LineOptions, Mode};
+use board::profile::Profile;
+use board::session::{Expected, Mend};
+use board::target::board::Board;
+use board::target::image;
+use board::twin;
+use clap::ValueEnum;
+use joint_file::JointFile;
+use joint_file::named::{self, Loaded};
+use link::messages::{Role, RunMode, RunSettings};
+use report::failure::{Failure, Outcome};
+
+/// A run as it was asked for.
+#[derive(Debug, Clone)]
+pub struct Request<'a> {
+    /// Joint file, or the name of a preset.
+    pub file: &'a Path,
+    /// Which board, and how it is reached.
+    pub line: &'a LineOptions,
+    /// Who waits for whom; lockstep on the emulated board and real time on a real one unless it is said.
+    pub mode: Option<Mode>,
+    /// Steps a second, part of the image [Hz].
+    pub rate: u32,
+    /// Name of a built-in torque profile, or a CSV file.
+    pub profile: &'a str,
+    /// Length of the run; the profile's own unless it is said [s].
+    pub duration: Option<f64>,
+    /// A sample every so many steps.
+    pub decimation: u16,
+    /// The board has its image already.
+    pub no_build: bool,
+    /// The f64 reference is not computed.
+    pub no_reference: bool,
+    /// Folder for everything that stays.
+    pub out: Option<&'a Path>,
+    /// The record as JSON, too.
+    pub json: Option<&'a Path>,
+    /// The first reversal through the gap as a picture, too.
+    pub picture: Option<&'a Path>,
+}
+
+/// A run that can be made.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// The joint file as the user named it.
+    pub name: String,
+    /// The joint file for the firmware's build.
+    pub path: PathBuf,
+    /// What it says.
+    pub joint: JointFile,
+    /// The board that its image is for.
+    pub board: Board,
+    /// What the board must be.
+    pub expected: Expected,
+    /// The torques.
+    pub profile: Profile,
+    /// How the run goes.
+    pub settings: RunSettings,
+}
+
+/// In real time a board without torques for so long goes to its safe state [s].
+const COMMAND_TIMEOUT: f64 = 0.1;
+
+impl Plan {
+    /// Reads and designs all that a run needs.
+    pub fn new(request: &Request<'_>) -> Outcome<Self> {
+        let loaded = named::load(request.file)?;
+        let path = image::joint_file(request.file, &loaded.name);
+        let Loaded { name, file: joint, .. } = loaded;
+        let parameters = &joint.parameters;
+        let digest = twin::tables_digest(parameters, request.line.board, request.rate)?;
+        let profile = Profile::load(request.profile, parameters, request.rate, request.duration)?;
+        let mode = match (request.mode, &request.line.port) {
+            (Some(Mode::Lockstep), _) | (None, None) => RunMode::Lockstep,
+            (Some(Mode::Realtime), _) | (None, Some(_)) => RunMode::Realtime,
+        };
+        if u32::from(request.decimation) > profile.ticks {
+            let message = format!("a sample every {} steps in a run of {}", request.decimation, profile.ticks);
+            return Err(Failure::new(message).with_help("lower --decimation or raise --duration"));
+        }
+        let expected = Expected {
+            joint: parameters.name.to_string(),
+            digest,
+            tick_rate: request.rate,
+            planets: parameters.geometry.planets,
+            role: Role::Plant,
+            control_digest: None,
+            mend: request.mend(),
+        };
+        let command_timeout = (COMMAND_TIMEOUT * f64::from(request.rate)).ceil() as u32;
+        let settings = RunSettings { mode, decimation: request.decimation, command_timeout, from_memory: false };
+        Ok(Self { name, path, board: request.line.board, expected, profile, settings, joint })
+    }
+}
+
+impl Request<'_> {
+    /// What to do about a board that is another one.
+    fn mend(&self) -> Mend {
+        if self.line.port.is_none() {
+            return Mend::Rebuild;
+        }
+        let (file, board) = (self.file.display(), self.line.board.name());
+        let command = format!("cargo joint flash {file} --board {board}{}", self.rate_option());
+        if self.no_build { Mend::Flash(command) } else { Mend::FlashBuilt(command) }
+    }
+
+    /// The command that makes this run again.
+    pub fn replay_command(&self) -> String {
+        let mut command = format!("cargo joint hil {}", self.file.display());
+        let mut option = |name: &str, value: Option<String>| {
+            if let Some(value) = value {
+                command += &format!(" --{name} {value}");
+            }
+        };
+        option("port", self.line.port.clone());
+        option("baud", self.line.baud.map(|baud| baud.to_string()));
+        option("board", self.line.port.as_ref().map(|_| self.line.board.name().to_owned()));
+        option("mode", self.mode.and_then(|mode| mode.to_possible_value()).map(|mode| mode.get_name().to_owned()));
+        option("profile", Some(self.profile.to_owned()));
+        option("duration", self.duration.map(|duration| duration.to_string()));
+        option("decimation", Some(self.decimation.to_string()));
+        command + &self.rate_option()
+    }
+
+    fn rate_option(&self) -> String {
+        if self.rate == image::DEFAULT_TICK_RATE { String::new() } else { format!(" --rate {}", self.rate) }
+    }
+}

@@ -1,0 +1,204 @@
+//! All that one run leaves behind, in SI units: who ran, how, what was commanded, what was measured and what the checks
+//! say. How it is drawn is `report`'s business; where the figures come from is the session's.
+
+mod sample;
+mod samples;
+#[cfg(test)]
+mod schema;
+mod timing;
+
+pub use sample::MotionSample;
+pub use samples::{CloseUp, ErrorSeries, Reference, Samples};
+pub use timing::{Counters, HistogramBin, MinMeanMax, TimingFigures};
+
+use board::fault::FaultEntry;
+use board::logs::LogLine;
+use report::checks::{Check, Verdict};
+use serde::{Deserialize, Serialize};
+
+/// Version of the JSON form; raised with every change that a reader could trip over.
+pub const SCHEMA_VERSION: u32 = 1;
+
+/// One run, complete or not.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct RunRecord {
+    /// [`SCHEMA_VERSION`] of the writer.
+    pub schema_version: u32,
+    /// Who ran and what.
+    pub identity: Identity,
+    /// Figures of the joint that the plots need.
+    pub joint: JointFigures,
+    /// How it ran.
+    pub settings: Settings,
+    /// Whether it ran to its end.
+    pub completeness: Completeness,
+    /// Torques by tick number, in rising order; each holds until the next.
+    pub schedule: Vec<TorqueCommand>,
+    /// Measured motion.
+    pub samples: Samples,
+    /// A short stretch of the same run at every tick, if the host could recompute it.
+    pub close_up: Option<CloseUp>,
+    /// The f64 reference for the same torques, if it was computed.
+    pub reference: Option<Reference>,
+    /// How the board's time was spent, if the board could still be asked.
+    pub timing: Option<TimingFigures>,
+    /// Faults that the board reported, in order.
+    pub faults: Vec<FaultEntry>,
+    /// Log lines of the board, in order.
+    pub log: Vec<LogLine>,
+    /// What was checked, in any order; the report puts failed ones first.
+    pub checks: Vec<Check>,
+}
+
+/// Who ran and what.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Identity {
+    /// Name of the joint.
+    pub joint: String,
+    /// The joint file as the user named it, or the name of the built-in one.
+    pub joint_file: String,
+    /// Digest over parameters and tables, 16 hexadecimal digits.
+    pub joint_digest: String,
+    /// What the image is for, such as `plant`.
+    pub role: String,
+    /// Board that the image was built for, such as `stm32f405`.
+    pub board: String,
+    /// The board was an emulator: no timing figure says anything about silicon.
+    pub emulated: bool,
+    /// The emulator's own version line, or the port of a real board.
+    pub transport: String,
+    /// Firmware version, such as `0.1.0`.
+    pub firmware_version: String,
+    /// Where the core clock comes from.
+    pub clock: String,
+    /// What a panic before the last reset left behind.
+    pub last_panic: Option<String>,
+    /// The last reset came from the watchdog.
+    pub watchdog_reset: bool,
+    /// The image, where this host built or was given it.
+    pub image: Option<Image>,
+    /// Commit of the sources, if they were under git; with ` (changed)` if they differ from it.
+    pub git_commit: Option<String>,
+    /// Host: operating system and processor.
+    pub host: String,
+    /// Version of the host command.
+    pub host_version: String,
+    /// Start of the run, ISO 8601 with time zone, as the caller states it.
+    pub date: String,
+}
+
+/// The firmware image.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Image {
+    /// File name of the ELF.
+    pub file: String,
+    /// SHA-256 of the ELF file, 64 hexadecimal digits.
+    pub elf_sha256: String,
+    /// Flash used: code, constants and initial values [byte].
+    pub flash_bytes: u64,
+    /// RAM used by statics [byte].
+    pub ram_bytes: u64,
+    /// `rustc --version` of the compiler.
+    pub compiler: String,
+    /// Flags that change code: profile, optimisation, target.
+    pub flags: String,
+}
+
+/// Figures of the joint that the plots need.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct JointFigures {
+    /// Number of planets n.
+    pub planets: usize,
+    /// Motor angle over carrier angle [-].
+    pub ratio: f64,
+    /// Half-backlash b of every mesh, sun-planet first, then ring-planet [m].
+    pub half_backlash_m: Vec<f64>,
+    /// Gap coordinate within which every mesh can be free at once, lower and upper end [m]: 4b wide.
+    pub gap_band_m: [f64; 2],
+    /// The same band as an angle of the link [rad].
+    pub lost_motion_rad: f64,
+}
+
+/// How it ran.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Settings {
+    /// `lockstep` or `realtime`.
+    pub mode: String,
+    /// Fixed steps a second [Hz].
+    #[serde(rename = "tick_rate_Hz")]
+    pub tick_rate_hz: u32,
+    /// A sample every so many ticks.
+    pub decimation: u32,
+    /// Ticks that the run was meant to last.
+    pub ticks: u32,
+    /// Ticks without a schedule before the safe state; absent in lockstep.
+    pub command_timeout_ticks: Option<u32>,
+    /// Name of the built-in profile or path of the CSV.
+    pub profile: String,
+    /// Seed of everything random in the profile.
+    pub seed: u64,
+    /// Command line that runs exactly this again.
+    pub replay: String,
+}
+
+/// Whether a run came to its end.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(tag = "state", rename_all = "snake_case")]
+pub enum Completeness {
+    /// To its end.
+    Complete,
+    /// It broke off; what was recorded so far is here.
+    Interrupted {
+        /// Why, as the user was told.
+        reason: String,
+        /// Last tick that is known.
+        tick: u32,
+    },
+}
+
+/// Torques from a tick on.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct TorqueCommand {
+    /// First tick whose step uses these torques.
+    pub tick: u32,
+    /// Torque on the sun shaft [N m].
+    #[serde(rename = "drive_torque_Nm")]
+    pub drive_torque: f32,
+    /// Torque that brakes the link [N m].
+    #[serde(rename = "load_torque_Nm")]
+    pub load_torque: f32,
+}
+
+impl RunRecord {
+    /// A record in which nothing has happened yet: interrupted at tick 0 until the session says otherwise.
+    pub fn new(identity: Identity, joint: JointFigures, settings: Settings) -> Self {
+        let samples = Samples::new(2 * joint.planets);
+        Self {
+            schema_version: SCHEMA_VERSION,
+            identity,
+            joint,
+            settings,
+            completeness: Completeness::Interrupted { reason: "the run has not started".into(), tick: 0 },
+            schedule: Vec::new(),
+            samples,
+            close_up: None,
+            reference: None,
+            timing: None,
+            faults: Vec::new(),
+            log: Vec::new(),
+            checks: Vec::new(),
+        }
+    }
+
+    /// Whether the run is complete and no check failed.
+    pub fn passed(&self) -> bool {
+        self.completeness == Completeness::Complete && self.checks.iter().all(|check| check.verdict != Verdict::Failed)
+    }
+}

@@ -1,0 +1,149 @@
+//! Sampled motion by columns: of the board, of the reference, and the error between them. Columns load straight into a
+//! data frame; what the columns mean mechanically is told in `docs/report-schema.md`.
+
+use report::contacts::Contact;
+use serde::{Deserialize, Deserializer, Serialize};
+
+use super::sample::MotionSample;
+
+/// Sampled motion; all columns are of one length. Values that are not finite are `null` in JSON.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Samples {
+    /// Steps done since the reset.
+    pub tick: Vec<u32>,
+    /// Board time [s].
+    #[serde(deserialize_with = "null_is_nan")]
+    #[cfg_attr(test, schemars(with = "Vec<Option<f64>>"))]
+    pub time_s: Vec<f64>,
+    /// Motor (sun) angle [rad].
+    #[serde(deserialize_with = "null_is_nan")]
+    #[cfg_attr(test, schemars(with = "Vec<Option<f64>>"))]
+    pub motor_angle_rad: Vec<f64>,
+    /// Link angle [rad].
+    #[serde(deserialize_with = "null_is_nan")]
+    #[cfg_attr(test, schemars(with = "Vec<Option<f64>>"))]
+    pub link_angle_rad: Vec<f64>,
+    /// Motor angle over the ratio, less the link angle, from the small remainders, so nothing cancels [rad].
+    #[serde(deserialize_with = "null_is_nan")]
+    #[cfg_attr(test, schemars(with = "Vec<Option<f64>>"))]
+    pub twist_rad: Vec<f64>,
+    /// Rate of the rigid-body carrier angle [rad/s].
+    #[serde(rename = "carrier_speed_rad_per_s", deserialize_with = "null_is_nan")]
+    #[cfg_attr(test, schemars(with = "Vec<Option<f32>>"))]
+    pub carrier_speed: Vec<f32>,
+    /// Gap coordinate along the line of action [m].
+    #[serde(deserialize_with = "null_is_nan")]
+    #[cfg_attr(test, schemars(with = "Vec<Option<f32>>"))]
+    pub gap_m: Vec<f32>,
+    /// Wind-up between carrier and link along the line of action [m].
+    #[serde(deserialize_with = "null_is_nan")]
+    #[cfg_attr(test, schemars(with = "Vec<Option<f32>>"))]
+    pub wind_up_m: Vec<f32>,
+    /// Mesh deflections [m], one column a mesh: sun-planet of every planet, then ring-planet.
+    #[serde(deserialize_with = "columns_null_is_nan")]
+    #[cfg_attr(test, schemars(with = "Vec<Vec<Option<f32>>>"))]
+    pub deflection_m: Vec<Vec<f32>>,
+    /// Contact states in the same order.
+    pub contact: Vec<Vec<Contact>>,
+    /// Running digest over the whole state after every step so far, 16 hexadecimal digits; empty for a reference.
+    pub state_digest: Vec<String>,
+    /// Computation time of the step [s]; empty for a reference.
+    #[serde(deserialize_with = "null_is_nan")]
+    #[cfg_attr(test, schemars(with = "Vec<Option<f64>>"))]
+    pub computation_s: Vec<f64>,
+}
+
+/// A stretch of the run at every tick, which the line is too slow to carry.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct CloseUp {
+    /// Who computed it and why it may be trusted, such as "host twin, equal to the board bit for bit".
+    pub method: String,
+    /// The motion.
+    pub samples: Samples,
+}
+
+/// The f64 reference for the same torques.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Reference {
+    /// What computed it, and how tightly.
+    pub method: String,
+    /// Its motion; columns that it does not give are empty.
+    pub samples: Samples,
+    /// Distances of the board's samples from it.
+    pub errors: Vec<ErrorSeries>,
+}
+
+/// Distance of one quantity from the reference, against the quantity's own spread.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct ErrorSeries {
+    /// Which quantity, such as `gap`.
+    pub quantity: String,
+    /// Times of the values [s].
+    pub time_s: Vec<f64>,
+    /// Board less reference, over the standard deviation of the reference [%].
+    #[serde(deserialize_with = "null_is_nan")]
+    #[cfg_attr(test, schemars(with = "Vec<Option<f64>>"))]
+    pub error_percent: Vec<f64>,
+    /// Bound on its root mean square [%].
+    pub bound_percent: f64,
+}
+
+impl Samples {
+    /// No samples yet of a joint with so many meshes.
+    pub fn new(meshes: usize) -> Self {
+        Self { deflection_m: vec![Vec::new(); meshes], contact: vec![Vec::new(); meshes], ..Self::default() }
+    }
+
+    /// Adds a sample. Meshes that it lacks become NaN and separated, so that columns stay of one length.
+    pub fn push(&mut self, sample: &MotionSample, tick_rate: u32, ratio: f64) {
+        self.tick.push(sample.tick);
+        self.time_s.push(f64::from(sample.tick) / f64::from(tick_rate));
+        self.motor_angle_rad.push(ratio * sample.carrier_angle + sample.motor_offset);
+        self.link_angle_rad.push(sample.carrier_angle + sample.link_offset);
+        self.twist_rad.push(sample.motor_offset / ratio - sample.link_offset);
+        self.carrier_speed.push(sample.carrier_speed);
+        self.gap_m.push(sample.gap);
+        self.wind_up_m.push(sample.wind_up);
+        for (mesh, column) in self.deflection_m.iter_mut().enumerate() {
+            column.push(sample.deflections.get(mesh).copied().unwrap_or(f32::NAN));
+        }
+        for (mesh, column) in self.contact.iter_mut().enumerate() {
+            column.push(sample.contacts.get(mesh).copied().unwrap_or(Contact::Separated));
+        }
+        if let Some(digest) = sample.state_digest {
+            self.state_digest.push(format!("{digest:016x}"));
+        }
+        if let Some(computation) = sample.computation {
+            self.computation_s.push(computation);
+        }
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.tick.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.tick.is_empty()
+    }
+}
+
+/// JSON has no NaN: it is written as null, and read back here.
+fn null_is_nan<'de, D: Deserializer<'de>, F: Deserialize<'de> + From<f32>>(
+    deserializer: D,
+) -> Result<Vec<F>, D::Error> {
+    let values = Vec::<Option<F>>::deserialize(deserializer)?;
+    Ok(values.into_iter().map(|value| value.unwrap_or_else(|| F::from(f32::NAN))).collect())
+}
+
+/// [`null_is_nan`] for every column.
+fn columns_null_is_nan<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Vec<f32>>, D::Error> {
+    let columns = Vec::<Vec<Option<f32>>>::deserialize(deserializer)?;
+    let filled = |column: Vec<Option<f32>>| column.into_iter().map(|value| value.unwrap_or(f32::NAN)).collect();
+    Ok(columns.into_iter().map(filled).collect())
+}

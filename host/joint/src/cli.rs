@@ -1,0 +1,75 @@
+//! The command line: subcommands, their help, exit codes. What a subcommand does is in its own module.
+
+use std::process::ExitCode;
+
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+
+use identify::memory;
+use report::failure::Outcome;
+use report::{command_line, output};
+use simulation::{budget, check, sim, sweep};
+
+use crate::{hil, images, research};
+
+/// Simulates a planetary robot joint with backlash on a microcontroller, drives it and checks it
+#[derive(Debug, Parser)]
+#[command(name = "joint", version, disable_help_subcommand = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run a joint on the emulated board or on a real one, check it and write a report
+    Hil(hil::Arguments),
+    /// Read a joint file and print what follows from it
+    Check(check::Arguments),
+    /// Compare the step with what people use: error against cost, on the emulated core and on the host
+    Bench(research::Arguments),
+    /// Predict error, instructions, memory and limits of the fixed step on a board, with a verdict
+    Budget(budget::Arguments),
+    /// Redo the paper, or the same study of another joint: attractors, bifurcation diagram, figures
+    Paper(research::Arguments),
+    /// Simulate a joint on the host by a named scheme: history, report, comparison of schemes
+    Sim(sim::Arguments),
+    /// Simulate every joint of a grid in parallel: resumable, in shards for job arrays
+    Sweep(sweep::Arguments),
+    /// Put the shards of a sweep together, once none is missing
+    Merge(sweep::MergeArguments),
+    /// Find backlash, compliance, damping, friction and encoder errors in a recorded reversal test
+    Identify(identify::Arguments),
+    /// Read what a board has learnt, show it, write it to a board, erase it
+    Memory(memory::Arguments),
+    /// Build the firmware image of a joint and say where it is
+    Image(images::ImageArguments),
+    /// Build the firmware image of a joint and write it to a real board by probe-rs
+    Flash(images::FlashArguments),
+}
+
+/// Parses the command line, runs it and turns the outcome into an exit code.
+pub fn main() -> ExitCode {
+    command_line::main(Cli::command(), Cli::from_arg_matches, run)
+}
+
+fn run(cli: &Cli) -> Outcome<()> {
+    match &cli.command {
+        None => show_help(),
+        Some(Command::Hil(arguments)) => hil::run(arguments),
+        Some(Command::Check(arguments)) => check::run(arguments),
+        Some(Command::Bench(arguments)) => research::run("benchmark", &arguments.rest),
+        Some(Command::Budget(arguments)) => budget::run(arguments),
+        Some(Command::Paper(arguments)) => research::run("paper", &arguments.rest),
+        Some(Command::Sim(arguments)) => sim::run(arguments),
+        Some(Command::Sweep(arguments)) => sweep::run(arguments),
+        Some(Command::Merge(arguments)) => sweep::merge(arguments),
+        Some(Command::Identify(arguments)) => identify::run(arguments),
+        Some(Command::Memory(arguments)) => memory::run(arguments),
+        Some(Command::Image(arguments)) => images::image(arguments),
+        Some(Command::Flash(arguments)) => images::flash(arguments),
+    }
+}
+
+fn show_help() -> Outcome<()> {
+    output::print(&Cli::command().render_long_help().to_string())
+}

@@ -1,0 +1,63 @@
+//! `joint hil`: a joint run on a board, and tests of observer and compensation. Which of both a file asks for is decided
+//! here; the run is `joint-run`'s, the tests are `scenario`'s.
+
+mod arguments;
+mod tests;
+
+pub use arguments::Arguments;
+use proof::everything;
+use report::failure::{Failure, Outcome};
+use report::output;
+use report::progress::Progress;
+use scenario::suite;
+
+/// Runs a joint on a board; succeeds only if every check held.
+pub fn run(arguments: &Arguments) -> Outcome<()> {
+    Progress::during(|progress| {
+        if suite::is_of_tests(arguments.file()) {
+            return scenario::run(&tests::wanted(arguments)?, progress);
+        }
+        tests::refuse_for_joints(arguments)?;
+        let joint = joint_run::run(&arguments.request(), progress);
+        if arguments.check {
+            return joint.and_then(|()| everything::check(arguments.rate, progress));
+        }
+        match (&arguments.file, &arguments.line.port) {
+            (Some(_), _) => joint,
+            (None, Some(port)) => joint.and_then(|()| say_how_to_go_on(port, arguments.line.board.name())),
+            (None, None) => run_tests(arguments, joint, progress),
+        }
+    })
+}
+
+/// The tests of observer and compensation after the joint's own checks: what failed there does not keep them from running.
+fn run_tests(arguments: &Arguments, joint: Outcome<()>, progress: &Progress) -> Outcome<()> {
+    let check_failed = Failure::check_failed("").exit_code();
+    if let Err(failure) = joint.as_ref()
+        && failure.exit_code() != check_failed
+    {
+        return joint;
+    }
+    output::print("\n")?;
+    let tests = scenario::run(&tests::wanted_of_all(arguments), progress);
+    if !arguments.full {
+        let left = tests::left_out()?.len();
+        output::print(&format!("left to `joint hil --full`: {left} more tests, all of them with all their seeds\n"))?;
+    }
+    match (joint, tests) {
+        (Ok(()), Ok(())) => output::print("passed:  the joint on the board, observer and compensation\n"),
+        (Err(joint), Err(tests)) if tests.exit_code() == check_failed => {
+            Err(Failure::check_failed(format!("{}; {}", joint.message(), tests.message()))
+                .with_help("the reports lead with what failed"))
+        }
+        (joint, tests) => tests.and(joint),
+    }
+}
+
+/// A real board keeps the image that it has until the user flashes another one.
+fn say_how_to_go_on(port: &str, board: &str) -> Outcome<()> {
+    output::print(&format!(
+        "tests of observer and compensation take an image of their own, which is built and named by\n\
+         joint hil hil/t2.toml --role loop --port {port} --board {board}\n"
+    ))
+}

@@ -1,0 +1,112 @@
+//! The command line of `joint hil`.
+
+use std::path::{Path, PathBuf};
+
+use board::line_options::{LineOptions, Mode, RoleName};
+use board::profile::BUILTIN;
+use board::target::image;
+use joint_run::plan::Request;
+use scenario::plant::PlantName;
+
+/// Arguments of `joint hil`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  joint hil                                   the emulated board: joint q1, then observer and compensation
+  joint hil --full                            then every test, with all its seeds, around the f64 reference
+  joint hil joints/l1.toml --duration 10      another joint, a longer run
+  joint hil q1 --profile drive.csv --json out.json
+  joint hil q1 --port /dev/ttyUSB0            a real board, flashed before by `joint flash q1`
+  joint hil hil --host --plant reference      all tests of observer and compensation in the folder hil
+  joint hil hil/t2.toml --host --seed 7       one of them, with another seed
+  joint hil hil/t2.toml --role loop           the same with joint and controller on the emulated board
+
+Exit code: 0 if every check held, 1 if one did not, 2 for bad input or a bad environment, 130 after Ctrl-C.")]
+pub struct Arguments {
+    /// Joint file (TOML), or the name of a preset: q1, s1, d2, l1, paper, paper_printed; or a test file, or a folder
+    /// of them (docs/hil-file.md) [default: joint q1, then the short run of the tests in hil]
+    #[arg(value_name = "FILE")]
+    pub file: Option<PathBuf>,
+    /// Test files: runs observer and compensation on this machine, without a board
+    #[arg(long, conflicts_with = "role")]
+    pub host: bool,
+    /// Test files: what the board does, observer and compensation or the whole loop with the joint [default: loop]
+    #[arg(long, value_enum)]
+    pub role: Option<RoleName>,
+    /// Test files: runs this seed in place of the file's
+    #[arg(long, value_name = "N", value_parser = seed, allow_negative_numbers = true)]
+    pub seed: Option<u64>,
+    /// Test files: what is controlled [default: core]
+    #[arg(long, value_enum)]
+    pub plant: Option<PlantName>,
+    /// Test files: runs the full lists of seeds, and files that are only for those; without FILE all of them
+    #[arg(long)]
+    pub full: bool,
+    /// Test files: writes the results as JUnit XML to this file too
+    #[arg(long, value_name = "XML")]
+    pub junit: Option<PathBuf>,
+    /// Which board, and how it is reached.
+    #[command(flatten)]
+    pub line: LineOptions,
+    /// Who waits for whom [default: lockstep on the emulated board, realtime on a real one]
+    #[arg(long, value_enum)]
+    pub mode: Option<Mode>,
+    /// Steps a second, in Hz; part of the image
+    #[arg(long, value_name = "HZ", default_value_t = image::DEFAULT_TICK_RATE, value_parser = clap::value_parser!(u32).range(1..))]
+    pub rate: u32,
+    /// Torque profile: `reversals`, or a CSV file with the columns time_s, motor_torque_Nm and load_torque_Nm
+    #[arg(long, value_name = "NAME|FILE", default_value = BUILTIN[0])]
+    pub profile: String,
+    /// Length of the run in s [default: the profile's own; 5 s for `reversals`]
+    #[arg(long, value_name = "S")]
+    pub duration: Option<f64>,
+    /// A sample every so many steps; the digest covers every step
+    #[arg(long, value_name = "STEPS", default_value_t = 20, value_parser = clap::value_parser!(u16).range(1..))]
+    pub decimation: u16,
+    /// Folder for report.html, record.json and log.txt [default: target/hil/<joint>]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Writes the record as JSON to this file too
+    #[arg(long, value_name = "OUT")]
+    pub json: Option<PathBuf>,
+    /// Draws the first reversal through the gap to this file (SVG), for a document
+    #[arg(long, value_name = "SVG")]
+    pub picture: Option<PathBuf>,
+    /// Does not compute the f64 reference
+    #[arg(long)]
+    pub no_reference: bool,
+    /// Does not build the image: logs stay encoded, and its size is not checked
+    #[arg(long, requires = "port")]
+    pub no_build: bool,
+    /// Also builds the images of all boards, lints the firmware and runs the tests that need the emulated board
+    #[arg(long, conflicts_with = "port")]
+    pub check: bool,
+}
+
+fn seed(text: &str) -> Result<u64, String> {
+    text.parse().map_err(|_| format!("a seed is a whole number from 0 to {}", u64::MAX))
+}
+
+impl Arguments {
+    /// The file, or the joint of a run that names none.
+    pub fn file(&self) -> &Path {
+        self.file.as_deref().unwrap_or(Path::new("q1"))
+    }
+
+    /// What is asked of a joint on a board.
+    pub fn request(&self) -> Request<'_> {
+        Request {
+            file: self.file(),
+            line: &self.line,
+            mode: self.mode,
+            rate: self.rate,
+            profile: &self.profile,
+            duration: self.duration,
+            decimation: self.decimation,
+            no_build: self.no_build,
+            no_reference: self.no_reference,
+            out: self.out.as_deref(),
+            json: self.json.as_deref(),
+            picture: self.picture.as_deref(),
+        }
+    }
+}

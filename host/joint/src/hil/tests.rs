@@ -1,0 +1,119 @@
+//! Which arguments of `joint hil` belong to test files and which to joints; the wrong ones are named rather than
+//! ignored. Running tests is left to `scenario`.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use link::messages::Role;
+
+use super::arguments::Arguments;
+use board::line_options::RoleName;
+use board::profile::BUILTIN;
+use report::failure::{Failure, Outcome};
+use report::workspace::workspace;
+use scenario::on_board::BoardWish;
+use scenario::plant::PlantName;
+use scenario::suite;
+use scenario::suite::Choice;
+use scenario::{Part, Wanted};
+
+/// What is asked of the tests in a file or folder.
+pub fn wanted(arguments: &Arguments) -> Outcome<Wanted<'_>> {
+    let of_joints = [
+        ("mode", arguments.mode.is_some() && (arguments.host || arguments.role == Some(RoleName::Observer))),
+        ("duration", arguments.duration.is_some()),
+        ("picture", arguments.picture.is_some()),
+        ("no-reference", arguments.no_reference),
+        ("check", arguments.check),
+        ("profile", arguments.profile != BUILTIN[0]),
+    ];
+    if let Some((name, _)) = of_joints.iter().find(|(_, given)| *given) {
+        let message = format!("--{name} is for joints, and {} holds tests", arguments.file().display());
+        return Err(Failure::new(message).with_help("write it into the test file: docs/hil-file.md tells its keys"));
+    }
+    if let (true, Some(port)) = (arguments.host, &arguments.line.port) {
+        return Err(Failure::new(format!("--host runs without a board, and --port {port} names one"))
+            .with_help("leave one of them out"));
+    }
+    let role = match arguments.role {
+        Some(RoleName::Observer) => Role::Observer,
+        Some(RoleName::Loop) | None => Role::Loop,
+    };
+    let path = arguments.file().to_owned();
+    let part = Part {
+        choice: if arguments.full { Choice::Full } else { Choice::Short },
+        plant: arguments.plant.unwrap_or(PlantName::Core),
+        boards: (!arguments.host).then(|| boards(arguments, role)),
+        path,
+    };
+    let name = part.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    Ok(of_parts(arguments, vec![part], name, arguments.out.clone()))
+}
+
+/// What is asked of the tests that come with the program where no file is named: on the board those that say so, and with
+/// `--full` all of them around the f64 reference, which is where their bounds are stated.
+pub fn wanted_of_all(arguments: &Arguments) -> Wanted<'_> {
+    let part = |choice, plant, boards| Part { path: folder(), choice, plant, boards };
+    let on_board = |role, plant| part(Choice::OnBoard(role), plant, Some(boards(arguments, role)));
+    let mut parts = vec![on_board(Role::Loop, PlantName::Core), on_board(Role::Observer, PlantName::Reference)];
+    if arguments.full {
+        parts.push(part(Choice::Full, PlantName::Reference, None));
+    }
+    of_parts(arguments, parts, "all".to_owned(), arguments.out.as_ref().map(|out| out.join("tests")))
+}
+
+/// Files that a run without `--full` leaves out.
+pub fn left_out() -> Outcome<Vec<PathBuf>> {
+    suite::left_out(&folder())
+}
+
+/// The tests that come with the program; by the short path where that leads there too, as it does in the workspace.
+fn folder() -> PathBuf {
+    let whole = workspace().join("hil");
+    let short = Path::new("hil");
+    let same = short.canonicalize().is_ok_and(|short| whole.canonicalize().is_ok_and(|whole| short == whole));
+    if same { short.to_owned() } else { whole }
+}
+
+fn of_parts<'a>(arguments: &'a Arguments, parts: Vec<Part<'a>>, name: String, out: Option<PathBuf>) -> Wanted<'a> {
+    Wanted {
+        parts,
+        seed: arguments.seed,
+        full: arguments.full,
+        name,
+        out,
+        json: arguments.json.as_deref().filter(|_| arguments.file.is_some()),
+        junit: arguments.junit.as_deref(),
+    }
+}
+
+fn boards(arguments: &Arguments, role: Role) -> BoardWish<'_> {
+    BoardWish {
+        role,
+        port: arguments.line.port.as_deref(),
+        baud: arguments.line.baud,
+        board: arguments.line.board,
+        no_build: arguments.no_build,
+        mode: arguments.mode.map(Into::into),
+    }
+}
+
+/// Complains about arguments of tests when a joint was named.
+pub fn refuse_for_joints(arguments: &Arguments) -> Outcome<()> {
+    let of_tests = [
+        ("host", arguments.host),
+        ("role", arguments.role.is_some()),
+        ("seed", arguments.seed.is_some()),
+        ("plant", arguments.plant.is_some()),
+        ("full", arguments.full && arguments.file.is_some()),
+        ("junit", arguments.junit.is_some() && arguments.file.is_some()),
+    ];
+    let Some((name, _)) = of_tests.iter().find(|(_, given)| *given) else { return Ok(()) };
+    let file = arguments.file().display();
+    let message = match (joint_file::preset(&file.to_string()), fs::read_to_string(arguments.file())) {
+        (Some(_), _) | (_, Ok(_)) => format!("--{name} is for test files, and {file} is a joint"),
+        (None, Err(error)) => format!("cannot read the test file {file}: {error}"),
+    };
+    Err(Failure::new(message)
+        .with_help("name a test file such as hil/t2.toml; docs/hil-file.md tells how to write one"))
+}

@@ -1,0 +1,100 @@
+//! `joint image` and `joint flash`: the firmware of a joint as a file, and on a real board. How images are built and
+//! written is left to `target`.
+
+use std::path::PathBuf;
+
+use clap::ValueEnum;
+use link::messages::Role;
+
+use board::target;
+use board::target::board::Board;
+use board::target::image;
+use board::target::image::CONTROL_RATE;
+use board::target::image::Image;
+use board::target::toolchain::Toolchain;
+use joint_file::named;
+use report::failure::Outcome;
+use report::progress::Progress;
+use report::{interruption, output};
+
+/// Arguments of `joint image`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  joint image                                 joint q1 for the stm32f405
+  joint image --role observer                 observer and compensation for it, beside a motor controller
+  joint image --role spi-observer --board stm32g474    the same as a slave on that controller's SPI
+  joint image joints/l1.toml --board stm32h743")]
+pub struct ImageArguments {
+    /// Joint file (TOML), or the name of a preset: q1, s1, d2, l1, paper, paper_printed
+    #[arg(value_name = "FILE", default_value = "q1")]
+    file: PathBuf,
+    /// Board that the image is for
+    #[arg(long, value_enum, default_value = "stm32f405")]
+    board: Board,
+    /// What the board does
+    #[arg(long, value_enum, default_value = "plant")]
+    role: ImageRole,
+    /// Steps a second, in Hz; a step of all roles but plant is a control period [default: 20000 for plant, 5000 for
+    /// spi-observer, else 10000]
+    #[arg(long, value_name = "HZ", value_parser = clap::value_parser!(u32).range(1..))]
+    rate: Option<u32>,
+}
+
+/// What a board can be made to do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum ImageRole {
+    /// Simulates the joint
+    Plant,
+    /// Observer and compensation beside a motor controller
+    Observer,
+    /// Joint, motor, observer and compensation
+    Loop,
+    /// Observer and compensation as a slave on SPI beside a motor controller on another chip; not for stm32h743
+    SpiObserver,
+}
+
+/// Arguments of `joint flash`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  joint flash                                 joint q1 onto the stm32f405 behind the debug probe
+  joint flash joints/l1.toml --board stm32g474")]
+pub struct FlashArguments {
+    #[command(flatten)]
+    image: ImageArguments,
+}
+
+/// Builds an image.
+pub fn image(arguments: &ImageArguments) -> Outcome<()> {
+    let built = build(arguments)?;
+    let Image { elf, flash_bytes, ram_bytes, .. } = &built;
+    output::print(&format!("{}\nflash {flash_bytes} B, RAM {ram_bytes} B\n", elf.display()))
+}
+
+/// Builds an image and writes it to a board.
+pub fn flash(arguments: &FlashArguments) -> Outcome<()> {
+    let built = build(&arguments.image)?;
+    target::flash::flash(&built.elf, arguments.image.board)
+}
+
+fn build(arguments: &ImageArguments) -> Outcome<Image> {
+    let file = image::joint_file(&arguments.file, &named::load(&arguments.file)?.name);
+    let (role, usual) = match arguments.role {
+        ImageRole::Plant => (Some(Role::Plant), image::DEFAULT_TICK_RATE),
+        ImageRole::Observer => (Some(Role::Observer), CONTROL_RATE),
+        ImageRole::Loop => (Some(Role::Loop), CONTROL_RATE),
+        ImageRole::SpiObserver => (None, image::SPI_RATE),
+    };
+    let rate = arguments.rate.unwrap_or(usual);
+    let progress = Progress::new();
+    let say = |line: &str| progress.say(line);
+    progress.stage("preparing the toolchain");
+    let built = Toolchain::prepare(&say).and_then(|toolchain| {
+        progress.stage("building the firmware");
+        match role {
+            Some(role) => image::build_image(&toolchain, &file, arguments.board, role, rate, &say),
+            None => image::build_spi_slave(&toolchain, &file, arguments.board, rate, &say),
+        }
+    });
+    progress.clear();
+    interruption::explain(built)
+}

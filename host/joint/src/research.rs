@@ -1,0 +1,38 @@
+//! `joint paper` and `joint bench`: programs of the folder `research`, which are built when they are asked for. They are
+//! started through cargo with the rest of the command line, in the user's folder.
+
+use std::ffi::OsString;
+use std::process::Command;
+
+use report::failure::{Failure, Outcome};
+use report::interruption;
+use report::workspace::workspace;
+
+/// Everything behind the subcommand, as the program itself understands it.
+#[derive(Debug, clap::Args)]
+#[command(disable_help_flag = true)]
+pub struct Arguments {
+    /// Of the program
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+    pub rest: Vec<OsString>,
+}
+
+/// Builds and runs a program of the folder `research`; ends with its exit code.
+pub fn run(package: &str, rest: &[OsString]) -> Outcome<()> {
+    // Ctrl-C reaches the program as well, which ends in order; this one waits for it.
+    interruption::watch()?;
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let status = Command::new(cargo)
+        .args(["run", "--quiet", "--release", "--package", package, "--manifest-path"])
+        .arg(workspace().join("Cargo.toml"))
+        .arg("--")
+        .args(rest)
+        .status()
+        .map_err(|error| Failure::new(format!("cannot start `{package}` through cargo: {error}")))?;
+    match status.code() {
+        Some(0) => Ok(()),
+        // It has said itself what was wrong.
+        Some(code) => std::process::exit(code),
+        None => Err(Failure::interrupted(format!("`{package}` was ended by a signal"))),
+    }
+}

@@ -1,0 +1,162 @@
+//! Bad input to every command: files that are not what they should be, numbers that cannot be, results that would be written
+//! over what they are made from. What is wrong inside a good form of file is tested beside the reader of that form.
+
+mod command;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use command::{joint, text};
+use tempfile::TempDir;
+
+/// A test that is over in a moment.
+const SHORT: &str = "duration_s = 0.2\nsettle_s = 0.1\nprofile = \"T2\"\n[controller]\nrivals = []\n";
+
+/// Files that are nothing any command reads.
+fn nothing(folder: &Path) -> Vec<PathBuf> {
+    let write = |name: &str, content: &[u8]| {
+        let path = folder.join(name);
+        fs::write(&path, content).expect("a file");
+        path
+    };
+    let all_bytes: Vec<u8> = (0..=255).cycle().take(2048).collect();
+    vec![
+        folder.join("missing"),
+        folder.to_owned(),
+        write("empty", b""),
+        write("garbage", &all_bytes),
+        write("no-utf8", b"name = \"\xff\"\n"),
+        write("utf16", b"\xff\xfen\0a\0m\0e\0"),
+    ]
+}
+
+fn folder() -> TempDir {
+    tempfile::tempdir().expect("a folder")
+}
+
+#[test]
+fn every_command_refuses_a_file_that_is_nothing_by_its_name() {
+    let place = folder();
+    let inputs = folder();
+    let out = place.path().join("out");
+    let out = text(&out);
+    let commands: [&[&str]; 17] = [
+        &["check", "@"],
+        &["budget", "@"],
+        &["bench", "@"],
+        &["image", "@"],
+        &["flash", "@"],
+        &["paper", "@", "--omega", "0.8", "--out", out],
+        &["sim", "@", "--out", out],
+        &["sim", "q1", "--profile", "@", "--out", out],
+        &["sweep", "@", "--vary", "half_backlash_um=10,20", "--out", out],
+        &["hil", "@", "--no-reference", "--picture", "x.svg", "--out", out],
+        &["hil", "@", "--host", "--out", out],
+        &["hil", "q1", "--profile", "@", "--out", out],
+        &["identify", "@", "--out", out],
+        &["identify", "log.csv", "--joint", "@", "--out", out],
+        &["memory", "show", "@"],
+        &["memory", "write", "@"],
+        &["merge", "@", "--out", out],
+    ];
+    for input in nothing(inputs.path()) {
+        for command in commands {
+            let named: Vec<&str> = command.iter().map(|word| if *word == "@" { text(&input) } else { word }).collect();
+            joint(&named).refused(&[text(&input), "help:"]);
+        }
+    }
+    assert!(!place.path().join("out").exists(), "nothing is begun before its input has been read");
+}
+
+#[test]
+fn line_ends_and_byte_order_marks_of_other_systems_are_understood() {
+    let place = folder();
+    let q1 = joint_file::preset("q1").expect("a preset");
+    let rows = "time_s,motor_torque_Nm,load_torque_Nm\n0,1,6\n0.1,-1,-6\n";
+    for (name, content) in [("joint.toml", q1), ("test.toml", SHORT), ("torques.csv", rows)] {
+        for other in [content.replace('\n', "\r\n"), format!("\u{feff}{content}")] {
+            fs::write(place.path().join(name), other).expect("a file");
+            let (file, out) = (place.path().join(name), place.path().join("out"));
+            let (file, out) = (text(&file), text(&out));
+            match name {
+                "joint.toml" => joint(&["check", file]).well(),
+                "test.toml" => joint(&["hil", file, "--host", "--out", out]).well(),
+                _ => joint(&["sim", "q1", "--profile", file, "--out", out]).well(),
+            };
+        }
+    }
+}
+
+#[test]
+fn results_are_not_written_over_what_they_are_made_from() {
+    let place = folder();
+    let [file, test, torques, out] =
+        ["joint.toml", "test.toml", "torques.csv", "out"].map(|name| place.path().join(name));
+    fs::write(&file, joint_file::preset("q1").expect("a preset")).expect("a file");
+    fs::write(&test, SHORT).expect("a file");
+    fs::write(&torques, "time_s,motor_torque_Nm,load_torque_Nm\n0,1,6\n0.1,-1,-6\n").expect("a file");
+    let [file, test, torques, out] = [&file, &test, &torques, &out].map(text);
+    let before = command::contents(place.path());
+    let commands: [&[&str]; 10] = [
+        &["check", file, "--json", file],
+        &["budget", file, "--json", file],
+        &["bench", file, "--html", file],
+        &["paper", file, "--omega", "0.8", "--json", file, "--out", out],
+        &["sim", file, "--json", file, "--out", out],
+        &["sim", "q1", "--profile", torques, "--json", torques, "--out", out],
+        &["hil", file, "--picture", file, "--out", out],
+        &["hil", test, "--host", "--json", test, "--out", out],
+        &["hil", test, "--host", "--junit", test, "--out", out],
+        &["identify", file, "--simulate", "--joint", file],
+    ];
+    for command in commands {
+        joint(command).refused(&["would write over", "name another file"]);
+    }
+    let both = place.path().join("both");
+    let both = text(&both);
+    joint(&["hil", test, "--host", "--json", both, "--junit", both]).refused(&["--json and --junit both name"]);
+    assert_eq!(command::contents(place.path()), before);
+}
+
+#[test]
+fn a_result_that_cannot_be_written_is_known_before_the_work() {
+    let place = folder();
+    let nowhere = place.path().join("none/x");
+    for option in ["--json", "--html", "--document"] {
+        joint(&["bench", "--case", "A", option, text(&nowhere)]).refused(&["none", option]);
+        joint(&["bench", "--case", "A", option, text(place.path())]).refused(&["is a folder", option]);
+    }
+    for option in ["--json", "--picture"] {
+        joint(&["hil", "q1", option, text(&nowhere)]).refused(&["none", option]);
+    }
+    joint(&["bench", "--case", "A", "--document", "no-such.md"]).refused(&["no-such.md", "Markdown"]);
+}
+
+#[test]
+fn a_role_that_a_board_does_not_have_is_refused_with_those_that_do() {
+    let spi = ["image", "q1", "--role", "spi-observer", "--board", "stm32h743"];
+    joint(&spi).refused(&["stm32h743 is no slave on SPI", "stm32f405 or stm32g474", "--role observer"]);
+}
+
+#[test]
+fn numbers_that_cannot_be_are_refused_for_what_they_are() {
+    let place = folder();
+    let out = text(place.path());
+    let lines: [(&[&str], &str); 9] = [
+        (&["check", "--rate", "-5"], "-5"),
+        (&["image", "--rate", "-1"], "-1"),
+        (&["identify", "log.csv", "--torque-error", "-1"], "0 to 50 percent"),
+        (&["identify", "log.csv", "--simulate", "--seed", "-1"], "-1"),
+        (&["hil", "q1", "--rate", "1", "--out", out], "2473 or more"),
+        (&["sim", "--drive", "1e308", "--out", out], "check the unit"),
+        (&["sim", "--load", "-1e7", "--out", out], "check the unit"),
+        (&["sim", "--speed", "1e6", "--out", out], "check the unit"),
+        (&["sim", "--duration", "1e308", "--out", out], "a run of 1e308 s"),
+    ];
+    for (line, words) in lines {
+        let ended = joint(line);
+        ended.refused(&[words]);
+        assert!(!ended.err.contains("unexpected argument"), "{line:?}: {ended:?}");
+    }
+    joint(&["sim", "--drive", "-1", "--duration", "0.01", "--out", out]).well();
+}

@@ -1,0 +1,363 @@
+//! `joint identify` as a user meets it: true values lie in the intervals that it states for logs of the f64 reference,
+//! and logs that cannot tell are refused by name.
+
+mod command;
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+use command::{Ended, joint, text};
+use identify::virtual_test::record;
+use serde_json::Value;
+
+fn folder() -> tempfile::TempDir {
+    tempfile::tempdir().expect("a folder")
+}
+
+/// What is found in the recommended test of a joint with values changed, by someone who has the unchanged joint file.
+fn identified(name: &str, changes: &[(&str, &str)], seed: u64, with_output_torque: bool) -> Value {
+    let preset = joint_file::preset(name).expect("a preset");
+    let changed = changes
+        .iter()
+        .fold(preset.to_owned(), |text, (key, value)| joint_file::change(&text, key, value).expect("a key"));
+    let truth = joint_file::read(&changed).expect("still a joint");
+    let folder = folder();
+    let [log, out] = ["log.csv", "out"].map(|name| folder.path().join(name));
+    fs::write(&log, record(&truth, seed, &|_| {}).expect("can be followed").csv(with_output_torque)).expect("written");
+    joint(&["identify", text(&log), "--joint", name, "--out", text(&out)]).well();
+    let patched = fs::read_to_string(out.join("joint.toml")).expect("written");
+    joint_file::read(&patched).expect("the patched file is a joint file");
+    let page = fs::read_to_string(out.join("report.html")).expect("written");
+    assert!(page.contains("<svg") && page.contains("half-backlash"), "a page with pictures");
+    serde_json::from_str(&fs::read_to_string(out.join("findings.json")).expect("written")).expect("JSON")
+}
+
+/// Value and interval of a finding, by its key.
+fn found(record: &Value, key: &str) -> Option<(f64, [f64; 2])> {
+    let all = record["findings"].as_array().expect("a list");
+    let finding = all.iter().find(|finding| finding["key"] == key).unwrap_or_else(|| panic!("no {key}"));
+    let ends = [finding["interval"][0].as_f64()?, finding["interval"][1].as_f64()?];
+    Some((finding["value"].as_f64()?, ends))
+}
+
+/// Keys and true values, with the largest half of an interval that is any use, as a share of the value.
+type Truths<'t> = &'t [(&'t str, f64, f64)];
+
+/// A preset, what is changed in it behind the fit's back, what is true then, and a seed.
+type Case<'c> = (&'c str, &'c [(&'c str, &'c str)], Vec<(&'c str, f64, f64)>, u64);
+
+const BACKLASH: &str = "mesh.half_backlash_um";
+const STIFFNESS: &str = "compliance.stiffness_N_m_per_rad";
+const DAMPING: &str = "compliance.damping_ratio";
+const MOTOR_DRY: &str = "drive_train.motor_coulomb_friction_N_m";
+const LINK_DRY: &str = "drive_train.load_coulomb_friction_N_m";
+const LINK_VISCOUS: &str = "drive_train.load_viscous_friction_N_m_s_per_rad";
+const TORQUE: &str = "drive_train.torque_constant_error_ratio";
+const MOTOR_ONCE: &str = "drive_train.motor_encoder.once_per_turn_error_deg";
+const MOTOR_TWICE: &str = "drive_train.motor_encoder.twice_per_turn_error_deg";
+const OUTPUT_ONCE: &str = "drive_train.output_encoder.once_per_turn_error_deg";
+const SKEW: &str = "drive_train.output_encoder.skew_us";
+
+/// Counts truths in and out of their intervals; those outside are told.
+fn count(record: &Value, truths: Truths<'_>, inside: &mut usize, all: &mut usize) {
+    for (key, truth, share) in truths {
+        *all += 1;
+        let Some((value, [low, high])) = found(record, key) else {
+            println!("{key}: not found");
+            continue;
+        };
+        assert!(0.5 * (high - low) <= share * truth, "{key}: {low} to {high} says little of {truth}");
+        assert!((value / truth - 1.0).abs() <= 0.15, "{key}: {value} is far from {truth}");
+        if (low..=high).contains(truth) {
+            *inside += 1;
+        } else {
+            println!("{key}: {truth} is not in {low} to {high}");
+        }
+    }
+}
+
+#[test]
+fn true_values_lie_in_the_stated_intervals() {
+    let q1 = |backlash: f64, stiffness: f64| {
+        [
+            (BACKLASH, backlash, 0.02),
+            (STIFFNESS, stiffness, 0.03),
+            (DAMPING, 0.02, 0.15),
+            (MOTOR_DRY, 0.03, 0.1),
+            (LINK_DRY, 0.3, 0.15),
+            (LINK_VISCOUS, 0.1, 0.05),
+            (TORQUE, 0.03, 0.7),
+            (MOTOR_ONCE, 0.1, 0.05),
+            (MOTOR_TWICE, 0.1, 0.05),
+            (OUTPUT_ONCE, 0.02, 0.05),
+            (SKEW, 50.0, 0.05),
+        ]
+    };
+    let s1 = [
+        (BACKLASH, 6.919, 0.02),
+        (STIFFNESS, 9114.0, 0.04),
+        (MOTOR_DRY, 0.02, 0.1),
+        (LINK_DRY, 0.3, 0.15),
+        (LINK_VISCOUS, 0.05, 0.05),
+        (MOTOR_ONCE, 0.01, 0.05),
+        (OUTPUT_ONCE, 0.005, 0.05),
+        (SKEW, 50.0, 0.05),
+    ];
+    let l1 = [(BACKLASH, 60.0, 0.02), ("mesh.mean_stiffness_N_per_m", 1e8, 0.05)];
+    let softer = [("half_backlash_um", "25"), ("stiffness_N_m_per_rad", "8000")];
+    let worn = [("half_backlash_um", "60")];
+    let cases: [Case<'_>; 6] = [
+        ("q1", &[], q1(40.0, 10.3e3).to_vec(), 11),
+        ("q1", &softer, q1(25.0, 8000.0).to_vec(), 12),
+        ("q1", &worn, q1(60.0, 10.3e3).to_vec(), 13),
+        ("s1", &[], s1.to_vec(), 14),
+        ("s1", &[], s1.to_vec(), 15),
+        ("l1", &[], l1.to_vec(), 16),
+    ];
+    let (mut inside, mut all) = (0, 0);
+    for (name, changes, truths, seed) in cases {
+        println!("{name} {changes:?}, seed {seed}");
+        count(&identified(name, changes, seed, false), &truths, &mut inside, &mut all);
+    }
+    println!("{inside} of {all} inside");
+    assert!(10 * inside >= 9 * all, "{inside} of {all} true values lie in their 95 % intervals");
+}
+
+#[test]
+fn a_torque_measured_at_the_output_tells_the_motor_s_friction_from_the_link_s() {
+    let record = identified("q1", &[], 21, true);
+    let viscous = "drive_train.motor_viscous_friction_N_m_s_per_rad";
+    for (key, truth, share) in [(viscous, 2e-4, 0.1), (LINK_DRY, 0.3, 0.03), (LINK_VISCOUS, 0.1, 0.03)] {
+        let (value, _) = found(&record, key).unwrap_or_else(|| panic!("{key} is not found"));
+        assert!((value / truth - 1.0).abs() < share, "{key}: {value}, truly {truth}");
+    }
+}
+
+/// A log of a motor that turns evenly but for what a row may change: time, motor counts, output counts, torque.
+fn log(folder: &Path, change: impl Fn(usize, &mut [String; 4])) -> Ended {
+    let mut text = "time_s,motor_counts,output_counts,motor_torque_N_m\n".to_owned();
+    for row in 0..3000_usize {
+        let torque = if row / 300 % 2 == 0 { 1.0 } else { -1.0 };
+        let counts = row as i64 * 12;
+        let mut cells = [
+            format!("{:.4}", row as f64 * 2e-4),
+            counts.to_string(),
+            // 17 bits against 14, over a ratio of 6.
+            (counts * 8 / 6).to_string(),
+            torque.to_string(),
+        ];
+        change(row, &mut cells);
+        writeln!(text, "{}", cells.join(",")).expect("a string");
+    }
+    let path = folder.join("bad.csv");
+    fs::write(&path, text).expect("written");
+    joint(&["identify", self::text(&path), "--out", self::text(&folder.join("out"))])
+}
+
+#[test]
+fn logs_that_cannot_tell_are_refused_by_name() {
+    let folder = folder();
+    let log = |change: &dyn Fn(usize, &mut [String; 4])| log(folder.path(), change);
+    log(&|_, cells| cells[3] = "1.0".into()).refused(&["bad.csv", "no reversal", "1.0000"]);
+    log(&|row, cells| cells[3] = (if row < 1500 { "0.05" } else { "-0.05" }).into())
+        .refused(&["torque is too small to close both flanks", "0.0300 N m"]);
+    log(&|row, cells| cells[3] = (if row < 1500 { "1" } else { "-1" }).into())
+        .refused(&["too few crossings", "1 times"]);
+    log(&|row, cells| {
+        if row == 700 {
+            cells[0] = "0.04".into();
+        }
+    })
+    .refused(&["the time does not rise", "line 702"]);
+    log(&|row, cells| {
+        if row == 40 {
+            cells[3] = "NaN".into();
+        }
+    })
+    .refused(&["line 42", "no finite number", "motor_torque_N_m"]);
+    log(&|row, cells| {
+        if row == 40 {
+            cells[1] = "90000".into();
+        }
+    })
+    .refused(&["motor_counts", "jumps", "line 42"]);
+    log(&|row, cells| {
+        if row == 40 {
+            cells[2] = "1.5".into();
+        }
+    })
+    .refused(&["output_counts", "no whole number", "line 42"]);
+    log(&|_, cells| cells[1] = "5".into()).refused(&["the motor does not move", "0.0 counts"]);
+    log(&|row, cells| cells[2] = (row * 14).to_string()).refused(&["do not turn together", "--output-bits"]);
+    log(&|row, cells| {
+        if row > 700 {
+            cells[0] = format!("{:.4}", row as f64 * 2e-4 + 0.5);
+        }
+    })
+    .refused(&["not evenly spaced", "line 703"]);
+    log(&|row, cells| cells[0] = format!("{:.4}", row as f64 * 1e-3)).refused(&[
+        "sampled too slowly: 1000 Hz",
+        "at least 2000 Hz",
+        "swings at",
+    ]);
+    log(&|row, cells| cells[0] = format!("{:.6}", row as f64 * 1e-4)).refused(&["too short: 0.300 s", "0.5 s"]);
+}
+
+/// An MCAP log of ROS 2 messages in CDR, or of JSON, with a topic beside that has nothing to do with it.
+fn mcap(path: &Path, csv: &str, encoding: &str, compression: mcap::Compression) {
+    let out = std::io::BufWriter::new(fs::File::create(path).expect("a file"));
+    let options = mcap::WriteOptions::new().compression(Some(compression));
+    let mut writer = mcap::Writer::with_options(out, options).expect("a log");
+    let form = "std_msgs/Header header\nstring[] name\nfloat64[] position\nint64 raw\nfloat32 torque\n===\n\
+                MSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n";
+    let schema = writer.add_schema("lab_msgs/msg/Drive", "ros2msg", form.as_bytes()).expect("a schema");
+    let mut channel = |topic: &str, encoding: &str| {
+        let schema = if encoding == "cdr" { schema } else { 0 };
+        writer.add_channel(schema, topic, encoding, &Default::default()).expect("a channel")
+    };
+    let (drive, other) = (channel("/lab/drive", encoding), channel("/lab/room", "json"));
+    let mut say = |channel_id: u16, index: u32, data: &[u8]| {
+        let time = 100_000 * u64::from(index);
+        let header = mcap::records::MessageHeader { channel_id, sequence: index, log_time: time, publish_time: time };
+        writer.write_to_known_channel(&header, data).expect("written");
+    };
+    for (index, line) in (0..).zip(csv.lines().skip(1)) {
+        let cells: Vec<&str> = line.split(',').collect();
+        let (time, torque): (f64, f32) = (cells[0].parse().expect("a time"), cells[3].parse().expect("a torque"));
+        let message = if encoding == "json" {
+            format!(
+                "{{\"time_s\": {time}, \"drive\": {{\"pos\": [{}, {}]}}, \"torque\": {torque}, \"on\": true}}",
+                cells[1], cells[2]
+            )
+            .into_bytes()
+        } else {
+            let nanoseconds = (time * 1e9).round() as u64;
+            let mut bytes = vec![0, 1, 0, 0];
+            bytes.extend(((nanoseconds / 1_000_000_000) as i32).to_le_bytes());
+            bytes.extend(((nanoseconds % 1_000_000_000) as u32).to_le_bytes());
+            // Frame of one letter; one name of three.
+            bytes.extend([2, 0, 0, 0, b'm', 0, 0, 0, 1, 0, 0, 0, 4, 0, 0, 0, b'o', b'u', b't', 0]);
+            // One number, on a multiple of eight behind the head.
+            bytes.extend([1, 0, 0, 0]);
+            bytes.extend(cells[2].parse::<f64>().expect("counts").to_le_bytes());
+            bytes.extend(cells[1].parse::<i64>().expect("counts").to_le_bytes());
+            bytes.extend(torque.to_le_bytes());
+            bytes
+        };
+        say(drive, index, &message);
+        if index % 100 == 0 {
+            say(other, index, br#"{"temperature": 21.5}"#);
+        }
+    }
+    writer.finish().expect("finished");
+}
+
+#[test]
+fn a_lab_s_own_mcap_log_says_what_the_same_log_as_csv_says() {
+    let folder = folder();
+    let preset = joint_file::preset("q1").expect("a preset");
+    let whole = record(&joint_file::read(preset).expect("a joint"), 41, &|_| {}).expect("followed").csv(false);
+    let csv: String = whole.lines().take(15_001).map(|line| format!("{line}\n")).collect();
+    let [plain, cdr, json] = ["log.csv", "cdr.mcap", "json.mcap"].map(|name| folder.path().join(name));
+    fs::write(&plain, &csv).expect("written");
+    mcap(&cdr, &csv, "cdr", mcap::Compression::Lz4);
+    mcap(&json, &csv, "json", mcap::Compression::Zstd);
+    let findings = |log: &Path, options: &[&str]| {
+        let out = folder.path().join("out");
+        joint(&[&["identify", text(log), "--out", text(&out)], options].concat()).well();
+        let record: Value =
+            serde_json::from_str(&fs::read_to_string(out.join("findings.json")).expect("written")).expect("JSON");
+        record["findings"].clone()
+    };
+    let wanted = findings(&plain, &[]);
+    let ros = ["motor_counts=raw", "output_counts=position[0]", "motor_torque_N_m=torque"];
+    let of_ros = ros.iter().flat_map(|column| ["--column", column]).collect::<Vec<_>>();
+    let of_json = ["motor_counts=drive.pos[0]", "output_counts=drive.pos[1]", "motor_torque_N_m=torque"];
+    let of_json = of_json.iter().flat_map(|column| ["--column", column]).collect::<Vec<_>>();
+    let close = |found: &Value| {
+        for (one, other) in wanted.as_array().expect("a list").iter().zip(found.as_array().expect("a list")) {
+            let [one, other] = [one, other].map(|finding| finding["value"].as_f64());
+            // The torque has seven digits here.
+            assert!(one.is_some() == other.is_some(), "{found}");
+            assert!(one.zip(other).is_none_or(|(one, other)| (one - other).abs() <= 1e-3 * one.abs()), "{found}");
+        }
+    };
+    close(&findings(&cdr, &of_ros));
+    close(&findings(&json, &[&["--topic", "/lab/drive"], &of_json[..]].concat()));
+    let refused = |log: &Path, options: &[&str], words: &[&str]| {
+        joint(&[&["identify", text(log)], options].concat()).refused(words);
+    };
+    refused(&cdr, &[], &["no topic has motor, output and torque", "/lab/drive", "position[0]", "--column"]);
+    refused(&cdr, &["--topic", "/lab/drives"], &["there is no topic `/lab/drives`", "was `/lab/drive` meant?"]);
+    refused(&plain, &["--topic", "/lab/drive"], &["no MCAP log", "leave --topic out"]);
+    refused(&plain, &["--column", "motor_count=raw"], &["`motor_count` is none of"]);
+    refused(&plain, &["--column", "motor_counts=ra"], &["there is no column `ra`"]);
+    let bytes = fs::read(&cdr).expect("written");
+    fs::write(&cdr, &bytes[..bytes.len() / 2]).expect("written");
+    refused(&cdr, &of_ros, &["cdr.mcap", "damaged or cut off after"]);
+}
+
+#[test]
+fn a_history_that_sim_has_written_can_be_identified() {
+    let folder = folder();
+    let out = folder.path().join("sim");
+    joint(&["sim", "q1", "--profile", "reversals", "--out", text(&out)]).well();
+    let ended = joint(&["identify", text(&out.join("history.mcap")), "--out", text(&folder.path().join("out"))]).well();
+    assert!(ended.out.contains("stiffness behind the carrier"), "{ended:?}");
+}
+
+#[test]
+fn files_that_are_no_logs_are_refused() {
+    let folder = folder();
+    let refused = |content: &str, words: &[&str]| {
+        let path = folder.path().join("log.csv");
+        fs::write(&path, content).expect("written");
+        joint(&["identify", text(&path), "--out", text(folder.path())]).refused(words);
+    };
+    refused("", &["log.csv", "empty", "motor_counts"]);
+    refused("0,1,2,3\n", &["numbers in place of names"]);
+    refused("time_s,motor_count,output_counts,motor_torque_N_m\n0,1,2,3\n", &["only 1 samples", "0.5 s"]);
+    let rows: String = (0..3000).map(|row| format!("{:.4},1,2,3\n", f64::from(row) * 2e-4)).collect();
+    let header = "time_s,motor_count,output_counts,motor_torque_N_m\n";
+    refused(&format!("{header}{rows}"), &["no column `motor_counts`", "`motor_count`"]);
+    joint(&["identify", text(&folder.path().join("none.csv"))]).refused(&["none.csv", "--simulate"]);
+    joint(&["identify", "log.csv", "--torque-error", "90"]).refused(&["0 to 50"]);
+}
+
+#[test]
+fn what_a_log_does_not_show_is_said_instead_of_guessed() {
+    // Quick reversals only: the output makes no turn, so its errors cannot be seen.
+    let preset = joint_file::preset("q1").expect("a preset");
+    let folder = folder();
+    let [log, out] = ["log.csv", "out"].map(|name| folder.path().join(name));
+    let whole = record(&joint_file::read(preset).expect("a joint"), 31, &|_| {}).expect("followed").csv(false);
+    let quick: String = whole.lines().take(38_001).map(|line| format!("{line}\n")).collect();
+    fs::write(&log, quick).expect("written");
+    let ended = joint(&["identify", text(&log), "--out", text(&out)]).well();
+    let line = ended.out.lines().find(|line| line.starts_with("output encoder: error once")).expect("a line");
+    assert!(line.contains("not identifiable from this log"), "{line}");
+    let patched = fs::read_to_string(out.join("joint.toml")).expect("written");
+    assert_eq!(
+        joint_file::value(&patched, OUTPUT_ONCE).expect("a key"),
+        joint_file::value(preset, OUTPUT_ONCE).expect("a key"),
+        "the joint file keeps what it said"
+    );
+    let backlash = patched.lines().find(|line| line.starts_with("half_backlash_um")).expect("a line");
+    assert!(backlash.contains("identified from log.csv"), "{backlash}");
+}
+
+#[test]
+fn a_simulated_log_has_the_documented_columns() {
+    let folder = folder();
+    let log = folder.path().join("virtual.csv");
+    let short = ["identify", text(&log), "--simulate", "--seed", "3", "--with-output-torque"];
+    let ended = joint(&short).well();
+    assert!(ended.out.contains("joint Q1"), "{ended:?}");
+    let written = fs::read_to_string(&log).expect("written");
+    let header = written.lines().next();
+    assert_eq!(header, Some("time_s,motor_counts,output_counts,motor_torque_N_m,output_torque_N_m"));
+    // What lies there is not written over: it may be a recorded test.
+    joint(&["identify", text(&log), "--simulate", "--seed", "4"]).refused(&["virtual.csv", "new file"]);
+    assert_eq!(fs::read_to_string(&log).expect("still there"), written);
+}

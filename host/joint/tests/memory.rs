@@ -1,0 +1,167 @@
+//! `joint memory` as a user meets it: with files, and with the board's own firmware in a thread behind a pseudo-terminal.
+//! The emulator is left to `emulated_board`.
+
+mod command;
+#[allow(dead_code, reason = "every test binary uses its own part of it")]
+mod fake_board;
+mod learning_board;
+mod pseudo_terminal;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use command::{Ended, joint, text};
+use identify::memory::content::Content;
+use learning_board::{Flash, learnt};
+use model_core::realtime::observer::{MEMORY_BYTES, Memory};
+use tempfile::TempDir;
+
+const EMPTY: Memory = [0xff; MEMORY_BYTES];
+/// Long enough to learn the width: one second.
+const PERIODS: u32 = 10_000;
+
+/// A memory of joint Q1 whose teeth are wider than its file says, in a file.
+fn stored(folder: &TempDir) -> (PathBuf, Memory) {
+    let q1 = learning_board::joint(&[]);
+    let wide = learning_board::joint(&[("mesh.half_backlash_um", "55")]);
+    let (memory, _) = learnt(&q1, &wide, PERIODS);
+    let path = folder.path().join("q1.memory");
+    fs::write(&path, memory).expect("written");
+    (path, memory)
+}
+
+/// A board of a joint behind a port, which stays open as long as the file.
+fn board(changes: &[(&str, &str)], flash: &Flash) -> (String, fs::File) {
+    let (master, slave, path) = pseudo_terminal::pair();
+    learning_board::start(master, learning_board::joint(changes), flash.clone());
+    (path, slave)
+}
+
+fn memory(words: &[&str], port: &str) -> Ended {
+    joint(&[&["memory"], words, &["--port", port]].concat())
+}
+
+#[test]
+fn what_was_learnt_is_shown_with_units_beside_the_joint_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (path, memory) = stored(&folder);
+    let shown = joint(&["memory", "show", text(&path)]).well();
+    let line = |name: &str| shown.out.lines().find(|line| line.starts_with(name)).unwrap_or_default().to_owned();
+    let width = line("half-backlash b");
+    assert!(width.contains(" um ") && width.ends_with("40.00"), "{}", shown.out);
+    assert!(line("compliance at the output").contains("urad/(N m)"), "{}", shown.out);
+    assert!(line("output encoder: error twice a turn").contains("may well be zero"), "{}", shown.out);
+    let json = joint(&["memory", "show", text(&path), "--json", "-"]).well();
+    let json: serde_json::Value = serde_json::from_str(&json.out).expect("JSON");
+    assert_eq!(json["schema"], "joint-memory/1");
+    let value = json["values"][0]["value"].as_f64().expect("a width");
+    assert!((value - 55.0).abs() < 5.0, "{value}");
+    assert_eq!(fs::read(&path).expect("a file"), memory, "looking changes nothing");
+    let q1 = learning_board::joint(&[]);
+    fs::write(&path, learnt(&q1, &q1, 0).0).expect("written");
+    let shown = joint(&["memory", "show", text(&path)]).well();
+    assert_eq!(shown.out.matches("not learnt").count(), 12, "nobody has moved it: {}", shown.out);
+}
+
+#[test]
+fn what_is_shown_is_what_the_observer_says() {
+    let q1 = learning_board::joint(&[]);
+    let (memory, said) = learnt(&q1, &learning_board::joint(&[("mesh.half_backlash_um", "55")]), PERIODS);
+    let loaded = joint_file::named::load(Path::new("q1")).expect("a preset");
+    let content = Content::of(&memory, &loaded).expect("its own");
+    let near = |name: &str, factor: f64, said: f32| {
+        let shown = content.value(name).expect("learnt");
+        let said = factor * f64::from(said);
+        assert!((shown - said).abs() <= 1e-3 * said.abs(), "{name}: {shown} shown, {said} said");
+    };
+    near("half-backlash b", 1e6, said.half_backlash.value);
+    near("compliance at the output", 1e6, said.compliance.value);
+    near("encoder offset at the output", 1e3, said.encoder_offset.value);
+    near("dry friction of the motor", 1.0, said.motor_friction.value);
+}
+
+#[test]
+fn a_memory_moves_over_the_line_and_back() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (path, bytes) = stored(&folder);
+    let flash = Flash::new(EMPTY, true);
+    let (port, _open) = board(&[], &flash);
+    memory(&["read", text(&folder.path().join("none"))], &port)
+        .refused(&["keeps no memory", "joint memory keep --port"]);
+    memory(&["write", text(&path)], &port).well();
+    assert_eq!(*flash.memory.lock().expect("whole"), bytes);
+    let copy = folder.path().join("copy");
+    let read = memory(&["read", text(&copy)], &port).well();
+    assert!(read.out.contains("half-backlash b"), "{}", read.out);
+    assert_eq!(fs::read(&copy).expect("read"), bytes);
+    memory(&["erase"], &port).well();
+    assert_eq!(*flash.memory.lock().expect("whole"), EMPTY);
+    memory(&["keep"], &port).well();
+    assert_ne!(*flash.memory.lock().expect("whole"), EMPTY, "what it has learnt so far");
+}
+
+#[test]
+fn a_memory_of_another_joint_is_refused_by_the_board_and_by_show() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (path, _) = stored(&folder);
+    let flash = Flash::new(EMPTY, true);
+    let (port, _open) = board(&[("mesh.half_backlash_um", "30")], &flash);
+    memory(&["write", text(&path)], &port).refused(&["q1.memory", "another joint", "load this joint's own"]);
+    assert_eq!(*flash.memory.lock().expect("whole"), EMPTY, "nothing was written");
+    joint(&["memory", "show", text(&path), "--joint", "l1"]).refused(&["q1.memory", "another joint"]);
+}
+
+#[test]
+fn files_that_are_no_good_are_refused_before_a_board_is_asked() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (path, bytes) = stored(&folder);
+    let damaged = folder.path().join("damaged.memory");
+    let mut changed = bytes;
+    changed[300] ^= 4;
+    fs::write(&damaged, changed).expect("written");
+    let short = folder.path().join("short.memory");
+    fs::write(&short, &bytes[..100]).expect("written");
+    let foreign = folder.path().join("foreign.memory");
+    fs::write(&foreign, [7; MEMORY_BYTES]).expect("written");
+    let missing = folder.path().join("missing.memory");
+    for verb in ["show", "write"] {
+        let refused = |file: &Path, words: &[&str]| joint(&["memory", verb, text(file)]).refused(words);
+        refused(&damaged, &["damaged.memory", "the memory is damaged", "load a copy"]);
+        refused(&short, &["short.memory", "it has 100 bytes, and a memory has 544"]);
+        refused(&foreign, &["foreign.memory", "no memory of an observer"]);
+        refused(&missing, &["missing.memory", "cannot read", "joint memory read"]);
+        refused(folder.path(), &["it is a folder"]);
+    }
+    joint(&["memory", "show", text(&path), "--joint", "no_such"]).refused(&["no_such"]);
+}
+
+#[test]
+fn damaged_flash_and_flash_that_takes_nothing_are_named_with_what_to_do() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (path, bytes) = stored(&folder);
+    let mut changed = bytes;
+    changed[300] ^= 4;
+    let flash = Flash::new(changed, true);
+    let (port, _open) = board(&[], &flash);
+    let out = folder.path().join("out");
+    memory(&["read", text(&out)], &port).refused(&["the memory is damaged", "joint memory erase --port"]);
+    assert!(!out.exists());
+    let worn = Flash::new(EMPTY, false);
+    let (port, _worn) = board(&[], &worn);
+    memory(&["write", text(&path)], &port).refused(&["does not read as it was written"]);
+    memory(&["keep"], &port).refused(&["does not read as it was written"]);
+}
+
+#[test]
+fn a_board_that_learns_nothing_is_refused_with_the_image_that_does() {
+    let (master, _slave, port) = pseudo_terminal::pair();
+    drop(fake_board::start(master, fake_board::Misbehaviour::None));
+    memory(&["erase"], &port).refused(&["role `plant`, which learns nothing", "cargo joint flash q1 --role observer"]);
+}
+
+#[test]
+fn a_silent_port_and_a_missing_one_are_named() {
+    let (_master, _slave, port) = pseudo_terminal::pair();
+    memory(&["erase"], &port).refused(&["no board answers", &port]);
+    memory(&["erase"], "/dev/no-such-port").refused(&["/dev/no-such-port"]);
+}

@@ -1,0 +1,122 @@
+//! Instructions that the certificate promises, against those counted on the emulated board: what a step takes while
+//! contact holds and with all teeth apart, and that no searched state takes more than the bound.
+
+use model_core::design::{Cost, Parts};
+use model_core::joint::{Excitation, JointParameters};
+
+use super::joints::{TRIAL_JOINTS, write_files};
+use super::worst_case::Search;
+use board::target::image::DEFAULT_TICK_RATE;
+use board::target::toolchain::Toolchain;
+use board::target::{Say, measuring};
+use report::failure::{Failure, Outcome};
+
+/// How far a prediction may be off the count: fits over joints leave 5 %.
+const MARGIN: f64 = 0.06;
+/// A bound beyond this many times the worst state that was found says too little.
+const WIDEST: f64 = 1.6;
+
+/// Instructions counted of one joint.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Counted {
+    /// The joint.
+    pub name: String,
+    /// Parts of its tick where contacts change.
+    pub parts: Parts,
+    /// Under a load.
+    pub holding: u32,
+    /// At rest in the middle of its gaps.
+    pub apart: u32,
+}
+
+/// Counts on the emulated board.
+pub fn count(toolchain: &Toolchain, say: Say<'_>) -> Outcome<Vec<Counted>> {
+    let files = write_files(toolchain.target_directory())?;
+    let elf = measuring::build_measuring(toolchain, "costs", &files, DEFAULT_TICK_RATE, say)?;
+    let lines = measuring::run(&elf)?;
+    lines.iter().map(|line| parse(line).ok_or_else(|| Failure::new(format!("the board said: {line}")))).collect()
+}
+
+fn parse(line: &str) -> Option<Counted> {
+    let mut fields = line.split(';');
+    let name = fields.next()?.to_owned();
+    let parts = super::parts(&mut fields)?;
+    let mut number = || fields.next()?.parse().ok();
+    Some(Counted { name, parts, holding: number()?, apart: number()? })
+}
+
+/// Holds predictions against counts, and bounds against the search for the worst case; returns a line for each joint.
+pub fn judge(counted: &[Counted], searched: &[Search]) -> Outcome<Vec<String>> {
+    TRIAL_JOINTS
+        .iter()
+        .map(|joint| {
+            let missing = || Failure::check_failed(format!("{}: not counted on the board", joint.name));
+            let counted = counted.iter().find(|counted| counted.name == joint.name).ok_or_else(missing)?;
+            let searched = searched.iter().find(|search| search.name == joint.name).ok_or_else(missing)?;
+            compare(&joint.read()?.parameters, counted, searched.most())
+        })
+        .collect()
+}
+
+fn compare(parameters: &JointParameters, counted: &Counted, most: u32) -> Outcome<String> {
+    let cost = Cost::new(parameters);
+    let Counted { name, parts: divided, .. } = counted;
+    // A prescribed excitation may be too fast for the exponential flow; teeth without backlash are never apart.
+    let holds = matches!(parameters.excitation, Excitation::Angle);
+    let parts = [&parameters.sun_planet, &parameters.ring_planet]
+        .iter()
+        .all(|mesh| mesh.half_backlash.iter().all(|half_backlash| *half_backlash > 0.0));
+    for (what, predicted, found, applies) in [
+        ("while contact holds", cost.holding(*divided), counted.holding, holds),
+        ("with all teeth apart", cost.losing(*divided), counted.apart, parts),
+    ] {
+        let off = predicted / f64::from(found) - 1.0;
+        if applies && off.abs() > MARGIN {
+            return Err(Failure::check_failed(format!(
+                "joint {name}: {predicted:.0} instructions are promised {what}, but {found} were counted"
+            ))
+            .with_help("count anew and change the constants of model-core/src/design/cost.rs"));
+        }
+    }
+    let bound = cost.bound(*divided);
+    if !(f64::from(most)..WIDEST * f64::from(most)).contains(&bound) {
+        return Err(Failure::check_failed(format!(
+            "joint {name}: a step is said to take at most {bound:.0} instructions, but the worst that was found takes {most}"
+        ))
+        .with_help("change the constants of model-core/src/design/cost.rs"));
+    }
+    Ok(format!(
+        "{name}: contact holds {} of {:.0} promised, apart {} of {:.0}, worst {most} of {bound:.0}",
+        counted.holding,
+        cost.holding(*divided),
+        counted.apart,
+        cost.losing(*divided)
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_off_by_more_than_the_margin_fail_and_so_does_a_worst_case_above_the_bound() {
+        let joint = TRIAL_JOINTS[0].read().unwrap().parameters;
+        let cost = Cost::new(&joint);
+        let parts = Parts::Substeps(2);
+        let (holding, apart) = (cost.holding(parts) as u32, cost.losing(parts) as u32);
+        let good = Counted { name: "Q1".into(), parts, holding, apart };
+        let most = (0.9 * cost.bound(parts)) as u32;
+        assert!(compare(&joint, &good, most).is_ok());
+        let dear = Counted { holding: good.holding + good.holding / 10, ..good.clone() };
+        assert!(compare(&joint, &dear, most).unwrap_err().message().contains("while contact holds"));
+        assert!(compare(&joint, &good, 2 * most).unwrap_err().message().contains("at most"));
+    }
+
+    #[test]
+    fn a_line_of_the_board_is_read() {
+        let counted = |parts| Counted { name: "Q1".into(), parts, holding: 2567, apart: 2925 };
+        assert_eq!(parse("Q1;2;0;2567;2925"), Some(counted(Parts::Substeps(2))));
+        assert_eq!(parse("Q1;2;5;2567;2925"), Some(counted(Parts::Leaps(5))));
+        assert_eq!(parse("panicked at x.rs"), None);
+    }
+}

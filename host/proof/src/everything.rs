@@ -1,0 +1,101 @@
+//! What `joint hil --check` does after the run: every board's image and what its tick can reach, clippy over the
+//! firmware, the proofs about the step that need the emulated board, and the tests that need it. Host tests that need no board are `cargo test`'s own business.
+
+use std::process::{Command, Stdio};
+
+use link::messages::Role;
+
+use crate::roles;
+use crate::{costs, same_bits, tick, worst_case};
+use board::target::board::Board;
+use board::target::image;
+use board::target::image::CONTROL_RATE;
+use board::target::lint;
+use board::target::toolchain::Toolchain;
+use report::failure::{Failure, Outcome};
+use report::output;
+use report::progress::Progress;
+use report::workspace::workspace;
+
+/// Runs all of it; the first failure ends it.
+pub fn check(tick_rate: u32, progress: &Progress) -> Outcome<()> {
+    let say = |line: &str| progress.say(line);
+    progress.stage("preparing the toolchain");
+    let toolchain = Toolchain::prepare(&say)?;
+    for board in Board::ALL {
+        for (role, rate) in [(Role::Plant, tick_rate), (Role::Observer, CONTROL_RATE), (Role::Loop, CONTROL_RATE)] {
+            let what = format!("role {} for {}", image::word(role), board.name());
+            progress.stage(&format!("building the image of {what}"));
+            let image = image::build_image(&toolchain, &image::preset_file("q1"), board, role, rate, &say)?;
+            let (flash, ram) = (image.flash_bytes, image.ram_bytes);
+            let reach = tick::reach(&image.elf)?;
+            tick::judge(&reach).map_err(|failure| failure.while_doing(format_args!("image of {what}")))?;
+            let (functions, stack) = (reach.functions, tick::stack(&reach));
+            progress.clear();
+            output::print(&format!(
+                "ok       image of {what}: {flash} B of flash, {ram} B of RAM; its tick: {functions} functions, none can \
+                 panic, at most {stack} B of stack\n"
+            ))?;
+        }
+        if board.has_spi_slave() {
+            progress.stage("building the image of a slave on SPI");
+            let joint = image::preset_file("q1");
+            let bytes = image::build_spi_slave(&toolchain, &joint, board, image::SPI_RATE, &say)?.flash_bytes;
+            progress.clear();
+            output::print(&format!("ok       image of a slave on SPI for {}: {bytes} B of flash\n", board.name()))?;
+        }
+        progress.stage(&format!("linting the firmware for {}", board.name()));
+        lint::clippy(&toolchain, board, &say)?;
+        progress.clear();
+        output::print(&format!("ok       clippy for {}\n", board.name()))?;
+    }
+    proofs(&toolchain, progress)?;
+    emulator_tests()
+}
+
+/// Same bits, instructions and worst case, of a release build against the emulated board.
+fn proofs(toolchain: &Toolchain, progress: &Progress) -> Outcome<()> {
+    let say = |line: &str| progress.say(line);
+    progress.stage("comparing bits between the emulated board and this program");
+    let runs = same_bits::compare(&same_bits::on_board(toolchain, &say)?)?;
+    progress.clear();
+    output::print(&format!("ok       {runs} runs of the step, the same in every bit on the board and here\n"))?;
+    progress.stage("searching for the worst case on the emulated board");
+    let found = worst_case::search(toolchain, &say)?;
+    progress.clear();
+    for search in &found {
+        output::print(&format!("{search}\n"))?;
+    }
+    progress.stage("counting instructions on the emulated board");
+    let lines = costs::judge(&costs::count(toolchain, &say)?, &found)?;
+    progress.clear();
+    output::print(&format!("{}\nok       instructions as promised\n", lines.join("\n")))?;
+    worst_case::judge(&found)?;
+    progress.stage("counting the instructions of the roles on the emulated board");
+    let loads = roles::count(toolchain, &say)?;
+    progress.clear();
+    for load in &loads {
+        output::print(&format!("{load}\n"))?;
+    }
+    roles::judge(&loads)?;
+    output::print("ok       roles within their control period\n")?;
+    output::print("ok       worst case of a step within its budget\n")
+}
+
+/// The tests that are left out of `cargo test`, with cargo's own output; of the whole workspace, whose features are then
+/// those that `cargo test` has just built.
+fn emulator_tests() -> Outcome<()> {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let status = Command::new(cargo)
+        .args(["test", "--workspace"])
+        .args(["emulated_board", "same_bits", "tick_audit", "bench"].iter().flat_map(|name| ["--test", name]))
+        .args(["--", "--ignored"])
+        .current_dir(workspace())
+        .stdin(Stdio::null())
+        .status()
+        .map_err(|error| Failure::new(format!("cannot run cargo for the tests on the emulated board: {error}")))?;
+    match status.success() {
+        true => output::print("ok       tests on the emulated board\n"),
+        false => Err(Failure::check_failed(format!("tests on the emulated board failed ({status})"))),
+    }
+}

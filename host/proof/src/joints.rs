@@ -1,0 +1,108 @@
+//! The joints that the step is tried on: 3, 4 and 5 planets, both damping laws, with compliance and without, mesh phase
+//! by angle and by time, equal, unequal and no backlash. They are presets with a few values changed; what is done with
+//! them is left to the trials.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use joint_file::JointFile;
+
+use report::failure::{Failure, Outcome};
+
+/// A joint that the step is tried on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct TrialJoint {
+    /// Its name in every table.
+    pub name: &'static str,
+    preset: &'static str,
+    changes: &'static [(&'static str, &'static str)],
+}
+
+/// All of them.
+pub const TRIAL_JOINTS: [TrialJoint; 5] = [
+    TrialJoint { name: "Q1", preset: "q1", changes: &[] },
+    TrialJoint { name: "paper", preset: "paper", changes: &[] },
+    TrialJoint {
+        name: "L1 with 4 planets",
+        preset: "l1",
+        changes: &[("planets", "4"), ("mesh.half_backlash_um", "[60.0, 45.0, 30.0, 15.0]")],
+    },
+    TrialJoint {
+        name: "S1 without backlash",
+        preset: "s1",
+        changes: &[("planets", "4"), ("mesh.half_backlash_um", "0.0")],
+    },
+    TrialJoint {
+        name: "Q1 with 5 planets",
+        preset: "q1",
+        // A larger sun leaves room between five planets.
+        changes: &[
+            ("planets", "5"),
+            ("sun_teeth", "30"),
+            ("ring_teeth", "90"),
+            ("damping_law", "paper"),
+            ("mesh.half_backlash_um", "[40.0, 30.0, 20.0, 10.0, 0.0]"),
+        ],
+    },
+];
+
+impl TrialJoint {
+    /// Its joint file.
+    pub fn text(&self) -> Outcome<String> {
+        let preset = joint_file::preset(self.preset);
+        let start = preset.ok_or_else(|| Failure::new(format!("there is no preset {}", self.preset)))?;
+        let named = [("name", self.name), ("coherence", "warn")];
+        named.iter().chain(self.changes).try_fold(start.to_owned(), |text, (key, value)| {
+            joint_file::change(&text, key, value)
+                .map_err(|refused| Failure::new(refused.message).with_help(refused.help))
+        })
+    }
+
+    /// What its file says.
+    pub fn read(&self) -> Outcome<JointFile> {
+        joint_file::read(&self.text()?).map_err(|problems| {
+            let list: Vec<_> = problems.iter().map(ToString::to_string).collect();
+            Failure::new(format!("joint {}: {}", self.name, list.join("\n")))
+        })
+    }
+}
+
+/// Writes the files of all of them below a folder, for the firmware's build.
+pub fn write_files(folder: &Path) -> Outcome<Vec<PathBuf>> {
+    let folder = folder.join("trial-joints");
+    let write = |(index, joint): (usize, &TrialJoint)| {
+        let (path, text) = (folder.join(format!("{index}.toml")), joint.text()?);
+        // A file that says the same is left alone, so that nothing is built anew.
+        if fs::read_to_string(&path).is_ok_and(|found| found == text) {
+            return Ok(path);
+        }
+        fs::create_dir_all(&folder).and_then(|()| fs::write(&path, text)).map_err(|error| {
+            Failure::new(format!("cannot write {}: {error}", path.display()))
+                .with_help("make room, or set CARGO_TARGET_DIR to a folder that can be written")
+        })?;
+        Ok(path)
+    };
+    TRIAL_JOINTS.iter().enumerate().map(write).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use model_core::mesh::DampingLaw;
+
+    use super::*;
+
+    #[test]
+    fn between_them_they_have_everything_that_a_joint_can_have() {
+        let joints: Vec<_> = TRIAL_JOINTS.iter().map(|joint| joint.read().unwrap().parameters).collect();
+        let any = |has: &dyn Fn(&model_core::joint::JointParameters) -> bool| joints.iter().any(has);
+        for planets in 3..=5 {
+            assert!(any(&|joint| joint.geometry.planets == planets));
+        }
+        for law in [DampingLaw::Paper, DampingLaw::Contact] {
+            assert!(any(&|joint| joint.damping_law == law));
+        }
+        assert!(any(&|joint| joint.compliance.is_some()) && any(&|joint| joint.compliance.is_none()));
+        assert!(any(&|joint| joint.sun_planet.half_backlash.iter().all(|half| *half == 0.0)));
+        assert!(any(&|joint| joint.sun_planet.half_backlash[0] != joint.sun_planet.half_backlash[1]));
+    }
+}

@@ -1,0 +1,20 @@
+//! What is proved about the step that ships, on the emulated board and from the linked image: that its results are the
+//! host's in every bit, what it takes at worst, that it cannot panic and how much stack it needs. Runs with a profile
+//! and a report are left to `hil`.
+
+pub mod costs;
+pub mod everything;
+pub mod joints;
+pub mod roles;
+pub mod same_bits;
+pub mod tick;
+pub mod worst_case;
+
+use model_core::certificate::Parts;
+
+/// How a joint's tick goes through contacts that change, as the measuring images say it: sub-steps, leaps or none.
+fn parts<'a>(fields: &mut impl Iterator<Item = &'a str>) -> Option<Parts> {
+    let mut number = || fields.next()?.parse().ok();
+    let (substeps, leaps) = (number()?, number()?);
+    Some(if leaps > 0 { Parts::Leaps(leaps) } else { Parts::Substeps(substeps) })
+}

@@ -1,0 +1,101 @@
+//! Instructions of the roles that control, and of the observer alone, counted tick by tick on the emulated board over a
+//! motion with reversals, pushes and a silent encoder, and held against the time that a control period leaves. Bounds of
+//! the plant's step over all states are `worst_case`'s.
+
+use std::fmt;
+
+use super::worst_case::CYCLES_AN_INSTRUCTION;
+use board::target::board::Board;
+use board::target::image::CONTROL_RATE;
+use board::target::toolchain::Toolchain;
+use board::target::{Say, measuring};
+use report::failure::{Failure, Outcome};
+
+/// Instructions of a role's tick.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Load {
+    /// The role.
+    pub role: String,
+    /// The joint.
+    pub joint: String,
+    /// Control periods.
+    pub periods: u32,
+    /// Mean.
+    pub mean: f64,
+    /// Most.
+    pub most: u32,
+    /// The period that took the most.
+    pub at: u32,
+    /// What it keeps in memory [B].
+    pub bytes: u32,
+}
+
+impl fmt::Display for Load {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { role, joint, periods, mean, most, at, bytes } = self;
+        let [usual, worst] = [*mean, f64::from(*most)].map(|instructions| 100.0 * part(instructions));
+        write!(
+            f,
+            "role {role}, {joint}: {mean:.0} instructions a tick, at most {most} (period {at} of {periods}): {usual:.0} % and \
+             {worst:.0} % of a control period; it keeps {bytes} B"
+        )
+    }
+}
+
+/// Counts on the emulated board.
+pub fn count(toolchain: &Toolchain, say: Say<'_>) -> Outcome<Vec<Load>> {
+    let elf = measuring::build_measuring(toolchain, "roles", &[], CONTROL_RATE, say)?;
+    let lines = measuring::run(&elf)?;
+    lines.iter().map(|line| parse(line).ok_or_else(|| Failure::new(format!("the board said: {line}")))).collect()
+}
+
+fn parse(line: &str) -> Option<Load> {
+    let mut fields = line.strip_prefix("role;")?.split(';');
+    let (role, joint) = (fields.next()?.to_owned(), fields.next()?.to_owned());
+    let periods: u32 = fields.next()?.parse().ok()?;
+    let sum: f64 = fields.next()?.parse().ok()?;
+    let mut number = || fields.next()?.parse().ok();
+    let (most, at, bytes) = (number()?, number()?, number()?);
+    Some(Load { role, joint, periods, mean: sum / f64::from(periods.max(1)), most, at, bytes })
+}
+
+/// Part of a control period that a role's worst tick may take: an observer leaves a quarter to the motor controller that
+/// it is a guest of, a whole loop has the chip to itself.
+fn share(role: &str) -> f64 {
+    if role == "loop" { 1.0 } else { 0.75 }
+}
+
+/// Part of a control period of the emulated board that a tick of so many instructions takes.
+pub fn part(instructions: f64) -> f64 {
+    instructions * CYCLES_AN_INSTRUCTION * f64::from(CONTROL_RATE) / f64::from(Board::Stm32f405.core_rate())
+}
+
+/// Fails if a role's worst tick takes more of a control period than it may.
+pub fn judge(loads: &[Load]) -> Outcome<()> {
+    let over = |load: &&Load| part(load.most.into()) > share(&load.role);
+    let over: Vec<String> = loads.iter().filter(over).map(Load::to_string).collect();
+    if over.is_empty() {
+        return Ok(());
+    }
+    let help =
+        format!("at {CONTROL_RATE} Hz an observer may take 75 % of a period, a whole loop all: make that tick cheaper");
+    Err(Failure::check_failed(format!("too many instructions:\n{}", over.join("\n"))).with_help(help))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_the_board_says_is_taken_in_and_held_against_the_period() {
+        let load = parse("role;loop;Q1;100;200000;12001;7;640").unwrap();
+        assert_eq!((load.mean, load.most, load.at, load.bytes), (2000.0, 12001, 7, 640));
+        let failure = judge(std::slice::from_ref(&load)).unwrap_err();
+        assert!(failure.message().contains("role loop, Q1"), "{failure}");
+        assert!(judge(&[Load { most: 12_000, ..load.clone() }]).is_ok());
+        let observer = Load { role: "observer".to_owned(), most: 9001, ..load };
+        assert!(judge(std::slice::from_ref(&observer)).is_err());
+        assert!(judge(&[Load { most: 9000, ..observer }]).is_ok());
+        assert_eq!(parse("panicked at x.rs"), None);
+    }
+}

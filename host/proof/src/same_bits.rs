@@ -1,0 +1,160 @@
+//! Is every result the same in every bit, on the emulated board and here? Also when the caller has set the board's
+//! floating-point unit to flush tiny numbers to zero or to give every NaN one form. The motions are the crate
+//! `trials`'s; other builds of the host hold themselves to the same digests in the host's tests.
+
+use std::fmt;
+
+use model_core::design::design;
+use model_core::joint::JointParameters;
+use trials::motion;
+
+use super::joints::{TRIAL_JOINTS, TrialJoint, write_files};
+use board::target::image::DEFAULT_TICK_RATE;
+use board::target::toolchain::Toolchain;
+use board::target::{Say, measuring};
+use report::failure::{Failure, Outcome};
+
+/// Digests of a joint's tables and trial motions.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Digests {
+    /// The joint.
+    pub name: String,
+    /// Of its tables.
+    pub tables: u64,
+    /// Of state and outputs over the long motion.
+    pub long: u64,
+    /// Of the state over the motion that ends in infinite torques.
+    pub unbounded: u64,
+    /// Of the state over the motions from tiny numbers.
+    pub tiny: u64,
+    /// Steps that changed the contact set, in the long motion.
+    pub changes: u32,
+}
+
+/// Digests by the board, and how its floating-point unit was set.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct OnBoard {
+    /// The digests.
+    pub digests: Digests,
+    /// Tiny numbers were flushed to zero.
+    pub flush_to_zero: bool,
+    /// Every NaN was the default one.
+    pub default_nan: bool,
+}
+
+impl fmt::Display for Digests {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, tables, long, unbounded, tiny, changes } = self;
+        write!(f, "{name},{tables:016x},{long:016x},{unbounded:016x},{tiny:016x},{changes}")
+    }
+}
+
+/// Runs work in a floating-point mode.
+pub type InMode<'a> = &'a dyn Fn(&mut dyn FnMut());
+
+/// The digests of a joint, computed here. The step runs in the given floating-point mode; design, which only ever runs
+/// in the usual one, does not.
+pub fn on_host(joint: &TrialJoint, in_mode: InMode<'_>) -> Outcome<Digests> {
+    let parameters = joint.read()?.parameters;
+    match parameters.geometry.planets {
+        3 => with_planets::<3>(joint.name, &parameters, in_mode),
+        4 => with_planets::<4>(joint.name, &parameters, in_mode),
+        _ => with_planets::<5>(joint.name, &parameters, in_mode),
+    }
+}
+
+fn with_planets<const N: usize>(name: &str, parameters: &JointParameters, in_mode: InMode<'_>) -> Outcome<Digests> {
+    let tables = design::<f32, N>(parameters, DEFAULT_TICK_RATE)
+        .map_err(|error| Failure::new(error.to_string()).while_doing(format_args!("joint {name}")))?;
+    let mut digests = motion::Digests::default();
+    in_mode(&mut || digests = motion::digests(&tables));
+    let motion::Digests { long, unbounded, tiny, changes } = digests;
+    Ok(Digests { name: name.to_owned(), tables: tables.digest, long, unbounded, tiny, changes })
+}
+
+/// The digests of all joints by the emulated board, in every setting.
+pub fn on_board(toolchain: &Toolchain, say: Say<'_>) -> Outcome<Vec<OnBoard>> {
+    let files = write_files(toolchain.target_directory())?;
+    let elf = measuring::build_measuring(toolchain, "same_bits", &files, DEFAULT_TICK_RATE, say)?;
+    let lines = measuring::run(&elf)?;
+    lines.iter().map(|line| parse(line).ok_or_else(|| Failure::new(format!("the board said: {line}")))).collect()
+}
+
+/// name,flush,nan,tables,long,unbounded,changes: names may hold commas.
+fn parse(line: &str) -> Option<OnBoard> {
+    let mut fields = line.rsplitn(8, ',');
+    let changes = fields.next()?.parse().ok()?;
+    let mut digest = || u64::from_str_radix(fields.next()?, 16).ok();
+    let (tiny, unbounded, long, tables) = (digest()?, digest()?, digest()?, digest()?);
+    let (default_nan, flush_to_zero) = (fields.next()?.parse().ok()?, fields.next()?.parse().ok()?);
+    let name = fields.next()?.to_owned();
+    Some(OnBoard { digests: Digests { name, tables, long, unbounded, tiny, changes }, flush_to_zero, default_nan })
+}
+
+/// Every joint on the board in every setting against the host: the first difference ends it. Returns how many runs were
+/// compared.
+pub fn compare(board: &[OnBoard]) -> Outcome<usize> {
+    for joint in &TRIAL_JOINTS {
+        let host = on_host(joint, &|work| work())?;
+        let runs: Vec<_> = board.iter().filter(|run| run.digests.name == joint.name).collect();
+        if runs.len() != 4 {
+            return Err(Failure::check_failed(format!("{}: {} runs on the board, not 4", joint.name, runs.len())));
+        }
+        if let Some(run) = runs.iter().find(|run| run.digests != host) {
+            return Err(difference(run, &host));
+        }
+    }
+    Ok(board.len())
+}
+
+fn difference(run: &OnBoard, host: &Digests) -> Failure {
+    let on = |set: bool| if set { "on" } else { "off" };
+    let (flush, nan) = (on(run.flush_to_zero), on(run.default_nan));
+    let what = if run.digests.tables != host.tables {
+        "the tables"
+    } else if run.digests.long != host.long {
+        "the long motion"
+    } else if run.digests.tiny != host.tiny {
+        "the motions from tiny numbers"
+    } else {
+        "the motion under infinite torques"
+    };
+    let message = format!(
+        "{what} of joint {} differs in bits between board (flush-to-zero {flush}, default NaN {nan}) and host:\n\
+         board {}\nhost  {host}",
+        host.name, run.digests
+    );
+    Failure::check_failed(message).with_help(
+        "the step must use no operation that rounds otherwise on one of them (a fused multiply-add, a library's sine),\n\
+         and must leave no number in its state that a caller's floating-point mode would change",
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn on_board(name: &str, long: u64) -> OnBoard {
+        let digests = Digests { name: name.into(), tables: 1, long, unbounded: 3, tiny: 4, changes: 5 };
+        OnBoard { digests, flush_to_zero: true, default_nan: false }
+    }
+
+    #[test]
+    fn a_line_of_the_board_is_read() {
+        let line = "S1 no backlash,true,false,0000000000000001,0000000000000002,0000000000000003,0000000000000004,5";
+        assert_eq!(parse(line), Some(on_board("S1 no backlash", 2)));
+        assert_eq!(parse("panicked at x.rs:1:1"), None);
+    }
+
+    #[test]
+    fn a_difference_names_joint_setting_and_motion() {
+        let failure = difference(&on_board("Q1", 7), &on_board("Q1", 2).digests);
+        assert!(failure.message().contains("the long motion of joint Q1"), "{failure}");
+        assert!(failure.message().contains("flush-to-zero on"), "{failure}");
+    }
+
+    #[test]
+    fn a_board_that_left_a_joint_out_does_not_pass() {
+        assert!(compare(&[]).is_err());
+    }
+}

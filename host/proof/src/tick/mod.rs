@@ -1,0 +1,127 @@
+//! Can the tick panic, and how much stack does it take at most? Answered from the linked image, whatever its sources
+//! and its compiler: the walk through all calls from the handler of SysTick.
+//!
+//! `functions` takes the image apart, `thumb` reads instructions, `frame` follows one function, `walk` all of them; this
+//! file holds the result against what is promised. What it cannot follow it refuses: an answer is an answer.
+
+mod frame;
+mod functions;
+mod thumb;
+mod walk;
+
+use std::fs;
+use std::path::Path;
+
+use functions::Functions;
+pub use walk::{Reach, Way};
+
+use report::failure::{Failure, Outcome};
+
+/// Stack that the tick may take, with what the processor pushes when it interrupts [byte].
+pub const STACK_BOUND: u32 = 2048;
+/// What the processor pushes: 26 words with the floating-point registers, and one to align them.
+const INTERRUPT_FRAME: u32 = 27 * 4;
+
+/// What the image of a role was found to do in its tick.
+pub fn reach(elf: &Path) -> Outcome<Reach> {
+    let failed = |why: String| Failure::new(format!("{}: {why}", elf.display()));
+    let bytes = fs::read(elf).map_err(|error| failed(error.to_string()))?;
+    let functions = Functions::read(&bytes).map_err(failed)?;
+    let handler = functions.tick().ok_or_else(|| {
+        failed("its vector table names no function for SysTick".into())
+            .with_help("the image must bind the tick to SysTick and keep its symbols")
+    })?;
+    Ok(walk::walk(&functions, handler))
+}
+
+/// Most stack that the tick takes, with what the processor pushes [byte].
+pub fn stack(reach: &Reach) -> u32 {
+    reach.stack + INTERRUPT_FRAME
+}
+
+/// Fails with all that is wrong, each with its way from the tick and what to do.
+pub fn judge(reach: &Reach) -> Outcome<()> {
+    let mut wrong = Vec::new();
+    let mut help: Vec<&str> = Vec::new();
+    let mut note = |what: String, mend: &'static str| {
+        wrong.push(what);
+        if !help.contains(&mend) {
+            help.push(mend);
+        }
+    };
+    for way in &reach.panics {
+        note(
+            format!("the tick can panic, by the call at {:#010x}: {}", way.at, arrow(&way.names)),
+            "in the function before the panic, take `get`, `checked_` and `match` in place of indexing, division and unwrap",
+        );
+    }
+    for way in &reach.traps {
+        note(
+            format!("the tick can stop the processor at {:#010x}: {}", way.at, arrow(&way.names)),
+            "take out the `unreachable`, abort or breakpoint there",
+        );
+    }
+    for way in &reach.pointers {
+        note(
+            format!("the tick calls through a pointer at {:#010x}: {}", way.at, arrow(&way.names)),
+            "call by a generic in place of `dyn` or a function pointer, so that what runs is known",
+        );
+    }
+    for ring in &reach.rings {
+        note(format!("the tick can call in a ring: {}", arrow(ring)), "make a bounded loop of the recursion");
+    }
+    for way in &reach.unknown {
+        note(
+            format!("what happens at {:#010x} cannot be told: {}", way.at, arrow(&way.names)),
+            "keep hand-written assembly and memory of unknown size out of the tick",
+        );
+    }
+    let stack = stack(reach);
+    let parts: Vec<_> = reach.deepest.iter().map(|(name, held)| format!("{name} {held} B")).collect();
+    if stack > STACK_BOUND {
+        note(
+            format!("the tick may take {stack} B of stack, more than {STACK_BOUND} B: {}", arrow(&parts)),
+            "make the arrays on that way smaller, or pass them by reference",
+        );
+    }
+    match wrong.is_empty() {
+        true => Ok(()),
+        false => Err(Failure::check_failed(wrong.join("\n")).with_help(help.join("\n"))),
+    }
+}
+
+fn arrow(way: &[String]) -> String {
+    way.join(" -> ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tick_within_its_bounds_passes_and_each_fault_alone_does_not() {
+        let sound = Reach { functions: 3, stack: 900, deepest: vec![("SysTick".into(), 900)], ..Reach::default() };
+        assert!(judge(&sound).is_ok());
+        let names = vec!["SysTick".to_owned(), "control::tick".to_owned(), "core::panicking::panic".to_owned()];
+        let way = Way { names: names.clone(), at: 0x0800_1000 };
+        let faults = [
+            Reach { panics: vec![way.clone()], ..sound.clone() },
+            Reach { pointers: vec![way.clone()], ..sound.clone() },
+            Reach { traps: vec![way.clone()], ..sound.clone() },
+            Reach { unknown: vec![way], ..sound.clone() },
+            Reach { rings: vec![names], ..sound.clone() },
+            Reach { stack: STACK_BOUND, ..sound },
+        ];
+        for fault in faults {
+            let failure = judge(&fault).unwrap_err();
+            assert!(failure.message().contains("SysTick") && failure.help().is_some(), "{failure}");
+            assert_eq!(failure.exit_code(), 1);
+        }
+    }
+
+    #[test]
+    fn a_file_that_is_no_image_is_named() {
+        let failure = reach(Path::new("/proc/self/status")).unwrap_err();
+        assert!(failure.message().contains("/proc/self/status"), "{failure}");
+    }
+}

@@ -1,0 +1,41 @@
+//! How a program of this project is called: its command line read with clap, its outcome turned into an exit code. Which
+//! options there are is each program's own.
+
+use std::process::ExitCode;
+
+use clap::{ArgMatches, Command};
+
+use crate::failure::{EXIT_BAD_INPUT, Outcome};
+
+/// Reads the command line by `command`, runs it and turns the outcome into an exit code; a failure is shown.
+pub fn main<T>(
+    command: Command,
+    read: impl FnOnce(&ArgMatches) -> Result<T, clap::Error>,
+    run: impl FnOnce(&T) -> Outcome<()>,
+) -> ExitCode {
+    let asked = match with_negative_numbers(command).try_get_matches().and_then(|found| read(&found)) {
+        Ok(asked) => asked,
+        Err(error) => {
+            // A reader that has gone away is no further error.
+            let _ = error.print();
+            return ExitCode::from(if error.use_stderr() { EXIT_BAD_INPUT } else { 0 });
+        }
+    };
+    match run(&asked) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            failure.show();
+            ExitCode::from(failure.exit_code())
+        }
+    }
+}
+
+/// Has every option take a number below zero as its value: that it cannot be is then said by who knows why.
+fn with_negative_numbers(command: Command) -> Command {
+    let names: Vec<String> = command.get_subcommands().map(|command| command.get_name().to_owned()).collect();
+    let command = names.into_iter().fold(command, |command, name| command.mut_subcommand(name, with_negative_numbers));
+    command.mut_args(|option| {
+        let takes_one = option.get_action().takes_values() && !option.is_positional();
+        option.allow_negative_numbers(takes_one)
+    })
+}

@@ -1,0 +1,163 @@
+//! Contact states over time as rows of coloured strips, one row a mesh. A strip that stands for many samples shows the
+//! share of each state by height; deflections themselves are drawn by `motion`.
+
+use serde::{Deserialize, Serialize};
+
+use crate::plot::ink::Ink;
+use crate::plot::mark::Mark;
+use crate::plot::panel::{Panel, VerticalAxis};
+use crate::plot::unit::Unit;
+
+/// Which flank of a mesh carries.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(into = "u8", try_from = "u8")]
+pub enum Contact {
+    /// Neither: 0.
+    Separated,
+    /// The flank that drives forwards: 1.
+    DriveSide,
+    /// The other one: 2.
+    BackSide,
+}
+
+/// Strips over the whole width: more cannot be told apart.
+const COLUMNS: usize = 400;
+/// Shares are shown in so many steps, so that equal neighbours can be one strip.
+const STEPS: f64 = 10.0;
+/// Part of a row's height that is coloured.
+const FILLED: f64 = 0.78;
+
+/// States from the bottom of a strip upwards.
+const STATES: [(Contact, Ink, &str); 3] = [
+    (Contact::DriveSide, Ink::DriveSide, "drive side"),
+    (Contact::Separated, Ink::Separated, "separated"),
+    (Contact::BackSide, Ink::BackSide, "back side"),
+];
+
+impl Contact {
+    /// State of a mesh in the two-bit form of the line.
+    pub fn from_bits(bits: u32, mesh: usize) -> Self {
+        match (bits >> (2 * mesh)) & 3 {
+            1 => Self::DriveSide,
+            2 => Self::BackSide,
+            _ => Self::Separated,
+        }
+    }
+}
+
+impl From<Contact> for u8 {
+    fn from(contact: Contact) -> Self {
+        match contact {
+            Contact::Separated => 0,
+            Contact::DriveSide => 1,
+            Contact::BackSide => 2,
+        }
+    }
+}
+
+impl TryFrom<u8> for Contact {
+    type Error = String;
+
+    fn try_from(code: u8) -> Result<Self, String> {
+        match code {
+            0 => Ok(Self::Separated),
+            1 => Ok(Self::DriveSide),
+            2 => Ok(Self::BackSide),
+            _ => Err(format!("contact state {code}: expected 0, 1 or 2")),
+        }
+    }
+}
+
+/// A panel of contact strips for the samples within a range of time [s]; `contact` has a column for each mesh.
+pub fn panel(times: &[f64], contact: &[Vec<Contact>], range: (f64, f64)) -> Panel {
+    let rows = contact.len();
+    let mut boxes = STATES.map(|_| Vec::new());
+    for (mesh, states) in contact.iter().enumerate() {
+        let bottom = (rows - 1 - mesh) as f64 + 0.5 * (1.0 - FILLED);
+        for (from, to, shares) in strips(times, states, range) {
+            let mut level = bottom;
+            for (share, boxes) in shares.iter().zip(&mut boxes) {
+                let height = share * FILLED;
+                if height > 0.0 {
+                    boxes.push([from, to, level, level + height]);
+                }
+                level += height;
+            }
+        }
+    }
+    let marks =
+        STATES.iter().zip(boxes).map(|(&(_, ink, label), boxes)| Mark::Boxes { boxes, ink, label: label.into() });
+    Panel {
+        title: "Contact of every mesh".into(),
+        unit: Unit { factor: 1.0, name: "" },
+        height: 44 + 18 * rows.max(1) as i32,
+        marks: marks.collect(),
+        axis: VerticalAxis::Rows((0..rows).map(|mesh| mesh_name(mesh, rows)).collect()),
+    }
+}
+
+/// Name of a mesh by its place among all.
+pub fn mesh_name(mesh: usize, meshes: usize) -> String {
+    let planets = meshes / 2;
+    if mesh < planets { format!("sun–planet {}", mesh + 1) } else { format!("ring–planet {}", mesh - planets + 1) }
+}
+
+/// From, to and the share of each of [`STATES`]; neighbours that look alike are one strip.
+fn strips(times: &[f64], states: &[Contact], range: (f64, f64)) -> Vec<(f64, f64, [f64; 3])> {
+    let width = (range.1 - range.0) / COLUMNS as f64;
+    let inside: Vec<(f64, Contact)> = times
+        .iter()
+        .copied()
+        .zip(states.iter().copied())
+        .filter(|(time, _)| (range.0..=range.1).contains(time))
+        .collect();
+    let column = |time: f64| ((time - range.0) / width).floor();
+    let mut strips: Vec<(f64, f64, [f64; 3])> = Vec::new();
+    let mut from = inside.first().map_or(range.0, |(time, _)| *time);
+    for group in inside.chunk_by(|a, b| column(a.0) == column(b.0)) {
+        let to = group[group.len() - 1].0;
+        let share =
+            |state: Contact| group.iter().filter(|sample| sample.1 == state).count() as f64 / group.len() as f64;
+        let drive = (STEPS * share(Contact::DriveSide)).round() / STEPS;
+        let back = (STEPS * share(Contact::BackSide)).round() / STEPS;
+        let shares = [drive, (1.0 - drive - back).max(0.0), back.min(1.0 - drive)];
+        match strips.last_mut() {
+            Some(last) if last.2 == shares => last.1 = to,
+            _ => strips.push((from, to, shares)),
+        }
+        from = to;
+    }
+    strips
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_neighbours_are_one_strip() {
+        let times: Vec<f64> = (0..1000).map(f64::from).collect();
+        let states: Vec<Contact> =
+            (0..1000).map(|i| if i < 500 { Contact::DriveSide } else { Contact::BackSide }).collect();
+        let strips = strips(&times, &states, (0.0, 1000.0));
+        assert!(strips.len() <= 3, "{strips:?}");
+        assert_eq!(strips[0].2, [1.0, 0.0, 0.0]);
+        assert_eq!(strips[strips.len() - 1].2, [0.0, 0.0, 1.0]);
+    }
+
+    #[test]
+    fn a_strip_of_many_samples_shows_shares() {
+        let times: Vec<f64> = (0..4000).map(f64::from).collect();
+        let states: Vec<Contact> =
+            (0..4000).map(|i| if i % 2 == 0 { Contact::Separated } else { Contact::DriveSide }).collect();
+        let strips = strips(&times, &states, (0.0, 4000.0));
+        assert_eq!(strips[0].2, [0.5, 0.5, 0.0]);
+    }
+
+    #[test]
+    fn meshes_are_counted_from_one() {
+        assert_eq!(mesh_name(0, 6), "sun–planet 1");
+        assert_eq!(mesh_name(5, 6), "ring–planet 3");
+    }
+}

@@ -1,0 +1,21 @@
+//! What every command shares with its user: failures and exit codes, files that are written whole or not at all, progress,
+//! interruption, checks, provenance, HTML pages and vector plots. It knows no physics: what a figure means is told by
+//! whoever brings it.
+
+pub mod checks;
+pub mod command_line;
+pub mod contacts;
+pub mod failure;
+pub mod folder;
+pub mod interruption;
+pub mod output;
+pub mod parts;
+pub mod plot;
+pub mod progress;
+pub mod provenance;
+#[cfg(feature = "schema")]
+pub mod schema;
+pub mod shell;
+pub mod table;
+pub mod workspace;
+pub mod write;

@@ -1,0 +1,22 @@
+//! Who ran what, and when: the sources' commit and the date. Everything here is told, nothing is measured.
+
+use std::process::Command;
+
+use crate::workspace::workspace;
+
+/// Now, UTC, to the second.
+pub fn date() -> String {
+    let now = time::OffsetDateTime::now_utc();
+    now.replace_nanosecond(0).unwrap_or(now).format(&time::format_description::well_known::Rfc3339).unwrap_or_default()
+}
+
+/// The sources' commit, if they are under git.
+pub fn git_commit() -> Option<String> {
+    let git = |arguments: &[&str]| {
+        let output = Command::new("git").arg("-C").arg(workspace()).args(arguments).output().ok()?;
+        output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())
+    };
+    let commit = git(&["rev-parse", "--short=12", "HEAD"])?;
+    let changed = git(&["status", "--porcelain"]).is_some_and(|changes| !changes.is_empty());
+    Some(if changed { format!("{commit} (changed)") } else { commit })
+}

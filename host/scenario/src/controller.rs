@@ -1,0 +1,208 @@
+//! Controllers of a run by their names: the compensation behind its port, or a rival. What they are asked for and what
+//! becomes of their torque is the run's business.
+
+use reference::closed_loop::rivals::Knowledge;
+use reference::closed_loop::{
+    Controller, Impedance, ImpedanceLaw, LoadCascade, MotorPid, OutputIntegral, SetPoint, VelocitySign,
+};
+use reference::drive_train::Measurement;
+
+use super::injection::Seen;
+use super::port::{Answer, ControllerPort, Translator};
+use report::failure::Outcome;
+
+/// Who controls.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum ControllerName {
+    /// Observer and compensation, told set-points ahead of time.
+    Preview,
+    /// Observer and compensation, told the present only.
+    NoPreview,
+    /// Observer and compensation with impedance set-points.
+    Impedance,
+    /// The width probe of the observer: the load is held.
+    Probe,
+    /// PID on the motor: position control without compensation.
+    MotorPid,
+    /// The same with an offset by the sign of the speed.
+    VelocitySign,
+    /// Output position over motor speed.
+    LoadCascade,
+    /// Motor PID with jump, feed-forward and an integral over the output: the best rival in position.
+    OutputIntegral,
+    /// Spring and damper at the motor: impedance without compensation.
+    MotorSide,
+    /// Spring at the link, damper at the motor: the best rival in impedance.
+    LinkSpring,
+    /// Both at the link.
+    LinkSide,
+    /// No torque at all.
+    Off,
+}
+
+/// An impedance, and how often its point is sent.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Gains {
+    /// [N m/rad].
+    pub stiffness: f64,
+    /// [N m s/rad].
+    pub damping: f64,
+    /// [Hz].
+    pub rate: f64,
+    /// Torque sent along for each unit of the motion's acceleration [kg m^2]; by default the joint's inertia.
+    pub inertia: Option<f64>,
+}
+
+impl Default for Gains {
+    fn default() -> Self {
+        Self { stiffness: 100.0, damping: 3.0, rate: 1000.0, inertia: None }
+    }
+}
+
+impl ControllerName {
+    /// All of them.
+    pub const ALL: [Self; 12] = [
+        Self::Preview,
+        Self::NoPreview,
+        Self::Impedance,
+        Self::Probe,
+        Self::MotorPid,
+        Self::VelocitySign,
+        Self::LoadCascade,
+        Self::OutputIntegral,
+        Self::MotorSide,
+        Self::LinkSpring,
+        Self::LinkSide,
+        Self::Off,
+    ];
+
+    /// From its word in a file; `none` and `locked` stand for the baseline.
+    pub fn of_word(word: &str, impedance: bool) -> Self {
+        let found = Self::ALL.into_iter().find(|name| name.word() == word);
+        found.unwrap_or(if impedance { Self::MotorSide } else { Self::MotorPid })
+    }
+
+    /// Its word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Preview => "preview",
+            Self::NoPreview => "no_preview",
+            Self::Impedance => "impedance",
+            Self::Probe => "probe",
+            Self::MotorPid => "motor_pid",
+            Self::VelocitySign => "velocity_sign",
+            Self::LoadCascade => "load_cascade",
+            Self::OutputIntegral => "output_integral",
+            Self::MotorSide => "motor_side",
+            Self::LinkSpring => "link_spring",
+            Self::LinkSide => "link_side",
+            Self::Off => "off",
+        }
+    }
+
+    /// Its name in reports.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Preview => "compensation, preview",
+            Self::NoPreview => "compensation, no preview",
+            Self::Impedance => "compensation, impedance",
+            Self::Probe => "width probe",
+            Self::MotorPid => "motor PID",
+            Self::VelocitySign => "velocity-sign offset",
+            Self::LoadCascade => "load cascade",
+            Self::OutputIntegral => "output integral and jump",
+            Self::MotorSide => "motor-side impedance",
+            Self::LinkSpring => "link spring, motor damper",
+            Self::LinkSide => "link-side impedance",
+            Self::Off => "no torque",
+        }
+    }
+
+    /// Observer and compensation.
+    pub fn is_ours(self) -> bool {
+        matches!(self, Self::Preview | Self::NoPreview | Self::Impedance | Self::Probe)
+    }
+
+    /// Follows impedance set-points.
+    pub fn wants_gains(self) -> bool {
+        matches!(self, Self::Impedance | Self::MotorSide | Self::LinkSpring | Self::LinkSide)
+    }
+
+    /// The same kind of test without compensation.
+    pub fn baseline(impedance: bool) -> Self {
+        if impedance { Self::MotorSide } else { Self::MotorPid }
+    }
+
+    /// The strongest controller without compensation.
+    pub fn best_rival(impedance: bool) -> Self {
+        if impedance { Self::LinkSpring } else { Self::OutputIntegral }
+    }
+
+    /// Who would do the same on a joint without a gap: what an impedance's deviation is measured from.
+    pub fn without_gap(self) -> Self {
+        if self.is_ours() { Self::LinkSpring } else { self }
+    }
+}
+
+/// A controller at work.
+pub enum Driver<'p> {
+    /// Observer and compensation.
+    Ours(Box<dyn ControllerPort + 'p>, Translator),
+    /// The observer and its width probe.
+    Probe(Box<dyn ControllerPort + 'p>, Translator),
+    /// A rival, and the last reading of the output encoder, which it holds while none comes.
+    Rival(Box<dyn Controller>, i64),
+    /// Nobody.
+    Off,
+}
+
+impl Driver<'_> {
+    /// A rival by its name.
+    pub fn rival(name: ControllerName, knowledge: Knowledge, bandwidth: f64) -> Self {
+        let law = |law| Box::new(Impedance::new(knowledge.clone(), law, bandwidth)) as Box<dyn Controller>;
+        let controller: Box<dyn Controller> = match name {
+            ControllerName::VelocitySign => Box::new(VelocitySign::new(knowledge, bandwidth)),
+            ControllerName::LoadCascade => Box::new(LoadCascade::new(knowledge, bandwidth)),
+            ControllerName::OutputIntegral => Box::new(OutputIntegral::new(knowledge, bandwidth)),
+            ControllerName::MotorSide => law(ImpedanceLaw::MotorSide),
+            ControllerName::LinkSpring => law(ImpedanceLaw::LinkSpring),
+            ControllerName::LinkSide => law(ImpedanceLaw::LinkSide),
+            ControllerName::Off => return Self::Off,
+            _ => Box::new(MotorPid::new(knowledge, bandwidth)),
+        };
+        Self::Rival(controller, 0)
+    }
+
+    /// Begins anew with what was learnt so far, as after the power was off; who learns nothing just goes on.
+    pub fn begin_again(&mut self) -> Outcome<()> {
+        if let Self::Ours(port, translator) | Self::Probe(port, translator) = self {
+            port.begin_again()?;
+            translator.begin_again();
+        }
+        Ok(())
+    }
+
+    /// Torque for the period that begins now [N m], and what a port answered.
+    pub fn period(&mut self, seen: &Seen, set_point: &SetPoint) -> Outcome<(f64, Option<Answer>)> {
+        match self {
+            Self::Off => Ok((0.0, None)),
+            Self::Rival(controller, output) => {
+                *output = seen.output.map_or(*output, |frame| frame.counts);
+                let measurement =
+                    Measurement { period: seen.period, motor_counts: seen.motor.counts, output_counts: *output };
+                Ok((controller.period(&measurement, set_point), None))
+            }
+            Self::Ours(port, translator) => {
+                let samples = translator.samples(seen);
+                let answer = port.exchange(&samples, &translator.command(set_point))?;
+                translator.note(&answer);
+                Ok((f64::from(answer.shaped.torque), Some(answer)))
+            }
+            Self::Probe(port, translator) => {
+                let answer = port.probe(&translator.samples(seen))?;
+                translator.note(&answer);
+                Ok((f64::from(answer.shaped.torque), Some(answer)))
+            }
+        }
+    }
+}

@@ -1,0 +1,165 @@
+//! Reads `[assert]`: named figures and their bounds, over all seeds the worst unless the file says otherwise. Where
+//! figures come from is `figures`' business.
+
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::DeValue;
+
+use super::motion::Profile;
+use super::section::{Problems, Section};
+use crate::controller::ControllerName;
+use crate::figures::{About as Scope, Named, Relation, names, others};
+use report::checks::Bound;
+
+/// One bound on one figure.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Assertion {
+    /// The figure.
+    pub figure: Named,
+    /// Its name as typed.
+    pub name: String,
+    /// What is made of the seeds' figures.
+    pub aggregate: Aggregate,
+    /// What it must keep to.
+    pub bound: Bound,
+}
+
+/// What is made of the seeds' figures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Aggregate {
+    /// The one farthest on the wrong side of the bound.
+    Worst,
+    /// The middle one.
+    Median,
+    /// Their mean.
+    Mean,
+}
+
+/// What the test is about, as far as figures depend on it.
+pub(super) struct About<'a> {
+    pub controller: Option<ControllerName>,
+    pub gains: bool,
+    pub profile: Option<&'a Profile>,
+}
+
+impl Aggregate {
+    /// Its word in the file.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Worst => "worst",
+            Self::Median => "median",
+            Self::Mean => "mean",
+        }
+    }
+}
+
+impl Assertion {
+    /// The controller that must run beside for this.
+    pub fn rival(&self) -> Option<ControllerName> {
+        match self.figure.relation {
+            Relation::Own => None,
+            Relation::GainOver(rival) | Relation::RatioTo(rival) => Some(rival),
+        }
+    }
+}
+
+/// Reads the section.
+pub(super) fn read(top: &Section<'_>, about: &About<'_>) -> Vec<Assertion> {
+    let mut assertions = Vec::new();
+    let Some((_, table)) = top.table("assert") else { return assertions };
+    for (name, value) in table {
+        let word = name.get_ref().as_ref();
+        let Some(figure) = Named::find(word, about.gains) else {
+            let help = likely(word, about.gains);
+            top.problems.error(name.span(), format!("there is no figure `{word}` in this test"), help);
+            continue;
+        };
+        if let Some((message, help)) = out_of_place(&figure, about) {
+            top.problems.error(name.span(), format!("`{word}` {message}"), help);
+            continue;
+        }
+        let mut add = |aggregate, value: &Spanned<DeValue<'_>>| {
+            if let Some(bound) = bound(value, top.problems) {
+                assertions.push(Assertion { figure, name: word.to_owned(), aggregate, bound });
+            }
+        };
+        match value.get_ref() {
+            DeValue::Table(inner) => {
+                if inner.is_empty() {
+                    let message = format!("nothing is asked of `{word}`");
+                    top.problems.error(value.span(), message, "write a bound, such as { median = \">= 3\" }");
+                }
+                for (aggregate, value) in inner {
+                    match aggregate.get_ref().as_ref() {
+                        "worst" => add(Aggregate::Worst, value),
+                        "median" => add(Aggregate::Median, value),
+                        "mean" => add(Aggregate::Mean, value),
+                        other => top.problems.error(
+                            aggregate.span(),
+                            format!("`{other}` cannot be made of the seeds' figures"),
+                            "write worst, median or mean, as in { median = \">= 3\", worst = \">= 1\" }",
+                        ),
+                    }
+                }
+            }
+            _ => add(Aggregate::Worst, value),
+        }
+    }
+    assertions
+}
+
+/// What a name that is none was probably meant to be.
+fn likely(word: &str, impedance: bool) -> String {
+    let whom = word.split_once("_gain_over_").or(word.split_once("_ratio_to_"));
+    let words: Vec<&str> = others(impedance).into_iter().map(|(word, _)| word).collect();
+    if let Some((_, whom)) = whom.filter(|(_, whom)| !words.contains(whom)) {
+        return format!("`{whom}` does not run in this test; there are {}", words.join(", "));
+    }
+    match joint_file::nearest(word, names(impedance).iter().map(String::as_str)) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => "docs/hil-file.md lists all figures, such as rms_mrad and rms_gain_over_pid".to_owned(),
+    }
+}
+
+/// Why a figure cannot be had in a test.
+fn out_of_place(figure: &Named, about: &About<'_>) -> Option<(&'static str, &'static str)> {
+    match figure.base().about {
+        Scope::Motion => None,
+        Scope::Impedance => {
+            (!about.gains).then_some(("is for impedances", "write mode = \"impedance\" in [controller]"))
+        }
+        Scope::Sight => about.controller.is_some_and(|controller| !controller.is_ours()).then_some((
+            "is about the observer, and this controller has none",
+            "write mode = \"preview\", \"no_preview\" or \"impedance\" in [controller]",
+        )),
+        Scope::Probe => about
+            .controller
+            .is_some_and(|controller| controller != ControllerName::Probe)
+            .then_some(("is about the width probe", "write mode = \"probe\" in [controller], or profile = \"held\"")),
+        Scope::Loop => about
+            .profile
+            .is_some_and(|profile| profile.kind != "hysteresis")
+            .then_some(("is read off a loop of a slow torque", "write profile = \"hysteresis\"")),
+    }
+}
+
+/// `>= 8`, `<= 0.8` or `== 0`.
+fn bound(value: &Spanned<DeValue<'_>>, problems: &Problems) -> Option<Bound> {
+    const HELP: &str = "write a bound as a string, such as \">= 8\", \"<= 0.8\" or \"== 0\"";
+    let refuse = |span: Range<usize>| -> Option<Bound> {
+        problems.error(span, "this is no bound", HELP);
+        None
+    };
+    let DeValue::String(text) = value.get_ref() else { return refuse(value.span()) };
+    let Some((sign, number)) = text.trim().split_at_checked(2) else { return refuse(value.span()) };
+    let Some(number) = number.trim().parse().ok().filter(|number: &f64| number.is_finite()) else {
+        return refuse(value.span());
+    };
+    match sign {
+        ">=" => Some(Bound::AtLeast(number)),
+        "<=" => Some(Bound::AtMost(number)),
+        "==" => Some(Bound::Exactly(number)),
+        _ => refuse(value.span()),
+    }
+}

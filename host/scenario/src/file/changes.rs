@@ -1,0 +1,118 @@
+//! Reads `[known]` and `[plant]`: keys of the joint file with new values, in nested sections or with dots. Whether a value
+//! is one that a joint may have is asked of the joint-file reader, once the joint is known.
+
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::section::{Problems, Section, number};
+use crate::draw::Quantity;
+
+/// One value of the joint that is changed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Change {
+    /// Full path of the key.
+    pub key: String,
+    /// What it becomes.
+    pub value: NewValue,
+    /// Where it stands in the test file.
+    pub span: Range<usize>,
+}
+
+/// What a key becomes.
+#[derive(Debug, Clone, PartialEq)]
+pub enum NewValue {
+    /// A number in the key's unit.
+    Number(Quantity),
+    /// What it was, times a number.
+    Times(Quantity),
+    /// As typed: a word, or a list for the planets.
+    Text(String),
+}
+
+/// Keys that a controller must know to read its encoders and to keep time.
+const ALWAYS_KNOWN: [&str; 6] = ["bits", "control_rate_Hz", "sun_teeth", "planet_teeth", "ring_teeth", "planets"];
+
+/// Reads the section of that name.
+pub(super) fn read(top: &Section<'_>, name: &'static str) -> Vec<Change> {
+    let mut changes = Vec::new();
+    if let Some((_, table)) = top.table(name) {
+        collect(table, "", name, top.problems, &mut changes);
+    }
+    changes
+}
+
+fn collect(table: &DeTable<'_>, path: &str, section: &str, problems: &Problems, changes: &mut Vec<Change>) {
+    for (name, value) in table {
+        let path = match path {
+            "" => name.get_ref().to_string(),
+            path => format!("{path}.{}", name.get_ref()),
+        };
+        if let DeValue::Table(inner) = value.get_ref() {
+            if let Some(times) = inner.get("times").filter(|_| inner.len() == 1) {
+                if let Some(factor) = quantity(times, problems) {
+                    push(&path, NewValue::Times(factor), name.span(), section, problems, changes);
+                }
+            } else {
+                collect(inner, &path, section, problems, changes);
+            }
+            continue;
+        }
+        let new = match value.get_ref() {
+            DeValue::String(text) if text.trim().parse::<f64>().is_ok() => {
+                problems.error(value.span(), format!("\"{text}\" is a text"), "write the number without quotes");
+                None
+            }
+            DeValue::String(text) => Some(NewValue::Text(text.to_string())),
+            // Two numbers are a range; planets are three at least.
+            DeValue::Array(list) if list.len() != 2 => {
+                let numbers: Option<Vec<String>> =
+                    list.iter().map(|item| number(item).map(|number| number.to_string())).collect();
+                numbers.map(|numbers| NewValue::Text(format!("[{}]", numbers.join(", "))))
+            }
+            _ => quantity(value, problems).map(NewValue::Number),
+        };
+        if let Some(new) = new {
+            push(&path, new, name.span(), section, problems, changes);
+        }
+    }
+}
+
+fn push(
+    path: &str,
+    value: NewValue,
+    span: Range<usize>,
+    section: &str,
+    problems: &Problems,
+    changes: &mut Vec<Change>,
+) {
+    match joint_file::full_key(path) {
+        Err(refused) => problems.error(span, refused.message, refused.help),
+        Ok(key) => {
+            let last = key.rsplit('.').next().unwrap_or(&key);
+            if section == "plant" && ALWAYS_KNOWN.contains(&last) {
+                let message = format!("no controller can do without knowing `{last}`");
+                problems.error(span, message, "write it in [known]: plant and controllers then agree on it");
+            } else {
+                changes.push(Change { key, value, span });
+            }
+        }
+    }
+}
+
+/// A number, or [least, greatest].
+fn quantity(value: &Spanned<DeValue<'_>>, problems: &Problems) -> Option<Quantity> {
+    const HELP: &str = "write a number, [least, greatest] for one drawn by every seed, or { times = 1.3 }";
+    let found = match value.get_ref() {
+        DeValue::Array(list) => match list.iter().map(number).collect::<Option<Vec<f64>>>().as_deref() {
+            Some([low, high]) if low <= high => Some(Quantity::Between(*low, *high)),
+            _ => None,
+        },
+        _ => number(value).map(Quantity::Exactly),
+    };
+    if found.is_none() {
+        problems.error(value.span(), "this is neither a number nor a range", HELP);
+    }
+    found
+}

@@ -1,0 +1,29 @@
+//! The impedance in `[controller]`: who is sent one, and what it is if the file does not say. Who controls is the parent's
+//! business.
+
+use super::section::Section;
+use crate::controller::Gains;
+
+/// Modes that are sent impedance set-points.
+pub(super) fn needed(mode: &str) -> bool {
+    matches!(mode, "impedance" | "motor_side" | "link_spring" | "link_side")
+}
+
+pub(super) fn read(controller: &Section<'_>, needed: bool) -> Option<Gains> {
+    const KEYS: [&str; 4] = ["stiffness_N_m_per_rad", "damping_N_m_s_per_rad", "rate_Hz", "feed_forward_kg_m2"];
+    if !needed {
+        for name in KEYS.into_iter().filter(|name| controller.has(name)) {
+            let help = "write mode = \"impedance\", or leave it out";
+            controller.problems.error(controller.span(name), format!("`{name}` belongs to an impedance"), help);
+        }
+        return None;
+    }
+    let [stiffness, damping, rate, inertia] = KEYS.map(|name| controller.number(name));
+    let usual = Gains::default();
+    Some(Gains {
+        stiffness: stiffness.unwrap_or(usual.stiffness),
+        damping: damping.unwrap_or(usual.damping),
+        rate: rate.unwrap_or(usual.rate),
+        inertia,
+    })
+}

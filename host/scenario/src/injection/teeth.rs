@@ -1,0 +1,67 @@
+//! What faults do to teeth: backlash that has grown, and a tooth that is soft where it meets. Counts and torques are the
+//! parent's.
+
+use std::f64::consts::TAU;
+
+use reference::joint::Observation;
+
+use super::active::Active;
+use crate::case::Case;
+use crate::file::FaultKind;
+use crate::plant::Teeth;
+
+/// What the teeth were made to be.
+#[derive(Debug, Clone)]
+pub(super) struct ToothState {
+    half_backlash: f64,
+    /// Half-backlash now [m].
+    pub now: f64,
+    stiffness: f64,
+    /// By planet: the broken tooth meets it.
+    pub soft: Vec<bool>,
+    sun_teeth: f64,
+}
+
+impl ToothState {
+    /// As they were made.
+    pub fn new(case: &Case) -> Self {
+        let joint = &case.truth.parameters;
+        Self {
+            half_backlash: case.half_backlash(),
+            now: case.half_backlash(),
+            stiffness: joint.sun_planet.mean_stiffness,
+            soft: vec![false; joint.geometry.planets],
+            sun_teeth: f64::from(joint.geometry.sun_teeth),
+        }
+    }
+
+    /// Changes the teeth as faults begin, end, or meet.
+    pub fn wear(&mut self, faults: &[Active], time: f64, joint: &Observation, inside: &mut dyn Teeth) {
+        let (mut half_backlash, mut soft) = (self.half_backlash, 1.0);
+        for active in faults.iter().filter(|active| active.fault.is_on(time)) {
+            match active.fault.kind {
+                FaultKind::GrownBacklash(grown) => half_backlash = grown,
+                FaultKind::BrokenTooth(ratio) => soft = ratio,
+                _ => {}
+            }
+        }
+        if half_backlash != self.now {
+            inside.set_half_backlash(half_backlash);
+            self.now = half_backlash;
+        }
+        if soft == 1.0 && !self.soft.contains(&true) {
+            return;
+        }
+        let planets = self.soft.len();
+        let (sun_teeth, stiffness) = (self.sun_teeth, self.stiffness);
+        for (planet, is_soft) in self.soft.iter_mut().enumerate() {
+            // The broken tooth meets each planet once in a turn of the sun against the carrier, for one pitch.
+            let angle = joint.motor_angle - joint.carrier_angle - TAU * planet as f64 / planets as f64;
+            let meets = soft < 1.0 && angle.rem_euclid(TAU) < TAU / sun_teeth;
+            if meets != *is_soft {
+                *is_soft = meets;
+                inside.set_sun_planet_stiffness(planet, stiffness * if meets { soft } else { 1.0 });
+            }
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! Faults do what they say, each by itself against figures that follow by hand. Closed loops are left out.
+
+use std::f64::consts::TAU;
+
+use reference::closed_loop::Motion;
+
+use super::*;
+use crate::case::Case;
+use crate::file;
+use crate::plant::{PlantName, plant};
+
+fn injection(faults: &str) -> (Injection, Case) {
+    let file = file::read(&format!("profile = \"T2\"\n{faults}")).expect("a good file");
+    let case = Case::new(&file, joint_file::preset("q1").expect("a preset"), 1, None).expect("a case");
+    (Injection::new(&file.faults, 1, &case), case)
+}
+
+/// What the output encoder says in each of so many periods while it truly goes on by `step` counts in each.
+fn counts(faults: &str, periods: u64, step: i64) -> Vec<Option<Frame>> {
+    let (mut injection, _) = injection(faults);
+    (0..periods)
+        .map(|period| {
+            let output_counts = 1234 + step * period as i64;
+            injection.sense(&Measurement { period, motor_counts: 0, output_counts }).output
+        })
+        .collect()
+}
+
+fn plain(faults: &str, periods: u64, step: i64) -> Vec<i64> {
+    counts(faults, periods, step).into_iter().map(|frame| frame.expect("it came").counts).collect()
+}
+
+#[test]
+fn a_frozen_encoder_stands_still_and_comes_back() {
+    let read = plain("[[fault]]\nkind = \"encoder_frozen\"\nstart_s = 0.001\nend_s = 0.002", 30, 7);
+    assert_eq!((read[9], read[10], read[19], read[20]), (63, 70, 70, 140));
+}
+
+#[test]
+fn an_offset_a_slow_encoder_and_an_eccentric_one_say_what_they_should() {
+    let read = plain("[[fault]]\nkind = \"encoder_offset\"\ncounts = 5\nstart_s = 0.001", 20, 0);
+    assert_eq!((read[9], read[10]), (0, 5));
+    let read = plain("[[fault]]\nkind = \"encoder_missing_counts\"\nshare = 0.1\nend_s = 0.01", 201, 10);
+    assert_eq!((read[100], read[200]), (901, 1901), "what was not counted stays uncounted");
+    // A quarter turn of 17 bits, an error of 0.1 degrees.
+    let read = plain("[[fault]]\nkind = \"encoder_eccentric\"\nerror_deg = 0.1", 2, 32_768);
+    assert_eq!(read[1] - 32_768, (0.1 / 360.0 * 131_072.0_f64).round() as i64);
+}
+
+#[test]
+fn a_noisy_encoder_scatters_as_much_as_stated() {
+    let read = plain("[[fault]]\nkind = \"encoder_noise\"\nnoise_counts = 4", 20_000, 0);
+    let deviation = (read.iter().map(|counts| (counts * counts) as f64).sum::<f64>() / 20_000.0).sqrt();
+    assert!((deviation / 4.0 - 1.0).abs() < 0.03, "{deviation}");
+}
+
+#[test]
+fn frames_are_lost_as_often_as_stated_and_late_ones_keep_their_time() {
+    let lost = counts("[[fault]]\nkind = \"lost_frames\"\nshare = 0.2", 20_000, 1);
+    let share = lost.iter().filter(|frame| frame.is_none()).count() as f64 / 20_000.0;
+    assert!((share - 0.2).abs() < 0.01, "{share}");
+    let late = counts("[[fault]]\nkind = \"late_frames\"\ndelay_ms = 0.5\nstart_s = 0.001", 30, 3);
+    assert_eq!(late[9], Some(Frame { counts: 27, period: 9 }));
+    assert_eq!(late[20], Some(Frame { counts: 45, period: 15 }));
+    assert_eq!(late[10..15], [None; 5], "a reading that came does not come again");
+    assert_eq!(late[15], Some(Frame { counts: 30, period: 10 }));
+}
+
+#[test]
+fn a_set_point_that_is_lost_leaves_the_one_before() {
+    let fault = "[[fault]]\nkind = \"lost_frames\"\nframes = \"set_points\"\nshare = 1\nstart_s = 0.001\nend_s = 0.002";
+    let (mut injection, _) = injection(fault);
+    let at = |position: f64| SetPoint::Position { now: Motion { position, ..Motion::default() }, ahead: None };
+    let received: Vec<f64> =
+        (0..30).map(|k| injection.receive(1e-4 * f64::from(k), k as u64, at(f64::from(k))).motion().position).collect();
+    assert_eq!((received[9], received[10], received[19], received[20]), (9.0, 9.0, 9.0, 20.0));
+}
+
+#[test]
+fn a_set_point_that_comes_late_leaves_the_one_before_until_then() {
+    let fault = "[[fault]]\nkind = \"late_frames\"\nframes = \"set_points\"\ndelay_ms = 0.5\nstart_s = 0.001";
+    let (mut injection, _) = injection(fault);
+    let at = |position: f64| SetPoint::Position { now: Motion { position, ..Motion::default() }, ahead: None };
+    let received: Vec<f64> =
+        (0..30).map(|k| injection.receive(1e-4 * f64::from(k), k as u64, at(f64::from(k))).motion().position).collect();
+    assert_eq!((received[9], received[10], received[14], received[15]), (9.0, 9.0, 9.0, 10.0));
+}
+
+#[test]
+fn torque_is_biased_and_cut_off_as_stated() {
+    let (injection, _) = injection(
+        "[[fault]]\nkind = \"torque_bias\"\nratio = 0.05\ntorque_N_m = 0.1\n\
+         [[fault]]\nkind = \"torque_saturation\"\ntorque_N_m = 1.5\nstart_s = 1",
+    );
+    assert!((injection.torque(0.5, 2.0) - 2.2).abs() < 1e-12);
+    assert_eq!(injection.torque(1.5, -3.0), -1.5);
+}
+
+#[test]
+fn grown_backlash_and_a_broken_tooth_reach_the_teeth_and_end() {
+    let fault = "[[fault]]\nkind = \"grown_backlash\"\nhalf_backlash_um = 90\nstart_s = 1\nend_s = 2\n\
+                 [[fault]]\nkind = \"broken_tooth\"\nstiffness_ratio = 0.5";
+    let (mut injection, case) = injection(fault);
+    let mut plant = plant(PlantName::Reference, &case.truth.parameters, &case.train, Vec::new(), 1).expect("a plant");
+    let mut joint = plant.joint().clone();
+    injection.wear(0.5, &joint, plant.inside().as_mut());
+    assert_eq!(injection.half_backlash_now(), 40e-6);
+    assert_eq!(injection.teeth.soft, [true, false, false], "the broken tooth starts at planet 0");
+    injection.wear(1.5, &joint, plant.inside().as_mut());
+    assert!((injection.half_backlash_now() - 90e-6).abs() < 1e-18);
+    // A third of a turn of the sun against the carrier later it is at the next planet.
+    joint.motor_angle = joint.carrier_angle + TAU / 3.0 + 0.01;
+    injection.wear(2.5, &joint, plant.inside().as_mut());
+    assert_eq!(injection.half_backlash_now(), 40e-6);
+    assert_eq!(injection.teeth.soft, [false, true, false]);
+}

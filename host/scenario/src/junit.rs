@@ -1,0 +1,92 @@
+//! The results as JUnit XML, for a lab's own test server: a suite for each file, a case for each assertion; a file that could
+//! not run is a case that was skipped. What JUnit has no word for is in the JSON.
+
+use std::fmt::Write;
+
+use super::record::{NotRun, TestRecord, TestsRecord};
+use report::checks::{Bound, Verdict};
+
+/// The whole document.
+pub fn render(record: &TestsRecord) -> String {
+    let mut xml = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
+    let tests = record.tests.iter().map(cases).sum::<usize>() + record.not_run.len();
+    let failed: usize = record.tests.iter().map(|test| test.failed().count()).sum();
+    let errors = record.tests.iter().filter(|test| test.broken.is_some()).count();
+    // What was skipped stands with each suite: the schema of Jenkins knows it there only. Writing to a string cannot fail.
+    let _ = writeln!(
+        xml,
+        "<testsuites name=\"joint hil\" tests=\"{tests}\" failures=\"{failed}\" errors=\"{errors}\" time=\"{:.3}\">",
+        record.seconds
+    );
+    record.tests.iter().for_each(|test| suite(&mut xml, test, &record.date));
+    record.not_run.iter().for_each(|not_run| left_out(&mut xml, not_run, &record.date));
+    xml += "</testsuites>\n";
+    xml
+}
+
+/// A test that was broken off, or asserts nothing, has a case of its own.
+fn cases(test: &TestRecord) -> usize {
+    test.assertions.len() + usize::from(test.broken.is_some() || test.assertions.is_empty())
+}
+
+fn suite(xml: &mut String, test: &TestRecord, date: &str) {
+    let name = escaped(&test.file);
+    let errors = usize::from(test.broken.is_some());
+    let failed = test.failed().count();
+    let _ = writeln!(
+        xml,
+        "  <testsuite name=\"{name}\" tests=\"{}\" failures=\"{failed}\" errors=\"{errors}\" skipped=\"0\" time=\"{:.3}\" timestamp=\"{}\">",
+        cases(test),
+        test.seconds,
+        escaped(date)
+    );
+    if test.broken.is_some() || test.assertions.is_empty() {
+        let _ = write!(xml, "    <testcase classname=\"{name}\" name=\"runs to its end\"");
+        match &test.broken {
+            Some(why) => {
+                let _ = writeln!(
+                    xml,
+                    ">\n      <error type=\"broken off\" message=\"{}\"/>\n    </testcase>",
+                    escaped(why)
+                );
+            }
+            None => *xml += "/>\n",
+        }
+    }
+    for assertion in &test.assertions {
+        let bound = match assertion.bound {
+            Bound::AtMost(bound) => format!("<= {bound}"),
+            Bound::AtLeast(bound) => format!(">= {bound}"),
+            Bound::Exactly(bound) => format!("== {bound}"),
+            Bound::None => String::new(),
+        };
+        let title = escaped(&format!("{} ({}) {bound}", assertion.name, assertion.aggregate));
+        let _ = write!(xml, "    <testcase classname=\"{name}\" name=\"{title}\"");
+        if assertion.verdict == Verdict::Failed {
+            let figure = assertion.figure.map_or("none".to_owned(), |figure| figure.to_string());
+            let seed = assertion.seed.map_or(String::new(), |seed| format!(", seed {seed}"));
+            let message = escaped(&format!("{figure} {}{seed}. {}", assertion.unit, assertion.note));
+            let _ = writeln!(xml, ">\n      <failure type=\"bound\" message=\"{message}\"/>\n    </testcase>");
+        } else {
+            *xml += "/>\n";
+        }
+    }
+    let _ = writeln!(xml, "    <system-out>{}</system-out>\n  </testsuite>", escaped(&test.replay));
+}
+
+fn left_out(xml: &mut String, not_run: &NotRun, date: &str) {
+    let NotRun { file, why, mend } = not_run;
+    let (name, date) = (escaped(file), escaped(date));
+    let message = escaped(&mend.as_ref().map_or(why.clone(), |mend| format!("{why} ({mend})")));
+    let _ = writeln!(
+        xml,
+        "  <testsuite name=\"{name}\" tests=\"1\" failures=\"0\" errors=\"0\" skipped=\"1\" time=\"0\" timestamp=\"{date}\">\n    \
+         <testcase classname=\"{name}\" name=\"runs to its end\">\n      <skipped type=\"not run\" message=\"{message}\"/>\n    </testcase>\n  \
+         </testsuite>"
+    );
+}
+
+fn escaped(text: &str) -> String {
+    let text = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;");
+    text.chars().filter(|letter| !letter.is_control() || *letter == '\n').collect()
+}

@@ -1,0 +1,224 @@
+//! `joint hil FILE.toml`: tests of observer and compensation that users write as files, run against the f64 reference or
+//! the core's own plant, and reported. Observer and compensation run on the host or, by `on_board`, on a board.
+//!
+//! The order of a test: `file` reads what it says, `suite` finds it and its joint, `case` makes it concrete for a seed;
+//! `execution` closes the loop between `plant` and `controller` through the faults of `injection`, with observer and
+//! compensation behind `port`, and `ran` keeps what happened; `figures`, `values` and `sight` say what that was worth, `verdict` judges, `campaign` puts all seeds
+//! together; `page`, `junit`, `log_file` and `record` are what stays.
+
+mod campaign;
+pub mod case;
+pub mod compensated;
+pub mod controller;
+pub mod draw;
+pub mod execution;
+pub mod figures;
+pub mod file;
+pub mod injection;
+mod junit;
+mod log_file;
+pub mod on_board;
+mod page;
+mod pictures;
+pub mod plant;
+pub mod port;
+mod pushes;
+pub mod ran;
+pub mod record;
+pub mod recorded;
+#[cfg(test)]
+mod schema;
+mod sender;
+mod sight;
+pub mod suite;
+pub mod surroundings;
+mod terminal;
+mod trace;
+pub mod trial;
+pub mod values;
+mod verdict;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicU32;
+use std::time::Instant;
+
+use campaign::{Conduct, Tested};
+use on_board::{BoardWish, Boards};
+use plant::PlantName;
+use rayon::prelude::*;
+use record::{NotRun, SCHEMA, TestsRecord};
+use suite::{Choice, Suite, Test};
+
+use report::failure::{EXIT_INTERRUPTED, Failure, Outcome};
+use report::folder;
+use report::output;
+use report::progress::Progress;
+use report::provenance;
+use report::write::write_text;
+use simulation::sim::files::Folder;
+
+/// What was asked for.
+#[derive(Debug, Clone)]
+pub struct Wanted<'w> {
+    /// Which tests, and where they run.
+    pub parts: Vec<Part<'w>>,
+    /// One seed in place of the files'.
+    pub seed: Option<u64>,
+    /// The full lists of seeds.
+    pub full: bool,
+    /// Name of the usual folder for everything that stays.
+    pub name: String,
+    /// Another folder.
+    pub out: Option<PathBuf>,
+    /// The results as JSON, too.
+    pub json: Option<&'w Path>,
+    /// The results as JUnit XML, too.
+    pub junit: Option<&'w Path>,
+}
+
+/// Tests that run in one place.
+#[derive(Debug, Clone)]
+pub struct Part<'w> {
+    /// A test file, or a folder of them.
+    pub path: PathBuf,
+    /// Which of a folder.
+    pub choice: Choice,
+    /// What is controlled.
+    pub plant: PlantName,
+    /// The boards to run on; without them the host.
+    pub boards: Option<BoardWish<'w>>,
+}
+
+/// A part that can be run.
+struct Ready<'w> {
+    suite: Suite,
+    plant: PlantName,
+    boards: Option<Boards<'w>>,
+}
+
+/// Runs tests; succeeds only if all ran and passed.
+pub fn run(wanted: &Wanted<'_>, progress: &Progress) -> Outcome<()> {
+    let start = Instant::now();
+    let mut parts = Vec::new();
+    for Part { path, choice, plant, boards } in &wanted.parts {
+        let mut suite = suite::load(path, *choice, *plant)?;
+        let boards = boards.map(|wish| Boards::prepare(wish, &mut suite, *plant, progress)).transpose()?;
+        parts.push(Ready { suite, plant: *plant, boards });
+    }
+    let read: Vec<PathBuf> = parts.iter().flat_map(|part| &part.suite.tests).flat_map(Test::files).collect();
+    let read: Vec<&Path> = read.iter().map(PathBuf::as_path).collect();
+    folder::check_files(&[("json", wanted.json), ("junit", wanted.junit)], &read)?;
+    let folder = Folder::prepare(wanted.out.as_deref(), "hil/tests", &wanted.name)?;
+    let logs = prepare_logs(&folder)?;
+    let (tested, not_run) = run_parts(parts, wanted, &logs, progress)?;
+    let record = TestsRecord {
+        schema: SCHEMA.to_owned(),
+        passed: not_run.is_empty() && tested.iter().all(|test| test.record.passed),
+        full: wanted.full,
+        host_version: env!("CARGO_PKG_VERSION").to_owned(),
+        host: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
+        git_commit: provenance::git_commit(),
+        date: provenance::date(),
+        seconds: start.elapsed().as_secs_f64(),
+        tests: tested.iter().map(|test| test.record.clone()).collect(),
+        not_run,
+    };
+    output::print(&terminal::table(&record))?;
+    write(wanted, &folder, &record, &tested)?;
+    output::print(&format!("report: {}\n", folder.file("report.html").display()))?;
+    verdict(&record)
+}
+
+/// What ran, and what could not.
+type RunOrNot = (Vec<Tested>, Vec<NotRun>);
+
+fn run_parts(parts: Vec<Ready<'_>>, wanted: &Wanted<'_>, logs: &Path, progress: &Progress) -> Outcome<RunOrNot> {
+    let runs_of = |test: &Test| test.seeds(wanted.seed, wanted.full).len() * test.controllers().len();
+    let runs: usize = parts.iter().flat_map(|part| &part.suite.tests).map(runs_of).sum();
+    progress.run("testing", runs as u32);
+    let line = progress.handle();
+    let before = AtomicU32::new(0);
+    let (mut tested, mut not_run) = (Vec::new(), Vec::new());
+    for Ready { suite: Suite { tests, not_run: refused, .. }, plant, boards } in parts {
+        not_run.extend(refused);
+        let conduct = Conduct {
+            plant,
+            seed: wanted.seed,
+            full: wanted.full,
+            boards: boards.as_ref(),
+            logs,
+            done: &|runs| line.at(runs),
+        };
+        let one = |test: &Test| {
+            let one = campaign::run(test, &conduct, &before);
+            one.iter().for_each(|one| line.say_above(&terminal::line(&one.record)));
+            one
+        };
+        // A test on the emulated board keeps one core busy at most; a test on the host keeps all of them busy by itself.
+        let emulated = boards.as_ref().is_some_and(Boards::are_emulated);
+        let done: Vec<Outcome<Tested>> =
+            if emulated { tests.par_iter().map(one).collect() } else { tests.iter().map(one).collect() };
+        for (test, one) in tests.iter().zip(done) {
+            match one {
+                Ok(one) => tested.push(one),
+                Err(failure) if failure.exit_code() == EXIT_INTERRUPTED => return Err(failure),
+                Err(failure) => not_run.push(NotRun::new(test.name.clone(), &failure)),
+            }
+        }
+    }
+    progress.clear();
+    Ok((tested, not_run))
+}
+
+/// An empty folder for logs: those of an older run would be taken for this one's.
+fn prepare_logs(folder: &Folder) -> Outcome<PathBuf> {
+    let logs = folder.file("runs");
+    let failed = |error: std::io::Error| Failure::new(format!("cannot prepare {}: {error}", logs.display()));
+    if logs.is_dir() {
+        for entry in fs::read_dir(&logs).map_err(failed)? {
+            let path = entry.map_err(failed)?.path();
+            if path.extension().is_some_and(|extension| extension == "mcap") {
+                fs::remove_file(&path).map_err(failed)?;
+            }
+        }
+    }
+    fs::create_dir_all(&logs).map_err(failed)?;
+    Ok(logs)
+}
+
+fn write(wanted: &Wanted<'_>, folder: &Folder, record: &TestsRecord, tested: &[Tested]) -> Outcome<()> {
+    let json = output::json("results", record)?;
+    let junit = junit::render(record);
+    write_text(&folder.file("record.json"), &json)?;
+    write_text(&folder.file("junit.xml"), &junit)?;
+    write_text(&folder.file("report.html"), &page::render(record, tested))?;
+    wanted.json.map_or(Ok(()), |path| write_text(path, &json))?;
+    wanted.junit.map_or(Ok(()), |path| write_text(path, &junit))
+}
+
+fn verdict(record: &TestsRecord) -> Outcome<()> {
+    let failed: Vec<&str> = record.tests.iter().filter(|test| !test.passed).map(|test| test.file.as_str()).collect();
+    let all = record.tests.len() + record.not_run.len();
+    let not_run = match record.not_run.as_slice() {
+        [] => None,
+        [one] => Some(format!("{} was not run: {}", one.file, one.why)),
+        many => {
+            let files: Vec<&str> = many.iter().map(|one| one.file.as_str()).collect();
+            Some(format!("{} of {all} tests were not run: {}", many.len(), files.join(", ")))
+        }
+    };
+    match (failed.is_empty(), not_run) {
+        (true, None) => Ok(()),
+        (true, Some(not_run)) => {
+            let mend = record.not_run.first().and_then(|one| one.mend.clone()).filter(|_| record.not_run.len() == 1);
+            Err(Failure::new(not_run)
+                .with_help(mend.unwrap_or_else(|| "each is named above with its reason".to_owned())))
+        }
+        (false, not_run) => {
+            let mut message = format!("{} of {all} tests failed: {}", failed.len(), failed.join(", "));
+            not_run.iter().for_each(|not_run| message += &format!("; {not_run}"));
+            Err(Failure::check_failed(message).with_help("the report leads with what failed, and how to run it again"))
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! A run as an MCAP log, which Foxglove and PlotJuggler open: truth, estimates and torque a thousand times a second. Full
+//! rate is left out: the run can be made again bit for bit.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::Path;
+
+use super::ran::Ran;
+use report::failure::Outcome;
+use simulation::sim::files::unwritten;
+use simulation::sim::log_file::Channel;
+
+/// Topic of a run.
+pub const TOPIC: &str = "/joint/trial";
+/// Name of its schema.
+const SCHEMA_NAME: &str = "joint_msgs/msg/Trial";
+/// Messages a second [Hz].
+const RATE: f64 = 1000.0;
+
+/// Fields, all of them numbers, with what they mean.
+const FIELDS: [(&str, &str); 17] = [
+    ("time_s", "since the start [s]"),
+    ("wanted_rad", "where the link was to be [rad]"),
+    ("link_rad", "where it is [rad]"),
+    ("error_mrad", "wanted less link [mrad]"),
+    ("link_speed_rad_per_s", "[rad/s]"),
+    ("motor_rad", "[rad]"),
+    ("gap_um", "gap coordinate [um]"),
+    ("half_backlash_um", "of every mesh, now [um]"),
+    ("mesh_force_n", "net force of the sun's meshes [N]"),
+    ("peak_mesh_force_n", "largest of them since the last message [N]"),
+    ("load_torque_nm", "what brakes the link [N m]"),
+    ("motor_torque_nm", "asked of the motor [N m]"),
+    ("estimated_gap_um", "by the observer [um]"),
+    ("estimated_side", "1 drive side, 0 parted, -1 back side"),
+    ("estimated_half_backlash_um", "[um]"),
+    ("estimated_load_torque_nm", "[N m]"),
+    ("trust", "share of the compensation in the torque"),
+];
+
+/// Writes a run to a file.
+pub fn write(path: &Path, ran: &Ran, remarks: BTreeMap<String, String>) -> Outcome<()> {
+    fill(path, ran, remarks).map_err(|error| unwritten(path, &error))
+}
+
+fn fill(path: &Path, ran: &Ran, remarks: BTreeMap<String, String>) -> std::io::Result<()> {
+    let schema: String = FIELDS.iter().map(|(name, meaning)| format!("float64 {name}  # {meaning}\n")).collect();
+    let out = BufWriter::new(File::create(path)?);
+    let mut channel = Channel::begin(out, TOPIC, SCHEMA_NAME, &schema, remarks)?;
+    let every = (1.0 / (RATE * ran.run.period)).round().max(1.0) as usize;
+    let mut peak = 0.0_f64;
+    for (index, (sample, truth)) in ran.run.samples.iter().zip(&ran.truths).enumerate() {
+        peak = peak.max(sample.mesh_force.abs());
+        if (index + 1) % every != 0 {
+            continue;
+        }
+        let sight = ran.sights.get(index).copied().unwrap_or_default();
+        let numbers: [f64; FIELDS.len()] = [
+            sample.time,
+            sample.wanted,
+            sample.link,
+            1e3 * (sample.wanted - sample.link),
+            sample.link_speed,
+            truth.motor,
+            1e6 * truth.gap,
+            1e6 * truth.half_backlash,
+            sample.mesh_force,
+            peak,
+            truth.load_torque,
+            sample.command,
+            1e6 * f64::from(sight.gap),
+            sight.side.into(),
+            1e6 * f64::from(sight.half_backlash),
+            sight.load_torque.into(),
+            sight.trust.into(),
+        ];
+        // CDR: little endian behind a head of four bytes; numbers of eight bytes need no filling.
+        let mut message = vec![0, 1, 0, 0];
+        numbers.into_iter().for_each(|number| message.extend(number.to_le_bytes()));
+        channel.write(sample.time, &message)?;
+        peak = 0.0;
+    }
+    channel.finish()?.into_inner().map_err(std::io::IntoInnerError::into_error)?.sync_data()
+}

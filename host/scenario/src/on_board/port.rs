@@ -1,0 +1,74 @@
+//! Observer and compensation on a board, a control period at a time over its line: lockstep, so that every period has its
+//! answer however slow the line is. Finding the board and starting its run is the caller's business.
+
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use link::controller::{Exchange, WireShaped};
+use model_core::digest;
+use model_core::realtime::compensation::Command;
+use model_core::realtime::observer::Samples;
+
+use crate::case::Designed;
+use crate::port::{Answer, ControllerPort, HostPort};
+use board::session::Session;
+use report::failure::{Failure, Outcome};
+
+/// A board that answers, and its twin here. The board's digest over all that it has answered so far, taken in the tick that
+/// made the answer, must be the twin's: then the twin's estimates are the board's, and need not come over the line.
+pub struct BoardPort<'d> {
+    session: Rc<RefCell<Session<'static>>>,
+    twin: HostPort<'d>,
+    tick: u32,
+    digest: u64,
+}
+
+impl<'d> BoardPort<'d> {
+    /// A session whose run has begun and has done nothing yet.
+    pub fn new(session: Rc<RefCell<Session<'static>>>, designed: &'d Designed) -> Self {
+        let twin = HostPort::new(designed);
+        Self { session, twin, tick: 0, digest: digest::START }
+    }
+}
+
+impl ControllerPort for BoardPort<'_> {
+    fn exchange(&mut self, samples: &Samples<f32>, command: &Command<f32>) -> Outcome<Answer> {
+        let own = self.twin.exchange(samples, command)?;
+        self.ask(Exchange::new(self.tick, samples, command), own)
+    }
+
+    fn probe(&mut self, samples: &Samples<f32>) -> Outcome<Answer> {
+        let own = self.twin.probe(samples)?;
+        self.ask(Exchange::probing(self.tick, samples), own)
+    }
+
+    fn begin_again(&mut self) -> Outcome<()> {
+        (self.tick, self.digest) = (0, digest::START);
+        self.session.borrow_mut().begin_again()?;
+        self.twin.begin_again()
+    }
+}
+
+impl BoardPort<'_> {
+    /// The board's answer to an exchange, which must be the twin's own.
+    fn ask(&mut self, exchange: Exchange, answer: Answer) -> Outcome<Answer> {
+        let answered = self.session.borrow_mut().exchange(exchange.without_estimates())?;
+        self.digest = answer.digest(self.digest);
+        let own = WireShaped::from(&answer.shaped);
+        if answered.digest != self.digest || answered.shaped != own || answered.probed.map(Into::into) != answer.probed
+        {
+            let (there, here) = (answered.shaped.torque, own.torque);
+            let what = if there == here {
+                "what was estimated".to_owned()
+            } else {
+                format!("torque {there:e} there, {here:e} here")
+            };
+            return Err(Failure::check_failed(format!(
+                "board and host differ in control period {}: {what}",
+                self.tick
+            )));
+        }
+        self.tick = self.tick.wrapping_add(1);
+        Ok(answer)
+    }
+}

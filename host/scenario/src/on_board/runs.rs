@@ -1,0 +1,104 @@
+//! A run of each role on a board beside its twin here, which must be the same in every bit: exchanges in lockstep for
+//! observer and compensation, a motion in knots for the whole loop. Images and lines are the parent's business.
+
+use std::cell::RefCell;
+use std::rc::Rc;
+use std::time::{Duration, Instant};
+
+use super::port::BoardPort;
+use super::twin::{Twin, Twinned};
+use super::upsets::upsets;
+use super::{Boards, Pair};
+use crate::case::Case;
+use crate::execution::{Order, RunError, execute_with};
+use crate::ran::Ran;
+use crate::record::BoardRun;
+use crate::suite::Test;
+use board::session::Session;
+use report::failure::Failure;
+
+/// A run on a board in lockstep may take this long, whatever the test's time on the clock.
+const LONGEST: Duration = Duration::from_secs(4 * 3600);
+
+impl Boards<'_> {
+    pub(super) fn run_observer(
+        &self,
+        test: &Test,
+        case: &Case,
+        seed: u64,
+        order: Order,
+        pair: &Pair,
+    ) -> Result<(Ran, BoardRun), RunError> {
+        let (session, image) = self.session(pair)?;
+        let session = Rc::new(RefCell::new(session));
+        let ran = execute_with(&test.file, case, seed, order, Instant::now() + LONGEST, &|designed| {
+            Ok(Box::new(BoardPort::new(session.clone(), designed)))
+        });
+        let mut session = session.borrow_mut();
+        let ran = match ran {
+            Ok(ran) => ran,
+            Err(error) => {
+                session.abandon();
+                return Err(broken(error));
+            }
+        };
+        session.finish(u32::MAX)?;
+        let run = self.board_run(image, ran.run.samples.len() as u32, session.recording.statistics.as_ref());
+        Ok((ran, run))
+    }
+
+    pub(super) fn run_loop(
+        &self,
+        test: &Test,
+        case: &Case,
+        seed: u64,
+        pair: &Pair,
+    ) -> Result<(Ran, BoardRun), RunError> {
+        let designed = case.design(&test.file)?;
+        let bits = [case.train.motor_encoder.bits, case.train.output_encoder.bits];
+        let upsets = upsets(&test.file.faults, case.told_train.control_rate, bits, seed)?;
+        let (truth, board) = (&pair.truth, self.wish.board);
+        let twin = Twin { file: &test.file, case, designed: &designed, truth, board, upsets: &upsets };
+        let Twinned { knots, ran, digests } = twin.run()?;
+        let (mut session, image) = self.session(pair)?;
+        let follow = |session: &mut Session<'_>| {
+            session.upset(&upsets)?;
+            session.follow(&knots, digests.len() as u32)
+        };
+        let followed = match test.file.from_memory {
+            true => follow(&mut session).and_then(|_| session.begin_again()).and_then(|()| follow(&mut session)),
+            false => follow(&mut session),
+        };
+        let samples = match followed {
+            Ok(samples) => samples,
+            Err(failure) => {
+                session.abandon();
+                return Err(broken(failure.into()));
+            }
+        };
+        session.finish(u32::MAX)?;
+        let agrees = |tick: u32, digest: u64| {
+            tick.checked_sub(1).and_then(|index| digests.get(index as usize)).is_some_and(|own| *own == digest)
+        };
+        if let Some(first) = samples.iter().find(|sample| !agrees(sample.tick, sample.digest)) {
+            let time = f64::from(first.tick) / case.train.control_rate;
+            return Err(RunError::Broke(format!(
+                "board and host differ at t = {time:.4} s, control period {}, or in the periods since the sample before: \
+                 the digest over joint and answers",
+                first.tick
+            )));
+        }
+        let periods = samples.last().map_or(0, |sample| sample.tick);
+        Ok((ran, self.board_run(image, periods, session.recording.statistics.as_ref())))
+    }
+}
+
+/// What a board did wrong is the failure of its test alone; what is wrong with the request or the machine ends them all.
+fn broken(error: RunError) -> RunError {
+    match error {
+        RunError::Refused(failure) if failure.exit_code() == Failure::check_failed("").exit_code() => {
+            RunError::Broke(failure.message().to_owned())
+        }
+        other => other,
+    }
+}

@@ -1,0 +1,140 @@
+//! The host's twin of a board that runs the whole loop: the same joint, observer and compensation over the same knots, in
+//! the same order of operations. What they were worth is read off here, where every period can be seen.
+
+use joint_file::JointFile;
+use link::virtual_joint::Knot;
+use model_core::design::virtual_joint::design_surroundings;
+use model_core::design::{Effort, design_scheme};
+use model_core::digest;
+use model_core::realtime::controller::Controller;
+use model_core::realtime::course::Demand;
+use model_core::realtime::upset::{Upset, Upsets};
+use model_core::realtime::virtual_joint::VirtualJoint;
+use model_core::tables::virtual_joint::SurroundingsTable;
+use model_core::tables::{Scheme, Tables};
+use reference::closed_loop::Sample;
+
+use super::course;
+use crate::case::{Case, Designed};
+use crate::file::TestFile;
+use crate::port::remember;
+use crate::ran::{Ran, Truth};
+use board::target::board::Board;
+use report::failure::{Failure, Outcome};
+use simulation::sim::moment::Reader;
+
+/// What is run: the test, what was drawn for it, and the truth at the board's rate.
+pub struct Twin<'t> {
+    /// The test.
+    pub file: &'t TestFile,
+    /// Its case.
+    pub case: &'t Case,
+    /// Tables of the controller.
+    pub designed: &'t Designed,
+    /// The true joint.
+    pub truth: &'t JointFile,
+    /// The board whose image it is.
+    pub board: Board,
+    /// What goes wrong between joint and controller.
+    pub upsets: &'t [Upset<f32>],
+}
+
+/// What a twin did.
+pub struct Twinned {
+    /// The motion in knots.
+    pub knots: Vec<Knot>,
+    /// Everything that happened.
+    pub ran: Ran,
+    /// Running digest after every period.
+    pub digests: Vec<u64>,
+}
+
+impl Twin<'_> {
+    /// Runs it.
+    pub fn run(&self) -> Outcome<Twinned> {
+        match self.truth.parameters.geometry.planets {
+            3 => self.run_with::<3>(),
+            4 => self.run_with::<4>(),
+            _ => self.run_with::<5>(),
+        }
+    }
+
+    fn run_with<const N: usize>(&self) -> Outcome<Twinned> {
+        let joint = &self.truth.parameters;
+        let around = self.truth.surroundings();
+        let refused = |error: &dyn std::fmt::Display| {
+            Failure::new(format!("joint `{}` cannot be simulated on {}: {error}", joint.name, self.board.name()))
+        };
+        let effort = Effort::Within(self.board.processor());
+        let tables: Tables<f32, N> =
+            design_scheme(joint, around.control_rate, Scheme::Realtime, effort).map_err(|error| refused(&error))?;
+        let table: SurroundingsTable<f32> =
+            design_surroundings(joint, &around, &tables).map_err(|error| refused(&error))?;
+        let mut controller = Controller::new(&self.designed.observer, &self.designed.compensation);
+        if self.file.from_memory {
+            self.pass(&tables, &table, &mut controller);
+            remember(&mut controller)?;
+        }
+        Ok(self.pass(&tables, &table, &mut controller))
+    }
+
+    /// The run from its first period to its last.
+    fn pass<const N: usize>(
+        &self,
+        tables: &Tables<f32, N>,
+        table: &SurroundingsTable<f32>,
+        controller: &mut Controller<'_, f32>,
+    ) -> Twinned {
+        let mut virtual_joint = VirtualJoint::new(tables, table);
+        let mut upsets = Upsets::default();
+        let all_taken = self.upsets.iter().all(|upset| upsets.add(*upset));
+        debug_assert!(all_taken, "more than fit were refused before");
+        let knots = course::knots(self.file, self.case, self.designed, virtual_joint.output_turn());
+        let joint = &self.truth.parameters;
+        let reader = Reader::new(joint, tables);
+
+        let rate = f64::from(tables.tick_rate);
+        let periods = (self.file.duration * rate).round() as u32;
+        let half = self.case.half_backlash();
+        let mut ran = Ran::begin(1.0 / rate, periods.into());
+        let (mut digests, mut running) = (Vec::with_capacity(periods as usize), digest::START);
+        let (mut coming, mut demand, mut load, mut since) = (knots.iter().peekable(), Demand::HOLD, 0.0, 0);
+        for period in 0..periods {
+            if let Some(knot) = coming.next_if(|knot| knot.tick == period) {
+                (demand, load, since) = (Demand::from(knot.demand), knot.load_torque, period);
+            }
+            let elapsed = f32::from((period - since).min(u16::MAX.into()) as u16);
+            let command = demand.at(table.period * elapsed, table.turn);
+            let samples = upsets.sense(virtual_joint.samples(), table);
+            let answer = controller.step(&samples, &command);
+            virtual_joint.advance(upsets.torque(answer.shaped.torque), load);
+            running = digest::chain(answer.digest(running), virtual_joint.model().state_digest());
+            digests.push(running);
+
+            let moment = reader.read(period + 1, virtual_joint.model());
+            let state = virtual_joint.model().state();
+            let planets: f32 = state.rate.planets.iter().sum();
+            let [of_planets, of_gap, of_wind_up] = table.link_rate;
+            let beyond = of_planets * planets + of_gap * state.rate.gap + of_wind_up * state.rate.wind_up;
+            let [_, stiffness, damping] = table.to_link;
+            let sample = Sample {
+                time: moment.time,
+                wanted: self.case.motion.at(moment.time).position,
+                link: moment.link_angle(),
+                link_speed: moment.carrier_speed + f64::from(beyond),
+                gap: if half > 0.0 { moment.gap / (2.0 * half) } else { moment.gap.signum() },
+                mesh_force: moment.teeth.iter().take(N).map(|teeth| teeth.force).sum(),
+                transmitted: f64::from(stiffness) * moment.wind_up + f64::from(damping) * f64::from(state.rate.wind_up),
+                command: f64::from(answer.shaped.torque),
+            };
+            let truth = Truth {
+                gap: moment.gap,
+                half_backlash: half,
+                load_torque: f64::from(virtual_joint.acting().load),
+                motor: moment.motor_angle(joint),
+            };
+            ran.add(sample, truth, Some(&answer));
+        }
+        Twinned { knots, ran, digests }
+    }
+}

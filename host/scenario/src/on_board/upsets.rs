@@ -1,0 +1,175 @@
+//! Faults of a test as a board that runs the whole loop takes them: between its virtual joint and its controller, in control
+//! periods and parts of a turn. What no board can do is refused by name.
+
+use std::f64::consts::TAU;
+
+use model_core::realtime::upset::{Kind, MOST_UPSETS, Shaft, Upset};
+
+use crate::draw::Stream;
+use crate::file::{EncoderName, Fault, FaultKind, FrameName};
+use report::failure::{Failure, Outcome};
+
+/// Whole turns, and whole shares.
+const WHOLE: f64 = 4_294_967_296.0;
+
+/// The faults of a test file, for a seed and encoders of so many bits.
+pub fn upsets(faults: &[Fault], rate: f64, bits: [u32; 2], seed: u64) -> Outcome<Vec<Upset<f32>>> {
+    if faults.len() > MOST_UPSETS {
+        let message = format!("a board that runs the whole loop takes {MOST_UPSETS} faults, not {}", faults.len());
+        return Err(Failure::new(message).with_help("run it with --role observer, or with --host"));
+    }
+    let one = |(index, fault): (usize, &Fault)| {
+        let periods = |time: f64| (time * rate - 1e-6).ceil().clamp(0.0, f64::from(u32::MAX)) as u32;
+        Ok(Upset {
+            start: periods(fault.start),
+            end: periods(fault.end),
+            seed: Stream::new(seed, &format!("fault {index} {}", fault.word)).word(),
+            kind: kind(fault, bits)?,
+        })
+    };
+    faults.iter().enumerate().map(one).collect()
+}
+
+fn kind(fault: &Fault, bits: [u32; 2]) -> Outcome<Kind<f32>> {
+    let shaft = |name: EncoderName| match name {
+        EncoderName::Motor => Shaft::Motor,
+        EncoderName::Output => Shaft::Link,
+    };
+    let count = |name: EncoderName| WHOLE / (1_u64 << bits[usize::from(name == EncoderName::Output)]) as f64;
+    // A whole turn more or less is none.
+    let angle = |parts: f64| (parts.round() as i64) as u32;
+    let share = |share: f64| (share * WHOLE).min(WHOLE - 1.0) as u32;
+    let refused = |why: &str, help: &str| {
+        Err(Failure::new(format!("the fault `{}` cannot be in a whole loop on a board: {why}", fault.word))
+            .with_help(help))
+    };
+    Ok(match fault.kind {
+        FaultKind::Frozen(of) => Kind::Frozen(shaft(of)),
+        FaultKind::Offset(of, counts, offset) => {
+            Kind::Offset(shaft(of), angle(counts.round() * count(of) + offset / TAU * WHOLE) as i32)
+        }
+        FaultKind::Noise(of, counts) => Kind::Noise(shaft(of), (counts * count(of)).min(WHOLE - 1.0) as u32),
+        FaultKind::MissingCounts(of, part) => Kind::MissingCounts(shaft(of), share(part)),
+        FaultKind::Eccentric(of, error) => Kind::Eccentric(shaft(of), (error / TAU * WHOLE) as f32),
+        FaultKind::TorqueBias(ratio, torque) => Kind::TorqueBias(ratio as f32, torque as f32),
+        FaultKind::Saturation(torque) => Kind::Saturation(torque as f32),
+        FaultKind::LostFrames(FrameName::Motor, part) => Kind::LostFrames(Shaft::Motor, share(part)),
+        FaultKind::LostFrames(FrameName::Output, part) => Kind::LostFrames(Shaft::Link, share(part)),
+        FaultKind::LostFrames(FrameName::SetPoints, _) | FaultKind::LateFrames(FrameName::SetPoints, _) => {
+            let why = "its motion comes in polynomials of some milliseconds, not in set-points";
+            return refused(why, "run it with --role observer, or with --host");
+        }
+        FaultKind::LateFrames(..) => {
+            return refused("it keeps no readings of the past", "run it with --role observer, or with --host");
+        }
+        FaultKind::GrownBacklash(_) => {
+            let why = "its teeth are tables in flash";
+            return refused(why, "run it with --role observer --plant reference, or with --host");
+        }
+        FaultKind::BrokenTooth(_) => {
+            let why = "its planets share their stiffness";
+            return refused(why, "run it with --role observer --plant reference, or with --host");
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use model_core::design::design;
+    use model_core::design::virtual_joint::design_surroundings;
+    use model_core::realtime::observer::{Reading, Samples};
+    use model_core::realtime::upset::Upsets;
+    use model_core::tables::Tables;
+    use model_core::tables::virtual_joint::SurroundingsTable;
+
+    use super::*;
+
+    const RATE: f64 = 10e3;
+
+    fn table() -> SurroundingsTable<f32> {
+        let file = joint_file::read(joint_file::preset("q1").expect("a preset")).expect("a joint");
+        let tables: Tables<f32, 3> = design(&file.parameters, RATE as u32).expect("tables");
+        design_surroundings(&file.parameters, &file.surroundings(), &tables).expect("surroundings")
+    }
+
+    /// What is seen of a shaft that turns by so many counts a period, and the torque given for one of 1 N m.
+    fn run(kind: FaultKind, periods: u32, step: u32) -> Vec<(Samples<f32>, f32)> {
+        let fault = Fault { word: "fault", kind, start: 0.01, end: 0.5 };
+        let mut upsets = Upsets::default();
+        assert!(super::upsets(&[fault], RATE, [14, 17], 5).expect("possible").iter().all(|upset| upsets.add(*upset)));
+        let table = table();
+        let one = |period: u32| {
+            let reading = |bits: u32| Reading { counts: (period * step) % (1 << bits), time: period };
+            let samples = Samples { time: period, motor: reading(14), output: Some(reading(17)), torque: 9.0 };
+            (upsets.sense(samples, &table), upsets.torque(1.0))
+        };
+        (0..periods).map(one).collect()
+    }
+
+    #[test]
+    fn a_frozen_encoder_stands_still_until_it_comes_back() {
+        let seen = run(FaultKind::Frozen(EncoderName::Output), 6000, 3);
+        let counts = |period: usize| seen[period].0.output.expect("a reading").counts;
+        assert_eq!([counts(99), counts(100), counts(4999), counts(5000)], [297, 300, 300, 15_000]);
+        assert!(seen.iter().zip(0..).all(|((samples, _), period)| samples.motor.counts == 3 * period % (1 << 14)));
+    }
+
+    #[test]
+    fn counts_slip_scatter_and_get_lost_as_far_as_was_asked_for() {
+        let output = EncoderName::Output;
+        let off = |seen: &[(Samples<f32>, f32)], step: u32| -> Vec<i32> {
+            let beside = |(samples, period): (&(Samples<f32>, f32), u32)| {
+                let counts = samples.0.output.expect("a reading").counts;
+                (counts.wrapping_sub(period * step) << 15) as i32 >> 15
+            };
+            seen.iter().zip(0..).map(beside).collect()
+        };
+        assert_eq!(off(&run(FaultKind::Offset(output, -7.0, 0.0), 200, 3), 3)[99..101], [0, -7]);
+        let missing = off(&run(FaultKind::MissingCounts(output, 0.01), 6000, 100), 100);
+        assert_eq!((missing[99], missing[5999]), (0, -4900));
+        let scatter = off(&run(FaultKind::Noise(output, 3.0), 5000, 3), 3);
+        let deviation = (scatter[100..].iter().map(|off| f64::from(off * off)).sum::<f64>() / 4900.0).sqrt();
+        assert!((deviation - 3.0).abs() < 0.2, "{deviation}");
+        let eccentric = off(&run(FaultKind::Eccentric(output, 0.1_f64.to_radians()), 5000, 40), 40);
+        let largest = eccentric.iter().max().expect("some");
+        assert!((f64::from(*largest) - 0.1 / 360.0 * 131_072.0).abs() < 1.0, "{largest}");
+    }
+
+    #[test]
+    fn readings_get_lost_and_the_motor_s_last_word_stands() {
+        let lost = run(FaultKind::LostFrames(FrameName::Output, 0.2), 5000, 3);
+        let missing = lost.iter().filter(|(samples, _)| samples.output.is_none()).count();
+        assert!((880..1080).contains(&missing), "{missing}");
+        let motor = run(FaultKind::LostFrames(FrameName::Motor, 1.0), 5000, 3);
+        assert_eq!(motor[4000].0.motor, Reading { counts: 297, time: 99 });
+    }
+
+    #[test]
+    fn a_motor_that_gives_another_torque_does_not_know_it() {
+        for (kind, given) in [(FaultKind::TorqueBias(0.05, 0.2), 1.25), (FaultKind::Saturation(0.4), 0.4)] {
+            let seen = run(kind, 200, 3);
+            assert_eq!([seen[99].1, seen[100].1], [1.0, given]);
+            assert!(seen[1..].iter().all(|(samples, _)| samples.torque == 1.0));
+        }
+    }
+
+    #[test]
+    fn what_no_board_can_do_is_refused_with_the_mend() {
+        for kind in [
+            FaultKind::LateFrames(FrameName::Output, 0.001),
+            FaultKind::LostFrames(FrameName::SetPoints, 0.1),
+            FaultKind::GrownBacklash(6e-5),
+            FaultKind::BrokenTooth(0.3),
+        ] {
+            let failure =
+                super::upsets(&[Fault { word: "it", kind, start: 0.0, end: 1.0 }], RATE, [14, 17], 1).unwrap_err();
+            assert!(
+                failure.message().contains("`it` cannot be in a whole loop") && failure.help().is_some(),
+                "{failure}"
+            );
+        }
+        let kind = FaultKind::Frozen(EncoderName::Motor);
+        let many = vec![Fault { word: "it", kind, start: 0.0, end: 1.0 }; MOST_UPSETS + 1];
+        assert!(super::upsets(&many, RATE, [14, 17], 1).is_err());
+    }
+}

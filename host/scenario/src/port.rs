@@ -1,0 +1,140 @@
+//! The seam between a run and observer with compensation: samples and set-points in, estimates and shaped set-points
+//! out, once a control period. Here it is served on the host; a board serves the same trait over its line.
+
+use std::f64::consts::TAU;
+
+use model_core::realtime::compensation::{self, Command, ImpedancePoint, Position};
+use model_core::realtime::controller::{self, Controller};
+use model_core::realtime::observer::{Reading, Samples};
+use reference::closed_loop::{Motion, SetPoint};
+
+use super::case::Designed;
+use super::injection::{Frame, Seen};
+use report::failure::{Failure, Outcome};
+
+/// What one control period came to.
+pub type Answer = controller::Answer<f32>;
+
+/// Observer and compensation, wherever they run.
+pub trait ControllerPort {
+    /// One control period.
+    fn exchange(&mut self, samples: &Samples<f32>, command: &Command<f32>) -> Outcome<Answer>;
+
+    /// One control period of a width probe.
+    fn probe(&mut self, samples: &Samples<f32>) -> Outcome<Answer>;
+
+    /// Keeps what has been learnt, and begins anew from it.
+    fn begin_again(&mut self) -> Outcome<()>;
+}
+
+/// Observer and compensation in this process: the very code that a board runs.
+#[derive(Debug)]
+pub struct HostPort<'t>(Controller<'t, f32>);
+
+impl<'t> HostPort<'t> {
+    /// Both as they are after a reset.
+    pub fn new(designed: &'t Designed) -> Self {
+        let Designed { observer, compensation, probe, .. } = designed;
+        Self(Controller::new(observer, compensation).with_probe(probe.as_ref()))
+    }
+}
+
+impl ControllerPort for HostPort<'_> {
+    fn exchange(&mut self, samples: &Samples<f32>, command: &Command<f32>) -> Outcome<Answer> {
+        Ok(self.0.step(samples, command))
+    }
+
+    fn probe(&mut self, samples: &Samples<f32>) -> Outcome<Answer> {
+        Ok(self.0.probe(samples))
+    }
+
+    fn begin_again(&mut self) -> Outcome<()> {
+        remember(&mut self.0)
+    }
+}
+
+/// A controller's start from what it has learnt, as a board has it after a reset.
+pub fn remember(controller: &mut Controller<'_, f32>) -> Outcome<()> {
+    let memory = controller.save();
+    controller.reset();
+    controller
+        .load(&memory)
+        .map_err(|error| Failure::check_failed(format!("what was learnt is not taken back: {error}")))
+}
+
+/// From a run's numbers to those of the port.
+#[derive(Debug, Clone)]
+pub struct Translator {
+    /// Clock ticks in a control period.
+    ticks: u32,
+    /// Raw counts before they wrap: motor, output.
+    ranges: [i64; 2],
+    /// Turn of the output encoder's first reading, which is the observer's turn zero.
+    first_turn: Option<i32>,
+    torque: f32,
+}
+
+impl Translator {
+    /// For encoders of so many bits.
+    pub fn new(ticks: u32, bits: [u32; 2]) -> Self {
+        Self { ticks, ranges: bits.map(|bits| 1 << bits), first_turn: None, torque: 0.0 }
+    }
+
+    /// For set-points alone, whose observer counts the link's turns from this one.
+    pub fn from_turn(ticks: u32, first_turn: i32) -> Self {
+        Self { first_turn: Some(first_turn), ..Self::new(ticks, [0, 0]) }
+    }
+
+    /// The next reading is the first again.
+    pub fn begin_again(&mut self) {
+        (self.first_turn, self.torque) = (None, 0.0);
+    }
+
+    /// Readings with their own times; the torque is that of the period before.
+    pub fn samples(&mut self, seen: &Seen) -> Samples<f32> {
+        if let (None, Some(first)) = (self.first_turn, seen.output) {
+            self.first_turn = Some(first.counts.div_euclid(self.ranges[1]) as i32);
+        }
+        let time = |period: u64| (period as u32).wrapping_mul(self.ticks);
+        let reading = |frame: Frame, range: i64| Reading {
+            counts: frame.counts.rem_euclid(range) as u32,
+            time: time(frame.period),
+        };
+        Samples {
+            time: time(seen.period),
+            motor: reading(seen.motor, self.ranges[0]),
+            output: seen.output.map(|frame| reading(frame, self.ranges[1])),
+            torque: self.torque,
+        }
+    }
+
+    /// A set-point on the scale of the observer's link shaft, its angles in whole turns and the rest.
+    pub fn command(&self, set_point: &SetPoint) -> Command<f32> {
+        let first_turn = self.first_turn.unwrap_or(0);
+        let motion = |of: Motion| motion(of, first_turn);
+        match *set_point {
+            SetPoint::Position { now, ahead } => Command::Position { now: motion(now), ahead: ahead.map(motion) },
+            SetPoint::Impedance { about, torque, stiffness, damping } => Command::Impedance(ImpedancePoint {
+                position: motion(about).position,
+                speed: about.speed as f32,
+                torque: torque as f32,
+                stiffness: stiffness as f32,
+                damping: damping as f32,
+            }),
+        }
+    }
+
+    /// Remembers the torque that the observer is shown next.
+    pub fn note(&mut self, answer: &Answer) {
+        self.torque = answer.shaped.torque;
+    }
+}
+
+fn motion(of: Motion, first_turn: i32) -> compensation::Motion<f32> {
+    let turns = (of.position / TAU).floor();
+    compensation::Motion {
+        position: Position { turns: turns as i32 - first_turn, fraction: (of.position / TAU - turns) as f32 },
+        speed: of.speed as f32,
+        acceleration: of.acceleration as f32,
+    }
+}

@@ -1,0 +1,149 @@
+//! What happened in a run: the truth in every control period, and what the observer made of it. How it came about is
+//! `execution`'s business, what it is worth is `figures`'.
+
+use model_core::digest;
+use model_core::mesh::ContactState;
+use model_core::realtime::observer::{Progress, Refusal, Source};
+use reference::closed_loop::{Run, Sample};
+
+use super::case::Case;
+use super::injection::Injection;
+use super::plant::Plant;
+use super::port::Answer;
+
+/// What happened.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ran {
+    /// The truth, one sample for each control period.
+    pub run: Run,
+    /// What the observer made of it, in the same order; empty for controllers without one.
+    pub sights: Vec<Sight>,
+    /// Half of the true gap at every period [m]: teeth may wear.
+    pub truths: Vec<Truth>,
+    /// Digest over every bit of all of it.
+    pub digest: u64,
+}
+
+/// What is true beside the sample.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Truth {
+    /// Gap coordinate [m].
+    pub gap: f64,
+    /// Half-backlash now [m].
+    pub half_backlash: f64,
+    /// What brakes the link [N m].
+    pub load_torque: f64,
+    /// Motor angle [rad].
+    pub motor: f64,
+}
+
+/// What the observer says in one period.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Sight {
+    /// Gap coordinate [m].
+    pub gap: f32,
+    /// Its variance [m^2].
+    pub gap_variance: f32,
+    /// Whether it may be used.
+    pub valid: bool,
+    /// -1, 0, 1.
+    pub side: i8,
+    /// Between carrier and link [N m].
+    pub mesh_torque: f32,
+    /// What brakes the link [N m].
+    pub load_torque: f32,
+    /// [m].
+    pub half_backlash: f32,
+    /// [rad/(N m)].
+    pub compliance: f32,
+    /// [s].
+    pub skew: f32,
+    /// Both encoders are trusted.
+    pub both: bool,
+    /// Share of the compensation in the torque.
+    pub trust: f32,
+    /// Where the width probe stands, if there is one.
+    pub probed: Option<Progress<f32>>,
+}
+
+impl Ran {
+    /// Nothing has happened yet.
+    pub fn begin(period: f64, periods: u64) -> Self {
+        Self {
+            run: Run { samples: Vec::with_capacity(periods as usize), period },
+            sights: Vec::new(),
+            truths: Vec::with_capacity(periods as usize),
+            digest: digest::START,
+        }
+    }
+
+    /// Why the width probe said no width, if it refused.
+    pub fn refusal(&self) -> Option<Refusal> {
+        match self.sights.last()?.probed {
+            Some(Progress::Refused(refusal)) => Some(refusal),
+            _ => None,
+        }
+    }
+
+    /// Adds the period that a plant has just done.
+    pub(super) fn note(
+        &mut self,
+        plant: &Plant,
+        case: &Case,
+        injection: &Injection,
+        command: f64,
+        answer: Option<&Answer>,
+    ) {
+        let joint = plant.joint();
+        let torques = plant.torques();
+        let half = injection.half_backlash_now();
+        let sample = Sample::of(joint, case.motion.at(joint.time).position, half, command);
+        let truth = Truth {
+            gap: joint.gap,
+            half_backlash: half,
+            load_torque: torques.load_friction + torques.gravity + torques.disturbance,
+            motor: joint.motor_angle,
+        };
+        self.add(sample, truth, answer);
+    }
+
+    /// Adds a period.
+    pub fn add(&mut self, sample: Sample, truth: Truth, answer: Option<&Answer>) {
+        for value in [sample.link, sample.mesh_force, sample.command, truth.gap, truth.motor] {
+            self.digest = digest::chain(self.digest, value.to_bits());
+        }
+        if let Some(answer) = answer {
+            let sight = Sight::of(answer);
+            for value in [sight.gap, sight.half_backlash, sight.load_torque, sight.trust] {
+                self.digest = digest::chain(self.digest, value.to_bits().into());
+            }
+            self.sights.push(sight);
+        }
+        self.run.samples.push(sample);
+        self.truths.push(truth);
+    }
+}
+
+impl Sight {
+    fn of(answer: &Answer) -> Self {
+        let Answer { estimates, shaped, probed } = *answer;
+        Self {
+            gap: estimates.gap.value,
+            gap_variance: estimates.gap.variance,
+            valid: estimates.gap.valid,
+            side: match estimates.reported_contact {
+                ContactState::DriveSide => 1,
+                ContactState::Separated => 0,
+                ContactState::BackSide => -1,
+            },
+            mesh_torque: estimates.mesh_torque.value,
+            load_torque: estimates.load_torque.value,
+            half_backlash: estimates.half_backlash.value,
+            compliance: estimates.compliance.value,
+            skew: estimates.skew.value,
+            both: estimates.source == Source::Both,
+            trust: shaped.trust,
+            probed,
+        }
+    }
+}

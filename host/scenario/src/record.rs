@@ -1,0 +1,214 @@
+//! What tests leave behind, as JSON: every figure of every run, every assertion with its verdict, and the line that runs
+//! it again. docs/hil-file.md tells the keys, docs/hil-tests.schema.json is their schema; pictures are the page's.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use report::checks::{Bound, Check, Source, Verdict};
+use report::failure::Failure;
+
+/// Name and version of the form.
+pub const SCHEMA: &str = "joint-hil-tests/2";
+
+/// All tests of one command.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct TestsRecord {
+    /// Name and version of this form.
+    pub schema: String,
+    /// Everything that was asked for ran and passed.
+    pub passed: bool,
+    /// With the full lists of seeds.
+    pub full: bool,
+    /// Version of the host command.
+    pub host_version: String,
+    /// Operating system and processor.
+    pub host: String,
+    /// Commit of the sources, if they were under git; with ` (changed)` if they differ from it.
+    pub git_commit: Option<String>,
+    /// Start, ISO 8601 with time zone.
+    pub date: String,
+    /// Time on the clock [s].
+    pub seconds: f64,
+    /// The tests, in the order in which they ran.
+    pub tests: Vec<TestRecord>,
+    /// Files that were asked for and could not run.
+    pub not_run: Vec<NotRun>,
+}
+
+/// A test file that could not run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct NotRun {
+    /// Path as the user named it.
+    pub file: String,
+    /// Why it could not.
+    pub why: String,
+    /// What to do about it.
+    pub mend: Option<String>,
+}
+
+impl NotRun {
+    /// What a failure says of a file.
+    pub fn new(file: String, failure: &Failure) -> Self {
+        let message = failure.message();
+        let why = message.strip_prefix(&file).map_or(message, |rest| rest.trim_start_matches([':', ' ']));
+        Self { why: why.to_owned(), mend: failure.mend(), file }
+    }
+}
+
+/// One test file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct TestRecord {
+    /// Path as the user named it.
+    pub file: String,
+    /// SHA-256 of the file's text.
+    pub file_sha256: String,
+    /// What is tested.
+    pub title: String,
+    /// Name of the joint.
+    pub joint: String,
+    /// SHA-256 of the joint file's text, before any change.
+    pub joint_sha256: String,
+    /// Where the tested controller ran: `host`, or role and board; rivals always on the host.
+    pub on: String,
+    /// What it controlled: `reference` or `core`.
+    pub plant: String,
+    /// The motion's word.
+    pub profile: String,
+    /// The controller's word.
+    pub controller: String,
+    /// Length of a run [s].
+    pub duration_s: f64,
+    /// Figures are taken from here on [s].
+    pub settle_s: f64,
+    /// Faults by their words.
+    pub faults: Vec<String>,
+    /// Seeds that ran.
+    pub seeds: Vec<u64>,
+    /// Whether it passed.
+    pub passed: bool,
+    /// Why it was broken off, if it was.
+    pub broken: Option<String>,
+    /// What was asserted.
+    pub assertions: Vec<AssertionRecord>,
+    /// What ran.
+    pub runs: Vec<TestRun>,
+    /// The seed that the report shows.
+    pub shown_seed: u64,
+    /// Command line that runs this test again.
+    pub replay: String,
+    /// Time on the clock [s].
+    pub seconds: f64,
+}
+
+/// One bound on one figure.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct AssertionRecord {
+    /// Name of the figure.
+    pub name: String,
+    /// What was made of the seeds' figures: `worst`, `median` or `mean`.
+    pub aggregate: String,
+    /// The figure; absent if it could not be had.
+    pub figure: Option<f64>,
+    /// Unit of figure and bound.
+    pub unit: String,
+    /// What it must keep to.
+    pub bound: Bound,
+    /// What came of it.
+    pub verdict: Verdict,
+    /// The seed that is farthest on the wrong side.
+    pub seed: Option<u64>,
+    /// What to know about it.
+    pub note: String,
+}
+
+/// One controller in one seed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct TestRun {
+    /// The seed.
+    pub seed: u64,
+    /// The controller's word.
+    pub controller: String,
+    /// Digest over every bit of the run, 16 hexadecimal digits.
+    pub digest: String,
+    /// The MCAP log, beside the report.
+    pub log: Option<String>,
+    /// Why it ended early, if it did.
+    pub broken: Option<String>,
+    /// Why the width probe refused to say a width, if it did.
+    pub refusal: Option<String>,
+    /// Its figures by their names.
+    pub figures: BTreeMap<String, f64>,
+    /// The board that it ran on, if it did.
+    pub board: Option<BoardRun>,
+}
+
+/// A run on a board.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct BoardRun {
+    /// `observer` or `loop`.
+    pub role: String,
+    /// SHA-256 of its image.
+    pub elf_sha256: String,
+    /// Control periods that were the same in every bit on the board and on the host.
+    pub same_periods: u32,
+    /// Timer counts of the tick's work, mean.
+    pub computation_mean: u32,
+    /// The same, most.
+    pub computation_most: u32,
+    /// Timer counts in a control period.
+    pub period_counts: u32,
+    /// Ticks that took longer than their period.
+    pub overruns: u32,
+    /// Deepest stack [byte].
+    pub stack_bytes: u32,
+}
+
+impl AssertionRecord {
+    /// The same as a line of a table of checks.
+    pub fn check(&self) -> Check {
+        let name = match self.aggregate.as_str() {
+            "worst" => self.name.clone(),
+            aggregate => format!("{} ({aggregate})", self.name),
+        };
+        Check {
+            name,
+            figure: self.figure,
+            unit: self.unit.clone(),
+            bound: self.bound,
+            verdict: self.verdict,
+            source: Source::Host,
+            note: self.note.clone(),
+        }
+    }
+}
+
+impl TestRecord {
+    /// Assertions that did not hold.
+    pub fn failed(&self) -> impl Iterator<Item = &AssertionRecord> {
+        self.assertions.iter().filter(|assertion| assertion.verdict == Verdict::Failed)
+    }
+
+    /// A figure of a controller over all seeds, the largest.
+    pub fn largest(&self, controller: &str, figure: &str) -> Option<f64> {
+        let runs = self.runs.iter().filter(|run| run.controller == controller);
+        runs.filter_map(|run| run.figures.get(figure).copied()).reduce(f64::max)
+    }
+
+    /// Controllers that ran, the tested one first.
+    pub fn controllers(&self) -> Vec<&str> {
+        let mut names: Vec<&str> = Vec::new();
+        for run in &self.runs {
+            if !names.contains(&run.controller.as_str()) {
+                names.push(&run.controller);
+            }
+        }
+        names
+    }
+}

@@ -1,0 +1,16 @@
+//! The published schema of test results is that of their types, and `docs/hil-file.md` tells every key and every figure.
+//! Only tests are here.
+
+use super::figures::FIGURES;
+use super::record::TestsRecord;
+use report::schema::{assert_explained, assert_published};
+
+#[test]
+fn the_published_schema_of_tests_is_that_of_the_types() {
+    assert_published::<TestsRecord>("hil-tests.schema.json");
+}
+
+#[test]
+fn every_key_of_the_results_and_every_figure_is_explained() {
+    assert_explained::<TestsRecord>("hil-file.md", FIGURES.iter().map(|figure| figure.name()), 60);
+}

@@ -1,0 +1,61 @@
+//! Set-points as whoever asks for a motion sends them: every control period, or at an impedance's own rate and held in
+//! between. What is lost on the way is the business of `injection`.
+
+use model_core::joint::JointParameters;
+use reference::closed_loop::{Motion, SetPoint};
+
+use super::case::{Case, Designed};
+use super::controller::{ControllerName, Gains};
+use super::file::TestFile;
+
+/// Makes set-points as whoever asks for the motion sends them.
+pub struct Sender<'c> {
+    case: &'c Case,
+    /// How far ahead the motion is told [s].
+    lead: Option<f64>,
+    gains: Option<Gains>,
+    inertia: f64,
+    held: Option<(u64, Motion)>,
+}
+
+impl<'c> Sender<'c> {
+    /// For one controller of a case.
+    pub fn new(file: &TestFile, case: &'c Case, controller: ControllerName, designed: Option<&Designed>) -> Self {
+        let preview = controller == ControllerName::Preview;
+        let lead = designed.filter(|_| preview).map(|designed| f64::from(designed.compensation.lead));
+        let gains = file.gains.filter(|_| controller.wants_gains() || controller == ControllerName::Off);
+        let inertia = gains.and_then(|gains| gains.inertia).unwrap_or_else(|| inertia_at_link(&case.told));
+        Self { case, lead, gains, inertia, held: None }
+    }
+
+    /// Set-point of a period and the number of the frame that brings it.
+    pub fn at(&mut self, time: f64, index: u64) -> (u64, SetPoint) {
+        let motion = &self.case.motion;
+        let Some(gains) = self.gains else {
+            let ahead = self.lead.map(|lead| motion.at(time + lead));
+            return (index, SetPoint::Position { now: motion.at(time), ahead });
+        };
+        let number = (time * gains.rate + 1e-9) as u64;
+        let about = match self.held {
+            Some((sent, about)) if sent == number => about,
+            _ => motion.at(time),
+        };
+        self.held = Some((number, about));
+        let set_point = SetPoint::Impedance {
+            about: Motion { acceleration: 0.0, ..about },
+            torque: self.inertia * about.acceleration,
+            stiffness: gains.stiffness,
+            damping: gains.damping,
+        };
+        (number, set_point)
+    }
+}
+
+/// Inertia of the whole joint, felt at the link [kg m^2].
+fn inertia_at_link(joint: &JointParameters) -> f64 {
+    let geometry = &joint.geometry;
+    let sun = joint.bodies.sun_equivalent_mass * geometry.sun_base_radius.powi(2) + joint.rotor_inertia;
+    let planets = geometry.planets as f64 * joint.bodies.planet_equivalent_mass;
+    let carrier = (joint.carrier_equivalent_mass() + planets) * geometry.carrier_base_radius().powi(2);
+    sun * geometry.ratio_by_teeth().powi(2) + carrier + joint.link_inertia
+}

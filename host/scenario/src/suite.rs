@@ -1,0 +1,212 @@
+//! Which test files a command is about: one file, or all of a folder, each read and checked against its joint before
+//! anything runs; what cannot run does not keep the rest of a folder from running. Whether a file is one of tests at all is
+//! asked here too.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use link::messages::Role;
+use sha2::{Digest, Sha256};
+
+use super::case::{Case, check_changes, recorded};
+use super::file::{self, Course, FaultKind, TestFile};
+use super::plant::PlantName;
+use super::record::NotRun;
+use super::recorded::Recorded;
+use joint_file::diagnostic;
+use joint_file::named::{self, Loaded};
+use report::failure::{Failure, Outcome};
+
+/// A test that can run.
+pub struct Test {
+    /// Path as the user named it.
+    pub name: String,
+    /// SHA-256 of its text.
+    pub sha256: String,
+    /// What it says.
+    pub file: TestFile,
+    /// Its joint.
+    pub joint: Loaded,
+    /// Its motion, if it is a recorded one.
+    pub motion: Option<Recorded>,
+}
+
+/// Whether a path is one of tests: a folder, or a file that is no joint file.
+pub fn is_of_tests(path: &Path) -> bool {
+    path.is_dir() || fs::read_to_string(path).is_ok_and(|text| file::is_test_file(&text))
+}
+
+/// Which files of a folder a run is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Choice {
+    /// All but those that are for full runs only.
+    Short,
+    /// All.
+    Full,
+    /// Those of the run that names no file, in this role of a board.
+    OnBoard(Role),
+}
+
+impl Choice {
+    fn takes(self, file: &TestFile) -> bool {
+        match self {
+            Self::Short => !file.only_with_full,
+            Self::Full => true,
+            Self::OnBoard(role) => file.short_run == Some(role),
+        }
+    }
+}
+
+/// The tests of a path.
+pub struct Suite {
+    /// Those that can run.
+    pub tests: Vec<Test>,
+    /// Those of a folder that cannot.
+    pub not_run: Vec<NotRun>,
+    /// One file was named: that it cannot run is the end of the command.
+    alone: bool,
+}
+
+impl Suite {
+    /// Keeps those that may run.
+    pub fn keep(&mut self, mut may_run: impl FnMut(&Test) -> Outcome<()>) -> Outcome<()> {
+        for test in std::mem::take(&mut self.tests) {
+            match may_run(&test) {
+                Ok(()) => self.tests.push(test),
+                Err(failure) if self.alone => return Err(failure),
+                Err(failure) => self.not_run.push(NotRun::new(test.name, &failure)),
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Reads a file, or the chosen ones of a folder.
+pub fn load(path: &Path, choice: Choice, plant: PlantName) -> Outcome<Suite> {
+    if !path.is_dir() {
+        return Ok(Suite { tests: vec![load_one(path, plant)?], not_run: Vec::new(), alone: true });
+    }
+    let mut suite = Suite { tests: Vec::new(), not_run: Vec::new(), alone: false };
+    for path in paths(path)? {
+        let test = match read(&path) {
+            Ok((_, file)) if !choice.takes(&file) => continue,
+            Ok(_) => load_one(&path, plant),
+            Err(failure) => Err(failure),
+        };
+        match test {
+            Ok(test) => suite.tests.push(test),
+            Err(failure) => suite.not_run.push(NotRun::new(path.display().to_string(), &failure)),
+        }
+    }
+    if suite.tests.is_empty() && suite.not_run.is_empty() {
+        let help = "a test file is TOML, as docs/hil-file.md tells; those with only_with_full run with --full";
+        return Err(Failure::new(format!("there is no test to run in {}", path.display())).with_help(help));
+    }
+    Ok(suite)
+}
+
+/// The files of a folder that no board's role is named in: what a run without `--full` leaves out.
+pub fn left_out(folder: &Path) -> Outcome<Vec<PathBuf>> {
+    let left = |path: &PathBuf| read(path).is_ok_and(|(_, file)| file.short_run.is_none());
+    Ok(paths(folder)?.into_iter().filter(left).collect())
+}
+
+/// The test files of a folder, by name; joint files may lie beside them.
+fn paths(path: &Path) -> Outcome<Vec<PathBuf>> {
+    let unreadable = |error| Failure::new(format!("cannot read the folder {}: {error}", path.display()));
+    let mut paths: Vec<PathBuf> = Vec::new();
+    for entry in fs::read_dir(path).map_err(unreadable)? {
+        let path = entry.map_err(unreadable)?.path();
+        let is_joint = || fs::read_to_string(&path).is_ok_and(|text| !file::is_test_file(&text));
+        if path.extension().is_some_and(|extension| extension == "toml") && !is_joint() {
+            paths.push(path);
+        }
+    }
+    paths.sort();
+    Ok(paths)
+}
+
+/// A file's text and what it says.
+fn read(path: &Path) -> Outcome<(String, TestFile)> {
+    let name = path.display().to_string();
+    let text = fs::read_to_string(path).map_err(|error| Failure::new(format!("cannot read {name}: {error}")))?;
+    match file::read(&text) {
+        Ok(file) => Ok((text, file)),
+        Err(problems) => Err(Failure::from_report(diagnostic::report(&name, &text, &problems))),
+    }
+}
+
+fn load_one(path: &Path, plant: PlantName) -> Outcome<Test> {
+    let name = path.display().to_string();
+    let (text, file) = read(path)?;
+    let folder = path.parent().unwrap_or(Path::new("."));
+    let joint = joint(&file.joint, folder).map_err(|failure| failure.while_doing(&name))?;
+    check_changes(&file, &joint.text)
+        .map_err(|problems| Failure::from_report(diagnostic::report(&name, &text, &problems)))?;
+    let broken_tooth = file.faults.iter().any(|fault| matches!(fault.kind, FaultKind::BrokenTooth(_)));
+    if broken_tooth && plant == PlantName::Core {
+        return Err(Failure::new(format!(
+            "{name}: the core's planets share their stiffness, so no tooth of it can break"
+        ))
+        .with_help("run it with --plant reference, with --host or --role observer"));
+    }
+    let motion = recorded(&file, folder).map_err(|failure| failure.while_doing(&name))?;
+    let file = match (&motion, file.states_duration) {
+        // A recorded motion is as long as it is, unless the file says otherwise.
+        (Some(motion), false) => TestFile { duration: motion.duration().max(file.settle + 0.1), ..file },
+        _ => file,
+    };
+    let test = Test { name, sha256: sha256(&text), file, joint, motion };
+    test.try_design()?;
+    Ok(test)
+}
+
+/// A joint file beside the test file goes before one that the command would find.
+fn joint(name: &str, folder: &Path) -> Outcome<Loaded> {
+    let beside = folder.join(name);
+    named::load(if beside.is_file() { &beside } else { Path::new(name) })
+}
+
+fn sha256(text: &str) -> String {
+    Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+impl Test {
+    /// The case of a seed.
+    pub fn case(&self, seed: u64) -> Outcome<Case> {
+        Case::new(&self.file, &self.joint.text, seed, self.motion.as_ref()).map_err(|f| f.while_doing(&self.name))
+    }
+
+    /// What cannot be designed should be known before the first run.
+    fn try_design(&self) -> Outcome<()> {
+        let seed = self.file.seeds.first().copied().unwrap_or(1);
+        let case = self.case(seed)?;
+        if self.file.controller.is_ours() {
+            case.design(&self.file).map_err(|failure| failure.while_doing(&self.name))?;
+        }
+        Ok(())
+    }
+
+    /// The files that it is made of.
+    pub fn files(&self) -> Vec<PathBuf> {
+        let test = PathBuf::from(&self.name);
+        let motion = match &self.file.profile.course {
+            Course::File(name) => Some(test.with_file_name(name)),
+            _ => None,
+        };
+        [test.clone(), test.with_file_name(&self.file.joint), PathBuf::from(&self.file.joint)]
+            .into_iter()
+            .chain(motion)
+            .collect()
+    }
+
+    /// SHA-256 of the joint file's text.
+    pub fn joint_sha256(&self) -> String {
+        sha256(&self.joint.text)
+    }
+
+    /// Name of the file without folders and ending, for the names of logs.
+    pub fn stem(&self) -> String {
+        Path::new(&self.name).file_stem().unwrap_or_default().to_string_lossy().into_owned()
+    }
+}

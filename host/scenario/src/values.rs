@@ -1,0 +1,145 @@
+//! Values of the named figures of one run, from the truth. What each is called and means is in `figures`; what the
+//! observer's estimates are worth is in `sight`.
+
+use reference::closed_loop::{Figures as Plain, Sample, deviation};
+
+use super::case::Case;
+use super::figures::{FIGURES, Figure};
+use super::file::TestFile;
+use super::ran::{Ran, Truth};
+use super::sight;
+
+/// Values of all figures, where they could be had.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Values(Vec<Option<f64>>);
+
+impl Values {
+    /// Figures of a run; `without_gap` is the run that an impedance is measured from.
+    pub fn of(file: &TestFile, case: &Case, ran: &Ran, without_gap: Option<&Ran>) -> Self {
+        let mut values = Self(vec![None; FIGURES.len()]);
+        values.motion(file, case, ran);
+        if let Some(other) = without_gap {
+            let (rms, peak, torque) = deviation(&ran.run, &other.run, file.settle);
+            values.set("deviation_rms", 1e3 * rms);
+            values.set("deviation_peak", 1e3 * peak);
+            values.set("torque_error", torque);
+        }
+        if !ran.sights.is_empty() {
+            for (stem, value) in sight::figures(file, case, ran) {
+                values.set(stem, value);
+            }
+        }
+        if file.profile.kind == "hysteresis" {
+            values.hysteresis(file, case, ran);
+        }
+        values
+    }
+
+    /// Names and values of what could be had.
+    pub fn named(&self) -> impl Iterator<Item = (&'static Figure, f64)> {
+        FIGURES.iter().zip(&self.0).filter_map(|(figure, value)| Some((figure, (*value)?)))
+    }
+
+    /// A value by its place among the figures.
+    pub fn at(&self, index: usize) -> Option<f64> {
+        self.0.get(index).copied().flatten()
+    }
+
+    fn set(&mut self, stem: &str, value: f64) {
+        if let Some(index) = FIGURES.iter().position(|figure| figure.stem == stem) {
+            self.0[index] = value.is_finite().then_some(value);
+        }
+    }
+
+    fn motion(&mut self, file: &TestFile, case: &Case, ran: &Ran) {
+        let plain = Plain::of(&ran.run, file.settle);
+        let joint = &case.truth.parameters;
+        let rated = joint.rated_output_torque / (2.0 * joint.geometry.carrier_base_radius());
+        let samples = || ran.run.samples.iter().filter(|sample| sample.time >= file.settle);
+        let count = samples().count().max(1) as f64;
+        let limit = case.train.motor.torque_limit;
+        let at_limit = samples().filter(|sample| sample.command.abs() >= 0.9999 * limit).count() as f64;
+        let end = ran.run.samples.last().map_or(0.0, |sample| sample.time);
+        self.set("rms", 1e3 * plain.rms);
+        self.set("peak", 1e3 * plain.peak);
+        self.set("peak_to_peak", 1e3 * plain.peak_to_peak);
+        self.set("lost_motion", 1e3 * plain.lost_motion_time);
+        self.set("longest_lost_motion", 1e3 * plain.longest_lost_motion);
+        self.set("crossings", plain.crossings as f64);
+        self.set("last_crossing", plain.last_crossing);
+        self.set("quiet", end - plain.last_crossing.max(file.settle));
+        self.set("peak_mesh_force", plain.peak_mesh_force);
+        self.set("peak_mesh_force_ratio", plain.peak_mesh_force / rated);
+        self.set("effort", plain.effort);
+        self.set("peak_torque", samples().map(|sample| sample.command.abs()).fold(0.0, f64::max));
+        self.set("saturated", 100.0 * at_limit / count);
+        if let Some(error) = reversal_error(file.settle, case, ran) {
+            self.set("reversal_error", 1e3 * error);
+        }
+    }
+
+    /// The loop of link angle over load torque, less what the motor gave way by.
+    fn hysteresis(&mut self, file: &TestFile, case: &Case, ran: &Ran) {
+        let ratio = case.told.geometry.ratio_by_teeth();
+        let points = || {
+            ran.run
+                .samples
+                .iter()
+                .zip(&ran.truths)
+                .filter(|(sample, _)| sample.time >= file.settle)
+                .map(|(sample, truth)| (sample.transmitted_or(truth), sample.link - truth.motor / ratio))
+        };
+        let largest = points().map(|(torque, _)| torque.abs()).fold(0.0, f64::max);
+        let near = |from: f64, to: f64| {
+            let (mut sum, mut count) = (0.0, 0.0);
+            for (torque, angle) in points().filter(|(torque, _)| (from..to).contains(torque)) {
+                sum += angle;
+                count += 1.0;
+                debug_assert!(torque.is_finite());
+            }
+            (count > 0.0).then_some(sum / count)
+        };
+        let share = 0.03 * case.truth.parameters.rated_output_torque;
+        let band = 0.5 * share;
+        if let (Some(high), Some(low)) = (near(share - band, share + band), near(-share - band, -share + band)) {
+            self.set("loop_lost_motion", 1e3 * (high - low).abs());
+        }
+        if let (Some(high), Some(half)) = (near(0.9 * largest, largest), near(0.45 * largest, 0.55 * largest)) {
+            self.set("loop_stiffness", 0.45 * largest / (high - half).abs());
+        }
+    }
+}
+
+/// Around a reversal the error is looked at for so long [s].
+const AROUND: f64 = 0.06;
+
+/// Mean over reversals of the largest error near each [rad].
+fn reversal_error(settle: f64, case: &Case, ran: &Ran) -> Option<f64> {
+    let samples = &ran.run.samples;
+    let reach = (AROUND / ran.run.period).round() as usize;
+    let mut before = 0.0;
+    let mut largest = Vec::new();
+    for (index, sample) in samples.iter().enumerate() {
+        let speed = case.motion.at(sample.time).speed;
+        if speed * before < 0.0 && sample.time >= settle {
+            let around = &samples[index.saturating_sub(reach)..(index + reach).min(samples.len())];
+            largest.push(around.iter().map(|s| (s.wanted - s.link).abs()).fold(0.0, f64::max));
+        }
+        if speed != 0.0 {
+            before = speed;
+        }
+    }
+    (!largest.is_empty()).then(|| largest.iter().sum::<f64>() / largest.len() as f64)
+}
+
+/// Torque through the teeth, felt at the link.
+trait Transmitted {
+    fn transmitted_or(&self, truth: &Truth) -> f64;
+}
+
+impl Transmitted for Sample {
+    fn transmitted_or(&self, truth: &Truth) -> f64 {
+        // Without a compliance nothing is measured between carrier and link: the load stands for it.
+        if self.transmitted == 0.0 { truth.load_torque } else { self.transmitted }
+    }
+}

@@ -1,0 +1,54 @@
+//! Whether a board can step a joint at a rate: the rate can be made of its clock, is stable, and leaves time for a tick in
+//! which every mesh crosses twice. Otherwise the nearest rate that can is found.
+
+use model_core::design::{Effort, Pace, Processor};
+use model_core::joint::JointParameters;
+
+use board::target::board::Board;
+use report::failure::{Failure, Outcome};
+
+/// No rate above is looked at [Hz].
+const HIGHEST: u32 = 500_000;
+
+/// Refuses a rate that cannot be met; names the nearest that can.
+pub(super) fn refuse(parameters: &JointParameters, board: Board, rate: u32) -> Outcome<()> {
+    let (pace, processor) = (Pace::new(parameters), board.processor());
+    let Some(why) = obstacle(&pace, &processor, rate) else { return Ok(()) };
+    let message = format!("{} cannot be stepped at {rate} Hz on {}: {why}", parameters.name, board.name());
+    Err(Failure::new(message).with_help(match nearest(&pace, &processor, rate) {
+        Some(nearest) => format!("the nearest rate that can be met is {nearest} Hz: `--rate {nearest}`"),
+        None => "no rate can be met on this board: take a faster one, or fewer planets or harmonics".to_owned(),
+    }))
+}
+
+/// What stands against a rate.
+fn obstacle(pace: &Pace, processor: &Processor, rate: u32) -> Option<String> {
+    let lowest = pace.lowest_rate(Effort::Within(*processor));
+    if rate < lowest {
+        return Some(format!("below {lowest} Hz no step is stable"));
+    }
+    if !processor.clock.is_multiple_of(rate) {
+        return Some(format!("its clock of {} Hz is no multiple of it", processor.clock));
+    }
+    let parts = pace.parts(rate, Effort::Within(*processor)).ok()?;
+    let most = pace.cost().all_crossing(parts);
+    let part = processor.part(most, rate);
+    (part > processor.share).then(|| {
+        format!(
+            "a tick in which every mesh crosses twice takes {most:.0} instructions, {:.0} % of the period; {:.0} % are the limit",
+            100.0 * part,
+            100.0 * processor.share
+        )
+    })
+}
+
+/// The nearest rate that nothing stands against; of two as near, the higher.
+pub(super) fn nearest(pace: &Pace, processor: &Processor, rate: u32) -> Option<u32> {
+    let lowest = pace.lowest_rate(Effort::Within(*processor));
+    let divisors = processor.clock / HIGHEST..=processor.clock / lowest;
+    divisors
+        .filter(|divisor| *divisor > 0 && processor.clock.is_multiple_of(*divisor))
+        .map(|divisor| processor.clock / divisor)
+        .filter(|candidate| obstacle(pace, processor, *candidate).is_none())
+        .min_by_key(|candidate| (candidate.abs_diff(rate), u32::MAX - candidate))
+}

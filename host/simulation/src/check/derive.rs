@@ -1,0 +1,203 @@
+//! From a joint file to its figures: closed forms, eigenvalues and the design of the fixed step. The motion itself is
+//! left to the runs on a board.
+
+use std::f64::consts::TAU;
+
+use joint_file::Severity;
+use model_core::design::modes::natural_frequencies;
+use model_core::design::{Effort, Pace};
+use model_core::joint::{JointParameters, PerPlanet};
+use model_core::mesh::{DampingLaw, MESH_KINDS, MeshKind};
+use model_core::scales::Scales;
+
+use super::figures::{
+    Figures, FixedStep, Frequencies, GeometryFigures, Masses, MeshFigures, Numbers, Output, SCHEMA, Warning,
+};
+use super::step::step;
+use joint_file::named::Loaded;
+use report::failure::{Failure, Outcome};
+
+/// Radians to minutes of arc.
+pub(super) fn arcmin(angle: f64) -> f64 {
+    angle.to_degrees() * 60.0
+}
+
+/// The figures of a joint at a step rate [Hz].
+pub fn figures(loaded: &Loaded, rate: u32) -> Outcome<Figures> {
+    let parameters = &loaded.file.parameters;
+    let figures = Figures {
+        schema: SCHEMA.to_owned(),
+        file: loaded.name.clone(),
+        name: parameters.name.to_string(),
+        description: loaded.file.description.clone(),
+        geometry: geometry(parameters),
+        equivalent_masses: masses(parameters),
+        frequencies: frequencies(parameters),
+        meshes: MESH_KINDS.map(|kind| mesh(parameters, kind)),
+        damping_law: match parameters.damping_law {
+            DampingLaw::Contact => "contact",
+            DampingLaw::Paper => "paper",
+        },
+        output: output(parameters),
+        fixed_step: fixed_step(parameters, rate)?,
+        numbers: numbers(loaded),
+        warnings: warnings(loaded),
+    };
+    // Bounds of the reader keep every figure finite; if one is not, it must not be printed.
+    let json = serde_json::to_value(&figures).map_err(|error| Failure::new(error.to_string()))?;
+    match first_null(&json, "") {
+        Some(path) => Err(Failure::new(format!("{} cannot be used: {path} is not a finite number", loaded.name))
+            .with_help("look for a value that is orders of magnitude off")),
+        None => Ok(figures),
+    }
+}
+
+/// JSON has no NaN and no infinity: both become null.
+fn first_null(value: &serde_json::Value, path: &str) -> Option<String> {
+    match value {
+        serde_json::Value::Null => Some(path.trim_start_matches('.').to_owned()),
+        serde_json::Value::Array(items) => items.iter().find_map(|item| first_null(item, path)),
+        serde_json::Value::Object(fields) => {
+            fields.iter().find_map(|(key, field)| first_null(field, &format!("{path}.{key}")))
+        }
+        _ => None,
+    }
+}
+
+fn geometry(parameters: &JointParameters) -> GeometryFigures {
+    let geometry = &parameters.geometry;
+    GeometryFigures {
+        planets: geometry.planets,
+        sun_teeth: geometry.sun_teeth,
+        planet_teeth: geometry.planet_teeth,
+        ring_teeth: geometry.ring_teeth,
+        working_pressure_angle_deg: geometry.working_pressure_angle.to_degrees(),
+        sun_base_radius_m: geometry.sun_base_radius,
+        planet_base_radius_m: geometry.planet_base_radius,
+        carrier_radius_m: geometry.carrier_radius,
+        carrier_base_radius_m: geometry.carrier_base_radius(),
+        ratio_by_radii: geometry.ratio_by_radii(),
+        ratio_by_teeth: geometry.ratio_by_teeth(),
+    }
+}
+
+fn masses(parameters: &JointParameters) -> Masses {
+    let bodies = &parameters.bodies;
+    Masses {
+        sun_kg: bodies.sun_equivalent_mass,
+        sun_with_rotor_kg: bodies.sun_equivalent_mass + parameters.rotor_equivalent_mass(),
+        planet_kg: bodies.planet_equivalent_mass,
+        carrier_with_planets_kg: parameters.carrier_equivalent_mass(),
+        link_kg: parameters.link_equivalent_mass(),
+    }
+}
+
+fn frequencies(parameters: &JointParameters) -> Frequencies {
+    let gears_alone = JointParameters { rotor_inertia: 0.0, link_inertia: 0.0, compliance: None, ..parameters.clone() };
+    let in_hertz = |parameters: &JointParameters| {
+        natural_frequencies(parameters).into_iter().skip(1).map(|frequency| frequency / TAU).collect()
+    };
+    let omega_n = Scales::new(parameters).frequency;
+    Frequencies {
+        omega_n_rad_per_s: omega_n,
+        omega_n_Hz: omega_n / TAU,
+        gears_alone_Hz: in_hertz(&gears_alone),
+        whole_joint_Hz: in_hertz(parameters),
+    }
+}
+
+/// Force of one mesh at rated torque: each planet hands 2 F to the carrier [N].
+fn mesh_force(parameters: &JointParameters) -> f64 {
+    let geometry = &parameters.geometry;
+    parameters.rated_output_torque / (2.0 * geometry.planets as f64 * geometry.carrier_base_radius())
+}
+
+fn mesh(parameters: &JointParameters, kind: MeshKind) -> MeshFigures {
+    let mesh = parameters.mesh(kind);
+    let planets = 0..parameters.geometry.planets;
+    // The sum with 0.0 takes the sign off a zero.
+    let periods = |phase: f64| (phase / TAU).rem_euclid(1.0) + 0.0;
+    MeshFigures {
+        kind: match kind {
+            MeshKind::SunPlanet => "sun_planet",
+            MeshKind::RingPlanet => "ring_planet",
+        },
+        half_backlash_m: mesh.half_backlash.to_vec(),
+        stiffness_phase_periods: planets.clone().map(|i| periods(parameters.stiffness_phase(kind, i))).collect(),
+        error_phase_periods: planets.map(|i| periods(parameters.error_phase(kind, i))).collect(),
+        mean_stiffness_N_per_m: mesh.mean_stiffness,
+        damping_N_s_per_m: parameters.damping_coefficient(kind),
+        deflection_at_rated_torque_m: mesh_force(parameters) / mesh.mean_stiffness,
+    }
+}
+
+/// Span of u_s - 2 u_c over which the tightest planet still carries nothing: twice the sum of its half-backlashes.
+fn gap(sun_planet: &PerPlanet, ring_planet: &PerPlanet) -> f64 {
+    2.0 * sun_planet.iter().zip(ring_planet).map(|(sun, ring)| sun + ring).fold(f64::INFINITY, f64::min)
+}
+
+fn output(parameters: &JointParameters) -> Output {
+    let torque = parameters.rated_output_torque;
+    let lever = parameters.geometry.carrier_base_radius();
+    let force = mesh_force(parameters);
+    let gap = gap(&parameters.sun_planet.half_backlash, &parameters.ring_planet.half_backlash);
+    let give = force / parameters.sun_planet.mean_stiffness + force / parameters.ring_planet.mean_stiffness;
+    let lost_motion = gap / (2.0 * lever);
+    let of_teeth = give / (2.0 * lever);
+    let of_compliance = parameters.compliance.map_or(0.0, |compliance| torque / compliance.stiffness);
+    Output {
+        rated_torque_N_m: torque,
+        balancing_drive_torque_N_m: torque / parameters.geometry.ratio_by_radii(),
+        mesh_force_N: force,
+        gap_m: gap,
+        lost_motion_rad: lost_motion,
+        lost_motion_arcmin: arcmin(lost_motion),
+        lost_motion_at_sun_rad: gap / parameters.geometry.sun_base_radius,
+        wind_up_of_teeth_rad: of_teeth,
+        wind_up_of_compliance_rad: of_compliance,
+        wind_up_rad: of_teeth + of_compliance,
+        wind_up_arcmin: arcmin(of_teeth + of_compliance),
+    }
+}
+
+fn fixed_step(parameters: &JointParameters, rate: u32) -> Outcome<FixedStep> {
+    let failed = |error: model_core::design::DesignError| {
+        Failure::new(format!("no fixed step for {}: {error}", parameters.name))
+            .with_help("`--rate` sets the steps a second")
+    };
+    let step = step(parameters, rate).map_err(failed)?;
+    let pace = Pace::new(parameters);
+    let (lowest, recommended) = (pace.lowest_rate(Effort::Board), pace.recommended_rate());
+    Ok(FixedStep {
+        rate_Hz: rate,
+        lowest_rate_Hz: lowest,
+        longest_step_s: 1.0 / f64::from(lowest),
+        recommended_rate_Hz: recommended,
+        recommended_step_s: 1.0 / f64::from(recommended),
+        substeps: step.substeps,
+        fastest_mode_phase_rad: pace.phase(rate, step.substeps),
+        table_bytes: step.table_bytes,
+        digest: format!("{:016x}", step.digest),
+    })
+}
+
+fn numbers(loaded: &Loaded) -> Numbers {
+    let sources = &loaded.file.sources;
+    let assumed = |remark: &String| remark.to_lowercase().starts_with("assumed");
+    Numbers {
+        stated: sources.len(),
+        assumed: sources.iter().filter(|source| source.remark.as_ref().is_some_and(assumed)).count(),
+        without_source: sources.iter().filter(|source| source.remark.is_none()).count(),
+    }
+}
+
+fn warnings(loaded: &Loaded) -> Vec<Warning> {
+    let warnings = loaded.file.warnings.iter().filter(|warning| warning.severity == Severity::Warning);
+    warnings
+        .map(|warning| Warning {
+            line: loaded.text[..warning.span.start].matches('\n').count() + 1,
+            message: warning.message.clone(),
+            help: warning.help.clone(),
+        })
+        .collect()
+}

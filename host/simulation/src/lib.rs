@@ -1,0 +1,7 @@
+//! What a joint will do, computed on the host: `check` derives figures from its file, `budget` predicts error and cost of
+//! its fixed step on a board, `sim` moves it by a named scheme, `sweep` moves every joint of a grid.
+
+pub mod budget;
+pub mod check;
+pub mod sim;
+pub mod sweep;

@@ -1,0 +1,225 @@
+//! All schemes over one run: the error of each against the reference as far as the motion can be predicted at all, and
+//! what each costs. Which scheme is good enough for what is the reader's to judge.
+
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use serde::Serialize;
+
+use super::follow::{self, Cost, End, Run};
+use super::moment::Moment;
+use super::scheme::SchemeName;
+use report::failure::{Failure, Outcome};
+use report::interruption;
+
+/// A second reference gets torques that are wrong by this much, up and down in turn.
+const DISTURBANCE: f64 = 1e-6;
+/// Once that moves any compared quantity by more than this part of its standard deviation, the motion is chaotic: what
+/// comes later says nothing about a scheme any more.
+const PREDICTABLE: f64 = 1e-3;
+/// Costs are measured over so many ticks ...
+const COST_TICKS: u32 = 4000;
+/// ... so many times, schemes taking turns, and the least of them counts: whatever else the machine does only adds.
+const COST_ROUNDS: usize = 5;
+
+/// Stretches of which the picture shows the error.
+const STRETCHES: usize = 240;
+
+/// One scheme's samples of what is compared.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Track {
+    /// Which scheme.
+    pub scheme: SchemeName,
+    /// How it ended.
+    pub end: End,
+    /// Deflections of every mesh, then gap, then link offset; one list a quantity [m, m, rad].
+    pub columns: Vec<Vec<f64>>,
+    /// What it costs.
+    pub cost: Cost,
+}
+
+/// All schemes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Comparison {
+    /// Times of the samples [s].
+    pub times: Vec<f64>,
+    /// The reference first.
+    pub tracks: Vec<Track>,
+    /// Samples up to which the motion can be predicted.
+    pub predictable: usize,
+    /// The table.
+    pub rows: Vec<Row>,
+}
+
+/// One line of the table.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Row {
+    /// Name of the scheme.
+    pub scheme: &'static str,
+    /// Root mean square errors over the motion's standard deviation: deflections, gap, link offset [-].
+    pub errors: [Option<f64>; 3],
+    /// Processor time for each simulated second, over that of `realtime` in the same process [-].
+    pub cost_ratio: f64,
+    /// The same in seconds of this machine.
+    pub cost_s_per_s: f64,
+    /// Sub-steps a tick; none for the reference, which chooses its own.
+    pub substeps: Option<u32>,
+    /// Time at which the state was not finite any more [s].
+    pub diverged_at_s: Option<f64>,
+}
+
+/// Runs all schemes, every `every`-th tick compared; `progress` is told the ticks done by all together.
+pub fn compare(run: &Run<'_>, every: u32, progress: &(dyn Fn(u32) + Sync)) -> Outcome<Comparison> {
+    let done = AtomicU32::new(0);
+    let tick = || progress(done.fetch_add(1, Ordering::Relaxed));
+    let jobs: [(SchemeName, f64); 6] = std::array::from_fn(|job| {
+        if job == 0 { (SchemeName::Reference, DISTURBANCE) } else { (SchemeName::ALL[job - 1], 0.0) }
+    });
+    let followed: Vec<Outcome<Recorded>> = std::thread::scope(|scope| {
+        let threads: Vec<_> = jobs
+            .iter()
+            .map(|&(scheme, disturbance)| scope.spawn(move || record(run, every, scheme, disturbance, &tick)))
+            .collect();
+        let join = |thread: std::thread::ScopedJoinHandle<'_, _>| {
+            thread.join().unwrap_or_else(|_| Err(Failure::new("a scheme has failed")))
+        };
+        threads.into_iter().map(join).collect()
+    });
+    let mut followed = followed.into_iter().collect::<Outcome<Vec<_>>>()?;
+    let disturbed = followed.remove(0).columns;
+    let costs = costs(run)?;
+    let times = followed[0].times.clone();
+    let tracks: Vec<Track> = followed
+        .into_iter()
+        .zip(SchemeName::ALL)
+        .zip(costs)
+        .map(|((Recorded { end, columns, .. }, scheme), cost)| Track { scheme, end, columns, cost })
+        .collect();
+    let predictable = predictable(&tracks[0].columns, &disturbed);
+    let rate = f64::from(run.tick_rate);
+    let board = tracks.iter().find(|track| track.scheme == SchemeName::Realtime).map_or(1.0, |t| t.cost.per_second);
+    let rows = tracks
+        .iter()
+        .map(|track| Row {
+            scheme: track.scheme.name(),
+            errors: errors(&tracks[0].columns, &track.columns, predictable),
+            cost_ratio: track.cost.per_second / board,
+            cost_s_per_s: track.cost.per_second,
+            substeps: track.cost.substeps,
+            diverged_at_s: match track.end {
+                End::Diverged(tick) => Some(f64::from(tick) / rate),
+                End::Whole | End::Stopped => None,
+            },
+        })
+        .collect();
+    Ok(Comparison { times, tracks, predictable, rows })
+}
+
+impl Comparison {
+    /// Until when errors are compared [s].
+    pub fn predictable_until(&self) -> f64 {
+        self.predictable.checked_sub(1).map_or(0.0, |last| self.times[last])
+    }
+
+    /// Error of a track's first deflection over the standard deviation: root mean square of short stretches, each at its
+    /// middle [s].
+    pub fn error_of(&self, track: &Track) -> Vec<(f64, f64)> {
+        let exact = &self.tracks[0].columns[0][..self.predictable];
+        let spread = spread(exact);
+        let pairs: Vec<(f64, f64)> =
+            exact.iter().zip(&track.columns[0]).zip(&self.times).map(|((a, b), time)| (*time, b - a)).collect();
+        let stretch = self.predictable.div_ceil(STRETCHES).max(1);
+        pairs
+            .chunks(stretch)
+            .map(|part| {
+                let square = part.iter().map(|(_, error)| error * error).sum::<f64>() / part.len() as f64;
+                (0.5 * (part[0].0 + part[part.len() - 1].0), square.sqrt() / spread)
+            })
+            .collect()
+    }
+}
+
+/// What a scheme has said of the compared quantities, with the times of the samples.
+struct Recorded {
+    end: End,
+    times: Vec<f64>,
+    columns: Vec<Vec<f64>>,
+}
+
+/// Follows a scheme.
+fn record(
+    run: &Run<'_>,
+    every: u32,
+    scheme: SchemeName,
+    disturbance: f64,
+    tick: &(dyn Fn() + Sync),
+) -> Outcome<Recorded> {
+    let mut times = Vec::new();
+    let mut columns = vec![Vec::new(); 2 * run.joint.geometry.planets + 2];
+    let mut observer = |moment: &Moment| {
+        if moment.tick.is_multiple_of(every) {
+            times.push(moment.time);
+            let values = moment.teeth.iter().map(|teeth| teeth.deflection).chain([moment.gap, moment.link_offset]);
+            columns.iter_mut().zip(values).for_each(|(column, value)| column.push(value));
+        }
+        tick();
+        Ok(if interruption::requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+    };
+    let end = match scheme {
+        SchemeName::Reference => follow::follow_reference(run, disturbance, &mut observer)?,
+        _ => follow::follow(run, scheme, &mut observer)?,
+    };
+    if end == End::Stopped {
+        return Err(Failure::interrupted("stopped by the user"));
+    }
+    Ok(Recorded { end, times, columns })
+}
+
+/// Least of several measurements of each scheme, in the order of [`SchemeName::ALL`].
+fn costs(run: &Run<'_>) -> Outcome<Vec<Cost>> {
+    let mut least: Vec<Cost> = Vec::new();
+    for round in 0..COST_ROUNDS {
+        for (place, scheme) in SchemeName::ALL.into_iter().enumerate() {
+            let cost = follow::cost(run, scheme, COST_TICKS)?;
+            match least.get_mut(place) {
+                Some(best) if round > 0 => best.per_second = best.per_second.min(cost.per_second),
+                _ => least.push(cost),
+            }
+        }
+        if interruption::requested() {
+            return Err(Failure::interrupted("stopped by the user"));
+        }
+    }
+    Ok(least)
+}
+
+/// How many samples come before the disturbed reference has left the exact one.
+fn predictable(exact: &[Vec<f64>], disturbed: &[Vec<f64>]) -> usize {
+    let count = exact[0].len().min(disturbed[0].len());
+    let left = |exact: &[f64], disturbed: &[f64]| {
+        let bound = PREDICTABLE * spread(&exact[..count]);
+        exact.iter().zip(disturbed).take(count).position(|(a, b)| (a - b).abs() > bound).unwrap_or(count)
+    };
+    exact.iter().zip(disturbed).map(|(exact, disturbed)| left(exact, disturbed)).min().unwrap_or(0)
+}
+
+/// Errors of a scheme over the predictable samples that it has; none where nothing moves or nothing was reached.
+fn errors(exact: &[Vec<f64>], columns: &[Vec<f64>], predictable: usize) -> [Option<f64>; 3] {
+    let meshes = exact.len() - 2;
+    let relative = |place: usize| {
+        let count = predictable.min(columns[place].len());
+        let exact = &exact[place][..count];
+        let square: f64 = exact.iter().zip(&columns[place]).map(|(a, b)| (a - b).powi(2)).sum();
+        let error = (square / count as f64).sqrt() / spread(exact);
+        (count == predictable && error.is_finite()).then_some(error)
+    };
+    let deflections: Option<Vec<f64>> = (0..meshes).map(relative).collect();
+    let together = deflections.map(|all| (all.iter().map(|e| e * e).sum::<f64>() / meshes as f64).sqrt());
+    [together, relative(meshes), relative(meshes + 1)]
+}
+
+/// Standard deviation.
+fn spread(values: &[f64]) -> f64 {
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt()
+}

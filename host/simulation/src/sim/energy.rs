@@ -1,0 +1,276 @@
+//! The energy balance of a run (kinetic and elastic energy against what torques, damping, errors and changing stiffness
+//! do), tick by tick. The work of a tick is that of the reference started at the tick's own state, so that the residual
+//! is what the scheme itself makes or loses; the tanh dead zone has no such balance here.
+
+use std::f64::consts::TAU;
+
+use model_core::dead_zone::DeadZone;
+use model_core::joint::JointParameters;
+use model_core::mesh::{MESH_KINDS, MeshPhases};
+use reference::joint::{Reference, RelativeState, Start, Work};
+
+use super::moment::Moment;
+
+/// Points of the series for the picture, at most.
+const MOST_POINTS: usize = 20_000;
+
+/// Where the energy of a run came from and went to, in J.
+#[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize)]
+#[allow(missing_docs, non_snake_case, reason = "names and units say it")]
+pub struct Balance {
+    /// Kinetic and elastic energy at the start and at the end.
+    pub stored_at_start_J: f64,
+    pub stored_at_end_J: f64,
+    /// By the drive torque, less what the load took.
+    pub supplied_J: f64,
+    /// Lost in mesh damping and compliance.
+    pub dissipated_J: f64,
+    /// Done against imposed transmission errors.
+    pub against_errors_J: f64,
+    /// Brought in by changing mesh stiffness.
+    pub by_stiffness_J: f64,
+    /// Growth of the stored energy less all work: what the scheme makes (or, negative, loses).
+    pub residual_J: f64,
+    /// The residual over the energy dissipated.
+    pub residual_over_dissipated: f64,
+}
+
+/// A moment of the balance: time [s], stored energy, work done so far and residual so far [J].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Entry {
+    /// [s].
+    pub time: f64,
+    /// Kinetic and elastic [J].
+    pub stored: f64,
+    /// Work so far.
+    pub work: Work,
+    /// Stored energy less its start and all work [J].
+    pub residual: f64,
+}
+
+/// Keeps the books while a run goes on.
+#[derive(Debug, Clone)]
+pub struct EnergyBook<'a> {
+    joint: &'a JointParameters,
+    tick_rate: f64,
+    /// Every so many ticks an entry is kept.
+    every: u32,
+    started: Option<f64>,
+    /// The tick that is open: the reference at its start.
+    open: Option<Reference>,
+    torques: (f64, f64),
+    work: Work,
+    /// What is kept for the picture.
+    pub entries: Vec<Entry>,
+    last: Option<Entry>,
+}
+
+impl<'a> EnergyBook<'a> {
+    /// Books for a run of so many ticks; none for the tanh dead zone.
+    pub fn open(joint: &'a JointParameters, tick_rate: u32, ticks: u32) -> Option<Self> {
+        let every = ticks.div_ceil(MOST_POINTS as u32).max(1);
+        (joint.dead_zone == DeadZone::Sharp).then(|| Self {
+            joint,
+            tick_rate: tick_rate.into(),
+            every,
+            started: None,
+            open: None,
+            torques: (0.0, 0.0),
+            work: Work::default(),
+            entries: Vec::new(),
+            last: None,
+        })
+    }
+
+    /// Takes one more tick. A state that the reference cannot follow leaves the work as it is: the residual shows it.
+    pub fn take(&mut self, moment: &Moment) {
+        let stored = match &moment.energy {
+            Some(energy) => {
+                self.work = energy.work;
+                energy.stored
+            }
+            None => {
+                if let Some(mut tick) = self.open.take()
+                    && tick.advance(1.0 / self.tick_rate, self.torques.0, self.torques.1).is_ok()
+                {
+                    self.work = sum(&self.work, &tick.observe().work);
+                }
+                let Ok(tick) = Reference::start(&shifted(self.joint, moment.mesh_periods), &start(moment)) else {
+                    return;
+                };
+                let observation = tick.observe();
+                self.open = Some(tick);
+                observation.kinetic_energy + observation.elastic_energy
+            }
+        };
+        self.torques = (moment.drive, moment.load);
+        let started = *self.started.get_or_insert(stored);
+        let residual = stored - started - self.work.net();
+        let entry = Entry { time: moment.time, stored, work: self.work, residual };
+        if moment.tick.is_multiple_of(self.every) {
+            self.entries.push(entry);
+        }
+        self.last = Some(entry);
+    }
+
+    /// The balance so far.
+    pub fn balance(&self) -> Option<Balance> {
+        let last = self.last?;
+        let Work { supplied, dissipated, against_errors, by_stiffness } = last.work;
+        Some(Balance {
+            stored_at_start_J: self.started?,
+            stored_at_end_J: last.stored,
+            supplied_J: supplied,
+            dissipated_J: dissipated,
+            against_errors_J: against_errors,
+            by_stiffness_J: by_stiffness,
+            residual_J: last.residual,
+            residual_over_dissipated: last.residual / dissipated.abs().max(f64::MIN_POSITIVE),
+        })
+    }
+}
+
+fn sum(a: &Work, b: &Work) -> Work {
+    Work {
+        supplied: a.supplied + b.supplied,
+        dissipated: a.dissipated + b.dissipated,
+        against_errors: a.against_errors + b.against_errors,
+        by_stiffness: a.by_stiffness + b.by_stiffness,
+    }
+}
+
+/// The same joint with the mesh phase that it has now as its phase zero.
+fn shifted(joint: &JointParameters, mesh_periods: f64) -> JointParameters {
+    let angle = TAU * (mesh_periods - mesh_periods.floor());
+    let mut now = joint.clone();
+    for kind in MESH_KINDS {
+        let planets = 0..joint.geometry.planets;
+        let phases = MeshPhases::Given {
+            stiffness: planets.clone().map(|planet| joint.stiffness_phase(kind, planet) + angle).collect(),
+            error: planets.map(|planet| joint.error_phase(kind, planet) + angle).collect(),
+        };
+        match kind {
+            model_core::mesh::MeshKind::SunPlanet => now.sun_planet.phases = phases,
+            model_core::mesh::MeshKind::RingPlanet => now.ring_planet.phases = phases,
+        }
+    }
+    now
+}
+
+fn start(moment: &Moment) -> Start {
+    let planets = moment.teeth.len() / 2;
+    let sun_planet = || moment.teeth.iter().take(planets);
+    Start::Relative(RelativeState {
+        sun_planet: sun_planet().map(|teeth| teeth.deflection).collect(),
+        sun_planet_rate: sun_planet().map(|teeth| teeth.rate).collect(),
+        gap: moment.gap,
+        gap_rate: moment.gap_rate,
+        wind_up: moment.wind_up,
+        wind_up_rate: moment.wind_up_rate,
+        rigid_speed: moment.carrier_speed,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::ops::ControlFlow;
+
+    use host_tests::tolerance;
+    use link::messages::Command;
+    use model_core::design::Effort;
+    use model_core::mesh::StiffnessWave;
+
+    use super::*;
+    use crate::sim::follow::{Run, follow};
+    use crate::sim::scheme::SchemeName;
+
+    fn joint(name: &str) -> JointParameters {
+        joint_file::read(joint_file::preset(name).expect("a preset")).expect("a good preset").parameters
+    }
+
+    /// A run of a joint that starts in the middle of its gap, turning, so that every contact state comes.
+    fn run_through(joint: &JointParameters, tick_rate: u32, scheme: SchemeName, each: &mut dyn FnMut(&Moment)) {
+        let planets = joint.geometry.planets;
+        let start =
+            Start::Relative(RelativeState { rigid_speed: 3.0, gap_rate: 0.05, ..RelativeState::centred(planets) });
+        let drive = 0.3 * joint.rated_output_torque / joint.geometry.ratio_by_radii();
+        let load = joint.balanced_load_torque(drive);
+        let torques = [
+            Command { tick: 0, drive_torque: drive as f32, load_torque: load as f32 },
+            Command { tick: 600, drive_torque: -drive as f32, load_torque: -load as f32 },
+        ];
+        let run = Run {
+            joint,
+            tick_rate,
+            ticks: 1500,
+            torques: &torques,
+            start: &start,
+            double: true,
+            effort: Effort::Accurate,
+        };
+        follow(&run, scheme, &mut |moment| {
+            each(moment);
+            Ok(ControlFlow::Continue(()))
+        })
+        .expect("a good joint");
+    }
+
+    /// The reference reads the same state by its own equations.
+    #[test]
+    fn what_is_read_off_the_core_is_what_the_reference_reads_off_the_same_state() {
+        let mut rectangular = joint("q1");
+        for mesh in [&mut rectangular.sun_planet, &mut rectangular.ring_planet] {
+            mesh.stiffness_wave = StiffnessWave::Rectangular { stiffness_ratio: 0.1, contact_ratio: 1.6, order: 5 };
+        }
+        for joint in [joint("q1"), joint("paper"), joint("l1"), rectangular] {
+            let force_scale = joint.sun_planet.mean_stiffness * joint.characteristic_length;
+            let mut worst = [0.0f64; 3];
+            run_through(&joint, 200_000, SchemeName::Realtime, &mut |moment| {
+                let read = Reference::start(&shifted(&joint, moment.mesh_periods), &start(moment));
+                let read = Moment::of_reference(0, &joint, &read.expect("a good state").observe());
+                for (one, other) in moment.teeth.iter().zip(&read.teeth) {
+                    worst[0] = worst[0].max((one.deflection - other.deflection).abs() / joint.characteristic_length);
+                    worst[1] = worst[1].max((one.force - other.force).abs() / force_scale);
+                }
+                worst[2] = worst[2].max((moment.motor_offset - read.motor_offset).abs());
+                worst[2] = worst[2].max((moment.link_offset - read.link_offset).abs());
+            });
+            println!("{}: {worst:?}", joint.name);
+            worst.into_iter().for_each(|error| tolerance::core::READ_OFF.check(error));
+        }
+    }
+
+    #[test]
+    fn the_reference_s_books_balance_whatever_the_teeth_do() {
+        for joint in [joint("q1"), joint("paper"), joint("l1")] {
+            let mut book = EnergyBook::open(&joint, 200_000, 1500).expect("a sharp dead zone");
+            run_through(&joint, 200_000, SchemeName::Reference, &mut |moment| book.take(moment));
+            let balance = book.balance().expect("it has run");
+            println!("{}: {balance:?}", joint.name);
+            tolerance::BOOKS_OF_THE_REFERENCE.check(balance.residual_over_dissipated);
+        }
+    }
+
+    /// Work of the ticks is taken from the reference, tick by tick; the residual is the scheme's own error.
+    #[test]
+    fn a_scheme_s_residual_is_small_for_the_board_s_scheme_and_larger_for_the_usual_ones() {
+        let joint = joint("paper");
+        let residual = |scheme| {
+            let mut book = EnergyBook::open(&joint, 200_000, 1500).expect("a sharp dead zone");
+            run_through(&joint, 200_000, scheme, &mut |moment| book.take(moment));
+            book.balance().expect("it has run").residual_over_dissipated.abs()
+        };
+        let [realtime, runge_kutta, euler] =
+            [SchemeName::Realtime, SchemeName::RungeKutta4, SchemeName::Euler].map(residual);
+        println!("realtime {realtime:.1e}, Runge-Kutta {runge_kutta:.1e}, Euler {euler:.1e}");
+        tolerance::core::BOOKS_OF_THE_BOARD.check(realtime);
+        assert!(realtime < runge_kutta && runge_kutta < euler);
+    }
+
+    #[test]
+    fn the_tanh_dead_zone_has_no_books() {
+        let mut joint = joint("q1");
+        joint.dead_zone = DeadZone::Tanh { sharpness: 10.0 };
+        assert!(EnergyBook::open(&joint, 20_000, 100).is_none());
+    }
+}

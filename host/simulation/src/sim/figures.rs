@@ -1,0 +1,147 @@
+//! Everything that `joint sim` says of a run, as data. As JSON it has the schema `joint-sim/1`; pictures and tables are
+//! made from it elsewhere.
+
+use serde::Serialize;
+
+use super::comparison::{Comparison, Row};
+use super::energy::Balance;
+use super::follow::End;
+use super::plan::Plan;
+use super::scheme::SchemeName;
+use super::spectrum::Spectrum;
+use super::statistics::{MeshFigures, Statistics};
+use report::contacts::mesh_name;
+
+/// Says which fields there are; rises when one changes its meaning or goes.
+const SCHEMA: &str = "joint-sim/1";
+
+/// All figures of a run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[allow(non_snake_case, reason = "units are written as they are")]
+pub struct Figures {
+    /// `joint-sim/1`.
+    pub schema: &'static str,
+    /// Path or preset.
+    pub file: String,
+    /// The joint's own name.
+    pub joint: String,
+    /// Values changed on the command line.
+    pub set: Vec<String>,
+    /// Name of the scheme.
+    pub scheme: &'static str,
+    /// `f32` or `f64`.
+    pub scalar: &'static str,
+    /// [Hz].
+    pub tick_rate_Hz: u32,
+    /// Ticks done.
+    pub ticks: u32,
+    /// Ticks that were wanted.
+    pub of_ticks: u32,
+    /// What is not counted [s].
+    pub settle_s: f64,
+    /// Torques in words.
+    pub torques: String,
+    /// `rest`, `centred` or `seated`.
+    pub start: &'static str,
+    /// Time at which the state was not finite any more [s].
+    pub diverged_at_s: Option<f64>,
+    /// Every mesh, sun-planet first.
+    pub meshes: Vec<Mesh>,
+    /// Landings of all meshes in a second.
+    pub impacts_per_s: f64,
+    /// Mesh periods after which the motion repeats; none if it does not within 32.
+    pub period: Option<usize>,
+    /// Root of the power beside the mesh frequency over the root of its own, sun-planet deflection of planet 1.
+    pub non_fundamental_over_fundamental: Option<f64>,
+    /// Strongest line of the same spectrum [Hz].
+    pub strongest_frequency_Hz: Option<f64>,
+    /// The balance of energy.
+    pub energy: Option<Balance>,
+    /// All schemes, if they were asked for.
+    pub schemes: Option<Vec<Row>>,
+    /// Until when they were compared [s].
+    pub compared_until_s: Option<f64>,
+}
+
+/// One mesh.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Mesh {
+    /// Such as `sun–planet 1`.
+    pub name: String,
+    /// Its figures.
+    #[serde(flatten)]
+    pub figures: MeshFigures,
+}
+
+/// What the figures are made from.
+pub struct Gathered<'a> {
+    /// What was asked.
+    pub plan: &'a Plan,
+    /// Values changed.
+    pub set: &'a [String],
+    /// Which scheme.
+    pub scheme: SchemeName,
+    /// How it ended.
+    pub end: End,
+    /// Ticks done.
+    pub ticks: u32,
+    /// Counted after settling.
+    pub statistics: &'a Statistics,
+    /// Of the first deflection after settling.
+    pub spectrum: Option<&'a Spectrum>,
+    /// The books.
+    pub energy: Option<Balance>,
+    /// All schemes.
+    pub comparison: Option<&'a Comparison>,
+}
+
+impl Figures {
+    /// Puts them together.
+    pub fn of(run: &Gathered<'_>) -> Self {
+        let plan = run.plan;
+        let meshes = run.statistics.meshes();
+        let count = meshes.len();
+        let rate = f64::from(plan.tick_rate);
+        Self {
+            schema: SCHEMA,
+            file: plan.name.clone(),
+            joint: plan.parameters().name.to_string(),
+            set: run.set.to_vec(),
+            scheme: run.scheme.name(),
+            scalar: if plan.double || run.scheme == SchemeName::Reference { "f64" } else { "f32" },
+            tick_rate_Hz: plan.tick_rate,
+            ticks: run.ticks,
+            of_ticks: plan.ticks,
+            settle_s: f64::from(plan.settle) / rate,
+            torques: plan.torques_name.clone(),
+            start: plan.start_name.name(),
+            diverged_at_s: match run.end {
+                End::Diverged(tick) => Some(f64::from(tick) / rate),
+                End::Whole | End::Stopped => None,
+            },
+            impacts_per_s: meshes.iter().map(|mesh| mesh.impacts_per_s).sum(),
+            meshes: meshes
+                .into_iter()
+                .enumerate()
+                .map(|(mesh, figures)| Mesh { name: mesh_name(mesh, count), figures })
+                .collect(),
+            period: run.statistics.period(),
+            non_fundamental_over_fundamental: run.spectrum.and_then(|spectrum| spectrum.beside(plan.mesh_frequency())),
+            strongest_frequency_Hz: run.spectrum.map(|spectrum| spectrum.greatest().0),
+            energy: run.energy,
+            schemes: run.comparison.map(|comparison| comparison.rows.clone()),
+            compared_until_s: run.comparison.map(Comparison::predictable_until),
+        }
+    }
+
+    /// Mean over meshes of the share of time with teeth parted.
+    pub fn separated_share(&self) -> f64 {
+        let count = self.meshes.len().max(1) as f64;
+        self.meshes.iter().map(|mesh| mesh.figures.separated_share).sum::<f64>() / count
+    }
+
+    /// Greatest mesh force [N].
+    pub fn peak_force(&self) -> f64 {
+        self.meshes.iter().map(|mesh| mesh.figures.peak_force_N).fold(0.0, f64::max)
+    }
+}

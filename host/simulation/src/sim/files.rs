@@ -1,0 +1,101 @@
+//! What a run leaves on disk. The history grows under a name of its own while the run goes on and takes its final name
+//! when it is whole, so that an older history is replaced by a whole one or not at all.
+
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::io::{self, BufWriter, ErrorKind};
+use std::path::{Path, PathBuf};
+
+use model_core::joint::JointParameters;
+
+use super::csv::CsvFile;
+use super::log_file::LogFile;
+use super::moment::Moment;
+use report::failure::{Failure, Outcome};
+use report::folder;
+
+/// Where a run's files go.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Folder {
+    path: PathBuf,
+}
+
+impl Folder {
+    /// Makes the folder and tries to write to it; `kind` names the part of `target` that is the default.
+    pub fn prepare(wanted: Option<&Path>, kind: &str, joint: &str) -> Outcome<Self> {
+        Ok(Self { path: folder::prepare(wanted, kind, joint)? })
+    }
+
+    /// A file in it.
+    pub fn file(&self, name: &str) -> PathBuf {
+        self.path.join(name)
+    }
+
+    /// The folder itself.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
+/// CSV and log of one run, growing.
+pub struct HistoryFiles<'a> {
+    folder: &'a Folder,
+    csv: CsvFile<'a, BufWriter<File>>,
+    log: LogFile<'a, BufWriter<File>>,
+}
+
+/// Growing and final name.
+const CSV: [&str; 2] = ["history.partial.csv", "history.csv"];
+const LOG: [&str; 2] = ["history.partial.mcap", "history.mcap"];
+
+impl<'a> HistoryFiles<'a> {
+    /// Begins both.
+    pub fn begin(folder: &'a Folder, joint: &'a JointParameters, remarks: BTreeMap<String, String>) -> Outcome<Self> {
+        let create = |name: &str| {
+            let path = folder.file(name);
+            File::create(&path).map(BufWriter::new).map_err(|error| unwritten(&path, &error))
+        };
+        let csv = CsvFile::begin(create(CSV[0])?, joint).map_err(|error| unwritten(&folder.file(CSV[0]), &error))?;
+        let log =
+            LogFile::begin(create(LOG[0])?, joint, remarks).map_err(|error| unwritten(&folder.file(LOG[0]), &error))?;
+        Ok(Self { folder, csv, log })
+    }
+
+    /// One sample.
+    pub fn write(&mut self, moment: &Moment) -> Outcome<()> {
+        self.csv.write(moment).map_err(|error| unwritten(&self.folder.file(CSV[0]), &error))?;
+        self.log.write(moment).map_err(|error| unwritten(&self.folder.file(LOG[0]), &error))
+    }
+
+    /// Ends both properly. A whole history takes its final name; one that was cut short keeps the growing one.
+    pub fn finish(self, whole: bool) -> Outcome<[PathBuf; 2]> {
+        let Self { folder, csv, log } = self;
+        let ended = [csv.finish(), log.finish()];
+        let mut paths = [PathBuf::new(), PathBuf::new()];
+        for (place, (file, [growing, whole_name])) in ended.into_iter().zip([CSV, LOG]).enumerate() {
+            let path = folder.file(growing);
+            let kept = file.and_then(|file| {
+                // A full disk may only be noticed when the data leave the cache.
+                file.into_inner().map_err(io::IntoInnerError::into_error)?.sync_all()?;
+                let name = folder.file(if whole { whole_name } else { growing });
+                fs::rename(&path, &name).map(|()| name)
+            });
+            paths[place] = kept.map_err(|error| unwritten(&path, &error))?;
+        }
+        Ok(paths)
+    }
+}
+
+/// Names the file, what the system said and what to do about it.
+pub fn unwritten(path: &Path, source: &io::Error) -> Failure {
+    let help = match source.kind() {
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
+            "what was written so far is kept: free some space, or name a folder on another disk by --out DIR"
+        }
+        ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
+            "name a folder that you may write to by --out DIR"
+        }
+        _ => "name another folder by --out DIR",
+    };
+    Failure::new(format!("cannot write {}: {source}", path.display())).with_help(help)
+}

@@ -1,0 +1,199 @@
+//! What a simulation was asked to do, with everything that can be wrong with it found before it starts: joint, rate,
+//! length, torques, start.
+
+use std::f64::consts::TAU;
+
+use joint_file::JointFile;
+use link::messages::Command;
+use model_core::design::Effort;
+use model_core::joint::{Excitation, JointParameters};
+use reference::joint::Start;
+
+use super::arguments::Motion;
+use super::follow::Run;
+use super::start::StartName;
+use board::profile::{FASTEST, Profile, STRONGEST};
+use joint_file::named::Loaded;
+use report::failure::{Failure, Outcome};
+use report::output::typed;
+
+/// Rate of the board, and of any run without a reason for another [Hz].
+const BOARD_RATE: u32 = 20_000;
+/// Ticks that a prescribed mesh period has at least by default: phase portraits and spectra need them.
+const TICKS_A_PERIOD: f64 = 48.0;
+/// Length under constant torques [s], and at a prescribed mesh frequency [mesh periods].
+const DURATION: f64 = 1.0;
+const MESH_PERIODS: f64 = 600.0;
+/// Speed of the carrier under constant torques: a turn a second [rad/s].
+const SPEED: f64 = TAU;
+/// More ticks than this are a slip of the keyboard: at a microsecond each they take days.
+const MOST_TICKS: f64 = 2e10;
+
+/// A run that can be made.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// The joint file as the user named it.
+    pub name: String,
+    /// What it says.
+    pub joint: JointFile,
+    /// [Hz].
+    pub tick_rate: u32,
+    /// Length.
+    pub ticks: u32,
+    /// Ticks that do not count.
+    pub settle: u32,
+    /// Torques by tick.
+    pub torques: Vec<Command>,
+    /// What the torques are, for reports.
+    pub torques_name: String,
+    /// Whether the torques change.
+    pub constant: bool,
+    /// State at tick 0.
+    pub start: Start,
+    /// Its name.
+    pub start_name: StartName,
+    /// Carrier speed at the start [rad/s].
+    pub speed: f64,
+    /// f64 in place of f32.
+    pub double: bool,
+    /// Sub-steps.
+    pub effort: Effort,
+}
+
+impl Plan {
+    /// Puts a motion to a joint.
+    pub fn new(loaded: Loaded, motion: &Motion) -> Outcome<Self> {
+        let Loaded { name, file: joint, .. } = loaded;
+        let parameters = &joint.parameters;
+        let frequency = match parameters.excitation {
+            Excitation::Time { mesh_frequency } => Some(mesh_frequency / TAU),
+            Excitation::Angle => None,
+        };
+        let tick_rate = motion.rate.unwrap_or_else(|| default_rate(frequency));
+        let given = |what: &str, value: Option<f64>| match value {
+            Some(value) if !value.is_finite() => Err(Failure::new(format!("--{what} is {value}"))
+                .with_help(format!("give a finite number, such as --{what} 1"))),
+            value => Ok(value),
+        };
+        let within = |what: &str, value: Option<f64>, most: f64, unit: &str| match given(what, value)? {
+            Some(value) if value.abs() > most => Err(Failure::new(format!("--{what} is {}", typed(value)))
+                .with_help(format!("it may be from -{most} to {most} {unit}: check the unit"))),
+            value => Ok(value),
+        };
+        let duration = given("duration", motion.duration)?;
+        let (torques, ticks, torques_name) = match &motion.profile {
+            Some(profile) => {
+                let profile = Profile::load(profile, parameters, tick_rate, duration)?;
+                (profile.commands, profile.ticks, format!("profile {}", profile.name))
+            }
+            None => {
+                let usual = frequency.map_or(DURATION, |frequency| MESH_PERIODS / frequency);
+                let ticks = count(duration.unwrap_or(usual), tick_rate)?;
+                let drive = within("drive", motion.drive, STRONGEST, "N m")?;
+                let load = within("load", motion.load, STRONGEST, "N m")?;
+                let command = constant(&joint, drive, load);
+                let (drive, load) = (command.drive_torque, command.load_torque);
+                (vec![command], ticks, format!("constant torques of {drive} N m against {load} N m"))
+            }
+        };
+        let constant = motion.profile.is_none();
+        let settle = match given("settle", motion.settle)? {
+            None if constant => ticks / 2,
+            None => 0,
+            Some(settle) => {
+                let end = f64::from(ticks) / f64::from(tick_rate);
+                if !(0.0..end).contains(&settle) {
+                    let message = format!("--settle {settle} leaves nothing of a run of {end} s");
+                    return Err(Failure::new(message).with_help("give 0 or more, and less than the duration"));
+                }
+                (settle * f64::from(tick_rate)).round() as u32
+            }
+        };
+        let start_name = motion.start.unwrap_or(match (constant, frequency) {
+            (false, _) => StartName::Rest,
+            (true, Some(_)) => StartName::Centred,
+            (true, None) => StartName::Seated,
+        });
+        let turning = if constant && frequency.is_none() { SPEED } else { 0.0 };
+        let speed = within("speed", motion.speed, FASTEST, "rad/s")?.unwrap_or(turning);
+        let first = torques.first().map_or((0.0, 0.0), |first| (first.drive_torque.into(), first.load_torque.into()));
+        let start = start_name.of(parameters, speed, first);
+        let effort = if motion.accurate { Effort::Accurate } else { Effort::Board };
+        let double = motion.f64;
+        Ok(Self {
+            name,
+            tick_rate,
+            ticks,
+            settle,
+            torques,
+            torques_name,
+            constant,
+            start,
+            start_name,
+            speed,
+            double,
+            effort,
+            joint,
+        })
+    }
+
+    /// The joint.
+    pub fn parameters(&self) -> &JointParameters {
+        &self.joint.parameters
+    }
+
+    /// Length [s].
+    pub fn duration(&self) -> f64 {
+        f64::from(self.ticks) / f64::from(self.tick_rate)
+    }
+
+    /// Prescribed mesh frequency, or that of the start's speed [Hz].
+    pub fn mesh_frequency(&self) -> f64 {
+        match self.parameters().excitation {
+            Excitation::Time { mesh_frequency } => mesh_frequency / TAU,
+            Excitation::Angle => (self.speed / TAU * f64::from(self.parameters().geometry.ring_teeth)).abs(),
+        }
+    }
+
+    /// What to run.
+    pub fn run(&self) -> Run<'_> {
+        Run {
+            joint: self.parameters(),
+            tick_rate: self.tick_rate,
+            ticks: self.ticks,
+            torques: &self.torques,
+            start: &self.start,
+            double: self.double,
+            effort: self.effort,
+        }
+    }
+}
+
+/// A multiple of the board's rate at which a prescribed mesh period has ticks enough.
+fn default_rate(frequency: Option<f64>) -> u32 {
+    let wanted = frequency.unwrap_or(0.0) * TICKS_A_PERIOD / f64::from(BOARD_RATE);
+    // Beyond a thousand times the board's rate the design will say what is wrong.
+    BOARD_RATE * wanted.ceil().clamp(1.0, 1000.0) as u32
+}
+
+fn count(seconds: f64, tick_rate: u32) -> Outcome<u32> {
+    let ticks = seconds * f64::from(tick_rate);
+    if !(1.0..=MOST_TICKS.min(f64::from(u32::MAX / 2))).contains(&ticks) {
+        return Err(Failure::new(format!("a run of {} s at {tick_rate} Hz is {} ticks", typed(seconds), typed(ticks)))
+            .with_help("give a duration of at least one tick and at most 2^31 ticks, such as --duration 1"));
+    }
+    Ok(ticks.round() as u32)
+}
+
+/// The file's operating point, or what was asked for; what is not said balances what is.
+fn constant(joint: &JointFile, drive: Option<f64>, load: Option<f64>) -> Command {
+    let parameters = &joint.parameters;
+    let ratio = parameters.geometry.ratio_by_radii();
+    let (drive, load) = match (drive, load) {
+        (Some(drive), Some(load)) => (drive, load),
+        (Some(drive), None) => (drive, parameters.balanced_load_torque(drive)),
+        (None, Some(load)) => (load / ratio, load),
+        (None, None) => (joint.profile.drive_torque, parameters.balanced_load_torque(joint.profile.drive_torque)),
+    };
+    Command { tick: 0, drive_torque: drive as f32, load_torque: load as f32 }
+}

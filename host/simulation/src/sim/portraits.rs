@@ -1,0 +1,150 @@
+//! Phase portraits with their Poincare points, and the spectrum: what a motion looks like without time. What the points
+//! and amplitudes are is found by `statistics` and `spectrum`.
+
+use super::moment::Moment;
+use super::pictures::LINE;
+use super::plan::Plan;
+use super::spectrum::Spectrum;
+use super::statistics::Point;
+use report::plot::ink::Ink;
+use report::plot::mark::Mark;
+use report::plot::panel::Panel;
+use report::plot::unit::{Unit, axis_range, greatest};
+use report::plot::{Figure, HorizontalAxis, Shape};
+
+/// Samples drawn of a phase portrait under constant torques: more only blacken it.
+const PORTRAIT: usize = 6000;
+/// Samples drawn of a phase portrait under a profile, which shows the whole run.
+const PROFILE_PORTRAIT: usize = 20_000;
+/// Part of the picture's size within which a sample is no new point; more where there are too many of them.
+const NEAR: f64 = 1e-3;
+/// Size of a Poincare point over the size of the picture, and of one among many.
+const DOT: [f64; 2] = [0.0085, 0.024];
+const SMALL_DOT: [f64; 2] = [0.0042, 0.012];
+/// Periods that are shown by large points.
+const FEW: usize = 8;
+
+/// Decibels.
+pub(super) const DECIBELS: Unit = Unit { factor: 1.0, name: "dB" };
+
+/// Which motion a phase portrait shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Portrait {
+    /// Sun-planet deflection of planet 1.
+    Deflection,
+    /// Gap coordinate.
+    Gap,
+}
+
+/// Rate over position of the last samples, with the Poincare points on it.
+pub fn portrait(
+    plan: &Plan,
+    samples: &[Moment],
+    (points, period): (&[Point], Option<usize>),
+    which: Portrait,
+) -> Figure {
+    let samples = if plan.constant { &samples[samples.len().saturating_sub(PORTRAIT)..] } else { samples };
+    let of = |moment: &Moment| match which {
+        Portrait::Deflection => (moment.teeth[0].deflection, moment.teeth[0].rate),
+        Portrait::Gap => (moment.gap, moment.gap_rate),
+    };
+    let of_point = |point: &Point| match which {
+        Portrait::Deflection => (point.deflection, point.rate),
+        Portrait::Gap => (point.gap, point.gap_rate),
+    };
+    let mut curve: Vec<(f64, f64)> = samples.iter().map(of).collect();
+    let range = axis_range(curve.iter().map(|point| point.0));
+    let up = axis_range(curve.iter().map(|point| point.1));
+    if !plan.constant {
+        curve = thinned(curve, (range.1 - range.0, up.1 - up.0));
+    }
+    let size = if period.is_some_and(|period| period <= FEW) { DOT } else { SMALL_DOT };
+    let (half_width, half_height) = (0.5 * size[0] * (range.1 - range.0), 0.5 * size[1] * (up.1 - up.0));
+    let dot = |point: &Point| {
+        let (x, y) = of_point(point);
+        [x - half_width, x + half_width, y - half_height, y + half_height]
+    };
+    let inside = |point: &&Point| {
+        let (x, y) = of_point(point);
+        (range.0..=range.1).contains(&x) && (up.0..=up.1).contains(&y)
+    };
+    // A motion that repeats has a few points, each hit time and again: one dot for each is enough.
+    let mut boxes: Vec<[f64; 4]> = Vec::new();
+    for dot in points.iter().filter(inside).map(dot) {
+        let near = |other: &[f64; 4]| {
+            (other[0] - dot[0]).abs() < 0.1 * half_width && (other[2] - dot[2]).abs() < 0.1 * half_height
+        };
+        if !boxes.iter().any(near) {
+            boxes.push(dot);
+        }
+    }
+    let label = if points.is_empty() { "" } else { "once a mesh period" };
+    let (title, axis) = match which {
+        Portrait::Deflection => ("Phase portrait, sun–planet deflection of planet 1", "deflection"),
+        Portrait::Gap => ("Phase portrait, gap coordinate", "gap"),
+    };
+    let most = greatest(curve.iter().map(|point| point.1));
+    let unit = if most < 1.0 { Unit { factor: 1e3, name: "mm/s" } } else { Unit { factor: 1.0, name: "m/s" } };
+    let marks = vec![
+        Mark::Line { points: curve, ink: Ink::Bar, label: String::new(), width: 1.0 },
+        Mark::Boxes { boxes, ink: Ink::Limit, label: label.into() },
+    ];
+    Figure {
+        runs: HorizontalAxis::Linear,
+        shape: Shape::default(),
+        title: format!("{title} of joint {}", plan.parameters().name),
+        axis: axis.into(),
+        unit: Unit::of_length(greatest([range.0, range.1].into_iter())),
+        range,
+        note: String::new(),
+        panels: vec![Panel { height: 380, ..Panel::lines(format!("{title}: rate"), unit, marks) }],
+    }
+}
+
+/// Leaves out what lies near the point before: rest is one point, and quick motion keeps every sample.
+fn thinned(curve: Vec<(f64, f64)>, (width, height): (f64, f64)) -> Vec<(f64, f64)> {
+    let mut near = NEAR;
+    loop {
+        let mut kept: Vec<(f64, f64)> = Vec::new();
+        for point in &curve {
+            let is_new =
+                |last: &(f64, f64)| (point.0 - last.0).abs() > near * width || (point.1 - last.1).abs() > near * height;
+            if kept.last().is_none_or(is_new) {
+                kept.push(*point);
+            }
+        }
+        if kept.len() <= PROFILE_PORTRAIT {
+            return kept;
+        }
+        near *= 2.0;
+    }
+}
+
+/// Amplitudes in decibels over a micrometre, up to what the mesh frequency and its harmonics need.
+pub fn spectrum(plan: &Plan, spectrum: &Spectrum) -> Figure {
+    let mesh = plan.mesh_frequency();
+    let top = spectrum.step * spectrum.amplitudes.len() as f64;
+    let end = if mesh > 0.0 { top.min(8.5 * mesh) } else { top };
+    // Below a picometre there is nothing but rounding.
+    let decibels = |amplitude: f64| 20.0 * (1e6 * amplitude).max(1e-6).log10();
+    let shown = (end / spectrum.step) as usize;
+    let points = spectrum.amplitudes.iter().take(shown).enumerate();
+    let points = points.map(|(place, amplitude)| (place as f64 * spectrum.step, decibels(*amplitude))).collect();
+    let mut marks = Vec::new();
+    if mesh > 0.0 && mesh < end {
+        marks.push(Mark::Deadline { at: mesh, label: "mesh frequency".into() });
+    }
+    marks.push(Mark::Line { points, ink: Ink::First, label: String::new(), width: LINE });
+    let unit = if end < 2e3 { Unit { factor: 1.0, name: "Hz" } } else { Unit { factor: 1e-3, name: "kHz" } };
+    let title = "Spectrum of the sun–planet deflection of planet 1";
+    Figure {
+        runs: HorizontalAxis::Linear,
+        shape: Shape::default(),
+        title: format!("{title} of joint {}", plan.parameters().name),
+        axis: "frequency".into(),
+        unit,
+        range: (0.0, end),
+        note: String::new(),
+        panels: vec![Panel { height: 260, ..Panel::lines(format!("{title}, over 1 µm"), DECIBELS, marks) }],
+    }
+}

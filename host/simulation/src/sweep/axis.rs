@@ -1,0 +1,186 @@
+//! One axis of a grid: a key of the joint file and the values that it takes, as text, so that 0.1 stays 0.1 in every
+//! file. How axes make a grid is `grid`'s business.
+
+use report::failure::{Failure, Outcome};
+use report::output::typed;
+
+/// More values than this on one axis are a slip of the keyboard.
+pub const MOST_VALUES: f64 = 1e6;
+/// The last value may miss the end by this part of a step, which is rounding.
+const ROUNDING: f64 = 1e-9;
+/// Decimal places up to which values are kept exact.
+const MOST_DECIMALS: usize = 12;
+
+/// One axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Axis {
+    /// Full path of the key.
+    pub key: String,
+    /// What stands behind the equals sign, as typed.
+    pub spec: String,
+    /// Its values, in order.
+    pub values: Vec<String>,
+}
+
+impl Axis {
+    /// From `key=from:to:step` or `key=value,value,...`.
+    pub fn parse(vary: &str) -> Outcome<Self> {
+        let refused = |message: String| Failure::new(message).with_help(SHAPE);
+        let Some((key, spec)) = vary.split_once('=') else {
+            return Err(refused(format!("`{vary}` varies nothing: there is no `=` in it")));
+        };
+        let key = joint_file::full_key(key)
+            .map_err(|refused| Failure::new(format!("--vary {vary}: {}", refused.message)).with_help(refused.help))?;
+        let spec = spec.trim().to_owned();
+        let parts: Vec<&str> = spec.split(':').map(str::trim).collect();
+        let values = match parts[..] {
+            [from, to, step] => steps(vary, [from, to, step])?,
+            [list] => {
+                let values: Vec<String> = list.split(',').map(|value| value.trim().to_owned()).collect();
+                if values.iter().any(String::is_empty) {
+                    return Err(refused(format!("--vary {vary}: a value is missing")));
+                }
+                values
+            }
+            _ => return Err(refused(format!("--vary {vary}: `{spec}` is neither from:to:step nor a list"))),
+        };
+        Ok(Self { key, spec, values })
+    }
+
+    /// As it is typed, with the full key.
+    pub fn text(&self) -> String {
+        format!("{}={}", self.key, self.spec)
+    }
+
+    /// A step at which the axis has at most so many values; none for a list.
+    pub fn coarser(&self, values: f64) -> Option<String> {
+        let mut parts = self.spec.split(':').map(|part| part.trim().parse::<f64>());
+        let (Some(Ok(from)), Some(Ok(to))) = (parts.next(), parts.next()) else { return None };
+        coarser(from, to, values)
+    }
+}
+
+const SHAPE: &str =
+    "write key=from:to:step, such as mesh.half_backlash_um=0:150:0.5, or key=value,value,value for single values";
+
+/// A step with two digits at which a way has at most so many values.
+fn coarser(from: f64, to: f64, values: f64) -> Option<String> {
+    let least = (to - from) / (values - 1.0).max(1.0);
+    let digit = 10f64.powf(least.abs().log10().floor() - 1.0);
+    let step = (least / digit).abs().ceil() * digit * least.signum();
+    step.is_finite().then(|| format!("{step:.3e}").parse::<f64>().map_or_else(|_| step.to_string(), |s| s.to_string()))
+}
+
+/// Values from one number to another; the end is one of them if the steps reach it.
+fn steps(vary: &str, texts: [&str; 3]) -> Outcome<Vec<String>> {
+    let mut numbers = [0.0; 3];
+    for ((number, text), what) in numbers.iter_mut().zip(texts).zip(["from", "to", "step"]) {
+        *number = match text.parse::<f64>() {
+            Ok(value) if value.is_finite() => value,
+            Ok(value) => {
+                return Err(Failure::new(format!("--vary {vary}: {what} is {value}")).with_help("give finite numbers"));
+            }
+            Err(_) => {
+                let message = format!("--vary {vary}: {what} is `{text}`, not a number");
+                return Err(Failure::new(message).with_help(SHAPE));
+            }
+        };
+    }
+    let [from, to, step] = numbers;
+    if step == 0.0 {
+        let message = format!("--vary {vary}: a step of 0 never arrives, so the grid has no end");
+        return Err(Failure::new(message).with_help("give a step that is not 0, or a list of single values"));
+    }
+    let way = (to - from) / step;
+    if way < -ROUNDING {
+        let message = format!("--vary {vary}: steps of {step} lead from {from} away from {to}: the grid has no point");
+        return Err(Failure::new(message).with_help(format!("change the sign of the step: {from}:{to}:{}", -step)));
+    }
+    // Long ways lose their last digits in the division.
+    let count = (way * (1.0 + f64::EPSILON * 4.0) + ROUNDING).floor() + 1.0;
+    if count > MOST_VALUES {
+        let message = format!("--vary {vary}: {} values on one axis, at most {MOST_VALUES} can be swept", typed(count));
+        let help = coarser(from, to, 1000.0)
+            .map_or_else(|| SHAPE.to_owned(), |step| format!("a step of {step} gives about a thousand"));
+        return Err(Failure::new(message).with_help(help));
+    }
+    let decimals = texts.iter().map(|text| decimals(text)).collect::<Option<Vec<_>>>();
+    let decimals = decimals.and_then(|all| all.into_iter().max());
+    let value = |index: usize| {
+        let value = from + index as f64 * step;
+        decimals.map_or_else(|| value.to_string(), |decimals| format!("{value:.decimals$}"))
+    };
+    Ok((0..count as usize).map(value).collect())
+}
+
+/// Decimal places of a number as typed; none if it has an exponent or too many.
+fn decimals(text: &str) -> Option<usize> {
+    let places = text.split_once('.').map_or(0, |(_, places)| places.len());
+    (!text.contains(['e', 'E']) && places <= MOST_DECIMALS).then_some(places)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn values(spec: &str) -> Vec<String> {
+        Axis::parse(&format!("mesh.half_backlash_um={spec}")).expect("a good axis").values
+    }
+
+    fn refused(spec: &str) -> Failure {
+        Axis::parse(&format!("mesh.half_backlash_um={spec}")).expect_err("a bad axis")
+    }
+
+    #[test]
+    fn values_are_as_a_person_would_write_them() {
+        assert_eq!(values("0:0.5:0.1"), ["0.0", "0.1", "0.2", "0.3", "0.4", "0.5"]);
+        assert_eq!(values("0:150:0.5").len(), 301);
+        assert_eq!(values("10:0:-5"), ["10", "5", "0"]);
+        assert_eq!(values("1:2:0.4"), ["1.0", "1.4", "1.8"]);
+        assert_eq!(values("7:7:1"), ["7"]);
+        assert_eq!(values("1e1:3e1:1e1"), ["10", "20", "30"]);
+        assert_eq!(values("5, 10,20"), ["5", "10", "20"]);
+    }
+
+    #[test]
+    fn the_key_may_be_short_and_is_kept_whole() {
+        let axis = Axis::parse("sun_planet.half_backlash_um=1:2:1").expect("a good axis");
+        assert_eq!(axis.text(), "mesh.sun_planet.half_backlash_um=1:2:1");
+    }
+
+    #[test]
+    fn grids_without_a_point_are_refused() {
+        for (spec, word) in [
+            ("0:10:-1", "away"),
+            ("10:0:1", "away"),
+            ("0:10:0", "never arrives"),
+            ("NaN:10:1", "NaN"),
+            ("0:inf:1", "inf"),
+            ("0:10:NaN", "NaN"),
+            ("0:ten:1", "`ten`"),
+            ("0:10", "neither"),
+            ("", "missing"),
+            ("1,,2", "missing"),
+        ] {
+            let failure = refused(spec);
+            assert!(failure.message().contains(word), "{spec}: {failure}");
+            assert!(failure.help().is_some(), "{spec}: {failure}");
+        }
+    }
+
+    #[test]
+    fn an_axis_of_a_million_million_values_is_refused_with_its_count_and_a_step_that_works() {
+        let failure = refused("0:1000:0.000000001");
+        assert!(failure.message().contains("1000000000001 values"), "{failure}");
+        assert!(
+            failure.help().is_some_and(|help| help.contains("a step of 1.1 ") || help.contains("a step of 1.01")),
+            "{failure}"
+        );
+    }
+
+    #[test]
+    fn an_unknown_key_is_answered_with_the_nearest_one() {
+        let failure = Axis::parse("mesh.half_backlsh_um=1:2:1").expect_err("unknown");
+        assert!(failure.help().is_some_and(|help| help.contains("mesh.half_backlash_um")), "{failure}");
+    }
+}

@@ -1,0 +1,164 @@
+//! The folder of a sweep: `sweep.json`, journals, and `points.csv` once all points are there. What does not belong is
+//! refused before anything is written, and nothing of anyone else's is ever touched.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::grid::Grid;
+use super::journal::{self, Points};
+use super::manifest::Manifest;
+use report::failure::{Failure, Outcome};
+use report::folder;
+use report::write::write_text;
+
+/// What says which sweep it is.
+pub const MANIFEST: &str = "sweep.json";
+/// The result.
+pub const RESULT: &str = "points.csv";
+/// Foreign files named in a message at most.
+const NAMED: usize = 3;
+
+/// A sweep's folder.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Folder {
+    path: PathBuf,
+}
+
+impl Folder {
+    /// Makes the folder of a sweep, or finds that it is there; refuses any other sweep's and any other folder.
+    pub fn prepare(path: &Path, manifest: &Manifest) -> Outcome<Self> {
+        folder::make(path)?;
+        let foreign = foreign(path)?;
+        // Asked after the listing: whoever makes a journal has made this file before.
+        let there = path.join(MANIFEST).exists();
+        if !foreign.is_empty() {
+            return Err(refused(path, &foreign, there));
+        }
+        if there {
+            let other = Manifest::read(&path.join(MANIFEST))?;
+            if let Some(difference) = manifest.difference(&other) {
+                let message = format!("{} holds another sweep: {difference}", path.display());
+                return Err(Failure::new(message).with_help(
+                    "name another folder by --out DIR, or repeat the command of that sweep to go on with it",
+                ));
+            }
+        } else {
+            write_text(&path.join(MANIFEST), &manifest.text()?)?;
+        }
+        Ok(Self { path: path.to_owned() })
+    }
+
+    /// A folder that must hold a sweep.
+    pub fn existing(path: &Path) -> Outcome<(Self, Manifest)> {
+        if !path.is_dir() {
+            return Err(Failure::new(format!("{} is not a folder", path.display()))
+                .with_help("name the folders that `joint sweep --out DIR` has made"));
+        }
+        if !path.join(MANIFEST).exists() {
+            return Err(Failure::new(format!("{} holds no sweep: there is no {MANIFEST} in it", path.display()))
+                .with_help("name the folders that `joint sweep --out DIR` has made"));
+        }
+        let manifest = Manifest::read(&path.join(MANIFEST))?;
+        Ok((Self { path: path.to_owned() }, manifest))
+    }
+
+    /// The folder.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Journals in it, in the order of their names.
+    pub fn journals(&self) -> Outcome<Vec<PathBuf>> {
+        let mut journals: Vec<PathBuf> = entries(&self.path)?
+            .into_iter()
+            .filter(|name| journal::shard_of(name).is_some())
+            .map(|name| self.path.join(name))
+            .collect();
+        journals.sort();
+        Ok(journals)
+    }
+
+    /// Every finished point of every shard; points that two journals have must agree.
+    pub fn points(&self, digest: &str, into: &mut Points) -> Outcome<()> {
+        for path in self.journals()? {
+            for (point, result) in journal::read(&path, digest)? {
+                if let Some(other) = into.get(&point)
+                    && *other != result
+                {
+                    let message = format!(
+                        "point {point} is `{result}` in {}, and `{other}` elsewhere: one sweep cannot give two results",
+                        path.display()
+                    );
+                    return Err(Failure::new(message).with_help("sweep again into a new folder by --out DIR"));
+                }
+                into.insert(point, result);
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes the result, all points in their order.
+    pub fn write_result(&self, manifest: &Manifest, grid: &Grid, points: &Points) -> Outcome<PathBuf> {
+        let path = self.path.join(RESULT);
+        write_text(&path, &result(manifest, grid, points))?;
+        Ok(path)
+    }
+}
+
+/// The result as text: one row a point.
+fn result(manifest: &Manifest, grid: &Grid, points: &Points) -> String {
+    let keys = grid.axes.iter().map(|axis| axis.key.clone());
+    let metrics = manifest.metrics.iter().map(|metric| metric.name());
+    let columns: Vec<String> = keys.chain(["status".to_owned()]).chain(metrics).collect();
+    let mut text = columns.join(",") + "\n";
+    for (point, result) in points {
+        text += &grid.values(*point).join(",");
+        text += ",";
+        text += result;
+        text += "\n";
+    }
+    text
+}
+
+/// Names in a folder, hidden ones left out.
+fn entries(path: &Path) -> Outcome<Vec<String>> {
+    let failed = |error: std::io::Error| {
+        Failure::new(format!("cannot read the folder {}: {error}", path.display()))
+            .with_help("see that it is a folder and may be read")
+    };
+    let mut names = Vec::new();
+    for entry in fs::read_dir(path).map_err(failed)? {
+        let name = entry.map_err(failed)?.file_name().to_string_lossy().into_owned();
+        if !name.starts_with('.') {
+            names.push(name);
+        }
+    }
+    names.sort();
+    Ok(names)
+}
+
+/// What is in a folder that no sweep has put there.
+fn foreign(path: &Path) -> Outcome<Vec<String>> {
+    let own = |name: &String| {
+        let known = name == MANIFEST || name == RESULT || journal::shard_of(name).is_some();
+        known && path.join(name).is_file()
+    };
+    let mut names = entries(path)?;
+    let swept = names.iter().any(|name| name == MANIFEST) || path.join(MANIFEST).exists();
+    // Without the file that says which sweep it is, even a known name may be anyone's.
+    names.retain(|name| !(swept && own(name)));
+    Ok(names)
+}
+
+fn refused(path: &Path, foreign: &[String], swept: bool) -> Failure {
+    let more = foreign.len().saturating_sub(NAMED);
+    let mut named = foreign[..foreign.len().min(NAMED)].join(", ");
+    if more > 0 {
+        named += &format!(" and {more} more");
+    }
+    let message = match swept {
+        true => format!("{} holds files beside its sweep: {named}", path.display()),
+        false => format!("{} holds files that are not a sweep's: {named}", path.display()),
+    };
+    Failure::new(message).with_help("move them elsewhere, or name another folder by --out DIR; nothing was written")
+}

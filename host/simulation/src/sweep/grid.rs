@@ -1,0 +1,200 @@
+//! The grid of a sweep: every combination of its axes, numbered with the last axis fastest, and which of them a shard
+//! has. What is computed at a point is `metrics`' business.
+
+use std::str::FromStr;
+
+use super::axis::Axis;
+use joint_file::named::{self, Loaded};
+use report::failure::{Failure, Outcome};
+
+/// Points that can be swept at once: at a tenth of a second each that is more than a day.
+pub const MOST_POINTS: u64 = 1_000_000;
+/// Values of an axis that are all tried before the sweep; of a longer axis only the ends are.
+const TRIED: usize = 1000;
+
+/// All points.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Grid {
+    /// Axes in the order of the command line.
+    pub axes: Vec<Axis>,
+    /// Number of points.
+    pub points: u64,
+}
+
+/// A part of the points: those whose number leaves `index - 1` over `count`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shard {
+    /// From 1.
+    pub index: u64,
+    /// How many shards there are.
+    pub count: u64,
+}
+
+impl Grid {
+    /// From what stands behind every `--vary`.
+    pub fn parse(vary: &[String]) -> Outcome<Self> {
+        let axes = vary.iter().map(|vary| Axis::parse(vary)).collect::<Outcome<Vec<_>>>()?;
+        for (place, axis) in axes.iter().enumerate() {
+            if axes[..place].iter().any(|other| other.key == axis.key) {
+                return Err(Failure::new(format!("`{}` is varied twice", axis.key))
+                    .with_help("give every key one --vary with all its values"));
+            }
+        }
+        let count: f64 = axes.iter().map(|axis| axis.values.len() as f64).product();
+        if axes.is_empty() {
+            return Err(Failure::new("the grid has no axis")
+                .with_help("give at least one --vary, such as --vary mesh.half_backlash_um=0:150:0.5"));
+        }
+        if count > MOST_POINTS as f64 {
+            return Err(too_many(&axes, count));
+        }
+        Ok(Self { axes, points: count as u64 })
+    }
+
+    /// The value of every axis at a point.
+    pub fn values(&self, point: u64) -> Vec<&str> {
+        let mut rest = point;
+        let mut values: Vec<&str> = self
+            .axes
+            .iter()
+            .rev()
+            .map(|axis| {
+                let count = axis.values.len() as u64;
+                let value = &axis.values[(rest % count) as usize];
+                rest /= count;
+                value.as_str()
+            })
+            .collect();
+        values.reverse();
+        values
+    }
+
+    /// Changes that make a point's joint, keys of both mesh families before those of one.
+    pub fn changes(&self, point: u64) -> Vec<String> {
+        let mut keyed: Vec<(&str, &str)> =
+            self.axes.iter().map(|axis| axis.key.as_str()).zip(self.values(point)).collect();
+        keyed.sort_by_key(|(key, _)| key.matches('.').count());
+        keyed.into_iter().map(|(key, value)| format!("{key}={value}")).collect()
+    }
+
+    /// Tries every axis by itself, the others at their first values: a value that the joint file could not have is
+    /// found before anything is computed, and so is an axis without an effect.
+    pub fn try_out(&self, base: &Loaded) -> Outcome<()> {
+        let at = |point: u64| named::read_changed(base.name.clone(), base.text.clone(), &self.changes(point));
+        let mut stride = self.points;
+        for axis in &self.axes {
+            let count = axis.values.len();
+            stride /= count as u64;
+            let first = at(0)?;
+            let mut moved = count == 1;
+            for place in (1..count).filter(|place| count <= TRIED || *place == count - 1) {
+                let joint = at(place as u64 * stride)?.file;
+                moved |= joint.parameters != first.file.parameters || joint.profile != first.file.profile;
+            }
+            if !moved {
+                let message = format!("varying `{}` changes nothing in a simulation of the joint", axis.key);
+                return Err(Failure::new(message)
+                    .with_help("leave it out; the drive train around the joint has no part in a sweep"));
+            }
+        }
+        Ok(())
+    }
+}
+
+fn too_many(axes: &[Axis], count: f64) -> Failure {
+    let each: Vec<String> = axes.iter().map(|axis| axis.values.len().to_string()).collect();
+    let message =
+        format!("a grid of {} = {count:.0} points: at most {MOST_POINTS} can be swept at once", each.join(" x "));
+    // The longest axis is the one that can give most.
+    let longest = axes.iter().max_by_key(|axis| axis.values.len());
+    let help = longest.and_then(|axis| {
+        let wanted = (MOST_POINTS as f64 * axis.values.len() as f64 / count).floor();
+        let step = axis.coarser(wanted.clamp(2.0, 1e6))?;
+        let enough = if wanted >= 2.0 { "" } else { ", and coarser steps on the others" };
+        Some(format!("use coarser steps: {} in steps of {step}{enough}", axis.key))
+    });
+    Failure::new(message).with_help(help.unwrap_or_else(|| "give fewer values".to_owned()))
+}
+
+impl Shard {
+    /// All points.
+    pub const WHOLE: Self = Self { index: 1, count: 1 };
+
+    /// Whether a point is the shard's.
+    pub fn has(self, point: u64) -> bool {
+        point % self.count == self.index - 1
+    }
+}
+
+impl FromStr for Shard {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let shape = || format!("`{text}` is not i/n with i from 1 to n, such as 2/16");
+        let (index, count) = text.split_once('/').ok_or_else(shape)?;
+        let number = |text: &str| text.trim().parse::<u64>().map_err(|_| shape());
+        let shard = Self { index: number(index)?, count: number(count)? };
+        ((1..=shard.count).contains(&shard.index) && shard.count <= MOST_POINTS).then_some(shard).ok_or_else(shape)
+    }
+}
+
+impl std::fmt::Display for Shard {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(formatter, "{}/{}", self.index, self.count)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grid(vary: &[&str]) -> Outcome<Grid> {
+        Grid::parse(&vary.iter().map(ToString::to_string).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn points_are_numbered_with_the_last_axis_fastest() {
+        let grid = grid(&["mesh.half_backlash_um=10:30:10", "mesh.damping_ratio=0.05,0.1"]).expect("a good grid");
+        assert_eq!(grid.points, 6);
+        assert_eq!(grid.values(0), ["10", "0.05"]);
+        assert_eq!(grid.values(1), ["10", "0.1"]);
+        assert_eq!(grid.values(5), ["30", "0.1"]);
+    }
+
+    #[test]
+    fn shards_share_out_every_point_once() {
+        for count in 1..9u64 {
+            for point in 0..100 {
+                let owners = (1..=count).filter(|&index| Shard { index, count }.has(point)).count();
+                assert_eq!(owners, 1);
+            }
+        }
+        assert_eq!("2/16".parse(), Ok(Shard { index: 2, count: 16 }));
+        for bad in ["0/4", "5/4", "4", "a/b", "1/0", "-1/4", "1/99999999"] {
+            assert!(bad.parse::<Shard>().is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn a_million_million_points_are_refused_with_their_number_and_a_way_out() {
+        let failure = grid(&["mesh.half_backlash_um=0:100:0.0002", "mesh.damping_ratio=0:0.999999:0.000002"]);
+        let failure = failure.expect_err("too many");
+        assert!(failure.message().contains("500001 x 500000 = 250000500000 points"), "{failure}");
+        assert!(failure.help().is_some_and(|help| help.contains("coarser steps")), "{failure}");
+    }
+
+    #[test]
+    fn an_axis_that_is_there_twice_or_has_no_effect_is_refused() {
+        assert!(grid(&["half_backlash_um=1:2:1", "mesh.half_backlash_um=3:4:1"]).is_err());
+        assert!(grid(&[]).is_err());
+        let base = named::load(std::path::Path::new("q1")).expect("a preset");
+        let try_out = |vary: &[&str]| grid(vary).and_then(|grid| grid.try_out(&base));
+        assert!(try_out(&["mesh.half_backlash_um=10:30:10", "sun_planet.half_backlash_um=5,6"]).is_ok());
+        let same = try_out(&["mesh.half_backlash_um=10:30:10", "mesh.backlash_um=5,6"]).expect_err("the same thing");
+        assert!(same.message().contains("changes nothing"), "{same}");
+        let outside = try_out(&["drive_train.efficiency=0.9,0.95"]).expect_err("no effect");
+        assert!(outside.message().contains("changes nothing"), "{outside}");
+        let bad = try_out(&["mesh.damping_ratio=0:2:0.5"]).expect_err("out of range").to_string();
+        assert!(bad.contains("damping_ratio"), "{bad}");
+    }
+}

@@ -1,0 +1,212 @@
+//! The journal of a shard: one line for each finished point, each with a checksum, written and flushed to the disk as
+//! points come in. A line that a kill or a full disk cut short is found and dropped; nothing else is ever taken out.
+
+use std::collections::BTreeMap;
+use std::fs::{File, TryLockError};
+use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use model_core::digest;
+
+use super::grid::Shard;
+use crate::sim::files::unwritten;
+use report::failure::{Failure, Outcome};
+
+/// Finished points by number: status and values, as they stand in the result.
+pub type Points = BTreeMap<u64, String>;
+
+/// First word of every journal.
+const HEAD: &str = "joint-sweep";
+
+/// A journal that another process holds is asked for so many times, so far apart.
+const LOCK_TRIALS: u32 = 20;
+const LOCK_PAUSE: Duration = Duration::from_millis(50);
+
+/// A journal that is being written.
+#[derive(Debug)]
+pub struct Journal {
+    path: PathBuf,
+    file: File,
+}
+
+/// Name of a shard's journal.
+pub fn name(shard: Shard) -> String {
+    format!("journal-{}-of-{}.csv", shard.index, shard.count)
+}
+
+/// The shard of a journal, by its name.
+pub fn shard_of(name: &str) -> Option<Shard> {
+    let (index, count) = name.strip_prefix("journal-")?.strip_suffix(".csv")?.split_once("-of-")?;
+    let shard = format!("{index}/{count}").parse().ok()?;
+    (self::name(shard) == name).then_some(shard)
+}
+
+impl Journal {
+    /// Opens a shard's journal to go on with it; what was cut short is taken off its end.
+    pub fn open(folder: &Path, shard: Shard, digest: &str) -> Outcome<Self> {
+        let path = folder.join(name(shard));
+        let failed = |error: io::Error| unwritten(&path, &error);
+        let mut file =
+            File::options().read(true).write(true).create(true).truncate(false).open(&path).map_err(failed)?;
+        if !locked(&file) {
+            return Err(Failure::new(format!("{} is being written by another process", path.display()))
+                .with_help("let it finish, or end it first; another --shard can run beside it"));
+        }
+        let mut bytes = Vec::new();
+        file.read_to_end(&mut bytes).map_err(failed)?;
+        let whole = whole_lines(&bytes);
+        check_head(&path, &bytes[..whole], digest)?;
+        file.set_len(whole as u64).map_err(failed)?;
+        file.seek(SeekFrom::Start(whole as u64)).map_err(failed)?;
+        let mut journal = Self { path, file };
+        if whole == 0 {
+            journal.append(&format!("{HEAD},{digest}\n"))?;
+        }
+        Ok(journal)
+    }
+
+    /// Writes lines and sees them onto the disk.
+    pub fn append(&mut self, lines: &str) -> Outcome<()> {
+        let written = self.file.write_all(lines.as_bytes()).and_then(|()| self.file.sync_data());
+        written.map_err(|error| unwritten(&self.path, &error))
+    }
+}
+
+/// Takes the file for this process alone. A process that was just ended may need a moment to let go of it.
+fn locked(file: &File) -> bool {
+    for _ in 0..LOCK_TRIALS {
+        match file.try_lock() {
+            Err(TryLockError::WouldBlock) => std::thread::sleep(LOCK_PAUSE),
+            // A file system without locks is no reason not to work on it.
+            Ok(()) | Err(TryLockError::Error(_)) => return true,
+        }
+    }
+    false
+}
+
+/// The line of a finished point.
+pub fn line(point: u64, result: &str) -> String {
+    let text = format!("{point},{result}");
+    format!("{text},{:016x}\n", checksum(&text))
+}
+
+/// What a journal holds: good lines count, others are as if they had never been.
+pub fn read(path: &Path, digest: &str) -> Outcome<Points> {
+    let bytes = std::fs::read(path).map_err(|error| {
+        Failure::new(format!("cannot read {}: {error}", path.display()))
+            .with_help("see that the folder and its files may be read")
+    })?;
+    let whole = &bytes[..whole_lines(&bytes)];
+    check_head(path, whole, digest)?;
+    Ok(String::from_utf8_lossy(whole).lines().skip(1).filter_map(point_of).collect())
+}
+
+/// Number and result of a good line.
+fn point_of(line: &str) -> Option<(u64, String)> {
+    let (text, sum) = line.rsplit_once(',')?;
+    if sum.len() != 16 || u64::from_str_radix(sum, 16).ok()? != checksum(text) {
+        return None;
+    }
+    let (point, result) = text.split_once(',')?;
+    Some((point.parse().ok()?, result.to_owned()))
+}
+
+/// Bytes up to the end of the last line that is whole.
+fn whole_lines(bytes: &[u8]) -> usize {
+    bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1)
+}
+
+fn check_head(path: &Path, whole: &[u8], digest: &str) -> Outcome<()> {
+    let head = whole.split(|&byte| byte == b'\n').next().unwrap_or_default();
+    if whole.is_empty() || head == format!("{HEAD},{digest}").as_bytes() {
+        return Ok(());
+    }
+    let message = match head.starts_with(HEAD.as_bytes()) {
+        true => format!("{} belongs to another sweep", path.display()),
+        false => format!("{} is not the journal of a sweep", path.display()),
+    };
+    Err(Failure::new(message).with_help("move it elsewhere, or name another folder by --out DIR; it is left as it is"))
+}
+
+fn checksum(text: &str) -> u64 {
+    text.bytes().fold(digest::START, |running, byte| digest::chain(running, byte.into()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DIGEST: &str = "feed";
+
+    fn folder() -> tempfile::TempDir {
+        tempfile::tempdir().expect("a folder")
+    }
+
+    fn written(folder: &Path, points: u64) -> PathBuf {
+        let mut journal = Journal::open(folder, Shard::WHOLE, DIGEST).expect("a new journal");
+        (0..points).for_each(|point| journal.append(&line(point, "ok,1.5,2")).expect("room on the disk"));
+        folder.join(name(Shard::WHOLE))
+    }
+
+    #[test]
+    fn a_journal_cut_anywhere_keeps_every_whole_line_and_can_be_gone_on_with() {
+        let folder = folder();
+        let path = written(folder.path(), 5);
+        let whole = std::fs::read(&path).expect("a journal");
+        for cut in 0..=whole.len() {
+            std::fs::write(&path, &whole[..cut]).expect("room");
+            let kept = read(&path, DIGEST).expect("a journal of this sweep").len();
+            let lines = whole[..cut].iter().filter(|byte| **byte == b'\n').count();
+            assert_eq!(kept, lines.saturating_sub(1), "cut at {cut}");
+            let mut journal = Journal::open(folder.path(), Shard::WHOLE, DIGEST).expect("it goes on");
+            journal.append(&line(77, "ok,3,4")).expect("room");
+            let points = read(&path, DIGEST).expect("a journal of this sweep");
+            assert_eq!(points.len(), kept + 1, "cut at {cut}");
+            assert_eq!(points.get(&77).map(String::as_str), Some("ok,3,4"));
+        }
+    }
+
+    #[test]
+    fn a_line_that_was_tampered_with_is_as_if_it_had_never_been() {
+        let folder = folder();
+        let path = written(folder.path(), 3);
+        let text = std::fs::read_to_string(&path).expect("a journal").replacen("1,ok,1.5", "1,ok,1.6", 1);
+        std::fs::write(&path, text).expect("room");
+        let points = read(&path, DIGEST).expect("a journal");
+        assert_eq!(points.keys().copied().collect::<Vec<_>>(), [0, 2]);
+    }
+
+    #[test]
+    fn another_sweep_s_journal_or_any_other_file_is_refused_and_left_as_it_is() {
+        let folder = folder();
+        let path = written(folder.path(), 3);
+        let before = std::fs::read(&path).expect("a journal");
+        let refused = Journal::open(folder.path(), Shard::WHOLE, "beef").expect_err("another sweep");
+        assert!(refused.message().contains("another sweep"), "{refused}");
+        assert_eq!(std::fs::read(&path).expect("still there"), before);
+        std::fs::write(&path, "my notes\nabout gears\n").expect("room");
+        assert!(Journal::open(folder.path(), Shard::WHOLE, DIGEST).is_err());
+        assert_eq!(std::fs::read_to_string(&path).expect("still there"), "my notes\nabout gears\n");
+    }
+
+    #[test]
+    fn two_processes_do_not_write_one_journal() {
+        let folder = folder();
+        let _held = Journal::open(folder.path(), Shard::WHOLE, DIGEST).expect("a new journal");
+        let refused = Journal::open(folder.path(), Shard::WHOLE, DIGEST).expect_err("it is held");
+        assert!(refused.message().contains("another process"), "{refused}");
+        assert!(Journal::open(folder.path(), Shard { index: 1, count: 2 }, DIGEST).is_ok(), "another shard may");
+    }
+
+    #[test]
+    fn a_journal_is_known_by_its_name() {
+        let shard = Shard { index: 3, count: 16 };
+        assert_eq!(shard_of(&name(shard)), Some(shard));
+        for other in
+            ["journal-3-of-2.csv", "journal-x-of-2.csv", "journal-1-of-2.csv.bak", "journal.csv", "journal-01-of-2.csv"]
+        {
+            assert_eq!(shard_of(other), None, "{other}");
+        }
+    }
+}

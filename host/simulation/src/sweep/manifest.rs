@@ -1,0 +1,116 @@
+//! What a sweep is: `sweep.json` in its folder. Two sweeps with the same digest compute the same points; where its
+//! files are, how many threads and shards there are and when it ran has no part in it.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use super::grid::Grid;
+use super::metrics::Metric;
+use report::failure::{Failure, Outcome};
+use report::output;
+
+/// Says which fields there are; rises when one changes its meaning or goes.
+const SCHEMA: &str = "joint-sweep/1";
+
+/// A sweep.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// `joint-sweep/1`.
+    pub schema: String,
+    /// SHA-256 over everything below.
+    pub digest: String,
+    /// Version of the command.
+    pub version: String,
+    /// The joint's own name.
+    pub joint: String,
+    /// Axes, each as `key=from:to:step`.
+    pub vary: Vec<String>,
+    /// Number of points.
+    pub points: u64,
+    /// Columns.
+    pub metrics: Vec<Metric>,
+    /// Name of the scheme.
+    pub scheme: String,
+    /// Options that make the motion.
+    pub motion: String,
+    /// SHA-256 of the torque profile, if it is a file.
+    pub profile_sha256: Option<String>,
+    /// The joint file with the changes of the command line.
+    pub joint_file: String,
+}
+
+impl Manifest {
+    /// Fills in version and digest.
+    pub fn sealed(mut self) -> Self {
+        self.schema = SCHEMA.to_owned();
+        self.version = env!("CARGO_PKG_VERSION").to_owned();
+        self.digest = self.computed_digest();
+        self
+    }
+
+    /// The digest that belongs to everything else.
+    fn computed_digest(&self) -> String {
+        let bare = Self { digest: String::new(), ..self.clone() };
+        // A structure of texts and numbers always becomes JSON.
+        sha256(serde_json::to_string(&bare).unwrap_or_default().as_bytes())
+    }
+
+    /// As the file has it.
+    pub fn text(&self) -> Outcome<String> {
+        output::json("sweep", self)
+    }
+
+    /// Reads `sweep.json` and sees whether it is whole.
+    pub fn read(path: &Path) -> Outcome<Self> {
+        let spoilt = |why: String| {
+            Failure::new(format!("{} is not what a sweep wrote: {why}", path.display()))
+                .with_help("name another folder by --out DIR; this one is left as it is")
+        };
+        let text = std::fs::read_to_string(path).map_err(|error| {
+            Failure::new(format!("cannot read {}: {error}", path.display()))
+                .with_help("see that the folder and its files may be read")
+        })?;
+        let manifest: Self = serde_json::from_str(&text).map_err(|error| spoilt(error.to_string()))?;
+        if manifest.schema != SCHEMA {
+            return Err(spoilt(format!("its schema is `{}`, not `{SCHEMA}`", manifest.schema)));
+        }
+        if manifest.digest != manifest.computed_digest() {
+            return Err(spoilt("its digest does not belong to it".to_owned()));
+        }
+        Ok(manifest)
+    }
+
+    /// The grid again.
+    pub fn grid(&self) -> Outcome<Grid> {
+        Grid::parse(&self.vary)
+    }
+
+    /// What sets two sweeps apart, in words; none if they are the same.
+    pub fn difference(&self, other: &Self) -> Option<String> {
+        if self.digest == other.digest {
+            return None;
+        }
+        let names: Vec<String> = self.metrics.iter().map(|metric| metric.name()).collect();
+        let other_names: Vec<String> = other.metrics.iter().map(|metric| metric.name()).collect();
+        let pairs = [
+            ("grid", self.vary.join(" "), other.vary.join(" ")),
+            ("joint", self.joint.clone(), other.joint.clone()),
+            ("scheme", self.scheme.clone(), other.scheme.clone()),
+            ("motion", self.motion.clone(), other.motion.clone()),
+            ("metrics", names.join(" "), other_names.join(" ")),
+            ("version of the command", self.version.clone(), other.version.clone()),
+        ];
+        let different = pairs.into_iter().find(|(_, one, other)| one != other);
+        Some(different.map_or_else(
+            || "its joint file or its torque profile is another".to_owned(),
+            |(what, one, other)| format!("its {what} is `{}`, not `{}`", other.trim(), one.trim()),
+        ))
+    }
+}
+
+/// In hexadecimal.
+pub fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}

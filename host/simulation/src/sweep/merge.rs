@@ -1,0 +1,78 @@
+//! `joint merge`: puts the shards of a sweep together into one result, once none is missing. Nothing is computed here.
+
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+use super::folder::Folder;
+use super::grid::{Grid, Shard};
+use super::journal::{self, Points};
+use super::manifest::Manifest;
+use report::failure::{Failure, Outcome};
+use report::output;
+
+/// Missing points named in a message at most.
+const NAMED: usize = 8;
+
+/// Arguments of `joint merge`.
+#[derive(Debug, Clone, clap::Args)]
+pub struct MergeArguments {
+    /// Folders that hold shards of one sweep
+    #[arg(value_name = "DIR", required = true)]
+    pub folders: Vec<PathBuf>,
+    /// Folder for the result [default: the first of the folders]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+/// Merges shards; fails if any point is missing.
+pub fn merge(arguments: &MergeArguments) -> Outcome<()> {
+    let mut points = Points::new();
+    let mut shards = BTreeSet::new();
+    let mut sweep: Option<(PathBuf, Manifest)> = None;
+    for path in &arguments.folders {
+        let (folder, manifest) = Folder::existing(path)?;
+        if let Some((first, known)) = &sweep
+            && let Some(difference) = known.difference(&manifest)
+        {
+            let (first, path) = (first.display(), path.display());
+            return Err(Failure::new(format!("{path} holds another sweep than {first}: {difference}"))
+                .with_help("merge only shards of the same joint file, grid, motion, metrics and version"));
+        }
+        folder.points(&manifest.digest, &mut points)?;
+        let names = folder.journals()?;
+        let names = names.iter().filter_map(|path| path.file_name()?.to_str().and_then(journal::shard_of));
+        shards.extend(names.map(|shard| (shard.count, shard.index)));
+        sweep.get_or_insert((path.clone(), manifest));
+    }
+    let Some((first, manifest)) = sweep else {
+        return Err(Failure::new("nothing to merge").with_help("name the folders of a sweep"));
+    };
+    let grid = manifest.grid()?;
+    complete(&grid, &points, &shards)?;
+    let out = Folder::prepare(arguments.out.as_ref().unwrap_or(&first), &manifest)?;
+    let result = out.write_result(&manifest, &grid, &points)?;
+    output::print(&format!("{} points: {}\n", grid.points, result.display()))
+}
+
+/// Every point must be there, and no other.
+fn complete(grid: &Grid, points: &Points, shards: &BTreeSet<(u64, u64)>) -> Outcome<()> {
+    if let Some(beyond) = points.keys().find(|point| **point >= grid.points) {
+        return Err(Failure::new(format!("point {beyond} is beyond the {} points of the grid", grid.points))
+            .with_help("a journal has been tampered with: sweep again into a new folder"));
+    }
+    let missing: Vec<u64> = (0..grid.points).filter(|point| !points.contains_key(point)).collect();
+    if missing.is_empty() {
+        return Ok(());
+    }
+    let mut named: Vec<String> = missing.iter().take(NAMED).map(ToString::to_string).collect();
+    if missing.len() > NAMED {
+        named.push("...".into());
+    }
+    let message = format!("{} of {} points are missing: {}", missing.len(), grid.points, named.join(", "));
+    // Shards are told by the finest division that was used.
+    let count = shards.iter().map(|(count, _)| *count).max().unwrap_or(1);
+    let open = (1..=count).filter(|&index| missing.iter().any(|point| Shard { index, count }.has(*point)));
+    let open: Vec<String> = open.take(NAMED).map(|index| format!("--shard {index}/{count}")).collect();
+    let help = format!("run the sweep's command again with {}, or name the folder that has them", open.join(", "));
+    Err(Failure::new(message).with_help(help))
+}

@@ -1,0 +1,103 @@
+//! What is measured at a point of the grid, and how it is written: always the same bytes for the same joint. The motion
+//! comes from the scheme, its figures from `sim::statistics`.
+
+use std::ops::ControlFlow;
+
+use clap::ValueEnum;
+use serde::{Deserialize, Serialize};
+
+use crate::sim::arguments::Motion;
+use crate::sim::follow::{self, End};
+use crate::sim::plan::Plan;
+use crate::sim::scheme::SchemeName;
+use crate::sim::statistics::{MeshFigures, Statistics};
+use joint_file::named::Loaded;
+use report::failure::Outcome;
+use report::interruption;
+
+/// A column of the result.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[value(rename_all = "snake_case")]
+pub enum Metric {
+    /// Greatest less least sun-planet deflection, the greatest of all planets [um]
+    SunDeflectionPeakToPeakUm,
+    /// RMS of the sun-planet deflection about its mean, the greatest of all planets [um]
+    SunDeflectionRmsUm,
+    /// Greatest less least ring-planet deflection, likewise [um]
+    RingDeflectionPeakToPeakUm,
+    /// RMS of the ring-planet deflection, likewise [um]
+    RingDeflectionRmsUm,
+    /// Share of time with teeth parted, mean of all meshes
+    SeparatedShare,
+    /// Share of time on the back side, mean of all meshes
+    BackSideShare,
+    /// Landings of all meshes in a second
+    ImpactsPerS,
+    /// Greatest mesh force [N]
+    #[value(name = "peak_force_N")]
+    #[serde(rename = "peak_force_N")]
+    PeakForceN,
+    /// Mesh periods after which the motion repeats; 0 if it does not within 32
+    Period,
+}
+
+impl Metric {
+    /// Name of its column.
+    pub fn name(self) -> String {
+        self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
+    }
+}
+
+/// What came of a point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Result {
+    /// `ok`, `diverged` or `refused`.
+    pub status: &'static str,
+    /// Values of the metrics as text; empty unless `ok`.
+    pub values: Vec<String>,
+    /// Why it was refused.
+    pub remark: Option<String>,
+}
+
+/// Computes a point; none if the user wants to stop.
+pub fn compute(loaded: Outcome<Loaded>, motion: &Motion, scheme: SchemeName, metrics: &[Metric]) -> Option<Result> {
+    let without = |status, remark| Result { status, values: vec![String::new(); metrics.len()], remark };
+    let mut statistics = Statistics::default();
+    let followed = loaded.and_then(|loaded| Plan::new(loaded, motion)).and_then(|plan| {
+        follow::follow(&plan.run(), scheme, &mut |moment| {
+            if moment.tick >= plan.settle {
+                statistics.take(moment);
+            }
+            Ok(if interruption::requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+        })
+    });
+    match followed {
+        Err(failure) => Some(without("refused", Some(failure.to_string()))),
+        Ok(End::Stopped) => None,
+        Ok(End::Diverged(_)) => Some(without("diverged", None)),
+        Ok(End::Whole) => {
+            let meshes = statistics.meshes();
+            let values = metrics.iter().map(|metric| value(*metric, &meshes, &statistics)).collect();
+            Some(Result { status: "ok", values, remark: None })
+        }
+    }
+}
+
+fn value(metric: Metric, meshes: &[MeshFigures], statistics: &Statistics) -> String {
+    let (sun, ring) = meshes.split_at(meshes.len() / 2);
+    let greatest = |meshes: &[MeshFigures], of: fn(&MeshFigures) -> f64| meshes.iter().map(of).fold(0.0, f64::max);
+    let mean = |of: fn(&MeshFigures) -> f64| meshes.iter().map(of).sum::<f64>() / meshes.len() as f64;
+    let number = match metric {
+        Metric::SunDeflectionPeakToPeakUm => 1e6 * greatest(sun, |mesh| mesh.deflection_peak_to_peak_m),
+        Metric::SunDeflectionRmsUm => 1e6 * greatest(sun, |mesh| mesh.deflection_rms_m),
+        Metric::RingDeflectionPeakToPeakUm => 1e6 * greatest(ring, |mesh| mesh.deflection_peak_to_peak_m),
+        Metric::RingDeflectionRmsUm => 1e6 * greatest(ring, |mesh| mesh.deflection_rms_m),
+        Metric::SeparatedShare => mean(|mesh| mesh.separated_share),
+        Metric::BackSideShare => mean(|mesh| mesh.back_side_share),
+        Metric::ImpactsPerS => meshes.iter().map(|mesh| mesh.impacts_per_s).sum(),
+        Metric::PeakForceN => greatest(meshes, |mesh| mesh.peak_force_N),
+        Metric::Period => return statistics.period().unwrap_or(0).to_string(),
+    };
+    format!("{number:.9e}")
+}

@@ -1,0 +1,201 @@
+//! `joint sweep` and `joint merge`: any grid of joints through one simulation each, in parallel, resumable and in
+//! shards. How one joint moves and what is counted is `sim`'s business.
+//!
+//! `axis` and `grid` say which points there are, `manifest` which sweep it is, `folder` and `journal` keep what is done,
+//! `metrics` computes a point, `work` shares the points out, `merge` puts shards together.
+
+mod axis;
+mod folder;
+mod grid;
+mod journal;
+mod manifest;
+mod merge;
+mod metrics;
+mod work;
+
+use std::path::PathBuf;
+
+use folder::Folder;
+use grid::{Grid, Shard};
+use journal::{Journal, Points};
+use manifest::{Manifest, sha256};
+pub use merge::{MergeArguments, merge};
+use metrics::Metric;
+use work::Work;
+
+use crate::sim::arguments::{Motion, quoted};
+use crate::sim::scheme::{Choice, SchemeName};
+use board::profile::BUILTIN;
+use joint_file::named::{self, Loaded};
+use report::failure::{Failure, Outcome};
+use report::output;
+use report::progress::Progress;
+use report::workspace::workspace;
+
+/// Arguments of `joint sweep`.
+#[derive(Debug, Clone, clap::Args)]
+#[command(after_help = "Examples:
+  joint sweep paper --vary mesh.half_backlash_um=0:150:0.5
+  joint sweep q1 --vary half_backlash_um=10:80:5 --vary mesh.damping_ratio=0.03,0.05,0.1 --profile reversals
+  joint sweep paper --vary half_backlash_um=0:150:0.1 --shard 3/16 --out bifurcation     one job of sixteen
+  joint merge bifurcation                                                                 when all are done
+
+Stopped or killed, the same command goes on from where it was. The result is points.csv in the folder: the same bytes
+whatever the number of threads and shards.
+
+Exit code: 0 if all points are there, 2 for bad input or a bad environment, 130 after Ctrl-C.")]
+pub struct Arguments {
+    /// Joint file (TOML), or the name of a preset: q1, s1, d2, l1, paper, paper_printed
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+    /// Key of the joint file with its values, as from:to:step or as a list with commas; repeated for more axes
+    #[arg(long, value_name = "KEY=FROM:TO:STEP", required = true)]
+    pub vary: Vec<String>,
+    /// What is measured at every point; repeated, or a list with commas [default: all]
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "NAME")]
+    pub metric: Vec<Metric>,
+    /// Scheme that moves the joint
+    #[arg(long, value_enum, default_value = "realtime")]
+    pub scheme: Choice,
+    /// What moves the joint at every point
+    #[command(flatten)]
+    pub motion: Motion,
+    /// Folder of the sweep [default: target/sweep/<joint>-<digest>]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Computes only the i-th of n parts of the grid, for job arrays
+    #[arg(long, value_name = "I/N", default_value = "1/1")]
+    pub shard: Shard,
+    /// Threads [default: as many as there are processors]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+}
+
+/// Sweeps a grid.
+pub fn run(arguments: &Arguments) -> Outcome<()> {
+    Progress::during(|progress| run_once(arguments, progress))
+}
+
+fn run_once(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
+    let scheme = scheme(arguments.scheme)?;
+    let grid = Grid::parse(&arguments.vary)?;
+    let base = named::load_with(&arguments.file, &arguments.motion.set)?;
+    grid.try_out(&base)?;
+    let metrics = if arguments.metric.is_empty() { all_metrics() } else { arguments.metric.clone() };
+    // The changes of the command line are in the joint file already.
+    let motion = Motion { set: Vec::new(), ..arguments.motion.clone() };
+    let manifest = manifest(&base, &grid, &metrics, scheme, &motion)?;
+    let path = arguments.out.clone().unwrap_or_else(|| usual_folder(&manifest));
+    let folder = Folder::prepare(&path, &manifest)?;
+    let mut journal = Journal::open(folder.path(), arguments.shard, &manifest.digest)?;
+    let mut done = Points::new();
+    folder.points(&manifest.digest, &mut done)?;
+    let todo: Vec<u64> =
+        (0..grid.points).filter(|point| arguments.shard.has(*point) && !done.contains_key(point)).collect();
+    if !done.is_empty() {
+        output::remark(&format!("going on: {} of {} points are in {}", done.len(), grid.points, path.display()));
+    }
+    progress.run("sweeping", todo.len() as u32);
+    let work =
+        Work { base: &base, grid: &grid, motion: &motion, scheme, metrics: &metrics, threads: arguments.threads };
+    let outcome = work.run(&todo, &mut journal, progress);
+    progress.clear();
+    let went = outcome?;
+    if let Some(remark) = &went.remark {
+        output::remark(&format!("{} points were refused; the first: {remark}", went.refused));
+    }
+    if went.finished < todo.len() {
+        let left = todo.len() - went.finished;
+        return Err(Failure::interrupted(format!("stopped by the user: {left} of {} points are left", grid.points))
+            .with_help(format!(
+                "all others are kept in {}; the same command goes on from there:\n{}",
+                path.display(),
+                replay(arguments, &path)
+            )));
+    }
+    conclude(arguments, &folder, &manifest, &grid)
+}
+
+/// Writes the result if all shards are done, else says what is left.
+fn conclude(arguments: &Arguments, folder: &Folder, manifest: &Manifest, grid: &Grid) -> Outcome<()> {
+    let mut points = Points::new();
+    folder.points(&manifest.digest, &mut points)?;
+    if points.len() as u64 == grid.points {
+        let result = folder.write_result(manifest, grid, &points)?;
+        return output::print(&format!("{} points: {}\n", grid.points, result.display()));
+    }
+    output::print(&format!(
+        "shard {} is done: {} of {} points are in {}\nwhen all shards are: cargo joint merge {}\n",
+        arguments.shard,
+        points.len(),
+        grid.points,
+        folder.path().display(),
+        quoted(&folder.path().display().to_string())
+    ))
+}
+
+fn scheme(choice: Choice) -> Outcome<SchemeName> {
+    match choice {
+        Choice::All => Err(Failure::new("a sweep has one scheme")
+            .with_help("name one of realtime, paper, reference, rk4, euler; `joint sim --scheme all` compares them")),
+        one => Ok(one.shown()),
+    }
+}
+
+fn all_metrics() -> Vec<Metric> {
+    use clap::ValueEnum as _;
+    Metric::value_variants().to_vec()
+}
+
+fn manifest(base: &Loaded, grid: &Grid, metrics: &[Metric], scheme: SchemeName, motion: &Motion) -> Outcome<Manifest> {
+    let profile = motion.profile.as_ref().filter(|name| !BUILTIN.contains(&name.as_str()));
+    let profile_sha256 = profile.map(|path| {
+        let read = std::fs::read(path).map_err(|error| {
+            Failure::new(format!("cannot read the profile {path}: {error}"))
+                .with_help(format!("built in: {}; or name a CSV file", BUILTIN.join(", ")))
+        });
+        read.map(|bytes| sha256(&bytes))
+    });
+    // A profile is what is in the file, not where it is.
+    let motion = match profile {
+        Some(_) => Motion { profile: Some("file".into()), ..motion.clone() },
+        None => motion.clone(),
+    };
+    let manifest = Manifest {
+        schema: String::new(),
+        digest: String::new(),
+        version: String::new(),
+        joint: base.file.parameters.name.to_string(),
+        vary: grid.axes.iter().map(axis::Axis::text).collect(),
+        points: grid.points,
+        metrics: metrics.to_vec(),
+        scheme: scheme.name().to_owned(),
+        motion: motion.replay(),
+        profile_sha256: profile_sha256.transpose()?,
+        joint_file: base.text.clone(),
+    };
+    Ok(manifest.sealed())
+}
+
+fn usual_folder(manifest: &Manifest) -> PathBuf {
+    let plain = |letter: char| if letter.is_ascii_alphanumeric() { letter.to_ascii_lowercase() } else { '-' };
+    let joint: String = manifest.joint.chars().map(plain).collect();
+    workspace().join("target/sweep").join(format!("{joint}-{}", &manifest.digest[..8]))
+}
+
+/// The command that goes on with this sweep.
+fn replay(arguments: &Arguments, path: &std::path::Path) -> String {
+    let mut command = format!("cargo joint sweep {}", quoted(&arguments.file.display().to_string()));
+    for vary in &arguments.vary {
+        command += &format!(" --vary {}", quoted(vary));
+    }
+    if !arguments.metric.is_empty() {
+        let names: Vec<String> = arguments.metric.iter().map(|metric| metric.name()).collect();
+        command += &format!(" --metric {}", names.join(","));
+    }
+    command += &format!(" --scheme {}{}", arguments.scheme.shown().name(), arguments.motion.replay());
+    if arguments.shard != Shard::WHOLE {
+        command += &format!(" --shard {}", arguments.shard);
+    }
+    format!("{command} --out {}", quoted(&path.display().to_string()))
+}

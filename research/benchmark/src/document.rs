@@ -1,0 +1,60 @@
+//! The comparison in a Markdown file, between two marks, with a picture beside the file; and where its figures come from.
+//! What stands outside the marks is left as it is.
+
+use std::fs;
+use std::path::Path;
+
+use super::{Figures, Origin, pictures, table};
+use board::target::compile::PROFILE;
+use board::target::emulator::MACHINE;
+use board::target::toolchain::Toolchain;
+use report::failure::{Failure, Outcome};
+use report::provenance;
+use report::shell::standalone;
+
+const BEGIN: &str = "<!-- comparison: written by `cargo joint bench --document` -->";
+const END: &str = "<!-- end of comparison -->";
+
+/// Where the figures of this run come from.
+pub fn origin(toolchain: &Toolchain, emulator: String) -> Origin {
+    let model = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = model
+        .lines()
+        .find_map(|line| line.strip_prefix("model name")?.split(':').nth(1).map(str::trim).map(String::from));
+    Origin {
+        commit: provenance::git_commit().unwrap_or_else(|| "not under git".into()),
+        date: provenance::date(),
+        compiler: toolchain.compiler().to_owned(),
+        flags: format!("profile {PROFILE} (opt-level 3, fat LTO, one codegen unit), {}", toolchain.flags()),
+        emulator: format!("{emulator}, {MACHINE}, -icount shift=6,sleep=off"),
+        host: model.unwrap_or_else(|| std::env::consts::ARCH.into()),
+    }
+}
+
+fn failed(path: &Path, error: &std::io::Error) -> Failure {
+    Failure::new(format!("{}: {error}", path.display())).with_help("name a Markdown file that can be read and written")
+}
+
+/// The file that the comparison is put into.
+pub fn read(path: &Path) -> Outcome<String> {
+    fs::read_to_string(path).map_err(|error| failed(path, &error))
+}
+
+/// Puts the comparison into the file, or at its end if it has none yet.
+pub fn update(path: &Path, figures: &Figures) -> Outcome<()> {
+    let before = read(path)?;
+    let failed = |error: std::io::Error| failed(path, &error);
+    let mut pictured = String::new();
+    for case in &figures.cases {
+        let Some(figure) = pictures::board(case, &figures.methods) else { continue };
+        let name = format!("error-by-cost-{}.svg", case.key.to_lowercase());
+        fs::write(path.with_file_name(&name), standalone(&figure.to_svg())).map_err(failed)?;
+        pictured += &format!("\n![Case {}: error by instructions]({name})\n", case.key);
+    }
+    let section = format!("{BEGIN}\n\n{}{pictured}\n{END}", table::layout(figures, table::Detail::Conclusions));
+    let after = match (before.find(BEGIN), before.find(END)) {
+        (Some(from), Some(to)) if from < to => format!("{}{section}{}", &before[..from], &before[to + END.len()..]),
+        _ => format!("{}\n\n## Error against cost\n\n{section}\n", before.trim_end()),
+    };
+    fs::write(path, after).map_err(failed)
+}

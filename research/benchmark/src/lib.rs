@@ -1,0 +1,180 @@
+//! `joint bench`: the core's step against what people use, error by cost, on the emulated core and on the host. `lineup`
+//! runs the fixed-step methods, by `race` on the emulated core, `libraries` times what a host program would take from
+//! a library, `verdicts` and `in_a_sample` draw the conclusions, `table`, `page` and `document` show them.
+
+mod columns;
+mod document;
+mod in_a_sample;
+mod libraries;
+mod lineup;
+mod page;
+mod pictures;
+mod race;
+mod table;
+mod verdicts;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use contest::case::Case;
+use contest::catalogue;
+use serde::Serialize;
+
+use board::target::emulator;
+use board::target::toolchain::Toolchain;
+use joint_file::named;
+use report::failure::{Failure, Outcome};
+use report::progress::Progress;
+use report::{folder, interruption, output};
+
+/// What the command does, in a line of its help.
+pub const ABOUT: &str =
+    "Compare the step with what people use: error against cost, on the emulated core and on the host";
+
+/// Arguments of `joint bench`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  joint bench                                 all named cases, board and host
+  joint bench --case A,Q --html bench.html    two of them, with pictures
+  joint bench joints/l1.toml --json -         a joint from a file, figures as JSON
+  joint bench --document docs/budget.md       rewrites the comparison in that file
+
+Error is that of the mesh deflections (RMS over their standard deviation), the worst over 8 phases of the
+excitation; where single meshes rattle without rule, that of the link angle over the lost motion, in windows:
+wherever torques jump, every method is put back into the reference's state.
+Instructions are counted exactly on the emulated Cortex-M4F; host times are processor time of one process.")]
+pub struct Arguments {
+    /// Joint file (TOML) or preset to compare on, in place of the named cases
+    #[arg(value_name = "FILE")]
+    file: Option<PathBuf>,
+    /// Named cases, in place of all: A, Q, R, B, F, L
+    #[arg(long, value_name = "KEYS", value_delimiter = ',', conflicts_with = "file")]
+    case: Vec<String>,
+    /// Leaves out the host libraries
+    #[arg(long)]
+    no_libraries: bool,
+    /// Writes all figures as JSON ("-" is standard output, in place of the tables)
+    #[arg(long, value_name = "OUT")]
+    json: Option<PathBuf>,
+    /// Writes a page with pictures of error against cost
+    #[arg(long, value_name = "OUT")]
+    html: Option<PathBuf>,
+    /// Writes the comparison into this Markdown file, between its two marks
+    #[arg(long, value_name = "FILE")]
+    document: Option<PathBuf>,
+}
+
+/// Everything found.
+#[derive(Debug, Clone, Serialize)]
+pub struct Figures {
+    /// Where the figures come from.
+    pub origin: Origin,
+    /// Cases.
+    pub cases: Vec<lineup::CaseFigures>,
+    /// Fixed-step methods: error and instructions.
+    pub methods: Vec<lineup::Entry>,
+    /// Instructions at equal error.
+    pub at_equal_error: Vec<verdicts::AtError>,
+    /// Robot joints: every method at the same cost.
+    pub in_a_sample: Vec<in_a_sample::InASample>,
+    /// Least error in half a board.
+    pub in_budget: Vec<verdicts::InBudget>,
+    /// f32 beside f64.
+    pub rounding: Vec<verdicts::Rounding>,
+    /// Host times, unless left out.
+    pub host: Option<libraries::Times>,
+    /// Host times at equal error.
+    pub host_at_equal_error: Vec<verdicts::AtError>,
+}
+
+/// Where figures come from.
+#[derive(Debug, Clone, Serialize)]
+pub struct Origin {
+    /// Commit of the sources.
+    pub commit: String,
+    /// Date.
+    pub date: String,
+    /// Compiler of the image.
+    pub compiler: String,
+    /// Flags of the image.
+    pub flags: String,
+    /// Emulator and machine.
+    pub emulator: String,
+    /// The host's processor.
+    pub host: String,
+}
+
+/// Compares.
+pub fn run(arguments: &Arguments) -> Outcome<()> {
+    let wanted = [("json", &arguments.json), ("html", &arguments.html), ("document", &arguments.document)];
+    let read: Vec<&Path> = arguments.file.as_deref().into_iter().collect();
+    folder::check_files(&wanted.map(|(option, file)| (option, file.as_deref())), &read)?;
+    arguments.document.as_deref().map_or(Ok(()), |document| document::read(document).map(drop))?;
+    let progress = Progress::new();
+    let figures = interruption::explain(gather(arguments, &progress));
+    progress.clear();
+    let figures = figures?;
+    if let Some(path) = &arguments.html {
+        write(path, &page::render(&figures))?;
+    }
+    if let Some(path) = &arguments.document {
+        document::update(path, &figures)?;
+    }
+    let Some(path) = &arguments.json else { return output::print(&table::layout(&figures, table::Detail::Steps)) };
+    let json = output::json("figures", &figures)?;
+    if path.as_os_str() == "-" {
+        return output::print(&json);
+    }
+    write(path, &json)?;
+    output::print(&table::layout(&figures, table::Detail::Steps))
+}
+
+fn gather(arguments: &Arguments, progress: &Progress) -> Outcome<Figures> {
+    let cases = cases(arguments)?;
+    let keys: Vec<String> = cases.iter().map(|case| case.key.clone()).collect();
+    let say = |line: &str| progress.say(line);
+    progress.stage("preparing the toolchain");
+    let toolchain = Toolchain::prepare(&say)?;
+    let emulator = emulator::ensure(&say)?;
+    let (cases, methods) = lineup::run(cases, &toolchain, progress, &say)?;
+    progress.stage("host libraries");
+    // They take the named cases only: a program of its own knows these.
+    let host = match arguments.no_libraries || arguments.file.is_some() {
+        true => None,
+        false => Some(libraries::run(&keys, &say)?),
+    };
+    Ok(Figures {
+        origin: document::origin(&toolchain, emulator),
+        at_equal_error: verdicts::at_equal_error(&methods),
+        in_a_sample: in_a_sample::in_a_sample(&cases, &methods),
+        in_budget: verdicts::in_budget(&methods),
+        rounding: verdicts::rounding(&methods),
+        host_at_equal_error: host.as_ref().map(|host| verdicts::host_at_equal_error(&host.times)).unwrap_or_default(),
+        cases,
+        methods,
+        host,
+    })
+}
+
+/// The cases asked for.
+fn cases(arguments: &Arguments) -> Outcome<Vec<Case>> {
+    if let Some(file) = &arguments.file {
+        return Ok(vec![catalogue::of_joint(&named::load(file)?.file.parameters)]);
+    }
+    let all = catalogue::cases();
+    let known = |key: &String| all.iter().any(|case| case.key == *key);
+    if let Some(unknown) = arguments.case.iter().find(|key| !known(key)) {
+        let names: Vec<&str> = all.iter().map(|case| case.key.as_str()).collect();
+        return Err(Failure::new(format!("--case {unknown}: there is no such case"))
+            .with_help(format!("cases are {}; a joint file is named without --case", names.join(", "))));
+    }
+    let wanted = |case: &Case| arguments.case.is_empty() || arguments.case.contains(&case.key);
+    Ok(all.into_iter().filter(wanted).collect())
+}
+
+fn write(path: &Path, text: &str) -> Outcome<()> {
+    fs::write(path, text).map_err(|error| {
+        Failure::new(format!("cannot write {}: {error}", path.display()))
+            .with_help("name a file in a folder that exists and can be written to")
+    })
+}

@@ -1,0 +1,11 @@
+//! `joint bench` as a program of its own, which the host command starts through cargo.
+
+use std::process::ExitCode;
+
+use benchmark::Arguments;
+use clap::{Args, Command, FromArgMatches};
+
+fn main() -> ExitCode {
+    let command = Arguments::augment_args(Command::new("bench").bin_name("joint bench").about(benchmark::ABOUT));
+    report::command_line::main(command, Arguments::from_arg_matches, benchmark::run)
+}

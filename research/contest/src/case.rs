@@ -1,0 +1,173 @@
+//! A case: a joint, where it starts, what torques act, and what of its motion counts. Which cases there are is said in
+//! `catalogue`.
+
+use model_core::joint::{Excitation, JointParameters};
+use model_core::mesh::{MESH_KINDS, MeshKind, MeshPhases};
+use reference::joint::{RelativeState, Start};
+use reference::scenarios::Scenario;
+use reference::scenarios::case_r::{CaseR, TICK_RATE};
+use std::f64::consts::TAU;
+
+/// Torques from one tick on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Segment {
+    /// First tick that they act in.
+    pub from_tick: u64,
+    /// On the sun [N m].
+    pub drive: f64,
+    /// Braking the link [N m].
+    pub load: f64,
+}
+
+/// What counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Measure {
+    /// Every mesh's deflection: RMS error over the standard deviation.
+    Deflections,
+    /// The link's angle: RMS error over the lost motion. Where single meshes rattle without rule.
+    LinkAngle,
+}
+
+/// A case.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Case {
+    /// Short name: one word.
+    pub key: String,
+    /// What happens, in a line.
+    pub title: String,
+    /// The joint.
+    pub joint: JointParameters,
+    /// Its state at time zero.
+    pub start: Start,
+    /// Torques, in order.
+    pub torques: Vec<Segment>,
+    /// Ticks of `torques` in a second [Hz]: a method's rate must be a multiple of it where torques change.
+    pub tick_rate: u32,
+    /// Length in these ticks.
+    pub ticks: u64,
+    /// Samples in a second [Hz].
+    pub sample_rate: u32,
+    /// First moment that counts [s].
+    pub counts_from: f64,
+    /// First tick of every part of which the largest mesh force is compared.
+    pub parts: Vec<u64>,
+    /// Ticks at which a method is put back into the reference's state: a motion that is chaotic in the long run is judged
+    /// in windows. Only where the carrier's angle makes the mesh phase.
+    pub restarts: Vec<u64>,
+    /// What counts.
+    pub measure: Measure,
+}
+
+impl Case {
+    /// A scenario of which all deflections count from a moment [s] on.
+    pub fn of_scenario(key: &str, title: &str, scenario: Scenario, sample_rate: u32, counts_from: f64) -> Self {
+        Self {
+            key: key.into(),
+            title: title.into(),
+            start: scenario.start,
+            torques: scenario
+                .torques
+                .iter()
+                .map(|s| Segment { from_tick: s.from_tick, drive: s.drive_torque, load: s.load_torque })
+                .collect(),
+            joint: scenario.joint,
+            tick_rate: scenario.tick_rate,
+            ticks: scenario.ticks,
+            sample_rate,
+            counts_from,
+            parts: vec![0],
+            restarts: Vec::new(),
+            measure: Measure::Deflections,
+        }
+    }
+
+    /// The motion of a robot joint.
+    pub fn of_robot_joint(key: &str, title: &str, case: CaseR) -> Self {
+        let mut torques: Vec<Segment> = Vec::new();
+        for (tick, [drive, load]) in case.torques.iter().enumerate() {
+            if torques.last().is_none_or(|last| (last.drive, last.load) != (*drive, *load)) {
+                torques.push(Segment { from_tick: tick as u64, drive: *drive, load: *load });
+            }
+        }
+        Self {
+            key: key.into(),
+            title: title.into(),
+            ticks: case.ticks() as u64,
+            parts: case.parts.iter().map(|part| part.first as u64).collect(),
+            restarts: case.windows.iter().map(|first| *first as u64).filter(|first| *first > 0).collect(),
+            joint: case.joint,
+            start: Start::Still,
+            torques,
+            tick_rate: TICK_RATE,
+            sample_rate: TICK_RATE,
+            counts_from: 0.0,
+            measure: Measure::LinkAngle,
+        }
+    }
+
+    /// Length [s].
+    pub fn duration(&self) -> f64 {
+        self.ticks as f64 / f64::from(self.tick_rate)
+    }
+
+    /// Lost motion at the link [rad].
+    pub fn lost_motion(&self) -> f64 {
+        let least = |kind: MeshKind| self.joint.mesh(kind).half_backlash.iter().copied().fold(f64::INFINITY, f64::min);
+        MESH_KINDS.into_iter().map(least).sum::<f64>() / self.joint.geometry.carrier_base_radius()
+    }
+
+    /// Its start with the sun displaced by a part of b_c.
+    pub fn moved_start(&self, part: f64) -> Start {
+        let by = part * self.joint.characteristic_length;
+        let mut start = match &self.start {
+            Start::Relative(start) => start.clone(),
+            Start::Still => {
+                let mut start = RelativeState::centred(self.joint.geometry.planets);
+                for planet in 0..self.joint.geometry.planets {
+                    let (sine, cosine) = self.joint.error_phase(MeshKind::SunPlanet, planet).sin_cos();
+                    let amplitude = self.joint.sun_planet.transmission_error[planet];
+                    start.sun_planet[planet] = -amplitude * sine;
+                    start.sun_planet_rate[planet] = -amplitude * cosine * self.phase_rate(0.0);
+                }
+                start
+            }
+        };
+        start.sun_planet.iter_mut().for_each(|planet| *planet += by);
+        start.gap += by;
+        Start::Relative(start)
+    }
+
+    /// Rate of the mesh phase at a carrier speed [rad/s].
+    fn phase_rate(&self, carrier_speed: f64) -> f64 {
+        match self.joint.excitation {
+            Excitation::Time { mesh_frequency } => mesh_frequency,
+            Excitation::Angle => f64::from(self.joint.geometry.ring_teeth) * carrier_speed,
+        }
+    }
+
+    /// The same with all mesh phases further on by so many periods. The bodies start where they did.
+    pub fn shifted(&self, periods: f64) -> Self {
+        let mut shifted = self.clone();
+        for mesh in [&mut shifted.joint.sun_planet, &mut shifted.joint.ring_planet] {
+            let by = TAU * periods;
+            match &mut mesh.phases {
+                MeshPhases::Given { stiffness, error } => stiffness.iter_mut().chain(error).for_each(|p| *p += by),
+                MeshPhases::FromTeeth { stiffness, error } => {
+                    *stiffness += by;
+                    *error += by;
+                }
+            }
+        }
+        if let Start::Relative(start) = &mut shifted.start {
+            let rate = self.phase_rate(start.rigid_speed);
+            for planet in 0..self.joint.geometry.planets {
+                let amplitude = self.joint.sun_planet.transmission_error[planet];
+                let [before, after] =
+                    [&self.joint, &shifted.joint].map(|joint| joint.error_phase(MeshKind::SunPlanet, planet).sin_cos());
+                start.sun_planet[planet] += amplitude * (before.0 - after.0);
+                start.sun_planet_rate[planet] += amplitude * rate * (before.1 - after.1);
+            }
+        }
+        shifted
+    }
+}

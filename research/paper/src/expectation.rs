@@ -1,0 +1,76 @@
+//! Classes that a user asks the attractors to have (`--expect 1,1,3,chaos`), and what is said when one has another.
+
+use super::page::micrometres;
+use super::record::{AttractorRecord, ClassRecord};
+use report::failure::{Failure, Outcome};
+
+/// What an attractor must be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Expectation {
+    /// Of this period.
+    Period(usize),
+    /// Chaotic.
+    Chaos,
+}
+
+/// Reads as many expectations as there are half-backlashes.
+pub fn list(text: &str, count: usize) -> Outcome<Vec<Expectation>> {
+    let failed = |what: String| {
+        let help = "write a period or the word chaos for each half-backlash, such as --expect 1,1,3,chaos";
+        Failure::new(format!("--expect {text}: {what}")).with_help(help)
+    };
+    let one = |part: &str| match (part.trim(), part.trim().parse::<usize>()) {
+        ("chaos", _) => Ok(Expectation::Chaos),
+        (_, Ok(period)) if period > 0 => Ok(Expectation::Period(period)),
+        (other, _) => Err(failed(format!("`{other}` is neither a period nor `chaos`"))),
+    };
+    let expected: Vec<Expectation> = text.split(',').map(one).collect::<Outcome<_>>()?;
+    if expected.len() != count {
+        return Err(failed(format!("{} classes for {count} half-backlashes", expected.len())));
+    }
+    Ok(expected)
+}
+
+impl Expectation {
+    fn holds(self, class: ClassRecord) -> bool {
+        match self {
+            Self::Period(period) => class == ClassRecord::Periodic(period),
+            Self::Chaos => class == ClassRecord::Chaotic,
+        }
+    }
+}
+
+/// Fails at the first attractor of a joint that is not what was asked for.
+pub fn judge(joint: &str, expected: &[Expectation], attractors: &[AttractorRecord]) -> Outcome<()> {
+    let Some((expectation, found)) = expected.iter().zip(attractors).find(|(e, found)| !e.holds(found.class)) else {
+        return Ok(());
+    };
+    let asked = match expectation {
+        Expectation::Period(period) => format!("period {period}"),
+        Expectation::Chaos => "chaos".to_owned(),
+    };
+    let message = format!(
+        "{joint}: at b = {} um {asked} was asked for, and the motion from rest settles on {} \
+         (largest Lyapunov exponent {:+.4} per tau)",
+        micrometres(found.half_backlash_m),
+        found.class,
+        found.exponent_by_tangent_vector
+    );
+    let help =
+        "the bifurcation diagram shows which half-backlashes have which class; the report is written all the same";
+    Err(Failure::new(message).with_help(help))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn expectations_are_as_many_as_half_backlashes() {
+        let read = list("1,1,3,chaos", 4).expect("four classes");
+        assert_eq!(read, [Expectation::Period(1), Expectation::Period(1), Expectation::Period(3), Expectation::Chaos]);
+        for (text, count) in [("1,1,3,chaos", 3), ("0", 1), ("order", 1), ("", 1), ("-1", 1)] {
+            assert!(list(text, count).expect_err(text).help().is_some());
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! What a study leaves on disk: report, record, pictures and tables in one folder. A folder that cannot be written is
+//! found before anything is computed; each file is written whole or not at all.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use super::page;
+use super::pictures::{self, Picture};
+use super::record::{ClassRecord, Reading, StudyRecord};
+use report::failure::{Failure, Outcome};
+use report::folder;
+use report::folder::file_part;
+use report::shell::standalone;
+use report::write::write_text;
+
+/// Where a study's files go.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Files {
+    folder: PathBuf,
+    json: Option<PathBuf>,
+}
+
+impl Files {
+    /// Makes the folder and tries to write to it; `read` is what the study is made of.
+    pub fn prepare(folder: Option<&Path>, json: Option<&Path>, joint: &str, read: &[&Path]) -> Outcome<Self> {
+        folder::check_files(&[("json", json)], read)?;
+        let folder = folder::prepare(folder, "paper", joint)?;
+        Ok(Self { folder, json: json.map(Path::to_owned) })
+    }
+
+    /// Writes everything; returns where the report is.
+    pub fn write(&self, record: &StudyRecord) -> Outcome<PathBuf> {
+        let text = serde_json::to_string(record)
+            .map(|json| json + "\n")
+            .map_err(|error| Failure::new(format!("the study cannot be written as JSON: {error}")))?;
+        // What was asked for by name comes first: nothing after it can cost it.
+        if let Some(json) = &self.json {
+            write_text(json, &text)?;
+        }
+        self.put("study.json", &text)?;
+        for (name, table) in tables(record) {
+            self.put(&format!("{name}.csv"), &table)?;
+        }
+        for Picture { name, figure } in all_pictures(record) {
+            self.put(&format!("{name}.svg"), &standalone(&figure.to_svg()))?;
+        }
+        self.put("report.html", &page::render(record))?;
+        Ok(self.folder.join("report.html"))
+    }
+
+    fn put(&self, name: &str, text: &str) -> Outcome<()> {
+        write_text(&self.folder.join(name), text)
+    }
+}
+
+fn all_pictures(record: &StudyRecord) -> Vec<Picture> {
+    let mut all = vec![pictures::stiffness(record)];
+    all.extend(pictures::dead_zone(record));
+    for reading in &record.readings {
+        all.extend(reading.attractors.iter().flat_map(|attractor| pictures::regime(reading, attractor)));
+        all.extend(reading.sweeps.iter().map(|sweep| pictures::diagram(reading, sweep)));
+    }
+    all
+}
+
+/// Name and text of every table.
+fn tables(record: &StudyRecord) -> Vec<(String, String)> {
+    let mut tables =
+        vec![("attractors".to_owned(), attractors(&record.readings)), dead_zone(record), stiffness(record)];
+    for reading in &record.readings {
+        let joint = file_part(&reading.joint);
+        tables.push((format!("poincare-points-{joint}"), poincare(reading)));
+        for sweep in &reading.sweeps {
+            let mut text = "half_backlash_um,class,period,exponent,x_sp\n".to_owned();
+            for point in &sweep.points {
+                let (class, period) = class_columns(point.class);
+                for x_sp in &point.x_sp {
+                    // Writing to a string cannot fail.
+                    let b = micrometres(point.half_backlash_m);
+                    let _ = writeln!(text, "{b},{class},{period},{:.6},{x_sp}", point.exponent);
+                }
+            }
+            tables.push((format!("bifurcation-{joint}-{}", sweep.start), text));
+        }
+    }
+    tables
+}
+
+/// Typed in micrometres, and given back without the noise of the way to metres.
+fn micrometres(length: f64) -> f64 {
+    (length * 1e12).round() / 1e6
+}
+
+fn class_columns(class: ClassRecord) -> (&'static str, String) {
+    match class {
+        ClassRecord::Periodic(period) => ("periodic", period.to_string()),
+        ClassRecord::Chaotic => ("chaotic", String::new()),
+        ClassRecord::Unsettled => ("unsettled", String::new()),
+    }
+}
+
+fn attractors(readings: &[Reading]) -> String {
+    let mut text = "joint,half_backlash_um,class,period,distinct_points,points_looked_at,exponent_by_tangent_vector,\
+                    exponent_by_two_trajectories,exponent_between_planets,non_fundamental_ratio,peak_to_peak,\
+                    drive_side_percent,separated_percent,back_side_percent,reference_distance\n"
+        .to_owned();
+    let optional = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:.6e}"));
+    for reading in readings {
+        for found in &reading.attractors {
+            let (class, period) = class_columns(found.class);
+            let [drive, separated, back] = found.contact_percent;
+            let _ = writeln!(
+                text,
+                "{},{},{class},{period},{},{},{:.6},{:.6},{},{:.6},{:.6},{drive:.3},{separated:.3},{back:.3},{}",
+                reading.joint,
+                micrometres(found.half_backlash_m),
+                found.distinct_points,
+                found.points_looked_at,
+                found.exponent_by_tangent_vector,
+                found.exponent_by_two_trajectories,
+                optional(found.exponent_between_planets),
+                found.non_fundamental_ratio,
+                found.peak_to_peak,
+                optional(found.reference_distance),
+            );
+        }
+    }
+    text
+}
+
+fn poincare(reading: &Reading) -> String {
+    let mut text = "half_backlash_um,x_sp,x_sc,x_sp_rate,x_sc_rate\n".to_owned();
+    for found in &reading.attractors {
+        for [x_sp, x_sc, x_sp_rate, x_sc_rate] in &found.poincare_points {
+            let b = micrometres(found.half_backlash_m);
+            let _ = writeln!(text, "{b},{x_sp:.9},{x_sc:.9},{x_sp_rate:.9},{x_sc_rate:.9}");
+        }
+    }
+    text
+}
+
+fn dead_zone(record: &StudyRecord) -> (String, String) {
+    let mut text = "sharpness,largest_error_corrected,largest_error_printed\n".to_owned();
+    for error in &record.dead_zone.errors {
+        let _ = writeln!(text, "{:.6},{:.6e},{:.6e}", error.sharpness, error.corrected, error.printed);
+    }
+    ("dead-zone-error".to_owned(), text)
+}
+
+fn stiffness(record: &StudyRecord) -> (String, String) {
+    let wave = &record.stiffness;
+    let mut text = "phase_periods,rectangular,first_harmonic,eight_harmonics\n".to_owned();
+    for (index, phase) in wave.phase.iter().enumerate() {
+        let values = [wave.rectangular[index], wave.first_harmonic[index], wave.eight_harmonics[index]];
+        let _ = writeln!(text, "{phase:.6},{:.6},{:.6},{:.6}", values[0], values[1], values[2]);
+    }
+    ("stiffness".to_owned(), text)
+}

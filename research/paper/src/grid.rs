@@ -1,0 +1,93 @@
+//! Lists and grids of half-backlash as they are typed: `0,10,60,120` and `0:150:0.5`, in micrometres. What is computed
+//! at them is the study's business.
+
+use report::failure::{Failure, Outcome};
+
+/// Beyond this no one waits for a diagram, and no picture could show it.
+const MOST_POINTS: f64 = 20_000.0;
+
+/// More attractors than this make no report.
+const MOST_VALUES: usize = 24;
+
+/// No gear has more backlash than this [um].
+const GREATEST: f64 = 10_000.0;
+
+/// Micrometres in a metre: dividing by it gives the number nearest to what was typed, multiplying by 1e-6 would not.
+const MICROMETRES: f64 = 1e6;
+
+/// `0,10,60,120` [um] in metres.
+pub fn list(text: &str) -> Outcome<Vec<f64>> {
+    let failed = |what: String| {
+        Failure::new(format!("--b {text}: {what}"))
+            .with_help("write values of half-backlash in um, such as --b 0,10,60,120")
+    };
+    let values: Vec<f64> =
+        text.split(',').map(|part| value(part).map(|b| b / MICROMETRES).map_err(failed)).collect::<Outcome<_>>()?;
+    if values.len() > MOST_VALUES {
+        return Err(failed(format!("{} values, and a report has room for {MOST_VALUES}", values.len())));
+    }
+    Ok(values)
+}
+
+/// `0:150:0.5` [um] in metres, both ends included.
+pub fn grid(text: &str) -> Outcome<Vec<f64>> {
+    let failed = |what: String| {
+        let help = "write from:to:step of half-backlash in um, such as --grid 0:150:0.5";
+        Failure::new(format!("--grid {text}: {what}")).with_help(help)
+    };
+    let parts: Vec<&str> = text.split(':').collect();
+    let [from, to, step] = parts[..] else { return Err(failed("not of the form from:to:step".to_owned())) };
+    let [from, to, step] = [value(from).map_err(failed)?, value(to).map_err(failed)?, value(step).map_err(failed)?];
+    if step == 0.0 || to < from {
+        return Err(failed("there is no point in it".to_owned()));
+    }
+    // A step that divides the range on paper must do so here.
+    let steps = ((to - from) / step + 1e-9).floor();
+    if steps + 1.0 > MOST_POINTS {
+        return Err(failed(format!("{:.0} points, and at most {MOST_POINTS} can be shown", steps + 1.0)));
+    }
+    Ok((0..=steps as u32).map(|index| (from + f64::from(index) * step) / MICROMETRES).collect())
+}
+
+/// One value in micrometres.
+fn value(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(value) if value.is_finite() && value < 0.0 => Err(format!("`{}` is negative", text.trim())),
+        Ok(value) if value <= GREATEST => Ok(value),
+        Ok(value) if value > GREATEST => Err(format!("`{}` um is more than any gear's backlash", text.trim())),
+        _ => Err(format!("`{}` is not a number", text.trim())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_grid_has_both_its_ends() {
+        let grid = grid("0:150:0.5").expect("a good grid");
+        assert_eq!(grid.len(), 301);
+        assert!((grid[300] - 150e-6).abs() < 1e-15);
+        assert_eq!(super::grid("60:60:1").expect("one point").len(), 1);
+    }
+
+    #[test]
+    fn what_is_no_grid_is_refused_with_the_mend() {
+        for text in
+            ["0:150:0", "150:0:1", "0:150:-1", "0:150", "0:150:0.5:1", "a:b:c", "0:150:1e-9", "0:nan:1", "0:1e9:1"]
+        {
+            let failure = grid(text).expect_err(text);
+            assert!(failure.message().contains(text) && failure.help().is_some(), "{failure}");
+            assert_eq!(failure.exit_code(), 2);
+        }
+        assert!(grid("0:150:0.000001").expect_err("too many").message().contains("150000001 points"));
+    }
+
+    #[test]
+    fn what_is_no_list_is_refused_with_the_mend() {
+        assert_eq!(list("0, 10,60").expect("a good list").len(), 3);
+        for text in ["", "1,,2", "-1", "inf", "1;2", &["1"; 25].join(",")] {
+            assert!(list(text).expect_err(text).help().is_some());
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! `joint paper`: redoes the study of He, Jia, Chen and Sun (2015), or the same study of another joint: stiffness wave,
+//! dead zone, attractors by backlash, bifurcation diagram. The numerics are in `numerics`.
+//!
+//! `plan` finds everything that is wrong with the request, `files` that the report can be written; `study` computes,
+//! `witness` asks a second integrator, `known` judges, `pictures` and `page` show, `table` prints.
+
+mod conclusion;
+mod dead_zone;
+mod expectation;
+mod files;
+mod grid;
+mod known;
+pub mod numerics;
+mod page;
+mod pictures;
+mod plan;
+mod progress;
+mod record;
+#[cfg(test)]
+mod schema;
+mod stiffness;
+mod study;
+mod table;
+mod windows;
+mod witness;
+
+use std::path::Path;
+
+use files::Files;
+pub use plan::{Arguments, Plan, StartChoice, Subject, SweepStart};
+pub use progress::Progress;
+pub use record::{
+    AttractorRecord, ClassRecord, ClassWindow, DeadZoneError, DeadZoneFigure, History, Identity, Reading,
+    SCHEMA_VERSION, Smoothed, SpectrumRecord, StiffnessFigure, StudyRecord, Sweep, SweepPoint,
+};
+
+use report::checks::all_hold;
+use report::failure::Outcome;
+use report::provenance;
+use report::{interruption, output};
+
+/// What the command does, in a line of its help.
+pub const ABOUT: &str = "Redo the paper, or the same study of another joint: attractors, bifurcation diagram, figures";
+
+/// Redoes the study; succeeds only if every check held.
+pub fn run(arguments: &Arguments) -> Outcome<()> {
+    interruption::watch()?;
+    let plan = Plan::new(arguments)?;
+    let read: Vec<&Path> = arguments.file.as_deref().into_iter().collect();
+    let files = Files::prepare(arguments.out.as_deref(), arguments.json.as_deref(), plan.name(), &read)?;
+    let progress = Progress::new();
+    let studied = study(&plan, &progress);
+    progress.clear();
+    let record = interruption::explain(studied)?;
+    let report = files.write(&record)?;
+    output::print(&table::table(&record))?;
+    output::print(&format!("report: {}\n", report.display()))?;
+    if let Some(expected) = &plan.expected {
+        for reading in &record.readings {
+            expectation::judge(&reading.joint, expected, &reading.attractors)?;
+        }
+    }
+    all_hold(&record.checks, "the report shows each with its figure and bound")
+}
+
+/// Computes everything that a plan asks for, and judges it.
+pub fn study(plan: &Plan, progress: &Progress) -> Outcome<StudyRecord> {
+    let date = provenance::date();
+    let readings = study::run(plan, progress)?;
+    let dead_zone = dead_zone::figure();
+    let checks = known::checks(plan, &readings, &dead_zone);
+    Ok(StudyRecord {
+        schema_version: SCHEMA_VERSION,
+        identity: Identity {
+            joint: plan.name().to_owned(),
+            replay: plan.replay.clone(),
+            git_commit: provenance::git_commit(),
+            host: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
+            host_version: env!("CARGO_PKG_VERSION").to_owned(),
+            date,
+        },
+        readings,
+        stiffness: stiffness::figure(&plan.subjects[0].parameters),
+        dead_zone,
+        checks,
+    })
+}

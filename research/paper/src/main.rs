@@ -1,0 +1,11 @@
+//! `joint paper` as a program of its own, which the host command starts through cargo.
+
+use std::process::ExitCode;
+
+use clap::{Args, Command, FromArgMatches};
+use paper::Arguments;
+
+fn main() -> ExitCode {
+    let command = Arguments::augment_args(Command::new("paper").bin_name("joint paper").about(paper::ABOUT));
+    report::command_line::main(command, Arguments::from_arg_matches, paper::run)
+}

@@ -1,0 +1,34 @@
+//! Fig. 3: the rectangular wave, its first harmonic and its first eight.
+
+use super::{plain, points};
+use crate::record::StiffnessFigure;
+use report::plot::ink::Ink;
+use report::plot::mark::Mark;
+use report::plot::panel::Panel;
+use report::plot::{Figure, HorizontalAxis, Shape};
+
+/// The picture.
+pub fn figure(data: &StiffnessFigure) -> Figure {
+    let line = |values: &[f64], ink, label: &str, width| Mark::Line {
+        points: points(&data.phase, values),
+        ink,
+        label: label.to_owned(),
+        width,
+    };
+    let marks = vec![
+        line(&data.eight_harmonics, Ink::Reference, "first eight harmonics", 1.6),
+        line(&data.rectangular, Ink::Second, "rectangular wave", 1.6),
+        line(&data.first_harmonic, Ink::First, "first harmonic: eq. 7", 2.2),
+    ];
+    let panel = Panel { height: 240, ..Panel::lines("Mesh stiffness over its mean", plain("K / Kₘ"), marks) };
+    Figure {
+        note: String::new(),
+        title: "Mesh stiffness over two mesh periods".into(),
+        axis: "mesh periods".into(),
+        unit: plain(""),
+        range: (0.0, data.phase.last().copied().unwrap_or(1.0)),
+        runs: HorizontalAxis::Linear,
+        shape: Shape::default(),
+        panels: vec![panel],
+    }
+}

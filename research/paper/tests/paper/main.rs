@@ -1,0 +1,38 @@
+//! The study of the paper, in short: set P's known numbers, window edges, exponents by two ways and by closed form, a
+//! second integrator, and what users get wrong. The whole study with its bounds is `joint paper` itself.
+
+mod command;
+mod regimes;
+mod windows;
+
+use paper::numerics::attractor::{Attractor, Effort, find};
+use paper::numerics::motion::Motion;
+use paper::{Arguments, Plan, Subject};
+
+/// Long enough for classes and points; exponents of periodic motion come to 1e-3.
+const SHORT: Effort = Effort { transient: 200, patience: 500, alignment: 40, points: 150, chaotic_periods: 150 };
+
+#[derive(clap::Parser)]
+struct Line {
+    #[command(flatten)]
+    arguments: Arguments,
+}
+
+/// What a command line asks for.
+fn plan(words: &[&str]) -> report::failure::Outcome<Plan> {
+    let line = <Line as clap::Parser>::try_parse_from(["paper"].iter().chain(words)).expect("a command line");
+    Plan::new(&line.arguments)
+}
+
+/// A preset or a file, as the study has it.
+fn subject(file: &str, omega: Option<&str>) -> Subject {
+    let mut words = vec![file];
+    words.extend(omega.iter().flat_map(|omega| ["--omega", omega]));
+    plan(&words).expect("a good plan").subjects.remove(0)
+}
+
+/// What the motion from rest settles on at a half-backlash [um].
+fn from_rest(subject: &Subject, half_backlash: f64, effort: &Effort) -> Attractor {
+    let system = subject.system(half_backlash / 1e6).expect("it can be studied");
+    find(&mut Motion::from_rest(&system), effort).expect("it runs")
+}

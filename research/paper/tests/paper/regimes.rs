@@ -1,0 +1,175 @@
+//! The four regimes of set P in both readings of Table 1, and what is known of exponents from elsewhere.
+
+use model_core::mesh::StiffnessWave;
+use paper::numerics::attractor;
+use paper::numerics::attractor::{Class, Effort, by_two_trajectories, find};
+use paper::numerics::motion::Motion;
+use paper::numerics::signal::Signal;
+use paper::numerics::system::System;
+
+use super::{SHORT, from_rest, plan, subject};
+
+/// Poincare points are known to this, over b_c.
+const POINT: f64 = 1e-3;
+/// Exponents of periodic motion are known to this.
+const PERIODIC: f64 = 0.002;
+/// Exponents of chaos are known to this.
+const CHAOTIC: f64 = 0.01;
+
+/// Two methods on one stretch of motion come to this.
+const METHODS: f64 = 1e-3;
+
+/// Exponents of chaos come to about 0.0014 (one standard deviation).
+const LONG: Effort = Effort { chaotic_periods: 9000, ..SHORT };
+
+fn distance(one: &[f64; 4], other: &[f64; 4]) -> f64 {
+    one.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+#[test]
+fn set_p_has_its_four_regimes_with_their_points_and_exponents() {
+    let paper = subject("paper", None);
+    let known: [(f64, usize, f64, &[[f64; 4]]); 3] = [
+        (0.0, 1, -0.0324, &[[-0.0678, 0.8675, -11.5051, -5.0495]]),
+        (10.0, 1, -0.0324, &[[0.3748, 1.4129, -9.0687, -2.7137]]),
+        (
+            60.0,
+            3,
+            -0.0319,
+            &[
+                [0.7489, 6.1283, -13.9408, -6.2729],
+                [-6.2003, 0.6379, -4.3947, 0.8576],
+                [6.5018, 10.4328, -2.1416, 3.4190],
+            ],
+        ),
+    ];
+    for (half_backlash, period, exponent, points) in known {
+        let found = from_rest(&paper, half_backlash, &SHORT);
+        assert_eq!(found.class, Class::Periodic(period), "b = {half_backlash}");
+        assert!((found.exponent - exponent).abs() < PERIODIC, "b = {half_backlash}: {}", found.exponent);
+        for point in points {
+            let nearest = found.cycle().iter().map(|other| distance(point, other)).fold(f64::INFINITY, f64::min);
+            assert!(nearest < POINT, "b = {half_backlash}: {nearest} from {point:?}");
+        }
+    }
+    let chaos = from_rest(&paper, 120.0, &LONG);
+    assert_eq!(chaos.class, Class::Chaotic);
+    assert!((chaos.exponent - 0.1402).abs() < CHAOTIC, "{}", chaos.exponent);
+}
+
+#[test]
+fn the_carrier_as_printed_has_the_same_regimes_with_its_own_exponents() {
+    let printed = subject("paper_printed", None);
+    for (half_backlash, period, exponent) in [(0.0, 1, -0.0374), (10.0, 1, -0.0374), (60.0, 3, -0.0371)] {
+        let found = from_rest(&printed, half_backlash, &SHORT);
+        assert_eq!(found.class, Class::Periodic(period), "b = {half_backlash}");
+        assert!((found.exponent - exponent).abs() < PERIODIC, "b = {half_backlash}: {}", found.exponent);
+    }
+    let chaos = from_rest(&printed, 120.0, &LONG);
+    assert_eq!(chaos.class, Class::Chaotic);
+    assert!((chaos.exponent - 0.1410).abs() < CHAOTIC, "{}", chaos.exponent);
+}
+
+#[test]
+fn without_backlash_and_ripple_the_exponent_is_the_slowest_eigenvalue() {
+    let mut linear = subject("paper", None);
+    for mesh in [&mut linear.parameters.sun_planet, &mut linear.parameters.ring_planet] {
+        mesh.stiffness_wave = StiffnessWave::Harmonic { stiffness_ratio: 0.0 };
+    }
+    let found = from_rest(&linear, 0.0, &Effort { points: 600, ..SHORT });
+    // The real part of -0.032282 +- 0.637513i; a turning vector shrinks at that rate on the whole.
+    assert!((found.exponent + 0.032282).abs() < 2e-5, "{}", found.exponent);
+}
+
+#[test]
+fn without_backlash_and_ripple_the_motion_is_the_exact_ellipse() {
+    let mut linear = subject("paper", None);
+    for mesh in [&mut linear.parameters.sun_planet, &mut linear.parameters.ring_planet] {
+        mesh.stiffness_wave = StiffnessWave::Harmonic { stiffness_ratio: 0.0 };
+    }
+    let system = linear.system(0.0).expect("it can be studied");
+    let mut motion = Motion::from_rest(&system);
+    find(&mut motion, &SHORT).expect("it runs");
+    let signal = Signal::record(&mut motion, 1).expect("it runs");
+    // Twice |X_sp| of the complex solve; samples miss the crests by a little.
+    assert!((signal.peak_to_peak() - 2.0 * 5.658641).abs() < 2e-3, "{}", signal.peak_to_peak());
+    assert!(signal.non_fundamental_ratio() < 1e-8, "{}", signal.non_fundamental_ratio());
+}
+
+#[test]
+fn the_period_of_three_hides_from_whole_harmonics_but_not_from_the_rest() {
+    let paper = subject("paper", None);
+    for (half_backlash, periods, ratio, peak_to_peak) in [(10.0, 3, 0.005, 8.961), (60.0, 3, 2.66, 20.021)] {
+        let system = paper.system(half_backlash / 1e6).expect("it can be studied");
+        let mut motion = Motion::from_rest(&system);
+        find(&mut motion, &SHORT).expect("it runs");
+        let signal = Signal::record(&mut motion, periods).expect("it runs");
+        assert!((signal.non_fundamental_ratio() - ratio).abs() < 0.005, "{}", signal.non_fundamental_ratio());
+        assert!((signal.peak_to_peak() - peak_to_peak).abs() < POINT, "{}", signal.peak_to_peak());
+    }
+}
+
+/// Exponent by a tangent vector and by two trajectories, from rest.
+fn both(system: &System, effort: &Effort) -> (f64, f64) {
+    let found = find(&mut Motion::from_rest(system), effort).expect("it runs");
+    (found.exponent, by_two_trajectories(system, &found, effort).expect("it runs"))
+}
+
+#[test]
+fn a_tangent_vector_and_two_trajectories_give_one_exponent() {
+    let paper = subject("paper", None);
+    for half_backlash in [60e-6, 120e-6] {
+        let (tangent, two) = both(&paper.system(half_backlash).expect("it can be studied"), &SHORT);
+        assert!((tangent - two).abs() < METHODS, "{tangent} and {two}");
+    }
+}
+
+#[test]
+fn tangent_vectors_jump_with_the_force_where_teeth_only_push() {
+    // Joint l1 has the damping law `contact`: its force jumps by C d' when teeth meet.
+    let l1 = subject("l1", Some("0.8"));
+    let (tangent, two) = both(&l1.system(60e-6).expect("it can be studied"), &SHORT);
+    assert!((tangent - two).abs() < METHODS, "{tangent} and {two}");
+    let q1 = subject("q1", Some("0.3"));
+    let (tangent, two) =
+        both(&q1.system(40e-6).expect("it can be studied"), &Effort { chaotic_periods: 1000, ..SHORT });
+    assert!(tangent > 0.03, "chaos: {tangent}");
+    assert!((tangent - two).abs() < METHODS, "{tangent} and {two}");
+}
+
+#[test]
+fn planets_in_phase_stay_in_phase_in_chaos_too() {
+    let paper = subject("paper", None);
+    let system = paper.system(120e-6).expect("it can be studied");
+    let mut motion = Motion::from_rest(&system);
+    find(&mut motion, &SHORT).expect("it runs");
+    let exponent = attractor::between_planets(&motion, &SHORT).expect("it runs").expect("planets in phase");
+    assert!((-0.055..-0.03).contains(&exponent), "{exponent}");
+    let mut unequal = paper.clone();
+    unequal.parameters.sun_planet.transmission_error[1] *= 0.9;
+    let system = unequal.system(120e-6).expect("it can be studied");
+    assert_eq!(attractor::between_planets(&Motion::from_rest(&system), &SHORT), Ok(None));
+}
+
+#[test]
+fn what_settles_too_slowly_to_wait_for_is_found_by_newtons_method() {
+    // The link of q1 swings on its compliance for tens of thousands of mesh periods.
+    let q1 = subject("q1", Some("2.1"));
+    let found = from_rest(&q1, 40.0, &SHORT);
+    assert_eq!(found.class, Class::Periodic(1), "exponent {}", found.exponent);
+}
+
+#[test]
+fn an_independent_integrator_finds_the_same_motion() {
+    for words in [
+        &["paper", "--b", "0,60,120", "--grid", "0:0:1"][..],
+        &["l1", "--b", "0,60", "--grid", "0:0:1", "--omega", "0.8"],
+    ] {
+        let plan = plan(words).expect("a good plan");
+        let record = paper::study(&plan, &paper::Progress::new()).expect("it runs");
+        for found in &record.readings[0].attractors {
+            let distance = found.reference_distance.expect("the reference takes this joint");
+            assert!(distance < 1e-8, "{words:?}, b = {}: {distance}", found.half_backlash_m);
+        }
+    }
+}

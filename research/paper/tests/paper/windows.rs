@@ -1,0 +1,56 @@
+//! Where set P changes its class, from rest and carried, and that the number of threads changes nothing.
+
+use paper::numerics::attractor::Class;
+use paper::{ClassRecord, Progress, StudyRecord, study};
+
+use super::{SHORT, from_rest, plan, subject};
+
+#[test]
+fn windows_from_rest_end_where_they_are_known_to() {
+    let paper = subject("paper", None);
+    // One micrometre to either side of every known edge.
+    let known = [
+        (18.0, Class::Periodic(1)),
+        (20.0, Class::Periodic(2)),
+        (33.5, Class::Periodic(2)),
+        (36.0, Class::Chaotic),
+        (40.0, Class::Chaotic),
+        (45.0, Class::Chaotic),
+        (47.5, Class::Periodic(3)),
+        (68.0, Class::Periodic(3)),
+        (70.0, Class::Periodic(6)),
+        (72.0, Class::Chaotic),
+        (150.0, Class::Chaotic),
+    ];
+    for (half_backlash, class) in known {
+        let found = from_rest(&paper, half_backlash, &SHORT);
+        assert_eq!(found.class, class, "b = {half_backlash}, exponent {}", found.exponent);
+    }
+}
+
+fn studied(words: &[&str], threads: usize) -> StudyRecord {
+    let plan = plan(words).expect("a good plan");
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+    let mut record = pool.install(|| study(&plan, &Progress::new())).expect("it runs");
+    record.identity.date.clear();
+    record
+}
+
+#[test]
+fn carried_upward_the_period_of_two_holds_longer_than_from_rest() {
+    let record = studied(&["paper", "--b", "60", "--grid", "30:42:1", "--sweep", "all"], 2);
+    let last_of_two = |start: &str| {
+        let sweep = record.readings[0].sweeps.iter().find(|sweep| sweep.start == start).expect("a sweep");
+        let two = sweep.windows.iter().filter(|window| window.class == ClassRecord::Periodic(2));
+        two.map(|window| window.to_m * 1e6).fold(0.0, f64::max)
+    };
+    assert!((last_of_two("rest") - 34.0).abs() < 1e-6, "{}", last_of_two("rest"));
+    assert!((last_of_two("up") - 40.0).abs() <= 1.0, "{}", last_of_two("up"));
+}
+
+#[test]
+fn the_number_of_threads_changes_nothing() {
+    let words = ["paper_printed", "--b", "60", "--grid", "100:104:1", "--sweep", "all"];
+    let (one, two) = (studied(&words, 1), studied(&words, 2));
+    assert!(one == two, "records differ");
+}

@@ -1,0 +1,196 @@
+//! The crates of the workspace as Cargo knows them, and who among them may not depend on whom. A crate from a registry
+//! cannot depend on one of these, so members and their declared dependencies, whatever the features, are all there is.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use serde_json::Value;
+
+/// All members.
+pub struct Workspace {
+    /// In Cargo's order.
+    pub members: Vec<Member>,
+}
+
+/// A crate of the workspace.
+#[derive(Clone, Debug, Default)]
+pub struct Member {
+    /// Of the package.
+    pub name: String,
+    /// From the workspace's root.
+    pub folder: PathBuf,
+    /// Built by a plain `cargo build`.
+    pub default: bool,
+    /// The members that it depends on.
+    pub imports: Vec<(String, Kind)>,
+    /// Their kinds (`lib`, `bin`, `test`, ...) and root files.
+    pub targets: Vec<(String, PathBuf)>,
+}
+
+/// What a dependency is for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    /// The crate itself.
+    Normal,
+    /// Its build script.
+    Build,
+    /// Its tests and examples.
+    Tests,
+}
+
+impl Member {
+    /// Tests, tolerances, checks: everything under `host-tests/`.
+    pub fn is_test(&self) -> bool {
+        self.folder.starts_with("host-tests")
+    }
+
+    /// Everything under `research/`.
+    pub fn is_research(&self) -> bool {
+        self.folder.starts_with("research")
+    }
+
+    /// What users build on; measuring programs are for this project's own figures.
+    pub fn ships(&self) -> bool {
+        !self.is_test() && !self.is_research() && !self.folder.ends_with("measuring")
+    }
+
+    /// The kind of the target whose root is this file, with a name that tells it from the crate's others.
+    pub fn label(&self, kind: &str, root: &Path) -> String {
+        let stem = root.strip_prefix(&self.folder).unwrap_or(root).with_extension("");
+        format!("{} ({kind} {})", self.name, stem.display())
+    }
+}
+
+impl Workspace {
+    /// Asks Cargo, without the network: the members' own manifests say all.
+    ///
+    /// # Panics
+    /// If Cargo cannot be run or refuses a manifest: there is nothing to check then.
+    pub fn read(root: &Path) -> Self {
+        let cargo = std::env::var_os("CARGO").unwrap_or("cargo".into());
+        let arguments = ["metadata", "--format-version", "1", "--no-deps", "--offline"];
+        let output = Command::new(cargo).args(arguments).current_dir(root).output().expect("cargo runs");
+        assert!(output.status.success(), "cargo metadata: {}", String::from_utf8_lossy(&output.stderr));
+        Self::parse(&serde_json::from_slice(&output.stdout).expect("cargo metadata is JSON"))
+    }
+
+    fn parse(metadata: &Value) -> Self {
+        let list = |value: &Value| value.as_array().cloned().unwrap_or_default();
+        let text = |value: &Value| value.as_str().unwrap_or_default().to_string();
+        let root = PathBuf::from(text(&metadata["workspace_root"]));
+        let relative = |path: &Value| {
+            let path = PathBuf::from(text(path));
+            path.strip_prefix(&root).map(Path::to_path_buf).unwrap_or(path)
+        };
+        let defaults = list(&metadata["workspace_default_members"]);
+        let packages = list(&metadata["packages"]);
+        let names: BTreeSet<String> = packages.iter().map(|package| text(&package["name"])).collect();
+        let import = |dependency: &Value| {
+            let kind = match dependency["kind"].as_str() {
+                Some("dev") => Kind::Tests,
+                Some("build") => Kind::Build,
+                _ => Kind::Normal,
+            };
+            let name = text(&dependency["name"]);
+            (dependency["path"].is_string() && names.contains(&name)).then_some((name, kind))
+        };
+        let target = |target: &Value| (text(&target["kind"][0]), relative(&target["src_path"]));
+        let member = |package: &Value| Member {
+            name: text(&package["name"]),
+            folder: relative(&package["manifest_path"]).with_file_name(""),
+            default: defaults.contains(&package["id"]),
+            // A crate that tests itself with other features depends on itself.
+            imports: list(&package["dependencies"])
+                .iter()
+                .filter_map(import)
+                .filter(|(name, _)| *name != text(&package["name"]))
+                .collect(),
+            targets: list(&package["targets"]).iter().map(target).collect(),
+        };
+        Self { members: packages.iter().map(member).collect() }
+    }
+
+    /// The member of this name.
+    pub fn member(&self, name: &str) -> Option<&Member> {
+        self.members.iter().find(|member| member.name == name)
+    }
+
+    /// `crate`'s whole tree with its tests is without `other`; a missing crate is a finding, as it proves nothing.
+    pub fn independence(&self, name: &str, other: &str) -> Vec<String> {
+        if self.member(name).is_none() || self.member(other).is_none() {
+            return vec![format!("there is no crate {name} or no crate {other}: name them as they are called now")];
+        }
+        let mut ways = vec![vec![name.to_string()]];
+        let mut seen = BTreeSet::new();
+        while let Some(way) = ways.pop() {
+            let last = way.last().expect("a way has a start");
+            if last == other {
+                return vec![format!("{name} must stand without {other}, but depends on it: {}", way.join(" -> "))];
+            }
+            for (next, kind) in self.member(last).map_or(&[][..], |member| &member.imports) {
+                // Tests of a dependency are not in the tree.
+                if (*kind != Kind::Tests || last == name) && seen.insert(next.clone()) {
+                    ways.push([way.clone(), vec![next.clone()]].concat());
+                }
+            }
+        }
+        vec![]
+    }
+
+    /// What ships depends on no test crate and on no research, its own tests aside.
+    pub fn shipped_imports(&self) -> Vec<String> {
+        self.forbidden(
+            |member, kind| member.ships() && kind != Kind::Tests,
+            |other| other.is_test() || other.is_research(),
+            "move what both need into a crate that ships",
+        )
+    }
+
+    /// Nobody depends on the command, not even tests: they use the crates below it.
+    pub fn imports_of_the_command(&self, command: &str) -> Vec<String> {
+        let mend = "move what is needed into the crate that it belongs to, below the command";
+        self.forbidden(|_, _| true, |other| other.name == command, mend)
+    }
+
+    /// What a plain `cargo build` builds is no research, and depends on none.
+    pub fn research_by_default(&self) -> Vec<String> {
+        let itself = self.members.iter().filter(|member| member.default && member.is_research());
+        let mut found: Vec<String> = itself
+            .map(|member| format!("{} is a default member; mend: leave it out of `default-members`", member.name))
+            .collect();
+        let mend = "move the test that needs it into the research crate";
+        found.extend(self.forbidden(|member, _| member.default, Member::is_research, mend));
+        found
+    }
+
+    fn forbidden(
+        &self,
+        who: impl Fn(&Member, Kind) -> bool,
+        whom: impl Fn(&Member) -> bool,
+        mend: &str,
+    ) -> Vec<String> {
+        let mut found = vec![];
+        for member in &self.members {
+            for (name, kind) in &member.imports {
+                if who(member, *kind) && self.member(name).is_some_and(&whom) {
+                    let manifest = member.folder.join("Cargo.toml");
+                    let kind = kind.section();
+                    found.push(format!("{}: {name} in [{kind}]\n  mend: {mend}", manifest.display()));
+                }
+            }
+        }
+        found
+    }
+}
+
+impl Kind {
+    /// Of the manifest.
+    pub fn section(self) -> &'static str {
+        match self {
+            Kind::Normal => "dependencies",
+            Kind::Build => "build-dependencies",
+            Kind::Tests => "dev-dependencies",
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! The table of crates in ARCHITECTURE.md, which says who may import whom, held against Cargo: a Markdown table with
+//! the columns `crate`, what it is, `may import` and `open first`.
+//!
+//! `may import` lists names in backquotes: `` `parameters`, `link` (tests) `` allows `link` to tests only. Words without
+//! backquotes, as in "nothing of ours", are for the reader.
+
+use std::path::Path;
+
+use crate::members::{Kind, Workspace};
+
+/// A row: a crate.
+#[derive(Debug, PartialEq)]
+pub struct Row {
+    /// The first name in backquotes of the first column.
+    pub name: String,
+    /// The crates, and whether they are for tests only.
+    pub may_import: Vec<(String, bool)>,
+    /// A path from the workspace's root.
+    pub open_first: String,
+    /// In the page, from one.
+    pub line: usize,
+}
+
+/// The rows of every such table in a page.
+pub fn rows(page: &str) -> Vec<Row> {
+    let mut rows = vec![];
+    let mut columns = None;
+    for (at, line) in page.lines().enumerate() {
+        let Some(inner) = line.trim().strip_prefix('|') else {
+            columns = None;
+            continue;
+        };
+        let cells: Vec<&str> = inner.trim_end_matches('|').split('|').map(str::trim).collect();
+        let column = |title: &str| cells.iter().position(|cell| cell.to_lowercase() == title);
+        if let (Some(name), Some(import), Some(first)) = (column("crate"), column("may import"), column("open first")) {
+            columns = Some((name, import, first));
+        } else if let Some((name, import, first)) = columns
+            && !cells.iter().all(|cell| cell.chars().all(|sign| "-:".contains(sign)))
+        {
+            let cell = |at: usize| quoted(cells.get(at).unwrap_or(&""));
+            let only = |names: Vec<(String, bool)>| names.into_iter().next().unwrap_or_default().0;
+            rows.push(Row {
+                name: only(cell(name)),
+                may_import: cell(import),
+                open_first: only(cell(first)),
+                line: at + 1,
+            });
+        }
+    }
+    rows
+}
+
+/// Names in backquotes (of a link's text too), each with whether `(tests)` follows.
+fn quoted(cell: &str) -> Vec<(String, bool)> {
+    let parts: Vec<&str> = cell.split('`').collect();
+    let name = |pair: &[&str]| (pair[0].to_string(), pair[1].trim_start().starts_with("(tests)"));
+    parts[1..].chunks_exact(2).map(name).collect()
+}
+
+/// Where page and workspace differ; `exists` tells of a path from the workspace's root.
+pub fn differences(page: &str, workspace: &Workspace, exists: impl Fn(&Path) -> bool) -> Vec<String> {
+    let rows = rows(page);
+    let mut found = vec![];
+    for Row { name, may_import, open_first, line } in &rows {
+        let place = format!("ARCHITECTURE.md:{line}");
+        if workspace.member(name).is_none() {
+            found.push(format!(
+                "{place}: `{name}` is no crate of the workspace\n  mend: remove the row or name it anew"
+            ));
+        }
+        if rows.iter().any(|row| row.name == *name && row.line < *line) {
+            found.push(format!("{place}: `{name}` has a row already\n  mend: remove one"));
+        }
+        for (other, _) in may_import.iter().filter(|(other, _)| workspace.member(other).is_none()) {
+            found.push(format!("{place}: `{name}` may import `{other}`, which is no crate of the workspace"));
+        }
+        if open_first.is_empty() || !exists(Path::new(open_first)) {
+            found.push(format!("{place}: the file to open first, `{open_first}`, does not exist"));
+        }
+    }
+    for member in &workspace.members {
+        let Some(row) = rows.iter().find(|row| row.name == member.name) else {
+            found.push(format!("ARCHITECTURE.md has no row for `{}`\n  mend: say there what it is", member.name));
+            continue;
+        };
+        for (other, kind) in &member.imports {
+            let allows = |(name, tests): &(String, bool)| name == other && (!tests || *kind == Kind::Tests);
+            if !row.may_import.iter().any(allows) {
+                let manifest = member.folder.join("Cargo.toml");
+                let (manifest, section, line) = (manifest.display(), kind.section(), row.line);
+                let mend = "drop the dependency, or move what is needed to where it may be imported from";
+                let text = format!("{manifest}: {other} in [{section}] is not allowed by ARCHITECTURE.md:{line}");
+                found.push(format!("{text}\n  mend: {mend}"));
+            }
+        }
+    }
+    found
+}

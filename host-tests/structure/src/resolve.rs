@@ -1,0 +1,192 @@
+//! From a path to what it names, as the compiler does it: through modules, imports under other names, re-exports and
+//! globs, to the item where it is defined.
+
+use crate::sources::{Binding, Import, Item, Sources, What};
+
+/// What a path names.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Target {
+    /// A module of the target.
+    Module(usize),
+    /// An item of the target; what follows it in the path belongs to it.
+    Item(Item),
+    /// Another crate, the prelude, a local variable, a type parameter.
+    Foreign,
+}
+
+/// Looks names up. `from` is the module that asks: it decides what private names it sees.
+pub struct Resolver<'a> {
+    sources: &'a Sources,
+    from: usize,
+    /// Imports that are being followed, globs with the name that is sought: none is followed within itself.
+    following: Vec<(usize, String)>,
+}
+
+impl<'a> Resolver<'a> {
+    /// Asked from a module of the sources.
+    pub fn new(sources: &'a Sources, from: usize) -> Self {
+        Self { sources, from, following: vec![] }
+    }
+
+    /// All that a path in `module` names: one name can be a module and a function, or two things under two conditions.
+    /// Nothing if it begins in this target and leads nowhere.
+    pub fn resolve(&mut self, module: usize, path: &[String]) -> Vec<Target> {
+        let (mut found, rest) = self.start(module, path);
+        for name in rest {
+            let within = |target| match target {
+                Target::Module(module) => {
+                    let found = self.lookup(module, name);
+                    let here = &self.sources.modules[module];
+                    if found.is_empty() && here.generated {
+                        return vec![Target::Item(Item { holds: true, ..Item::at(name, here.file, module) })];
+                    }
+                    found
+                }
+                Target::Item(item) if item.holds => vec![Target::Item(item)],
+                Target::Item(_) => vec![],
+                Target::Foreign => vec![Target::Foreign],
+            };
+            found = found.into_iter().flat_map(within).collect();
+        }
+        found
+    }
+
+    /// Where a path begins, and what remains of it.
+    fn start<'p>(&mut self, module: usize, path: &'p [String]) -> (Vec<Target>, &'p [String]) {
+        let named = self.sources.named(module);
+        match path[0].as_str() {
+            "crate" => (vec![Target::Module(0)], &path[1..]),
+            "self" => self.above(named, &path[1..]),
+            "super" => self.above(named, path),
+            "" | "Self" => (vec![Target::Foreign], &path[1..]),
+            name => {
+                let mut found = self.in_scope(module, name);
+                // A function does not hide a crate of its name from what begins with it.
+                if path.len() > 1 && found.iter().all(|it| matches!(it, Target::Item(item) if !item.holds)) {
+                    found = vec![Target::Foreign];
+                }
+                (found, &path[1..])
+            }
+        }
+    }
+
+    fn above<'p>(&self, mut module: usize, mut path: &'p [String]) -> (Vec<Target>, &'p [String]) {
+        while path.first().is_some_and(|name| name == "super") {
+            match self.sources.modules[module].parent {
+                Some(parent) => module = self.sources.named(parent),
+                None => return (vec![], path),
+            }
+            path = &path[1..];
+        }
+        (vec![Target::Module(module)], path)
+    }
+
+    /// A first name: in the blocks around, in the module, as a macro of the modules above, or elsewhere.
+    fn in_scope(&mut self, mut module: usize, name: &str) -> Vec<Target> {
+        loop {
+            let found = self.lookup(module, name);
+            let here = &self.sources.modules[module];
+            match here.parent {
+                _ if !found.is_empty() => return found,
+                Some(parent) if here.block => module = parent,
+                _ => break,
+            }
+        }
+        while let Some(parent) = self.sources.modules[module].parent {
+            module = parent;
+            let here = self.sources.modules[module].names.get(name);
+            for Binding { what, .. } in here.into_iter().flatten() {
+                match what {
+                    What::Item(item) if item.is_macro => return vec![Target::Item(item.clone())],
+                    _ => {}
+                }
+            }
+        }
+        vec![Target::Foreign]
+    }
+
+    /// A name as a module has it: bound there, or through its globs.
+    fn lookup(&mut self, module: usize, name: &str) -> Vec<Target> {
+        let here = &self.sources.modules[module];
+        let mut found = vec![];
+        for binding in here.names.get(name).into_iter().flatten() {
+            if binding.public || self.sees(module) {
+                found.extend(self.follow(module, binding));
+            }
+        }
+        // An item shadows what globs bring; a module does not shadow a function.
+        if found.iter().any(|target| !matches!(target, Target::Module(_))) {
+            return found;
+        }
+        let mut foreign = vec![];
+        for glob in &here.globs {
+            if !(glob.public || self.sees(module)) {
+                continue;
+            }
+            for target in self.import(module, glob) {
+                match target {
+                    Target::Module(within) => found.extend(self.once(glob, name, |it| it.lookup(within, name))),
+                    Target::Item(item) if item.variants.iter().any(|it| it == name) => found.push(Target::Item(item)),
+                    Target::Item(_) => {}
+                    Target::Foreign => foreign.push(Target::Foreign),
+                }
+            }
+        }
+        if found.is_empty() { foreign } else { found }
+    }
+
+    fn sees(&self, module: usize) -> bool {
+        self.sources.is_within(self.from, self.sources.named(module))
+    }
+
+    /// Follows an import, unless it is being followed already.
+    fn once<T>(&mut self, import: &Import, name: &str, follow: impl FnOnce(&mut Self) -> Vec<T>) -> Vec<T> {
+        let step = (import.id, name.to_string());
+        if self.following.contains(&step) {
+            return vec![];
+        }
+        self.following.push(step);
+        let found = follow(self);
+        self.following.pop();
+        found
+    }
+
+    fn follow(&mut self, module: usize, binding: &Binding) -> Vec<Target> {
+        match &binding.what {
+            What::Module(module) => vec![Target::Module(*module)],
+            What::Item(item) => vec![Target::Item(item.clone())],
+            What::Import(import) => self.import(module, import),
+        }
+    }
+
+    fn import(&mut self, module: usize, import: &Import) -> Vec<Target> {
+        self.once(import, "", |it| {
+            // An import sees what its own module sees.
+            let from = std::mem::replace(&mut it.from, module);
+            let found = it.resolve(module, &import.path);
+            it.from = from;
+            found
+        })
+    }
+
+    /// All that a glob of `module` brings, with its names.
+    pub fn all(&mut self, module: usize) -> Vec<(String, Target)> {
+        let here = &self.sources.modules[module];
+        let mut found = vec![];
+        for (name, bindings) in &here.names {
+            for binding in bindings.iter().filter(|it| it.public || self.sees(module)).collect::<Vec<_>>() {
+                found.extend(self.follow(module, binding).into_iter().map(|target| (name.clone(), target)));
+            }
+        }
+        for glob in &here.globs {
+            if glob.public || self.sees(module) {
+                for target in self.import(module, glob) {
+                    if let Target::Module(within) = target {
+                        found.extend(self.once(glob, "*", |it| it.all(within)));
+                    }
+                }
+            }
+        }
+        found
+    }
+}

@@ -1,0 +1,110 @@
+//! What holds of this workspace: who imports whom, among files, folders and crates, and how large they are.
+
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
+
+use structure::graph::Graph;
+use structure::members::{Member, Workspace};
+use structure::sources::Sources;
+use structure::{page, rules, size};
+
+/// A crate and its targets with their kinds.
+type Crate = (&'static Member, Vec<(String, Graph)>);
+
+static WORKSPACE: LazyLock<Workspace> = LazyLock::new(|| Workspace::read(&root()));
+static CRATES: LazyLock<Vec<Crate>> = LazyLock::new(|| WORKSPACE.members.iter().map(|it| (it, graphs(it))).collect());
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn graphs(member: &Member) -> Vec<(String, Graph)> {
+    let reader = |path: &Path| std::fs::read_to_string(root().join(path)).ok();
+    let graph = |path: &PathBuf| Graph::new(Sources::read(path, &reader));
+    member.targets.iter().map(|(kind, path)| (kind.clone(), graph(path))).collect()
+}
+
+/// Fails with all findings, each under the first target that has it: test programs share files.
+fn none_in_any_target(judge: impl Fn(&str, &Graph) -> Vec<String>) {
+    let mut found: Vec<String> = vec![];
+    for (member, graphs) in CRATES.iter() {
+        for (kind, graph) in graphs {
+            let label = member.label(kind, &graph.sources.files[0].path);
+            for finding in judge(kind, graph) {
+                if !found.iter().any(|earlier| earlier.ends_with(&finding)) {
+                    found.push(format!("{label}: {finding}"));
+                }
+            }
+        }
+    }
+    none(found);
+}
+
+fn none(found: Vec<String>) {
+    assert!(found.is_empty(), "{} findings\n\n{}\n", found.len(), found.join("\n\n"));
+}
+
+#[test]
+fn files_do_not_import_one_another_in_a_circle() {
+    none_in_any_target(|_, graph| rules::file_circles(graph));
+}
+
+#[test]
+fn folders_do_not_import_one_another_in_a_circle() {
+    none_in_any_target(|_, graph| rules::folder_circles(graph));
+}
+
+#[test]
+fn the_runtime_never_imports_design() {
+    none_in_any_target(|kind, graph| if kind == "lib" { rules::runtime_imports_design(graph) } else { vec![] });
+}
+
+#[test]
+fn every_path_within_a_crate_leads_somewhere() {
+    let resolved: usize = CRATES.iter().flat_map(|(_, graphs)| graphs).map(|(_, graph)| graph.resolved).sum();
+    println!("{resolved} paths within crates resolved");
+    none_in_any_target(|_, graph| graph.unresolved.clone());
+}
+
+#[test]
+fn the_reference_stands_without_the_core() {
+    none(WORKSPACE.independence("reference", "model-core"));
+}
+
+#[test]
+fn nothing_that_ships_depends_on_tests_or_research() {
+    none(WORKSPACE.shipped_imports());
+}
+
+#[test]
+fn nobody_depends_on_the_command() {
+    none(WORKSPACE.imports_of_the_command("joint"));
+}
+
+#[test]
+fn the_default_members_know_no_research() {
+    none(WORKSPACE.research_by_default());
+}
+
+#[test]
+fn crates_import_what_the_architecture_page_allows() {
+    let text = std::fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap_or_default();
+    none(page::differences(&text, &WORKSPACE, |path| root().join(path).exists()));
+}
+
+#[test]
+fn a_crate_is_of_a_size_that_can_be_read() {
+    println!("{:<32} {:>6} {:>6} {:>6}", "crate or subject", "lines", "files", "edges");
+    let mut found = vec![];
+    for (member, graphs) in CRATES.iter() {
+        let files: usize = graphs.iter().map(|(_, graph)| graph.sources.files.len()).sum();
+        let edges: usize = graphs.iter().map(|(_, graph)| graph.edges.len()).sum();
+        let sizes = size::sizes(member, graphs);
+        println!("{:<32} {:>6} {files:>6} {edges:>6}", member.name, sizes.values().sum::<usize>());
+        for (subject, lines) in sizes.iter().filter(|(subject, _)| **subject != member.name) {
+            println!("  {subject:<30} {lines:>6}");
+        }
+        found.extend(size::too_large(&sizes));
+    }
+    none(found);
+}

@@ -1,0 +1,347 @@
+//! Small crates with one fault each, which must be found, and with what is excused, which must not.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use structure::graph::Graph;
+use structure::members::{Kind, Member, Workspace};
+use structure::rules::{file_circles, folder_circles, runtime_imports_design};
+use structure::sources::Sources;
+use structure::{page, size};
+
+fn graph(files: &[(&str, &str)]) -> Graph {
+    let files: BTreeMap<&str, &str> = files.iter().copied().collect();
+    let reader = |path: &Path| files.get(path.to_str()?).map(|text| text.to_string());
+    Graph::new(Sources::read(Path::new("src/lib.rs"), &reader))
+}
+
+/// Every edge, as `from -> to: names`.
+fn edges(graph: &Graph) -> Vec<String> {
+    assert!(graph.unresolved.is_empty(), "{:?}", graph.unresolved);
+    let file = |at: usize| graph.sources.files[at].path.strip_prefix("src").unwrap().display().to_string();
+    let names = |names: &BTreeMap<String, usize>| names.keys().cloned().collect::<Vec<_>>().join(", ");
+    graph.edges.iter().map(|((from, to), it)| format!("{} -> {}: {}", file(*from), file(*to), names(it))).collect()
+}
+
+/// `a.rs` and `b.rs` with an item each; `a` imports from `b` in the usual way, `b` from `a` as given.
+fn a_and_b(b: &str) -> Graph {
+    let a = "use crate::b::B;\npub struct A(B);\npub fn f() {}\npub trait Does {}\n\
+             #[macro_export]\nmacro_rules! m {() => {}}";
+    graph(&[("src/lib.rs", "mod a;\nmod b;"), ("src/a.rs", a), ("src/b.rs", &format!("pub struct B;\n{b}"))])
+}
+
+#[test]
+fn a_circle_of_two_files_is_found_however_the_path_is_written() {
+    let ways = [
+        ("use crate::a::A;", "A"),
+        ("use super::{a::{self, A as Other}};", "A"),
+        ("use crate::a; fn g() { a::f() }", "f"),
+        ("use crate::a as other; fn g() { other::f() }", "f"),
+        ("fn g() { use super::a::f; f() }", "f"),
+        ("fn g() { crate::a::f() }", "f"),
+        ("fn g(a: &crate::a::A) {}", "A"),
+        ("fn g() -> bool { matches!(1, x if { crate::a::f(); x > 0 }) }", "f"),
+        ("fn g() { println!(\"{:?}\", super::a::f()) }", "f"),
+        ("fn g() { vec![{ use crate::a::{A, f}; f() }]; }", "A"),
+        ("impl crate::a::Does for B {}", "Does"),
+        ("#[derive(crate::a::A)] struct C;", "A"),
+        ("use super::a::*; fn g() { f() }", "A"),
+        ("fn g() { crate::m!() }", "m"),
+        ("#[cfg(test)] mod tests { use super::super::a::f; }", "f"),
+        ("macro_rules! n { () => { $crate::a::f() } }", "f"),
+    ];
+    for (way, name) in ways {
+        let graph = a_and_b(way);
+        let found = file_circles(&graph);
+        assert_eq!(found.len(), 1, "{way}: {:?}", edges(&graph));
+        assert!(found[0].contains("src/a.rs -> src/b.rs: B (line 1)"), "{way}: {found:?}");
+        let tie = found[0].lines().find(|line| line.contains("src/b.rs -> src/a.rs: ")).expect(way);
+        assert!(tie.contains(&format!("{name} (line 2)")), "{way}: {tie}");
+        assert!(found[0].contains("mend: move "), "{way}: {found:?}");
+    }
+}
+
+#[test]
+fn what_only_looks_like_an_import_makes_no_circle() {
+    let ways = [
+        "/// See [`crate::a::A`].\nstruct C;",
+        "pub(in crate::b) struct C;",
+        "fn g(a: i32) -> i32 { a }",
+        "fn g() { println!(\"crate::a::f\") }",
+        "use crate::b::B as A; fn g(_: A) {}",
+        "mod a { pub fn f() {} } fn g() { a::f() }",
+        "use ::a::A; fn g(x: X) { x.f() }",
+        "fn a() {} fn g() { a(); ::a::f() }",
+    ];
+    for way in ways {
+        let graph = a_and_b(way);
+        assert_eq!(edges(&graph), ["a.rs -> b.rs: B"], "{way}");
+    }
+}
+
+#[test]
+fn a_parent_may_name_and_hand_on_its_descendants() {
+    let root = "pub mod foo;\npub use foo::{Foo, deep::Deep as Renamed};\npub(crate) use foo::*;\n\
+                #[cfg(x)]\npub use foo::deep;";
+    let foo = "pub(super) mod deep;\nmod inner;\npub use inner::Foo;\npub(in crate::foo) use deep::*;";
+    let inner = "pub struct Foo(super::deep::Deep);\nmod tests { use super::*; fn f(_: Foo) {} }";
+    let files = [("src/lib.rs", root), ("src/foo/mod.rs", foo), ("src/foo/inner.rs", inner)];
+    let graph = graph(&[&files[..], &[("src/foo/deep.rs", "pub struct Deep;")]].concat());
+    assert_eq!(edges(&graph), ["foo/inner.rs -> foo/deep.rs: Deep"]);
+}
+
+#[test]
+fn a_parent_that_uses_its_child_and_is_used_by_it_is_a_circle() {
+    let child = "use super::Shared;\npub struct Child(Shared);";
+    for parent in [
+        "use child::Child;\npub struct Owner(Child);",
+        "pub use child::Child;\npub struct Owner(Child);",
+        "pub struct Owner(child::Child);",
+    ] {
+        let parent = format!("mod child;\npub struct Shared;\n{parent}");
+        for file in ["src/foo.rs", "src/foo/mod.rs"] {
+            let graph = graph(&[("src/lib.rs", "mod foo;"), (file, &parent), ("src/foo/child.rs", child)]);
+            let found = edges(&graph).join("; ").replace("foo/mod.rs", "foo.rs");
+            let there_and_back = ["foo.rs -> foo/child.rs: Child", "foo/child.rs -> foo.rs: Shared"];
+            assert!(there_and_back.iter().all(|edge| found.contains(edge)), "{found}");
+            assert_eq!((file_circles(&graph).len(), folder_circles(&graph).len()), (1, 0));
+            assert!(file_circles(&graph)[0].contains("mend: move Shared out of src/foo"));
+        }
+    }
+}
+
+#[test]
+fn a_path_ties_to_the_file_that_defines_whatever_hands_it_on() {
+    let files = [
+        ("src/lib.rs", "mod facade;\nmod user;\nmod far;"),
+        (
+            "src/facade/mod.rs",
+            "mod one;\nmod two;\npub use one::One;\npub use two::*;\npub use crate::far::Far as Near;",
+        ),
+        ("src/facade/one.rs", "pub struct One;"),
+        ("src/facade/two.rs", "pub enum Two { Half }\npub trait Does {}\npub use Two::*;"),
+        ("src/far.rs", "pub struct Far;"),
+    ];
+    let with = |user| graph(&[&files[..], &[("src/user.rs", user)]].concat());
+    let far = "facade/mod.rs -> far.rs: Far";
+    for (user, edge) in [
+        ("use crate::facade::One;", "user.rs -> facade/one.rs: One"),
+        ("use crate::facade; fn f(_: facade::One) {}", "user.rs -> facade/one.rs: One"),
+        ("fn f() { crate::facade::Two::Half }", "user.rs -> facade/two.rs: Two"),
+        ("use crate::facade::Half;", "user.rs -> facade/two.rs: Two"),
+        ("use crate::facade::Near;", "user.rs -> far.rs: Far"),
+        ("use crate::facade::*;", "user.rs -> facade/two.rs: Does"),
+        ("use crate::facade::*; fn f(_: One) {}", "user.rs -> facade/one.rs: One"),
+        ("use crate::facade::*; fn f() { assert!(One == x) }", "user.rs -> facade/one.rs: One"),
+    ] {
+        let found = edges(&with(user));
+        assert!(found.contains(&far.to_string()) && found.contains(&edge.to_string()), "{user}: {found:?}");
+        assert!(!found.iter().any(|edge| edge.contains("user.rs -> facade/mod.rs")), "{user}: {found:?}");
+    }
+}
+
+#[test]
+fn a_circle_through_a_re_export_is_found() {
+    let files = [
+        ("src/lib.rs", "mod facade;\nmod user;"),
+        ("src/facade.rs", "mod one;\npub use one::One;"),
+        ("src/facade/one.rs", "use crate::user::User;\npub struct One(User);"),
+        ("src/user.rs", "use crate::facade::One;\npub struct User(One);"),
+    ];
+    let found = file_circles(&graph(&files));
+    assert_eq!(found.len(), 1);
+    assert!(found[0].contains("src/user.rs -> src/facade/one.rs: One (line 1)"), "{found:?}");
+    assert!(found[0].contains("src/facade/one.rs -> src/user.rs: User (line 1)"), "{found:?}");
+}
+
+#[test]
+fn folders_can_import_in_a_circle_where_files_do_not() {
+    let files = [
+        ("src/lib.rs", "mod x;"),
+        ("src/x/mod.rs", "mod a;\nmod b;"),
+        ("src/x/a.rs", "pub mod one;\nuse super::b::B;"),
+        ("src/x/a/one.rs", "pub struct One;"),
+        ("src/x/b/mod.rs", "mod two;\npub struct B;"),
+        ("src/x/b/two.rs", "use crate::x::a::one::One;"),
+    ];
+    let graph = graph(&files);
+    assert!(file_circles(&graph).is_empty());
+    let found = folder_circles(&graph);
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!(found[0].starts_with("in src/x/, a, b import one another"), "{found:?}");
+    assert!(found[0].contains("src/x/b/two.rs -> src/x/a/one.rs: One (line 1)"), "{found:?}");
+}
+
+#[test]
+fn runtime_that_imports_design_is_found_also_through_a_re_export() {
+    let files = |step| {
+        graph(&[
+            ("src/lib.rs", "mod gears;"),
+            (
+                "src/gears/mod.rs",
+                "mod design;\nmod step;\nmod tables;\n#[cfg(feature = \"design\")]\npub use design::Design;",
+            ),
+            ("src/gears/design/mod.rs", "mod law;\npub use law::Law;\npub struct Design(super::tables::Tables);"),
+            ("src/gears/design/law.rs", "pub struct Law;"),
+            ("src/gears/step.rs", step),
+            ("src/gears/tables.rs", "pub struct Tables;"),
+        ])
+    };
+    assert!(runtime_imports_design(&files("use super::tables::Tables;")).is_empty());
+    for (step, file) in [
+        ("use super::Design;", "src/gears/design/mod.rs: Design (line 1)"),
+        ("fn f(_: crate::gears::design::Law) {}", "src/gears/design/law.rs: Law (line 1)"),
+    ] {
+        let found = runtime_imports_design(&files(step));
+        assert_eq!(found.len(), 1);
+        assert!(found[0].contains(&format!("src/gears/step.rs -> {file}")), "{found:?}");
+    }
+}
+
+#[test]
+fn a_path_that_leads_nowhere_is_told_with_its_line() {
+    for (b, path) in [
+        ("use crate::a::Missing;", "`crate::a::Missing`"),
+        ("fn g() { super::missing::f() }", "`super::missing::f`"),
+        ("fn g() { assert!(crate::a::missing()) }", "`crate::a::missing`"),
+        ("use crate::a; fn g() { a::missing() }", "`a::missing`"),
+        ("use super::super::A;", "`super::super::A`"),
+        ("mod lost;", "asks for src/b/lost.rs"),
+        ("fn {", "does not parse"),
+    ] {
+        let found = a_and_b(b).unresolved;
+        assert!(found.len() == 1 || b.contains("fn {"), "{b}: {found:?}");
+        assert!(found[0].starts_with("src/b.rs:2") && found[0].contains(path), "{b}: {found:?}");
+    }
+}
+
+#[test]
+fn files_are_found_where_the_compiler_finds_them() {
+    let root = "#[path = \"odd/place.rs\"]\nmod named;\nmod inline { pub mod file; }\ninclude!(\"../shared.rs\");\n\
+                mod foo;\nmod generated { include!(concat!(env!(\"OUT_DIR\"), \"/x.rs\")); }\n\
+                macro_rules! m {() => {}}\nmod last;";
+    let graph = graph(&[
+        ("src/lib.rs", root),
+        ("src/odd/place.rs", "mod beside;\nuse crate::inline::file::File;"),
+        ("src/odd/beside.rs", "use crate::foo::Foo;\nuse crate::generated::TABLE;"),
+        ("src/inline/file.rs", "pub struct File;"),
+        ("shared.rs", "pub struct Shared(foo::Foo);"),
+        ("src/foo.rs", "pub struct Foo;"),
+        ("src/last.rs", "use crate::Shared;\nm!();"),
+    ]);
+    assert!(graph.unresolved.is_empty(), "{:?}", graph.unresolved);
+    let file = |at: usize| graph.sources.files[at].path.display().to_string();
+    let found: Vec<_> = graph.edges.keys().map(|(from, to)| format!("{} -> {}", file(*from), file(*to))).collect();
+    for edge in [
+        "src/odd/place.rs -> src/inline/file.rs",
+        "src/odd/beside.rs -> src/foo.rs",
+        "src/odd/beside.rs -> src/lib.rs",
+        "shared.rs -> src/foo.rs",
+        "src/last.rs -> shared.rs",
+        "src/last.rs -> src/lib.rs",
+    ] {
+        assert!(found.contains(&edge.to_string()), "{edge} is not among {found:?}");
+    }
+}
+
+fn member(name: &str, folder: &str, imports: &[(&str, Kind)]) -> Member {
+    let imports = imports.iter().map(|(name, kind)| (name.to_string(), *kind)).collect();
+    Member { name: name.into(), folder: folder.into(), default: true, imports, ..Member::default() }
+}
+
+fn workspace(changed: Member) -> Workspace {
+    let mut members = vec![
+        member("parameters", "parameters", &[]),
+        member("model-core", "model-core", &[("parameters", Kind::Normal)]),
+        member("reference", "host/reference", &[("parameters", Kind::Normal)]),
+        member("joint", "host/joint", &[("model-core", Kind::Normal)]),
+        member("host-tests", "host-tests", &[("reference", Kind::Normal), ("model-core", Kind::Normal)]),
+        Member { default: false, ..member("paper", "research/paper", &[("reference", Kind::Normal)]) },
+    ];
+    let place = members.iter().position(|it| it.name == changed.name).expect("a member is changed");
+    members[place] = changed;
+    Workspace { members }
+}
+
+fn all_rules(workspace: &Workspace) -> Vec<String> {
+    let found = [
+        workspace.independence("reference", "model-core"),
+        workspace.shipped_imports(),
+        workspace.imports_of_the_command("joint"),
+        workspace.research_by_default(),
+    ];
+    found.concat()
+}
+
+#[test]
+fn each_forbidden_dependency_among_crates_is_found() {
+    use Kind::{Build, Normal, Tests};
+    let allowed = member("parameters", "parameters", &[("host-tests", Tests)]);
+    assert_eq!(all_rules(&workspace(allowed)), [""; 0]);
+    for (changed, text) in [
+        (member("reference", "host/reference", &[("model-core", Normal)]), "reference -> model-core"),
+        (member("reference", "host/reference", &[("model-core", Build)]), "reference -> model-core"),
+        (member("reference", "host/reference", &[("host-tests", Tests)]), "reference -> host-tests -> model-core"),
+        (member("model-core", "model-core", &[("host-tests", Normal)]), "model-core/Cargo.toml: host-tests in [dep"),
+        (member("model-core", "model-core", &[("paper", Build)]), "model-core/Cargo.toml: paper in [build-dep"),
+        (member("host-tests", "host-tests", &[("joint", Tests)]), "host-tests/Cargo.toml: joint in [dev-dep"),
+        (member("host-tests", "host-tests", &[("paper", Tests)]), "host-tests/Cargo.toml: paper in [dev-dep"),
+        (member("paper", "research/paper", &[]), "paper is a default member"),
+    ] {
+        let found = all_rules(&workspace(changed));
+        assert!(found.iter().any(|finding| finding.contains(text)), "{text}: {found:?}");
+    }
+    assert!(
+        workspace(member("joint", "joint", &[])).independence("referee", "model-core")[0].contains("no crate referee")
+    );
+}
+
+const PAGE: &str = "# The house
+
+| crate | what it is | may import | open first |
+|---|---|---|---|
+| `parameters` | What a joint is | nothing of ours | `a.rs` |
+| `model-core` | What runs on a board | `parameters`, `reference` (tests) | [`a.rs`](a.rs) |
+| `reference` | What it is judged by | `parameters` | `a.rs` |
+| `joint` | The command | `model-core` | `a.rs` |
+| `host-tests` | Tests | `reference`, `model-core` | `a.rs` |
+| `paper` | The study | `reference` | `a.rs` |
+
+| another | table |
+|---|---|
+| `no` | crate |
+";
+
+#[test]
+fn the_page_and_cargo_must_say_the_same() {
+    let found = |page: &str, changed| page::differences(page, &workspace(changed), |path| path == Path::new("a.rs"));
+    let core = |kind| member("model-core", "model-core", &[("parameters", Kind::Normal), ("reference", kind)]);
+    assert_eq!(page::rows(PAGE).len(), 6);
+    assert_eq!(found(PAGE, core(Kind::Tests)), [""; 0]);
+    assert!(found(PAGE, core(Kind::Normal))[0].contains("reference in [dependencies] is not allowed"));
+    for (old, new, text) in [
+        ("| `paper` | The study | `reference` | `a.rs` |\n", "", "no row for `paper`"),
+        ("| `paper`", "| `papers`", ":10: `papers` is no crate"),
+        ("`reference` | `a.rs` |\n\n", "`reference` | `b.rs` |\n\n", ":10: the file to open first, `b.rs`"),
+        ("nothing of ours", "`scales`", ":5: `parameters` may import `scales`, which is no crate"),
+        ("| `paper`", "| `joint`", ":10: `joint` has a row already"),
+    ] {
+        let page = PAGE.replace(old, new);
+        let found = found(&page, core(Kind::Tests));
+        assert!(page != PAGE && found.iter().any(|finding| finding.contains(text)), "{text}: {found:?}");
+    }
+}
+
+#[test]
+fn sizes_leave_tests_out_and_tell_what_is_too_large() {
+    let root = "mod a;\nfn f() {}\n#[cfg(test)]\nmod tests;\n#[cfg(test)]\nmod more {\n    mod deep;\n}\n";
+    let files = [("src/lib.rs", root), ("src/a/mod.rs", "\n\n\n"), ("src/tests.rs", "\n"), ("src/more/deep.rs", "\n")];
+    let graphs = [("lib".to_string(), graph(&files)), ("test".to_string(), graph(&[("src/lib.rs", "\n\n")]))];
+    let sizes =
+        |name: &str| size::sizes(&Member { name: name.into(), folder: PathBuf::new(), ..Member::default() }, &graphs);
+    assert_eq!(sizes("link"), BTreeMap::from([("link".to_string(), 5 + 3)]));
+    assert_eq!(sizes("model-core")["src/a"], 3);
+    assert!(size::too_large(&sizes("link")).is_empty());
+    let large = BTreeMap::from([("link".to_string(), size::LIMIT + 1)]);
+    assert!(size::too_large(&large)[0].starts_with("link has 8501 lines"));
+}

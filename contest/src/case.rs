@@ -4,8 +4,8 @@
 use host_tests::reference::{RelativeState, Start};
 use host_tests::scenarios::Scenario;
 use host_tests::scenarios::case_r::{CaseR, TICK_RATE};
-use model_core::joint::{Excitation, JointParameters};
-use model_core::mesh::{MESH_KINDS, MeshKind, MeshPhases};
+use model_core::gears::{Kinematics, MeshPhasing};
+use parameters::{Excitation, JointParameters, MESH_KINDS, MeshKind, MeshPhases};
 use std::f64::consts::TAU;
 
 /// Torques from one tick on.

@@ -6,9 +6,8 @@ use host_tests::reference::{RelativeState, Start};
 use host_tests::scenarios::{
     CASE_A_OMEGA, CASE_Q_OMEGA, Scenario, case, case_r, motions, paper_natural_frequency, same,
 };
-use model_core::joint::{Excitation, JointParameters, PerPlanet};
-use model_core::mesh::{MeshKind, MeshPhases};
-use model_core::scales::Scales;
+use model_core::gears::{Kinematics, MeshPhasing, Scales};
+use parameters::{Excitation, JointParameters, MeshKind, MeshPhases, PerPlanet};
 
 use crate::case::{Case, Segment};
 

@@ -2,7 +2,7 @@
 //! more coarsely.
 
 use host_tests::reference::{Reference, ReferenceError, RelativeState, Start};
-use model_core::joint::Excitation;
+use parameters::Excitation;
 
 use crate::case::Case;
 use crate::reading::Reading;

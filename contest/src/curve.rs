@@ -2,9 +2,9 @@
 //! lucky step counts. What a step costs is counted elsewhere.
 
 use host_tests::reference::ReferenceError;
-use model_core::design::DesignError;
-use model_core::real::Real;
-use model_core::scales::Scales;
+use model_core::gears::Scales;
+use model_core::gears::design::DesignError;
+use model_core::numbers::Real;
 use rayon::prelude::*;
 
 use crate::case::Case;
@@ -103,6 +103,6 @@ fn run_any<T: Real>(case: &Case, restarts: &[Restart], method: Method, rate: (u3
         3 => run::run::<T, 3>(case, restarts, method, rate, &|| 0.0),
         4 => run::run::<T, 4>(case, restarts, method, rate, &|| 0.0),
         5 => run::run::<T, 5>(case, restarts, method, rate, &|| 0.0),
-        given => Err(DesignError::PlanetCount { given }),
+        given => Err(parameters::ParameterError::PlanetCount { given }.into()),
     }
 }

@@ -7,7 +7,7 @@ use contest::course::Errors;
 use contest::curve::{Field, Scalar};
 use contest::method::Method;
 use host_tests::reference::Start;
-use model_core::mesh::StiffnessWave;
+use parameters::StiffnessWave;
 
 fn named(key: &str) -> Case {
     cases().into_iter().find(|case| case.key == key).expect("a case of the catalogue")

@@ -7,10 +7,8 @@ use std::ops::RangeInclusive;
 use host_tests::reference::Start;
 use host_tests::scenarios::{CASE_A_OMEGA, CASE_Q_OMEGA, Scenario, case, regime, run_at};
 use host_tests::tolerance::core::{ORDER, ORDER_AT_KINKS, ORDER_OF_EULER, ORDER_OF_RUNGE_KUTTA_AT_KINKS};
-use model_core::design::{Effort, design_scheme};
-use model_core::realtime::{Model, Relative, State, Torques};
-use model_core::scales::Scales;
-use model_core::tables::{Scheme, Tables};
+use model_core::gears::design::{Effort, design_scheme};
+use model_core::gears::{Model, Relative, Scales, Scheme, State, Tables, Torques};
 
 /// Ticks a second of the coarsest run; samples are taken at its ticks.
 const COARSEST: u32 = 5_000;

@@ -9,7 +9,7 @@ use host_tests::drive_train::{
 use host_tests::reference::{RelativeState, Start};
 use host_tests::scenarios::{l1, q1};
 use host_tests::tolerance::{DRIVE_TRAIN, DRIVE_TRAIN_PARTS, EFFICIENCY};
-use model_core::joint::JointParameters;
+use parameters::JointParameters;
 
 const RATIO: f64 = 6.0;
 

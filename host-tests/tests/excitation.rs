@@ -5,8 +5,7 @@ use std::f64::consts::{PI, TAU};
 use host_tests::reference::{RelativeState, Start};
 use host_tests::scenarios::{PAPER_LENGTH, Scenario, TorqueSegment, l1, paper_joint, run, run_at, same};
 use host_tests::tolerance::{INVARIANCE, RECTANGULAR_WAVE};
-use model_core::joint::{Excitation, JointParameters, PerPlanet};
-use model_core::mesh::{MeshPhases, StiffnessWave};
+use parameters::{Excitation, JointParameters, MeshPhases, PerPlanet, StiffnessWave};
 
 /// Phases of stiffness and error, sun-planet and ring-planet.
 const PHASES: [[f64; 2]; 2] = [[0.3, 1.1], [2.0, -0.6]];

@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use host_tests::reference::{Observation, RelativeState, Start};
 use host_tests::scenarios::{CASE_A_OMEGA, PAPER_LENGTH, Scenario, Trajectory, case, motions, regime, run, same};
 use host_tests::tolerance::{ENERGY, INVARIANCE, MANY_TURNS, PREDICTABILITY};
-use model_core::mesh::{ContactState, DampingLaw, Mesh, StiffnessWave};
+use parameters::{ContactState, DampingLaw, Mesh, StiffnessWave};
 
 fn meshes(scenario: &mut Scenario) -> [&mut Mesh; 2] {
     [&mut scenario.joint.sun_planet, &mut scenario.joint.ring_planet]

@@ -6,9 +6,8 @@ use std::f64::consts::TAU;
 use host_tests::reference::{RelativeState, Start};
 use host_tests::scenarios::{PAPER_LENGTH, Scenario, TorqueSegment, paper_joint, paper_natural_frequency, q1, run_at};
 use host_tests::tolerance::{EIGENVALUE, ELLIPSE, ELLIPSE_PURITY, NATURAL_FREQUENCY, STATIC};
-use model_core::joint::JointParameters;
-use model_core::mesh::DampingLaw;
 use nalgebra::{Complex, Matrix4, Vector4};
+use parameters::{DampingLaw, JointParameters};
 
 /// Dimensionless sampling interval, short against every mode.
 const INTERVAL: f64 = 0.5;

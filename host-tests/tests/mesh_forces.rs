@@ -3,7 +3,7 @@
 use host_tests::reference::{Reference, RelativeState, Start};
 use host_tests::scenarios::{l1, same};
 use host_tests::tolerance::MESH_FORCE;
-use model_core::mesh::{ContactState, DampingLaw};
+use parameters::{ContactState, DampingLaw};
 
 const HALF_BACKLASH: f64 = 60e-6;
 

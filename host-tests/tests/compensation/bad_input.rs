@@ -3,9 +3,9 @@
 use host_tests::closed_loop::compensation_settings;
 use host_tests::drive_train::DriveTrainParameters;
 use host_tests::scenarios::q1;
-use model_core::design::compensation::{CompensationSettings, design_compensation};
-use model_core::realtime::compensation::{Command, Compensation, ImpedancePoint, Motion, Stage};
-use model_core::realtime::observer::{Doubt, Estimate, Estimates, Source};
+use model_core::compensation::design::{CompensationSettings, design_compensation};
+use model_core::compensation::{Command, Compensation, ImpedancePoint, Motion, Stage};
+use model_core::observer::{Doubt, Estimate, Estimates, Source};
 
 const LIMIT: f32 = 2.5;
 

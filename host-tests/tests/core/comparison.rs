@@ -6,11 +6,9 @@ use std::array;
 use host_tests::reference::{Observation, Start};
 use host_tests::scenarios::{self, Scenario};
 use host_tests::tolerance::Bound;
-use model_core::design::{Effort, design_scheme};
-use model_core::real::Real;
-use model_core::realtime::{Model, Relative, State, Torques};
-use model_core::scales::Scales;
-use model_core::tables::{Scheme, Tables};
+use model_core::gears::design::{Effort, design_scheme};
+use model_core::gears::{Model, Relative, Scales, Scheme, State, Tables, Torques};
+use model_core::numbers::Real;
 
 /// What the core and the reference both say at one moment: mesh deflections, gap, link less rigid body.
 struct Moment {

@@ -3,12 +3,9 @@
 
 use host_tests::scenarios;
 use host_tests::tolerance;
-use model_core::dead_zone::DeadZone;
-use model_core::design::{DesignError, Effort, design, design_scheme, rust_source};
-use model_core::joint::JointParameters;
-use model_core::mesh::ContactState;
-use model_core::realtime::{Model, Torques};
-use model_core::tables::{Scheme, Tables};
+use model_core::gears::design::{DesignError, Effort, design, design_scheme, rust_source};
+use model_core::gears::{Mechanics, Model, Scheme, Tables, Torques};
+use parameters::{ContactState, DeadZone, JointParameters};
 
 fn q1_tables() -> Tables<f32, 3> {
     design(&scenarios::q1(), 20_000).expect("q1 is sound")

@@ -4,9 +4,9 @@
 use host_tests::reference::{RelativeState, Start};
 use host_tests::scenarios::{self, Scenario, TorqueSegment};
 use host_tests::tolerance;
-use model_core::design::Effort;
-use model_core::joint::{JointParameters, PerPlanet};
-use model_core::mesh::{DampingLaw, MeshPhases, StiffnessWave};
+use model_core::gears::Kinematics;
+use model_core::gears::design::Effort;
+use parameters::{DampingLaw, JointParameters, MeshPhases, PerPlanet, StiffnessWave};
 
 use crate::comparison::check;
 

@@ -2,9 +2,8 @@
 //! planets do in phase (eq. 19 with all X_sp alike). Nothing here is asked of the core.
 
 use host_tests::scenarios::{PAPER_LENGTH, paper_joint, same};
-use model_core::joint::JointParameters;
-use model_core::mesh::MeshPhases;
 use nalgebra::{Complex, Matrix2, Vector2};
+use parameters::{JointParameters, MeshPhases};
 
 /// K_rp over K_sp: different, so that no formula may mix them up.
 const RING_STIFFNESS: f64 = 1.3;

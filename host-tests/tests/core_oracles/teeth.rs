@@ -5,8 +5,7 @@ use std::f64::consts::TAU;
 
 use host_tests::scenarios::{PAPER_LENGTH, same};
 use host_tests::tolerance::core::CORE_TOOTH_PHASE;
-use model_core::joint::{Excitation, JointParameters};
-use model_core::mesh::{MeshPhases, StiffnessWave};
+use parameters::{Excitation, JointParameters, MeshPhases, StiffnessWave};
 
 use crate::closed_forms::joint;
 use crate::{Start, run};

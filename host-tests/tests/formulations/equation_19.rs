@@ -2,7 +2,7 @@
 //! of the sun-planet meshes (errors taken off) and the gap coordinate.
 
 use host_tests::integrator::{Entries, Guards, MAX_ENTRIES, SwitchedSystem};
-use model_core::joint::MAX_PLANETS;
+use parameters::MAX_PLANETS;
 
 use crate::joint::{Deflections, Joint, Moving};
 

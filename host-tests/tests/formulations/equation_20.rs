@@ -2,11 +2,11 @@
 //! that is not linear in f. X keeps the imposed errors, as the core does, so that no e'' appears.
 
 use host_tests::integrator::{Entries, Guards, MAX_ENTRIES, SwitchedSystem};
-use model_core::design::dynamics::Dynamics;
-use model_core::design::hamiltonian;
-use model_core::joint::{JointParameters, MAX_PLANETS};
-use model_core::scales::Scales;
+use model_core::gears::Scales;
+use model_core::gears::design::dynamics::Dynamics;
+use model_core::gears::design::hamiltonian;
 use nalgebra::{DMatrix, DVector};
+use parameters::{JointParameters, MAX_PLANETS};
 
 use crate::joint::{Deflections, Joint, Moving};
 

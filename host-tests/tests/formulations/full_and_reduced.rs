@@ -3,12 +3,12 @@
 
 use host_tests::scenarios::{paper_joint, q1};
 use host_tests::tolerance::REDUCED;
-use model_core::design::dynamics::Dynamics;
-use model_core::design::exponential::exponential_minus_identity;
-use model_core::design::hamiltonian;
-use model_core::joint::JointParameters;
-use model_core::scales::Scales;
+use model_core::gears::Scales;
+use model_core::gears::design::dynamics::Dynamics;
+use model_core::gears::design::exponential::exponential_minus_identity;
+use model_core::gears::design::hamiltonian;
 use nalgebra::{DMatrix, DVector};
+use parameters::JointParameters;
 
 /// Bodies in the order sun, planets, carrier, link: mass matrix, damping and stiffness of eqs 1-6 by hand, and the
 /// relative coordinates of eqs 16 and 17.

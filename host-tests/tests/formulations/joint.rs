@@ -5,8 +5,7 @@ use std::array;
 
 use host_tests::integrator::Guards;
 use host_tests::scenarios::{PAPER_LENGTH, paper_natural_frequency};
-use model_core::joint::{JointParameters, MAX_PLANETS};
-use model_core::mesh::{MeshPhases, StiffnessWave};
+use parameters::{JointParameters, MAX_PLANETS, MeshPhases, StiffnessWave};
 
 /// Sun-planet deflections of every planet, then ring-planet, over b_c.
 pub type Deflections = [Vec<f64>; 2];

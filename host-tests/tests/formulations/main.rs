@@ -10,8 +10,8 @@ use host_tests::integrator::{Entries, Integrator, SwitchedSystem};
 use host_tests::reference::{RelativeState, Start};
 use host_tests::scenarios::{PAPER_LENGTH, Scenario, TorqueSegment, paper_joint, paper_natural_frequency, run_at};
 use host_tests::tolerance::FORMULATIONS;
-use model_core::joint::{JointParameters, PerPlanet};
-use model_core::mesh::{ContactState, MeshPhases};
+use model_core::gears::Mechanics;
+use parameters::{ContactState, JointParameters, MeshPhases, PerPlanet};
 
 use equation_19::Equation19;
 use equation_20::Equation20;

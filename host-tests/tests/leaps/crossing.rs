@@ -3,9 +3,8 @@
 use host_tests::reference::{Observation, RelativeState};
 use host_tests::scenarios::same;
 use host_tests::tolerance::light_planets::{LEAP_ACROSS_THE_GAP, LEAP_THROUGH_THE_MIDDLE, PARTED_WITHIN_A_TICK};
-use model_core::joint::JointParameters;
-use model_core::mesh::{ContactState, DampingLaw};
-use model_core::realtime::{Model, Torques};
+use model_core::gears::{Model, Torques};
+use parameters::{ContactState, DampingLaw, JointParameters};
 
 use crate::subject::{joint, leaping, pressed, reference, state};
 

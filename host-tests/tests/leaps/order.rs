@@ -4,8 +4,7 @@
 
 use host_tests::reference::RelativeState;
 use host_tests::tolerance::light_planets::{LEAPS, ORDER_OF_LEAPS};
-use model_core::joint::JointParameters;
-use model_core::mesh::{ContactState, DampingLaw};
+use parameters::{ContactState, DampingLaw, JointParameters};
 
 use crate::subject::{error, joint, leaping, pressed, reference};
 

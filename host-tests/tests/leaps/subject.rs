@@ -4,13 +4,11 @@
 use contest::start::Deflected;
 use host_tests::reference::{Observation, Reference, RelativeState, Start};
 use host_tests::scenarios::{case_r, same};
-use model_core::design::dynamics::Dynamics;
-use model_core::design::{Effort, design_scheme, light_tables};
-use model_core::joint::JointParameters;
-use model_core::mesh::{DampingLaw, Mesh};
-use model_core::realtime::{Model, State, Torques};
-use model_core::scales::Scales;
-use model_core::tables::{Mobility, Scheme, Tables};
+use model_core::gears::design::dynamics::Dynamics;
+use model_core::gears::design::{Effort, design_scheme, light_tables};
+use model_core::gears::tables::Mobility;
+use model_core::gears::{Kinematics, Model, Scales, Scheme, State, Tables, Torques};
+use parameters::{DampingLaw, JointParameters, Mesh};
 
 /// Case R's joint with so many planets, under a damping law.
 pub fn joint(planets: usize, law: DampingLaw) -> JointParameters {

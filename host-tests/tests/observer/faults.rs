@@ -2,7 +2,7 @@
 
 use host_tests::drive_train::Disturbance;
 use host_tests::tolerance::observer::{FAILURE_FOUND, FAILURE_FOUND_AT_SPEED, GAP_COARSE, LOST_COUNTS_FOUND};
-use model_core::realtime::observer::{Doubt, Estimates, MAPPED, Observer, Samples, Source};
+use model_core::observer::{Doubt, Estimates, MAPPED, Observer, Samples, Source};
 
 use crate::motion::{Moment, Profile, uniform};
 use crate::replay::{replay, samples};

@@ -2,7 +2,7 @@
 
 use host_tests::drive_train::Disturbance;
 use host_tests::tolerance::observer::*;
-use model_core::realtime::observer::{Estimate, MAPPED, PLAIN};
+use model_core::observer::{Estimate, MAPPED, PLAIN};
 
 use crate::motion::Moment;
 use crate::replay::{Figures, replay, with_encoders};

@@ -3,7 +3,7 @@
 
 use host_tests::drive_train::Disturbance;
 use host_tests::tolerance::observer::*;
-use model_core::realtime::observer::{MAPPED, Observer, Source};
+use model_core::observer::{MAPPED, Observer, Source};
 
 use crate::motion::Profile;
 use crate::presets::with_backlash;

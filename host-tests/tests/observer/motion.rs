@@ -1,11 +1,12 @@
 //! Joints in motion under a plain motor controller, recorded with what is measured and what is true. The controller
 //! uses the motor encoder alone, so that no recording depends on the observer that it is to judge.
 
+use model_core::gears::{Kinematics, Mechanics};
 use std::f64::consts::TAU;
 
 use host_tests::drive_train::{Disturbance, DriveTrain, DriveTrainParameters};
 use host_tests::reference::Start;
-use model_core::joint::JointParameters;
+use parameters::JointParameters;
 
 /// Poles of the motor controller [rad/s].
 const BANDWIDTH: f64 = 60.0;

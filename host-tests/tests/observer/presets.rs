@@ -6,7 +6,7 @@ use host_tests::drive_train::{
     DriveTrainParameters, EncoderParameters, FrictionParameters, LoadParameters, MotorParameters,
 };
 use host_tests::scenarios::same;
-use model_core::joint::JointParameters;
+use parameters::JointParameters;
 
 use crate::motion::uniform;
 

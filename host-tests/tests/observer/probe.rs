@@ -3,9 +3,8 @@
 use host_tests::drive_train::{Disturbance, DriveTrain};
 use host_tests::reference::Start;
 use host_tests::tolerance::observer::PROBED_WIDTH;
-use model_core::design::observer::{design_observer, design_probe};
-use model_core::realtime::observer::{MAPPED, Observer, Probe, Progress, Refusal};
-use model_core::tables::observer::{ObserverTables, ProbeTable};
+use model_core::observer::design::{design_observer, design_probe};
+use model_core::observer::{MAPPED, Observer, ObserverTables, Probe, ProbeTable, Progress, Refusal};
 
 use crate::motion::Moment;
 use crate::replay::samples;

@@ -3,8 +3,8 @@
 
 use host_tests::closed_loop::{Bench, Compensated, Trial, compensation_settings, observer_settings};
 use host_tests::tolerance::observer::{WIDTH_AFTER, WIDTH_IN_STEPS, WIDTH_IN_STEPS_WORST};
-use model_core::design::compensation::design_compensation;
-use model_core::design::observer::design_observer;
+use model_core::compensation::design::design_compensation;
+use model_core::observer::design::design_observer;
 
 use crate::presets::{preset, with_backlash};
 

@@ -2,10 +2,11 @@
 //! and error maps. What must come of it is the tests' business.
 
 use host_tests::drive_train::{DriveTrainParameters, EncoderParameters};
-use model_core::design::observer::{ObserverSettings, design_observer};
-use model_core::joint::JointParameters;
-use model_core::real::Real;
-use model_core::tables::observer::ObserverTables;
+use model_core::gears::Kinematics;
+use model_core::numbers::Real;
+use model_core::observer::ObserverTables;
+use model_core::observer::design::{ObserverSettings, design_observer};
+use parameters::JointParameters;
 
 use crate::motion::{Moment, Profile, Run, uniform};
 use crate::presets::{preset, with_backlash};

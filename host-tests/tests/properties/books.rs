@@ -4,8 +4,7 @@ use host_tests::reference::{Observation, Start};
 use host_tests::scenarios::{Scenario, TorqueSegment, run};
 use host_tests::tolerance::ENERGY;
 use host_tests::tolerance::core::MOMENTUM;
-use model_core::joint::JointParameters;
-use model_core::mesh::{ContactState, DampingLaw};
+use parameters::{ContactState, DampingLaw, JointParameters};
 use proptest::prelude::*;
 
 use crate::random::{config, scenario};

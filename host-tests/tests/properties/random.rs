@@ -5,8 +5,7 @@ use std::ops::Range;
 
 use host_tests::reference::{RelativeState, Start};
 use host_tests::scenarios::{Scenario, TorqueSegment, l1, same};
-use model_core::joint::{Compliance, Excitation, JointParameters, PerPlanet};
-use model_core::mesh::{DampingLaw, Mesh, MeshPhases, StiffnessWave};
+use parameters::{Compliance, DampingLaw, Excitation, JointParameters, Mesh, MeshPhases, PerPlanet, StiffnessWave};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 

@@ -4,7 +4,8 @@
 use host_tests::reference::Reference;
 use host_tests::scenarios::case_r::{CaseR, TICK_RATE, brief, case_r};
 use host_tests::tolerance::light_planets::NOISE_IN_WINDOWS;
-use model_core::joint::JointParameters;
+use model_core::gears::Kinematics;
+use parameters::JointParameters;
 
 use crate::variants::joint;
 

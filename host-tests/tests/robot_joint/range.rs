@@ -5,8 +5,7 @@ use host_tests::scenarios::{case_r, same};
 use host_tests::tolerance::light_planets::{
     FAR_ROBOTS_LINK_RMS, FAR_ROBOTS_LINK_WORST, ROBOT_LINK_RMS, ROBOT_LINK_WORST, ROBOTS_PEAK_FORCE,
 };
-use model_core::joint::{JointParameters, PerPlanet};
-use model_core::mesh::DampingLaw;
+use parameters::{DampingLaw, JointParameters, PerPlanet};
 
 use crate::variants::{joint, with_meshes, with_teeth};
 use crate::windows::errors;

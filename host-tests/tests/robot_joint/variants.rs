@@ -1,8 +1,7 @@
 //! Case R's joint and others like it. No bound is stated here.
 
 use host_tests::scenarios::{case_r, same};
-use model_core::joint::JointParameters;
-use model_core::mesh::Mesh;
+use parameters::{JointParameters, Mesh};
 
 /// Case R's own joint.
 pub fn joint() -> JointParameters {

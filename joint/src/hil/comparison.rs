@@ -13,8 +13,7 @@ use follow::{DISTURBANCE, Follower, follow};
 use host_tests::reference::{Observation, ReferenceError};
 use host_tests::tolerance::Bound;
 use link::messages::{Command, Sample};
-use model_core::joint::JointParameters;
-use model_core::mesh::ContactState;
+use parameters::{ContactState, JointParameters};
 use row::{QUANTITIES, Row, spread};
 
 use crate::failure::{Failure, Outcome};
@@ -161,6 +160,7 @@ mod tests {
     use crate::hil::profile::Profile;
     use crate::hil::twin;
     use crate::target::board::Board;
+    use model_core::gears::Kinematics;
 
     const TICK_RATE: u32 = 20_000;
     const DECIMATION: u32 = 20;

@@ -1,5 +1,6 @@
 //! Who ran what: the head of a record. Everything here is told, nothing is measured.
 
+use model_core::gears::Kinematics;
 use std::process::Command;
 
 use link::messages::{Clock, Hello, RunMode};

@@ -2,7 +2,7 @@
 //! coordinates, which shares neither equations nor method with the study. It is too slow for whole diagrams.
 
 use host_tests::reference::{Reference, RelativeState, Start};
-use model_core::scales::Scales;
+use model_core::gears::Scales;
 
 use super::plan::Subject;
 use crate::study::attractor::Class;

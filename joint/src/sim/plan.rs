@@ -1,13 +1,14 @@
 //! What a simulation was asked to do, with everything that can be wrong with it found before it starts: joint, rate,
 //! length, torques, start.
 
+use model_core::gears::{Kinematics, Mechanics};
 use std::f64::consts::TAU;
 
 use host_tests::reference::Start;
 use joints::JointFile;
 use link::messages::Command;
-use model_core::design::Effort;
-use model_core::joint::{Excitation, JointParameters};
+use model_core::gears::design::Effort;
+use parameters::{Excitation, JointParameters};
 
 use super::arguments::Motion;
 use super::follow::Run;

@@ -8,11 +8,11 @@ use host_tests::closed_loop::rivals::Knowledge;
 use host_tests::closed_loop::{Profile as Standard, Reference, compensation_settings, observer_settings};
 use host_tests::drive_train::{Disturbance, DriveTrainParameters};
 use joints::{JointFile, Problem, Severity};
-use model_core::design::compensation::{CompensationSettings, design_compensation};
-use model_core::design::observer::{design_observer, design_usual_probe};
-use model_core::joint::JointParameters;
-use model_core::tables::compensation::CompensationTables;
-use model_core::tables::observer::{ObserverTables, ProbeTable};
+use model_core::compensation::CompensationTables;
+use model_core::compensation::design::{CompensationSettings, design_compensation};
+use model_core::observer::design::{design_observer, design_usual_probe};
+use model_core::observer::{ObserverTables, ProbeTable};
+use parameters::JointParameters;
 
 use super::draw::{Quantity, Stream};
 use super::file::{Change, Course, NewValue, TestFile};

@@ -4,12 +4,9 @@
 use clap::ValueEnum;
 use host_tests::drive_train::{Disturbance, DriveTrain, DriveTrainParameters, Inside, Stepping};
 use host_tests::reference::{Observation, Reference, ReferenceError, RelativeState, Start, Work};
-use model_core::design::design;
-use model_core::joint::JointParameters;
-use model_core::mesh::ContactState;
-use model_core::realtime::{Model, State, Torques};
-use model_core::scales::Scales;
-use model_core::tables::Tables;
+use model_core::gears::design::design;
+use model_core::gears::{Kinematics, Mechanics, Model, Scales, State, Tables, Torques};
+use parameters::{ContactState, JointParameters};
 
 use crate::failure::{Failure, Outcome};
 use crate::sim::moment::Reader;

@@ -4,9 +4,9 @@
 use std::f64::consts::TAU;
 
 use host_tests::closed_loop::{Motion, SetPoint};
-use model_core::realtime::compensation::{self, Command, ImpedancePoint, Position};
-use model_core::realtime::controller::{self, Controller};
-use model_core::realtime::observer::{Reading, Samples};
+use model_core::compensation::{self, Command, ImpedancePoint, Position};
+use model_core::controller::{self, Controller};
+use model_core::observer::{Reading, Samples};
 
 use super::case::Designed;
 use super::injection::{Frame, Seen};

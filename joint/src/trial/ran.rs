@@ -2,9 +2,9 @@
 //! `execution`'s business, what it is worth is `figures`'.
 
 use host_tests::closed_loop::{Run, Sample};
-use model_core::digest;
-use model_core::mesh::ContactState;
-use model_core::realtime::observer::{Progress, Refusal, Source};
+use model_core::numbers::digest;
+use model_core::observer::{Progress, Refusal, Source};
+use parameters::ContactState;
 
 use super::case::Case;
 use super::injection::Injection;

@@ -2,7 +2,8 @@
 //! between. What is lost on the way is the business of `injection`.
 
 use host_tests::closed_loop::{Motion, SetPoint};
-use model_core::joint::JointParameters;
+use model_core::gears::{Kinematics, Mechanics};
+use parameters::JointParameters;
 
 use super::case::{Case, Designed};
 use super::controller::{ControllerName, Gains};

@@ -2,6 +2,7 @@
 //! observer's estimates are worth is in `sight`.
 
 use host_tests::closed_loop::{Figures as Plain, Sample, deviation};
+use model_core::gears::Kinematics;
 
 use super::case::Case;
 use super::figures::{FIGURES, Figure};

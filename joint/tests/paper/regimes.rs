@@ -4,7 +4,7 @@ use joint::study::attractor::{self, Class, Effort, by_two_trajectories, find};
 use joint::study::motion::Motion;
 use joint::study::signal::Signal;
 use joint::study::system::System;
-use model_core::mesh::StiffnessWave;
+use parameters::StiffnessWave;
 
 use super::{SHORT, from_rest, plan, subject};
 

@@ -15,6 +15,8 @@
 //! Source of the model: He, Jia, Chen, Sun, "Modeling and Dynamic Analysis of Planetary Gear Transmission Joints with
 //! Backlash" (2015), with its misprints corrected; equation numbers are that paper's.
 
+#![allow(rustdoc::broken_intra_doc_links, reason = "units stand in brackets")]
+
 #[cfg(feature = "design")]
 extern crate std;
 

@@ -6,6 +6,8 @@
 //! stiffness wave, phases from teeth, equivalent masses, damping, dead zones and gear losses stand on either side, so
 //! that a mistake in one shows against the other.
 
+#![allow(rustdoc::broken_intra_doc_links, reason = "units stand in brackets")]
+
 mod joint;
 mod mesh;
 mod planets;

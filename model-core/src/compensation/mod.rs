@@ -2,7 +2,7 @@
 //! left to `observer`, limits of the motor's current to the motor controller.
 //!
 //! The structure, front to back:
-//! 1. `position` and `impedance` turn a set-point into an [`Intent`](intent::Intent): the torque that the control law
+//! 1. `position` and `impedance` turn a set-point into an `Intent`: the torque that the control law
 //!    gives while a flank carries, and the torque that the teeth will have to pass on, now and one crossing later.
 //! 2. `flank` decides from that which flank shall carry, and when to leave for it.
 //! 3. `crossing` and `path` take the motor through the gap to where the load will be, and softly onto the flank.

@@ -23,7 +23,7 @@ use crate::numbers::Real;
 use crate::observer::tables::ObserverTables;
 use parameters::ContactState;
 
-/// The observer of one joint. `P` is [`PLAIN`] or [`MAPPED`].
+/// The observer of one joint. `P` is [`PLAIN`](super::PLAIN) or [`MAPPED`](super::MAPPED).
 #[derive(Debug, Clone)]
 pub struct Observer<'tables, T: Real, const P: usize> {
     pub(super) tables: &'tables ObserverTables<T>,

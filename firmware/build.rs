@@ -9,7 +9,8 @@
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-use model_core::design::{ControlWish, Processor, Told, control_source};
+use model_core::controller::design::{ControlWish, Told, control_source};
+use model_core::gears::design::Processor;
 
 const DEFAULT_TICK_RATE: u32 = 20_000;
 const DEFAULT_BANDWIDTH: f64 = 60.0;
@@ -95,7 +96,7 @@ fn write_measured() -> Result<(), String> {
 /// The tables of a joint file, as a module's text.
 fn source(file: &Path, tick_rate: u32) -> Result<String, String> {
     let joint = read(file)?;
-    model_core::design::rust_source_for(&joint.parameters, tick_rate, &processor()?)
+    model_core::gears::design::rust_source_for(&joint.parameters, tick_rate, &processor()?)
         .map_err(|error| format!("{}: {error}", file.display()))
 }
 

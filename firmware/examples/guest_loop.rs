@@ -1,7 +1,7 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 //! The core in somebody else's firmware: their loop, their panic handler, their chip's vendor table, no HAL, and
 //! nothing of this package but the tables that its build script wrote. Take `model-core` as a dependency, write the
-//! tables in your own build script by `model_core::design::rust_source`, and step the model once a tick.
+//! tables in your own build script by `model_core::gears::design::rust_source`, and step the model once a tick.
 
 #[cfg(target_os = "none")]
 mod guest {
@@ -9,7 +9,7 @@ mod guest {
     use core::panic::PanicInfo;
 
     use cortex_m_rt::entry;
-    use model_core::realtime::{Model, Torques};
+    use model_core::gears::{Model, Torques};
     #[cfg(feature = "stm32f405")]
     use stm32f4 as _;
     #[cfg(feature = "stm32g474")]

@@ -9,9 +9,8 @@ mod contest {
     use cortex_m::peripheral::Peripherals;
     use cortex_m_rt::entry;
     use firmware::measuring::{self, InstructionCounter};
-    use model_core::digest;
-    use model_core::realtime::{Model, State, Torques};
-    use model_core::tables::Tables;
+    use model_core::gears::{Model, State, Tables, Torques};
+    use model_core::numbers::digest;
     use peers::peer::{Peer, Start};
     use peers::plant::Plant;
     use peers::scheme::Scheme;

@@ -8,8 +8,7 @@ mod measurement {
 
     use cortex_m_rt::entry;
     use firmware::measuring::{self, InstructionCounter, Visitor, measured};
-    use model_core::realtime::{Model, Relative, State, Torques};
-    use model_core::tables::Tables;
+    use model_core::gears::{Model, Relative, State, Tables, Torques};
 
     /// Deflection of every mesh by its load [b_c]: more than backlashes differ by.
     const DEFLECTION: f32 = 20.0;

@@ -18,10 +18,10 @@ mod measurement {
     use link::controller::Exchange;
     use link::messages::Command;
     use link::virtual_joint::{Knot, WireDemand};
-    use model_core::realtime::controller::Controller;
-    use model_core::realtime::observer::{MAPPED, Observer, PLAIN, Samples};
-    use model_core::realtime::phase::sine_cosine;
-    use model_core::realtime::virtual_joint::VirtualJoint;
+    use model_core::controller::Controller;
+    use model_core::numbers::phase::sine_cosine;
+    use model_core::observer::{MAPPED, Observer, PLAIN, Samples};
+    use model_core::virtual_joint::VirtualJoint;
 
     mod control {
         #![allow(dead_code, clippy::excessive_precision, reason = "generated numbers")]
@@ -131,7 +131,7 @@ mod measurement {
             }
             let elapsed = control::SURROUNDINGS.period * (tick - now.tick) as f32;
             let command =
-                model_core::realtime::course::Demand::from(now.demand).at(elapsed, control::SURROUNDINGS.turn);
+                model_core::controller::course::Demand::from(now.demand).at(elapsed, control::SURROUNDINGS.turn);
             let mut samples = joint.samples();
             if SILENT.contains(&tick) {
                 samples.output = None;

@@ -8,7 +8,7 @@ mod measurement {
 
     use cortex_m_rt::entry;
     use firmware::measuring::{self, Visitor, measured};
-    use model_core::tables::Tables;
+    use model_core::gears::Tables;
     use trials::motion;
 
     /// Bits of FPSCR: tiny results and operands are taken for zero; every NaN is the default one.

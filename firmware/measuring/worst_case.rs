@@ -8,8 +8,7 @@ mod measurement {
 
     use cortex_m_rt::entry;
     use firmware::measuring::{self, InstructionCounter, Visitor, measured};
-    use model_core::realtime::{Model, Torques};
-    use model_core::tables::Tables;
+    use model_core::gears::{Model, Tables, Torques};
     use trials::outcome::Class;
     use trials::states::{Kind, Trial, Trials};
 

@@ -6,7 +6,7 @@ mod as5047p;
 use core::fmt;
 
 pub use as5047p::As5047p;
-use model_core::realtime::observer::Reading;
+use model_core::observer::Reading;
 
 /// Gives a reading once a control tick.
 pub trait CountSource {

@@ -9,7 +9,7 @@ use core::panic::PanicInfo;
 use cortex_m::peripheral::SYST;
 use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m_semihosting::{debug, hprintln};
-use model_core::tables::Tables;
+use model_core::gears::Tables;
 
 /// SysTick counts in a thousand instructions: the host runs the emulator at 64 ns an instruction (`-icount shift=6`)
 /// beside a timer of 168 MHz. A whole number of instructions is then found exactly, up to [`LONGEST`].

@@ -3,9 +3,9 @@
 
 use link::controller::{Answered, EXCHANGES_PER_SCHEDULE, Exchange};
 use link::messages::{FromBoard, Role, Schedule, ToBoard};
-use model_core::digest;
-use model_core::realtime::controller::Answer;
-use model_core::realtime::observer::{Memory, MemoryError};
+use model_core::controller::Answer;
+use model_core::numbers::digest;
+use model_core::observer::{Memory, MemoryError};
 
 use crate::page::AtHand;
 use crate::port::{ControllerPort, asked};

@@ -4,7 +4,7 @@
 use core::convert::Infallible;
 
 use link::messages::Remembered;
-use model_core::realtime::observer::{MEMORY_BYTES, Memory, MemoryError};
+use model_core::observer::{MEMORY_BYTES, Memory, MemoryError};
 
 use crate::port::ControllerPort;
 

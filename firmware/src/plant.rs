@@ -4,9 +4,8 @@
 use core::convert::Infallible;
 
 use link::messages::{Command, Role, SAMPLES_PER_BATCH, Schedule, ToBoard};
-use model_core::digest;
-use model_core::realtime::{Model, Outputs, Torques};
-use model_core::tables::Tables;
+use model_core::gears::{Model, Outputs, Tables, Torques};
+use model_core::numbers::digest;
 
 use crate::batcher::Batcher;
 use crate::telemetry::PlantForm;

@@ -20,9 +20,9 @@ pub mod spi_slave;
 use core::fmt;
 
 pub use direct::Direct;
-use model_core::realtime::compensation::Command;
-use model_core::realtime::controller::Answer;
-use model_core::realtime::observer::{Memory, MemoryError, Samples};
+use model_core::compensation::Command;
+use model_core::controller::Answer;
+use model_core::observer::{Memory, MemoryError, Samples};
 pub use serial::SerialPort;
 pub use spi::{SpiGuest, SpiPort};
 

@@ -2,7 +2,7 @@
 
 use heapless::Vec;
 use link::messages::{FromBoard, MAX_MESHES, SAMPLES_PER_BATCH, Sample, SampleBatch};
-use model_core::mesh::ContactState;
+use parameters::ContactState;
 
 use crate::batcher::WireForm;
 use crate::plant::RawSample;

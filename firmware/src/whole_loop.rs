@@ -4,14 +4,13 @@
 use heapless::Vec;
 use link::messages::{FromBoard, Role, Schedule, ToBoard};
 use link::virtual_joint::{KNOTS_PER_SCHEDULE, Knot, LOOP_SAMPLES_PER_BATCH, LoopBatch, LoopSample, WireUpset};
-use model_core::digest;
-use model_core::realtime::controller::Answer;
-use model_core::realtime::course::Demand;
-use model_core::realtime::observer::{Memory, MemoryError};
-use model_core::realtime::upset::Upsets;
-use model_core::realtime::virtual_joint::VirtualJoint;
-use model_core::tables::Tables;
-use model_core::tables::virtual_joint::SurroundingsTable;
+use model_core::controller::Answer;
+use model_core::controller::course::Demand;
+use model_core::gears::Tables;
+use model_core::numbers::digest;
+use model_core::observer::{Memory, MemoryError};
+use model_core::virtual_joint::upset::Upsets;
+use model_core::virtual_joint::{SurroundingsTable, VirtualJoint};
 
 use crate::batcher::{Batcher, WireForm};
 use crate::page::AtHand;

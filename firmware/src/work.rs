@@ -2,7 +2,7 @@
 //! which are the same for all of them and are kept by `control`.
 
 use link::virtual_joint::WireUpset;
-use model_core::realtime::observer::{Memory, MemoryError};
+use model_core::observer::{Memory, MemoryError};
 
 use crate::words::Words;
 

@@ -3,7 +3,7 @@
 
 use embedded_hal_mock::eh1::spi::{Mock, Transaction};
 use firmware::encoder::{As5047p, CountSource, EncoderFault};
-use model_core::realtime::observer::Reading;
+use model_core::observer::Reading;
 
 /// Read ANGLECOM: address 0x3fff, read bit, even parity.
 const ANGLE: u16 = 0xffff;

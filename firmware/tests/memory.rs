@@ -15,10 +15,10 @@ use link::messages::{
     FromBoard, Kept, MEMORY_PARTS, MemoryPart, MemoryWish, PART_BYTES, Remembered, RunMode, RunSettings, Schedule,
     ToBoard,
 };
-use model_core::realtime::compensation::{Command, Motion, Position};
-use model_core::realtime::controller::{Answer, Controller};
-use model_core::realtime::observer::{MEMORY_BYTES, Memory};
-use model_core::realtime::virtual_joint::VirtualJoint;
+use model_core::compensation::{Command, Motion, Position};
+use model_core::controller::{Answer, Controller};
+use model_core::observer::{MEMORY_BYTES, Memory};
+use model_core::virtual_joint::VirtualJoint;
 
 mod control {
     #![allow(missing_docs, dead_code, clippy::all, clippy::excessive_precision, reason = "generated numbers")]
@@ -133,7 +133,7 @@ fn what_is_no_good_memory_is_told_and_not_used() {
 
 /// The same with another identity, and a digest that fits.
 fn of_another_joint(mut memory: Memory) -> Memory {
-    use model_core::digest;
+    use model_core::numbers::digest;
     memory[8] ^= 1;
     let (content, stored) = memory.split_at_mut(MEMORY_BYTES - 8);
     let digest = content.iter().fold(digest::START, |running, byte| digest::chain(running, (*byte).into()));

@@ -14,9 +14,9 @@ use firmware::serial::{Line, Uart};
 use link::controller::{Answered, Exchange, WireProbed};
 use link::framing::{Receiver, encode, sealed, unsealed};
 use link::messages::{Accepted, FromBoard, Schedule, ToBoard};
-use model_core::realtime::compensation::{Command, Motion, Position};
-use model_core::realtime::controller::{Answer, Controller};
-use model_core::realtime::observer::{Progress, Reading, Samples};
+use model_core::compensation::{Command, Motion, Position};
+use model_core::controller::{Answer, Controller};
+use model_core::observer::{Progress, Reading, Samples};
 
 mod control {
     #![allow(missing_docs, dead_code, clippy::all, clippy::excessive_precision, reason = "generated numbers")]

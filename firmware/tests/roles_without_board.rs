@@ -12,12 +12,12 @@ use firmware::whole_loop::WholeLoop;
 use link::controller::{Answered, Exchange};
 use link::messages::{Fault, FromBoard, RunMode, RunSettings, Schedule, ToBoard};
 use link::virtual_joint::{Knot, LoopSample, WireDemand, WireKind, WireUpset};
-use model_core::digest;
-use model_core::realtime::compensation::Command;
-use model_core::realtime::controller::Controller;
-use model_core::realtime::course::Demand;
-use model_core::realtime::upset::MOST_UPSETS;
-use model_core::realtime::virtual_joint::VirtualJoint;
+use model_core::compensation::Command;
+use model_core::controller::Controller;
+use model_core::controller::course::Demand;
+use model_core::numbers::digest;
+use model_core::virtual_joint::VirtualJoint;
+use model_core::virtual_joint::upset::MOST_UPSETS;
 
 mod control {
     #![allow(missing_docs, dead_code, clippy::all, clippy::excessive_precision, reason = "generated numbers")]

@@ -6,8 +6,8 @@ mod bench;
 use bench::{Bench, PERIOD};
 use firmware::tables::{PLANETS, TABLES};
 use link::messages::{COMMANDS_PER_SCHEDULE, Fault, FromBoard, RunMode, Sample, Statistics, ToBoard};
-use model_core::digest;
-use model_core::realtime::{Model, Torques};
+use model_core::gears::{Model, Torques};
+use model_core::numbers::digest;
 
 fn samples(said: &[FromBoard]) -> Vec<Sample> {
     let batches = said.iter().filter_map(|message| match message {

@@ -5,10 +5,8 @@ use std::array;
 use std::ops::RangeInclusive;
 
 use host_tests::tolerance::core::{ORDER, ORDER_AT_KINKS, ORDER_OF_EULER, ORDER_OF_RUNGE_KUTTA_AT_KINKS};
-use model_core::design::{Effort, design_scheme};
-use model_core::realtime::{Model, Relative, State, Torques};
-use model_core::scales::Scales;
-use model_core::tables::{Scheme, Tables};
+use model_core::gears::design::{Effort, design_scheme};
+use model_core::gears::{Model, Relative, Scales, Scheme, State, Tables, Torques};
 use reference::joint::Start;
 use reference::scenarios::{CASE_A_OMEGA, CASE_Q_OMEGA, Scenario, case, regime, run_at};
 

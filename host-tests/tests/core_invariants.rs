@@ -4,11 +4,9 @@
 use std::f64::consts::TAU;
 
 use host_tests::tolerance::core::{CORE_ENERGY, CORE_SHIFT};
-use model_core::design::{Effort, design_scheme};
-use model_core::joint::JointParameters;
-use model_core::mesh::{ContactState, DampingLaw};
-use model_core::realtime::{Model, Outputs, Relative, State, Torques};
-use model_core::tables::{Scheme, Tables};
+use model_core::gears::design::{Effort, design_scheme};
+use model_core::gears::{Model, Outputs, Relative, Scheme, State, Tables, Torques};
+use parameters::{ContactState, DampingLaw, JointParameters};
 use reference::scenarios::{CASE_A_OMEGA, Scenario, case, regime, same};
 
 fn tables(joint: &JointParameters, tick_rate: u32, scheme: Scheme) -> Tables<f64, 3> {

@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 
 use host_tests::tolerance::{DRIVE_TRAIN, DRIVE_TRAIN_PARTS, EFFICIENCY};
-use model_core::joint::JointParameters;
+use parameters::JointParameters;
 use reference::drive_train::{
     Disturbance, DriveTrain, DriveTrainParameters, EncoderParameters, FrictionParameters, Measurement,
 };

@@ -14,10 +14,9 @@ use board::target::toolchain::Toolchain;
 use link::PROTOCOL_VERSION;
 use link::framing::{Receiver, encode};
 use link::messages::{Clock, Command, FromBoard, Hello, Role, RunMode, RunSettings, Sample, Schedule, ToBoard};
-use model_core::design::design;
-use model_core::digest::{self, chain};
-use model_core::realtime::{Model, Torques};
-use model_core::tables::Tables;
+use model_core::gears::design::design;
+use model_core::gears::{Model, Tables, Torques};
+use model_core::numbers::digest::{self, chain};
 use reference::scenarios;
 
 const TICK_RATE: u32 = 20_000;

@@ -3,8 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use host_tests::tolerance::{INVARIANCE, RECTANGULAR_WAVE};
-use model_core::joint::{Excitation, JointParameters, PerPlanet};
-use model_core::mesh::{MeshPhases, StiffnessWave};
+use parameters::{Excitation, JointParameters, MeshPhases, PerPlanet, StiffnessWave};
 use reference::joint::{RelativeState, Start};
 use reference::scenarios::{PAPER_LENGTH, Scenario, TorqueSegment, l1, paper_joint, run, run_at, same};
 

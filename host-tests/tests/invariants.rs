@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 
 use host_tests::tolerance::{ENERGY, INVARIANCE, MANY_TURNS, PREDICTABILITY};
-use model_core::mesh::{ContactState, DampingLaw, Mesh, StiffnessWave};
+use parameters::{ContactState, DampingLaw, Mesh, StiffnessWave};
 use reference::joint::{Observation, RelativeState, Start};
 use reference::scenarios::{CASE_A_OMEGA, PAPER_LENGTH, Scenario, Trajectory, case, motions, regime, run, same};
 

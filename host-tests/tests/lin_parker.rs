@@ -5,7 +5,7 @@
 use std::f64::consts::TAU;
 
 use host_tests::tolerance::{PUBLISHED_FREQUENCY, TORSIONAL_PART};
-use model_core::design::modes::natural_frequencies;
+use model_core::gears::design::modes::natural_frequencies;
 use nalgebra::{DMatrix, DVector};
 use reference::scenarios::{paper_joint, same};
 

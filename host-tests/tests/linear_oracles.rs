@@ -4,9 +4,8 @@
 use std::f64::consts::TAU;
 
 use host_tests::tolerance::{EIGENVALUE, ELLIPSE, ELLIPSE_PURITY, NATURAL_FREQUENCY, STATIC};
-use model_core::joint::JointParameters;
-use model_core::mesh::DampingLaw;
 use nalgebra::{Complex, Matrix4, Vector4};
+use parameters::{DampingLaw, JointParameters};
 use reference::joint::{RelativeState, Start};
 use reference::scenarios::{PAPER_LENGTH, Scenario, TorqueSegment, paper_joint, paper_natural_frequency, q1, run_at};
 

@@ -1,7 +1,7 @@
 //! The two damping laws at single moments: a joint is set into a state and its mesh forces are read. No time passes.
 
 use host_tests::tolerance::MESH_FORCE;
-use model_core::mesh::{ContactState, DampingLaw};
+use parameters::{ContactState, DampingLaw};
 use reference::joint::{Reference, RelativeState, Start};
 use reference::scenarios::{l1, same};
 

@@ -3,8 +3,7 @@
 use std::f64::consts::TAU;
 
 use host_tests::tolerance::{POINCARE, TOOTH_PHASE};
-use model_core::dead_zone::DeadZone;
-use model_core::mesh::{DampingLaw, MeshPhases, StiffnessWave};
+use parameters::{DampingLaw, DeadZone, MeshPhases, StiffnessWave};
 use reference::integrator::Counters;
 use reference::joint::{Reference, RelativeState, Start};
 use reference::scenarios::{
@@ -154,7 +153,7 @@ fn a_joint_still_at_the_edge_of_every_gap_stays_there() {
 
 #[test]
 fn a_smoothed_dead_zone_and_broken_parameters_are_refused_with_the_mend() {
-    let refusal = |change: fn(&mut model_core::joint::JointParameters)| {
+    let refusal = |change: fn(&mut parameters::JointParameters)| {
         let mut joint = paper_joint(0.1, 30e-6, 60e-6, OMEGA);
         change(&mut joint);
         Reference::new(&joint).expect_err("must be refused").to_string()

@@ -1,6 +1,6 @@
 //! What a joint's tables take of a board's flash. RAM is measured in a run: see `joint hil`.
 
-use model_core::tables::Tables;
+use model_core::gears::Tables;
 
 /// A kilobyte of flash.
 const KIB: usize = 1024;

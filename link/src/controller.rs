@@ -4,8 +4,8 @@
 mod answer;
 
 pub use answer::{Answered, WireEstimate, WireEstimates, WireProbed, WireShaped};
-use model_core::realtime::compensation::{self, ImpedancePoint, Position};
-use model_core::realtime::observer::{Reading, Samples};
+use model_core::compensation::{self, ImpedancePoint, Position};
+use model_core::observer::{Reading, Samples};
 use serde::{Deserialize, Serialize};
 
 /// Most exchanges in one schedule: one control period each.

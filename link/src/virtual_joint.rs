@@ -2,8 +2,8 @@
 //! time, so that a slow line can carry it, and what joint and controller did.
 
 use heapless::Vec;
-use model_core::realtime::course::{Demand, POWERS, Stretch};
-use model_core::realtime::upset::{Kind, Shaft, Upset};
+use model_core::controller::course::{Demand, POWERS, Stretch};
+use model_core::virtual_joint::upset::{Kind, Shaft, Upset};
 use serde::{Deserialize, Serialize};
 
 use crate::controller::Impedance;

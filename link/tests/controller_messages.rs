@@ -5,13 +5,11 @@ use link::controller::{Answered, EXCHANGES_PER_SCHEDULE, Exchange, WireEstimates
 use link::framing::{Receiver, encode};
 use link::messages::{FromBoard, Schedule, ToBoard};
 use link::virtual_joint::{KNOTS_PER_SCHEDULE, Knot, LOOP_SAMPLES_PER_BATCH, LoopBatch, LoopSample, WireDemand};
-use model_core::mesh::ContactState;
-use model_core::realtime::compensation::{Command, ImpedancePoint, Motion, Position, Shaped, Stage};
-use model_core::realtime::controller::Answer;
-use model_core::realtime::course::{Demand, Stretch};
-use model_core::realtime::observer::{
-    Doubt, Estimate, Estimates, Notices, Progress, Reading, Refusal, Samples, Shaft, Source,
-};
+use model_core::compensation::{Command, ImpedancePoint, Motion, Position, Shaped, Stage};
+use model_core::controller::Answer;
+use model_core::controller::course::{Demand, Stretch};
+use model_core::observer::{Doubt, Estimate, Estimates, Notices, Progress, Reading, Refusal, Samples, Shaft, Source};
+use parameters::ContactState;
 
 const MOTION: Motion<f32> =
     Motion { position: Position { turns: i32::MIN, fraction: 0.3 }, speed: -1.5, acceleration: f32::MAX };

@@ -1,6 +1,6 @@
 //! The dead zone, sharp (eq. 12) and smoothed (eq. 13).
 
-use model_core::dead_zone::{sharp, smoothed};
+use model_core::gears::dead_zone::{sharp, smoothed};
 
 #[test]
 fn separated_teeth_carry_no_force() {

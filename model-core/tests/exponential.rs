@@ -1,6 +1,6 @@
 //! Precise integration against closed forms that share nothing with it.
 
-use model_core::design::exponential::{Plan, REMAINDER, exponential_minus_identity, flow};
+use model_core::gears::design::exponential::{Plan, REMAINDER, exponential_minus_identity, flow};
 use nalgebra::DMatrix;
 
 fn square(rows: &[f64]) -> DMatrix<f64> {

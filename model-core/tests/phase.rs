@@ -1,6 +1,6 @@
 //! Sine and cosine of a phase in 2^-32 turns.
 
-use model_core::realtime::phase::sine_cosine;
+use model_core::numbers::phase::sine_cosine;
 
 #[test]
 fn sine_and_cosine_are_right_to_single_precision_all_round() {

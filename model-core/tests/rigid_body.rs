@@ -1,7 +1,7 @@
 //! The rigid body in whole numbers: exact over any number of turns, in both directions.
 
-use model_core::realtime::RigidBody;
-use model_core::tables::Rigid;
+use model_core::gears::RigidBody;
+use model_core::gears::tables::Rigid;
 
 const TURN: f32 = 18_446_744_073_709_551_616.0;
 

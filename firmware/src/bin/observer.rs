@@ -9,7 +9,7 @@ mod role {
     use firmware::observer::Observing;
     use firmware::port::Direct;
     use firmware::tables::TABLES;
-    use model_core::realtime::controller::Controller;
+    use model_core::controller::Controller;
 
     #[allow(dead_code, clippy::excessive_precision, reason = "generated numbers; the surroundings are real here")]
     mod control {

@@ -10,7 +10,7 @@ mod app {
     use firmware::port::Direct;
     use firmware::port::spi::{FRAME_BYTES, Frame};
     use firmware::port::spi_slave::SpiSlave;
-    use model_core::realtime::controller::Controller;
+    use model_core::controller::Controller;
 
     #[allow(
         dead_code,

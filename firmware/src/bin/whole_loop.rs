@@ -9,7 +9,7 @@ mod role {
     use firmware::tables::{PLANETS, TABLES};
     pub use firmware::whole_loop::LoopWords as RoleWords;
     use firmware::whole_loop::WholeLoop;
-    use model_core::realtime::controller::Controller;
+    use model_core::controller::Controller;
 
     #[allow(dead_code, clippy::excessive_precision, reason = "generated numbers; a motion in knots asks for no probe")]
     mod control {

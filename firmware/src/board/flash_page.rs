@@ -4,7 +4,7 @@
 
 use core::ptr::{read_volatile, write_volatile};
 
-use model_core::realtime::observer::{MEMORY_BYTES, Memory};
+use model_core::observer::{MEMORY_BYTES, Memory};
 
 use super::patience::wait_longer;
 use crate::page::Page;

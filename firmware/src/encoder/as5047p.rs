@@ -7,7 +7,7 @@
 //! no angle since it reports an error, all zeros may be one, so the diagnostics are asked for, which are never zero.
 
 use embedded_hal::spi::SpiDevice;
-use model_core::realtime::observer::Reading;
+use model_core::observer::Reading;
 
 use super::{CountSource, EncoderFault};
 

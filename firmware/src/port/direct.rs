@@ -1,8 +1,8 @@
 //! Observer and compensation called where they are. Nothing is queued, so the answer is to the samples at hand.
 
-use model_core::realtime::compensation::Command;
-use model_core::realtime::controller::{Answer, Controller};
-use model_core::realtime::observer::{Memory, MemoryError, Samples};
+use model_core::compensation::Command;
+use model_core::controller::{Answer, Controller};
+use model_core::observer::{Memory, MemoryError, Samples};
 
 use super::{ControllerPort, PortError};
 

@@ -5,9 +5,9 @@
 use link::controller::{Answered, Exchange};
 use link::framing::{MAX_FRAME, Receiver, encode};
 use link::messages::{FromBoard, Schedule, ToBoard};
-use model_core::realtime::compensation::Command;
-use model_core::realtime::controller::Answer;
-use model_core::realtime::observer::Samples;
+use model_core::compensation::Command;
+use model_core::controller::Answer;
+use model_core::observer::Samples;
 
 use super::{ControllerPort, PortError};
 use crate::serial::LineEnd;

@@ -2,9 +2,9 @@
 //! the next tick finds the answer. Two single-producer queues, lock-free; neither side ever waits for the other.
 
 use heapless::spsc::{Consumer, Producer, Queue};
-use model_core::realtime::compensation::Command;
-use model_core::realtime::controller::Answer;
-use model_core::realtime::observer::Samples;
+use model_core::compensation::Command;
+use model_core::controller::Answer;
+use model_core::observer::Samples;
 
 use super::{ControllerPort, PortError, asked};
 

@@ -5,9 +5,9 @@
 use embedded_hal::spi::SpiDevice;
 use link::controller::{Answered, Exchange};
 use link::framing::{sealed, unsealed};
-use model_core::realtime::compensation::Command;
-use model_core::realtime::controller::Answer;
-use model_core::realtime::observer::Samples;
+use model_core::compensation::Command;
+use model_core::controller::Answer;
+use model_core::observer::Samples;
 
 use super::{ControllerPort, PortError, asked};
 
@@ -70,7 +70,7 @@ pub struct SpiGuest<P> {
 impl<P: ControllerPort> SpiGuest<P> {
     /// In front of a controller.
     pub fn new(controller: P) -> Self {
-        Self { controller, digest: model_core::digest::START }
+        Self { controller, digest: model_core::numbers::digest::START }
     }
 
     /// Works on a frame; the answer is for the next transfer. A damaged frame changes nothing and has no answer.
@@ -79,7 +79,7 @@ impl<P: ControllerPort> SpiGuest<P> {
         let exchange = unsealed::<Exchange>(frame)?;
         if exchange.tick == 0 {
             self.controller.reset();
-            self.digest = model_core::digest::START;
+            self.digest = model_core::numbers::digest::START;
         }
         let answer = asked(&mut self.controller, &exchange.samples(), exchange.command().as_ref()).ok()?;
         self.digest = answer.digest(self.digest);

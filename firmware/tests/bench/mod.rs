@@ -22,8 +22,8 @@ use firmware::work::Work;
 use heapless::spsc::Queue;
 use link::framing::{Receiver, encode};
 use link::messages::{Clock, Command, FromBoard, Remembered, RunMode, RunSettings, Schedule, ToBoard};
-use model_core::realtime::observer::{MEMORY_BYTES, Memory};
-use model_core::tables::Tables;
+use model_core::gears::Tables;
+use model_core::observer::{MEMORY_BYTES, Memory};
 
 /// Timer counts between two ticks.
 pub const PERIOD: u32 = 8400;

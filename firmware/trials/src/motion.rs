@@ -4,9 +4,8 @@
 
 use core::array;
 
-use model_core::digest::{self, chain};
-use model_core::realtime::{Model, Outputs, Relative, State, Torques};
-use model_core::tables::Tables;
+use model_core::gears::{Model, Outputs, Relative, State, Tables, Torques};
+use model_core::numbers::digest::{self, chain};
 
 use crate::numbers::Numbers;
 use crate::torque::{NONE, Size};

@@ -1,8 +1,8 @@
 //! What became of a mesh set in one tick: the classes that worst cases are reported by. Found from the outputs before
 //! and after, so that nothing of the step's inside is known here.
 
-use model_core::mesh::ContactState;
-use model_core::realtime::Outputs;
+use model_core::gears::Outputs;
+use parameters::ContactState;
 
 /// What the contact set did.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -4,8 +4,7 @@
 
 use core::array;
 
-use model_core::realtime::{Model, Relative, RigidBody, State, Torques};
-use model_core::tables::Tables;
+use model_core::gears::{Model, Relative, RigidBody, State, Tables, Torques};
 
 use crate::numbers::Numbers;
 use crate::torque::{NONE, Size};

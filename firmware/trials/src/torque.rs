@@ -1,7 +1,6 @@
 //! Torques of a size that suits a joint, whatever the joint. What is done with them is left to the trials.
 
-use model_core::realtime::Torques;
-use model_core::tables::Tables;
+use model_core::gears::{Tables, Torques};
 
 use crate::numbers::Numbers;
 

@@ -1,9 +1,8 @@
 //! The trials of a joint are worth their name: every class of contact comes about, by every kind of trial that is meant
 //! to bring it about, and a seed gives the same trials again.
 
-use model_core::design::design;
-use model_core::realtime::Model;
-use model_core::tables::Tables;
+use model_core::gears::design::design;
+use model_core::gears::{Model, Tables};
 use trials::outcome::Class;
 use trials::states::{Kind, Trial, Trials};
 

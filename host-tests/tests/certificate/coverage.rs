@@ -1,7 +1,7 @@
 //! In what share of random cases the measured error stays below the promised one.
 
 use host_tests::tolerance::certificate::{LEAST_COVERAGE, LEAST_COVERAGE_OF_A_KIND, MOST_COVERAGE_OF_TYPICAL};
-use model_core::design::{Pace, Processor, certificate};
+use model_core::gears::design::{Pace, Processor, certificate};
 
 use super::motion::{Outcome, follow};
 use super::random::{Case, Chance};
@@ -19,7 +19,7 @@ struct Tally {
 }
 
 impl Tally {
-    fn add(&mut self, error: f64, promise: model_core::certificate::ErrorPromise) {
+    fn add(&mut self, error: f64, promise: model_core::gears::certificate::ErrorPromise) {
         self.cases += 1;
         self.below_typical += usize::from(error <= promise.typical);
         self.below_nine_in_ten += usize::from(error <= promise.nine_in_ten);

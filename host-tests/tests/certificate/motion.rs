@@ -3,12 +3,10 @@
 
 use std::array;
 
-use model_core::design::{Effort, design_scheme};
-use model_core::mesh::ContactState;
-use model_core::real::Real;
-use model_core::realtime::{Model, Relative, State, Torques};
-use model_core::scales::Scales;
-use model_core::tables::{Scheme, Tables};
+use model_core::gears::design::{Effort, design_scheme};
+use model_core::gears::{Model, Relative, Scales, Scheme, State, Tables, Torques};
+use model_core::numbers::Real;
+use parameters::ContactState;
 
 use super::random::Case;
 

@@ -4,10 +4,9 @@
 
 use std::f64::consts::TAU;
 
-use model_core::design::{Effort, Parts};
-use model_core::joint::{Compliance, Excitation, JointParameters, PerPlanet};
-use model_core::mesh::{DampingLaw, Mesh, MeshPhases, StiffnessWave};
-use model_core::scales::Scales;
+use model_core::gears::design::{Effort, Parts};
+use model_core::gears::{Mechanics, Scales};
+use parameters::{Compliance, DampingLaw, Excitation, JointParameters, Mesh, MeshPhases, PerPlanet, StiffnessWave};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use reference::scenarios::l1;

@@ -1,8 +1,8 @@
 //! What the compensation does with estimates and set-points that are no numbers, not there, or nonsense.
 
-use model_core::design::compensation::{CompensationSettings, design_compensation};
-use model_core::realtime::compensation::{Command, Compensation, ImpedancePoint, Motion, Stage};
-use model_core::realtime::observer::{Doubt, Estimate, Estimates, Source};
+use model_core::compensation::design::{CompensationSettings, design_compensation};
+use model_core::compensation::{Command, Compensation, ImpedancePoint, Motion, Stage};
+use model_core::observer::{Doubt, Estimate, Estimates, Source};
 use reference::drive_train::DriveTrainParameters;
 use reference::scenarios::q1;
 use scenario::compensated::compensation_settings;

@@ -6,7 +6,7 @@ use host_tests::tolerance::compensation::{
     SLOW_PEAK_OVER_PID, STEPS_MESH_FORCE, STEPS_OVER_PID, STEPS_PEAK_OVER_PID, STIFF_JOINT_OVER_PID,
     STIFF_JOINT_STEPS_OVER_PID, TRANSMISSION_ERROR_OVER_PID,
 };
-use model_core::joint::JointParameters;
+use parameters::JointParameters;
 use reference::closed_loop::Profile;
 use reference::drive_train::{Disturbance, DriveTrainParameters};
 use reference::scenarios::{l1, q1};

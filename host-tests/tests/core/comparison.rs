@@ -4,11 +4,9 @@
 use std::array;
 
 use host_tests::tolerance::Bound;
-use model_core::design::{Effort, design_scheme};
-use model_core::real::Real;
-use model_core::realtime::{Model, Relative, State, Torques};
-use model_core::scales::Scales;
-use model_core::tables::{Scheme, Tables};
+use model_core::gears::design::{Effort, design_scheme};
+use model_core::gears::{Model, Relative, Scales, Scheme, State, Tables, Torques};
+use model_core::numbers::Real;
 use reference::joint::{Observation, Start};
 use reference::scenarios;
 use reference::scenarios::Scenario;

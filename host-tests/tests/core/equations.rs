@@ -2,12 +2,12 @@
 //! eigenvalues known from closed forms.
 
 use host_tests::tolerance;
-use model_core::design::dynamics::Dynamics;
-use model_core::design::exponential::exponential_minus_identity;
-use model_core::design::hamiltonian;
-use model_core::joint::JointParameters;
-use model_core::scales::Scales;
+use model_core::gears::Scales;
+use model_core::gears::design::dynamics::Dynamics;
+use model_core::gears::design::exponential::exponential_minus_identity;
+use model_core::gears::design::hamiltonian;
 use nalgebra::DMatrix;
+use parameters::JointParameters;
 use reference::scenarios;
 
 /// The paper's joint with other masses and stiffnesses, and n planets (radii do not enter the relative equations).

@@ -2,12 +2,9 @@
 //! same bits, the digest sees everything.
 
 use host_tests::tolerance;
-use model_core::dead_zone::DeadZone;
-use model_core::design::{DesignError, Effort, design, design_scheme, rust_source};
-use model_core::joint::JointParameters;
-use model_core::mesh::ContactState;
-use model_core::realtime::{Model, Torques};
-use model_core::tables::{Scheme, Tables};
+use model_core::gears::design::{DesignError, Effort, design, design_scheme, rust_source};
+use model_core::gears::{Mechanics, Model, Scheme, Tables, Torques};
+use parameters::{ContactState, DeadZone, JointParameters};
 use reference::scenarios;
 
 fn q1_tables() -> Tables<f32, 3> {

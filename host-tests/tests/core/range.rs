@@ -2,9 +2,9 @@
 //! stiffness wave, meshes out of phase, the joint turning backwards.
 
 use host_tests::tolerance;
-use model_core::design::Effort;
-use model_core::joint::{JointParameters, PerPlanet};
-use model_core::mesh::{DampingLaw, MeshPhases, StiffnessWave};
+use model_core::gears::Kinematics;
+use model_core::gears::design::Effort;
+use parameters::{DampingLaw, JointParameters, MeshPhases, PerPlanet, StiffnessWave};
 use reference::joint::{RelativeState, Start};
 use reference::scenarios;
 use reference::scenarios::{Scenario, TorqueSegment};

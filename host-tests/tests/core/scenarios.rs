@@ -2,8 +2,8 @@
 //! in f64 from the same source. Errors are RMS over the motion's own standard deviation; bounds stand in `tolerance`.
 
 use host_tests::tolerance;
-use model_core::design::Effort;
-use model_core::tables::Scheme;
+use model_core::gears::Scheme;
+use model_core::gears::design::Effort;
 use reference::joint::{RelativeState, Start};
 use reference::scenarios;
 use reference::scenarios::Scenario;
@@ -103,7 +103,7 @@ fn cases_a_and_q_follow_the_reference() {
 fn the_paper_s_scheme_is_exact_while_contact_holds_and_far_off_when_meshes_part() {
     let mut still = scenarios::case("Q without ripple", scenarios::CASE_Q_OMEGA);
     for mesh in [&mut still.joint.sun_planet, &mut still.joint.ring_planet] {
-        mesh.stiffness_wave = model_core::mesh::StiffnessWave::Harmonic { stiffness_ratio: 0.0 };
+        mesh.stiffness_wave = parameters::StiffnessWave::Harmonic { stiffness_ratio: 0.0 };
         mesh.transmission_error = scenarios::same(3, 0.0);
     }
     let Start::Relative(start) = &mut still.start else { unreachable!("a case states its start") };

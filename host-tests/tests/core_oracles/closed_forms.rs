@@ -1,9 +1,8 @@
 //! The closed joint by hand: dimensionless masses and springs, its planet modes and the two-by-two system of what the
 //! planets do in phase (eq. 19 with all X_sp alike). Nothing here is asked of the core.
 
-use model_core::joint::JointParameters;
-use model_core::mesh::MeshPhases;
 use nalgebra::{Complex, Matrix2, Vector2};
+use parameters::{JointParameters, MeshPhases};
 use reference::scenarios::{PAPER_LENGTH, paper_joint, same};
 
 /// K_rp over K_sp: different, so that no formula may mix them up.

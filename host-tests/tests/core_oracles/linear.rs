@@ -4,12 +4,11 @@ use std::f64::consts::TAU;
 
 use host_tests::tolerance::core::{CORE_ELLIPSE, CORE_MODE, CORE_STATIC};
 use host_tests::tolerance::{CLOSED_FORM, ELLIPSE, NATURAL_FREQUENCY, PRINTED_EIGENVALUE};
-use model_core::design::dynamics::Dynamics;
-use model_core::design::{hamiltonian, modes};
-use model_core::mesh::DampingLaw;
-use model_core::realtime::Relative;
-use model_core::scales::Scales;
+use model_core::gears::design::dynamics::Dynamics;
+use model_core::gears::design::{hamiltonian, modes};
+use model_core::gears::{Kinematics, Relative, Scales};
 use nalgebra::{Complex, Matrix2, Matrix3, Vector3};
+use parameters::DampingLaw;
 use reference::scenarios::{PAPER_LENGTH, paper_natural_frequency, same};
 
 use crate::closed_forms::{ClosedForm, joint};

@@ -6,10 +6,9 @@ mod linear;
 mod periods;
 mod teeth;
 
-use model_core::design::{Effort, design_scheme};
-use model_core::joint::JointParameters;
-use model_core::realtime::{Model, Outputs, Relative, State, Torques};
-use model_core::tables::{Scheme, Tables};
+use model_core::gears::design::{Effort, design_scheme};
+use model_core::gears::{Mechanics, Model, Outputs, Relative, Scheme, State, Tables, Torques};
+use parameters::JointParameters;
 
 /// Where a run starts, in units of b_c and b_c omega_n, and the torques that act on it.
 #[derive(Clone, Copy)]

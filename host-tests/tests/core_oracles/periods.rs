@@ -4,8 +4,8 @@
 use std::f64::consts::{PI, TAU};
 
 use host_tests::tolerance::core::CORE_FREE_PERIOD;
-use model_core::joint::JointParameters;
-use model_core::realtime::Relative;
+use model_core::gears::Relative;
+use parameters::JointParameters;
 use reference::scenarios::{PAPER_LENGTH, same};
 
 use crate::closed_forms::joint;

@@ -4,8 +4,7 @@
 use std::f64::consts::TAU;
 
 use host_tests::tolerance::core::CORE_TOOTH_PHASE;
-use model_core::joint::{Excitation, JointParameters};
-use model_core::mesh::{MeshPhases, StiffnessWave};
+use parameters::{Excitation, JointParameters, MeshPhases, StiffnessWave};
 use reference::scenarios::{PAPER_LENGTH, same};
 
 use crate::closed_forms::joint;

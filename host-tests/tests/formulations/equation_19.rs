@@ -1,7 +1,7 @@
 //! Eq. 19 term by term as the paper prints it, with the sum that its second row lost, in the paper's own X: deflections
 //! of the sun-planet meshes (errors taken off) and the gap coordinate.
 
-use model_core::joint::MAX_PLANETS;
+use parameters::MAX_PLANETS;
 use reference::integrator::{Entries, Guards, MAX_ENTRIES, SwitchedSystem};
 
 use crate::joint::{Deflections, Joint, Moving};

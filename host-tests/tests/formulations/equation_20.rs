@@ -1,11 +1,11 @@
 //! Eq. 20, v' = H v + f with v = (X, Y) and Y = X' + C X / 2: H and the gains of forces from the design, everything
 //! that is not linear in f. X keeps the imposed errors, as the core does, so that no e'' appears.
 
-use model_core::design::dynamics::Dynamics;
-use model_core::design::hamiltonian;
-use model_core::joint::{JointParameters, MAX_PLANETS};
-use model_core::scales::Scales;
+use model_core::gears::Scales;
+use model_core::gears::design::dynamics::Dynamics;
+use model_core::gears::design::hamiltonian;
 use nalgebra::{DMatrix, DVector};
+use parameters::{JointParameters, MAX_PLANETS};
 use reference::integrator::{Entries, Guards, MAX_ENTRIES, SwitchedSystem};
 
 use crate::joint::{Deflections, Joint, Moving};

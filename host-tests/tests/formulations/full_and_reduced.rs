@@ -2,12 +2,12 @@
 //! compliance): flow of the one, read in the coordinates of the other. Linear: contact is closed throughout.
 
 use host_tests::tolerance::REDUCED;
-use model_core::design::dynamics::Dynamics;
-use model_core::design::exponential::exponential_minus_identity;
-use model_core::design::hamiltonian;
-use model_core::joint::JointParameters;
-use model_core::scales::Scales;
+use model_core::gears::Scales;
+use model_core::gears::design::dynamics::Dynamics;
+use model_core::gears::design::exponential::exponential_minus_identity;
+use model_core::gears::design::hamiltonian;
 use nalgebra::{DMatrix, DVector};
+use parameters::JointParameters;
 use reference::scenarios::{paper_joint, q1};
 
 /// Bodies in the order sun, planets, carrier, link: mass matrix, damping and stiffness of eqs 1-6 by hand, and the

@@ -3,8 +3,7 @@
 
 use std::array;
 
-use model_core::joint::{JointParameters, MAX_PLANETS};
-use model_core::mesh::{MeshPhases, StiffnessWave};
+use parameters::{JointParameters, MAX_PLANETS, MeshPhases, StiffnessWave};
 use reference::integrator::Guards;
 use reference::scenarios::{PAPER_LENGTH, paper_natural_frequency};
 

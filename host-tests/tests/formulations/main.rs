@@ -7,8 +7,8 @@ mod full_and_reduced;
 mod joint;
 
 use host_tests::tolerance::FORMULATIONS;
-use model_core::joint::{JointParameters, PerPlanet};
-use model_core::mesh::{ContactState, MeshPhases};
+use model_core::gears::Mechanics;
+use parameters::{ContactState, JointParameters, MeshPhases, PerPlanet};
 use reference::integrator::{Entries, Integrator, SwitchedSystem};
 use reference::joint::{RelativeState, Start};
 use reference::scenarios::{PAPER_LENGTH, Scenario, TorqueSegment, paper_joint, paper_natural_frequency, run_at};

@@ -1,9 +1,8 @@
 //! What can happen between two ticks: a tooth parts and returns, or crosses its whole gap within one leap.
 
 use host_tests::tolerance::light_planets::{LEAP_ACROSS_THE_GAP, LEAP_THROUGH_THE_MIDDLE, PARTED_WITHIN_A_TICK};
-use model_core::joint::JointParameters;
-use model_core::mesh::{ContactState, DampingLaw};
-use model_core::realtime::{Model, Torques};
+use model_core::gears::{Model, Torques};
+use parameters::{ContactState, DampingLaw, JointParameters};
 use reference::joint::{Observation, RelativeState};
 use reference::scenarios::same;
 

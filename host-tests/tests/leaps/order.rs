@@ -3,8 +3,7 @@
 //! from its middle.
 
 use host_tests::tolerance::light_planets::{LEAPS, ORDER_OF_LEAPS};
-use model_core::joint::JointParameters;
-use model_core::mesh::{ContactState, DampingLaw};
+use parameters::{ContactState, DampingLaw, JointParameters};
 use reference::joint::RelativeState;
 
 use crate::subject::{error, joint, leaping, pressed, reference};

@@ -2,10 +2,8 @@
 //! tick. A refused tick is one in leaps, in every bit.
 
 use host_tests::tolerance::light_planets::{HELD_OVER_AN_OPENING, PRESSED};
-use model_core::joint::JointParameters;
-use model_core::mesh::{ContactState, DampingLaw};
-use model_core::realtime::{Model, Torques};
-use model_core::tables::Tables;
+use model_core::gears::{Model, Tables, Torques};
+use parameters::{ContactState, DampingLaw, JointParameters};
 use reference::joint::RelativeState;
 
 use crate::subject::{joint, leaping, reference, resting, state, tables};

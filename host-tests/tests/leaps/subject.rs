@@ -2,13 +2,11 @@
 //! side. No bound is stated here.
 
 use contest::start::Deflected;
-use model_core::design::dynamics::Dynamics;
-use model_core::design::{Effort, design_scheme, light_tables};
-use model_core::joint::JointParameters;
-use model_core::mesh::{DampingLaw, Mesh};
-use model_core::realtime::{Model, State, Torques};
-use model_core::scales::Scales;
-use model_core::tables::{Mobility, Scheme, Tables};
+use model_core::gears::design::dynamics::Dynamics;
+use model_core::gears::design::{Effort, design_scheme, light_tables};
+use model_core::gears::tables::Mobility;
+use model_core::gears::{Kinematics, Model, Scales, Scheme, State, Tables, Torques};
+use parameters::{DampingLaw, JointParameters, Mesh};
 use reference::joint::{Observation, Reference, RelativeState, Start};
 use reference::scenarios::{case_r, same};
 

@@ -1,7 +1,7 @@
 //! Encoders that fail and samples that make no sense: found, said, bounded, recovered from.
 
 use host_tests::tolerance::observer::{FAILURE_FOUND, FAILURE_FOUND_AT_SPEED, GAP_COARSE, LOST_COUNTS_FOUND};
-use model_core::realtime::observer::{Doubt, Estimates, MAPPED, Observer, Samples, Source};
+use model_core::observer::{Doubt, Estimates, MAPPED, Observer, Samples, Source};
 use reference::drive_train::Disturbance;
 
 use crate::motion::{Moment, Profile, uniform};

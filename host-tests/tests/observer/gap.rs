@@ -1,7 +1,7 @@
 //! Gap, contact, torques and width with both encoders: figures against their bounds on a few joints, widths and motions.
 
 use host_tests::tolerance::observer::*;
-use model_core::realtime::observer::{Estimate, MAPPED, PLAIN};
+use model_core::observer::{Estimate, MAPPED, PLAIN};
 use reference::drive_train::Disturbance;
 
 use crate::motion::Moment;

@@ -3,11 +3,11 @@
 
 use std::f64::consts::TAU;
 
-use model_core::design::design;
-use model_core::design::virtual_joint::design_surroundings;
+use model_core::gears::design::design;
+use model_core::virtual_joint::design::design_surroundings;
 
-use model_core::realtime::observer::{MAPPED, Observer, Source};
-use model_core::realtime::virtual_joint::VirtualJoint;
+use model_core::observer::{MAPPED, Observer, Source};
+use model_core::virtual_joint::VirtualJoint;
 
 use crate::motion::{MotorController, Reference, uniform};
 use crate::trial::{Encoders, Trial};

@@ -2,7 +2,7 @@
 //! for; and an encoder that comes back. Those that fail otherwise are left to `faults`.
 
 use host_tests::tolerance::observer::GAP_WORST;
-use model_core::realtime::observer::{Doubt, Estimates, MAPPED, Observer, Samples, Source};
+use model_core::observer::{Doubt, Estimates, MAPPED, Observer, Samples, Source};
 
 use crate::motion::{Moment, Profile};
 use crate::replay::samples;

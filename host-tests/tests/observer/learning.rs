@@ -2,7 +2,7 @@
 //! transmission error is larger than their gap. Figures of ordinary joints are in `gap`.
 
 use host_tests::tolerance::observer::*;
-use model_core::realtime::observer::{MAPPED, Observer, Source};
+use model_core::observer::{MAPPED, Observer, Source};
 use reference::drive_train::Disturbance;
 
 use crate::motion::Profile;

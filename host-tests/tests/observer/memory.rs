@@ -1,8 +1,8 @@
 //! What was learnt outlives the observer: saved, loaded by another one that starts elsewhere, refused when it must be.
 
 use host_tests::tolerance::observer::GAP_COARSE;
-use model_core::digest;
-use model_core::realtime::observer::{MAPPED, MEMORY_BYTES, Memory, MemoryError, Observer, PLAIN};
+use model_core::numbers::digest;
+use model_core::observer::{MAPPED, MEMORY_BYTES, Memory, MemoryError, Observer, PLAIN};
 
 use crate::motion::Moment;
 use crate::replay::samples;

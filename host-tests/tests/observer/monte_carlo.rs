@@ -1,6 +1,6 @@
 //! The long run: many seeds, widths, motions and encoders; worst of each figure. Ignored by default, for it takes minutes.
 
-use model_core::realtime::observer::{MAPPED, Source};
+use model_core::observer::{MAPPED, Source};
 
 use crate::replay::{Figures, replay, with_encoders};
 use crate::trial::{Encoders, MOTIONS, Trial};

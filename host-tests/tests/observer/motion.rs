@@ -1,9 +1,10 @@
 //! Joints in motion under a plain motor controller, recorded with what is measured and what is true. The controller
 //! uses the motor encoder alone, so that no recording depends on the observer that it is to judge.
 
+use model_core::gears::{Kinematics, Mechanics};
 use std::f64::consts::TAU;
 
-use model_core::joint::JointParameters;
+use parameters::JointParameters;
 use reference::drive_train::{Disturbance, DriveTrain, DriveTrainParameters};
 use reference::joint::Start;
 

@@ -1,7 +1,7 @@
 //! Without an output encoder: an honest variance, and a refusal where nothing can be known.
 
 use host_tests::tolerance::observer::MOTOR_ONLY_HONESTY;
-use model_core::realtime::observer::{Doubt, MAPPED, Source};
+use model_core::observer::{Doubt, MAPPED, Source};
 
 use crate::replay::replay;
 use crate::trial::{Encoders, Trial};

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use host_tests::tolerance::observer::SINGLE_PRECISION;
-use model_core::realtime::observer::{MAPPED, Observer, Shaft};
+use model_core::observer::{MAPPED, Observer, Shaft};
 
 use crate::replay::samples;
 use crate::trial::{Encoders, Trial};

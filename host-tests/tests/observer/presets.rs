@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use model_core::joint::JointParameters;
+use parameters::JointParameters;
 use reference::drive_train::{
     DriveTrainParameters, EncoderParameters, FrictionParameters, LoadParameters, MotorParameters,
 };

@@ -1,9 +1,8 @@
 //! The width probe in the loop with a plant: a held load gives the width, everything else a refusal.
 
 use host_tests::tolerance::observer::PROBED_WIDTH;
-use model_core::design::observer::{design_observer, design_probe};
-use model_core::realtime::observer::{MAPPED, Observer, Probe, Progress, Refusal};
-use model_core::tables::observer::{ObserverTables, ProbeTable};
+use model_core::observer::design::{design_observer, design_probe};
+use model_core::observer::{MAPPED, Observer, ObserverTables, Probe, ProbeTable, Progress, Refusal};
 use reference::drive_train::{Disturbance, DriveTrain};
 use reference::joint::Start;
 

@@ -1,13 +1,12 @@
 //! The observer over a recording, and what its estimates are worth against the truth. Bounds are the tests' business.
 
+use model_core::gears::Kinematics;
 use std::f64::consts::TAU;
 
-use model_core::design::observer::{EncoderSettings, ObserverSettings};
-use model_core::joint::JointParameters;
-use model_core::mesh::ContactState;
-use model_core::real::Real;
-use model_core::realtime::observer::{Estimates, Observer, Reading, Samples};
-use model_core::tables::observer::ObserverTables;
+use model_core::numbers::Real;
+use model_core::observer::design::{EncoderSettings, ObserverSettings};
+use model_core::observer::{Estimates, Observer, ObserverTables, Reading, Samples};
+use parameters::{ContactState, JointParameters};
 use reference::drive_train::DriveTrainParameters;
 
 use crate::motion::Moment;

@@ -2,8 +2,8 @@
 //! Motions under a plain motor controller are in `gap`.
 
 use host_tests::tolerance::observer::{WIDTH_AFTER, WIDTH_IN_STEPS, WIDTH_IN_STEPS_WORST};
-use model_core::design::compensation::design_compensation;
-use model_core::design::observer::design_observer;
+use model_core::compensation::design::design_compensation;
+use model_core::observer::design::design_observer;
 use reference::closed_loop::Bench;
 use scenario::compensated::{Compensated, compensation_settings, observer_settings};
 use scenario::trial::Trial;

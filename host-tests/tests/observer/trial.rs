@@ -1,10 +1,11 @@
 //! One trial: a joint in motion, and an observer that was told a wrong width and compliance and nothing of offset, skew
 //! and error maps. What must come of it is the tests' business.
 
-use model_core::design::observer::{ObserverSettings, design_observer};
-use model_core::joint::JointParameters;
-use model_core::real::Real;
-use model_core::tables::observer::ObserverTables;
+use model_core::gears::Kinematics;
+use model_core::numbers::Real;
+use model_core::observer::ObserverTables;
+use model_core::observer::design::{ObserverSettings, design_observer};
+use parameters::JointParameters;
 use reference::drive_train::{DriveTrainParameters, EncoderParameters};
 
 use crate::motion::{Moment, Profile, Run, uniform};

@@ -2,10 +2,10 @@
 //! column sums. Speed is not judged.
 
 use host_tests::tolerance::{DERIVATION, NALGEBRA_EXPONENTIAL, PRECISE_INTEGRALS, PRECISE_INTEGRATION};
-use model_core::design::dynamics::Dynamics;
-use model_core::design::exponential::{exponential_minus_identity, flow, norm};
-use model_core::design::hamiltonian;
-use model_core::scales::Scales;
+use model_core::gears::Scales;
+use model_core::gears::design::dynamics::Dynamics;
+use model_core::gears::design::exponential::{exponential_minus_identity, flow, norm};
+use model_core::gears::design::hamiltonian;
 use nalgebra::DMatrix;
 use reference::scenarios::{paper_joint, q1, same};
 

@@ -2,7 +2,7 @@
 //! squared instead, as one would without thinking. The board adds its tables to the identity for the same reason.
 
 use host_tests::tolerance::DIGITS_KEPT;
-use model_core::design::exponential::exponential_minus_identity;
+use model_core::gears::design::exponential::exponential_minus_identity;
 use nalgebra::DMatrix;
 
 use crate::fixtures::{Expected, Fixture, models};

@@ -1,6 +1,6 @@
 //! The number of doublings and of series terms, over norms of every size: never one too few, never one too many.
 
-use model_core::design::exponential::{Plan, REMAINDER, SERIES_NORM};
+use model_core::gears::design::exponential::{Plan, REMAINDER, SERIES_NORM};
 
 /// Norms from the smallest to the largest f64, and both neighbours of every power of two.
 fn norms() -> Vec<f64> {

@@ -2,8 +2,7 @@
 
 use host_tests::tolerance::ENERGY;
 use host_tests::tolerance::core::MOMENTUM;
-use model_core::joint::JointParameters;
-use model_core::mesh::{ContactState, DampingLaw};
+use parameters::{ContactState, DampingLaw, JointParameters};
 use proptest::prelude::*;
 use reference::joint::{Observation, Start};
 use reference::scenarios::{Scenario, TorqueSegment, run};

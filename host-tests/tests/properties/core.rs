@@ -2,14 +2,10 @@
 //! never pulling under the law `contact`. Its digest is looked at elsewhere.
 
 use host_tests::tolerance::core::{MOMENTUM, PASSIVITY};
-use model_core::dead_zone::DeadZone;
-use model_core::design::{DesignError, Effort, design_scheme};
-use model_core::joint::JointParameters;
-use model_core::mesh::{DampingLaw, StiffnessWave};
-use model_core::real::Real;
-use model_core::realtime::{Model, Relative, State, Torques};
-use model_core::scales::Scales;
-use model_core::tables::{Scheme, Tables};
+use model_core::gears::design::{DesignError, Effort, design_scheme};
+use model_core::gears::{Kinematics, Mechanics, Model, Relative, Scales, Scheme, State, Tables, Torques};
+use model_core::numbers::Real;
+use parameters::{DampingLaw, DeadZone, JointParameters, StiffnessWave};
 use proptest::prelude::*;
 use reference::scenarios::{Scenario, same};
 

@@ -1,9 +1,7 @@
 //! The digest of the tables, on random joints: no parameter changes without it.
 
-use model_core::dead_zone::DeadZone;
-use model_core::design::Effort;
-use model_core::joint::{Excitation, JointParameters};
-use model_core::mesh::{DampingLaw, MeshPhases, StiffnessWave};
+use model_core::gears::design::Effort;
+use parameters::{DampingLaw, DeadZone, Excitation, JointParameters, MeshPhases, StiffnessWave};
 use proptest::prelude::*;
 use reference::scenarios::same;
 

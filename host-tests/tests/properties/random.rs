@@ -3,8 +3,7 @@
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-use model_core::joint::{Compliance, Excitation, JointParameters, PerPlanet};
-use model_core::mesh::{DampingLaw, Mesh, MeshPhases, StiffnessWave};
+use parameters::{Compliance, DampingLaw, Excitation, JointParameters, Mesh, MeshPhases, PerPlanet, StiffnessWave};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use reference::joint::{RelativeState, Start};

@@ -2,7 +2,8 @@
 //! differ by a billionth.
 
 use host_tests::tolerance::light_planets::NOISE_IN_WINDOWS;
-use model_core::joint::JointParameters;
+use model_core::gears::Kinematics;
+use parameters::JointParameters;
 use reference::joint::Reference;
 use reference::scenarios::case_r::{CaseR, TICK_RATE, brief, case_r};
 

@@ -4,8 +4,7 @@
 use host_tests::tolerance::light_planets::{
     FAR_ROBOTS_LINK_RMS, FAR_ROBOTS_LINK_WORST, ROBOT_LINK_RMS, ROBOT_LINK_WORST, ROBOTS_PEAK_FORCE,
 };
-use model_core::joint::{JointParameters, PerPlanet};
-use model_core::mesh::DampingLaw;
+use parameters::{DampingLaw, JointParameters, PerPlanet};
 use reference::scenarios::{case_r, same};
 
 use crate::variants::{joint, with_meshes, with_teeth};

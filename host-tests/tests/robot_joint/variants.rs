@@ -1,7 +1,6 @@
 //! Case R's joint and others like it. No bound is stated here.
 
-use model_core::joint::JointParameters;
-use model_core::mesh::Mesh;
+use parameters::{JointParameters, Mesh};
 use reference::scenarios::{case_r, same};
 
 /// Case R's own joint.

@@ -7,7 +7,7 @@ mod recorded;
 use std::path::Path;
 
 use link::messages::Command;
-use model_core::joint::JointParameters;
+use parameters::JointParameters;
 
 use report::failure::{Failure, Outcome};
 use report::output::typed;

@@ -2,13 +2,11 @@
 //! running digest over the whole state covers the ticks between samples; closeness to the truth is the reference's.
 
 use link::messages::{Command, Sample};
-use model_core::design::{DesignError, Effort, design_scheme};
-use model_core::digest;
+use model_core::gears::design::{DesignError, Effort, design_scheme};
+use model_core::numbers::digest;
 
-use model_core::joint::JointParameters;
-use model_core::mesh::ContactState;
-use model_core::realtime::{Model, Torques};
-use model_core::tables::{Scheme, Tables};
+use model_core::gears::{Model, Scheme, Tables, Torques};
+use parameters::{ContactState, JointParameters};
 
 use crate::target::board::Board;
 use report::failure::{Failure, Outcome};

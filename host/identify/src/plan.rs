@@ -2,7 +2,8 @@
 //! compliance that is expected. Nothing in it is found from a log.
 
 use joint_file::{DriveTrain, JointFile};
-use model_core::mesh::{Mesh, MeshKind, StiffnessWave};
+use model_core::gears::{Kinematics, Mechanics};
+use parameters::{Mesh, MeshKind, StiffnessWave};
 
 use super::arguments::Arguments;
 use joint_file::named::Loaded;

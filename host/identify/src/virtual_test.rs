@@ -1,6 +1,7 @@
 //! The recommended test without hardware: the f64 reference of a joint file in its drive train, reversed by a torque that
 //! steps to and fro, recorded as a drive would. It shares nothing with the fits but the joint file.
 
+use model_core::gears::Kinematics;
 use std::fmt::Write as _;
 
 use joint_file::JointFile;

@@ -1,7 +1,7 @@
 //! Reads `[bodies]` and `[compliance]`. Both readings of the paper's Table 1 are accepted, I / r^2 in kg and I in
 //! kg m^2; sums such as the carrier's equivalent mass with its planets are model-core's business.
 
-use model_core::joint::{Bodies, Compliance, Geometry};
+use parameters::{Bodies, Compliance, Geometry};
 
 use crate::section::Section;
 

@@ -293,7 +293,7 @@ mod tests {
         let still = change(paper, "mesh_frequency_over_omega_n", "").expect("a known key");
         let angle = change(&still, "excitation.mode", "angle").expect("a known key");
         let joint = read(&angle).expect("still a joint").parameters;
-        assert_eq!(joint.excitation, model_core::joint::Excitation::Angle);
+        assert_eq!(joint.excitation, parameters::Excitation::Angle);
     }
 
     #[test]

@@ -1,7 +1,8 @@
 //! Do the gears fit together? Coaxial, assembled, one centre distance, one ratio, and room between the planets. Whether
 //! a misfit stops the file or only warns is told by the file's `coherence`.
 
-use model_core::joint::{Coherence, Geometry};
+use model_core::gears::Kinematics;
+use parameters::{Coherence, Geometry};
 
 use crate::notes::Notes;
 use crate::problem::Severity;

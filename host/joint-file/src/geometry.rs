@@ -1,7 +1,7 @@
 //! Reads `[geometry]`: teeth, angles, and radii either stated or derived from module and teeth. Whether they fit
 //! together is asked in `coherence`.
 
-use model_core::joint::{Coherence, Geometry};
+use parameters::{Coherence, Geometry};
 
 use crate::section::Section;
 

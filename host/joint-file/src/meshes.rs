@@ -1,8 +1,8 @@
 //! Reads `[mesh]` with `[mesh.sun_planet]` and `[mesh.ring_planet]`: what both families share stands in `[mesh]`, what
 //! differs in its own section. Forces and phases from tooth counts are model-core's business.
 
-use model_core::joint::PerPlanet;
-use model_core::mesh::{Mesh, MeshPhases, StiffnessWave};
+use model_core::gears::StiffnessSeries;
+use parameters::{Mesh, MeshPhases, PerPlanet, StiffnessWave};
 
 use crate::section::{PerPlanetValue, Section};
 

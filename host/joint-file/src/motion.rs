@@ -1,9 +1,8 @@
 //! Reads `[contact]`, `[excitation]` and `[profile]`: how teeth meet, what drives the mesh phase, and the torques that a
 //! motion profile scales with. The profile itself is the host command's business.
 
-use model_core::dead_zone::DeadZone;
-use model_core::joint::{Excitation, Geometry};
-use model_core::mesh::DampingLaw;
+use model_core::gears::Kinematics;
+use parameters::{DampingLaw, DeadZone, Excitation, Geometry};
 
 use crate::section::Section;
 

@@ -1,8 +1,8 @@
 //! Reads a whole joint file: parses, hands each section to its reader, checks that the gears fit, and gives either the
 //! joint with its warnings or everything that is wrong at once. Each section's rules are left to its reader.
 
-use model_core::joint::{Coherence, Excitation, JointParameters};
-use model_core::scales::Scales;
+use model_core::gears::Scales;
+use parameters::{Coherence, Excitation, JointParameters};
 use toml::de::DeTable;
 
 use crate::drive_train::{self, DriveTrain};

@@ -1,7 +1,7 @@
 //! What a joint file says of everything around the gears, as the core's designs want it. What the file leaves out is
 //! ideal.
 
-use model_core::surroundings::{AbsoluteEncoder, Friction, Surroundings};
+use parameters::{AbsoluteEncoder, Friction, Surroundings};
 
 use crate::drive_train::Encoder;
 use crate::reader::JointFile;

@@ -2,7 +2,7 @@
 //! paper and of the robot joints. What is wrong with bad files is asserted in `bad_input`.
 
 use joint_file::{JointFile, PRESETS, preset, read};
-use model_core::scales::Scales;
+use model_core::gears::{Kinematics, Mechanics, MeshPhasing, Scales};
 
 fn file(name: &str) -> JointFile {
     match read(preset(name).expect("a preset")) {
@@ -27,7 +27,7 @@ fn every_preset_is_read_and_carries_its_name() {
 fn robot_joints_are_read_without_a_warning() {
     for name in ["q1", "s1", "d2", "l1"] {
         assert_eq!(file(name).warnings, [], "{name}");
-        assert!(file(name).parameters.geometry.coherence == model_core::joint::Coherence::Required);
+        assert!(file(name).parameters.geometry.coherence == parameters::Coherence::Required);
     }
 }
 
@@ -67,13 +67,13 @@ fn the_paper_has_the_masses_and_the_frequency_that_follow_from_table_1() {
 fn the_papers_mesh_frequency_is_2_1_times_omega_n() {
     let paper = file("paper").parameters;
     let omega_n = Scales::new(&paper).frequency;
-    assert_eq!(paper.excitation, model_core::joint::Excitation::Time { mesh_frequency: 2.1 * omega_n });
+    assert_eq!(paper.excitation, parameters::Excitation::Time { mesh_frequency: 2.1 * omega_n });
 }
 
 #[test]
 fn the_papers_meshes_are_all_in_phase() {
     let paper = file("paper").parameters;
-    for kind in model_core::mesh::MESH_KINDS {
+    for kind in parameters::MESH_KINDS {
         for planet in 0..3 {
             assert_eq!((paper.stiffness_phase(kind, planet), paper.error_phase(kind, planet)), (0.0, 0.0));
         }

@@ -11,8 +11,7 @@ use std::thread::{self, JoinHandle};
 
 use follow::{DISTURBANCE, Follower, follow};
 use link::messages::{Command, Sample};
-use model_core::joint::JointParameters;
-use model_core::mesh::ContactState;
+use parameters::{ContactState, JointParameters};
 use reference::joint::{Observation, ReferenceError};
 use row::{QUANTITIES, Row, spread};
 
@@ -161,6 +160,7 @@ mod tests {
     use board::profile::Profile;
     use board::target::board::Board;
     use board::twin;
+    use model_core::gears::Kinematics;
 
     const TICK_RATE: u32 = 20_000;
     const DECIMATION: u32 = 20;

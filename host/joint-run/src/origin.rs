@@ -1,6 +1,7 @@
 //! Who ran what: the head of a record. Everything here is told, nothing is measured.
 
 use link::messages::{Clock, Hello, RunMode};
+use model_core::gears::Kinematics;
 
 use crate::plan::{Plan, Request};
 use crate::record::{Identity, Image, JointFigures, RunRecord, Settings};

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use command::{Ended, joint, text};
 use identify::memory::content::Content;
 use learning_board::{Flash, learnt};
-use model_core::realtime::observer::{MEMORY_BYTES, Memory};
+use model_core::observer::{MEMORY_BYTES, Memory};
 use tempfile::TempDir;
 
 const EMPTY: Memory = [0xff; MEMORY_BYTES];

@@ -1,8 +1,8 @@
 //! Instructions that the certificate promises, against those counted on the emulated board: what a step takes while
 //! contact holds and with all teeth apart, and that no searched state takes more than the bound.
 
-use model_core::design::{Cost, Parts};
-use model_core::joint::{Excitation, JointParameters};
+use model_core::gears::design::{Cost, Parts};
+use parameters::{Excitation, JointParameters};
 
 use super::joints::{TRIAL_JOINTS, write_files};
 use super::worst_case::Search;
@@ -75,7 +75,7 @@ fn compare(parameters: &JointParameters, counted: &Counted, most: u32) -> Outcom
             return Err(Failure::check_failed(format!(
                 "joint {name}: {predicted:.0} instructions are promised {what}, but {found} were counted"
             ))
-            .with_help("count anew and change the constants of model-core/src/design/cost.rs"));
+            .with_help("count anew and change the constants of model-core/src/gears/design/cost.rs"));
         }
     }
     let bound = cost.bound(*divided);
@@ -83,7 +83,7 @@ fn compare(parameters: &JointParameters, counted: &Counted, most: u32) -> Outcom
         return Err(Failure::check_failed(format!(
             "joint {name}: a step is said to take at most {bound:.0} instructions, but the worst that was found takes {most}"
         ))
-        .with_help("change the constants of model-core/src/design/cost.rs"));
+        .with_help("change the constants of model-core/src/gears/design/cost.rs"));
     }
     Ok(format!(
         "{name}: contact holds {} of {:.0} promised, apart {} of {:.0}, worst {most} of {bound:.0}",

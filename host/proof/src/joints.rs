@@ -87,14 +87,14 @@ pub fn write_files(folder: &Path) -> Outcome<Vec<PathBuf>> {
 
 #[cfg(test)]
 mod tests {
-    use model_core::mesh::DampingLaw;
+    use parameters::DampingLaw;
 
     use super::*;
 
     #[test]
     fn between_them_they_have_everything_that_a_joint_can_have() {
         let joints: Vec<_> = TRIAL_JOINTS.iter().map(|joint| joint.read().unwrap().parameters).collect();
-        let any = |has: &dyn Fn(&model_core::joint::JointParameters) -> bool| joints.iter().any(has);
+        let any = |has: &dyn Fn(&parameters::JointParameters) -> bool| joints.iter().any(has);
         for planets in 3..=5 {
             assert!(any(&|joint| joint.geometry.planets == planets));
         }

@@ -10,7 +10,7 @@ pub mod same_bits;
 pub mod tick;
 pub mod worst_case;
 
-use model_core::certificate::Parts;
+use model_core::gears::certificate::Parts;
 
 /// How a joint's tick goes through contacts that change, as the measuring images say it: sub-steps, leaps or none.
 fn parts<'a>(fields: &mut impl Iterator<Item = &'a str>) -> Option<Parts> {

@@ -4,8 +4,8 @@
 
 use std::fmt;
 
-use model_core::design::design;
-use model_core::joint::JointParameters;
+use model_core::gears::design::design;
+use parameters::JointParameters;
 use trials::motion;
 
 use super::joints::{TRIAL_JOINTS, TrialJoint, write_files};

@@ -4,7 +4,7 @@
 use std::fmt;
 
 use super::joints::write_files;
-use model_core::certificate::Parts;
+use model_core::gears::certificate::Parts;
 
 use board::target::board::Board;
 use board::target::image::DEFAULT_TICK_RATE;

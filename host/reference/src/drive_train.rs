@@ -19,12 +19,12 @@ mod surroundings;
 
 use std::f64::consts::TAU;
 
+use ::parameters::JointParameters;
 use current_loop::CurrentLoop;
 pub use disturbance::Disturbance;
 use encoder::Encoder;
 use friction::Shaft;
 pub use inside::Inside;
-use model_core::joint::JointParameters;
 pub use parameters::{
     DriveTrainError, DriveTrainParameters, EncoderParameters, FrictionParameters, LoadParameters, MotorParameters,
 };

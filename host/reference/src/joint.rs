@@ -14,8 +14,8 @@ mod wear;
 use std::f64::consts::TAU;
 
 use equations::JointEquations;
-use model_core::joint::JointParameters;
 pub use observation::{Observation, Work};
+use parameters::JointParameters;
 pub use start::{RelativeState, Start};
 pub use validity::ReferenceError;
 

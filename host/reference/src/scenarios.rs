@@ -8,8 +8,8 @@ mod motions;
 
 pub use cases::{CASE_A_OMEGA, CASE_Q_OMEGA, case, poincare_point, regime};
 pub use joints::{PAPER_LENGTH, l1, paper_joint, paper_natural_frequency, q1, same};
-use model_core::joint::JointParameters;
 pub use motions::motions;
+use parameters::JointParameters;
 
 use crate::integrator::Counters;
 use crate::joint::{Observation, Reference, ReferenceError, Start};

@@ -6,11 +6,11 @@ use std::sync::Arc;
 
 use crate::compensated::{compensation_settings, observer_settings};
 use joint_file::{JointFile, Problem, Severity};
-use model_core::design::compensation::{CompensationSettings, design_compensation};
-use model_core::design::observer::{design_observer, design_usual_probe};
-use model_core::joint::JointParameters;
-use model_core::tables::compensation::CompensationTables;
-use model_core::tables::observer::{ObserverTables, ProbeTable};
+use model_core::compensation::CompensationTables;
+use model_core::compensation::design::{CompensationSettings, design_compensation};
+use model_core::observer::design::{design_observer, design_usual_probe};
+use model_core::observer::{ObserverTables, ProbeTable};
+use parameters::JointParameters;
 use reference::closed_loop::rivals::Knowledge;
 use reference::closed_loop::{Profile as Standard, Reference};
 use reference::drive_train::{Disturbance, DriveTrainParameters};

@@ -1,18 +1,15 @@
 //! Observer and compensation of the core as a controller, or the compensation alone on perfect estimates. Judging it is
 //! left to the tests.
 
+use model_core::gears::Kinematics;
 use std::f64::consts::TAU;
 
-use model_core::design::compensation::CompensationSettings;
-use model_core::design::observer::ObserverSettings;
-use model_core::design::virtual_joint;
-use model_core::joint::JointParameters;
-use model_core::mesh::ContactState;
-use model_core::real::Real;
-use model_core::realtime::compensation::{self, Command, Compensation, ImpedancePoint, Position, Shaped};
-use model_core::realtime::observer::{Estimate, Estimates, MAPPED, Observer, Reading, Samples, Shaft, Source};
-use model_core::tables::compensation::CompensationTables;
-use model_core::tables::observer::ObserverTables;
+use model_core::compensation::design::CompensationSettings;
+use model_core::compensation::{self, Command, Compensation, CompensationTables, ImpedancePoint, Position, Shaped};
+use model_core::numbers::Real;
+use model_core::observer::design::{CLOCK_TICKS, ObserverSettings};
+use model_core::observer::{Estimate, Estimates, MAPPED, Observer, ObserverTables, Reading, Samples, Shaft, Source};
+use parameters::{ContactState, JointParameters};
 
 use reference::closed_loop::{Controller, Motion, SetPoint};
 use reference::drive_train::{DriveTrainParameters, Measurement, TrueTorques};
@@ -55,12 +52,12 @@ pub struct Compensated<'tables, T: Real> {
 
 /// Settings of an observer for a drive train: what data sheets say, sizes of errors but never their phases or signs.
 pub fn observer_settings(train: &DriveTrainParameters) -> ObserverSettings {
-    virtual_joint::observer_settings(&train.surroundings())
+    model_core::observer::design::observer_settings(&train.surroundings())
 }
 
 /// Settings of a compensation for a drive train.
 pub fn compensation_settings(train: &DriveTrainParameters, bandwidth: f64) -> CompensationSettings {
-    virtual_joint::compensation_settings(&train.surroundings(), bandwidth)
+    model_core::compensation::design::compensation_settings(&train.surroundings(), bandwidth)
 }
 
 impl<'tables, T: Real> Compensated<'tables, T> {
@@ -92,7 +89,7 @@ impl<'tables, T: Real> Compensated<'tables, T> {
 
 impl<T: Real> Observed<'_, T> {
     fn see(&mut self, measurement: &Measurement) -> Estimates<T> {
-        let time = (measurement.period as u32).wrapping_mul(virtual_joint::CLOCK_TICKS);
+        let time = (measurement.period as u32).wrapping_mul(CLOCK_TICKS);
         let reading = |counts: i64, range: i64| Reading { counts: counts.rem_euclid(range) as u32, time };
         let samples = Samples {
             time,

@@ -1,7 +1,7 @@
 //! What differs from seed to seed: values drawn from ranges, each from a stream of its own, so that one more variation
 //! in a file leaves the others as they were. Noise of motor and encoders is the drive train's.
 
-use model_core::random::splitmix64;
+use model_core::numbers::random::splitmix64;
 
 /// A number, or a range to draw from.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,12 +2,9 @@
 //! same drive train. Faults of the teeth reach either through one trait.
 
 use clap::ValueEnum;
-use model_core::design::design;
-use model_core::joint::JointParameters;
-use model_core::mesh::ContactState;
-use model_core::realtime::{Model, State, Torques};
-use model_core::scales::Scales;
-use model_core::tables::Tables;
+use model_core::gears::design::design;
+use model_core::gears::{Kinematics, Mechanics, Model, Scales, State, Tables, Torques};
+use parameters::{ContactState, JointParameters};
 use reference::drive_train::{Disturbance, DriveTrain, DriveTrainParameters, Inside, Stepping};
 use reference::joint::{Observation, Reference, ReferenceError, RelativeState, Start, Work};
 

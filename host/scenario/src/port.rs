@@ -3,9 +3,9 @@
 
 use std::f64::consts::TAU;
 
-use model_core::realtime::compensation::{self, Command, ImpedancePoint, Position};
-use model_core::realtime::controller::{self, Controller};
-use model_core::realtime::observer::{Reading, Samples};
+use model_core::compensation::{self, Command, ImpedancePoint, Position};
+use model_core::controller::{self, Controller};
+use model_core::observer::{Reading, Samples};
 use reference::closed_loop::{Motion, SetPoint};
 
 use super::case::Designed;

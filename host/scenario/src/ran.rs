@@ -1,9 +1,9 @@
 //! What happened in a run: the truth in every control period, and what the observer made of it. How it came about is
 //! `execution`'s business, what it is worth is `figures`'.
 
-use model_core::digest;
-use model_core::mesh::ContactState;
-use model_core::realtime::observer::{Progress, Refusal, Source};
+use model_core::numbers::digest;
+use model_core::observer::{Progress, Refusal, Source};
+use parameters::ContactState;
 use reference::closed_loop::{Run, Sample};
 
 use super::case::Case;

@@ -1,7 +1,8 @@
 //! Set-points as whoever asks for a motion sends them: every control period, or at an impedance's own rate and held in
 //! between. What is lost on the way is the business of `injection`.
 
-use model_core::joint::JointParameters;
+use model_core::gears::{Kinematics, Mechanics};
+use parameters::JointParameters;
 use reference::closed_loop::{Motion, SetPoint};
 
 use super::case::{Case, Designed};

@@ -1,6 +1,7 @@
 //! What the observer's estimates are worth against the truth. Figures of the motion are in `figures`.
 
-use model_core::realtime::observer::Progress;
+use model_core::gears::Kinematics;
+use model_core::observer::Progress;
 
 use super::case::Case;
 use super::file::{EncoderName, Fault, FaultKind, FrameName, TestFile};

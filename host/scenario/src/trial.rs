@@ -1,9 +1,9 @@
 //! The standard trials, each a bench with a motion, and everyone who may stand at them. What must come out is not said.
 
-use model_core::design::DesignError;
-use model_core::design::compensation::design_compensation;
-use model_core::design::observer::design_observer;
-use model_core::joint::JointParameters;
+use model_core::compensation::design::design_compensation;
+use model_core::gears::design::DesignError;
+use model_core::observer::design::design_observer;
+use parameters::JointParameters;
 
 use super::compensated::{Compensated, compensation_settings, observer_settings};
 use reference::closed_loop::Profile;

@@ -1,6 +1,7 @@
 //! Values of the named figures of one run, from the truth. What each is called and means is in `figures`; what the
 //! observer's estimates are worth is in `sight`.
 
+use model_core::gears::Kinematics;
 use reference::closed_loop::{Figures as Plain, Sample, deviation};
 
 use super::case::Case;

@@ -1,10 +1,10 @@
 //! What a control period came to, in the wire's own form: the shaped set-point, and all that the observer says where it was
 //! asked for. What is asked is in the parent; every field is SI.
 
-use model_core::mesh::ContactState;
-use model_core::realtime::compensation::{Shaped, Stage};
-use model_core::realtime::controller::Answer;
-use model_core::realtime::observer::{Doubt, Estimate, Estimates, Notices, Progress, Refusal, Shaft, Source};
+use model_core::compensation::{Shaped, Stage};
+use model_core::controller::Answer;
+use model_core::observer::{Doubt, Estimate, Estimates, Notices, Progress, Refusal, Shaft, Source};
+use parameters::ContactState;
 use serde::{Deserialize, Serialize};
 
 /// What a control period came to.

@@ -2,7 +2,7 @@
 //! and erased between runs. What its bytes mean is the observer's business.
 
 use heapless::Vec;
-use model_core::realtime::observer::MEMORY_BYTES;
+use model_core::observer::MEMORY_BYTES;
 use serde::{Deserialize, Serialize};
 
 /// Frames that carry one memory.

@@ -122,9 +122,9 @@ fn write(folder: &Path, source: &str) -> Outcome<PathBuf> {
 fn source(jobs: &[Job<'_>]) -> Outcome<String> {
     let mut text = String::from(
         "use core::option::Option::*;\n\
-         use model_core::mesh::DampingLaw::*;\n\
-         use model_core::realtime::{Relative, RigidBody, State};\n\
-         use model_core::tables::{Scheme::*, *};\n\
+         use parameters::DampingLaw::*;\n\
+         use model_core::gears::{Relative, RigidBody, State};\n\
+         use model_core::gears::tables::{Scheme::*, *};\n\
          use peers::etd1::Etd1;\nuse peers::euler::SemiImplicitEuler;\nuse peers::motion::Coordinates;\nuse peers::peer::Start;\n\
          use peers::plant::{Flow as PlantFlow, Gains, Law::*, Mesh, Phase, Plant};\nuse peers::trapezoid::Trapezoid;\n\
          use peers::two_mass::{Contact::*, TwoMass};\nuse super::{Change, Race, Way};\n\n\

@@ -1,8 +1,8 @@
 //! A case: a joint, where it starts, what torques act, and what of its motion counts. Which cases there are is said in
 //! `catalogue`.
 
-use model_core::joint::{Excitation, JointParameters};
-use model_core::mesh::{MESH_KINDS, MeshKind, MeshPhases};
+use model_core::gears::{Kinematics, MeshPhasing};
+use parameters::{Excitation, JointParameters, MESH_KINDS, MeshKind, MeshPhases};
 use reference::joint::{RelativeState, Start};
 use reference::scenarios::Scenario;
 use reference::scenarios::case_r::{CaseR, TICK_RATE};

@@ -2,9 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use model_core::joint::{Excitation, JointParameters, PerPlanet};
-use model_core::mesh::{MeshKind, MeshPhases};
-use model_core::scales::Scales;
+use model_core::gears::{Kinematics, MeshPhasing, Scales};
+use parameters::{Excitation, JointParameters, MeshKind, MeshPhases, PerPlanet};
 use reference::joint::{RelativeState, Start};
 use reference::scenarios::{
     CASE_A_OMEGA, CASE_Q_OMEGA, Scenario, case, case_r, motions, paper_natural_frequency, same,

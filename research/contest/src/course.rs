@@ -1,7 +1,7 @@
 //! The reference's motion through a case, sampled, and how far another motion is from it. The other motion may be sampled
 //! more coarsely.
 
-use model_core::joint::Excitation;
+use parameters::Excitation;
 use reference::joint::{Reference, ReferenceError, RelativeState, Start};
 
 use crate::case::Case;

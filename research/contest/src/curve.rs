@@ -1,9 +1,9 @@
 //! Error by step: a method over a case at one rate after another, as the envelope over excitation phases, so that no
 //! lucky step counts. What a step costs is counted elsewhere.
 
-use model_core::design::DesignError;
-use model_core::real::Real;
-use model_core::scales::Scales;
+use model_core::gears::Scales;
+use model_core::gears::design::DesignError;
+use model_core::numbers::Real;
 use rayon::prelude::*;
 use reference::joint::ReferenceError;
 
@@ -103,6 +103,6 @@ fn run_any<T: Real>(case: &Case, restarts: &[Restart], method: Method, rate: (u3
         3 => run::run::<T, 3>(case, restarts, method, rate, &|| 0.0),
         4 => run::run::<T, 4>(case, restarts, method, rate, &|| 0.0),
         5 => run::run::<T, 5>(case, restarts, method, rate, &|| 0.0),
-        given => Err(DesignError::PlanetCount { given }),
+        given => Err(parameters::ParameterError::PlanetCount { given }.into()),
     }
 }

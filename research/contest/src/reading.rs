@@ -1,9 +1,9 @@
 //! What is read off a motion, and the gauge that reads it: in f64 from coordinates, rates and phase, by one formula for
 //! every method, so that none is favoured by its own outputs.
 
-use model_core::design::dynamics::MovingMasses;
-use model_core::joint::JointParameters;
-use model_core::scales::Scales;
+use model_core::gears::design::dynamics::MovingMasses;
+use model_core::gears::{Kinematics, Scales};
+use parameters::JointParameters;
 use peers::forces::{Always, ForceLaw, PushOnly, Smooth, SmoothPush, Spring};
 use peers::instant::{Instant, Rotor};
 use peers::motion::{Coordinates, Motion};

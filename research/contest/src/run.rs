@@ -3,13 +3,10 @@
 
 use std::f64::consts::TAU;
 
-use model_core::design::{DesignError, Effort, design_scheme};
-use model_core::digest;
-use model_core::joint::{Excitation, JointParameters};
-use model_core::real::Real;
-use model_core::realtime::{Model, State, Torques};
-use model_core::scales::Scales;
-use model_core::tables::{Scheme, Tables};
+use model_core::gears::design::{DesignError, Effort, design_scheme};
+use model_core::gears::{Kinematics, Model, Scales, Scheme, State, Tables, Torques};
+use model_core::numbers::{Real, digest};
+use parameters::{Excitation, JointParameters};
 use peers::clock::Clock;
 use peers::etd1::Etd1;
 use peers::euler::SemiImplicitEuler;
@@ -224,7 +221,7 @@ impl<T: Real, const N: usize> Moving for Core<'_, T, N> {
     }
 
     fn read(&mut self, state: &State<T, N>) -> Reading {
-        let wide = |values: &model_core::realtime::Relative<T, N>| Coordinates {
+        let wide = |values: &model_core::gears::Relative<T, N>| Coordinates {
             planets: values.planets.map(Real::to_f64),
             gap: values.gap.to_f64(),
             wind_up: values.wind_up.to_f64(),
@@ -355,7 +352,7 @@ struct RigidCarrier {
 impl RigidCarrier {
     fn new(joint: &JointParameters, angle: f64, speed: f64, rate: u32) -> Self {
         let (sun_lever, lever) = (joint.geometry.sun_base_radius, joint.geometry.carrier_base_radius());
-        let mass = model_core::design::dynamics::MovingMasses::new(joint).rigid(joint.geometry.planets);
+        let mass = model_core::gears::design::dynamics::MovingMasses::new(joint).rigid(joint.geometry.planets);
         let counts = matches!(joint.excitation, Excitation::Angle);
         let gains = [2.0 / (sun_lever * mass * lever), 1.0 / (lever * mass * lever)];
         Self {

@@ -3,12 +3,9 @@
 use std::array;
 use std::f64::consts::TAU;
 
-use model_core::joint::{Excitation, JointParameters};
-use model_core::mesh::MeshKind;
-use model_core::real::Real;
-use model_core::realtime::{Relative, RigidBody, State};
-use model_core::scales::Scales;
-use model_core::tables::Tables;
+use model_core::gears::{MeshPhasing, Relative, RigidBody, Scales, State, Tables};
+use model_core::numbers::Real;
+use parameters::{Excitation, JointParameters, MeshKind};
 use peers::motion::Coordinates;
 use peers::peer;
 use reference::joint::Start;

@@ -5,7 +5,7 @@
 use contest::catalogue::cases;
 use contest::curve::Field;
 use contest::libraries::{Equations, Library};
-use model_core::scales::Scales;
+use model_core::gears::Scales;
 
 fn field(key: &str) -> Field {
     let case = cases().into_iter().find(|case| case.key == key).expect("a case of the catalogue");

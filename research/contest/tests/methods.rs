@@ -6,7 +6,7 @@ use contest::catalogue::cases;
 use contest::course::Errors;
 use contest::curve::{Field, Scalar};
 use contest::method::Method;
-use model_core::mesh::StiffnessWave;
+use parameters::StiffnessWave;
 use reference::joint::Start;
 
 fn named(key: &str) -> Case {

@@ -1,7 +1,7 @@
 //! Figs 4 and 5: the sharp dead zone, eq. 13 as corrected and as printed, and how far they are apart by sharpness. The
 //! functions that the model uses are the core's; the printed one exists only here.
 
-use model_core::dead_zone::{sharp, smoothed};
+use model_core::gears::dead_zone::{sharp, smoothed};
 
 use super::record::{DeadZoneError, DeadZoneFigure, Smoothed};
 

@@ -4,8 +4,8 @@
 use std::path::PathBuf;
 
 use clap::ValueEnum;
-use model_core::joint::{Excitation, JointParameters};
-use model_core::scales::Scales;
+use model_core::gears::{Mechanics, Scales};
+use parameters::{Excitation, JointParameters};
 
 use super::expectation::{self, Expectation};
 use super::grid;

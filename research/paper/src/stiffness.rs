@@ -1,10 +1,10 @@
 //! Fig. 3: the rectangular stiffness wave, its duty from the contact ratio, and its first harmonic, eq. 7. How the
 //! motion uses the wave is the core's business.
 
+use model_core::gears::StiffnessSeries;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use model_core::joint::JointParameters;
-use model_core::mesh::StiffnessWave;
+use parameters::{JointParameters, StiffnessWave};
 
 use super::record::StiffnessFigure;
 

@@ -1,8 +1,8 @@
 //! Computes everything that a plan asks for, in parallel over joints and half-backlashes; results do not depend on the
 //! number of threads. Judging and drawing are left to others.
 
-use model_core::mesh::DampingLaw;
-use model_core::scales::Scales;
+use model_core::gears::{Mechanics, Scales};
+use parameters::DampingLaw;
 use rayon::prelude::*;
 
 use super::page::micrometres;
@@ -109,8 +109,8 @@ fn reading(subject: &Subject, plan: &Plan, results: &mut impl Iterator<Item = Do
         sweeps.push(Sweep { start: start.word().to_owned(), windows: windows::windows(&points), points });
     }
     let omega = match parameters.excitation {
-        model_core::joint::Excitation::Time { mesh_frequency } => mesh_frequency / scales.frequency,
-        model_core::joint::Excitation::Angle => f64::NAN,
+        parameters::Excitation::Time { mesh_frequency } => mesh_frequency / scales.frequency,
+        parameters::Excitation::Angle => f64::NAN,
     };
     Reading {
         joint: parameters.name.to_string(),

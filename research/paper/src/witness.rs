@@ -1,7 +1,7 @@
 //! A second integrator on the same attractor: the event-restarted Runge-Kutta method of order 8 in absolute
 //! coordinates, which shares neither equations nor method with the study. It is too slow for whole diagrams.
 
-use model_core::scales::Scales;
+use model_core::gears::Scales;
 use reference::joint::{Reference, RelativeState, Start};
 
 use super::plan::Subject;

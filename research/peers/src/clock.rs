@@ -1,8 +1,8 @@
 //! The mesh phase from step to step: prescribed in time, or made by the rigid carrier's angle. Whole numbers, so that
 //! it neither drifts nor loses digits; the rigid motion under constant torques is exact.
 
-use model_core::real::Real;
-use model_core::realtime::phase::sine_cosine;
+use model_core::numbers::Real;
+use model_core::numbers::phase::sine_cosine;
 
 use crate::instant::Rotor;
 use crate::plant::Plant;

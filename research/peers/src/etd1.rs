@@ -5,7 +5,7 @@
 
 use core::array;
 
-use model_core::real::Real;
+use model_core::numbers::Real;
 
 use crate::forces::{ForceLaw, Push, Spring};
 use crate::instant::{Instant, Rotor};

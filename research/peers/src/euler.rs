@@ -1,7 +1,7 @@
 //! Semi-implicit Euler: the rate first, then the position by the new rate. The cheapest method that keeps its energy;
 //! kinks inside the step are not looked for.
 
-use model_core::real::Real;
+use model_core::numbers::Real;
 
 use crate::forces::{ForceLaw, Push, acceleration};
 use crate::instant::{Instant, Rotor};

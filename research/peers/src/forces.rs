@@ -1,7 +1,7 @@
 //! Forces of the meshes (eqs 4-6, with the dead zones of eqs 12 and 13) and the accelerations that they and the torques
 //! cause (eqs 1-3). Time stepping is the schemes'.
 
-use model_core::real::Real;
+use model_core::numbers::Real;
 
 use crate::instant::Instant;
 use crate::motion::Coordinates;

@@ -1,17 +1,15 @@
-//! Plants from joint parameters, in f64. The dimensionless bodies come from the core's `design::dynamics`, which the
+//! Plants from joint parameters, in f64. The dimensionless bodies come from the core's `gears::design::dynamics`, which the
 //! independent reference checks; everything about meshes and phase is worked out here for the peers' own layout.
 
 use core::array;
 use core::f64::consts::TAU;
 
-use model_core::dead_zone::DeadZone;
-use model_core::design::dynamics::{Dynamics, MovingMasses};
-use model_core::design::exponential;
-use model_core::joint::{Excitation, JointParameters};
-use model_core::mesh::{DampingLaw, MAX_HARMONICS, MESH_KINDS, MeshKind};
-use model_core::real::Real;
-use model_core::scales::Scales;
+use model_core::gears::design::dynamics::{Dynamics, MovingMasses};
+use model_core::gears::design::exponential;
+use model_core::gears::{Kinematics, Mechanics, MeshPhasing, Scales, StiffnessSeries};
+use model_core::numbers::Real;
 use nalgebra::DMatrix;
+use parameters::{DampingLaw, DeadZone, Excitation, JointParameters, MAX_HARMONICS, MESH_KINDS, MeshKind};
 
 use crate::motion::Coordinates;
 use crate::peer::Start;

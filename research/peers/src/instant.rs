@@ -1,7 +1,7 @@
 //! Every mesh at one instant: stiffness and imposed error with its rate, from one sine and one cosine. Where the phase
 //! comes from is the clock's business.
 
-use model_core::real::Real;
+use model_core::numbers::Real;
 
 use crate::plant::{Mesh, Plant};
 

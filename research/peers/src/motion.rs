@@ -3,8 +3,7 @@
 
 use core::array;
 
-use model_core::digest;
-use model_core::real::Real;
+use model_core::numbers::{Real, digest};
 
 /// Coordinates, or their rates or accelerations.
 #[derive(Debug, Clone, Copy, PartialEq)]

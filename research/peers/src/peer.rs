@@ -3,7 +3,7 @@
 
 use core::array;
 
-use model_core::real::Real;
+use model_core::numbers::Real;
 
 use crate::clock::{Ahead, Clock};
 use crate::forces::{Always, ForceLaw, Push, PushOnly, Smooth, SmoothPush};

@@ -2,8 +2,8 @@
 //! Where the numbers come from is left to `from_parameters`; printed by `Debug`, a plant is the Rust expression that
 //! makes it, so that a board can carry it.
 
-use model_core::mesh::MAX_HARMONICS;
-use model_core::real::Real;
+use model_core::numbers::Real;
+use parameters::MAX_HARMONICS;
 
 /// A joint with `N` planets.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,7 +1,7 @@
 //! The classical Runge-Kutta method of order 4, in its form for second-order equations: the stages of the positions
 //! need no evaluation of their own, and the last sums are formed once. Kinks inside the step are not looked for.
 
-use model_core::real::Real;
+use model_core::numbers::Real;
 
 use crate::forces::{ForceLaw, Push, acceleration};
 use crate::instant::{Instant, Rotor};

@@ -1,6 +1,6 @@
 //! What a fixed-step method has to offer to be run over the joint. The methods are in files of their own.
 
-use model_core::real::Real;
+use model_core::numbers::Real;
 
 use crate::forces::{ForceLaw, Push};
 use crate::instant::Rotor;

@@ -2,7 +2,7 @@
 //! equations solved, and the guess mended until it holds. Planets meet only in sun and carrier, so that what is solved
 //! is two by two; kinks inside the step are not looked for.
 
-use model_core::real::Real;
+use model_core::numbers::Real;
 
 use crate::forces::{ForceLaw, Push, acceleration};
 use crate::instant::{Instant, PerMesh, Rotor};

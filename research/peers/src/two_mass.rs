@@ -2,7 +2,7 @@
 //! restitution. It knows neither planets nor ripple nor errors, so that only the output angle and the force can be read
 //! off it.
 
-use model_core::real::Real;
+use model_core::numbers::Real;
 
 /// What happens at the ends of the gap.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

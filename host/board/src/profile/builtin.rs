@@ -1,9 +1,10 @@
 //! The built-in profile: torque steps of both signs through the gap on a joint that turns. It is made from the joint's
 //! own rated torque, ratio and inertia, so that any joint may run it.
 
+use model_core::gears::{Kinematics, Mechanics};
 use std::f64::consts::TAU;
 
-use model_core::joint::JointParameters;
+use parameters::JointParameters;
 
 use super::Torques;
 

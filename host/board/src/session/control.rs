@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use link::controller::{Answered, Exchange};
 use link::messages::{FromBoard, RunMode, Schedule, ToBoard};
 use link::virtual_joint::{KNOTS_PER_SCHEDULE, Knot, LoopSample};
-use model_core::realtime::upset::Upset;
+use model_core::virtual_joint::upset::Upset;
 
 use super::{SILENCE, Session};
 use crate::fault;

@@ -6,7 +6,7 @@ use std::time::Duration;
 use link::messages::{
     FromBoard, Kept, MEMORY_PARTS, MemoryPart, MemoryWish, PART_BYTES, Remembered, RunSettings, ToBoard,
 };
-use model_core::realtime::observer::{MEMORY_BYTES, Memory};
+use model_core::observer::{MEMORY_BYTES, Memory};
 
 use super::{SILENCE, Session};
 use report::failure::{Failure, Outcome};

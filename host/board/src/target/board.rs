@@ -1,7 +1,7 @@
 //! The boards that images are built for, as the host needs to know them. Pins and clocks are in the firmware.
 
 use clap::ValueEnum;
-use model_core::design::Processor;
+use model_core::gears::design::Processor;
 
 /// A board that an image can be built for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

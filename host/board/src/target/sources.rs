@@ -13,7 +13,7 @@ use report::failure::{Failure, Outcome};
 use report::workspace::workspace;
 
 /// Folders and files of the workspace that the firmware is built from.
-const PARTS: [&str; 11] = [
+const PARTS: [&str; 12] = [
     "Cargo.lock",
     "Cargo.toml",
     "memory.x",
@@ -25,6 +25,7 @@ const PARTS: [&str; 11] = [
     "joints",
     "link",
     "model-core",
+    "parameters",
 ];
 
 /// The image at its place, built if it is not there or was built from something else. A file beside it says from what.

@@ -3,10 +3,9 @@
 
 use std::fmt::Write as _;
 
-use model_core::design::observer::design_observer;
-use model_core::design::virtual_joint::observer_settings;
-use model_core::realtime::observer::{MAPPED, Memory, MemoryError, Observer, memory_numbers};
-use model_core::tables::observer::{LeverTable, ObserverTables};
+use model_core::observer::design::{design_observer, observer_settings};
+use model_core::observer::tables::LeverTable;
+use model_core::observer::{MAPPED, Memory, MemoryError, Observer, ObserverTables, memory_numbers};
 use serde::Serialize;
 
 use crate::findings::Finding;

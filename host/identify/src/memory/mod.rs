@@ -14,7 +14,7 @@ pub use arguments::Arguments;
 use arguments::{Command, Place};
 use bench::Found;
 use link::messages::{Kept, Remembered};
-use model_core::realtime::observer::{MEMORY_BYTES, Memory, MemoryError};
+use model_core::observer::{MEMORY_BYTES, Memory, MemoryError};
 
 use board::session::Session;
 use content::Content;

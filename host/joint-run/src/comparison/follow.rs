@@ -1,12 +1,13 @@
 //! The reference along a run, as far as the motion can be predicted: a second reference with torques that are a trace
 //! wrong goes beside it, and where the two part the motion is chaotic. What a board did is not known here.
 
+use model_core::gears::Kinematics;
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 
 use link::messages::Command;
-use model_core::joint::JointParameters;
+use parameters::JointParameters;
 use reference::joint::{Observation, Reference, ReferenceError};
 
 use super::row::{QUANTITIES, Row, spread};

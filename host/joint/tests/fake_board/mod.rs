@@ -11,10 +11,9 @@ use link::messages::{
     Accepted, Clock, Command, Fault, FromBoard, HISTOGRAM_BINS, Hello, Role, RunMode, RunSettings, SAMPLES_PER_BATCH,
     Sample, SampleBatch, Schedule, Statistics, Timing, ToBoard,
 };
-use model_core::digest;
-use model_core::joint::JointParameters;
-use model_core::realtime::{Model, Torques};
-use model_core::tables::Tables;
+use model_core::gears::{Model, Tables, Torques};
+use model_core::numbers::digest;
+use parameters::JointParameters;
 
 /// Fixed steps a second [Hz].
 pub const TICK_RATE: u32 = 20_000;
@@ -61,7 +60,7 @@ pub fn joint() -> JointParameters {
 /// Starts a board on a stream; it ends when the stream does. The stream must have a short read timeout.
 pub fn start<S: Read + Write + Send + 'static>(stream: S, misbehaviour: Misbehaviour) -> JoinHandle<()> {
     std::thread::spawn(move || {
-        let tables = model_core::design::design(&joint(), TICK_RATE).expect("a good joint");
+        let tables = model_core::gears::design::design(&joint(), TICK_RATE).expect("a good joint");
         Board::new(stream, &tables, misbehaviour).run();
     })
 }

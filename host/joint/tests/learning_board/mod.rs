@@ -21,18 +21,15 @@ use firmware::work::Work;
 use heapless::spsc::Queue;
 use joint_file::JointFile;
 use link::messages::Clock;
-use model_core::design::compensation::design_compensation;
-use model_core::design::observer::design_observer;
-use model_core::design::virtual_joint::{compensation_settings, design_surroundings, observer_settings};
-use model_core::design::{Effort, Processor, design_scheme};
-use model_core::realtime::compensation::{Command, Motion, Position};
-use model_core::realtime::controller::Controller;
-use model_core::realtime::observer::{Estimates, Memory};
-use model_core::realtime::virtual_joint::VirtualJoint;
-use model_core::tables::compensation::CompensationTables;
-use model_core::tables::observer::ObserverTables;
-use model_core::tables::virtual_joint::SurroundingsTable;
-use model_core::tables::{Scheme, Tables};
+use model_core::compensation::design::{compensation_settings, design_compensation};
+use model_core::compensation::{Command, CompensationTables, Motion, Position};
+use model_core::controller::Controller;
+use model_core::gears::design::{Effort, Processor, design_scheme};
+use model_core::gears::{Scheme, Tables};
+use model_core::observer::design::{design_observer, observer_settings};
+use model_core::observer::{Estimates, Memory, ObserverTables};
+use model_core::virtual_joint::design::design_surroundings;
+use model_core::virtual_joint::{SurroundingsTable, VirtualJoint};
 
 /// Timer counts between two ticks.
 const PERIOD: u32 = 16_800;

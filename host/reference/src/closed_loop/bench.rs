@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-use model_core::joint::JointParameters;
+use parameters::JointParameters;
 
 use super::{Controller, Motion, Reference, SetPoint};
 use crate::drive_train::{Disturbance, DriveTrain, DriveTrainError, DriveTrainParameters, Stepping};

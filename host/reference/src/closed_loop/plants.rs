@@ -1,7 +1,7 @@
 //! Random plants about a joint: what the true one may have and its controller does not know. The controller is always
 //! designed for the joint as named.
 
-use model_core::joint::JointParameters;
+use parameters::JointParameters;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 

@@ -13,7 +13,7 @@ pub use motor_pid::MotorPid;
 pub use output_integral::OutputIntegral;
 pub use velocity_sign::VelocitySign;
 
-use model_core::joint::JointParameters;
+use parameters::JointParameters;
 
 use crate::drive_train::DriveTrainParameters;
 
@@ -46,12 +46,15 @@ impl Knowledge {
     /// True knowledge of a joint but for the lost motion, which is guessed wrong by a factor.
     pub fn of(joint: &JointParameters, train: &DriveTrainParameters, width_factor: f64) -> Self {
         let geometry = &joint.geometry;
-        let lever = geometry.carrier_base_radius();
-        let ratio = geometry.ratio_by_teeth();
+        let cosine = libm::cos(geometry.working_pressure_angle);
+        let lever = geometry.carrier_radius * cosine;
+        let ratio = 1.0 + f64::from(geometry.ring_teeth) / f64::from(geometry.sun_teeth);
         let sun = geometry.sun_base_radius.powi(2);
         let motor_inertia = joint.rotor_inertia + joint.bodies.sun_equivalent_mass * sun;
         let planets = geometry.planets as f64 * joint.bodies.planet_equivalent_mass;
-        let carrier = (planets + joint.carrier_equivalent_mass()) * lever * lever + joint.link_inertia;
+        let carried =
+            joint.bodies.carrier_inertia_over_radius_squared + geometry.planets as f64 * joint.bodies.planet_mass;
+        let carrier = (planets + carried / (cosine * cosine)) * lever * lever + joint.link_inertia;
         let half = joint.sun_planet.half_backlash.iter().sum::<f64>() / geometry.planets as f64;
         Self {
             ratio,

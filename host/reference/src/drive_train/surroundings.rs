@@ -1,7 +1,7 @@
 //! A drive train's parameters as the core's designs know them: what observer and compensation are designed to. Phases of
 //! encoder errors and parts of a period are left out: no design may know them.
 
-use model_core::surroundings::{AbsoluteEncoder, Friction, Surroundings};
+use parameters::{AbsoluteEncoder, Friction, Surroundings};
 
 use super::parameters::{DriveTrainParameters, EncoderParameters, FrictionParameters};
 

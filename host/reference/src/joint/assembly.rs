@@ -4,8 +4,7 @@
 use std::f64::consts::TAU;
 
 use heapless::Vec;
-use model_core::joint::{JointParameters, MAX_PLANETS};
-use model_core::mesh::{Mesh, MeshPhases, StiffnessWave};
+use parameters::{JointParameters, MAX_PLANETS, Mesh, MeshPhases, StiffnessWave};
 
 use super::ReferenceError;
 use super::equations::JointEquations;

@@ -2,7 +2,7 @@
 //! a compliance, the link. Nothing is eliminated or decoupled here: rigid body and teeth move in the same state.
 
 use heapless::Vec;
-use model_core::joint::{Excitation, MAX_PLANETS};
+use parameters::{Excitation, MAX_PLANETS};
 
 use super::mesh_law::{MeshConstants, MeshState, Phase, Zone};
 use crate::integrator::{Entries, Guards, MAX_ENTRIES, SwitchedSystem};

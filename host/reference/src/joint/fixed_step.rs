@@ -1,7 +1,7 @@
 //! The same equations 1-6 by a fixed fine step instead of the adaptive one, for closed loops by the hundred: drift, kick,
 //! drift, of second order, contact events found no closer than a step. The books of work are left out.
 
-use model_core::joint::MAX_PLANETS;
+use parameters::MAX_PLANETS;
 
 use super::Reference;
 use super::equations::JointEquations;

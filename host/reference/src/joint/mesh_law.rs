@@ -3,7 +3,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use model_core::mesh::{ContactState, DampingLaw, StiffnessWave};
+use parameters::{ContactState, DampingLaw, StiffnessWave};
 
 use crate::integrator::Guards;
 

@@ -3,8 +3,7 @@
 use std::f64::consts::TAU;
 
 use heapless::Vec;
-use model_core::joint::{MAX_PLANETS, PerPlanet};
-use model_core::mesh::ContactState;
+use parameters::{ContactState, MAX_PLANETS, PerPlanet};
 
 use super::Reference;
 use super::equations::JointEquations;

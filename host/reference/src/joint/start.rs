@@ -1,7 +1,7 @@
 //! The states that a joint can be started from, each resolved into absolute coordinates. Torques are not part of a
 //! start.
 
-use model_core::joint::{MAX_PLANETS, PerPlanet};
+use parameters::{MAX_PLANETS, PerPlanet};
 
 use super::equations::JointEquations;
 use super::observation::Observation;

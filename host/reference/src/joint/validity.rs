@@ -3,9 +3,7 @@
 
 use std::fmt;
 
-use model_core::dead_zone::DeadZone;
-use model_core::joint::{Excitation, JointParameters, MAX_PLANETS, MIN_PLANETS};
-use model_core::mesh::{Mesh, MeshPhases};
+use parameters::{DeadZone, Excitation, JointParameters, MAX_PLANETS, MIN_PLANETS, Mesh, MeshPhases};
 
 use crate::integrator::IntegrationError;
 

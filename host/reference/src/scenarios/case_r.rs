@@ -8,8 +8,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use model_core::joint::JointParameters;
-use model_core::mesh::{DampingLaw, MeshPhases, StiffnessWave};
+use parameters::{DampingLaw, JointParameters, MeshPhases, StiffnessWave};
 
 use super::joints::{q1, same};
 

@@ -3,8 +3,7 @@
 
 use std::f64::consts::TAU;
 
-use model_core::joint::{JointParameters, PerPlanet};
-use model_core::mesh::MeshPhases;
+use parameters::{JointParameters, MeshPhases, PerPlanet};
 
 use super::joints::{PAPER_LENGTH, paper_joint, paper_natural_frequency};
 use super::{Scenario, TorqueSegment};

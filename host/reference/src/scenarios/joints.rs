@@ -1,9 +1,10 @@
 //! The joints that scenarios run on, built in code so that a mistake in a joint file cannot reach them. Joint files
 //! with the source of every number are left to the `joints` crate.
 
-use model_core::dead_zone::DeadZone;
-use model_core::joint::{Bodies, Coherence, Compliance, Excitation, Geometry, JointParameters, PerPlanet};
-use model_core::mesh::{DampingLaw, Mesh, MeshPhases, StiffnessWave};
+use parameters::{
+    Bodies, Coherence, Compliance, DampingLaw, DeadZone, Excitation, Geometry, JointParameters, Mesh, MeshPhases,
+    PerPlanet, StiffnessWave,
+};
 
 /// b_c of the paper's joint [m].
 pub const PAPER_LENGTH: f64 = 10e-6;

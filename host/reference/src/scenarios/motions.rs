@@ -6,8 +6,7 @@
 //! every crossing, and each bounce amplifies what came before: no two integrators agree on single meshes then. L1 is
 //! therefore damped by 0.2 here under that law, which ends the rattling; Q1 is left as it is and marked.
 
-use model_core::joint::JointParameters;
-use model_core::mesh::{DampingLaw, MeshPhases, StiffnessWave};
+use parameters::{DampingLaw, JointParameters, MeshPhases, StiffnessWave};
 
 use super::joints::{l1, q1, same};
 use super::{Scenario, TorqueSegment};

@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 
 use link::virtual_joint::Knot;
-use model_core::realtime::course::{Demand, Stretch};
+use model_core::controller::course::{Demand, Stretch};
 use reference::closed_loop::{Motion, SetPoint};
 
 use crate::case::{Case, Designed};
@@ -42,8 +42,8 @@ pub fn knots(file: &TestFile, case: &Case, designed: &Designed, first_turn: i32)
                 Demand::Position { now: turned(between(start, end)), ahead }
             }
             impedance => match translator.command(&impedance) {
-                model_core::realtime::compensation::Command::Impedance(point) => Demand::Impedance(point),
-                model_core::realtime::compensation::Command::Position { .. } => Demand::HOLD,
+                model_core::compensation::Command::Impedance(point) => Demand::Impedance(point),
+                model_core::compensation::Command::Position { .. } => Demand::HOLD,
             },
         };
         let middle = 0.5 * (start + end);

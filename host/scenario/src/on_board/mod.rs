@@ -14,7 +14,7 @@ mod wish;
 
 use joint_file::JointFile;
 use link::messages::{Role, RunMode, RunSettings, Statistics};
-use model_core::design::{ControlWish, Told, control_source};
+use model_core::controller::design::{ControlWish, Told, control_source};
 pub use wish::BoardWish;
 use wish::{can_be, may_run};
 

@@ -5,9 +5,9 @@ use std::cell::RefCell;
 use std::rc::Rc;
 
 use link::controller::{Exchange, WireShaped};
-use model_core::digest;
-use model_core::realtime::compensation::Command;
-use model_core::realtime::observer::Samples;
+use model_core::compensation::Command;
+use model_core::numbers::digest;
+use model_core::observer::Samples;
 
 use crate::case::Designed;
 use crate::port::{Answer, ControllerPort, HostPort};

@@ -3,15 +3,14 @@
 
 use joint_file::JointFile;
 use link::virtual_joint::Knot;
-use model_core::design::virtual_joint::design_surroundings;
-use model_core::design::{Effort, design_scheme};
-use model_core::digest;
-use model_core::realtime::controller::Controller;
-use model_core::realtime::course::Demand;
-use model_core::realtime::upset::{Upset, Upsets};
-use model_core::realtime::virtual_joint::VirtualJoint;
-use model_core::tables::virtual_joint::SurroundingsTable;
-use model_core::tables::{Scheme, Tables};
+use model_core::controller::Controller;
+use model_core::controller::course::Demand;
+use model_core::gears::design::{Effort, design_scheme};
+use model_core::gears::{Scheme, Tables};
+use model_core::numbers::digest;
+use model_core::virtual_joint::design::design_surroundings;
+use model_core::virtual_joint::upset::{Upset, Upsets};
+use model_core::virtual_joint::{SurroundingsTable, VirtualJoint};
 use reference::closed_loop::Sample;
 
 use super::course;

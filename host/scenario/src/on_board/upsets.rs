@@ -3,7 +3,7 @@
 
 use std::f64::consts::TAU;
 
-use model_core::realtime::upset::{Kind, MOST_UPSETS, Shaft, Upset};
+use model_core::virtual_joint::upset::{Kind, MOST_UPSETS, Shaft, Upset};
 
 use crate::draw::Stream;
 use crate::file::{EncoderName, Fault, FaultKind, FrameName};
@@ -75,12 +75,12 @@ fn kind(fault: &Fault, bits: [u32; 2]) -> Outcome<Kind<f32>> {
 
 #[cfg(test)]
 mod tests {
-    use model_core::design::design;
-    use model_core::design::virtual_joint::design_surroundings;
-    use model_core::realtime::observer::{Reading, Samples};
-    use model_core::realtime::upset::Upsets;
-    use model_core::tables::Tables;
-    use model_core::tables::virtual_joint::SurroundingsTable;
+    use model_core::gears::Tables;
+    use model_core::gears::design::design;
+    use model_core::observer::{Reading, Samples};
+    use model_core::virtual_joint::SurroundingsTable;
+    use model_core::virtual_joint::design::design_surroundings;
+    use model_core::virtual_joint::upset::Upsets;
 
     use super::*;
 

@@ -1,9 +1,9 @@
 //! What `joint budget` says, as data: figures in SI with their units in their names. As JSON it has the schema
-//! `joint-budget/1`; where the figures come from is in `model_core::design`.
+//! `joint-budget/1`; where the figures come from is in `model_core::gears::design`.
 
-use model_core::certificate::{Certificate, ErrorPromise};
-use model_core::design::{DesignError, Effort, Parts, Processor, certificate};
-use model_core::joint::JointParameters;
+use model_core::gears::certificate::{Certificate, ErrorPromise};
+use model_core::gears::design::{DesignError, Effort, Parts, Processor, certificate};
+use parameters::JointParameters;
 use serde::Serialize;
 
 use board::target::board::Board;

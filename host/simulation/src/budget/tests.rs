@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use joint_file::{PRESETS, named};
-use model_core::design::{Effort, Pace, certificate};
-use model_core::joint::JointParameters;
+use model_core::gears::design::{Effort, Pace, certificate};
+use parameters::JointParameters;
 
 use super::figures;
 use super::layout::layout;

@@ -1,8 +1,8 @@
 //! Whether a board can step a joint at a rate: the rate can be made of its clock, is stable, and leaves time for a tick in
 //! which every mesh crosses twice. Otherwise the nearest rate that can is found.
 
-use model_core::design::{Effort, Pace, Processor};
-use model_core::joint::JointParameters;
+use model_core::gears::design::{Effort, Pace, Processor};
+use parameters::JointParameters;
 
 use board::target::board::Board;
 use report::failure::{Failure, Outcome};

@@ -4,11 +4,10 @@
 use std::f64::consts::TAU;
 
 use joint_file::Severity;
-use model_core::design::modes::natural_frequencies;
-use model_core::design::{Effort, Pace};
-use model_core::joint::{JointParameters, PerPlanet};
-use model_core::mesh::{DampingLaw, MESH_KINDS, MeshKind};
-use model_core::scales::Scales;
+use model_core::gears::design::modes::natural_frequencies;
+use model_core::gears::design::{Effort, Pace};
+use model_core::gears::{Kinematics, Mechanics, MeshPhasing, Scales};
+use parameters::{DampingLaw, JointParameters, MESH_KINDS, MeshKind, PerPlanet};
 
 use super::figures::{
     Figures, FixedStep, Frequencies, GeometryFigures, Masses, MeshFigures, Numbers, Output, SCHEMA, Warning,
@@ -161,7 +160,7 @@ fn output(parameters: &JointParameters) -> Output {
 }
 
 fn fixed_step(parameters: &JointParameters, rate: u32) -> Outcome<FixedStep> {
-    let failed = |error: model_core::design::DesignError| {
+    let failed = |error: model_core::gears::design::DesignError| {
         Failure::new(format!("no fixed step for {}: {error}", parameters.name))
             .with_help("`--rate` sets the steps a second")
     };

@@ -1,9 +1,9 @@
 //! What the tables take of a board's flash and in how many sub-steps a tick is taken. The tables themselves are made
-//! by `model_core::design`.
+//! by `model_core::gears::design`.
 
-use model_core::design::{DesignError, design};
-use model_core::joint::JointParameters;
-use model_core::tables::Tables;
+use model_core::gears::Tables;
+use model_core::gears::design::{DesignError, design};
+use parameters::JointParameters;
 
 /// The fixed step at one rate.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,11 +1,12 @@
 //! Figures against the oracles of the model and the joints' data sheets, and what a user sees of a bad file.
 
+use model_core::gears::Mechanics;
 use std::path::Path;
 
 use joint_file::PRESETS;
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
-use model_core::design::{Effort, Pace};
-use model_core::joint::JointParameters;
+use model_core::gears::design::{Effort, Pace};
+use parameters::JointParameters;
 
 use super::derive::arcmin;
 use super::{Figures, figures, layout, step};

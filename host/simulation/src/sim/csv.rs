@@ -3,8 +3,7 @@
 
 use std::io::{self, Write};
 
-use model_core::joint::JointParameters;
-use model_core::mesh::ContactState;
+use parameters::{ContactState, JointParameters};
 
 use super::moment::Moment;
 

@@ -2,11 +2,10 @@
 //! do), tick by tick. The work of a tick is that of the reference started at the tick's own state, so that the residual
 //! is what the scheme itself makes or loses; the tanh dead zone has no such balance here.
 
+use model_core::gears::MeshPhasing;
 use std::f64::consts::TAU;
 
-use model_core::dead_zone::DeadZone;
-use model_core::joint::JointParameters;
-use model_core::mesh::{MESH_KINDS, MeshPhases};
+use parameters::{DeadZone, JointParameters, MESH_KINDS, MeshPhases};
 use reference::joint::{Reference, RelativeState, Start, Work};
 
 use super::moment::Moment;
@@ -150,8 +149,8 @@ fn shifted(joint: &JointParameters, mesh_periods: f64) -> JointParameters {
             error: planets.map(|planet| joint.error_phase(kind, planet) + angle).collect(),
         };
         match kind {
-            model_core::mesh::MeshKind::SunPlanet => now.sun_planet.phases = phases,
-            model_core::mesh::MeshKind::RingPlanet => now.ring_planet.phases = phases,
+            parameters::MeshKind::SunPlanet => now.sun_planet.phases = phases,
+            parameters::MeshKind::RingPlanet => now.ring_planet.phases = phases,
         }
     }
     now
@@ -173,12 +172,13 @@ fn start(moment: &Moment) -> Start {
 
 #[cfg(test)]
 mod tests {
+    use model_core::gears::{Kinematics, Mechanics};
     use std::ops::ControlFlow;
 
     use host_tests::tolerance;
     use link::messages::Command;
-    use model_core::design::Effort;
-    use model_core::mesh::StiffnessWave;
+    use model_core::gears::design::Effort;
+    use parameters::StiffnessWave;
 
     use super::*;
     use crate::sim::follow::{Run, follow};

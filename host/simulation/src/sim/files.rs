@@ -6,7 +6,7 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind};
 use std::path::{Path, PathBuf};
 
-use model_core::joint::JointParameters;
+use parameters::JointParameters;
 
 use super::csv::CsvFile;
 use super::log_file::LogFile;

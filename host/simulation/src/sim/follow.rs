@@ -5,12 +5,10 @@ use std::ops::ControlFlow;
 
 use cpu_time::ThreadTime;
 use link::messages::Command;
-use model_core::dead_zone::DeadZone;
-use model_core::design::{DesignError, Effort, design_scheme};
-use model_core::joint::JointParameters;
-use model_core::real::Real;
-use model_core::realtime::{Model, Torques};
-use model_core::tables::{Scheme, Tables};
+use model_core::gears::design::{DesignError, Effort, design_scheme};
+use model_core::gears::{Model, Scheme, Tables, Torques};
+use model_core::numbers::Real;
+use parameters::{DeadZone, JointParameters};
 use reference::joint::{Reference, ReferenceError, Start};
 
 use super::moment::{Moment, Reader, Teeth};

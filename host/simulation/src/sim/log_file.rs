@@ -7,7 +7,7 @@ use std::io::{self, Write};
 use mcap::records::{MessageHeader, Metadata};
 use mcap::write::NoSeek;
 use mcap::{Compression, McapError, WriteOptions, Writer};
-use model_core::joint::JointParameters;
+use parameters::JointParameters;
 
 use super::csv::code;
 use super::moment::Moment;

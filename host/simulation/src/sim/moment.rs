@@ -4,14 +4,11 @@
 use std::f64::consts::TAU;
 
 use heapless::Vec;
-use model_core::dead_zone;
-use model_core::joint::{Excitation, JointParameters, MAX_PLANETS};
-use model_core::mesh::{ContactState, DampingLaw};
-use model_core::real::Real;
-use model_core::realtime::Model;
-use model_core::realtime::phase::sine_cosine;
-use model_core::scales::Scales;
-use model_core::tables::{MeshTable, Tables};
+use model_core::gears::tables::MeshTable;
+use model_core::gears::{Kinematics, Model, Scales, Tables, dead_zone};
+use model_core::numbers::Real;
+use model_core::numbers::phase::sine_cosine;
+use parameters::{ContactState, DampingLaw, Excitation, JointParameters, MAX_PLANETS};
 use reference::joint::{Observation, Work};
 
 /// The joint at one moment.

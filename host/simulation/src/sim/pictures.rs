@@ -1,8 +1,8 @@
 //! Pictures of a run over time: torques, gap, deflections with contact, forces. Phase portraits and spectra are in
 //! `portraits`, what judges a scheme is in `judgement`.
 
-use model_core::joint::JointParameters;
-use model_core::mesh::ContactState;
+use model_core::gears::Kinematics;
+use parameters::{ContactState, JointParameters};
 
 use super::moment::{Moment, Teeth};
 use super::plan::Plan;

@@ -1,12 +1,13 @@
 //! What a simulation was asked to do, with everything that can be wrong with it found before it starts: joint, rate,
 //! length, torques, start.
 
+use model_core::gears::{Kinematics, Mechanics};
 use std::f64::consts::TAU;
 
 use joint_file::JointFile;
 use link::messages::Command;
-use model_core::design::Effort;
-use model_core::joint::{Excitation, JointParameters};
+use model_core::gears::design::Effort;
+use parameters::{Excitation, JointParameters};
 use reference::joint::Start;
 
 use super::arguments::Motion;

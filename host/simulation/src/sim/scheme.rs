@@ -2,7 +2,7 @@
 //! reference's business.
 
 use clap::ValueEnum;
-use model_core::tables::Scheme;
+use model_core::gears::Scheme;
 
 /// A scheme that moves a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

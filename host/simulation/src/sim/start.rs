@@ -4,12 +4,9 @@
 use std::array;
 
 use clap::ValueEnum;
-use model_core::joint::{Excitation, JointParameters, PerPlanet};
-use model_core::mesh::{MESH_KINDS, MeshKind};
-use model_core::real::Real;
-use model_core::realtime::{Relative, State};
-use model_core::scales::Scales;
-use model_core::tables::Tables;
+use model_core::gears::{Kinematics, MeshPhasing, Relative, Scales, State, Tables};
+use model_core::numbers::Real;
+use parameters::{Excitation, JointParameters, MESH_KINDS, MeshKind, PerPlanet};
 use reference::joint::{RelativeState, Start};
 
 /// What `--start` takes.

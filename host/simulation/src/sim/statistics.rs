@@ -1,7 +1,7 @@
 //! Figures of a motion, gathered tick by tick: contact shares, impacts, swings of the deflections, mesh forces and
 //! Poincare points. Everything is counted from tick to tick; what happens between two ticks is not seen.
 
-use model_core::mesh::ContactState;
+use parameters::ContactState;
 
 use super::moment::Moment;
 

@@ -7,7 +7,7 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use model_core::digest;
+use model_core::numbers::digest;
 
 use super::grid::Shard;
 use crate::sim::files::unwritten;

@@ -3,8 +3,8 @@
 
 use std::array;
 
-use model_core::joint::Excitation;
-use model_core::scales::Scales;
+use model_core::gears::Scales;
+use parameters::Excitation;
 use peers::forces::{Always, ForceLaw, Push, PushOnly, acceleration};
 use peers::instant::{Instant, Rotor};
 use peers::motion::{Coordinates, Motion};

@@ -2,7 +2,7 @@
 //! least of several rounds for each, the mean over phases, beside the worst error over phases.
 
 use cpu_time::ThreadTime;
-use model_core::scales::Scales;
+use model_core::gears::Scales;
 use serde::Serialize;
 
 use super::{Equations, Library};

@@ -1,7 +1,7 @@
 //! A joint in motion, mesh period by mesh period: Taylor steps that end at every contact event, with any number of
 //! tangent vectors carried along. Keeps no history; what is made of the motion is the caller's business.
 
-use model_core::mesh::{ContactState, DampingLaw};
+use parameters::{ContactState, DampingLaw};
 
 use super::fall::first_fall;
 pub use super::series::{Coordinates, State};

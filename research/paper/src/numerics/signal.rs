@@ -3,7 +3,7 @@
 
 use std::f64::consts::TAU;
 
-use model_core::mesh::ContactState;
+use parameters::ContactState;
 
 use super::motion::{Motion, Stretch, contact, deflection};
 use super::system::StudyError;

@@ -5,11 +5,9 @@
 use std::f64::consts::TAU;
 use std::fmt;
 
-use model_core::dead_zone::DeadZone;
-use model_core::design::dynamics::MovingMasses;
-use model_core::joint::{Excitation, JointParameters, MAX_PLANETS};
-use model_core::mesh::{DampingLaw, MESH_KINDS};
-use model_core::scales::Scales;
+use model_core::gears::design::dynamics::MovingMasses;
+use model_core::gears::{Kinematics, Mechanics, MeshPhasing, Scales, StiffnessSeries};
+use parameters::{DampingLaw, DeadZone, Excitation, JointParameters, MAX_PLANETS, MESH_KINDS};
 
 /// The most meshes: sun-planet of every planet, then ring-planet.
 pub(super) const MAX_MESHES: usize = 2 * MAX_PLANETS;

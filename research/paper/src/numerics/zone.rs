@@ -1,7 +1,7 @@
 //! Which branch of the force law a mesh is on, and what comes after it. The branches are those of the two damping laws
 //! with the sharp dead zone; when a branch ends is found from its guards by `fall`.
 
-use model_core::mesh::DampingLaw;
+use parameters::DampingLaw;
 
 use super::system::MeshConstants;
 

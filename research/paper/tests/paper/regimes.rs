@@ -1,11 +1,11 @@
 //! The four regimes of set P in both readings of Table 1, and what is known of exponents from elsewhere.
 
-use model_core::mesh::StiffnessWave;
 use paper::numerics::attractor;
 use paper::numerics::attractor::{Class, Effort, by_two_trajectories, find};
 use paper::numerics::motion::Motion;
 use paper::numerics::signal::Signal;
 use paper::numerics::system::System;
+use parameters::StiffnessWave;
 
 use super::{SHORT, from_rest, plan, subject};
 

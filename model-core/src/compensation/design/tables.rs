@@ -1,0 +1,241 @@
+//! Tables of the compensation: from joint, bandwidth and limits to gains, times and thresholds. What is done with them
+//! is left to `compensation`.
+//!
+//! Gains follow from inertias and bandwidth, times from the motor's torque, the loop's delays and the force that a
+//! landing may cause. What is left are shares, each a constant here with its reason.
+
+use core::f64::consts::TAU;
+
+use super::body::Body;
+use super::settings::{CompensationSettings, check};
+use crate::compensation::crossing::Crossing;
+use crate::compensation::tables::CompensationTables;
+use crate::gears::design::{DesignError, validate};
+use crate::gears::gear_losses;
+use crate::numbers::Real;
+use parameters::JointParameters;
+
+/// Planets struck on the way through the gap may be struck with this share of the rated force: struck again as they fly
+/// to and fro they take up to one and a half times what the first blow is estimated at, which leaves three fifths.
+const STRIKE: f64 = 0.4;
+
+/// The same over the peak torque, however hard the flank will be needed: a planet caught between sun and flank is struck
+/// harder each time.
+const HARDEST_STRIKE: f64 = 0.56;
+
+/// Share of the peak torque that the law may ask the teeth to pass on: torque constant, efficiency and what a swing does
+/// in the loop's delays each take a few hundredths.
+const MOST_PASSED: f64 = 0.88;
+
+/// What is left to that, over itself, as far as a swing is divided by it: less than what the torques are known to.
+const LEAST_ROOM: f64 = 0.1;
+
+/// Peak torque over the rated torque if neither settings nor motor say less: what catalogues of gears allow at least.
+const PEAK: f64 = 2.0;
+
+/// A compliance that comes out so many times smaller or larger than the joint file's is not believed.
+const COMPLIANCE: f64 = 4.0;
+
+/// Share of the largest torque that a crossing may take; the rest is for the feedback along it.
+const CROSSING_TORQUE: f64 = 0.8;
+
+/// Reaction times in which the damper on the motor slows the motor by 1/e: with fewer it would swing against the loop's
+/// delays.
+const MOTOR_DAMPING: f64 = 2.5;
+
+/// Share of that damper in impedance mode: what a commanded damper loses by the loop's delays.
+const IMPEDANCE_CALM: f64 = 0.1;
+
+/// A crossing shorter than so many reaction times would be over before feedback has had a say.
+const REACTIONS_IN_A_CROSSING: f64 = 8.0;
+
+/// A gap that turns out wider than guessed may be crossed in so many times the guess's time.
+const LONGEST: f64 = 3.0;
+
+/// Share of what is left of a crossing that has to do before it is hurried: demand that grows a little does not matter.
+const HURRY: f64 = 0.8;
+
+/// Landing at the end of a path may cause this share of the rated torque.
+const LANDING: f64 = 0.03;
+
+/// The same over the torque that the flank will carry, where that allows for more.
+const LANDING_UNDER_LOAD: f64 = 0.4;
+
+/// Reaction times in which the law's torque rises after a landing; how far it rises is the limit's to say.
+const RISE: f64 = 1.0;
+
+/// Reaction times over which measured torque is smoothed before it decides: the observer's torques are wrong for a few
+/// milliseconds after every impact.
+const SETTLING: f64 = 15.0;
+
+/// Share of the half-gap that opens before the loss of a flank is believed: several times the observer's error.
+const OPENING: f64 = 0.3;
+
+/// Share of the half-gap within which a flank is as good as touched: what the observer's errors leave.
+const LANDED: f64 = 0.03;
+
+/// Planned torque over the largest, beyond which its change of sign counts.
+const HYSTERESIS: f64 = 0.005;
+
+/// Measured torque over the largest, as uncertain as it is after an impact.
+const DOUBT: f64 = 0.02;
+
+/// Share of that doubt left when no flank has changed for long.
+const LEAST_DOUBT: f64 = 0.3;
+
+/// Largest doubt after several changes, over the first.
+const MOST_PATIENCE: f64 = 6.0;
+
+/// The most that doubt grows by, over what half the lost motion asks for as an error: a flank that is waited for any
+/// longer costs more than one changed in vain.
+const MOST_DOUBT: f64 = 0.3;
+
+/// Time over which patience is lost again, times the bandwidth: a transient of the loop is over by then, and an error that
+/// a crossing too early has left was put right by the flank that it led to.
+const PATIENCE: f64 = 6.0;
+
+/// Changes of the wanted flank within this time, times the bandwidth, are hunting.
+const HUNTING: f64 = 15.0;
+
+/// News over the largest torque that are taken up faster.
+const EAGER: f64 = 0.05;
+
+/// Error let be at rest after the first hunt and at most, over half the lost motion: with the most, the joint rests
+/// within half of its lost motion.
+const INDULGENCE: [f64; 2] = [0.05, 0.5];
+
+/// Time in which it is forgiven [s]: rarely against the hunt that it ends.
+const FORGIVING: f64 = 30.0;
+
+/// Speed at which dry friction has its full size [rad/s], for want of a better number: what encoders resolve.
+const FRICTION_SPEED: f64 = 0.01;
+
+/// The same for a planned speed [rad/s]: what a motion passes in a few control periods.
+const PLANNED_FRICTION_SPEED: f64 = 1e-3;
+
+/// Growth of the load's variance in one period over that of its reading: followed within a few milliseconds.
+const LOAD_GROWTH: f64 = 1e-3;
+
+/// Time in which the load's rate is learnt [s]: a weight swings in a second.
+const LOAD_RATE: f64 = 0.03;
+
+/// Time in which a rate that is not seen again is forgotten [s].
+const LOAD_RATE_KEPT: f64 = 0.1;
+
+/// The same for its dry friction: known within a few reversals, then kept for seconds.
+const FRICTION_GROWTH: f64 = 1e-6;
+
+/// Time in which a missed impulse is made good, over a crossing's time.
+const REPAYMENT: f64 = 1.15;
+
+/// Impedance set-points come 200 times a second at least, or are at rest [s].
+const LONGEST_HOLD: f64 = 5e-3;
+
+/// Time in which control goes over from plain to compensated, times the bandwidth.
+const TRUST: f64 = 1.2;
+
+/// Half the lost motion is never taken for more than so many times the guess.
+const WIDEST: f64 = 5.0;
+
+/// Tables of the compensation.
+pub fn design_compensation<T: Real>(
+    joint: &JointParameters,
+    settings: &CompensationSettings,
+) -> Result<CompensationTables<T>, DesignError> {
+    validate(joint)?;
+    check(settings)?;
+    let real = T::from_f64;
+    let period = 1.0 / f64::from(settings.control_rate);
+    let pole = settings.bandwidth;
+    let body = Body::new(joint);
+    let inertia = body.motor + body.load;
+    let limit = body.gear * settings.torque_limit;
+    let half = body.half_backlash / body.lever;
+    let reaction = period * (1.0 + settings.torque_delay) + settings.torque_lag;
+
+    // A ramp without a jump in its acceleration has one and a half times its mean.
+    let ramp_per_speed = 1.5 * body.motor / (CROSSING_TORQUE * limit);
+    let shortest_ramp = 0.5 * REACTIONS_IN_A_CROSSING * reaction;
+    let rated = joint.rated_output_torque;
+    let peak = settings.peak_torque.unwrap_or(limit.min(PEAK * rated));
+    let hardest_strike = HARDEST_STRIKE * peak;
+    let strike_torque = hardest_strike.min(STRIKE * rated);
+    let most_passed = MOST_PASSED * peak;
+    let crossing =
+        Crossing::at(strike_torque / body.strike_impedance, 2.0 * half, ramp_per_speed, shortest_ramp).duration;
+    let motor_damping = (3.0 * inertia * pole).min(body.motor / (MOTOR_DAMPING * reaction));
+    // The motor's mass against the joint's spring: torque of a blow for each rad/s.
+    let blow = libm::sqrt(body.stiffness * body.motor);
+    let landing_speed = LANDING * rated / blow;
+    Ok(CompensationTables {
+        rate: real(f64::from(settings.control_rate)),
+        period: real(period),
+        ratio: [(joint.geometry.sun_teeth + joint.geometry.ring_teeth) as i32, joint.geometry.sun_teeth as i32],
+        gear: real(body.gear),
+        inverse_gear: real(1.0 / body.gear),
+        inverse_denominator: real(1.0 / f64::from(joint.geometry.sun_teeth)),
+        turn: real(TAU),
+        inverse_lever: real(1.0 / body.lever),
+        mesh_phase_per_radian: real(f64::from(joint.geometry.ring_teeth) / TAU * f64::powi(2.0, 32)),
+        radians_per_mesh: real(1.0 / f64::from(joint.geometry.ring_teeth)),
+        widest_half: real(WIDEST * half),
+        motor_inertia: real(body.motor),
+        load_inertia: real(body.load),
+        inverse_load_inertia: real(1.0 / body.load),
+        load_share: real(body.load / inertia),
+        inverse_load_share: real(inertia / body.load),
+        reduced_inertia: real(body.motor * body.load / inertia),
+        compliances: [real(COMPLIANCE / body.stiffness), real(1.0 / (COMPLIANCE * body.stiffness))],
+        gear_losses: gear_losses(settings.efficiency).map(real),
+        most_passed: real(most_passed),
+        least_room: real(LEAST_ROOM * most_passed),
+        position_gain: real(3.0 * inertia * pole * pole),
+        damping_gain: real(3.0 * inertia * pole),
+        motor_damping: real(motor_damping),
+        impedance_calm: real(IMPEDANCE_CALM),
+        // Both poles of the motor alone in one place.
+        gap_stiffness: real(motor_damping * motor_damping / (4.0 * body.motor)),
+        integral_gain: real(inertia * pole * pole * pole * period),
+        back_calculation: real(pole * period),
+        torque_limit: real(limit),
+        lead: real(crossing + reaction),
+        reaction: real(reaction),
+        strike_speed_per_torque: real(1.0 / body.strike_impedance),
+        strike_torque: real(strike_torque),
+        hardest_strike: real(hardest_strike),
+        shortest_ramp: real(shortest_ramp),
+        ramp_per_speed: real(ramp_per_speed),
+        longest_crossing: real(LONGEST * crossing),
+        hurry: real(HURRY),
+        landing_speed: real(landing_speed),
+        landing_haste: real(landing_speed / crossing),
+        landing_speed_per_torque: real(LANDING_UNDER_LOAD / blow),
+        fastest_landing: real((LANDING_UNDER_LOAD * limit / blow).max(landing_speed)),
+        landing_rise: real(period / (RISE * reaction)),
+        repayment: real(1.0 / (REPAYMENT * crossing)),
+        opening: real(OPENING),
+        landed: real(LANDED),
+        hysteresis: real(HYSTERESIS * limit),
+        doubt: real(DOUBT * limit),
+        settling: real(1.0 - libm::exp(-period / (SETTLING * reaction))),
+        eagerness: real(1.0 / (EAGER * limit)),
+        least_doubt: real(LEAST_DOUBT),
+        patience_left: real(libm::exp(-period * pole / PATIENCE)),
+        most_patience: real(MOST_PATIENCE),
+        most_doubt: real(MOST_DOUBT * 3.0 * inertia * pole * pole),
+        hunting: real(HUNTING / pole),
+        first_indulgence: real(INDULGENCE[0]),
+        last_indulgence: real(INDULGENCE[1]),
+        forgiving: real(libm::exp(-period / FORGIVING)),
+        load_learner: [real(LOAD_GROWTH), real(FRICTION_GROWTH), T::ONE],
+        // Of a random walk in noise, as far as it grows much more slowly than it is read.
+        load_gain: real(libm::sqrt(LOAD_GROWTH)),
+        load_rate_gain: real(1.0 / LOAD_RATE),
+        load_rate_left: real(libm::exp(-period / LOAD_RATE_KEPT)),
+        fastest_load: real(limit / LOAD_RATE),
+        friction_slope: real(1.0 / FRICTION_SPEED),
+        planned_friction_slope: real(1.0 / PLANNED_FRICTION_SPEED),
+        longest_hold: real(LONGEST_HOLD),
+        trust_step: real(period * pole / TRUST),
+    })
+}

@@ -1,0 +1,211 @@
+//! What brakes the link, split into a part that does not care for the direction of motion (weight, a push) and dry
+//! friction, which changes its sign with it: a Kalman filter with two states. The split is what makes the torque after
+//! a reversal predictable.
+
+use super::situation::{Situation, planned_direction};
+use crate::compensation::tables::CompensationTables;
+use crate::numbers::Real;
+use crate::numbers::arithmetic::{beyond, clamp};
+use crate::observer::Estimates;
+
+/// Even part and dry friction of the load torque.
+#[derive(Debug, Clone)]
+pub(super) struct LoadModel<T: Real> {
+    even: T,
+    friction: T,
+    /// By how much the link is slower than asked, smoothed [rad/s].
+    slip: T,
+    /// Its speed over that at which dry friction has its full size.
+    pace: T,
+    /// Rate of the even part [N m/s].
+    rate: T,
+    /// What brakes a link that no flank carries, smoothed [N m].
+    alone: Option<T>,
+    /// The hardest that the link was pushed of late, fading [N m].
+    hardest: T,
+    /// Variances of both and their covariance.
+    variance: [T; 3],
+    /// 1 or -1: where the link last moved to, 0 before it has.
+    moved: T,
+    /// How it began to creep, while it does.
+    creep: Option<Creep<T>>,
+}
+
+/// What was known before the link began to creep.
+#[derive(Debug, Clone, Copy)]
+struct Creep<T: Real> {
+    even: T,
+    /// By how much the even part's variance has grown since.
+    variance: T,
+}
+
+impl<T: Real> LoadModel<T> {
+    pub fn new() -> Self {
+        Self {
+            even: T::ZERO,
+            friction: T::ZERO,
+            slip: T::ZERO,
+            pace: T::ZERO,
+            rate: T::ZERO,
+            alone: None,
+            hardest: T::ZERO,
+            variance: [T::ONE, T::ONE, T::ZERO],
+            moved: T::ZERO,
+            creep: None,
+        }
+    }
+
+    /// -1 to 1: what share of the dry friction brakes the link.
+    fn direction(&self) -> T {
+        clamp(self.pace, -T::ONE, T::ONE)
+    }
+
+    pub fn even(&self) -> T {
+        self.even
+    }
+
+    /// Rate of the even part: weight turns with the link [N m/s].
+    pub fn rate(&self) -> T {
+        self.rate
+    }
+
+    pub fn friction(&self) -> T {
+        self.friction
+    }
+
+    /// Whether the link was pushed of late with more than the teeth shall pass on. Sparing them then is left to whoever pushes.
+    pub fn throws(&self, tables: &CompensationTables<T>) -> bool {
+        self.hardest > tables.most_passed
+    }
+
+    /// What would brake the link now if no flank carried it.
+    pub fn free(&self) -> T {
+        self.alone.unwrap_or(self.even + self.drag())
+    }
+
+    /// What the start of a link at rest will ask for at least, if friction can hold it: what it can needs no flank before,
+    /// and is to be overcome then. 0 for a link that has to be held [N m].
+    pub fn start(&self, tables: &CompensationTables<T>) -> T {
+        let held = beyond(self.even, tables.doubt + self.friction) == T::ZERO;
+        if held { T::TWO * tables.doubt + self.friction } else { T::ZERO }
+    }
+
+    /// Friction at a speed that is planned.
+    pub fn planned_drag(&self, tables: &CompensationTables<T>, speed: T) -> T {
+        self.friction * planned_direction(tables, speed)
+    }
+
+    /// Friction at the speed that the link has.
+    pub fn drag(&self) -> T {
+        self.friction * self.direction()
+    }
+
+    /// Whether the link is so slow that it may rub with any part of its friction.
+    fn creeps(&self) -> bool {
+        creeps(self.pace)
+    }
+
+    /// Takes the estimate of the load torque, unless the teeth are known to be open.
+    pub fn observe(&mut self, tables: &CompensationTables<T>, estimates: &Estimates<T>, situation: &Situation<T>) {
+        self.follow(tables, situation);
+        // A weight turns with the link.
+        if self.creeps() {
+            self.rate = T::ZERO;
+        }
+        self.even = clamp(self.even + tables.period * self.rate, -tables.torque_limit, tables.torque_limit);
+        // Without a link to be seen the integral of plain control takes over.
+        if !situation.feels {
+            self.even -= tables.back_calculation * self.even;
+        }
+        let torque = estimates.load_torque;
+        let known = torque.valid && torque.value.is_finite() && situation.feels;
+        // More than the motor can hold is no load that it carries.
+        let held = clamp(torque.value, -tables.torque_limit, tables.torque_limit);
+        self.hardest *= tables.patience_left;
+        let push = clamp(torque.value.abs(), T::ZERO, tables.torque_limit + tables.torque_limit);
+        if known && push > self.hardest {
+            self.hardest = push;
+        }
+        let carried = known && !situation.open;
+        if carried {
+            self.learn(tables, held);
+        } else {
+            self.rate *= tables.load_rate_left;
+        }
+        let before = self.free();
+        self.alone = (known && !carried).then(|| before + tables.settling * (held - before));
+        // What holds a link that rests alone is its friction.
+        if let Some(alone) = self.alone
+            && self.creeps()
+        {
+            self.even = clamp(self.even, alone - self.friction, alone + self.friction);
+        }
+    }
+
+    /// Integrates an error instead, where a flank should carry and no estimate says with what force.
+    pub fn lean(&mut self, tables: &CompensationTables<T>, error: T) {
+        let next = self.even + tables.integral_gain * error;
+        if next.is_finite() {
+            self.even = clamp(next, -tables.torque_limit, tables.torque_limit);
+        }
+    }
+
+    /// Follows the link's speed: what is asked for has no noise, and a link that is controlled keeps to it.
+    fn follow(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>) {
+        let asked = situation.link_speed + situation.error_rate;
+        let slip = self.slip + tables.settling * (situation.error_rate - self.slip);
+        let pace = tables.friction_slope * (asked - slip);
+        if pace.is_finite() {
+            (self.slip, self.pace) = (slip, pace);
+        }
+    }
+
+    /// Learns from a reading while a flank carries. A link that creeps may rub with any part of its friction: what brakes
+    /// it is followed then without asking which part it is, until it moves again.
+    fn learn(&mut self, tables: &CompensationTables<T>, torque: T) {
+        let [growth_even, growth_friction, noise] = tables.load_learner;
+        // Once it creeps, a speed that noise may have made does not say that it moves.
+        if creeps(if self.creep.is_some() { T::THIRD * self.pace } else { self.pace }) {
+            let creep = self.creep.get_or_insert(Creep { even: self.even, variance: T::ZERO });
+            creep.variance += growth_even;
+            self.even += tables.load_gain * (torque - self.even - self.drag());
+            return;
+        }
+        let direction = self.direction();
+        if let Some(creep) = self.creep.take()
+            && self.moved * direction <= T::ZERO
+        {
+            let followed = self.even + self.friction * direction;
+            self.even = creep.even;
+            self.variance[0] += creep.variance;
+            self.split(tables, followed, direction, tables.load_gain * noise);
+        }
+        self.moved = direction;
+        self.variance[0] += growth_even;
+        self.variance[1] += growth_friction;
+        let by = self.split(tables, torque, direction, noise);
+        self.rate = clamp(self.rate + tables.load_rate_gain * by, -tables.fastest_load, tables.fastest_load);
+    }
+
+    /// Shares out what a moving link is braked with, read with the given variance; gives what the even part gets.
+    fn split(&mut self, tables: &CompensationTables<T>, torque: T, direction: T, noise: T) -> T {
+        let [even, friction, both] = self.variance;
+        let (to_even, to_friction) = (even + both * direction, both + friction * direction);
+        let total = to_even + to_friction * direction + noise;
+        if total <= T::ZERO || !total.is_finite() {
+            return T::ZERO;
+        }
+        let (gain_even, gain_friction) = (to_even.over(total), to_friction.over(total));
+        let surprise = torque - self.even - self.friction * direction;
+        self.even += gain_even * surprise;
+        self.friction = clamp(self.friction + gain_friction * surprise, T::ZERO, tables.torque_limit);
+        self.variance =
+            [even - gain_even * to_even, friction - gain_friction * to_friction, both - gain_even * to_friction];
+        gain_even * surprise
+    }
+}
+
+/// Whether a link of this pace is so slow that it may rub with any part of its friction.
+fn creeps<T: Real>(pace: T) -> bool {
+    pace < T::ONE && pace > -T::ONE
+}

@@ -1,0 +1,108 @@
+//! The path of a crossing: up to a steady speed, along, and down to the speed of arrival. Planets hang loose in the gap
+//! and are struck somewhere on the way, so that the steady speed is what a crossing's force depends on, and a path
+//! that rises above it anywhere would be slower for the same blow. How long a crossing may take is left to `crossing`.
+
+use super::crossing::Crossing;
+use crate::numbers::Real;
+
+/// A path over time.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Path<T: Real> {
+    start: [T; 2],
+    end: [T; 2],
+    /// Speed between the ramps.
+    steady: T,
+    crossing: Crossing<T>,
+    inverse_ramp: T,
+}
+
+impl<T: Real> Path<T> {
+    /// From position and rate to position and rate.
+    pub fn new(start: [T; 2], end: [T; 2], crossing: Crossing<T>) -> Self {
+        let Crossing { duration, ramp } = crossing;
+        let long = duration - ramp;
+        let at_full = end[0] - start[0] - T::HALF * ramp * (start[1] + end[1]);
+        let steady = if long > T::ZERO { at_full.over(long) } else { T::ZERO };
+        let inverse_ramp = if ramp > T::ZERO { T::ONE.over(ramp) } else { T::ZERO };
+        Self { start, end, steady, crossing, inverse_ramp }
+    }
+
+    /// How long it takes [s].
+    pub fn duration(&self) -> T {
+        self.crossing.duration
+    }
+
+    /// Position, rate and acceleration at a time since the start; before and past its ends it goes on at
+    /// their rates.
+    pub fn at(&self, time: T) -> [T; 3] {
+        let Crossing { duration, ramp } = self.crossing;
+        let left = duration - time;
+        let [from, to] = [self.start, self.end];
+        if left <= T::ZERO {
+            [to[0] - left * to[1], to[1], T::ZERO]
+        } else if time <= T::ZERO {
+            [from[0] + time * from[1], from[1], T::ZERO]
+        } else if time < ramp {
+            let [way, rate, acceleration] = self.rise(time, from[1]);
+            [from[0] + way, rate, acceleration]
+        } else if left < ramp {
+            let [way, rate, acceleration] = self.rise(left, to[1]);
+            [to[0] - way, rate, -acceleration]
+        } else {
+            let way = T::HALF * ramp * (from[1] + self.steady) + (time - ramp) * self.steady;
+            [from[0] + way, self.steady, T::ZERO]
+        }
+    }
+
+    /// Way, rate and acceleration on the ramp from a rate to the steady one, with no acceleration at either end.
+    fn rise(&self, time: T, from: T) -> [T; 3] {
+        let s = time * self.inverse_ramp;
+        let by = self.steady - from;
+        let square = s * s;
+        [
+            time * (from + by * square * (T::ONE - T::HALF * s)),
+            from + by * square * (T::THREE - T::TWO * s),
+            T::from_i32(6) * by * s * (T::ONE - s) * self.inverse_ramp,
+        ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CROSSING: Crossing<f64> = Crossing { duration: 6e-3, ramp: 1.5e-3 };
+
+    fn path() -> Path<f64> {
+        Path::new([0.1, 0.3], [0.104, 0.2], CROSSING)
+    }
+
+    #[test]
+    fn a_path_leads_from_one_end_to_the_other() {
+        for (time, place, rate) in [(0.0, 0.1, 0.3), (6e-3, 0.104, 0.2)] {
+            for beside in [-1e-9, 1e-9] {
+                let [at, speed, acceleration] = path().at(time + beside);
+                assert!((at - place).abs() < 1e-8 && (speed - rate).abs() < 1e-6, "{at} {speed}");
+                assert!(acceleration.abs() < 0.01, "{acceleration}");
+            }
+        }
+    }
+
+    #[test]
+    fn rate_and_acceleration_are_the_slopes_of_place_and_rate() {
+        let step = 1e-7;
+        for period in 1..60 {
+            let time = f64::from(period) * 1e-4 + 5e-5;
+            let [before, now, after] = [-step, 0.0, step].map(|by| path().at(time + by));
+            assert!(((after[0] - before[0]) / (2.0 * step) - now[1]).abs() < 1e-6);
+            assert!(((after[1] - before[1]) / (2.0 * step) - now[2]).abs() < 1e-2);
+        }
+    }
+
+    #[test]
+    fn no_speed_on_the_way_is_higher_than_the_steady_one() {
+        let rest = Path::new([0.0, 0.0], [3.78e-3, 0.0], CROSSING);
+        let highest = (0..600).map(|part| rest.at(f64::from(part) * 1e-5)[1]).fold(0.0, f64::max);
+        assert!((highest - 3.78e-3 / (CROSSING.duration - CROSSING.ramp)).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,71 @@
+//! Control without compensation, on the motor's place: PID with all poles at the bandwidth in position mode, what is
+//! known of the load fed forward, and the commanded spring and damper in impedance mode. It is what remains when the gap
+//! cannot be seen.
+
+use super::load::LoadModel;
+use super::set_point::{ImpedancePoint, Motion};
+use super::situation::Situation;
+use crate::compensation::tables::CompensationTables;
+use crate::numbers::Real;
+use crate::numbers::arithmetic::clamp;
+
+/// The integral of the PID, and what lies between motor and link.
+#[derive(Debug, Clone)]
+pub(super) struct Plain<T: Real> {
+    integral: T,
+    /// Motor beyond the link on the flank that carries, smoothed [rad].
+    beyond: T,
+}
+
+impl<T: Real> Plain<T> {
+    pub fn new() -> Self {
+        Self { integral: T::ZERO, beyond: T::ZERO }
+    }
+
+    /// Where the motor is, less what lies between it and the link [rad].
+    fn place(&self, situation: &Situation<T>) -> T {
+        situation.confirmed_motor - self.beyond
+    }
+
+    /// Torque of the PID [N m].
+    pub fn follow(
+        &self,
+        tables: &CompensationTables<T>,
+        load: &LoadModel<T>,
+        situation: &Situation<T>,
+        now: &Motion<T>,
+    ) -> T {
+        // A blow is over before it could be answered.
+        let known = if load.throws(tables) { T::ZERO } else { load.even() + load.planned_drag(tables, now.speed) };
+        (tables.load_inertia + tables.motor_inertia) * now.acceleration - tables.position_gain * self.place(situation)
+            + tables.damping_gain * (now.speed - situation.motor_speed)
+            + known
+            + self.integral
+    }
+
+    /// Torque of the impedance law [N m].
+    pub fn yield_to(&self, situation: &Situation<T>, point: &ImpedancePoint<T>) -> T {
+        point.torque - point.stiffness * self.place(situation) + point.damping * (point.speed - situation.motor_speed)
+    }
+
+    /// Integrates; `cut` is what the limit took off. Under compensation the integral fades, so that it is ready and
+    /// empty when it is needed.
+    pub fn take(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, cut: T, trust: T) {
+        let growth = tables.back_calculation * cut - tables.integral_gain * self.place(situation);
+        // What a flank carries is as far from the link as it is; nothing is said by teeth that may be open, nor while the
+        // link is thrown to and fro.
+        let thrown = tables.period * situation.error_rate.abs() > T::QUARTER * tables.back_calculation * situation.half;
+        let beyond = if !situation.feels {
+            T::ZERO
+        } else if situation.contact == T::ZERO || thrown {
+            self.beyond
+        } else {
+            situation.confirmed_motor + situation.error
+        };
+        self.beyond += T::QUARTER * tables.back_calculation * (beyond - self.beyond);
+        let next = self.integral + (T::ONE - trust) * growth - trust * tables.back_calculation * self.integral;
+        if next.is_finite() {
+            self.integral = clamp(next, -tables.torque_limit, tables.torque_limit);
+        }
+    }
+}

@@ -1,0 +1,135 @@
+//! Where everything is, felt at the link, as the estimates have it: what the rest of the compensation works on. It is made
+//! anew every control period and carries no state.
+
+use super::set_point::{Command, Position};
+use crate::compensation::tables::CompensationTables;
+use crate::numbers::Real;
+use crate::numbers::arithmetic::clamp;
+use crate::numbers::phase::sine_cosine;
+use crate::observer::{Estimates, Source};
+use parameters::ContactState;
+
+/// Where everything is; angles are less the set-point's position, so that they stay small at any number of turns.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Situation<T: Real> {
+    /// Set-point less link [rad].
+    pub error: T,
+    /// Set-point's speed less the link's [rad/s].
+    pub error_rate: T,
+    /// Motor, felt at the link with every tooth centred, less set-point [rad].
+    pub motor: T,
+    /// The same as far as the link's place bears it out: what is more than the guess of the gap allows is wind-up [rad].
+    pub confirmed_motor: T,
+    /// [rad/s].
+    pub motor_speed: T,
+    /// [rad/s].
+    pub link_speed: T,
+    /// Position of the set-point.
+    pub origin: Position<T>,
+    /// Speed that the motor has by the gears' transmission error alone, felt at the link [rad/s].
+    pub error_speed: T,
+    /// Torque that the motor loses whatever its direction, and its dry friction [N m]: as the observer has it, sure or
+    /// not, for it leaves out of the load torque what it puts down to them.
+    pub losses: [T; 2],
+    /// Half of the lost motion [rad].
+    pub half: T,
+    /// Torque in the teeth [N m].
+    pub mesh_torque: T,
+    /// Between motor and link [N m/rad].
+    pub stiffness: T,
+    /// By how much the transmission error shifts both flanks, felt at the link [rad].
+    pub shift: T,
+    /// By how much that grows for each radian of the link.
+    pub shift_slope: T,
+    /// Gap coordinate, felt at the link: from -half to half about the shift while every mesh is free [rad].
+    pub gap: T,
+    /// 1 or -1 with a flank touching, else 0.
+    pub contact: T,
+    /// Whether the teeth are known to pass on nothing.
+    pub open: bool,
+    /// Whether both shafts are seen.
+    pub feels: bool,
+    /// Whether it is known where in the gap the motor is as well.
+    pub sees: bool,
+}
+
+impl<T: Real> Situation<T> {
+    pub fn new(tables: &CompensationTables<T>, estimates: &Estimates<T>, offset: T, command: &Command<T>) -> Self {
+        let (origin, speed) = match command {
+            Command::Position { now, .. } => (now.position, now.speed),
+            Command::Impedance(point) => (point.position, point.speed),
+        };
+        let contact = match estimates.reported_contact {
+            ContactState::DriveSide => T::ONE,
+            ContactState::BackSide => -T::ONE,
+            ContactState::Separated => T::ZERO,
+        };
+        let [numerator, denominator] = tables.ratio.map(i64::from);
+        let whole = denominator * i64::from(estimates.motor.turns) - numerator * i64::from(origin.turns);
+        let motor_turns =
+            T::from_i64(whole) * tables.inverse_denominator + estimates.motor.fraction - tables.gear * origin.fraction;
+        let motor = tables.turn * tables.inverse_gear * motor_turns - offset;
+        let half = clamp(tables.inverse_lever * estimates.half_backlash.value, T::ZERO, tables.widest_half);
+        let [softest, stiffest] = tables.compliances;
+        let stiffness = T::ONE.over(clamp(estimates.compliance.value, stiffest, softest));
+        let at_link = T::HALF * tables.inverse_lever;
+        let error = tables.turn * origin.less(estimates.link.turns, estimates.link.fraction);
+        let confirmed_motor = if estimates.source == Source::Both && error.is_finite() {
+            clamp(motor, -error - half - half, half + half - error)
+        } else {
+            motor
+        };
+        let situation = Self {
+            error,
+            error_rate: speed - estimates.link.speed,
+            motor,
+            confirmed_motor,
+            motor_speed: tables.inverse_gear * estimates.motor.speed,
+            link_speed: estimates.link.speed,
+            origin,
+            half,
+            mesh_torque: estimates.mesh_torque.value,
+            stiffness,
+            losses: [estimates.torque_bias, estimates.motor_friction].map(|loss| tables.gear * loss.value),
+            error_speed: at_link * estimates.flank_shift_slope * estimates.link.speed,
+            shift: at_link * estimates.flank_shift,
+            shift_slope: at_link * estimates.flank_shift_slope,
+            gap: at_link * estimates.gap.value,
+            contact,
+            open: estimates.contact_valid && contact == T::ZERO,
+            feels: false,
+            sees: false,
+        };
+        let sum = situation.error + situation.error_rate + situation.motor + situation.motor_speed + situation.gap;
+        let sum = sum + situation.shift + situation.error_speed + situation.losses[0] + situation.losses[1];
+        let sum = sum + situation.mesh_torque + situation.stiffness;
+        let feels = estimates.source == Source::Both && sum.is_finite();
+        let knows = estimates.contact_valid && estimates.gap.valid && estimates.half_backlash.value.is_finite();
+        Self { feels, sees: feels && knows, ..situation }
+    }
+
+    /// The shift of the flanks when the link will have turned so far [rad].
+    pub fn shift_after(&self, tables: &CompensationTables<T>, way: T) -> T {
+        let (sine, cosine) = sine_cosine((tables.mesh_phase_per_radian * way).to_phase());
+        self.shift * cosine + self.shift_slope * tables.radians_per_mesh * sine
+    }
+
+    /// Torque that is lost between motor and load at a speed, while the teeth pass on a torque [N m].
+    pub fn lost(&self, tables: &CompensationTables<T>, speed: T, passed: T) -> T {
+        let direction = planned_direction(tables, speed);
+        let [driving, driven] = tables.gear_losses;
+        let ratio = if passed * direction > T::ZERO { driving } else { driven };
+        self.losses[0] + (self.losses[1] + ratio * passed.abs()) * direction
+    }
+
+    /// Torque of the damper on the motor against the link; what the transmission error makes it do is none of its
+    /// business [N m].
+    pub fn calm(&self, tables: &CompensationTables<T>) -> T {
+        tables.motor_damping * (self.link_speed + self.error_speed - self.motor_speed)
+    }
+}
+
+/// -1 to 1: what share of the dry friction brakes the link at a speed that is planned: no noise hides its sign.
+pub(super) fn planned_direction<T: Real>(tables: &CompensationTables<T>, speed: T) -> T {
+    clamp(tables.planned_friction_slope * speed, -T::ONE, T::ONE)
+}

@@ -1,0 +1,143 @@
+//! What the compensation needs as plain numbers, made by `compensation::design`. Angles, torques and inertias are felt
+//! at the link; how the numbers come about is left to the design.
+
+use crate::numbers::Real;
+
+/// Tables of the compensation of one joint at one control rate and bandwidth.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CompensationTables<T: Real> {
+    /// Control periods a second [Hz].
+    pub rate: T,
+    /// Control period [s].
+    pub period: T,
+    /// Motor turns over link turns as a fraction of whole numbers.
+    pub ratio: [i32; 2],
+    /// The same as a number.
+    pub gear: T,
+    /// Its inverse.
+    pub inverse_gear: T,
+    /// Inverse of the ratio's denominator.
+    pub inverse_denominator: T,
+    /// A whole turn [rad].
+    pub turn: T,
+    /// 1 / (r_c cos alpha): from half-backlash to half the lost motion [1/m].
+    pub inverse_lever: T,
+    /// Mesh phase for each radian of the link [2^-32 periods].
+    pub mesh_phase_per_radian: T,
+    /// Radians of the link for each radian of the mesh phase.
+    pub radians_per_mesh: T,
+    /// Half the lost motion is never taken for more than this [rad].
+    pub widest_half: T,
+    /// What turns with the motor while the gap is open [kg m^2].
+    pub motor_inertia: T,
+    /// The rest [kg m^2].
+    pub load_inertia: T,
+    /// Its inverse.
+    pub inverse_load_inertia: T,
+    /// Load inertia over all inertia.
+    pub load_share: T,
+    /// Its inverse.
+    pub inverse_load_share: T,
+    /// Of motor against load [kg m^2].
+    pub reduced_inertia: T,
+    /// Largest and smallest compliance that is believed [rad/(N m)].
+    pub compliances: [T; 2],
+    /// What the gears lose over what the teeth pass on, while the motor drives and while the load does.
+    pub gear_losses: [T; 2],
+    /// Most that the teeth shall pass on in position mode [N m].
+    pub most_passed: T,
+    /// What is left to that, at least, as far as a swing is divided by it [N m].
+    pub least_room: T,
+    /// Spring of the loop [N m/rad].
+    pub position_gain: T,
+    /// Damper of the loop, on the link [N m s/rad].
+    pub damping_gain: T,
+    /// Damper on the motor against the link, and on the way through the gap [N m s/rad].
+    pub motor_damping: T,
+    /// Share of that damper in impedance mode.
+    pub impedance_calm: T,
+    /// Spring on the way through the gap [N m/rad].
+    pub gap_stiffness: T,
+    /// Integral of the plain loop over one period [N m/rad].
+    pub integral_gain: T,
+    /// Share of what the limit cut off that the integral gives back each period.
+    pub back_calculation: T,
+    /// Largest torque [N m].
+    pub torque_limit: T,
+    /// How far ahead set-points are wanted [s].
+    pub lead: T,
+    /// From deciding to the torque's effect [s].
+    pub reaction: T,
+    /// Speed against the link at which planets that are struck stand for a torque, for each N m of it [rad/s/(N m)].
+    pub strike_speed_per_torque: T,
+    /// That torque at little demand [N m].
+    pub strike_torque: T,
+    /// The same however much is demanded [N m].
+    pub hardest_strike: T,
+    /// Shortest ramp of a crossing's speed that delays allow [s].
+    pub shortest_ramp: T,
+    /// Time that torque needs on the ramp for each rad/s [s^2/rad].
+    pub ramp_per_speed: T,
+    /// Longest crossing [s].
+    pub longest_crossing: T,
+    /// A way through the gap is laid anew when less than this share of what is left of it would do.
+    pub hurry: T,
+    /// Speed against the load at which a flank is met [rad/s].
+    pub landing_speed: T,
+    /// The same for each N m that the flank will carry, if that is more [rad/s/(N m)].
+    pub landing_speed_per_torque: T,
+    /// By how much a landing quickens while it finds nothing [rad/s^2].
+    pub landing_haste: T,
+    /// Its highest speed [rad/s].
+    pub fastest_landing: T,
+    /// Rise of the law's torque after a landing, in one period.
+    pub landing_rise: T,
+    /// Rate at which a missed impulse is made good [1/s].
+    pub repayment: T,
+    /// Share of the half-gap that has to open before the loss of a flank is believed.
+    pub opening: T,
+    /// Share of the half-gap within which a flank is as good as touched.
+    pub landed: T,
+    /// Demand beyond which a change of its sign counts [N m].
+    pub hysteresis: T,
+    /// Measured torque below which no flank is changed for it soon after a change, for each unit of patience [N m].
+    pub doubt: T,
+    /// Share of news that the measured torque takes up in one period.
+    pub settling: T,
+    /// Inverse of the news from which on they are taken up faster [1/(N m)].
+    pub eagerness: T,
+    /// How much of it is left when nothing has changed for long.
+    pub least_doubt: T,
+    /// What is left of a grown patience after one period.
+    pub patience_left: T,
+    /// The most patience: how many times the feedback torque above.
+    pub most_patience: T,
+    /// The most that the doubt grows by, for each radian of half the lost motion [N m/rad].
+    pub most_doubt: T,
+    /// A joint at rest that asks for the other flank within this time hunts [s].
+    pub hunting: T,
+    /// Error let be after the first crossing that feedback alone has caused, over half the lost motion.
+    pub first_indulgence: T,
+    /// The most that is let be, over half the lost motion.
+    pub last_indulgence: T,
+    /// What is left of it after one period.
+    pub forgiving: T,
+    /// Learner of the load: growth of variances in one period (even part, friction), variance of a reading.
+    pub load_learner: [T; 3],
+    /// Share of a reading that the even part takes up in the long run.
+    pub load_gain: T,
+    /// Rate of the load for each N m by which its even part is moved [1/s].
+    pub load_rate_gain: T,
+    /// What is left of the load's rate after one period.
+    pub load_rate_left: T,
+    /// The load's greatest rate [N m/s].
+    pub fastest_load: T,
+    /// Inverse of the speed at which friction has its full size [s/rad].
+    pub friction_slope: T,
+    /// The same for a speed that is planned [s/rad].
+    pub planned_friction_slope: T,
+    /// How long an impedance set-point may be held before it counts as standing still [s].
+    pub longest_hold: T,
+    /// Change of the trust in the estimates in one period.
+    pub trust_step: T,
+}

@@ -1,0 +1,114 @@
+//! Observer and compensation as one: samples and a set-point in, estimates and the shaped set-point out, once a control
+//! period; or the width probe in place of the compensation. Where the samples come from, and over which line, is left to
+//! whoever calls.
+
+use crate::compensation::CompensationTables;
+use crate::compensation::{Command, Compensation, Shaped};
+use crate::numbers::Real;
+use crate::numbers::digest::chain;
+use crate::observer::{Estimates, MAPPED, Memory, MemoryError, Observer, Probe, Progress, Samples};
+use crate::observer::{ObserverTables, ProbeTable};
+
+/// What one control period came to.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Answer<T: Real> {
+    /// What the observer makes of the samples.
+    pub estimates: Estimates<T>,
+    /// What the compensation makes of estimates and set-point.
+    pub shaped: Shaped<T>,
+    /// Where the width probe stands, if this was a period of one.
+    pub probed: Option<Progress<T>>,
+}
+
+impl<T: Real> Answer<T> {
+    /// Extends a digest by what says most about the rest: torque, gap, width, load, trust, the width that was probed.
+    pub fn digest(&self, running: u64) -> u64 {
+        let Self { estimates, shaped, probed } = self;
+        let running = match probed {
+            Some(Progress::Done(width)) => chain(running, width.value.bits()),
+            _ => running,
+        };
+        [shaped.torque, estimates.gap.value, estimates.half_backlash.value, estimates.load_torque.value, shaped.trust]
+            .iter()
+            .fold(running, |digest, value| chain(digest, value.bits()))
+    }
+}
+
+/// Observer, with error maps, and compensation of one joint.
+#[derive(Debug, Clone)]
+pub struct Controller<'tables, T: Real> {
+    observer: Observer<'tables, T, MAPPED>,
+    compensation: Compensation<'tables, T>,
+    probe_table: Option<&'tables ProbeTable<T>>,
+    probing: Option<Probing<'tables, T>>,
+}
+
+/// A probe, and how long it waits until the observer has seen the joint.
+#[derive(Debug, Clone)]
+struct Probing<'tables, T: Real> {
+    probe: Probe<'tables, T>,
+    wait: u32,
+}
+
+impl<'tables, T: Real> Controller<'tables, T> {
+    /// Both as they are after a reset.
+    pub fn new(observer: &'tables ObserverTables<T>, compensation: &'tables CompensationTables<T>) -> Self {
+        Self {
+            observer: Observer::new(observer),
+            compensation: Compensation::new(compensation),
+            probe_table: None,
+            probing: None,
+        }
+    }
+
+    /// The same with a width probe, where one could be designed.
+    pub fn with_probe(self, table: Option<&'tables ProbeTable<T>>) -> Self {
+        Self { probe_table: table, ..self }
+    }
+
+    /// Forgets everything but what was designed.
+    pub fn reset(&mut self) {
+        self.observer.restart();
+        self.compensation.restart();
+        self.probing = None;
+    }
+
+    /// What the observer has learnt so far.
+    pub fn save(&self) -> Memory {
+        self.observer.save()
+    }
+
+    /// Goes on from what was saved. Refused memories change nothing.
+    pub fn load(&mut self, memory: &[u8]) -> Result<(), MemoryError> {
+        self.observer.load(memory)
+    }
+
+    /// One control period. Not inlined: beside a plant that is stepped on the same chip its values would lie on the stack.
+    #[inline(never)]
+    pub fn step(&mut self, samples: &Samples<T>, command: &Command<T>) -> Answer<T> {
+        let estimates = *self.observer.step(samples);
+        self.probing = None;
+        let shaped = self.compensation.step(&estimates, command);
+        Answer { estimates, shaped, probed: None }
+    }
+
+    /// One control period of a width probe, which begins with the first of them in a row and stays at its result until
+    /// [`step`](Self::step) is called again. Without a probe no torque is given and nothing is said.
+    #[inline(never)]
+    pub fn probe(&mut self, samples: &Samples<T>) -> Answer<T> {
+        let estimates = *self.observer.step(samples);
+        let still = Answer { estimates, ..Answer::default() };
+        let Some(table) = self.probe_table else { return still };
+        let Some(Probing { probe, wait }) = &mut self.probing else {
+            self.compensation.restart();
+            self.probing = Some(Probing { probe: Probe::new(table), wait: table.settle });
+            return Answer { probed: Some(Progress::Running), ..still };
+        };
+        if *wait > 0 {
+            *wait -= 1;
+            return Answer { probed: Some(Progress::Running), ..still };
+        }
+        let (torque, progress) = probe.step(&estimates);
+        Answer { shaped: Shaped { torque, ..Shaped::default() }, probed: Some(progress), ..still }
+    }
+}

@@ -1,0 +1,228 @@
+//! Correction of a step for meshes that parted or met inside it, from its end alone. Known from
+//! real-time simulation as in-step correction of a switched right-hand side (R. M. Howe, Dynamics of Real-Time
+//! Simulation, ch. 11); a mesh that leaves and returns within the step is not seen.
+//!
+//! After the crossing, s before the end, the frozen law misses a force m. Near the end m(t) is known to second order,
+//! so its first three integrals over [t - s, t] are closed forms; they correct rate, position and the integral of the
+//! position. These corrections deform the other meshes too: one linear pass adds the forces that this causes.
+
+use crate::gears::contact::{Law, Laws, Net};
+use crate::gears::excitation::{Beat, PerMesh};
+use crate::gears::frozen::{Frozen, Moment};
+use crate::gears::planets::each_planet;
+use crate::gears::stages::Course;
+use crate::numbers::Real;
+
+/// The end of a step that was taken with one contact set throughout.
+pub struct End<'a, T: Real, const N: usize, const OVERTONES: usize> {
+    /// The joint.
+    pub frozen: &'a Frozen<'a, T, N, OVERTONES>,
+    /// Way that the mesh phase goes in the step [rad].
+    pub rate: T,
+    /// The excitation.
+    pub beat: &'a Beat<T, OVERTONES>,
+    /// Meshes whose law does not hold: those with more than zero.
+    pub trespasses: &'a PerMesh<T, N>,
+}
+
+impl<T: Real, const N: usize, const OVERTONES: usize> End<'_, T, N, OVERTONES> {
+    /// Corrects the motion for every law that does not hold, and the accelerations now and half a step before, which
+    /// become those that the new laws would have caused on the same path.
+    #[inline(never)]
+    pub fn correct(&self, laws: &mut Laws<T, N>, course: &mut Course<T, N>) {
+        let tables = self.frozen.tables;
+        let (mut impulse, mut shift, mut jump, mut past) = (Net::NONE, Net::NONE, Net::NONE, Net::NONE);
+        let mut longest = T::ZERO;
+        let mut add = |mesh: (usize, usize), missed: &Missed<T>| {
+            impulse.add_one(mesh, missed.impulse);
+            shift.add_one(mesh, missed.shift);
+            jump.add_one(mesh, missed.path.value);
+            past.add_one(mesh, missed.path.at(T::HALF));
+            if missed.since > longest {
+                longest = missed.since;
+            }
+        };
+        each_planet!(N, i => {
+            if self.trespasses[0][i] > T::ZERO {
+                add((0, i), &self.cross((0, i), laws, course));
+            }
+            if self.trespasses[1][i] > T::ZERO {
+                add((1, i), &self.cross((1, i), laws, course));
+            }
+        });
+        let mobility = &tables.stage.mobility;
+        let (rate, position) = (impulse.response(mobility, T::ZERO), shift.response(mobility, T::ZERO));
+        // What the corrections bend: it acts from now on, and has acted since the crossing, where damping saw the
+        // integral of the rate, which is the position, and springs about s/4 of the position: it grew with the third
+        // power of time. Ripple is left out of it.
+        let quarter = T::QUARTER * longest;
+        let mut later = Net::NONE;
+        for i in 0..N {
+            let (sun, sun_rate) = (position.planets[i], rate.planets[i]);
+            for (kind, moved, moving) in [(0, sun, sun_rate), (1, position.gap - sun, rate.gap - sun_rate)] {
+                let law = &laws[kind][i];
+                let stiffness = law.closed * tables.springs[kind].stiffness;
+                jump.add_one((kind, i), stiffness * moved + law.damping * moving);
+                later.add_one((kind, i), T::SIX * (quarter * stiffness + law.damping) * moved);
+            }
+        }
+        let wind_up = mobility.wind_up_stiffness * position.wind_up;
+        let jump = jump.response(mobility, wind_up + mobility.wind_up_damping * rate.wind_up);
+        let wind_up = quarter * wind_up + mobility.wind_up_damping * position.wind_up;
+        let later = later.response(mobility, T::SIX * wind_up);
+        course.each(&position, |coordinate, position| coordinate.position += position);
+        course.each(&rate, |coordinate, rate| coordinate.rate += rate);
+        course.each(&later, |coordinate, later| coordinate.rate += later);
+        course.each(&jump, |coordinate, jump| coordinate.now += jump);
+        course.each(&past.response(mobility, T::ZERO), |coordinate, past| coordinate.before += past);
+    }
+
+    /// Puts one mesh under the law that holds; what the law before it missed.
+    #[inline(never)]
+    fn cross(&self, (kind, i): (usize, usize), laws: &mut Laws<T, N>, course: &Course<T, N>) -> Missed<T> {
+        let tables = self.frozen.tables;
+        let planet = course.planets[i];
+        let (mut at, mut acceleration) = (planet.point(), planet.now);
+        if kind == 1 {
+            (at, acceleration) = (course.gap.point().less(at), course.gap.now - acceleration);
+        }
+        let was = laws[kind][i];
+        let Moment { overlap: deflection, speed, stiffness, error, .. } =
+            self.frozen.mesh(&Law::OPEN, (kind, i), self.beat, at);
+        let is = Law::of(tables, (kind, i), deflection, speed, stiffness);
+        laws[kind][i] = is;
+        // Without backlash both flanks are one.
+        if was.closed == is.closed && was.offset == is.offset {
+            return Missed::NOTHING;
+        }
+        let stiffness_rate = tables.meshes[kind][i].stiffness_rate(self.beat, tables.excitation.harmonics);
+        // e'' = -rate^2 e for the sine of eq. 11.
+        let acceleration = T::SIX * acceleration + self.rate * self.rate * error;
+        // Damping that acts whatever the contact is not missed.
+        let base = self.frozen.adheres * tables.stage.damping[kind];
+        let mesh = Crossing { deflection, speed, acceleration, stiffness, stiffness_rate, base };
+        mesh.missed(&was, &is)
+    }
+}
+
+/// One mesh at the end of a sub-step, on the path that the frozen laws gave.
+struct Crossing<T> {
+    deflection: T,
+    speed: T,
+    acceleration: T,
+    stiffness: T,
+    stiffness_rate: T,
+    base: T,
+}
+
+/// What a frozen law missed.
+struct Missed<T> {
+    /// Six times the integral of the force since the crossing.
+    impulse: T,
+    /// Six times the integral of that integral.
+    shift: T,
+    /// The force itself along the path that was taken, as if it had always acted.
+    path: Path<T>,
+    /// How long ago the crossing was.
+    since: T,
+}
+
+/// A quantity near the end of a sub-step: value, rate, acceleration there.
+#[derive(Clone, Copy)]
+struct Path<T> {
+    value: T,
+    rate: T,
+    acceleration: T,
+}
+
+impl<T: Real> Crossing<T> {
+    #[inline(always)]
+    fn missed(&self, before: &Law<T>, after: &Law<T>) -> Missed<T> {
+        let (was_closed, is_closed) = (before.closed > T::ZERO, after.closed > T::ZERO);
+        let mut missed = Missed::NOTHING;
+        if was_closed {
+            let force = self.force(before);
+            let gone = Path { value: -force.value, rate: -force.rate, acceleration: -force.acceleration };
+            missed.add(gone, force.since_zero());
+        }
+        if is_closed {
+            let force = self.force(after);
+            // Contact began when the surfaces met, or, between surfaces already overlapping, when the force turned.
+            let met = self.overlap(after).since_zero();
+            missed.add(force, if met < T::ONE { met } else { force.since_zero() });
+        }
+        missed
+    }
+
+    fn overlap(&self, law: &Law<T>) -> Path<T> {
+        Path { value: self.deflection - law.offset, rate: self.speed, acceleration: self.acceleration }
+    }
+
+    /// Contact force under a law less the damping that acts anyway; the jerk that damping would see is left out.
+    fn force(&self, law: &Law<T>) -> Path<T> {
+        let damping = law.damping - self.base;
+        let overlap = self.overlap(law);
+        Path {
+            value: self.stiffness * overlap.value + damping * overlap.rate,
+            rate: self.stiffness * overlap.rate + self.stiffness_rate * overlap.value + damping * overlap.acceleration,
+            acceleration: self.stiffness * overlap.acceleration + T::TWO * self.stiffness_rate * overlap.rate,
+        }
+    }
+}
+
+impl<T: Real> Path<T> {
+    /// Its value some time before the end.
+    fn at(&self, earlier: T) -> T {
+        self.value - earlier * (self.rate - T::HALF * earlier * self.acceleration)
+    }
+
+    /// How long before the end the path was zero: a secant and one Newton step, within the sub-step. Paths that give
+    /// no answer (they do not point away from zero) are given the whole sub-step, where they are small.
+    fn since_zero(&self) -> T {
+        let sign = if self.value < T::ZERO { -T::ONE } else { T::ONE };
+        let (value, rate, acceleration) = (sign * self.value, sign * self.rate, sign * self.acceleration);
+        if rate <= T::ZERO {
+            return T::ONE;
+        }
+        // Where rate > value >= 0 the quotient is within the sub-step.
+        let guess = if value < rate { value.over(rate) } else { T::ONE };
+        let slope = rate - guess * acceleration;
+        // Below half the secant's slope the parabola turns inside the step, and the guess is the better answer.
+        if slope + slope < rate {
+            return guess;
+        }
+        let rest = value - guess * (rate - T::HALF * guess * acceleration);
+        let refined = guess + rest.over(slope);
+        if refined < T::ZERO {
+            T::ZERO
+        } else if refined < T::ONE {
+            refined
+        } else {
+            T::ONE
+        }
+    }
+}
+
+impl<T: Real> Missed<T> {
+    const NOTHING: Self = Self {
+        impulse: T::ZERO,
+        shift: T::ZERO,
+        path: Path { value: T::ZERO, rate: T::ZERO, acceleration: T::ZERO },
+        since: T::ZERO,
+    };
+
+    /// Adds a force that has acted for the last `since`.
+    fn add(&mut self, path: Path<T>, since: T) {
+        let Path { value, rate, acceleration } = path;
+        let s = since;
+        // Six times the integrals: forces respond in sixths.
+        self.impulse += s * (T::SIX * value - s * (T::THREE * rate - s * acceleration));
+        self.shift += s * s * (T::THREE * value - s * (T::TWO * rate - T::SIX * T::EIGHTH * s * acceleration));
+        self.path.value += value;
+        self.path.rate += rate;
+        self.path.acceleration += acceleration;
+        if since > self.since {
+            self.since = since;
+        }
+    }
+}

@@ -1,0 +1,165 @@
+//! Instructions of a tick, predicted from what it does. Every constant was counted on an emulated Cortex-M4F (QEMU,
+//! rustc 1.96, opt-level 3, fat LTO) over 108 sets of tables (3, 4 and 5 planets, both laws, with compliance and
+//! without, 1, 2 and 5 harmonics, 1, 2 and 4 sub-steps; leaps apart); caches and pipelines are the processor's business.
+//!
+//! A tick by the exponential flow costs the same each time. One in sub-steps costs a fixed part (start, first look at
+//! the accelerations, state taken over; half of that in ticks that go on from another one), each sub-step, each
+//! correction and each mesh that crosses; before it an exponential tick may have been given up half-way. More than one harmonic of the stiffness wave makes every look at
+//! a mesh dearer.
+
+use crate::gears::certificate::Parts;
+use parameters::{DampingLaw, JointParameters, MESH_KINDS, MIN_PLANETS};
+
+/// Instructions with one number of planets, one harmonic, law `paper`, without compliance.
+struct Counted {
+    hold: f64,
+    /// More with compliance.
+    hold_compliant: f64,
+    given_up: f64,
+    fixed: f64,
+    substep: f64,
+    correction: f64,
+}
+
+/// Leaps of light planets with one number of planets; compliance and overtones change them less than counts differ.
+#[derive(Debug, PartialEq)]
+struct Leaping {
+    /// Every tooth presses.
+    hold: f64,
+    /// More if that is given up in the middle of the tick and not at its start.
+    given_up: f64,
+    /// Law `paper`, `contact`.
+    fixed: [f64; 2],
+    /// All teeth apart, law `paper`, `contact`.
+    leap: [f64; 2],
+}
+
+/// 3, 4 and 5 planets, each counted to the instruction at 3, 5 and 9 leaps.
+const LEAPING: [Leaping; 3] = [
+    Leaping { hold: 1489.0, given_up: 343.0, fixed: [1032.0, 1048.0], leap: [140.0, 132.0] },
+    Leaping { hold: 1844.0, given_up: 444.0, fixed: [1135.0, 1200.0], leap: [275.0, 173.0] },
+    Leaping { hold: 2156.0, given_up: 545.0, fixed: [1514.0, 1399.0], leap: [350.0, 231.0] },
+];
+/// More for a mesh that touches its flank in a leap, and for one whose numbers are none more than that; found by the
+/// search for the worst tick.
+const TOUCH: f64 = 40.0;
+const NO_NUMBER: f64 = 20.0;
+
+/// 3, 4 and 5 planets. Counted to the instruction, but for `given_up`: what a tick that is forced open in its first
+/// half takes beyond the rest (three planets), in proportion to `hold`.
+const COUNTED: [Counted; 3] = [
+    Counted { hold: 2165.0, hold_compliant: 3.0, given_up: 580.0, fixed: 1351.0, substep: 536.0, correction: 359.0 },
+    Counted { hold: 2422.0, hold_compliant: 117.0, given_up: 655.0, fixed: 1562.0, substep: 685.0, correction: 455.0 },
+    Counted { hold: 2849.0, hold_compliant: 413.0, given_up: 765.0, fixed: 1864.0, substep: 851.0, correction: 550.0 },
+];
+/// One mesh of a correction that parts or meets.
+const CROSSING: f64 = 211.0;
+/// One that leaps from flank to flank, or whose numbers are none: more than that, found by the search for the worst tick.
+const LEAP: f64 = 120.0;
+/// More under the law `contact`: a mesh that crosses, a planet of an exponential tick, a tick in sub-steps.
+const CONTACT: [f64; 3] = [10.0, 12.0, 8.0];
+/// More with compliance: a sub-step.
+const COMPLIANCE: f64 = 45.0;
+/// More with overtones: a planet in each evaluation, and again for each harmonic after the first.
+const OVERTONES: f64 = 60.0;
+const OVERTONE: f64 = 17.0;
+/// The same for a mesh that crosses.
+const CROSSING_OVERTONES: f64 = 36.0;
+const CROSSING_OVERTONE: f64 = 19.0;
+/// Evaluations in an exponential tick (some with rates), in one given up half-way, in the fixed part, in a sub-step.
+const EVALUATIONS: [f64; 4] = [3.8, 2.0, 1.8, 2.0];
+
+/// Instructions of a joint's tick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cost {
+    hold: f64,
+    given_up: f64,
+    fixed: f64,
+    substep: f64,
+    correction: f64,
+    crossing: f64,
+    meshes: f64,
+    leaping: &'static Leaping,
+    /// 0 for law `paper`, 1 for `contact`.
+    law: usize,
+}
+
+impl Cost {
+    /// Of a joint.
+    pub fn new(parameters: &JointParameters) -> Self {
+        let planets = parameters.geometry.planets;
+        let row = planets.saturating_sub(MIN_PLANETS).min(COUNTED.len() - 1);
+        let counted = &COUNTED[row];
+        let order = MESH_KINDS.map(|kind| parameters.mesh(kind).stiffness_wave.order());
+        let planets = planets as f64;
+        let beyond_first = (order[0].max(order[1]).max(1) - 1) as f64;
+        let with = |yes: bool, more: f64| if yes { more } else { 0.0 };
+        let contact = CONTACT.map(|more| with(parameters.damping_law == DampingLaw::Contact, more));
+        let compliant = |more: f64| with(parameters.compliance.is_some(), more);
+        let overtones = planets * with(beyond_first > 0.0, OVERTONES + OVERTONE * beyond_first);
+        let evaluations = EVALUATIONS.map(|count| count * overtones);
+        Self {
+            hold: counted.hold + planets * contact[1] + compliant(counted.hold_compliant) + evaluations[0],
+            given_up: counted.given_up + evaluations[1],
+            fixed: counted.fixed + contact[2] + evaluations[2],
+            substep: counted.substep + compliant(COMPLIANCE) + evaluations[3],
+            correction: counted.correction,
+            crossing: CROSSING
+                + contact[0]
+                + with(beyond_first > 0.0, CROSSING_OVERTONES + CROSSING_OVERTONE * beyond_first),
+            meshes: 2.0 * planets,
+            leaping: &LEAPING[row],
+            law: usize::from(parameters.damping_law == DampingLaw::Contact),
+        }
+    }
+
+    /// While contact holds.
+    pub fn holding(&self, parts: Parts) -> f64 {
+        match parts {
+            Parts::Substeps(_) => self.hold,
+            Parts::Leaps(_) => self.leaping.hold,
+        }
+    }
+
+    /// In parts, none of which sees a crossing.
+    pub fn losing(&self, parts: Parts) -> f64 {
+        match parts {
+            Parts::Substeps(substeps) => self.fixed + f64::from(substeps) * self.substep,
+            Parts::Leaps(leaps) => self.leaping.fixed[self.law] + f64::from(leaps) * self.leaping.leap[self.law],
+        }
+    }
+
+    /// Every mesh crosses in two of the sub-steps (joints that rattle come to that by themselves), or in one after an
+    /// exponential tick was given up, or late in an exponential tick; or touches its flank in every leap.
+    pub fn all_crossing(&self, parts: Parts) -> f64 {
+        match parts {
+            Parts::Substeps(substeps) => {
+                let twice = self.losing(parts) + f64::from(substeps.min(2)) * self.all();
+                let late = self.hold + 0.5 * self.substep + self.all();
+                twice.max(self.given_up + self.losing(parts) + self.all()).max(late)
+            }
+            Parts::Leaps(leaps) => self.leaping.given_up + self.losing(parts) + f64::from(leaps) * self.meshes * TOUCH,
+        }
+    }
+
+    /// Every mesh crosses in every sub-step, from flank to flank, or has no number in any leap: more than any state of the
+    /// search takes.
+    pub fn bound(&self, parts: Parts) -> f64 {
+        let count = f64::from(parts.count().max(1));
+        match parts {
+            Parts::Substeps(_) => self.given_up + self.losing(parts) + count * (self.all() + self.meshes * LEAP),
+            Parts::Leaps(_) => self.all_crossing(parts) + count * self.meshes * NO_NUMBER,
+        }
+    }
+
+    /// The most sub-steps, of so many, with which `all_crossing` stays within so many instructions; zero if not even one
+    /// does.
+    pub fn affordable(&self, instructions: f64, most: u32) -> u32 {
+        let fits = |substeps: &u32| self.all_crossing(Parts::Substeps(*substeps)) <= instructions;
+        (1..=most).take_while(fits).last().unwrap_or(0)
+    }
+
+    fn all(&self) -> f64 {
+        self.correction + self.meshes * self.crossing
+    }
+}

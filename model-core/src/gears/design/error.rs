@@ -1,0 +1,68 @@
+//! What can be wrong with parameters or with a wanted step. Raised offline, never in the loop; rendering with the
+//! place in a file is left to whoever read the file.
+
+use core::fmt;
+
+use parameters::ParameterError;
+
+/// Why no tables could be made.
+#[derive(Debug, Clone, PartialEq)]
+pub enum DesignError {
+    /// The parameters are no joint's.
+    Parameters(ParameterError),
+    /// Tables for another number of planets than the joint has.
+    WrongPlanetCount {
+        /// Of the tables asked for.
+        wanted: usize,
+        /// Of the joint.
+        given: usize,
+    },
+    /// A quantity that must be positive (or not negative) is not, or is not a number.
+    OutOfRange {
+        /// Which quantity.
+        what: &'static str,
+        /// Its value in SI.
+        given: f64,
+        /// What it must be.
+        must_be: &'static str,
+    },
+    /// No fixed step at this rate is stable.
+    RateTooLow {
+        /// What was asked for [Hz].
+        given: u32,
+        /// The lowest rate that works [Hz].
+        lowest: u32,
+    },
+    /// A number does not fit into single precision.
+    NotRepresentable {
+        /// Which table.
+        what: &'static str,
+    },
+}
+
+impl fmt::Display for DesignError {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Parameters(error) => error.fmt(formatter),
+            Self::WrongPlanetCount { wanted, given } => {
+                write!(formatter, "tables for {wanted} planets were asked for, but the joint has {given}")
+            }
+            Self::OutOfRange { what, given, must_be } => write!(formatter, "{what} is {given}: it must be {must_be}"),
+            Self::RateTooLow { given, lowest } => {
+                write!(formatter, "a tick rate of {given} Hz is too low for this joint: use {lowest} Hz or more")
+            }
+            Self::NotRepresentable { what } => write!(
+                formatter,
+                "{what} does not fit into single precision: look for a parameter that is orders of magnitude off"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for DesignError {}
+
+impl From<ParameterError> for DesignError {
+    fn from(error: ParameterError) -> Self {
+        Self::Parameters(error)
+    }
+}

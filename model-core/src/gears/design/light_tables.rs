@@ -1,0 +1,48 @@
+//! Tables of the leapfrog sub-steps that light planets need: mobilities and dampings in the unit of time of a
+//! sub-step. How many sub-steps there are is the pace's business.
+
+use crate::gears::mechanics::Mechanics;
+use crate::gears::scales::Scales;
+use crate::gears::tables::{Light, Mobility};
+use crate::numbers::Real;
+use parameters::{JointParameters, MESH_KINDS};
+
+/// Tables for a tick (dimensionless) in so many sub-steps.
+pub fn light<T: Real>(parameters: &JointParameters, unit: &Mobility<f64>, tick: f64, substeps: u32) -> Light<T> {
+    let scales = Scales::new(parameters);
+    let real = T::from_f64;
+    let count = f64::from(substeps.max(1));
+    let substep = tick / count;
+    let square = substep * substep;
+    let damping = MESH_KINDS.map(|kind| scales.damping(parameters.damping_coefficient(kind)) / substep);
+    let wind_up_damping = unit.wind_up_damping / substep;
+    let wind_up_mobility = square * (unit.carrier + unit.link);
+    Light {
+        substeps,
+        half_count: real(0.5 * count),
+        substep: real(substep),
+        square: real(square),
+        per_substep: real(1.0 / substep),
+        mobility: Mobility {
+            sun: real(square * unit.sun),
+            planet: real(square * unit.planet),
+            carrier: real(square * unit.carrier),
+            link: real(square * unit.link),
+            wind_up: real(unit.wind_up),
+            wind_up_stiffness: real(unit.wind_up_stiffness),
+            wind_up_damping: real(wind_up_damping),
+        },
+        wind_up_mobility: real(wind_up_mobility),
+        wind_up_yield: real(0.5 * wind_up_damping / (1.0 + 0.5 * wind_up_damping * wind_up_mobility)),
+        damping: damping.map(real),
+        half_damped: damping.map(|value| real(0.5 * value)),
+        // Makes a leapfrog's frequencies right to fourth order (the modified potential of Takahashi and Imada).
+        curvature: real(1.0 / 12.0),
+        release: [0, 1].map(|kind| {
+            let stiffness = parameters.mesh(MESH_KINDS[kind]).mean_stiffness / scales.stiffness;
+            // c / k = c / k_mean (2 - k / k_mean) to first order in the ripple.
+            let early = damping[kind] / stiffness;
+            [real(0.5 + 2.0 * early), real(early / stiffness)]
+        }),
+    }
+}

@@ -1,0 +1,59 @@
+//! Tables and their certificate as Rust source, for a build script: what a board links into its flash. Numbers are
+//! printed so that they read back to the same bits.
+
+use std::format;
+use std::string::String;
+
+use crate::gears::design::certificate::certificate;
+use crate::gears::design::error::DesignError;
+use crate::gears::design::pace::Effort;
+use crate::gears::design::processor::Processor;
+use crate::gears::design::tables::design_scheme;
+use crate::gears::tables::{Scheme, Tables};
+use parameters::{JointParameters, ParameterError};
+
+/// `PLANETS`, `JOINT_NAME`, `CERTIFICATE` and the static `TABLES` of a joint at a tick rate, as a module's text; made
+/// for an STM32F405.
+pub fn rust_source(parameters: &JointParameters, tick_rate: u32) -> Result<String, DesignError> {
+    rust_source_for(parameters, tick_rate, &Processor::STM32F405)
+}
+
+/// The same for another processor.
+pub fn rust_source_for(
+    parameters: &JointParameters,
+    tick_rate: u32,
+    processor: &Processor,
+) -> Result<String, DesignError> {
+    match parameters.geometry.planets {
+        3 => source::<3>(parameters, tick_rate, processor),
+        4 => source::<4>(parameters, tick_rate, processor),
+        5 => source::<5>(parameters, tick_rate, processor),
+        given => Err(ParameterError::PlanetCount { given }.into()),
+    }
+}
+
+fn source<const N: usize>(
+    parameters: &JointParameters,
+    tick_rate: u32,
+    processor: &Processor,
+) -> Result<String, DesignError> {
+    let effort = Effort::Within(*processor);
+    let tables: Tables<f32, N> = design_scheme(parameters, tick_rate, Scheme::Realtime, effort)?;
+    let certificate = certificate(parameters, tick_rate, effort, processor)?;
+    let name = &parameters.name;
+    let (holding, losing) = (certificate.holding.nine_in_ten, certificate.losing.nine_in_ten);
+    let (most, bytes) = (certificate.instructions.all_crossing, certificate.table_bytes);
+    Ok(format!(
+        "use model_core::gears::certificate::{{Parts::*, *}};\n\
+         use model_core::gears::tables::{{DampingLaw::*, Scheme::*, *}};\n\n\
+         /// Number of planets.\n\
+         pub const PLANETS: usize = {N};\n\
+         /// Name of the joint.\n\
+         pub const JOINT_NAME: &str = {name:?};\n\
+         /// What is promised: error in nine motions of ten {holding:.1e} while contact holds and {losing:.1e} while it\n\
+         /// is lost; {most} instructions when every mesh crosses twice; {bytes} bytes of tables.\n\
+         pub const CERTIFICATE: Certificate = {certificate:#?};\n\
+         /// Tables of the joint.\n\
+         pub static TABLES: Tables<f32, {N}> = {tables:#?};\n"
+    ))
+}

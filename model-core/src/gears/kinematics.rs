@@ -1,0 +1,29 @@
+//! How the gears turn together: the carrier's lever and the ratio, from radii and from teeth.
+
+use parameters::Geometry;
+
+/// Lever and ratios of a geometry.
+pub trait Kinematics {
+    /// r_c cos(alpha), the carrier's lever on either line of action [m].
+    fn carrier_base_radius(&self) -> f64;
+
+    /// Ratio of sun to carrier angle by radii, 2 r_c cos(alpha) / r_bs (the rigid solution of eq. 4) [-].
+    fn ratio_by_radii(&self) -> f64;
+
+    /// Ratio of sun to carrier angle by teeth, 1 + Zr/Zs [-].
+    fn ratio_by_teeth(&self) -> f64;
+}
+
+impl Kinematics for Geometry {
+    fn carrier_base_radius(&self) -> f64 {
+        self.carrier_radius * libm::cos(self.working_pressure_angle)
+    }
+
+    fn ratio_by_radii(&self) -> f64 {
+        2.0 * self.carrier_base_radius() / self.sun_base_radius
+    }
+
+    fn ratio_by_teeth(&self) -> f64 {
+        1.0 + f64::from(self.ring_teeth) / f64::from(self.sun_teeth)
+    }
+}

@@ -1,0 +1,60 @@
+//! Inertia, damping and balance along the lines of action: equivalent masses, the meshes' damping coefficients and the
+//! load that holds a drive torque.
+
+use parameters::{JointParameters, MeshKind};
+
+use crate::gears::kinematics::Kinematics;
+
+/// Equivalent masses, damping and balance of a joint.
+pub trait Mechanics {
+    /// Carrier equivalent mass M_c = (I_c/r_c^2 + n m_p) / cos^2(alpha), without the link (below eq. 19) [kg].
+    fn carrier_equivalent_mass(&self) -> f64;
+
+    /// Rotor inertia felt along the sun's line of action, J / r_bs^2 [kg].
+    fn rotor_equivalent_mass(&self) -> f64;
+
+    /// Link inertia felt along the carrier's line of action, J / (r_c cos(alpha))^2 [kg].
+    fn link_equivalent_mass(&self) -> f64;
+
+    /// Damping coefficient of one mesh (eq. 9 for sun-planet, eq. 10 for ring-planet), from the gears' own masses
+    /// without rotor and link [N s/m].
+    fn damping_coefficient(&self, kind: MeshKind) -> f64;
+
+    /// Load torque that keeps the rigid body from accelerating under `drive_torque` [N m].
+    fn balanced_load_torque(&self, drive_torque: f64) -> f64;
+}
+
+impl Mechanics for JointParameters {
+    fn carrier_equivalent_mass(&self) -> f64 {
+        let cosine = libm::cos(self.geometry.working_pressure_angle);
+        let planets = self.geometry.planets as f64;
+        (self.bodies.carrier_inertia_over_radius_squared + planets * self.bodies.planet_mass) / (cosine * cosine)
+    }
+
+    fn rotor_equivalent_mass(&self) -> f64 {
+        self.rotor_inertia / (self.geometry.sun_base_radius * self.geometry.sun_base_radius)
+    }
+
+    fn link_equivalent_mass(&self) -> f64 {
+        let lever = self.geometry.carrier_base_radius();
+        self.link_inertia / (lever * lever)
+    }
+
+    fn damping_coefficient(&self, kind: MeshKind) -> f64 {
+        let mesh = self.mesh(kind);
+        let planet = self.bodies.planet_equivalent_mass;
+        let mass = match kind {
+            MeshKind::SunPlanet => {
+                let sun = self.bodies.sun_equivalent_mass;
+                sun * planet / (sun + planet)
+            }
+            // Eq. 10 is eq. 9 with an infinitely heavy ring.
+            MeshKind::RingPlanet => planet,
+        };
+        2.0 * mesh.damping_ratio * libm::sqrt(mesh.mean_stiffness * mass)
+    }
+
+    fn balanced_load_torque(&self, drive_torque: f64) -> f64 {
+        drive_torque * self.geometry.ratio_by_radii()
+    }
+}

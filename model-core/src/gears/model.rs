@@ -1,0 +1,150 @@
+//! The joint, one tick at a time: torques in, motion out. Bounded work, no allocation, no panic; SI only in
+//! [`Torques`] and [`Outputs`]. Scheduling, safety and telemetry are the firmware's business.
+
+use core::array;
+
+use crate::gears::contact::{Drive, contact, spread};
+use crate::gears::excitation::{Beat, MOST_OVERTONES, MeshPhase, PerMesh, Rotor, instant, mesh_way};
+use crate::gears::runge_kutta::Motion;
+use crate::gears::sharp::Sharp;
+use crate::gears::state::State;
+use crate::gears::tables::{Scheme, Tables};
+use crate::gears::{light, paper, unfrozen};
+use crate::numbers::Real;
+use parameters::ContactState;
+
+/// Torques, constant over a tick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Torques<T> {
+    /// On the sun shaft [N m].
+    pub drive: T,
+    /// Braking the link (the carrier, without compliance) [N m].
+    pub load: T,
+}
+
+/// The motion in SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Outputs<T, const N: usize> {
+    /// Whole turns of the rigid-body carrier angle.
+    pub carrier_turns: i32,
+    /// The rest of it, in 2^-32 turns.
+    pub carrier_fraction: u32,
+    /// Rate of the rigid-body carrier angle [rad/s].
+    pub carrier_speed: T,
+    /// Motor angle less ratio times rigid carrier angle [rad].
+    pub motor_offset: T,
+    /// Link angle less rigid carrier angle [rad].
+    pub link_offset: T,
+    /// Gap coordinate u_s - 2 u_c along the line of action [m].
+    pub gap: T,
+    /// Wind-up between carrier and link along the line of action [m].
+    pub wind_up: T,
+    /// Mesh deflections [m]: sun-planet of every planet, then ring-planet.
+    pub deflections: PerMesh<T, N>,
+    /// Contact states in the same order.
+    pub contacts: PerMesh<ContactState, N>,
+}
+
+/// Tables and the state that they move.
+#[derive(Debug, Clone)]
+pub struct Model<'a, T: Real, const N: usize> {
+    tables: &'a Tables<T, N>,
+    state: State<T, N>,
+    sharp: Sharp<T, N>,
+}
+
+impl<'a, T: Real, const N: usize> Model<'a, T, N> {
+    /// At rest, undeformed, at angle and phase zero.
+    pub const fn new(tables: &'a Tables<T, N>) -> Self {
+        Self { tables, state: State::REST, sharp: Sharp::UNKNOWN }
+    }
+
+    /// Back to rest.
+    pub fn reset(&mut self) {
+        self.set_state(State::REST);
+    }
+
+    /// The state.
+    pub fn state(&self) -> &State<T, N> {
+        &self.state
+    }
+
+    /// Goes on from another state.
+    pub fn set_state(&mut self, state: State<T, N>) {
+        self.state = state;
+        self.sharp.forget();
+    }
+
+    /// Digest of every bit of the state.
+    pub fn state_digest(&self) -> u64 {
+        self.state.digest()
+    }
+
+    /// Neither infinite nor NaN anywhere.
+    pub fn is_finite(&self) -> bool {
+        self.state.is_finite()
+    }
+
+    /// One tick. Paths that a joint does not take have frames of their own, so that they cost the others no stack.
+    pub fn step(&mut self, torques: Torques<T>) {
+        let tables = self.tables;
+        let units = &tables.units;
+        let drive = Drive {
+            sun: units.drive * torques.drive,
+            carrier: -(units.load_on_carrier * torques.load),
+            link: -(units.load_on_link * torques.load),
+        };
+        let start = Rotor::at(self.phase());
+        let way = self.state.rigid.advance(&tables.rigid, torques.drive, torques.load);
+        let way = mesh_way(&tables.excitation, way);
+        let phase = MeshPhase { start, way, rate: tables.excitation.rate * way };
+        self.state.phase = self.state.phase.wrapping_add(tables.excitation.phase_step);
+
+        let motion = Motion { position: self.state.position, rate: self.state.rate };
+        let Motion { position, rate } = match tables.scheme {
+            Scheme::PaperEtd1 => paper::step(tables, &drive, &phase, &motion),
+            Scheme::RungeKutta4 => unfrozen::runge_kutta(tables, &drive, &phase, &motion),
+            Scheme::SemiImplicitEuler => unfrozen::semi_implicit_euler(tables, &drive, &phase, &motion),
+            Scheme::Realtime if tables.sharpness > T::ZERO => unfrozen::runge_kutta(tables, &drive, &phase, &motion),
+            Scheme::Realtime if tables.light.substeps > 0 => light::tick(tables, &drive, &phase, &motion),
+            Scheme::Realtime if tables.excitation.harmonics > 1 => {
+                self.sharp.tick::<MOST_OVERTONES>(tables, &drive, &phase, &motion)
+            }
+            Scheme::Realtime => self.sharp.tick::<0>(tables, &drive, &phase, &motion),
+        };
+        (self.state.position, self.state.rate) = (position, rate);
+        self.state.settle();
+    }
+
+    /// The motion now, in SI.
+    pub fn outputs(&self) -> Outputs<T, N> {
+        let State { position, rigid, .. } = &self.state;
+        let units = &self.tables.units;
+        let planets = position.planets.iter().fold(T::ZERO, |sum, planet| sum + *planet);
+        let offset = |gains: &[T; 3]| gains[0] * planets + gains[1] * position.gap + gains[2] * position.wind_up;
+        let errors = instant(self.tables, &Beat::<T, 0>::new(Rotor::at(self.phase()), T::ZERO, 1)).error;
+        let meshes = spread(position);
+        let deflections: PerMesh<T, N> = array::from_fn(|kind| array::from_fn(|i| meshes[kind][i] - errors[kind][i]));
+        Outputs {
+            carrier_turns: rigid.turns,
+            carrier_fraction: (rigid.fraction >> 32) as u32,
+            carrier_speed: units.carrier_speed * T::from_i64(rigid.speed),
+            motor_offset: offset(&units.motor_offset),
+            link_offset: offset(&units.link_offset),
+            gap: units.length * position.gap,
+            wind_up: units.length * position.wind_up,
+            deflections: deflections.map(|family| family.map(|value| units.length * value)),
+            contacts: array::from_fn(|kind| {
+                array::from_fn(|i| contact(deflections[kind][i], self.tables.meshes[kind][i].half_backlash))
+            }),
+        }
+    }
+
+    /// Mesh phase in 2^-32 periods.
+    fn phase(&self) -> u32 {
+        let periods = self.tables.excitation.periods_per_turn;
+        let phase =
+            if periods == 0 { self.state.phase } else { self.state.rigid.fraction.wrapping_mul(periods.into()) };
+        (phase >> 32) as u32
+    }
+}

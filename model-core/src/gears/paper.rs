@@ -1,0 +1,130 @@
+//! The paper's own scheme, for comparison: one constant exponential over each sub-step, with everything nonlinear (dead
+//! zone, ripple, imposed error) as a pseudo-force held from its start; first-order exponential time differencing.
+
+#![allow(clippy::op_ref, reason = "a product by value would copy the table")]
+
+use core::array;
+
+use nalgebra::SVector;
+
+use crate::gears::contact::{Drive, spread};
+use crate::gears::excitation::{Beat, MOST_OVERTONES, MeshPhase, PerMesh, instant};
+use crate::gears::runge_kutta::Motion;
+use crate::gears::state::Relative;
+use crate::gears::tables::{Inputs, Tables, Transition};
+use crate::gears::unfrozen::forces;
+use crate::numbers::Real;
+
+/// One tick of the paper's scheme: constant exponential, pseudo-force held over each sub-step (first-order
+/// exponential time differencing).
+#[inline(never)]
+pub fn step<T: Real, const N: usize>(
+    tables: &Tables<T, N>,
+    drive: &Drive<T>,
+    phase: &MeshPhase<T>,
+    motion: &Motion<T, N>,
+) -> Motion<T, N> {
+    let half = phase.over(tables.half_part);
+    let (mut motion, mut rotor) = (*motion, phase.start);
+    let mut now = instant(tables, &Beat::<T, MOST_OVERTONES>::new(rotor, phase.rate, tables.excitation.harmonics));
+    for _ in 0..tables.substeps {
+        let (positions, rates) = (spread(&motion.position), spread(&motion.rate));
+        let mut force = forces(tables, &positions, &rates, &now);
+        for kind in 0..2 {
+            let spring = &tables.springs[kind];
+            for i in 0..N {
+                let linear = spring.stiffness * positions[kind][i] + spring.damping * rates[kind][i];
+                force[kind][i] = linear - force[kind][i];
+            }
+        }
+        let force = Sorted::new(tables.planet_share, &force);
+        let free = Modes::of(tables.planet_share, &motion).free(&tables.flow.whole, drive);
+        motion = free.with([(&tables.flow.whole_constant, &force)]).motion();
+        rotor = rotor.turned(&half).turned(&half);
+        now = instant(tables, &Beat::<T, MOST_OVERTONES>::new(rotor, phase.rate, tables.excitation.harmonics));
+    }
+    motion
+}
+
+/// Mesh forces as the flow's inputs take them.
+struct Sorted<T, const N: usize> {
+    /// Sums over planets: sun-planet, ring-planet.
+    sums: [T; 2],
+    /// Deviation of (sun-planet - ring-planet) from its mean.
+    apart: [T; N],
+}
+
+impl<T: Real, const N: usize> Sorted<T, N> {
+    #[inline]
+    fn new(share: T, force: &PerMesh<T, N>) -> Self {
+        let sums = [total(&force[0]), total(&force[1])];
+        let mean = share * (sums[0] - sums[1]);
+        let mut apart = force[0];
+        for (value, ring) in apart.iter_mut().zip(&force[1]) {
+            *value = *value - *ring - mean;
+        }
+        Self { sums, apart }
+    }
+}
+
+/// Motion split into what the planets do together and what each does apart, which the flow keeps apart.
+#[derive(Clone, Copy)]
+struct Modes<T: Real, const N: usize> {
+    in_phase: SVector<T, 6>,
+    deviations: [SVector<T, 2>; N],
+}
+
+impl<T: Real, const N: usize> Modes<T, N> {
+    #[inline]
+    fn of(share: T, motion: &Motion<T, N>) -> Self {
+        let Motion { position, rate } = motion;
+        let mean = share * total(&position.planets);
+        let mean_rate = share * total(&rate.planets);
+        Self {
+            in_phase: SVector::from([mean, position.gap, position.wind_up, mean_rate, rate.gap, rate.wind_up]),
+            deviations: array::from_fn(|i| SVector::from([position.planets[i] - mean, rate.planets[i] - mean_rate])),
+        }
+    }
+
+    /// Linear flow under constant torques.
+    #[inline]
+    fn free(&self, transition: &Transition<T>, drive: &Drive<T>) -> Self {
+        let torques = SVector::from([drive.sun, drive.carrier, drive.link]);
+        Self {
+            in_phase: self.in_phase + (&transition.in_phase.0 * &self.in_phase + &transition.torques.0 * &torques),
+            deviations: array::from_fn(|i| self.deviations[i] + &transition.deviation.0 * &self.deviations[i]),
+        }
+    }
+
+    /// Plus the response to pseudo-forces, each under its time weight.
+    #[inline]
+    fn with<const K: usize>(&self, terms: [(&Inputs<T>, &Sorted<T, N>); K]) -> Self {
+        let mut sum = *self;
+        for (inputs, force) in terms {
+            sum.in_phase += &inputs.in_phase.0 * SVector::from(force.sums);
+            let [value, rate] = inputs.deviation;
+            for (deviation, apart) in sum.deviations.iter_mut().zip(&force.apart) {
+                deviation[0] += value * *apart;
+                deviation[1] += rate * *apart;
+            }
+        }
+        sum
+    }
+
+    #[inline]
+    fn motion(&self) -> Motion<T, N> {
+        let [mean, gap, wind_up, mean_rate, gap_rate, wind_up_rate] = self.in_phase.data.0[0];
+        Motion {
+            position: Relative { planets: array::from_fn(|i| mean + self.deviations[i][0]), gap, wind_up },
+            rate: Relative {
+                planets: array::from_fn(|i| mean_rate + self.deviations[i][1]),
+                gap: gap_rate,
+                wind_up: wind_up_rate,
+            },
+        }
+    }
+}
+
+fn total<T: Real, const N: usize>(values: &[T; N]) -> T {
+    values.iter().fold(T::ZERO, |sum, value| sum + *value)
+}

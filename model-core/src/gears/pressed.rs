@@ -1,0 +1,153 @@
+//! A tick with every tooth pressing, by one exponential of the closed joint: ripple and imposed error are a
+//! pseudo-force linear in time through its values at the start and in the middle. Whether teeth part within the tick is
+//! left to a guard: a tick that might is not taken.
+
+#![allow(clippy::op_ref, reason = "a product by value would copy the table")]
+
+use nalgebra::SVector;
+
+use crate::gears::contact::Drive;
+use crate::gears::excitation::{Instant, MeshPhase};
+use crate::gears::runge_kutta::Motion;
+use crate::gears::state::Relative;
+use crate::gears::tables::Tables;
+use crate::numbers::Real;
+
+/// One tick; `None` unless every mesh presses so far that its speed cannot open it.
+#[inline(never)]
+pub fn hold<T: Real, const N: usize>(
+    tables: &Tables<T, N>,
+    drive: &Drive<T>,
+    phase: &MeshPhase<T>,
+    middle: &Instant<T, N>,
+    motion: &Motion<T, N>,
+) -> Option<Motion<T, N>> {
+    let flow = &tables.flow;
+    let Motion { position, rate } = motion;
+    if phase.way > flow.longest_way || -phase.way > flow.longest_way {
+        return None;
+    }
+    let half_step = T::HALF * flow.step;
+    let back = position.gap < T::ZERO;
+    // Per mesh: what the flow takes from the deflection, what from everything else at the start, and in the middle.
+    let mut from = [[[T::ZERO; N]; 2]; 3];
+    // Half the overlap at the start, off the flank in the middle: less would open by the end.
+    let mut bound = from[0];
+    for i in 0..N {
+        let (x, u) = (position.planets[i], rate.planets[i]);
+        for (kind, at, speed) in [(0, x, u), (1, position.gap - x, rate.gap - u)] {
+            let error = middle.error[kind][i];
+            let error_rate = middle.error_rate[kind][i];
+            let stiffness = middle.stiffness[kind][i];
+            let half_backlash = tables.meshes[kind][i].half_backlash;
+            let offset = if back { -half_backlash } else { half_backlash };
+            let error_start = error - half_step * error_rate;
+            let overlap = at - error_start - offset;
+            let overlap = if back { -overlap } else { overlap };
+            if overlap <= flow.reach * (speed - error_rate).abs() {
+                return None;
+            }
+            bound[kind][i] = offset + error + T::HALF * (at - error_start - offset);
+            let spring = &tables.springs[kind];
+            let viscous = spring.damping * error_rate;
+            from[0][kind][i] = spring.stiffness - stiffness;
+            from[1][kind][i] = from[0][kind][i] * at + stiffness * (offset + error_start) + viscous;
+            from[2][kind][i] = stiffness * (offset + error) + viscous;
+        }
+    }
+    let share = tables.planet_share;
+    let start = Sorted::new(share, &from[1]);
+    // Over the first half errors go on: their mean there is that of its middle.
+    let mut forces = from[1];
+    for kind in 0..2 {
+        for i in 0..N {
+            forces[kind][i] += T::HALF * half_step * middle.stiffness[kind][i] * middle.error_rate[kind][i];
+        }
+    }
+    let early = Sorted::new(share, &forces);
+
+    let torques = SVector::from([drive.sun, drive.carrier, drive.link]);
+    let (mean, mean_rate) = (share * total(&position.planets), share * total(&rate.planets));
+    let in_phase = SVector::from([mean, position.gap, position.wind_up, mean_rate, rate.gap, rate.wind_up]);
+
+    // Planets and gap in the middle of the tick.
+    let half = &flow.half;
+    let sums = SVector::from(start.sums);
+    let early_sums = SVector::from(early.sums);
+    let row = |row: usize| {
+        in_phase[row]
+            + (half.in_phase.0.row(row) * &in_phase)[0]
+            + (half.torques.0.row(row) * &torques)[0]
+            + (flow.half_constant.in_phase.0.row(row) * &early_sums)[0]
+    };
+    let (middle_mean, middle_gap) = (row(0), row(1));
+    let [[own, _], [by_rate, _]] = half.deviation.0.data.0;
+    let by_force = flow.half_constant.deviation[0];
+    let mut forces = from[2];
+    for i in 0..N {
+        let (deviation, speed) = (position.planets[i] - mean, rate.planets[i] - mean_rate);
+        let x = middle_mean + deviation + own * deviation + by_rate * speed + by_force * early.apart[i];
+        let y = middle_gap - x;
+        let (short, late) = (x - bound[0][i], y - bound[1][i]);
+        if if back { short > T::ZERO || late > T::ZERO } else { short < T::ZERO || late < T::ZERO } {
+            return None;
+        }
+        forces[0][i] += from[0][0][i] * x;
+        forces[1][i] += from[0][1][i] * y;
+    }
+    let middle = Sorted::new(share, &forces);
+
+    let whole = &flow.whole;
+    let [first, second] = &flow.whole_linear;
+    let end = in_phase
+        + (&whole.in_phase.0 * &in_phase
+            + &whole.torques.0 * &torques
+            + &first.in_phase.0 * &sums
+            + &second.in_phase.0 * SVector::from(middle.sums));
+    let [mean_end, gap, wind_up, mean_rate_end, gap_rate, wind_up_rate] = end.data.0[0];
+    let mut planets = position.planets;
+    let mut planet_rates = rate.planets;
+    let [[a, b], [c, d]] = whole.deviation.0.data.0;
+    for i in 0..N {
+        let (deviation, speed) = (position.planets[i] - mean, rate.planets[i] - mean_rate);
+        let (from_start, from_middle) = (start.apart[i], middle.apart[i]);
+        planets[i] = mean_end
+            + deviation
+            + (a * deviation + c * speed)
+            + (first.deviation[0] * from_start + second.deviation[0] * from_middle);
+        planet_rates[i] = mean_rate_end
+            + speed
+            + (b * deviation + d * speed)
+            + (first.deviation[1] * from_start + second.deviation[1] * from_middle);
+    }
+    Some(Motion {
+        position: Relative { planets, gap, wind_up },
+        rate: Relative { planets: planet_rates, gap: gap_rate, wind_up: wind_up_rate },
+    })
+}
+
+/// Mesh forces as the flow's inputs take them.
+struct Sorted<T, const N: usize> {
+    /// Sums over planets: sun-planet, ring-planet.
+    sums: [T; 2],
+    /// Deviation of (sun-planet - ring-planet) from its mean.
+    apart: [T; N],
+}
+
+impl<T: Real, const N: usize> Sorted<T, N> {
+    #[inline(always)]
+    fn new(share: T, force: &[[T; N]; 2]) -> Self {
+        let sums = [total(&force[0]), total(&force[1])];
+        let mean = share * (sums[0] - sums[1]);
+        let mut apart = force[0];
+        for (value, ring) in apart.iter_mut().zip(&force[1]) {
+            *value = *value - *ring - mean;
+        }
+        Self { sums, apart }
+    }
+}
+
+#[inline(always)]
+fn total<T: Real, const N: usize>(values: &[T; N]) -> T {
+    values.iter().fold(T::ZERO, |sum, value| sum + *value)
+}

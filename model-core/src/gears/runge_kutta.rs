@@ -1,0 +1,39 @@
+//! The classical fourth-order Runge-Kutta method for x'' = a(x, x', t), written for positions and rates so that the
+//! stages of the position need no evaluation of their own. What the acceleration is made of is the caller's business.
+
+use crate::gears::state::Relative;
+use crate::numbers::Real;
+
+/// Position and rate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Motion<T, const N: usize> {
+    /// Relative coordinates.
+    pub position: Relative<T, N>,
+    /// Their rates.
+    pub rate: Relative<T, N>,
+}
+
+/// One step; `acceleration` is asked at the start (node 0), twice in the middle (node 1) and at the end (node 2).
+#[inline(always)]
+pub fn step<T: Real, const N: usize>(
+    step: T,
+    motion: &Motion<T, N>,
+    acceleration: impl Fn(usize, &Relative<T, N>, &Relative<T, N>) -> Relative<T, N>,
+) -> Motion<T, N> {
+    let Motion { position, rate } = motion;
+    let half = step * T::HALF;
+
+    let first = acceleration(0, position, rate);
+    let coasted = position.plus(half, rate);
+    let second = acceleration(1, &coasted, &rate.plus(half, &first));
+    let third = acceleration(1, &coasted.plus(half * half, &first), &rate.plus(half, &second));
+    let coasted = position.plus(step, rate);
+    let fourth = acceleration(2, &coasted.plus(half * step, &second), &rate.plus(step, &third));
+
+    let middle = second.plus(T::ONE, &third);
+    let sixth = step * T::SIXTH;
+    Motion {
+        position: coasted.plus(step * sixth, &first.plus(T::ONE, &middle)),
+        rate: rate.plus(sixth, &first.plus(T::TWO, &middle).plus(T::ONE, &fourth)),
+    }
+}

@@ -1,0 +1,45 @@
+//! Units that make the equations dimensionless: length b_c, frequency omega_n (eq. 18) and the mean force K_m b_c.
+//! Torques, masses and angles follow from these; nothing here knows the motion.
+
+use parameters::{JointParameters, MeshKind};
+
+/// One dimensionless unit of each quantity, in SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scales {
+    /// Length b_c [m].
+    pub length: f64,
+    /// Frequency omega_n = sqrt(K_m (1/M_s + 1/M_p)), gears' own masses [rad/s]; dimensionless time is omega_n t.
+    pub frequency: f64,
+    /// Stiffness: the mean of the sun-planet mesh [N/m].
+    pub stiffness: f64,
+}
+
+impl Scales {
+    /// Scales of a joint.
+    pub fn new(parameters: &JointParameters) -> Self {
+        let stiffness = parameters.mesh(MeshKind::SunPlanet).mean_stiffness;
+        let bodies = &parameters.bodies;
+        let inverse_mass = 1.0 / bodies.sun_equivalent_mass + 1.0 / bodies.planet_equivalent_mass;
+        Self { length: parameters.characteristic_length, frequency: libm::sqrt(stiffness * inverse_mass), stiffness }
+    }
+
+    /// Force K_m b_c [N].
+    pub fn force(&self) -> f64 {
+        self.stiffness * self.length
+    }
+
+    /// Acceleration b_c omega_n^2 [m/s^2].
+    pub fn acceleration(&self) -> f64 {
+        self.length * self.frequency * self.frequency
+    }
+
+    /// Dimensionless acceleration that a unit force gives to a mass: K_m / (M omega_n^2) [-].
+    pub fn mobility(&self, mass: f64) -> f64 {
+        self.stiffness / (mass * self.frequency * self.frequency)
+    }
+
+    /// Dimensionless damping C omega_n / K_m [-].
+    pub fn damping(&self, coefficient: f64) -> f64 {
+        coefficient * self.frequency / self.stiffness
+    }
+}

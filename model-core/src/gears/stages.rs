@@ -1,0 +1,156 @@
+//! The method of a sub-step for x'' = a(x, x', t), a smooth: two evaluations for fourth order. Where it comes from and
+//! how far it is stable is in docs/step.md; what the accelerations are is the caller's business.
+//!
+//! In units in which the sub-step lasts 1 and accelerations are counted in sixths (A = a/6), with A_- half a step
+//! before, A_0 now, A_m in the middle and A_1 at the end:
+//!
+//! x_m = x + V/2 + A_0 - A_-/4     V_m = V + (9 A_0 - 3 A_-)/2
+//! x_1 = x + V + A_0 + 2 A_m       V_1 = V + A_0 + 4 A_m + A_1 (Simpson's rule)
+//!
+//! A_1 is taken at x_1 and the rate V + 6 A_m of the midpoint rule, and serves the next sub-step as A_0.
+
+use core::array;
+
+use crate::gears::contact::Drive;
+use crate::gears::runge_kutta::Motion;
+use crate::gears::state::Relative;
+use crate::gears::tables::Mobility;
+use crate::numbers::Real;
+
+/// One coordinate: position and rate, its acceleration now and half a sub-step before.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Coordinate<T> {
+    /// Position.
+    pub position: T,
+    /// Way that its rate goes in a sub-step.
+    pub rate: T,
+    /// Acceleration now, in sixths.
+    pub now: T,
+    /// Acceleration half a sub-step before, in sixths.
+    pub before: T,
+}
+
+/// Position and rate of a coordinate at a stage.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Point<T> {
+    /// Position.
+    pub position: T,
+    /// Rate.
+    pub rate: T,
+}
+
+impl<T: Real> Point<T> {
+    /// What is left of it beyond another.
+    #[inline(always)]
+    pub fn less(self, other: Self) -> Self {
+        Self { position: self.position - other.position, rate: self.rate - other.rate }
+    }
+}
+
+impl<T: Real> Coordinate<T> {
+    /// At rest at zero.
+    pub const ZERO: Self = Self { position: T::ZERO, rate: T::ZERO, now: T::ZERO, before: T::ZERO };
+
+    /// Where it is.
+    #[inline(always)]
+    pub fn point(&self) -> Point<T> {
+        Point { position: self.position, rate: self.rate }
+    }
+
+    /// Where it is in the middle of the sub-step.
+    #[inline(always)]
+    pub fn middle(&self) -> Point<T> {
+        let Self { position, rate, now, before } = *self;
+        Point {
+            position: position + T::HALF * rate + now - T::QUARTER * before,
+            rate: rate + (T::FOUR + T::HALF) * now - (T::ONE + T::HALF) * before,
+        }
+    }
+
+    /// Goes to the end of the sub-step but for what `finish` adds; the rate that is returned is foreseen.
+    #[inline(always)]
+    pub fn arrive(&mut self, middle: T) -> Point<T> {
+        let Self { position, rate, now, .. } = *self;
+        let foreseen = rate + T::SIX * middle;
+        self.position = position + rate + now + T::TWO * middle;
+        self.rate = rate + now + T::FOUR * middle;
+        self.before = middle;
+        Point { position: self.position, rate: foreseen }
+    }
+
+    /// The acceleration at the end, for the last part of Simpson's rule and for the next sub-step.
+    #[inline(always)]
+    pub fn finish(&mut self, last: T) {
+        self.rate += last;
+        self.now = last;
+    }
+}
+
+/// All coordinates, with a sub-step as the unit of time.
+#[derive(Debug, Clone)]
+pub struct Course<T, const N: usize> {
+    /// u_s - u_pi - u_c of every planet, without imposed error.
+    pub planets: [Coordinate<T>; N],
+    /// u_s - 2 u_c.
+    pub gap: Coordinate<T>,
+    /// u_c - u_l.
+    pub wind_up: Coordinate<T>,
+}
+
+impl<T: Real, const N: usize> Course<T, N> {
+    /// Nowhere yet.
+    pub const EMPTY: Self = Self { planets: [Coordinate::ZERO; N], gap: Coordinate::ZERO, wind_up: Coordinate::ZERO };
+
+    /// Takes position and rate from a motion; accelerations are left as they are.
+    #[inline(always)]
+    pub fn place(&mut self, motion: &Motion<T, N>, length: T) {
+        let Motion { position, rate } = motion;
+        self.each(position, |coordinate, position| coordinate.position = position);
+        self.each(rate, |coordinate, rate| coordinate.rate = length * rate);
+    }
+
+    /// Accelerations as if torques had always been larger by so much.
+    #[inline(always)]
+    pub fn pushed(&mut self, drive: &Drive<T>, mobility: &Mobility<T>) {
+        self.each(&drive.relative(mobility), |coordinate, more| {
+            coordinate.now += more;
+            coordinate.before += more;
+        });
+    }
+
+    /// A motion whose accelerations are not yet known, in sub-steps of a length.
+    pub fn of(motion: &Motion<T, N>, length: T) -> Self {
+        let mut course = Self::EMPTY;
+        course.place(motion, length);
+        course
+    }
+
+    /// The motion without its accelerations, from sub-steps at a rate, after it was `before`. Rates are taken over as
+    /// their change, so that what no force has changed keeps its bits.
+    pub fn motion(&self, length: T, per_length: T, before: &Motion<T, N>) -> Motion<T, N> {
+        let rate = |coordinate: &Coordinate<T>, before: T| before + per_length * (coordinate.rate - length * before);
+        let rates = &before.rate;
+        Motion {
+            position: Relative {
+                planets: array::from_fn(|i| self.planets[i].position),
+                gap: self.gap.position,
+                wind_up: self.wind_up.position,
+            },
+            rate: Relative {
+                planets: array::from_fn(|i| rate(&self.planets[i], rates.planets[i])),
+                gap: rate(&self.gap, rates.gap),
+                wind_up: rate(&self.wind_up, rates.wind_up),
+            },
+        }
+    }
+
+    /// Does the same to every coordinate with a value that belongs to it.
+    #[inline(always)]
+    pub fn each(&mut self, values: &Relative<T, N>, mut act: impl FnMut(&mut Coordinate<T>, T)) {
+        for i in 0..N {
+            act(&mut self.planets[i], values.planets[i]);
+        }
+        act(&mut self.gap, values.gap);
+        act(&mut self.wind_up, values.wind_up);
+    }
+}

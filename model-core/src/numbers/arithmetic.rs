@@ -1,0 +1,30 @@
+//! Bounds on numbers that may be anything. NaN passes through; whoever gives a torque away looks for it there.
+
+use crate::numbers::real::Real;
+
+/// The value, or the bound that it is beyond.
+pub fn clamp<T: Real>(value: T, low: T, high: T) -> T {
+    if value < low {
+        low
+    } else if value > high {
+        high
+    } else {
+        value
+    }
+}
+
+/// By how much the value is beyond a dead band on either side of zero.
+pub fn beyond<T: Real>(value: T, band: T) -> T {
+    value - clamp(value, -band, band)
+}
+
+/// 1, -1, or 0 for zero.
+pub fn sign<T: Real>(value: T) -> T {
+    if value > T::ZERO {
+        T::ONE
+    } else if value < T::ZERO {
+        -T::ONE
+    } else {
+        T::ZERO
+    }
+}

@@ -1,0 +1,19 @@
+//! The offline half of the observer: settings, and from them and a joint the tables.
+
+mod body;
+mod filter;
+mod inertia;
+mod integers;
+mod learning;
+mod probe;
+mod settings;
+mod sides;
+mod source;
+mod tables;
+
+pub use probe::{design_probe, design_usual_probe};
+pub(crate) use settings::NO_LIMIT;
+pub use settings::{CLOCK_TICKS, EncoderSettings, ObserverSettings, observer_settings};
+pub use source::observer_source;
+pub(crate) use source::observer_statics;
+pub use tables::design_observer;

@@ -1,0 +1,125 @@
+//! What the observer is designed from besides the joint, and whether it can be: data-sheet figures and how sure they are.
+//! What becomes of them is left to the design.
+
+use crate::gears::design::DesignError;
+use crate::observer::tables::MOST_DELAY;
+use parameters::{AbsoluteEncoder, Surroundings};
+
+/// Ticks of the samples' clock in a control period.
+pub const CLOCK_TICKS: u32 = 1000;
+
+/// Torque limits beyond this are none [N m].
+pub(crate) const NO_LIMIT: f64 = 1e3;
+
+/// An encoder as its data sheet has it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EncoderSettings {
+    /// Counts in one turn of its shaft; any number.
+    pub counts_per_turn: u32,
+    /// Raw counts run from 0 to this less 1 and start again; 0 stands for 2^32. The number of counts in a turn for a
+    /// single-turn absolute encoder.
+    pub wraps_at: u32,
+    /// Whether it knows its place in the turn when it begins. If not, offset and error maps are learnt anew every time.
+    pub absolute: bool,
+    /// Standard deviation to expect of its once- and of its twice-per-turn error; zero if there is none [rad].
+    pub harmonic_error: f64,
+}
+
+/// What the observer is designed from besides the joint. The joint's own half-backlash and compliance are guesses to
+/// start from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ObserverSettings {
+    /// Control periods a second [Hz].
+    pub control_rate: u32,
+    /// Ticks a second of the clock of all moments [Hz].
+    pub clock_rate: u32,
+    /// Encoder on the motor.
+    pub motor_encoder: EncoderSettings,
+    /// Encoder on the link, if there is one.
+    pub output_encoder: Option<EncoderSettings>,
+    /// Fastest that the motor can turn [rad/s].
+    pub fastest_motor: f64,
+    /// From commanding a torque to its first effect [control periods].
+    pub torque_delay: f64,
+    /// Time constant of the current loop after that [s].
+    pub torque_lag: f64,
+    /// Largest torque of the motor [N m].
+    pub torque_limit: f64,
+    /// Torque noise over the torque, standard deviation [-].
+    pub torque_noise_ratio: f64,
+    /// Standard deviation of the motor's bias and dry friction, each, beforehand [N m].
+    pub torque_uncertainty: f64,
+    /// Standard deviation of what the motor's torque does beside bias and dry friction: cogging, ripple [N m].
+    pub torque_ripple: f64,
+    /// Efficiency of the gears while the motor drives, losses in proportion to the torque [-].
+    pub efficiency: f64,
+    /// Standard deviation of the half-backlash guess, relative to it [-].
+    pub backlash_uncertainty: f64,
+    /// Standard deviation of the compliance guess, relative to it [-].
+    pub compliance_uncertainty: f64,
+    /// How much older an output reading is expected to be than its time says, less the same of the motor's [s].
+    pub skew: f64,
+    /// Standard deviation of the skew between the encoders' readings [s].
+    pub skew_uncertainty: f64,
+}
+
+impl ObserverSettings {
+    pub(super) fn check(&self) -> Result<(), DesignError> {
+        let within = |what, given: f64, least: f64, most: f64, must_be| {
+            if given >= least && given <= most { Ok(()) } else { Err(DesignError::OutOfRange { what, given, must_be }) }
+        };
+        within("the control rate", self.control_rate.into(), 500.0, 1e5, "from 500 Hz to 100 kHz")?;
+        within("the clock rate of the observer's samples", self.clock_rate.into(), 1e4, 4e9, "10 kHz or more")?;
+        for encoder in [Some(self.motor_encoder), self.output_encoder].into_iter().flatten() {
+            let turn = f64::from(encoder.counts_per_turn);
+            within("the number of counts in a turn of an encoder", turn, 64.0, 16_777_216.0, "from 64 to 2^24")?;
+            within("the harmonic error of an encoder", encoder.harmonic_error, 0.0, 0.1, "from 0 to 0.1 rad")?;
+            let wraps_at = if encoder.wraps_at == 0 { 4_294_967_296.0 } else { f64::from(encoder.wraps_at) };
+            let must_be = "a whole number of turns, or 0 for 2^32";
+            let whole = encoder.wraps_at == 0 || encoder.wraps_at % encoder.counts_per_turn == 0;
+            within("where an encoder's counts wrap", if whole { wraps_at } else { -1.0 }, 64.0, 4.3e9, must_be)?;
+        }
+        within("the motor's fastest speed", self.fastest_motor, 0.1, 1e5, "positive, in rad/s")?;
+        within("the torque delay", self.torque_delay, 0.0, MOST_DELAY as f64 - 1.0, "from 0 to 3 control periods")?;
+        within("the current loop's lag", self.torque_lag, 0.0, 0.1, "from 0 to 0.1 s")?;
+        within("the motor's torque limit", self.torque_limit, 1e-6, 1e6, "positive and finite")?;
+        within("the torque noise", self.torque_noise_ratio, 0.0, 1.0, "from 0 to 1")?;
+        within("the torque uncertainty", self.torque_uncertainty, 1e-9, 1e6, "positive and finite")?;
+        within("the torque ripple", self.torque_ripple, 0.0, 1e6, "zero or more, and finite")?;
+        within("the efficiency", self.efficiency, 0.1, 1.0, "from 0.1 to 1")?;
+        within("the uncertainty of the backlash", self.backlash_uncertainty, 1e-6, 10.0, "from 1e-6 to 10")?;
+        within("the uncertainty of the compliance", self.compliance_uncertainty, 1e-6, 10.0, "from 1e-6 to 10")?;
+        within("the skew", self.skew, -0.1, 0.1, "from -0.1 to 0.1 s")?;
+        within("the uncertainty of the skew", self.skew_uncertainty, 0.0, 0.1, "from 0 to 0.1 s")
+    }
+}
+
+/// Settings of an observer for these surroundings.
+pub fn observer_settings(of: &Surroundings) -> ObserverSettings {
+    let encoder = |encoder: &AbsoluteEncoder| EncoderSettings {
+        counts_per_turn: 1 << encoder.bits,
+        wraps_at: 1 << encoder.bits,
+        absolute: true,
+        harmonic_error: encoder.once_per_turn_error.max(encoder.twice_per_turn_error),
+    };
+    let limit = of.torque_limit.min(NO_LIMIT);
+    ObserverSettings {
+        control_rate: of.control_rate,
+        clock_rate: CLOCK_TICKS * of.control_rate,
+        motor_encoder: encoder(&of.motor_encoder),
+        output_encoder: Some(encoder(&of.output_encoder)),
+        fastest_motor: 300.0,
+        // The observer is shown the torque of the period before.
+        torque_delay: (of.delay - 1.0).max(0.0),
+        torque_lag: of.current_lag,
+        torque_limit: limit,
+        torque_noise_ratio: of.torque_noise_ratio,
+        torque_uncertainty: 0.02 * limit,
+        torque_ripple: of.cogging_torque,
+        efficiency: of.efficiency,
+        backlash_uncertainty: 0.5,
+        compliance_uncertainty: 0.3,
+        skew: 0.0,
+        skew_uncertainty: 60e-6,
+    }
+}

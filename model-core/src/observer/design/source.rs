@@ -1,0 +1,29 @@
+//! The tables of observer and width probe as Rust source, for a build script: what a board links into its flash. Numbers are printed so
+//! that they read back to the same bits.
+
+use std::format;
+use std::string::String;
+
+use super::probe::design_usual_probe;
+use super::settings::ObserverSettings;
+use super::tables::design_observer;
+use crate::gears::design::DesignError;
+use crate::observer::tables::{ObserverTables, ProbeTable};
+use parameters::JointParameters;
+
+/// The statics `OBSERVER` and `PROBE` of a joint, as a module's text.
+pub fn observer_source(joint: &JointParameters, settings: &ObserverSettings) -> Result<String, DesignError> {
+    Ok(format!("use model_core::observer::tables::*;\n\n{}", observer_statics(joint, settings)?))
+}
+
+/// The same without what it imports.
+pub(crate) fn observer_statics(joint: &JointParameters, settings: &ObserverSettings) -> Result<String, DesignError> {
+    let tables: ObserverTables<f32> = design_observer(joint, settings)?;
+    let probe: Option<ProbeTable<f32>> = design_usual_probe(joint, settings)?;
+    Ok(format!(
+        "/// Tables of the observer.\n\
+         pub static OBSERVER: ObserverTables<f32> = {tables:#?};\n\
+         /// Table of the width probe, where one can be.\n\
+         pub static PROBE: Option<ProbeTable<f32>> = {probe:#?};\n"
+    ))
+}

@@ -1,0 +1,252 @@
+//! Tables of the observer: from joint, encoders and how much is known beforehand to flows and gains. What the observer
+//! does with them is left to `observer`.
+//!
+//! No gain is typed in. Both filters are steady-state Kalman filters from the encoders' quantisation and from how fast
+//! torques may change; the learner starts from the stated uncertainties; thresholds are multiples of the noise that
+//! these leave.
+
+use core::f64::consts::TAU;
+
+use super::body::Body;
+use super::learning::{BLOCK, LEARNING_INTERVAL, MEMORY, WINDOW};
+use super::settings::{EncoderSettings, ObserverSettings};
+use super::sides::{current, drive_filter, drive_lag, drive_table, load_filter};
+use super::{inertia, integers};
+use crate::gears::Kinematics;
+use crate::gears::design::{DesignError, validate};
+use crate::numbers::{Real, digest};
+use crate::observer::tables::{
+    ClockTable, ContactTable, CountTable, EncoderTable, LearnerTable, LeverTable, LoadTable, MOST_PARAMETERS,
+    ObserverTables, SupervisorTable,
+};
+use parameters::JointParameters;
+
+/// Length of a control period on the clock of the samples, at least and at most, that is no loss of any [control periods].
+const PERIOD_TO_PERIOD: [f64; 2] = [0.5, 1.5];
+
+/// Time up to which torques that are known now serve for the time since a reading: an older one counts as lost
+/// [control periods].
+const OLDEST: f64 = 10.0;
+
+/// Lag of what is measured of a landing, output filter included [control periods].
+const LAG: f64 = 3.0;
+
+/// Time outside the possible range after which the output encoder has failed [s]: longer than impacts ring.
+const FAILED_AFTER: f64 = 4e-3;
+
+/// Shortest time in which a link is stopped by what it runs into, whatever its speed [s]: a quarter of a swing of 250 Hz,
+/// stiffer than an arm against a wall.
+const STOP: f64 = 1e-3;
+
+/// Largest torque of teeth and load against the link beside that, over the motor's largest at the output.
+const BRAKE: f64 = 2.0;
+
+/// Counts by which an output encoder has turned for sure: noise flickers by less.
+const MOVED_COUNTS: f64 = 4.0;
+
+/// Tables of the observer.
+pub fn design_observer<T: Real>(
+    joint: &JointParameters,
+    settings: &ObserverSettings,
+) -> Result<ObserverTables<T>, DesignError> {
+    validate(joint)?;
+    settings.check()?;
+    let real = T::from_f64;
+    let step = 1.0 / f64::from(settings.control_rate);
+    let body = Body::new(joint);
+    let counts = counts::<T>(joint, settings, step)?;
+    let motor_count = TAU / f64::from(settings.motor_encoder.counts_per_turn);
+    let output_count = TAU / f64::from(settings.output_encoder.unwrap_or(settings.motor_encoder).counts_per_turn);
+    let drive = drive_filter(&body, settings, motor_count, step);
+    let load = load_filter(&body, settings, output_count * output_count / 12.0, step);
+
+    let rated_force = settings.torque_limit / body.sun_lever;
+    let force_variance = drive.quiet[2] / (body.sun_lever * body.sun_lever);
+    let periods = libm::round(LEARNING_INTERVAL / step).max(1.0);
+    let way_variance = drive.quiet[0] * body.sun_lever.powi(2) + load.quiet[0] * body.output_lever.powi(2);
+    let ripple = settings.torque_ripple / body.sun_lever;
+    let wind_up_variance = body.compliance.powi(2) * (force_variance / periods + ripple * ripple);
+    let blind = load_filter(
+        &body,
+        settings,
+        (way_variance + body.compliance.powi(2) * (force_variance + ripple * ripple)) / body.output_lever.powi(2),
+        step,
+    );
+    let unmodelled = 0.1 * settings.motor_encoder.harmonic_error * body.sun_lever;
+    let noise = libm::sqrt(way_variance + wind_up_variance + unmodelled * unmodelled);
+    let block = libm::round(BLOCK / LEARNING_INTERVAL).max(1.0);
+
+    let stop = libm::round(STOP / step).clamp(1.0, 250.0);
+    let half_gap = 2.0 * body.half_backlash;
+    let harmonics = |encoder: Option<EncoderSettings>, lever: f64| {
+        encoder.map_or(0.0, |encoder| encoder.harmonic_error) * lever / core::f64::consts::SQRT_2
+    };
+    let motor_harmonic = harmonics(Some(settings.motor_encoder), body.sun_lever);
+    let output_harmonic = harmonics(settings.output_encoder, body.output_lever);
+    let mut deviation = [0.0; MOST_PARAMETERS];
+    deviation[0] = half_gap * settings.backlash_uncertainty;
+    deviation[1] = 2.0 * half_gap + body.compliance * rated_force;
+    deviation[2] = body.compliance * settings.compliance_uncertainty;
+    deviation[3] = body.output_lever * settings.skew_uncertainty;
+    deviation[4..6].fill(body.transmission_error / core::f64::consts::SQRT_2);
+    deviation[6..10].fill(motor_harmonic);
+    deviation[10..14].fill(output_harmonic);
+    let mut mean = [0.0; MOST_PARAMETERS];
+    mean[0] = half_gap;
+    mean[2] = body.compliance;
+    mean[3] = body.output_lever * settings.skew;
+
+    let meshes = f64::from(joint.geometry.ring_teeth);
+    let tables = ObserverTables {
+        identity: mean
+            .iter()
+            .chain(&deviation)
+            .fold(identity(joint, settings), |running, number| digest::chain(running, number.to_bits())),
+        control_rate: settings.control_rate,
+        period: real(step),
+        clock: clock(step, settings.clock_rate),
+        counts,
+        levers: LeverTable {
+            sun: real(body.sun_lever),
+            per_sun: real(1.0 / body.sun_lever),
+            output: real(body.output_lever),
+            per_output: real(1.0 / body.output_lever),
+            ratio: real(body.ratio),
+            per_ratio: real(1.0 / body.ratio),
+        },
+        current: current(settings, step),
+        drive: drive_table(&body, settings, &drive, step),
+        load: LoadTable {
+            angle: [real(step), real(load.response[(0, 0)])],
+            speed: real(load.response[(1, 0)]),
+            gain: [0, 1, 2].map(|state| real(load.gain[state])),
+            variance: [real(load.variance[0]), real(load.variance[2])],
+            blind_gain: [0, 1, 2].map(|state| real(blind.gain[state])),
+            blind_variance: [real(blind.variance[1]), real(blind.variance[2])],
+            way_per_torque: real(0.5 * body.output_lever / body.load_inertia),
+        },
+        inertia: inertia::table(&load, settings, &body, periods as u32, step),
+        contact: ContactTable {
+            force_variance: real(force_variance),
+            ripple_variance: real(ripple * ripple),
+            way_variance: real(way_variance),
+            bias_noise: real((force_variance + ripple * ripple) * 5.0),
+            bias_prior: real((settings.torque_uncertainty / body.sun_lever).powi(2)),
+            bias_drift: real((settings.torque_uncertainty / body.sun_lever).powi(2) * LEARNING_INTERVAL / 10.0),
+            bias_limit: real(3.0 * settings.torque_uncertainty / body.sun_lever),
+            still: real(3.0 * libm::sqrt(2.0 * (way_variance + wind_up_variance)) / WINDOW),
+            still_per_speed: real(
+                2.0 * (2.2 * motor_harmonic + (output_harmonic + meshes * body.transmission_error) / body.ratio),
+            ),
+            per_turning: real(1.0 / (3.0 * libm::sqrt(drive.quiet[1]))),
+            rate_deviation: real(libm::sqrt(
+                drive.quiet[1] * body.sun_lever.powi(2) + load.quiet[1] * body.output_lever.powi(2),
+            )),
+            lag: real(LAG * step),
+            smoothing: real(-libm::expm1(-step / (1.5 * LEARNING_INTERVAL))),
+            known_part: real(0.08),
+            loss_driving: real(settings.efficiency - 1.0),
+            loss_driven: real(1.0 / settings.efficiency - 1.0),
+        },
+        learner: LearnerTable {
+            periods: periods as u16,
+            per_periods: real(1.0 / periods),
+            middle: periods as u16 / 2 + 1,
+            block: block as u32,
+            per_block: real(1.0 / block),
+            span: real(periods * step),
+            mean: mean.map(real),
+            deviation: deviation.map(real),
+            weight: real(1.0 / noise),
+            noise: real(noise),
+            force_noise: real(force_variance / (periods * block) + 0.5 * ripple * ripple),
+            force_lag: real(drive_lag(&body, &drive, step) / (periods * step)),
+            forgetting: real(LEARNING_INTERVAL / MEMORY),
+            mesh_compliance: real(body.mesh_compliance),
+        },
+        supervisor: SupervisorTable {
+            silent_after: (10e-3 / step) as u16,
+            failed_after: (FAILED_AFTER / step) as u16,
+            stop: stop as u8,
+            per_stops: real(0.5 / stop),
+            brake: real(
+                0.5 * BRAKE * settings.torque_limit * body.ratio / body.load_inertia * step * step / output_count,
+            ),
+            trusted_after: (0.3 / LEARNING_INTERVAL) as u16,
+            moved: libm::ldexp(MOVED_COUNTS * output_count / TAU, 32) as u32,
+            margin: real(0.1 * half_gap + 0.1 * body.compliance * rated_force),
+            widest_part: real(0.1),
+        },
+    };
+    Ok(tables)
+}
+
+fn counts<T: Real>(
+    joint: &JointParameters,
+    settings: &ObserverSettings,
+    step: f64,
+) -> Result<CountTable<T>, DesignError> {
+    let motor = settings.motor_encoder;
+    let output = settings.output_encoder.unwrap_or(motor);
+    let geometry = &joint.geometry;
+    let weights = integers::Weights::new(
+        motor.counts_per_turn,
+        output.counts_per_turn,
+        geometry.sun_teeth + geometry.ring_teeth,
+        geometry.sun_teeth,
+    );
+    let encoder = |encoder: EncoderSettings, fastest: f64| EncoderTable {
+        turn: encoder.counts_per_turn,
+        wraps_at: encoder.wraps_at,
+        last: encoder.wraps_at.wrapping_sub(1),
+        phase: (libm::ldexp(1.0, 64) / f64::from(encoder.counts_per_turn)) as u64,
+        // Twice what the speed allows, and never more than what could not be told from the other way round.
+        fastest: (libm::ceil(2.0 * fastest * step / TAU * f64::from(encoder.counts_per_turn)) as u32 + 2)
+            .min(encoder.counts_per_turn / 2),
+        angle: T::from_f64(TAU / f64::from(encoder.counts_per_turn)),
+        fraction: T::from_f64(1.0 / f64::from(encoder.counts_per_turn)),
+        turns: T::from_f64(1.0 / TAU),
+    };
+    let unit = TAU / f64::from(motor.counts_per_turn) / weights.motor as f64;
+    Ok(CountTable {
+        motor: encoder(motor, settings.fastest_motor),
+        output: encoder(output, settings.fastest_motor / geometry.ratio_by_teeth()),
+        absolute: motor.absolute && output.absolute,
+        has_output: settings.output_encoder.is_some(),
+        motor_weight: weights.motor,
+        output_weight: weights.output,
+        modulus: weights.modulus,
+        meshes: geometry.ring_teeth,
+        mesh_periods: T::from_f64(geometry.ring_teeth.into()),
+        length: T::from_f64(unit * geometry.sun_base_radius),
+    })
+}
+
+/// The clock of moments beside control periods so long [s].
+fn clock<T: Real>(period: f64, rate: u32) -> ClockTable<T> {
+    let ticks = |periods: f64| libm::round(periods * period * f64::from(rate)) as u32;
+    let [shortest, longest] = PERIOD_TO_PERIOD.map(ticks);
+    ClockTable {
+        tick: T::from_f64(1.0 / f64::from(rate)),
+        period: ticks(1.0),
+        shortest,
+        longer: longest - shortest,
+        oldest: ticks(OLDEST),
+    }
+}
+
+/// Digest of what a learnt memory belongs to.
+fn identity(joint: &JointParameters, settings: &ObserverSettings) -> u64 {
+    let geometry = &joint.geometry;
+    let output = settings.output_encoder.map_or(0, |encoder| encoder.counts_per_turn);
+    let words = [
+        geometry.sun_teeth,
+        geometry.planet_teeth,
+        geometry.ring_teeth,
+        settings.motor_encoder.counts_per_turn,
+        output,
+    ];
+    let named = joint.name.bytes().fold(digest::START, |running, byte| digest::chain(running, byte.into()));
+    let counted = words.into_iter().fold(named, |running, word| digest::chain(running, word.into()));
+    digest::chain(counted, geometry.sun_base_radius.to_bits())
+}

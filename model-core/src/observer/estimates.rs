@@ -1,0 +1,117 @@
+//! What the observer says once a control period, each value with its variance and with whether it may be used. How
+//! the values come about is left to the neighbours; what is done with them, to the compensation.
+
+use crate::numbers::Real;
+use parameters::ContactState;
+
+/// A value, how uncertain it is, and whether the observer stands by it.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Estimate<T: Real> {
+    /// Best guess; always finite.
+    pub value: T,
+    /// Variance, in the square of the value's unit; always finite.
+    pub variance: T,
+    /// False where the observer refuses: the value is then the last or the designed one, and only a guess.
+    pub valid: bool,
+}
+
+/// A shaft: where it is and how fast it turns.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Shaft<T: Real> {
+    /// Whole turns since the observer began, wrapping.
+    pub turns: i32,
+    /// What is left, from 0 to 1 [turns].
+    pub fraction: T,
+    /// [rad/s].
+    pub speed: T,
+}
+
+/// Which encoders the estimates rest on.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Source {
+    /// Motor and output encoder.
+    Both,
+    /// The motor encoder alone, and why. The load cannot be seen while the gap is open.
+    MotorOnly(Doubt),
+    /// No motor encoder either, or one that is late time after time: nothing is valid, and what is not heard of is held.
+    #[default]
+    Nothing,
+}
+
+/// Why the output encoder is not used.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Doubt {
+    /// There is none by design.
+    Absent,
+    /// It has given no fresh reading for longer than the settings allow.
+    Silent,
+    /// Its counts stand still while the motor turns.
+    Frozen,
+    /// It puts the gap coordinate where it cannot be: jumped, offset, slipping or failing.
+    OutOfRange,
+}
+
+/// What was wrong with the last samples. The observer goes on, with what it had.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Notices {
+    /// The torque was not a number; none was assumed.
+    pub torque_unknown: bool,
+    /// The period was too short or too long, or time went backwards.
+    pub out_of_time: bool,
+    /// The motor's counts were further away than it can turn, and were not believed.
+    pub motor_doubted: bool,
+    /// The motor's counts have jumped for good: the offset is learnt anew.
+    pub motor_jumped: bool,
+}
+
+/// All estimates of one control period. A positive gap coordinate, force or torque drives the load forwards.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Estimates<T: Real> {
+    /// What the rest stands on.
+    pub source: Source,
+    /// What was wrong with the samples.
+    pub notices: Notices,
+    /// Gap coordinate X = u_s - 2 u_c: from -2b to 2b while every mesh is free [m].
+    pub gap: Estimate<T>,
+    /// Its rate [m/s].
+    pub gap_rate: T,
+    /// By how much the gears' transmission error, as far as it is learnt, shifts both flanks along the gap coordinate now
+    /// [m].
+    pub flank_shift: T,
+    /// By how much that grows for each radian of the link [m/rad].
+    pub flank_shift_slope: T,
+    /// Contact by the mesh force alone, with hysteresis and persistence: late, but needs no width. `Separated` also
+    /// stands for unknown when `contact_valid` is false.
+    pub contact: ContactState,
+    /// Contact by force and gap coordinate: what a controller should use.
+    pub reported_contact: ContactState,
+    /// Whether the reported contact may be used: not where it is unknown, nor on teeth whose transmission error shifts a
+    /// flank over the middle of the gap.
+    pub contact_valid: bool,
+    /// Contact has held for long enough, with enough force, that the observer learns from it.
+    pub settled: bool,
+    /// Torque that the meshes pass on, felt at the carrier [N m].
+    pub mesh_torque: Estimate<T>,
+    /// Everything that brakes the link: friction, weight, what it touches [N m].
+    pub load_torque: Estimate<T>,
+    /// Half-backlash b of each mesh, all meshes alike [m].
+    pub half_backlash: Estimate<T>,
+    /// By how much the motor encoder leads the output encoder with every tooth centred, beyond where they were at the
+    /// start; at the output [rad].
+    pub encoder_offset: Estimate<T>,
+    /// Torsional compliance from sun to link, meshes included, felt at the output [rad/(N m)].
+    pub compliance: Estimate<T>,
+    /// How old output readings are beyond what their time says, less the same of the motor's [s].
+    pub skew: Estimate<T>,
+    /// Torque of the motor beyond what was commanded: a bias that comes with no motion [N m].
+    pub torque_bias: Estimate<T>,
+    /// Dry friction of the motor, as far as it does not grow with the load [N m].
+    pub motor_friction: Estimate<T>,
+    /// Inertia of link and carrier over what the joint file has; the motor's torque constant is in it, as it is in the
+    /// torques [-].
+    pub link_inertia_ratio: Estimate<T>,
+    /// Motor shaft; encoder errors that were learnt are taken out.
+    pub motor: Shaft<T>,
+    /// Link; likewise. Motor only, this is what the motor implies.
+    pub link: Shaft<T>,
+}

@@ -1,0 +1,159 @@
+//! What an observer has learnt as bytes that outlive it: saved and loaded outside the tick, refused when they are
+//! damaged, of another version or of another joint. Where the bytes are kept is left to the firmware.
+//!
+//! Layout, little-endian: mark, version, number of parameters, identity of joint and encoders, where the encoders'
+//! zeros were, parameters, factors of their covariance, bias with its covariance, the link's mobility with its variance,
+//! digest over all of it.
+
+use core::fmt;
+
+use super::state::Observer;
+use crate::numbers::{Real, digest};
+
+/// Bytes of a memory.
+pub const MEMORY_BYTES: usize = 544;
+
+/// A memory.
+pub type Memory = [u8; MEMORY_BYTES];
+
+const MARK: u32 = u32::from_le_bytes(*b"JOBS");
+const VERSION: u16 = 3;
+const DIGEST_AT: usize = MEMORY_BYTES - 8;
+/// Bytes before the parameters.
+const HEAD: usize = 24;
+
+/// Why a memory is not taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MemoryError {
+    /// It is no memory of an observer, or not a whole one.
+    NotAMemory,
+    /// It is of another version of this program.
+    WrongVersion,
+    /// Its digest does not fit: some of it was lost.
+    Damaged,
+    /// It belongs to another joint, other encoders or an observer with another number of parameters.
+    OtherJoint,
+    /// It holds a number that is none.
+    NotFinite,
+}
+
+impl fmt::Display for MemoryError {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::NotAMemory => "this is no memory of an observer: save one first",
+            Self::WrongVersion => "the memory is of another version of the observer: let it learn again and save anew",
+            Self::Damaged => "the memory is damaged: load a copy, or let the observer learn again",
+            Self::OtherJoint => "the memory belongs to another joint or to other encoders: load this joint's own",
+            Self::NotFinite => "the memory holds a number that is none: let the observer learn again and save anew",
+        })
+    }
+}
+
+impl core::error::Error for MemoryError {}
+
+impl<T: Real, const P: usize> Observer<'_, T, P> {
+    /// What has been learnt so far.
+    pub fn save(&self) -> Memory {
+        let mut memory = [0; MEMORY_BYTES];
+        let mut writer = Writer { bytes: memory.iter_mut() };
+        writer.put(&MARK.to_le_bytes());
+        writer.put(&VERSION.to_le_bytes());
+        writer.put(&(P as u16).to_le_bytes());
+        writer.put(&self.tables.identity.to_le_bytes());
+        writer.put(&self.counts.start.to_le_bytes());
+        self.learner
+            .numbers()
+            .chain(self.bias.numbers())
+            .chain(self.inertia.numbers())
+            .for_each(|number| writer.number(number));
+        let digest = digest_of(&memory);
+        if let Some(place) = memory.get_mut(DIGEST_AT..) {
+            place.copy_from_slice(&digest.to_le_bytes());
+        }
+        memory
+    }
+
+    /// Goes on from what was saved. Refused memories change nothing.
+    pub fn load(&mut self, memory: &[u8]) -> Result<(), MemoryError> {
+        let mut reader = Reader { bytes: memory };
+        let (mark, version) = (reader.take().map(u32::from_le_bytes), reader.take().map(u16::from_le_bytes));
+        if memory.len() != MEMORY_BYTES || mark != Some(MARK) {
+            return Err(MemoryError::NotAMemory);
+        }
+        if version != Some(VERSION) {
+            return Err(MemoryError::WrongVersion);
+        }
+        let stored = memory.get(DIGEST_AT..).and_then(|bytes| bytes.try_into().ok()).map(u64::from_le_bytes);
+        if stored != Some(digest_of(memory)) {
+            return Err(MemoryError::Damaged);
+        }
+        let parameters = reader.take().map(u16::from_le_bytes);
+        let identity = reader.take().map(u64::from_le_bytes);
+        let start = reader.take().map(i64::from_le_bytes).unwrap_or(0);
+        if parameters != Some(P as u16) || identity != Some(self.tables.identity) {
+            return Err(MemoryError::OtherJoint);
+        }
+        let (mut learner, mut bias, mut inertia) = (self.learner, self.bias, self.inertia);
+        let mut finite = true;
+        let mut next = || {
+            let number = f32::from_le_bytes(reader.take().unwrap_or_default());
+            finite &= number.is_finite();
+            T::from_f64(number.into())
+        };
+        learner.set_numbers(&mut next);
+        bias.set_numbers(&mut next);
+        inertia.set_numbers(&self.tables.inertia, &mut next);
+        if !finite {
+            return Err(MemoryError::NotFinite);
+        }
+        self.learner = learner;
+        self.bias = bias;
+        self.inertia = inertia;
+        self.find_places();
+        if self.tables.counts.absolute {
+            self.counts.refer_to(start, &self.tables.counts);
+        } else {
+            self.learner.forget_places();
+        }
+        Ok(())
+    }
+}
+
+/// The numbers in a memory, in their order: parameters, factors of their covariance, column by column down to the diagonal,
+/// bias and friction with their variances and covariance, mobility and its variance. Whether it is sound is left to
+/// [`Observer::load`].
+pub fn memory_numbers(memory: &Memory) -> impl Iterator<Item = f32> {
+    let (numbers, _) = memory.get(HEAD..).unwrap_or_default().as_chunks();
+    numbers.iter().map(|bytes| f32::from_le_bytes(*bytes))
+}
+
+/// Digest over all bytes but the digest's own.
+fn digest_of(memory: &[u8]) -> u64 {
+    memory.iter().take(DIGEST_AT).fold(digest::START, |running, byte| digest::chain(running, (*byte).into()))
+}
+
+struct Writer<'memory> {
+    bytes: core::slice::IterMut<'memory, u8>,
+}
+
+impl Writer<'_> {
+    fn put(&mut self, bytes: &[u8]) {
+        bytes.iter().zip(self.bytes.by_ref()).for_each(|(byte, place)| *place = *byte);
+    }
+
+    fn number<T: Real>(&mut self, number: T) {
+        self.put(&(number.to_f64() as f32).to_le_bytes());
+    }
+}
+
+struct Reader<'memory> {
+    bytes: &'memory [u8],
+}
+
+impl Reader<'_> {
+    fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
+        let (taken, rest) = self.bytes.split_first_chunk()?;
+        self.bytes = rest;
+        Some(*taken)
+    }
+}

@@ -1,0 +1,169 @@
+//! The width probe: a motor that wiggles gently against a held load and reads the half-backlash off where it comes to
+//! rest. For joints without an output encoder, or before anything has moved. Holding the load is the user's business;
+//! the probe refuses when it is not held.
+//!
+//! On either flank the motor comes to rest under one torque and under twice that torque. Twice the first angle less the
+//! second is where it would rest under none: the wind-up, whatever the compliance, is gone. A damping torque keeps
+//! landings soft.
+
+use core::fmt;
+
+use super::estimates::{Estimate, Estimates, Shaft};
+use super::motion::magnitude;
+use crate::numbers::Real;
+use crate::observer::tables::ProbeTable;
+
+/// Rests that a probe consists of: part of the double torque under which each is taken.
+const RESTS: [(i32, i32); 6] = [(1, 1), (1, 2), (-1, 1), (-1, 2), (1, 1), (1, 2)];
+
+/// Why a probe gives no width.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Refusal {
+    /// The motor was turning when the probe began: let it come to rest.
+    NotAtRest,
+    /// The load pushes the teeth against a flank with more than the probe may use: take the load off.
+    Loaded,
+    /// The motor did not come to rest, or went further than the teeth allow: hold the load.
+    NotHeld,
+    /// The motor hardly moved: friction is more than the probe may use, or the joint is blocked.
+    Stuck,
+    /// The first and the last pass do not agree: something moved.
+    Unsteady,
+    /// Samples were missing or wrong.
+    BadSamples,
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::NotAtRest => "the motor was turning when the probe began: let it come to rest",
+            Self::Loaded => "the load pushes the teeth with more than the probe may use: take the load off",
+            Self::NotHeld => "the motor did not come to rest, or went further than the teeth allow: hold the load",
+            Self::Stuck => "the motor hardly moved: friction is more than the probe may use, or the joint is blocked",
+            Self::Unsteady => "the first and the last pass do not agree: something moved",
+            Self::BadSamples => "samples were missing or wrong",
+        })
+    }
+}
+
+/// Where a probe stands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Progress<T: Real> {
+    /// Go on: command the torque and give the estimates of the next period.
+    Running,
+    /// The half-backlash [m].
+    Done(Estimate<T>),
+    /// No width, and why.
+    Refused(Refusal),
+}
+
+/// A probe under way.
+#[derive(Debug, Clone)]
+pub struct Probe<'tables, T: Real> {
+    table: &'tables ProbeTable<T>,
+    begin: Option<Shaft<T>>,
+    rest: usize,
+    /// Periods in this rest, and how many of them still.
+    periods: u32,
+    still: u32,
+    total: u32,
+    torque: T,
+    /// Mean angle beyond the beginning while still [rad].
+    sum: T,
+    angles: [T; RESTS.len()],
+    progress: Progress<T>,
+}
+
+impl<'tables, T: Real> Probe<'tables, T> {
+    /// A probe that has not begun.
+    pub fn new(table: &'tables ProbeTable<T>) -> Self {
+        Self {
+            table,
+            begin: None,
+            rest: 0,
+            periods: 0,
+            still: 0,
+            total: 0,
+            torque: T::ZERO,
+            sum: T::ZERO,
+            angles: [T::ZERO; RESTS.len()],
+            progress: Progress::Running,
+        }
+    }
+
+    /// One control period: the torque to command next [N m], zero once the probe has ended, and where it stands.
+    pub fn step(&mut self, estimates: &Estimates<T>) -> (T, Progress<T>) {
+        if self.progress == Progress::Running {
+            self.progress = self.advance(estimates);
+        }
+        if self.progress != Progress::Running {
+            return (T::ZERO, self.progress);
+        }
+        let wanted = RESTS.get(self.rest).map_or(T::ZERO, |(side, part)| self.table.torque * T::from_i32(side * part));
+        self.torque += (wanted - self.torque) * self.table.rise;
+        (self.torque - self.table.damping * estimates.motor.speed, self.progress)
+    }
+
+    fn advance(&mut self, estimates: &Estimates<T>) -> Progress<T> {
+        let table = self.table;
+        let notices = estimates.notices;
+        if notices.torque_unknown || notices.out_of_time || notices.motor_doubted || notices.motor_jumped {
+            return Progress::Refused(Refusal::BadSamples);
+        }
+        let speed = magnitude(estimates.motor.speed);
+        let Some(begin) = self.begin else {
+            self.begin = Some(estimates.motor);
+            if speed > table.moving {
+                return Progress::Refused(Refusal::NotAtRest);
+            }
+            if magnitude(estimates.mesh_torque.value) > table.loaded {
+                return Progress::Refused(Refusal::Loaded);
+            }
+            return Progress::Running;
+        };
+        let turns = T::from_i32(estimates.motor.turns.wrapping_sub(begin.turns));
+        let angle = (turns + (estimates.motor.fraction - begin.fraction)) * table.turn;
+        self.total += 1;
+        if magnitude(angle) > table.furthest || self.total > table.longest {
+            return Progress::Refused(Refusal::NotHeld);
+        }
+        self.periods += 1;
+        if self.periods < table.settle {
+            return Progress::Running;
+        }
+        if speed > table.moving {
+            (self.still, self.sum) = (0, T::ZERO);
+            return Progress::Running;
+        }
+        self.still += 1;
+        self.sum += angle;
+        if self.still < table.still {
+            return Progress::Running;
+        }
+        if let Some(place) = self.angles.get_mut(self.rest) {
+            *place = self.sum * table.per_still;
+        }
+        self.rest += 1;
+        (self.periods, self.still, self.sum) = (0, 0, T::ZERO);
+        if self.rest < RESTS.len() { Progress::Running } else { self.result() }
+    }
+
+    fn result(&self) -> Progress<T> {
+        let table = self.table;
+        let [first, second, third, fourth, fifth, sixth] = self.angles;
+        let flank = |single: T, double: T| single + single - double;
+        let (drive, back, again) = (flank(first, second), flank(third, fourth), flank(fifth, sixth));
+        let between = (T::HALF * (drive + again) - back) * table.way;
+        if between < table.least {
+            return Progress::Refused(Refusal::Stuck);
+        }
+        let apart = (again - drive) * table.way;
+        if magnitude(apart) > T::EIGHTH * between {
+            return Progress::Refused(Refusal::Unsteady);
+        }
+        let quarter = T::HALF * T::HALF;
+        // Friction may have kept either rest from its place; what the two passes disagree by may be wrong too.
+        let variance = (table.variance + apart * apart) * quarter * quarter;
+        Progress::Done(Estimate { value: between * quarter, variance, valid: true })
+    }
+}

@@ -1,0 +1,266 @@
+//! What the observer needs as plain numbers, made by `observer::design`: flows over one control period, gains, priors
+//! and thresholds. SI, lengths along the line of action; how the numbers come about is left to the design.
+
+mod inertia;
+mod probe;
+
+use crate::numbers::Real;
+pub use inertia::InertiaTable;
+pub use probe::ProbeTable;
+
+/// The most parameters that the learner may have.
+pub const MOST_PARAMETERS: usize = 14;
+
+/// Commands that may be on their way to the motor.
+pub const MOST_DELAY: usize = 4;
+const _: () = assert!(MOST_DELAY.is_power_of_two());
+
+/// Tables of the observer of one joint with its encoders at one control rate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ObserverTables<T: Real> {
+    /// Digest of what a learnt memory must agree with: gears, encoders and joint.
+    pub identity: u64,
+    /// Control periods a second [Hz].
+    pub control_rate: u32,
+    /// Control period [s].
+    pub period: T,
+    /// The clock that says when samples were taken.
+    pub clock: ClockTable<T>,
+    /// From counts to one whole number and to angles.
+    pub counts: CountTable<T>,
+    /// Levers.
+    pub levers: LeverTable<T>,
+    /// From commanded torque to torque.
+    pub current: CurrentTable<T>,
+    /// The motor side.
+    pub drive: DriveTable<T>,
+    /// The load side.
+    pub load: LoadTable<T>,
+    /// The link's inertia.
+    pub inertia: InertiaTable<T>,
+    /// Contact and torque bias.
+    pub contact: ContactTable<T>,
+    /// What is learnt.
+    pub learner: LearnerTable<T>,
+    /// When the output encoder is given up and taken back.
+    pub supervisor: SupervisorTable<T>,
+}
+
+/// The clock that says when samples were taken, and what its ticks mean.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ClockTable<T: Real> {
+    /// Length of a tick [s].
+    pub tick: T,
+    /// Control period [ticks].
+    pub period: u32,
+    /// Shortest one that is expected [ticks].
+    pub shortest: u32,
+    /// By how much longer than that one may last [ticks].
+    pub longer: u32,
+    /// Age beyond which a reading counts as lost [ticks].
+    pub oldest: u32,
+}
+
+/// One encoder.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EncoderTable<T: Real> {
+    /// Counts in a turn.
+    pub turn: u32,
+    /// Raw counts are modulo this; 0 stands for 2^32.
+    pub wraps_at: u32,
+    /// The largest raw count.
+    pub last: u32,
+    /// 2^64 over the counts in a turn, from which a place in the turn becomes a phase.
+    pub phase: u64,
+    /// Counts in a control period beyond which a reading is not believed.
+    pub fastest: u32,
+    /// [rad/count].
+    pub angle: T,
+    /// [turns/count].
+    pub fraction: T,
+    /// [turns/rad].
+    pub turns: T,
+}
+
+/// Motor less ratio times output as a whole number.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CountTable<T: Real> {
+    /// On the motor.
+    pub motor: EncoderTable<T>,
+    /// On the link; a copy of the motor's when there is none.
+    pub output: EncoderTable<T>,
+    /// Whether there is an output encoder.
+    pub has_output: bool,
+    /// Whether both encoders know their place in the turn when they begin.
+    pub absolute: bool,
+    /// Units of the difference in a motor count.
+    pub motor_weight: i64,
+    /// Units of the difference in an output count.
+    pub output_weight: i64,
+    /// Whole turns of either shaft change the difference by a multiple of this.
+    pub modulus: i64,
+    /// Mesh periods in a turn of the output: teeth of the ring.
+    pub meshes: u32,
+    /// The same as a number.
+    pub mesh_periods: T,
+    /// Way along the line of action in a unit of the difference [m].
+    pub length: T,
+}
+
+/// Levers of the joint.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LeverTable<T: Real> {
+    /// Base radius of the sun [m].
+    pub sun: T,
+    /// 1 over it [1/m].
+    pub per_sun: T,
+    /// Ratio by teeth times the sun's base radius: torque at the carrier over mesh force, and way over output angle [m].
+    pub output: T,
+    /// 1 over it [1/m].
+    pub per_output: T,
+    /// Motor turns in an output turn, by teeth.
+    pub ratio: T,
+    /// 1 over it.
+    pub per_ratio: T,
+}
+
+/// From commanded torque to torque in the air gap.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CurrentTable<T: Real> {
+    /// Whole control periods of delay.
+    pub whole_delay: u32,
+    /// What is left of it, as a part of a period.
+    pub part_delay: T,
+    /// Part of the lacking torque that the current loop makes good in a period.
+    pub rise: T,
+    /// Largest torque [N m].
+    pub limit: T,
+}
+
+/// The motor side: state angle, speed, torque taken by the meshes (and friction); air-gap torque known.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DriveTable<T: Real> {
+    /// Change of angle over a period for each unit of: speed, taken torque, air-gap torque at the start, wanted torque.
+    pub angle: [T; 4],
+    /// Change of speed for each unit of: taken torque, air-gap torque at the start, wanted torque.
+    pub speed: [T; 3],
+    /// Corrections of angle, speed and taken torque for a radian of surprise.
+    pub gain: [T; 3],
+    /// The same for readings that are older than a period.
+    pub late_gain: [T; 3],
+    /// Variances of angle and taken torque once settled.
+    pub variance: [T; 2],
+}
+
+/// The load side: state angle, speed, load torque; torque from the meshes known.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoadTable<T: Real> {
+    /// Change of angle over a period for each unit of: speed, torque from the meshes less load torque.
+    pub angle: [T; 2],
+    /// Change of speed for each N m of torque from the meshes less load torque.
+    pub speed: T,
+    /// Corrections of angle, speed and load torque for a radian of surprise.
+    pub gain: [T; 3],
+    /// Variances of angle and load torque once settled.
+    pub variance: [T; 2],
+    /// Corrections for a radian of surprise where only the wind-up of the mesh force says where the link is.
+    pub blind_gain: [T; 3],
+    /// Variances of speed and load torque then, once settled.
+    pub blind_variance: [T; 2],
+    /// Way along the line of action in a second from rest under one newton metre [m/(N m)].
+    pub way_per_torque: T,
+}
+
+/// Contact and torque bias.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactTable<T: Real> {
+    /// Variance of the mesh force from the motor side while it holds still: what noise leaves [N^2].
+    pub force_variance: T,
+    /// Variance of cogging and torque ripple as force [N^2].
+    pub ripple_variance: T,
+    /// Variance of the way while torques hold still [m^2].
+    pub way_variance: T,
+    /// Variance of one millisecond's bias reading [N^2].
+    pub bias_noise: T,
+    /// Variance with which bias and dry friction begin [N^2].
+    pub bias_prior: T,
+    /// Growth of that variance in one learning interval [N^2].
+    pub bias_drift: T,
+    /// Neither bias nor dry friction goes beyond this [N].
+    pub bias_limit: T,
+    /// Standard deviation of the rate of the way [m/s].
+    pub rate_deviation: T,
+    /// By how much what is measured lags behind: the output's sampling and filtering [s].
+    pub lag: T,
+    /// Part of its change in a period by which a mean over a few learning intervals follows [-].
+    pub smoothing: T,
+    /// Way in a learning interval that noise alone can show [m].
+    pub still: T,
+    /// Likewise for each radian that the motor turns while the error maps are unknown [m/rad].
+    pub still_per_speed: T,
+    /// 1 over the motor speed above which dry friction has its full size [s/rad].
+    pub per_turning: T,
+    /// Positions decide about contact once an edge is known to this part of the half-gap [-].
+    pub known_part: T,
+    /// Part of the torque that the gears add while the motor drives: efficiency less one [-].
+    pub loss_driving: T,
+    /// The same while it is driven [-].
+    pub loss_driven: T,
+}
+
+/// What is learnt: way = side * half-gap + offset + compliance * force + skew * speed + error maps.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LearnerTable<T: Real> {
+    /// Control periods between updates.
+    pub periods: u16,
+    /// 1 over them.
+    pub per_periods: T,
+    /// The period in their middle, from 1.
+    pub middle: u16,
+    /// Intervals that make up one way to learn from.
+    pub block: u32,
+    /// 1 over them.
+    pub per_block: T,
+    /// How long an interval of so many periods lasts [s].
+    pub span: T,
+    /// Mean of each parameter beforehand.
+    pub mean: [T; MOST_PARAMETERS],
+    /// Standard deviation of each parameter beforehand.
+    pub deviation: [T; MOST_PARAMETERS],
+    /// 1 over the standard deviation of one update's way, all that repeats from update to update included [1/m].
+    pub weight: T,
+    /// Standard deviation of one update's way by itself [m].
+    pub noise: T,
+    /// Variance of one update's force [N^2].
+    pub force_noise: T,
+    /// By how much the motor side's force lags behind a force that changes steadily, over the span of an interval [-].
+    pub force_lag: T,
+    /// Growth of variances in one update, for what wears and warms [-].
+    pub forgetting: T,
+    /// Way under one newton in the meshes alone [m/N].
+    pub mesh_compliance: T,
+}
+
+/// When the output encoder is given up and taken back.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SupervisorTable<T: Real> {
+    /// Periods without a fresh reading after which it is silent.
+    pub silent_after: u16,
+    /// Periods in a row outside the possible range after which it has failed.
+    pub failed_after: u16,
+    /// Periods in which whatever the link runs into may stop it; readings that stay the same for longer are judged by the
+    /// way alone.
+    pub stop: u8,
+    /// Half of 1 over them.
+    pub per_stops: T,
+    /// Half of the counts by which teeth and load may slow the link down in a period, for each period.
+    pub brake: T,
+    /// Learning intervals in a row in settled contact within the range after which it is taken back.
+    pub trusted_after: u16,
+    /// Angle by which an output has turned for sure [2^-32 turns].
+    pub moved: u32,
+    /// Distance beyond the possible range that dynamics alone can bring [m].
+    pub margin: T,
+    /// Estimates of the gap are given out up to this standard deviation, as a part of the gap 4b [-].
+    pub widest_part: T,
+}

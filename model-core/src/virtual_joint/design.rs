@@ -1,0 +1,123 @@
+//! Tables of a virtual joint's surroundings: sizes of errors as data sheets give them, never their signs or phases. The
+//! gears' own tables are `gears::design`'s.
+
+use core::f64::consts::TAU;
+
+use crate::gears::design::DesignError;
+use crate::gears::{Kinematics, Mechanics, Scales, Tables, gear_losses};
+use crate::numbers::Real;
+use crate::observer::design::{CLOCK_TICKS, NO_LIMIT};
+use crate::virtual_joint::tables::{
+    COMMANDS_UNDER_WAY, CurrentLoopTable, EncoderErrorTable, FrictionTable, SurroundingsTable,
+};
+use parameters::{Friction, JointParameters, Surroundings};
+
+/// Tables of a virtual joint's surroundings; `tables` are the gears', made for a tick of one control period.
+pub fn design_surroundings<T: Real, const N: usize>(
+    joint: &JointParameters,
+    of: &Surroundings,
+    tables: &Tables<T, N>,
+) -> Result<SurroundingsTable<T>, DesignError> {
+    check(joint, of, tables.tick_rate)?;
+    let real = T::from_f64;
+    let geometry = &joint.geometry;
+    let scales = Scales::new(joint);
+    let period = 1.0 / f64::from(tables.tick_rate);
+    let (teeth, sun) = (geometry.sun_teeth + geometry.ring_teeth, geometry.sun_teeth);
+    let common = common_divisor(teeth, sun);
+    let units = f64::powi(2.0, 32) / TAU;
+    let lever = geometry.carrier_base_radius();
+    let motor_inertia = joint.rotor_inertia + joint.bodies.sun_equivalent_mass * geometry.sun_base_radius.powi(2);
+    let carrier_inertia = (joint.carrier_equivalent_mass()
+        + geometry.planets as f64 * joint.bodies.planet_equivalent_mass)
+        * lever
+        * lever;
+    let to_link = match joint.compliance {
+        Some(compliance) => {
+            let geared = 4.0 * (joint.bodies.sun_equivalent_mass + joint.rotor_equivalent_mass())
+                + geometry.planets as f64 * joint.bodies.planet_equivalent_mass
+                + joint.carrier_equivalent_mass();
+            let reduced = geared * joint.link_equivalent_mass() / (geared + joint.link_equivalent_mass());
+            let damping = 2.0 * compliance.damping_ratio * lever * (compliance.stiffness * reduced).sqrt();
+            [0.0, compliance.stiffness / lever, damping / lever * scales.length * scales.frequency]
+        }
+        None => [geometry.ratio_by_teeth(), 0.0, 0.0],
+    };
+    let link_inertia = joint.link_inertia + if joint.compliance.is_some() { 0.0 } else { carrier_inertia };
+    let ratio = period / of.current_lag;
+    let (rise, lacking) =
+        if of.current_lag > 0.0 { (-(-ratio).exp_m1(), -(-ratio).exp_m1() / ratio) } else { (1.0, 0.0) };
+    let rates = |gains: &[T; 3]| gains.map(|gain| real(gain.to_f64() * scales.frequency));
+    let mut half_backlash = [T::ZERO; 5];
+    half_backlash.iter_mut().zip(&joint.sun_planet.half_backlash).for_each(|(place, value)| *place = real(*value));
+    Ok(SurroundingsTable {
+        period: real(period),
+        clock_ticks: CLOCK_TICKS,
+        turn: real(TAU),
+        ratio: [teeth / common, sun / common],
+        gear: real(geometry.ratio_by_teeth()),
+        units_per_radian: real(units),
+        motor_rate: rates(&tables.units.motor_offset),
+        link_rate: rates(&tables.units.link_offset),
+        current: CurrentLoopTable {
+            delay: of.delay.round() as u32,
+            rise: real(rise),
+            lacking: real(lacking),
+            gain: real(1.0 + of.torque_constant_error_ratio),
+            limit: real(of.torque_limit.min(NO_LIMIT)),
+        },
+        cogging_torque: real(of.cogging_torque),
+        cogging_periods: of.cogging_periods_per_turn,
+        motor_friction: friction(&of.motor_friction, motor_inertia / period),
+        load_friction: friction(&of.load_friction, link_inertia / period),
+        losses: gear_losses(of.efficiency).map(real),
+        half_backlash,
+        sun_torque: real(joint.sun_planet.mean_stiffness * geometry.sun_base_radius),
+        to_link: to_link.map(real),
+        weight: real(of.gravity_torque),
+        encoders: [&of.motor_encoder, &of.output_encoder].map(|encoder| EncoderErrorTable {
+            shift: 32 - encoder.bits,
+            errors: [encoder.once_per_turn_error, encoder.twice_per_turn_error].map(|error| real(error * units)),
+            lag: real(encoder.skew * units),
+        }),
+    })
+}
+
+fn friction<T: Real>(of: &Friction, stop: f64) -> FrictionTable<T> {
+    let real = T::from_f64;
+    // The rise falls by a rational law in place of an exponential: half of it is left where that has 1/2.
+    let half = of.stribeck_speed * core::f64::consts::LN_2;
+    FrictionTable {
+        coulomb: real(of.coulomb),
+        viscous: real(of.viscous),
+        rise: real(of.coulomb * of.stribeck_rise_ratio),
+        per_speed: real(if half > 0.0 { 1.0 / half } else { 0.0 }),
+        stop: real(stop),
+    }
+}
+
+fn check(joint: &JointParameters, of: &Surroundings, tick_rate: u32) -> Result<(), DesignError> {
+    let within = |what, given: f64, least: f64, most: f64, must_be| {
+        if given >= least && given <= most { Ok(()) } else { Err(DesignError::OutOfRange { what, given, must_be }) }
+    };
+    let must_be = "the tick rate: a virtual joint's tick is a control period";
+    within("the control rate", of.control_rate.into(), tick_rate.into(), tick_rate.into(), must_be)?;
+    let most = COMMANDS_UNDER_WAY as f64 - 1.0;
+    within("the control delay", of.delay, 0.0, most, "from 0 to 4 control periods")?;
+    within("the efficiency", of.efficiency, 0.1, 1.0, "from 0.1 to 1")?;
+    for encoder in [&of.motor_encoder, &of.output_encoder] {
+        within("the number of bits of an encoder", encoder.bits.into(), 6.0, 24.0, "from 6 to 24")?;
+    }
+    let ratio = joint.geometry.ratio_by_radii() / joint.geometry.ratio_by_teeth();
+    within(
+        "the ratio by radii over the ratio by teeth",
+        ratio,
+        1.0 - 1e-9,
+        1.0 + 1e-9,
+        "1: a virtual joint counts teeth",
+    )
+}
+
+fn common_divisor(a: u32, b: u32) -> u32 {
+    if b == 0 { a } else { common_divisor(b, a % b) }
+}

@@ -1,0 +1,214 @@
+//! A whole joint in real time: the gears' fixed step with motor, current loop, frictions, weight and encoders around it,
+//! one control period at a time. Torques are held over a period, friction so that it sticks; noise is left out, so that
+//! the same commands give the same bits everywhere.
+
+use crate::gears::Tables;
+use crate::gears::{Model, Outputs, Torques};
+use crate::numbers::Real;
+use crate::numbers::arithmetic::clamp;
+use crate::numbers::phase::sine_cosine;
+use crate::observer::{Reading, Samples};
+use crate::virtual_joint::tables::{COMMANDS_UNDER_WAY, EncoderErrorTable, FrictionTable, SurroundingsTable};
+
+/// Torques of the last period [N m].
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Acting<T: Real> {
+    /// In the motor's air gap.
+    pub air_gap: T,
+    /// On the sun, friction and cogging included.
+    pub drive: T,
+    /// What brakes the link: friction, weight, disturbance.
+    pub load: T,
+}
+
+/// A joint and what surrounds it.
+#[derive(Debug, Clone)]
+pub struct VirtualJoint<'tables, T: Real, const N: usize> {
+    model: Model<'tables, T, N>,
+    table: &'tables SurroundingsTable<T>,
+    /// Commands on their way, the newest first.
+    commands: [T; COMMANDS_UNDER_WAY],
+    current: T,
+    periods: u32,
+    acting: Acting<T>,
+    /// The gears now, and where that puts the shafts.
+    outputs: Outputs<T, N>,
+    shafts: Shafts<T>,
+}
+
+/// Where both shafts are and how fast they turn.
+#[derive(Debug, Clone, Copy, Default)]
+struct Shafts<T: Real> {
+    /// [2^-32 turns]: the motor's within its turn, the link's with its turns.
+    motor: u32,
+    link: i64,
+    /// [rad/s].
+    speeds: [T; 2],
+}
+
+impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
+    /// At rest at angle zero, teeth in the middle of their gap.
+    pub fn new(tables: &'tables Tables<T, N>, table: &'tables SurroundingsTable<T>) -> Self {
+        let model = Model::new(tables);
+        let mut joint = Self {
+            outputs: model.outputs(),
+            shafts: Shafts::default(),
+            model,
+            table,
+            commands: [T::ZERO; COMMANDS_UNDER_WAY],
+            current: T::ZERO,
+            periods: 0,
+            acting: Acting::default(),
+        };
+        joint.look();
+        joint
+    }
+
+    /// Notes where everything is now.
+    #[inline(never)]
+    fn look(&mut self) {
+        self.outputs = self.model.outputs();
+        self.shafts = self.shafts();
+    }
+
+    /// Back to rest.
+    pub fn reset(&mut self) {
+        self.model.reset();
+        self.commands = [T::ZERO; COMMANDS_UNDER_WAY];
+        self.current = T::ZERO;
+        self.periods = 0;
+        self.acting = Acting::default();
+        self.look();
+    }
+
+    /// The gears.
+    pub fn model(&self) -> &Model<'tables, T, N> {
+        &self.model
+    }
+
+    /// The gears' motion now.
+    pub fn outputs(&self) -> &Outputs<T, N> {
+        &self.outputs
+    }
+
+    /// Torques of the last period.
+    pub fn acting(&self) -> Acting<T> {
+        self.acting
+    }
+
+    /// What is measured now: counts within the encoders' turns, and the torque that was commanded last.
+    pub fn samples(&self) -> Samples<T> {
+        let (table, shafts) = (self.table, self.shafts);
+        let time = self.periods.wrapping_mul(table.clock_ticks);
+        let [motor, output] = &table.encoders;
+        Samples {
+            time,
+            motor: Reading { counts: counts(motor, shafts.motor.into(), shafts.speeds[0]).0, time },
+            output: Some(Reading { counts: counts(output, shafts.link, shafts.speeds[1]).0, time }),
+            torque: self.commands[0],
+        }
+    }
+
+    /// Whole turns of what the output encoder reads now: the observer counts the link's turns from its first reading's.
+    pub fn output_turn(&self) -> i32 {
+        counts(&self.table.encoders[1], self.shafts.link, self.shafts.speeds[1]).1
+    }
+
+    /// Moves on by one period under a torque command and a torque that brakes the link [N m]. Its parts are not inlined: each
+    /// needs much of the stack, and they take turns.
+    #[inline(never)]
+    pub fn advance(&mut self, command: T, disturbance: T) {
+        self.act(command, disturbance);
+        self.model.step(Torques { drive: self.acting.drive, load: self.acting.load });
+        self.periods = self.periods.wrapping_add(1);
+        self.look();
+    }
+
+    /// Finds the torques that act over the period.
+    #[inline(never)]
+    fn act(&mut self, command: T, disturbance: T) {
+        let table = self.table;
+        self.commands.rotate_right(1);
+        let limit = table.current.limit;
+        self.commands[0] = if command.is_finite() { clamp(command, -limit, limit) } else { T::ZERO };
+        let air_gap = self.air_gap();
+        let shafts = self.shafts;
+        let (sine, _) = sine_cosine::<T>(shafts.motor.wrapping_mul(table.cogging_periods));
+        let driving = air_gap + table.cogging_torque * sine;
+        let passed_on = self.passed_on();
+        let [motor_speed, link_speed] = shafts.speeds;
+        let loss = table.losses[usize::from(passed_on * motor_speed < T::ZERO)] * passed_on.abs();
+        let lost = friction(&table.motor_friction, motor_speed, driving - passed_on, loss);
+
+        let (sine, _) = sine_cosine::<T>(shafts.link as u32);
+        let braking = table.weight * sine + disturbance;
+        let [from_sun, from_wind_up, from_rate] = table.to_link;
+        let to_link =
+            from_sun * passed_on + from_wind_up * self.outputs.wind_up + from_rate * self.model.state().rate.wind_up;
+        let rubbed = friction(&table.load_friction, link_speed, to_link - braking, T::ZERO);
+        self.acting = Acting { air_gap, drive: driving - lost, load: braking + rubbed };
+    }
+
+    /// Mean torque in the air gap over this period.
+    fn air_gap(&mut self) -> T {
+        let table = &self.table.current;
+        let wanted = self.commands.get(table.delay as usize).copied().unwrap_or(T::ZERO);
+        let missing = wanted - self.current;
+        self.current += missing * table.rise;
+        (wanted - missing * table.lacking) * table.gain
+    }
+
+    /// Torque that the sun passes on to the planets, by the springs of its teeth alone.
+    fn passed_on(&self) -> T {
+        let table = self.table;
+        let meshes = self.outputs.deflections[0].iter().zip(&table.half_backlash);
+        let way = meshes.fold(T::ZERO, |sum, (deflection, half)| sum + *deflection - clamp(*deflection, -*half, *half));
+        table.sun_torque * way
+    }
+
+    fn shafts(&self) -> Shafts<T> {
+        let (table, outputs) = (self.table, &self.outputs);
+        let state = self.model.state();
+        let [turns_of_motor, turns_of_link] = table.ratio;
+        // Turns and their rest apart, so that neither overflows.
+        let rest = u64::from(outputs.carrier_fraction).wrapping_mul(turns_of_motor.into());
+        let rigid = if turns_of_link == 1 {
+            rest
+        } else {
+            let turns = i64::from(outputs.carrier_turns).wrapping_mul(turns_of_motor.into());
+            let left = turns.checked_rem_euclid(turns_of_link.into()).unwrap_or(0) as u64;
+            (left << 32).wrapping_add(rest).checked_div(turns_of_link.into()).unwrap_or(0)
+        };
+        let motor_offset = (table.units_per_radian * outputs.motor_offset).to_i64();
+        let link_offset = (table.units_per_radian * outputs.link_offset).to_i64();
+        let carrier = (i64::from(outputs.carrier_turns) << 32) | i64::from(outputs.carrier_fraction);
+        let planets = state.rate.planets.iter().fold(T::ZERO, |sum, rate| sum + *rate);
+        let beyond = |gains: &[T; 3]| gains[0] * planets + gains[1] * state.rate.gap + gains[2] * state.rate.wind_up;
+        Shafts {
+            motor: (rigid as i64).wrapping_add(motor_offset) as u32,
+            link: carrier.wrapping_add(link_offset),
+            speeds: [
+                table.gear * outputs.carrier_speed + beyond(&table.motor_rate),
+                outputs.carrier_speed + beyond(&table.link_rate),
+            ],
+        }
+    }
+}
+
+/// Counts within a turn, and the turn, of what an encoder reads.
+fn counts<T: Real>(table: &EncoderErrorTable<T>, angle: i64, speed: T) -> (u32, i32) {
+    let then = angle.wrapping_sub((table.lag * speed).to_i64());
+    let phase = then as u32;
+    let (once, _) = sine_cosine::<T>(phase);
+    let (twice, _) = sine_cosine::<T>(phase.wrapping_mul(2));
+    let read = then.wrapping_add((table.errors[0] * once + table.errors[1] * twice).to_i64());
+    ((read as u32).checked_shr(table.shift).unwrap_or(0), (read >> 32) as i32)
+}
+
+/// Torque against a shaft's motion: dry friction is at most what would stop it within the period, so that it sticks.
+fn friction<T: Real>(table: &FrictionTable<T>, speed: T, driving: T, extra: T) -> T {
+    let part = speed * table.per_speed;
+    let dry = table.coulomb + table.rise.over(T::ONE + part * part) + extra;
+    let viscous = table.viscous * speed;
+    viscous + clamp(table.stop * speed + driving - viscous, -dry, dry)
+}

@@ -1,0 +1,118 @@
+//! What a planetary joint is, in SI units: every quantity of He, Jia, Chen and Sun (2015), plus the motor rotor, the
+//! link and the compliance between carrier and link that a real joint has. Files, units in key names and messages
+//! with source spans are left to the `joints` crate; nothing here is read by the fixed step.
+
+use heapless::String;
+
+use crate::mesh::{DampingLaw, DeadZone, Mesh, MeshKind};
+
+/// A planetary joint with a fixed ring: sun driven, carrier loaded (2K-H).
+///
+/// Sign convention: a positive sun angle turns the carrier the same way; positive drive torque accelerates the sun,
+/// positive load torque brakes the link. A positive deflection of either mesh carries drive torque towards the load.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JointParameters {
+    /// A short name, for reports and for the board's hello.
+    pub name: String<32>,
+    /// Teeth, radii and angles.
+    pub geometry: Geometry,
+    /// Masses of gears and carrier.
+    pub bodies: Bodies,
+    /// Inertia of everything rigidly on the sun shaft besides the sun: the motor rotor [kg m^2].
+    pub rotor_inertia: f64,
+    /// Inertia of the link that the carrier turns [kg m^2].
+    pub link_inertia: f64,
+    /// Torsional compliance between carrier and link; `None` joins them rigidly.
+    pub compliance: Option<Compliance>,
+    /// The sun-planet meshes (external).
+    pub sun_planet: Mesh,
+    /// The ring-planet meshes (internal).
+    pub ring_planet: Mesh,
+    /// How the mesh damping acts once teeth part.
+    pub damping_law: DampingLaw,
+    /// Sharp (eq. 12) or smoothed (eq. 13) dead zone.
+    pub dead_zone: DeadZone,
+    /// What drives the mesh phase.
+    pub excitation: Excitation,
+    /// Characteristic length b_c that makes deflections dimensionless (eq. 16) [m].
+    pub characteristic_length: f64,
+    /// Rated torque at the link [N m]; scales profiles and reports, does not enter the dynamics.
+    pub rated_output_torque: f64,
+}
+
+/// Teeth and radii. Only radii enter the equations of motion; teeth give mesh phases and the exact ratio.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Geometry {
+    /// Number of planets n.
+    pub planets: usize,
+    /// Teeth of the sun.
+    pub sun_teeth: u32,
+    /// Teeth of each planet.
+    pub planet_teeth: u32,
+    /// Teeth of the fixed ring.
+    pub ring_teeth: u32,
+    /// Working pressure angle, alpha [rad].
+    pub working_pressure_angle: f64,
+    /// Base radius of the sun, r_bs [m].
+    pub sun_base_radius: f64,
+    /// Base radius of a planet, r_bp [m].
+    pub planet_base_radius: f64,
+    /// Carrier radius r_c: from the joint's axis to a planet's axis [m]. Never r_c cos(alpha).
+    pub carrier_radius: f64,
+    /// Radii that do not fit together are an error for a new joint; the paper's own Table 1 is kept with a warning.
+    pub coherence: Coherence,
+}
+
+/// What an incoherent geometry means.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Coherence {
+    /// Incoherent geometry is an error.
+    Required,
+    /// Incoherent geometry is reported and used as printed.
+    Warned,
+}
+
+/// Masses. Equivalent masses are I / r_b^2, felt along the line of action.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bodies {
+    /// Sun: I_s / r_bs^2, without the rotor [kg].
+    pub sun_equivalent_mass: f64,
+    /// Planet: I_p / r_bp^2 [kg].
+    pub planet_equivalent_mass: f64,
+    /// Mass of one planet, carried round by the carrier [kg].
+    pub planet_mass: f64,
+    /// Carrier alone: I_c / r_c^2, without planets and link [kg].
+    pub carrier_inertia_over_radius_squared: f64,
+}
+
+/// Torsion spring and damper between carrier and link.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Compliance {
+    /// Torsional stiffness [N m/rad].
+    pub stiffness: f64,
+    /// Damping ratio of the link swinging against everything geared to the carrier, C = 2 zeta sqrt(K M_1 M_2 /
+    /// (M_1 + M_2)) with M_1 = 4 M_s + n M_p + M_c (rotor included) and M_2 the link's equivalent mass [-].
+    pub damping_ratio: f64,
+}
+
+/// What drives the mesh phase of stiffness ripple and transmission error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Excitation {
+    /// Phase is omega t, prescribed, as in the paper. Mesh frequency omega [rad/s].
+    Time {
+        /// omega [rad/s].
+        mesh_frequency: f64,
+    },
+    /// Phase is ring teeth times the rigid-body carrier angle; it runs backwards when the joint does.
+    Angle,
+}
+
+impl JointParameters {
+    /// The meshes of one kind.
+    pub fn mesh(&self, kind: MeshKind) -> &Mesh {
+        match kind {
+            MeshKind::SunPlanet => &self.sun_planet,
+            MeshKind::RingPlanet => &self.ring_planet,
+        }
+    }
+}

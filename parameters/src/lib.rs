@@ -1,0 +1,23 @@
+#![no_std]
+//! What a planetary joint and its surroundings are, as plain data in SI: every number that a data sheet or a
+//! measurement gives, the limits within which it can be one, and nothing that follows from it.
+//!
+//! The core and the reference that judges it are both built from this data, each by its own laws: coefficients of the
+//! stiffness wave, phases from teeth, equivalent masses, damping, dead zones and gear losses stand on either side, so
+//! that a mistake in one shows against the other.
+
+#![allow(rustdoc::broken_intra_doc_links, reason = "units stand in brackets")]
+
+mod joint;
+mod mesh;
+mod planets;
+mod surroundings;
+mod validity;
+
+pub use joint::{Bodies, Coherence, Compliance, Excitation, Geometry, JointParameters};
+pub use mesh::{
+    ContactState, DampingLaw, DeadZone, MAX_HARMONICS, MESH_KINDS, Mesh, MeshKind, MeshPhases, StiffnessWave,
+};
+pub use planets::{MAX_PLANETS, MIN_PLANETS, PerPlanet};
+pub use surroundings::{AbsoluteEncoder, Friction, Surroundings};
+pub use validity::ParameterError;

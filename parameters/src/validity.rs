@@ -1,0 +1,147 @@
+//! Whether parameters can be a joint's at all: lists of the right length, physical signs, finite numbers. Whether the
+//! geometry is coherent is judged where joint files are read; what only laws can tell, where these are.
+
+use core::fmt;
+
+use crate::joint::{Excitation, JointParameters};
+use crate::mesh::{DeadZone, MAX_HARMONICS, MESH_KINDS, MeshPhases};
+use crate::planets::{MAX_PLANETS, MIN_PLANETS};
+
+/// What is wrong with parameters.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ParameterError {
+    /// The model is made for 3 to 5 planets.
+    PlanetCount {
+        /// What was given.
+        given: usize,
+    },
+    /// A list does not hold one value for each planet.
+    ListLength {
+        /// Which list.
+        what: &'static str,
+        /// Its length.
+        given: usize,
+        /// Number of planets.
+        planets: usize,
+    },
+    /// A quantity that must be positive (or not negative) is not, or is not a number.
+    OutOfRange {
+        /// Which quantity.
+        what: &'static str,
+        /// Its value in SI.
+        given: f64,
+        /// What it must be.
+        must_be: &'static str,
+    },
+}
+
+impl fmt::Display for ParameterError {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::PlanetCount { given } => write!(formatter, "{given} planets: the model is made for 3, 4 or 5"),
+            Self::ListLength { what, given, planets } => {
+                write!(formatter, "{what} has {given} values for {planets} planets: give one for each")
+            }
+            Self::OutOfRange { what, given, must_be } => write!(formatter, "{what} is {given}: it must be {must_be}"),
+        }
+    }
+}
+
+impl core::error::Error for ParameterError {}
+
+/// Physical quantities in SI stay within these for any joint; what is outside would not fit an f32 table.
+const SMALLEST: f64 = 1e-12;
+const LARGEST: f64 = 1e12;
+
+fn positive(what: &'static str, given: f64) -> Result<(), ParameterError> {
+    let good = (SMALLEST..=LARGEST).contains(&given);
+    good.then_some(()).ok_or(ParameterError::OutOfRange { what, given, must_be: "between 1e-12 and 1e12 (SI units)" })
+}
+
+fn not_negative(what: &'static str, given: f64) -> Result<(), ParameterError> {
+    let good = (0.0..=LARGEST).contains(&given);
+    good.then_some(()).ok_or(ParameterError::OutOfRange { what, given, must_be: "zero or more, and finite" })
+}
+
+fn finite(what: &'static str, given: f64) -> Result<(), ParameterError> {
+    let good = (-LARGEST..=LARGEST).contains(&given);
+    good.then_some(()).ok_or(ParameterError::OutOfRange { what, given, must_be: "a finite number" })
+}
+
+impl JointParameters {
+    /// Whether every number can be one of a joint, and every list has a value for each planet.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        let geometry = &self.geometry;
+        let planets = geometry.planets;
+        if !(MIN_PLANETS..=MAX_PLANETS).contains(&planets) {
+            return Err(ParameterError::PlanetCount { given: planets });
+        }
+        positive("the sun's base radius", geometry.sun_base_radius)?;
+        positive("the planets' base radius", geometry.planet_base_radius)?;
+        positive("the carrier radius", geometry.carrier_radius)?;
+        let angle = geometry.working_pressure_angle;
+        if !(0.0..1.2).contains(&angle) {
+            let must_be = "an angle from 0 to 1.2 rad";
+            return Err(ParameterError::OutOfRange { what: "the working pressure angle", given: angle, must_be });
+        }
+        let bodies = &self.bodies;
+        positive("the sun's equivalent mass", bodies.sun_equivalent_mass)?;
+        positive("the planets' equivalent mass", bodies.planet_equivalent_mass)?;
+        not_negative("the planets' mass", bodies.planet_mass)?;
+        positive("the carrier's inertia over radius squared", bodies.carrier_inertia_over_radius_squared)?;
+        not_negative("the rotor inertia", self.rotor_inertia)?;
+        not_negative("the link inertia", self.link_inertia)?;
+        positive("the characteristic length", self.characteristic_length)?;
+        if let Some(compliance) = &self.compliance {
+            positive("the torsional stiffness", compliance.stiffness)?;
+            not_negative("the torsional damping ratio", compliance.damping_ratio)?;
+            positive("the link inertia behind a compliance", self.link_inertia)?;
+        }
+        match self.excitation {
+            Excitation::Time { mesh_frequency } => not_negative("the mesh frequency", mesh_frequency)?,
+            Excitation::Angle => positive("the ring's number of teeth", geometry.ring_teeth.into())?,
+        }
+        if let DeadZone::Tanh { sharpness } = self.dead_zone {
+            positive("the sharpness of the dead zone", sharpness)?;
+        }
+        for kind in MESH_KINDS {
+            let mesh = self.mesh(kind);
+            positive("a mean mesh stiffness", mesh.mean_stiffness)?;
+            not_negative("a mesh damping ratio", mesh.damping_ratio)?;
+            let lists = [
+                ("the list of half-backlashes", &mesh.half_backlash),
+                ("the list of errors", &mesh.transmission_error),
+            ];
+            let phases = match &mesh.phases {
+                MeshPhases::Given { stiffness, error } => [Some(stiffness), Some(error)],
+                MeshPhases::FromTeeth { .. } => [None, None],
+            };
+            let lists = lists.into_iter().chain(phases.into_iter().flatten().map(|list| ("a list of phases", list)));
+            for (what, list) in lists {
+                if list.len() != planets {
+                    return Err(ParameterError::ListLength { what, given: list.len(), planets });
+                }
+            }
+            for i in 0..planets {
+                not_negative("a half-backlash", mesh.half_backlash[i])?;
+                finite("a transmission error", mesh.transmission_error[i])?;
+                let (stiffness, error) = match &mesh.phases {
+                    MeshPhases::Given { stiffness, error } => (stiffness[i], error[i]),
+                    MeshPhases::FromTeeth { stiffness, error } => (*stiffness, *error),
+                };
+                finite("a stiffness phase", stiffness)?;
+                finite("an error phase", error)?;
+            }
+            let order = mesh.stiffness_wave.order();
+            if !(1..=MAX_HARMONICS).contains(&order) {
+                let given = order as f64;
+                return Err(ParameterError::OutOfRange {
+                    what: "the order of the stiffness wave",
+                    given,
+                    must_be: "1 to 8",
+                });
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,7 +1,6 @@
 //! Joint Q1 with light planets, ripple and errors, its tables in stated leaps, and one run of core and reference side by
 //! side. No bound is stated here.
 
-use contest::start::Deflected;
 use model_core::gears::design::dynamics::Dynamics;
 use model_core::gears::design::{Effort, design_scheme, light_tables};
 use model_core::gears::tables::Mobility;
@@ -9,6 +8,7 @@ use model_core::gears::{Kinematics, Model, Scales, Scheme, State, Tables, Torque
 use parameters::{DampingLaw, JointParameters, Mesh};
 use reference::joint::{Observation, Reference, RelativeState, Start};
 use reference::scenarios::{case_r, same};
+use simulation::sim::start::core_state;
 
 /// Case R's joint with so many planets, under a damping law.
 pub fn joint(planets: usize, law: DampingLaw) -> JointParameters {
@@ -61,7 +61,7 @@ pub fn leaping<const N: usize>(joint: &JointParameters, rate: u32, leaps: u32) -
 
 /// A start as the core takes it.
 pub fn state<const N: usize>(joint: &JointParameters, tables: &Tables<f64, N>, start: &RelativeState) -> State<f64, N> {
-    Deflected::new(joint, &Start::Relative(start.clone())).state(joint, tables)
+    core_state(joint, tables, &Start::Relative(start.clone()))
 }
 
 /// All meshes pressed alike on the drive side [m], nothing moving.

@@ -13,9 +13,13 @@ use report::failure::{Failure, Outcome};
 /// The cargo profile of images.
 pub const PROFILE: &str = "firmware";
 
-/// Compiles a binary of the firmware.
+/// Package of the images.
+pub(super) const FIRMWARE: &str = "firmware";
+
+/// Compiles a binary of a package for the board.
 pub(super) fn compile(
     toolchain: &Toolchain,
+    package: &str,
     binary: &str,
     features: &str,
     environment: &[(&str, &OsStr)],
@@ -25,7 +29,7 @@ pub(super) fn compile(
     let _lock = lock(toolchain.folder())?;
     let mut command = toolchain.cargo("build");
     command
-        .args(["--package", "firmware", "--profile", PROFILE, "--bin", binary])
+        .args(["--package", package, "--profile", PROFILE, "--bin", binary])
         .args(["--no-default-features", "--features", features])
         .envs(environment.iter().copied());
     tool::follow(&mut command, "building the firmware", say)?;

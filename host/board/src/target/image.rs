@@ -10,7 +10,7 @@ use sha2::{Digest, Sha256};
 
 use super::Say;
 use super::board::Board;
-use super::compile::{PROFILE, compile, store};
+use super::compile::{FIRMWARE, PROFILE, compile, store};
 use super::sources::{self, hexadecimal};
 use super::toolchain::Toolchain;
 use report::failure::{Failure, Outcome};
@@ -155,7 +155,7 @@ fn finish(
         &place,
         [truth, told],
         &format!("{binary}{board:?}{control:?}"),
-        || compile(toolchain, binary, board.name(), &environment, say),
+        || compile(toolchain, FIRMWARE, binary, board.name(), &environment, say),
     )?;
     let (flash_bytes, ram_bytes) =
         sizes(&elf).map_err(|error| Failure::new(format!("{}: {error}", place.display())))?;

@@ -2,6 +2,7 @@
 //! by semihosting. What they measure, and what is to be thought of it, is their callers' business.
 
 use std::env;
+use std::ffi::OsStr;
 use std::io::{BufRead, BufReader};
 use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
@@ -12,7 +13,7 @@ use std::time::{Duration, Instant};
 
 use super::Say;
 use super::board::Board;
-use super::compile::{compile, store};
+use super::compile::{FIRMWARE, compile, store};
 use super::emulator::{self, MACHINE};
 use super::toolchain::Toolchain;
 use report::failure::{Failure, Outcome};
@@ -38,7 +39,7 @@ pub fn build_measuring(
         .map_err(|error| Failure::new(format!("joint files cannot be listed for the firmware's build: {error}")))?;
     let rate = tick_rate.to_string();
     let environment = [("MEASURED_JOINTS", list.as_ref()), ("JOINT_TICK_RATE", rate.as_ref())];
-    let elf = compile(toolchain, binary, &measuring_features(), &environment, say)?;
+    let elf = compile(toolchain, FIRMWARE, binary, &measuring_features(), &environment, say)?;
     let images = toolchain.target_directory().join("images");
     let place = images.join(format!("{binary}.elf"));
     store(&images, &place, &elf)?;
@@ -50,12 +51,16 @@ pub(super) fn measuring_features() -> String {
     format!("{},measuring", Board::Stm32f405.name())
 }
 
-/// Builds the comparison of fixed-step methods, with the jobs in this file of Rust source; returns the ELF file.
-pub fn build_contest(toolchain: &Toolchain, jobs: &Path, say: Say<'_>) -> Outcome<PathBuf> {
-    let features = format!("{},contest", Board::Stm32f405.name());
-    let elf = compile(toolchain, "contest", &features, &[("CONTEST_JOBS", jobs.as_os_str())], say)?;
+/// Builds a measuring binary of another package of the workspace, with variables for its build; returns the ELF file.
+pub fn build_other(
+    toolchain: &Toolchain,
+    package: &str,
+    environment: &[(&str, &OsStr)],
+    say: Say<'_>,
+) -> Outcome<PathBuf> {
+    let elf = compile(toolchain, package, package, "", environment, say)?;
     let images = toolchain.target_directory().join("images");
-    let place = images.join("contest.elf");
+    let place = images.join(format!("{package}.elf"));
     store(&images, &place, &elf)?;
     Ok(place)
 }

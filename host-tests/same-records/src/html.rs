@@ -1,0 +1,252 @@
+//! HTML pages by what can be read on them. The layout of a page may change while every figure has to stay, so that pages
+//! are compared, unless more is asked for, by how often each word with a digit stands on them and by the texts of their
+//! tables' cells. Pictures, styles and scripts are left aside: what is drawn is in the records from which it is drawn.
+
+use std::collections::BTreeMap;
+
+use crate::findings::Findings;
+use crate::ignored::{COLUMNS, ROWS};
+use crate::markup::{Piece, pieces};
+use crate::mask::masked;
+use crate::text;
+
+/// What counts on a page.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Level {
+    /// How often each word with a digit stands there.
+    Numbers,
+    /// That, and the texts of tables' cells.
+    #[default]
+    Figures,
+    /// The whole text in its order.
+    Text,
+}
+
+/// What can be read on a page.
+#[derive(Debug, Default)]
+struct Page {
+    /// Text outside of pictures, a line for each block.
+    lines: Vec<String>,
+    /// Cells of tables.
+    cells: Vec<String>,
+    /// What a rule has left out.
+    hidden: Vec<(&'static str, String)>,
+}
+
+/// Elements that cannot be read.
+const UNSEEN: [&str; 4] = ["svg", "style", "script", "template"];
+/// Elements in the middle of a line.
+const INLINE: [&str; 14] =
+    ["a", "b", "code", "em", "i", "span", "strong", "sub", "sup", "small", "abbr", "var", "mark", "kbd"];
+
+/// Compares two pages; `may_grow` lets the new one have more.
+pub fn compare(old: &str, new: &str, level: Level, may_grow: bool, findings: &mut Findings) {
+    let (old, new) = (read(old), read(new));
+    if level == Level::Text {
+        text::compare(&old.lines.join("\n"), &new.lines.join("\n"), findings);
+    } else {
+        let figures = |page: &Page| counted(page.lines.iter().flat_map(|line| with_digits(line)));
+        compare_counts("figure", &figures(&old), &figures(&new), may_grow, findings);
+    }
+    if level == Level::Figures {
+        let cells = |page: &Page| counted(page.cells.iter().cloned());
+        compare_counts("cell", &cells(&old), &cells(&new), may_grow, findings);
+    }
+    text::leave_out(old.hidden.iter(), new.hidden.iter(), findings);
+}
+
+fn compare_counts(
+    what: &str,
+    old: &BTreeMap<String, usize>,
+    new: &BTreeMap<String, usize>,
+    may_grow: bool,
+    findings: &mut Findings,
+) {
+    let times = |count: usize| (count > 0).then(|| format!("{count} times"));
+    for (word, count) in old {
+        let now = new.get(word).copied().unwrap_or_default();
+        match now == *count || may_grow && now > *count {
+            true => findings.same(*count as u64),
+            false => findings.differs(format!("{what} `{word}`"), times(*count), times(now)),
+        }
+    }
+    for (word, count) in new.iter().filter(|(word, _)| !may_grow && !old.contains_key(*word)) {
+        findings.differs(format!("{what} `{word}`"), None, times(*count));
+    }
+}
+
+fn counted(words: impl Iterator<Item = String>) -> BTreeMap<String, usize> {
+    let mut counts = BTreeMap::new();
+    words.for_each(|word| *counts.entry(word).or_default() += 1);
+    counts
+}
+
+/// Words with a digit, without the punctuation around them.
+fn with_digits(line: &str) -> Vec<String> {
+    line.split_whitespace()
+        .map(|word| word.trim_matches(|c: char| "()[]{},;:.·\"'`".contains(c)))
+        .filter(|word| word.chars().any(|c| c.is_ascii_digit()))
+        .map(ToOwned::to_owned)
+        .collect()
+}
+
+/// Where reading has come to in a table.
+#[derive(Debug, Default)]
+struct Table {
+    head: Vec<String>,
+    row: Vec<String>,
+    rows: usize,
+}
+
+fn read(document: &str) -> Page {
+    let (mut page, mut line) = (Page::default(), String::new());
+    let mut cell: Option<String> = None;
+    let mut tables: Vec<Table> = Vec::new();
+    let mut unseen: Vec<String> = Vec::new();
+    for piece in pieces(document) {
+        match piece {
+            Piece::Open { name, empty, .. } => {
+                if !unseen.is_empty() || UNSEEN.contains(&name.as_str()) {
+                    if !empty {
+                        unseen.push(name);
+                    }
+                    continue;
+                }
+                if !INLINE.contains(&name.as_str()) {
+                    end_line(&mut line, &mut page);
+                }
+                match name.as_str() {
+                    "table" => tables.push(Table::default()),
+                    "td" | "th" => cell = Some(String::new()),
+                    _ => {}
+                }
+            }
+            Piece::Close(name) => {
+                if !unseen.is_empty() {
+                    // What is left open inside ends with what it stands in.
+                    if let Some(place) = unseen.iter().rposition(|open| *open == name) {
+                        unseen.truncate(place);
+                    }
+                    continue;
+                }
+                match (name.as_str(), &mut cell) {
+                    ("td" | "th", Some(text)) => {
+                        end_cell(text, tables.last_mut(), &mut page);
+                        cell = None;
+                    }
+                    (name, None) if !INLINE.contains(&name) => end_line(&mut line, &mut page),
+                    // Blocks in a cell are words of their own.
+                    (name, Some(text)) if !INLINE.contains(&name) => text.push(' '),
+                    _ => {}
+                }
+                match (name.as_str(), tables.last_mut()) {
+                    ("tr", Some(table)) => table.end_row(),
+                    ("table", _) => drop(tables.pop()),
+                    _ => {}
+                }
+            }
+            Piece::Text(text) if unseen.is_empty() => match &mut cell {
+                Some(cell) => *cell += &text,
+                None => line += &text,
+            },
+            Piece::Text(_) => {}
+        }
+    }
+    end_line(&mut line, &mut page);
+    page
+}
+
+impl Table {
+    fn end_row(&mut self) {
+        let row = std::mem::take(&mut self.row);
+        if self.rows == 0 {
+            self.head = row;
+        }
+        self.rows += 1;
+    }
+
+    /// The rule by which the next cell is left out.
+    fn rule(&self) -> Option<&'static str> {
+        let by_row = self.row.last().and_then(|before| ROWS.iter().find(|(name, _)| name == before));
+        let head = self.head.join(" ");
+        let of_column = |name: &String| COLUMNS.iter().find(|column| column.table == head && column.column == name);
+        let by_column = self.head.get(self.row.len()).filter(|_| self.rows > 0).and_then(of_column);
+        by_row.map(|(_, rule)| *rule).or_else(|| by_column.map(|column| column.rule))
+    }
+}
+
+fn end_cell(text: &str, table: Option<&mut Table>, page: &mut Page) {
+    let masked = masked(text);
+    let text = masked.words.join(" ");
+    match table.as_ref().and_then(|table| table.rule()) {
+        Some(rule) => page.hidden.push((rule, text.clone())),
+        None if text.is_empty() => {}
+        None => {
+            page.hidden.extend(masked.hidden);
+            page.lines.push(text.clone());
+            page.cells.push(text.clone());
+        }
+    }
+    if let Some(table) = table {
+        table.row.push(text);
+    }
+}
+
+fn end_line(line: &mut String, page: &mut Page) {
+    let masked = masked(&std::mem::take(line));
+    page.hidden.extend(masked.hidden);
+    if !masked.words.is_empty() {
+        page.lines.push(masked.words.join(" "));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn differences(old: &str, new: &str, level: Level, may_grow: bool) -> Vec<String> {
+        let mut findings = Findings::default();
+        compare(old, new, level, may_grow, &mut findings);
+        findings.differences.into_iter().map(|difference| difference.place).collect()
+    }
+
+    const PAGE: &str = "<h1>Run 7</h1><p>error <b>1.5</b> %</p><svg><text>9.9</text></svg>\
+        <table><tr><th>check</th><th>figure</th></tr><tr><td>gap</td><td>2.5 um</td></tr></table>";
+
+    #[test]
+    fn figures_count_and_layout_does_not() {
+        let other = "<table><tr><th>check</th></tr><tr><th>figure</th></tr><tr><td>gap</td></tr><tr><td>2.5 <i>um</i></td></tr></table>\
+            <div>Run <em>7</em></div><div>1.5</div> <div>% error</div><svg><text>8.8</text></svg>";
+        assert!(differences(PAGE, other, Level::Figures, false).is_empty());
+        assert!(!differences(PAGE, other, Level::Text, false).is_empty());
+    }
+
+    #[test]
+    fn another_figure_a_lost_one_and_another_cell_are_found() {
+        let found = differences(PAGE, &PAGE.replace("1.5", "1.6"), Level::Figures, false);
+        assert_eq!(found, ["figure `1.5`", "figure `1.6`"]);
+        let verdict = PAGE.replace("gap", "twist");
+        assert_eq!(differences(PAGE, &verdict, Level::Figures, false), ["cell `gap`", "cell `twist`"]);
+        assert!(differences(PAGE, &verdict, Level::Numbers, false).is_empty());
+        let more = format!("{PAGE}<p>3.25</p>");
+        assert_eq!(differences(PAGE, &more, Level::Figures, false), ["figure `3.25`"]);
+        assert!(differences(PAGE, &more, Level::Figures, true).is_empty());
+        assert_eq!(differences(&more, PAGE, Level::Figures, true), ["figure `3.25`"]);
+    }
+
+    #[test]
+    fn columns_and_rows_of_the_host_s_time_are_left_out() {
+        let page = |cost: &str, error: &str, date: &str| {
+            let heads =
+                ["scheme", "deflections", "gap", "link offset", "cost", "sub-steps"].map(|h| format!("<th>{h}</th>"));
+            let heads = heads.concat();
+            format!(
+                "<table><tr>{heads}</tr><tr><td>rk4</td><td>{error}</td><td>1</td><td>1</td><td>{cost}</td><td>2</td></tr>\
+                </table><table><tr><th>Date</th><td>{date}</td></tr></table>"
+            )
+        };
+        let old = page("3.45", "0.1", "today");
+        assert!(differences(&old, &page("3.55", "0.1", "yesterday"), Level::Figures, false).is_empty());
+        assert_eq!(differences(&old, &page("3.45", "0.2", "today"), Level::Numbers, false).len(), 2);
+    }
+}

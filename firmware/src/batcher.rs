@@ -4,20 +4,7 @@
 use heapless::Vec;
 use link::messages::FromBoard;
 
-use crate::words::Batch;
-
-/// What batches of up to `MOST` samples look like, which differs from role to role.
-pub trait WireForm<const MOST: usize> {
-    /// What the tick leaves.
-    type Raw;
-    /// What goes over the line.
-    type Wire;
-
-    /// From the one to the other.
-    fn wire(raw: &Self::Raw) -> Self::Wire;
-    /// The message that carries them.
-    fn message(sequence: u16, samples: Vec<Self::Wire, MOST>) -> FromBoard;
-}
+use crate::words::{Batch, WireForm};
 
 /// Collects samples.
 pub struct Batcher<F: WireForm<MOST>, const MOST: usize> {

@@ -4,26 +4,13 @@
 use core::convert::Infallible;
 
 use link::messages::{Command, Role, SAMPLES_PER_BATCH, Schedule, ToBoard};
-use model_core::gears::{Model, Outputs, Tables, Torques};
+use model_core::gears::{Model, Tables, Torques};
 use model_core::numbers::digest;
 
 use crate::batcher::Batcher;
-use crate::telemetry::PlantForm;
+use crate::telemetry::{PlantForm, RawSample};
 use crate::words::{Timed, Words};
 use crate::work::Work;
-
-/// The motion after a step.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RawSample<const N: usize> {
-    /// Steps done since the reset.
-    pub tick: u32,
-    /// Running digest over every state so far.
-    pub state_digest: u64,
-    /// The motion.
-    pub outputs: Outputs<f32, N>,
-    /// Timer counts that the step took.
-    pub computation: u16,
-}
 
 /// What the plant says and hears.
 pub struct PlantWords<const N: usize>;

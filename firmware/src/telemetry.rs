@@ -1,11 +1,25 @@
-//! The plant's raw samples in the wire's form. Collecting them is left to `batcher`.
+//! The plant's samples, as the tick leaves them and in the wire's form. Taking them is left to `plant`, collecting them to
+//! `batcher`.
 
 use heapless::Vec;
 use link::messages::{FromBoard, MAX_MESHES, SAMPLES_PER_BATCH, Sample, SampleBatch};
+use model_core::gears::Outputs;
 use parameters::ContactState;
 
-use crate::batcher::WireForm;
-use crate::plant::RawSample;
+use crate::words::WireForm;
+
+/// The motion after a step.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RawSample<const N: usize> {
+    /// Steps done since the reset.
+    pub tick: u32,
+    /// Running digest over every state so far.
+    pub state_digest: u64,
+    /// The motion.
+    pub outputs: Outputs<f32, N>,
+    /// Timer counts that the step took.
+    pub computation: u16,
+}
 
 /// The form of the plant's samples.
 pub struct PlantForm<const N: usize>;

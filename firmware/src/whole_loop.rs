@@ -12,10 +12,10 @@ use model_core::observer::{Memory, MemoryError};
 use model_core::virtual_joint::upset::Upsets;
 use model_core::virtual_joint::{SurroundingsTable, VirtualJoint};
 
-use crate::batcher::{Batcher, WireForm};
+use crate::batcher::Batcher;
 use crate::page::AtHand;
 use crate::port::ControllerPort;
-use crate::words::{Timed, Words};
+use crate::words::{Timed, WireForm, Words};
 use crate::work::Work;
 
 /// Periods after which a demand that nothing follows stands still: three of the host's knots.

@@ -1,6 +1,7 @@
 //! What a role says and hears: the one place where roles differ on the line, so that queues, conversation and tick are
 //! written once. What a role does in its tick is `work::Work`.
 
+use heapless::Vec;
 use link::messages::{FromBoard, Role, Schedule, ToBoard};
 
 use crate::page::Learnt;
@@ -72,4 +73,17 @@ pub trait Batch: Default {
     fn is_empty(&self) -> bool;
     /// The samples so far as a message; empty afterwards.
     fn take(&mut self) -> FromBoard;
+}
+
+/// What batches of up to `MOST` samples look like, which differs from role to role.
+pub trait WireForm<const MOST: usize> {
+    /// What the tick leaves.
+    type Raw;
+    /// What goes over the line.
+    type Wire;
+
+    /// From the one to the other.
+    fn wire(raw: &Self::Raw) -> Self::Wire;
+    /// The message that carries them.
+    fn message(sequence: u16, samples: Vec<Self::Wire, MOST>) -> FromBoard;
 }

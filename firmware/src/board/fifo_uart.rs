@@ -1,7 +1,7 @@
 //! The newer USART of the STM32 families, with FIFOs (G4: 8 bytes, H7: 16) that outlast the tick at full speed. Pins
 //! and clock are set up by the board.
 
-use super::{Board, ThisBoard, UsartRegisters};
+use super::serial_usart::{UsartRegisters, wake};
 use crate::serial::Uart;
 
 /// A USART with its FIFOs on.
@@ -53,6 +53,6 @@ impl Uart for FifoUart {
     }
 
     fn interrupt_again(&mut self) {
-        ThisBoard::wake_serial();
+        wake();
     }
 }

@@ -41,6 +41,10 @@ pub use stream_slave::Spi1 as ThisSpi;
 
 #[cfg(any(feature = "stm32g474", feature = "stm32h743"))]
 mod fifo_uart;
+#[cfg(any(feature = "stm32g474", feature = "stm32h743"))]
+mod serial_usart;
+#[cfg(any(feature = "stm32g474", feature = "stm32h743"))]
+pub use serial_usart::UsartRegisters;
 
 #[cfg(feature = "stm32g474")]
 mod channel_slave;
@@ -49,12 +53,12 @@ mod stm32g474;
 #[cfg(feature = "stm32g474")]
 pub use channel_slave::Spi2 as ThisSpi;
 #[cfg(feature = "stm32g474")]
-pub use stm32g474::{Stm32G474 as ThisBoard, UsartRegisters, pac};
+pub use stm32g474::{Stm32G474 as ThisBoard, pac};
 
 #[cfg(feature = "stm32h743")]
 mod stm32h743;
 #[cfg(feature = "stm32h743")]
-pub use stm32h743::{Stm32H743 as ThisBoard, UsartRegisters, pac};
+pub use stm32h743::{Stm32H743 as ThisBoard, pac};
 
 /// What the firmware needs of a board.
 pub trait Board {

@@ -12,7 +12,6 @@
 
 pub use stm32g4::stm32g474 as pac;
 
-use cortex_m::peripheral::NVIC;
 use link::messages::Clock;
 
 use super::fifo_uart::FifoUart;
@@ -20,10 +19,7 @@ use super::flash_page::FlashPage;
 use super::flash_unit::{Bits, FlashUnit};
 use super::output::{Output, ports};
 use super::patience::wait_until;
-use super::{Board, Started, Watchdog};
-
-/// The USART of the serial line.
-pub type UsartRegisters = pac::USART2;
+use super::{Board, Started, Watchdog, serial_usart};
 
 const BAUD_RATE: u32 = 921_600;
 /// Clock of USART2 once the PLL runs.
@@ -64,7 +60,7 @@ impl Board for Stm32G474 {
     }
 
     fn wake_serial() {
-        NVIC::pend(pac::Interrupt::USART2);
+        serial_usart::wake();
     }
 }
 

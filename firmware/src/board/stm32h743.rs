@@ -12,17 +12,13 @@
 
 pub use stm32h7::stm32h743 as pac;
 
-use cortex_m::peripheral::NVIC;
 use link::messages::Clock;
 
 use super::fifo_uart::FifoUart;
 use super::flash_page::{Flash, FlashPage, KEYS};
 use super::output::{Output, ports};
 use super::patience::wait_until;
-use super::{Board, Started, Watchdog};
-
-/// The USART of the serial line.
-pub type UsartRegisters = pac::USART3;
+use super::{Board, Started, Watchdog, serial_usart};
 
 const BAUD_RATE: u32 = 921_600;
 /// Clock of USART3 once the PLL runs: a quarter of the core clock.
@@ -66,7 +62,7 @@ impl Board for Stm32H743 {
     }
 
     fn wake_serial() {
-        NVIC::pend(pac::Interrupt::USART3);
+        serial_usart::wake();
     }
 }
 

@@ -7,6 +7,9 @@ use parameters::{JointParameters, MAX_PLANETS, MeshPhases, StiffnessWave};
 use reference::integrator::Guards;
 use reference::scenarios::{PAPER_LENGTH, paper_natural_frequency};
 
+/// omega / omega_n.
+pub const OMEGA: f64 = 0.8;
+
 /// Sun-planet deflections of every planet, then ring-planet, over b_c.
 pub type Deflections = [Vec<f64>; 2];
 
@@ -77,7 +80,7 @@ impl Joint {
         let drive_force = drive_torque / 36.8241e-3;
         let unit = square * PAPER_LENGTH;
         let (drive, load) = (drive_force / (sun * unit), 2.0 * drive_force / (carrier * unit));
-        let omega = super::OMEGA;
+        let omega = OMEGA;
         Self { planets, sun, planet, carrier, meshes, drive, load, omega, sides: [[0.0; MAX_PLANETS]; 2] }
     }
 

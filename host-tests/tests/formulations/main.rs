@@ -15,10 +15,8 @@ use reference::scenarios::{PAPER_LENGTH, Scenario, TorqueSegment, paper_joint, p
 
 use equation_19::Equation19;
 use equation_20::Equation20;
-use joint::{Deflections, Joint};
+use joint::{Deflections, Joint, OMEGA};
 
-/// omega / omega_n.
-const OMEGA: f64 = 0.8;
 /// Drive torque [N m]: some 7 um of deflection a mesh, so that errors of 10 um part it again and again.
 const DRIVE_TORQUE: f64 = 80.0;
 /// Samples of a run and the dimensionless time between them.

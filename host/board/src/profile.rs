@@ -3,6 +3,7 @@
 
 mod builtin;
 mod recorded;
+mod torques;
 
 use std::path::Path;
 
@@ -13,9 +14,9 @@ use report::failure::{Failure, Outcome};
 use report::output::typed;
 
 pub use builtin::BUILTIN;
+pub use torques::STRONGEST;
+use torques::Torques;
 
-/// No joint that this is for gives or takes more: it is a slip of the unit [N m].
-pub const STRONGEST: f64 = 1e6;
 /// No link or carrier turns faster [rad/s].
 pub const FASTEST: f64 = 1e4;
 /// Commands a second; torques hold in between [Hz].
@@ -30,13 +31,6 @@ pub struct Profile {
     pub commands: Vec<Command>,
     /// Length in ticks.
     pub ticks: u32,
-}
-
-/// Torques at one time: drive on the sun shaft, load that brakes the link [N m].
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Torques {
-    drive: f64,
-    load: f64,
 }
 
 impl Profile {

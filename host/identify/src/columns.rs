@@ -1,13 +1,8 @@
-//! Columns of numbers under names, from CSV or MCAP: what is missing or no number is named. What the columns mean is the
-//! log's business.
+//! Columns of numbers under names, out of CSV text or row by row: what is missing or no number is named. What the columns
+//! mean is the log's business.
 
-use std::path::Path;
-
-use super::mcap_log;
 use report::failure::{Failure, Outcome};
 
-/// Larger files are taken for a mistake.
-const LARGEST_FILE: u64 = 2 << 30;
 /// What to write in the first line.
 const HEADER_HELP: &str = "the first line names the columns: time_s,motor_counts,output_counts,motor_torque_N_m and, if it \
                            was measured, output_torque_N_m; --column motor_counts=NAME takes another name";
@@ -41,33 +36,6 @@ impl Columns {
     /// Nothing yet, in rows that are called so.
     pub fn of(row: &'static str) -> Self {
         Self { names: Vec::new(), values: Vec::new(), places: Vec::new(), row }
-    }
-
-    /// Reads a file by what it is; `renamed` holds pairs of a name here and one in the log.
-    pub fn read(path: &Path, topic: Option<&str>, renamed: &[(String, String)]) -> Outcome<Self> {
-        let failed = |what: &str| {
-            Failure::new(format!("cannot read the log {}: {what}", path.display()))
-                .with_help("`joint identify LOG --simulate` makes one without hardware")
-        };
-        let data = std::fs::metadata(path).map_err(|error| failed(&error.to_string()))?;
-        if data.is_dir() {
-            return Err(failed("it is a folder"));
-        }
-        if data.len() > LARGEST_FILE {
-            return Err(failed("it is larger than 2 GB"));
-        }
-        let bytes = std::fs::read(path).map_err(|error| failed(&error.to_string()))?;
-        let columns = if mcap_log::is_mcap(&bytes) {
-            mcap_log::read(&bytes, topic, |columns| columns.clone().renamed(renamed).is_ok_and(|own| own.will_do()))
-        } else if let Some(topic) = topic {
-            let message = format!("it is no MCAP log, so it has no topic `{topic}`");
-            Err(Failure::new(message).with_help("leave --topic out"))
-        } else {
-            let text = String::from_utf8(bytes)
-                .map_err(|_| failed("it is neither MCAP nor text (UTF-8): export it as CSV"))?;
-            Self::parse(&text)
-        };
-        columns.and_then(|columns| columns.renamed(renamed)).map_err(|failure| failure.while_doing(path.display()))
     }
 
     /// Of CSV text.
@@ -107,7 +75,7 @@ impl Columns {
     }
 
     /// Under the names that are known here.
-    fn renamed(mut self, renamed: &[(String, String)]) -> Outcome<Self> {
+    pub(super) fn renamed(mut self, renamed: &[(String, String)]) -> Outcome<Self> {
         for (own, theirs) in renamed {
             let Some(place) = self.names.iter().position(|name| name == theirs) else {
                 return Err(self.missing(theirs));
@@ -120,7 +88,7 @@ impl Columns {
     }
 
     /// Whether motor, output and torque are there.
-    fn will_do(&self) -> bool {
+    pub(super) fn will_do(&self) -> bool {
         let has = |wanted: &[&str]| {
             let all = KNOWN.iter().filter(|(name, _)| wanted.contains(name));
             all.flat_map(|(name, others)| others.iter().chain([name])).any(|name| self.names().any(|own| own == *name))

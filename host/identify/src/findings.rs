@@ -4,40 +4,15 @@
 
 mod angles;
 mod brakes;
-pub(super) mod gap;
+mod finding;
+mod gap;
 
-use serde::Serialize;
+pub use finding::Finding;
 
-use super::estimate::Estimate;
 use super::log::Log;
 use super::plan::Plan;
 use super::rows::Rows;
 use super::twist::Twist;
-
-/// A value counts as found if half of its interval is at most this share of it.
-const SHARE: f64 = 0.5;
-/// How well the motor's inertia in a joint file is usually known: what the scale of the torque rests on.
-const INERTIA_SHARE: f64 = 0.015;
-/// What two inertias on a spring leave out of a joint, as a share of a value: widens every interval. Found on simulated
-/// logs of the presets, where the scatter alone promised more than the reference keeps.
-const MODEL_SHARE: f64 = 0.003;
-
-/// One parameter.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Finding {
-    /// What it is.
-    pub name: String,
-    /// Unit of the numbers.
-    pub unit: String,
-    /// Key of the joint file that it belongs to.
-    pub key: Option<String>,
-    /// Best value; absent if the log does not show it.
-    pub value: Option<f64>,
-    /// Lower and upper end of the 95 % interval.
-    pub interval: Option<[f64; 2]>,
-    /// Why the log does not show it, or what to know about the value.
-    pub note: String,
-}
 
 /// Everything that a log shows of a joint.
 pub fn gather(log: &Log, quick: &Rows, slow: &Rows, twist: &Twist, plan: &Plan) -> Vec<Finding> {
@@ -46,40 +21,4 @@ pub fn gather(log: &Log, quick: &Rows, slow: &Rows, twist: &Twist, plan: &Plan) 
     findings.extend(angles::maps(twist, plan));
     findings.push(angles::skew(log, twist, plan));
     findings
-}
-
-fn finding(name: &str, unit: &str, key: &str, estimate: Estimate) -> Finding {
-    let Estimate { value, half } = estimate;
-    let half = half + MODEL_SHARE * value.abs();
-    Finding {
-        name: name.into(),
-        unit: unit.into(),
-        key: (!key.is_empty()).then(|| key.to_owned()),
-        value: Some(value),
-        interval: Some([value - half, value + half]),
-        note: String::new(),
-    }
-}
-
-impl Finding {
-    /// Nothing, for a reason, unless it is so.
-    fn if_so(self, so: bool, why: &str) -> Self {
-        let finite = self.value.is_some_and(f64::is_finite)
-            && self.interval.is_some_and(|ends| ends.iter().all(|end| end.is_finite()));
-        if so && finite {
-            return self;
-        }
-        Self { value: None, interval: None, note: format!("not identifiable from this log: {why}"), ..self }
-    }
-
-    fn noted(self, note: impl Into<String>) -> Self {
-        if self.value.is_none() { self } else { Self { note: note.into(), ..self } }
-    }
-
-    /// What cannot be negative, and with it its interval.
-    fn not_negative(mut self) -> Self {
-        self.value = self.value.map(|value| value.max(0.0));
-        self.interval = self.interval.map(|ends| ends.map(|end| end.max(0.0)));
-        self
-    }
 }

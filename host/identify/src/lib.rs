@@ -1,10 +1,10 @@
 //! `joint identify`: from a recorded reversal test to a joint's backlash, compliance, damping, friction and encoder errors,
 //! each with its interval, and to a patched joint file. Learning on board is the observer's business.
 //!
-//! `columns` reads a file, an MCAP log by `mcap_log` and `ros_message`; `log` turns it into samples, checked by `sampling`,
-//! whose scatter is `noise`; `plan` says what the joint file knows; `rows` are the moments at which a flank carries, smoothed by `kernel`; `twist` and `friction` are fitted to them by
-//! `regression`; `findings` is what comes of it, with its `estimate`s; `table`, `page`, `pictures` and `patch` show it.
-//! `virtual_test` makes a log without hardware.
+//! `log_file` reads a file into `columns`, an MCAP log by `mcap_log` and `ros_message`; `log` turns them into samples,
+//! checked by `sampling`, whose scatter is `noise`; `plan` says what the joint file knows; `rows` are the moments at which a
+//! flank carries, smoothed by `kernel`; `twist` and `friction` are fitted to them by `regression`; `findings` is what comes
+//! of it, with its `estimate`s; `table`, `page`, `pictures` and `patch` show it. `virtual_test` makes a log without hardware.
 
 mod arguments;
 mod columns;
@@ -13,6 +13,7 @@ pub mod findings;
 mod friction;
 mod kernel;
 mod log;
+mod log_file;
 mod mcap_log;
 pub mod memory;
 mod noise;

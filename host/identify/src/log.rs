@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 
 use super::arguments::Arguments;
 use super::columns::Columns;
+use super::log_file;
 use super::noise::Noise;
 use super::plan::Plan;
 use super::sampling::sampling;
@@ -52,7 +53,7 @@ impl Log {
     /// Reads a file.
     pub fn read(arguments: &Arguments, plan: &Plan) -> Outcome<Self> {
         let path = arguments.log.as_path();
-        let columns = Columns::read(path, arguments.topic.as_deref(), &arguments.column)?;
+        let columns = log_file::read(path, arguments.topic.as_deref(), &arguments.column)?;
         Self::of(&columns, plan).map_err(|failure| failure.while_doing(path.display()))
     }
 

@@ -2,7 +2,6 @@
 //! hold is the log's business.
 
 use super::columns::Columns;
-use super::findings::gap;
 use super::plan::Plan;
 use report::failure::{Failure, Outcome};
 
@@ -12,6 +11,8 @@ const LEAST_TIME: f64 = 0.5;
 const LEAST_RATE: f64 = 2000.0;
 /// ... nor do less than so many of them in a swing of the joint on its compliance.
 const LEAST_IN_A_SWING: f64 = 3.0;
+/// Samples of a swing from which its damping can be told.
+pub const SWING_SAMPLES: f64 = 16.0;
 /// A step of time may differ by this ratio from the usual one.
 const UNEVEN_RATIO: f64 = 0.5;
 
@@ -58,7 +59,7 @@ fn check_time(period: f64, samples: usize, plan: &Plan) -> Outcome<()> {
         ))
         .with_help(format!(
             "record every control period; {:.0} Hz also show the damping",
-            (gap::SWING_SAMPLES * swing).max(needed)
+            (SWING_SAMPLES * swing).max(needed)
         )));
     }
     if time < LEAST_TIME {

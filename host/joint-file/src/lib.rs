@@ -4,7 +4,7 @@
 //!
 //! `keys` lists every key with its unit, bound and meaning; `section` takes values out of a table by that list; one
 //! file for each section of a joint file turns them into parameters; `coherence` asks whether the gears fit together.
-//! `change` sets single values in a file's text.
+//! `wording` is what their complaints share. `change` sets single values in a file's text.
 
 mod bodies;
 mod bound;
@@ -27,6 +27,7 @@ mod section;
 mod spelling;
 mod surroundings;
 mod unknown;
+mod wording;
 
 pub use change::{Refused, change, change_noting, full_key, value};
 pub use drive_train::{DriveTrain, Encoder};

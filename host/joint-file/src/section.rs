@@ -10,6 +10,7 @@ use crate::bound::{Bound, Unit};
 use crate::keys::{self, Key, Kind};
 use crate::notes::Notes;
 use crate::unknown;
+use crate::wording::{kind, listed, listed_as, shown};
 
 /// One table of the file.
 pub(crate) struct Section<'a> {
@@ -212,40 +213,5 @@ impl<'a> Section<'a> {
 
     fn full(&self, name: &str) -> String {
         if self.path.is_empty() { name.to_owned() } else { format!("{}.{name}", self.path) }
-    }
-}
-
-/// The type of a value, for "must be a number, not ...".
-fn kind(value: &Spanned<DeValue<'_>>) -> &'static str {
-    match value.get_ref() {
-        DeValue::String(_) => "a string",
-        DeValue::Integer(_) => "a whole number",
-        DeValue::Float(_) => "a number with a fraction",
-        DeValue::Boolean(_) => "true or false",
-        DeValue::Datetime(_) => "a date",
-        DeValue::Array(_) => "a list",
-        DeValue::Table(_) => "a section",
-    }
-}
-
-/// A number as it was typed.
-fn shown(value: &Spanned<DeValue<'_>>) -> String {
-    match value.get_ref() {
-        DeValue::Integer(integer) => integer.to_string(),
-        DeValue::Float(float) => float.to_string(),
-        _ => kind(value).to_owned(),
-    }
-}
-
-pub(crate) fn listed(names: &[&str]) -> String {
-    listed_as(names, '`', "and")
-}
-
-fn listed_as(names: &[&str], quote: char, last: &str) -> String {
-    let quoted: Vec<String> = names.iter().map(|name| format!("{quote}{name}{quote}")).collect();
-    match quoted.split_last() {
-        Some((end, rest)) if !rest.is_empty() => format!("{} {last} {end}", rest.join(", ")),
-        Some((end, _)) => end.clone(),
-        None => String::new(),
     }
 }

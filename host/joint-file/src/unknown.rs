@@ -5,8 +5,8 @@ use toml::de::DeTable;
 
 use crate::keys;
 use crate::notes::Notes;
-use crate::section::listed;
 use crate::spelling;
+use crate::wording::listed;
 
 /// Notes every key of the table at `path` that is not among the keys of `schema`.
 pub(crate) fn check(path: &str, schema: &str, table: &DeTable<'_>, notes: &Notes<'_>) {

@@ -24,7 +24,7 @@ use current_loop::CurrentLoop;
 pub use disturbance::Disturbance;
 use encoder::Encoder;
 use friction::Shaft;
-pub use inside::Inside;
+pub use inside::{Inside, Stepping};
 pub use parameters::{
     DriveTrainError, DriveTrainParameters, EncoderParameters, FrictionParameters, LoadParameters, MotorParameters,
 };
@@ -91,16 +91,6 @@ pub struct DriveTrain<J = Reference> {
     load_inertia: f64,
     compliant: bool,
     stepping: Stepping,
-}
-
-/// How the joint inside moves over a part of time.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum Stepping {
-    /// Adaptive steps of order 8 that end at every contact event.
-    #[default]
-    Adaptive,
-    /// Fixed fine steps, many times faster: for closed loops, whose feedback forgives what a step loses.
-    Fixed,
 }
 
 impl DriveTrain {

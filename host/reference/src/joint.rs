@@ -1,89 +1,23 @@
 //! The reference: eqs 1-6 of the paper in f64 and absolute coordinates with the sharp dead zone, integrated by an
 //! adaptive method of order 8 that restarts at every contact event. It shares no matrix, force law or phase with the
 //! core, whose parameters it reads as plain data; eq. 13's smoothed dead zone is refused.
+//!
+//! `reference` is the joint in motion by `equations`, whose numbers are by `assembly` and whose teeth are by `mesh_law`;
+//! `start` is where it begins, `reading` makes an `observation` of it, `fixed_step` and `wear` move and change it in
+//! other ways.
 
 mod assembly;
 mod equations;
 mod fixed_step;
 mod mesh_law;
 mod observation;
+mod reading;
+mod reference;
 mod start;
 mod validity;
 mod wear;
 
-use std::f64::consts::TAU;
-
-use equations::JointEquations;
 pub use observation::{Observation, Work};
-use parameters::JointParameters;
+pub use reference::Reference;
 pub use start::{RelativeState, Start};
 pub use validity::ReferenceError;
-
-use crate::integrator::{Counters, Integrator, MAX_ENTRIES};
-
-/// A joint in motion.
-#[derive(Debug, Clone)]
-pub struct Reference {
-    equations: JointEquations,
-    integrator: Integrator,
-    /// Ring teeth that the carrier has passed and that were taken off all coordinates.
-    teeth_passed: i64,
-}
-
-impl Reference {
-    /// A joint at time zero, all bodies still at angle zero.
-    pub fn new(joint: &JointParameters) -> Result<Self, ReferenceError> {
-        Self::start(joint, &Start::Still)
-    }
-
-    /// A joint at time zero.
-    ///
-    /// # Panics
-    /// If a list in `start` has not one value for each planet.
-    pub fn start(joint: &JointParameters, start: &Start) -> Result<Self, ReferenceError> {
-        let mut equations = JointEquations::new(joint)?;
-        let state = start::resolve(start, &equations);
-        crate::integrator::SwitchedSystem::freeze(&mut equations, 0.0, &state);
-        Ok(Self { equations, integrator: Integrator::new(0.0, state), teeth_passed: 0 })
-    }
-
-    /// Present time [s].
-    pub fn time(&self) -> f64 {
-        self.integrator.time()
-    }
-
-    /// Moves on to `time` [s] under constant torques: `drive_torque` on the sun, `load_torque` braking the link [N m].
-    pub fn advance(&mut self, time: f64, drive_torque: f64, load_torque: f64) -> Result<(), ReferenceError> {
-        self.equations.drive_force = drive_torque / self.equations.sun_lever;
-        self.equations.load_force = load_torque / self.equations.carrier_lever;
-        self.count_teeth();
-        self.integrator.advance(&mut self.equations, time)?;
-        Ok(())
-    }
-
-    /// What can be read off now.
-    pub fn observe(&self) -> Observation {
-        Observation::read(self)
-    }
-
-    /// What the run has cost so far.
-    pub fn counters(&self) -> Counters {
-        self.integrator.counters()
-    }
-
-    /// Takes whole ring teeth off the coordinates, which leaves every deflection and every mesh phase as it is: the
-    /// coordinates stay millimetres, so that deflections keep their digits at any number of turns.
-    fn count_teeth(&mut self) {
-        let pitch = TAU / self.equations.ring_teeth * self.equations.carrier_lever;
-        let bodies = self.equations.bodies();
-        let state = self.integrator.state_mut();
-        let teeth = (self.equations.rigid(&state[..bodies]) / pitch).round();
-        if teeth != 0.0 && teeth.is_finite() {
-            debug_assert!(bodies <= MAX_ENTRIES);
-            for (body, position) in state[..bodies].iter_mut().enumerate() {
-                *position -= JointEquations::rigid_share(body) * pitch * teeth;
-            }
-            self.teeth_passed += teeth as i64;
-        }
-    }
-}

@@ -1,9 +1,11 @@
 //! `joint bench`: the core's step against what people use, error by cost, on the emulated core and on the host. `lineup`
 //! runs the fixed-step methods, by `race` on the emulated core, `libraries` times what a host program would take from
-//! a library, `verdicts` and `in_a_sample` draw the conclusions, `table`, `page` and `document` show them.
+//! a library, `verdicts` and `in_a_sample` draw the conclusions; all are `figures`, and `table`, `page` and `document` show
+//! them.
 
 mod columns;
 mod document;
+mod figures;
 mod in_a_sample;
 mod libraries;
 mod lineup;
@@ -13,12 +15,13 @@ mod race;
 mod table;
 mod verdicts;
 
+pub use figures::{Figures, Origin};
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use contest::case::Case;
 use contest::catalogue;
-use serde::Serialize;
 
 use board::target::emulator;
 use board::target::toolchain::Toolchain;
@@ -62,46 +65,6 @@ pub struct Arguments {
     /// Writes the comparison into this Markdown file, between its two marks
     #[arg(long, value_name = "FILE")]
     document: Option<PathBuf>,
-}
-
-/// Everything found.
-#[derive(Debug, Clone, Serialize)]
-pub struct Figures {
-    /// Where the figures come from.
-    pub origin: Origin,
-    /// Cases.
-    pub cases: Vec<lineup::CaseFigures>,
-    /// Fixed-step methods: error and instructions.
-    pub methods: Vec<lineup::Entry>,
-    /// Instructions at equal error.
-    pub at_equal_error: Vec<verdicts::AtError>,
-    /// Robot joints: every method at the same cost.
-    pub in_a_sample: Vec<in_a_sample::InASample>,
-    /// Least error in half a board.
-    pub in_budget: Vec<verdicts::InBudget>,
-    /// f32 beside f64.
-    pub rounding: Vec<verdicts::Rounding>,
-    /// Host times, unless left out.
-    pub host: Option<libraries::Times>,
-    /// Host times at equal error.
-    pub host_at_equal_error: Vec<verdicts::AtError>,
-}
-
-/// Where figures come from.
-#[derive(Debug, Clone, Serialize)]
-pub struct Origin {
-    /// Commit of the sources.
-    pub commit: String,
-    /// Date.
-    pub date: String,
-    /// Compiler of the image.
-    pub compiler: String,
-    /// Flags of the image.
-    pub flags: String,
-    /// Emulator and machine.
-    pub emulator: String,
-    /// The host's processor.
-    pub host: String,
 }
 
 /// Compares.

@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 
 use parameters::JointParameters;
 
-use super::Torques;
+use super::torques::Torques;
 
 /// Names of the built-in profiles.
 pub const BUILTIN: [&str; 1] = ["reversals"];

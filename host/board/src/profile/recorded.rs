@@ -4,7 +4,7 @@
 
 use std::path::Path;
 
-use super::{STRONGEST, Torques};
+use super::torques::{STRONGEST, Torques};
 use report::failure::{Failure, Outcome};
 use report::output::typed;
 

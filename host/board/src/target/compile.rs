@@ -6,7 +6,8 @@ use std::fs::{self, File};
 use std::io;
 use std::path::Path;
 
-use super::toolchain::{TARGET, Toolchain};
+use super::cross_build::{TARGET, cannot_write};
+use super::toolchain::Toolchain;
 use super::{Say, tool};
 use report::failure::{Failure, Outcome};
 
@@ -55,12 +56,6 @@ pub(super) fn store(images: &Path, place: &Path, elf: &[u8]) -> Outcome<()> {
         .and_then(|()| fs::write(&unfinished, elf))
         .and_then(|()| fs::rename(&unfinished, place))
         .map_err(|error| cannot_write(place, &error))
-}
-
-/// A file of a build that cannot be written, with the mend.
-pub(super) fn cannot_write(path: &Path, error: &io::Error) -> Failure {
-    Failure::new(format!("cannot write {}: {error}", path.display()))
-        .with_help("make room, or set CARGO_TARGET_DIR to a folder that can be written")
 }
 
 #[cfg(test)]

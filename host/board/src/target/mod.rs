@@ -7,6 +7,7 @@
 
 pub mod board;
 pub mod compile;
+pub mod cross_build;
 pub mod emulator;
 pub mod flash;
 pub mod image;

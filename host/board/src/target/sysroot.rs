@@ -9,8 +9,7 @@ use std::process::Command;
 
 use sha2::{Digest, Sha256};
 
-use super::compile::cannot_write;
-use super::toolchain::{TARGET, clean};
+use super::cross_build::{TARGET, cannot_write, clean};
 use super::{Say, tool};
 use report::failure::Outcome;
 

@@ -10,11 +10,9 @@ use std::process::Command;
 
 use report::workspace::workspace;
 
+use super::cross_build::{TARGET, clean};
 use super::{Say, packages, sysroot, tool};
 use report::failure::{Failure, Outcome};
-
-/// The target of every board.
-pub const TARGET: &str = "thumbv7em-none-eabihf";
 
 /// Oldest compiler that the workspace builds with: its `rust-version`.
 const OLDEST: (u32, u32) = (1, 95);
@@ -95,16 +93,6 @@ impl Toolchain {
 fn target_directory() -> PathBuf {
     let given = env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
     workspace().join(given.unwrap_or_else(|| "target".into()))
-}
-
-/// Frees a cargo command from what an outer `cargo run` and the user's shell have set for the host.
-pub(super) fn clean(command: &mut Command) -> &mut Command {
-    for variable in
-        ["RUSTFLAGS", "CARGO_ENCODED_RUSTFLAGS", "CARGO_BUILD_TARGET", "CARGO_TARGET_DIR", "LD_LIBRARY_PATH"]
-    {
-        command.env_remove(variable);
-    }
-    command
 }
 
 /// The compiler in use, if it has the target.

@@ -1,6 +1,6 @@
 //! What a log shows of the encoders: errors that come once and twice a turn, and the age of the output's reading.
 
-use super::{Finding, finding};
+use super::finding::{Finding, finding};
 use crate::estimate::Estimate;
 use crate::log::Log;
 use crate::plan::Plan;

@@ -1,7 +1,7 @@
 //! What a log shows of the frictions of motor and link, and of the scale of the torque, which they rest on. The balances
 //! themselves are fitted elsewhere.
 
-use super::{Finding, INERTIA_SHARE, SHARE, finding};
+use super::finding::{Finding, INERTIA_SHARE, SHARE, finding};
 use crate::estimate::Estimate;
 use crate::friction;
 use crate::plan::Plan;

@@ -1,17 +1,16 @@
 //! What a log shows of gap, compliance and damping. Frictions and errors by angle are the neighbours'.
 
-use super::{Finding, INERTIA_SHARE, SHARE, finding};
+use super::finding::{Finding, INERTIA_SHARE, SHARE, finding};
 use crate::estimate::Estimate;
 use crate::log::Log;
 use crate::plan::Plan;
 use crate::regression::Solution;
+use crate::sampling::SWING_SAMPLES;
 use crate::twist;
 use crate::twist::Twist;
 
 /// How well readings of motor and torque are taken at the same time [s]: a delay looks like damping.
 const SAME_TIME: f64 = 2e-6;
-/// Samples of a swing from which its damping can be told.
-pub const SWING_SAMPLES: f64 = 16.0;
 
 /// The gap, what bends, and how it rings.
 pub(super) fn gap_and_compliance(log: &Log, twist: &Twist, plan: &Plan) -> Vec<Finding> {

@@ -147,3 +147,51 @@ fn columns_null_is_nan<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec
     let filled = |column: Vec<Option<f32>>| column.into_iter().map(|value| value.unwrap_or(f32::NAN)).collect();
     Ok(columns.into_iter().map(filled).collect())
 }
+
+#[cfg(test)]
+mod tests {
+    use link::messages::Sample;
+
+    use super::*;
+
+    fn board_sample() -> Sample {
+        Sample {
+            tick: 40,
+            state_digest: 0xab,
+            carrier_turns: -2,
+            carrier_fraction: 1 << 30,
+            carrier_speed: 1.5,
+            motor_offset: 6e-3,
+            link_offset: -1e-3,
+            gap: 8e-5,
+            wind_up: 2e-6,
+            deflections: [1e-5, 2e-5, 3e-5, 4e-5].into_iter().collect(),
+            contacts: 0b10_01_00_01,
+            computation: 1680,
+        }
+    }
+
+    #[test]
+    fn a_sample_of_the_line_comes_out_in_si() {
+        let mut samples = Samples::new(4);
+        samples.push(&MotionSample::from_board(&board_sample(), 168_000_000), 20_000, 6.0);
+        let carrier = -1.75 * core::f64::consts::TAU;
+        assert_eq!(samples.time_s, [2e-3]);
+        assert!((samples.motor_angle_rad[0] - (6.0 * carrier + 6e-3)).abs() < 1e-9);
+        assert!((samples.link_angle_rad[0] - (carrier - 1e-3)).abs() < 1e-9);
+        assert!((samples.twist_rad[0] - 2e-3).abs() < 1e-9);
+        assert_eq!(samples.state_digest, ["00000000000000ab"]);
+        assert_eq!(samples.computation_s, [1e-5]);
+        assert_eq!(samples.deflection_m[3], [4e-5]);
+        let states: Vec<Contact> = samples.contact.iter().map(|column| column[0]).collect();
+        assert_eq!(states, [Contact::DriveSide, Contact::Separated, Contact::DriveSide, Contact::BackSide]);
+    }
+
+    #[test]
+    fn columns_stay_of_one_length_whatever_a_board_sends() {
+        let mut samples = Samples::new(6);
+        samples.push(&MotionSample::from_board(&board_sample(), 168_000_000), 20_000, 6.0);
+        assert!(samples.deflection_m.iter().all(|column| column.len() == 1));
+        assert!(samples.deflection_m[5][0].is_nan());
+    }
+}

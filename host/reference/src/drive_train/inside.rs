@@ -1,8 +1,17 @@
-//! What moves inside a drive train: the reference, or another model of the same joint that is to be held against it.
+//! What moves inside a drive train, and how finely: the reference, or another model of the same joint that is to be held against it.
 //! Torques and sensors are the drive train's, so that both get the same ones.
 
-use super::Stepping;
 use crate::joint::{Observation, Reference, ReferenceError};
+
+/// How the joint inside moves over a part of time.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Stepping {
+    /// Adaptive steps of order 8 that end at every contact event.
+    #[default]
+    Adaptive,
+    /// Fixed fine steps, many times faster: for closed loops, whose feedback forgives what a step loses.
+    Fixed,
+}
 
 /// A joint in motion.
 pub trait Inside {

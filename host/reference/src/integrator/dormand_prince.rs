@@ -2,7 +2,7 @@
 //! and 3 (E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary Differential Equations I", section II.10, DOP853).
 //! Step size control and the dense output, which events do not need here, are left out.
 
-use super::{Entries, MAX_ENTRIES, SwitchedSystem};
+use super::system::{Entries, MAX_ENTRIES, SwitchedSystem};
 
 const STAGES: usize = 12;
 

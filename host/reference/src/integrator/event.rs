@@ -1,39 +1,9 @@
 //! Finds the first moment at which a guard of a switched system turns negative within one step. What is frozen between
-//! two such moments, and what happens after one, is left to the system and to `Integrator`.
+//! two such moments, and what happens after one, is left to the system and to `adaptive`.
 
 use super::dormand_prince::{Trial, trial};
-use super::{Entries, SwitchedSystem};
-
-/// A quantity that stays above zero as long as the frozen choices of a system hold.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Guard {
-    /// Negative once the choice no longer holds.
-    pub value: f64,
-    /// Its rate of change [1/s].
-    pub rate: f64,
-}
-
-/// The most guards that a system may have.
-pub const MAX_GUARDS: usize = 20;
-
-/// The guards of a system at one moment.
-#[derive(Debug, Clone, Copy)]
-pub struct Guards {
-    list: [Guard; MAX_GUARDS],
-    length: usize,
-}
-
-impl Guards {
-    pub(super) fn none() -> Self {
-        Self { list: [Guard::default(); MAX_GUARDS], length: 0 }
-    }
-
-    /// Adds one; the order must not change while the choices are frozen.
-    pub fn watch(&mut self, value: f64, rate: f64) {
-        self.list[self.length] = Guard { value, rate };
-        self.length += 1;
-    }
-}
+use super::guard::{Guard, Guards};
+use super::system::{Entries, SwitchedSystem};
 
 /// A point of a step: how far in, and what a guard reads there.
 #[derive(Debug, Clone, Copy)]

@@ -3,9 +3,9 @@
 
 use parameters::MAX_PLANETS;
 
-use super::Reference;
 use super::equations::JointEquations;
 use super::mesh_law::{MeshConstants, Phase};
+use super::reference::Reference;
 use crate::integrator::SwitchedSystem;
 
 /// Highest frequency times the step: the teeth's own frequency comes out 0.4 % high at most.

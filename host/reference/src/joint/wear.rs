@@ -1,7 +1,7 @@
 //! Teeth that change while the joint moves: backlash that has grown, a mesh that has gone soft. When and why they change
 //! is the caller's; between changes the equations are those of any joint.
 
-use super::Reference;
+use super::reference::Reference;
 use crate::integrator::SwitchedSystem;
 
 impl Reference {

@@ -3,7 +3,8 @@
 
 use differential_equations::prelude::*;
 
-use super::{Equations, Library};
+use super::equations::Equations;
+use super::library::Library;
 
 impl<const N: usize, const D: usize> ODE<f64, [f64; D]> for Equations<N, D> {
     #[inline]

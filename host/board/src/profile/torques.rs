@@ -1,0 +1,12 @@
+//! Torques at one time, as every profile gives them, and the most that is believed of one. On which ticks they are
+//! commanded is left to `Profile`.
+
+/// No joint that this is for gives or takes more: it is a slip of the unit [N m].
+pub const STRONGEST: f64 = 1e6;
+
+/// Torques at one time: drive on the sun shaft, load that brakes the link [N m].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Torques {
+    pub drive: f64,
+    pub load: f64,
+}

@@ -1,0 +1,42 @@
+//! How messages put what stands in a joint file: the type of a value, a number as it was typed, names in a row. What is
+//! wrong with it is said by whoever complains.
+
+use toml::Spanned;
+use toml::de::DeValue;
+
+/// The type of a value, for "must be a number, not ...".
+pub(crate) fn kind(value: &Spanned<DeValue<'_>>) -> &'static str {
+    match value.get_ref() {
+        DeValue::String(_) => "a string",
+        DeValue::Integer(_) => "a whole number",
+        DeValue::Float(_) => "a number with a fraction",
+        DeValue::Boolean(_) => "true or false",
+        DeValue::Datetime(_) => "a date",
+        DeValue::Array(_) => "a list",
+        DeValue::Table(_) => "a section",
+    }
+}
+
+/// A number as it was typed.
+pub(crate) fn shown(value: &Spanned<DeValue<'_>>) -> String {
+    match value.get_ref() {
+        DeValue::Integer(integer) => integer.to_string(),
+        DeValue::Float(float) => float.to_string(),
+        _ => kind(value).to_owned(),
+    }
+}
+
+/// Names in a row: "`a`, `b` and `c`".
+pub(crate) fn listed(names: &[&str]) -> String {
+    listed_as(names, '`', "and")
+}
+
+/// Words in a row, quoted as stated, with `last` before the last one.
+pub(crate) fn listed_as(names: &[&str], quote: char, last: &str) -> String {
+    let quoted: Vec<String> = names.iter().map(|name| format!("{quote}{name}{quote}")).collect();
+    match quoted.split_last() {
+        Some((end, rest)) if !rest.is_empty() => format!("{} {last} {end}", rest.join(", ")),
+        Some((end, _)) => end.clone(),
+        None => String::new(),
+    }
+}

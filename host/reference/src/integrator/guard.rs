@@ -1,0 +1,32 @@
+//! Guards: what a system lists to tell that its frozen choices still hold. Where one turns negative is found by `event`.
+
+/// A quantity that stays above zero as long as the frozen choices of a system hold.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Guard {
+    /// Negative once the choice no longer holds.
+    pub value: f64,
+    /// Its rate of change [1/s].
+    pub rate: f64,
+}
+
+/// The most guards that a system may have.
+pub const MAX_GUARDS: usize = 20;
+
+/// The guards of a system at one moment.
+#[derive(Debug, Clone, Copy)]
+pub struct Guards {
+    pub(super) list: [Guard; MAX_GUARDS],
+    pub(super) length: usize,
+}
+
+impl Guards {
+    pub(super) fn none() -> Self {
+        Self { list: [Guard::default(); MAX_GUARDS], length: 0 }
+    }
+
+    /// Adds one; the order must not change while the choices are frozen.
+    pub fn watch(&mut self, value: f64, rate: f64) {
+        self.list[self.length] = Guard { value, rate };
+        self.length += 1;
+    }
+}

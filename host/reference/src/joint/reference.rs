@@ -1,0 +1,73 @@
+//! The joint in motion: started, moved on under torques, and kept to small coordinates. What can be read off it is left to
+//! `reading`.
+
+use std::f64::consts::TAU;
+
+use parameters::JointParameters;
+
+use super::equations::JointEquations;
+use super::start::{Start, resolve};
+use super::validity::ReferenceError;
+use crate::integrator::{Counters, Integrator, MAX_ENTRIES, SwitchedSystem};
+
+/// A joint in motion.
+#[derive(Debug, Clone)]
+pub struct Reference {
+    pub(super) equations: JointEquations,
+    pub(super) integrator: Integrator,
+    /// Ring teeth that the carrier has passed and that were taken off all coordinates.
+    pub(super) teeth_passed: i64,
+}
+
+impl Reference {
+    /// A joint at time zero, all bodies still at angle zero.
+    pub fn new(joint: &JointParameters) -> Result<Self, ReferenceError> {
+        Self::start(joint, &Start::Still)
+    }
+
+    /// A joint at time zero.
+    ///
+    /// # Panics
+    /// If a list in `start` has not one value for each planet.
+    pub fn start(joint: &JointParameters, start: &Start) -> Result<Self, ReferenceError> {
+        let mut equations = JointEquations::new(joint)?;
+        let state = resolve(start, &equations);
+        equations.freeze(0.0, &state);
+        Ok(Self { equations, integrator: Integrator::new(0.0, state), teeth_passed: 0 })
+    }
+
+    /// Present time [s].
+    pub fn time(&self) -> f64 {
+        self.integrator.time()
+    }
+
+    /// Moves on to `time` [s] under constant torques: `drive_torque` on the sun, `load_torque` braking the link [N m].
+    pub fn advance(&mut self, time: f64, drive_torque: f64, load_torque: f64) -> Result<(), ReferenceError> {
+        self.equations.drive_force = drive_torque / self.equations.sun_lever;
+        self.equations.load_force = load_torque / self.equations.carrier_lever;
+        self.count_teeth();
+        self.integrator.advance(&mut self.equations, time)?;
+        Ok(())
+    }
+
+    /// What the run has cost so far.
+    pub fn counters(&self) -> Counters {
+        self.integrator.counters()
+    }
+
+    /// Takes whole ring teeth off the coordinates, which leaves every deflection and every mesh phase as it is: the
+    /// coordinates stay millimetres, so that deflections keep their digits at any number of turns.
+    pub(super) fn count_teeth(&mut self) {
+        let pitch = TAU / self.equations.ring_teeth * self.equations.carrier_lever;
+        let bodies = self.equations.bodies();
+        let state = self.integrator.state_mut();
+        let teeth = (self.equations.rigid(&state[..bodies]) / pitch).round();
+        if teeth != 0.0 && teeth.is_finite() {
+            debug_assert!(bodies <= MAX_ENTRIES);
+            for (body, position) in state[..bodies].iter_mut().enumerate() {
+                *position -= JointEquations::rigid_share(body) * pitch * teeth;
+            }
+            self.teeth_passed += teeth as i64;
+        }
+    }
+}

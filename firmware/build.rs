@@ -64,10 +64,9 @@ fn control(file: &Path, told: &Path) -> Result<String, String> {
     let tick_rate = tick_rate()?;
     let wish = ControlWish { bandwidth, output_encoder: variable("JOINT_MOTOR_ONLY") != Some("1".into()) };
     let (mut joint, mut told_joint) = (read(file)?, read(told)?);
-    [&mut joint, &mut told_joint].into_iter().for_each(|joint| joint.set_control_rate(tick_rate));
-    let told_around = told_joint.surroundings();
-    let told_as = Told { joint: &told_joint.parameters, surroundings: &told_around, wish };
-    match control_source(&joint.parameters, &joint.surroundings(), &told_as, &processor()?) {
+    [&mut joint, &mut told_joint].into_iter().for_each(|joint| joint.surroundings.control_rate = tick_rate);
+    let told_as = Told { joint: &told_joint.parameters, surroundings: &told_joint.surroundings, wish };
+    match control_source(&joint.parameters, &joint.surroundings, &told_as, &processor()?) {
         Ok(source) => Ok(source.text),
         Err(error) => Ok(format!("compile_error!({:?});\n", format!("{}: {error}", told.display()))),
     }

@@ -7,7 +7,7 @@ use core::convert::Infallible;
 use core::sync::atomic::Ordering::{Acquire, Relaxed, Release};
 
 use embedded_hal::digital::OutputPin;
-use link::messages::{Fault, Kept, RunMode, RunSettings};
+use link::messages::{Kept, RunMode, RunSettings, Trip};
 
 use crate::budget::{Monitor, TickTimer};
 use crate::page::{Learnt, judgement};
@@ -42,7 +42,7 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> Control<'a, E, W> {
     pub fn new(work: W, enable: E, period: u32, end: TickEnd<'a, W::Words>) -> Self {
         let mut safe_state = SafeState::new(enable);
         if !work.is_sound() {
-            safe_state.trip(Fault::BadDigest);
+            safe_state.trip(Trip::BadDigest);
         }
         let control = Self {
             work,
@@ -109,8 +109,8 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> Control<'a, E, W> {
                 self.safe_state.stop();
                 Event::Stopped
             }
-            Order::Trip(fault) => {
-                self.safe_state.trip(fault);
+            Order::Trip(trip) => {
+                self.safe_state.trip(trip);
                 Event::Stopped
             }
             Order::Keep => Event::Memory(Err(Kept::Running)),
@@ -120,9 +120,9 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> Control<'a, E, W> {
                 self.work.forget();
                 Event::Forgotten
             }
-            Order::Upset(upset) => {
+            Order::Fault(fault) => {
                 let begins = matches!(self.state(), State::Running) && self.steps == 0;
-                Event::Upset { taken: begins && self.work.upset(upset) }
+                Event::FaultTaken { taken: begins && self.work.add_fault(fault) }
             }
             Order::Report { reset } => {
                 let report = Event::Timing(self.monitor.clone());
@@ -160,10 +160,10 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> Control<'a, E, W> {
 
     fn reset(&mut self, settings: RunSettings) -> Event {
         if settings.mode == RunMode::Realtime && !W::GOES_ON {
-            return Event::Refused(Fault::BadSettings);
+            return Event::Refused(Trip::BadSettings);
         }
-        if let Err(fault) = self.safe_state.run() {
-            return Event::Refused(fault);
+        if let Err(trip) = self.safe_state.run() {
+            return Event::Refused(trip);
         }
         for _ in 0..COMMAND_CAPACITY {
             self.end.commands.take();
@@ -194,8 +194,8 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> Control<'a, E, W> {
                 self.monitor.waited = self.monitor.waited.saturating_add(lockstep.into());
                 return false;
             }
-            Turn::Trip(fault) => {
-                self.trip(fault);
+            Turn::Trip(trip) => {
+                self.trip(trip);
                 return false;
             }
         }
@@ -204,7 +204,7 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> Control<'a, E, W> {
         self.end.progress.steps.store(self.steps, Release);
         self.monitor.queue_low = self.monitor.queue_low.min(self.end.commands.count() as u16);
         if !self.work.is_finite() {
-            self.trip(Fault::NotFinite { tick: self.steps });
+            self.trip(Trip::NotFinite { tick: self.steps });
         }
         self.until_sample -= 1;
         if self.until_sample == 0 {
@@ -225,13 +225,13 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> Control<'a, E, W> {
 
     fn show_state(&self) {
         self.end.progress.running.store(matches!(self.state(), State::Running), Release);
-        self.end.progress.faulted.store(matches!(self.state(), State::Faulted(_)), Release);
+        self.end.progress.tripped.store(matches!(self.state(), State::Tripped(_)), Release);
     }
 
-    fn trip(&mut self, fault: Fault) {
-        self.safe_state.trip(fault);
+    fn trip(&mut self, trip: Trip) {
+        self.safe_state.trip(trip);
         self.show_state();
         // Room is certain: a run trips once, and besides that only one answer can be under way.
-        let _ = self.end.events.give(Event::Tripped(fault));
+        let _ = self.end.events.give(Event::Tripped(trip));
     }
 }

@@ -7,7 +7,7 @@ use core::sync::atomic::Ordering::Acquire;
 use heapless::Vec;
 use heapless::spsc::{Consumer, Producer};
 use link::framing::{MAX_FRAME, Receiver, encode};
-use link::messages::{Fault, FromBoard, Hello, LOG_BYTES, Log, MemoryWish, RunSettings, ToBoard};
+use link::messages::{FromBoard, Hello, LOG_BYTES, Log, MemoryWish, RunSettings, ToBoard, Trip};
 
 use crate::intake::{Intake, Taken};
 use crate::keeping::{Keeping, Step};
@@ -41,7 +41,7 @@ pub struct Conversation<'a, W: Words> {
     batch: W::Batch,
     log_sequence: u16,
     awaiting: bool,
-    cause: Option<Fault>,
+    cause: Option<Trip>,
     clear_with_report: bool,
     cleared: LineCounts,
 }
@@ -149,11 +149,11 @@ impl<'a, W: Words> Conversation<'a, W> {
             }
             // Said once the page is erased.
             Event::Forgotten => self.keeping.forgotten(),
-            Event::Upset { taken } => self.say(&FromBoard::Upset { taken }),
-            Event::Refused(fault) | Event::Tripped(fault) => self.say(&FromBoard::Fault(fault)),
+            Event::FaultTaken { taken } => self.say(&FromBoard::FaultTaken { taken }),
+            Event::Refused(trip) | Event::Tripped(trip) => self.say(&FromBoard::Tripped(trip)),
             Event::Stopped => {
                 if let Some(cause) = self.cause.take() {
-                    self.say(&FromBoard::Fault(cause));
+                    self.say(&FromBoard::Tripped(cause));
                 }
             }
             Event::Timing(monitor) => {
@@ -233,13 +233,13 @@ impl<'a, W: Words> Conversation<'a, W> {
             }
             ToBoard::Stop => self.order(Order::Stop),
             ToBoard::Memory(wish) => self.begin(wish),
-            ToBoard::Upset(upset) => self.order(Order::Upset(upset)),
+            ToBoard::Fault(fault) => self.order(Order::Fault(fault)),
             commands => match W::timetable(commands) {
                 Some(timetable) => {
                     let taken = self.intake.take(timetable);
                     self.tell(taken);
                 }
-                None => self.say(&FromBoard::Fault(Fault::WrongRole)),
+                None => self.say(&FromBoard::Tripped(Trip::WrongRole)),
             },
         }
     }
@@ -250,14 +250,14 @@ impl<'a, W: Words> Conversation<'a, W> {
         self.awaiting = true;
     }
 
-    fn trip(&mut self, fault: Fault) {
-        self.cause = Some(fault);
-        self.order(Order::Trip(fault));
+    fn trip(&mut self, trip: Trip) {
+        self.cause = Some(trip);
+        self.order(Order::Trip(trip));
     }
 
     fn reset(&mut self, settings: RunSettings) {
         if settings.decimation == 0 || settings.command_timeout == 0 {
-            return self.trip(Fault::BadSettings);
+            return self.trip(Trip::BadSettings);
         }
         self.intake.begin(settings.mode);
         self.order(Order::Reset(settings));
@@ -267,8 +267,8 @@ impl<'a, W: Words> Conversation<'a, W> {
     fn tell(&mut self, taken: Taken) {
         match taken {
             Taken::Accepted(accepted) => self.say(&FromBoard::Accepted(accepted)),
-            Taken::NotRunning => self.say(&FromBoard::Fault(Fault::NotRunning)),
-            Taken::Unfit(fault) => self.trip(fault),
+            Taken::NotRunning => self.say(&FromBoard::Tripped(Trip::NotRunning)),
+            Taken::Unfit(trip) => self.trip(trip),
             Taken::Nothing => {}
         }
     }

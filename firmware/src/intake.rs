@@ -4,7 +4,7 @@
 use core::sync::atomic::Ordering::{Acquire, Release};
 
 use heapless::spsc::Producer;
-use link::messages::{Accepted, Fault, RunMode};
+use link::messages::{Accepted, RunMode, Trip};
 
 use crate::queues::Progress;
 use crate::words::{Timed, Timetable, Words};
@@ -17,7 +17,7 @@ pub enum Taken {
     /// There is no run that it could be for.
     NotRunning,
     /// It cannot be obeyed: the run ends.
-    Unfit(Fault),
+    Unfit(Trip),
     /// It follows a gap, or waits for room: nothing is to be said.
     Nothing,
 }
@@ -85,15 +85,15 @@ impl<'a, W: Words> Intake<'a, W> {
                 return Taken::Nothing;
             }
         }
-        if let Err(fault) = self.check(&timetable) {
-            return Taken::Unfit(fault);
+        if let Err(trip) = self.check(&timetable) {
+            return Taken::Unfit(trip);
         }
         if timetable.commands().len() > self.free() {
             if lockstep {
                 self.held = Some(timetable);
                 return Taken::Nothing;
             }
-            return Taken::Unfit(Fault::QueueFull);
+            return Taken::Unfit(Trip::QueueFull);
         }
         for command in timetable.commands() {
             let _ = self.commands.enqueue(command.clone());
@@ -114,18 +114,18 @@ impl<'a, W: Words> Intake<'a, W> {
 
     /// Commands lie between the old horizon and the new one, in rising order: those before the old one would be late,
     /// those past the new one would block the queue.
-    fn check(&self, timetable: &W::Timetable) -> Result<(), Fault> {
+    fn check(&self, timetable: &W::Timetable) -> Result<(), Trip> {
         let mut earliest = self.progress.horizon.load(Acquire);
         if timetable.horizon() < earliest {
-            return Err(Fault::LateCommand { tick: timetable.horizon() });
+            return Err(Trip::LateCommand { tick: timetable.horizon() });
         }
         for command in timetable.commands() {
             let tick = command.tick();
             if !command.is_sound() {
-                return Err(Fault::BadCommand { tick });
+                return Err(Trip::BadCommand { tick });
             }
             if tick < earliest || tick >= timetable.horizon() {
-                return Err(Fault::LateCommand { tick });
+                return Err(Trip::LateCommand { tick });
             }
             earliest = tick + 1;
         }

@@ -4,8 +4,8 @@
 use core::sync::atomic::{AtomicBool, AtomicU32};
 
 use heapless::spsc::{Consumer, Producer, Queue};
-use link::messages::{Fault, Kept, Remembered, RunSettings};
-use link::virtual_joint::WireUpset;
+use link::messages::{Kept, Remembered, RunSettings, Trip};
+use model_core::virtual_joint::fault::{Fault, FixedPoint};
 
 use crate::budget::Monitor;
 use crate::ends::{Giver, Taker};
@@ -32,15 +32,15 @@ pub enum Order {
     /// Torque zero, enable off; answered by [`Event::Stopped`].
     Stop,
     /// Safe state for a reason that idle has found; answered by [`Event::Stopped`].
-    Trip(Fault),
+    Trip(Trip),
     /// What has been learnt; answered by [`Event::Memory`].
     Keep,
     /// Take what is in the queue for it as learnt before; answered by [`Event::Judged`].
     Remember,
     /// Forget what runs may begin from; answered by [`Event::Forgotten`].
     Forget,
-    /// A fault between joint and controller; answered by [`Event::Upset`].
-    Upset(WireUpset),
+    /// A fault between joint and controller; answered by [`Event::FaultTaken`].
+    Fault(Fault<FixedPoint<f32>>),
     /// A copy of the timing monitor as [`Event::Timing`].
     Report {
         /// Then start it afresh.
@@ -56,10 +56,10 @@ pub enum Event {
     ResetDone,
     /// The run has ended.
     Stopped,
-    /// There is no reset out of this fault.
-    Refused(Fault),
+    /// There is no reset out of this trip.
+    Refused(Trip),
     /// The tick itself has found a reason for the safe state: the only event that is no answer to an order.
-    Tripped(Fault),
+    Tripped(Trip),
     /// What has been learnt is there to be taken, or why there is nothing.
     Memory(Result<(), Kept>),
     /// What the role makes of a memory that it was given.
@@ -67,7 +67,7 @@ pub enum Event {
     /// Nothing is remembered.
     Forgotten,
     /// Whether a fault between joint and controller was taken.
-    Upset {
+    FaultTaken {
         /// It was.
         taken: bool,
     },
@@ -87,7 +87,7 @@ pub struct Progress {
     /// The run goes on; written by the tick.
     pub running: AtomicBool,
     /// The safe state has been entered; written by the tick.
-    pub faulted: AtomicBool,
+    pub tripped: AtomicBool,
 }
 
 /// The queues themselves.
@@ -152,7 +152,7 @@ impl<W: Words> Queues<W> {
                 steps: AtomicU32::new(0),
                 beats: AtomicU32::new(0),
                 running: AtomicBool::new(false),
-                faulted: AtomicBool::new(false),
+                tripped: AtomicBool::new(false),
             },
         }
     }

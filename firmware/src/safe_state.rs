@@ -4,7 +4,7 @@
 use core::convert::Infallible;
 
 use embedded_hal::digital::OutputPin;
-use link::messages::Fault;
+use link::messages::Trip;
 
 /// What the board does.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,7 +14,7 @@ pub enum State {
     /// A run goes on; the enable output is on.
     Running,
     /// Safe state; only a reset leads out, and none does if the tables are bad.
-    Faulted(Fault),
+    Tripped(Trip),
 }
 
 /// Holds the enable output, so that it cannot be on in any state but [`State::Running`].
@@ -37,16 +37,16 @@ impl<E: OutputPin<Error = Infallible>> SafeState<E> {
     }
 
     /// Starts a run; refused for good once the tables were found bad.
-    pub fn run(&mut self) -> Result<(), Fault> {
-        if let State::Faulted(Fault::BadDigest) = self.state {
-            return Err(Fault::BadDigest);
+    pub fn run(&mut self) -> Result<(), Trip> {
+        if let State::Tripped(Trip::BadDigest) = self.state {
+            return Err(Trip::BadDigest);
         }
         self.state = State::Running;
         let Ok(()) = self.enable.set_high();
         Ok(())
     }
 
-    /// Ends a run. A fault stays what it is.
+    /// Ends a run. A trip stays what it is.
     pub fn stop(&mut self) {
         let Ok(()) = self.enable.set_low();
         if self.state == State::Running {
@@ -54,11 +54,11 @@ impl<E: OutputPin<Error = Infallible>> SafeState<E> {
         }
     }
 
-    /// Enters the safe state. The first fault is kept: it is the cause of the rest.
-    pub fn trip(&mut self, fault: Fault) {
+    /// Enters the safe state. The first trip is kept: it is the cause of the rest.
+    pub fn trip(&mut self, trip: Trip) {
         let Ok(()) = self.enable.set_low();
-        if !matches!(self.state, State::Faulted(_)) {
-            self.state = State::Faulted(fault);
+        if !matches!(self.state, State::Tripped(_)) {
+            self.state = State::Tripped(trip);
         }
     }
 }
@@ -98,17 +98,17 @@ mod tests {
         safe_state.stop();
         assert_eq!((safe_state.enable.0, safe_state.state()), (Some(false), State::Stopped));
         safe_state.run().unwrap();
-        safe_state.trip(Fault::CommandLoss { tick: 7 });
+        safe_state.trip(Trip::CommandLoss { tick: 7 });
         assert_eq!(safe_state.enable.0, Some(false));
     }
 
     #[test]
     fn the_first_fault_is_kept_until_the_next_run() {
         let mut safe_state = SafeState::new(Pin(None));
-        safe_state.trip(Fault::NotFinite { tick: 3 });
-        safe_state.trip(Fault::QueueFull);
+        safe_state.trip(Trip::NotFinite { tick: 3 });
+        safe_state.trip(Trip::QueueFull);
         safe_state.stop();
-        assert_eq!(safe_state.state(), State::Faulted(Fault::NotFinite { tick: 3 }));
+        assert_eq!(safe_state.state(), State::Tripped(Trip::NotFinite { tick: 3 }));
         assert_eq!(safe_state.run(), Ok(()));
         assert_eq!(safe_state.state(), State::Running);
     }
@@ -116,8 +116,8 @@ mod tests {
     #[test]
     fn bad_tables_are_never_run() {
         let mut safe_state = SafeState::new(Pin(None));
-        safe_state.trip(Fault::BadDigest);
-        assert_eq!(safe_state.run(), Err(Fault::BadDigest));
+        safe_state.trip(Trip::BadDigest);
+        assert_eq!(safe_state.run(), Err(Trip::BadDigest));
         assert_eq!(safe_state.enable.0, Some(false));
     }
 }

@@ -2,7 +2,7 @@
 //! board's own clock. Filling the queue, and refusing commands that are bad in themselves, is left to `conversation`;
 //! what a command does, to the role's work.
 
-use link::messages::{Fault, RunMode, RunSettings};
+use link::messages::{RunMode, RunSettings, Trip};
 
 use crate::ends::Taker;
 use crate::words::Timed;
@@ -17,7 +17,7 @@ pub enum Turn<C> {
     /// Do not step: the schedule for this tick is not known yet.
     Wait,
     /// Go to the safe state.
-    Trip(Fault),
+    Trip(Trip),
 }
 
 /// Progress through the commands of one run.
@@ -53,7 +53,7 @@ impl Schedule {
     ) -> Turn<C> {
         let next = commands.peek().map(Timed::tick);
         if let Some(late) = next.filter(|next| *next < tick) {
-            return Turn::Trip(Fault::LateCommand { tick: late });
+            return Turn::Trip(Trip::LateCommand { tick: late });
         }
         let due = next == Some(tick);
         if due || tick < horizon {
@@ -66,7 +66,7 @@ impl Schedule {
         }
         self.starved_in_a_row = self.starved_in_a_row.saturating_add(1);
         if self.starved_in_a_row > self.settings.command_timeout {
-            return Turn::Trip(Fault::CommandLoss { tick });
+            return Turn::Trip(Trip::CommandLoss { tick });
         }
         if lockstep { Turn::Wait } else { Turn::StarvedStep }
     }
@@ -121,7 +121,7 @@ mod tests {
         for _ in 0..TIMEOUT {
             assert_eq!(schedule.turn(1, 1, false, &mut commands), Turn::Wait);
         }
-        let lost = Turn::Trip(Fault::CommandLoss { tick: 1 });
+        let lost = Turn::Trip(Trip::CommandLoss { tick: 1 });
         assert_eq!(schedule.turn(1, 1, false, &mut commands), lost);
     }
 
@@ -166,7 +166,7 @@ mod tests {
             assert_eq!(schedule.turn(tick, 1, true, &mut commands), Turn::StarvedStep);
         }
         let tick = TIMEOUT + 1;
-        assert_eq!(schedule.turn(tick, 1, true, &mut commands), Turn::Trip(Fault::CommandLoss { tick }));
+        assert_eq!(schedule.turn(tick, 1, true, &mut commands), Turn::Trip(Trip::CommandLoss { tick }));
     }
 
     #[test]
@@ -198,7 +198,7 @@ mod tests {
         let (mut entry, commands) = queue.split();
         let mut commands = Taker::<_, 4>::new(commands);
         entry.enqueue(command(4, 2.0)).unwrap();
-        let late = Turn::Trip(Fault::LateCommand { tick: 4 });
+        let late = Turn::Trip(Trip::LateCommand { tick: 4 });
         assert_eq!(schedule(RunMode::Realtime).turn(5, 9, true, &mut commands), late);
     }
 }

@@ -16,14 +16,14 @@ pub enum Pattern {
     /// A run goes on.
     Running,
     /// Safe state.
-    Faulted,
+    Tripped,
 }
 
 impl Pattern {
     /// The pattern that tells how far a run is.
     pub fn of(progress: &Progress) -> Self {
-        if progress.faulted.load(Relaxed) {
-            Self::Faulted
+        if progress.tripped.load(Relaxed) {
+            Self::Tripped
         } else if progress.running.load(Relaxed) {
             Self::Running
         } else {
@@ -36,7 +36,7 @@ impl Pattern {
         match self {
             Self::Stopped => milliseconds % 2000 < 1000,
             Self::Running => milliseconds % 200 < 100,
-            Self::Faulted => milliseconds % 1500 < 900 && milliseconds % 300 < 150,
+            Self::Tripped => milliseconds % 1500 < 900 && milliseconds % 300 < 150,
         }
     }
 }
@@ -72,6 +72,6 @@ mod tests {
     fn each_pattern_has_its_own_number_of_flashes() {
         assert_eq!(flashes(Pattern::Stopped, 6000), 2);
         assert_eq!(flashes(Pattern::Running, 6000), 29);
-        assert_eq!(flashes(Pattern::Faulted, 6000), 11);
+        assert_eq!(flashes(Pattern::Tripped, 6000), 11);
     }
 }

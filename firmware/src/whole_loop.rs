@@ -3,13 +3,14 @@
 
 use heapless::Vec;
 use link::messages::{FromBoard, Role, Schedule, ToBoard};
-use link::virtual_joint::{KNOTS_PER_SCHEDULE, Knot, LOOP_SAMPLES_PER_BATCH, LoopBatch, LoopSample, WireUpset};
+use link::virtual_joint::{KNOTS_PER_SCHEDULE, Knot, LOOP_SAMPLES_PER_BATCH, LoopBatch, LoopSample};
 use model_core::controller::Answer;
 use model_core::controller::course::Demand;
 use model_core::gears::Tables;
 use model_core::numbers::digest;
 use model_core::observer::{Memory, MemoryError};
-use model_core::virtual_joint::upset::Upsets;
+use model_core::virtual_joint::fault::{Fault, FixedPoint};
+use model_core::virtual_joint::faults::Faults;
 use model_core::virtual_joint::{SurroundingsTable, VirtualJoint};
 
 use crate::batcher::Batcher;
@@ -69,7 +70,7 @@ pub struct WholeLoop<'t, P, const N: usize> {
     surroundings: &'t SurroundingsTable<f32>,
     joint: VirtualJoint<'t, f32, N>,
     /// What goes wrong between joint and port.
-    upsets: Upsets<f32>,
+    faults: Faults<f32>,
     port: P,
     /// What runs may begin from.
     at_hand: AtHand,
@@ -88,7 +89,7 @@ impl<'t, P: ControllerPort, const N: usize> WholeLoop<'t, P, N> {
             tables,
             surroundings,
             joint: VirtualJoint::new(tables, surroundings),
-            upsets: Upsets::default(),
+            faults: Faults::default(),
             port,
             at_hand: AtHand::default(),
             demand: Demand::HOLD,
@@ -110,7 +111,7 @@ impl<P: ControllerPort, const N: usize> Work for WholeLoop<'_, P, N> {
 
     fn reset(&mut self, from_memory: bool) {
         self.joint.reset();
-        self.upsets = Upsets::default();
+        self.faults = Faults::default();
         self.port.reset();
         if from_memory {
             self.at_hand.give(&mut self.port);
@@ -128,8 +129,8 @@ impl<P: ControllerPort, const N: usize> Work for WholeLoop<'_, P, N> {
         self.elapsed = 0;
     }
 
-    fn upset(&mut self, upset: WireUpset) -> bool {
-        self.upsets.add(upset.into())
+    fn add_fault(&mut self, fault: Fault<FixedPoint<f32>>) -> bool {
+        self.faults.add(fault)
     }
 
     fn learn(&mut self) -> bool {
@@ -157,7 +158,7 @@ impl<P: ControllerPort, const N: usize> Work for WholeLoop<'_, P, N> {
         let command = self.demand.at(table.period * f32::from(self.elapsed), table.turn);
         // A motion is a polynomial for a stretch only: one that nobody follows up holds at its last moment.
         self.elapsed = self.elapsed.saturating_add(1).min(LONGEST_STRETCH);
-        let samples = self.upsets.sense(self.joint.samples(), table);
+        let samples = self.faults.sense(self.joint.samples(), table);
         let torque = match self.port.exchange(&samples, &command) {
             Ok(answer) => {
                 self.answer = answer;
@@ -165,7 +166,7 @@ impl<P: ControllerPort, const N: usize> Work for WholeLoop<'_, P, N> {
             }
             Err(_) => 0.0,
         };
-        self.joint.advance(self.upsets.torque(torque), self.load_torque);
+        self.joint.advance(self.faults.torque(torque), self.load_torque);
         self.digest = digest::chain(self.answer.digest(self.digest), self.joint.model().state_digest());
     }
 

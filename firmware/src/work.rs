@@ -1,8 +1,8 @@
 //! What a role does in its tick: the joint, the controller, or both, without a word about clocks, queues and safe states,
 //! which are the same for all of them and are kept by `control`.
 
-use link::virtual_joint::WireUpset;
 use model_core::observer::{Memory, MemoryError};
+use model_core::virtual_joint::fault::{Fault, FixedPoint};
 
 use crate::words::Words;
 
@@ -39,7 +39,7 @@ pub trait Work {
     /// Takes the command of the step to come.
     fn take(&mut self, command: <Self::Words as Words>::Command);
     /// Takes a fault for the run to come; `false` if the role has none, or no room for another.
-    fn upset(&mut self, _upset: WireUpset) -> bool {
+    fn add_fault(&mut self, _fault: Fault<FixedPoint<f32>>) -> bool {
         false
     }
     /// One step.

@@ -10,14 +10,15 @@ use firmware::port::Direct;
 use firmware::tables::TABLES;
 use firmware::whole_loop::WholeLoop;
 use link::controller::{Answered, Exchange};
-use link::messages::{Fault, FromBoard, RunMode, RunSettings, Schedule, ToBoard};
-use link::virtual_joint::{Knot, LoopSample, WireDemand, WireKind, WireUpset};
+use link::messages::{FromBoard, RunMode, RunSettings, Schedule, ToBoard, Trip};
+use link::virtual_joint::{Knot, LoopSample, WireDemand};
 use model_core::compensation::Command;
 use model_core::controller::Controller;
 use model_core::controller::course::Demand;
 use model_core::numbers::digest;
 use model_core::virtual_joint::VirtualJoint;
-use model_core::virtual_joint::upset::MOST_UPSETS;
+use model_core::virtual_joint::fault::{Fault, FaultKind, Shaft};
+use model_core::virtual_joint::faults::MOST_FAULTS;
 
 mod control {
     #![allow(missing_docs, dead_code, clippy::all, clippy::excessive_precision, reason = "generated numbers")]
@@ -61,8 +62,8 @@ fn samples(said: Vec<FromBoard>) -> Vec<LoopSample> {
     said.into_iter().filter_map(batch).flatten().collect()
 }
 
-fn faults(said: &[FromBoard]) -> Vec<Fault> {
-    let fault = |message: &FromBoard| if let FromBoard::Fault(fault) = message { Some(*fault) } else { None };
+fn trips(said: &[FromBoard]) -> Vec<Trip> {
+    let fault = |message: &FromBoard| if let FromBoard::Tripped(fault) = message { Some(*fault) } else { None };
     said.iter().filter_map(fault).collect()
 }
 
@@ -112,7 +113,7 @@ fn an_observer_whose_controller_falls_silent_goes_to_the_safe_state() {
     assert!(bench.enable.get());
     bench.run(40);
     assert!(!bench.enable.get());
-    assert_eq!(faults(&bench.said()), [Fault::CommandLoss { tick: 1 }]);
+    assert_eq!(trips(&bench.said()), [Trip::CommandLoss { tick: 1 }]);
 }
 
 #[test]
@@ -121,7 +122,7 @@ fn an_observer_does_not_run_without_samples() {
     let settings = RunSettings { mode: RunMode::Realtime, decimation: 1, command_timeout: 100, from_memory: false };
     bench.send(&ToBoard::Reset(settings));
     bench.run(3);
-    assert_eq!(faults(&bench.said()), [Fault::BadSettings]);
+    assert_eq!(trips(&bench.said()), [Trip::BadSettings]);
 }
 
 #[test]
@@ -176,19 +177,19 @@ fn a_whole_loop_equals_its_parts_in_every_bit_in_both_modes() {
 #[test]
 fn a_whole_loop_takes_faults_before_its_first_period_only_and_no_more_than_fit() {
     let mut bench = whole_loop();
-    let upset = |kind| ToBoard::Upset(WireUpset { start: 20, end: 40, seed: 1, kind });
+    let fault = |kind| ToBoard::Fault(Fault { start: 20, end: 40, seed: 1, kind });
     let taken = |said: Vec<FromBoard>| {
-        let of = |message: &FromBoard| if let FromBoard::Upset { taken } = message { Some(*taken) } else { None };
+        let of = |message: &FromBoard| if let FromBoard::FaultTaken { taken } = message { Some(*taken) } else { None };
         said.iter().find_map(of).expect("an answer")
     };
-    bench.send(&upset(WireKind::Saturation(0.0)));
+    bench.send(&fault(FaultKind::Saturation(0.0)));
     bench.run(3);
     assert!(!taken(bench.said()), "nothing runs yet");
     bench.start(RunMode::Lockstep, 1, 1000);
-    for number in 0..=MOST_UPSETS {
-        bench.send(&upset(if number == 0 { WireKind::Frozen(false) } else { WireKind::Saturation(0.01) }));
+    for number in 0..=MOST_FAULTS {
+        bench.send(&fault(if number == 0 { FaultKind::Frozen(Shaft::Motor) } else { FaultKind::Saturation(0.01) }));
         bench.run(3);
-        assert_eq!(taken(bench.said()), number < MOST_UPSETS);
+        assert_eq!(taken(bench.said()), number < MOST_FAULTS);
     }
     let commands = [knot(0)].into_iter().collect();
     bench.send(&ToBoard::Course(Schedule { sequence: 0, horizon: 60, commands }));
@@ -210,7 +211,7 @@ fn a_whole_loop_takes_faults_before_its_first_period_only_and_no_more_than_fit()
         assert_eq!((sample.tick, sample.digest), (tick + 1, running));
     }
     assert_eq!(said.len(), 60);
-    bench.send(&upset(WireKind::Saturation(0.0)));
+    bench.send(&fault(FaultKind::Saturation(0.0)));
     bench.run(3);
     assert!(!taken(bench.said()), "the run has begun");
 }
@@ -227,7 +228,7 @@ fn words_for_another_role_are_refused_and_change_nothing() {
     bench.send(&ToBoard::Schedule(Schedule { sequence: 0, horizon: 10, commands: heapless::Vec::new() }));
     bench.run(5);
     let said = bench.said();
-    assert_eq!(faults(&said), [Fault::WrongRole]);
+    assert_eq!(trips(&said), [Trip::WrongRole]);
     assert!(samples(said).is_empty() && bench.enable.get());
 }
 
@@ -239,6 +240,6 @@ fn a_motion_with_a_number_that_is_none_trips_and_is_not_followed() {
     bench.send(&ToBoard::Course(Schedule { sequence: 0, horizon: 10, commands }));
     bench.run(20);
     let said = bench.said();
-    assert_eq!(faults(&said), [Fault::BadCommand { tick: 3 }]);
+    assert_eq!(trips(&said), [Trip::BadCommand { tick: 3 }]);
     assert!(samples(said).is_empty() && !bench.enable.get());
 }

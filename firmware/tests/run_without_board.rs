@@ -5,7 +5,7 @@ mod bench;
 
 use bench::{Bench, PERIOD};
 use firmware::tables::{PLANETS, TABLES};
-use link::messages::{COMMANDS_PER_SCHEDULE, Fault, FromBoard, RunMode, Sample, Statistics, ToBoard};
+use link::messages::{COMMANDS_PER_SCHEDULE, FromBoard, RunMode, Sample, Statistics, ToBoard, Trip};
 use model_core::gears::{Model, Torques};
 use model_core::numbers::digest;
 
@@ -22,9 +22,9 @@ fn samples(said: &[FromBoard]) -> Vec<Sample> {
     samples
 }
 
-fn faults(said: &[FromBoard]) -> Vec<Fault> {
+fn trips(said: &[FromBoard]) -> Vec<Trip> {
     let fault = |message: &FromBoard| match message {
-        FromBoard::Fault(fault) => Some(*fault),
+        FromBoard::Tripped(fault) => Some(*fault),
         _ => None,
     };
     said.iter().filter_map(fault).collect()
@@ -113,7 +113,7 @@ fn a_realtime_run_without_commands_ends_in_the_safe_state() {
     assert!(bench.enable.get());
     bench.run(100);
     assert!(!bench.enable.get());
-    assert_eq!(faults(&bench.said()), [Fault::CommandLoss { tick: 150 }]);
+    assert_eq!(trips(&bench.said()), [Trip::CommandLoss { tick: 150 }]);
     assert_eq!(statistics(&mut bench, false).starved, 50);
 }
 
@@ -149,7 +149,7 @@ fn a_full_queue_makes_the_host_wait_in_lockstep_and_trips_in_realtime() {
         let said = bench.said();
         match mode {
             RunMode::Lockstep => assert_eq!(accepted(&said), (0..12).collect::<Vec<_>>()),
-            RunMode::Realtime => assert_eq!(faults(&said)[0], Fault::QueueFull),
+            RunMode::Realtime => assert_eq!(trips(&said)[0], Trip::QueueFull),
         }
     }
 }
@@ -157,11 +157,11 @@ fn a_full_queue_makes_the_host_wait_in_lockstep_and_trips_in_realtime() {
 #[test]
 fn bad_commands_trip_and_are_not_applied() {
     let cases = [
-        (vec![(5, f32::NAN, 0.0)], Fault::BadCommand { tick: 5 }),
-        (vec![(5, 0.0, f32::INFINITY)], Fault::BadCommand { tick: 5 }),
-        (vec![(5, 0.1, 0.0), (5, 0.2, 0.0)], Fault::LateCommand { tick: 5 }),
-        (vec![(5, 0.1, 0.0), (3, 0.2, 0.0)], Fault::LateCommand { tick: 3 }),
-        (vec![(100, 0.1, 0.0)], Fault::LateCommand { tick: 100 }),
+        (vec![(5, f32::NAN, 0.0)], Trip::BadCommand { tick: 5 }),
+        (vec![(5, 0.0, f32::INFINITY)], Trip::BadCommand { tick: 5 }),
+        (vec![(5, 0.1, 0.0), (5, 0.2, 0.0)], Trip::LateCommand { tick: 5 }),
+        (vec![(5, 0.1, 0.0), (3, 0.2, 0.0)], Trip::LateCommand { tick: 3 }),
+        (vec![(100, 0.1, 0.0)], Trip::LateCommand { tick: 100 }),
     ];
     for (commands, fault) in cases {
         let mut bench = Bench::new();
@@ -169,7 +169,7 @@ fn bad_commands_trip_and_are_not_applied() {
         bench.schedule(0, 100, &commands);
         bench.run(200);
         let said = bench.said();
-        assert_eq!(faults(&said), [fault]);
+        assert_eq!(trips(&said), [fault]);
         assert!(samples(&said).is_empty() && !bench.enable.get());
     }
 }
@@ -179,12 +179,12 @@ fn a_fault_lasts_until_a_reset() {
     let mut bench = Bench::new();
     bench.schedule(0, 10, &[]);
     bench.run(2);
-    assert_eq!(faults(&bench.said()), [Fault::NotRunning]);
+    assert_eq!(trips(&bench.said()), [Trip::NotRunning]);
     bench.start(RunMode::Lockstep, 1, 1);
     bench.schedule(0, 10, &[(0, f32::NAN, 0.0)]);
     bench.schedule(0, 10, &[]);
     bench.run(10);
-    assert_eq!(faults(&bench.said()), [Fault::BadCommand { tick: 0 }, Fault::NotRunning]);
+    assert_eq!(trips(&bench.said()), [Trip::BadCommand { tick: 0 }, Trip::NotRunning]);
     bench.start(RunMode::Lockstep, 1, 1);
     bench.schedule(0, 10, &[]);
     bench.run(20);
@@ -199,7 +199,7 @@ fn settings_that_cannot_be_run_with_are_refused() {
             link::messages::RunSettings { mode: RunMode::Realtime, decimation, command_timeout, from_memory: false };
         bench.send(&ToBoard::Reset(settings));
         bench.run(3);
-        assert_eq!(faults(&bench.said()), [Fault::BadSettings]);
+        assert_eq!(trips(&bench.said()), [Trip::BadSettings]);
         assert!(!bench.enable.get());
     }
 }
@@ -229,7 +229,7 @@ fn tables_that_do_not_match_their_digest_are_never_run() {
         from_memory: false,
     }));
     bench.run(3);
-    assert_eq!(faults(&bench.said()), [Fault::BadDigest]);
+    assert_eq!(trips(&bench.said()), [Trip::BadDigest]);
     assert!(!bench.enable.get());
 }
 
@@ -307,5 +307,5 @@ fn a_fault_is_told_after_the_last_sample_of_its_run() {
     bench.settle();
     let said = bench.said();
     assert_eq!(samples(&said).len(), 10);
-    assert_eq!(said.last(), Some(&FromBoard::Fault(Fault::CommandLoss { tick: 10 })));
+    assert_eq!(said.last(), Some(&FromBoard::Tripped(Trip::CommandLoss { tick: 10 })));
 }

@@ -4,10 +4,8 @@
 use std::f64::consts::TAU;
 
 use host_tests::tolerance::{DRIVE_TRAIN, DRIVE_TRAIN_PARTS, EFFICIENCY};
-use parameters::JointParameters;
-use reference::drive_train::{
-    Disturbance, DriveTrain, DriveTrainParameters, EncoderParameters, FrictionParameters, Measurement,
-};
+use parameters::{AbsoluteEncoder, Friction, JointParameters, Surroundings};
+use reference::drive_train::{Disturbance, DriveTrain, DriveTrainParameters, ErrorPhases, Measurement};
 use reference::joint::{RelativeState, Start};
 use reference::scenarios::{l1, q1};
 
@@ -80,10 +78,10 @@ fn an_ideal_train_only_accelerates_the_joint() {
 #[test]
 fn the_current_loop_lags_delays_and_limits() {
     let mut parameters = DriveTrainParameters::ideal();
-    parameters.motor.current_lag = 0.2e-3;
-    parameters.motor.torque_limit = 2.0;
-    parameters.motor.torque_constant_error_ratio = 0.03;
-    parameters.delay_periods = 1.0;
+    parameters.surroundings.current_lag = 0.2e-3;
+    parameters.surroundings.torque_limit = 2.0;
+    parameters.surroundings.torque_constant_error_ratio = 0.03;
+    parameters.surroundings.delay = 1.0;
     let mut train = train(&q1(), &turning(0.0), parameters);
     hold(&mut train, 5.0, 1);
     assert_eq!(train.torques().air_gap, 0.0, "the command is on its way for one period");
@@ -99,7 +97,7 @@ fn the_current_loop_lags_delays_and_limits() {
 #[test]
 fn torque_noise_has_the_stated_size() {
     let mut parameters = DriveTrainParameters::ideal();
-    parameters.motor.torque_noise_ratio = 0.015;
+    parameters.surroundings.torque_noise_ratio = 0.015;
     parameters.parts_per_period = 1;
     let mut train = train(&l1(), &turning(0.0), parameters);
     let mut squares = 0.0;
@@ -115,7 +113,7 @@ fn torque_noise_has_the_stated_size() {
 #[test]
 fn dry_friction_holds_a_torque_below_it_and_yields_to_one_above() {
     let mut parameters = DriveTrainParameters::ideal();
-    parameters.motor.friction.coulomb = 0.03;
+    parameters.surroundings.motor_friction.coulomb = 0.03;
     let mut held = train(&q1(), &turning(0.0), parameters.clone());
     hold(&mut held, 0.029, 500);
     DRIVE_TRAIN.check(held.joint().motor_speed);
@@ -128,7 +126,7 @@ fn dry_friction_holds_a_torque_below_it_and_yields_to_one_above() {
 #[test]
 fn a_turning_joint_coasts_to_rest_and_stays() {
     let mut parameters = DriveTrainParameters::ideal();
-    parameters.load.friction = FrictionParameters { coulomb: 0.3, ..FrictionParameters::default() };
+    parameters.surroundings.load_friction = Friction { coulomb: 0.3, ..Friction::default() };
     let mut train = train(&q1(), &turning(0.3), parameters);
     hold(&mut train, 0.0, 500);
     DRIVE_TRAIN.check(train.joint().rigid_speed / (0.3 - 0.3 * 0.05 / q1_inertia()) - 1.0);
@@ -139,8 +137,8 @@ fn a_turning_joint_coasts_to_rest_and_stays() {
 #[test]
 fn friction_at_rest_is_higher_by_the_stribeck_rise() {
     let mut parameters = DriveTrainParameters::ideal();
-    parameters.load.friction =
-        FrictionParameters { coulomb: 0.3, stribeck_rise_ratio: 0.2, stribeck_speed: 0.05, viscous: 0.0 };
+    parameters.surroundings.load_friction =
+        Friction { coulomb: 0.3, stribeck_rise_ratio: 0.2, stribeck_speed: 0.05, viscous: 0.0 };
     for (torque, moves) in [(0.35, false), (0.37, true)] {
         let push = vec![Disturbance::Step { start: 0.0, torque }];
         let mut train = DriveTrain::new(&q1(), &turning(0.0), parameters.clone(), push, 1).expect("sound");
@@ -152,7 +150,7 @@ fn friction_at_rest_is_higher_by_the_stribeck_rise() {
 #[test]
 fn gravity_pulls_the_link_back_to_zero() {
     let mut parameters = DriveTrainParameters::ideal();
-    parameters.load.gravity_torque = 6.0;
+    parameters.surroundings.gravity_torque = 6.0;
     // A pendulum at small angle: the link swings out under its speed and returns after half a period.
     let mut train = train(&q1(), &turning(0.05), parameters);
     let half_period = 0.5 * TAU * (q1_inertia() / 6.0).sqrt();
@@ -166,7 +164,7 @@ fn gravity_pulls_the_link_back_to_zero() {
 #[test]
 fn efficiency_is_output_over_input_while_the_motor_drives() {
     for (command, speed, load) in [(1.0, 2.0, RATIO * 0.97), (1.0, -2.0, RATIO / 0.97)] {
-        let parameters = DriveTrainParameters { efficiency: 0.97, ..DriveTrainParameters::ideal() };
+        let parameters = Surroundings { efficiency: 0.97, ..Surroundings::ideal() }.into();
         let brake = vec![Disturbance::Step { start: 0.0, torque: load }];
         // Forwards the motor drives a load that takes 97 %; backwards a load drives the motor, which gets 97 %.
         let mut joint = q1();
@@ -184,15 +182,14 @@ fn efficiency_is_output_over_input_while_the_motor_drives() {
 
 #[test]
 fn an_encoder_reads_the_angle_that_was_with_its_errors_to_one_count() {
-    let encoder = EncoderParameters {
+    let mut parameters = DriveTrainParameters::ideal();
+    parameters.surroundings.output_encoder = AbsoluteEncoder {
         once_per_turn_error: 2e-3,
-        once_per_turn_phase: 0.4,
         twice_per_turn_error: 1e-3,
-        twice_per_turn_phase: 1.1,
         skew: 73e-6,
-        ..EncoderParameters::ideal(20)
+        ..AbsoluteEncoder::ideal(20)
     };
-    let parameters = DriveTrainParameters { output_encoder: encoder, ..DriveTrainParameters::ideal() };
+    parameters.output_error_phases = ErrorPhases { once_per_turn: 0.4, twice_per_turn: 1.1 };
     let mut train = train(&q1(), &turning(30.0), parameters);
     let per_count = TAU / f64::from(1 << 20);
     for _ in 0..3000 {
@@ -211,8 +208,8 @@ fn an_encoder_reads_the_angle_that_was_with_its_errors_to_one_count() {
 #[test]
 fn cogging_repeats_with_the_motor_angle() {
     let mut parameters = DriveTrainParameters::ideal();
-    parameters.motor.cogging_torque = 0.02;
-    parameters.motor.cogging_periods_per_turn = 84;
+    parameters.surroundings.cogging_torque = 0.02;
+    parameters.surroundings.cogging_periods_per_turn = 84;
     let mut train = train(&q1(), &turning(1.0), parameters);
     for _ in 0..200 {
         let before = train.joint().motor_angle;
@@ -231,6 +228,12 @@ fn a_drive_train_out_of_range_is_refused_with_the_mend() {
         change(&mut parameters);
         DriveTrain::new(&q1(), &Start::Still, parameters, Vec::new(), 0).expect_err("must be refused").to_string()
     };
-    assert_eq!(refusal(|train| train.efficiency = 1.2), "efficiency is 1.2; it must be above 0 and at most 1");
-    assert_eq!(refusal(|train| train.output_encoder.bits = 0), "encoder bits is 0; it must be from 1 to 30");
+    assert_eq!(
+        refusal(|train| train.surroundings.efficiency = 1.2),
+        "efficiency is 1.2; it must be above 0 and at most 1"
+    );
+    assert_eq!(
+        refusal(|train| train.surroundings.output_encoder.bits = 0),
+        "encoder bits is 0; it must be from 1 to 30"
+    );
 }

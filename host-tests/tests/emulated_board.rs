@@ -107,7 +107,7 @@ fn run(line: &mut Line) -> Vec<Sample> {
                     }
                 }
                 FromBoard::Samples(batch) => samples.extend(batch.samples),
-                FromBoard::Fault(fault) => panic!("{fault:?}"),
+                FromBoard::Tripped(fault) => panic!("{fault:?}"),
                 _ => {}
             }
         }

@@ -10,12 +10,13 @@ mod statistics;
 use heapless::Vec;
 pub use identity::{Clock, Hello, Role};
 pub use memory::{Kept, MEMORY_PARTS, MemoryPart, MemoryWish, PART_BYTES, Remembered};
+use model_core::virtual_joint::fault::{Fault, FixedPoint};
 pub use motion::{MAX_MESHES, SAMPLES_PER_BATCH, Sample, SampleBatch};
 use serde::{Deserialize, Serialize};
 pub use statistics::{HISTOGRAM_BINS, Statistics, Timing};
 
 use crate::controller::{Answered, EXCHANGES_PER_SCHEDULE, Exchange};
-use crate::virtual_joint::{KNOTS_PER_SCHEDULE, Knot, LoopBatch, WireUpset};
+use crate::virtual_joint::{KNOTS_PER_SCHEDULE, Knot, LoopBatch};
 
 /// Most commands in one [`Schedule`].
 pub const COMMANDS_PER_SCHEDULE: usize = 24;
@@ -49,8 +50,8 @@ pub enum ToBoard {
     /// About the memory of what the controller has learnt: between runs only.
     Memory(MemoryWish),
     /// A fault between the virtual joint and its controller, for the same role, between a reset and the first motion.
-    /// Answered by [`FromBoard::Upset`].
-    Upset(WireUpset),
+    /// Answered by [`FromBoard::FaultTaken`].
+    Fault(Fault<FixedPoint<f32>>),
 }
 
 /// How a run goes.
@@ -111,7 +112,7 @@ pub enum FromBoard {
     /// How the board's time was spent.
     Statistics(Statistics),
     /// The board has gone to, or is in, its safe state.
-    Fault(Fault),
+    Tripped(Trip),
     /// Encoded defmt bytes.
     Log(Log),
     /// What observer and compensation make of an exchange.
@@ -121,7 +122,7 @@ pub enum FromBoard {
     /// What became of what was to be kept, or why nothing was done about the memory.
     Kept(Kept),
     /// Whether a fault was taken: there is room for some, before the first period only, in one role only.
-    Upset {
+    FaultTaken {
         /// It was.
         taken: bool,
     },
@@ -144,7 +145,7 @@ pub struct Accepted {
 
 /// Why the safe state was entered: torque zero, enable off.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Fault {
+pub enum Trip {
     /// No schedule for the stated number of ticks.
     CommandLoss {
         /// When.
@@ -171,7 +172,7 @@ pub enum Fault {
     QueueFull,
     /// Settings that cannot be run with, such as a decimation of 0.
     BadSettings,
-    /// A schedule came before any reset, or after a fault.
+    /// A schedule came before any reset, or after a trip.
     NotRunning,
     /// A schedule for another role than the board's.
     WrongRole,

@@ -3,7 +3,6 @@
 
 use heapless::Vec;
 use model_core::controller::course::{Demand, POWERS, Stretch};
-use model_core::virtual_joint::upset::{Kind, Shaft, Upset};
 use serde::{Deserialize, Serialize};
 
 use crate::controller::Impedance;
@@ -105,74 +104,4 @@ pub struct LoopBatch {
     pub sequence: u16,
     /// The samples, oldest first.
     pub samples: Vec<LoopSample, LOOP_SAMPLES_PER_BATCH>,
-}
-
-/// A fault between the virtual joint and its controller.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct WireUpset {
-    /// First control period in which it acts.
-    pub start: u32,
-    /// First in which it acts no more.
-    pub end: u32,
-    /// Begins its random numbers.
-    pub seed: u64,
-    /// What goes wrong.
-    pub kind: WireKind,
-}
-
-/// What goes wrong, where `true` is the link's encoder; angles in 2^-32 turns, shares in 2^-32, torques in N m.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub enum WireKind {
-    /// Counts stand still.
-    Frozen(bool),
-    /// Counts are off.
-    Offset(bool, i32),
-    /// Counts scatter by a standard deviation.
-    Noise(bool, u32),
-    /// A share of the motion is not counted.
-    MissingCounts(bool, u32),
-    /// An error that comes once a turn.
-    Eccentric(bool, f32),
-    /// A share of the readings does not come.
-    LostFrames(bool, u32),
-    /// Torque beyond the command: a ratio of it, and a torque.
-    TorqueBias(f32, f32),
-    /// The motor gives no more than this.
-    Saturation(f32),
-}
-
-impl From<&Upset<f32>> for WireUpset {
-    fn from(upset: &Upset<f32>) -> Self {
-        let link = |shaft: Shaft| shaft == Shaft::Link;
-        let Upset { start, end, seed, kind } = *upset;
-        let kind = match kind {
-            Kind::Frozen(shaft) => WireKind::Frozen(link(shaft)),
-            Kind::Offset(shaft, angle) => WireKind::Offset(link(shaft), angle),
-            Kind::Noise(shaft, deviation) => WireKind::Noise(link(shaft), deviation),
-            Kind::MissingCounts(shaft, share) => WireKind::MissingCounts(link(shaft), share),
-            Kind::Eccentric(shaft, amplitude) => WireKind::Eccentric(link(shaft), amplitude),
-            Kind::LostFrames(shaft, share) => WireKind::LostFrames(link(shaft), share),
-            Kind::TorqueBias(ratio, torque) => WireKind::TorqueBias(ratio, torque),
-            Kind::Saturation(torque) => WireKind::Saturation(torque),
-        };
-        Self { start, end, seed, kind }
-    }
-}
-
-impl From<WireUpset> for Upset<f32> {
-    fn from(wire: WireUpset) -> Self {
-        let shaft = |link: bool| if link { Shaft::Link } else { Shaft::Motor };
-        let WireUpset { start, end, seed, kind } = wire;
-        let kind = match kind {
-            WireKind::Frozen(link) => Kind::Frozen(shaft(link)),
-            WireKind::Offset(link, angle) => Kind::Offset(shaft(link), angle),
-            WireKind::Noise(link, deviation) => Kind::Noise(shaft(link), deviation),
-            WireKind::MissingCounts(link, share) => Kind::MissingCounts(shaft(link), share),
-            WireKind::Eccentric(link, amplitude) => Kind::Eccentric(shaft(link), amplitude),
-            WireKind::LostFrames(link, share) => Kind::LostFrames(shaft(link), share),
-            WireKind::TorqueBias(ratio, torque) => Kind::TorqueBias(ratio, torque),
-            WireKind::Saturation(torque) => Kind::Saturation(torque),
-        };
-        Self { start, end, seed, kind }
-    }
 }

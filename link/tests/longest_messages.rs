@@ -90,7 +90,7 @@ fn the_longest_statistics_arrive() {
 fn the_longest_log_acceptance_and_fault_arrive() {
     arrives(FromBoard::Log(Log { sequence: u16::MAX, bytes: full(u8::MAX) }));
     arrives(FromBoard::Accepted(Accepted { sequence: u16::MAX, queue_free: u16::MAX, tick: u32::MAX }));
-    arrives(FromBoard::Fault(Fault::LateCommand { tick: u32::MAX }));
+    arrives(FromBoard::Tripped(Trip::LateCommand { tick: u32::MAX }));
 }
 
 #[test]

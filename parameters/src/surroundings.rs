@@ -1,5 +1,6 @@
 //! What surrounds the gears of a joint, as plain data in SI: motor with its current loop, frictions, weight, encoders, and
-//! the controller's rate. What observer, compensation and the virtual joint make of it is left to their designs.
+//! the controller's rate. What observer, compensation, the virtual joint and the f64 drive train make of it is left to
+//! each of them.
 
 /// Everything around the gears.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,6 +35,28 @@ pub struct Surroundings {
     pub output_encoder: AbsoluteEncoder,
 }
 
+impl Surroundings {
+    /// No friction, lag, noise, gravity, delay or sensor error, and a motor without a limit; 10 kHz, encoders of 18 bits.
+    pub fn ideal() -> Self {
+        Self {
+            control_rate: 10_000,
+            delay: 0.0,
+            current_lag: 0.0,
+            torque_limit: f64::INFINITY,
+            torque_noise_ratio: 0.0,
+            torque_constant_error_ratio: 0.0,
+            cogging_torque: 0.0,
+            cogging_periods_per_turn: 1,
+            motor_friction: Friction::default(),
+            load_friction: Friction::default(),
+            efficiency: 1.0,
+            gravity_torque: 0.0,
+            motor_encoder: AbsoluteEncoder::ideal(18),
+            output_encoder: AbsoluteEncoder::ideal(18),
+        }
+    }
+}
+
 /// Dry and viscous friction of a shaft.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Friction {
@@ -43,7 +66,7 @@ pub struct Friction {
     pub viscous: f64,
     /// Dry friction at rest over the one at speed, less 1 [-].
     pub stribeck_rise_ratio: f64,
-    /// Speed at which that rise is all but gone [rad/s].
+    /// Speed at which that rise has fallen to 1/e [rad/s].
     pub stribeck_speed: f64,
 }
 
@@ -58,4 +81,11 @@ pub struct AbsoluteEncoder {
     pub twice_per_turn_error: f64,
     /// How old a reading is beyond what its time says [s].
     pub skew: f64,
+}
+
+impl AbsoluteEncoder {
+    /// Right up to its resolution of 2^bits counts a turn.
+    pub fn ideal(bits: u32) -> Self {
+        Self { bits, once_per_turn_error: 0.0, twice_per_turn_error: 0.0, skew: 0.0 }
+    }
 }

@@ -3,6 +3,7 @@
 use host_tests::tolerance::compensation::{
     IMPEDANCE_DEVIATION, IMPEDANCE_OVER_RIVAL, IMPEDANCE_TORQUE, SOFT_SPRING_SWING,
 };
+use parameters::Surroundings;
 use reference::closed_loop::rivals::ImpedanceLaw;
 use reference::closed_loop::{ImpedanceGains, deviation};
 use reference::drive_train::DriveTrainParameters;
@@ -72,8 +73,7 @@ fn steps_with_their_own_torque_sent_along_are_no_worse_than_the_best_rival() {
 
 #[test]
 fn a_soft_spring_on_a_large_joint_does_not_swing_in_the_doubt_about_its_flank() {
-    let mut train = DriveTrainParameters { delay_periods: 1.0, ..DriveTrainParameters::ideal() };
-    train.motor.torque_limit = 120.0;
+    let train = Surroundings { delay: 1.0, torque_limit: 120.0, ..Surroundings::ideal() }.into();
     let mut trial = Trial::steps(&l1(), &train, 128).with_impedance(300.0, 3.0);
     trial.bench.duration = 4.0;
     let (swing, _, _) = deviations_from(&trial, ImpedanceLaw::LinkSpring)(NO_PREVIEW);

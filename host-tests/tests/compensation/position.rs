@@ -6,7 +6,7 @@ use host_tests::tolerance::compensation::{
     SLOW_PEAK_OVER_PID, STEPS_MESH_FORCE, STEPS_OVER_PID, STEPS_PEAK_OVER_PID, STIFF_JOINT_OVER_PID,
     STIFF_JOINT_STEPS_OVER_PID, TRANSMISSION_ERROR_OVER_PID,
 };
-use parameters::JointParameters;
+use parameters::{AbsoluteEncoder, JointParameters, Surroundings};
 use reference::closed_loop::Profile;
 use reference::drive_train::{Disturbance, DriveTrainParameters};
 use reference::scenarios::{l1, q1};
@@ -19,12 +19,10 @@ const RATED_FORCE: f64 = 355.0;
 
 /// What the encoders get wrong is not the compensation's.
 fn with_ideal_encoders() -> DriveTrainParameters {
-    let ideal = DriveTrainParameters::ideal();
-    DriveTrainParameters {
-        motor_encoder: ideal.motor_encoder,
-        output_encoder: ideal.output_encoder,
-        ..DriveTrainParameters::q1()
-    }
+    let mut train = DriveTrainParameters::q1();
+    train.surroundings.motor_encoder = AbsoluteEncoder::ideal(18);
+    train.surroundings.output_encoder = AbsoluteEncoder::ideal(18);
+    train
 }
 
 fn is_far_better(trial: &Trial) {
@@ -102,16 +100,14 @@ fn motor_and_link_that_swing_do_not_press_the_teeth_beyond_the_limit() {
 
 #[test]
 fn a_large_stiff_joint_loses_most_of_its_lost_motion() {
-    let mut train = DriveTrainParameters { delay_periods: 1.0, ..DriveTrainParameters::ideal() };
-    train.motor.torque_limit = 120.0;
+    let train = Surroundings { delay: 1.0, torque_limit: 120.0, ..Surroundings::ideal() }.into();
     let trial = Trial::inertial(&l1(), &train, 106);
     STIFF_JOINT_OVER_PID.check(figures(&trial, PREVIEW).rms / figures(&trial, Contender::MotorPid).rms);
 }
 
 #[test]
 fn a_large_stiff_joint_is_stepped_no_worse_than_without_compensation() {
-    let mut train = DriveTrainParameters { delay_periods: 1.0, ..DriveTrainParameters::ideal() };
-    train.motor.torque_limit = 120.0;
+    let train = Surroundings { delay: 1.0, torque_limit: 120.0, ..Surroundings::ideal() }.into();
     let trial = Trial::steps(&l1(), &train, 109);
     STIFF_JOINT_STEPS_OVER_PID.check(figures(&trial, PREVIEW).rms / figures(&trial, Contender::MotorPid).rms);
 }
@@ -146,7 +142,7 @@ fn a_stiff_train_whose_encoder_offset_is_unsure_lands_softly() {
 #[test]
 fn a_torque_constant_that_is_wrong_costs_little() {
     let mut train = DriveTrainParameters::q1();
-    train.motor.torque_constant_error_ratio = 0.05;
+    train.surroundings.torque_constant_error_ratio = 0.05;
     is_far_better(&Trial::inertial(&q1(), &train, 107));
 }
 

@@ -102,7 +102,7 @@ fn a_harmonic_that_is_not_in_the_map_costs_little() {
     let trial = Trial::new("q1", "gravity", Encoders::Preset, Some(40e-6), 9).lasting(4.0);
     let log = trial.record();
     let clean = with_encoders(&log, &trial.run.train);
-    let count = core::f64::consts::TAU / f64::from(1 << trial.run.train.motor_encoder.bits);
+    let count = core::f64::consts::TAU / f64::from(1 << trial.run.train.surroundings.motor_encoder.bits);
     let mut dirty = clean.clone();
     for moment in &mut dirty {
         let error = 0.02_f64.to_radians() * (4.0 * moment.motor[0] + 1.0).sin();
@@ -152,7 +152,7 @@ fn a_torque_bias_is_read_inside_the_gap() {
     for part in [0.05, -0.05] {
         let trial = Trial::new("q1", "inertia", Encoders::Preset, Some(40e-6), 11).lasting(4.0);
         let mut log = trial.record();
-        let bias = part * trial.run.train.motor.torque_limit;
+        let bias = part * trial.run.train.surroundings.torque_limit;
         log.iter_mut().for_each(|moment| moment.command += bias);
         let figures = figures_of(&trial, &log);
         GAP_WITH_BIAS.check(figures.gap);

@@ -38,16 +38,16 @@ fn an_hour_of_motion_gives_no_healthy_encoder_up() {
 fn given_up(name: &str, motion: &str, seed: u64) -> usize {
     let trial = Trial::new(name, motion, Encoders::Preset, None, seed);
     let (joint, train) = (&trial.run.joint, &trial.run.train);
-    let rate = train.control_rate as u32;
+    let rate = train.surroundings.control_rate;
     let gears = design::<f32, 3>(joint, rate).expect("tables of the gears");
-    let around = design_surroundings::<f32, 3>(joint, &train.surroundings(), &gears).expect("surroundings");
+    let around = design_surroundings::<f32, 3>(joint, &train.surroundings, &gears).expect("surroundings");
     let mut plant = VirtualJoint::new(&gears, &around);
     let observer = trial.tables::<f32>();
     let mut observer = Observer::<f32, MAPPED>::new(&observer);
     let mut controller = MotorController::new(joint, train);
     let reference = Reference::new(&trial.run.profile, seed);
     let mut uniform = uniform(seed);
-    let turn = 1_i64 << train.motor_encoder.bits;
+    let turn = 1_i64 << train.surroundings.motor_encoder.bits;
     let (mut counts, mut alarms, mut seen, mut commanded) = (0_i64, 0, false, 0.0);
     for period in 0..u64::from(LASTS * rate) {
         let time = period as f64 * controller.period;
@@ -62,7 +62,7 @@ fn given_up(name: &str, motion: &str, seed: u64) -> usize {
         seen = said.source == Source::Both;
         let command = controller.step(counts, reference.at(time));
         commanded = command as f32;
-        let noise = 1.0 + train.motor.torque_noise_ratio * 3.46 * (uniform() - 0.5);
+        let noise = 1.0 + train.surroundings.torque_noise_ratio * 3.46 * (uniform() - 0.5);
         let pushed = if motion == "hold" { 0.125 * joint.rated_output_torque * (0.7 * TAU * time).sin() } else { 0.0 };
         plant.advance((command * noise) as f32, pushed as f32);
     }

@@ -56,11 +56,11 @@ fn a_link_that_is_pushed_from_flank_to_flank_shows_the_width_though_it_never_res
     for (half_backlash, seed) in [(30e-6, 38), (40e-6, 37), (60e-6, 37)] {
         let mut trial = Trial::new("q1", "hold", Encoders::Preset, Some(half_backlash), seed).lasting(0.6);
         // Nothing brakes it, so it bounces.
-        trial.run.train.load.friction.coulomb = 0.0;
-        trial.run.train.load.friction.viscous = 0.0;
-        trial.run.train.motor.friction.coulomb = 0.0;
-        trial.run.train.motor.friction.viscous = 0.0;
-        trial.run.train.motor.cogging_torque = 0.0;
+        trial.run.train.surroundings.load_friction.coulomb = 0.0;
+        trial.run.train.surroundings.load_friction.viscous = 0.0;
+        trial.run.train.surroundings.motor_friction.coulomb = 0.0;
+        trial.run.train.surroundings.motor_friction.viscous = 0.0;
+        trial.run.train.surroundings.cogging_torque = 0.0;
         let torque = 0.125 * trial.run.joint.rated_output_torque;
         trial.run.disturbances = vec![Disturbance::Pulse { start: 0.2, duration: 20e-3, torque }];
         let log = trial.record();

@@ -164,9 +164,9 @@ impl MotorController {
             inertia: inertia_at_motor(joint),
             motor_inertia: joint.rotor_inertia
                 + joint.bodies.sun_equivalent_mass * joint.geometry.sun_base_radius.powi(2),
-            limit: train.motor.torque_limit,
-            per_count: TAU / f64::from(1_u32 << train.motor_encoder.bits),
-            period: 1.0 / train.control_rate,
+            limit: train.surroundings.torque_limit,
+            per_count: TAU / f64::from(1_u32 << train.surroundings.motor_encoder.bits),
+            period: 1.0 / f64::from(train.surroundings.control_rate),
             integral: 0.0,
             tracked: [0.0; 3],
             before: 0.0,

@@ -13,8 +13,8 @@ use crate::trial::{Encoders, Trial};
 /// Runs a probe on Q1 without an output encoder; the load is held by so much dry friction [N m].
 fn probed(half_backlash: f64, seed: u64, holding: f64, pushed_by: f64, torque: f64) -> (Progress<f32>, f64) {
     let mut trial = Trial::new("q1", "hold", Encoders::Preset, Some(half_backlash), seed);
-    trial.run.train.load.friction.coulomb = holding;
-    trial.run.train.load.gravity_torque = 0.0;
+    trial.run.train.surroundings.load_friction.coulomb = holding;
+    trial.run.train.surroundings.gravity_torque = 0.0;
     trial.settings.output_encoder = None;
     let push = Disturbance::Step { start: 0.0, torque: pushed_by };
     let mut train = DriveTrain::new(&trial.run.joint, &Start::Still, trial.run.train.clone(), vec![push], seed)

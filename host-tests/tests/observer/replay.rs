@@ -6,8 +6,8 @@ use std::f64::consts::TAU;
 use model_core::numbers::Real;
 use model_core::observer::design::{EncoderSettings, ObserverSettings};
 use model_core::observer::{Estimates, Observer, ObserverTables, Reading, Samples};
-use parameters::{ContactState, JointParameters};
-use reference::drive_train::DriveTrainParameters;
+use parameters::{AbsoluteEncoder, ContactState, JointParameters};
+use reference::drive_train::{DriveTrainParameters, ErrorPhases};
 
 use crate::motion::Moment;
 
@@ -16,25 +16,26 @@ pub const CLOCK_RATE: u32 = 10_000_000;
 
 /// What a data sheet says of a drive train: sizes, never the phases or signs of its errors.
 pub fn settings(train: &DriveTrainParameters) -> ObserverSettings {
-    let encoder = |encoder: &reference::drive_train::EncoderParameters| EncoderSettings {
+    let around = &train.surroundings;
+    let encoder = |encoder: &AbsoluteEncoder| EncoderSettings {
         counts_per_turn: 1 << encoder.bits,
         wraps_at: 1 << encoder.bits,
         absolute: true,
         harmonic_error: encoder.once_per_turn_error.max(encoder.twice_per_turn_error),
     };
     ObserverSettings {
-        control_rate: train.control_rate as u32,
+        control_rate: around.control_rate,
         clock_rate: CLOCK_RATE,
-        motor_encoder: encoder(&train.motor_encoder),
-        output_encoder: Some(encoder(&train.output_encoder)),
+        motor_encoder: encoder(&around.motor_encoder),
+        output_encoder: Some(encoder(&around.output_encoder)),
         fastest_motor: 300.0,
-        torque_delay: train.delay_periods,
-        torque_lag: train.motor.current_lag,
-        torque_limit: train.motor.torque_limit.min(1e3),
-        torque_noise_ratio: train.motor.torque_noise_ratio,
-        torque_uncertainty: (0.015 * train.motor.torque_limit).hypot(train.motor.friction.coulomb),
-        torque_ripple: train.motor.cogging_torque,
-        efficiency: train.efficiency,
+        torque_delay: around.delay,
+        torque_lag: around.current_lag,
+        torque_limit: around.torque_limit.min(1e3),
+        torque_noise_ratio: around.torque_noise_ratio,
+        torque_uncertainty: (0.015 * around.torque_limit).hypot(around.motor_friction.coulomb),
+        torque_ripple: around.cogging_torque,
+        efficiency: around.efficiency,
         backlash_uncertainty: 0.5,
         compliance_uncertainty: 0.3,
         skew: 50e-6,
@@ -230,16 +231,16 @@ pub fn replay<T: Real, const P: usize>(
 
 /// Readings of other encoders in the same motion: the truth at the control periods, older by the skew at the speed then.
 pub fn with_encoders(log: &[Moment], train: &DriveTrainParameters) -> Vec<Moment> {
-    let read = |[angle, speed]: [f64; 2], encoder: &reference::drive_train::EncoderParameters| {
+    let read = |[angle, speed]: [f64; 2], encoder: &AbsoluteEncoder, phases: ErrorPhases| {
         let angle = angle - encoder.skew * speed;
-        let error = encoder.once_per_turn_error * (angle + encoder.once_per_turn_phase).sin()
-            + encoder.twice_per_turn_error * (2.0 * angle + encoder.twice_per_turn_phase).sin();
+        let error = encoder.once_per_turn_error * (angle + phases.once_per_turn).sin()
+            + encoder.twice_per_turn_error * (2.0 * angle + phases.twice_per_turn).sin();
         ((angle + error) / TAU * f64::from(1_u32 << encoder.bits)).floor() as i64
     };
     log.iter()
         .map(|moment| Moment {
-            motor_counts: read(moment.motor, &train.motor_encoder),
-            output_counts: read(moment.link, &train.output_encoder),
+            motor_counts: read(moment.motor, &train.surroundings.motor_encoder, train.motor_error_phases),
+            output_counts: read(moment.link, &train.surroundings.output_encoder, train.output_error_phases),
             ..*moment
         })
         .collect()

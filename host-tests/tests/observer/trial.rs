@@ -5,8 +5,8 @@ use model_core::gears::Kinematics;
 use model_core::numbers::Real;
 use model_core::observer::ObserverTables;
 use model_core::observer::design::{ObserverSettings, design_observer};
-use parameters::JointParameters;
-use reference::drive_train::{DriveTrainParameters, EncoderParameters};
+use parameters::{AbsoluteEncoder, JointParameters};
+use reference::drive_train::DriveTrainParameters;
 
 use crate::motion::{Moment, Profile, Run, uniform};
 use crate::presets::{preset, with_backlash};
@@ -47,20 +47,20 @@ impl Trial {
         match encoders {
             Encoders::Preset => {}
             Encoders::Ideal => {
-                train.motor_encoder = EncoderParameters::ideal(18);
-                train.output_encoder = EncoderParameters::ideal(18);
+                train.surroundings.motor_encoder = AbsoluteEncoder::ideal(18);
+                train.surroundings.output_encoder = AbsoluteEncoder::ideal(18);
             }
             Encoders::Bits(motor, output) => {
-                train.motor_encoder.bits = motor;
-                train.output_encoder.bits = output;
+                train.surroundings.motor_encoder.bits = motor;
+                train.surroundings.output_encoder.bits = output;
             }
         }
         if encoders != Encoders::Ideal {
-            train.output_encoder.skew = 20e-6 + 70e-6 * uniform();
+            train.surroundings.output_encoder.skew = 20e-6 + 70e-6 * uniform();
         }
         let (profile, friction, gravity, duration) = motion_of(motion, &joint, &train);
-        train.load.friction.coulomb = friction;
-        train.load.gravity_torque = gravity;
+        train.surroundings.load_friction.coulomb = friction;
+        train.surroundings.gravity_torque = gravity;
         let wrong = if uniform() < 0.5 { [0.5, 1.2] } else { [1.5, 0.8] };
         let mut told = with_backlash(&joint, joint.sun_planet.half_backlash[0] * wrong[0]);
         if let Some(compliance) = &mut told.compliance {
@@ -94,7 +94,7 @@ impl Trial {
 /// Profile, dry friction, gravity and duration of a motion, to the size of the joint.
 fn motion_of(name: &str, joint: &JointParameters, train: &DriveTrainParameters) -> (Profile, f64, f64, f64) {
     let rated = joint.rated_output_torque;
-    let friction = train.load.friction.coulomb;
+    let friction = train.surroundings.load_friction.coulomb;
     let gravity = 0.4 * rated;
     let inertia = joint.geometry.ratio_by_teeth().powi(2) * crate::motion::inertia_at_motor(joint);
     // A quarter of the rated torque at 1 Hz, and a turn to and fro at most.

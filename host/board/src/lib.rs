@@ -4,7 +4,6 @@
 //! judged elsewhere.
 
 pub mod bench;
-pub mod fault;
 pub mod line_options;
 pub mod logs;
 pub mod profile;
@@ -12,4 +11,5 @@ pub mod recording;
 pub mod session;
 pub mod target;
 pub mod transport;
+pub mod trip;
 pub mod twin;

@@ -1,7 +1,7 @@
 //! What a session hears from the board and what it knows the board to have taken, as raw as it came. Gaps in sequence
 //! numbers are counted here; SI units and verdicts come later.
 
-use link::messages::{Accepted, Command, Fault, FromBoard, Hello, Log, RunSettings, Sample, SampleBatch, Statistics};
+use link::messages::{Accepted, Command, FromBoard, Hello, Log, RunSettings, Sample, SampleBatch, Statistics, Trip};
 
 /// Everything of one session.
 #[derive(Debug, Clone, Default)]
@@ -17,7 +17,7 @@ pub struct Recording {
     /// The last statistics.
     pub statistics: Option<Statistics>,
     /// Faults in the order in which they came.
-    pub faults: Vec<Fault>,
+    pub trips: Vec<Trip>,
     /// Encoded log, with the gaps left out.
     pub log: Vec<u8>,
     /// What went over the line and what was lost on it.
@@ -53,13 +53,13 @@ impl Recording {
             FromBoard::Samples(batch) => self.take_samples(batch),
             FromBoard::Statistics(statistics) => self.statistics = Some(statistics),
             // Schedules that were under way when a run stopped are refused: that says nothing new.
-            FromBoard::Fault(Fault::NotRunning) if !self.faults.is_empty() => {}
-            FromBoard::Fault(fault) => self.faults.push(fault),
+            FromBoard::Tripped(Trip::NotRunning) if !self.trips.is_empty() => {}
+            FromBoard::Tripped(trip) => self.trips.push(trip),
             FromBoard::Log(log) => self.take_log(&log),
             // Kept by whoever asked for them.
             FromBoard::Answer(_)
             | FromBoard::Loop(_)
-            | FromBoard::Upset { .. }
+            | FromBoard::FaultTaken { .. }
             | FromBoard::Kept(_)
             | FromBoard::Memory(_)
             | FromBoard::Judged(_) => {}

@@ -101,7 +101,7 @@ impl<'a> Session<'a> {
         self.send(&ToBoard::Stop)?;
         self.drain()?;
         self.recording.hello = None;
-        self.recording.faults.clear();
+        self.recording.trips.clear();
         self.send(&ToBoard::Reset(settings))?;
         self.wait("answer to a reset", |recording| recording.hello.is_some())?;
         self.recording.statistics = None;

@@ -27,7 +27,7 @@ const BIAS: f64 = 0.02;
 /// Balance of the link, with a motor torque that exceeds the logged one by a ratio and a motor of this dry friction, if
 /// no torque was measured behind them.
 pub fn of_the_link(rows: &Rows, plan: &Plan, torque_error: f64, motor_dry: f64) -> Option<Solution> {
-    let slowest = SLOWEST.max(STRIBECK_SPEEDS * plan.train.load_stribeck_speed);
+    let slowest = SLOWEST.max(STRIBECK_SPEEDS * plan.surroundings.load_friction.stribeck_speed);
     let mut equations = Equations::default();
     for row in rows.carrying().filter(|row| row.output_speed.abs() > slowest && row.direction != 0.0) {
         let coefficients = vec![
@@ -52,7 +52,7 @@ pub fn of_the_motor(rows: &Rows, plan: &Plan) -> Option<Solution> {
     for row in rows.carrying().filter(|row| row.direction != 0.0) {
         let Some(measured) = row.measured else { continue };
         // What the joint file says of the viscous part was taken off before.
-        let known = plan.train.motor_viscous_friction * row.motor_speed;
+        let known = plan.surroundings.motor_friction.viscous * row.motor_speed;
         let left = (row.drive - measured) / row.leverage + known;
         equations.push(vec![row.direction, row.motor_speed, -row.push / row.leverage, 1.0], left, stretch(row));
     }

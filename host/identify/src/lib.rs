@@ -223,9 +223,9 @@ fn simulate(arguments: &Arguments, loaded: &Loaded, progress: &Progress) -> Outc
             .with_help("name a new file, or remove this one if it is not needed"));
     }
     let mut file = loaded.file.clone();
-    let train = file.drive_train.get_or_insert_default();
-    train.motor_encoder.bits = arguments.motor_bits.unwrap_or(train.motor_encoder.bits);
-    train.output_encoder.bits = arguments.output_bits.unwrap_or(train.output_encoder.bits);
+    let around = &mut file.surroundings;
+    around.motor_encoder.bits = arguments.motor_bits.unwrap_or(around.motor_encoder.bits);
+    around.output_encoder.bits = arguments.output_bits.unwrap_or(around.output_encoder.bits);
     progress.run("testing", 1000);
     let line = progress.handle();
     let recording = virtual_test::record(&file, arguments.seed, &|share| line.at((1000.0 * share) as u32))?;

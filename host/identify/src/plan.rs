@@ -1,9 +1,9 @@
 //! What the joint file says before a log is read: ratio in whole teeth, levers, inertias on either side of the gap, the
 //! compliance that is expected. Nothing in it is found from a log.
 
-use joint_file::{DriveTrain, JointFile};
+use joint_file::JointFile;
 use model_core::gears::{Kinematics, Mechanics};
-use parameters::{Mesh, MeshKind, StiffnessWave};
+use parameters::{Mesh, MeshKind, StiffnessWave, Surroundings};
 
 use super::arguments::Arguments;
 use joint_file::named::Loaded;
@@ -43,7 +43,7 @@ pub struct Plan {
     /// The link hangs on a compliance of its own behind the carrier.
     pub compliant: bool,
     /// What surrounds the gears.
-    pub train: DriveTrain,
+    pub surroundings: Surroundings,
     /// How wrong the motor's torque may be, as a ratio.
     pub torque_error: f64,
 }
@@ -61,7 +61,7 @@ impl Plan {
     /// Of a joint file alone.
     pub fn of(file: &JointFile) -> Self {
         let joint = &file.parameters;
-        let train = file.drive_train.unwrap_or_default();
+        let around = &file.surroundings;
         let geometry = &joint.geometry;
         let lever = geometry.carrier_base_radius();
         let planets = geometry.planets as f64;
@@ -92,8 +92,8 @@ impl Plan {
             name: joint.name.as_str().to_owned(),
             teeth: [geometry.sun_teeth, geometry.sun_teeth + geometry.ring_teeth],
             ring_teeth: geometry.ring_teeth,
-            motor_bits: train.motor_encoder.bits,
-            output_bits: train.output_encoder.bits,
+            motor_bits: around.motor_encoder.bits,
+            output_bits: around.output_encoder.bits,
             lever,
             sun_inertia: sun * lever * lever / (ratio * ratio),
             carrier_inertia: (before - sun) * lever * lever / (ratio * ratio)
@@ -105,8 +105,8 @@ impl Plan {
             mesh_relaxation_per_ratio,
             compliance: mesh_compliance + own,
             compliant,
-            torque_error: train.torque_constant_error_ratio.abs(),
-            train,
+            torque_error: around.torque_constant_error_ratio.abs(),
+            surroundings: *around,
         }
     }
 

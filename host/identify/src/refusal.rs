@@ -15,7 +15,7 @@ const LEAST_CARRIED: f64 = 0.1;
 pub fn check(log: &Log, rows: &Rows, plan: &Plan) -> Outcome<()> {
     let (least, most) =
         log.torque.iter().fold((f64::MAX, f64::MIN), |(least, most), &torque| (least.min(torque), most.max(torque)));
-    let friction = plan.train.motor_coulomb_friction;
+    let friction = plan.surroundings.motor_friction.coulomb;
     if least >= 0.0 || most <= 0.0 {
         return Err(Failure::new(format!(
             "there is no reversal in this log: the motor torque stays between {least:.4} and {most:.4} N m"

@@ -87,7 +87,7 @@ impl Rows {
         let mut torques: Vec<f64> = all.iter().map(|row| row.torque().abs()).collect();
         torques.sort_by(f64::total_cmp);
         let greatest = torques.get(torques.len() * 19 / 20).copied().unwrap_or_default();
-        let friction = plan.ratio() * plan.train.motor_coulomb_friction;
+        let friction = plan.ratio() * plan.surroundings.motor_friction.coulomb;
         let carrying = (CARRYING_SHARE * greatest).max(OVER_FRICTION * friction);
         let guard = ((half as f64 + LAG / log.period) / samples as f64).ceil() as usize;
         let per_reading = plan.ratio() * plan.motor_inertia * kernel.products()[2][2].sqrt();
@@ -143,10 +143,11 @@ fn row(log: &Log, plan: &Plan, kernel: &Kernel, sample: usize) -> Row {
     };
     let [motor_speed, output_speed] = [&log.motor, &log.output].map(|angle| smooth(angle, 1));
     let torque = smooth(&log.torque, 0);
-    let net = torque - plan.motor_inertia * smooth(&log.motor, 2) - plan.train.motor_viscous_friction * motor_speed;
+    let net =
+        torque - plan.motor_inertia * smooth(&log.motor, 2) - plan.surroundings.motor_friction.viscous * motor_speed;
     let direction = direction(log, plan, kernel, sample);
     // Losses that grow with the load: the link gets less than a driving motor gives, and more has to be braked.
-    let efficiency = plan.train.efficiency;
+    let efficiency = plan.surroundings.efficiency;
     let leverage = plan.ratio()
         * match net * direction {
             power if power > 0.0 => efficiency,

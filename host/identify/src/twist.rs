@@ -98,7 +98,7 @@ const MEASURED: [usize; SCATTERING] = [COMPLIANCE, RELAXATION, SKEW];
 fn scatter(log: &Log, products: &[[f64; 3]; 3], plan: &Plan, row: &Row) -> Scatter {
     let ratio = plan.ratio();
     let taken = if row.measured.is_some() { 0.0 } else { -row.leverage };
-    let torque = [0.0, taken * plan.train.motor_viscous_friction, taken * plan.motor_inertia];
+    let torque = [0.0, taken * plan.surroundings.motor_friction.viscous, taken * plan.motor_inertia];
     let of_motor = [torque, [0.0, 1.0 / ratio, 0.0], [0.0; 3], [1.0 / ratio, 0.0, 0.0]];
     let of_output = [[0.0; 3], [0.0, -1.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]];
     let mut covariance = Scatter::default();

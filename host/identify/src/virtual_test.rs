@@ -11,7 +11,7 @@ use super::plan::Plan;
 use report::failure::{Failure, Outcome};
 use report::interruption;
 use scenario::plant::{PlantName, plant};
-use scenario::surroundings::{train, turn_encoders};
+use scenario::surroundings::train;
 
 /// Shares of the strongest torque for quick reversals: the compliance needs several.
 const SHARES: [f64; 4] = [1.0, 0.7, 0.45, 0.25];
@@ -53,13 +53,13 @@ pub fn course(file: &JointFile) -> Vec<(f64, f64)> {
     let plan = Plan::of(file);
     let motor = plan.motor_inertia * plan.ratio() * plan.ratio();
     let inertia = motor + plan.link_inertia;
-    let dry = plan.train.load_coulomb_friction + plan.ratio() * plan.train.motor_coulomb_friction;
+    let dry = plan.surroundings.load_friction.coulomb + plan.ratio() * plan.surroundings.motor_friction.coulomb;
     let at_motor = |acceleration: f64, brake: f64| {
         ((inertia * acceleration + brake) / plan.ratio()).min(file.profile.motor_torque_limit)
     };
     let strongest = at_motor(2.0 * FASTEST / QUICK, dry).min(file.profile.drive_torque.abs());
     // From speed to opposite speed the output goes out and back by a parabola.
-    let brake = dry + 1.2 * plan.train.gravity_torque.abs();
+    let brake = dry + 1.2 * plan.surroundings.gravity_torque.abs();
     let slow = at_motor(8.0 * SWING / (SLOW * SLOW), brake);
     let mut course = vec![(0.05, 0.0)];
     let mut series = |time: f64, torque: f64, reversals: usize| {
@@ -74,9 +74,8 @@ pub fn course(file: &JointFile) -> Vec<(f64, f64)> {
 
 /// Does the test.
 pub fn record(file: &JointFile, seed: u64, at: &dyn Fn(f64)) -> Outcome<Recording> {
-    let mut train = train(file);
-    turn_encoders(&mut train, seed);
-    let rate = train.control_rate;
+    let train = train(&file.surroundings, seed);
+    let rate = f64::from(file.surroundings.control_rate);
     let lever = file.parameters.geometry.carrier_base_radius();
     let mut plant = plant(PlantName::Reference, &file.parameters, &train, Vec::new(), seed)?;
     let course = course(file);

@@ -257,7 +257,7 @@ mod tests {
                 let changed = change(text, &path, &text[value]).unwrap_or_else(|why| panic!("{name}, {path}: {why:?}"));
                 let after = read(&changed).unwrap_or_else(|why| panic!("{name}, {path}: {why:?}\n{changed}"));
                 assert_eq!(after.parameters, before.parameters, "{name}, {path}");
-                assert_eq!(after.drive_train, before.drive_train, "{name}, {path}");
+                assert_eq!(after.surroundings, before.surroundings, "{name}, {path}");
             }
         }
     }

@@ -25,12 +25,10 @@ mod problem;
 mod reader;
 mod section;
 mod spelling;
-mod surroundings;
 mod unknown;
 mod wording;
 
 pub use change::{Refused, change, change_noting, full_key, value};
-pub use drive_train::{DriveTrain, Encoder};
 pub use motion::Profile;
 pub use notes::Source;
 pub use presets::{PRESETS, preset};

@@ -2,15 +2,14 @@
 //! joint with its warnings or everything that is wrong at once. Each section's rules are left to its reader.
 
 use model_core::gears::Scales;
-use parameters::{Coherence, Excitation, JointParameters};
+use parameters::{Coherence, Excitation, JointParameters, Surroundings};
 use toml::de::DeTable;
 
-use crate::drive_train::{self, DriveTrain};
 use crate::motion::{self, Profile};
 use crate::notes::{Notes, Source};
 use crate::problem::Problem;
 use crate::section::Section;
-use crate::{bodies, coherence, geometry, meshes};
+use crate::{bodies, coherence, drive_train, geometry, meshes};
 
 /// A joint file that can be used.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,8 +20,8 @@ pub struct JointFile {
     pub description: String,
     /// Torques for motion profiles.
     pub profile: Profile,
-    /// What surrounds the gears; `None` if the file says nothing of it, which is ideal.
-    pub drive_train: Option<DriveTrain>,
+    /// What surrounds the gears; what the file says nothing of is ideal.
+    pub surroundings: Surroundings,
     /// What is odd but can be used.
     pub warnings: Vec<Problem>,
     /// Where each number comes from, by the comment behind it.
@@ -88,7 +87,7 @@ fn read_table(top: &Section<'_>) -> Option<JointFile> {
     let contact = motion::read_contact(top.section("contact", "contact").as_ref());
     let profile_section = top.section("profile", "profile");
     let profile = motion::read_profile(profile_section.as_ref(), geometry.as_ref(), rated_output_torque);
-    let drive_train = top.section("drive_train", "drive_train").map(|section| drive_train::read(&section));
+    let surroundings = drive_train::read(top.section("drive_train", "drive_train").as_ref());
 
     if let Some(geometry) = &geometry {
         coherence::check(geometry, top.notes());
@@ -120,8 +119,8 @@ fn read_table(top: &Section<'_>) -> Option<JointFile> {
     Some(JointFile {
         parameters: JointParameters { excitation: excitation?, ..parameters? },
         description: description?,
+        surroundings: Surroundings { torque_limit: profile.as_ref()?.motor_torque_limit, ..surroundings },
         profile: profile?,
-        drive_train,
         warnings: Vec::new(),
         sources: Vec::new(),
     })

@@ -3,6 +3,7 @@
 
 use joint_file::{JointFile, PRESETS, preset, read};
 use model_core::gears::{Kinematics, Mechanics, MeshPhasing, Scales};
+use parameters::{Friction, Surroundings};
 
 fn file(name: &str) -> JointFile {
     match read(preset(name).expect("a preset")) {
@@ -123,11 +124,11 @@ fn every_number_of_every_preset_says_where_it_comes_from() {
 
 #[test]
 fn q1_has_its_drive_train_in_si() {
-    let drive_train = file("q1").drive_train.expect("a drive train");
-    assert_eq!(drive_train.current_lag, 0.2e-3);
-    assert_eq!(drive_train.output_encoder.skew, 50e-6);
-    assert_close(drive_train.output_encoder.once_per_turn_error, 0.35e-3, 3e-3);
-    assert_eq!((drive_train.motor_encoder.bits, drive_train.output_encoder.bits), (14, 17));
+    let around = file("q1").surroundings;
+    assert_eq!(around.current_lag, 0.2e-3);
+    assert_eq!(around.output_encoder.skew, 50e-6);
+    assert_close(around.output_encoder.once_per_turn_error, 0.35e-3, 3e-3);
+    assert_eq!((around.motor_encoder.bits, around.output_encoder.bits), (14, 17));
     assert_eq!(file("q1").profile.motor_torque_limit, 2.5);
 }
 
@@ -137,7 +138,18 @@ fn the_documented_example_is_a_joint() {
     let example = document.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).expect("an example");
     let file = read(example).expect("the example is good");
     assert_eq!(file.warnings, []);
-    assert_eq!(file.drive_train, None);
+    let torque_limit = file.profile.motor_torque_limit;
+    let load_friction = Friction { stribeck_speed: 0.05, ..Friction::default() };
+    assert_eq!(file.surroundings, Surroundings { torque_limit, load_friction, ..Surroundings::ideal() });
     assert_close(file.profile.drive_torque, 2.0, 1e-12);
     assert_close(file.profile.motor_torque_limit, 4.0, 1e-12);
+}
+
+#[test]
+fn a_part_of_a_control_period_is_dropped_and_said_to_be() {
+    let text = preset("q1").expect("a preset").replace("control_rate_Hz = 10e3", "control_rate_Hz = 9999.5");
+    let file = read(&text).expect("still a joint");
+    assert_eq!(file.surroundings.control_rate, 9999);
+    let messages: Vec<_> = file.warnings.into_iter().map(|warning| warning.message).collect();
+    assert_eq!(messages, ["`control_rate_Hz` = 9999.5 is taken as 9999"]);
 }

@@ -105,7 +105,7 @@ fn line(evidence: &Evidence<'_>) -> Vec<Check> {
         zero("sample batches lost on the line", traffic.lost_batches, Source::Host),
         zero("log frames lost on the line", traffic.lost_logs, Source::Host),
         zero("bad frames at the host", traffic.bad_frames, Source::Host),
-        count("faults of the board", recording.faults.len() as u32, Bound::Exactly(0.0), Source::Board),
+        count("faults of the board", recording.trips.len() as u32, Bound::Exactly(0.0), Source::Board),
     ];
     if let Some(statistics) = &recording.statistics {
         checks.extend([

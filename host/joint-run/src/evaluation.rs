@@ -13,7 +13,7 @@ use board::logs;
 use board::logs::Log;
 use board::recording::Recording;
 use board::target::image::Image;
-use board::{fault, twin};
+use board::{trip, twin};
 use report::failure::Outcome;
 
 /// Longest stretch that is shown at every tick [ticks].
@@ -63,7 +63,7 @@ pub fn evaluate(record: &mut RunRecord, ran: &Ran<'_>, references: Option<UnderW
         record.samples.push(&MotionSample::from_board(sample, timer_rate), tick_rate, record.joint.ratio);
     }
     record.timing = recording.statistics.as_ref().map(|statistics| timing(statistics, recording, timer_rate));
-    record.faults = recording.faults.iter().map(fault::entry).collect();
+    record.faults = recording.trips.iter().map(trip::entry).collect();
     let log = decode(recording, image);
     if let Ok(log) = &log {
         record.log.clone_from(&log.lines);

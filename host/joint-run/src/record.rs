@@ -11,8 +11,8 @@ pub use sample::MotionSample;
 pub use samples::{CloseUp, ErrorSeries, Reference, Samples};
 pub use timing::{Counters, HistogramBin, MinMeanMax, TimingFigures};
 
-use board::fault::FaultEntry;
 use board::logs::LogLine;
+use board::trip::FaultEntry;
 use report::checks::{Check, Verdict};
 use serde::{Deserialize, Serialize};
 

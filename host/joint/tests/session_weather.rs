@@ -14,7 +14,7 @@ use board::target::board::Board;
 use board::transport::Socket;
 use board::twin;
 use fake_board::{Misbehaviour, TICK_RATE, joint};
-use link::messages::{Fault, Role, RunMode, RunSettings};
+use link::messages::{Role, RunMode, RunSettings, Trip};
 use report::failure::{Failure, Outcome};
 
 /// A message is due within 2 s by design; a busy machine is given ten times that.
@@ -188,10 +188,10 @@ fn a_lost_schedule_does_not_pass_for_a_good_run() {
 
 #[test]
 fn a_fault_ends_the_run_in_words() {
-    let (failure, recording) = failure(Misbehaviour::FaultAt(4_000, Fault::NotFinite { tick: 4_000 }));
+    let (failure, recording) = failure(Misbehaviour::TripAt(4_000, Trip::NotFinite { tick: 4_000 }));
     assert!(failure.message().contains("not finite"), "{failure}");
     assert!(failure.message().contains("tick 4000"), "{failure}");
-    assert_eq!(recording.faults, [Fault::NotFinite { tick: 4_000 }]);
+    assert_eq!(recording.trips, [Trip::NotFinite { tick: 4_000 }]);
     assert_eq!(failure.exit_code(), 1);
 }
 

@@ -15,7 +15,6 @@ mod encoder;
 mod friction;
 mod inside;
 mod parameters;
-mod surroundings;
 
 use std::f64::consts::TAU;
 
@@ -25,9 +24,7 @@ pub use disturbance::Disturbance;
 use encoder::Encoder;
 use friction::Shaft;
 pub use inside::{Inside, Stepping};
-pub use parameters::{
-    DriveTrainError, DriveTrainParameters, EncoderParameters, FrictionParameters, LoadParameters, MotorParameters,
-};
+pub use parameters::{DriveTrainError, DriveTrainParameters, ErrorPhases};
 
 use crate::joint::{Observation, Reference, Start};
 
@@ -118,7 +115,8 @@ impl<J: Inside> DriveTrain<J> {
     ) -> Result<Self, DriveTrainError> {
         parameters.check()?;
         let observation = inside.observe();
-        let part = 1.0 / (parameters.control_rate * f64::from(parameters.parts_per_period));
+        let around = &parameters.surroundings;
+        let part = 1.0 / (f64::from(around.control_rate) * f64::from(parameters.parts_per_period));
         let sun_radius = joint.geometry.sun_base_radius;
         let carrier_lever = joint.geometry.carrier_radius * joint.geometry.working_pressure_angle.cos();
         let carrier_inertia = joint.bodies.carrier_inertia_over_radius_squared * joint.geometry.carrier_radius.powi(2)
@@ -126,13 +124,13 @@ impl<J: Inside> DriveTrain<J> {
         let compliant = joint.compliance.is_some();
         let mut train = Self {
             disturbances,
-            current_loop: CurrentLoop::new(parameters.motor, part, seed),
-            motor_encoder: Encoder::new(parameters.motor_encoder),
-            output_encoder: Encoder::new(parameters.output_encoder),
+            current_loop: CurrentLoop::new(*around, part, seed),
+            motor_encoder: Encoder::new(around.motor_encoder, parameters.motor_error_phases),
+            output_encoder: Encoder::new(around.output_encoder, parameters.output_error_phases),
             torques: TrueTorques::default(),
             parts_done: 0,
             part,
-            delay_parts: (parameters.delay_periods * f64::from(parameters.parts_per_period)).round() as u64,
+            delay_parts: (around.delay * f64::from(parameters.parts_per_period)).round() as u64,
             sun_radius,
             carrier_lever,
             motor_inertia: joint.rotor_inertia + joint.bodies.sun_equivalent_mass * sun_radius.powi(2),
@@ -194,13 +192,14 @@ impl<J: Inside> DriveTrain<J> {
 
     fn torques_now(&mut self) -> TrueTorques {
         let joint = &self.joint;
+        let around = &self.parameters.surroundings;
         let air_gap = self.current_loop.torque(self.parts_done);
-        let cogging_angle = f64::from(self.parameters.motor.cogging_periods_per_turn)
+        let cogging_angle = f64::from(around.cogging_periods_per_turn)
             * (joint.motor_angle + 0.5 * self.part * joint.motor_speed).rem_euclid(TAU);
-        let cogging = self.parameters.motor.cogging_torque * cogging_angle.sin();
+        let cogging = around.cogging_torque * cogging_angle.sin();
         let transmitted = joint.sun_force() * self.sun_radius;
         let driving = transmitted * joint.motor_speed >= 0.0;
-        let efficiency = self.parameters.efficiency;
+        let efficiency = around.efficiency;
         let loss = transmitted.abs() * if driving { 1.0 / efficiency - 1.0 } else { 1.0 - efficiency };
         let motor = Shaft {
             speed: joint.motor_speed,
@@ -209,7 +208,7 @@ impl<J: Inside> DriveTrain<J> {
             part: self.part,
         };
 
-        let gravity = self.parameters.load.gravity_torque * joint.link_angle.sin();
+        let gravity = around.gravity_torque * joint.link_angle.sin();
         // The middle of the part stands for the whole of it.
         let middle = (self.parts_done as f64 + 0.5) * self.part;
         let disturbance = self.disturbances.iter().map(|disturbance| disturbance.torque(middle)).sum::<f64>();
@@ -227,8 +226,8 @@ impl<J: Inside> DriveTrain<J> {
         TrueTorques {
             air_gap,
             cogging,
-            motor_friction: self.parameters.motor.friction.torque(motor, loss),
-            load_friction: self.parameters.load.friction.torque(load, 0.0),
+            motor_friction: motor.friction(&around.motor_friction, loss),
+            load_friction: load.friction(&around.load_friction, 0.0),
             gravity,
             disturbance,
         }

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use super::controller::ControllerName;
 use super::execution::{Order, RunError, execute};
+use super::file::fault_word;
 use super::log_file;
 use super::on_board::Boards;
 use super::plant::PlantName;
@@ -126,7 +127,7 @@ pub fn run(test: &Test, conduct: &Conduct<'_>, before: &AtomicU32) -> Outcome<Te
         controller: test.file.controller.word().to_owned(),
         duration_s: test.file.duration,
         settle_s: test.file.settle,
-        faults: test.file.faults.iter().map(|fault| fault.word.to_owned()).collect(),
+        faults: test.file.faults.iter().map(|fault| fault_word(fault).to_owned()).collect(),
         seeds,
         passed,
         broken,
@@ -141,7 +142,7 @@ pub fn run(test: &Test, conduct: &Conduct<'_>, before: &AtomicU32) -> Outcome<Te
         ),
         seconds: start.elapsed().as_secs_f64(),
     };
-    let faults = test.file.faults.iter().map(|fault| (fault.word, [fault.start, fault.end])).collect();
+    let faults = test.file.faults.iter().map(|fault| (fault_word(fault), [fault.start, fault.end])).collect();
     Ok(Tested { record, shown, faults })
 }
 

@@ -4,13 +4,12 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::compensated::{compensation_settings, observer_settings};
 use joint_file::{JointFile, Problem, Severity};
 use model_core::compensation::CompensationTables;
-use model_core::compensation::design::{CompensationSettings, design_compensation};
-use model_core::observer::design::{design_observer, design_usual_probe};
+use model_core::compensation::design::{CompensationSettings, compensation_settings, design_compensation};
+use model_core::observer::design::{design_observer, design_usual_probe, observer_settings};
 use model_core::observer::{ObserverTables, ProbeTable};
-use parameters::JointParameters;
+use parameters::{JointParameters, Surroundings};
 use reference::closed_loop::rivals::Knowledge;
 use reference::closed_loop::{Profile as Standard, Reference};
 use reference::drive_train::{Disturbance, DriveTrainParameters};
@@ -19,7 +18,7 @@ use super::draw::{Quantity, Stream};
 use super::file::{Change, Course, NewValue, TestFile};
 use super::pushes::disturbances;
 use super::recorded::Recorded;
-use super::surroundings::{train, turn_encoders};
+use super::surroundings::train;
 use report::failure::{Failure, Outcome};
 
 /// One seed of a test.
@@ -31,7 +30,7 @@ pub struct Case {
     /// What controllers are told of the joint; its backlash is guessed.
     pub told: JointParameters,
     /// What they are told of its surroundings.
-    pub told_train: DriveTrainParameters,
+    pub told_surroundings: Surroundings,
     /// Guessed over true half-backlash.
     pub width_guess: f64,
     /// Where the link shall be.
@@ -71,8 +70,6 @@ impl Case {
         };
         let [known, truth] = &texts;
         let (known, truth) = (read(known)?, read(truth)?);
-        let mut true_train = train(&truth);
-        turn_encoders(&mut true_train, seed);
         // What nobody has measured is wrong by half, one way or the other.
         let usual = Quantity::Exactly(if seed.is_multiple_of(2) { 0.5 } else { 1.5 });
         let width_guess = pick("width_guess_ratio", file.width_guess.unwrap_or(usual));
@@ -84,8 +81,8 @@ impl Case {
         let rated = known.parameters.rated_output_torque;
         Ok(Self {
             told,
-            told_train: train(&known),
-            train: true_train,
+            told_surroundings: known.surroundings,
+            train: train(&truth.surroundings, seed),
             truth,
             width_guess,
             motion: course(file, motion, seed),
@@ -110,7 +107,7 @@ impl Case {
     /// is told the same to the last bit.
     pub fn tell(&mut self, told: &JointFile) {
         self.told = told.parameters.clone();
-        self.told_train = train(told);
+        self.told_surroundings = told.surroundings;
     }
 
     /// True half-backlash, mean over the planets [m].
@@ -134,7 +131,7 @@ impl Case {
 
     /// Designs observer and compensation from what they are told.
     pub fn design(&self, file: &TestFile) -> Outcome<Designed> {
-        let mut settings = observer_settings(&self.told_train);
+        let mut settings = observer_settings(&self.told_surroundings);
         if !file.output_encoder {
             settings.output_encoder = None;
         }
@@ -144,7 +141,7 @@ impl Case {
         let observer = design_observer(&self.told, &settings).map_err(|error| refused("observer", &error))?;
         let settings_of_law = CompensationSettings {
             peak_torque: file.peak_torque,
-            ..compensation_settings(&self.told_train, file.bandwidth)
+            ..compensation_settings(&self.told_surroundings, file.bandwidth)
         };
         let compensation =
             design_compensation(&self.told, &settings_of_law).map_err(|error| refused("compensation", &error))?;

@@ -52,12 +52,12 @@ pub struct Compensated<'tables, T: Real> {
 
 /// Settings of an observer for a drive train: what data sheets say, sizes of errors but never their phases or signs.
 pub fn observer_settings(train: &DriveTrainParameters) -> ObserverSettings {
-    model_core::observer::design::observer_settings(&train.surroundings())
+    model_core::observer::design::observer_settings(&train.surroundings)
 }
 
 /// Settings of a compensation for a drive train.
 pub fn compensation_settings(train: &DriveTrainParameters, bandwidth: f64) -> CompensationSettings {
-    model_core::compensation::design::compensation_settings(&train.surroundings(), bandwidth)
+    model_core::compensation::design::compensation_settings(&train.surroundings, bandwidth)
 }
 
 impl<'tables, T: Real> Compensated<'tables, T> {
@@ -78,9 +78,10 @@ impl<'tables, T: Real> Compensated<'tables, T> {
         observer_tables: &'tables ObserverTables<T>,
         train: &DriveTrainParameters,
     ) -> Self {
+        let around = &train.surroundings;
         let observed = Observed {
             observer: Observer::new(observer_tables),
-            ranges: [train.motor_encoder.bits, train.output_encoder.bits].map(|bits| 1_i64 << bits),
+            ranges: [around.motor_encoder, around.output_encoder].map(|encoder| 1_i64 << encoder.bits),
             torque: T::ZERO,
         };
         Self { compensation: Compensation::new(tables), sight: Sight::Observed(Box::new(observed)), trace: None }

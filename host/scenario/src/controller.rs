@@ -7,7 +7,7 @@ use reference::closed_loop::{
 };
 use reference::drive_train::Measurement;
 
-use super::injection::Seen;
+use super::faults::Seen;
 use super::port::{Answer, ControllerPort, Translator};
 use report::failure::Outcome;
 

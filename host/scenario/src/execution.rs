@@ -5,12 +5,11 @@ use std::fmt;
 use std::time::Instant;
 
 use reference::closed_loop::rivals::Knowledge;
-use reference::drive_train::DriveTrainParameters;
 
 use super::case::{Case, Designed};
 use super::controller::{ControllerName, Driver};
+use super::faults::HostFaults;
 use super::file::TestFile;
-use super::injection::Injection;
 use super::plant::{PlantName, plant};
 use super::port::{ControllerPort, HostPort, Translator};
 use super::ran::Ran;
@@ -105,10 +104,11 @@ impl Pass<'_> {
         let joint = if order.without_gap { case.joint_without_gap() } else { case.truth.parameters.clone() };
         let mut plant = plant(order.plant, &joint, &case.train, case.disturbances.clone(), seed)?;
         let faults = if order.without_gap { &[] } else { file.faults.as_slice() };
-        let mut injection = Injection::new(faults, seed, case);
+        let mut faults = HostFaults::new(faults, seed, case);
         let mut sender = Sender::new(file, case, order.controller, designed);
-        let period = 1.0 / case.train.control_rate;
-        let periods = (file.duration * case.train.control_rate).round() as u64;
+        let rate = f64::from(case.truth.surroundings.control_rate);
+        let period = 1.0 / rate;
+        let periods = (file.duration * rate).round() as u64;
         let mut ran = Ran::begin(period, periods);
         for index in 0..periods {
             if index % LOOK == 0 {
@@ -121,18 +121,18 @@ impl Pass<'_> {
             }
             let time = index as f64 * period;
             let joint = plant.joint().clone();
-            injection.wear(time, &joint, plant.inside().as_mut());
+            faults.wear(time, &joint, plant.inside().as_mut());
             let (number, set_point) = sender.at(time, index);
-            let set_point = injection.receive(time, number, set_point);
-            let seen = injection.sense(&plant.measure());
+            let set_point = faults.receive(time, number, set_point);
+            let seen = faults.sense(&plant.measure());
             let (command, answer) = driver.period(&seen, &set_point)?;
             if !command.is_finite() {
                 return Err(RunError::Broke(format!("the controller's torque is not finite at t = {time:.4} s")));
             }
             plant
-                .advance(injection.torque(time, command))
+                .advance(faults.torque(time, command))
                 .map_err(|error| RunError::Broke(format!("the plant at t = {time:.4} s: {error}")))?;
-            ran.note(&plant, case, &injection, command, answer.as_ref());
+            ran.note(&plant, case, &faults, command, answer.as_ref());
             if ran.run.samples.last().is_some_and(|sample| !(sample.link + sample.mesh_force).is_finite()) {
                 return Err(RunError::Broke(format!("the joint's motion is not finite at t = {time:.4} s")));
             }
@@ -151,8 +151,8 @@ fn driver<'d>(
     let knowledge: Knowledge = case.knowledge();
     Ok(match designed {
         Some(designed) => {
-            let train: &DriveTrainParameters = &case.told_train;
-            let bits = [train.motor_encoder.bits, train.output_encoder.bits];
+            let around = &case.told_surroundings;
+            let bits = [around.motor_encoder.bits, around.output_encoder.bits];
             let translator = Translator::new(designed.ticks, bits);
             match name {
                 ControllerName::Probe => Driver::Probe(port(designed)?, translator),

@@ -2,9 +2,9 @@
 //! the core's own plant, and reported. Observer and compensation run on the host or, by `on_board`, on a board.
 //!
 //! The order of a test: `file` reads what it says, `suite` finds it and its joint, `case` makes it concrete for a seed;
-//! `execution` closes the loop between `plant` and `controller` through the faults of `injection`, with observer and
-//! compensation behind `port`, and `ran` keeps what happened; `figures`, `values` and `sight` say what that was worth, `verdict` judges, `campaign` puts all seeds
-//! together; `page`, `junit`, `log_file` and `record` are what stays.
+//! `execution` closes the loop between `plant` and `controller` through `faults`, with observer and compensation behind
+//! `port`, and `ran` keeps what happened; `figures`, `values` and `sight` say what that was worth, `verdict` judges,
+//! `campaign` puts all seeds together; `page`, `junit`, `log_file` and `record` are what stays.
 
 mod campaign;
 pub mod case;
@@ -12,9 +12,9 @@ pub mod compensated;
 pub mod controller;
 pub mod draw;
 pub mod execution;
+pub mod faults;
 pub mod figures;
 pub mod file;
-pub mod injection;
 mod junit;
 mod log_file;
 pub mod on_board;

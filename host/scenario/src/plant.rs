@@ -69,9 +69,10 @@ pub fn plant(
             Box::new(Reference::start(joint, &start).map_err(|error| refused(&error))?)
         }
         PlantName::Core => {
+            let control_rate = f64::from(train.surroundings.control_rate);
             // As on a board: whole ticks in a control period, as near to the usual rate as that allows.
-            train.parts_per_period = (f64::from(DEFAULT_TICK_RATE) / train.control_rate).round().max(1.0) as u32;
-            let rate = (train.control_rate * f64::from(train.parts_per_period)).round() as u32;
+            train.parts_per_period = (f64::from(DEFAULT_TICK_RATE) / control_rate).round().max(1.0) as u32;
+            let rate = (control_rate * f64::from(train.parts_per_period)).round() as u32;
             match joint.geometry.planets {
                 3 => Box::new(CoreJoint::<3>::new(joint, rate)?),
                 4 => Box::new(CoreJoint::<4>::new(joint, rate)?),

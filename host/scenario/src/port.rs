@@ -9,7 +9,7 @@ use model_core::observer::{Reading, Samples};
 use reference::closed_loop::{Motion, SetPoint};
 
 use super::case::Designed;
-use super::injection::{Frame, Seen};
+use super::faults::{Frame, Seen};
 use report::failure::{Failure, Outcome};
 
 /// What one control period came to.

@@ -7,7 +7,7 @@ use parameters::ContactState;
 use reference::closed_loop::{Run, Sample};
 
 use super::case::Case;
-use super::injection::Injection;
+use super::faults::HostFaults;
 use super::plant::Plant;
 use super::port::Answer;
 
@@ -90,13 +90,13 @@ impl Ran {
         &mut self,
         plant: &Plant,
         case: &Case,
-        injection: &Injection,
+        faults: &HostFaults,
         command: f64,
         answer: Option<&Answer>,
     ) {
         let joint = plant.joint();
         let torques = plant.torques();
-        let half = injection.half_backlash_now();
+        let half = faults.half_backlash_now();
         let sample = Sample::of(joint, case.motion.at(joint.time).position, half, command);
         let truth = Truth {
             gap: joint.gap,

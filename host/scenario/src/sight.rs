@@ -2,9 +2,10 @@
 
 use model_core::gears::Kinematics;
 use model_core::observer::Progress;
+use model_core::virtual_joint::fault::{FaultKind, Shaft};
 
 use super::case::Case;
-use super::file::{EncoderName, Fault, FaultKind, FrameName, TestFile};
+use super::file::{Fault, TestFile, fault_is_on};
 use super::ran::Ran;
 
 /// A width counts as right within this part.
@@ -161,7 +162,8 @@ fn at_the_end(case: &Case, ran: &Ran) -> Vec<(&'static str, f64)> {
     let meshes = (1.0 / joint.sun_planet.mean_stiffness + 1.0 / joint.ring_planet.mean_stiffness)
         / (joint.geometry.planets as f64 * (2.0 * lever).powi(2));
     let compliance = meshes + joint.compliance.map_or(0.0, |compliance| 1.0 / compliance.stiffness);
-    let skew = case.train.output_encoder.skew - case.train.motor_encoder.skew;
+    let around = &case.truth.surroundings;
+    let skew = around.output_encoder.skew - around.motor_encoder.skew;
     vec![
         ("width_error", 100.0 * (f64::from(sight.half_backlash) / truth.half_backlash - 1.0).abs()),
         ("compliance_error", 100.0 * (f64::from(sight.compliance) / compliance - 1.0).abs()),
@@ -174,10 +176,10 @@ fn alarms(file: &TestFile, ran: &Ran) -> Vec<(&'static str, f64)> {
     let of_output = |fault: &&Fault| {
         matches!(
             fault.kind,
-            FaultKind::Frozen(EncoderName::Output)
-                | FaultKind::Offset(EncoderName::Output, ..)
-                | FaultKind::MissingCounts(EncoderName::Output, _)
-                | FaultKind::LostFrames(FrameName::Output, _)
+            FaultKind::Frozen(Shaft::Link)
+                | FaultKind::Offset(Shaft::Link, _)
+                | FaultKind::MissingCounts(Shaft::Link, _)
+                | FaultKind::LostReadings(Shaft::Link, _)
         )
     };
     let first = file.faults.iter().filter(of_output).map(|fault| fault.start).fold(f64::INFINITY, f64::min);
@@ -187,7 +189,7 @@ fn alarms(file: &TestFile, ran: &Ran) -> Vec<(&'static str, f64)> {
             if sample.time >= first {
                 found = found.or(Some(sample.time - first));
             }
-            let on = file.faults.iter().any(|fault| fault.is_on(sample.time));
+            let on = file.faults.iter().any(|fault| fault_is_on(fault, sample.time));
             false_alarms += usize::from(!on);
         }
         before = sight.both;

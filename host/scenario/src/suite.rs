@@ -6,10 +6,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use link::messages::Role;
+use model_core::virtual_joint::fault::FaultKind;
 use sha2::{Digest, Sha256};
 
 use super::case::{Case, check_changes, recorded};
-use super::file::{self, Course, FaultKind, TestFile};
+use super::file::{self, Course, OnHost, TestFile};
 use super::plant::PlantName;
 use super::record::NotRun;
 use super::recorded::Recorded;
@@ -143,7 +144,7 @@ fn load_one(path: &Path, plant: PlantName) -> Outcome<Test> {
     let joint = joint(&file.joint, folder).map_err(|failure| failure.while_doing(&name))?;
     check_changes(&file, &joint.text)
         .map_err(|problems| Failure::from_report(diagnostic::report(&name, &text, &problems)))?;
-    let broken_tooth = file.faults.iter().any(|fault| matches!(fault.kind, FaultKind::BrokenTooth(_)));
+    let broken_tooth = file.faults.iter().any(|fault| matches!(fault.kind, FaultKind::Other(OnHost::BrokenTooth(_))));
     if broken_tooth && plant == PlantName::Core {
         return Err(Failure::new(format!(
             "{name}: the core's planets share their stiffness, so no tooth of it can break"

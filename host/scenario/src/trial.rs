@@ -3,7 +3,7 @@
 use model_core::compensation::design::design_compensation;
 use model_core::gears::design::DesignError;
 use model_core::observer::design::design_observer;
-use parameters::JointParameters;
+use parameters::{Friction, JointParameters};
 
 use super::compensated::{Compensated, compensation_settings, observer_settings};
 use reference::closed_loop::Profile;
@@ -11,7 +11,7 @@ use reference::closed_loop::rivals::{
     Impedance, ImpedanceLaw, Knowledge, LoadCascade, MotorPid, OutputIntegral, VelocitySign,
 };
 use reference::closed_loop::{Bench, BenchError, ImpedanceGains, Run};
-use reference::drive_train::{Disturbance, DriveTrainParameters, FrictionParameters};
+use reference::drive_train::{Disturbance, DriveTrainParameters};
 
 /// Who is on trial.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -85,7 +85,7 @@ impl Trial {
     /// Slow and driven by friction: 0.2 Hz under 1 N m.
     pub fn slow(joint: &JointParameters, train: &DriveTrainParameters, seed: u64) -> Self {
         let mut train = weightless(train);
-        train.load.friction.coulomb = 1.0;
+        train.surroundings.load_friction.coulomb = 1.0;
         Self::new("T1", joint.clone(), train, Profile::Sine { amplitude: 0.5, frequency: 0.2 }, 12.0, seed)
     }
 
@@ -126,10 +126,10 @@ impl Trial {
     /// Stay where it is after a push, with so much dry friction at the link [N m].
     pub fn free_hold(joint: &JointParameters, train: &DriveTrainParameters, friction: f64, seed: u64) -> Self {
         let mut train = weightless(train);
-        train.load.friction = FrictionParameters { coulomb: friction, ..FrictionParameters::default() };
+        train.surroundings.load_friction = Friction { coulomb: friction, ..Friction::default() };
         if friction == 0.0 {
-            train.motor.friction = FrictionParameters::default();
-            train.motor.cogging_torque = 0.0;
+            train.surroundings.motor_friction = Friction::default();
+            train.surroundings.cogging_torque = 0.0;
         }
         let mut trial = Self::new("free hold", joint.clone(), train, Profile::Hold(0.0), 14.0, seed);
         trial.bench.disturbances.push(Disturbance::Pulse { start: 2.0, duration: 0.02, torque: 1.5 });
@@ -241,6 +241,6 @@ fn scaled(joint: &JointParameters, factor: f64) -> JointParameters {
 /// A drive train whose link weighs nothing.
 fn weightless(train: &DriveTrainParameters) -> DriveTrainParameters {
     let mut train = train.clone();
-    train.load.gravity_torque = 0.0;
+    train.surroundings.gravity_torque = 0.0;
     train
 }

@@ -58,7 +58,7 @@ impl Values {
         let rated = joint.rated_output_torque / (2.0 * joint.geometry.carrier_base_radius());
         let samples = || ran.run.samples.iter().filter(|sample| sample.time >= file.settle);
         let count = samples().count().max(1) as f64;
-        let limit = case.train.motor.torque_limit;
+        let limit = case.truth.surroundings.torque_limit;
         let at_limit = samples().filter(|sample| sample.command.abs() >= 0.9999 * limit).count() as f64;
         let end = ran.run.samples.last().map_or(0.0, |sample| sample.time);
         self.set("rms", 1e3 * plain.rms);

@@ -3,9 +3,10 @@
 
 #[cfg(feature = "design")]
 pub mod design;
+pub mod fault;
+pub mod faults;
 mod plant;
 pub mod tables;
-pub mod upset;
 
 pub use plant::{Acting, VirtualJoint};
 pub use tables::SurroundingsTable;

@@ -6,10 +6,10 @@ use std::time::{Duration, Instant};
 use link::controller::{Answered, Exchange};
 use link::messages::{FromBoard, RunMode, Schedule, ToBoard};
 use link::virtual_joint::{KNOTS_PER_SCHEDULE, Knot, LoopSample};
-use model_core::virtual_joint::upset::Upset;
+use model_core::virtual_joint::fault::{Fault, FixedPoint};
 
 use super::{SILENCE, Session};
-use crate::fault;
+use crate::trip;
 use report::failure::{Failure, Outcome};
 
 /// Schedules under way at once: the board's receive buffer holds two frames at least.
@@ -28,7 +28,7 @@ impl Session<'_> {
             for message in self.hear()? {
                 match message {
                     FromBoard::Answer(answered) if answered.tick == tick.wrapping_add(1) => return Ok(answered),
-                    FromBoard::Fault(raised) => return Err(fault::failure(&raised)),
+                    FromBoard::Tripped(raised) => return Err(trip::failure(&raised)),
                     FromBoard::Hello(_) => return Err(started_anew()),
                     _ => {}
                 }
@@ -39,13 +39,12 @@ impl Session<'_> {
         }
     }
 
-    /// Has faults between joint and controller, before the motion begins.
-    pub fn upset(&mut self, upsets: &[Upset<f32>]) -> Outcome<()> {
-        for upset in upsets {
-            let taken =
-                self.ask(&ToBoard::Upset(upset.into()), "answer to a fault of the test", SILENCE, |message| {
-                    if let FromBoard::Upset { taken } = message { Some(taken) } else { None }
-                })?;
+    /// Gives the board faults between joint and controller, before the motion begins.
+    pub fn add_faults(&mut self, faults: &[Fault<FixedPoint<f32>>]) -> Outcome<()> {
+        for fault in faults {
+            let taken = self.ask(&ToBoard::Fault(*fault), "answer to a fault of the test", SILENCE, |message| {
+                if let FromBoard::FaultTaken { taken } = message { Some(taken) } else { None }
+            })?;
             if !taken {
                 return Err(Failure::check_failed("the board does not take a fault of the test")
                     .with_help("in real time it may have begun already: run with --mode lockstep"));
@@ -92,7 +91,7 @@ impl Session<'_> {
                         samples.extend(batch.samples);
                         board_tick = samples.last().map_or(board_tick, |sample| sample.tick.max(board_tick));
                     }
-                    FromBoard::Fault(raised) => return Err(fault::failure(&raised)),
+                    FromBoard::Tripped(raised) => return Err(trip::failure(&raised)),
                     FromBoard::Hello(_) => return Err(started_anew()),
                     _ => {}
                 }

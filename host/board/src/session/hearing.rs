@@ -7,8 +7,8 @@ use link::framing::encode;
 use link::messages::{FromBoard, ToBoard};
 
 use super::{DRAIN, HelloHead, Mend, SILENCE, Session};
-use crate::fault;
 use crate::recording::Recording;
+use crate::trip;
 use report::failure::{Failure, Outcome};
 
 /// A line that has been quiet for so long has nothing more under way.
@@ -68,8 +68,8 @@ impl Session<'_> {
         let start = Instant::now();
         while !done(&self.recording) {
             self.hear()?;
-            if let Some(fault) = self.recording.faults.first() {
-                return Err(fault::failure(fault));
+            if let Some(trip) = self.recording.trips.first() {
+                return Err(trip::failure(trip));
             }
             if start.elapsed() > SILENCE {
                 return Err(self.silent(&format!("no {what} came")));
@@ -90,8 +90,8 @@ impl Session<'_> {
         let start = Instant::now();
         loop {
             for message in self.hear()? {
-                if let FromBoard::Fault(raised) = &message {
-                    return Err(fault::failure(raised));
+                if let FromBoard::Tripped(raised) = &message {
+                    return Err(trip::failure(raised));
                 }
                 if let Some(answer) = answer(message) {
                     return Ok(answer);

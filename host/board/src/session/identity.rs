@@ -205,6 +205,6 @@ mod tests {
 
     #[test]
     fn other_messages_have_no_head() {
-        assert_eq!(head_of(&FromBoard::Fault(link::messages::Fault::BadDigest)), None);
+        assert_eq!(head_of(&FromBoard::Tripped(link::messages::Trip::BadDigest)), None);
     }
 }

@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 use link::messages::{COMMANDS_PER_SCHEDULE, Command, FromBoard, RunMode, Schedule, ToBoard};
 
 use super::{SILENCE, Session};
-use crate::fault;
 use crate::profile::Profile;
+use crate::trip;
 use report::failure::{Failure, Outcome};
 
 /// Schedules under way at once: the board's receive buffer holds two frames at least.
@@ -56,7 +56,7 @@ impl Session<'_> {
                     FromBoard::Samples(batch) => {
                         stream.advance(batch.samples.last().map_or(0, |sample| sample.tick));
                     }
-                    FromBoard::Fault(raised) => return Err(fault::failure(&raised)),
+                    FromBoard::Tripped(raised) => return Err(trip::failure(&raised)),
                     FromBoard::Hello(_) => {
                         return Err(Failure::check_failed("the board has started anew in mid-run")
                             .with_help("a brown-out, a watchdog or a panic: see last_panic in the report's record"));
@@ -65,7 +65,7 @@ impl Session<'_> {
                     | FromBoard::Log(_)
                     | FromBoard::Answer(_)
                     | FromBoard::Loop(_)
-                    | FromBoard::Upset { .. }
+                    | FromBoard::FaultTaken { .. }
                     | FromBoard::Kept(_)
                     | FromBoard::Memory(_)
                     | FromBoard::Judged(_) => {}

@@ -67,7 +67,7 @@ pub(super) fn frictions(quick: &Rows, slow: &Rows, twist: &Twist, plan: &Plan) -
     let (dry, note) = if measured || motor_known {
         (motor_dry, "")
     } else {
-        (Estimate { value: plan.train.motor_coulomb_friction, half: 0.0 }, "if the motor's is as stated")
+        (Estimate { value: plan.surroundings.motor_friction.coulomb, half: 0.0 }, "if the motor's is as stated")
     };
     let balance = |excess: f64, dry: f64| friction::of_the_link(slow, plan, excess, dry);
     let Some(link) = balance(excess.value, dry.value) else {

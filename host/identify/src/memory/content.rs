@@ -44,7 +44,7 @@ impl Content {
         let joint = &loaded.file.parameters;
         let mut refused = MemoryError::OtherJoint;
         for output_encoder in [true, false] {
-            let mut settings = observer_settings(&loaded.file.surroundings());
+            let mut settings = observer_settings(&loaded.file.surroundings);
             if !output_encoder {
                 settings.output_encoder = None;
             }
@@ -227,7 +227,7 @@ mod tests {
     #[test]
     fn before_anything_moves_inertia_is_as_designed_and_as_doubtful() {
         let loaded = joint_file::named::load(std::path::Path::new("q1")).expect("a preset");
-        let settings = observer_settings(&loaded.file.surroundings());
+        let settings = observer_settings(&loaded.file.surroundings);
         let tables = design_observer::<f32>(&loaded.file.parameters, &settings).expect("tables");
         let memory = Observer::<f32, MAPPED>::new(&tables).save();
         let Learnt { value, deviation, before } = Numbers::new(&memory).inertia_ratio(&tables);

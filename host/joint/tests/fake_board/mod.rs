@@ -8,8 +8,8 @@ use std::thread::JoinHandle;
 use board::twin;
 use link::framing::{Receiver, encode};
 use link::messages::{
-    Accepted, Clock, Command, Fault, FromBoard, HISTOGRAM_BINS, Hello, Role, RunMode, RunSettings, SAMPLES_PER_BATCH,
-    Sample, SampleBatch, Schedule, Statistics, Timing, ToBoard,
+    Accepted, Clock, Command, FromBoard, HISTOGRAM_BINS, Hello, Role, RunMode, RunSettings, SAMPLES_PER_BATCH, Sample,
+    SampleBatch, Schedule, Statistics, Timing, ToBoard, Trip,
 };
 use model_core::gears::{Model, Tables, Torques};
 use model_core::numbers::digest;
@@ -45,7 +45,7 @@ pub enum Misbehaviour {
     /// Applies every torque a tick late.
     LateTorques,
     /// Reports a fault at a tick.
-    FaultAt(u32, Fault),
+    TripAt(u32, Trip),
     /// Ignores the schedule with this number.
     LosesSchedule(u16),
     /// States overruns.
@@ -145,8 +145,8 @@ impl<'t, S: Read + Write> Board<'t, S> {
                 self.say_hello()
             }
             ToBoard::Schedule(schedule) => self.take(schedule),
-            ToBoard::Exchanges(_) | ToBoard::Course(_) | ToBoard::Upset(_) | ToBoard::Memory(_) => {
-                self.say(&FromBoard::Fault(Fault::WrongRole))
+            ToBoard::Exchanges(_) | ToBoard::Course(_) | ToBoard::Fault(_) | ToBoard::Memory(_) => {
+                self.say(&FromBoard::Tripped(Trip::WrongRole))
             }
             ToBoard::Statistics { .. } => {
                 let statistics = self.statistics();
@@ -170,10 +170,10 @@ impl<'t, S: Read + Write> Board<'t, S> {
         self.lost_schedules += u32::from(schedule.sequence.wrapping_sub(self.next_schedule));
         self.next_schedule = schedule.sequence.wrapping_add(1);
         if self.settings.is_none() {
-            return self.say(&FromBoard::Fault(Fault::NotRunning));
+            return self.say(&FromBoard::Tripped(Trip::NotRunning));
         }
         if self.queue.len() + schedule.commands.len() > QUEUE_CAPACITY {
-            return self.say(&FromBoard::Fault(Fault::QueueFull));
+            return self.say(&FromBoard::Tripped(Trip::QueueFull));
         }
         self.queue.extend(schedule.commands);
         self.horizon = schedule.horizon;
@@ -214,14 +214,14 @@ impl<'t, S: Read + Write> Board<'t, S> {
                 Ok(())
             }
             Misbehaviour::HalfFrameAt(tick) if self.tick == tick => {
-                let frame = encode(&FromBoard::Fault(Fault::BadDigest)).map_err(|_| Gone)?;
+                let frame = encode(&FromBoard::Tripped(Trip::BadDigest)).map_err(|_| Gone)?;
                 let mut half = frame[..frame.len() / 2].to_vec();
                 half.push(0);
                 self.stream.write_all(&half).map_err(|_| Gone)
             }
-            Misbehaviour::FaultAt(tick, fault) if self.tick == tick => {
+            Misbehaviour::TripAt(tick, trip) if self.tick == tick => {
                 self.settings = None;
-                self.say(&FromBoard::Fault(fault))?;
+                self.say(&FromBoard::Tripped(trip))?;
                 Ok(())
             }
             _ => Ok(()),

@@ -47,7 +47,7 @@ pub fn joint(changes: &[(&str, &str)]) -> JointFile {
 
 /// A controller of a joint.
 pub fn controller(joint: &JointFile) -> Controller<'static, f32> {
-    let around = joint.surroundings();
+    let around = joint.surroundings;
     let observer: ObserverTables<f32> =
         design_observer(&joint.parameters, &observer_settings(&around)).expect("an observer");
     let compensation: CompensationTables<f32> =
@@ -57,7 +57,7 @@ pub fn controller(joint: &JointFile) -> Controller<'static, f32> {
 
 /// What a controller that is told one joint learns of another in so many control periods, to and fro through the gap.
 pub fn learnt(told: &JointFile, truth: &JointFile, periods: u32) -> (Memory, Estimates<f32>) {
-    let around = truth.surroundings();
+    let around = truth.surroundings;
     let effort = Effort::Within(Processor::STM32F405);
     let tables: Tables<f32, 3> =
         design_scheme(&truth.parameters, around.control_rate, Scheme::Realtime, effort).expect("tables");

@@ -137,8 +137,8 @@ impl Bench {
         let disturbances = self.disturbances.clone();
         let mut train =
             DriveTrain::new(&self.joint, &start, self.train.clone(), disturbances, self.seed)?.stepped(self.stepping);
-        let period = 1.0 / self.train.control_rate;
-        let periods = (self.duration * self.train.control_rate).round() as u64;
+        let period = 1.0 / f64::from(self.train.surroundings.control_rate);
+        let periods = (self.duration * f64::from(self.train.surroundings.control_rate)).round() as u64;
         let half = self.joint.sun_planet.half_backlash.iter().sum::<f64>() / planets as f64;
         let mut samples = Vec::with_capacity(periods as usize);
         let mut held: Option<(u64, Motion)> = None;

@@ -31,10 +31,10 @@ pub fn random_plant(joint: &JointParameters, train: &DriveTrainParameters, seed:
         mesh.half_backlash.iter_mut().for_each(|value| *value = half_backlash);
     }
     let width_factor = within(0.5, 1.5);
-    train.motor.torque_constant_error_ratio = within(-0.02, 0.02);
+    train.surroundings.torque_constant_error_ratio = within(-0.02, 0.02);
     if let Some(compliance) = joint.compliance.as_mut() {
         compliance.stiffness = within(1.5, 6.0) / (1.0_f64 / 60.0).to_radians();
     }
-    train.motor.current_lag = within(0.2e-3, 0.6e-3);
+    train.surroundings.current_lag = within(0.2e-3, 0.6e-3);
     Variation { joint, train, width_factor }
 }

@@ -45,6 +45,7 @@ pub struct Knowledge {
 impl Knowledge {
     /// True knowledge of a joint but for the lost motion, which is guessed wrong by a factor.
     pub fn of(joint: &JointParameters, train: &DriveTrainParameters, width_factor: f64) -> Self {
+        let around = &train.surroundings;
         let geometry = &joint.geometry;
         let cosine = libm::cos(geometry.working_pressure_angle);
         let lever = geometry.carrier_radius * cosine;
@@ -60,13 +61,13 @@ impl Knowledge {
             ratio,
             motor_inertia,
             total_inertia: motor_inertia + carrier / (ratio * ratio),
-            torque_limit: train.motor.torque_limit,
-            period: 1.0 / train.control_rate,
-            bits: [train.motor_encoder.bits, train.output_encoder.bits],
+            torque_limit: around.torque_limit,
+            period: 1.0 / f64::from(around.control_rate),
+            bits: [around.motor_encoder.bits, around.output_encoder.bits],
             lost_motion: width_factor * 2.0 * half / lever,
-            load_friction: train.load.friction.coulomb,
-            motor_friction: train.motor.friction.coulomb,
-            gravity: train.load.gravity_torque,
+            load_friction: around.load_friction.coulomb,
+            motor_friction: around.motor_friction.coulomb,
+            gravity: around.gravity_torque,
         }
     }
 }

@@ -4,10 +4,9 @@
 use std::collections::VecDeque;
 use std::f64::consts::TAU;
 
+use parameters::Surroundings;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
-
-use super::parameters::MotorParameters;
 
 /// A command on its way.
 #[derive(Debug, Clone, Copy)]
@@ -19,7 +18,7 @@ struct Command {
 /// The motor up to its air gap. Parts of time are counted, never added up.
 #[derive(Debug, Clone)]
 pub(super) struct CurrentLoop {
-    motor: MotorParameters,
+    around: Surroundings,
     part: f64,
     on_the_way: VecDeque<Command>,
     wanted: f64,
@@ -29,9 +28,9 @@ pub(super) struct CurrentLoop {
 }
 
 impl CurrentLoop {
-    pub fn new(motor: MotorParameters, part: f64, seed: u64) -> Self {
+    pub fn new(around: Surroundings, part: f64, seed: u64) -> Self {
         Self {
-            motor,
+            around,
             part,
             on_the_way: VecDeque::new(),
             wanted: 0.0,
@@ -43,7 +42,7 @@ impl CurrentLoop {
 
     /// Takes a command that will act from a part of time on, and draws the noise of this period.
     pub fn command(&mut self, torque: f64, acts_from: u64) {
-        let limit = self.motor.torque_limit;
+        let limit = self.around.torque_limit;
         self.on_the_way.push_back(Command { acts_from, torque: torque.clamp(-limit, limit) });
         self.noise = self.normal();
     }
@@ -54,8 +53,8 @@ impl CurrentLoop {
             self.wanted = command.torque;
             self.on_the_way.pop_front();
         }
-        let mean = if self.motor.current_lag > 0.0 {
-            let ratio = self.part / self.motor.current_lag;
+        let mean = if self.around.current_lag > 0.0 {
+            let ratio = self.part / self.around.current_lag;
             let decay = -(-ratio).exp_m1();
             let lacking = self.wanted - self.current;
             self.current += lacking * decay;
@@ -64,7 +63,7 @@ impl CurrentLoop {
             self.current = self.wanted;
             self.wanted
         };
-        mean * (1.0 + self.motor.torque_constant_error_ratio) * (1.0 + self.motor.torque_noise_ratio * self.noise)
+        mean * (1.0 + self.around.torque_constant_error_ratio) * (1.0 + self.around.torque_noise_ratio * self.noise)
     }
 
     /// A standard normal deviate, by Box and Muller.

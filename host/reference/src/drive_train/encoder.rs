@@ -3,7 +3,9 @@
 use std::collections::VecDeque;
 use std::f64::consts::TAU;
 
-use super::parameters::EncoderParameters;
+use parameters::AbsoluteEncoder;
+
+use super::parameters::ErrorPhases;
 
 #[derive(Debug, Clone, Copy)]
 struct Point {
@@ -15,13 +17,14 @@ struct Point {
 /// An encoder and as much of the past as its skew needs.
 #[derive(Debug, Clone)]
 pub(super) struct Encoder {
-    parameters: EncoderParameters,
+    parameters: AbsoluteEncoder,
+    phases: ErrorPhases,
     past: VecDeque<Point>,
 }
 
 impl Encoder {
-    pub fn new(parameters: EncoderParameters) -> Self {
-        Self { parameters, past: VecDeque::new() }
+    pub fn new(parameters: AbsoluteEncoder, phases: ErrorPhases) -> Self {
+        Self { parameters, phases, past: VecDeque::new() }
     }
 
     /// Notes where the shaft is; times must rise.
@@ -36,8 +39,8 @@ impl Encoder {
     /// Counts since angle zero, whole turns included.
     pub fn counts(&self) -> i64 {
         let angle = self.angle_then();
-        let once = self.parameters.once_per_turn_error * (angle + self.parameters.once_per_turn_phase).sin();
-        let twice = self.parameters.twice_per_turn_error * (2.0 * angle + self.parameters.twice_per_turn_phase).sin();
+        let once = self.parameters.once_per_turn_error * (angle + self.phases.once_per_turn).sin();
+        let twice = self.parameters.twice_per_turn_error * (2.0 * angle + self.phases.twice_per_turn).sin();
         let counts_per_turn = f64::from(1_u32 << self.parameters.bits);
         ((angle + once + twice) / TAU * counts_per_turn).floor() as i64
     }

@@ -1,7 +1,7 @@
 //! Dry and viscous friction of one shaft over a short part of time, sticking included. Where the torque acts is left to
 //! the drive train.
 
-use super::parameters::FrictionParameters;
+use parameters::Friction;
 
 /// A shaft over one part of time, as friction sees it.
 #[derive(Debug, Clone, Copy)]
@@ -16,20 +16,20 @@ pub(super) struct Shaft {
     pub part: f64,
 }
 
-impl FrictionParameters {
+impl Shaft {
     /// Torque against the motion [N m]. `extra` is dry friction on top, from the load on the teeth.
     ///
     /// Dry friction is at most what would stop the shaft within the part: it sticks instead of chattering about zero,
     /// and it never turns a shaft round.
-    pub(super) fn torque(&self, shaft: Shaft, extra: f64) -> f64 {
-        let rise = if self.stribeck_speed > 0.0 {
-            self.stribeck_rise_ratio * (-shaft.speed.abs() / self.stribeck_speed).exp()
+    pub fn friction(&self, friction: &Friction, extra: f64) -> f64 {
+        let rise = if friction.stribeck_speed > 0.0 {
+            friction.stribeck_rise_ratio * (-self.speed.abs() / friction.stribeck_speed).exp()
         } else {
             0.0
         };
-        let dry = self.coulomb * (1.0 + rise) + extra;
-        let viscous = self.viscous * shaft.speed;
-        let to_stop = shaft.inertia * shaft.speed / shaft.part + shaft.driving_torque - viscous;
+        let dry = friction.coulomb * (1.0 + rise) + extra;
+        let viscous = friction.viscous * self.speed;
+        let to_stop = self.inertia * self.speed / self.part + self.driving_torque - viscous;
         viscous + to_stop.clamp(-dry, dry)
     }
 }

@@ -1,66 +1,88 @@
-//! Reads `[[fault]]`: what goes wrong, from when to when. How it goes wrong is `injection`'s business.
+//! Reads `[[fault]]`: what goes wrong, from when to when, in SI. How it goes wrong is left to who applies it.
+
+use model_core::virtual_joint::fault::{self, FaultKind, Shaft, Units};
 
 use super::motion::refuse_others;
 use super::section::Section;
+use crate::draw::Stream;
 
-/// One fault.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Fault {
-    /// Its word in the file.
-    pub word: &'static str,
-    /// What goes wrong.
-    pub kind: FaultKind,
-    /// [s].
-    pub start: f64,
-    /// [s]; infinite for a fault that stays.
-    pub end: f64,
+/// One fault of a test.
+pub type Fault = fault::Fault<Si>;
+
+/// What test files say and the host counts in: seconds, radians, counts of the encoder, shares of one, N m. A fault has no
+/// seed yet: every run gives it one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Si;
+
+impl Units for Si {
+    type Time = f64;
+    type Seed = ();
+    type Offset = Offset;
+    type Deviation = f64;
+    type Share = f64;
+    type Real = f64;
+    type Other = OnHost;
 }
 
-/// Which encoder.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum EncoderName {
-    /// On the motor.
-    Motor,
-    /// On the link.
-    Output,
+/// How far an encoder is off: the sum of both.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Offset {
+    /// In its own counts.
+    pub counts: f64,
+    /// As an angle [rad].
+    pub angle: f64,
 }
 
-/// Which frames.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum FrameName {
-    /// Readings of the motor's encoder.
-    Motor,
-    /// Readings of the output encoder.
-    Output,
-    /// Set-points.
-    SetPoints,
-}
-
-/// What goes wrong.
-#[derive(Debug, Clone, PartialEq)]
-pub enum FaultKind {
-    /// Counts stand still.
-    Frozen(EncoderName),
-    /// Counts are off by counts and by an angle [rad].
-    Offset(EncoderName, f64, f64),
-    /// Counts scatter by a standard deviation.
-    Noise(EncoderName, f64),
-    /// A part of all counts is not counted.
-    MissingCounts(EncoderName, f64),
-    /// An error once a turn of an amplitude [rad].
-    Eccentric(EncoderName, f64),
-    /// Torque beyond the command: a ratio of it, and a torque [N m].
-    TorqueBias(f64, f64),
-    /// The motor gives no more than this [N m].
-    Saturation(f64),
-    /// A part of the frames never comes.
-    LostFrames(FrameName, f64),
-    /// Frames come late [s].
-    LateFrames(FrameName, f64),
+/// What only the host can apply: a board keeps no past, hears of no set-points, and has its teeth in flash.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum OnHost {
+    /// Readings of an encoder come late [s].
+    LateReadings(Shaft, f64),
+    /// A part of the set-points never comes.
+    LostSetPoints(f64),
+    /// Set-points come late [s].
+    LateSetPoints(f64),
     /// Every mesh has this half-backlash [m].
     GrownBacklash(f64),
     /// One tooth of the sun has only a part of its stiffness.
     BrokenTooth(f64),
+}
+
+/// Where frames come from.
+#[derive(Clone, Copy)]
+enum Frames {
+    Readings(Shaft),
+    SetPoints,
+}
+
+/// Times are whole control periods up to rounding [s].
+const ROUNDING: f64 = 1e-9;
+
+/// Whether a fault acts at a time [s].
+pub fn fault_is_on(fault: &Fault, time: f64) -> bool {
+    fault.is_on(time + ROUNDING)
+}
+
+/// The word of a fault in test files.
+pub fn fault_word(fault: &Fault) -> &'static str {
+    match fault.kind {
+        FaultKind::Frozen(_) => "encoder_frozen",
+        FaultKind::Offset(..) => "encoder_offset",
+        FaultKind::Noise(..) => "encoder_noise",
+        FaultKind::MissingCounts(..) => "encoder_missing_counts",
+        FaultKind::Eccentric(..) => "encoder_eccentric",
+        FaultKind::TorqueBias(..) => "torque_bias",
+        FaultKind::Saturation(_) => "torque_saturation",
+        FaultKind::LostReadings(..) | FaultKind::Other(OnHost::LostSetPoints(_)) => "lost_frames",
+        FaultKind::Other(OnHost::LateReadings(..) | OnHost::LateSetPoints(_)) => "late_frames",
+        FaultKind::Other(OnHost::GrownBacklash(_)) => "grown_backlash",
+        FaultKind::Other(OnHost::BrokenTooth(_)) => "broken_tooth",
+    }
+}
+
+/// The random numbers of a fault at a place in the file, for a seed.
+pub fn fault_stream(fault: &Fault, place: usize, seed: u64) -> Stream {
+    Stream::new(seed, &format!("fault {place} {}", fault_word(fault)))
 }
 
 /// Reads one `[[fault]]`.
@@ -85,13 +107,13 @@ pub(super) fn read(section: &Section<'_>) -> Option<Fault> {
     let taken: Vec<&str> = ["kind", "start_s", "end_s"].into_iter().chain(own.iter().copied()).collect();
     refuse_others(section, &taken, word);
     let encoder = match section.word("encoder") {
-        Some("motor") => EncoderName::Motor,
-        _ => EncoderName::Output,
+        Some("motor") => Shaft::Motor,
+        _ => Shaft::Link,
     };
     let frames = match section.word("frames") {
-        Some("motor") => FrameName::Motor,
-        Some("set_points") => FrameName::SetPoints,
-        _ => FrameName::Output,
+        Some("motor") => Frames::Readings(Shaft::Motor),
+        Some("set_points") => Frames::SetPoints,
+        _ => Frames::Readings(Shaft::Link),
     };
     let needed = |name: &str| {
         if !section.has(name) {
@@ -109,7 +131,7 @@ pub(super) fn read(section: &Section<'_>) -> Option<Fault> {
         "encoder_frozen" => FaultKind::Frozen(encoder),
         "encoder_offset" => {
             let [counts, angle] = one_of(["counts", "offset_mrad"]);
-            FaultKind::Offset(encoder, counts, 1e-3 * angle)
+            FaultKind::Offset(encoder, Offset { counts, angle: 1e-3 * angle })
         }
         "encoder_noise" => FaultKind::Noise(encoder, needed("noise_counts")?),
         "encoder_missing_counts" => FaultKind::MissingCounts(encoder, needed("share")?),
@@ -126,10 +148,22 @@ pub(super) fn read(section: &Section<'_>) -> Option<Fault> {
             }
             FaultKind::Saturation(limit)
         }
-        "lost_frames" => FaultKind::LostFrames(frames, needed("share")?),
-        "late_frames" => FaultKind::LateFrames(frames, needed("delay_ms")? / 1e3),
-        "grown_backlash" => FaultKind::GrownBacklash(needed("half_backlash_um")? / 1e6),
-        _ => FaultKind::BrokenTooth(needed("stiffness_ratio")?),
+        "lost_frames" => {
+            let share = needed("share")?;
+            match frames {
+                Frames::Readings(of) => FaultKind::LostReadings(of, share),
+                Frames::SetPoints => FaultKind::Other(OnHost::LostSetPoints(share)),
+            }
+        }
+        "late_frames" => {
+            let delay = needed("delay_ms")? / 1e3;
+            FaultKind::Other(match frames {
+                Frames::Readings(of) => OnHost::LateReadings(of, delay),
+                Frames::SetPoints => OnHost::LateSetPoints(delay),
+            })
+        }
+        "grown_backlash" => FaultKind::Other(OnHost::GrownBacklash(needed("half_backlash_um")? / 1e6)),
+        _ => FaultKind::Other(OnHost::BrokenTooth(needed("stiffness_ratio")?)),
     };
     let start = section.number("start_s").unwrap_or(0.0);
     let end = section.number("end_s").unwrap_or(f64::INFINITY);
@@ -138,5 +172,5 @@ pub(super) fn read(section: &Section<'_>) -> Option<Fault> {
         section.problems.error(section.span("end_s"), format!("the fault ends at {end} s, before it begins"), help);
         return None;
     }
-    Some(Fault { word, kind, start, end })
+    Some(Fault { start, end, seed: (), kind })
 }

@@ -14,7 +14,7 @@ mod section;
 
 pub use assertions::{Aggregate, Assertion};
 pub use changes::{Change, NewValue};
-pub use faults::{EncoderName, Fault, FaultKind, FrameName};
+pub use faults::{Fault, Offset, OnHost, Si, fault_is_on, fault_stream, fault_word};
 pub use motion::{Course, Load, Profile, Push, Wave};
 
 use joint_file::Problem;

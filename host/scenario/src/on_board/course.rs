@@ -18,7 +18,7 @@ const STRETCH: f64 = 5e-3;
 
 /// The knots of a test, `first_turn` being the turn from which the observer counts the link's.
 pub fn knots(file: &TestFile, case: &Case, designed: &Designed, first_turn: i32) -> Vec<Knot> {
-    let rate = case.told_train.control_rate;
+    let rate = f64::from(case.told_surroundings.control_rate);
     let periods = (file.duration * rate).round() as u32;
     let stretch = file.gains.map_or(STRETCH, |gains| 1.0 / gains.rate);
     let every = (stretch * rate).round().max(1.0) as u32;

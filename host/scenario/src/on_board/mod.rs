@@ -6,10 +6,12 @@
 //! `twin`.
 
 mod course;
+mod faults;
 mod port;
 mod runs;
+#[cfg(test)]
+mod same_faults;
 mod twin;
-mod upsets;
 mod wish;
 
 use joint_file::JointFile;
@@ -117,9 +119,9 @@ impl<'w> Boards<'w> {
         let told_text = case.told_text()?;
         // Where only the controller is on the board, its image knows no other joint.
         let truth_text = if self.wish.role == Role::Loop { case.truth_text().to_owned() } else { told_text.clone() };
-        let rate = case.told_train.control_rate as u32;
+        let rate = case.told_surroundings.control_rate;
         let (mut told, mut truth) = (read(&told_text)?, read(&truth_text)?);
-        [&mut told, &mut truth].into_iter().for_each(|joint| joint.set_control_rate(rate));
+        [&mut told, &mut truth].into_iter().for_each(|joint| joint.surroundings.control_rate = rate);
         let control = Control { rate, bandwidth: test.file.bandwidth, output_encoder: test.file.output_encoder };
         Ok(Pair { texts: [truth_text, told_text], told, truth, control })
     }
@@ -152,9 +154,9 @@ impl<'w> Boards<'w> {
     fn expected(&self, pair: &Pair, image: Option<&Image>) -> Outcome<Expected> {
         let Pair { told, truth, control, .. } = pair;
         let wish = ControlWish { bandwidth: control.bandwidth, output_encoder: control.output_encoder };
-        let (told_around, board) = (told.surroundings(), self.wish.board);
-        let told = Told { joint: &told.parameters, surroundings: &told_around, wish };
-        let source = control_source(&truth.parameters, &truth.surroundings(), &told, &board.processor())
+        let board = self.wish.board;
+        let told = Told { joint: &told.parameters, surroundings: &told.surroundings, wish };
+        let source = control_source(&truth.parameters, &truth.surroundings, &told, &board.processor())
             .map_err(|error| Failure::new(format!("joint `{}`: {error}", truth.parameters.name)))?;
         let chip = board.chip();
         Ok(Expected {

@@ -5,9 +5,9 @@ use std::cell::RefCell;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
+use super::faults::quantised;
 use super::port::BoardPort;
 use super::twin::{Twin, Twinned};
-use super::upsets::upsets;
 use super::{Boards, Pair};
 use crate::case::Case;
 use crate::execution::{Order, RunError, execute_with};
@@ -55,14 +55,15 @@ impl Boards<'_> {
         pair: &Pair,
     ) -> Result<(Ran, BoardRun), RunError> {
         let designed = case.design(&test.file)?;
-        let bits = [case.train.motor_encoder.bits, case.train.output_encoder.bits];
-        let upsets = upsets(&test.file.faults, case.told_train.control_rate, bits, seed)?;
+        let around = &case.truth.surroundings;
+        let bits = [around.motor_encoder.bits, around.output_encoder.bits];
+        let faults = quantised(&test.file.faults, f64::from(case.told_surroundings.control_rate), bits, seed)?;
         let (truth, board) = (&pair.truth, self.wish.board);
-        let twin = Twin { file: &test.file, case, designed: &designed, truth, board, upsets: &upsets };
+        let twin = Twin { file: &test.file, case, designed: &designed, truth, board, faults: &faults };
         let Twinned { knots, ran, digests } = twin.run()?;
         let (mut session, image) = self.session(pair)?;
         let follow = |session: &mut Session<'_>| {
-            session.upset(&upsets)?;
+            session.add_faults(&faults)?;
             session.follow(&knots, digests.len() as u32)
         };
         let followed = match test.file.from_memory {
@@ -81,7 +82,7 @@ impl Boards<'_> {
             tick.checked_sub(1).and_then(|index| digests.get(index as usize)).is_some_and(|own| *own == digest)
         };
         if let Some(first) = samples.iter().find(|sample| !agrees(sample.tick, sample.digest)) {
-            let time = f64::from(first.tick) / case.train.control_rate;
+            let time = f64::from(first.tick) / f64::from(around.control_rate);
             return Err(RunError::Broke(format!(
                 "board and host differ at t = {time:.4} s, control period {}, or in the periods since the sample before: \
                  the digest over joint and answers",

@@ -9,7 +9,8 @@ use model_core::gears::design::{Effort, design_scheme};
 use model_core::gears::{Scheme, Tables};
 use model_core::numbers::digest;
 use model_core::virtual_joint::design::design_surroundings;
-use model_core::virtual_joint::upset::{Upset, Upsets};
+use model_core::virtual_joint::fault::{Fault, FixedPoint};
+use model_core::virtual_joint::faults::Faults;
 use model_core::virtual_joint::{SurroundingsTable, VirtualJoint};
 use reference::closed_loop::Sample;
 
@@ -35,7 +36,7 @@ pub struct Twin<'t> {
     /// The board whose image it is.
     pub board: Board,
     /// What goes wrong between joint and controller.
-    pub upsets: &'t [Upset<f32>],
+    pub faults: &'t [Fault<FixedPoint<f32>>],
 }
 
 /// What a twin did.
@@ -60,7 +61,7 @@ impl Twin<'_> {
 
     fn run_with<const N: usize>(&self) -> Outcome<Twinned> {
         let joint = &self.truth.parameters;
-        let around = self.truth.surroundings();
+        let around = self.truth.surroundings;
         let refused = |error: &dyn std::fmt::Display| {
             Failure::new(format!("joint `{}` cannot be simulated on {}: {error}", joint.name, self.board.name()))
         };
@@ -85,8 +86,8 @@ impl Twin<'_> {
         controller: &mut Controller<'_, f32>,
     ) -> Twinned {
         let mut virtual_joint = VirtualJoint::new(tables, table);
-        let mut upsets = Upsets::default();
-        let all_taken = self.upsets.iter().all(|upset| upsets.add(*upset));
+        let mut faults = Faults::default();
+        let all_taken = self.faults.iter().all(|fault| faults.add(*fault));
         debug_assert!(all_taken, "more than fit were refused before");
         let knots = course::knots(self.file, self.case, self.designed, virtual_joint.output_turn());
         let joint = &self.truth.parameters;
@@ -104,9 +105,9 @@ impl Twin<'_> {
             }
             let elapsed = f32::from((period - since).min(u16::MAX.into()) as u16);
             let command = demand.at(table.period * elapsed, table.turn);
-            let samples = upsets.sense(virtual_joint.samples(), table);
+            let samples = faults.sense(virtual_joint.samples(), table);
             let answer = controller.step(&samples, &command);
-            virtual_joint.advance(upsets.torque(answer.shaped.torque), load);
+            virtual_joint.advance(faults.torque(answer.shaped.torque), load);
             running = digest::chain(answer.digest(running), virtual_joint.model().state_digest());
             digests.push(running);
 

@@ -3,7 +3,7 @@
 
 use link::messages::{Role, RunMode};
 
-use super::upsets::upsets;
+use super::faults::quantised;
 use crate::controller::ControllerName;
 use crate::plant::PlantName;
 use crate::suite::Test;
@@ -47,7 +47,7 @@ pub fn may_run(wish: &BoardWish<'_>, test: &Test) -> Outcome<()> {
             let message = format!("{name} tests `probe`, which the role `loop` does not know");
             return Err(Failure::new(message).with_help("run it with --role observer, or with --host"));
         }
-        upsets(&test.file.faults, 1.0, [0; 2], 0).map_err(|failure| failure.while_doing(name))?;
+        quantised(&test.file.faults, 1.0, [0; 2], 0).map_err(|failure| failure.while_doing(name))?;
     }
     Ok(())
 }

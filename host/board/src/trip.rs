@@ -1,6 +1,7 @@
-//! Faults of a board in words: what happened and what to do. When a fault is raised is the firmware's business.
+//! Trips of a board into its safe state in words: what happened and what to do. When a board trips is left to the
+//! firmware.
 
-use link::messages::Fault;
+use link::messages::Trip;
 
 use report::failure::Failure;
 use serde::{Deserialize, Serialize};
@@ -24,48 +25,48 @@ struct Words {
     mend: &'static str,
 }
 
-fn words(fault: &Fault) -> Words {
-    let (name, tick, what, mend) = match *fault {
-        Fault::CommandLoss { tick } => (
+fn words(trip: &Trip) -> Words {
+    let (name, tick, what, mend) = match *trip {
+        Trip::CommandLoss { tick } => (
             "command_loss",
             Some(tick),
             "no torques came for longer than the command timeout",
             "check the line, or run with --mode lockstep",
         ),
-        Fault::NotFinite { tick } => (
+        Trip::NotFinite { tick } => (
             "not_finite",
             Some(tick),
             "the simulated state is not finite any more",
             "check joint file and profile: `joint check` tells the highest stable step",
         ),
-        Fault::BadCommand { tick } => {
+        Trip::BadCommand { tick } => {
             ("bad_command", Some(tick), "a commanded torque is not finite", "check the profile's torques")
         }
-        Fault::LateCommand { tick } => (
+        Trip::LateCommand { tick } => (
             "late_command",
             Some(tick),
             "a command came out of order or for a tick that has passed",
             "the host or the line is too slow for --mode realtime: lower the load or run with --mode lockstep",
         ),
-        Fault::BadDigest => {
+        Trip::BadDigest => {
             ("bad_digest", None, "the tables on the board do not match their digest", "flash the image again")
         }
-        Fault::QueueFull => (
+        Trip::QueueFull => (
             "queue_full",
             None,
             "more commands came than the board's queue holds",
             "board and host disagree about the queue: flash this checkout's image",
         ),
-        Fault::BadSettings => {
+        Trip::BadSettings => {
             ("bad_settings", None, "the board cannot run with these settings", "check --decimation and --mode")
         }
-        Fault::NotRunning => (
+        Trip::NotRunning => (
             "not_running",
             None,
             "torques came for a run that was not started or has stopped",
             "the board was reset in mid-run: check its power, then run again",
         ),
-        Fault::WrongRole => (
+        Trip::WrongRole => (
             "wrong_role",
             None,
             "commands came that are for another role than the board's",
@@ -75,15 +76,15 @@ fn words(fault: &Fault) -> Words {
     Words { name, tick, what, mend }
 }
 
-/// A fault as the end of a run.
-pub fn failure(fault: &Fault) -> Failure {
-    let Words { name, tick, what, mend } = words(fault);
+/// A trip as the end of a run.
+pub fn failure(trip: &Trip) -> Failure {
+    let Words { name, tick, what, mend } = words(trip);
     let place = tick.map(|tick| format!(" at tick {tick}")).unwrap_or_default();
     Failure::check_failed(format!("the board went into its safe state{place}: {what} ({name})")).with_help(mend)
 }
 
-/// A fault as a line of the record.
-pub fn entry(fault: &Fault) -> FaultEntry {
-    let Words { name, tick, what, mend } = words(fault);
+/// A trip as a line of the record.
+pub fn entry(trip: &Trip) -> FaultEntry {
+    let Words { name, tick, what, mend } = words(trip);
     FaultEntry { tick, name: name.to_owned(), text: format!("{what}; {mend}") }
 }

@@ -3,11 +3,12 @@
 
 use std::f64::consts::TAU;
 
+use model_core::virtual_joint::fault::FaultKind;
 use reference::joint::Observation;
 
 use super::active::Active;
 use crate::case::Case;
-use crate::file::FaultKind;
+use crate::file::{OnHost, fault_is_on};
 use crate::plant::Teeth;
 
 /// What the teeth were made to be.
@@ -38,10 +39,10 @@ impl ToothState {
     /// Changes the teeth as faults begin, end, or meet.
     pub fn wear(&mut self, faults: &[Active], time: f64, joint: &Observation, inside: &mut dyn Teeth) {
         let (mut half_backlash, mut soft) = (self.half_backlash, 1.0);
-        for active in faults.iter().filter(|active| active.fault.is_on(time)) {
+        for active in faults.iter().filter(|active| fault_is_on(&active.fault, time)) {
             match active.fault.kind {
-                FaultKind::GrownBacklash(grown) => half_backlash = grown,
-                FaultKind::BrokenTooth(ratio) => soft = ratio,
+                FaultKind::Other(OnHost::GrownBacklash(grown)) => half_backlash = grown,
+                FaultKind::Other(OnHost::BrokenTooth(ratio)) => soft = ratio,
                 _ => {}
             }
         }

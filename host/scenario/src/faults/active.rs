@@ -3,8 +3,10 @@
 
 use std::f64::consts::TAU;
 
+use model_core::virtual_joint::fault::{FaultKind, Shaft};
+
 use crate::draw::Stream;
-use crate::file::{EncoderName, Fault, FaultKind};
+use crate::file::{Fault, Offset, fault_is_on, fault_stream};
 
 /// A fault at work.
 #[derive(Debug, Clone)]
@@ -19,20 +21,12 @@ pub(super) struct Active {
     pub dropped: Option<(u64, bool)>,
 }
 
-impl Fault {
-    /// Whether it is on at a time [s].
-    pub fn is_on(&self, time: f64) -> bool {
-        // Times are whole periods up to rounding.
-        (self.start - 1e-9..self.end - 1e-9).contains(&time)
-    }
-}
-
 impl Active {
     /// Nothing has gone wrong yet; `index` is its place in the file.
     pub fn new(fault: &Fault, index: usize, seed: u64) -> Self {
         Self {
-            fault: fault.clone(),
-            stream: Stream::new(seed, &format!("fault {index} {}", fault.word)),
+            fault: *fault,
+            stream: fault_stream(fault, index, seed),
             held: None,
             lost: 0.0,
             before: None,
@@ -41,8 +35,8 @@ impl Active {
     }
 
     /// What an encoder says in place of its counts.
-    pub fn count(&mut self, time: f64, encoder: EncoderName, counts: i64, counts_per_turn: f64) -> i64 {
-        let on = self.fault.is_on(time);
+    pub fn count(&mut self, time: f64, encoder: Shaft, counts: i64, counts_per_turn: f64) -> i64 {
+        let on = fault_is_on(&self.fault, time);
         match self.fault.kind {
             FaultKind::Frozen(of) if of == encoder => match (on, self.held) {
                 (false, _) => {
@@ -55,7 +49,7 @@ impl Active {
                     counts
                 }
             },
-            FaultKind::Offset(of, offset, angle) if of == encoder && on => {
+            FaultKind::Offset(of, Offset { counts: offset, angle }) if of == encoder && on => {
                 counts + (offset + angle / TAU * counts_per_turn).round() as i64
             }
             FaultKind::Noise(of, deviation) if of == encoder && on => {

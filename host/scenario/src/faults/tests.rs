@@ -9,19 +9,19 @@ use crate::case::Case;
 use crate::file;
 use crate::plant::{PlantName, plant};
 
-fn injection(faults: &str) -> (Injection, Case) {
+fn at_work(faults: &str) -> (HostFaults, Case) {
     let file = file::read(&format!("profile = \"T2\"\n{faults}")).expect("a good file");
     let case = Case::new(&file, joint_file::preset("q1").expect("a preset"), 1, None).expect("a case");
-    (Injection::new(&file.faults, 1, &case), case)
+    (HostFaults::new(&file.faults, 1, &case), case)
 }
 
 /// What the output encoder says in each of so many periods while it truly goes on by `step` counts in each.
 fn counts(faults: &str, periods: u64, step: i64) -> Vec<Option<Frame>> {
-    let (mut injection, _) = injection(faults);
+    let (mut faults, _) = at_work(faults);
     (0..periods)
         .map(|period| {
             let output_counts = 1234 + step * period as i64;
-            injection.sense(&Measurement { period, motor_counts: 0, output_counts }).output
+            faults.sense(&Measurement { period, motor_counts: 0, output_counts }).output
         })
         .collect()
 }
@@ -69,48 +69,48 @@ fn frames_are_lost_as_often_as_stated_and_late_ones_keep_their_time() {
 #[test]
 fn a_set_point_that_is_lost_leaves_the_one_before() {
     let fault = "[[fault]]\nkind = \"lost_frames\"\nframes = \"set_points\"\nshare = 1\nstart_s = 0.001\nend_s = 0.002";
-    let (mut injection, _) = injection(fault);
+    let (mut faults, _) = at_work(fault);
     let at = |position: f64| SetPoint::Position { now: Motion { position, ..Motion::default() }, ahead: None };
     let received: Vec<f64> =
-        (0..30).map(|k| injection.receive(1e-4 * f64::from(k), k as u64, at(f64::from(k))).motion().position).collect();
+        (0..30).map(|k| faults.receive(1e-4 * f64::from(k), k as u64, at(f64::from(k))).motion().position).collect();
     assert_eq!((received[9], received[10], received[19], received[20]), (9.0, 9.0, 9.0, 20.0));
 }
 
 #[test]
 fn a_set_point_that_comes_late_leaves_the_one_before_until_then() {
     let fault = "[[fault]]\nkind = \"late_frames\"\nframes = \"set_points\"\ndelay_ms = 0.5\nstart_s = 0.001";
-    let (mut injection, _) = injection(fault);
+    let (mut faults, _) = at_work(fault);
     let at = |position: f64| SetPoint::Position { now: Motion { position, ..Motion::default() }, ahead: None };
     let received: Vec<f64> =
-        (0..30).map(|k| injection.receive(1e-4 * f64::from(k), k as u64, at(f64::from(k))).motion().position).collect();
+        (0..30).map(|k| faults.receive(1e-4 * f64::from(k), k as u64, at(f64::from(k))).motion().position).collect();
     assert_eq!((received[9], received[10], received[14], received[15]), (9.0, 9.0, 9.0, 10.0));
 }
 
 #[test]
 fn torque_is_biased_and_cut_off_as_stated() {
-    let (injection, _) = injection(
+    let (faults, _) = at_work(
         "[[fault]]\nkind = \"torque_bias\"\nratio = 0.05\ntorque_N_m = 0.1\n\
          [[fault]]\nkind = \"torque_saturation\"\ntorque_N_m = 1.5\nstart_s = 1",
     );
-    assert!((injection.torque(0.5, 2.0) - 2.2).abs() < 1e-12);
-    assert_eq!(injection.torque(1.5, -3.0), -1.5);
+    assert!((faults.torque(0.5, 2.0) - 2.2).abs() < 1e-12);
+    assert_eq!(faults.torque(1.5, -3.0), -1.5);
 }
 
 #[test]
 fn grown_backlash_and_a_broken_tooth_reach_the_teeth_and_end() {
     let fault = "[[fault]]\nkind = \"grown_backlash\"\nhalf_backlash_um = 90\nstart_s = 1\nend_s = 2\n\
                  [[fault]]\nkind = \"broken_tooth\"\nstiffness_ratio = 0.5";
-    let (mut injection, case) = injection(fault);
+    let (mut faults, case) = at_work(fault);
     let mut plant = plant(PlantName::Reference, &case.truth.parameters, &case.train, Vec::new(), 1).expect("a plant");
     let mut joint = plant.joint().clone();
-    injection.wear(0.5, &joint, plant.inside().as_mut());
-    assert_eq!(injection.half_backlash_now(), 40e-6);
-    assert_eq!(injection.teeth.soft, [true, false, false], "the broken tooth starts at planet 0");
-    injection.wear(1.5, &joint, plant.inside().as_mut());
-    assert!((injection.half_backlash_now() - 90e-6).abs() < 1e-18);
+    faults.wear(0.5, &joint, plant.inside().as_mut());
+    assert_eq!(faults.half_backlash_now(), 40e-6);
+    assert_eq!(faults.teeth.soft, [true, false, false], "the broken tooth starts at planet 0");
+    faults.wear(1.5, &joint, plant.inside().as_mut());
+    assert!((faults.half_backlash_now() - 90e-6).abs() < 1e-18);
     // A third of a turn of the sun against the carrier later it is at the next planet.
     joint.motor_angle = joint.carrier_angle + TAU / 3.0 + 0.01;
-    injection.wear(2.5, &joint, plant.inside().as_mut());
-    assert_eq!(injection.half_backlash_now(), 40e-6);
-    assert_eq!(injection.teeth.soft, [false, true, false]);
+    faults.wear(2.5, &joint, plant.inside().as_mut());
+    assert_eq!(faults.half_backlash_now(), 40e-6);
+    assert_eq!(faults.teeth.soft, [false, true, false]);
 }

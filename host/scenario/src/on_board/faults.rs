@@ -3,70 +3,66 @@
 
 use std::f64::consts::TAU;
 
-use model_core::virtual_joint::upset::{Kind, MOST_UPSETS, Shaft, Upset};
+use model_core::virtual_joint::fault::{Fault, FaultKind, FixedPoint, Shaft};
+use model_core::virtual_joint::faults::MOST_FAULTS;
 
-use crate::draw::Stream;
-use crate::file::{EncoderName, Fault, FaultKind, FrameName};
+use crate::file;
+use crate::file::{Offset, OnHost, fault_stream, fault_word};
 use report::failure::{Failure, Outcome};
 
 /// Whole turns, and whole shares.
 const WHOLE: f64 = 4_294_967_296.0;
 
-/// The faults of a test file, for a seed and encoders of so many bits.
-pub fn upsets(faults: &[Fault], rate: f64, bits: [u32; 2], seed: u64) -> Outcome<Vec<Upset<f32>>> {
-    if faults.len() > MOST_UPSETS {
-        let message = format!("a board that runs the whole loop takes {MOST_UPSETS} faults, not {}", faults.len());
+/// The faults of a test file as whole numbers, for a seed and encoders of so many bits: motor, link.
+pub fn quantised(faults: &[file::Fault], rate: f64, bits: [u32; 2], seed: u64) -> Outcome<Vec<Fault<FixedPoint<f32>>>> {
+    if faults.len() > MOST_FAULTS {
+        let message = format!("a board that runs the whole loop takes {MOST_FAULTS} faults, not {}", faults.len());
         return Err(Failure::new(message).with_help("run it with --role observer, or with --host"));
     }
-    let one = |(index, fault): (usize, &Fault)| {
+    let one = |(index, fault): (usize, &file::Fault)| {
         let periods = |time: f64| (time * rate - 1e-6).ceil().clamp(0.0, f64::from(u32::MAX)) as u32;
-        Ok(Upset {
+        Ok(Fault {
             start: periods(fault.start),
             end: periods(fault.end),
-            seed: Stream::new(seed, &format!("fault {index} {}", fault.word)).word(),
+            seed: fault_stream(fault, index, seed).word(),
             kind: kind(fault, bits)?,
         })
     };
     faults.iter().enumerate().map(one).collect()
 }
 
-fn kind(fault: &Fault, bits: [u32; 2]) -> Outcome<Kind<f32>> {
-    let shaft = |name: EncoderName| match name {
-        EncoderName::Motor => Shaft::Motor,
-        EncoderName::Output => Shaft::Link,
-    };
-    let count = |name: EncoderName| WHOLE / (1_u64 << bits[usize::from(name == EncoderName::Output)]) as f64;
+fn kind(fault: &file::Fault, bits: [u32; 2]) -> Outcome<FaultKind<FixedPoint<f32>>> {
+    let count = |of: Shaft| WHOLE / (1_u64 << bits[usize::from(of == Shaft::Link)]) as f64;
     // A whole turn more or less is none.
     let angle = |parts: f64| (parts.round() as i64) as u32;
     let share = |share: f64| (share * WHOLE).min(WHOLE - 1.0) as u32;
     let refused = |why: &str, help: &str| {
-        Err(Failure::new(format!("the fault `{}` cannot be in a whole loop on a board: {why}", fault.word))
+        Err(Failure::new(format!("the fault `{}` cannot be in a whole loop on a board: {why}", fault_word(fault)))
             .with_help(help))
     };
     Ok(match fault.kind {
-        FaultKind::Frozen(of) => Kind::Frozen(shaft(of)),
-        FaultKind::Offset(of, counts, offset) => {
-            Kind::Offset(shaft(of), angle(counts.round() * count(of) + offset / TAU * WHOLE) as i32)
+        FaultKind::Frozen(of) => FaultKind::Frozen(of),
+        FaultKind::Offset(of, Offset { counts, angle: offset }) => {
+            FaultKind::Offset(of, angle(counts.round() * count(of) + offset / TAU * WHOLE) as i32)
         }
-        FaultKind::Noise(of, counts) => Kind::Noise(shaft(of), (counts * count(of)).min(WHOLE - 1.0) as u32),
-        FaultKind::MissingCounts(of, part) => Kind::MissingCounts(shaft(of), share(part)),
-        FaultKind::Eccentric(of, error) => Kind::Eccentric(shaft(of), (error / TAU * WHOLE) as f32),
-        FaultKind::TorqueBias(ratio, torque) => Kind::TorqueBias(ratio as f32, torque as f32),
-        FaultKind::Saturation(torque) => Kind::Saturation(torque as f32),
-        FaultKind::LostFrames(FrameName::Motor, part) => Kind::LostFrames(Shaft::Motor, share(part)),
-        FaultKind::LostFrames(FrameName::Output, part) => Kind::LostFrames(Shaft::Link, share(part)),
-        FaultKind::LostFrames(FrameName::SetPoints, _) | FaultKind::LateFrames(FrameName::SetPoints, _) => {
+        FaultKind::Noise(of, counts) => FaultKind::Noise(of, (counts * count(of)).min(WHOLE - 1.0) as u32),
+        FaultKind::MissingCounts(of, part) => FaultKind::MissingCounts(of, share(part)),
+        FaultKind::Eccentric(of, error) => FaultKind::Eccentric(of, (error / TAU * WHOLE) as f32),
+        FaultKind::LostReadings(of, part) => FaultKind::LostReadings(of, share(part)),
+        FaultKind::TorqueBias(ratio, torque) => FaultKind::TorqueBias(ratio as f32, torque as f32),
+        FaultKind::Saturation(torque) => FaultKind::Saturation(torque as f32),
+        FaultKind::Other(OnHost::LostSetPoints(_) | OnHost::LateSetPoints(_)) => {
             let why = "its motion comes in polynomials of some milliseconds, not in set-points";
             return refused(why, "run it with --role observer, or with --host");
         }
-        FaultKind::LateFrames(..) => {
+        FaultKind::Other(OnHost::LateReadings(..)) => {
             return refused("it keeps no readings of the past", "run it with --role observer, or with --host");
         }
-        FaultKind::GrownBacklash(_) => {
+        FaultKind::Other(OnHost::GrownBacklash(_)) => {
             let why = "its teeth are tables in flash";
             return refused(why, "run it with --role observer --plant reference, or with --host");
         }
-        FaultKind::BrokenTooth(_) => {
+        FaultKind::Other(OnHost::BrokenTooth(_)) => {
             let why = "its planets share their stiffness";
             return refused(why, "run it with --role observer --plant reference, or with --host");
         }
@@ -80,35 +76,36 @@ mod tests {
     use model_core::observer::{Reading, Samples};
     use model_core::virtual_joint::SurroundingsTable;
     use model_core::virtual_joint::design::design_surroundings;
-    use model_core::virtual_joint::upset::Upsets;
+    use model_core::virtual_joint::faults::Faults;
 
     use super::*;
+    use crate::file::Si;
 
     const RATE: f64 = 10e3;
 
     fn table() -> SurroundingsTable<f32> {
         let file = joint_file::read(joint_file::preset("q1").expect("a preset")).expect("a joint");
         let tables: Tables<f32, 3> = design(&file.parameters, RATE as u32).expect("tables");
-        design_surroundings(&file.parameters, &file.surroundings(), &tables).expect("surroundings")
+        design_surroundings(&file.parameters, &file.surroundings, &tables).expect("surroundings")
     }
 
     /// What is seen of a shaft that turns by so many counts a period, and the torque given for one of 1 N m.
-    fn run(kind: FaultKind, periods: u32, step: u32) -> Vec<(Samples<f32>, f32)> {
-        let fault = Fault { word: "fault", kind, start: 0.01, end: 0.5 };
-        let mut upsets = Upsets::default();
-        assert!(super::upsets(&[fault], RATE, [14, 17], 5).expect("possible").iter().all(|upset| upsets.add(*upset)));
+    fn run(kind: FaultKind<Si>, periods: u32, step: u32) -> Vec<(Samples<f32>, f32)> {
+        let fault = Fault { start: 0.01, end: 0.5, seed: (), kind };
+        let mut faults = Faults::default();
+        assert!(quantised(&[fault], RATE, [14, 17], 5).expect("possible").iter().all(|fault| faults.add(*fault)));
         let table = table();
         let one = |period: u32| {
             let reading = |bits: u32| Reading { counts: (period * step) % (1 << bits), time: period };
             let samples = Samples { time: period, motor: reading(14), output: Some(reading(17)), torque: 9.0 };
-            (upsets.sense(samples, &table), upsets.torque(1.0))
+            (faults.sense(samples, &table), faults.torque(1.0))
         };
         (0..periods).map(one).collect()
     }
 
     #[test]
     fn a_frozen_encoder_stands_still_until_it_comes_back() {
-        let seen = run(FaultKind::Frozen(EncoderName::Output), 6000, 3);
+        let seen = run(FaultKind::Frozen(Shaft::Link), 6000, 3);
         let counts = |period: usize| seen[period].0.output.expect("a reading").counts;
         assert_eq!([counts(99), counts(100), counts(4999), counts(5000)], [297, 300, 300, 15_000]);
         assert!(seen.iter().zip(0..).all(|((samples, _), period)| samples.motor.counts == 3 * period % (1 << 14)));
@@ -116,7 +113,7 @@ mod tests {
 
     #[test]
     fn counts_slip_scatter_and_get_lost_as_far_as_was_asked_for() {
-        let output = EncoderName::Output;
+        let output = Shaft::Link;
         let off = |seen: &[(Samples<f32>, f32)], step: u32| -> Vec<i32> {
             let beside = |(samples, period): (&(Samples<f32>, f32), u32)| {
                 let counts = samples.0.output.expect("a reading").counts;
@@ -124,7 +121,10 @@ mod tests {
             };
             seen.iter().zip(0..).map(beside).collect()
         };
-        assert_eq!(off(&run(FaultKind::Offset(output, -7.0, 0.0), 200, 3), 3)[99..101], [0, -7]);
+        assert_eq!(
+            off(&run(FaultKind::Offset(output, Offset { counts: -7.0, angle: 0.0 }), 200, 3), 3)[99..101],
+            [0, -7]
+        );
         let missing = off(&run(FaultKind::MissingCounts(output, 0.01), 6000, 100), 100);
         assert_eq!((missing[99], missing[5999]), (0, -4900));
         let scatter = off(&run(FaultKind::Noise(output, 3.0), 5000, 3), 3);
@@ -137,10 +137,10 @@ mod tests {
 
     #[test]
     fn readings_get_lost_and_the_motor_s_last_word_stands() {
-        let lost = run(FaultKind::LostFrames(FrameName::Output, 0.2), 5000, 3);
+        let lost = run(FaultKind::LostReadings(Shaft::Link, 0.2), 5000, 3);
         let missing = lost.iter().filter(|(samples, _)| samples.output.is_none()).count();
         assert!((880..1080).contains(&missing), "{missing}");
-        let motor = run(FaultKind::LostFrames(FrameName::Motor, 1.0), 5000, 3);
+        let motor = run(FaultKind::LostReadings(Shaft::Motor, 1.0), 5000, 3);
         assert_eq!(motor[4000].0.motor, Reading { counts: 297, time: 99 });
     }
 
@@ -156,20 +156,19 @@ mod tests {
     #[test]
     fn what_no_board_can_do_is_refused_with_the_mend() {
         for kind in [
-            FaultKind::LateFrames(FrameName::Output, 0.001),
-            FaultKind::LostFrames(FrameName::SetPoints, 0.1),
-            FaultKind::GrownBacklash(6e-5),
-            FaultKind::BrokenTooth(0.3),
+            OnHost::LateReadings(Shaft::Link, 0.001),
+            OnHost::LostSetPoints(0.1),
+            OnHost::LateSetPoints(0.001),
+            OnHost::GrownBacklash(6e-5),
+            OnHost::BrokenTooth(0.3),
         ] {
-            let failure =
-                super::upsets(&[Fault { word: "it", kind, start: 0.0, end: 1.0 }], RATE, [14, 17], 1).unwrap_err();
-            assert!(
-                failure.message().contains("`it` cannot be in a whole loop") && failure.help().is_some(),
-                "{failure}"
-            );
+            let fault = Fault { start: 0.0, end: 1.0, seed: (), kind: FaultKind::Other(kind) };
+            let name = format!("`{}` cannot be in a whole loop", fault_word(&fault));
+            let failure = quantised(&[fault], RATE, [14, 17], 1).unwrap_err();
+            assert!(failure.message().contains(&name) && failure.help().is_some(), "{failure}");
         }
-        let kind = FaultKind::Frozen(EncoderName::Motor);
-        let many = vec![Fault { word: "it", kind, start: 0.0, end: 1.0 }; MOST_UPSETS + 1];
-        assert!(super::upsets(&many, RATE, [14, 17], 1).is_err());
+        let kind = FaultKind::Frozen(Shaft::Motor);
+        let many = vec![Fault { start: 0.0, end: 1.0, seed: (), kind }; MOST_FAULTS + 1];
+        assert!(quantised(&many, RATE, [14, 17], 1).is_err());
     }
 }

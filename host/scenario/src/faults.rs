@@ -1,11 +1,13 @@
-//! Faults at work: what they do to counts, torques, frames and teeth while a run goes on. Which faults there are is the file's
-//! business; nothing here knows a controller. One fault with what it remembers is `active`, what it does to teeth `teeth`.
+//! Faults at work on the host, between the f64 drive train and its controller: what they do to counts, torques, frames
+//! and teeth while a run goes on. Which faults there are is the file's to say; nothing here knows a controller. One fault
+//! with what it remembers is `active`, what it does to teeth `teeth`. A board applies its own, which `board` holds equal.
 
 mod active;
 mod teeth;
 
 use std::collections::VecDeque;
 
+use model_core::virtual_joint::fault::{FaultKind, Shaft};
 use reference::closed_loop::SetPoint;
 use reference::drive_train::Measurement;
 use reference::joint::Observation;
@@ -13,7 +15,7 @@ use reference::joint::Observation;
 use active::Active;
 use teeth::ToothState;
 
-use super::file::{EncoderName, Fault, FaultKind, FrameName};
+use super::file::{Fault, OnHost, fault_is_on};
 use super::plant::Teeth;
 
 /// One encoder reading and when it was taken.
@@ -38,7 +40,7 @@ pub struct Seen {
 
 /// All faults of a run with what they remember.
 #[derive(Debug, Clone)]
-pub struct Injection {
+pub struct HostFaults {
     faults: Vec<Active>,
     period: f64,
     counts_per_turn: [f64; 2],
@@ -56,13 +58,14 @@ pub struct Injection {
 /// More than this is never remembered of readings and set-points [periods]: delays are a second at most.
 const MEMORY: usize = 100_000;
 
-impl Injection {
+impl HostFaults {
     /// The faults of a run.
     pub fn new(faults: &[Fault], seed: u64, case: &super::case::Case) -> Self {
-        let encoders = [&case.train.motor_encoder, &case.train.output_encoder];
+        let around = &case.truth.surroundings;
+        let encoders = [&around.motor_encoder, &around.output_encoder];
         Self {
             faults: faults.iter().enumerate().map(|(index, fault)| Active::new(fault, index, seed)).collect(),
-            period: 1.0 / case.train.control_rate,
+            period: 1.0 / f64::from(around.control_rate),
             counts_per_turn: encoders.map(|encoder| (1_u64 << encoder.bits) as f64),
             home: None,
             past: Default::default(),
@@ -77,7 +80,7 @@ impl Injection {
     /// What becomes of a measurement on its way to the controller.
     pub fn sense(&mut self, measurement: &Measurement) -> Seen {
         let time = measurement.period as f64 * self.period;
-        let names = [EncoderName::Motor, EncoderName::Output];
+        let shafts = [Shaft::Motor, Shaft::Link];
         let counts = [measurement.motor_counts, measurement.output_counts];
         let home = *self.home.get_or_insert(counts);
         let frame = |index: usize| Some(Frame { counts: counts[index] - home[index], period: measurement.period });
@@ -85,29 +88,29 @@ impl Injection {
         for (index, frame) in frames.iter_mut().enumerate() {
             for fault in self.faults.iter_mut() {
                 if let Some(frame) = frame {
-                    frame.counts = fault.count(time, names[index], frame.counts, self.counts_per_turn[index]);
+                    frame.counts = fault.count(time, shafts[index], frame.counts, self.counts_per_turn[index]);
                 }
             }
             let Some(fresh) = *frame else { continue };
             let past = &mut self.past[index];
             past.push_back(fresh);
             past.truncate(MEMORY);
-            let name = [FrameName::Motor, FrameName::Output][index];
+            let shaft = shafts[index];
             let mut keep = 0;
             for fault in self.faults.iter_mut() {
                 match fault.fault.kind {
-                    FaultKind::LateFrames(of, delay) if of == name => {
+                    FaultKind::Other(OnHost::LateReadings(of, delay)) if of == shaft => {
                         let late = (delay / self.period).round() as usize;
                         keep = keep.max(late);
                         // What has come before does not come again: while a delay begins, nothing comes.
                         let known = self.come[index];
-                        if fault.fault.is_on(time) {
+                        if fault_is_on(&fault.fault, time) {
                             let arrived = past.iter().rev().nth(late).copied();
                             *frame = arrived.filter(|arrived| known.is_none_or(|known| arrived.period > known));
                         }
                     }
-                    FaultKind::LostFrames(of, share)
-                        if of == name && fault.fault.is_on(time) && fault.stream.uniform() < share =>
+                    FaultKind::LostReadings(of, share)
+                        if of == shaft && fault_is_on(&fault.fault, time) && fault.stream.uniform() < share =>
                     {
                         *frame = None;
                     }
@@ -135,14 +138,14 @@ impl Injection {
         let mut keep = 1;
         for fault in self.faults.iter_mut() {
             match fault.fault.kind {
-                FaultKind::LateFrames(FrameName::SetPoints, delay) => {
+                FaultKind::Other(OnHost::LateSetPoints(delay)) => {
                     let late = (delay / self.period).round() as usize;
                     keep = keep.max(late + 1);
-                    if fault.fault.is_on(time) {
+                    if fault_is_on(&fault.fault, time) {
                         arrived = self.set_points.iter().rev().nth(late).or(self.set_points.front()).copied();
                     }
                 }
-                FaultKind::LostFrames(FrameName::SetPoints, share) if fault.fault.is_on(time) => {
+                FaultKind::Other(OnHost::LostSetPoints(share)) if fault_is_on(&fault.fault, time) => {
                     // A frame that is held for several periods is lost once.
                     let lost = match fault.dropped {
                         Some((last, lost)) if last == number => lost,
@@ -164,7 +167,7 @@ impl Injection {
 
     /// What the motor makes of a torque that was asked of it [N m].
     pub fn torque(&self, time: f64, command: f64) -> f64 {
-        let on = self.faults.iter().filter(|active| active.fault.is_on(time));
+        let on = self.faults.iter().filter(|active| fault_is_on(&active.fault, time));
         on.fold(command, |torque, active| match active.fault.kind {
             FaultKind::TorqueBias(ratio, offset) => torque * (1.0 + ratio) + offset,
             FaultKind::Saturation(limit) => torque.clamp(-limit, limit),

@@ -1,0 +1,216 @@
+//! A fault is the same fault on the host, where it comes between the f64 drive train and its controller, and on a board,
+//! where it comes between the virtual joint and its controller: every kind that both can apply, at either encoder,
+//! through both appliers over the same counts and torques.
+//!
+//! The host rounds to whole counts, the board cuts off what is less than a count: where a fault shifts by parts of a count
+//! they may differ by one, and a noise has its mean half a count lower on the board. Their random numbers are their own:
+//! noise and lost readings are the same in their statistics.
+
+use std::f64::consts::TAU;
+
+use model_core::gears::Tables;
+use model_core::gears::design::design;
+use model_core::observer::{Reading, Samples};
+use model_core::virtual_joint::SurroundingsTable;
+use model_core::virtual_joint::design::design_surroundings;
+use model_core::virtual_joint::fault::{Fault, FaultKind, Shaft};
+use model_core::virtual_joint::faults::Faults;
+use reference::drive_train::Measurement;
+
+use super::faults::quantised;
+use crate::case::Case;
+use crate::faults::HostFaults;
+use crate::file;
+use crate::file::{Offset, Si};
+
+/// Control periods of a run, half a second.
+const PERIODS: u32 = 5000;
+/// Faults act from here on [s]; the first whole control period behind it is 1001.
+const START: f64 = 0.100_03;
+/// To here [s].
+const END: f64 = 0.4;
+/// In control periods.
+const ON: std::ops::Range<usize> = 1001..4000;
+
+/// What becomes of a control period.
+#[derive(Debug, Clone, Copy)]
+struct Period {
+    /// Counts of motor and link as they are, whole turns included.
+    counts: [i64; 2],
+    /// What the host's controller reads: whole turns included, and when it was read.
+    host: [Option<(i64, u64)>; 2],
+    /// What the board's controller reads: within a turn, and when it was read.
+    board: [Option<(u32, u32)>; 2],
+    /// What the motor gives on the host and on the board [N m].
+    torques: [f64; 2],
+}
+
+/// A joint with both appliers.
+struct Both {
+    case: Case,
+    table: SurroundingsTable<f32>,
+    bits: [u32; 2],
+}
+
+impl Both {
+    fn new() -> Self {
+        let test = file::read("profile = \"T2\"").expect("a good file");
+        let case = Case::new(&test, joint_file::preset("q1").expect("a preset"), 1, None).expect("a case");
+        let around = case.truth.surroundings;
+        let tables: Tables<f32, 3> = design(&case.truth.parameters, around.control_rate).expect("tables");
+        let table = design_surroundings(&case.truth.parameters, &around, &tables).expect("surroundings");
+        Self { case, table, bits: [around.motor_encoder.bits, around.output_encoder.bits] }
+    }
+
+    /// Both encoders go over more than a turn, forth and back, and the motor is asked for all that it has, both ways.
+    fn run(&self, kinds: &[FaultKind<Si>]) -> Vec<Period> {
+        let faults: Vec<_> = kinds.iter().map(|kind| Fault { start: START, end: END, seed: (), kind: *kind }).collect();
+        let rate = f64::from(self.case.truth.surroundings.control_rate);
+        let mut host = HostFaults::new(&faults, 1, &self.case);
+        let mut board = Faults::default();
+        let quantised = quantised(&faults, rate, self.bits, 1).expect("a board can do it");
+        assert!(quantised.iter().all(|fault| board.add(*fault)), "there is room");
+        let one = |period: u32| {
+            let wave = (TAU * f64::from(period) / 3700.0).sin();
+            let turn = self.bits.map(|bits| 1_i64 << bits);
+            let counts = [2.3 * wave * turn[0] as f64, 1.7 * wave * turn[1] as f64].map(|counts| counts.round() as i64);
+            let [motor_counts, output_counts] = counts;
+            let seen = host.sense(&Measurement { period: period.into(), motor_counts, output_counts });
+            let within = |of: usize| counts[of].rem_euclid(turn[of]) as u32;
+            let reading = |of: usize| Reading { counts: within(of), time: period };
+            let samples = Samples { time: period, motor: reading(0), output: Some(reading(1)), torque: 0.0 };
+            let samples = board.sense(samples, &self.table);
+            let command = 2.5 * (TAU * f64::from(period) / 500.0).sin();
+            Period {
+                counts,
+                host: [Some(seen.motor), seen.output].map(|frame| frame.map(|frame| (frame.counts, frame.period))),
+                board: [Some(samples.motor), samples.output]
+                    .map(|reading| reading.map(|reading| (reading.counts, reading.time))),
+                torques: [host.torque(f64::from(period) / rate, command), f64::from(board.torque(command as f32))],
+            }
+        };
+        (0..PERIODS).map(one).collect()
+    }
+
+    /// Counts of an encoder on the host and on the board beyond the true ones, in every period; the reading came in all.
+    fn beside(&self, run: &[Period], shaft: Shaft) -> Vec<[i64; 2]> {
+        let of = usize::from(shaft == Shaft::Link);
+        let turn = 1_i64 << self.bits[of];
+        // Within half a turn to either side.
+        let near = |counts: i64| (counts + turn / 2).rem_euclid(turn) - turn / 2;
+        let one = |period: &Period| {
+            let (host, board) = (period.host[of].expect("a reading"), period.board[of].expect("a reading"));
+            assert_eq!(host.1, u64::from(board.1), "read at the same time");
+            [near(host.0 - period.counts[of]), near(i64::from(board.0) - period.counts[of])]
+        };
+        run.iter().map(one).collect()
+    }
+}
+
+const SHAFTS: [Shaft; 2] = [Shaft::Motor, Shaft::Link];
+
+fn other(shaft: Shaft) -> Shaft {
+    if shaft == Shaft::Motor { Shaft::Link } else { Shaft::Motor }
+}
+
+#[test]
+fn encoders_freeze_slip_lose_counts_and_run_out_of_true_alike_to_one_count() {
+    let both = Both::new();
+    for shaft in SHAFTS {
+        let of_counts = FaultKind::Offset(shaft, Offset { counts: -7.0, angle: 0.0 });
+        let of_angle = FaultKind::Offset(shaft, Offset { counts: 3.0, angle: 20.3e-3 });
+        let eccentric = FaultKind::Eccentric(shaft, 0.3_f64.to_radians());
+        let missing = FaultKind::MissingCounts(shaft, 0.01);
+        // Most counts by which the two may differ, fewest that the fault moves at its worst.
+        let cases: [(&[FaultKind<Si>], i64, i64); 6] = [
+            (&[FaultKind::Frozen(shaft)], 0, 1000),
+            (&[of_counts], 0, 7),
+            (&[of_angle], 1, 40),
+            (&[eccentric], 1, 13),
+            (&[missing], 1, 300),
+            (&[of_angle, eccentric, missing], 3, 300),
+        ];
+        for (kinds, apart, moved) in cases {
+            let run = both.run(kinds);
+            let beside = both.beside(&run, shaft);
+            for (period, [host, board]) in beside.iter().enumerate() {
+                assert!((host - board).abs() <= apart, "{kinds:?}: {host} and {board} counts in period {period}");
+                assert!(period >= ON.start || (*host, *board) == (0, 0), "{kinds:?}: it has begun in period {period}");
+            }
+            let most = beside[ON].iter().map(|[host, _]| host.abs()).max().expect("some");
+            assert!(most >= moved, "{kinds:?} moves {most} counts at most");
+            let left = beside[ON.end + 1][0];
+            assert!(kinds.contains(&missing) || left == 0, "{kinds:?} has not ended: {left} counts");
+            assert!(both.beside(&run, other(shaft)).iter().all(|beside| *beside == [0, 0]), "{kinds:?}");
+        }
+    }
+}
+
+#[test]
+fn encoders_scatter_alike_in_their_deviation() {
+    let both = Both::new();
+    for shaft in SHAFTS {
+        let beside = both.beside(&both.run(&[FaultKind::Noise(shaft, 6.0)]), shaft);
+        let statistics = |side: usize| {
+            let count = ON.len() as f64;
+            let mean = beside[ON].iter().map(|beside| beside[side] as f64).sum::<f64>() / count;
+            let square = beside[ON].iter().map(|beside| (beside[side] as f64 - mean).powi(2)).sum::<f64>();
+            (mean, (square / count).sqrt())
+        };
+        // Of so many readings a deviation is uncertain by 1.3 %, a mean by 0.11 counts: four times that.
+        let (host, board) = (statistics(0), statistics(1));
+        assert!((host.1 / board.1 - 1.0).abs() < 0.08, "{shaft:?}: deviations of {} and {} counts", host.1, board.1);
+        assert!((host.1 / 6.0 - 1.0).abs() < 0.055, "{shaft:?}: a deviation of {} counts", host.1);
+        assert!((host.0 - board.0 - 0.5).abs() < 0.62, "{shaft:?}: means of {} and {} counts", host.0, board.0);
+        let quiet = |range: std::ops::Range<usize>| beside[range].iter().all(|beside| *beside == [0, 0]);
+        assert!(quiet(0..ON.start) && quiet(ON.end..beside.len()), "{shaft:?}");
+    }
+}
+
+#[test]
+fn readings_are_lost_alike_and_the_motor_s_last_one_stands() {
+    let both = Both::new();
+    for (shaft, of) in SHAFTS.into_iter().zip([0, 1]) {
+        let turn = 1_i64 << both.bits[of];
+        let came = |reading: Option<(i64, u64)>, period: usize| reading.is_some_and(|(_, time)| time == period as u64);
+        for share in [0.2, 1.0] {
+            let run = both.run(&[FaultKind::LostReadings(shaft, share)]);
+            let mut lost = [0_u32; 2];
+            for (number, period) in run.iter().enumerate() {
+                let board = period.board[of].map(|(counts, time)| (i64::from(counts), u64::from(time)));
+                let host = period.host[of].map(|(counts, time)| (counts.rem_euclid(turn), time));
+                for (lost, reading) in lost.iter_mut().zip([host, board]) {
+                    *lost += u32::from(!came(reading, number));
+                    assert!(came(reading, number) || ON.contains(&number), "{shaft:?}: lost in period {number}");
+                    assert!(shaft == Shaft::Link || reading.is_some(), "a motor's last word stands");
+                    if let Some((counts, time)) = reading {
+                        assert_eq!(counts, run[time as usize].counts[of].rem_euclid(turn), "{shaft:?} in {number}");
+                    }
+                }
+                assert!(share < 1.0 || host == board, "{shaft:?}: {host:?} and {board:?} in period {number}");
+            }
+            // The standard deviation of the difference of two such numbers is 31: four times that.
+            let apart = if share < 1.0 { 124 } else { 0 };
+            assert!(lost[0].abs_diff(lost[1]) <= apart, "{shaft:?}: {lost:?} readings lost");
+            assert!(f64::from(lost[0].abs_diff((share * ON.len() as f64) as u32)) <= 88.0, "{shaft:?}: {lost:?}");
+        }
+    }
+}
+
+#[test]
+fn motors_give_the_same_wrong_torque() {
+    let both = Both::new();
+    let (bias, limit) = (FaultKind::TorqueBias(0.05, -0.2), FaultKind::Saturation(1.5));
+    for kinds in [vec![bias], vec![limit], vec![bias, limit], vec![limit, bias]] {
+        let run = both.run(&kinds);
+        let commands = both.run(&[]);
+        for (number, (period, command)) in run.iter().zip(&commands).enumerate() {
+            let [host, board] = period.torques;
+            // Three roundings of single precision at 2.5 N m.
+            assert!((host - board).abs() < 1e-6, "{kinds:?}: {host} and {board} N m in period {number}");
+            assert!(ON.contains(&number) || host == command.torques[0], "{kinds:?} acts in period {number}");
+        }
+        let wrong = run[ON].iter().zip(&commands[ON]).filter(|(run, command)| run.torques[0] != command.torques[0]);
+        assert!(wrong.count() > 1000, "{kinds:?} does something");
+    }
+}

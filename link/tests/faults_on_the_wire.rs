@@ -1,0 +1,70 @@
+//! Faults between joint and controller, and why a board tripped, byte for byte: boards and hosts of one protocol version
+//! must understand one another, whatever the types are called. Framing is tested beside.
+
+use link::messages::{FromBoard, ToBoard, Trip};
+use model_core::virtual_joint::fault::{Fault, FaultKind, FixedPoint, Shaft};
+use postcard::{from_bytes, to_slice};
+use serde::Serialize;
+
+fn bytes(message: &impl Serialize) -> Vec<u8> {
+    let mut buffer = [0; 64];
+    to_slice(message, &mut buffer).expect("there is room").to_vec()
+}
+
+fn fault(kind: FaultKind<FixedPoint<f32>>) -> ToBoard {
+    ToBoard::Fault(Fault { start: 30_000, end: u32::MAX, seed: 0x0123_4567_89ab_cdef, kind })
+}
+
+/// The variant, periods and seed of [`fault`].
+const HEAD: [u8; 18] =
+    [0x08, 0xb0, 0xea, 0x01, 0xff, 0xff, 0xff, 0xff, 0x0f, 0xef, 0x9b, 0xaf, 0xcd, 0xf8, 0xac, 0xd1, 0x91, 0x01];
+
+#[test]
+fn every_kind_of_fault_has_the_bytes_that_it_always_had() {
+    let kinds: [(FaultKind<FixedPoint<f32>>, &[u8]); 9] = [
+        (FaultKind::Frozen(Shaft::Motor), &[0x00, 0x00]),
+        (FaultKind::Frozen(Shaft::Link), &[0x00, 0x01]),
+        (FaultKind::Offset(Shaft::Link, -300), &[0x01, 0x01, 0xd7, 0x04]),
+        (FaultKind::Noise(Shaft::Motor, 98_304), &[0x02, 0x00, 0x80, 0x80, 0x06]),
+        (FaultKind::MissingCounts(Shaft::Link, 42_949_672), &[0x03, 0x01, 0xa8, 0xb8, 0xbd, 0x14]),
+        (FaultKind::Eccentric(Shaft::Motor, -1193.5), &[0x04, 0x00, 0x00, 0x30, 0x95, 0xc4]),
+        (FaultKind::LostReadings(Shaft::Link, u32::MAX), &[0x05, 0x01, 0xff, 0xff, 0xff, 0xff, 0x0f]),
+        (FaultKind::TorqueBias(0.05, -0.25), &[0x06, 0xcd, 0xcc, 0x4c, 0x3d, 0x00, 0x00, 0x80, 0xbe]),
+        (FaultKind::Saturation(1.5), &[0x07, 0x00, 0x00, 0xc0, 0x3f]),
+    ];
+    for (kind, tail) in kinds {
+        let message = fault(kind);
+        assert_eq!(bytes(&message), [&HEAD, tail].concat(), "{kind:?}");
+        assert_eq!(from_bytes::<ToBoard>(&[&HEAD, tail].concat()), Ok(message));
+    }
+    for (taken, byte) in [(false, 0x00), (true, 0x01)] {
+        assert_eq!(bytes(&FromBoard::FaultTaken { taken }), [0x09, byte]);
+    }
+}
+
+#[test]
+fn a_fault_that_no_board_knows_is_no_message() {
+    for tail in [[0x08, 0x00], [0x09, 0x00], [0x00, 0x02]] {
+        assert!(from_bytes::<ToBoard>(&[&HEAD[..], &tail].concat()).is_err(), "{tail:?}");
+    }
+}
+
+#[test]
+fn every_trip_has_the_bytes_that_it_always_had() {
+    let tick = 300;
+    let trips: [(Trip, &[u8]); 9] = [
+        (Trip::CommandLoss { tick }, &[0x04, 0x00, 0xac, 0x02]),
+        (Trip::NotFinite { tick }, &[0x04, 0x01, 0xac, 0x02]),
+        (Trip::BadCommand { tick }, &[0x04, 0x02, 0xac, 0x02]),
+        (Trip::LateCommand { tick }, &[0x04, 0x03, 0xac, 0x02]),
+        (Trip::BadDigest, &[0x04, 0x04]),
+        (Trip::QueueFull, &[0x04, 0x05]),
+        (Trip::BadSettings, &[0x04, 0x06]),
+        (Trip::NotRunning, &[0x04, 0x07]),
+        (Trip::WrongRole, &[0x04, 0x08]),
+    ];
+    for (trip, expected) in trips {
+        assert_eq!(bytes(&FromBoard::Tripped(trip)), expected, "{trip:?}");
+        assert_eq!(from_bytes::<FromBoard>(expected), Ok(FromBoard::Tripped(trip)));
+    }
+}

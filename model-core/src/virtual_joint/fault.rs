@@ -1,0 +1,109 @@
+//! Faults between a joint and its controller, described once: encoders that stand still, slip or scatter, readings that do
+//! not come, a motor that gives another torque than it was asked for. [`Fault`] is in the units of whoever holds it: SI in
+//! a test file and on the host, which applies it to the f64 drive train, whole numbers on the wire and on a board, which
+//! applies it to its virtual joint. What a fault does is left to who applies it, what it is to prove to tests.
+
+use core::fmt::Debug;
+use core::marker::PhantomData;
+
+use crate::numbers::Real;
+
+/// Units that faults are described in, and the faults that only their holder can apply.
+pub trait Units: Copy + Debug + PartialEq {
+    /// When a fault begins and ends.
+    type Time: Copy + Debug + PartialEq + PartialOrd;
+    /// What the random numbers of a fault begin with.
+    type Seed: Copy + Debug + PartialEq;
+    /// How far an encoder is off.
+    type Offset: Copy + Debug + PartialEq;
+    /// Standard deviation of an encoder.
+    type Deviation: Copy + Debug + PartialEq;
+    /// A part of a whole.
+    type Share: Copy + Debug + PartialEq;
+    /// Amplitudes of angles, ratios, torques.
+    type Real: Copy + Debug + PartialEq;
+    /// What goes wrong beside the kinds that every holder can apply.
+    type Other: Copy + Debug + PartialEq;
+}
+
+/// What a board counts in: control periods, 2^-32 turns, shares of 2^32, torques in N m. It can apply no other faults.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FixedPoint<T>(PhantomData<T>);
+
+impl<T: Real> Units for FixedPoint<T> {
+    type Time = u32;
+    type Seed = u64;
+    type Offset = i32;
+    type Deviation = u32;
+    type Share = u32;
+    type Real = T;
+    type Other = NoOther;
+}
+
+/// There is no other fault.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum NoOther {}
+
+/// One fault.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "U::Time: serde::Serialize, U::Seed: serde::Serialize, FaultKind<U>: serde::Serialize",
+        deserialize = "U::Time: serde::Deserialize<'de>, U::Seed: serde::Deserialize<'de>, \
+                       FaultKind<U>: serde::Deserialize<'de>"
+    ))
+)]
+pub struct Fault<U: Units> {
+    /// From when on it acts.
+    pub start: U::Time,
+    /// From when on it acts no more.
+    pub end: U::Time,
+    /// Begins its random numbers.
+    pub seed: U::Seed,
+    /// What goes wrong.
+    pub kind: FaultKind<U>,
+}
+
+/// Which encoder.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Shaft {
+    /// The motor's.
+    Motor,
+    /// The link's.
+    Link,
+}
+
+/// What goes wrong.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum FaultKind<U: Units> {
+    /// Counts stand still.
+    Frozen(Shaft),
+    /// Counts are off.
+    Offset(Shaft, U::Offset),
+    /// Counts scatter by a standard deviation.
+    Noise(Shaft, U::Deviation),
+    /// A part of the motion is not counted, and stays uncounted afterwards.
+    MissingCounts(Shaft, U::Share),
+    /// An error that comes once a turn: the sine of the angle that is read, times an amplitude.
+    Eccentric(Shaft, U::Real),
+    /// A part of the readings does not come; the motor's last one stands in for those that do not.
+    LostReadings(Shaft, U::Share),
+    /// The motor gives so much beyond the command: a ratio of it, and a torque [N m].
+    TorqueBias(U::Real, U::Real),
+    /// The motor gives no more than this, to either side [N m].
+    Saturation(U::Real),
+    /// What only this holder can apply.
+    Other(U::Other),
+}
+
+impl<U: Units> Fault<U> {
+    /// Whether it acts at a time.
+    pub fn is_on(&self, time: U::Time) -> bool {
+        self.start <= time && time < self.end
+    }
+}

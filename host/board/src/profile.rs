@@ -11,7 +11,7 @@ use link::messages::Command;
 use parameters::JointParameters;
 
 use report::failure::{Failure, Outcome};
-use report::output::typed;
+use report::number::TYPED;
 
 pub use builtin::BUILTIN;
 pub use torques::STRONGEST;
@@ -61,8 +61,8 @@ impl Profile {
         if !(1.0..=f64::from(u32::MAX / 2)).contains(&ticks) {
             return Err(Failure::new(format!(
                 "a run of {} s at {tick_rate} Hz is {} ticks",
-                typed(seconds),
-                typed(ticks)
+                TYPED.write(seconds),
+                TYPED.write(ticks)
             ))
             .with_help("give a duration of at least one tick and at most 2^31 ticks, such as --duration 5"));
         }

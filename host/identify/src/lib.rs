@@ -17,7 +17,7 @@ mod log_file;
 mod mcap_log;
 pub mod memory;
 mod noise;
-mod page;
+pub(crate) mod page;
 mod patch;
 mod pictures;
 mod plan;
@@ -26,7 +26,6 @@ mod regression;
 mod ros_message;
 mod rows;
 mod sampling;
-pub mod table;
 mod twist;
 pub mod virtual_test;
 
@@ -39,12 +38,13 @@ use serde::Serialize;
 use twist::Twist;
 
 use joint_file::named::{self, Loaded};
+use report::document::{html, terminal};
 use report::failure::{Failure, Outcome};
 use report::folder;
+use report::folder::Folder;
 use report::output;
 use report::progress::Progress;
 use report::write::write_text;
-use simulation::sim::files::Folder;
 
 /// Box of the kernel for frictions, which need no quick motion but exact accelerations [s].
 const SLOW_BOX: f64 = 4e-3;
@@ -98,18 +98,17 @@ fn run_once(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
     let identified = identify(arguments, &plan)?;
     let folder = Folder::prepare(arguments.out.as_deref(), "identify", &plan.name)?;
     let name = arguments.log.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let stated = |finding: &Finding| table::stated(&loaded.text, finding);
     let patched = patch::patch(&loaded, &plan, &identified.findings, &name)?;
     let assumptions = assumptions(&plan, &identified.log);
     let Identified { log, rows, twist, findings } = &identified;
-    let page = page::render(&page::Content {
+    let document = page::document(page::Content {
         joint: &plan.name,
         log: &name,
         duration: log.time.last().copied().unwrap_or_default(),
         crossings: rows.crossings,
         findings,
-        stated: &stated,
-        figures: &[pictures::loop_of(log, rows, twist, &plan), pictures::course(log, twist)],
+        file: &loaded.text,
+        figures: vec![pictures::loop_of(log, rows, twist, &plan), pictures::course(log, twist)],
         assumptions: &assumptions,
     });
     let record = Findings {
@@ -123,12 +122,12 @@ fn run_once(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
     };
     let json = output::json("findings", &record)?;
     let [report, joint] = [folder.file("report.html"), folder.file("joint.toml")];
-    write_text(&report, &page)?;
+    write_text(&report, &html(&document))?;
     write_text(&joint, &patched)?;
     write_text(&folder.file("findings.json"), &json)?;
     arguments.json.as_ref().map_or(Ok(()), |path| write_text(path, &json))?;
     progress.clear();
-    output::print(&table::render(findings, stated))?;
+    output::print(&terminal(&document))?;
     output::print(&format!("\nreport: {}\njoint file: {}\n", report.display(), joint.display()))
 }
 
@@ -226,9 +225,8 @@ fn simulate(arguments: &Arguments, loaded: &Loaded, progress: &Progress) -> Outc
     let around = &mut file.surroundings;
     around.motor_encoder.bits = arguments.motor_bits.unwrap_or(around.motor_encoder.bits);
     around.output_encoder.bits = arguments.output_bits.unwrap_or(around.output_encoder.bits);
-    progress.run("testing", 1000);
-    let line = progress.handle();
-    let recording = virtual_test::record(&file, arguments.seed, &|share| line.at((1000.0 * share) as u32))?;
+    progress.run("testing", 1000_u32);
+    let recording = virtual_test::record(&file, arguments.seed, &|share| progress.at((1000.0 * share) as u32))?;
     write_text(&arguments.log, &recording.csv(arguments.with_output_torque))?;
     progress.clear();
     let seconds = recording.samples.len() as f64 / recording.rate;

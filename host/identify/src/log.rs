@@ -11,7 +11,7 @@ use super::plan::Plan;
 use super::sampling::sampling;
 use board::profile::STRONGEST;
 use report::failure::{Failure, Outcome};
-use report::output::typed;
+use report::number::TYPED;
 
 /// Fewer counts of the motor may be its encoder's own scatter.
 const LEAST_TRAVEL: f64 = 8.0;
@@ -69,7 +69,7 @@ impl Log {
         for (name, torques) in [("motor_torque_N_m", Some(&torque)), ("output_torque_N_m", output_torque.as_ref())] {
             let torques = torques.into_iter().flatten();
             if let Some((row, torque)) = torques.enumerate().find(|(_, torque)| torque.abs() > STRONGEST) {
-                return Err(Failure::new(format!("{}: `{name}` is {}", columns.place(row), typed(*torque)))
+                return Err(Failure::new(format!("{}: `{name}` is {}", columns.place(row), TYPED.write(*torque)))
                     .with_help(format!("it may be from -{STRONGEST} to {STRONGEST} N m: check the unit")));
             }
         }

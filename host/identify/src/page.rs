@@ -1,14 +1,16 @@
-//! The findings as one HTML page that needs neither network nor scripts, in the style of the other reports. Figures are
-//! made elsewhere; this puts them in order.
-
-use maud::{Markup, PreEscaped, html};
+//! The findings as a document: a table of every parameter with its interval beside what the joint file says, the fit, and
+//! what it rests on. Figures are made elsewhere.
 
 use super::findings::Finding;
-use super::table::number;
+use report::document::{
+    Align, Block, Document, PAGES, Text, notes, numbers, picture, row, section, section_bare, strong, table, text,
+    words,
+};
+use report::number::ESTIMATE;
 use report::plot::Figure;
-use report::shell::page;
+use report::provenance::VERSION;
 
-/// What the page shows.
+/// What the document is made from.
 pub struct Content<'a> {
     /// Name of the joint.
     pub joint: &'a str,
@@ -20,65 +22,73 @@ pub struct Content<'a> {
     pub crossings: usize,
     /// What was found.
     pub findings: &'a [Finding],
-    /// What the joint file says for a finding.
-    pub stated: &'a dyn Fn(&Finding) -> Option<String>,
+    /// Text of the joint file.
+    pub file: &'a str,
     /// The pictures, first the most telling.
-    pub figures: &'a [Figure],
+    pub figures: Vec<Figure>,
     /// What the numbers rest on.
     pub assumptions: &'a [String],
 }
 
-/// The whole page.
-pub fn render(content: &Content<'_>) -> String {
-    let body = html! {
-        header {
-            div.title { h1 { "Joint " (content.joint) " identified" } }
-            p.subtitle {
-                (content.log) " · " (format!("{:.2} s", content.duration)) " · " (content.crossings)
-                " crossings of the gap"
-            }
-        }
-        section { h2 { "What was found" } (table(content)) }
-        section {
-            h2 { "How it fits" }
-            @for figure in content.figures { figure { (PreEscaped(figure.to_svg())) } }
-        }
-        section {
-            h2 { "What it rests on" }
-            ul { @for assumption in content.assumptions { li { (typeset(assumption)) } } }
-        }
-        footer { "joint " (env!("CARGO_PKG_VERSION")) }
-    };
-    page(&format!("Joint {} identified", content.joint), "", &body)
+/// All of it.
+pub fn document(content: Content<'_>) -> Document {
+    let heading = text("Joint ") + content.joint + " identified";
+    let figures = content.figures.into_iter().map(|figure| picture(figure, Text::default()));
+    let assumptions = content.assumptions.iter().map(|assumption| typeset(assumption).into());
+    Document {
+        title: format!("Joint {} identified", content.joint),
+        heading,
+        subtitle: format!("{} · {:.2} s · {} crossings of the gap", content.log, content.duration, content.crossings)
+            .into(),
+        blocks: vec![
+            section_bare("What was found", findings(content.findings, content.file)),
+            section("How it fits", figures.collect()),
+            section("What it rests on", vec![Block::List(assumptions.collect())]),
+        ],
+        footer: text("joint ") + VERSION,
+        ..Document::default()
+    }
 }
 
-fn table(content: &Content<'_>) -> Markup {
-    html! {
-        table {
-            thead { tr {
-                th { "Parameter" } th.number { "found" } th.number { "95 % interval" } th { "unit" }
-                th.number { "joint file" } th { "note" }
-            } }
-            tbody { @for finding in content.findings { tr {
-                td { (finding.name) }
-                td.number { (finding.value.map_or_else(|| "–".into(), number)) }
-                td.number {
-                    (finding.interval.map_or_else(|| "–".into(), |[low, high]| format!("{} … {}", number(low), number(high))))
-                }
-                td { (unit(&finding.unit)) }
-                @let stated = (content.stated)(finding);
-                td.number { @match &stated {
-                    Some(stated) if differs(finding, stated) => strong { (stated) },
-                    Some(stated) => (stated),
-                    None => "–",
-                } }
-                td { (typeset(&finding.note)) }
-            } } }
-        }
-        @if content.findings.iter().any(|finding| (content.stated)(finding).is_some_and(|stated| differs(finding, &stated))) {
-            p.note { "Bold: what the joint file says is outside of the interval." }
-        }
+/// Findings with their intervals beside what the joint file says, whose text is given.
+pub fn findings(findings: &[Finding], file: &str) -> Vec<Block> {
+    let columns = vec![
+        words("Parameter"),
+        numbers("found"),
+        words("95 % interval").aligned(Align::Centre),
+        words("unit"),
+        numbers("joint file"),
+        notes("note"),
+    ];
+    let none = || text("–");
+    let rows = findings.iter().map(|finding| {
+        let interval = finding.interval.map(|ends| ends.map(|end| ESTIMATE.write(end)));
+        let stated = match stated(file, finding) {
+            Some(stated) if differs(finding, &stated) => strong(stated),
+            Some(stated) => text(stated),
+            None => none(),
+        };
+        row([
+            text(&finding.name),
+            finding.value.map_or_else(none, |value| ESTIMATE.write(value).into()),
+            interval.map_or_else(none, |[low, high]| format!("{low} … {high}").into()),
+            unit(&finding.unit).into(),
+            stated,
+            typeset(&finding.note).into(),
+        ])
+    });
+    let mut blocks = vec![table(columns, rows.collect())];
+    if findings.iter().any(|one| stated(file, one).is_some_and(|stated| differs(one, &stated))) {
+        let note = Block::Note("Bold: what the joint file says is outside of the interval.".into());
+        blocks.push(Block::Only(PAGES, vec![note]));
     }
+    blocks
+}
+
+/// What a joint file says for a finding, written as the findings are.
+pub fn stated(file: &str, finding: &Finding) -> Option<String> {
+    let value = joint_file::value(file, finding.key.as_deref()?).ok()??;
+    Some(value.replace('_', "").parse().map_or_else(|_| value.to_owned(), |value| ESTIMATE.write(value)))
 }
 
 /// Whether a stated value is outside of the interval.
@@ -87,7 +97,7 @@ fn differs(finding: &Finding, stated: &str) -> bool {
     stated.zip(finding.interval).is_some_and(|(stated, [low, high])| !(low..=high).contains(&stated))
 }
 
-/// Signs that a terminal may not have.
+/// Signs that the findings' own text, which is written to files, does without.
 fn typeset(text: &str) -> String {
     text.replace("+- ", "± ").replace(" us", " µs")
 }

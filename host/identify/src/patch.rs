@@ -2,9 +2,9 @@
 
 use super::findings::Finding;
 use super::plan::Plan;
-use super::table::number;
 use joint_file::named::{self, Loaded};
 use report::failure::{Failure, Outcome};
+use report::number::ESTIMATE;
 
 /// Keys that may be negative.
 const SIGNED: [&str; 1] = ["drive_train.torque_constant_error_ratio"];
@@ -22,7 +22,7 @@ pub fn patch(loaded: &Loaded, plan: &Plan, findings: &[Finding], log: &str) -> O
             continue;
         }
         let value = if SIGNED.contains(&key.as_str()) { value } else { value.max(0.0) };
-        let remark = format!("identified from {log}: {} to {} (95 %)", number(low), number(high));
+        let remark = format!("identified from {log}: {} to {} (95 %)", ESTIMATE.write(low), ESTIMATE.write(high));
         for (encoder, bits) in [("motor", plan.motor_bits), ("output", plan.output_bits)] {
             // An encoder that the file does not speak of yet begins with its resolution.
             let section = format!("drive_train.{encoder}_encoder.");

@@ -4,11 +4,11 @@ use super::log::Log;
 use super::plan::Plan;
 use super::rows::Rows;
 use super::twist::{self, Twist};
+use report::plot::Figure;
 use report::plot::ink::Ink;
 use report::plot::mark::Mark;
 use report::plot::panel::Panel;
 use report::plot::unit::{SECONDS, TORQUE, Unit};
-use report::plot::{Figure, HorizontalAxis, Shape};
 
 /// More points than this do not make a picture clearer.
 const POINTS: usize = 6000;
@@ -36,17 +36,12 @@ pub fn loop_of(log: &Log, rows: &Rows, twist: &Twist, plan: &Plan) -> Figure {
         line(-1.0, ""),
     ];
     let unit = Unit::of_angle(half_gap.abs() + compliance.abs() * reach);
-    Figure {
-        title: "Twist over torque".into(),
-        axis: "torque at the output".into(),
-        unit: TORQUE,
-        range: (-reach, reach),
-        runs: HorizontalAxis::Linear,
-        shape: Shape::default(),
-        panels: vec![Panel { height: 420, ..Panel::lines("Motor over ratio less output", unit, marks) }],
-        note: "Encoder, tooth and skew errors that were found are taken off; the step between the branches is the lost motion."
-            .into(),
-    }
+    let panel = Panel { height: 420, ..Panel::lines("Motor over ratio less output", unit, marks) };
+    let note =
+        "Encoder, tooth and skew errors that were found are taken off; the step between the branches is the lost \
+                motion."
+            .into();
+    Figure { note, ..Figure::new("Twist over torque", "torque at the output", TORQUE, (-reach, reach), vec![panel]) }
 }
 
 /// Torque and what the fit leaves over, in time.
@@ -57,25 +52,12 @@ pub fn course(log: &Log, twist: &Twist) -> Figure {
     let left: Vec<(f64, f64)> =
         twist.rows.iter().zip(&twist.solution.residuals).step_by(every).map(|(row, left)| (row.time, *left)).collect();
     let greatest = left.iter().map(|point| point.1.abs()).fold(0.0, f64::max);
-    Figure {
-        title: "What the fit leaves over".into(),
-        axis: "time".into(),
-        unit: SECONDS,
-        range: (0.0, log.time.last().copied().unwrap_or(1.0)),
-        runs: HorizontalAxis::Linear,
-        shape: Shape::default(),
-        panels: vec![
-            Panel::lines(
-                "Motor torque",
-                TORQUE,
-                vec![Mark::Line { points: torque, ink: Ink::First, label: String::new(), width: 1.2 }],
-            ),
-            Panel::lines(
-                "Twist that the fit leaves over",
-                Unit::of_angle(greatest),
-                vec![Mark::Points { points: left, ink: Ink::Second, label: String::new(), size: 2.0 }],
-            ),
-        ],
-        note: String::new(),
-    }
+    let range = (0.0, log.time.last().copied().unwrap_or(1.0));
+    let torque = Mark::Line { points: torque, ink: Ink::First, label: String::new(), width: 1.2 };
+    let left = Mark::Points { points: left, ink: Ink::Second, label: String::new(), size: 2.0 };
+    let panels = vec![
+        Panel::lines("Motor torque", TORQUE, vec![torque]),
+        Panel::lines("Twist that the fit leaves over", Unit::of_angle(greatest), vec![left]),
+    ];
+    Figure::over_time("What the fit leaves over", SECONDS, range, panels)
 }

@@ -8,31 +8,31 @@ use crate::page;
 use crate::record::RunRecord;
 use board::logs;
 use report::failure::{Failure, Outcome};
-use report::folder;
+use report::folder::Folder;
 use report::write::write_text;
 
 /// Where a run's files go.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Files {
-    folder: PathBuf,
+    folder: Folder,
     json: Option<PathBuf>,
 }
 
 impl Files {
     /// Makes the folder and tries to write to it.
     pub fn prepare(folder: Option<&Path>, json: Option<&Path>, joint: &str) -> Outcome<Self> {
-        let folder = folder::prepare(folder, "hil", joint)?;
+        let folder = Folder::prepare(folder, "hil", joint)?;
         Ok(Self { folder, json: json.map(Path::to_owned) })
     }
 
     /// Writes everything; returns where the report is.
     pub fn write(&self, record: &RunRecord) -> Outcome<PathBuf> {
-        let kept = write_to(&self.folder, record);
+        let kept = write_to(self.folder.path(), record);
         let asked = self.json.as_ref().map_or(Ok(()), |json| report::write::write_record(json, record));
         match (kept, asked) {
             (Ok(report), Ok(())) => Ok(report),
             (Ok(_), Err(failure)) => {
-                Err(failure.with_help(format!("the record is in {}", self.folder.join("record.json").display())))
+                Err(failure.with_help(format!("the record is in {}", self.folder.file("record.json").display())))
             }
             (Err(failure), _) => Err(elsewhere(failure, record)),
         }

@@ -29,7 +29,7 @@ use record::RunRecord;
 use report::checks::all_hold;
 use report::failure::Outcome;
 use report::progress::Progress;
-use report::{folder, output, table};
+use report::{folder, output};
 
 /// Runs a joint on a board; succeeds only if every check held.
 pub fn run(request: &Request<'_>, progress: &Progress) -> Outcome<()> {
@@ -92,9 +92,7 @@ fn show(record: &RunRecord) -> Outcome<()> {
     if record.samples.is_empty() {
         return Ok(());
     }
-    let identity = &record.identity;
-    let head = format!("{} on {} ({})\n\n", identity.joint, identity.board, identity.transport);
-    output::print(&(head + &table::table(&record.checks, identity.emulated) + "\n"))
+    output::print(&(page::render_lines(record) + "\n"))
 }
 
 /// Builds the image and finds the board. A port is opened first: what is wrong with it should not wait for a build.

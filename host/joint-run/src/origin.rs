@@ -18,8 +18,8 @@ pub fn record(request: &Request<'_>, plan: &Plan, transport: &str) -> RunRecord 
         emulated,
         transport: transport.to_owned(),
         git_commit: provenance::git_commit(),
-        host: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
-        host_version: env!("CARGO_PKG_VERSION").to_owned(),
+        host: provenance::host(),
+        host_version: provenance::VERSION.to_owned(),
         date: provenance::date(),
         ..Identity::default()
     };

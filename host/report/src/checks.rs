@@ -77,6 +77,16 @@ impl Bound {
             Self::None => true,
         }
     }
+
+    /// Its sign and what stands behind it; nothing if there is no bound.
+    pub fn in_signs(self) -> Option<(&'static str, f64)> {
+        match self {
+            Self::AtMost(bound) => Some(("≤", bound)),
+            Self::AtLeast(bound) => Some(("≥", bound)),
+            Self::Exactly(bound) => Some(("=", bound)),
+            Self::None => None,
+        }
+    }
 }
 
 impl Check {

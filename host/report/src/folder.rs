@@ -8,15 +8,34 @@ use crate::failure::{Failure, Outcome};
 use crate::workspace::workspace;
 use crate::write::write_text;
 
-/// Makes a folder and tries to write to it. Where none is wanted it is `target/KIND/JOINT`.
-pub fn prepare(wanted: Option<&Path>, kind: &str, joint: &str) -> Outcome<PathBuf> {
-    let folder = wanted.map_or_else(|| workspace().join("target").join(kind).join(file_part(joint)), Path::to_owned);
-    make(&folder)?;
-    let probe = folder.join(".can-be-written");
-    write_text(&probe, "")?;
-    // It was ours, and it was empty: nothing is lost if it stays.
-    let _ = fs::remove_file(&probe);
-    Ok(folder)
+/// Where the files of a run go.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Folder {
+    path: PathBuf,
+}
+
+impl Folder {
+    /// Makes the folder and tries to write to it. Where none is wanted it is `target/KIND/JOINT`.
+    pub fn prepare(wanted: Option<&Path>, kind: &str, joint: &str) -> Outcome<Self> {
+        let usual = || workspace().join("target").join(kind).join(file_part(joint));
+        let path = wanted.map_or_else(usual, Path::to_owned);
+        make(&path)?;
+        let probe = path.join(".can-be-written");
+        write_text(&probe, "")?;
+        // It was ours, and it was empty: nothing is lost if it stays.
+        let _ = fs::remove_file(&probe);
+        Ok(Self { path })
+    }
+
+    /// A file in it.
+    pub fn file(&self, name: &str) -> PathBuf {
+        self.path.join(name)
+    }
+
+    /// The folder itself.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
 }
 
 /// Makes a folder that `--out` names.
@@ -73,7 +92,7 @@ mod tests {
     #[test]
     fn a_folder_that_cannot_be_is_found_before_the_run() {
         for folder in ["/dev/full/x", "/proc/x", "/dev/null"] {
-            let failure = prepare(Some(Path::new(folder)), "hil", "Q1").expect_err("cannot be written");
+            let failure = Folder::prepare(Some(Path::new(folder)), "hil", "Q1").expect_err("cannot be written");
             assert!(failure.message().contains(folder), "{failure}");
             assert!(failure.help().is_some(), "{failure}");
             assert_eq!(failure.exit_code(), 2);

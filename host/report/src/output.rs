@@ -1,7 +1,6 @@
 //! What the command gives out: results on standard output or in a file, remarks on standard error. A reader that has gone away is no
 //! error; progress lines are made elsewhere.
 
-use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -9,6 +8,7 @@ use serde::Serialize;
 
 use crate::failure::{Failure, Outcome};
 use crate::folder;
+use crate::write::write_text;
 
 /// Prints a result on standard output.
 pub fn print(text: &str) -> Outcome<()> {
@@ -37,36 +37,12 @@ pub fn deliver(figures: &impl Serialize, text: &str, wanted: Option<&Path>, read
         if path.as_os_str() == "-" {
             return print(&json);
         }
-        fs::write(path, json).map_err(|error| {
-            Failure::new(format!("cannot write {}: {error}", path.display()))
-                .with_help("name a file in a folder that exists and can be written to")
-        })?;
+        write_text(path, &json)?;
     }
     print(text)
-}
-
-/// A number as one would type it: whole ones without a point, very large and very small ones by their power of ten.
-pub fn typed(value: f64) -> String {
-    let size = value.abs();
-    if size == 0.0 || !size.is_finite() || (1e-6..1e15).contains(&size) {
-        value.to_string()
-    } else {
-        format!("{value:e}")
-    }
 }
 
 /// Prints a remark on standard error, as far as anyone listens.
 pub fn remark(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{text}");
-}
-
-#[cfg(test)]
-mod tests {
-    use super::typed;
-
-    #[test]
-    fn numbers_are_told_as_one_would_type_them() {
-        let told = [0.0, -1.0, 0.25, 1e308, 1e-300, f64::NAN].map(typed);
-        assert_eq!(told, ["0", "-1", "0.25", "1e308", "1e-300", "NaN"]);
-    }
 }

@@ -1,7 +1,7 @@
 //! What a user sees while a run is prepared and goes on: one line that says what is being done, and how far. On anything
 //! but a terminal there is no such line, only what changes the machine.
 
-use std::cell::RefCell;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -9,9 +9,9 @@ use indicatif::{ProgressBar, ProgressStyle};
 use crate::failure::Outcome;
 use crate::interruption;
 
-/// The line.
+/// The line; any thread may move it on.
 pub struct Progress {
-    bar: RefCell<Option<ProgressBar>>,
+    bar: Mutex<Option<ProgressBar>>,
 }
 
 impl Default for Progress {
@@ -23,7 +23,7 @@ impl Default for Progress {
 impl Progress {
     /// Nothing is shown yet.
     pub fn new() -> Self {
-        Self { bar: RefCell::new(None) }
+        Self { bar: Mutex::new(None) }
     }
 
     /// Work with such a line, which ends when the user wants it to.
@@ -42,28 +42,37 @@ impl Progress {
         self.show(bar, what);
     }
 
-    /// A stage begins that goes through so many ticks.
-    pub fn run(&self, what: &str, ticks: u32) {
-        let bar = ProgressBar::new(ticks.into());
-        self.show(bar.with_style(style("{prefix}  {bar:40} {percent:>3} %  {elapsed}")), what);
+    /// A stage begins that goes through so many units of work: ticks, runs, points.
+    pub fn run(&self, what: &str, units: impl Into<u64>) {
+        let bar = ProgressBar::new(units.into());
+        self.show(bar.with_style(style("{prefix}  {bar:40} {percent:>3} %  {elapsed}, {eta} left")), what);
     }
 
-    /// So many ticks are done.
-    pub fn at(&self, ticks: u32) {
-        if let Some(bar) = &*self.bar.borrow() {
-            bar.set_position(ticks.into());
+    /// So many units are done.
+    pub fn at(&self, units: u32) {
+        if let Some(bar) = &*self.bar() {
+            bar.set_position(units.into());
         }
     }
 
-    /// The same line for another thread.
-    pub fn handle(&self) -> Handle {
-        Handle(self.bar.borrow().clone())
+    /// So many more units are done.
+    pub fn done(&self, units: u64) {
+        if let Some(bar) = &*self.bar() {
+            bar.inc(units);
+        }
+    }
+
+    /// A line that stays above the moving one; on anything but a terminal results speak for themselves.
+    pub fn say_above(&self, line: &str) {
+        if let Some(bar) = self.bar().as_ref().filter(|bar| !bar.is_hidden()) {
+            bar.println(line);
+        }
     }
 
     /// A word from a stage. Output of other programs passes by; what this program says itself stays.
     pub fn say(&self, line: &str) {
         let own = line.starts_with(|first: char| first.is_ascii_lowercase()) && !line.starts_with("warning");
-        match &*self.bar.borrow() {
+        match &*self.bar() {
             Some(bar) if !bar.is_hidden() && own => bar.println(line),
             Some(bar) if !bar.is_hidden() => bar.set_message(line.to_owned()),
             _ if own => crate::output::remark(line),
@@ -73,34 +82,20 @@ impl Progress {
 
     /// Nothing is under way any more.
     pub fn clear(&self) {
-        if let Some(bar) = self.bar.take() {
+        if let Some(bar) = self.bar().take() {
             bar.finish_and_clear();
         }
+    }
+
+    /// A thread that panicked has left the line as it was.
+    fn bar(&self) -> MutexGuard<'_, Option<ProgressBar>> {
+        self.bar.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn show(&self, bar: ProgressBar, what: &str) {
         self.clear();
         bar.set_prefix(what.to_owned());
-        *self.bar.borrow_mut() = Some(bar);
-    }
-}
-
-/// The line of a stage, from any thread.
-pub struct Handle(Option<ProgressBar>);
-
-impl Handle {
-    /// So many ticks are done.
-    pub fn at(&self, ticks: u32) {
-        if let Some(bar) = &self.0 {
-            bar.set_position(ticks.into());
-        }
-    }
-
-    /// A line that stays above the moving one; on anything but a terminal results speak for themselves.
-    pub fn say_above(&self, line: &str) {
-        if let Some(bar) = self.0.as_ref().filter(|bar| !bar.is_hidden()) {
-            bar.println(line);
-        }
+        *self.bar() = Some(bar);
     }
 }
 
@@ -119,7 +114,7 @@ mod tests {
         progress.say("before any stage");
         progress.stage("building");
         progress.say("Compiling firmware");
-        progress.run("running", 10);
+        progress.run("running", 10_u32);
         progress.at(5);
         progress.clear();
         progress.at(6);

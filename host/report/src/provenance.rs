@@ -1,16 +1,19 @@
-//! Who ran what, and when: the sources' commit and the date. Everything here is told, nothing is measured.
+//! Where the figures of a record come from: date, sources, host. Everything here is told, nothing is measured.
 
 use std::process::Command;
 
 use crate::workspace::workspace;
 
-/// Now, UTC, to the second.
+/// Version of this command.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// Now, UTC, to the second, as ISO 8601 has it.
 pub fn date() -> String {
     let now = time::OffsetDateTime::now_utc();
     now.replace_nanosecond(0).unwrap_or(now).format(&time::format_description::well_known::Rfc3339).unwrap_or_default()
 }
 
-/// The sources' commit, if they are under git.
+/// The sources' commit, if they are under git; with ` (changed)` if they differ from it.
 pub fn git_commit() -> Option<String> {
     let git = |arguments: &[&str]| {
         let output = Command::new("git").arg("-C").arg(workspace()).args(arguments).output().ok()?;
@@ -19,4 +22,9 @@ pub fn git_commit() -> Option<String> {
     let commit = git(&["rev-parse", "--short=12", "HEAD"])?;
     let changed = git(&["status", "--porcelain"]).is_some_and(|changes| !changes.is_empty());
     Some(if changed { format!("{commit} (changed)") } else { commit })
+}
+
+/// Operating system and processor of the host.
+pub fn host() -> String {
+    format!("{} {}", std::env::consts::OS, std::env::consts::ARCH)
 }

@@ -33,7 +33,7 @@ fn write_with(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result
         }
         _ => replace(&target, fill),
     };
-    written.map_err(|source| failure(path, &source))
+    written.map_err(|source| unwritten(path, &source))
 }
 
 fn replace(target: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> io::Result<()> {
@@ -63,9 +63,11 @@ fn temporary_beside(path: &Path) -> PathBuf {
 }
 
 /// Names the file, what the system said and what to do about it.
-fn failure(path: &Path, source: &io::Error) -> Failure {
+pub fn unwritten(path: &Path, source: &io::Error) -> Failure {
     let help = match source.kind() {
-        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => "free some space, or name a path on another disk",
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
+            "free some space, or name a path on another disk"
+        }
         ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => "name a path in a folder that you may write to",
         ErrorKind::NotFound | ErrorKind::NotADirectory => "create its folder first, or name another path",
         ErrorKind::IsADirectory => "this is a folder: name a file in it",
@@ -84,7 +86,7 @@ mod tests {
         // A short text stays in the buffer: the failure comes only when it is flushed.
         let full = File::options().write(true).open("/dev/full").expect("Linux has a device that is always full");
         let source = fill_whole(full, |file| file.write_all(b"{}")).expect_err("it is full");
-        let failure = failure(Path::new("out/run.json"), &source);
+        let failure = unwritten(Path::new("out/run.json"), &source);
         assert!(failure.message().contains("out/run.json"), "{failure}");
         assert!(failure.help().is_some_and(|help| help.contains("free some space")), "{failure}");
     }

@@ -32,7 +32,6 @@ mod sender;
 mod sight;
 pub mod suite;
 pub mod surroundings;
-mod terminal;
 mod trace;
 pub mod trial;
 pub mod values;
@@ -50,13 +49,14 @@ use rayon::prelude::*;
 use record::{NotRun, SCHEMA, TestsRecord};
 use suite::{Choice, Suite, Test};
 
+use report::document::{Document, html, terminal};
 use report::failure::{EXIT_INTERRUPTED, Failure, Outcome};
 use report::folder;
+use report::folder::Folder;
 use report::output;
 use report::progress::Progress;
 use report::provenance;
 use report::write::write_text;
-use simulation::sim::files::Folder;
 
 /// What was asked for.
 #[derive(Debug, Clone)]
@@ -116,16 +116,17 @@ pub fn run(wanted: &Wanted<'_>, progress: &Progress) -> Outcome<()> {
         schema: SCHEMA.to_owned(),
         passed: not_run.is_empty() && tested.iter().all(|test| test.record.passed),
         full: wanted.full,
-        host_version: env!("CARGO_PKG_VERSION").to_owned(),
-        host: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
+        host_version: provenance::VERSION.to_owned(),
+        host: provenance::host(),
         git_commit: provenance::git_commit(),
         date: provenance::date(),
         seconds: start.elapsed().as_secs_f64(),
         tests: tested.iter().map(|test| test.record.clone()).collect(),
         not_run,
     };
-    output::print(&terminal::table(&record))?;
-    write(wanted, &folder, &record, &tested)?;
+    let document = page::document(&record, &tested);
+    output::print(&(terminal(&document) + "\n"))?;
+    write(wanted, &folder, &record, &document)?;
     output::print(&format!("report: {}\n", folder.file("report.html").display()))?;
     verdict(&record)
 }
@@ -137,7 +138,6 @@ fn run_parts(parts: Vec<Ready<'_>>, wanted: &Wanted<'_>, logs: &Path, progress: 
     let runs_of = |test: &Test| test.seeds(wanted.seed, wanted.full).len() * test.controllers().len();
     let runs: usize = parts.iter().flat_map(|part| &part.suite.tests).map(runs_of).sum();
     progress.run("testing", runs as u32);
-    let line = progress.handle();
     let before = AtomicU32::new(0);
     let (mut tested, mut not_run) = (Vec::new(), Vec::new());
     for Ready { suite: Suite { tests, not_run: refused, .. }, plant, boards } in parts {
@@ -148,11 +148,11 @@ fn run_parts(parts: Vec<Ready<'_>>, wanted: &Wanted<'_>, logs: &Path, progress: 
             full: wanted.full,
             boards: boards.as_ref(),
             logs,
-            done: &|runs| line.at(runs),
+            done: &|runs| progress.at(runs),
         };
         let one = |test: &Test| {
             let one = campaign::run(test, &conduct, &before);
-            one.iter().for_each(|one| line.say_above(&terminal::line(&one.record)));
+            one.iter().for_each(|one| progress.say_above(&page::line(&one.record)));
             one
         };
         // A test on the emulated board keeps one core busy at most; a test on the host keeps all of them busy by itself.
@@ -187,12 +187,12 @@ fn prepare_logs(folder: &Folder) -> Outcome<PathBuf> {
     Ok(logs)
 }
 
-fn write(wanted: &Wanted<'_>, folder: &Folder, record: &TestsRecord, tested: &[Tested]) -> Outcome<()> {
+fn write(wanted: &Wanted<'_>, folder: &Folder, record: &TestsRecord, document: &Document) -> Outcome<()> {
     let json = output::json("results", record)?;
     let junit = junit::render(record);
     write_text(&folder.file("record.json"), &json)?;
     write_text(&folder.file("junit.xml"), &junit)?;
-    write_text(&folder.file("report.html"), &page::render(record, tested))?;
+    write_text(&folder.file("report.html"), &html(document))?;
     wanted.json.map_or(Ok(()), |path| write_text(path, &json))?;
     wanted.junit.map_or(Ok(()), |path| write_text(path, &junit))
 }

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use super::ran::Ran;
 use report::failure::Outcome;
-use simulation::sim::files::unwritten;
+use report::write::unwritten;
 use simulation::sim::log_file::Channel;
 
 /// Topic of a run.

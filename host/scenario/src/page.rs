@@ -1,74 +1,95 @@
-//! The report of tests: one HTML page that needs neither network nor scripts, what failed first. Pictures come from
-//! `pictures`, the look from the run reports.
-
-mod section;
-
-use maud::{Markup, html};
-use section::section;
+//! The report of tests as a document, what failed first. A terminal shows every assertion and how to run again what
+//! failed. Pictures come from `pictures`.
 
 use super::campaign::Tested;
 use super::controller::ControllerName;
-use super::record::{NotRun, TestRecord, TestsRecord};
-use report::checks::Check;
-use report::parts::tile;
-use report::plot::unit::figure as number;
-use report::shell::page;
+use super::pictures;
+use super::record::{AssertionRecord, BoardRun, NotRun, TestRecord, TestsRecord};
+use report::checks::{Check, Verdict};
+use report::document::{
+    Block, Checks, Details, Document, Notice, PAGES, Section, TERMINALS, Text, Tone, alert, bad_notice, code, link,
+    mark, notice, number, numbers, picture, quiet, row, section, section_bare, strong, table, text, tile, whole, words,
+};
+use report::number::{PAGE, fixed};
 
-/// The whole page.
-pub fn render(record: &TestsRecord, tested: &[Tested]) -> String {
+/// What is shown of every controller: name, heading, unit.
+const COMPARED: [(&str, &str, &str); 9] = [
+    ("rms_mrad", "error RMS", "mrad"),
+    ("peak_mrad", "error peak", "mrad"),
+    ("reversal_error_mrad", "reversal error", "mrad"),
+    ("deviation_rms_mrad", "deviation RMS", "mrad"),
+    ("lost_motion_ms", "lost motion", "ms"),
+    ("crossings", "crossings", ""),
+    ("effort_N_m", "torque effort", "N m"),
+    ("peak_mesh_force_N", "peak mesh force", "N"),
+    ("peak_mesh_force_ratio", "over rated", ""),
+];
+
+/// A test that has ended, in one line.
+pub fn line(test: &TestRecord) -> String {
+    let word = if test.passed { "ok" } else { "FAILED" };
+    let held = test.assertions.len() - test.failed().count();
+    let of = format!("{held} of {} held", test.assertions.len());
+    format!("{word:8} {} ({of}, {} runs, {:.1} s)", test.file, test.runs.len(), test.seconds)
+}
+
+/// All tests.
+pub fn document(record: &TestsRecord, tested: &[Tested]) -> Document {
     let (failed, passed): (Vec<&Tested>, Vec<&Tested>) = tested.iter().partition(|test| !test.record.passed);
     let title = match (failed.len(), record.not_run.len()) {
         (0, 0) => "passed".to_owned(),
         (0, not_run) => format!("{not_run} not run"),
         (failed, _) => format!("{failed} failed"),
     };
-    let body = html! {
-        (header(record, failed.len()))
-        (tiles(record))
-        @if !failed.is_empty() { (failures(record)) }
-        @if !record.not_run.is_empty() { (not_run(&record.not_run)) }
-        @if tested.len() > 1 { (overview(record)) }
-        @for test in failed.iter().chain(&passed) { (section(test)) }
-        (origin(record))
-        footer { "joint " (record.host_version) " · " (record.schema) " · every figure is in record.json, every run in runs/*.mcap" }
-    };
-    page(&format!("Tests: {title}"), "", &body)
-}
-
-/// What came of a test, as a class and a word: one that asserts nothing has nothing to pass.
-fn verdict(test: &TestRecord) -> (&'static str, &'static str) {
-    match (test.passed, test.assertions.is_empty()) {
-        (false, _) => ("failed", "FAILED"),
-        (true, true) => ("open", "ran"),
-        (true, false) => ("passed", "passed"),
+    let mut blocks = vec![tiles(record)];
+    if !failed.is_empty() {
+        blocks.push(failures(record));
+    }
+    if !record.not_run.is_empty() {
+        blocks.push(section_bare("What was not run", record.not_run.iter().map(not_run).collect()));
+    }
+    if tested.len() > 1 {
+        blocks.push(overview(record));
+    }
+    blocks.extend(failed.iter().chain(&passed).map(|test| one(test)));
+    blocks.push(origin(record));
+    let on = text("On the ") + each(record, |test| &test.on) + ", plant " + strong(each(record, |test| &test.plant));
+    Document {
+        title: format!("Tests: {title}"),
+        heading: "Observer and compensation".into(),
+        verdict: Some(verdict_of_all(record, failed.len())),
+        subtitle: if record.tests.is_empty() { text("Nothing ran") } else { on }
+            + record.full.then_some(" · full lists of seeds")
+            + " · "
+            + &record.date,
+        blocks,
+        footer: format!(
+            "joint {} · {} · every figure is in record.json, every run in runs/*.mcap",
+            record.host_version, record.schema
+        )
+        .into(),
+        ..Document::default()
     }
 }
 
-fn pill(test: &TestRecord) -> Markup {
-    let (class, word) = verdict(test);
-    html! { span class={ "pill " (class) } { (word.to_uppercase()) } }
+fn verdict_of_all(record: &TestsRecord, failed: usize) -> (Tone, String) {
+    let nothing_asserted = record.tests.iter().all(|test| test.assertions.is_empty());
+    match (failed, record.not_run.len()) {
+        (0, 0) if nothing_asserted => (Tone::Open, "RAN, NOTHING ASSERTED".to_owned()),
+        (0, 0) => (Tone::Passed, "PASSED".to_owned()),
+        (0, 1) => (Tone::Failed, "1 TEST NOT RUN".to_owned()),
+        (0, many) => (Tone::Failed, format!("{many} TESTS NOT RUN")),
+        (1, _) => (Tone::Failed, "1 TEST FAILED".to_owned()),
+        (many, _) => (Tone::Failed, format!("{many} TESTS FAILED")),
+    }
 }
 
-fn header(record: &TestsRecord, failed: usize) -> Markup {
-    let nothing_asserted = record.tests.iter().all(|test| test.assertions.is_empty());
-    let (class, word) = match (failed, record.not_run.len()) {
-        (0, 0) if nothing_asserted => ("open", "RAN, NOTHING ASSERTED".to_owned()),
-        (0, 0) => ("passed", "PASSED".to_owned()),
-        (0, 1) => ("failed", "1 TEST NOT RUN".to_owned()),
-        (0, many) => ("failed", format!("{many} TESTS NOT RUN")),
-        (1, _) => ("failed", "1 TEST FAILED".to_owned()),
-        (many, _) => ("failed", format!("{many} TESTS FAILED")),
-    };
-    html! {
-        header {
-            div.title { h1 { "Observer and compensation" } span class={ "pill " (class) } { (word) } }
-            p.subtitle {
-                @if record.tests.is_empty() { "Nothing ran" } @else {
-                    "On the " (each(record, |test| &test.on)) ", plant " strong { (each(record, |test| &test.plant)) }
-                }
-                @if record.full { " · full lists of seeds" } " · " (record.date)
-            }
-        }
+/// What came of a test: one that asserts nothing has nothing to pass.
+fn verdict(test: &TestRecord) -> (Tone, &'static str) {
+    match (test.passed, test.assertions.is_empty()) {
+        (false, _) => (Tone::Failed, "FAILED"),
+        (true, true) => (Tone::Open, "ran"),
+        (true, false) => (Tone::Passed, "passed"),
     }
 }
 
@@ -80,134 +101,216 @@ fn each(record: &TestsRecord, word: impl Fn(&TestRecord) -> &String) -> String {
     words.join(" and ")
 }
 
-fn tiles(record: &TestsRecord) -> Markup {
+fn tiles(record: &TestsRecord) -> Block {
     let tests = &record.tests;
     let passed = tests.iter().filter(|test| test.passed).count();
     let asserted: usize = tests.iter().map(|test| test.assertions.len()).sum();
     let failed: usize = tests.iter().map(|test| test.failed().count()).sum();
     let runs: usize = tests.iter().map(|test| test.runs.len()).sum();
-    let of = |part: usize, whole: usize| html! { (part) span.of { " of " (whole) } };
-    html! {
-        section.tiles {
-            (tile(if asserted > 0 { "Tests passed" } else { "Tests ran" }, html! {}, of(passed, tests.len() + record.not_run.len())))
-            (tile("Assertions held", html! {}, of(asserted - failed, asserted)))
-            (tile("Runs", html! {}, html! { (runs) }))
-            (tile("On the clock", html! {}, html! { (number((10.0 * record.seconds).round() / 10.0)) span.of { " s" } }))
-        }
-    }
+    let of = |part: usize, whole: usize| text(part) + quiet(format!(" of {whole}"));
+    let all = tests.len() + record.not_run.len();
+    Block::Tiles(vec![
+        tile(if asserted > 0 { "Tests passed" } else { "Tests ran" }, of(passed, all)),
+        tile("Assertions held", of(asserted - failed, asserted)),
+        tile("Runs", text(runs)),
+        tile("On the clock", number((10.0 * record.seconds).round() / 10.0) + quiet(" s")),
+    ])
 }
 
 /// What failed, over all tests, with the line that runs it again.
-fn failures(record: &TestsRecord) -> Markup {
-    html! {
-        section {
-            h2 { "What failed" }
-            @for test in record.tests.iter().filter(|test| !test.passed) {
-                div.notice.bad {
-                    strong { (test.file) } @if !test.title.is_empty() { " – " (test.title) }
-                    @if let Some(why) = &test.broken { div { "Broken off: " (why) } }
-                    @for assertion in test.failed() {
-                        div {
-                            (assertion.check().name)
-                            @match assertion.figure {
-                                Some(figure) => { " is " strong { (number(figure)) } (spaced(&assertion.unit)) }
-                                None => { " " strong { "could not be had" } }
-                            }
-                            ", bound " (bound(&assertion.check())) (spaced(&assertion.unit)) @if let Some(seed) = assertion.seed { ", seed " (seed) }
-                        }
-                    }
-                    @for run in &test.runs { @if let Some(why) = &run.refusal {
-                        div { "The width probe refused with seed " (run.seed) ": " (why) }
-                    } }
-                    pre { (test.replay) }
-                }
-            }
-        }
-    }
+fn failures(record: &TestsRecord) -> Block {
+    let one = |test: &TestRecord| {
+        let title = (!test.title.is_empty()).then(|| format!(" – {}", test.title));
+        let broken = test.broken.iter().map(|why| format!("Broken off: {why}").into());
+        let refused = test.runs.iter().filter_map(|run| {
+            let why = run.refusal.as_ref()?;
+            Some(format!("The width probe refused with seed {}: {why}", run.seed).into())
+        });
+        let more = broken.chain(test.failed().map(failure)).chain(refused).map(Block::Paragraph);
+        let more = more.chain([Block::Again(test.replay.clone())]).collect();
+        Block::Notice(Notice { tone: Tone::Failed, alert: false, text: strong(&test.file) + title, more })
+    };
+    section("What failed", record.tests.iter().filter(|test| !test.passed).map(one).collect())
 }
 
-/// A unit behind a number.
-fn spaced(unit: &str) -> String {
-    if unit.is_empty() { String::new() } else { format!(" {unit}") }
+fn failure(assertion: &AssertionRecord) -> Text {
+    let check = assertion.check();
+    let unit = if assertion.unit.is_empty() { String::new() } else { format!(" {}", assertion.unit) };
+    let found = match assertion.figure {
+        Some(figure) => text(" is ") + strong(PAGE.write(figure)) + &unit,
+        None => text(" ") + strong("could not be had"),
+    };
+    let bound = check.bound.in_signs().map_or_else(|| text("–"), |(sign, bound)| text(sign) + " " + number(bound));
+    let seed = assertion.seed.map(|seed| format!(", seed {seed}"));
+    text(check.name) + found + ", bound " + bound + &unit + seed
 }
 
 /// What could not run, and what to do about it.
-fn not_run(files: &[NotRun]) -> Markup {
-    html! {
-        section {
-            h2 { "What was not run" }
-            @for NotRun { file, why, mend } in files {
-                div.notice.bad {
-                    strong { (file) }
-                    div { (why) }
-                    @if let Some(mend) = mend { div { (mend) } }
-                }
-            }
-        }
-    }
-}
-
-fn bound(check: &Check) -> String {
-    use report::checks::Bound;
-    match check.bound {
-        Bound::AtMost(bound) => format!("≤ {}", number(bound)),
-        Bound::AtLeast(bound) => format!("≥ {}", number(bound)),
-        Bound::Exactly(bound) => format!("= {}", number(bound)),
-        Bound::None => "–".into(),
-    }
+fn not_run(NotRun { file, why, mend }: &NotRun) -> Block {
+    let more = mend.iter().map(|mend| Block::Paragraph(mend.into())).collect();
+    let text = strong("NOT RUN") + format!(" {file}: {why}");
+    Block::Notice(Notice { tone: Tone::Failed, alert: false, text, more })
 }
 
 /// One row for each test: with compensation, without, against the best rival.
-fn overview(record: &TestsRecord) -> Markup {
-    let worst = |test: &TestRecord, controller: ControllerName, impedance: bool| {
-        let figure = if impedance { "deviation_rms_mrad" } else { "rms_mrad" };
-        test.largest(controller.word(), figure).map_or("–".into(), number)
-    };
-    html! {
-        section {
-            h2 { "All tests" }
-            p.lead { "Error of the link in mrad RMS, worst of all seeds; of an impedance its deviation from the same law without a gap." }
-            table {
-                thead { tr { th { "Verdict" } th { "Test" } th.number { "tested" } th.number { "baseline" } th.number { "best rival" } th.number { "seeds" } } }
-                tbody { @for test in &record.tests {
-                    @let tested = ControllerName::of_word(&test.controller, false);
-                    @let impedance = tested.wants_gains();
-                    @let (class, word) = verdict(test);
-                    tr {
-                        td.verdict { span class={ "mark " (class) } { (word) } }
-                        td { a href={ "#" (anchor(test)) } { (test.file) } " " span.note { (test.title) } }
-                        td.number { (worst(test, tested, impedance)) }
-                        td.number { (worst(test, ControllerName::baseline(impedance), impedance)) }
-                        td.number { (worst(test, ControllerName::best_rival(impedance), impedance)) }
-                        td.number { (test.seeds.len()) }
-                    }
-                } }
-            }
-        }
-    }
+fn overview(record: &TestsRecord) -> Block {
+    let heads = ["tested", "baseline", "best rival", "seeds"].map(numbers);
+    let columns = [words("Verdict"), words("Test")].into_iter().chain(heads).collect();
+    let rows = record.tests.iter().map(|test| {
+        let tested = ControllerName::of_word(&test.controller, false);
+        let impedance = tested.wants_gains();
+        let worst = |controller: ControllerName| {
+            let figure = if impedance { "deviation_rms_mrad" } else { "rms_mrad" };
+            test.largest(controller.word(), figure).map_or("–".into(), number)
+        };
+        let (tone, word) = verdict(test);
+        row([
+            mark(tone, word),
+            link(format!("#{}", anchor(test)), &test.file) + " " + quiet(&test.title),
+            worst(tested),
+            worst(ControllerName::baseline(impedance)),
+            worst(ControllerName::best_rival(impedance)),
+            text(test.seeds.len()),
+        ])
+    });
+    let lead = "Error of the link in mrad RMS, worst of all seeds; of an impedance its deviation from the same law \
+                without a gap.";
+    section("All tests", vec![Block::Lead(lead.into()), table(columns, rows.collect())])
 }
 
 fn anchor(test: &TestRecord) -> String {
     test.file.chars().map(|letter| if letter.is_ascii_alphanumeric() { letter } else { '-' }).collect()
 }
 
-/// Where it comes from: digests of files and runs.
-fn origin(record: &TestsRecord) -> Markup {
-    html! {
-        section {
-            h2 { "Origin" }
-            p.lead { (record.host) " · joint " (record.host_version) @if let Some(commit) = &record.git_commit { " · commit " code { (commit) } } }
-            details { summary { "Digests of all runs" }
-                table {
-                    thead { tr { th { "Test" } th { "Controller" } th.number { "Seed" } th { "Digest" } th { "Log" } } }
-                    tbody { @for test in &record.tests { @for run in &test.runs {
-                        tr {
-                            td { (test.file) } td { (run.controller) } td.number { (run.seed) } td { code { (run.digest) } }
-                            td { @if let Some(log) = &run.log { a href=(log) { (log) } } @else if let Some(why) = &run.broken { (why) } }
-                        }
-                    } } }
-                }
-            }
-        }
+/// Everything about a test.
+fn one(tested: &Tested) -> Block {
+    let test = &tested.record;
+    let (tone, word) = verdict(test);
+    let title = (!test.title.is_empty()).then(|| strong(&test.title) + " · ");
+    let faults: String = test.faults.iter().map(|fault| format!(" · fault {fault}")).collect();
+    let subtitle = Text::from(title)
+        + format!(
+            "joint {} · profile {} · controller {} · {} s, figures from {} s on{faults}",
+            test.joint,
+            test.profile,
+            test.controller,
+            PAGE.write(test.duration_s),
+            PAGE.write(test.settle_s)
+        );
+    let seeds = match test.seeds.as_slice() {
+        [one] => format!("seed {one}"),
+        many => format!("{} seeds", many.len()),
+    };
+    let line = format!(
+        "{}: {} of joint {}, {}, on {}, plant {}, {seeds}",
+        test.file, test.profile, test.joint, test.controller, test.on, test.plant
+    );
+    let mut checks: Vec<Check> = test.assertions.iter().map(AssertionRecord::check).collect();
+    checks.sort_by_key(|check| check.verdict != Verdict::Failed);
+    let mut blocks = vec![Block::Only(TERMINALS, vec![Block::Paragraph(text("  ") + &test.title)])];
+    blocks.extend(test.broken.as_ref().map(|why| alert(strong("BROKEN") + " off: " + why)));
+    blocks.push(if checks.is_empty() {
+        let rms = test.largest(&test.controller, "rms_mrad").map_or("–".to_owned(), |rms| fixed(3).write(rms));
+        Block::Paragraph(format!("nothing is asserted; error {rms} mrad RMS at worst").into())
+    } else {
+        Block::Checks(Checks { checks, emulated: false, keys: true })
+    });
+    blocks.push(Block::Only(TERMINALS, runs(test)));
+    blocks.push(Block::Only(PAGES, vec![compared(test), details(tested)]));
+    let again = Block::Again(test.replay.clone());
+    blocks.push(if test.passed { Block::Only(PAGES, vec![again]) } else { again });
+    Block::Section(Section {
+        heading: text(&test.file),
+        anchor: anchor(test),
+        verdict: Some((tone, word.to_uppercase())),
+        subtitle,
+        line: Some(line.into()),
+        blocks,
+    })
+}
+
+/// What runs have said beside their figures: refusals, and what boards were busy with.
+fn runs(test: &TestRecord) -> Vec<Block> {
+    let refused = test.runs.iter().filter_map(|run| {
+        let refusal = run.refusal.as_ref()?;
+        Some(bad_notice(strong("refused:") + format!(" seed {}: {refusal}", run.seed)))
+    });
+    let boards = test.runs.iter().filter_map(|run| run.board.as_ref()).map(board);
+    refused.chain(boards).collect()
+}
+
+fn board(board: &BoardRun) -> Block {
+    notice(
+        strong("board:")
+            + format!(
+                " {} periods the same in every bit; {} of {} timer counts a period, at most {}; {} overruns; \
+                 {} B of stack; image {}",
+                board.same_periods,
+                board.computation_mean,
+                board.period_counts,
+                board.computation_most,
+                board.overruns,
+                board.stack_bytes,
+                board.elf_sha256.get(..12).unwrap_or("not built here"),
+            ),
+    )
+}
+
+/// Figures of every controller, worst of all seeds.
+fn compared(test: &TestRecord) -> Block {
+    let controllers = test.controllers();
+    let had = |name: &str| controllers.iter().any(|controller| test.largest(controller, name).is_some());
+    let shown: Vec<_> = COMPARED.into_iter().filter(|(name, _, _)| had(name)).collect();
+    let heads = shown.iter().map(|(_, heading, unit)| numbers(*heading).in_unit(unit));
+    let columns = [words("Controller")].into_iter().chain(heads).collect();
+    let rows = controllers.iter().map(|controller| {
+        let name = whole(ControllerName::of_word(controller, false).label());
+        let figures = shown.iter().map(|(figure, _, _)| test.largest(controller, figure).map_or("–".into(), number));
+        row([name].into_iter().chain(figures))
+    });
+    let mut blocks = vec![Block::Heading("With compensation and without".into()), table(columns, rows.collect())];
+    if test.seeds.len() > 1 {
+        blocks.push(Block::Note(format!("Largest of {} seeds.", test.seeds.len()).into()));
     }
+    Block::Only(PAGES, blocks)
+}
+
+/// The pictures, on demand if the test has passed.
+fn details(tested: &Tested) -> Block {
+    let test = &tested.record;
+    let from = || number(test.settle_s);
+    let all = pictures::whole(tested).map(|figure| {
+        let caption = format!(
+            "Seed {}, least and greatest error of each stretch; lost motion is the time that each crossing took. Figures \
+             are taken from ",
+            test.shown_seed
+        );
+        picture(figure, text(caption) + from() + " s on.")
+    });
+    let close = pictures::close(tested).map(|figure| {
+        let caption = strong("Closely: ") + "the longest crossing of the gap after " + from();
+        picture(figure, caption + " s, a point each millisecond.")
+    });
+    let blocks: Vec<Block> = all.into_iter().chain(close).collect();
+    if !test.passed {
+        return Block::Only(PAGES, blocks);
+    }
+    Block::Details(Details { summary: format!("Pictures, seed {}", test.shown_seed).into(), open: false, blocks })
+}
+
+/// Where it comes from: digests of files and runs.
+fn origin(record: &TestsRecord) -> Block {
+    let commit = record.git_commit.as_ref().map(|commit| text(" · commit ") + code(commit));
+    let lead = text(format!("{} · joint {}", record.host, record.host_version)) + commit;
+    let columns = vec![words("Test"), words("Controller"), numbers("Seed"), words("Digest"), words("Log")];
+    let rows = record.tests.iter().flat_map(|test| {
+        test.runs.iter().map(|run| {
+            let log = run.log.as_ref().map(|log| link(log, log));
+            let log = log.or_else(|| run.broken.as_ref().map(text)).unwrap_or_default();
+            row([text(&test.file), text(&run.controller), run.seed.to_string().into(), code(&run.digest), log])
+        })
+    });
+    let blocks = vec![table(columns, rows.collect())];
+    let digests = Block::Details(Details { summary: "Digests of all runs".into(), open: false, blocks });
+    section("Origin", vec![Block::Lead(lead), digests])
 }

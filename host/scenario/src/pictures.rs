@@ -4,14 +4,13 @@
 use super::campaign::Tested;
 use super::controller::ControllerName;
 use super::trace::{Point, Trace};
+use report::panels::BROAD;
+use report::plot::Figure;
 use report::plot::ink::{Ink, LINES};
 use report::plot::mark::Mark;
 use report::plot::panel::Panel;
-use report::plot::unit::{MILLISECONDS, SECONDS, TORQUE, Unit, greatest};
-use report::plot::{Figure, HorizontalAxis, Shape};
+use report::plot::unit::{FORCE, MILLISECONDS, SECONDS, TORQUE, Unit, greatest};
 
-/// Forces as they are.
-const FORCE: Unit = Unit { factor: 1.0, name: "N" };
 /// Width of a line [px].
 const LINE: f64 = 1.2;
 /// Width of the tested controller's line [px].
@@ -71,16 +70,7 @@ impl View<'_> {
         for (index, panel) in panels.iter_mut().enumerate() {
             panel.marks.extend(self.fault_limits(index == 0));
         }
-        Figure {
-            title,
-            axis: "time".into(),
-            unit: SECONDS,
-            range: self.range,
-            runs: HorizontalAxis::Linear,
-            shape: Shape::default(),
-            panels,
-            note: String::new(),
-        }
+        Figure::over_time(title, SECONDS, self.range, panels)
     }
 
     /// Where faults begin and end, named in the first panel: each of one fault, several of them by one name.
@@ -133,7 +123,7 @@ impl View<'_> {
         if let Some((_, trace)) = self.shown.first() {
             let mut wanted = self.line(0, "wanted", trace, &|point| point.wanted);
             if let Mark::Line { ink, width, .. } = &mut wanted {
-                (*ink, *width) = (Ink::Reference, 4.0);
+                (*ink, *width) = (Ink::Reference, BROAD);
             }
             marks.insert(0, wanted);
         }

@@ -5,6 +5,7 @@ use super::file::{Aggregate, Assertion, TestFile};
 use super::record::AssertionRecord;
 use super::values::Values;
 use report::checks::{Bound, Verdict};
+use report::number::PAGE;
 
 /// Figures of all runs of a test.
 pub struct Results<'r> {
@@ -96,5 +97,5 @@ fn median(mut figures: Vec<f64>) -> Option<f64> {
 }
 
 fn short(value: f64) -> String {
-    report::plot::unit::figure(value)
+    PAGE.write(value)
 }

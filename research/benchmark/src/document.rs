@@ -4,13 +4,14 @@
 use std::fs;
 use std::path::Path;
 
-use super::{Figures, Origin, pictures, table};
+use super::{Figures, Origin, page, pictures};
 use board::target::compile::PROFILE;
 use board::target::emulator::MACHINE;
 use board::target::toolchain::Toolchain;
+use report::document::{Document, Medium, markdown};
 use report::failure::{Failure, Outcome};
 use report::provenance;
-use report::shell::standalone;
+use report::write::write_text;
 
 const BEGIN: &str = "<!-- comparison: written by `cargo joint bench --document` -->";
 const END: &str = "<!-- end of comparison -->";
@@ -41,20 +42,17 @@ pub fn read(path: &Path) -> Outcome<String> {
 }
 
 /// Puts the comparison into the file, or at its end if it has none yet.
-pub fn update(path: &Path, figures: &Figures) -> Outcome<()> {
+pub fn update(path: &Path, figures: &Figures, document: &Document) -> Outcome<()> {
     let before = read(path)?;
-    let failed = |error: std::io::Error| failed(path, &error);
-    let mut pictured = String::new();
     for case in &figures.cases {
         let Some(figure) = pictures::board(case, &figures.methods) else { continue };
-        let name = format!("error-by-cost-{}.svg", case.key.to_lowercase());
-        fs::write(path.with_file_name(&name), standalone(&figure.to_svg())).map_err(failed)?;
-        pictured += &format!("\n![Case {}: error by instructions]({name})\n", case.key);
+        let name = page::picture_name(case) + ".svg";
+        write_text(&path.with_file_name(name), &figure.to_file())?;
     }
-    let section = format!("{BEGIN}\n\n{}{pictured}\n{END}", table::layout(figures, table::Detail::Conclusions));
+    let section = format!("{BEGIN}\n\n{}\n{END}", markdown(document, Medium::Markdown));
     let after = match (before.find(BEGIN), before.find(END)) {
         (Some(from), Some(to)) if from < to => format!("{}{section}{}", &before[..from], &before[to + END.len()..]),
         _ => format!("{}\n\n## Error against cost\n\n{section}\n", before.trim_end()),
     };
-    fs::write(path, after).map_err(failed)
+    write_text(path, &after)
 }

@@ -5,7 +5,6 @@ use serde::Serialize;
 
 use contest::method::Method;
 
-use super::columns::{scientific, table};
 use super::lineup::{CaseFigures, Entry, Mark};
 use super::verdicts::least_cost_at;
 
@@ -69,46 +68,6 @@ pub fn in_a_sample(cases: &[CaseFigures], entries: &[Entry]) -> Vec<InASample> {
             .map(|cost| cost / f64::from(SAMPLE_RATE)),
     };
     entries.iter().filter(judged).map(one).collect()
-}
-
-/// Those of one case as a table.
-pub fn layout(found: &[&InASample]) -> String {
-    let row = |one: &&InASample| {
-        let of = |cell: &dyn Fn(&Best) -> String| one.best.as_ref().map_or_else(|| "-".to_owned(), cell);
-        let steps = |best: &Best| best.steps.map_or_else(|| "as designed".into(), |steps| steps.to_string());
-        vec![
-            one.name.to_owned(),
-            one.best.as_ref().map_or_else(|| "none follows".into(), steps),
-            of(&|best| scientific(Some(best.link_rms))),
-            of(&|best| scientific(Some(best.link_worst))),
-            of(&|best| format!("{:.1} %", 100.0 * best.peak_force)),
-            of(&|best| format!("{:.0}", best.instructions)),
-            of(&|best| best.instructions_most.to_string()),
-            of(&|best| if best.does() { "yes" } else { "no" }.into()),
-            one.at_equal_error.map_or_else(|| "not reached".into(), |cost| format!("{cost:.0}")),
-        ]
-    };
-    let heads = [
-        "method",
-        "steps",
-        "link RMS",
-        "link worst",
-        "peak force",
-        "instr/sample",
-        "worst",
-        "all kept",
-        "at equal RMS",
-    ];
-    let [rms, worst, peak] = ASKED;
-    format!(
-        "\nEvery method at its best in at most {INSTRUCTIONS:.0} instructions a sample, on average, at {} kHz. Asked for: \
-         link angle within {rms:.0e} RMS and {worst:.0e} worst of the lost motion, peak mesh force of every part of the \
-         motion within {:.0} %. Last column: instructions a sample that bring a method down to the RMS error of this \
-         step.\n\n{}",
-        SAMPLE_RATE / 1000,
-        100.0 * peak,
-        table(&heads, &found.iter().map(row).collect::<Vec<_>>())
-    )
 }
 
 fn best(entry: &Entry) -> Option<Best> {

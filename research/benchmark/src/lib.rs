@@ -1,9 +1,7 @@
 //! `joint bench`: the core's step against what people use, error by cost, on the emulated core and on the host. `lineup`
 //! runs the fixed-step methods, by `race` on the emulated core, `libraries` times what a host program would take from
-//! a library, `verdicts` and `in_a_sample` draw the conclusions; all are `figures`, and `table`, `page` and `document` show
-//! them.
+//! a library, `verdicts` and `in_a_sample` draw the conclusions; all are `figures`, and `page` and `document` show them.
 
-mod columns;
 mod document;
 mod figures;
 mod in_a_sample;
@@ -12,12 +10,9 @@ mod lineup;
 mod page;
 mod pictures;
 mod race;
-mod table;
 mod verdicts;
 
 pub use figures::{Figures, Origin};
-
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use contest::case::Case;
@@ -26,8 +21,10 @@ use contest::catalogue;
 use board::target::emulator;
 use board::target::toolchain::Toolchain;
 use joint_file::named;
+use report::document::{Medium, html, markdown};
 use report::failure::{Failure, Outcome};
 use report::progress::Progress;
+use report::write::write_text;
 use report::{folder, interruption, output};
 
 /// What the command does, in a line of its help.
@@ -77,19 +74,15 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
     let figures = interruption::explain(gather(arguments, &progress));
     progress.clear();
     let figures = figures?;
+    let document = page::document(&figures);
     if let Some(path) = &arguments.html {
-        write(path, &page::render(&figures))?;
+        write_text(path, &html(&document))?;
     }
     if let Some(path) = &arguments.document {
-        document::update(path, &figures)?;
+        document::update(path, &figures, &document)?;
     }
-    let Some(path) = &arguments.json else { return output::print(&table::layout(&figures, table::Detail::Steps)) };
-    let json = output::json("figures", &figures)?;
-    if path.as_os_str() == "-" {
-        return output::print(&json);
-    }
-    write(path, &json)?;
-    output::print(&table::layout(&figures, table::Detail::Steps))
+    let text = markdown(&document, Medium::Terminal);
+    output::deliver(&figures, &text, arguments.json.as_deref(), &read)
 }
 
 fn gather(arguments: &Arguments, progress: &Progress) -> Outcome<Figures> {
@@ -133,11 +126,4 @@ fn cases(arguments: &Arguments) -> Outcome<Vec<Case>> {
     }
     let wanted = |case: &Case| arguments.case.is_empty() || arguments.case.contains(&case.key);
     Ok(all.into_iter().filter(wanted).collect())
-}
-
-fn write(path: &Path, text: &str) -> Outcome<()> {
-    fs::write(path, text).map_err(|error| {
-        Failure::new(format!("cannot write {}: {error}", path.display()))
-            .with_help("name a file in a folder that exists and can be written to")
-    })
 }

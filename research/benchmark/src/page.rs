@@ -1,87 +1,278 @@
-//! The comparison as one HTML page that needs neither network nor scripts, in the style of the run reports. Figures are
-//! made elsewhere; this puts them in order.
+//! The comparison as a document: for a page, for a Markdown file, and, with every method at every step, for a terminal.
+//! Nothing is computed here but units.
 
-use maud::{Markup, PreEscaped, html};
+use contest::method::Method;
+use contest::run::AS_DESIGNED;
 
 use super::Figures;
-use super::lineup::CaseFigures;
-use super::verdicts::{AtError, LEVELS};
-use super::{pictures, table};
+use super::in_a_sample::{ASKED, Best, INSTRUCTIONS, InASample, SAMPLE_RATE};
+use super::lineup::{CaseFigures, Entry, Mark};
+use super::pictures;
+use super::verdicts::{AtError, CLOCK, CYCLES, InBudget, LEVELS, front};
+use report::document::{
+    Block, Details, Document, Medium, PAGES, Picture, Row, Text, facts, indexed, notice, numbers, row, section, strong,
+    table, text, words,
+};
+use report::number::{SCIENTIFIC, fixed, powers_of_ten};
 use report::plot::Figure;
-use report::shell::page;
+use report::provenance::VERSION;
 
-/// The whole page.
-pub fn render(figures: &Figures) -> String {
-    let body = html! {
-        header {
-            div.title { h1 { "Error against cost" } }
-            p.subtitle {
-                "This step beside the methods that people use · instructions counted on the "
-                strong { "EMULATED" } " Cortex-M4F · error is the worst over phases of the excitation"
-            }
-        }
-        @if let Some(reason) = figures.host.as_ref().and_then(|host| host.without_cvode.as_ref()) {
-            div.notice { strong { "CVODE is not among the libraries: " } (reason) }
-        }
-        @for case in &figures.cases { (section(figures, case)) }
-        (origin(figures))
-        footer { "joint " (env!("CARGO_PKG_VERSION")) }
+/// All but Markdown files, which have the conclusions only.
+const WITH_STEPS: &[Medium] = &[Medium::Page, Medium::Terminal];
+/// All but pages, which say it elsewhere.
+const LINES: &[Medium] = &[Medium::Terminal, Medium::Markdown];
+
+/// All of it.
+pub fn document(figures: &Figures) -> Document {
+    let mut blocks = vec![Block::Only(LINES, vec![Block::Paragraph(provenance(figures))])];
+    blocks.extend(figures.cases.iter().map(|case| one(figures, case)));
+    blocks.extend([budget(figures), rounding(figures)]);
+    blocks.extend(host(figures));
+    blocks.push(Block::Only(PAGES, vec![origin(figures)]));
+    Document {
+        title: "Error against cost".into(),
+        heading: "Error against cost".into(),
+        subtitle: text("This step beside the methods that people use · instructions counted on the ")
+            + strong("EMULATED")
+            + " Cortex-M4F · error is the worst over phases of the excitation",
+        blocks,
+        footer: text("joint ") + VERSION,
+        ..Document::default()
+    }
+}
+
+/// Name of the picture of a case, without its ending.
+pub fn picture_name(case: &CaseFigures) -> String {
+    format!("error-by-cost-{}", case.key.to_lowercase())
+}
+
+fn provenance(figures: &Figures) -> Text {
+    let origin = &figures.origin;
+    text("Instructions: ")
+        + strong("EMULATED")
+        + format!(
+            " Cortex-M4F ({}), counted exactly, call of the step included; {}, {}.\n\
+             Cycles: {CYCLES} an instruction, budgets of a {:.0} MHz core; nothing here was measured on silicon.\n\
+             Every method came to the same bits on the emulated core as on the host, where its error was measured.\n\
+             Host times: processor time on {}. Commit {}, {}.",
+            origin.emulator,
+            origin.compiler,
+            origin.flags,
+            CLOCK / 1e6,
+            origin.host,
+            origin.commit,
+            origin.date
+        )
+}
+
+/// Two digits and a power of ten; a motion may have got lost.
+fn scientific(value: Option<f64>) -> String {
+    value.map_or_else(|| "lost".into(), |value| SCIENTIFIC.write(value))
+}
+
+fn drawn(figure: Option<Figure>, file: String) -> Option<Block> {
+    Some(Block::Picture(Picture { figures: vec![figure?], caption: Text::default(), file }))
+}
+
+fn one(figures: &Figures, case: &CaseFigures) -> Block {
+    let lead = format!(
+        "Error: {}; worst of {} phases, {:.4} s. A start moved by a millionth of b_c moves the reference itself by {}.{}",
+        case.measure,
+        case.phases,
+        case.duration_s,
+        scientific(Some(case.sensitivity)),
+        windows(case)
+    );
+    let mut blocks = vec![Block::Lead(indexed(&lead))];
+    blocks.extend(drawn(pictures::board(case, &figures.methods), picture_name(case)));
+    let steps =
+        Details { summary: "Every method at every step".into(), open: false, blocks: vec![steps(figures, case)] };
+    blocks.push(Block::Only(WITH_STEPS, vec![Block::Details(steps)]));
+    let found: Vec<&InASample> = figures.in_a_sample.iter().filter(|one| one.case == case.key).collect();
+    if !found.is_empty() {
+        blocks.extend(in_a_sample(&found));
+    }
+    let reached: Vec<&AtError> = figures.at_equal_error.iter().filter(|at| at.case == case.key).collect();
+    if reached.iter().any(|at| at.cost.is_some()) {
+        let lead = "Instructions for a second of the joint at equal error, and over those of this step:";
+        blocks.push(Block::Paragraph(lead.into()));
+        blocks.push(equal(&reached, |cost| format!("{} M", fixed(1).write(cost / 1e6))));
+    }
+    section(format!("Case {}: {}", case.key, case.title), blocks)
+}
+
+/// What windows there are, as a sentence after another.
+fn windows(case: &CaseFigures) -> String {
+    if case.windows == 1 {
+        return String::new();
+    }
+    format!(
+        " The motion is judged in {} windows: wherever torques jump, every method is put back into the reference's state, as \
+         else the smallest error decides in the end where in its gap the joint goes on.",
+        case.windows
+    )
+}
+
+/// Every method at every step.
+fn steps(figures: &Figures, case: &CaseFigures) -> Block {
+    let heads =
+        ["kHz", "h omega_n", "error", "link RMS", "link worst", "peak force", "instr/step", "worst", "M instr/s"];
+    let columns = [words("method")].into_iter().chain(heads.map(numbers)).collect();
+    let entries = figures.methods.iter().filter(|entry| entry.case == case.key);
+    let rows = entries.flat_map(|entry| shown(entry).into_iter().map(|mark| step(entry, mark)));
+    table(columns, rows.collect())
+}
+
+fn step(entry: &Entry, mark: &Mark) -> Row {
+    row([
+        entry.name.to_owned(),
+        match mark.substeps {
+            AS_DESIGNED => format!("{}, as designed", mark.rate_Hz / 1000),
+            1 => format!("{}", mark.rate_Hz / 1000),
+            substeps => format!("{} x {substeps}", mark.rate_Hz / 1000),
+        },
+        fixed(3).write(mark.step),
+        if entry.method.has_meshes() { scientific(mark.error) } else { "-".into() },
+        scientific(mark.link_rms),
+        scientific(mark.link_worst),
+        scientific(mark.peak_force),
+        fixed(0).write(mark.instructions),
+        mark.instructions_most.to_string(),
+        fixed(1).write(mark.cost() / 1e6),
+    ])
+}
+
+/// Steps that a table shows: of this step those that no other one undercuts, else every other one of a long list, the
+/// coarsest and the finest always.
+fn shown(entry: &Entry) -> Vec<&Mark> {
+    let best = front(entry.series().into_iter().flatten().collect());
+    let last = entry.marks.len().saturating_sub(1);
+    let every = if entry.marks.len() > 8 { 2 } else { 1 };
+    let wanted = |(index, mark): &(usize, &Mark)| match entry.method {
+        Method::Realtime => mark.error.is_some_and(|error| best.contains(&(mark.cost(), error))),
+        _ => index % every == 0 || *index == last,
     };
-    page("Error against cost", "", &body)
+    let mut marks: Vec<&Mark> = entry.marks.iter().enumerate().filter(wanted).map(|(_, mark)| mark).collect();
+    marks.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
+    marks
 }
 
-fn section(figures: &Figures, case: &CaseFigures) -> Markup {
-    let times = figures.host.as_ref().map_or(&[][..], |host| &host.times);
-    let reached = |list: &[AtError]| list.iter().filter(|at| at.case == case.key).cloned().collect::<Vec<_>>();
-    html! {
-        section {
-            h2 { "Case " (case.key) ": " (case.title) }
-            p.lead {
-                "Error: " (case.measure) ", worst of " (case.phases) " phases. A start moved by a millionth of b"
-                sub { "c" } " moves the reference itself by " (format!("{:.0e}", case.sensitivity)) "." (table::windows(case))
-            }
-            @if let Some(figure) = pictures::board(case, &figures.methods) { (picture(&figure)) }
-            (equal("Instructions at equal error", &reached(&figures.at_equal_error), |cost| format!("{:.1} M/s", cost / 1e6)))
-            @if let Some(figure) = pictures::host(case, times) { h3 { "On the host" } (picture(&figure)) }
-            (equal("Processor time at equal error", &reached(&figures.host_at_equal_error), |cost| format!("{:.2} ms/s", 1e3 * cost)))
-        }
-    }
+/// What a controller gets out of one sample.
+fn in_a_sample(found: &[&InASample]) -> [Block; 2] {
+    let [rms, worst, peak] = ASKED;
+    let lead = format!(
+        "Every method at its best in at most {INSTRUCTIONS:.0} instructions a sample, on average, at {} kHz. Asked for: \
+         link angle within {} RMS and {} worst of the lost motion, peak mesh force of every part of the motion within \
+         {:.0} %. Last column: instructions a sample that bring a method down to the RMS error of this step.",
+        SAMPLE_RATE / 1000,
+        powers_of_ten(0).write(rms),
+        powers_of_ten(0).write(worst),
+        100.0 * peak,
+    );
+    let heads = ["steps", "link RMS", "link worst", "peak force", "instr/sample", "worst"].map(numbers);
+    let last = [words("all kept"), numbers("at equal RMS")];
+    let columns = [words("method")].into_iter().chain(heads).chain(last).collect();
+    let rows = found.iter().map(|one| {
+        let of = |cell: &dyn Fn(&Best) -> String| one.best.as_ref().map_or_else(|| "-".to_owned(), cell);
+        let steps = |best: &Best| best.steps.map_or_else(|| "as designed".into(), |steps| steps.to_string());
+        row([
+            one.name.to_owned(),
+            one.best.as_ref().map_or_else(|| "none follows".into(), steps),
+            of(&|best| scientific(Some(best.link_rms))),
+            of(&|best| scientific(Some(best.link_worst))),
+            of(&|best| format!("{} %", fixed(1).write(100.0 * best.peak_force))),
+            of(&|best| fixed(0).write(best.instructions)),
+            of(&|best| best.instructions_most.to_string()),
+            of(&|best| if best.does() { "yes" } else { "no" }.into()),
+            one.at_equal_error.map_or_else(|| "not reached".into(), |cost| fixed(0).write(cost)),
+        ])
+    });
+    [Block::Paragraph(lead.into()), table(columns, rows.collect())]
 }
 
-fn picture(figure: &Figure) -> Markup {
-    html! { figure { (PreEscaped(figure.to_svg())) } }
-}
-
-fn equal(title: &str, found: &[AtError], cost: impl Fn(f64) -> String) -> Markup {
-    let mut names: Vec<&str> = Vec::new();
+/// One row a contestant, two columns a level of error.
+fn equal(found: &[&AtError], cost: impl Fn(f64) -> String) -> Block {
+    let mut rows: Vec<Vec<String>> = Vec::new();
     for at in found {
-        if !names.contains(&at.name.as_str()) {
-            names.push(&at.name);
+        let cells = [
+            at.cost.map_or_else(|| "not reached".into(), &cost),
+            at.ratio.map_or_else(|| "-".into(), |ratio| fixed(2).write(ratio)),
+        ];
+        match rows.last_mut().filter(|row| row[0] == at.name) {
+            Some(row) => row.extend(cells),
+            None => rows.push(std::iter::once(at.name.clone()).chain(cells).collect()),
         }
     }
-    let cell = |name: &str, level: f64| found.iter().find(|at| at.name == name && at.error == level);
-    html! {
-        @if found.iter().any(|at| at.cost.is_some()) {
-            h3 { (title) }
-            table {
-                thead { tr {
-                    th { "Method" }
-                    @for level in LEVELS { th.number { "at " (format!("{level:.0e}")) } th.number { "over this step" } }
-                } }
-                tbody { @for name in names { tr {
-                    td { (name) }
-                    @for level in LEVELS {
-                        @let at = cell(name, level);
-                        td.number { (at.and_then(|at| at.cost).map_or_else(|| "not reached".into(), &cost)) }
-                        td.number { (at.and_then(|at| at.ratio).map_or_else(|| "–".into(), |ratio| format!("{ratio:.2}"))) }
-                    }
-                } } }
-            }
-        }
-    }
+    let levels = LEVELS.map(|level| [numbers(format!("at {}", powers_of_ten(0).write(level))), numbers("ratio")]);
+    let columns = [words("method")].into_iter().chain(levels.into_iter().flatten()).collect();
+    table(columns, rows.into_iter().map(row).collect())
 }
 
-fn origin(figures: &Figures) -> Markup {
+fn budget(figures: &Figures) -> Block {
+    let cells = |found: &InBudget| {
+        let none = || "-".to_owned();
+        let cycles = |cycles: Option<f64>| cycles.map_or_else(none, |cycles| fixed(0).write(cycles));
+        vec![
+            found.case.clone(),
+            format!("{} kHz", found.sample_rate_Hz / 1000),
+            found.name.to_owned(),
+            found.error.map_or_else(|| "none fits".into(), |error| SCIENTIFIC.write(error)),
+            found.steps.map_or_else(none, |steps| steps.to_string()),
+            cycles(found.cycles),
+            cycles(found.cycles_most),
+        ]
+    };
+    let mut rows: Vec<Vec<String>> = figures.in_budget.iter().map(cells).collect();
+    rows.sort_by_key(|row| (figures.cases.iter().position(|case| case.key == row[0]), row[1].clone()));
+    let columns = vec![
+        words("case"),
+        numbers("samples"),
+        words("method"),
+        numbers("error"),
+        numbers("steps"),
+        numbers("cycles, mean"),
+        numbers("worst"),
+    ];
+    let lead = Block::Lead("The worst sample may take 1.5 times the budget.".into());
+    section(
+        format!("Least error within half a {:.0} MHz core", CLOCK / 1e6),
+        vec![lead, table(columns, rows.into_iter().map(row).collect())],
+    )
+}
+
+fn rounding(figures: &Figures) -> Block {
+    let rows = figures.rounding.iter().map(|found| {
+        let errors = [found.single, found.double, found.rounding].map(|error| SCIENTIFIC.write(error));
+        row([found.case.clone(), fixed(4).write(found.step)].into_iter().chain(errors))
+    });
+    let heads = ["h omega_n", "f32", "f64", "rounding"].map(numbers);
+    let columns = [words("case")].into_iter().chain(heads).collect();
+    section("f32 beside f64, this step", vec![table(columns, rows.collect())])
+}
+
+fn host(figures: &Figures) -> Option<Block> {
+    let host = figures.host.as_ref()?;
+    let lead = "Milliseconds for a second of the joint, least of several rounds of one process; each library at its best \
+                tolerance, all over the same compiled right-hand side.";
+    let mut blocks = vec![Block::Lead(lead.into())];
+    if let Some(reason) = &host.without_cvode {
+        blocks.push(notice(strong("CVODE is not among them") + ": " + reason + "."));
+    }
+    for case in &figures.cases {
+        let found: Vec<&AtError> = figures.host_at_equal_error.iter().filter(|at| at.case == case.key).collect();
+        let picture = drawn(pictures::host(case, &host.times), String::new());
+        if !found.is_empty() || picture.is_some() {
+            blocks.push(Block::Paragraph(format!("Case {}:", case.key).into()));
+        }
+        blocks.extend(picture);
+        if !found.is_empty() {
+            blocks.push(equal(&found, |cost| format!("{} ms", fixed(2).write(1e3 * cost))));
+        }
+    }
+    Some(section("Host: processor time at equal error", blocks))
+}
+
+fn origin(figures: &Figures) -> Block {
     let origin = &figures.origin;
     let rows = [
         ("Board", &origin.emulator),
@@ -91,10 +282,5 @@ fn origin(figures: &Figures) -> Markup {
         ("Source commit", &origin.commit),
         ("Date", &origin.date),
     ];
-    html! {
-        section {
-            h2 { "What ran" }
-            table.identity { tbody { @for (name, value) in rows { tr { th { (name) } td { (value) } } } } }
-        }
-    }
+    section("What ran", vec![facts(rows)])
 }

@@ -10,7 +10,7 @@ use report::plot::ink::Ink;
 use report::plot::mark::Mark;
 use report::plot::panel::{Panel, VerticalAxis};
 use report::plot::unit::Unit;
-use report::plot::{Figure, HorizontalAxis, Shape};
+use report::plot::{Figure, HorizontalAxis};
 
 const NO_UNIT: Unit = Unit { factor: 1.0, name: "" };
 /// Instructions a second of the joint.
@@ -140,16 +140,8 @@ fn figure(
     let axis_of_error =
         VerticalAxis::Decades { from: low.log10().floor() as i32, to: (high.log10().ceil() as i32).clamp(-8, 1) };
     let panel = Panel { height: HEIGHT, axis: axis_of_error, ..Panel::lines("Error", NO_UNIT, marks) };
-    Some(Figure {
-        title,
-        axis: axis.into(),
-        unit,
-        range: (0.8 * left, 1.25 * right),
-        runs: HorizontalAxis::Decades,
-        shape: Shape::default(),
-        panels: vec![panel],
-        note,
-    })
+    let figure = Figure::new(title, axis, unit, (0.8 * left, 1.25 * right), vec![panel]);
+    Some(Figure { runs: HorizontalAxis::Decades, note, ..figure })
 }
 
 #[cfg(test)]

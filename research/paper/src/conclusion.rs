@@ -1,9 +1,23 @@
 //! What a study says in sentences, made from its record: which regimes there are, whether the way to chaos is monotone,
 //! what depends on the start. What the paper's authors may have had in mind is not guessed at.
 
-use super::page::{exponent, micrometres, start};
+use super::pictures::micrometres;
 use super::record::{ClassRecord, ClassWindow, Reading, StudyRecord, Sweep};
 use super::windows::chaos_below;
+
+/// With a sign and four decimals.
+pub fn exponent(value: f64) -> String {
+    format!("{value:+.4}").replace('-', "\u{2212}")
+}
+
+/// How the points of a sweep begin, as a sentence.
+pub fn start(sweep: &Sweep) -> &'static str {
+    match sweep.start.as_str() {
+        "up" => "Upward, each b from the last state of the one before.",
+        "down" => "Downward, each b from the last state of the one before.",
+        _ => "From rest at each b.",
+    }
+}
 
 /// A sentence or two under a head.
 pub struct Finding {

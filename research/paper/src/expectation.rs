@@ -1,6 +1,6 @@
 //! Classes that a user asks the attractors to have (`--expect 1,1,3,chaos`), and what is said when one has another.
 
-use super::page::micrometres;
+use super::pictures::micrometres;
 use super::record::{AttractorRecord, ClassRecord};
 use report::failure::{Failure, Outcome};
 

@@ -4,19 +4,18 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use super::page;
 use super::pictures::{self, Picture};
 use super::record::{ClassRecord, Reading, StudyRecord};
+use report::document::{Document, html};
 use report::failure::{Failure, Outcome};
 use report::folder;
-use report::folder::file_part;
-use report::shell::standalone;
+use report::folder::{Folder, file_part};
 use report::write::write_text;
 
 /// Where a study's files go.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Files {
-    folder: PathBuf,
+    folder: Folder,
     json: Option<PathBuf>,
 }
 
@@ -24,12 +23,12 @@ impl Files {
     /// Makes the folder and tries to write to it; `read` is what the study is made of.
     pub fn prepare(folder: Option<&Path>, json: Option<&Path>, joint: &str, read: &[&Path]) -> Outcome<Self> {
         folder::check_files(&[("json", json)], read)?;
-        let folder = folder::prepare(folder, "paper", joint)?;
+        let folder = Folder::prepare(folder, "paper", joint)?;
         Ok(Self { folder, json: json.map(Path::to_owned) })
     }
 
     /// Writes everything; returns where the report is.
-    pub fn write(&self, record: &StudyRecord) -> Outcome<PathBuf> {
+    pub fn write(&self, record: &StudyRecord, document: &Document) -> Outcome<PathBuf> {
         let text = serde_json::to_string(record)
             .map(|json| json + "\n")
             .map_err(|error| Failure::new(format!("the study cannot be written as JSON: {error}")))?;
@@ -42,14 +41,14 @@ impl Files {
             self.put(&format!("{name}.csv"), &table)?;
         }
         for Picture { name, figure } in all_pictures(record) {
-            self.put(&format!("{name}.svg"), &standalone(&figure.to_svg()))?;
+            self.put(&format!("{name}.svg"), &figure.to_file())?;
         }
-        self.put("report.html", &page::render(record))?;
-        Ok(self.folder.join("report.html"))
+        self.put("report.html", &html(document))?;
+        Ok(self.folder.file("report.html"))
     }
 
     fn put(&self, name: &str, text: &str) -> Outcome<()> {
-        write_text(&self.folder.join(name), text)
+        write_text(&self.folder.file(name), text)
     }
 }
 

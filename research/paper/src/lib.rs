@@ -2,7 +2,7 @@
 //! dead zone, attractors by backlash, bifurcation diagram. The numerics are in `numerics`.
 //!
 //! `plan` finds everything that is wrong with the request, `files` that the report can be written; `study` computes,
-//! `witness` asks a second integrator, `known` judges, `pictures` and `page` show, `table` prints.
+//! `witness` asks a second integrator, `known` judges, `pictures` and `page` show.
 
 mod conclusion;
 mod dead_zone;
@@ -14,13 +14,11 @@ pub mod numerics;
 mod page;
 mod pictures;
 mod plan;
-mod progress;
 mod record;
 #[cfg(test)]
 mod schema;
 mod stiffness;
 mod study;
-mod table;
 mod windows;
 mod witness;
 
@@ -28,14 +26,15 @@ use std::path::Path;
 
 use files::Files;
 pub use plan::{Arguments, Plan, StartChoice, Subject, SweepStart};
-pub use progress::Progress;
 pub use record::{
     AttractorRecord, ClassRecord, ClassWindow, DeadZoneError, DeadZoneFigure, History, Identity, Reading,
     SCHEMA_VERSION, Smoothed, SpectrumRecord, StiffnessFigure, StudyRecord, Sweep, SweepPoint,
 };
 
 use report::checks::all_hold;
+use report::document::terminal;
 use report::failure::Outcome;
+use report::progress::Progress;
 use report::provenance;
 use report::{interruption, output};
 
@@ -52,8 +51,9 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
     let studied = study(&plan, &progress);
     progress.clear();
     let record = interruption::explain(studied)?;
-    let report = files.write(&record)?;
-    output::print(&table::table(&record))?;
+    let document = page::document(&record);
+    let report = files.write(&record, &document)?;
+    output::print(&terminal(&document))?;
     output::print(&format!("report: {}\n", report.display()))?;
     if let Some(expected) = &plan.expected {
         for reading in &record.readings {
@@ -75,8 +75,8 @@ pub fn study(plan: &Plan, progress: &Progress) -> Outcome<StudyRecord> {
             joint: plan.name().to_owned(),
             replay: plan.replay.clone(),
             git_commit: provenance::git_commit(),
-            host: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
-            host_version: env!("CARGO_PKG_VERSION").to_owned(),
+            host: provenance::host(),
+            host_version: provenance::VERSION.to_owned(),
             date,
         },
         readings,

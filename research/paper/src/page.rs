@@ -1,295 +1,261 @@
-//! The report of a study as one HTML page without network and scripts: conclusion first, then the table of attractors,
-//! figures in the paper's order, diagrams and checks. Sentences are made from the record; `conclusion` has those that
-//! judge.
+//! The report of a study as a document: conclusion first, then the table of attractors, figures in the paper's order,
+//! diagrams and checks. A terminal shows attractors, windows and how many checks held. Sentences are made from the record;
+//! `conclusion` has those that judge.
 
-use maud::{Markup, PreEscaped, html};
-
-use super::conclusion;
-use super::pictures::{self, Picture};
+use super::conclusion::{self, exponent, start};
+use super::pictures::{self, Picture, micrometres};
 use super::record::{AttractorRecord, ClassRecord, Reading, StudyRecord, Sweep};
 use report::checks::Verdict;
-use report::parts::{check_table, tile};
-use report::plot::unit::figure as number;
-use report::shell::page;
+use report::document::{
+    Block, Checks, Details, Document, PAGES, Picture as Shown, Row, Section, TERMINALS, Text, facts, indexed, inked,
+    line_break, number, number_as, numbers, picture, quiet, row, section, section_bare, strong, table, text, tile,
+    verdict_of, whole, words,
+};
+use report::number::{PAGE, fixed};
+use report::plot::ink::Ink;
 
-/// What this page needs beyond the style of all reports.
-const OWN_STYLE: &str = ".trio,.pair{display:grid;gap:4px;margin:0 0 6px}.trio{grid-template-columns:400fr 330fr 380fr}\
-.pair{grid-template-columns:1fr 1fr}.trio svg,.pair svg{min-width:0}ul.findings{margin:0;padding-left:20px}\
-ul.findings li{margin:0 0 7px}.attractors td,.attractors th{padding-right:8px}details summary{cursor:pointer;\
-color:var(--muted)}details[open] summary{margin-bottom:10px}details+figure{margin-top:34px}.class{font-weight:650;white-space:nowrap}\
-.date{white-space:nowrap}.class.chaotic{color:var(--line-2)}.class.periodic{color:var(--line-1)}.class.unsettled{color:var(--line-3)}\
-@media (max-width:820px){.trio,.pair{grid-template-columns:1fr}}";
-
-/// The whole page.
-pub fn render(record: &StudyRecord) -> String {
-    let body = html! {
-        (header(record))
-        (tiles(record))
-        section { h2 { "What came out" } ul.findings {
-            @for finding in conclusion::findings(record) { li { strong { (finding.head) " " } (finding.text) } }
-        } }
-        @for reading in &record.readings { (attractors(reading)) }
-        (ingredients(record))
-        @for reading in &record.readings { (regimes(reading)) }
-        @for reading in &record.readings { (diagrams(reading)) }
-        (checks(record))
-        (identity(record))
-        footer {
-            "joint " (record.identity.host_version) " · schema version " (record.schema_version)
-            " · every value of this page is in study.json, CSV and SVG files beside it"
-        }
-    };
-    page(&format!("Joint {}: backlash and regimes", record.identity.joint), OWN_STYLE, &body)
-}
-
-/// b in micrometres, without the noise of the way to metres and back.
-pub(super) fn micrometres(length: f64) -> String {
-    number((length * 1e9).round() / 1e3)
-}
-
-/// With a sign and four decimals.
-pub(super) fn exponent(value: f64) -> String {
-    format!("{value:+.4}").replace('-', "\u{2212}")
-}
-
-fn failed(record: &StudyRecord) -> usize {
-    record.checks.iter().filter(|check| check.verdict == Verdict::Failed).count()
-}
-
-fn header(record: &StudyRecord) -> Markup {
+/// All of it.
+pub fn document(record: &StudyRecord) -> Document {
     let first = &record.readings[0];
-    let (class, word) = match failed(record) {
-        0 => ("passed", "PASSED".to_owned()),
-        1 => ("failed", "1 CHECK FAILED".to_owned()),
-        count => ("failed", format!("{count} CHECKS FAILED")),
-    };
-    html! {
-        header {
-            div.title {
-                h1 { "Joint " (record.identity.joint) ": backlash and regimes" }
-                span class={ "pill " (class) } { (word) }
-            }
-            p.subtitle {
-                "The study of He, Jia, Chen and Sun (2015), redone · ω/ω" sub { "n" } " = " (number(first.omega))
-                " · drive torque " (number(first.drive_torque_nm)) " N·m, load in balance · damping law "
-                (first.damping_law) " · " span.date { (record.identity.date) }
-            }
-        }
+    let each = |part: fn(&Reading) -> Block| record.readings.iter().map(part);
+    let mut blocks = vec![tiles(record), findings(record)];
+    blocks.extend(each(attractors));
+    blocks.push(ingredients(record));
+    blocks.extend(each(regimes));
+    blocks.extend(each(diagrams));
+    blocks.extend([checks(record), identity(record)]);
+    let heading = format!("Joint {}: backlash and regimes", record.identity.joint);
+    Document {
+        title: heading.clone(),
+        heading: heading.into(),
+        verdict: Some(verdict_of(count(record, Verdict::Failed))),
+        subtitle: indexed("The study of He, Jia, Chen and Sun (2015), redone · ω/ω_n = ")
+            + format!(
+                "{} · drive torque {} N·m, load in balance · damping law {} · ",
+                PAGE.write(first.omega),
+                PAGE.write(first.drive_torque_nm),
+                first.damping_law
+            )
+            + whole(&record.identity.date),
+        blocks,
+        footer: format!(
+            "joint {} · schema version {} · every value of this page is in study.json, CSV and SVG files beside it",
+            record.identity.host_version, record.schema_version
+        )
+        .into(),
+        ..Document::default()
     }
 }
 
-fn tiles(record: &StudyRecord) -> Markup {
-    let none = || html! {};
-    let first = &record.readings[0];
-    let judged = record.checks.iter().filter(|c| matches!(c.verdict, Verdict::Passed | Verdict::Failed)).count();
+fn count(record: &StudyRecord, verdict: Verdict) -> usize {
+    record.checks.iter().filter(|check| check.verdict == verdict).count()
+}
+
+fn tiles(record: &StudyRecord) -> Block {
+    let held = count(record, Verdict::Passed);
+    let judged = held + count(record, Verdict::Failed);
     let points: usize = record.readings.iter().flat_map(|r| &r.sweeps).map(|sweep| sweep.points.len()).sum();
-    html! {
-        section.tiles {
-            (tile("Checks held", none(), html! { (judged - failed(record)) span.of { " of " (judged) } }))
-            @for found in &first.attractors {
-                @let name = format!("b = {} µm", micrometres(found.half_backlash_m));
-                (tile(&name, none(), class_mark(found.class)))
-            }
-            (tile("Points of diagrams", none(), html! { (number(points as f64)) }))
-        }
+    let mut tiles = vec![tile("Checks held", text(held) + quiet(format!(" of {judged}")))];
+    for found in &record.readings[0].attractors {
+        tiles.push(tile(format!("b = {} µm", micrometres(found.half_backlash_m)), class(found.class)));
     }
+    tiles.push(tile("Points of diagrams", number(points as f64)));
+    Block::Tiles(tiles)
 }
 
-fn class_mark(class: ClassRecord) -> Markup {
-    let name = match class {
-        ClassRecord::Periodic(_) => "periodic",
-        ClassRecord::Chaotic => "chaotic",
-        ClassRecord::Unsettled => "unsettled",
+fn class(class: ClassRecord) -> Text {
+    let ink = match class {
+        ClassRecord::Periodic(_) => Ink::First,
+        ClassRecord::Chaotic => Ink::Second,
+        ClassRecord::Unsettled => Ink::Third,
     };
-    html! { span class={ "class " (name) } { (class) } }
+    inked(class.to_string(), ink)
 }
 
-fn attractors(reading: &Reading) -> Markup {
-    html! {
-        section {
-            h2 { "Attractors of " (reading.joint) }
-            p.lead {
-                (reading.description) @if !reading.description.is_empty() { ". " }
-                "Carrier equivalent mass " (format!("{:.4}", reading.carrier_equivalent_mass_kg)) " kg, ω" sub { "n" } " = "
-                (number(reading.omega_n_rad_per_s)) " rad/s, b" sub { "c" } " = "
-                (micrometres(reading.characteristic_length_m)) " µm; from rest."
-            }
-            table.attractors {
-                thead {
-                    tr {
-                        th.number { "b [µm]" } th { "Attractor" } th { "Poincaré points " span.note { "X_sp, X_sc, X_sp′, X_sc′" } }
-                        th.number { "Exponent" br; "tangent" } th.number { "Exponent" br; "two traj." }
-                        th.number { "Between" br; "planets" } th.number { "Non-fund." br; "/ fund." }
-                        th.number { "Peak to" br; "peak" } th.number { "Parted" br; "[%]" }
-                    }
-                }
-                tbody { @for found in &reading.attractors { (attractor_row(found)) } }
-            }
-            p.note {
-                "Exponents: largest Lyapunov exponent per unit of τ = ω" sub { "n" } "t, by a tangent vector and by two "
-                "trajectories; between planets: of disturbances that drive planets apart, below zero if planets in phase "
-                "stay in phase. Non-fundamental: RMS of all that is neither mean nor at the mesh frequency. Parted: share "
-                "of time in which a mesh carries on neither flank."
-            }
-        }
-    }
+fn findings(record: &StudyRecord) -> Block {
+    let findings = conclusion::findings(record).into_iter().map(|finding| strong(finding.head) + " " + finding.text);
+    section("What came out", vec![Block::List(findings.collect())])
 }
 
-fn attractor_row(found: &AttractorRecord) -> Markup {
-    let fixed = |value: f64| format!("{value:.4}").replace('-', "\u{2212}");
-    html! {
-        tr {
-            td.number { (micrometres(found.half_backlash_m)) }
-            td { (class_mark(found.class)) }
-            td {
-                @match found.class {
-                    ClassRecord::Periodic(period) if period <= 8 => {
-                        @for (index, point) in found.poincare_points.iter().enumerate() {
-                            @if index > 0 { br; }
-                            "(" (point.map(fixed).join(", ")) ")"
-                        }
-                    }
-                    _ => { (found.distinct_points) " distinct of " (found.points_looked_at) }
-                }
-            }
-            td.number { (exponent(found.exponent_by_tangent_vector)) }
-            td.number { (exponent(found.exponent_by_two_trajectories)) }
-            td.number { (found.exponent_between_planets.map_or("–".to_owned(), exponent)) }
-            td.number { (number(found.non_fundamental_ratio)) }
-            td.number { (format!("{:.3}", found.peak_to_peak)) }
-            td.number { (format!("{:.1}", found.contact_percent[1])) }
+fn attractors(reading: &Reading) -> Block {
+    let description = if reading.description.is_empty() { String::new() } else { format!("{}. ", reading.description) };
+    let masses = format!(
+        "Carrier equivalent mass {:.4} kg, ω_n = {} rad/s, b_c = {} µm; from rest.",
+        reading.carrier_equivalent_mass_kg,
+        PAGE.write(reading.omega_n_rad_per_s),
+        micrometres(reading.characteristic_length_m)
+    );
+    let lead = text(description) + indexed(&masses);
+    let two = |above: &str, below: &str| numbers(text(above) + line_break() + below);
+    let columns = vec![
+        numbers("b [µm]"),
+        words("Attractor"),
+        words(text("Poincaré points ") + quiet("X_sp, X_sc, X_sp′, X_sc′")).only(PAGES),
+        numbers("Points").only(TERMINALS),
+        two("Exponent", "tangent"),
+        two("Exponent", "two traj."),
+        two("Between", "planets"),
+        two("Non-fund.", "/ fund."),
+        two("Peak to", "peak"),
+        two("Parted", "[%]"),
+    ];
+    let note = "Exponents: largest Lyapunov exponent per unit of τ = ω_n t, by a tangent vector and by two trajectories; \
+                between planets: of disturbances that drive planets apart, below zero if planets in phase stay in phase. \
+                Non-fundamental: RMS of all that is neither mean nor at the mesh frequency. Parted: share of time in \
+                which a mesh carries on neither flank.";
+    Block::Section(Section {
+        heading: text("Attractors of ") + &reading.joint,
+        line: Some(
+            format!(
+                "{}, omega/omega_n = {:.4}, drive torque {:.4} N m",
+                reading.joint, reading.omega, reading.drive_torque_nm
+            )
+            .into(),
+        ),
+        blocks: vec![
+            Block::Only(PAGES, vec![Block::Lead(lead)]),
+            table(columns, reading.attractors.iter().map(attractor).collect()),
+            Block::Only(PAGES, vec![Block::Note(indexed(note))]),
+        ],
+        ..Section::default()
+    })
+}
+
+fn attractor(found: &AttractorRecord) -> Row {
+    let coordinate = |value: f64| format!("{value:.4}").replace('-', "\u{2212}");
+    let points = match found.class {
+        ClassRecord::Periodic(period) if period <= 8 => {
+            let each =
+                found.poincare_points.iter().map(|point| format!("({})", point.map(coordinate).join(", ")).into());
+            Text::join(each, &line_break())
         }
-    }
+        _ => format!("{} distinct of {}", found.distinct_points, found.points_looked_at).into(),
+    };
+    row([
+        micrometres_to_two(found.half_backlash_m),
+        class(found.class),
+        points,
+        format!("{} of {}", found.distinct_points, found.points_looked_at).into(),
+        exponent(found.exponent_by_tangent_vector).into(),
+        exponent(found.exponent_by_two_trajectories).into(),
+        found.exponent_between_planets.map_or("–".to_owned(), exponent).into(),
+        number_as(found.non_fundamental_ratio, fixed(4)),
+        format!("{:.4}", found.peak_to_peak).into(),
+        format!("{:.1}", found.contact_percent[1]).into(),
+    ])
+}
+
+/// b in micrometres, on a terminal with two decimals.
+fn micrometres_to_two(length: f64) -> Text {
+    number_as((length * 1e9).round() / 1e3, fixed(2))
 }
 
 /// Figs 3 to 5: what the model is made of.
-fn ingredients(record: &StudyRecord) -> Markup {
+fn ingredients(record: &StudyRecord) -> Block {
     let wave = &record.stiffness;
-    let [curves, errors] = pictures::dead_zone(record);
-    html! {
-        section {
-            h2 { "What the model is made of" }
-            figure {
-                (svg(&pictures::stiffness(record)))
-                figcaption {
-                    strong { "Fig. 3. " } "The rectangular stiffness wave, high for the fraction "
-                    (number(wave.contact_ratio.fract())) " of a period (contact ratio " (number(wave.contact_ratio))
-                    ": " (wave.contact_ratio_source) "), and its first harmonic, eq. 7 with K" sub { "a" } "/K" sub { "m" }
-                    " = " (number(wave.first_harmonic_ratio)) "."
-                }
-            }
-            figure {
-                div.pair { (svg(&curves)) (svg(&errors)) }
-                figcaption {
-                    strong { "Figs 4 and 5. " } "Left: eq. 12 and its approximation by tanh. The print of eq. 13 lost a "
-                    "factor x in its first bracket: it leaves x − 1 in the gap, a force between teeth that do not touch. "
-                    "Right: corrected, the largest error falls as 0.139/σ; as printed no sharpness removes it. The study "
-                    "uses the sharp dead zone and locates every contact."
-                }
-            }
-        }
-    }
+    let stiffness = format!(
+        "The rectangular stiffness wave, high for the fraction {} of a period (contact ratio {}: {}), and its first \
+         harmonic, eq. 7 with K_a/K_m = {}.",
+        PAGE.write(wave.contact_ratio.fract()),
+        PAGE.write(wave.contact_ratio),
+        wave.contact_ratio_source,
+        PAGE.write(wave.first_harmonic_ratio)
+    );
+    let dead_zone = strong("Figs 4 and 5. ")
+        + "Left: eq. 12 and its approximation by tanh. The print of eq. 13 lost a factor x in its first bracket: it leaves \
+           x − 1 in the gap, a force between teeth that do not touch. Right: corrected, the largest error falls as \
+           0.139/σ; as printed no sharpness removes it. The study uses the sharp dead zone and locates every contact.";
+    section(
+        "What the model is made of",
+        vec![
+            picture(pictures::stiffness(record).figure, strong("Fig. 3. ") + indexed(&stiffness)),
+            beside(pictures::dead_zone(record), dead_zone),
+        ],
+    )
 }
 
-fn regimes(reading: &Reading) -> Markup {
-    html! {
-        section {
-            h2 { "Figs 5 to 8: " (reading.joint) }
-            @for found in &reading.attractors {
-                figure { div.trio { @for picture in pictures::regime(reading, found) { (svg(&picture)) } } }
-            }
-            p.note {
-                "After the motion from rest has settled: X_sp over mesh periods, phase portrait with the points at "
-                "τ = 2πk/Ω, amplitude spectrum over the mesh frequency"
-                ". Lines at fractions of the mesh frequency are what distortion over whole harmonics does not see."
-            }
-        }
-    }
+fn beside<const N: usize>(pictures: [Picture; N], caption: Text) -> Block {
+    Block::Picture(Shown { figures: pictures.map(|picture| picture.figure).into(), caption, file: String::new() })
 }
 
-fn diagrams(reading: &Reading) -> Markup {
-    html! {
-        section {
-            h2 { "Bifurcation diagram: " (reading.joint) }
-            @for sweep in &reading.sweeps {
-                figure {
-                    (svg(&pictures::diagram(reading, sweep)))
-                    figcaption {
-                        strong { (start(sweep)) " " }
-                        "Poincaré points of X_sp and the largest Lyapunov exponent by half-backlash, "
-                        (sweep.points.len()) " values. Upright lines: half-backlashes of the table above."
-                    }
-                }
-                details open[sweep.windows.len() <= 16] {
-                    summary { (sweep.windows.len()) " windows of one class" }
-                    (windows(sweep))
-                }
-            }
-        }
-    }
+fn regimes(reading: &Reading) -> Block {
+    let regimes = reading.attractors.iter().map(|found| beside(pictures::regime(reading, found), Text::default()));
+    let note = "After the motion from rest has settled: X_sp over mesh periods, phase portrait with the points at \
+                τ = 2πk/Ω, amplitude spectrum over the mesh frequency. Lines at fractions of the mesh frequency are what \
+                distortion over whole harmonics does not see.";
+    section(text("Figs 5 to 8: ") + &reading.joint, regimes.chain([Block::Note(note.into())]).collect())
 }
 
-pub(super) fn start(sweep: &Sweep) -> &'static str {
-    match sweep.start.as_str() {
-        "up" => "Upward, each b from the last state of the one before.",
-        "down" => "Downward, each b from the last state of the one before.",
-        _ => "From rest at each b.",
-    }
+fn diagrams(reading: &Reading) -> Block {
+    let blocks = reading.sweeps.iter().flat_map(|sweep| {
+        let caption = strong(start(sweep))
+            + format!(
+                " Poincaré points of X_sp and the largest Lyapunov exponent by half-backlash, {} values. Upright lines: \
+                 half-backlashes of the table above.",
+                sweep.points.len()
+            );
+        [picture(pictures::diagram(reading, sweep).figure, caption), windows(sweep)]
+    });
+    section_bare(text("Bifurcation diagram: ") + &reading.joint, blocks.collect())
 }
 
-fn windows(sweep: &Sweep) -> Markup {
+fn windows(sweep: &Sweep) -> Block {
     let exponents = |from: f64, to: f64| {
         let inside = sweep.points.iter().filter(|point| (from..=to).contains(&point.half_backlash_m));
         inside.map(|point| point.exponent).fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)))
     };
-    html! {
-        table {
-            thead { tr { th.number { "from b [µm]" } th.number { "to b [µm]" } th { "Attractor" } th.number { "least exponent" } th.number { "greatest exponent" } } }
-            tbody {
-                @for window in &sweep.windows {
-                    @let (least, greatest) = exponents(window.from_m, window.to_m);
-                    tr {
-                        td.number { (micrometres(window.from_m)) } td.number { (micrometres(window.to_m)) }
-                        td { (class_mark(window.class)) } td.number { (exponent(least)) } td.number { (exponent(greatest)) }
-                    }
-                }
-            }
+    let columns = vec![
+        numbers("from b [µm]"),
+        numbers("to b [µm]"),
+        words("Attractor"),
+        numbers("least exponent"),
+        numbers("greatest exponent"),
+    ];
+    let rows = sweep.windows.iter().map(|window| {
+        let (least, greatest) = exponents(window.from_m, window.to_m);
+        let [from, to] = [window.from_m, window.to_m].map(micrometres_to_two);
+        row([from, to, class(window.class), exponent(least).into(), exponent(greatest).into()])
+    });
+    let how = match sweep.start.as_str() {
+        "rest" => "from rest".to_owned(),
+        direction => format!("carried {direction}ward"),
+    };
+    Block::Details(Details {
+        summary: match sweep.windows.len() {
+            1 => format!("1 window of one class, {how}"),
+            count => format!("{count} windows of one class, {how}"),
         }
-    }
+        .into(),
+        open: sweep.windows.len() <= 16,
+        blocks: vec![table(columns, rows.collect())],
+    })
 }
 
-fn checks(record: &StudyRecord) -> Markup {
-    html! {
-        section {
-            h2 { "Checks" }
-            details open[failed(record) > 0] {
-                summary { (record.checks.len()) " checks: known numbers, the two exponents, an independent integrator" }
-                (check_table(&record.checks, &html! {}))
-            }
-        }
-    }
+fn checks(record: &StudyRecord) -> Block {
+    let failed = count(record, Verdict::Failed);
+    let held = count(record, Verdict::Passed);
+    let summary =
+        format!("{} checks: known numbers, the two exponents, an independent integrator", record.checks.len());
+    let checks = Checks { checks: record.checks.clone(), emulated: false, keys: false };
+    let details = Details { summary: summary.into(), open: failed > 0, blocks: vec![Block::Checks(checks)] };
+    let line = Block::Paragraph(format!("{held} of {} checks held", held + failed).into());
+    section_bare("Checks", vec![Block::Only(TERMINALS, vec![line]), Block::Only(PAGES, vec![Block::Details(details)])])
 }
 
-fn identity(record: &StudyRecord) -> Markup {
+fn identity(record: &StudyRecord) -> Block {
     let identity = &record.identity;
-    html! {
-        section {
-            h2 { "Identity" }
-            table.identity {
-                tbody {
-                    tr { th { "Joint files" } td { @for (i, reading) in record.readings.iter().enumerate() { @if i > 0 { ", " } (reading.joint_file) } } }
-                    tr { th { "Motion" } td { "Taylor series of order 14 between contact events, local error 1e-12 b" sub { "c" } ", f64, full model of every planet" } }
-                    tr { th { "Sources" } td { (identity.git_commit.as_deref().unwrap_or("not under git")) } }
-                    tr { th { "Host" } td { (identity.host) ", joint " (identity.host_version) } }
-                    tr { th { "Date" } td { (identity.date) } }
-                }
-            }
-            h3 { "Run it again" }
-            pre { "cargo " (identity.replay) }
-        }
-    }
-}
-
-fn svg(picture: &Picture) -> Markup {
-    html! { (PreEscaped(picture.figure.to_svg())) }
+    let files: Vec<&str> = record.readings.iter().map(|reading| reading.joint_file.as_str()).collect();
+    let rows = [
+        ("Joint files", text(files.join(", "))),
+        (
+            "Motion",
+            indexed(
+                "Taylor series of order 14 between contact events, local error 1e-12 b_c, f64, full model of every planet",
+            ),
+        ),
+        ("Sources", text(identity.git_commit.as_deref().unwrap_or("not under git"))),
+        ("Host", text(format!("{}, joint {}", identity.host, identity.host_version))),
+        ("Date", text(&identity.date)),
+    ];
+    section("Identity", vec![facts(rows), Block::Again(format!("cargo {}", identity.replay))])
 }

@@ -12,7 +12,7 @@ use super::grid;
 use crate::numerics::system::{StudyError, System};
 use joint_file::named::{self, Loaded};
 use report::failure::{Failure, Outcome};
-use report::output::typed;
+use report::number::TYPED;
 
 /// Half-backlashes of Figs 5-8 over that of the joint file: 0, 10, 60, 120 um where the file has 60.
 const FIGURES: [f64; 4] = [0.0, 1.0 / 6.0, 1.0, 2.0];
@@ -165,7 +165,7 @@ impl Subject {
         let mut parameters = loaded.file.parameters.clone();
         if let Some(omega) = omega {
             if !(1e-3..=100.0).contains(&omega) {
-                return Err(Failure::new(format!("--omega {}: no mesh frequency over omega_n", typed(omega)))
+                return Err(Failure::new(format!("--omega {}: no mesh frequency over omega_n", TYPED.write(omega)))
                     .with_help("give a ratio between 0.001 and 100, such as --omega 2.1, the paper's"));
             }
             parameters.excitation = Excitation::Time { mesh_frequency: omega * Scales::new(&parameters).frequency };

@@ -5,17 +5,17 @@ use model_core::gears::{Mechanics, Scales};
 use parameters::DampingLaw;
 use rayon::prelude::*;
 
-use super::page::micrometres;
+use super::pictures::micrometres;
 use super::plan::{Plan, Subject, SweepStart};
-use super::progress::Progress;
 use super::record::{AttractorRecord, ClassRecord, History, Reading, SpectrumRecord, Sweep, SweepPoint};
 use super::{windows, witness};
 use crate::numerics::attractor::{self, Class, Effort};
 use crate::numerics::motion::Motion;
 use crate::numerics::signal::{SAMPLES, Signal};
-use crate::numerics::spectrum::{Spectrum, Window};
 use report::failure::{Failure, Outcome};
 use report::interruption;
+use report::progress::Progress;
+use report::spectrum::{Mean, Window, amplitudes};
 
 /// For attractors of the table: exponents of chaos come to about 0.0012 (one standard deviation).
 const TABLE: Effort = Effort { transient: 300, patience: 1000, alignment: 60, points: 1000, chaotic_periods: 12_000 };
@@ -246,13 +246,13 @@ fn history(signal: &Signal) -> History {
 }
 
 fn spectrum(signal: &Signal, window: Window) -> SpectrumRecord {
-    // In samples per period, so that frequencies come out over the mesh frequency.
-    let spectrum = Spectrum::of(&signal.position, 1.0 / SAMPLES as f64, window);
-    let kept = spectrum.frequency.iter().take_while(|frequency| **frequency <= HIGHEST_LINE).count();
-    SpectrumRecord {
-        over_mesh_frequency: spectrum.frequency[..kept].iter().map(|value| rounded(*value)).collect(),
-        amplitude: spectrum.amplitude[..kept].to_vec(),
-    }
+    // A line lies at so many cycles in the whole stretch, which is so many mesh periods long.
+    let periods = signal.position.len() as f64 / SAMPLES as f64;
+    let mut amplitude = amplitudes(&signal.position, window, Mean::Plain);
+    let frequencies = (0..amplitude.len()).map(|line| line as f64 / periods);
+    let kept: Vec<f64> = frequencies.take_while(|frequency| *frequency <= HIGHEST_LINE).map(rounded).collect();
+    amplitude.truncate(kept.len());
+    SpectrumRecord { over_mesh_frequency: kept, amplitude }
 }
 
 /// Six decimals of something of order one: what a curve can show, and a file need not hold more.

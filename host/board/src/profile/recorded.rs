@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::torques::{STRONGEST, Torques};
 use report::failure::{Failure, Outcome};
-use report::output::typed;
+use report::number::TYPED;
 
 /// Columns of the file, in any order; others are ignored.
 pub const COLUMNS: [&str; 3] = ["time_s", "motor_torque_Nm", "load_torque_Nm"];
@@ -127,7 +127,7 @@ fn number(line: u64, column: &str, text: &str) -> Outcome<f64> {
         Ok(value) if !value.is_finite() => Err(Failure::new(format!("line {line}: {column} is {value}"))
             .with_help("every value must be a finite number: remove the row or fill it in")),
         Ok(value) if column != COLUMNS[0] && value.abs() > STRONGEST => {
-            Err(Failure::new(format!("line {line}: {column} is {}", typed(value)))
+            Err(Failure::new(format!("line {line}: {column} is {}", TYPED.write(value)))
                 .with_help(format!("it may be from -{STRONGEST} to {STRONGEST} N m: check the unit")))
         }
         Ok(value) => Ok(value),

@@ -1,16 +1,15 @@
 //! What is in a memory: the observer's parameters with their covariances, in the units of the joint file. Which bytes are
 //! what is told by the observer that writes them.
 
-use std::fmt::Write as _;
-
 use model_core::observer::design::{design_observer, observer_settings};
 use model_core::observer::tables::LeverTable;
 use model_core::observer::{MAPPED, Memory, MemoryError, Observer, ObserverTables, memory_numbers};
 use serde::Serialize;
 
 use crate::findings::Finding;
-use crate::table;
+use crate::page;
 use joint_file::named::Loaded;
+use report::document::{Document, terminal};
 
 /// 95 of 100 values lie within so many standard deviations.
 const REACH: f64 = 1.96;
@@ -62,13 +61,12 @@ impl Content {
         Err(refused)
     }
 
-    /// What there is, beside what the joint file says.
+    /// What there is, beside what the joint file says, as a terminal shows it.
     pub fn text(&self, name: &str, loaded: &Loaded) -> String {
         let with = if self.output_encoder { "both encoders" } else { "the motor's encoder alone" };
-        let mut text = String::new();
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "{name}: learnt of joint {} with {with}\n", self.joint);
-        text + &table::render(&self.values, |finding| table::stated(&loaded.text, finding))
+        let line = format!("{name}: learnt of joint {} with {with}", self.joint);
+        let blocks = page::findings(&self.values, &loaded.text);
+        terminal(&Document { title: name.to_owned(), line: line.into(), blocks, ..Document::default() })
     }
 
     /// A value by its name.

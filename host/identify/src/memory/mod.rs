@@ -22,7 +22,7 @@ use joint_file::named;
 use report::failure::{Failure, Outcome};
 use report::output;
 use report::progress::Progress;
-use simulation::sim::files::unwritten;
+use report::write::unwritten;
 
 /// What a board is asked to do with its flash.
 type Ask = fn(&mut Session<'static>) -> Outcome<Kept>;

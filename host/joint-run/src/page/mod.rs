@@ -1,4 +1,6 @@
-//! Reports of a recorded run: one self-contained HTML page with vector plots. Nothing is measured or judged here.
+//! What all reports are made of, and the report of a recorded run: `document` is what a report says and turns it into a
+//! page, lines or Markdown, `plot` draws, `number` writes figures, `panels` and `contacts` show a joint's motion. Nothing is
+//! measured or judged here.
 
 mod close_up;
 mod motion;
@@ -14,12 +16,18 @@ use std::path::Path;
 use report::plot::Figure;
 
 use crate::record::RunRecord;
+use report::document;
 use report::failure::{Failure, Outcome};
 use report::write::{write_record, write_text};
 
 /// The report as one HTML page that needs neither network nor scripts.
 pub fn render(record: &RunRecord) -> String {
-    whole::render(record)
+    document::html(&whole::document(record))
+}
+
+/// The checks as lines for a terminal, below a line that says what ran.
+pub fn render_lines(record: &RunRecord) -> String {
+    document::terminal(&whole::document(record))
 }
 
 /// Writes the record as JSON and then the report as HTML; the JSON, which holds everything, is there first.
@@ -34,7 +42,7 @@ pub fn write(record: &RunRecord, json: Option<&Path>, html: Option<&Path>) -> Ou
 pub fn picture(record: &RunRecord) -> Option<String> {
     let view = close_up::view(record)?;
     let note = origin::in_one_line(record);
-    Some(report::shell::standalone(&Figure { note, ..close_up::figure(&view) }.to_svg()))
+    Some(Figure { note, ..close_up::figure(&view) }.to_file())
 }
 
 /// Writes [`picture`] to a file.

@@ -1,17 +1,16 @@
 //! Where a run comes from: who ran what, how to run it again, and what the board said meanwhile. All of it is text; no
 //! figure is judged here.
 
-use maud::{Markup, html};
-
-use super::whole::emulated;
+use super::sections::mark;
 use crate::record::RunRecord;
-use report::plot::unit::figure as number;
+use report::document::{Block, Row, Table, Tone, facts, row, section, text, words};
+use report::number::PAGE;
 
 /// Log lines shown; the JSON has all.
 const MOST_LOG_LINES: usize = 200;
 
 /// Who ran what, and how to run it again.
-pub fn identity(record: &RunRecord) -> Markup {
+pub fn identity(record: &RunRecord) -> Block {
     let (identity, settings) = (&record.identity, &record.settings);
     let image = identity.image.as_ref();
     let unknown = || "not known to this host".to_owned();
@@ -26,7 +25,7 @@ pub fn identity(record: &RunRecord) -> Markup {
         (
             "Flash, RAM",
             image.map_or_else(unknown, |image| {
-                format!("{} bytes, {} bytes", number(image.flash_bytes as f64), number(image.ram_bytes as f64))
+                format!("{} bytes, {} bytes", PAGE.write(image.flash_bytes as f64), PAGE.write(image.ram_bytes as f64))
             }),
         ),
         ("Compiler", image.map_or_else(unknown, |image| image.compiler.clone())),
@@ -36,14 +35,7 @@ pub fn identity(record: &RunRecord) -> Markup {
         ("Date", identity.date.clone()),
         ("Profile, seed", format!("{}, {}", settings.profile, settings.seed)),
     ];
-    html! {
-        section {
-            h2 { "What ran" (emulated(record)) }
-            table.identity { tbody { @for (name, value) in rows { tr { th { (name) } td { (value) } } } } }
-            h3 { "To run exactly this again" }
-            pre { (settings.replay) }
-        }
-    }
+    section(text("What ran") + mark(record), vec![facts(rows), Block::Again(settings.replay.clone())])
 }
 
 /// What ran, short enough to stand below a picture.
@@ -64,21 +56,20 @@ pub fn in_one_line(record: &RunRecord) -> String {
 }
 
 /// What the board said.
-pub fn log(record: &RunRecord) -> Markup {
-    if record.log.is_empty() {
-        return html! {};
+pub fn log(record: &RunRecord) -> Option<Block> {
+    let rows = record.log.iter().take(MOST_LOG_LINES).map(|line| Row {
+        tone: match line.level.as_str() {
+            "error" => Tone::Failed,
+            "warn" => Tone::Open,
+            _ => Tone::Plain,
+        },
+        ..row([&line.timestamp, &line.level, &line.text])
+    });
+    let table = Table { columns: ["", "", ""].map(words).into(), rows: rows.collect(), log: true };
+    let mut blocks = vec![Block::Table(table)];
+    let more = record.log.len().saturating_sub(MOST_LOG_LINES);
+    if more > 0 {
+        blocks.push(Block::Paragraph(format!("{more} more lines are in the JSON file.").into()));
     }
-    html! {
-        section {
-            h2 { "Log of the board" }
-            table.log { tbody {
-                @for line in record.log.iter().take(MOST_LOG_LINES) {
-                    tr class={ "level-" (line.level) } { td { (line.timestamp) } td { (line.level) } td { (line.text) } }
-                }
-            } }
-            @if record.log.len() > MOST_LOG_LINES {
-                p.none { (record.log.len() - MOST_LOG_LINES) " more lines are in the JSON file." }
-            }
-        }
-    }
+    (!record.log.is_empty()).then(|| section("Log of the board", blocks))
 }

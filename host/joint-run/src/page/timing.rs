@@ -1,12 +1,13 @@
 //! How the board spent its time: the histogram with its deadline and the figures beside it. Checks on them are in the
 //! table of checks.
 
-use crate::record::{MinMeanMax, TimingFigures};
+use crate::record::TimingFigures;
+use report::number::PAGE;
+use report::plot::Figure;
 use report::plot::ink::Ink;
 use report::plot::mark::Mark;
 use report::plot::panel::{Panel, VerticalAxis};
-use report::plot::unit::{MICROSECONDS, Unit, figure};
-use report::plot::{Figure, HorizontalAxis, Shape};
+use report::plot::unit::{MICROSECONDS, Unit};
 
 /// Computation times over what the deadline allows.
 pub fn histogram(timing: &TimingFigures) -> Option<Figure> {
@@ -19,33 +20,15 @@ pub fn histogram(timing: &TimingFigures) -> Option<Figure> {
     }
     let bar = |from: f64, steps: u32| [from + 0.06 * width, from + 0.94 * width, 0.0, f64::from(steps)];
     let boxes = filled().map(|bin| bar(bin.from_s, bin.steps)).collect();
-    let label = format!("deadline: next tick after {} µs", micro(timing.period_s));
+    let label = format!("deadline: next tick after {} µs", PAGE.write(1e6 * timing.period_s));
     let marks = vec![
         Mark::Boxes { boxes, ink: Ink::Bar, label: "steps".into() },
         Mark::Deadline { at: timing.period_s, label },
     ];
     let unit = Unit { factor: 1.0, name: "steps" };
     let panel = Panel { axis: VerticalAxis::Counts, ..Panel::lines("Computation time of the tick", unit, marks) };
-    let title = "Computation times of the tick against the deadline".into();
-    Some(Figure {
-        title,
-        axis: "computation time".into(),
-        unit: MICROSECONDS,
-        range: (0.0, end),
-        runs: HorizontalAxis::Linear,
-        shape: Shape::default(),
-        panels: vec![panel],
-        note: String::new(),
-    })
-}
-
-/// Rows of the table of times: name, least, mean, greatest [µs], greatest over the period [%].
-pub fn times(timing: &TimingFigures) -> [(&'static str, [String; 4]); 2] {
-    let row = |times: &MinMeanMax| {
-        let share = 100.0 * times.max_s / timing.period_s;
-        [micro(times.min_s), micro(times.mean_s), micro(times.max_s), format!("{} %", figure(share))]
-    };
-    [("Computation", row(&timing.computation)), ("Lateness of the tick", row(&timing.lateness))]
+    let title = "Computation times of the tick against the deadline";
+    Some(Figure::new(title, "computation time", MICROSECONDS, (0.0, end), vec![panel]))
 }
 
 /// Rows of the table of counts: name, figure, whether anything but zero is bad, what it means.
@@ -65,9 +48,4 @@ pub fn counts(timing: &TimingFigures) -> Vec<(&'static str, u32, bool, &'static 
         ("Lost samples", counters.lost_samples, true, "dropped by the board, buffer full"),
         ("Lost log bytes", counters.lost_log_bytes, true, "dropped by the board, buffer full"),
     ]
-}
-
-/// Seconds in microseconds.
-pub fn micro(seconds: f64) -> String {
-    figure(seconds * 1e6)
 }

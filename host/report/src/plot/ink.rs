@@ -74,6 +74,11 @@ impl Ink {
         RGBColor(red, green, blue)
     }
 
+    /// Name of the CSS variable.
+    pub fn name(self) -> &'static str {
+        TABLE[self.row()].1
+    }
+
     fn row(self) -> usize {
         // Every variant has its row: `every_ink_has_one_row_and_its_own_value` holds it.
         TABLE.iter().position(|row| row.0 == self).unwrap_or(0)

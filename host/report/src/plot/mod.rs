@@ -79,6 +79,31 @@ pub struct Figure {
 }
 
 impl Figure {
+    /// Over the whole page and an even axis, without a note.
+    pub fn new(
+        title: impl Into<String>,
+        axis: impl Into<String>,
+        unit: Unit,
+        range: (f64, f64),
+        panels: Vec<Panel>,
+    ) -> Self {
+        Self {
+            title: title.into(),
+            axis: axis.into(),
+            unit,
+            range,
+            runs: HorizontalAxis::Linear,
+            shape: Shape::default(),
+            panels,
+            note: String::new(),
+        }
+    }
+
+    /// The same over time.
+    pub fn over_time(title: impl Into<String>, unit: Unit, range: (f64, f64), panels: Vec<Panel>) -> Self {
+        Self::new(title, "time", unit, range, panels)
+    }
+
     /// A value of the common axis as it is drawn.
     fn across(&self, value: f64) -> f64 {
         let value = value * self.unit.factor;
@@ -104,6 +129,21 @@ impl Figure {
         // What plotters says though it is the default anyway makes up half of a picture of many small parts.
         let svg = compact::compact(&svg.replace(" opacity=\"1\"", "").replace(" stroke=\"none\"", ""));
         ink::with_variables(svg.replacen(&plain, &format!("<svg role=\"img\" aria-label=\"{title}\""), 1))
+    }
+
+    /// The picture as a file of its own.
+    pub fn to_file(&self) -> String {
+        let svg = self.to_svg();
+        let style = format!(
+            "<style>\n{}svg{{font-family:system-ui,sans-serif;background:#fff}}\n\
+             @media screen and (prefers-color-scheme:dark){{svg{{background:#12171e}}}}\n\
+             rect{{shape-rendering:crispEdges}}polyline{{stroke-linejoin:round}}\n</style>\n",
+            ink::style_sheet("svg")
+        );
+        match svg.split_once('\n') {
+            Some((open, rest)) => format!("{open}\n{style}{rest}"),
+            None => svg,
+        }
     }
 
     fn draw(&self, svg: &mut String, height: i32) -> Drawn {

@@ -11,6 +11,7 @@ use super::mark::Mark;
 use super::thin::thin;
 use super::unit::{Unit, axis_range, tick_label};
 use super::{Area, Drawn, FINE, Figure, HorizontalAxis, RIGHT, text_style};
+use crate::number::PAGE;
 
 /// Height of title and legend [px].
 const HEAD: i32 = 34;
@@ -243,7 +244,7 @@ type Chart<'a, 'b, Y> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoord
 fn power_of_ten(count: f64) -> String {
     let exponent = count.log10().round();
     let whole = (count / 10f64.powf(exponent) - 1.0).abs() < 1e-6 && exponent >= 0.0;
-    if whole { super::unit::figure(count.round()) } else { String::new() }
+    if whole { PAGE.write(count.round()) } else { String::new() }
 }
 
 /// Labels of an axis of exponents: 0.01, 1, 100; powers beyond 10^4 as such, lines between whole powers bare.
@@ -251,7 +252,7 @@ fn exponent_label(exponent: f64) -> String {
     let whole = exponent.round();
     match whole {
         _ if (exponent - whole).abs() > 1e-6 => String::new(),
-        w if (-3.0..=4.0).contains(&w) => super::unit::figure(10f64.powf(w)),
+        w if (-3.0..=4.0).contains(&w) => PAGE.write(10f64.powf(w)),
         w => format!("1e{w:.0}").replace('-', "\u{2212}"),
     }
 }

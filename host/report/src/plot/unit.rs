@@ -1,6 +1,8 @@
 //! Units that a reader likes: the prefix follows from the greatest value. Ranges of axes are made here too; ticks are
 //! the plotting library's.
 
+use crate::number::trimmed;
+
 /// A unit for one axis: SI times `factor` gives the number shown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unit {
@@ -12,12 +14,16 @@ pub struct Unit {
 
 /// Torque as it is.
 pub const TORQUE: Unit = Unit { factor: 1.0, name: "N·m" };
+/// Force as it is.
+pub const FORCE: Unit = Unit { factor: 1.0, name: "N" };
 /// Time of a whole run.
 pub const SECONDS: Unit = Unit { factor: 1.0, name: "s" };
 /// Time of a close-up.
 pub const MILLISECONDS: Unit = Unit { factor: 1e3, name: "ms" };
 /// Computation times.
 pub const MICROSECONDS: Unit = Unit { factor: 1e6, name: "µs" };
+/// Ratios over a reference, 20 for a factor of ten.
+pub const DECIBELS: Unit = Unit { factor: 1.0, name: "dB" };
 /// Shares.
 pub const PERCENT: Unit = Unit { factor: 1.0, name: "%" };
 
@@ -74,42 +80,11 @@ pub fn tick_label(value: f64, span: f64) -> String {
     let decimals = (1.0 - (span / 2.0).log10().floor()).clamp(0.0, 6.0) as usize;
     let text = format!("{value:.decimals$}");
     // The whole axis gets the same decimals, except that a zero is a zero.
-    if text.trim_start_matches('-').chars().all(|c| c == '0' || c == '.') { "0".into() } else { trimmed(text) }
-}
-
-/// Without trailing zeros behind the point, and with a true minus sign.
-fn trimmed(text: String) -> String {
-    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text };
-    text.replace('-', "\u{2212}")
-}
-
-/// A number for a table: five significant digits at most, exponents only where they help.
-pub fn figure(value: f64) -> String {
-    if !value.is_finite() {
-        return if value.is_nan() { "not a number".into() } else { format!("{value}") };
+    if text.trim_start_matches('-').chars().all(|c| c == '0' || c == '.') {
+        "0".into()
+    } else {
+        trimmed(&text).replace('-', "\u{2212}")
     }
-    let magnitude = value.abs();
-    if value == 0.0 || (value.fract() == 0.0 && magnitude < 1e7) {
-        return grouped(value);
-    }
-    if !(1e-3..1e7).contains(&magnitude) {
-        return format!("{value:.3e}").replace('-', "\u{2212}");
-    }
-    let decimals = (3.0 - magnitude.log10().floor()).clamp(0.0, 6.0) as usize;
-    trimmed(format!("{value:.decimals$}"))
-}
-
-/// Whole numbers in groups of three, with thin spaces.
-fn grouped(value: f64) -> String {
-    let digits = format!("{:.0}", value.abs());
-    let mut text = String::new();
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index).is_multiple_of(3) && digits.len() > 4 {
-            text.push('\u{202f}');
-        }
-        text.push(digit);
-    }
-    if value < 0.0 { format!("\u{2212}{text}") } else { text }
 }
 
 #[cfg(test)]
@@ -130,15 +105,5 @@ mod tests {
         assert_eq!(tick_label(-1e-17, 1.0), "0");
         assert_eq!(tick_label(-0.25, 1.0), "\u{2212}0.25");
         assert_eq!(tick_label(120.0, 200.0), "120");
-    }
-
-    #[test]
-    fn figures_read_well() {
-        assert_eq!(figure(0.0), "0");
-        assert_eq!(figure(120_000.0), "120\u{202f}000");
-        assert_eq!(figure(0.123_456), "0.1235");
-        assert_eq!(figure(14.0 / 3.0), "4.667");
-        assert_eq!(figure(1.5e-9), "1.500e\u{2212}9");
-        assert_eq!(figure(f64::NAN), "not a number");
     }
 }

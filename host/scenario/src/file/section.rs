@@ -10,7 +10,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::keys::{self, Key, Kind};
 use crate::draw::Quantity;
-use report::output::typed;
+use report::number::TYPED;
 
 /// Problems of one file, as they are found.
 #[derive(Default)]
@@ -195,7 +195,7 @@ impl<'a> Section<'a> {
         let (Kind::Number(low, high) | Kind::Range(low, high)) = key.kind else { return None };
         let Some(number) = number(value) else { return self.wrong_type(value, key, "a number") };
         if !(low..=high).contains(&number) {
-            let message = format!("`{}` must be between {low} and {high}, not {}", key.name, typed(number));
+            let message = format!("`{}` must be between {low} and {high}, not {}", key.name, TYPED.write(number));
             self.problems.error(value.span(), message, key.hint);
             return None;
         }

@@ -1,12 +1,11 @@
 //! The certificate as text for a person: one line each, in the units that data sheets use.
 
 use super::figures::{Error, Figures, Work};
-use crate::check::Page;
+use report::document::{Sheet, terminal};
 
-/// The whole page.
+/// All of it, as a terminal shows it.
 pub(super) fn layout(figures: &Figures) -> String {
-    let mut page = Page::default();
-    page.line(&format!("{} on {} at {} Hz", figures.joint, figures.board, figures.rate_Hz));
+    let mut page = Sheet::new(format!("{} on {} at {} Hz", figures.joint, figures.board, figures.rate_Hz));
     step(&mut page, figures);
     error(&mut page, figures);
     work(&mut page, figures);
@@ -14,10 +13,10 @@ pub(super) fn layout(figures: &Figures) -> String {
     limits(&mut page, figures);
     page.heading("Verdict");
     page.row("", verdict(figures));
-    page.text()
+    terminal(&page.document())
 }
 
-fn step(page: &mut Page, figures: &Figures) {
+fn step(page: &mut Sheet, figures: &Figures) {
     page.heading("Step");
     page.row("period", format!("{:.2} us", 1e6 / f64::from(figures.rate_Hz)));
     let method = if figures.method == "leaps" { "leapfrog sub-steps" } else { "corrected sub-steps" };
@@ -26,7 +25,7 @@ fn step(page: &mut Page, figures: &Figures) {
     page.row("fastest mode in one", format!("{phase:.2} rad, unstable from {:.2} on", figures.largest_phase_rad));
 }
 
-fn error(page: &mut Page, figures: &Figures) {
+fn error(page: &mut Sheet, figures: &Figures) {
     page.heading("Error of mesh deflections, RMS over the motion's standard deviation");
     let promise =
         |error: Error| format!("{:.1e} typical, {:.1e} in nine motions of ten", error.typical, error.nine_in_ten);
@@ -34,7 +33,7 @@ fn error(page: &mut Page, figures: &Figures) {
     page.row("while meshes part and hit", promise(figures.error_losing));
 }
 
-fn work(page: &mut Page, figures: &Figures) {
+fn work(page: &mut Sheet, figures: &Figures) {
     page.heading("Work of a tick (instructions of a Cortex-M4F; cycles reckoned, not measured)");
     let of = |work: Work| {
         let Work { instructions, time_s, part } = work;
@@ -48,13 +47,13 @@ fn work(page: &mut Page, figures: &Figures) {
     page.row("processor", format!("{megahertz:.0} MHz, {:.1} cycles an instruction", figures.cycles_per_instruction));
 }
 
-fn memory(page: &mut Page, figures: &Figures) {
+fn memory(page: &mut Sheet, figures: &Figures) {
     page.heading("Memory");
     page.row("tables", format!("{} bytes of flash", figures.table_bytes));
     page.row("model", format!("{} bytes of RAM", figures.model_bytes));
 }
 
-fn limits(page: &mut Page, figures: &Figures) {
+fn limits(page: &mut Sheet, figures: &Figures) {
     page.heading("Limits");
     page.row("rates", format!("{} to {} Hz", figures.lowest_rate_Hz, figures.highest_rate_Hz));
     let duration = 1e6 * figures.unseen_for_s;

@@ -1,45 +1,15 @@
 //! The figures of a joint as text for a person: one line each, in the units that data sheets use. Colours are left out,
 //! so that a terminal, a file and a log show the same.
 
-use std::fmt::{Display, Write};
+use std::fmt::Write;
 
 use super::figures::{Figures, MeshFigures};
+use report::document::{Sheet, terminal};
+use report::number::DATA_SHEET;
 
-/// Width of the column of names.
-const NAMES: usize = 30;
-
-/// Lines under headings.
-#[derive(Default)]
-pub struct Page(String);
-
-impl Page {
-    /// A heading.
-    pub fn heading(&mut self, text: &str) {
-        self.0.push('\n');
-        self.line(text);
-    }
-
-    /// A name and its value.
-    pub fn row(&mut self, name: &str, value: impl Display) {
-        self.line(&format!("  {name:NAMES$}{value}"));
-    }
-
-    /// A line as it is.
-    pub fn line(&mut self, text: &str) {
-        self.0.push_str(text.trim_end());
-        self.0.push('\n');
-    }
-
-    /// All of it.
-    pub fn text(self) -> String {
-        self.0
-    }
-}
-
-/// The whole page.
+/// All of it, as a terminal shows it.
 pub fn layout(figures: &Figures) -> String {
-    let mut page = Page::default();
-    page.line(&match figures.description.as_str() {
+    let mut page = Sheet::new(match figures.description.as_str() {
         "" => figures.name.clone(),
         description => format!("{}: {description}", figures.name),
     });
@@ -50,10 +20,10 @@ pub fn layout(figures: &Figures) -> String {
     output(&mut page, figures);
     step(&mut page, figures);
     file(&mut page, figures);
-    page.text()
+    terminal(&page.document())
 }
 
-fn gears(page: &mut Page, figures: &Figures) {
+fn gears(page: &mut Sheet, figures: &Figures) {
     let geometry = &figures.geometry;
     page.heading("Gears");
     page.row("planets", geometry.planets);
@@ -68,7 +38,7 @@ fn gears(page: &mut Page, figures: &Figures) {
     page.row("ratio by radii", format!("{:.6}", geometry.ratio_by_radii));
 }
 
-fn masses(page: &mut Page, figures: &Figures) {
+fn masses(page: &mut Sheet, figures: &Figures) {
     let masses = &figures.equivalent_masses;
     page.heading("Equivalent masses, I / r^2 on the line of action");
     page.row("sun", format!("{} kg", digits(masses.sun_kg)));
@@ -78,7 +48,7 @@ fn masses(page: &mut Page, figures: &Figures) {
     page.row("link", if masses.link_kg > 0.0 { format!("{} kg", digits(masses.link_kg)) } else { "none".to_owned() });
 }
 
-fn frequencies(page: &mut Page, figures: &Figures) {
+fn frequencies(page: &mut Sheet, figures: &Figures) {
     let frequencies = &figures.frequencies;
     page.heading("Frequencies, in contact at mean stiffness");
     let omega_n = (frequencies.omega_n_rad_per_s, frequencies.omega_n_Hz);
@@ -87,7 +57,7 @@ fn frequencies(page: &mut Page, figures: &Figures) {
     page.row("with rotor and link", hertz(&frequencies.whole_joint_Hz));
 }
 
-fn meshes(page: &mut Page, figures: &Figures) {
+fn meshes(page: &mut Sheet, figures: &Figures) {
     for mesh in &figures.meshes {
         page.heading(if mesh.kind == "sun_planet" { "Sun-planet meshes" } else { "Ring-planet meshes" });
         page.row("half-backlash b (gap is 2b)", format!("{} um", per_planet(&mesh.half_backlash_m, 1e6, 3)));
@@ -102,7 +72,7 @@ fn meshes(page: &mut Page, figures: &Figures) {
     page.row("damping law", figures.damping_law);
 }
 
-fn phases(page: &mut Page, mesh: &MeshFigures) {
+fn phases(page: &mut Sheet, mesh: &MeshFigures) {
     let [stiffness, error] =
         [&mesh.stiffness_phase_periods, &mesh.error_phase_periods].map(|list| per_planet(list, 1.0, 4));
     if stiffness == error {
@@ -113,7 +83,7 @@ fn phases(page: &mut Page, mesh: &MeshFigures) {
     }
 }
 
-fn output(page: &mut Page, figures: &Figures) {
+fn output(page: &mut Sheet, figures: &Figures) {
     let output = &figures.output;
     page.heading("At the output");
     let torques = (output.rated_torque_N_m, output.balancing_drive_torque_N_m);
@@ -127,7 +97,7 @@ fn output(page: &mut Page, figures: &Figures) {
     page.row("  teeth, compliance", format!("{:.4}, {:.4} mrad", parts[0], parts[1]));
 }
 
-fn step(page: &mut Page, figures: &Figures) {
+fn step(page: &mut Sheet, figures: &Figures) {
     let step = &figures.fixed_step;
     page.heading("Fixed step");
     let longest = 1e6 * step.longest_step_s;
@@ -140,7 +110,7 @@ fn step(page: &mut Page, figures: &Figures) {
     page.row("tables", format!("{} bytes of flash, digest {}", step.table_bytes, step.digest));
 }
 
-fn file(page: &mut Page, figures: &Figures) {
+fn file(page: &mut Sheet, figures: &Figures) {
     let numbers = &figures.numbers;
     page.heading("Joint file");
     let mut text = format!("{}, {} of them assumed", numbers.stated, numbers.assumed);
@@ -180,16 +150,6 @@ fn per_planet(values: &[f64], factor: f64, decimals: usize) -> String {
     }
 }
 
-/// Five significant digits.
 fn digits(value: f64) -> String {
-    if value == 0.0 {
-        return "0".to_owned();
-    }
-    let exponent = value.abs().log10().floor();
-    if (-4.0..6.0).contains(&exponent) {
-        let decimals = (4.0 - exponent).max(0.0) as usize;
-        format!("{value:.decimals$}")
-    } else {
-        format!("{value:.4e}")
-    }
+    DATA_SHEET.write(value)
 }

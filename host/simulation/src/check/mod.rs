@@ -16,7 +16,7 @@ use std::path::PathBuf;
 pub use derive::figures;
 pub use figures::Figures;
 use joint_file::named;
-pub use layout::{Page, layout};
+pub use layout::layout;
 use report::failure::Outcome;
 use report::output;
 

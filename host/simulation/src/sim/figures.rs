@@ -8,9 +8,9 @@ use super::energy::Balance;
 use super::follow::End;
 use super::plan::Plan;
 use super::scheme::SchemeName;
-use super::spectrum::Spectrum;
 use super::statistics::{MeshFigures, Statistics};
 use report::contacts::mesh_name;
+use report::spectrum::Spectrum;
 
 /// Says which fields there are; rises when one changes its meaning or goes.
 const SCHEMA: &str = "joint-sim/1";

@@ -3,39 +3,17 @@
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
-use std::io::{self, BufWriter, ErrorKind};
-use std::path::{Path, PathBuf};
+use std::io::{self, BufWriter};
+use std::path::PathBuf;
 
 use parameters::JointParameters;
 
 use super::csv::CsvFile;
 use super::log_file::LogFile;
 use super::moment::Moment;
-use report::failure::{Failure, Outcome};
-use report::folder;
-
-/// Where a run's files go.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Folder {
-    path: PathBuf,
-}
-
-impl Folder {
-    /// Makes the folder and tries to write to it; `kind` names the part of `target` that is the default.
-    pub fn prepare(wanted: Option<&Path>, kind: &str, joint: &str) -> Outcome<Self> {
-        Ok(Self { path: folder::prepare(wanted, kind, joint)? })
-    }
-
-    /// A file in it.
-    pub fn file(&self, name: &str) -> PathBuf {
-        self.path.join(name)
-    }
-
-    /// The folder itself.
-    pub fn path(&self) -> &Path {
-        &self.path
-    }
-}
+use report::failure::Outcome;
+use report::folder::Folder;
+use report::write::unwritten;
 
 /// CSV and log of one run, growing.
 pub struct HistoryFiles<'a> {
@@ -84,18 +62,4 @@ impl<'a> HistoryFiles<'a> {
         }
         Ok(paths)
     }
-}
-
-/// Names the file, what the system said and what to do about it.
-pub fn unwritten(path: &Path, source: &io::Error) -> Failure {
-    let help = match source.kind() {
-        ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
-            "what was written so far is kept: free some space, or name a folder on another disk by --out DIR"
-        }
-        ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
-            "name a folder that you may write to by --out DIR"
-        }
-        _ => "name another folder by --out DIR",
-    };
-    Failure::new(format!("cannot write {}: {source}", path.display())).with_help(help)
 }

@@ -3,18 +3,17 @@
 
 use super::comparison::Comparison;
 use super::energy::Entry;
-use super::pictures::{LINE, View};
+use super::pictures::View;
 use super::plan::Plan;
-use super::portraits::DECIBELS;
 use super::scheme::SchemeName;
+use report::panels;
+use report::panels::{BROAD, LINE};
 use report::plot::Figure;
 use report::plot::ink::Ink;
 use report::plot::mark::Mark;
 use report::plot::panel::Panel;
-use report::plot::unit::{Unit, axis_range, greatest};
+use report::plot::unit::{DECIBELS, Unit, axis_range, greatest};
 
-/// Width of a line that another one lies on [px].
-const BROAD: f64 = 4.0;
 /// Errors below this are rounding, and not drawn any lower.
 const SMALLEST_ERROR: f64 = 1e-8;
 
@@ -27,11 +26,8 @@ pub fn energy(plan: &Plan, entries: &[Entry]) -> Figure {
         _ => Unit { factor: 1.0, name: "J" },
     };
     let start = entries.first().map_or(0.0, |entry| entry.stored);
-    let line = |value: &dyn Fn(&Entry) -> f64, ink: Ink, label: &str| Mark::Line {
-        points: entries.iter().map(|entry| (entry.time, value(entry))).collect(),
-        ink,
-        label: label.into(),
-        width: LINE,
+    let line = |value: &dyn Fn(&Entry) -> f64, ink: Ink, label: &str| {
+        panels::line(entries.iter().map(|entry| (entry.time, value(entry))).collect(), ink, label)
     };
     let marks = vec![
         line(&|entry| entry.work.supplied, Ink::First, "supplied by torques"),
@@ -93,7 +89,7 @@ pub fn schemes(plan: &Plan, comparison: &Comparison) -> Vec<Figure> {
     let errors = comparison.tracks.iter().skip(1).map(|track| {
         let error = |(time, error): (f64, f64)| (time, 20.0 * error.max(SMALLEST_ERROR).log10());
         let points = comparison.error_of(track).into_iter().map(error).collect();
-        Mark::Line { points, ink: ink(track.scheme), label: track.scheme.name().into(), width: LINE }
+        panels::line(points, ink(track.scheme), track.scheme.name())
     });
     let title = "Error of that deflection over its standard deviation, RMS of short stretches";
     let errors = Panel { height: 300, ..Panel::lines(title, DECIBELS, errors.collect()) };

@@ -3,7 +3,7 @@
 //!
 //! `plan` finds everything that is wrong with the request, `follow` moves the joint by a `scheme` from a `start`, and
 //! shows a `moment` every tick to `statistics`, `energy` and the files (`csv`, `log_file`); `comparison` runs all
-//! schemes; `figures` is what comes of it, `table`, `page` and its pictures show it.
+//! schemes; `figures` is what comes of it, `page` and its pictures show it.
 
 pub mod arguments;
 pub mod comparison;
@@ -20,10 +20,8 @@ mod pictures;
 pub mod plan;
 mod portraits;
 pub mod scheme;
-pub mod spectrum;
 pub mod start;
 pub mod statistics;
-mod table;
 
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -33,19 +31,23 @@ pub use arguments::Arguments;
 use comparison::Comparison;
 use energy::EnergyBook;
 use figures::{Figures, Gathered};
-use files::{Folder, HistoryFiles};
+use files::HistoryFiles;
 use follow::End;
 use moment::Moment;
 use plan::Plan;
 use scheme::{Choice, SchemeName};
-use spectrum::Spectrum;
 use statistics::Statistics;
 
 use joint_file::named;
+use report::document::{html, terminal};
 use report::failure::{Failure, Outcome};
+use report::folder;
+use report::folder::Folder;
 use report::progress::Progress;
+use report::provenance::VERSION;
+use report::spectrum::Spectrum;
 use report::write::write_text;
-use report::{folder, interruption, output};
+use report::{interruption, output};
 
 /// Samples that are kept at most unless `--every` says how many ticks apart they are.
 const USUAL_SAMPLES: u32 = 200_000;
@@ -106,7 +108,7 @@ fn run_once(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
         energy: balance,
         comparison: comparison.as_ref(),
     });
-    let page = page::render(&page::Content {
+    let document = page::document(&page::Content {
         plan: &plan,
         figures: &figures,
         scheme,
@@ -118,7 +120,7 @@ fn run_once(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
         replay: &replay(arguments),
     });
     let report = folder.file("report.html");
-    write_text(&report, &page)?;
+    write_text(&report, &html(&document))?;
     let json = output::json("figures", &figures)?;
     write_text(&folder.file("figures.json"), &json)?;
     if let Some(path) = arguments.json.as_ref().filter(|path| path.as_os_str() != "-") {
@@ -128,7 +130,7 @@ fn run_once(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
     if arguments.json.as_ref().is_some_and(|path| path.as_os_str() == "-") {
         return output::print(&json);
     }
-    output::print(&table::summary(&figures))?;
+    output::print(&terminal(&document))?;
     output::print(&format!("\nreport: {}\nhistory: {}, {}\n", report.display(), csv.display(), log.display()))
 }
 
@@ -179,10 +181,9 @@ fn compare(plan: &Plan, every: u32, progress: &Progress) -> Outcome<Comparison> 
     // Every scheme and the disturbed reference go through all ticks.
     const RUNS: u32 = 1 + SchemeName::ALL.len() as u32;
     progress.run("comparing schemes", plan.ticks);
-    let line = progress.handle();
     comparison::compare(&plan.run(), every, &|done| {
         if (done / RUNS).is_multiple_of(PROGRESS) {
-            line.at(done / RUNS);
+            progress.at(done / RUNS);
         }
     })
 }
@@ -203,7 +204,7 @@ fn remarks(arguments: &Arguments, plan: &Plan, scheme: SchemeName) -> BTreeMap<S
         ("tick_rate_hz", plan.tick_rate.to_string()),
         ("torques", plan.torques_name.clone()),
         ("command", replay(arguments)),
-        ("version", env!("CARGO_PKG_VERSION").to_owned()),
+        ("version", VERSION.to_owned()),
     ]
     .map(|(name, value)| (name.to_owned(), value))
     .into()

@@ -1,9 +1,7 @@
-//! The report of a simulation: one HTML page that needs neither network nor scripts, in the style of the run reports.
-//! Pictures come from `pictures`, `portraits` and `judgement`, figures from `figures`.
+//! The report of a simulation as a document. Pictures come from `pictures`, `portraits` and `judgement`, figures from
+//! `figures`; a terminal shows what the figures hold.
 
-use maud::{Markup, PreEscaped, html};
-
-use super::comparison::Comparison;
+use super::comparison::{Comparison, Row as SchemeRow};
 use super::energy::Entry;
 use super::figures::Figures;
 use super::judgement;
@@ -12,13 +10,17 @@ use super::pictures::View;
 use super::plan::Plan;
 use super::portraits::{self, Portrait};
 use super::scheme::SchemeName;
-use super::spectrum::Spectrum;
 use super::statistics::Point;
-use report::plot::Figure;
-use report::plot::unit::figure as number;
-use report::shell::page;
+use report::document::{
+    Block, Document, PAGES, Section, TERMINALS, alert, code, facts, indexed, notes, notice, number, number_as, numbers,
+    picture, quiet, row, section, section_bare, strong, table, text, tile, words,
+};
+use report::number::{PAGE, fixed, powers_of_ten};
+use report::panels::{DEFLECTIONS, THINNED, gap_coordinate};
+use report::provenance::VERSION;
+use report::spectrum::Spectrum;
 
-/// What the page shows.
+/// What a report is made from.
 pub struct Content<'a> {
     /// What was asked.
     pub plan: &'a Plan,
@@ -40,176 +42,209 @@ pub struct Content<'a> {
     pub replay: &'a str,
 }
 
-/// The whole page.
-pub fn render(content: &Content<'_>) -> String {
+/// All of it.
+pub fn document(content: &Content<'_>) -> Document {
     let figures = content.figures;
-    let body = html! {
-        (header(content))
-        (notices(content))
-        (tiles(content))
-        (schemes(content))
-        (motion(content))
-        (portraits(content))
-        (contacts(content))
-        (energy(content))
-        (origin(content))
-        footer { "joint " (env!("CARGO_PKG_VERSION")) " · every sample is in history.csv and history.mcap" }
-    };
-    page(&format!("Joint {}, simulated", figures.joint), "", &body)
-}
-
-fn header(content: &Content<'_>) -> Markup {
-    let figures = content.figures;
-    html! {
-        header {
-            div.title { h1 { "Joint " (figures.joint) } }
-            p.subtitle {
-                "Simulated by scheme " strong { (figures.scheme) } " (" (content.scheme.description()) ", " (figures.scalar) ") · "
-                (figures.torques) " · from " (figures.start) " · " (number(f64::from(figures.tick_rate_Hz) / 1e3)) " kHz"
-            }
-        }
+    let rate = f64::from(figures.tick_rate_Hz);
+    let mut blocks = notices(content);
+    blocks.extend([tiles(content), motion(content)]);
+    blocks.extend(portraits(content));
+    blocks.push(contacts(content));
+    blocks.extend(energy(content));
+    blocks.extend(schemes(content));
+    blocks.push(origin(content));
+    Document {
+        title: format!("Joint {}, simulated", figures.joint),
+        heading: text("Joint ") + &figures.joint,
+        subtitle: text("Simulated by scheme ")
+            + strong(figures.scheme)
+            + format!(
+                " ({}, {}) · {} · from {} · {} kHz",
+                content.scheme.description(),
+                figures.scalar,
+                figures.torques,
+                figures.start,
+                PAGE.write(rate / 1e3)
+            ),
+        line: format!(
+            "{} by scheme {} ({}): {} of {} ticks at {rate} Hz, {:.4} s; {}, from {}",
+            figures.joint,
+            figures.scheme,
+            figures.scalar,
+            figures.ticks,
+            figures.of_ticks,
+            f64::from(figures.ticks) / rate,
+            figures.torques,
+            figures.start
+        )
+        .into(),
+        blocks,
+        footer: text("joint ") + VERSION + " · every sample is in history.csv and history.mcap",
+        ..Document::default()
     }
 }
 
-fn notices(content: &Content<'_>) -> Markup {
+fn notices(content: &Content<'_>) -> Vec<Block> {
     let figures = content.figures;
-    html! {
-        @if let Some(time) = figures.diverged_at_s {
-            div.notice.bad role="alert" {
-                strong { "DIVERGED " } "at " (number(1e3 * time)) " ms: at this rate the scheme does not hold this motion. "
-                "What came before is shown."
-            }
-        }
-        @for change in &figures.set { div.notice { strong { "Changed for this run: " } code { (change) } } }
-        @for warning in &content.plan.joint.warnings { div.notice { strong { "The joint file: " } (warning.message) } }
+    let mut notices = Vec::new();
+    if let Some(time) = figures.diverged_at_s {
+        notices.push(alert(
+            strong("DIVERGED")
+                + format!(
+                    " at {time:.6} s: at this rate the scheme does not hold this motion. What came before is shown."
+                ),
+        ));
     }
+    let changed = figures.set.iter().map(|change| notice(strong("Changed for this run: ") + code(change)));
+    let warned = content.plan.joint.warnings.iter();
+    let warned = warned.map(|warning| notice(strong("The joint file: ") + &warning.message));
+    notices.push(Block::Only(PAGES, changed.chain(warned).collect()));
+    notices
 }
 
-fn tiles(content: &Content<'_>) -> Markup {
+fn tiles(content: &Content<'_>) -> Block {
     let figures = content.figures;
-    let tile = |name: &str, value: Markup| html! { div.tile { div.value { (value) } div.name { (name) } } };
     let done = f64::from(figures.ticks) / f64::from(figures.tick_rate_Hz);
     let (length, unit) = if done < 0.5 { (1e3 * done, " ms") } else { (done, " s") };
-    html! {
-        section.tiles {
-            (tile("Simulated", html! { (number(length)) span.of { (unit) " · " (number(f64::from(figures.ticks))) " ticks" } }))
-            (tile("Teeth parted", html! { (number(1e2 * figures.separated_share())) span.of { " % of the time" } }))
-            (tile("Impacts", html! { (number(figures.impacts_per_s)) span.of { " /s, all meshes" } }))
-            (tile("Peak mesh force", html! { (number(figures.peak_force())) span.of { " N" } }))
-            @if content.plan.constant {
-                (tile("Motion repeats after", html! {
-                    @match figures.period {
-                        Some(period) => { (period) span.of { @if period == 1 { " mesh period" } @else { " mesh periods" } } }
-                        None => { "–" span.of { " not within 32 periods" } }
-                    }
-                }))
-            }
-        }
+    let mut tiles = vec![
+        tile("Simulated", number(length) + quiet(format!("{unit} · {} ticks", PAGE.write(f64::from(figures.ticks))))),
+        tile("Teeth parted", number(1e2 * figures.separated_share()) + quiet(" % of the time")),
+        tile("Impacts", number(figures.impacts_per_s) + quiet(" /s, all meshes")),
+        tile("Peak mesh force", number(figures.peak_force()) + quiet(" N")),
+    ];
+    if content.plan.constant {
+        let period = match figures.period {
+            Some(period) => text(period) + quiet(if period == 1 { " mesh period" } else { " mesh periods" }),
+            None => text("–") + quiet(" not within 32 periods"),
+        };
+        tiles.push(tile("Motion repeats after", period));
     }
+    Block::Tiles(tiles)
 }
 
-fn picture(figure: &Figure, caption: Markup) -> Markup {
-    html! { figure { (PreEscaped(figure.to_svg())) figcaption { (caption) } } }
-}
-
-fn motion(content: &Content<'_>) -> Markup {
+fn motion(content: &Content<'_>) -> Block {
     let whole = View::whole(content.plan, content.samples);
     if content.samples.len() < 2 {
-        return html! { section { h2 { "Motion" } p.none { "Nothing moved." } } };
+        return section("Motion", vec![Block::Paragraph("Nothing moved.".into())]);
     }
-    let close = whole.close();
-    html! {
-        section {
-            h2 { "Motion" }
-            p.lead {
-                (number(content.samples.len() as f64)) " samples. Where a picture has fewer columns than samples, least "
-                "and greatest of each column are kept."
-            }
-            @if !content.plan.constant { (picture(&whole.figure("Torques", whole.torques()), html! { "Torques as asked for." })) }
-            (picture(&whole.figure("Gap", whole.gap()), html! {
-                "Gap coordinate X = u" sub { "s" } " − 2 u" sub { "c" } " along the line of action, and the twist that it "
-                "leaves between motor and link. Shaded: where every mesh can be free at once."
-            }))
-            (picture(&whole.figure("Mesh deflections", whole.deflections()), html! {
-                "Deflection of every mesh. Above the shaded band the drive side carries, below it the back side, inside "
-                "it the teeth are parted. Strips that stand for many samples show the share of each state by height."
-            }))
-            @if let Some(close) = &close {
-                (picture(&close.figure("The last mesh periods", close.deflections()), html! {
-                    strong { "The last 12 mesh periods, closely. " } "Deflections and contact, sample by sample."
-                }))
-                (picture(&close.figure("Mesh forces", close.forces()), html! { "Mesh forces over the same stretch." }))
-            } @else {
-                (picture(&whole.figure("Mesh forces", whole.forces()), html! { "Elastic and damping force along the line of action." }))
-            }
+    let mut blocks = vec![Block::Lead(number(content.samples.len() as f64) + " samples. " + THINNED)];
+    if !content.plan.constant {
+        blocks.push(picture(whole.figure("Torques", whole.torques()), "Torques as asked for.".into()));
+    }
+    let gap = gap_coordinate()
+        + ", and the twist that it leaves between motor and link. Shaded: where every mesh can be free at once.";
+    blocks.push(picture(whole.figure("Gap", whole.gap()), gap));
+    blocks.push(picture(whole.figure("Mesh deflections", whole.deflections()), DEFLECTIONS.into()));
+    match whole.close() {
+        Some(close) => {
+            let caption = strong("The last 12 mesh periods, closely. ") + "Deflections and contact, sample by sample.";
+            blocks.push(picture(close.figure("The last mesh periods", close.deflections()), caption));
+            let caption = "Mesh forces over the same stretch.".into();
+            blocks.push(picture(close.figure("Mesh forces", close.forces()), caption));
+        }
+        None => {
+            let caption = "Elastic and damping force along the line of action.".into();
+            blocks.push(picture(whole.figure("Mesh forces", whole.forces()), caption));
         }
     }
+    section("Motion", blocks)
 }
 
-fn portraits(content: &Content<'_>) -> Markup {
-    let settled = content.samples.partition_point(|moment| moment.tick < content.plan.settle);
+fn portraits(content: &Content<'_>) -> Option<Block> {
+    let (plan, figures) = (content.plan, content.figures);
+    let settled = content.samples.partition_point(|moment| moment.tick < plan.settle);
     let samples = &content.samples[settled..];
     if samples.len() < 16 {
-        return html! {};
+        return None;
     }
-    let figures = content.figures;
     let points = (content.points, figures.period);
-    html! {
-        section {
-            h2 { "Phase portraits and spectrum" }
-            p.lead {
-                "Counted from " (number(1e3 * figures.settle_s)) " ms on. "
-                @if content.plan.constant { @match figures.period {
-                    Some(1) => { "The motion repeats with every mesh period." }
-                    Some(period) => { "The motion repeats after " (period) " mesh periods." }
-                    None => { "The motion does not repeat within 32 mesh periods: it is chaotic, has more than one frequency, or has not settled." }
-                } }
-            }
-            (picture(&portraits::portrait(content.plan, samples, points, Portrait::Deflection), html! {
-                "Deflection rate over deflection. Marked: the points at which the mesh phase comes round (Poincaré points), "
-                (content.points.len()) " of them."
-            }))
-            (picture(&portraits::portrait(content.plan, samples, points, Portrait::Gap), html! { "The same of the gap coordinate." }))
-            @if let Some(spectrum) = content.spectrum {
-                (picture(&portraits::spectrum(content.plan, spectrum), html! {
-                    "Hann window, about the mean. "
-                    @if let Some(ratio) = figures.non_fundamental_over_fundamental {
-                        "Beside the mesh frequency there is " (number(ratio)) " of what is at it (root of the powers)."
-                    }
-                }))
-            }
+    let repeats = match figures.period {
+        _ if !plan.constant => String::new(),
+        Some(1) => "The motion repeats with every mesh period.".to_owned(),
+        Some(period) => format!("The motion repeats after {period} mesh periods."),
+        None => {
+            "The motion does not repeat within 32 mesh periods: it is chaotic, has more than one frequency, or has \
+                 not settled."
+                .to_owned()
         }
+    };
+    let mut blocks = vec![
+        Block::Lead(text("Counted from ") + number(1e3 * figures.settle_s) + " ms on. " + repeats),
+        picture(
+            portraits::portrait(plan, samples, points, Portrait::Deflection),
+            format!(
+                "Deflection rate over deflection. Marked: the points at which the mesh phase comes round (Poincaré \
+                 points), {} of them.",
+                content.points.len()
+            )
+            .into(),
+        ),
+        picture(portraits::portrait(plan, samples, points, Portrait::Gap), "The same of the gap coordinate.".into()),
+    ];
+    if let Some(spectrum) = content.spectrum {
+        let beside = figures.non_fundamental_over_fundamental.map(|ratio| {
+            format!("Beside the mesh frequency there is {} of what is at it (root of the powers).", PAGE.write(ratio))
+        });
+        let caption = text("Hann window, about the mean. ") + beside;
+        blocks.push(picture(portraits::spectrum(plan, spectrum), caption));
     }
+    Some(section("Phase portraits and spectrum", blocks))
 }
 
-fn contacts(content: &Content<'_>) -> Markup {
-    html! {
-        section {
-            h2 { "Contact" }
-            p.lead { "Counted from tick to tick: an impact is a landing on either flank." }
-            table {
-                thead { tr {
-                    th { "Mesh" } th.number { "drive side" } th.number { "parted" } th.number { "back side" }
-                    th.number { "impacts" } th.number { "mean" } th.number { "RMS" } th.number { "peak to peak" } th.number { "peak force" }
-                } }
-                tbody { @for mesh in &content.figures.meshes { tr {
-                    td { (mesh.name) }
-                    td.number { (number(1e2 * mesh.figures.drive_side_share)) " %" }
-                    td.number { (number(1e2 * mesh.figures.separated_share)) " %" }
-                    td.number { (number(1e2 * mesh.figures.back_side_share)) " %" }
-                    td.number { (number(mesh.figures.impacts_per_s)) " /s" }
-                    td.number { (number(1e6 * mesh.figures.deflection_mean_m)) " µm" }
-                    td.number { (number(1e6 * mesh.figures.deflection_rms_m)) " µm" }
-                    td.number { (number(1e6 * mesh.figures.deflection_peak_to_peak_m)) " µm" }
-                    td.number { (number(mesh.figures.peak_force_N)) " N" }
-                } } }
-            }
-        }
-    }
+fn contacts(content: &Content<'_>) -> Block {
+    let figures = content.figures;
+    let columns = ["drive side", "parted", "back side", "impacts", "mean", "RMS", "peak to peak", "peak force"];
+    let columns = [words("Mesh")].into_iter().chain(columns.map(numbers)).collect();
+    let rows = figures.meshes.iter().map(|mesh| {
+        let one = &mesh.figures;
+        let of = |value: f64, decimals: usize, unit: &str| number_as(value, fixed(decimals)) + unit;
+        row([
+            text(&mesh.name),
+            of(1e2 * one.drive_side_share, 2, " %"),
+            of(1e2 * one.separated_share, 2, " %"),
+            of(1e2 * one.back_side_share, 2, " %"),
+            of(one.impacts_per_s, 1, " /s"),
+            of(1e6 * one.deflection_mean_m, 3, " µm"),
+            of(1e6 * one.deflection_rms_m, 3, " µm"),
+            of(1e6 * one.deflection_peak_to_peak_m, 3, " µm"),
+            of(one.peak_force_N, 1, " N"),
+        ])
+    });
+    let lead = "Counted from tick to tick: an impact is a landing on either flank.";
+    let from = number_as(figures.settle_s, fixed(4));
+    Block::Section(Section {
+        heading: "Contact".into(),
+        line: Some(text("figures are counted from ") + from + " s on"),
+        blocks: vec![
+            Block::Only(PAGES, vec![Block::Lead(lead.into())]),
+            table(columns, rows.collect()),
+            Block::Only(TERMINALS, vec![section_bare("", vec![facts(motion_facts(figures))])]),
+        ],
+        ..Section::default()
+    })
 }
 
-fn energy(content: &Content<'_>) -> Markup {
-    let Some(balance) = &content.figures.energy else { return html! {} };
+/// What a terminal says of the motion as a whole; a page says it beside the pictures.
+fn motion_facts(figures: &Figures) -> Vec<(&'static str, String)> {
+    let period = match figures.period {
+        Some(1) => "1 mesh period".to_owned(),
+        Some(period) => format!("{period} mesh periods"),
+        None => "none within 32 mesh periods".to_owned(),
+    };
+    let mut facts = vec![("period", period)];
+    if let Some(ratio) = figures.non_fundamental_over_fundamental {
+        facts.push(("spectrum", format!("beside the mesh frequency: {ratio:.4} of what is at it")));
+    }
+    if let Some(energy) = &figures.energy {
+        let [residual, dissipated] = [energy.residual_J, energy.dissipated_J].map(|work| powers_of_ten(3).write(work));
+        let share = powers_of_ten(2).write(energy.residual_over_dissipated);
+        facts.push(("energy", format!("residual {residual} J, {share} of the {dissipated} J dissipated")));
+    }
+    facts
+}
+
+fn energy(content: &Content<'_>) -> Option<Block> {
+    let balance = content.figures.energy.as_ref()?;
     let rows = [
         ("Stored energy has grown by", balance.stored_at_end_J - balance.stored_at_start_J),
         ("Drive torque less load has supplied", balance.supplied_J),
@@ -218,78 +253,71 @@ fn energy(content: &Content<'_>) -> Markup {
         ("Brought in by changing stiffness", balance.by_stiffness_J),
         ("Residual: made or lost by the scheme", balance.residual_J),
     ];
-    html! {
-        section {
-            h2 { "Balance of energy" }
-            p.lead {
-                "d/dt (kinetic + Σ K f² / 2) = T" sub { "D" } " ω" sub { "s" } " − T" sub { "L" } " ω" sub { "l" }
-                " − losses − Σ F e′ + Σ K′ f² / 2, summed over the run. The work of every tick is that of an event-located "
-                "integration from the tick’s own start, so that the residual is the scheme’s. It is "
-                (number(1e2 * balance.residual_over_dissipated)) " % of what is dissipated."
-            }
-            (picture(&judgement::energy(content.plan, content.energy), html! { "The books over the run." }))
-            table { tbody { @for (name, joules) in rows { tr { td { (name) } td.number { (number(1e3 * joules)) " mJ" } } } } }
-        }
-    }
+    let lead = format!(
+        "d/dt (kinetic + Σ K f² / 2) = T_D ω_s − T_L ω_l − losses − Σ F e′ + Σ K′ f² / 2, summed over the run. The work of \
+         every tick is that of an event-located integration from the tick’s own start, so that the residual is the \
+         scheme’s. It is {} % of what is dissipated.",
+        PAGE.write(1e2 * balance.residual_over_dissipated)
+    );
+    let rows = rows.map(|(name, joules)| row([text(name), number(1e3 * joules) + " mJ"]));
+    Some(section(
+        "Balance of energy",
+        vec![
+            Block::Lead(indexed(&lead)),
+            picture(judgement::energy(content.plan, content.energy), "The books over the run.".into()),
+            table(vec![words(""), numbers("")], rows.into()),
+        ],
+    ))
 }
 
-fn schemes(content: &Content<'_>) -> Markup {
-    let (Some(comparison), Some(until)) = (content.comparison, content.figures.compared_until_s) else {
-        return html! {};
-    };
-    let percent = |row: &super::comparison::Row, error: Option<f64>| match error {
-        _ if row.scheme == SchemeName::Reference.name() => "–".to_owned(),
-        Some(error) => format!("{} %", number(1e2 * error)),
-        None => "diverged".to_owned(),
+fn schemes(content: &Content<'_>) -> Option<Block> {
+    let (comparison, until) = (content.comparison?, content.figures.compared_until_s?);
+    let percent = |row: &SchemeRow, error: Option<f64>| match error {
+        _ if row.scheme == SchemeName::Reference.name() => text("–"),
+        Some(error) => number(1e2 * error) + " %",
+        None => text("diverged"),
     };
     let whole = content.plan.duration();
-    html! {
-        section {
-            h2 { "Schemes" }
-            p.lead {
-                "Root mean square error against the reference over the motion’s standard deviation, up to "
-                (number(1e3 * until)) " ms of " (number(1e3 * whole)) " ms"
-                @if until < 0.99 * whole { ": a millionth of the torque moves the reference itself visibly from then on" }
-                ". Cost is processor time for a simulated second over that of " code { "realtime" } ", measured on this machine in one process."
-            }
-            table {
-                thead { tr {
-                    th { "Scheme" } th { } th.number { "deflections" } th.number { "gap" } th.number { "link offset" }
-                    th.number { "cost" } th.number { "sub-steps a tick" }
-                } }
-                tbody { @for (row, track) in comparison.rows.iter().zip(&comparison.tracks) { tr {
-                    td { strong { (row.scheme) } }
-                    td.note { (track.scheme.description()) }
-                    @for error in row.errors { td.number { (percent(row, error)) } }
-                    td.number { (number(row.cost_ratio)) }
-                    td.number { @match row.substeps { Some(count) => { (count) } None => { "its own" } } }
-                } } }
-            }
-            @for figure in judgement::schemes(content.plan, comparison) {
-                (picture(&figure, html! { "The reference is the broad line; 0 dB is an error as large as the motion, −40 dB is 1 %." }))
-            }
-        }
-    }
+    let predictable = if until < 0.99 * whole {
+        ": a millionth of the torque moves the reference itself visibly from then on"
+    } else {
+        ""
+    };
+    let lead = format!(
+        "Root mean square error against the reference over the motion’s standard deviation, up to {} ms of {} \
+         ms{predictable}. Cost is processor time for a simulated second over that of {}, measured on this machine in one \
+         process.",
+        PAGE.write(1e3 * until),
+        PAGE.write(1e3 * whole),
+        SchemeName::Realtime.name()
+    );
+    let heads = ["deflections", "gap", "link offset", "cost", "sub-steps a tick"].map(numbers);
+    let columns = [words("Scheme"), notes("").only(PAGES)].into_iter().chain(heads).collect();
+    let rows = comparison.rows.iter().zip(&comparison.tracks).map(|(one, track)| {
+        let errors = one.errors.map(|error| percent(one, error));
+        let substeps = one.substeps.map_or_else(|| "its own".into(), |count| count.to_string());
+        let about = [strong(one.scheme), text(track.scheme.description())];
+        let cost = [number_as(one.cost_ratio, fixed(2)), text(substeps)];
+        row(about.into_iter().chain(errors).chain(cost))
+    });
+    let mut blocks = vec![Block::Lead(lead.into()), table(columns, rows.collect())];
+    let caption = "The reference is the broad line; 0 dB is an error as large as the motion, −40 dB is 1 %.";
+    let figures = judgement::schemes(content.plan, comparison);
+    blocks.extend(figures.into_iter().map(|figure| picture(figure, caption.into())));
+    Some(section_bare("Schemes", blocks))
 }
 
-fn origin(content: &Content<'_>) -> Markup {
-    let figures = content.figures;
+fn origin(content: &Content<'_>) -> Block {
+    let (plan, figures) = (content.plan, content.figures);
     let rows = [
         ("Joint", format!("{} ({})", figures.joint, figures.file)),
         ("Scheme", format!("{}: {}", figures.scheme, content.scheme.description())),
         ("Scalar", figures.scalar.to_owned()),
         ("Rate", format!("{} Hz", figures.tick_rate_Hz)),
         ("Torques", figures.torques.clone()),
-        ("Start", format!("{}, carrier at {} rad/s", figures.start, number(content.plan.speed))),
-        ("Mesh frequency", format!("{} Hz", number(content.plan.mesh_frequency()))),
-        ("Command", env!("CARGO_PKG_VERSION").to_owned()),
+        ("Start", format!("{}, carrier at {} rad/s", figures.start, PAGE.write(plan.speed))),
+        ("Mesh frequency", format!("{} Hz", PAGE.write(plan.mesh_frequency()))),
+        ("Command", VERSION.to_owned()),
     ];
-    html! {
-        section {
-            h2 { "What ran" }
-            table.identity { tbody { @for (name, value) in rows { tr { th { (name) } td { (value) } } } } }
-            h3 { "To run exactly this again" }
-            pre { (content.replay) }
-        }
-    }
+    section("What ran", vec![facts(rows), Block::Again(content.replay.to_owned())])
 }

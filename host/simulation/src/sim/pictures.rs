@@ -8,18 +8,15 @@ use super::moment::{Moment, Teeth};
 use super::plan::Plan;
 use report::contacts;
 use report::contacts::Contact;
-use report::plot::ink::{Ink, LINES};
-use report::plot::mark::Mark;
+use report::panels::{self, Points, line};
+use report::plot::Figure;
+use report::plot::ink::Ink;
 use report::plot::panel::Panel;
-use report::plot::unit::{MILLISECONDS, SECONDS, TORQUE, Unit, greatest};
-use report::plot::{Figure, HorizontalAxis, Shape};
+use report::plot::unit::{FORCE, Unit, greatest};
 
-/// Width of an ordinary line [px].
-pub(super) const LINE: f64 = 1.4;
-/// Lines closer than this part of the greatest value cannot be told apart.
-const ALIKE: f64 = 0.01;
 /// Mesh periods shown where every one of them is to be seen.
 const CLOSE_PERIODS: f64 = 12.0;
+
 /// A stretch of a run.
 pub struct View<'a> {
     /// Whose.
@@ -57,32 +54,16 @@ impl<'a> View<'a> {
     /// A figure over the time of this view.
     pub fn figure(&self, title: &str, panels: Vec<Panel>) -> Figure {
         let title = format!("{title} of joint {}", self.joint().name);
-        let unit = if self.range.1 < 0.5 { MILLISECONDS } else { SECONDS };
-        Figure {
-            runs: HorizontalAxis::Linear,
-            shape: Shape::default(),
-            title,
-            axis: "time".into(),
-            unit,
-            range: self.range,
-            panels,
-            note: String::new(),
-        }
+        Figure::over_time(title, Unit::of_time(self.range.1), self.range, panels)
     }
 
-    fn line(&self, value: impl Fn(&Moment) -> f64, ink: Ink, label: &str) -> Mark {
-        let points = self.samples.iter().map(|moment| (moment.time, value(moment))).collect();
-        Mark::Line { points, ink, label: label.into(), width: LINE }
+    fn points(&self, value: impl Fn(&Moment) -> f64) -> Points {
+        self.samples.iter().map(|moment| (moment.time, value(moment))).collect()
     }
 
     /// Drive and load torque; steps where they change.
     pub fn torques(&self) -> Vec<Panel> {
-        let drive = self.line(|moment| moment.drive, Ink::First, "");
-        let load = self.line(|moment| moment.load, Ink::Second, "");
-        vec![
-            Panel { height: 150, ..Panel::lines("Drive torque on the sun shaft", TORQUE, vec![drive]) },
-            Panel { height: 150, ..Panel::lines("Load torque that brakes the link", TORQUE, vec![load]) },
-        ]
+        panels::torques(self.points(|moment| moment.drive), self.points(|moment| moment.load))
     }
 
     /// The gap coordinate over its band, the twist that it leaves at the link, and the wind-up if there is any.
@@ -91,48 +72,22 @@ impl<'a> View<'a> {
         let half_backlash =
             |planet: usize| joint.sun_planet.half_backlash[planet] + joint.ring_planet.half_backlash[planet];
         let reach = (0..joint.geometry.planets).map(half_backlash).fold(f64::INFINITY, f64::min);
-        let most = greatest(self.samples.iter().map(|moment| moment.gap)).max(reach);
-        let band = Mark::Band { range: (-reach, reach), label: "free: no tooth need touch (4b)".into() };
-        let gap = self.line(|moment| moment.gap, Ink::First, "");
         let half = reach / joint.geometry.carrier_base_radius() / 2.0;
-        let twist = |moment: &Moment| moment.twist(joint);
-        let unit = Unit::of_angle(greatest(self.samples.iter().map(twist)).max(half));
-        let lost = Mark::Band { range: (-half, half), label: "lost motion of the teeth".into() };
-        let mut panels = vec![
-            Panel::lines("Gap coordinate", Unit::of_length(most), vec![band, gap]),
-            Panel::lines(
-                "Twist: motor angle over ratio, less link angle",
-                unit,
-                vec![lost, self.line(twist, Ink::Third, "")],
-            ),
-        ];
-        let most = greatest(self.samples.iter().map(|moment| moment.wind_up));
-        if joint.compliance.is_some() && most > 0.0 {
-            let line = self.line(|moment| moment.wind_up, Ink::Fourth, "");
-            let title = "Wind-up of carrier against link, along the line of action";
-            panels.push(Panel { height: 150, ..Panel::lines(title, Unit::of_length(most), vec![line]) });
+        let gap = line(self.points(|moment| moment.gap), Ink::First, "");
+        let twist = line(self.points(|moment| moment.twist(joint)), Ink::Third, "");
+        let mut all = vec![panels::gap((-reach, reach), vec![gap]), panels::twist(half, vec![twist])];
+        if joint.compliance.is_some() {
+            all.extend(panels::wind_up(self.points(|moment| moment.wind_up)));
         }
-        panels
+        all
     }
 
     /// Deflections of both families with the contact of every mesh.
     pub fn deflections(&self) -> Vec<Panel> {
         let joint = self.joint();
-        let families = [&joint.sun_planet.half_backlash, &joint.ring_planet.half_backlash];
-        let all = self.samples.iter().flat_map(|moment| moment.teeth.iter().map(|teeth| teeth.deflection));
-        let most = greatest(all.chain(families.iter().flat_map(|list| list.iter().copied())));
-        let titles = ["Deflection, sun–planet meshes", "Deflection, ring–planet meshes"];
-        let mut panels: Vec<Panel> = titles
-            .into_iter()
-            .zip(families)
-            .enumerate()
-            .map(|(kind, (title, half_backlash))| {
-                let least = half_backlash.iter().copied().fold(f64::INFINITY, f64::min);
-                let mut marks = vec![Mark::Band { range: (-least, least), label: "parted (2b)".into() }];
-                marks.extend(self.family(kind, |teeth| teeth.deflection, ALIKE * most));
-                Panel::lines(title, Unit::of_length(most), marks)
-            })
-            .collect();
+        let half_backlash: [&[f64]; 2] = [&joint.sun_planet.half_backlash, &joint.ring_planet.half_backlash];
+        let [sun, ring] = self.of_planets(|teeth| teeth.deflection);
+        let mut panels = panels::deflections([(sun, half_backlash[0]), (ring, half_backlash[1])]);
         let times: Vec<f64> = self.samples.iter().map(|moment| moment.time).collect();
         panels.push(contacts::panel(&times, &contact_columns(self.samples), self.range));
         panels
@@ -140,34 +95,19 @@ impl<'a> View<'a> {
 
     /// Forces of the sun-planet and ring-planet meshes.
     pub fn forces(&self) -> Vec<Panel> {
-        let most = greatest(self.samples.iter().flat_map(|moment| moment.teeth.iter().map(|teeth| teeth.force)));
-        let unit = if most < 2e3 { Unit { factor: 1.0, name: "N" } } else { Unit { factor: 1e-3, name: "kN" } };
-        ["Mesh force, sun–planet", "Mesh force, ring–planet"]
-            .into_iter()
-            .enumerate()
-            .map(|(kind, title)| Panel::lines(title, unit, self.family(kind, |teeth| teeth.force, ALIKE * most)))
-            .collect()
+        let kinds = self.of_planets(|teeth| teeth.force);
+        let most = greatest(kinds.iter().flatten().flatten().map(|point| point.1));
+        let unit = if most < 2e3 { FORCE } else { Unit { factor: 1e-3, name: "kN" } };
+        let titles = ["Mesh force, sun–planet", "Mesh force, ring–planet"];
+        let panel = |(title, lines)| Panel::lines(title, unit, panels::planets(lines, most));
+        titles.into_iter().zip(kinds).map(panel).collect()
     }
 
-    /// One line for each planet, or one for all that are alike.
-    fn family(&self, kind: usize, value: fn(&Teeth) -> f64, distance: f64) -> Vec<Mark> {
+    /// A line of each planet, sun-planet and ring-planet.
+    fn of_planets(&self, value: fn(&Teeth) -> f64) -> [Vec<Points>; 2] {
         let planets = self.joint().geometry.planets;
-        let first = kind * planets;
-        let near = |moment: &Moment| {
-            let one = value(&moment.teeth[first]);
-            moment.teeth[first..first + planets].iter().all(|teeth| (value(teeth) - one).abs() <= distance)
-        };
-        let alike = self.samples.iter().all(near);
-        (0..if alike { 1 } else { planets })
-            .map(|planet| {
-                let label =
-                    if alike { format!("all {planets} planets, alike") } else { format!("planet {}", planet + 1) };
-                let points = self.samples.iter().map(|m| (m.time, value(&m.teeth[first + planet]))).collect();
-                // Lines may lie on each other: wider ones below show that they are there.
-                let width = LINE + if alike { 0.0 } else { (planets - 1 - planet) as f64 };
-                Mark::Line { points, ink: LINES[planet % LINES.len()], label, width }
-            })
-            .collect()
+        let line = |mesh: usize| self.points(|moment| value(&moment.teeth[mesh]));
+        [(0..planets).map(line).collect(), (planets..2 * planets).map(line).collect()]
     }
 }
 

@@ -16,7 +16,7 @@ use super::start::StartName;
 use board::profile::{FASTEST, Profile, STRONGEST};
 use joint_file::named::Loaded;
 use report::failure::{Failure, Outcome};
-use report::output::typed;
+use report::number::TYPED;
 
 /// Rate of the board, and of any run without a reason for another [Hz].
 const BOARD_RATE: u32 = 20_000;
@@ -77,7 +77,7 @@ impl Plan {
             value => Ok(value),
         };
         let within = |what: &str, value: Option<f64>, most: f64, unit: &str| match given(what, value)? {
-            Some(value) if value.abs() > most => Err(Failure::new(format!("--{what} is {}", typed(value)))
+            Some(value) if value.abs() > most => Err(Failure::new(format!("--{what} is {}", TYPED.write(value)))
                 .with_help(format!("it may be from -{most} to {most} {unit}: check the unit"))),
             value => Ok(value),
         };
@@ -180,8 +180,12 @@ fn default_rate(frequency: Option<f64>) -> u32 {
 fn count(seconds: f64, tick_rate: u32) -> Outcome<u32> {
     let ticks = seconds * f64::from(tick_rate);
     if !(1.0..=MOST_TICKS.min(f64::from(u32::MAX / 2))).contains(&ticks) {
-        return Err(Failure::new(format!("a run of {} s at {tick_rate} Hz is {} ticks", typed(seconds), typed(ticks)))
-            .with_help("give a duration of at least one tick and at most 2^31 ticks, such as --duration 1"));
+        return Err(Failure::new(format!(
+            "a run of {} s at {tick_rate} Hz is {} ticks",
+            TYPED.write(seconds),
+            TYPED.write(ticks)
+        ))
+        .with_help("give a duration of at least one tick and at most 2^31 ticks, such as --duration 1"));
     }
     Ok(ticks.round() as u32)
 }

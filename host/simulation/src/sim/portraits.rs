@@ -2,15 +2,15 @@
 //! and amplitudes are is found by `statistics` and `spectrum`.
 
 use super::moment::Moment;
-use super::pictures::LINE;
 use super::plan::Plan;
-use super::spectrum::Spectrum;
 use super::statistics::Point;
+use report::panels::line;
+use report::plot::Figure;
 use report::plot::ink::Ink;
 use report::plot::mark::Mark;
 use report::plot::panel::Panel;
-use report::plot::unit::{Unit, axis_range, greatest};
-use report::plot::{Figure, HorizontalAxis, Shape};
+use report::plot::unit::{DECIBELS, Unit, axis_range, greatest};
+use report::spectrum::Spectrum;
 
 /// Samples drawn of a phase portrait under constant torques: more only blacken it.
 const PORTRAIT: usize = 6000;
@@ -23,9 +23,6 @@ const DOT: [f64; 2] = [0.0085, 0.024];
 const SMALL_DOT: [f64; 2] = [0.0042, 0.012];
 /// Periods that are shown by large points.
 const FEW: usize = 8;
-
-/// Decibels.
-pub(super) const DECIBELS: Unit = Unit { factor: 1.0, name: "dB" };
 
 /// Which motion a phase portrait shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -89,16 +86,9 @@ pub fn portrait(
         Mark::Line { points: curve, ink: Ink::Bar, label: String::new(), width: 1.0 },
         Mark::Boxes { boxes, ink: Ink::Limit, label: label.into() },
     ];
-    Figure {
-        runs: HorizontalAxis::Linear,
-        shape: Shape::default(),
-        title: format!("{title} of joint {}", plan.parameters().name),
-        axis: axis.into(),
-        unit: Unit::of_length(greatest([range.0, range.1].into_iter())),
-        range,
-        note: String::new(),
-        panels: vec![Panel { height: 380, ..Panel::lines(format!("{title}: rate"), unit, marks) }],
-    }
+    let panel = Panel { height: 380, ..Panel::lines(format!("{title}: rate"), unit, marks) };
+    let across = Unit::of_length(greatest([range.0, range.1].into_iter()));
+    Figure::new(format!("{title} of joint {}", plan.parameters().name), axis, across, range, vec![panel])
 }
 
 /// Leaves out what lies near the point before: rest is one point, and quick motion keeps every sample.
@@ -134,17 +124,9 @@ pub fn spectrum(plan: &Plan, spectrum: &Spectrum) -> Figure {
     if mesh > 0.0 && mesh < end {
         marks.push(Mark::Deadline { at: mesh, label: "mesh frequency".into() });
     }
-    marks.push(Mark::Line { points, ink: Ink::First, label: String::new(), width: LINE });
+    marks.push(line(points, Ink::First, ""));
     let unit = if end < 2e3 { Unit { factor: 1.0, name: "Hz" } } else { Unit { factor: 1e-3, name: "kHz" } };
     let title = "Spectrum of the sun–planet deflection of planet 1";
-    Figure {
-        runs: HorizontalAxis::Linear,
-        shape: Shape::default(),
-        title: format!("{title} of joint {}", plan.parameters().name),
-        axis: "frequency".into(),
-        unit,
-        range: (0.0, end),
-        note: String::new(),
-        panels: vec![Panel { height: 260, ..Panel::lines(format!("{title}, over 1 µm"), DECIBELS, marks) }],
-    }
+    let panel = Panel { height: 260, ..Panel::lines(format!("{title}, over 1 µm"), DECIBELS, marks) };
+    Figure::new(format!("{title} of joint {}", plan.parameters().name), "frequency", unit, (0.0, end), vec![panel])
 }

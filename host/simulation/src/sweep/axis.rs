@@ -2,7 +2,7 @@
 //! file. How axes make a grid is `grid`'s business.
 
 use report::failure::{Failure, Outcome};
-use report::output::typed;
+use report::number::TYPED;
 
 /// More values than this on one axis are a slip of the keyboard.
 pub const MOST_VALUES: f64 = 1e6;
@@ -99,7 +99,8 @@ fn steps(vary: &str, texts: [&str; 3]) -> Outcome<Vec<String>> {
     // Long ways lose their last digits in the division.
     let count = (way * (1.0 + f64::EPSILON * 4.0) + ROUNDING).floor() + 1.0;
     if count > MOST_VALUES {
-        let message = format!("--vary {vary}: {} values on one axis, at most {MOST_VALUES} can be swept", typed(count));
+        let message =
+            format!("--vary {vary}: {} values on one axis, at most {MOST_VALUES} can be swept", TYPED.write(count));
         let help = coarser(from, to, 1000.0)
             .map_or_else(|| SHAPE.to_owned(), |step| format!("a step of {step} gives about a thousand"));
         return Err(Failure::new(message).with_help(help));

@@ -10,8 +10,8 @@ use std::time::Duration;
 use model_core::numbers::digest;
 
 use super::grid::Shard;
-use crate::sim::files::unwritten;
 use report::failure::{Failure, Outcome};
+use report::write::unwritten;
 
 /// Finished points by number: status and values, as they stand in the result.
 pub type Points = BTreeMap<u64, String>;

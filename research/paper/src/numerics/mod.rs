@@ -1,10 +1,10 @@
 //! Numerics for studies of periodically driven joints: motion by Taylor series from contact event to contact event,
-//! Poincare sections, Lyapunov exponents, attractors and spectra. Joint files, plans, pictures and records are left to
+//! Poincare sections, Lyapunov exponents, attractors. Joint files, plans, pictures and records are left to
 //! the commands that study something.
 //!
 //! `system` makes the equations dimensionless, `zone` says which branch of the force law each mesh is on, `series`
 //! expands motion and tangent vectors, `fall` finds the moment at which a branch ends, `motion` strings the pieces
-//! together; `lyapunov`, `attractor`, `signal` and `spectrum` look at what comes out, and `shooting` shortens the way to
+//! together; `lyapunov`, `attractor` and `signal` look at what comes out, and `shooting` shortens the way to
 //! motions that are reached slowly.
 
 pub mod attractor;
@@ -14,6 +14,5 @@ pub mod motion;
 mod series;
 mod shooting;
 pub mod signal;
-pub mod spectrum;
 pub mod system;
 mod zone;

@@ -2,10 +2,10 @@
 
 use super::{plain, points};
 use crate::record::{DeadZoneError, DeadZoneFigure};
+use report::number::PAGE;
 use report::plot::ink::{Ink, LINES};
 use report::plot::mark::Mark;
 use report::plot::panel::{Panel, VerticalAxis};
-use report::plot::unit::figure as number;
 use report::plot::{Figure, HorizontalAxis, Shape};
 
 /// Half the page.
@@ -21,20 +21,14 @@ pub fn curves(data: &DeadZoneFigure) -> Figure {
     };
     let mut marks = vec![line(&data.sharp, Ink::Reference, "eq. 12".into(), 5.0)];
     for (smoothed, ink) in data.smoothed.iter().zip([LINES[0], LINES[2], LINES[3]]) {
-        marks.push(line(&smoothed.force, ink, format!("σ = {}", number(smoothed.sharpness)), 1.5));
+        marks.push(line(&smoothed.force, ink, format!("σ = {}", PAGE.write(smoothed.sharpness)), 1.5));
     }
     marks.push(line(&data.printed, Ink::Limit, "as printed".into(), 1.5));
     let ends = (data.deflection.first().copied().unwrap_or(-1.0), data.deflection.last().copied().unwrap_or(1.0));
-    Figure {
-        note: String::new(),
-        title: "Dead zone, sharp, smoothed and as printed".into(),
-        axis: format!("deflection x over b_c; half-backlash b = {}", number(data.half_backlash)),
-        unit: plain(""),
-        range: ends,
-        runs: HorizontalAxis::Linear,
-        shape: HALF,
-        panels: vec![Panel { height: 290, ..Panel::lines("f(x, b)", plain("f"), marks) }],
-    }
+    let axis = format!("deflection x over b_c; half-backlash b = {}", PAGE.write(data.half_backlash));
+    let panel = Panel { height: 290, ..Panel::lines("f(x, b)", plain("f"), marks) };
+    let title = "Dead zone, sharp, smoothed and as printed";
+    Figure { shape: HALF, ..Figure::new(title, axis, plain(""), ends, vec![panel]) }
 }
 
 /// Largest distance from the sharp dead zone by sharpness.
@@ -55,14 +49,8 @@ pub fn errors(data: &DeadZoneFigure) -> Figure {
         axis: VerticalAxis::Decades { from: -5, to: 1 },
         ..Panel::lines("Largest error of f", plain("distance from eq. 12"), marks)
     };
-    Figure {
-        note: String::new(),
-        title: "Largest error of the smoothed dead zone by sharpness".into(),
-        axis: "sharpness σ".into(),
-        unit: plain(""),
-        range: (sharpness(data.errors.first()), sharpness(data.errors.last())),
-        runs: HorizontalAxis::Decades,
-        shape: HALF,
-        panels: vec![panel],
-    }
+    let range = (sharpness(data.errors.first()), sharpness(data.errors.last()));
+    let title = "Largest error of the smoothed dead zone by sharpness";
+    let figure = Figure::new(title, "sharpness σ", plain(""), range, vec![panel]);
+    Figure { runs: HorizontalAxis::Decades, shape: HALF, ..figure }
 }

@@ -3,11 +3,11 @@
 use super::{Picture, plain};
 use crate::record::{ClassRecord, Reading, Sweep, SweepPoint};
 use report::folder::file_part;
+use report::plot::Figure;
 use report::plot::ink::Ink;
 use report::plot::mark::Mark;
 use report::plot::panel::Panel;
 use report::plot::unit::Unit;
-use report::plot::{Figure, HorizontalAxis, Shape};
 
 /// Heights that can be told apart.
 const ROWS: f64 = 350.0;
@@ -29,19 +29,12 @@ pub fn diagram(reading: &Reading, sweep: &Sweep) -> Picture {
     lower.push(line(vec![(ends.0 - air, 0.0), (ends.1 + air, 0.0)], Ink::Axis, 1.2));
     let curve = sweep.points.iter().map(|point| (point.half_backlash_m, point.exponent)).collect();
     lower.push(line(curve, Ink::Fourth, 1.6));
-    let figure = Figure {
-        note: String::new(),
-        title: format!("Bifurcation diagram of {}, start {}", reading.joint, sweep.start),
-        axis: "half-backlash b".into(),
-        unit: MICROMETRES,
-        range: (ends.0 - air, ends.1 + air),
-        runs: HorizontalAxis::Linear,
-        shape: Shape::default(),
-        panels: vec![
-            Panel { height: 380, ..Panel::lines("X_sp at the Poincaré sections", plain("X_sp"), upper) },
-            Panel { height: 190, ..Panel::lines("Largest Lyapunov exponent", plain("1 / τ"), lower) },
-        ],
-    };
+    let title = format!("Bifurcation diagram of {}, start {}", reading.joint, sweep.start);
+    let panels = vec![
+        Panel { height: 380, ..Panel::lines("X_sp at the Poincaré sections", plain("X_sp"), upper) },
+        Panel { height: 190, ..Panel::lines("Largest Lyapunov exponent", plain("1 / τ"), lower) },
+    ];
+    let figure = Figure::new(title, "half-backlash b", MICROMETRES, (ends.0 - air, ends.1 + air), panels);
     Picture { name: format!("bifurcation-{}-{}", file_part(&reading.joint), sweep.start), figure }
 }
 

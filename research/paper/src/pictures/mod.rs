@@ -10,6 +10,7 @@ pub use diagram::diagram;
 pub use regimes::regime;
 
 use super::record::StudyRecord;
+use report::number::PAGE;
 use report::plot::Figure;
 use report::plot::unit::Unit;
 
@@ -29,6 +30,11 @@ const fn plain(name: &'static str) -> Unit {
 /// Points of two columns.
 fn points(across: &[f64], up: &[f64]) -> Vec<(f64, f64)> {
     across.iter().copied().zip(up.iter().copied()).collect()
+}
+
+/// b in micrometres, without the noise of the way to metres and back.
+pub fn micrometres(length: f64) -> String {
+    PAGE.write((length * 1e9).round() / 1e3)
 }
 
 /// Fig. 3.

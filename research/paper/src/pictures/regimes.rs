@@ -1,13 +1,13 @@
 //! Figs 5 to 8: time history, phase portrait with Poincare points, and spectrum of X_sp.
 
-use super::{Picture, plain, points};
+use super::{Picture, micrometres, plain, points};
 use crate::record::{AttractorRecord, ClassRecord, Reading};
 use report::folder::file_part;
 use report::plot::ink::Ink;
 use report::plot::mark::Mark;
 use report::plot::panel::{Panel, VerticalAxis};
-use report::plot::unit::{axis_range, figure as number};
-use report::plot::{Figure, HorizontalAxis, Shape};
+use report::plot::unit::axis_range;
+use report::plot::{Figure, Shape};
 
 /// Height of each of the three [px].
 const HEIGHT: i32 = 250;
@@ -20,8 +20,7 @@ const HIGHEST: f64 = 4.5;
 
 /// The three pictures of one attractor.
 pub fn regime(reading: &Reading, attractor: &AttractorRecord) -> [Picture; 3] {
-    // Micrometres typed in decimals come back with rounding noise.
-    let b = number((attractor.half_backlash_m * 1e9).round() / 1e3);
+    let b = micrometres(attractor.half_backlash_m);
     let name = |what: &str| format!("attractor-{}-b{}-{what}", file_part(&reading.joint), file_part(&b));
     [
         Picture { name: name("history"), figure: history(attractor, &b) },
@@ -31,18 +30,8 @@ pub fn regime(reading: &Reading, attractor: &AttractorRecord) -> [Picture; 3] {
 }
 
 fn figure(title: String, axis: &str, range: (f64, f64), width: i32, panel: Panel) -> Figure {
-    let shape = Shape { width, left: 58 };
     let panels = vec![Panel { height: HEIGHT, ..panel }];
-    Figure {
-        note: String::new(),
-        title,
-        axis: axis.to_owned(),
-        unit: plain(""),
-        range,
-        runs: HorizontalAxis::Linear,
-        shape,
-        panels,
-    }
+    Figure { shape: Shape { width, left: 58 }, ..Figure::new(title, axis, plain(""), range, panels) }
 }
 
 fn history(attractor: &AttractorRecord, b: &str) -> Figure {

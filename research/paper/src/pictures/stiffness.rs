@@ -2,10 +2,10 @@
 
 use super::{plain, points};
 use crate::record::StiffnessFigure;
+use report::plot::Figure;
 use report::plot::ink::Ink;
 use report::plot::mark::Mark;
 use report::plot::panel::Panel;
-use report::plot::{Figure, HorizontalAxis, Shape};
 
 /// The picture.
 pub fn figure(data: &StiffnessFigure) -> Figure {
@@ -21,14 +21,6 @@ pub fn figure(data: &StiffnessFigure) -> Figure {
         line(&data.first_harmonic, Ink::First, "first harmonic: eq. 7", 2.2),
     ];
     let panel = Panel { height: 240, ..Panel::lines("Mesh stiffness over its mean", plain("K / Kₘ"), marks) };
-    Figure {
-        note: String::new(),
-        title: "Mesh stiffness over two mesh periods".into(),
-        axis: "mesh periods".into(),
-        unit: plain(""),
-        range: (0.0, data.phase.last().copied().unwrap_or(1.0)),
-        runs: HorizontalAxis::Linear,
-        shape: Shape::default(),
-        panels: vec![panel],
-    }
+    let range = (0.0, data.phase.last().copied().unwrap_or(1.0));
+    Figure::new("Mesh stiffness over two mesh periods", "mesh periods", plain(""), range, vec![panel])
 }

@@ -166,7 +166,7 @@ fn an_independent_integrator_finds_the_same_motion() {
         &["l1", "--b", "0,60", "--grid", "0:0:1", "--omega", "0.8"],
     ] {
         let plan = plan(words).expect("a good plan");
-        let record = paper::study(&plan, &paper::Progress::new()).expect("it runs");
+        let record = paper::study(&plan, &report::progress::Progress::new()).expect("it runs");
         for found in &record.readings[0].attractors {
             let distance = found.reference_distance.expect("the reference takes this joint");
             assert!(distance < 1e-8, "{words:?}, b = {}: {distance}", found.half_backlash_m);

@@ -1,7 +1,8 @@
 //! Where set P changes its class, from rest and carried, and that the number of threads changes nothing.
 
 use paper::numerics::attractor::Class;
-use paper::{ClassRecord, Progress, StudyRecord, study};
+use paper::{ClassRecord, StudyRecord, study};
+use report::progress::Progress;
 
 use super::{SHORT, from_rest, plan, subject};
 

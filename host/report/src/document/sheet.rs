@@ -1,0 +1,36 @@
+//! A document of names and values under headings, put together fact by fact.
+
+use std::fmt::Display;
+
+use super::blocks::{Block, Document, Section, section_everywhere};
+use super::text::Text;
+
+/// Such a document as far as it has come.
+pub struct Sheet(Document);
+
+impl Sheet {
+    /// With nothing but what it is about.
+    pub fn new(about: impl Into<Text>) -> Self {
+        let heading = about.into();
+        Self(Document { line: heading.clone(), heading, ..Document::default() })
+    }
+
+    /// A heading; what follows stands below it.
+    pub fn heading(&mut self, text: &str) {
+        self.0.blocks.push(section_everywhere(text, vec![Block::Facts(Vec::new())]));
+    }
+
+    /// A name and its value, below the last heading.
+    pub fn row(&mut self, name: &str, value: impl Display) {
+        if let Some(Block::Section(Section { blocks, .. })) = self.0.blocks.last_mut()
+            && let Some(Block::Facts(rows)) = blocks.last_mut()
+        {
+            rows.push((name.into(), value.to_string().into()));
+        }
+    }
+
+    /// All of it.
+    pub fn document(self) -> Document {
+        self.0
+    }
+}

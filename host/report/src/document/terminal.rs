@@ -1,0 +1,327 @@
+//! A document as lines for a terminal: no colours, so that a terminal, a file and a log show the same, and none of the
+//! signs that a terminal may not have. Pictures and tiles are left to pages.
+
+use std::fmt::Write as _;
+
+use super::blocks::{Align, Block, Checks, Document, Medium, Notice, Section, Table};
+use super::text::{Span, Text};
+use crate::checks::{Check, Source, Verdict};
+use crate::number::TERMINAL;
+
+/// Width of the column of verdicts.
+const VERDICTS: usize = 8;
+/// Width of the column of names below a heading at least, so that sheets of one kind look alike.
+const NAMES: usize = 28;
+/// Width of a line of sentences.
+const LINE: usize = 120;
+/// Between two columns.
+const GAP: &str = "  ";
+
+/// The whole text, ending with a newline.
+pub fn terminal(document: &Document) -> String {
+    let mut page = Page { text: String::new(), names: longest_name(&document.blocks), headed: false };
+    page.line(&plain(&document.line));
+    page.blocks(&document.blocks);
+    page.text.truncate(page.text.trim_end_matches('\n').len());
+    if !page.text.is_empty() {
+        page.text.push('\n');
+    }
+    page.text
+}
+
+/// The text as a terminal shows it.
+pub fn plain(text: &Text) -> String {
+    text.0.iter().map(span).collect()
+}
+
+fn span(span: &Span) -> String {
+    match span {
+        Span::Plain(text)
+        | Span::Strong(text)
+        | Span::Quiet(text)
+        | Span::Code(text)
+        | Span::Whole(text)
+        | Span::Inked(text, _)
+        | Span::Mark(_, text)
+        | Span::Link { shown: text, .. } => typed(text),
+        Span::Sub(text) => format!("_{}", typed(text)),
+        Span::Number { value, terminal } => terminal.write(*value),
+        Span::Emulated => " EMULATED".to_owned(),
+        Span::Break => " ".to_owned(),
+    }
+}
+
+/// Signs as one types them.
+fn typed(text: &str) -> String {
+    const TYPED: [(&str, &str); 10] = [
+        ("± ", "+- "),
+        ("µ", "u"),
+        ("…", ".."),
+        ("–", "-"),
+        ("−", "-"),
+        ("·", " "),
+        ("≤", "<="),
+        ("≥", ">="),
+        ("\u{202f}", ""),
+        ("’", "'"),
+    ];
+    TYPED.iter().fold(text.to_owned(), |text, (printed, typed)| text.replace(printed, typed))
+}
+
+/// Width of the longest name of all facts.
+fn longest_name(blocks: &[Block]) -> usize {
+    let longest = |block: &Block| match block {
+        Block::Facts(rows) => rows.iter().map(|(name, _)| plain(name).chars().count()).max().unwrap_or(0),
+        Block::Section(part) if part.line.is_some() => longest_name(&part.blocks),
+        Block::Only(media, parts) if media.contains(&Medium::Terminal) => longest_name(parts),
+        _ => 0,
+    };
+    blocks.iter().map(longest).max().unwrap_or(0)
+}
+
+/// The text so far.
+struct Page {
+    text: String,
+    /// Width of the column of names.
+    names: usize,
+    /// Within a section that has its heading.
+    headed: bool,
+}
+
+impl Page {
+    fn line(&mut self, line: &str) {
+        let line = line.trim_end();
+        if !line.is_empty() {
+            self.text.push_str(line);
+            self.text.push('\n');
+        }
+    }
+
+    fn sentences(&mut self, text: &str) {
+        let mut line = String::new();
+        for word in text.split_whitespace() {
+            if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > LINE {
+                self.line(&std::mem::take(&mut line));
+            }
+            if !line.is_empty() {
+                line.push(' ');
+            }
+            line.push_str(word);
+        }
+        self.line(&line);
+    }
+
+    /// One empty line, unless there is one or nothing yet.
+    fn blank(&mut self) {
+        if !self.text.is_empty() && !self.text.ends_with("\n\n") {
+            self.text.push('\n');
+        }
+    }
+
+    fn blocks(&mut self, blocks: &[Block]) {
+        for block in blocks {
+            self.block(block);
+        }
+    }
+
+    fn block(&mut self, block: &Block) {
+        match block {
+            Block::Section(part) => self.section(part),
+            Block::Heading(text) | Block::Paragraph(text) | Block::Note(text) => self.line(&plain(text)),
+            Block::Lead(text) => self.sentences(&plain(text)),
+            Block::Notice(notice) => self.notice(notice),
+            Block::Facts(rows) => {
+                let (indent, width) = if self.headed { (GAP, self.names.max(NAMES)) } else { ("", self.names) };
+                for (name, value) in rows {
+                    self.line(&format!("{indent}{:width$}{GAP}{}", plain(name), plain(value)));
+                }
+            }
+            Block::Table(table) => {
+                self.blank();
+                self.table(table);
+                self.blank();
+            }
+            Block::Checks(table) => self.text.push_str(&checks(table)),
+            Block::Again(command) => self.line(&format!("{:VERDICTS$} {command}", "again:")),
+            Block::List(items) => items.iter().for_each(|item| self.line(&format!("- {}", plain(item)))),
+            Block::Details(part) => {
+                self.blank();
+                self.line(&format!("{}:", plain(&part.summary)));
+                for block in &part.blocks {
+                    match block {
+                        Block::Table(table) => self.table(table),
+                        other => self.block(other),
+                    }
+                }
+                self.blank();
+            }
+            Block::Columns(parts) => self.blocks(parts),
+            Block::Only(media, parts) if media.contains(&Medium::Terminal) => self.blocks(parts),
+            Block::Only(..) | Block::Tiles(_) | Block::Picture(_) => {}
+        }
+    }
+
+    fn section(&mut self, part: &Section) {
+        let Some(line) = &part.line else { return };
+        self.blank();
+        self.line(&plain(line));
+        let outside = std::mem::replace(&mut self.headed, !line.is_empty());
+        self.blocks(&part.blocks);
+        self.headed = outside;
+    }
+
+    /// The strong word at its beginning stands in the column of verdicts.
+    fn notice(&mut self, notice: &Notice) {
+        let line = match notice.text.0.as_slice() {
+            [word @ Span::Strong(_), rest @ ..] => {
+                let rest: String = rest.iter().map(span).collect();
+                format!("{:VERDICTS$} {}", span(word), rest.trim_start())
+            }
+            all => all.iter().map(span).collect(),
+        };
+        self.line(&line);
+        for block in &notice.more {
+            match block {
+                Block::Paragraph(text) => self.line(&format!("{:VERDICTS$} {}", "", plain(text))),
+                other => self.block(other),
+            }
+        }
+    }
+
+    fn table(&mut self, table: &Table) {
+        let shown = table.shown(Medium::Terminal);
+        let heads = shown.iter().map(|(_, column)| match column.unit {
+            "" => plain(&column.heading),
+            unit => format!("{} [{}]", plain(&column.heading), typed(unit)),
+        });
+        let heads: Vec<String> = heads.collect();
+        // Columns that every row of this table has; a cell that goes over all that are left has no part in their widths.
+        let rows: Vec<(Vec<String>, bool)> = table
+            .rows
+            .iter()
+            .map(|row| {
+                let cells = shown.iter().filter_map(|(index, _)| row.cells.get(*index)).map(plain);
+                (cells.collect(), row.spans)
+            })
+            .collect();
+        let width = |place: usize| {
+            let cells = rows.iter().filter_map(|(cells, spans)| {
+                let own = !spans || place + 1 < cells.len();
+                cells.get(place).filter(|_| own).map(|cell| cell.chars().count())
+            });
+            cells.chain([heads[place].chars().count()]).max().unwrap_or(0)
+        };
+        let widths: Vec<usize> = (0..shown.len()).map(width).collect();
+        let line = |cells: &[String]| {
+            let cells = cells.iter().zip(&widths).zip(&shown).map(|((cell, width), (_, column))| match column.align {
+                Align::Left | Align::Note => format!("{cell:<width$}"),
+                Align::Centre => format!("{cell:^width$}"),
+                Align::Right => format!("{cell:>width$}"),
+            });
+            cells.collect::<Vec<_>>().join(GAP)
+        };
+        self.line(&line(&heads));
+        for (cells, _) in &rows {
+            self.line(&line(cells));
+        }
+    }
+}
+
+/// Verdict, name, figure and bound of each check; why it failed below it.
+pub(super) fn checks(table: &Checks) -> String {
+    let width = table.checks.iter().map(|check| check.name.chars().count()).max().unwrap_or(0);
+    let mut text = String::new();
+    for check in &table.checks {
+        let figure = check.figure.map_or_else(|| "-".to_owned(), |figure| TERMINAL.write(figure));
+        let marked = table.emulated && check.source == Source::Board && is_time(check);
+        let bound = check.bound.in_signs();
+        let bound = bound.map(|(sign, bound)| format!("{:2} {}", typed(sign), TERMINAL.write(bound)));
+        // Writing to a string cannot fail.
+        let _ = write!(
+            text,
+            "{:VERDICTS$} {:width$}  {figure:>10} {:2} {:18}{}",
+            verdict(check.verdict),
+            check.name,
+            check.unit,
+            bound.unwrap_or_default(),
+            if marked { "  EMULATED" } else { "" }
+        );
+        text.truncate(text.trim_end().len());
+        if !check.note.is_empty() && check.verdict != Verdict::Passed {
+            let _ = write!(text, "\n{:VERDICTS$} {:4}{}", "", "", check.note);
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// On a terminal only times bear the mark: all else is the same on a real board.
+fn is_time(check: &Check) -> bool {
+    matches!(check.unit.as_str(), "us" | "%") || check.name == "overruns"
+}
+
+fn verdict(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Passed => "ok",
+        Verdict::Failed => "FAILED",
+        Verdict::NotRun => "not made",
+        Verdict::Reported => "-",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::checks::Bound;
+    use crate::document::blocks::{facts, numbers, row, section_everywhere, table, words};
+    use crate::document::text::{number, strong, sub, text};
+
+    fn shown(blocks: Vec<Block>) -> String {
+        terminal(&Document { blocks, ..Document::default() })
+    }
+
+    #[test]
+    fn a_line_of_a_check_shows_verdict_figure_bound_and_why_it_failed() {
+        let good = Check::judge("overruns", 0.0, "", Bound::Exactly(0.0), Source::Board).note("fine");
+        let bad = Check::judge("lateness", 61.25, "us", Bound::AtMost(50.0), Source::Board).note("too late");
+        let checks = |checks, emulated| shown(vec![Block::Checks(Checks { checks, emulated, keys: false })]);
+        let shown = checks(vec![good, bad], true);
+        let lines: Vec<&str> = shown.lines().collect();
+        assert_eq!(lines.len(), 3, "{shown}");
+        assert!(lines[0].starts_with("ok ") && lines[0].ends_with("EMULATED"), "{shown}");
+        assert!(lines[1].starts_with("FAILED") && lines[1].contains("61.25 us <= 50"), "{shown}");
+        assert_eq!(lines[2].trim(), "too late");
+        let real = checks(vec![Check::judge("x", 1.0, "us", Bound::None, Source::Board)], false);
+        assert!(!real.contains("EMULATED"), "{real}");
+    }
+
+    #[test]
+    fn columns_line_up_and_a_wide_cell_goes_over_all_that_are_left() {
+        let wide = crate::document::blocks::Row { spans: true, ..row(["b", "not to be had from this log"]) };
+        let rows = vec![row([text("a long name"), number(1.5), text("µm")]), wide];
+        let shown = shown(vec![table(vec![words("what"), numbers("found"), words("unit")], rows)]);
+        assert_eq!(
+            shown,
+            "what         found  unit\na long name  1.500  um\nb            not to be had from this log\n"
+        );
+    }
+
+    #[test]
+    fn facts_stand_below_their_heading() {
+        let one = section_everywhere("Gears", vec![facts([("planets", "3"), ("ratio", "6")])]);
+        let other = section_everywhere("Masses", vec![facts([("link", text("M") + sub("c"))])]);
+        assert_eq!(
+            shown(vec![one, other]),
+            format!("Gears\n  {:28}  3\n  {:28}  6\n\nMasses\n  {:28}  M_c\n", "planets", "ratio", "link")
+        );
+    }
+
+    #[test]
+    fn the_word_before_a_notice_stands_in_the_column_of_verdicts() {
+        let broken = crate::document::blocks::bad_notice(strong("BROKEN") + " the board fell silent");
+        assert_eq!(
+            shown(vec![broken, Block::Again("joint hil".into())]),
+            "BROKEN   the board fell silent\nagain:   joint hil\n"
+        );
+    }
+}

@@ -1,0 +1,170 @@
+//! Amplitudes of an evenly sampled signal by frequency. Only what the samples hold is in it: what is faster than half
+//! their rate is folded back. Where the samples come from and which lines mean what is the caller's to know.
+
+use std::f64::consts::TAU;
+
+use rustfft::FftPlanner;
+use rustfft::num_complex::Complex;
+
+/// How samples are weighted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Window {
+    /// All alike: exact for a whole number of cycles.
+    Rectangular,
+    /// Hann's: what does not fit the stretch leaks into two neighbouring lines instead of everywhere.
+    Hann,
+}
+
+/// Which mean is taken off first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mean {
+    /// That of the samples as they are.
+    Plain,
+    /// That of the samples as they are weighted, so that the window does not smear it over its neighbours.
+    Weighted,
+}
+
+/// Half the width of the main lobe of Hann's window, in lines.
+const LOBE: usize = 2;
+/// Fewer samples than this have no spectrum.
+const LEAST: usize = 16;
+
+/// Amplitudes of the sines that would show the same lines, from frequency zero to half the sampling rate; line k lies at
+/// k cycles in the whole stretch. Nothing of fewer than two samples.
+pub fn amplitudes(signal: &[f64], window: Window, mean: Mean) -> Vec<f64> {
+    let count = signal.len();
+    if count < 2 {
+        return Vec::new();
+    }
+    // Their mean is 1.
+    let weight = |index: usize| match window {
+        Window::Rectangular => 1.0,
+        Window::Hann => 1.0 - (TAU * index as f64 / count as f64).cos(),
+    };
+    let sum: f64 = match mean {
+        Mean::Plain => signal.iter().sum(),
+        Mean::Weighted => signal.iter().enumerate().map(|(index, value)| weight(index) * value).sum(),
+    };
+    let mean = sum / count as f64;
+    let mut values: Vec<Complex<f64>> =
+        signal.iter().enumerate().map(|(index, value)| Complex::new((value - mean) * weight(index), 0.0)).collect();
+    FftPlanner::new().plan_fft_forward(count).process(&mut values);
+    let lines = values[..count / 2 + 1].iter().enumerate().map(|(line, value)| {
+        // Zero and half the sampling rate have no mirror image to share their amplitude with.
+        let single = line == 0 || 2 * line == count;
+        value.norm() / count as f64 * if single { 1.0 } else { 2.0 }
+    });
+    lines.collect()
+}
+
+/// The spectrum of a motion that need not fit the stretch: under Hann's window, about its mean.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Spectrum {
+    /// Distance of neighbouring frequencies [Hz].
+    pub step: f64,
+    /// Amplitudes in the unit of the signal, from frequency zero to below half the sampling rate.
+    pub amplitudes: Vec<f64>,
+}
+
+impl Spectrum {
+    /// Of samples at `rate` [Hz]; none of too few, or where one is not finite.
+    pub fn of(samples: &[f64], rate: f64) -> Option<Self> {
+        let count = samples.len();
+        if count < LEAST || samples.iter().any(|sample| !sample.is_finite()) {
+            return None;
+        }
+        let mut amplitudes = amplitudes(samples, Window::Hann, Mean::Weighted);
+        amplitudes.truncate(count / 2);
+        // Nothing but rounding is left at zero. It counts as the other lines do, so that of rest, which is all rounding,
+        // none stands out.
+        amplitudes[0] *= 2.0;
+        Some(Self { step: rate / count as f64, amplitudes })
+    }
+
+    /// Root of the power beside a frequency over the root of its own; none where the samples cannot tell.
+    pub fn beside(&self, frequency: f64) -> Option<f64> {
+        let place = (frequency / self.step).round() as usize;
+        if place <= 2 * LOBE || place + LOBE >= self.amplitudes.len() {
+            return None;
+        }
+        let power = |from: usize, to: usize| self.amplitudes[from..to].iter().map(|a| a * a).sum::<f64>();
+        let own = power(place - LOBE, place + LOBE + 1);
+        let all = power(LOBE + 1, self.amplitudes.len());
+        (own > 0.0).then(|| ((all - own).max(0.0) / own).sqrt())
+    }
+
+    /// The greatest amplitude and its frequency [Hz].
+    pub fn greatest(&self) -> (f64, f64) {
+        let (place, amplitude) = self
+            .amplitudes
+            .iter()
+            .enumerate()
+            .fold((0, 0.0), |best, (place, &amplitude)| if amplitude > best.1 { (place, amplitude) } else { best });
+        (place as f64 * self.step, amplitude)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sines(count: usize) -> Vec<f64> {
+        let times = (0..count).map(|index| index as f64 * 0.01);
+        times.map(|t| 5.0 + 3.0 * (TAU * 2.0 * t).sin() + 0.5 * (TAU * 7.0 * t).cos()).collect()
+    }
+
+    fn samples(wave: impl Fn(f64) -> f64) -> Vec<f64> {
+        (0..5000).map(|index| wave(f64::from(index) / 1000.0)).collect()
+    }
+
+    #[test]
+    fn whole_cycles_have_their_amplitudes_and_nothing_else() {
+        // 300 samples of 10 ms: three lines a hertz.
+        for (line, amplitude) in amplitudes(&sines(300), Window::Rectangular, Mean::Plain).into_iter().enumerate() {
+            let expected = match line {
+                6 => 3.0,
+                21 => 0.5,
+                _ => 0.0,
+            };
+            assert!((amplitude - expected).abs() < 1e-12, "{amplitude} at line {line}");
+        }
+    }
+
+    #[test]
+    fn hanns_window_keeps_amplitudes_and_contains_leaks() {
+        let lines = amplitudes(&sines(1024), Window::Hann, Mean::Plain);
+        let near = |at: f64| {
+            let within = |line: usize| (line as f64 / 10.24 - at).abs() < 0.2;
+            lines.iter().enumerate().filter(|(line, _)| within(*line)).map(|(_, a)| *a).fold(0.0, f64::max)
+        };
+        assert!((near(2.0) - 3.0).abs() < 0.45, "{}", near(2.0));
+        assert!(near(20.0) < 1e-4, "{}", near(20.0));
+    }
+
+    #[test]
+    fn nothing_gives_nothing() {
+        assert!(amplitudes(&[], Window::Hann, Mean::Plain).is_empty());
+        assert!(amplitudes(&[1.0], Window::Hann, Mean::Plain).is_empty());
+    }
+
+    #[test]
+    fn a_sine_has_its_amplitude_at_its_frequency() {
+        let spectrum = Spectrum::of(&samples(|t| 7.0 + 3.0 * (TAU * 50.0 * t).sin()), 1000.0).expect("long enough");
+        let (frequency, amplitude) = spectrum.greatest();
+        assert!((frequency - 50.0).abs() < 0.2 && (amplitude - 3.0).abs() < 1e-9, "{frequency} Hz, {amplitude}");
+        assert!(spectrum.beside(50.0).is_some_and(|rest| rest < 1e-9));
+    }
+
+    #[test]
+    fn what_is_beside_the_mesh_frequency_is_told_by_its_power() {
+        let wave = |t: f64| (TAU * 60.0 * t).sin() + 2.0 * (TAU * 20.0 * t).sin();
+        let beside = Spectrum::of(&samples(wave), 1000.0).and_then(|spectrum| spectrum.beside(60.0));
+        assert!(beside.is_some_and(|beside| (beside - 2.0).abs() < 1e-6), "{beside:?}");
+    }
+
+    #[test]
+    fn too_few_samples_or_a_motion_that_diverged_have_no_spectrum() {
+        assert!(Spectrum::of(&[1.0; 8], 1000.0).is_none());
+        assert!(Spectrum::of(&[f64::NAN; 100], 1000.0).is_none());
+    }
+}

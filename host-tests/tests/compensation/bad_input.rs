@@ -1,11 +1,10 @@
 //! What the compensation does with estimates and set-points that are no numbers, not there, or nonsense.
 
-use model_core::compensation::design::{CompensationSettings, design_compensation};
+use model_core::compensation::design::{CompensationSettings, compensation_settings, design_compensation};
 use model_core::compensation::{Command, Compensation, ImpedancePoint, Motion, Stage};
 use model_core::observer::{Doubt, Estimate, Estimates, Source};
 use reference::drive_train::DriveTrainParameters;
 use reference::scenarios::q1;
-use scenario::compensated::compensation_settings;
 
 const LIMIT: f32 = 2.5;
 
@@ -28,7 +27,8 @@ fn at_rest() -> Command<f32> {
 #[test]
 fn no_input_makes_a_torque_that_is_none_or_too_large() {
     let tables =
-        design_compensation::<f32>(&q1(), &compensation_settings(&DriveTrainParameters::q1(), 60.0)).expect("sound");
+        design_compensation::<f32>(&q1(), &compensation_settings(&DriveTrainParameters::q1().surroundings, 60.0))
+            .expect("sound");
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, -1e30] {
         let mut estimates = [sound(); 9];
         estimates[0].gap.value = bad;
@@ -70,7 +70,8 @@ fn no_input_makes_a_torque_that_is_none_or_too_large() {
 #[test]
 fn a_gap_that_cannot_be_seen_leaves_plain_control() {
     let tables =
-        design_compensation::<f32>(&q1(), &compensation_settings(&DriveTrainParameters::q1(), 60.0)).expect("sound");
+        design_compensation::<f32>(&q1(), &compensation_settings(&DriveTrainParameters::q1().surroundings, 60.0))
+            .expect("sound");
     let mut compensation = Compensation::new(&tables);
     for _ in 0..1000 {
         compensation.step(&sound(), &at_rest());
@@ -87,7 +88,7 @@ fn a_gap_that_cannot_be_seen_leaves_plain_control() {
 #[test]
 fn settings_that_no_gain_can_be_made_from_are_refused_with_the_mend() {
     let refusal = |change: fn(&mut CompensationSettings)| {
-        let mut settings = compensation_settings(&DriveTrainParameters::q1(), 60.0);
+        let mut settings = compensation_settings(&DriveTrainParameters::q1().surroundings, 60.0);
         change(&mut settings);
         design_compensation::<f32>(&q1(), &settings).expect_err("must be refused").to_string()
     };

@@ -3,62 +3,69 @@
 use host_tests::tolerance::compensation::{
     IMPEDANCE_DEVIATION, IMPEDANCE_OVER_RIVAL, IMPEDANCE_TORQUE, SOFT_SPRING_SWING,
 };
-use parameters::Surroundings;
-use reference::closed_loop::rivals::ImpedanceLaw;
-use reference::closed_loop::{ImpedanceGains, deviation};
-use reference::drive_train::DriveTrainParameters;
-use reference::scenarios::{l1, q1};
-use scenario::trial::{Contender, Trial};
+use reference::closed_loop::deviation;
+use reference::scenarios::l1;
+use scenario::case::Case;
+use scenario::controller::ControllerName;
+use scenario::controller::ControllerName::{Impedance, LinkSpring, MotorSide};
+use scenario::controller::Gains;
+use scenario::execution::Order;
+use scenario::suite::Test;
 
-use super::NO_PREVIEW;
+use super::{case_of, changed, l1_train, on_reference, run_in, shipped};
 
-/// How far a contender is from what a law does without a gap: link (root mean square and largest) and torque.
-fn deviations_from(trial: &Trial, law: ImpedanceLaw) -> impl Fn(Contender) -> (f64, f64, f64) {
-    let run = |contender| trial.run(contender).expect("the trial runs");
-    let without_gap = run(Contender::ImpedanceNoGap(law));
-    move |contender| deviation(&run(contender), &without_gap, trial.from)
+/// How far a controller is from what the law that it is measured from does without a gap: link, root mean square [rad], and
+/// torque [N m].
+fn deviation_of(test: &Test, seed: u64, controller: ControllerName) -> (f64, f64) {
+    deviation_in(test, &test.case(seed).expect("a case of the test"), seed, controller)
+}
+
+/// The same in a case of its own.
+fn deviation_in(test: &Test, case: &Case, seed: u64, controller: ControllerName) -> (f64, f64) {
+    let law = Order { without_gap: true, ..on_reference(controller.without_gap()) };
+    let [ours, without_gap] = [on_reference(controller), law].map(|order| run_in(test, case, seed, order));
+    let (link, _, torque) = deviation(&ours.run, &without_gap.run, test.file.settle);
+    (link, torque)
+}
+
+/// A shipped impedance test with another stiffness [N m/rad] and, where `alone`, no torque sent along with the motion.
+fn with_spring(name: &str, stiffness: f64, alone: bool) -> Test {
+    let mut test = shipped(name);
+    let gains = test.file.gains.expect("a test of an impedance");
+    test.file.gains = Some(Gains { stiffness, inertia: if alone { Some(0.0) } else { gains.inertia }, ..gains });
+    test
 }
 
 /// Deviation and torque error with compensation, whose law has its spring at the link and its damper at the motor; the
 /// deviation held against that of the rival with the same law.
-fn no_worse_than_the_best_rival(trial: &Trial) -> (f64, f64) {
-    let deviations = deviations_from(trial, ImpedanceLaw::LinkSpring);
-    let (ours, _, torque) = deviations(NO_PREVIEW);
-    let (rival, _, _) = deviations(Contender::Impedance(ImpedanceLaw::LinkSpring));
+fn no_worse_than_the_best_rival(test: &Test, seed: u64) -> (f64, f64) {
+    let (ours, torque) = deviation_of(test, seed, Impedance);
+    let (rival, _) = deviation_of(test, seed, LinkSpring);
     IMPEDANCE_OVER_RIVAL.check(ours / rival);
     (ours, torque)
 }
 
-fn comes_near_the_law_without_a_gap(trial: &Trial) {
-    let (ours, torque) = no_worse_than_the_best_rival(trial);
-    let (motor, _, motor_torque) =
-        deviations_from(trial, ImpedanceLaw::MotorSide)(Contender::Impedance(ImpedanceLaw::MotorSide));
+fn comes_near_the_law_without_a_gap(test: &Test, seed: u64) {
+    let (ours, torque) = no_worse_than_the_best_rival(test, seed);
+    let (motor, motor_torque) = deviation_of(test, seed, MotorSide);
     IMPEDANCE_DEVIATION.check(ours / motor);
     IMPEDANCE_TORQUE.check(torque / motor_torque);
 }
 
 #[test]
 fn a_medium_spring_behaves_as_if_there_were_no_gap() {
-    comes_near_the_law_without_a_gap(
-        &Trial::inertial(&q1(), &DriveTrainParameters::q1(), 121).with_impedance(300.0, 3.0),
-    );
+    comes_near_the_law_without_a_gap(&shipped("impedance"), 121);
 }
 
 #[test]
 fn a_stiff_spring_behaves_as_if_there_were_no_gap() {
-    comes_near_the_law_without_a_gap(
-        &Trial::random(&q1(), &DriveTrainParameters::q1(), 122).with_impedance(600.0, 3.0),
-    );
+    comes_near_the_law_without_a_gap(&shipped("impedance-stiff"), 122);
 }
 
 #[test]
 fn a_stiff_spring_steps_and_holds_no_worse_than_its_best_rival() {
-    let (joint, train) = (q1(), DriveTrainParameters::q1());
-    for trial in [Trial::steps(&joint, &train, 123), Trial::disturbed_hold(&joint, &train, 124)] {
-        let mut trial = trial.with_impedance(600.0, 3.0);
-        // Spring and damper alone.
-        trial.bench.impedance = trial.bench.impedance.map(|gains| ImpedanceGains { inertia: 0.0, ..gains });
-        comes_near_the_law_without_a_gap(&trial);
+    for (name, seed) in [("impedance-steps", 123), ("impedance-hold", 124)] {
+        comes_near_the_law_without_a_gap(&with_spring(name, 600.0, true), seed);
     }
 }
 
@@ -66,16 +73,13 @@ fn a_stiff_spring_steps_and_holds_no_worse_than_its_best_rival() {
 fn steps_with_their_own_torque_sent_along_are_no_worse_than_the_best_rival() {
     // The motor is near its limit then, and whatever a flank comes late is missing.
     for (stiffness, seed) in [(100.0, 125), (300.0, 126), (600.0, 127)] {
-        let trial = Trial::steps(&q1(), &DriveTrainParameters::q1(), seed).with_impedance(stiffness, 3.0);
-        no_worse_than_the_best_rival(&trial);
+        no_worse_than_the_best_rival(&with_spring("impedance-steps", stiffness, false), seed);
     }
 }
 
 #[test]
 fn a_soft_spring_on_a_large_joint_does_not_swing_in_the_doubt_about_its_flank() {
-    let train = Surroundings { delay: 1.0, torque_limit: 120.0, ..Surroundings::ideal() }.into();
-    let mut trial = Trial::steps(&l1(), &train, 128).with_impedance(300.0, 3.0);
-    trial.bench.duration = 4.0;
-    let (swing, _, _) = deviations_from(&trial, ImpedanceLaw::LinkSpring)(NO_PREVIEW);
+    let (test, seed) = (changed("impedance-steps", "joint = \"l1\"\nduration_s = 4", ""), 128);
+    let (swing, _) = deviation_in(&test, &case_of(&test, seed, &l1(), &l1_train()), seed, Impedance);
     SOFT_SPRING_SWING.check(swing);
 }

@@ -1,5 +1,6 @@
-//! The compensation in the loop with the drive train, against the rivals, on few seeds; the long form is ignored unless
-//! asked for. How good an observer is by itself, its own tests say.
+//! The compensation in the loop with the drive train, against the rivals, on few seeds: tests of `hil/`, some of them with a
+//! joint of their own, held to bounds closer than the files'. The long form is ignored unless asked for. How good an observer
+//! is by itself, its own tests say.
 
 mod bad_input;
 mod holding;
@@ -7,14 +8,82 @@ mod impedance;
 mod monte_carlo;
 mod position;
 mod stepping;
+mod width;
 
+use std::fs;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use parameters::{JointParameters, Surroundings};
 use reference::closed_loop::Figures;
-use scenario::trial::{Contender, Trial};
+use reference::drive_train::DriveTrainParameters;
+use scenario::case::Case;
+use scenario::controller::ControllerName;
+use scenario::execution::{Order, execute};
+use scenario::plant::PlantName;
+use scenario::ran::Ran;
+use scenario::suite::{Test, from_text};
 
-/// Figures of one contender at a trial.
-fn figures(trial: &Trial, contender: Contender) -> Figures {
-    Figures::of(&trial.run(contender).expect("the trial runs"), trial.from)
+/// A run takes seconds; more is none.
+const LONGEST: Duration = Duration::from_secs(3600);
+
+/// A test of `hil/` by its name, as users run it.
+fn shipped(name: &str) -> Test {
+    changed(name, "", "")
 }
 
-const PREVIEW: Contender = Contender::Compensated { preview: true };
-const NO_PREVIEW: Contender = Contender::Compensated { preview: false };
+/// The same with lines above it, such as another joint, and below it, such as what else is known of the joint.
+fn changed(name: &str, above: &str, below: &str) -> Test {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../hil");
+    let name = format!("{name}.toml");
+    let text = fs::read_to_string(folder.join(&name)).expect("a shipped test");
+    from_text(&name, &format!("{above}\n{text}\n{below}\n"), &folder, PlantName::Reference).expect("a good test")
+}
+
+/// The case of a seed with a joint of `scenarios` and a drive train in place of the file's; dry friction and weight of the
+/// link stay what the file's motion asks for. Such joints have no ripple and no error but what a test gives them, and their
+/// encoders' errors begin where the motion does: bounds that tell one cause apart were set on them.
+fn case_of(test: &Test, seed: u64, joint: &JointParameters, train: &DriveTrainParameters) -> Case {
+    let mut case = test.case(seed).expect("a case of the test");
+    let mut train = train.clone();
+    let of_file = &case.train.surroundings;
+    train.surroundings.load_friction.coulomb = of_file.load_friction.coulomb;
+    train.surroundings.gravity_torque = of_file.gravity_torque;
+    case.truth.parameters = joint.clone();
+    case.told = joint.clone();
+    for mesh in [&mut case.told.sun_planet, &mut case.told.ring_planet] {
+        mesh.half_backlash.iter_mut().for_each(|half| *half *= case.width_guess);
+    }
+    case.told_surroundings = train.surroundings;
+    case.train = train;
+    case
+}
+
+/// Without friction, weight and errors, but with a period's delay and the motor that L1 has.
+fn l1_train() -> DriveTrainParameters {
+    Surroundings { delay: 1.0, torque_limit: 120.0, ..Surroundings::ideal() }.into()
+}
+
+/// What a controller does in a test, on the reference.
+fn run(test: &Test, seed: u64, controller: ControllerName) -> Ran {
+    run_in(test, &test.case(seed).expect("a case of the test"), seed, on_reference(controller))
+}
+
+/// The same in a case of its own.
+fn run_in(test: &Test, case: &Case, seed: u64, order: Order) -> Ran {
+    execute(&test.file, case, seed, order, Instant::now() + LONGEST).expect("the test runs")
+}
+
+fn on_reference(controller: ControllerName) -> Order {
+    Order { controller, plant: PlantName::Reference, without_gap: false }
+}
+
+/// Figures of a controller, from when a test judges it.
+fn figures(test: &Test, seed: u64, controller: ControllerName) -> Figures {
+    Figures::of(&run(test, seed, controller).run, test.file.settle)
+}
+
+/// The same in a case of its own.
+fn figures_in(test: &Test, case: &Case, seed: u64, controller: ControllerName) -> Figures {
+    Figures::of(&run_in(test, case, seed, on_reference(controller)).run, test.file.settle)
+}

@@ -1,17 +1,30 @@
 //! The fixed fine steps that closed loops run on, against the adaptive ones.
 
 use host_tests::tolerance::compensation::FIXED_STEPS;
-use reference::drive_train::{DriveTrainParameters, Stepping};
-use reference::scenarios::q1;
-use scenario::trial::{Contender, Trial};
+use reference::drive_train::Stepping;
+use scenario::controller::ControllerName;
+use scenario::execution::setup;
+use scenario::rig::{Driver, Rig, Setup};
+use scenario::sender::Sender;
+
+use super::{on_reference, shipped};
+
+/// Of Q1 at its link [rad].
+const LOST_MOTION: f64 = 3.78e-3;
 
 #[test]
 fn fixed_steps_move_the_joint_as_adaptive_ones_do() {
-    let mut trial = Trial::inertial(&q1(), &DriveTrainParameters::q1(), 131);
-    trial.bench.duration = 1.5;
-    let fixed = trial.run(Contender::MotorPid).expect("the trial runs");
-    trial.bench.stepping = Stepping::Adaptive;
-    let adaptive = trial.run(Contender::MotorPid).expect("the trial runs");
-    let difference = fixed.samples.iter().zip(&adaptive.samples).map(|(a, b)| (a.link - b.link).abs());
-    FIXED_STEPS.check(difference.fold(0.0, f64::max) / 3.78e-3);
+    let (mut test, seed) = (shipped("t2"), 131);
+    test.file.duration = 1.5;
+    let case = test.case(seed).expect("a case of the test");
+    let order = on_reference(ControllerName::MotorPid);
+    let [fixed, adaptive] = [Stepping::Fixed, Stepping::Adaptive].map(|stepping| {
+        let setup = Setup { stepping, ..setup(&test.file, &case, seed, order) };
+        let mut driver = Driver::rival(order.controller, case.knowledge(), test.file.bandwidth);
+        let mut sender = Sender::of_positions(case.motion.clone());
+        let moments = Rig::new(&setup).expect("a sound drive train").record(&mut driver, &mut sender);
+        moments.expect("it runs").into_iter().map(|moment| moment.link[0]).collect::<Vec<f64>>()
+    });
+    let difference = fixed.iter().zip(&adaptive).map(|(fixed, adaptive)| (fixed - adaptive).abs());
+    FIXED_STEPS.check(difference.fold(0.0, f64::max) / LOST_MOTION);
 }

@@ -3,8 +3,9 @@
 use host_tests::tolerance::observer::{FAILURE_FOUND, FAILURE_FOUND_AT_SPEED, GAP_COARSE, LOST_COUNTS_FOUND};
 use model_core::observer::{Doubt, Estimates, MAPPED, Observer, Samples, Source};
 use reference::drive_train::Disturbance;
+use scenario::rig::Moment;
 
-use crate::motion::{Moment, Profile, uniform};
+use crate::motion::{Profile, uniform};
 use crate::replay::{replay, samples};
 use crate::trial::{Encoders, Trial};
 
@@ -29,7 +30,7 @@ fn turns_by(log: &[Moment], from: f64, speed: f64) -> usize {
 /// Source after every period.
 fn sources(trial: &Trial, log: &[Moment]) -> Vec<Source> {
     let mut sources = Vec::new();
-    replay::<f64, MAPPED>(&trial.run.joint, &trial.tables(), &trial.settings, log, 1.0, |_, _, estimates| {
+    replay::<f64, MAPPED>(&trial.setup.joint, &trial.tables(), &trial.settings, log, 1.0, |_, _, estimates| {
         assert!(estimates.gap.value.is_finite() && estimates.gap.variance.is_finite());
         sources.push(estimates.source);
     });
@@ -77,7 +78,7 @@ fn an_encoder_that_freezes_or_jumps_at_speed_is_given_up_within_a_millisecond() 
 fn an_encoder_that_freezes_before_the_gap_is_known_is_found_by_how_far_the_motor_goes() {
     // S1's gap is hidden by its transmission error, and its link is light: teeth may stop it at once from this speed.
     let mut trial = Trial::new("s1", "inertia", Encoders::Preset, None, 27).lasting(2.6);
-    trial.run.profile = Profile::Sine(0.5, 1.0);
+    trial.setup.motion = Profile::Sine(0.5, 1.0).motion(trial.setup.seed);
     let mut log = trial.record();
     let at = turns_by(&log, 1.9, 0.5);
     let speed = |moment: &Moment| moment.link[1].abs();
@@ -95,9 +96,9 @@ fn an_encoder_that_freezes_before_the_gap_is_known_is_found_by_how_far_the_motor
 #[test]
 fn noise_glitches_blows_coarse_counts_and_late_or_lost_readings_are_no_failure() {
     let mut trial = Trial::new("q1", "gravity", Encoders::Preset, Some(40e-6), 25).lasting(3.0);
-    let rated = trial.run.joint.rated_output_torque;
+    let rated = trial.setup.joint.rated_output_torque;
     let blow = |start, torque| Disturbance::Pulse { start, duration: 10e-3, torque };
-    trial.run.disturbances = vec![blow(1.2, 3.0 * rated), blow(1.55, -3.0 * rated), blow(2.3, 3.0 * rated)];
+    trial.setup.disturbances = vec![blow(1.2, 3.0 * rated), blow(1.55, -3.0 * rated), blow(2.3, 3.0 * rated)];
     let log = trial.record();
     let mut noise = uniform(7);
     let mut normal = move || (0..4).map(|_| noise() - 0.5).sum::<f64>() * 3.0_f64.sqrt();
@@ -155,7 +156,7 @@ fn an_output_encoder_that_loses_counts_never_makes_a_width_less_than_none() {
         moment.output_counts -= (0.01 * (moment.output_counts - start) as f64).round() as i64;
     });
     let (mut least, mut found) = (f64::INFINITY, false);
-    replay::<f64, MAPPED>(&trial.run.joint, &trial.tables(), &trial.settings, &log, 1.0, |k, _, estimates| {
+    replay::<f64, MAPPED>(&trial.setup.joint, &trial.tables(), &trial.settings, &log, 1.0, |k, _, estimates| {
         least = least.min(estimates.half_backlash.value);
         found |= k > 15_000 && estimates.source != Source::Both;
     });

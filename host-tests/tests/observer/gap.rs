@@ -3,8 +3,9 @@
 use host_tests::tolerance::observer::*;
 use model_core::observer::{Estimate, MAPPED, PLAIN};
 use reference::drive_train::Disturbance;
+use scenario::rig::Moment;
 
-use crate::motion::Moment;
+use crate::motion::growing;
 use crate::replay::{Figures, replay, with_encoders};
 use crate::trial::{Encoders, Trial};
 
@@ -18,7 +19,7 @@ fn figures(motion: &str, encoders: Encoders, half_backlash: f64, seed: u64) -> F
 }
 
 fn figures_of(trial: &Trial, log: &[Moment]) -> Figures {
-    replay::<f64, MAPPED>(&trial.run.joint, &trial.tables(), &trial.settings, log, 2.0, |_, _, _| {})
+    replay::<f64, MAPPED>(&trial.setup.joint, &trial.tables(), &trial.settings, log, 2.0, |_, _, _| {})
 }
 
 #[test]
@@ -26,7 +27,7 @@ fn ideal_encoders_give_the_gap_to_half_a_percent() {
     for (seed, half_backlash) in WIDTHS {
         let trial = Trial::new("q1", "inertia", Encoders::Ideal, Some(half_backlash), seed).lasting(4.0);
         let figures = replay::<f64, PLAIN>(
-            &trial.run.joint,
+            &trial.setup.joint,
             &trial.tables(),
             &trial.settings,
             &trial.record(),
@@ -85,15 +86,15 @@ fn two_stages_and_a_stiff_joint_are_seen_as_well() {
 fn the_error_maps_are_worth_a_factor_and_hold_when_the_range_grows() {
     // A fifth of the swing at first, all of it later.
     let mut trial = Trial::new("q1", "inertia", Encoders::Preset, Some(40e-6), 8).lasting(5.0);
-    trial.run.grows_at = Some(2.5);
+    trial.setup.motion = growing(trial.setup.motion, 2.5);
     let log = trial.record();
     let figures = |from| {
         let tables = trial.tables();
-        replay::<f64, MAPPED>(&trial.run.joint, &tables, &trial.settings, &log, from, |_, _, _| {}).gap
+        replay::<f64, MAPPED>(&trial.setup.joint, &tables, &trial.settings, &log, from, |_, _, _| {}).gap
     };
     GAP_COARSE.check(figures(2.4));
     let tables = trial.tables();
-    let plain = replay::<f64, PLAIN>(&trial.run.joint, &tables, &trial.settings, &log, 1.5, |_, _, _| {});
+    let plain = replay::<f64, PLAIN>(&trial.setup.joint, &tables, &trial.settings, &log, 1.5, |_, _, _| {});
     WITHOUT_MAP.check(figures(1.5) / plain.gap);
 }
 
@@ -101,8 +102,8 @@ fn the_error_maps_are_worth_a_factor_and_hold_when_the_range_grows() {
 fn a_harmonic_that_is_not_in_the_map_costs_little() {
     let trial = Trial::new("q1", "gravity", Encoders::Preset, Some(40e-6), 9).lasting(4.0);
     let log = trial.record();
-    let clean = with_encoders(&log, &trial.run.train);
-    let count = core::f64::consts::TAU / f64::from(1 << trial.run.train.surroundings.motor_encoder.bits);
+    let clean = with_encoders(&log, &trial.setup.train);
+    let count = core::f64::consts::TAU / f64::from(1 << trial.setup.train.surroundings.motor_encoder.bits);
     let mut dirty = clean.clone();
     for moment in &mut dirty {
         let error = 0.02_f64.to_radians() * (4.0 * moment.motor[0] + 1.0).sin();
@@ -120,7 +121,7 @@ fn an_inertia_that_is_wrong_is_learnt_from_landings() {
         trial.told.link_inertia *= wrong;
         let mut learnt = Estimate::default();
         let (tables, settings) = (trial.tables(), &trial.settings);
-        let figures = replay::<f64, MAPPED>(&trial.run.joint, &tables, settings, &log, 2.0, |_, _, estimates| {
+        let figures = replay::<f64, MAPPED>(&trial.setup.joint, &tables, settings, &log, 2.0, |_, _, estimates| {
             learnt = estimates.link_inertia_ratio;
         });
         GAP_COARSE.check(figures.gap);
@@ -133,15 +134,15 @@ fn an_inertia_that_is_wrong_is_learnt_from_landings() {
 #[test]
 fn a_link_that_is_pushed_time_after_time_says_nothing_of_its_inertia() {
     let mut trial = Trial::new("q1", "random", Encoders::Preset, Some(40e-6), 12).lasting(4.0);
-    let rated = trial.run.joint.rated_output_torque;
+    let rated = trial.setup.joint.rated_output_torque;
     let push = |n: u32| Disturbance::Pulse {
         start: 0.3 + 0.31 * f64::from(n),
         duration: 0.1,
         torque: if n % 3 == 1 { -0.3 * rated } else { 0.3 * rated },
     };
-    trial.run.disturbances = (0..12).map(push).collect();
+    trial.setup.disturbances = (0..12).map(push).collect();
     let (tables, settings) = (trial.tables(), &trial.settings);
-    replay::<f64, MAPPED>(&trial.run.joint, &tables, settings, &trial.record(), 1.0, |_, _, estimates| {
+    replay::<f64, MAPPED>(&trial.setup.joint, &tables, settings, &trial.record(), 1.0, |_, _, estimates| {
         let learnt = estimates.link_inertia_ratio;
         assert!(!learnt.valid && (learnt.value - 1.0).abs() < 0.1, "{learnt:?}");
     });
@@ -152,7 +153,7 @@ fn a_torque_bias_is_read_inside_the_gap() {
     for part in [0.05, -0.05] {
         let trial = Trial::new("q1", "inertia", Encoders::Preset, Some(40e-6), 11).lasting(4.0);
         let mut log = trial.record();
-        let bias = part * trial.run.train.surroundings.torque_limit;
+        let bias = part * trial.setup.train.surroundings.torque_limit;
         log.iter_mut().for_each(|moment| moment.command += bias);
         let figures = figures_of(&trial, &log);
         GAP_WITH_BIAS.check(figures.gap);

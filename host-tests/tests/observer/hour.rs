@@ -9,7 +9,7 @@ use model_core::virtual_joint::design::design_surroundings;
 use model_core::observer::{MAPPED, Observer, Source};
 use model_core::virtual_joint::VirtualJoint;
 
-use crate::motion::{MotorController, Reference, uniform};
+use crate::motion::{MotorController, uniform};
 use crate::trial::{Encoders, Trial};
 
 /// How long each joint moves in each way [s].
@@ -37,7 +37,7 @@ fn an_hour_of_motion_gives_no_healthy_encoder_up() {
 /// How often the output encoder is given up. The weight of the hold changes to and fro; torque noise is the test's own.
 fn given_up(name: &str, motion: &str, seed: u64) -> usize {
     let trial = Trial::new(name, motion, Encoders::Preset, None, seed);
-    let (joint, train) = (&trial.run.joint, &trial.run.train);
+    let (joint, train) = (&trial.setup.joint, &trial.setup.train);
     let rate = train.surroundings.control_rate;
     let gears = design::<f32, 3>(joint, rate).expect("tables of the gears");
     let around = design_surroundings::<f32, 3>(joint, &train.surroundings, &gears).expect("surroundings");
@@ -45,7 +45,6 @@ fn given_up(name: &str, motion: &str, seed: u64) -> usize {
     let observer = trial.tables::<f32>();
     let mut observer = Observer::<f32, MAPPED>::new(&observer);
     let mut controller = MotorController::new(joint, train);
-    let reference = Reference::new(&trial.run.profile, seed);
     let mut uniform = uniform(seed);
     let turn = 1_i64 << train.surroundings.motor_encoder.bits;
     let (mut counts, mut alarms, mut seen, mut commanded) = (0_i64, 0, false, 0.0);
@@ -60,7 +59,7 @@ fn given_up(name: &str, motion: &str, seed: u64) -> usize {
             alarms += usize::from(seen);
         }
         seen = said.source == Source::Both;
-        let command = controller.step(counts, reference.at(time));
+        let command = controller.step(counts, trial.setup.motion.at(time));
         commanded = command as f32;
         let noise = 1.0 + train.surroundings.torque_noise_ratio * 3.46 * (uniform() - 0.5);
         let pushed = if motion == "hold" { 0.125 * joint.rated_output_torque * (0.7 * TAU * time).sin() } else { 0.0 };

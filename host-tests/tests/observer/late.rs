@@ -3,8 +3,9 @@
 
 use host_tests::tolerance::observer::GAP_WORST;
 use model_core::observer::{Doubt, Estimates, MAPPED, Observer, Samples, Source};
+use scenario::rig::Moment;
 
-use crate::motion::{Moment, Profile};
+use crate::motion::Profile;
 use crate::replay::samples;
 use crate::trial::{Encoders, Trial};
 
@@ -26,7 +27,7 @@ fn said(trial: &Trial, log: &[Moment], spoil: impl Fn(usize, &mut Samples<f32>))
 /// A recording of a joint to and fro, about inertia alone.
 fn to_and_fro(name: &str, profile: Profile) -> (Trial, Vec<Moment>) {
     let mut trial = Trial::new(name, "inertia", Encoders::Preset, None, 31).lasting(3.0);
-    trial.run.profile = profile;
+    trial.setup.motion = profile.motion(trial.setup.seed);
     let log = trial.record();
     (trial, log)
 }
@@ -40,7 +41,7 @@ fn ago(trial: &Trial, log: &[Moment], period: usize, late: usize) -> Samples<f32
 fn late_readings_of_the_output_say_where_the_gap_is_now() {
     for name in ["q1", "l1", "d2"] {
         let (trial, log) = to_and_fro(name, Profile::Sine(0.5, 1.0));
-        let gap = 4.0 * trial.run.joint.sun_planet.half_backlash[0];
+        let gap = 4.0 * trial.setup.joint.sun_planet.half_backlash[0];
         for late in [2, 5, 10] {
             let said = said(&trial, &log, |period, samples| {
                 if LATE.contains(&period) {
@@ -94,7 +95,7 @@ fn late_readings_of_the_motor_are_bounded_and_not_vouched_for() {
 fn lost_readings_of_the_motor_cost_little() {
     for name in ["q1", "l1", "d2"] {
         let (trial, log) = to_and_fro(name, Profile::Sine(0.5, 1.0));
-        let gap = 4.0 * trial.run.joint.sun_planet.half_backlash[0];
+        let gap = 4.0 * trial.setup.joint.sun_planet.half_backlash[0];
         // Each ninth, and after each seventieth one more.
         let lost = |period: usize| LATE.contains(&period) && (period.is_multiple_of(9) || period % 70 < 2);
         let said = said(&trial, &log, |period, samples| {

@@ -3,7 +3,9 @@
 
 use host_tests::tolerance::observer::*;
 use model_core::observer::{MAPPED, Observer, Source};
+use model_core::virtual_joint::fault::{Fault, FaultKind};
 use reference::drive_train::Disturbance;
+use scenario::file::OnHost;
 
 use crate::motion::Profile;
 use crate::presets::with_backlash;
@@ -14,17 +16,14 @@ use crate::trial::{Encoders, Trial};
 fn teeth_that_wear_are_learnt_anew_and_the_encoder_is_kept() {
     for (seed, worn) in [(31, 46e-6), (32, 60e-6), (33, 80e-6)] {
         let mut trial = Trial::new("q1", "inertia", Encoders::Preset, Some(40e-6), seed).lasting(4.5);
-        trial.run.worn = Some((2.0, worn));
+        let kind = FaultKind::Other(OnHost::GrownBacklash(worn));
+        trial.setup.faults = vec![Fault { start: 2.0, end: f64::INFINITY, seed: (), kind }];
         let mut kept = true;
-        let joint = with_backlash(&trial.run.joint, worn);
-        let figures = replay::<f64, MAPPED>(
-            &joint,
-            &trial.tables(),
-            &trial.settings,
-            &trial.run.record(),
-            3.0,
-            |k, _, estimates| kept &= k < 10 || estimates.source == Source::Both,
-        );
+        let joint = with_backlash(&trial.setup.joint, worn);
+        let figures =
+            replay::<f64, MAPPED>(&joint, &trial.tables(), &trial.settings, &trial.record(), 3.0, |k, _, estimates| {
+                kept &= k < 10 || estimates.source == Source::Both
+            });
         println!("{worn}: {figures:?}");
         GAP_COARSE.check(figures.gap);
         WIDTH.check(figures.width);
@@ -39,7 +38,7 @@ fn teeth_that_touch_a_flank_for_some_milliseconds_on_their_way_show_the_width() 
     for (half_backlash, seed) in [(56.744_186e-6, 657), (70e-6, 644), (63.33e-6, 646)] {
         let trial = Trial::new("q1", "slow", Encoders::Preset, Some(half_backlash), seed).lasting(2.5);
         let figures = replay::<f64, MAPPED>(
-            &trial.run.joint,
+            &trial.setup.joint,
             &trial.tables(),
             &trial.settings,
             &trial.record(),
@@ -56,19 +55,25 @@ fn a_link_that_is_pushed_from_flank_to_flank_shows_the_width_though_it_never_res
     for (half_backlash, seed) in [(30e-6, 38), (40e-6, 37), (60e-6, 37)] {
         let mut trial = Trial::new("q1", "hold", Encoders::Preset, Some(half_backlash), seed).lasting(0.6);
         // Nothing brakes it, so it bounces.
-        trial.run.train.surroundings.load_friction.coulomb = 0.0;
-        trial.run.train.surroundings.load_friction.viscous = 0.0;
-        trial.run.train.surroundings.motor_friction.coulomb = 0.0;
-        trial.run.train.surroundings.motor_friction.viscous = 0.0;
-        trial.run.train.surroundings.cogging_torque = 0.0;
-        let torque = 0.125 * trial.run.joint.rated_output_torque;
-        trial.run.disturbances = vec![Disturbance::Pulse { start: 0.2, duration: 20e-3, torque }];
+        trial.setup.train.surroundings.load_friction.coulomb = 0.0;
+        trial.setup.train.surroundings.load_friction.viscous = 0.0;
+        trial.setup.train.surroundings.motor_friction.coulomb = 0.0;
+        trial.setup.train.surroundings.motor_friction.viscous = 0.0;
+        trial.setup.train.surroundings.cogging_torque = 0.0;
+        let torque = 0.125 * trial.setup.joint.rated_output_torque;
+        trial.setup.disturbances = vec![Disturbance::Pulse { start: 0.2, duration: 20e-3, torque }];
         let log = trial.record();
         let mut known = 0;
-        let figures =
-            replay::<f64, MAPPED>(&trial.run.joint, &trial.tables(), &trial.settings, &log, 0.5, |_, _, estimates| {
+        let figures = replay::<f64, MAPPED>(
+            &trial.setup.joint,
+            &trial.tables(),
+            &trial.settings,
+            &log,
+            0.5,
+            |_, _, estimates| {
                 known += usize::from(estimates.half_backlash.valid);
-            });
+            },
+        );
         println!("{half_backlash}: {figures:?}, known for {known} periods");
         WIDTH_IN_PASSING.check(figures.width.abs());
         assert!(known > 2000, "{half_backlash} was not learnt in passing");
@@ -80,7 +85,7 @@ fn a_link_that_is_pushed_from_flank_to_flank_shows_the_width_though_it_never_res
 fn under_a_wide_bias(mut trial: Trial, from: f64) -> Figures {
     trial.settings.torque_uncertainty = 0.1 * trial.settings.torque_limit;
     let log = trial.record();
-    replay::<f64, MAPPED>(&trial.run.joint, &trial.tables(), &trial.settings, &log, from, |_, _, _| {})
+    replay::<f64, MAPPED>(&trial.setup.joint, &trial.tables(), &trial.settings, &log, from, |_, _, _| {})
 }
 
 #[test]
@@ -103,7 +108,7 @@ fn a_joint_that_hardly_feels_its_load_shows_the_width_by_where_its_link_goes() {
         [("l1", 60e-6, 0.4, 40), ("l1", 40e-6, 0.7, 42), ("s1", 20e-6, 0.7, 43), ("s1", 20e-6, 0.7, 44)]
     {
         let mut trial = Trial::new(name, "inertia", Encoders::Preset, Some(half_backlash), seed).lasting(5.0);
-        trial.run.profile = Profile::Sine(0.5, frequency);
+        trial.setup.motion = Profile::Sine(0.5, frequency).motion(trial.setup.seed);
         let figures = under_a_wide_bias(trial, 3.5);
         println!("{name} {half_backlash} {seed}: {figures:?}");
         WIDTH.check(figures.width);

@@ -14,5 +14,4 @@ mod precision;
 mod presets;
 mod probe;
 mod replay;
-mod steps;
 mod trial;

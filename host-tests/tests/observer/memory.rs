@@ -3,8 +3,8 @@
 use host_tests::tolerance::observer::GAP_COARSE;
 use model_core::numbers::digest;
 use model_core::observer::{MAPPED, MEMORY_BYTES, Memory, MemoryError, Observer, PLAIN};
+use scenario::rig::Moment;
 
-use crate::motion::Moment;
 use crate::replay::samples;
 use crate::trial::{Encoders, Trial};
 

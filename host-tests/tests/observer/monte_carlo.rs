@@ -24,9 +24,9 @@ fn worst_of_many_seeds() {
             let kinds = [Encoders::Ideal, Encoders::Bits(16, 18), Encoders::Preset];
             for (encoders, worst) in kinds.into_iter().zip(&mut worst) {
                 let trial = Trial::new("q1", motion, encoders, half_backlash, seed);
-                let log = with_encoders(&log, &trial.run.train);
+                let log = with_encoders(&log, &trial.setup.train);
                 let tables = trial.tables();
-                let (joint, settings) = (&trial.run.joint, &trial.settings);
+                let (joint, settings) = (&trial.setup.joint, &trial.settings);
                 let figures = replay::<f64, MAPPED>(joint, &tables, settings, &log, 2.0, |_, _, estimates| {
                     alarms += usize::from(estimates.source != Source::Both);
                 });

@@ -1,39 +1,19 @@
-//! Joints in motion under a plain motor controller, recorded with what is measured and what is true. The controller
-//! uses the motor encoder alone, so that no recording depends on the observer that it is to judge.
+//! What the observer's tests move a joint by: motions that are all there soon, and a plain motor controller, which uses the
+//! motor encoder alone, so that no recording depends on the observer that it is to judge.
 
 use model_core::gears::{Kinematics, Mechanics};
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 use parameters::JointParameters;
-use reference::drive_train::{Disturbance, DriveTrain, DriveTrainParameters};
-use reference::joint::Start;
+use reference::closed_loop::{Controller, Motion, Reference, SetPoint, SharedReference};
+use reference::drive_train::{DriveTrainParameters, Measurement};
 
 /// Poles of the motor controller [rad/s].
 const BANDWIDTH: f64 = 60.0;
 
 /// Poles of its observer of the motor alone, fast enough for a motor that is alone inside the gap [rad/s].
 const TRACKING: f64 = 1200.0;
-
-/// One control period: what was measured at its end, and the truth then.
-#[derive(Debug, Clone, Copy)]
-pub struct Moment {
-    /// Command that was in force during the period [N m].
-    pub command: f64,
-    /// Motor encoder at the end.
-    pub motor_counts: i64,
-    /// Output encoder at the end.
-    pub output_counts: i64,
-    /// True gap coordinate [m].
-    pub gap: f64,
-    /// True net sun mesh force [N].
-    pub sun_force: f64,
-    /// True torque that brakes the link [N m].
-    pub load_torque: f64,
-    /// True angle and speed of the link [rad, rad/s].
-    pub link: [f64; 2],
-    /// True angle and speed of the motor [rad, rad/s].
-    pub motor: [f64; 2],
-}
 
 /// What the link is to do.
 #[derive(Debug, Clone)]
@@ -46,40 +26,22 @@ pub enum Profile {
     Hold,
 }
 
-/// A recording to make.
-#[derive(Debug, Clone)]
-pub struct Run {
-    /// The joint.
-    pub joint: JointParameters,
-    /// What surrounds it.
-    pub train: DriveTrainParameters,
-    /// What it does.
-    pub profile: Profile,
-    /// What acts on it.
-    pub disturbances: Vec<Disturbance>,
-    /// Of noise, phases and profiles.
-    pub seed: u64,
-    /// [s].
-    pub duration: f64,
-    /// A fifth of the motion until then, all of it half a second later [s].
-    pub grows_at: Option<f64>,
-    /// From when on every mesh has another half-backlash, and which [s, m].
-    pub worn: Option<(f64, f64)>,
-}
+/// Sines that begin at rest and are all there after 0.2 s: amplitude [rad], rate [rad/s] and phase [rad] of each.
+struct Tones(Vec<[f64; 3]>);
 
-/// Position, speed and acceleration to follow.
-pub struct Reference(Vec<[f64; 3]>);
+/// A fifth of a motion until a moment [s], all of it half a second later.
+struct Growing(SharedReference, f64);
 
-impl Reference {
-    /// Of a profile.
-    pub fn new(profile: &Profile, seed: u64) -> Self {
-        match *profile {
-            Profile::Hold => Self(Vec::new()),
-            Profile::Sine(amplitude, frequency) => Self(vec![[amplitude, TAU * frequency, 0.0]]),
-            Profile::Random(acceleration, highest) => {
+impl Profile {
+    /// The motion, as a seed determines it.
+    pub fn motion(&self, seed: u64) -> SharedReference {
+        Arc::new(match *self {
+            Self::Hold => Tones(Vec::new()),
+            Self::Sine(amplitude, frequency) => Tones(vec![[amplitude, TAU * frequency, 0.0]]),
+            Self::Random(acceleration, highest) => {
                 let mut uniform = uniform(seed);
                 let tones = 5;
-                Self(
+                Tones(
                     (0..tones)
                         .map(|_| {
                             let rate = TAU * 0.2 * (highest / 0.2).powf(uniform());
@@ -90,12 +52,17 @@ impl Reference {
                         .collect(),
                 )
             }
-        }
+        })
     }
+}
 
-    /// At a time [rad, rad/s, rad/s^2].
-    pub fn at(&self, time: f64) -> [f64; 3] {
-        // Begins at rest and is all there after 0.2 s.
+/// A motion that grows from a fifth to all of itself at a moment [s].
+pub fn growing(motion: SharedReference, at: f64) -> SharedReference {
+    Arc::new(Growing(motion, at))
+}
+
+impl Reference for Tones {
+    fn at(&self, time: f64) -> Motion {
         let s = (time / 0.2).min(1.0);
         let start = [
             s * s * s * (10.0 - 15.0 * s + 6.0 * s * s),
@@ -110,11 +77,20 @@ impl Reference {
             sum[1] += amplitude * rate * cosine;
             sum[2] -= amplitude * rate * rate * sine;
         }
-        [
-            sum[0] * start[0],
-            sum[1] * start[0] + sum[0] * start[1],
-            sum[2] * start[0] + 2.0 * sum[1] * start[1] + sum[0] * start[2],
-        ]
+        Motion {
+            position: sum[0] * start[0],
+            speed: sum[1] * start[0] + sum[0] * start[1],
+            acceleration: sum[2] * start[0] + 2.0 * sum[1] * start[1] + sum[0] * start[2],
+        }
+    }
+}
+
+impl Reference for Growing {
+    fn at(&self, time: f64) -> Motion {
+        let Self(motion, at) = self;
+        let part = 0.2 + 0.8 * ((time - at) / 0.5).clamp(0.0, 1.0);
+        let Motion { position, speed, acceleration } = motion.at(time);
+        Motion { position: part * position, speed: part * speed, acceleration: part * acceleration }
     }
 }
 
@@ -148,6 +124,8 @@ pub struct MotorController {
     motor_inertia: f64,
     limit: f64,
     per_count: f64,
+    /// Where the encoder of the motor is homed [counts].
+    home: i64,
     /// Control period [s].
     pub period: f64,
     integral: f64,
@@ -166,6 +144,7 @@ impl MotorController {
                 + joint.bodies.sun_equivalent_mass * joint.geometry.sun_base_radius.powi(2),
             limit: train.surroundings.torque_limit,
             per_count: TAU / f64::from(1_u32 << train.surroundings.motor_encoder.bits),
+            home: 0,
             period: 1.0 / f64::from(train.surroundings.control_rate),
             integral: 0.0,
             tracked: [0.0; 3],
@@ -173,8 +152,13 @@ impl MotorController {
         }
     }
 
-    /// The command after a reading of the motor's counts, to follow the link's position, speed and acceleration.
-    pub fn step(&mut self, counts: i64, [angle, speed, acceleration]: [f64; 3]) -> f64 {
+    /// The same where readings are counted from a home; its angles are the encoder's own.
+    pub fn homed(self, home: &Measurement) -> Self {
+        Self { home: home.motor_counts, ..self }
+    }
+
+    /// The command after a reading of the motor's counts, to follow a motion of the link.
+    pub fn step(&mut self, counts: i64, Motion { position: angle, speed, acceleration }: Motion) -> f64 {
         let (ratio, inertia, period) = (self.ratio, self.inertia, self.period);
         let measured = (counts as f64 + 0.5) * self.per_count;
         // Angle, speed and disturbance from counts and the last command, with a triple pole.
@@ -196,37 +180,8 @@ impl MotorController {
     }
 }
 
-impl Run {
-    /// Makes the recording.
-    pub fn record(&self) -> Vec<Moment> {
-        let mut train =
-            DriveTrain::new(&self.joint, &Start::Still, self.train.clone(), self.disturbances.clone(), self.seed)
-                .expect("a sound drive train");
-        let reference = Reference::new(&self.profile, self.seed);
-        let mut controller = MotorController::new(&self.joint, &self.train);
-        let period = controller.period;
-        let mut moments = Vec::new();
-        for k in 0..(self.duration / period).round() as u64 {
-            let time = k as f64 * period;
-            if let Some((_, half_backlash)) = self.worn.filter(|(at, _)| (at / period).round() as u64 == k) {
-                train.inside().set_half_backlash(half_backlash);
-            }
-            let part = self.grows_at.map_or(1.0, |at| 0.2 + 0.8 * ((time - at) / 0.5).clamp(0.0, 1.0));
-            let wanted = reference.at(time).map(|value| part * value);
-            let command = controller.step(train.measure().motor_counts, wanted);
-            train.advance(command).expect("it runs");
-            let (measurement, joint, torques) = (train.measure(), train.joint(), train.torques());
-            moments.push(Moment {
-                command,
-                motor_counts: measurement.motor_counts,
-                output_counts: measurement.output_counts,
-                gap: joint.gap,
-                sun_force: joint.sun_force(),
-                load_torque: torques.load_friction + torques.gravity + torques.disturbance,
-                link: [joint.link_angle, joint.link_speed],
-                motor: [joint.motor_angle, joint.motor_speed],
-            });
-        }
-        moments
+impl Controller for MotorController {
+    fn period(&mut self, measurement: &Measurement, set_point: &SetPoint) -> f64 {
+        self.step(self.home + measurement.motor_counts, set_point.motion())
     }
 }

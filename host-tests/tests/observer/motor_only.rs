@@ -9,7 +9,7 @@ use crate::trial::{Encoders, Trial};
 /// A trial without an output encoder, told a width right to 2 %.
 fn trial(motion: &str, seed: u64) -> Trial {
     let mut trial = Trial::new("q1", motion, Encoders::Preset, Some(40e-6), seed).lasting(4.0);
-    trial.told = trial.run.joint.clone();
+    trial.told = trial.setup.joint.clone();
     trial.settings.output_encoder = None;
     trial.settings.backlash_uncertainty = 0.02;
     trial.settings.compliance_uncertainty = 0.05;
@@ -24,7 +24,7 @@ fn the_variance_is_honest_and_long_separations_are_refused() {
         let tables = trial.tables();
         let (mut open_for, mut refused, mut long) = (0, 0, 0);
         let figures =
-            replay::<f64, MAPPED>(&trial.run.joint, &tables, &trial.settings, &log, 1.0, |_, moment, estimates| {
+            replay::<f64, MAPPED>(&trial.setup.joint, &tables, &trial.settings, &log, 1.0, |_, moment, estimates| {
                 assert_eq!(estimates.source, Source::MotorOnly(Doubt::Absent));
                 assert!(estimates.half_backlash.variance > 1e-14, "the width never counts as known for sure");
                 open_for = if moment.sun_force == 0.0 { open_for + 1 } else { 0 };
@@ -45,7 +45,7 @@ fn a_width_that_nobody_knows_is_not_made_up() {
     let mut trial = trial("inertia", 33);
     trial.settings.backlash_uncertainty = 0.5;
     let log = trial.record();
-    replay::<f64, MAPPED>(&trial.run.joint, &trial.tables(), &trial.settings, &log, 1.0, |_, _, estimates| {
+    replay::<f64, MAPPED>(&trial.setup.joint, &trial.tables(), &trial.settings, &log, 1.0, |_, _, estimates| {
         assert!(!estimates.gap.valid && !estimates.half_backlash.valid);
     });
 }

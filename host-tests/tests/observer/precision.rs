@@ -18,8 +18,9 @@ fn single_precision_is_enough_at_the_start_and_after_300_turns() {
         let mut double = Observer::<f64, MAPPED>::new(&double);
         // The joint goes there smoothly before the recording begins, at some four turns of the output a second.
         let mut period = 0;
-        let around = &trial.run.train.surroundings;
-        let (motor_turn, output_turn) = (1_i64 << around.motor_encoder.bits, 1_i64 << around.output_encoder.bits);
+        let train = &trial.setup.train;
+        let (motor_turn, output_turn) =
+            (1_i64 << train.surroundings.motor_encoder.bits, 1_i64 << train.surroundings.output_encoder.bits);
         let steps = turns * 10_000 / 4;
         for step in 0..steps {
             let part = step as f64 / steps as f64;

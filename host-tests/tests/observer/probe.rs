@@ -1,57 +1,76 @@
 //! The width probe in the loop with a plant: a held load gives the width, everything else a refusal.
 
 use host_tests::tolerance::observer::PROBED_WIDTH;
-use model_core::observer::design::{design_observer, design_probe};
+use model_core::observer::design::{ObserverSettings, design_observer, design_probe};
 use model_core::observer::{MAPPED, Observer, ObserverTables, Probe, ProbeTable, Progress, Refusal};
-use reference::drive_train::{Disturbance, DriveTrain};
-use reference::joint::Start;
+use reference::closed_loop::{Controller, SetPoint};
+use reference::drive_train::{Disturbance, Measurement};
+use scenario::rig::{Driver, Moment, Period, Rig, RunError};
+use scenario::sender::Sender;
 
-use crate::motion::Moment;
 use crate::replay::samples;
 use crate::trial::{Encoders, Trial};
 
-/// Runs a probe on Q1 without an output encoder; the load is held by so much dry friction [N m].
+/// Periods in which the observer settles before the probe begins.
+const SETTLES: usize = 1000;
+
+/// Observer and probe as a controller; the first reading is that of the second period.
+struct Probing<'t> {
+    settings: &'t ObserverSettings,
+    observer: Observer<'t, f32, MAPPED>,
+    probe: Probe<'t, f32>,
+    home: Measurement,
+    progress: Progress<f32>,
+    command: f64,
+}
+
+impl Controller for Probing<'_> {
+    fn period(&mut self, measurement: &Measurement, _: &SetPoint) -> f64 {
+        let Some(period) = (measurement.period as usize).checked_sub(1) else { return self.command };
+        let moment = Moment {
+            command: self.command,
+            motor_counts: self.home.motor_counts + measurement.motor_counts,
+            output_counts: self.home.output_counts + measurement.output_counts,
+            ..Moment::default()
+        };
+        let estimates = *self.observer.step(&samples(self.settings, &moment, period));
+        if period >= SETTLES && self.progress == Progress::Running {
+            let (torque, progress) = self.probe.step(&estimates);
+            (self.command, self.progress) = (f64::from(torque), progress);
+            assert!(progress == Progress::Running || torque == 0.0, "a probe ends without a torque");
+        }
+        self.command
+    }
+}
+
+/// Runs a probe on Q1 without an output encoder; the load is held by so much dry friction [N m]. What it came to, and the
+/// largest force on the teeth [N].
 fn probed(half_backlash: f64, seed: u64, holding: f64, pushed_by: f64, torque: f64) -> (Progress<f32>, f64) {
-    let mut trial = Trial::new("q1", "hold", Encoders::Preset, Some(half_backlash), seed);
-    trial.run.train.surroundings.load_friction.coulomb = holding;
-    trial.run.train.surroundings.gravity_torque = 0.0;
+    let mut trial = Trial::new("q1", "hold", Encoders::Preset, Some(half_backlash), seed).lasting(0.7);
+    trial.setup.train.surroundings.load_friction.coulomb = holding;
+    trial.setup.train.surroundings.gravity_torque = 0.0;
+    trial.setup.disturbances = vec![Disturbance::Step { start: 0.0, torque: pushed_by }];
     trial.settings.output_encoder = None;
-    let push = Disturbance::Step { start: 0.0, torque: pushed_by };
-    let mut train = DriveTrain::new(&trial.run.joint, &Start::Still, trial.run.train.clone(), vec![push], seed)
-        .expect("a sound drive train");
     let tables: ObserverTables<f32> = design_observer(&trial.told, &trial.settings).expect("tables");
     let table: ProbeTable<f32> = design_probe(&trial.told, &trial.settings, torque).expect("a table");
-    let mut observer = Observer::<f32, MAPPED>::new(&tables);
-    let mut probe = Probe::new(&table);
-    let mut command = 0.0;
+    let rig = Rig::new(&trial.setup).expect("a sound drive train");
+    let mut probing = Probing {
+        settings: &trial.settings,
+        observer: Observer::new(&tables),
+        probe: Probe::new(&table),
+        home: rig.home(),
+        progress: Progress::Running,
+        command: 0.0,
+    };
     let mut hardest = 0.0_f64;
-    for period in 0..7000 {
-        train.advance(command).expect("it runs");
-        hardest = hardest.max(train.joint().sun_force().abs());
-        let measured = train.measure();
-        let moment = Moment {
-            command,
-            motor_counts: measured.motor_counts,
-            output_counts: measured.output_counts,
-            gap: 0.0,
-            sun_force: 0.0,
-            load_torque: 0.0,
-            link: [0.0; 2],
-            motor: [0.0; 2],
-        };
-        let estimates = *observer.step(&samples(&trial.settings, &moment, period));
-        // The observer settles first.
-        if period < 1000 {
-            continue;
-        }
-        let (torque, progress) = probe.step(&estimates);
-        if progress != Progress::Running {
-            assert_eq!(torque, 0.0);
-            return (progress, hardest);
-        }
-        command = f64::from(torque);
-    }
-    panic!("a probe ends within half a second");
+    let mut watch = |period: &Period<'_>| -> Result<(), RunError> {
+        hardest = hardest.max(period.plant.joint().sun_force().abs());
+        Ok(())
+    };
+    let mut sender = Sender::of_positions(trial.setup.motion.clone());
+    rig.run(&mut Driver::of(Box::new(&mut probing)), &mut sender, &mut watch).expect("it runs");
+    assert!(probing.progress != Progress::Running, "a probe ends within half a second");
+    (probing.progress, hardest)
 }
 
 #[test]

@@ -8,8 +8,7 @@ use model_core::observer::design::{EncoderSettings, ObserverSettings};
 use model_core::observer::{Estimates, Observer, ObserverTables, Reading, Samples};
 use parameters::{AbsoluteEncoder, ContactState, JointParameters};
 use reference::drive_train::{DriveTrainParameters, ErrorPhases};
-
-use crate::motion::Moment;
+use scenario::rig::Moment;
 
 /// Ticks of the samples' clock in a second.
 pub const CLOCK_RATE: u32 = 10_000_000;

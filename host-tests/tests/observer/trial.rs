@@ -6,9 +6,12 @@ use model_core::numbers::Real;
 use model_core::observer::ObserverTables;
 use model_core::observer::design::{ObserverSettings, design_observer};
 use parameters::{AbsoluteEncoder, JointParameters};
-use reference::drive_train::DriveTrainParameters;
+use reference::drive_train::{DriveTrainParameters, Stepping};
+use reference::joint::Start;
+use scenario::rig::{Driver, Moment, Rig, Setup};
+use scenario::sender::Sender;
 
-use crate::motion::{Moment, Profile, Run, uniform};
+use crate::motion::{MotorController, Profile, inertia_at_motor, uniform};
 use crate::presets::{preset, with_backlash};
 use crate::replay::settings;
 
@@ -24,10 +27,10 @@ pub enum Encoders {
 }
 
 /// A trial.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct Trial {
     /// What truly moves.
-    pub run: Run,
+    pub setup: Setup,
     /// What the observer is told of the joint.
     pub told: JointParameters,
     /// What it is told of the drive train.
@@ -67,11 +70,14 @@ impl Trial {
             compliance.stiffness *= wrong[1];
         }
         let settings = settings(&train);
-        Self {
-            run: Run { joint, train, profile, disturbances: Vec::new(), seed, duration, grows_at: None, worn: None },
-            told,
-            settings,
-        }
+        let motion = profile.motion(seed);
+        // What is judged is an estimate to a part of a percent: the plant is stepped as finely as it can be.
+        let setup = Setup {
+            start: Start::Still,
+            stepping: Stepping::Adaptive,
+            ..Setup::new(joint, train, motion, duration, seed)
+        };
+        Self { setup, told, settings }
     }
 
     /// The observer's tables.
@@ -81,13 +87,16 @@ impl Trial {
 
     /// The same, so long [s].
     pub fn lasting(mut self, duration: f64) -> Self {
-        self.run.duration = duration;
+        self.setup.duration = duration;
         self
     }
 
-    /// The recording.
+    /// The recording, under a plain motor controller.
     pub fn record(&self) -> Vec<Moment> {
-        self.run.record()
+        let Setup { joint, train, motion, .. } = &self.setup;
+        let rig = Rig::new(&self.setup).expect("a sound drive train");
+        let controller = MotorController::new(joint, train).homed(&rig.home());
+        rig.record(&mut Driver::of(Box::new(controller)), &mut Sender::of_positions(motion.clone())).expect("it runs")
     }
 }
 
@@ -96,7 +105,7 @@ fn motion_of(name: &str, joint: &JointParameters, train: &DriveTrainParameters) 
     let rated = joint.rated_output_torque;
     let friction = train.surroundings.load_friction.coulomb;
     let gravity = 0.4 * rated;
-    let inertia = joint.geometry.ratio_by_teeth().powi(2) * crate::motion::inertia_at_motor(joint);
+    let inertia = joint.geometry.ratio_by_teeth().powi(2) * inertia_at_motor(joint);
     // A quarter of the rated torque at 1 Hz, and a turn to and fro at most.
     let amplitude =
         |frequency: f64, part: f64| (part * rated / inertia / (core::f64::consts::TAU * frequency).powi(2)).min(1.0);

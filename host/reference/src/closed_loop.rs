@@ -1,22 +1,20 @@
-//! Closed loops on the drive train: controllers behind one trait, the rivals that compensation is measured against,
-//! profiles, random plants and figures of merit. Bounds are `tolerance`'s business, files of tests the host command's.
+//! What a closed loop on the drive train is made of and judged by: controllers behind one trait, the rivals that
+//! compensation is measured against, motions, what happened, and figures of merit. Closing the loop is left to others, bounds
+//! are `tolerance`'s business.
 
-mod bench;
 mod metrics;
-mod plants;
 mod profile;
 pub mod rivals;
+mod run;
 mod sensing;
 
-pub use bench::{Bench, BenchError, ImpedanceGains, Run, Sample};
 pub use metrics::{Figures, deviation};
-pub use plants::{Variation, random_plant};
-pub use profile::{Profile, Reference};
+pub use profile::{Profile, Reference, SharedReference};
 pub use rivals::{Impedance, ImpedanceLaw, LoadCascade, MotorPid, OutputIntegral, VelocitySign};
+pub use run::{Run, Sample};
 pub use sensing::{LinkTracker, MotorTracker};
 
-use crate::drive_train::{Measurement, TrueTorques};
-use crate::joint::Observation;
+use crate::drive_train::Measurement;
 
 /// Where the link shall be at one moment.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -66,9 +64,10 @@ impl SetPoint {
 pub trait Controller {
     /// Motor torque for the period that begins now [N m].
     fn period(&mut self, measurement: &Measurement, set_point: &SetPoint) -> f64;
+}
 
-    /// Shows the truth, for controllers that stand in for a perfect observer. No rival looks at it.
-    fn witness(&mut self, joint: &Observation, torques: &TrueTorques) {
-        let _ = (joint, torques);
+impl<C: Controller + ?Sized> Controller for &mut C {
+    fn period(&mut self, measurement: &Measurement, set_point: &SetPoint) -> f64 {
+        (**self).period(measurement, set_point)
     }
 }

@@ -9,12 +9,13 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 
 use super::controller::ControllerName;
-use super::execution::{Order, RunError, execute};
+use super::execution::{Order, execute};
 use super::file::fault_word;
 use super::log_file;
 use super::on_board::Boards;
 use super::plant::PlantName;
 use super::record::{TestRecord, TestRun};
+use super::rig::RunError;
 use super::suite::Test;
 use super::trace::Trace;
 use super::values::Values;

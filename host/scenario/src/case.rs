@@ -11,11 +11,12 @@ use model_core::observer::design::{design_observer, design_usual_probe, observer
 use model_core::observer::{ObserverTables, ProbeTable};
 use parameters::{JointParameters, Surroundings};
 use reference::closed_loop::rivals::Knowledge;
-use reference::closed_loop::{Profile as Standard, Reference};
+use reference::closed_loop::{Profile as Standard, SharedReference};
 use reference::drive_train::{Disturbance, DriveTrainParameters};
 
 use super::draw::{Quantity, Stream};
 use super::file::{Change, Course, NewValue, TestFile};
+use super::plant::half_backlash;
 use super::pushes::disturbances;
 use super::recorded::Recorded;
 use super::surroundings::train;
@@ -34,7 +35,7 @@ pub struct Case {
     /// Guessed over true half-backlash.
     pub width_guess: f64,
     /// Where the link shall be.
-    pub motion: Arc<dyn Reference + Send + Sync>,
+    pub motion: SharedReference,
     /// What pushes it.
     pub disturbances: Vec<Disturbance>,
     /// Texts of the joint files: as controllers know the joint but for its backlash, and the truth.
@@ -139,19 +140,17 @@ impl Case {
             Failure::new(format!("no {what} can be designed for joint `{}`: {error}", self.told.name))
         };
         let observer = design_observer(&self.told, &settings).map_err(|error| refused("observer", &error))?;
-        let settings_of_law = CompensationSettings {
-            peak_torque: file.peak_torque,
-            ..compensation_settings(&self.told_surroundings, file.bandwidth)
-        };
-        let compensation =
-            design_compensation(&self.told, &settings_of_law).map_err(|error| refused("compensation", &error))?;
+        let compensation = design_compensation(&self.told, &self.settings_of_law(file))
+            .map_err(|error| refused("compensation", &error))?;
         let probe = design_usual_probe(&self.told, &settings).map_err(|error| refused("width probe", &error))?;
         Ok(Designed { observer, compensation, probe, ticks: settings.clock_rate / settings.control_rate })
     }
-}
 
-fn half_backlash(joint: &JointParameters) -> f64 {
-    joint.sun_planet.half_backlash.iter().sum::<f64>() / joint.geometry.planets as f64
+    /// What a compensation is designed to, as a file asks for it.
+    pub fn settings_of_law(&self, file: &TestFile) -> CompensationSettings {
+        let usual = compensation_settings(&self.told_surroundings, file.bandwidth);
+        CompensationSettings { peak_torque: file.peak_torque, ..usual }
+    }
 }
 
 /// Tries the changes of a file at both ends of their ranges, so that what cannot be is found before anything runs.
@@ -227,7 +226,7 @@ pub fn recorded(file: &TestFile, folder: &Path) -> Outcome<Option<Recorded>> {
     }
 }
 
-fn course(file: &TestFile, recorded: Option<&Recorded>, seed: u64) -> Arc<dyn Reference + Send + Sync> {
+fn course(file: &TestFile, recorded: Option<&Recorded>, seed: u64) -> SharedReference {
     match (&file.profile.course, recorded) {
         (_, Some(recorded)) => Arc::new(recorded.clone()),
         (Course::Sine(amplitude, frequency), _) => {

@@ -1,15 +1,4 @@
-//! Controllers of a run by their names: the compensation behind its port, or a rival. What they are asked for and what
-//! becomes of their torque is the run's business.
-
-use reference::closed_loop::rivals::Knowledge;
-use reference::closed_loop::{
-    Controller, Impedance, ImpedanceLaw, LoadCascade, MotorPid, OutputIntegral, SetPoint, VelocitySign,
-};
-use reference::drive_train::Measurement;
-
-use super::faults::Seen;
-use super::port::{Answer, ControllerPort, Translator};
-use report::failure::Outcome;
+//! Controllers of a run by their names: the compensation, or a rival. At work they are in `rig::driver`.
 
 /// Who controls.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -38,6 +27,8 @@ pub enum ControllerName {
     LinkSide,
     /// No torque at all.
     Off,
+    /// The compensation on the truth: no file names it.
+    PerfectSight,
 }
 
 /// An impedance, and how often its point is sent.
@@ -60,7 +51,7 @@ impl Default for Gains {
 }
 
 impl ControllerName {
-    /// All of them.
+    /// All that a file may name.
     pub const ALL: [Self; 12] = [
         Self::Preview,
         Self::NoPreview,
@@ -97,6 +88,7 @@ impl ControllerName {
             Self::LinkSpring => "link_spring",
             Self::LinkSide => "link_side",
             Self::Off => "off",
+            Self::PerfectSight => "perfect_sight",
         }
     }
 
@@ -115,6 +107,7 @@ impl ControllerName {
             Self::LinkSpring => "link spring, motor damper",
             Self::LinkSide => "link-side impedance",
             Self::Off => "no torque",
+            Self::PerfectSight => "compensation on the truth",
         }
     }
 
@@ -141,68 +134,5 @@ impl ControllerName {
     /// Who would do the same on a joint without a gap: what an impedance's deviation is measured from.
     pub fn without_gap(self) -> Self {
         if self.is_ours() { Self::LinkSpring } else { self }
-    }
-}
-
-/// A controller at work.
-pub enum Driver<'p> {
-    /// Observer and compensation.
-    Ours(Box<dyn ControllerPort + 'p>, Translator),
-    /// The observer and its width probe.
-    Probe(Box<dyn ControllerPort + 'p>, Translator),
-    /// A rival, and the last reading of the output encoder, which it holds while none comes.
-    Rival(Box<dyn Controller>, i64),
-    /// Nobody.
-    Off,
-}
-
-impl Driver<'_> {
-    /// A rival by its name.
-    pub fn rival(name: ControllerName, knowledge: Knowledge, bandwidth: f64) -> Self {
-        let law = |law| Box::new(Impedance::new(knowledge.clone(), law, bandwidth)) as Box<dyn Controller>;
-        let controller: Box<dyn Controller> = match name {
-            ControllerName::VelocitySign => Box::new(VelocitySign::new(knowledge, bandwidth)),
-            ControllerName::LoadCascade => Box::new(LoadCascade::new(knowledge, bandwidth)),
-            ControllerName::OutputIntegral => Box::new(OutputIntegral::new(knowledge, bandwidth)),
-            ControllerName::MotorSide => law(ImpedanceLaw::MotorSide),
-            ControllerName::LinkSpring => law(ImpedanceLaw::LinkSpring),
-            ControllerName::LinkSide => law(ImpedanceLaw::LinkSide),
-            ControllerName::Off => return Self::Off,
-            _ => Box::new(MotorPid::new(knowledge, bandwidth)),
-        };
-        Self::Rival(controller, 0)
-    }
-
-    /// Begins anew with what was learnt so far, as after the power was off; who learns nothing just goes on.
-    pub fn begin_again(&mut self) -> Outcome<()> {
-        if let Self::Ours(port, translator) | Self::Probe(port, translator) = self {
-            port.begin_again()?;
-            translator.begin_again();
-        }
-        Ok(())
-    }
-
-    /// Torque for the period that begins now [N m], and what a port answered.
-    pub fn period(&mut self, seen: &Seen, set_point: &SetPoint) -> Outcome<(f64, Option<Answer>)> {
-        match self {
-            Self::Off => Ok((0.0, None)),
-            Self::Rival(controller, output) => {
-                *output = seen.output.map_or(*output, |frame| frame.counts);
-                let measurement =
-                    Measurement { period: seen.period, motor_counts: seen.motor.counts, output_counts: *output };
-                Ok((controller.period(&measurement, set_point), None))
-            }
-            Self::Ours(port, translator) => {
-                let samples = translator.samples(seen);
-                let answer = port.exchange(&samples, &translator.command(set_point))?;
-                translator.note(&answer);
-                Ok((f64::from(answer.shaped.torque), Some(answer)))
-            }
-            Self::Probe(port, translator) => {
-                let answer = port.probe(&translator.samples(seen))?;
-                translator.note(&answer);
-                Ok((f64::from(answer.shaped.torque), Some(answer)))
-            }
-        }
     }
 }

@@ -8,8 +8,9 @@ mod teeth;
 use std::collections::VecDeque;
 
 use model_core::virtual_joint::fault::{FaultKind, Shaft};
+use parameters::JointParameters;
 use reference::closed_loop::SetPoint;
-use reference::drive_train::Measurement;
+use reference::drive_train::{DriveTrainParameters, Measurement};
 use reference::joint::Observation;
 
 use active::Active;
@@ -59,9 +60,9 @@ pub struct HostFaults {
 const MEMORY: usize = 100_000;
 
 impl HostFaults {
-    /// The faults of a run.
-    pub fn new(faults: &[Fault], seed: u64, case: &super::case::Case) -> Self {
-        let around = &case.truth.surroundings;
+    /// The faults of a run of a true joint with what truly surrounds it.
+    pub fn new(faults: &[Fault], seed: u64, joint: &JointParameters, train: &DriveTrainParameters) -> Self {
+        let around = &train.surroundings;
         let encoders = [&around.motor_encoder, &around.output_encoder];
         Self {
             faults: faults.iter().enumerate().map(|(index, fault)| Active::new(fault, index, seed)).collect(),
@@ -73,7 +74,7 @@ impl HostFaults {
             last: None,
             set_points: VecDeque::new(),
             given: None,
-            teeth: ToothState::new(case),
+            teeth: ToothState::new(joint),
         }
     }
 

@@ -2,13 +2,12 @@
 //! the core's own plant, and reported. Observer and compensation run on the host or, by `on_board`, on a board.
 //!
 //! The order of a test: `file` reads what it says, `suite` finds it and its joint, `case` makes it concrete for a seed;
-//! `execution` closes the loop between `plant` and `controller` through `faults`, with observer and compensation behind
-//! `port`, and `ran` keeps what happened; `figures`, `values` and `sight` say what that was worth, `verdict` judges,
-//! `campaign` puts all seeds together; `page`, `junit`, `log_file` and `record` are what stays.
+//! `execution` gives the case to the `rig`, which closes the loop between `plant` and `controller` through `faults`, with
+//! observer and compensation behind `port`, and `ran` keeps what happened; `figures`, `values` and `sight` say what that was
+//! worth, `verdict` judges, `campaign` puts all seeds together; `page`, `junit`, `log_file` and `record` are what stays.
 
 mod campaign;
 pub mod case;
-pub mod compensated;
 pub mod controller;
 pub mod draw;
 pub mod execution;
@@ -26,14 +25,14 @@ mod pushes;
 pub mod ran;
 pub mod record;
 pub mod recorded;
+pub mod rig;
 #[cfg(test)]
 mod schema;
-mod sender;
+pub mod sender;
 mod sight;
 pub mod suite;
 pub mod surroundings;
 mod trace;
-pub mod trial;
 pub mod values;
 mod verdict;
 

@@ -49,13 +49,32 @@ impl Teeth for Reference {
     }
 }
 
+/// Half-backlash of a joint, mean over the planets [m].
+pub fn half_backlash(joint: &JointParameters) -> f64 {
+    joint.sun_planet.half_backlash.iter().sum::<f64>() / joint.geometry.planets as f64
+}
+
 /// A drive train with a joint of either kind inside.
 pub type Plant = DriveTrain<Box<dyn Teeth>>;
 
-/// A joint at rest in the middle of its gap, with what surrounds it.
+/// A joint at rest in the middle of its gap, with what surrounds it; the reference is stepped fast.
 pub fn plant(
     name: PlantName,
     joint: &JointParameters,
+    train: &DriveTrainParameters,
+    disturbances: Vec<Disturbance>,
+    seed: u64,
+) -> Outcome<Plant> {
+    let centred = Start::Relative(RelativeState::centred(joint.geometry.planets));
+    plant_from(name, joint, &centred, train, disturbances, seed).map(|plant| plant.stepped(Stepping::Fixed))
+}
+
+/// A joint from a start of its own, with what surrounds it; the core's own step begins at rest in the middle of its gap,
+/// whatever the start.
+pub fn plant_from(
+    name: PlantName,
+    joint: &JointParameters,
+    start: &Start,
     train: &DriveTrainParameters,
     disturbances: Vec<Disturbance>,
     seed: u64,
@@ -64,10 +83,7 @@ pub fn plant(
         |error: &dyn std::fmt::Display| Failure::new(format!("joint `{}` cannot be run: {error}", joint.name));
     let mut train = train.clone();
     let inside: Box<dyn Teeth> = match name {
-        PlantName::Reference => {
-            let start = Start::Relative(RelativeState::centred(joint.geometry.planets));
-            Box::new(Reference::start(joint, &start).map_err(|error| refused(&error))?)
-        }
+        PlantName::Reference => Box::new(Reference::start(joint, start).map_err(|error| refused(&error))?),
         PlantName::Core => {
             let control_rate = f64::from(train.surroundings.control_rate);
             // As on a board: whole ticks in a control period, as near to the usual rate as that allows.
@@ -80,9 +96,7 @@ pub fn plant(
             }
         }
     };
-    DriveTrain::around(inside, joint, train, disturbances, seed)
-        .map(|train| train.stepped(Stepping::Fixed))
-        .map_err(|error| refused(&error))
+    DriveTrain::around(inside, joint, train, disturbances, seed).map_err(|error| refused(&error))
 }
 
 /// The core's fixed step as a joint in motion.

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 
 use model_core::compensation::{self, Command, ImpedancePoint, Position};
 use model_core::controller::{self, Controller};
+use model_core::numbers::Real;
 use model_core::observer::{Reading, Samples};
 use reference::closed_loop::{Motion, SetPoint};
 
@@ -110,18 +111,7 @@ impl Translator {
 
     /// A set-point on the scale of the observer's link shaft, its angles in whole turns and the rest.
     pub fn command(&self, set_point: &SetPoint) -> Command<f32> {
-        let first_turn = self.first_turn.unwrap_or(0);
-        let motion = |of: Motion| motion(of, first_turn);
-        match *set_point {
-            SetPoint::Position { now, ahead } => Command::Position { now: motion(now), ahead: ahead.map(motion) },
-            SetPoint::Impedance { about, torque, stiffness, damping } => Command::Impedance(ImpedancePoint {
-                position: motion(about).position,
-                speed: about.speed as f32,
-                torque: torque as f32,
-                stiffness: stiffness as f32,
-                damping: damping as f32,
-            }),
-        }
+        command(set_point, self.first_turn.unwrap_or(0))
     }
 
     /// Remembers the torque that the observer is shown next.
@@ -130,11 +120,34 @@ impl Translator {
     }
 }
 
-fn motion(of: Motion, first_turn: i32) -> compensation::Motion<f32> {
-    let turns = (of.position / TAU).floor();
+/// A set-point as the compensation takes it, turns counted from one of them.
+pub fn command<T: Real>(set_point: &SetPoint, first_turn: i32) -> Command<T> {
+    let motion = |of: Motion| motion(of, first_turn);
+    match *set_point {
+        SetPoint::Position { now, ahead } => Command::Position { now: motion(now), ahead: ahead.map(motion) },
+        SetPoint::Impedance { about, torque, stiffness, damping } => {
+            let compensation::Motion { position, speed, .. } = motion(about);
+            Command::Impedance(ImpedancePoint {
+                position,
+                speed,
+                torque: T::from_f64(torque),
+                stiffness: T::from_f64(stiffness),
+                damping: T::from_f64(damping),
+            })
+        }
+    }
+}
+
+/// An angle as whole turns and the rest.
+pub fn position<T: Real>(angle: f64, first_turn: i32) -> Position<T> {
+    let turns = (angle / TAU).floor();
+    Position { turns: turns as i32 - first_turn, fraction: T::from_f64(angle / TAU - turns) }
+}
+
+fn motion<T: Real>(of: Motion, first_turn: i32) -> compensation::Motion<T> {
     compensation::Motion {
-        position: Position { turns: turns as i32 - first_turn, fraction: (of.position / TAU - turns) as f32 },
-        speed: of.speed as f32,
-        acceleration: of.acceleration as f32,
+        position: position(of.position, first_turn),
+        speed: T::from_f64(of.speed),
+        acceleration: T::from_f64(of.acceleration),
     }
 }

@@ -1,15 +1,13 @@
 //! What happened in a run: the truth in every control period, and what the observer made of it. How it came about is
-//! `execution`'s business, what it is worth is `figures`'.
+//! `rig`'s business, what it is worth is `figures`'.
 
 use model_core::numbers::digest;
 use model_core::observer::{Progress, Refusal, Source};
 use parameters::ContactState;
 use reference::closed_loop::{Run, Sample};
 
-use super::case::Case;
-use super::faults::HostFaults;
-use super::plant::Plant;
 use super::port::Answer;
+use super::rig::Period;
 
 /// What happened.
 #[derive(Debug, Clone, PartialEq)]
@@ -85,26 +83,17 @@ impl Ran {
         }
     }
 
-    /// Adds the period that a plant has just done.
-    pub(super) fn note(
-        &mut self,
-        plant: &Plant,
-        case: &Case,
-        faults: &HostFaults,
-        command: f64,
-        answer: Option<&Answer>,
-    ) {
-        let joint = plant.joint();
-        let torques = plant.torques();
-        let half = faults.half_backlash_now();
-        let sample = Sample::of(joint, case.motion.at(joint.time).position, half, command);
+    /// Adds a period of a rig.
+    pub fn note(&mut self, period: &Period<'_>) {
+        let joint = period.plant.joint();
+        let sample = Sample::of(joint, period.wanted, period.half_backlash, period.command);
         let truth = Truth {
             gap: joint.gap,
-            half_backlash: half,
-            load_torque: torques.load_friction + torques.gravity + torques.disturbance,
+            half_backlash: period.half_backlash,
+            load_torque: period.load_torque(),
             motor: joint.motor_angle,
         };
-        self.add(sample, truth, answer);
+        self.add(sample, truth, period.answer);
     }
 
     /// Adds a period.

@@ -3,36 +3,42 @@
 
 use model_core::gears::{Kinematics, Mechanics};
 use parameters::JointParameters;
-use reference::closed_loop::{Motion, SetPoint};
+use reference::closed_loop::{Motion, SetPoint, SharedReference};
 
 use super::case::{Case, Designed};
 use super::controller::{ControllerName, Gains};
 use super::file::TestFile;
 
 /// Makes set-points as whoever asks for the motion sends them.
-pub struct Sender<'c> {
-    case: &'c Case,
+pub struct Sender {
+    motion: SharedReference,
     /// How far ahead the motion is told [s].
     lead: Option<f64>,
-    gains: Option<Gains>,
-    inertia: f64,
+    /// An impedance, and the torque that is sent along for each unit of acceleration [kg m^2].
+    impedance: Option<(Gains, f64)>,
     held: Option<(u64, Motion)>,
 }
 
-impl<'c> Sender<'c> {
+impl Sender {
     /// For one controller of a case.
-    pub fn new(file: &TestFile, case: &'c Case, controller: ControllerName, designed: Option<&Designed>) -> Self {
+    pub fn new(file: &TestFile, case: &Case, controller: ControllerName, designed: Option<&Designed>) -> Self {
         let preview = controller == ControllerName::Preview;
         let lead = designed.filter(|_| preview).map(|designed| f64::from(designed.compensation.lead));
         let gains = file.gains.filter(|_| controller.wants_gains() || controller == ControllerName::Off);
-        let inertia = gains.and_then(|gains| gains.inertia).unwrap_or_else(|| inertia_at_link(&case.told));
-        Self { case, lead, gains, inertia, held: None }
+        let inertia = |gains: &Gains| gains.inertia.unwrap_or_else(|| inertia_at_link(&case.told));
+        let impedance = gains.map(|gains| (gains, inertia(&gains)));
+        Self { motion: case.motion.clone(), lead, impedance, held: None }
+    }
+
+    /// The positions of a motion, none of them told ahead.
+    pub fn of_positions(motion: SharedReference) -> Self {
+        Self { motion, lead: None, impedance: None, held: None }
     }
 
     /// Set-point of a period and the number of the frame that brings it.
     pub fn at(&mut self, time: f64, index: u64) -> (u64, SetPoint) {
-        let motion = &self.case.motion;
-        let Some(gains) = self.gains else {
+        let motion = &self.motion;
+        let Some((gains, inertia)) = self.impedance else {
             let ahead = self.lead.map(|lead| motion.at(time + lead));
             return (index, SetPoint::Position { now: motion.at(time), ahead });
         };
@@ -44,7 +50,7 @@ impl<'c> Sender<'c> {
         self.held = Some((number, about));
         let set_point = SetPoint::Impedance {
             about: Motion { acceleration: 0.0, ..about },
-            torque: self.inertia * about.acceleration,
+            torque: inertia * about.acceleration,
             stiffness: gains.stiffness,
             damping: gains.damping,
         };

@@ -131,16 +131,27 @@ fn paths(path: &Path) -> Outcome<Vec<PathBuf>> {
 fn read(path: &Path) -> Outcome<(String, TestFile)> {
     let name = path.display().to_string();
     let text = fs::read_to_string(path).map_err(|error| Failure::new(format!("cannot read {name}: {error}")))?;
-    match file::read(&text) {
-        Ok(file) => Ok((text, file)),
-        Err(problems) => Err(Failure::from_report(diagnostic::report(&name, &text, &problems))),
-    }
+    read_text(&name, &text).map(|file| (text, file))
+}
+
+fn read_text(name: &str, text: &str) -> Outcome<TestFile> {
+    file::read(text).map_err(|problems| Failure::from_report(diagnostic::report(name, text, &problems)))
 }
 
 fn load_one(path: &Path, plant: PlantName) -> Outcome<Test> {
-    let name = path.display().to_string();
     let (text, file) = read(path)?;
     let folder = path.parent().unwrap_or(Path::new("."));
+    test_of(path.display().to_string(), text, file, folder, plant)
+}
+
+/// A test from a text of its own, as if it stood in a folder under a name.
+pub fn from_text(name: &str, text: &str, folder: &Path, plant: PlantName) -> Outcome<Test> {
+    let file = read_text(name, text)?;
+    test_of(folder.join(name).display().to_string(), text.to_owned(), file, folder, plant)
+}
+
+/// Holds a test against its joint before anything runs.
+fn test_of(name: String, text: String, file: TestFile, folder: &Path, plant: PlantName) -> Outcome<Test> {
     let joint = joint(&file.joint, folder).map_err(|failure| failure.while_doing(&name))?;
     check_changes(&file, &joint.text)
         .map_err(|problems| Failure::from_report(diagnostic::report(&name, &text, &problems)))?;

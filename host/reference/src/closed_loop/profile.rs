@@ -1,7 +1,8 @@
 //! What the link is asked to do: the standard motions, each smooth in its beginning. Disturbances and frictions that
-//! belong to a test are the bench's.
+//! belong to a test are its own.
 
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -13,6 +14,9 @@ pub trait Reference {
     /// At a moment [s].
     fn at(&self, time: f64) -> Motion;
 }
+
+/// A motion that several runs follow at once.
+pub type SharedReference = Arc<dyn Reference + Send + Sync>;
 
 /// The standard motions.
 #[derive(Debug, Clone, PartialEq)]

@@ -4,12 +4,12 @@
 use std::f64::consts::TAU;
 
 use model_core::virtual_joint::fault::FaultKind;
+use parameters::JointParameters;
 use reference::joint::Observation;
 
 use super::active::Active;
-use crate::case::Case;
 use crate::file::{OnHost, fault_is_on};
-use crate::plant::Teeth;
+use crate::plant::{Teeth, half_backlash};
 
 /// What the teeth were made to be.
 #[derive(Debug, Clone)]
@@ -25,11 +25,11 @@ pub(super) struct ToothState {
 
 impl ToothState {
     /// As they were made.
-    pub fn new(case: &Case) -> Self {
-        let joint = &case.truth.parameters;
+    pub fn new(joint: &JointParameters) -> Self {
+        let half_backlash = half_backlash(joint);
         Self {
-            half_backlash: case.half_backlash(),
-            now: case.half_backlash(),
+            half_backlash,
+            now: half_backlash,
             stiffness: joint.sun_planet.mean_stiffness,
             soft: vec![false; joint.geometry.planets],
             sun_teeth: f64::from(joint.geometry.sun_teeth),

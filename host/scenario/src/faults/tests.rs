@@ -12,7 +12,7 @@ use crate::plant::{PlantName, plant};
 fn at_work(faults: &str) -> (HostFaults, Case) {
     let file = file::read(&format!("profile = \"T2\"\n{faults}")).expect("a good file");
     let case = Case::new(&file, joint_file::preset("q1").expect("a preset"), 1, None).expect("a case");
-    (HostFaults::new(&file.faults, 1, &case), case)
+    (HostFaults::new(&file.faults, 1, &case.truth.parameters, &case.train), case)
 }
 
 /// What the output encoder says in each of so many periods while it truly goes on by `step` counts in each.

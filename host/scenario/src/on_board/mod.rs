@@ -21,10 +21,11 @@ pub use wish::BoardWish;
 use wish::{can_be, may_run};
 
 use super::case::Case;
-use super::execution::{Order, RunError};
+use super::execution::Order;
 use super::plant::PlantName;
 use super::ran::Ran;
 use super::record::BoardRun;
+use super::rig::RunError;
 use super::suite::{Suite, Test};
 use board::bench::Bench;
 use board::session::{Expected, Mend, Session};

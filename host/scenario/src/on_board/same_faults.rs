@@ -66,7 +66,7 @@ impl Both {
     fn run(&self, kinds: &[FaultKind<Si>]) -> Vec<Period> {
         let faults: Vec<_> = kinds.iter().map(|kind| Fault { start: START, end: END, seed: (), kind: *kind }).collect();
         let rate = f64::from(self.case.truth.surroundings.control_rate);
-        let mut host = HostFaults::new(&faults, 1, &self.case);
+        let mut host = HostFaults::new(&faults, 1, &self.case.truth.parameters, &self.case.train);
         let mut board = Faults::default();
         let quantised = quantised(&faults, rate, self.bits, 1).expect("a board can do it");
         assert!(quantised.iter().all(|fault| board.add(*fault)), "there is room");

@@ -1,0 +1,36 @@
+//! The width in steps between two places, in the loop with the compensation, whose soft landings leave little to learn from.
+//! Motions under a plain motor controller are the observer's tests.
+
+use host_tests::tolerance::observer::{WIDTH_AFTER, WIDTH_IN_STEPS, WIDTH_IN_STEPS_WORST};
+use scenario::controller::ControllerName::NoPreview;
+use scenario::draw::Quantity;
+
+use super::{changed, run};
+
+/// Half-backlash [um], guess over it, seed.
+const CASES: [(f64, f64, u64); 7] =
+    [(20.0, 1.5, 1), (20.0, 0.5, 2), (20.0, 1.5, 3), (20.0, 1.5, 4), (20.0, 0.5, 6), (30.0, 0.5, 3), (40.0, 0.5, 1)];
+
+#[test]
+fn steps_between_two_places_show_the_width() {
+    let mut squares = 0.0;
+    for (half_backlash, guess, seed) in CASES {
+        let mut test = changed("steps-no-preview", "", &format!("[known]\nmesh.half_backlash_um = {half_backlash}"));
+        test.file.width_guess = Some(Quantity::Exactly(guess));
+        let ran = run(&test, seed, NoPreview);
+        let (mut moving, mut right_after, mut width) = (0.0, 0.0, 0.0);
+        // A sample is taken at its period's end, which is where the next period's estimates are made.
+        for ((sample, truth), sight) in ran.run.samples.iter().zip(&ran.truths).zip(ran.sights.iter().skip(1)) {
+            moving += if sample.gap.abs() > 0.95 && sample.link_speed.abs() > 1e-3 { ran.run.period } else { 0.0 };
+            width = f64::from(sight.half_backlash) / truth.half_backlash - 1.0;
+            right_after = if width.abs() > 0.05 { moving } else { right_after };
+        }
+        println!(
+            "{half_backlash} um, guess {guess}, seed {seed}: {width:+.4}, right after {right_after} s of motion in contact"
+        );
+        WIDTH_IN_STEPS_WORST.check(width);
+        WIDTH_AFTER.check(right_after);
+        squares += width * width;
+    }
+    WIDTH_IN_STEPS.check((squares / CASES.len() as f64).sqrt());
+}

@@ -1,0 +1,146 @@
+//! The one closed loop of a joint on the host: a plant with what surrounds it, a motion that is asked for, faults between
+//! plant and controller, and whoever controls. All of them are stepped here, one control period after another and in one
+//! order, and each period is shown to whoever keeps something of it.
+//!
+//! A control period: faults of the teeth; the set-point is sent, and reaches the controller through its faults; the encoders
+//! are read, and reach it through theirs; the controller gives a torque; the motor makes of it what its faults let it, and
+//! the plant moves on. Encoders are homed where a run begins.
+//!
+//! Which case it is, who controls, and what a run was worth are left to others.
+
+mod driver;
+mod error;
+mod perfect_sight;
+mod recording;
+mod setup;
+
+pub use driver::Driver;
+pub use error::RunError;
+pub use perfect_sight::PerfectSight;
+pub use recording::Moment;
+pub use setup::Setup;
+
+use reference::closed_loop::SharedReference;
+use reference::drive_train::Measurement;
+
+use super::faults::HostFaults;
+use super::plant::{Plant, plant_from};
+use super::port::Answer;
+use super::sender::Sender;
+use report::failure::Outcome;
+
+/// A joint that waits for a controller, or has been controlled for a while.
+pub struct Rig {
+    plant: Plant,
+    faults: HostFaults,
+    motion: SharedReference,
+    /// Control period [s].
+    period: f64,
+    /// Length of a run.
+    periods: u64,
+}
+
+/// What one control period came to.
+pub struct Period<'r> {
+    /// Place in the run, from 0.
+    pub index: u64,
+    /// When it began [s].
+    pub time: f64,
+    /// The plant at its end.
+    pub plant: &'r Plant,
+    /// Where the link was to be at its end [rad].
+    pub wanted: f64,
+    /// Half-backlash during it [m].
+    pub half_backlash: f64,
+    /// Torque asked of the motor [N m].
+    pub command: f64,
+    /// What observer and compensation said, if they control.
+    pub answer: Option<&'r Answer>,
+}
+
+/// Is shown every period, and may end the run.
+pub type Watch<'w> = &'w mut dyn FnMut(&Period<'_>) -> Result<(), RunError>;
+
+impl Rig {
+    /// At rest, and yet to be controlled.
+    pub fn new(setup: &Setup) -> Outcome<Self> {
+        let Setup { joint, train, .. } = setup;
+        let rate = f64::from(train.surroundings.control_rate);
+        let plant = plant_from(setup.plant, joint, &setup.start, train, setup.disturbances.clone(), setup.seed)?;
+        Ok(Self {
+            plant: plant.stepped(setup.stepping),
+            faults: HostFaults::new(&setup.faults, setup.seed, joint, train),
+            motion: setup.motion.clone(),
+            period: 1.0 / rate,
+            periods: (setup.duration * rate).round() as u64,
+        })
+    }
+
+    /// Control period [s].
+    pub fn period(&self) -> f64 {
+        self.period
+    }
+
+    /// Control periods in a run.
+    pub fn periods(&self) -> u64 {
+        self.periods
+    }
+
+    /// What the encoders read now, from their own zeros: before a run, where they are homed.
+    pub fn home(&self) -> Measurement {
+        self.plant.measure()
+    }
+
+    /// Closes the loop, from the first period to the last.
+    pub fn run(mut self, driver: &mut Driver<'_>, sender: &mut Sender, watch: Watch<'_>) -> Result<(), RunError> {
+        let Self { plant, faults, motion, period, periods } = &mut self;
+        for index in 0..*periods {
+            let time = index as f64 * *period;
+            let joint = plant.joint().clone();
+            faults.wear(time, &joint, plant.inside().as_mut());
+            let (number, set_point) = sender.at(time, index);
+            let set_point = faults.receive(time, number, set_point);
+            let seen = faults.sense(&plant.measure());
+            driver.show(&joint, &plant.torques());
+            let (command, answer) = driver.period(&seen, &set_point)?;
+            if !command.is_finite() {
+                return Err(RunError::Broke(format!("the controller's torque is not finite at t = {time:.4} s")));
+            }
+            plant
+                .advance(faults.torque(time, command))
+                .map_err(|error| RunError::Broke(format!("the plant at t = {time:.4} s: {error}")))?;
+            let joint = plant.joint();
+            watch(&Period {
+                index,
+                time,
+                plant,
+                wanted: motion.at(joint.time).position,
+                half_backlash: faults.half_backlash_now(),
+                command,
+                answer: answer.as_ref(),
+            })?;
+            if !(joint.link_angle + joint.sun_force()).is_finite() {
+                return Err(RunError::Broke(format!("the joint's motion is not finite at t = {time:.4} s")));
+            }
+        }
+        Ok(())
+    }
+
+    /// Closes the loop and keeps what was measured, with the truth.
+    pub fn record(self, driver: &mut Driver<'_>, sender: &mut Sender) -> Result<Vec<Moment>, RunError> {
+        let mut moments = Vec::with_capacity(self.periods as usize);
+        self.run(driver, sender, &mut |period| {
+            moments.push(Moment::of(period));
+            Ok(())
+        })?;
+        Ok(moments)
+    }
+}
+
+impl Period<'_> {
+    /// What brakes the link [N m].
+    pub fn load_torque(&self) -> f64 {
+        let torques = self.plant.torques();
+        torques.load_friction + torques.gravity + torques.disturbance
+    }
+}

@@ -1,0 +1,41 @@
+//! What was measured in a run, with the truth beside it: what an observer can be run over afterwards, as often as one likes.
+
+use super::Period;
+
+/// One control period: what was measured at its end, and the truth then.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Moment {
+    /// Command that was in force during the period [N m].
+    pub command: f64,
+    /// Motor encoder at the end, from its own zero and with whole turns.
+    pub motor_counts: i64,
+    /// Output encoder at the end, likewise.
+    pub output_counts: i64,
+    /// True gap coordinate [m].
+    pub gap: f64,
+    /// True net sun mesh force [N].
+    pub sun_force: f64,
+    /// True torque that brakes the link [N m].
+    pub load_torque: f64,
+    /// True angle and speed of the link [rad, rad/s].
+    pub link: [f64; 2],
+    /// True angle and speed of the motor [rad, rad/s].
+    pub motor: [f64; 2],
+}
+
+impl Moment {
+    /// The end of a period.
+    pub fn of(period: &Period<'_>) -> Self {
+        let (measurement, joint) = (period.plant.measure(), period.plant.joint());
+        Self {
+            command: period.command,
+            motor_counts: measurement.motor_counts,
+            output_counts: measurement.output_counts,
+            gap: joint.gap,
+            sun_force: joint.sun_force(),
+            load_torque: period.load_torque(),
+            link: [joint.link_angle, joint.link_speed],
+            motor: [joint.motor_angle, joint.motor_speed],
+        }
+    }
+}

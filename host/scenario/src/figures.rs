@@ -2,7 +2,6 @@
 //! values are made in `values` and `sight`; which must be how good is the file's business.
 
 use super::controller::ControllerName;
-use super::values::Values;
 
 /// What kind of test a figure needs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -122,9 +121,6 @@ pub enum Relation {
     RatioTo(ControllerName),
 }
 
-/// A gain over a controller that is right to the last bit would be infinite; this says enough.
-const MOST_GAIN: f64 = 1e6;
-
 impl Figure {
     /// Its name with the unit.
     pub fn name(&self) -> String {
@@ -190,18 +186,8 @@ impl Named {
         &FIGURES[self.index]
     }
 
-    /// Its value, from figures of the controller and of another one.
-    pub fn value(&self, own: &Values, of: impl Fn(ControllerName) -> Option<Values>) -> Option<f64> {
-        let own = own.at(self.index)?;
-        let ratio = |above: f64, below: f64| match (above, below) {
-            (above, below) if above == below => 1.0,
-            (above, 0.0) => above.signum() * MOST_GAIN,
-            (above, below) => above / below,
-        };
-        match self.relation {
-            Relation::Own => Some(own),
-            Relation::GainOver(other) => Some(ratio(of(other)?.at(self.index)?, own)),
-            Relation::RatioTo(other) => Some(ratio(own, of(other)?.at(self.index)?)),
-        }
+    /// The place of that figure among all.
+    pub fn place(&self) -> usize {
+        self.index
     }
 }

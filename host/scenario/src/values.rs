@@ -5,10 +5,14 @@ use model_core::gears::Kinematics;
 use reference::closed_loop::{Figures as Plain, Sample, deviation};
 
 use super::case::Case;
-use super::figures::{FIGURES, Figure};
+use super::controller::ControllerName;
+use super::figures::{FIGURES, Figure, Named, Relation};
 use super::file::TestFile;
 use super::ran::{Ran, Truth};
 use super::sight;
+
+/// A gain over a controller that is right to the last bit would be infinite; this says enough.
+const MOST_GAIN: f64 = 1e6;
 
 /// Values of all figures, where they could be had.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,6 +48,21 @@ impl Values {
     /// A value by its place among the figures.
     pub fn at(&self, index: usize) -> Option<f64> {
         self.0.get(index).copied().flatten()
+    }
+
+    /// The value of a named figure of the controller that these are of, beside the values of others.
+    pub fn of_named(&self, named: &Named, of: impl Fn(ControllerName) -> Option<Values>) -> Option<f64> {
+        let own = self.at(named.place())?;
+        let ratio = |above: f64, below: f64| match (above, below) {
+            (above, below) if above == below => 1.0,
+            (above, 0.0) => above.signum() * MOST_GAIN,
+            (above, below) => above / below,
+        };
+        match named.relation {
+            Relation::Own => Some(own),
+            Relation::GainOver(other) => Some(ratio(of(other)?.at(named.place())?, own)),
+            Relation::RatioTo(other) => Some(ratio(own, of(other)?.at(named.place())?)),
+        }
     }
 
     fn set(&mut self, stem: &str, value: f64) {

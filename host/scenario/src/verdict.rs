@@ -23,7 +23,7 @@ pub fn judge(file: &TestFile, results: &Results<'_>) -> Vec<AssertionRecord> {
 fn one(file: &TestFile, assertion: &Assertion, results: &Results<'_>) -> AssertionRecord {
     let value = |seed: u64| {
         let own = (results.of)(seed, file.controller)?;
-        assertion.figure.value(&own, |other| (results.of)(seed, other))
+        own.of_named(&assertion.figure, |other| (results.of)(seed, other))
     };
     let figures: Vec<(u64, Option<f64>)> = results.seeds.iter().map(|seed| (*seed, value(*seed))).collect();
     let missing: Vec<u64> = figures.iter().filter(|(_, figure)| figure.is_none()).map(|(seed, _)| *seed).collect();

@@ -6,11 +6,11 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
+use super::canvas::{Area, CommonAxis, Drawn, FINE, HorizontalAxis, RIGHT, text_style};
 use super::ink::Ink;
 use super::mark::Mark;
 use super::thin::thin;
 use super::unit::{Unit, axis_range, tick_label};
-use super::{Area, Drawn, FINE, Figure, HorizontalAxis, RIGHT, text_style};
 use crate::number::PAGE;
 
 /// Height of title and legend [px].
@@ -18,7 +18,7 @@ const HEAD: i32 = 34;
 /// Height between a panel and the next title [px].
 const GAP: i32 = 10;
 
-/// One panel of a [`Figure`].
+/// One panel of a [`Figure`](super::Figure).
 pub struct Panel {
     /// Name of the quantity.
     pub title: String,
@@ -57,14 +57,14 @@ impl Panel {
     }
 
     /// Draws it; the last panel of a figure carries the numbers of the common axis.
-    pub fn draw(&self, area: &Area<'_>, figure: &Figure, last: bool) -> Drawn {
-        self.draw_head(area, figure)?;
-        let horizontal = (figure.across(figure.range.0), figure.across(figure.range.1));
+    pub fn draw(&self, area: &Area<'_>, common: &CommonAxis<'_>, last: bool) -> Drawn {
+        self.draw_head(area, common)?;
+        let horizontal = (common.across(common.range.0), common.across(common.range.1));
         let mut builder = ChartBuilder::on(area);
         builder
             .margin_top(HEAD * FINE)
             .margin_right(RIGHT * FINE)
-            .set_label_area_size(LabelAreaPosition::Left, figure.shape.left * FINE);
+            .set_label_area_size(LabelAreaPosition::Left, common.shape.left * FINE);
         builder.set_label_area_size(LabelAreaPosition::Bottom, if last { 42 } else { GAP } * FINE);
         let (low, high) = match &self.axis {
             VerticalAxis::Rows(rows) => (0.0, rows.len() as f64),
@@ -74,22 +74,22 @@ impl Panel {
         if self.axis == VerticalAxis::Counts {
             let top = high.max(10.0) * 1.5;
             let mut chart = builder.build_cartesian_2d(horizontal.0..horizontal.1, (0.5..top).log_scale())?;
-            self.draw_inside(&mut chart, figure, (0.5, top), last, &|count| power_of_ten(*count))
+            self.draw_inside(&mut chart, common, (0.5, top), last, &|count| power_of_ten(*count))
         } else {
             let mut chart = builder.build_cartesian_2d(horizontal.0..horizontal.1, low..high)?;
             let decades = matches!(self.axis, VerticalAxis::Decades { .. });
             let label = |value: &f64| if decades { exponent_label(*value) } else { tick_label(*value, high - low) };
-            self.draw_inside(&mut chart, figure, (low, high), last, &label)?;
-            self.draw_row_names(area, figure)
+            self.draw_inside(&mut chart, common, (low, high), last, &label)?;
+            self.draw_row_names(area, common)
         }
     }
 
     /// Title at the left, legend at the right.
-    fn draw_head(&self, area: &Area<'_>, figure: &Figure) -> Drawn {
+    fn draw_head(&self, area: &Area<'_>, common: &CommonAxis<'_>) -> Drawn {
         let at = |x: i32, y: i32| (x * FINE, y * FINE);
         let title = text_style(13, Ink::Text, FontStyle::Bold);
-        area.draw(&Text::new(self.title.clone(), at(figure.shape.left, 12), title))?;
-        let mut right = figure.shape.width - RIGHT;
+        area.draw(&Text::new(self.title.clone(), at(common.shape.left, 12), title))?;
+        let mut right = common.shape.width - RIGHT;
         for mark in self.marks.iter().rev() {
             let (label, ink) = mark.label();
             if label.is_empty() {
@@ -120,29 +120,29 @@ impl Panel {
     fn draw_inside<Y: VerticalScale>(
         &self,
         chart: &mut Chart<'_, '_, Y>,
-        figure: &Figure,
+        common: &CommonAxis<'_>,
         vertical: (f64, f64),
         last: bool,
         vertical_label: &dyn Fn(&f64) -> String,
     ) -> Drawn {
         let is_band = |mark: &&Mark| matches!(mark, Mark::Band { .. });
-        self.marks.iter().filter(is_band).try_for_each(|mark| self.draw_mark(mark, chart, figure, vertical))?;
-        self.draw_mesh(chart, figure, last, vertical_label)?;
+        self.marks.iter().filter(is_band).try_for_each(|mark| self.draw_mark(mark, chart, common, vertical))?;
+        self.draw_mesh(chart, common, last, vertical_label)?;
         self.marks
             .iter()
             .filter(|mark| !is_band(mark))
-            .try_for_each(|mark| self.draw_mark(mark, chart, figure, vertical))
+            .try_for_each(|mark| self.draw_mark(mark, chart, common, vertical))
     }
 
     fn draw_mesh<Y: VerticalScale>(
         &self,
         chart: &mut Chart<'_, '_, Y>,
-        figure: &Figure,
+        common: &CommonAxis<'_>,
         last: bool,
         vertical_label: &dyn Fn(&f64) -> String,
     ) -> Drawn {
-        let span = figure.across(figure.range.1) - figure.across(figure.range.0);
-        let horizontal_label = |value: &f64| match figure.runs {
+        let span = common.across(common.range.1) - common.across(common.range.0);
+        let horizontal_label = |value: &f64| match common.runs {
             _ if !last => String::new(),
             HorizontalAxis::Linear => tick_label(*value, span),
             HorizontalAxis::Decades => exponent_label(*value),
@@ -154,15 +154,15 @@ impl Panel {
             .light_line_style(TRANSPARENT)
             .label_style(text_style(11, Ink::Muted, FontStyle::Normal))
             .axis_desc_style(text_style(12, Ink::Muted, FontStyle::Normal))
-            .x_labels((figure.shape.width / 90).max(4) as usize)
+            .x_labels((common.shape.width / 90).max(4) as usize)
             .y_labels(6)
             .x_label_formatter(&horizontal_label)
             .y_label_formatter(&vertical_label)
             .set_all_tick_mark_size(3 * FINE);
         if last {
-            mesh.x_desc(match figure.unit.name {
-                "" => figure.axis.clone(),
-                unit => format!("{} [{unit}]", figure.axis),
+            mesh.x_desc(match common.unit.name {
+                "" => common.name.to_owned(),
+                unit => format!("{} [{unit}]", common.name),
             });
         }
         match self.axis {
@@ -177,16 +177,16 @@ impl Panel {
         &self,
         mark: &Mark,
         chart: &mut Chart<'_, '_, Y>,
-        figure: &Figure,
+        common: &CommonAxis<'_>,
         vertical: (f64, f64),
     ) -> Drawn {
-        let across = |value: f64| figure.across(value);
+        let across = |value: f64| common.across(value);
         let up = |value: f64| match self.axis {
             VerticalAxis::Decades { from, .. } => (value * self.unit.factor).log10().max(f64::from(from)),
             _ => value * self.unit.factor,
         };
-        let horizontal = (across(figure.range.0), across(figure.range.1));
-        let columns = (figure.shape.width - figure.shape.left - RIGHT) as usize;
+        let horizontal = (across(common.range.0), across(common.range.1));
+        let columns = (common.shape.width - common.shape.left - RIGHT) as usize;
         let clip = |value: f64| value.clamp(vertical.0, vertical.1);
         let filled = mark.label().1.colour().filled();
         match mark {
@@ -221,13 +221,13 @@ impl Panel {
         Ok(())
     }
 
-    fn draw_row_names(&self, area: &Area<'_>, figure: &Figure) -> Drawn {
+    fn draw_row_names(&self, area: &Area<'_>, common: &CommonAxis<'_>) -> Drawn {
         let VerticalAxis::Rows(rows) = &self.axis else { return Ok(()) };
         let row_height = (self.height - HEAD - GAP) / rows.len().max(1) as i32;
         let style = text_style(11, Ink::Muted, FontStyle::Normal).pos(Pos::new(HPos::Right, VPos::Center));
         for (index, row) in rows.iter().enumerate() {
             let y = HEAD + row_height * index as i32 + row_height / 2;
-            area.draw(&Text::new(row.clone(), ((figure.shape.left - 8) * FINE, y * FINE), style.clone()))?;
+            area.draw(&Text::new(row.clone(), ((common.shape.left - 8) * FINE, y * FINE), style.clone()))?;
         }
         Ok(())
     }

@@ -11,12 +11,14 @@
 mod driver;
 mod error;
 mod perfect_sight;
+mod period;
 mod recording;
 mod setup;
 
 pub use driver::Driver;
 pub use error::RunError;
 pub use perfect_sight::PerfectSight;
+pub use period::Period;
 pub use recording::Moment;
 pub use setup::Setup;
 
@@ -25,7 +27,6 @@ use reference::drive_train::Measurement;
 
 use super::faults::HostFaults;
 use super::plant::{Plant, plant_from};
-use super::port::Answer;
 use super::sender::Sender;
 use report::failure::Outcome;
 
@@ -38,24 +39,6 @@ pub struct Rig {
     period: f64,
     /// Length of a run.
     periods: u64,
-}
-
-/// What one control period came to.
-pub struct Period<'r> {
-    /// Place in the run, from 0.
-    pub index: u64,
-    /// When it began [s].
-    pub time: f64,
-    /// The plant at its end.
-    pub plant: &'r Plant,
-    /// Where the link was to be at its end [rad].
-    pub wanted: f64,
-    /// Half-backlash during it [m].
-    pub half_backlash: f64,
-    /// Torque asked of the motor [N m].
-    pub command: f64,
-    /// What observer and compensation said, if they control.
-    pub answer: Option<&'r Answer>,
 }
 
 /// Is shown every period, and may end the run.
@@ -134,13 +117,5 @@ impl Rig {
             Ok(())
         })?;
         Ok(moments)
-    }
-}
-
-impl Period<'_> {
-    /// What brakes the link [N m].
-    pub fn load_torque(&self) -> f64 {
-        let torques = self.plant.torques();
-        torques.load_friction + torques.gravity + torques.disturbance
     }
 }

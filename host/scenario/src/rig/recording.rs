@@ -1,6 +1,6 @@
 //! What was measured in a run, with the truth beside it: what an observer can be run over afterwards, as often as one likes.
 
-use super::Period;
+use super::period::Period;
 
 /// One control period: what was measured at its end, and the truth then.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

@@ -1,6 +1,6 @@
 //! Figs 4 and 5: the dead zone with its smoothed forms, and how far they are from it.
 
-use super::{plain, points};
+use super::axes::{plain, points};
 use crate::record::{DeadZoneError, DeadZoneFigure};
 use report::number::PAGE;
 use report::plot::ink::{Ink, LINES};

@@ -1,6 +1,7 @@
 //! The bifurcation diagram with the Lyapunov exponent below it. Points that would fall on one spot are drawn once.
 
-use super::{Picture, plain};
+use super::axes::plain;
+use super::picture::Picture;
 use crate::record::{ClassRecord, Reading, Sweep, SweepPoint};
 use report::folder::file_part;
 use report::plot::Figure;

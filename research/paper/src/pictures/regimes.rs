@@ -1,6 +1,7 @@
 //! Figs 5 to 8: time history, phase portrait with Poincare points, and spectrum of X_sp.
 
-use super::{Picture, micrometres, plain, points};
+use super::axes::{micrometres, plain, points};
+use super::picture::Picture;
 use crate::record::{AttractorRecord, ClassRecord, Reading};
 use report::folder::file_part;
 use report::plot::ink::Ink;

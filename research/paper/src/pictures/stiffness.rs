@@ -1,6 +1,6 @@
 //! Fig. 3: the rectangular wave, its first harmonic and its first eight.
 
-use super::{plain, points};
+use super::axes::{plain, points};
 use crate::record::StiffnessFigure;
 use report::plot::Figure;
 use report::plot::ink::Ink;

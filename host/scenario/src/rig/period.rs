@@ -1,0 +1,30 @@
+//! What one control period of a run came to, as it is shown to whoever keeps something of it.
+
+use crate::plant::Plant;
+use crate::port::Answer;
+
+/// What one control period came to.
+pub struct Period<'r> {
+    /// Place in the run, from 0.
+    pub index: u64,
+    /// When it began [s].
+    pub time: f64,
+    /// The plant at its end.
+    pub plant: &'r Plant,
+    /// Where the link was to be at its end [rad].
+    pub wanted: f64,
+    /// Half-backlash during it [m].
+    pub half_backlash: f64,
+    /// Torque asked of the motor [N m].
+    pub command: f64,
+    /// What observer and compensation said, if they control.
+    pub answer: Option<&'r Answer>,
+}
+
+impl Period<'_> {
+    /// What brakes the link [N m].
+    pub fn load_torque(&self) -> f64 {
+        let torques = self.plant.torques();
+        torques.load_friction + torques.gravity + torques.disturbance
+    }
+}

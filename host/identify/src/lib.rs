@@ -12,10 +12,10 @@ mod estimate;
 pub mod findings;
 mod friction;
 mod kernel;
+pub mod learnt;
 mod log;
 mod log_file;
 mod mcap_log;
-pub mod memory;
 mod noise;
 pub(crate) mod page;
 mod patch;
@@ -82,12 +82,8 @@ struct Identified {
     findings: Vec<Finding>,
 }
 
-/// Identifies a joint, or makes a log of one.
-pub fn run(arguments: &Arguments) -> Outcome<()> {
-    Progress::during(|progress| run_once(arguments, progress))
-}
-
-fn run_once(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
+/// Identifies a joint, or makes a log of one, and says what came of it.
+pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
     let loaded = named::load_with(&arguments.joint, &arguments.set)?;
     if arguments.simulate {
         return simulate(arguments, &loaded, progress);
@@ -127,8 +123,7 @@ fn run_once(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
     write_text(&folder.file("findings.json"), &json)?;
     arguments.json.as_ref().map_or(Ok(()), |path| write_text(path, &json))?;
     progress.clear();
-    output::print(&terminal(&document))?;
-    output::print(&format!("\nreport: {}\njoint file: {}\n", report.display(), joint.display()))
+    Ok(format!("{}\nreport: {}\njoint file: {}\n", terminal(&document), report.display(), joint.display()))
 }
 
 fn identify(arguments: &Arguments, plan: &Plan) -> Outcome<Identified> {
@@ -214,7 +209,7 @@ fn assumptions(plan: &Plan, log: &Log) -> Vec<String> {
     list
 }
 
-fn simulate(arguments: &Arguments, loaded: &Loaded, progress: &Progress) -> Outcome<()> {
+fn simulate(arguments: &Arguments, loaded: &Loaded, progress: &Progress) -> Outcome<String> {
     folder::check_file("simulate", &arguments.log, &[&arguments.joint])?;
     // What lies there may be a recorded test, which nobody can make again.
     if arguments.log.exists() {
@@ -230,5 +225,5 @@ fn simulate(arguments: &Arguments, loaded: &Loaded, progress: &Progress) -> Outc
     write_text(&arguments.log, &recording.csv(arguments.with_output_torque))?;
     progress.clear();
     let seconds = recording.samples.len() as f64 / recording.rate;
-    output::print(&format!("log: {} ({seconds:.2} s of joint {})\n", arguments.log.display(), file.parameters.name))
+    Ok(format!("log: {} ({seconds:.2} s of joint {})\n", arguments.log.display(), file.parameters.name))
 }

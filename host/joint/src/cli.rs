@@ -4,12 +4,10 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
-use identify::memory;
 use report::failure::Outcome;
 use report::{command_line, output};
-use simulation::{budget, check, sim, sweep};
 
-use crate::{hil, images, research};
+use crate::{budget, check, flash, hil, identify, image, memory, merge, research, sim, sweep};
 
 /// Simulates a planetary robot joint with backlash on a microcontroller, drives it and checks it
 #[derive(Debug, Parser)]
@@ -36,15 +34,15 @@ enum Command {
     /// Simulate every joint of a grid in parallel: resumable, in shards for job arrays
     Sweep(sweep::Arguments),
     /// Put the shards of a sweep together, once none is missing
-    Merge(sweep::MergeArguments),
+    Merge(merge::Arguments),
     /// Find backlash, compliance, damping, friction and encoder errors in a recorded reversal test
     Identify(identify::Arguments),
     /// Read what a board has learnt, show it, write it to a board, erase it
     Memory(memory::Arguments),
     /// Build the firmware image of a joint and say where it is
-    Image(images::ImageArguments),
+    Image(image::Arguments),
     /// Build the firmware image of a joint and write it to a real board by probe-rs
-    Flash(images::FlashArguments),
+    Flash(flash::Arguments),
 }
 
 /// Parses the command line, runs it and turns the outcome into an exit code.
@@ -62,11 +60,11 @@ fn run(cli: &Cli) -> Outcome<()> {
         Some(Command::Paper(arguments)) => research::run("paper", &arguments.rest),
         Some(Command::Sim(arguments)) => sim::run(arguments),
         Some(Command::Sweep(arguments)) => sweep::run(arguments),
-        Some(Command::Merge(arguments)) => sweep::merge(arguments),
+        Some(Command::Merge(arguments)) => merge::run(arguments),
         Some(Command::Identify(arguments)) => identify::run(arguments),
         Some(Command::Memory(arguments)) => memory::run(arguments),
-        Some(Command::Image(arguments)) => images::image(arguments),
-        Some(Command::Flash(arguments)) => images::flash(arguments),
+        Some(Command::Image(arguments)) => image::run(arguments),
+        Some(Command::Flash(arguments)) => flash::run(arguments),
     }
 }
 

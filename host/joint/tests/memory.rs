@@ -11,7 +11,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use command::{Ended, joint, text};
-use identify::memory::content::Content;
+use identify::learnt::Content;
 use learning_board::{Flash, learnt};
 use model_core::observer::{MEMORY_BYTES, Memory};
 use tempfile::TempDir;

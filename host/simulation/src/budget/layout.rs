@@ -4,7 +4,7 @@ use super::figures::{Error, Figures, Work};
 use report::document::{Sheet, terminal};
 
 /// All of it, as a terminal shows it.
-pub(super) fn layout(figures: &Figures) -> String {
+pub fn layout(figures: &Figures) -> String {
     let mut page = Sheet::new(format!("{} on {} at {} Hz", figures.joint, figures.board, figures.rate_Hz));
     step(&mut page, figures);
     error(&mut page, figures);

@@ -1,7 +1,7 @@
-//! `joint budget`: what is promised of a joint's fixed step on a board at a rate, before anything is built or run, and
-//! whether the board has time for it. Nothing is measured here.
+//! What is promised of a joint's fixed step on a board at a rate, before anything is built or run, and whether the board has
+//! time for it. Nothing is measured here.
 //!
-//! `verdict` judges, `figures` is the result as data, `layout` prints.
+//! `verdict` judges, `figures` is the result as data, `layout` puts it in order.
 
 mod figures;
 mod layout;
@@ -9,46 +9,6 @@ mod layout;
 mod tests;
 mod verdict;
 
-use std::path::PathBuf;
-
-use board::target::board::Board;
-use board::target::image;
 pub use figures::{Figures, figures};
-use joint_file::named;
-use layout::layout;
-use report::failure::{Failure, Outcome};
-use report::output;
-use verdict::refuse;
-
-/// Arguments of `joint budget`.
-#[derive(Debug, clap::Args)]
-#[command(after_help = "Examples:
-  joint budget                                          joint q1 on the stm32f405 at 20 kHz
-  joint budget joints/l1.toml --board stm32h743 --rate 40000
-  joint budget paper --rate 10000 --json -
-
-Exit code 2 if the board has no time for that rate; the nearest rate that it has time for is named.")]
-pub struct Arguments {
-    /// Joint file (TOML), or the name of a preset: q1, s1, d2, l1, paper, paper_printed
-    #[arg(default_value = "q1", value_name = "FILE")]
-    file: PathBuf,
-    /// Board that steps the joint
-    #[arg(long, value_enum, default_value = "stm32f405")]
-    board: Board,
-    /// Steps a second, in Hz
-    #[arg(long, value_name = "HZ", default_value_t = image::DEFAULT_TICK_RATE, value_parser = clap::value_parser!(u32).range(1..))]
-    rate: u32,
-    /// Writes the same figures as JSON ("-" is standard output, in place of the text)
-    #[arg(long, value_name = "OUT")]
-    json: Option<PathBuf>,
-}
-
-/// Prints the certificate with its verdict.
-pub fn run(arguments: &Arguments) -> Outcome<()> {
-    let loaded = named::load(&arguments.file)?;
-    let parameters = &loaded.file.parameters;
-    refuse(parameters, arguments.board, arguments.rate)?;
-    let figures = figures(parameters, arguments.board, arguments.rate)
-        .map_err(|error| Failure::new(format!("no fixed step for {}: {error}", parameters.name)))?;
-    output::deliver(&figures, &layout(&figures), arguments.json.as_deref(), &[&arguments.file])
-}
+pub use layout::layout;
+pub use verdict::refuse;

@@ -1,8 +1,6 @@
-//! `joint check`: reads a joint file and prints what follows from it, or everything that is wrong with it. Nothing is
-//! run here.
+//! What follows from a joint file: masses, natural frequencies, lost motion, wind-up, the fixed step. Nothing is run here.
 //!
-//! `source` finds and reads the file, `diagnostic` draws what is wrong, `derive` computes the `figures`, `step` asks the design for
-//! the fixed step, `layout` prints.
+//! `derive` computes the `figures`, `step` asks the design for the fixed step, `layout` puts them in order.
 
 mod derive;
 mod figures;
@@ -11,32 +9,6 @@ mod step;
 #[cfg(test)]
 mod tests;
 
-use std::path::PathBuf;
-
 pub use derive::figures;
 pub use figures::Figures;
-use joint_file::named;
 pub use layout::layout;
-use report::failure::Outcome;
-use report::output;
-
-/// Arguments of `joint check`.
-#[derive(Debug, clap::Args)]
-pub struct Arguments {
-    /// Joint file (TOML), or the name of a preset: q1, s1, d2, l1, paper, paper_printed
-    #[arg(default_value = "q1", value_name = "FILE")]
-    pub file: PathBuf,
-    /// Writes the same figures as JSON ("-" is standard output, in place of the text)
-    #[arg(long, value_name = "OUT")]
-    pub json: Option<PathBuf>,
-    /// Steps a second for which the tables are designed
-    #[arg(long, value_name = "HZ", default_value_t = 20_000, value_parser = clap::value_parser!(u32).range(1..))]
-    pub rate: u32,
-}
-
-/// Prints what follows from the file.
-pub fn run(arguments: &Arguments) -> Outcome<()> {
-    let loaded = named::load(&arguments.file)?;
-    let figures = figures(&loaded, arguments.rate)?;
-    output::deliver(&figures, &layout(&figures), arguments.json.as_deref(), &[&arguments.file])
-}

@@ -1,4 +1,4 @@
-//! `joint sim`: any joint moved by a named scheme, on the host. What a board computes and how it is checked is `hil`'s
+//! Any joint moved by a named scheme, on the host. What a board computes and how it is checked is `hil`'s
 //! business, studies over many joints are `sweep`'s.
 //!
 //! `plan` finds everything that is wrong with the request, `follow` moves the joint by a `scheme` from a `start`, and
@@ -25,7 +25,7 @@ pub mod statistics;
 
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 pub use arguments::Arguments;
 use comparison::Comparison;
@@ -56,9 +56,16 @@ const MOST_SAMPLES: u32 = 2_000_000;
 /// The progress line moves once in so many ticks.
 const PROGRESS: u32 = 1024;
 
-/// Simulates a joint.
-pub fn run(arguments: &Arguments) -> Outcome<()> {
-    Progress::during(|progress| run_once(arguments, progress))
+/// What a simulation leaves.
+pub struct Simulated {
+    /// The figures for a terminal.
+    pub summary: String,
+    /// The same as JSON.
+    pub figures: String,
+    /// The page.
+    pub report: PathBuf,
+    /// Samples as CSV and as MCAP.
+    pub history: [PathBuf; 2],
 }
 
 /// What a run has gathered.
@@ -70,7 +77,8 @@ struct Ran<'a> {
     energy: Option<EnergyBook<'a>>,
 }
 
-fn run_once(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
+/// Simulates a joint; report, figures and history are in its folder then.
+pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<Simulated> {
     let loaded = named::load_with(&arguments.file, &arguments.motion.set)?;
     let plan = Plan::new(loaded, &arguments.motion)?;
     let every = every(&plan, arguments.every)?;
@@ -123,15 +131,7 @@ fn run_once(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
     write_text(&report, &html(&document))?;
     let json = output::json("figures", &figures)?;
     write_text(&folder.file("figures.json"), &json)?;
-    if let Some(path) = arguments.json.as_ref().filter(|path| path.as_os_str() != "-") {
-        write_text(path, &json)?;
-    }
-    progress.clear();
-    if arguments.json.as_ref().is_some_and(|path| path.as_os_str() == "-") {
-        return output::print(&json);
-    }
-    output::print(&terminal(&document))?;
-    output::print(&format!("\nreport: {}\nhistory: {}, {}\n", report.display(), csv.display(), log.display()))
+    Ok(Simulated { summary: terminal(&document), figures: json, report, history: [csv, log] })
 }
 
 /// Ticks between two kept samples.

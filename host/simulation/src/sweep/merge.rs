@@ -1,35 +1,24 @@
-//! `joint merge`: puts the shards of a sweep together into one result, once none is missing. Nothing is computed here.
+//! Puts the shards of a sweep together into one result, once none is missing. Nothing is computed here.
 
 use std::collections::BTreeSet;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::folder::Folder;
 use super::grid::{Grid, Shard};
 use super::journal::{self, Points};
 use super::manifest::Manifest;
 use report::failure::{Failure, Outcome};
-use report::output;
 
 /// Missing points named in a message at most.
 const NAMED: usize = 8;
 
-/// Arguments of `joint merge`.
-#[derive(Debug, Clone, clap::Args)]
-pub struct MergeArguments {
-    /// Folders that hold shards of one sweep
-    #[arg(value_name = "DIR", required = true)]
-    pub folders: Vec<PathBuf>,
-    /// Folder for the result [default: the first of the folders]
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
-}
-
-/// Merges shards; fails if any point is missing.
-pub fn merge(arguments: &MergeArguments) -> Outcome<()> {
+/// Merges the shards in these folders into `out`, or into the first of them, and says what came of it; fails if any point is
+/// missing.
+pub fn merge(folders: &[PathBuf], out: Option<&Path>) -> Outcome<String> {
     let mut points = Points::new();
     let mut shards = BTreeSet::new();
     let mut sweep: Option<(PathBuf, Manifest)> = None;
-    for path in &arguments.folders {
+    for path in folders {
         let (folder, manifest) = Folder::existing(path)?;
         if let Some((first, known)) = &sweep
             && let Some(difference) = known.difference(&manifest)
@@ -49,9 +38,9 @@ pub fn merge(arguments: &MergeArguments) -> Outcome<()> {
     };
     let grid = manifest.grid()?;
     complete(&grid, &points, &shards)?;
-    let out = Folder::prepare(arguments.out.as_ref().unwrap_or(&first), &manifest)?;
+    let out = Folder::prepare(out.unwrap_or(&first), &manifest)?;
     let result = out.write_result(&manifest, &grid, &points)?;
-    output::print(&format!("{} points: {}\n", grid.points, result.display()))
+    Ok(format!("{} points: {}\n", grid.points, result.display()))
 }
 
 /// Every point must be there, and no other.

@@ -1,4 +1,4 @@
-//! `joint sweep` and `joint merge`: any grid of joints through one simulation each, in parallel, resumable and in
+//! Any grid of joints through one simulation each, in parallel, resumable and in
 //! shards. How one joint moves and what is counted is `sim`'s business.
 //!
 //! `axis` and `grid` say which points there are, `manifest` which sweep it is, `folder` and `journal` keep what is done,
@@ -19,7 +19,7 @@ use folder::Folder;
 use grid::{Grid, Shard};
 use journal::{Journal, Points};
 use manifest::{Manifest, sha256};
-pub use merge::{MergeArguments, merge};
+pub use merge::merge;
 use metrics::Metric;
 use work::Work;
 
@@ -71,12 +71,8 @@ pub struct Arguments {
     pub threads: Option<u16>,
 }
 
-/// Sweeps a grid.
-pub fn run(arguments: &Arguments) -> Outcome<()> {
-    Progress::during(|progress| run_once(arguments, progress))
-}
-
-fn run_once(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
+/// Sweeps a grid, or goes on with it, and says what came of it.
+pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
     let scheme = scheme(arguments.scheme)?;
     let grid = Grid::parse(&arguments.vary)?;
     let base = named::load_with(&arguments.file, &arguments.motion.set)?;
@@ -116,15 +112,15 @@ fn run_once(arguments: &Arguments, progress: &Progress) -> Outcome<()> {
     conclude(arguments, &folder, &manifest, &grid)
 }
 
-/// Writes the result if all shards are done, else says what is left.
-fn conclude(arguments: &Arguments, folder: &Folder, manifest: &Manifest, grid: &Grid) -> Outcome<()> {
+/// Writes the result if all shards are done, else tells what is left.
+fn conclude(arguments: &Arguments, folder: &Folder, manifest: &Manifest, grid: &Grid) -> Outcome<String> {
     let mut points = Points::new();
     folder.points(&manifest.digest, &mut points)?;
     if points.len() as u64 == grid.points {
         let result = folder.write_result(manifest, grid, &points)?;
-        return output::print(&format!("{} points: {}\n", grid.points, result.display()));
+        return Ok(format!("{} points: {}\n", grid.points, result.display()));
     }
-    output::print(&format!(
+    Ok(format!(
         "shard {} is done: {} of {} points are in {}\nwhen all shards are: cargo joint merge {}\n",
         arguments.shard,
         points.len(),

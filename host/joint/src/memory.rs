@@ -1,11 +1,10 @@
 //! `joint memory`: what an observer has learnt of its joint, as a file: read off a board, shown, written to a board, kept and
 //! erased there. Learning is the observer's business, what goes over the line the session's.
 //!
-//! `arguments` is the command line, `bench` finds the board, `content` says what is in a memory.
+//! `arguments` is the command line, `bench` finds the board.
 
 mod arguments;
 mod bench;
-pub mod content;
 
 use std::fs;
 use std::path::Path;
@@ -13,11 +12,11 @@ use std::path::Path;
 pub use arguments::Arguments;
 use arguments::{Command, Place};
 use bench::Found;
+use identify::learnt::Content;
 use link::messages::{Kept, Remembered};
 use model_core::observer::{MEMORY_BYTES, Memory, MemoryError};
 
 use board::session::Session;
-use content::Content;
 use joint_file::named;
 use report::failure::{Failure, Outcome};
 use report::output;

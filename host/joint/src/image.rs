@@ -1,12 +1,10 @@
-//! `joint image` and `joint flash`: the firmware of a joint as a file, and on a real board. How images are built and
-//! written is left to `target`.
+//! `joint image`: builds the firmware of a joint and says where it is.
 
 use std::path::PathBuf;
 
 use clap::ValueEnum;
 use link::messages::Role;
 
-use board::target;
 use board::target::board::Board;
 use board::target::image;
 use board::target::image::CONTROL_RATE;
@@ -24,13 +22,13 @@ use report::{interruption, output};
   joint image --role observer                 observer and compensation for it, beside a motor controller
   joint image --role spi-observer --board stm32g474    the same as a slave on that controller's SPI
   joint image joints/l1.toml --board stm32h743")]
-pub struct ImageArguments {
+pub struct Arguments {
     /// Joint file (TOML), or the name of a preset: q1, s1, d2, l1, paper, paper_printed
     #[arg(value_name = "FILE", default_value = "q1")]
     file: PathBuf,
     /// Board that the image is for
     #[arg(long, value_enum, default_value = "stm32f405")]
-    board: Board,
+    pub board: Board,
     /// What the board does
     #[arg(long, value_enum, default_value = "plant")]
     role: ImageRole,
@@ -53,30 +51,15 @@ enum ImageRole {
     SpiObserver,
 }
 
-/// Arguments of `joint flash`.
-#[derive(Debug, clap::Args)]
-#[command(after_help = "Examples:
-  joint flash                                 joint q1 onto the stm32f405 behind the debug probe
-  joint flash joints/l1.toml --board stm32g474")]
-pub struct FlashArguments {
-    #[command(flatten)]
-    image: ImageArguments,
-}
-
 /// Builds an image.
-pub fn image(arguments: &ImageArguments) -> Outcome<()> {
+pub fn run(arguments: &Arguments) -> Outcome<()> {
     let built = build(arguments)?;
     let Image { elf, flash_bytes, ram_bytes, .. } = &built;
     output::print(&format!("{}\nflash {flash_bytes} B, RAM {ram_bytes} B\n", elf.display()))
 }
 
-/// Builds an image and writes it to a board.
-pub fn flash(arguments: &FlashArguments) -> Outcome<()> {
-    let built = build(&arguments.image)?;
-    target::flash::flash(&built.elf, arguments.image.board)
-}
-
-fn build(arguments: &ImageArguments) -> Outcome<Image> {
+/// Builds an image, with a line that tells how far it is.
+pub fn build(arguments: &Arguments) -> Outcome<Image> {
     let file = image::joint_file(&arguments.file, &named::load(&arguments.file)?.name);
     let (role, usual) = match arguments.role {
         ImageRole::Plant => (Some(Role::Plant), image::DEFAULT_TICK_RATE),

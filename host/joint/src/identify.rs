@@ -1,0 +1,12 @@
+//! `joint identify`: finds a joint's parameters in a recorded test.
+
+pub use identify::Arguments;
+use identify::run as identify;
+use report::failure::Outcome;
+use report::output;
+use report::progress::Progress;
+
+/// Identifies a joint, or makes a log of one, and prints what was found.
+pub fn run(arguments: &Arguments) -> Outcome<()> {
+    Progress::during(|progress| output::print(&identify(arguments, progress)?))
+}

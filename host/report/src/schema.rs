@@ -22,7 +22,7 @@ pub fn assert_published<T: JsonSchema>(name: &str) {
         fs::write(&path, &schema).expect("docs is writable");
     }
     let published = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-    assert!(published == schema, "run `UPDATE_SCHEMA=1 cargo test -p joint schema` and review the change");
+    assert!(published == schema, "run `UPDATE_SCHEMA=1 cargo test schema` and review the change");
 }
 
 /// Fails unless docs/`page` tells every key of `T` and all of `others`, more than `least` words in all.

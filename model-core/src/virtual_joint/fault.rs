@@ -11,7 +11,7 @@ use crate::numbers::Real;
 /// Units that faults are described in, and the faults that only their holder can apply.
 pub trait Units: Copy + Debug + PartialEq {
     /// When a fault begins and ends.
-    type Time: Copy + Debug + PartialEq + PartialOrd;
+    type Time: Copy + Debug + PartialEq;
     /// What the random numbers of a fault begin with.
     type Seed: Copy + Debug + PartialEq;
     /// How far an encoder is off.
@@ -99,11 +99,4 @@ pub enum FaultKind<U: Units> {
     Saturation(U::Real),
     /// What only this holder can apply.
     Other(U::Other),
-}
-
-impl<U: Units> Fault<U> {
-    /// Whether it acts at a time.
-    pub fn is_on(&self, time: U::Time) -> bool {
-        self.start <= time && time < self.end
-    }
 }

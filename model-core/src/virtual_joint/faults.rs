@@ -60,7 +60,7 @@ impl<T: Real> Faults<T> {
         let mut seen =
             [(samples.motor, of_motor.shift, true), (output.unwrap_or_default(), of_link.shift, output.is_some())];
         for active in all.iter_mut().flatten() {
-            let on = active.fault.is_on(*period);
+            let on = *period >= active.fault.start && *period < active.fault.end;
             for (shaft, (reading, shift, comes)) in [Shaft::Motor, Shaft::Link].into_iter().zip(&mut seen) {
                 // Whole turns are 2^32, so that everything wraps by itself.
                 let angle = reading.counts.checked_shl(*shift).unwrap_or(0);
@@ -82,7 +82,8 @@ impl<T: Real> Faults<T> {
         let period = self.period;
         self.period = period.saturating_add(1);
         self.asked = if command.is_finite() { command } else { T::ZERO };
-        let acting = self.all.iter().flatten().filter(|active| active.fault.is_on(period));
+        let acting =
+            self.all.iter().flatten().filter(|active| period >= active.fault.start && period < active.fault.end);
         acting.fold(command, |torque, active| match active.fault.kind {
             FaultKind::TorqueBias(ratio, offset) => torque + torque * ratio + offset,
             FaultKind::Saturation(limit) => clamp(torque, -limit, limit),

@@ -5,9 +5,7 @@
 use std::collections::BTreeMap;
 
 use crate::findings::Findings;
-use crate::ignored::{COLUMNS, ROWS};
-use crate::markup::{Piece, pieces};
-use crate::mask::masked;
+use crate::page::{Page, read};
 use crate::text;
 
 /// What counts on a page.
@@ -21,23 +19,6 @@ pub enum Level {
     /// The whole text in its order.
     Text,
 }
-
-/// What can be read on a page.
-#[derive(Debug, Default)]
-struct Page {
-    /// Text outside of pictures, a line for each block.
-    lines: Vec<String>,
-    /// Cells of tables.
-    cells: Vec<String>,
-    /// What a rule has left out.
-    hidden: Vec<(&'static str, String)>,
-}
-
-/// Elements that cannot be read.
-const UNSEEN: [&str; 4] = ["svg", "style", "script", "template"];
-/// Elements in the middle of a line.
-const INLINE: [&str; 14] =
-    ["a", "b", "code", "em", "i", "span", "strong", "sub", "sup", "small", "abbr", "var", "mark", "kbd"];
 
 /// Compares two pages; `may_grow` lets the new one have more.
 pub fn compare(old: &str, new: &str, level: Level, may_grow: bool, findings: &mut Findings) {
@@ -90,116 +71,6 @@ fn with_digits(line: &str) -> Vec<String> {
         .collect()
 }
 
-/// Where reading has come to in a table.
-#[derive(Debug, Default)]
-struct Table {
-    head: Vec<String>,
-    row: Vec<String>,
-    rows: usize,
-}
-
-fn read(document: &str) -> Page {
-    let (mut page, mut line) = (Page::default(), String::new());
-    let mut cell: Option<String> = None;
-    let mut tables: Vec<Table> = Vec::new();
-    let mut unseen: Vec<String> = Vec::new();
-    for piece in pieces(document) {
-        match piece {
-            Piece::Open { name, empty, .. } => {
-                if !unseen.is_empty() || UNSEEN.contains(&name.as_str()) {
-                    if !empty {
-                        unseen.push(name);
-                    }
-                    continue;
-                }
-                if !INLINE.contains(&name.as_str()) {
-                    end_line(&mut line, &mut page);
-                }
-                match name.as_str() {
-                    "table" => tables.push(Table::default()),
-                    "td" | "th" => cell = Some(String::new()),
-                    _ => {}
-                }
-            }
-            Piece::Close(name) => {
-                if !unseen.is_empty() {
-                    // What is left open inside ends with what it stands in.
-                    if let Some(place) = unseen.iter().rposition(|open| *open == name) {
-                        unseen.truncate(place);
-                    }
-                    continue;
-                }
-                match (name.as_str(), &mut cell) {
-                    ("td" | "th", Some(text)) => {
-                        end_cell(text, tables.last_mut(), &mut page);
-                        cell = None;
-                    }
-                    (name, None) if !INLINE.contains(&name) => end_line(&mut line, &mut page),
-                    // Blocks in a cell are words of their own.
-                    (name, Some(text)) if !INLINE.contains(&name) => text.push(' '),
-                    _ => {}
-                }
-                match (name.as_str(), tables.last_mut()) {
-                    ("tr", Some(table)) => table.end_row(),
-                    ("table", _) => drop(tables.pop()),
-                    _ => {}
-                }
-            }
-            Piece::Text(text) if unseen.is_empty() => match &mut cell {
-                Some(cell) => *cell += &text,
-                None => line += &text,
-            },
-            Piece::Text(_) => {}
-        }
-    }
-    end_line(&mut line, &mut page);
-    page
-}
-
-impl Table {
-    fn end_row(&mut self) {
-        let row = std::mem::take(&mut self.row);
-        if self.rows == 0 {
-            self.head = row;
-        }
-        self.rows += 1;
-    }
-
-    /// The rule by which the next cell is left out.
-    fn rule(&self) -> Option<&'static str> {
-        let by_row = self.row.last().and_then(|before| ROWS.iter().find(|(name, _)| name == before));
-        let head = self.head.join(" ");
-        let of_column = |name: &String| COLUMNS.iter().find(|column| column.table == head && column.column == name);
-        let by_column = self.head.get(self.row.len()).filter(|_| self.rows > 0).and_then(of_column);
-        by_row.map(|(_, rule)| *rule).or_else(|| by_column.map(|column| column.rule))
-    }
-}
-
-fn end_cell(text: &str, table: Option<&mut Table>, page: &mut Page) {
-    let masked = masked(text);
-    let text = masked.words.join(" ");
-    match table.as_ref().and_then(|table| table.rule()) {
-        Some(rule) => page.hidden.push((rule, text.clone())),
-        None if text.is_empty() => {}
-        None => {
-            page.hidden.extend(masked.hidden);
-            page.lines.push(text.clone());
-            page.cells.push(text.clone());
-        }
-    }
-    if let Some(table) = table {
-        table.row.push(text);
-    }
-}
-
-fn end_line(line: &mut String, page: &mut Page) {
-    let masked = masked(&std::mem::take(line));
-    page.hidden.extend(masked.hidden);
-    if !masked.words.is_empty() {
-        page.lines.push(masked.words.join(" "));
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -235,14 +106,15 @@ mod tests {
     }
 
     #[test]
-    fn columns_and_rows_of_the_host_s_time_are_left_out() {
+    fn columns_rows_and_tiles_of_the_host_s_time_are_left_out() {
         let page = |cost: &str, error: &str, date: &str| {
             let heads =
                 ["scheme", "deflections", "gap", "link offset", "cost", "sub-steps"].map(|h| format!("<th>{h}</th>"));
             let heads = heads.concat();
             format!(
                 "<table><tr>{heads}</tr><tr><td>rk4</td><td>{error}</td><td>1</td><td>1</td><td>{cost}</td><td>2</td></tr>\
-                </table><table><tr><th>Date</th><td>{date}</td></tr></table>"
+                </table><table><tr><th>Date</th><td>{date}</td></tr></table>\
+                 <div>{cost}<span> s</span></div><div>On the clock</div><div>On the clock</div><div>{cost} s</div>"
             )
         };
         let old = page("3.45", "0.1", "today");

@@ -6,7 +6,7 @@ use std::fmt;
 use serde_json::{Number, Value};
 
 use crate::findings::Findings;
-use crate::ignored::ignored_key;
+use crate::ignored::{ignored_by_name, ignored_key};
 use crate::mask::masked;
 
 /// A step down from the top of a document.
@@ -52,8 +52,12 @@ pub fn compare(old: &Value, new: &Value, findings: &mut Findings) {
 fn walk<'a>(old: &'a Value, new: &'a Value, way: &mut Way<'a>, findings: &mut Findings) {
     match (old, new) {
         (Value::Object(a), Value::Object(b)) => {
+            let name = a.get("name").filter(|name| b.get("name") == Some(name)).and_then(Value::as_str);
             for (key, old) in a {
-                step(Part::Key(key), Some(old), b.get(key), way, findings);
+                match name.and_then(|name| ignored_by_name(name, key)) {
+                    Some(rule) => findings.leave_out(rule, b.get(key) != Some(old)),
+                    None => step(Part::Key(key), Some(old), b.get(key), way, findings),
+                }
             }
             for (key, new) in b.iter().filter(|(key, _)| !a.contains_key(*key)) {
                 step(Part::Key(key), None, Some(new), way, findings);
@@ -77,14 +81,13 @@ fn step<'a>(
 ) {
     let is_key = matches!(part, Part::Key(_));
     way.0.push(part);
+    let rule = if is_key { ignored_key(&way.keys()) } else { None };
     match (old, new) {
-        _ if is_key && ignored_key(&way.keys()).is_some() => {
-            if let Some(rule) = ignored_key(&way.keys()) {
-                findings.leave_out(rule, old != new);
-            }
-        }
-        (Some(old), Some(new)) => walk(old, new, way, findings),
-        (old, new) => findings.differs(way.to_string(), old.map(Value::to_string), new.map(Value::to_string)),
+        (Some(old), Some(new)) if rule.is_none() => walk(old, new, way, findings),
+        (old, new) => match rule {
+            Some(rule) => findings.leave_out(rule, old != new),
+            None => findings.differs(way.to_string(), old.map(Value::to_string), new.map(Value::to_string)),
+        },
     }
     way.0.pop();
 }

@@ -14,6 +14,7 @@ pub mod json;
 pub mod log;
 pub mod markup;
 pub mod mask;
+pub mod page;
 pub mod ros;
 pub mod text;
 pub mod tree;

@@ -2,7 +2,7 @@
 //! root of the disk, and the words that follow or precede a known phrase. What is left is compared word by word, so that
 //! neither the width of columns nor broken lines count.
 
-use crate::ignored::{CLOCK, DATE, PATH, PHRASES};
+use crate::ignored::{CHANGED, CLOCK, DATE, PATH, PHRASES};
 
 /// What stands for a word that is left out.
 pub(crate) const HIDDEN: &str = "<left out>";
@@ -19,6 +19,7 @@ pub struct Masked {
 /// Masks a line or another short text.
 pub fn masked(text: &str) -> Masked {
     let mut hidden = Vec::new();
+    let text = text.replace(CHANGED, "");
     let mut words: Vec<String> = text.split_whitespace().map(|word| without_own(word, &mut hidden)).collect();
     for phrase in PHRASES {
         let pattern: Vec<&str> = phrase.words.split(' ').collect();
@@ -28,7 +29,7 @@ pub fn masked(text: &str) -> Masked {
                 continue;
             }
             for (word, wanted) in words[start..].iter_mut().zip(&pattern) {
-                if let Some((before, after)) = wanted.split_once('#') {
+                if let Some((before, after)) = wanted.split_once(SIGNS) {
                     let whole = std::mem::replace(word, format!("{before}{HIDDEN}{after}"));
                     hidden.push((phrase.rule, whole));
                 }
@@ -38,13 +39,17 @@ pub fn masked(text: &str) -> Masked {
     Masked { words, hidden }
 }
 
-/// Whether a word is the pattern's, in which `#` stands for what begins with a digit and is a figure or a digest.
-fn fits(word: &str, pattern: &str) -> bool {
-    let Some((before, after)) = pattern.split_once('#') else { return word == pattern };
+/// What stands for a number and for a digest in a phrase.
+const SIGNS: [char; 2] = ['#', '@'];
+
+/// Whether a word is the phrase's.
+pub(crate) fn fits(word: &str, wanted: &str) -> bool {
+    let Some((before, after)) = wanted.split_once(SIGNS) else { return word == wanted };
     let Some(inside) = word.strip_prefix(before).and_then(|rest| rest.strip_suffix(after)) else { return false };
-    !inside.is_empty()
-        && inside.chars().any(|c| c.is_ascii_digit())
-        && inside.chars().all(|c| c.is_ascii_alphanumeric() || ".-+".contains(c))
+    match wanted.contains('#') {
+        true => inside.parse::<f64>().is_ok(),
+        false => inside.len() >= 7 && inside.chars().all(|c| c.is_ascii_hexdigit()),
+    }
 }
 
 /// A word without what tells by itself that it is a date, a time of day or a path.
@@ -119,12 +124,15 @@ mod tests {
     }
 
     #[test]
-    fn phrases_hide_only_the_figure_in_them() {
+    fn phrases_hide_only_the_figure_or_digest_in_them() {
         for phrase in PHRASES {
-            let said = phrase.words.replace('#', "12.5");
-            let masked = masked(&format!("before {said} after"));
-            assert_eq!(masked.words.join(" "), format!("before {} after", phrase.words.replace('#', HIDDEN)));
-            assert_eq!(masked.hidden.len(), phrase.words.matches('#').count());
+            let say = |number: &str, digest: &str| phrase.words.replace('#', number).replace('@', digest);
+            let found = masked(&format!("before {} after", say("12.5", "b1f3478181d7")));
+            assert_eq!(found.words.join(" "), format!("before {} after", say(HIDDEN, HIDDEN)));
+            assert_eq!(found.hidden.len(), 1);
+            let other = format!("before {} after", say("q1", "q1"));
+            assert_eq!(text(&other), other);
         }
+        assert_eq!(text("Commit b1f3478181d7 (changed), now"), text("Commit 0000000000aa, now"));
     }
 }

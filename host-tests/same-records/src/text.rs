@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use crate::align::{Step, steps};
 use crate::findings::Findings;
-use crate::ignored::COLUMNS;
+use crate::ignored::{COLUMNS, Column};
 use crate::mask::{HIDDEN, Masked, masked};
 
 /// A line that says something.
@@ -42,9 +42,13 @@ fn under_head(line: &str, before: Option<(usize, &'static str)>) -> Option<(usiz
     if line.trim().is_empty() {
         return None;
     }
-    let words = line.split_whitespace().collect::<Vec<_>>().join(" ");
-    let Some(column) = COLUMNS.iter().find(|column| column.table == words) else { return before };
-    let end = line.find(column.column)? + column.column.len();
+    let first = line.split_whitespace().next();
+    let head = |column: &&Column| {
+        first.is_some_and(|first| first.eq_ignore_ascii_case(column.first))
+            && line.split_whitespace().any(|w| w == column.column)
+    };
+    let Some(column) = COLUMNS.iter().find(head) else { return before };
+    let end = line.find(&format!(" {}", column.column))? + 1 + column.column.len();
     Some((line[..end].chars().count(), column.rule))
 }
 

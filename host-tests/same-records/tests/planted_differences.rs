@@ -227,6 +227,36 @@ fn a_changed_line_verdict_figure_and_picture_are_found() {
 }
 
 #[test]
+fn what_the_line_to_the_emulator_was_slow_with_is_left_out_by_its_name_and_nothing_beside_it_is() {
+    let (old, new) = (Tree::new(), Tree::new());
+    let checks = |idle: &str, most: &str| {
+        format!(
+            "{{\"timing\":{{\"idle_percent\":{idle},\"max_s\":{most}}},\"checks\":[{{\"name\":\"idle time\",\"figure\":{idle}}},\
+             {{\"name\":\"longest tick\",\"figure\":{most}}}]}}"
+        )
+    };
+    let page = |idle: &str, most: &str| {
+        format!(
+            "<div>{idle}<span> %</span></div><div>Idle <b>EMULATED</b></div><table><tr><td>idle time <b>EMULATED</b></td>\
+             <td>{idle} %</td></tr><tr><td>longest</td><td>{most} us</td></tr></table>"
+        )
+    };
+    for (tree, idle) in [(&old, "61.1"), (&new, "60.9")] {
+        tree.write("board/record.json", checks(idle, "25.8"));
+        tree.write("board/report.html", page(idle, "25.8"));
+        tree.write("board/terminal.stdout", format!("-   idle time   {idle} %   EMULATED\n"));
+    }
+    let differences = found(&old, &new).differences;
+    assert!(differences.is_empty(), "{differences:?}");
+    new.write("board/record.json", checks("60.9", "25.9"));
+    new.write("board/report.html", page("60.9", "25.9"));
+    let places: Vec<String> = found(&old, &new).differences.into_iter().map(|found| found.place).collect();
+    let figures = ["figure `25.8`", "figure `25.9`", "cell `25.8 us`", "cell `25.9 us`"];
+    assert_eq!(places[..2], ["checks[1].figure", "timing.max_s"]);
+    assert_eq!(places[2..], figures);
+}
+
+#[test]
 fn what_cannot_be_compared_is_refused() {
     let (tree, empty) = (Tree::new(), tempfile::tempdir().expect("a folder"));
     let refused = |old: &Path, new: &Path| compare(old, new, Options::default()).expect_err("refused");

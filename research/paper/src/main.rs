@@ -6,6 +6,7 @@ use clap::{Args, Command, FromArgMatches};
 use paper::Arguments;
 
 fn main() -> ExitCode {
-    let command = Arguments::augment_args(Command::new("paper").bin_name("joint paper").about(paper::ABOUT));
+    let command =
+        Arguments::augment_args(Command::new("paper").bin_name("joint paper")).about(paper::ABOUT).long_about(None);
     report::command_line::main(command, Arguments::from_arg_matches, paper::run)
 }

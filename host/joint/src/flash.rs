@@ -7,6 +7,7 @@ use crate::image;
 
 /// Arguments of `joint flash`.
 #[derive(Debug, clap::Args)]
+#[group(id = "flash")]
 #[command(after_help = "Examples:
   joint flash                                 joint q1 onto the stm32f405 behind the debug probe
   joint flash joints/l1.toml --board stm32g474")]

@@ -17,6 +17,7 @@ use report::{interruption, output};
 
 /// Arguments of `joint image`.
 #[derive(Debug, clap::Args)]
+#[group(id = "image")]
 #[command(after_help = "Examples:
   joint image                                 joint q1 for the stm32f405
   joint image --role observer                 observer and compensation for it, beside a motor controller

@@ -40,13 +40,11 @@ fn every_command_refuses_a_file_that_is_nothing_by_its_name() {
     let inputs = folder();
     let out = place.path().join("out");
     let out = text(&out);
-    let commands: [&[&str]; 17] = [
+    let commands: [&[&str]; 15] = [
         &["check", "@"],
         &["budget", "@"],
-        &["bench", "@"],
         &["image", "@"],
         &["flash", "@"],
-        &["paper", "@", "--omega", "0.8", "--out", out],
         &["sim", "@", "--out", out],
         &["sim", "q1", "--profile", "@", "--out", out],
         &["sweep", "@", "--vary", "half_backlash_um=10,20", "--out", out],
@@ -97,11 +95,9 @@ fn results_are_not_written_over_what_they_are_made_from() {
     fs::write(&torques, "time_s,motor_torque_Nm,load_torque_Nm\n0,1,6\n0.1,-1,-6\n").expect("a file");
     let [file, test, torques, out] = [&file, &test, &torques, &out].map(text);
     let before = command::contents(place.path());
-    let commands: [&[&str]; 10] = [
+    let commands: [&[&str]; 8] = [
         &["check", file, "--json", file],
         &["budget", file, "--json", file],
-        &["bench", file, "--html", file],
-        &["paper", file, "--omega", "0.8", "--json", file, "--out", out],
         &["sim", file, "--json", file, "--out", out],
         &["sim", "q1", "--profile", torques, "--json", torques, "--out", out],
         &["hil", file, "--picture", file, "--out", out],
@@ -122,14 +118,9 @@ fn results_are_not_written_over_what_they_are_made_from() {
 fn a_result_that_cannot_be_written_is_known_before_the_work() {
     let place = folder();
     let nowhere = place.path().join("none/x");
-    for option in ["--json", "--html", "--document"] {
-        joint(&["bench", "--case", "A", option, text(&nowhere)]).refused(&["none", option]);
-        joint(&["bench", "--case", "A", option, text(place.path())]).refused(&["is a folder", option]);
-    }
     for option in ["--json", "--picture"] {
         joint(&["hil", "q1", option, text(&nowhere)]).refused(&["none", option]);
     }
-    joint(&["bench", "--case", "A", "--document", "no-such.md"]).refused(&["no-such.md", "Markdown"]);
 }
 
 #[test]

@@ -35,6 +35,42 @@ fn a_joint_file_that_is_not_there_is_named() {
     assert!(err(&ended).contains("no/such/joint.toml"), "{}", err(&ended));
 }
 
+/// Bad input: exit code 2 with all these words in the message, and no panic.
+#[track_caller]
+fn refused(arguments: &[&str], words: &[&str]) {
+    let ended = bench(arguments);
+    assert_eq!(ended.status.code(), Some(2), "{arguments:?}: {}", err(&ended));
+    let said = err(&ended).replace(['│', '╰', '─', '├', '▶'], " ").split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.iter().all(|word| said.contains(word)) && !said.contains("panicked"), "{arguments:?}: {said}");
+}
+
+#[test]
+fn a_file_that_is_nothing_is_refused_by_its_name() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let all_bytes: Vec<u8> = (0..=255).collect();
+    let inputs: [(&str, &[u8]); 3] = [("empty", b""), ("garbage", &all_bytes), ("no-utf8", b"name = \"\xff\"\n")];
+    for (name, content) in inputs {
+        let file = folder.path().join(name);
+        std::fs::write(&file, content).expect("a file");
+        refused(&[text(&file)], &[text(&file), "help:"]);
+    }
+    refused(&[text(folder.path())], &[text(folder.path()), "help:"]);
+}
+
+#[test]
+fn a_result_that_cannot_be_written_is_known_before_the_work() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let nowhere = folder.path().join("none/x");
+    for option in ["--json", "--html", "--document"] {
+        refused(&["--case", "A", option, text(&nowhere)], &["none", option]);
+        refused(&["--case", "A", option, text(folder.path())], &["is a folder", option]);
+    }
+    refused(&["--case", "A", "--document", "no-such.md"], &["no-such.md", "Markdown"]);
+    let file = folder.path().join("joint.toml");
+    std::fs::write(&file, joint_file::preset("q1").expect("a preset")).expect("a file");
+    refused(&[text(&file), "--html", text(&file)], &["would write over", "name another file"]);
+}
+
 #[test]
 #[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
 fn the_peers_are_as_lean_as_their_advocates_would_have_them() {

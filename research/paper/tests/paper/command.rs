@@ -71,11 +71,15 @@ fn bad_input_is_refused_before_anything_is_written() {
         joint_file::preset("paper").expect("a preset").replace("half_backlash_um = 60.0", "half_backlash_um = 0.0");
     fs::write(folder.path().join("without.toml"), without).expect("a file");
     fs::write(folder.path().join("broken.toml"), [0xff, 0xfe, 0x00]).expect("a file");
+    fs::write(folder.path().join("empty.toml"), "").expect("a file");
+    fs::write(folder.path().join("same.toml"), joint_file::preset("paper").expect("a preset")).expect("a file");
     for (words, expected) in [
         (&["l1"][..], "--omega"),
         (&["smooth.toml"], "dead_zone = \"sharp\""),
         (&["without.toml"], "--grid"),
         (&["broken.toml"], "not text"),
+        (&["empty.toml"], "empty.toml"),
+        (&["same.toml", "--json", "same.toml"], "would write over"),
         (&["nowhere.toml"], "presets"),
         (&["."], "folder"),
         (&["paper", "--grid", "0:150:0"], "from:to:step"),

@@ -96,3 +96,11 @@ pub fn differences(page: &str, workspace: &Workspace, exists: impl Fn(&Path) -> 
     }
     found
 }
+
+/// Places that a page names between backquotes, with a slash in them, and that are not there.
+pub fn missing(page: &str, exists: impl Fn(&Path) -> bool) -> Vec<String> {
+    let quoted = page.lines().flat_map(|line| line.split('`').skip(1).step_by(2));
+    let is_place = |text: &&str| text.contains('/') && !text.contains([' ', '*', '<', '$', '(']);
+    let lost = quoted.filter(is_place).filter(|place| !exists(Path::new(place)));
+    lost.map(|place| format!("the page names `{place}`, which is not there\n  mend: name where it is now")).collect()
+}

@@ -93,6 +93,14 @@ fn crates_import_what_the_architecture_page_allows() {
 }
 
 #[test]
+fn the_pages_for_newcomers_name_places_that_are_there() {
+    for name in ["ARCHITECTURE.md", "CONTRIBUTING.md"] {
+        let text = std::fs::read_to_string(root().join(name)).expect("a page");
+        none(page::missing(&text, |path| root().join(path).exists()));
+    }
+}
+
+#[test]
 fn a_crate_is_of_a_size_that_can_be_read() {
     println!("{:<32} {:>6} {:>6} {:>6}", "crate or subject", "lines", "files", "edges");
     let mut found = vec![];

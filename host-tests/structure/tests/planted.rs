@@ -345,3 +345,11 @@ fn sizes_leave_tests_out_and_tell_what_is_too_large() {
     let large = BTreeMap::from([("link".to_string(), size::LIMIT + 1)]);
     assert!(size::too_large(&large)[0].starts_with("link has 8501 lines"));
 }
+
+#[test]
+fn a_place_that_is_gone_is_found_on_a_page_and_words_are_not_taken_for_places() {
+    let page =
+        "open `a/b.rs`, then `a/gone.rs`; `cargo joint hil hil/t2.toml`, `+ - *` and `Model::step` are no places";
+    let found = page::missing(page, |path| path == Path::new("a/b.rs"));
+    assert!(matches!(&found[..], [one] if one.contains("`a/gone.rs`")), "{found:?}");
+}

@@ -13,7 +13,7 @@ use tempfile::TempDir;
 const RECORD: &str = r#"{"date":"2026-11-22T09:57:43Z","git_commit":"b1f3478181d7","seconds":3.5,
     "runs":[{"seed":1,"figures":{"rms_mrad":3.487969661470408,"crossings":8}},{"seed":2,"figures":{"rms_mrad":0.1}}]}"#;
 const HISTORY: &str = "time_s,gap_m,contact\n0.0,8.18e-5,1\n5e-5,8.19e-5,1\n1e-4,8.21e-5,0\n";
-const TERMINAL: &str = "ok    rms_mrad   3.488 mrad <= 5\nreport: /work/one/target/hil/report.html\n";
+const TERMINAL: &str = "ok    rms_mrad   3.488 mrad <= 5\nreport: /home/one/target/hil/report.html\n";
 const PAGE: &str = "<h1>Q1</h1><p>2026-11-22T09:57:43Z</p><table><tr><th>figure</th><td>3.488 mrad</td></tr></table>";
 const JUNIT: &str = "<testsuites tests=\"1\" time=\"3.500\"><testsuite name=\"hil/t2.toml\" timestamp=\"2026-11-22T09:57:43Z\">\
     <testcase name=\"rms_mrad &lt;= 5\"/></testsuite></testsuites>\n";
@@ -202,7 +202,7 @@ fn only_another_date_commit_folder_and_duration_are_no_difference_and_are_counte
     new.change("hil/record.json", "\"seconds\":3.5", "\"seconds\":4.25");
     new.change("hil/report.html", "2026-11-22T09:57:43Z", "2027-01-01T00:00:00Z");
     new.change("hil/junit.xml", "time=\"3.500\"", "time=\"4.250\"");
-    new.change("hil/terminal.stdout", "/work/one/target/hil/", "/elsewhere/");
+    new.change("hil/terminal.stdout", "/home/one/target/hil/", "/elsewhere/");
     let found = found(&old, &new);
     assert!(found.all_same(), "{:?}", found.differences);
     let different = |rule: &str| found.left_out[rule].different;

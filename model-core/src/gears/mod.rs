@@ -16,6 +16,7 @@ pub mod dead_zone;
 #[cfg(feature = "design")]
 pub mod design;
 mod excitation;
+mod flank;
 mod flow;
 mod frozen;
 mod kinematics;
@@ -37,6 +38,7 @@ mod substep;
 pub mod tables;
 mod unfrozen;
 
+pub use flank::{Flank, contact_state, sign};
 pub use kinematics::Kinematics;
 pub use losses::gear_losses;
 pub use mechanics::Mechanics;

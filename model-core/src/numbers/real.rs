@@ -45,6 +45,8 @@ pub trait Real:
     const SIXTH: Self;
     /// 1/8.
     const EIGHTH: Self;
+    /// 3/8.
+    const THREE_EIGHTHS: Self;
     /// 1/20.
     const TWENTIETH: Self;
     /// 2^-32.
@@ -103,6 +105,7 @@ macro_rules! real {
             const THIRD: Self = 1.0 / 3.0;
             const SIXTH: Self = 1.0 / 6.0;
             const EIGHTH: Self = 0.125;
+            const THREE_EIGHTHS: Self = 0.375;
             const TWENTIETH: Self = 0.05;
             const LEAST: Self = $least;
             const NAN: Self = $nan;

@@ -1,5 +1,4 @@
-//! What the observer says once a control period, each value with its variance and with whether it may be used. How
-//! the values come about is left to the neighbours; what is done with them, to the compensation.
+//! What the observer gives out once a control period: each value with its variance and with whether it may be used.
 
 use crate::numbers::Real;
 use parameters::ContactState;

@@ -1,5 +1,5 @@
 //! What an observer has learnt as bytes that outlive it: saved and loaded outside the tick, refused when they are
-//! damaged, of another version or of another joint. Where the bytes are kept is left to the firmware.
+//! damaged, of another version or of another joint.
 //!
 //! Layout, little-endian: mark, version, number of parameters, identity of joint and encoders, where the encoders'
 //! zeros were, parameters, factors of their covariance, bias with its covariance, the link's mobility with its variance,
@@ -7,7 +7,8 @@
 
 use core::fmt;
 
-use super::state::Observer;
+use super::learnt::Learnt;
+use super::tables::ObserverTables;
 use crate::numbers::{Real, digest};
 
 /// Bytes of a memory.
@@ -51,77 +52,70 @@ impl fmt::Display for MemoryError {
 
 impl core::error::Error for MemoryError {}
 
-impl<T: Real, const P: usize> Observer<'_, T, P> {
-    /// What has been learnt so far.
-    pub fn save(&self) -> Memory {
-        let mut memory = [0; MEMORY_BYTES];
-        let mut writer = Writer { bytes: memory.iter_mut() };
-        writer.put(&MARK.to_le_bytes());
-        writer.put(&VERSION.to_le_bytes());
-        writer.put(&(P as u16).to_le_bytes());
-        writer.put(&self.tables.identity.to_le_bytes());
-        writer.put(&self.counts.start.to_le_bytes());
-        self.learner
-            .numbers()
-            .chain(self.bias.numbers())
-            .chain(self.inertia.numbers())
-            .for_each(|number| writer.number(number));
-        let digest = digest_of(&memory);
-        if let Some(place) = memory.get_mut(DIGEST_AT..) {
-            place.copy_from_slice(&digest.to_le_bytes());
-        }
-        memory
+/// What has been learnt so far; `start` is where the encoders' zeros are, in units of their difference.
+pub(super) fn save<T: Real, const P: usize>(tables: &ObserverTables<T>, start: i64, learnt: &Learnt<T, P>) -> Memory {
+    let mut memory = [0; MEMORY_BYTES];
+    let mut writer = Writer { bytes: memory.iter_mut() };
+    writer.put(&MARK.to_le_bytes());
+    writer.put(&VERSION.to_le_bytes());
+    writer.put(&(P as u16).to_le_bytes());
+    writer.put(&tables.identity.to_le_bytes());
+    writer.put(&start.to_le_bytes());
+    let numbers = learnt.learner.numbers().chain(learnt.bias.numbers()).chain(learnt.inertia.numbers());
+    numbers.for_each(|number| writer.number(number));
+    let digest = digest_of(&memory);
+    if let Some(place) = memory.get_mut(DIGEST_AT..) {
+        place.copy_from_slice(&digest.to_le_bytes());
     }
+    memory
+}
 
-    /// Goes on from what was saved. Refused memories change nothing.
-    pub fn load(&mut self, memory: &[u8]) -> Result<(), MemoryError> {
-        let mut reader = Reader { bytes: memory };
-        let (mark, version) = (reader.take().map(u32::from_le_bytes), reader.take().map(u16::from_le_bytes));
-        if memory.len() != MEMORY_BYTES || mark != Some(MARK) {
-            return Err(MemoryError::NotAMemory);
-        }
-        if version != Some(VERSION) {
-            return Err(MemoryError::WrongVersion);
-        }
-        let stored = memory.get(DIGEST_AT..).and_then(|bytes| bytes.try_into().ok()).map(u64::from_le_bytes);
-        if stored != Some(digest_of(memory)) {
-            return Err(MemoryError::Damaged);
-        }
-        let parameters = reader.take().map(u16::from_le_bytes);
-        let identity = reader.take().map(u64::from_le_bytes);
-        let start = reader.take().map(i64::from_le_bytes).unwrap_or(0);
-        if parameters != Some(P as u16) || identity != Some(self.tables.identity) {
-            return Err(MemoryError::OtherJoint);
-        }
-        let (mut learner, mut bias, mut inertia) = (self.learner, self.bias, self.inertia);
-        let mut finite = true;
-        let mut next = || {
-            let number = f32::from_le_bytes(reader.take().unwrap_or_default());
-            finite &= number.is_finite();
-            T::from_f64(number.into())
-        };
-        learner.set_numbers(&mut next);
-        bias.set_numbers(&mut next);
-        inertia.set_numbers(&self.tables.inertia, &mut next);
-        if !finite {
-            return Err(MemoryError::NotFinite);
-        }
-        self.learner = learner;
-        self.bias = bias;
-        self.inertia = inertia;
-        self.find_places();
-        if self.tables.counts.absolute {
-            self.counts.refer_to(start, &self.tables.counts);
-        } else {
-            self.learner.forget_places();
-        }
-        Ok(())
+/// Goes on from what was saved; where the encoders' zeros were. Refused memories change nothing.
+pub(super) fn load<T: Real, const P: usize>(
+    memory: &[u8],
+    tables: &ObserverTables<T>,
+    learnt: &mut Learnt<T, P>,
+) -> Result<i64, MemoryError> {
+    let mut reader = Reader { bytes: memory };
+    let (mark, version) = (reader.take().map(u32::from_le_bytes), reader.take().map(u16::from_le_bytes));
+    if memory.len() != MEMORY_BYTES || mark != Some(MARK) {
+        return Err(MemoryError::NotAMemory);
     }
+    if version != Some(VERSION) {
+        return Err(MemoryError::WrongVersion);
+    }
+    let stored = memory.get(DIGEST_AT..).and_then(|bytes| bytes.try_into().ok()).map(u64::from_le_bytes);
+    if stored != Some(digest_of(memory)) {
+        return Err(MemoryError::Damaged);
+    }
+    let parameters = reader.take().map(u16::from_le_bytes);
+    let identity = reader.take().map(u64::from_le_bytes);
+    let start = reader.take().map(i64::from_le_bytes).unwrap_or(0);
+    if parameters != Some(P as u16) || identity != Some(tables.identity) {
+        return Err(MemoryError::OtherJoint);
+    }
+    let (mut learner, mut bias, mut inertia) = (learnt.learner, learnt.bias, learnt.inertia);
+    let mut finite = true;
+    let mut next = || {
+        let number = f32::from_le_bytes(reader.take().unwrap_or_default());
+        finite &= number.is_finite();
+        T::from_f64(number.into())
+    };
+    learner.set_numbers(&mut next);
+    bias.set_numbers(&mut next);
+    inertia.set_numbers(&tables.inertia, &mut next);
+    if !finite {
+        return Err(MemoryError::NotFinite);
+    }
+    learnt.learner = learner;
+    learnt.bias = bias;
+    learnt.inertia = inertia;
+    Ok(start)
 }
 
 /// The numbers in a memory, in their order: parameters, factors of their covariance, column by column down to the diagonal,
-/// bias and friction with their variances and covariance, mobility and its variance. Whether it is sound is left to
-/// [`Observer::load`].
+/// bias and friction with their variances and covariance, mobility and its variance. [`Observer::load`](super::Observer::load) says
+/// whether they are sound.
 pub fn memory_numbers(memory: &Memory) -> impl Iterator<Item = f32> {
     let (numbers, _) = memory.get(HEAD..).unwrap_or_default().as_chunks();
     numbers.iter().map(|bytes| f32::from_le_bytes(*bytes))

@@ -1,61 +1,321 @@
 //! Where the gap is: from encoder counts and motor torque to gap coordinate, contact, torques and everything about the
-//! joint that they depend on, once a control period. Making use of it is left to `compensation`.
+//! joint that they depend on, once a control period. [`crate::compensation`] makes use of it.
 //!
-//! The structure, front to back:
-//! 1. `counts` unwraps raw counts and forms motor less ratio times output in whole numbers: exact over any number of
-//!    turns and over wrap-around. `places` knows what the encoders' and the gears' errors are there.
-//! 2. `drive_side`, a disturbance observer on the motor, gives the mesh force; `load_side`, the same on the link,
-//!    position, speed and load torque. Both are linear flows from tables.
-//! 3. `motion` tells crossing from rest without knowing the width; `bias` takes from open gaps what the motor's torque is
-//!    wrong by; `contact` decides which flank touches.
-//! 4. `learner` is one small recursive least squares, updated every few periods in settled contact, for half-backlash,
-//!    offset, compliance, skew and the encoders' error maps. `anchor` and `ride` tell flanks without a force that stands
-//!    out, and `doubt` what no longer belongs to what was learnt. `parts` gives each period some of that work.
-//! 5. `pace` and `supervisor` watch the output encoder and fall back to the motor alone.
+//! Five parts with a state of their own, each initialised in one place and stepped from one place, [`Observer::step`]:
 //!
-//! `docs/observer.md` derives all of it and says what it cannot know.
+//! | part | from | to |
+//! |---|---|---|
+//! | `sensors` | raw counts and times | counts that are exact over any number of turns and over wrap-around, ages, notices |
+//! | `filters` | counts, commanded torque | the motor side's torque into the meshes; the link's angle, speed and load torque |
+//! | `contact` | mesh force, deflection | which flank touches |
+//! | `learnt` | all of these, in rest and in the open gap | half-gap, offset, compliance, skew, error maps, bias, inertia, and how uncertain they are |
+//! | `health` | counts, deflection | whether the output encoder is used, and what is known of the link without it |
+//!
+//! [`Estimates`] are what comes out. `docs/observer.md` derives all of it and says what it cannot know.
 
-mod anchor;
-mod bias;
-mod block;
 mod contact;
-mod counts;
 #[cfg(feature = "design")]
 pub mod design;
-mod doubt;
-mod drive_side;
 mod estimates;
-mod firm;
-mod follow;
-mod inertia;
-mod interval;
-mod knowledge;
-mod late;
-mod learner;
-mod learning;
-mod load_side;
+mod filters;
+mod health;
+mod learnt;
 mod memory;
-mod motion;
-mod motor_only;
-mod now;
-mod pace;
-mod parts;
-mod places;
-mod present;
+mod outputs;
 mod probe;
-mod regressors;
-mod ride;
 mod samples;
-mod saying;
-mod state;
-mod step;
-mod supervisor;
+mod sensors;
 pub mod tables;
 
+use contact::{Contact, Evidence};
+use filters::Filters;
+use health::{Health, LastMotion, Return, Screened};
+use learnt::fusion::Fused;
+use learnt::{Learnt, Outcome};
+use sensors::Sensors;
+use sensors::counts::Advance;
+use sensors::latency::Freshness;
+
+use crate::gears::sign;
+use crate::numbers::Real;
+
 pub use estimates::{Doubt, Estimate, Estimates, Notices, Shaft, Source};
+pub use learnt::regressors::{MAPPED, PLAIN};
 pub use memory::{MEMORY_BYTES, Memory, MemoryError, memory_numbers};
 pub use probe::{Probe, Progress, Refusal};
-pub use regressors::{MAPPED, PLAIN};
 pub use samples::{Reading, Samples};
-pub use state::Observer;
 pub use tables::{ObserverTables, ProbeTable};
+
+/// The observer of one joint. `P` is [`PLAIN`] or [`MAPPED`].
+#[derive(Debug, Clone)]
+pub struct Observer<'tables, T: Real, const P: usize> {
+    tables: &'tables ObserverTables<T>,
+    sensors: Sensors,
+    filters: Filters<T>,
+    contact: Contact,
+    learnt: Learnt<T, P>,
+    health: Health<T>,
+    estimates: Estimates<T>,
+}
+
+impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
+    /// An observer that has seen nothing yet and knows what was designed.
+    pub fn new(tables: &'tables ObserverTables<T>) -> Self {
+        let has_output = tables.counts.has_output;
+        let mut observer = Self {
+            tables,
+            sensors: Sensors::new(has_output),
+            filters: Filters::default(),
+            contact: Contact::default(),
+            learnt: Learnt::new(tables),
+            health: Health::new(has_output),
+            estimates: Estimates::default(),
+        };
+        observer.begin();
+        observer
+    }
+
+    /// Back to what was designed, part by part: a whole new observer would need as much stack again.
+    pub fn restart(&mut self) {
+        let has_output = self.tables.counts.has_output;
+        self.sensors = Sensors::new(has_output);
+        self.filters = Filters::default();
+        self.contact = Contact::default();
+        self.learnt = Learnt::new(self.tables);
+        self.health = Health::new(has_output);
+        self.estimates = Estimates::default();
+        self.begin();
+    }
+
+    /// What follows from what was designed.
+    fn begin(&mut self) {
+        self.find_errors();
+        self.say_learnt();
+    }
+
+    /// The estimates of the last step.
+    pub fn estimates(&self) -> &Estimates<T> {
+        &self.estimates
+    }
+
+    /// Takes the samples of one control period; the estimates that follow.
+    pub fn step(&mut self, samples: &Samples<T>) -> &Estimates<T> {
+        let tables = self.tables;
+        let sensed = self.sensors.step(tables, samples);
+        self.estimates.notices = sensed.notices;
+        self.filters.step(tables, &sensed);
+        if matches!(sensed.motor, Advance::Jumped(_)) {
+            self.learnt.reopen();
+        }
+        let screened = self.health.screen(tables, &sensed);
+        let first = match screened {
+            Screened::First => {
+                self.filters.load.ahead = T::ZERO;
+                true
+            }
+            Screened::Used => {
+                self.filters.correct_load(tables, &sensed);
+                false
+            }
+            Screened::NotUsed => false,
+            Screened::GivenUp(_, last) => {
+                self.rely_on_motor(last);
+                false
+            }
+        };
+        let meshes = tables.counts.mesh_periods;
+        let far = self.learnt.errors.go_on(sensed.motor_turned, sensed.output_turned, meshes);
+        if far || first || !matches!(sensed.motor, Advance::By(_)) {
+            self.find_errors();
+        }
+        if sensed.freshness == Freshness::Unusable {
+            self.filters.drive.hold();
+            outputs::hold(&mut self.estimates);
+            return &self.estimates;
+        }
+
+        let fused = self.fuse();
+        self.tell_contact(&fused);
+        if self.health.judge(tables, &fused, &self.learnt) {
+            self.rely_on_motor(None);
+        }
+        if !self.health.both_encoders() {
+            let correction = self.health.motor_only.step(tables, &fused, &self.learnt);
+            self.filters.correct_unseen_load(&tables.load, correction, tables.levers.per_ratio);
+        }
+        self.say(&fused);
+        let late_for_good = self.sensors.latency.is_late_for_good();
+        if matches!(sensed.freshness, Freshness::Fresh | Freshness::Lost) && !late_for_good {
+            self.learn(&fused);
+        } else {
+            outputs::invalidate(&mut self.estimates);
+            if late_for_good {
+                self.estimates.source = Source::Nothing;
+            }
+        }
+        &self.estimates
+    }
+
+    /// What has been learnt so far, as bytes.
+    pub fn save(&self) -> Memory {
+        memory::save(self.tables, self.sensors.counts.start, &self.learnt)
+    }
+
+    /// Goes on from what was saved. Refused memories change nothing.
+    pub fn load(&mut self, memory: &[u8]) -> Result<(), MemoryError> {
+        let start = memory::load(memory, self.tables, &mut self.learnt)?;
+        self.find_errors();
+        if self.tables.counts.absolute {
+            self.sensors.counts.refer_to(start, &self.tables.counts);
+        } else {
+            self.learnt.learner.forget_places();
+        }
+        Ok(())
+    }
+
+    /// Both sides put together.
+    #[inline]
+    fn fuse(&self) -> Fused<T> {
+        Fused::new(self.tables, &self.sensors, &self.filters, &self.learnt, self.health.both_encoders())
+    }
+
+    /// Which flank touches, and what the meshes pass on.
+    #[inline]
+    fn tell_contact(&mut self, fused: &Fused<T>) {
+        let tables = self.tables;
+        let known = &self.learnt.uncertainty;
+        let both = self.health.both_encoders();
+        let evidence = if !both {
+            let before = self.contact.reported;
+            Evidence::MotorOnly(self.health.motor_only.contact(tables, fused, &self.learnt, before))
+        } else if known.half_gap_serves {
+            Evidence::Position {
+                position: self.learnt.position(fused.of_teeth(), fused.travel),
+                settled: known.settled,
+                deviation: known.both_deviation,
+            }
+        } else {
+            Evidence::Force
+        };
+        let force = self.contact.step(fused.force, known.force_deviation, &evidence);
+        // Where a light contact cannot be told from none, what the motor side says of the force is the best guess.
+        let unsure = both && !known.half_gap_serves;
+        let open = self.contact.reported.is_none() && !unsure;
+        let lever = if open { T::ZERO } else { tables.levers.output };
+        self.filters.mesh_torque = self.learnt.inertia.pass(lever * fused.force);
+        self.estimates.mesh_torque.value = lever * force;
+    }
+
+    /// Goes on without the output encoder, which was given up: it is where it was going, if that is known.
+    #[cold]
+    fn rely_on_motor(&mut self, last: Option<LastMotion<T>>) {
+        let tables = self.tables;
+        let load = &mut self.filters.load;
+        self.sensors.counts.imply();
+        load.speed = self.filters.drive.speed * tables.levers.per_ratio;
+        load.torque = self.health.load_torque_before();
+        // The link is where the teeth allow it to be; where exactly, the next contact shows.
+        let side: T = sign(self.contact.by_force.flank);
+        let [half_gap, _] = self.learnt.shape();
+        let implied = self.fuse();
+        let load = &mut self.filters.load;
+        load.ahead += (implied.of_teeth() - side * half_gap).over(tables.levers.output);
+        if let Some(last) = last {
+            let count = tables.counts.output.angle;
+            load.ahead = count * last.ahead;
+            load.speed = count * last.speed.over(tables.period);
+            self.health.motor_only.anchor();
+        }
+    }
+
+    /// Learns from a period.
+    fn learn(&mut self, fused: &Fused<T>) {
+        let tables = self.tables;
+        self.learnt.add(fused);
+        if self.learnt.in_the_middle(&tables.learner) {
+            // Where few periods make an interval, the rest of the last one's work is due now.
+            while self.learnt.has_work() {
+                self.work();
+            }
+            let both = self.health.both_encoders();
+            self.learnt.keep_errors(tables, &self.sensors, &self.filters, both);
+        } else if self.learnt.has_work() {
+            self.work();
+        }
+        if self.learnt.at_the_end(&tables.learner) {
+            self.close_interval();
+        }
+    }
+
+    /// Does a task of learning.
+    fn work(&mut self) {
+        let both = self.health.both_encoders();
+        let outcome = self.learnt.work(self.tables, &mut self.filters.load, both);
+        self.heed(outcome);
+    }
+
+    /// Ends a learning interval.
+    fn close_interval(&mut self) {
+        let tables = self.tables;
+        let both = self.health.both_encoders();
+        let reading = self.learnt.read(tables, self.filters.drive.speed, both);
+        if both {
+            self.health.remember(self.filters.load.torque);
+        } else if let Some(back) = self.health.reconsider(tables, &self.sensors, &self.filters, &self.learnt, &reading)
+        {
+            self.trust_output(back);
+        }
+        let outcome = self.learnt.close(tables, &reading, self.health.both_encoders());
+        self.heed(outcome);
+    }
+
+    /// The output encoder turns with the motor again.
+    #[cold]
+    fn trust_output(&mut self, back: Return) {
+        self.sensors.counts.trust();
+        self.filters.load.ahead = T::ZERO;
+        self.find_errors();
+        if back == Return::Otherwise {
+            self.learnt.forget_rest();
+            self.learnt.reopen();
+        }
+    }
+
+    /// What others have to know of a period's learning.
+    fn heed(&mut self, outcome: Outcome) {
+        match outcome {
+            Outcome::Nothing => {}
+            Outcome::Concluded => self.say_learnt(),
+            Outcome::EncoderFails => {
+                self.health.give_up(Doubt::OutOfRange);
+                self.rely_on_motor(None);
+            }
+        }
+    }
+
+    /// Finds exactly what the deflection depends on by where the shafts are.
+    fn find_errors(&mut self) {
+        let both = self.health.both_encoders();
+        self.learnt.find_errors(self.tables, &self.sensors, &self.filters, both);
+    }
+
+    /// Gives the estimates of a period out.
+    #[inline]
+    fn say(&mut self, fused: &Fused<T>) {
+        let state = outputs::State {
+            tables: self.tables,
+            sensors: &self.sensors,
+            filters: &self.filters,
+            contact: &self.contact,
+            learnt: &self.learnt,
+            health: &self.health,
+        };
+        state.say(fused, &mut self.estimates);
+    }
+
+    /// Gives the estimates out that change once a learning interval.
+    fn say_learnt(&mut self) {
+        let both = self.health.both_encoders();
+        outputs::say_learnt(self.tables, &self.learnt, both, &mut self.estimates);
+    }
+}

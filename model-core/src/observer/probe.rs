@@ -1,6 +1,6 @@
 //! The width probe: a motor that wiggles gently against a held load and reads the half-backlash off where it comes to
-//! rest. For joints without an output encoder, or before anything has moved. Holding the load is the user's business;
-//! the probe refuses when it is not held.
+//! rest. For joints without an output encoder, or before anything has moved. The user has to hold the load; the probe
+//! refuses when it is not held.
 //!
 //! On either flank the motor comes to rest under one torque and under twice that torque. Twice the first angle less the
 //! second is where it would rest under none: the wind-up, whatever the compliance, is gone. A damping torque keeps
@@ -9,7 +9,6 @@
 use core::fmt;
 
 use super::estimates::{Estimate, Estimates, Shaft};
-use super::motion::magnitude;
 use crate::numbers::Real;
 use crate::observer::tables::ProbeTable;
 
@@ -75,6 +74,9 @@ pub struct Probe<'tables, T: Real> {
 }
 
 impl<'tables, T: Real> Probe<'tables, T> {
+    /// Part of the gap by which the first and the last pass may differ [-]: beyond it the load has moved.
+    const UNSTEADY: T = T::EIGHTH;
+
     /// A probe that has not begun.
     pub fn new(table: &'tables ProbeTable<T>) -> Self {
         Self {
@@ -110,13 +112,13 @@ impl<'tables, T: Real> Probe<'tables, T> {
         if notices.torque_unknown || notices.out_of_time || notices.motor_doubted || notices.motor_jumped {
             return Progress::Refused(Refusal::BadSamples);
         }
-        let speed = magnitude(estimates.motor.speed);
+        let speed = estimates.motor.speed.abs();
         let Some(begin) = self.begin else {
             self.begin = Some(estimates.motor);
             if speed > table.moving {
                 return Progress::Refused(Refusal::NotAtRest);
             }
-            if magnitude(estimates.mesh_torque.value) > table.loaded {
+            if estimates.mesh_torque.value.abs() > table.loaded {
                 return Progress::Refused(Refusal::Loaded);
             }
             return Progress::Running;
@@ -124,7 +126,7 @@ impl<'tables, T: Real> Probe<'tables, T> {
         let turns = T::from_i32(estimates.motor.turns.wrapping_sub(begin.turns));
         let angle = (turns + (estimates.motor.fraction - begin.fraction)) * table.turn;
         self.total += 1;
-        if magnitude(angle) > table.furthest || self.total > table.longest {
+        if angle.abs() > table.furthest || self.total > table.longest {
             return Progress::Refused(Refusal::NotHeld);
         }
         self.periods += 1;
@@ -153,12 +155,12 @@ impl<'tables, T: Real> Probe<'tables, T> {
         let [first, second, third, fourth, fifth, sixth] = self.angles;
         let flank = |single: T, double: T| single + single - double;
         let (drive, back, again) = (flank(first, second), flank(third, fourth), flank(fifth, sixth));
-        let between = (T::HALF * (drive + again) - back) * table.way;
+        let between = (T::HALF * (drive + again) - back) * table.deflection;
         if between < table.least {
             return Progress::Refused(Refusal::Stuck);
         }
-        let apart = (again - drive) * table.way;
-        if magnitude(apart) > T::EIGHTH * between {
+        let apart = (again - drive) * table.deflection;
+        if apart.abs() > Self::UNSTEADY * between {
             return Progress::Refused(Refusal::Unsteady);
         }
         let quarter = T::HALF * T::HALF;

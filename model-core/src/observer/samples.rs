@@ -1,5 +1,5 @@
 //! What the observer is given once a control period: raw counts with the moments at which they were taken, and the
-//! torque of the motor. Drivers of encoders and the clock behind the moments are left to the firmware.
+//! torque of the motor.
 
 use crate::numbers::Real;
 

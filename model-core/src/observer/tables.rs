@@ -1,5 +1,5 @@
 //! What the observer needs as plain numbers, made by `observer::design`: flows over one control period, gains, priors
-//! and thresholds. SI, lengths along the line of action; how the numbers come about is left to the design.
+//! and thresholds. SI, lengths along the line of action.
 
 mod inertia;
 mod probe;
@@ -103,7 +103,7 @@ pub struct CountTable<T: Real> {
     pub meshes: u32,
     /// The same as a number.
     pub mesh_periods: T,
-    /// Way along the line of action in a unit of the difference [m].
+    /// Deflection along the line of action in a unit of the difference [m].
     pub length: T,
 }
 
@@ -114,7 +114,8 @@ pub struct LeverTable<T: Real> {
     pub sun: T,
     /// 1 over it [1/m].
     pub per_sun: T,
-    /// Ratio by teeth times the sun's base radius: torque at the carrier over mesh force, and way over output angle [m].
+    /// Ratio by teeth times the sun's base radius: torque at the carrier over mesh force, and deflection over output angle
+    /// [m].
     pub output: T,
     /// 1 over it [1/m].
     pub per_output: T,
@@ -144,7 +145,7 @@ pub struct DriveTable<T: Real> {
     pub angle: [T; 4],
     /// Change of speed for each unit of: taken torque, air-gap torque at the start, wanted torque.
     pub speed: [T; 3],
-    /// Corrections of angle, speed and taken torque for a radian of surprise.
+    /// Corrections of angle, speed and taken torque for a radian of innovation.
     pub gain: [T; 3],
     /// The same for readings that are older than a period.
     pub late_gain: [T; 3],
@@ -159,16 +160,16 @@ pub struct LoadTable<T: Real> {
     pub angle: [T; 2],
     /// Change of speed for each N m of torque from the meshes less load torque.
     pub speed: T,
-    /// Corrections of angle, speed and load torque for a radian of surprise.
+    /// Corrections of angle, speed and load torque for a radian of innovation.
     pub gain: [T; 3],
     /// Variances of angle and load torque once settled.
     pub variance: [T; 2],
-    /// Corrections for a radian of surprise where only the wind-up of the mesh force says where the link is.
-    pub blind_gain: [T; 3],
+    /// The same with the motor encoder only, where the wind-up of the mesh force tells where the link is.
+    pub motor_only_gain: [T; 3],
     /// Variances of speed and load torque then, once settled.
-    pub blind_variance: [T; 2],
-    /// Way along the line of action in a second from rest under one newton metre [m/(N m)].
-    pub way_per_torque: T,
+    pub motor_only_variance: [T; 2],
+    /// Deflection along the line of action in a second from rest under one newton metre [m/(N m)].
+    pub deflection_per_torque: T,
 }
 
 /// Contact and torque bias.
@@ -178,8 +179,8 @@ pub struct ContactTable<T: Real> {
     pub force_variance: T,
     /// Variance of cogging and torque ripple as force [N^2].
     pub ripple_variance: T,
-    /// Variance of the way while torques hold still [m^2].
-    pub way_variance: T,
+    /// Variance of the deflection while torques hold still [m^2].
+    pub deflection_variance: T,
     /// Variance of one millisecond's bias reading [N^2].
     pub bias_noise: T,
     /// Variance with which bias and dry friction begin [N^2].
@@ -188,13 +189,13 @@ pub struct ContactTable<T: Real> {
     pub bias_drift: T,
     /// Neither bias nor dry friction goes beyond this [N].
     pub bias_limit: T,
-    /// Standard deviation of the rate of the way [m/s].
+    /// Standard deviation of the rate of the deflection [m/s].
     pub rate_deviation: T,
     /// By how much what is measured lags behind: the output's sampling and filtering [s].
     pub lag: T,
     /// Part of its change in a period by which a mean over a few learning intervals follows [-].
     pub smoothing: T,
-    /// Way in a learning interval that noise alone can show [m].
+    /// Deflection in a learning interval that noise alone can show [m].
     pub still: T,
     /// Likewise for each radian that the motor turns while the error maps are unknown [m/rad].
     pub still_per_speed: T,
@@ -208,7 +209,7 @@ pub struct ContactTable<T: Real> {
     pub loss_driven: T,
 }
 
-/// What is learnt: way = side * half-gap + offset + compliance * force + skew * speed + error maps.
+/// What is learnt: deflection = side * half-gap + offset + compliance * force + skew * speed + error maps.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LearnerTable<T: Real> {
     /// Control periods between updates.
@@ -217,7 +218,7 @@ pub struct LearnerTable<T: Real> {
     pub per_periods: T,
     /// The period in their middle, from 1.
     pub middle: u16,
-    /// Intervals that make up one way to learn from.
+    /// Intervals that make up one deflection to learn from.
     pub block: u32,
     /// 1 over them.
     pub per_block: T,
@@ -227,9 +228,9 @@ pub struct LearnerTable<T: Real> {
     pub mean: [T; MOST_PARAMETERS],
     /// Standard deviation of each parameter beforehand.
     pub deviation: [T; MOST_PARAMETERS],
-    /// 1 over the standard deviation of one update's way, all that repeats from update to update included [1/m].
+    /// 1 over the standard deviation of one update's deflection, all that repeats from update to update included [1/m].
     pub weight: T,
-    /// Standard deviation of one update's way by itself [m].
+    /// Standard deviation of one update's deflection by itself [m].
     pub noise: T,
     /// Variance of one update's force [N^2].
     pub force_noise: T,
@@ -237,7 +238,7 @@ pub struct LearnerTable<T: Real> {
     pub force_lag: T,
     /// Growth of variances in one update, for what wears and warms [-].
     pub forgetting: T,
-    /// Way under one newton in the meshes alone [m/N].
+    /// Deflection under one newton in the meshes alone [m/N].
     pub mesh_compliance: T,
 }
 
@@ -249,7 +250,7 @@ pub struct SupervisorTable<T: Real> {
     /// Periods in a row outside the possible range after which it has failed.
     pub failed_after: u16,
     /// Periods in which whatever the link runs into may stop it; readings that stay the same for longer are judged by the
-    /// way alone.
+    /// deflection alone.
     pub stop: u8,
     /// Half of 1 over them.
     pub per_stops: T,

@@ -84,7 +84,7 @@ pub fn design_probe<T: Real>(
         still: periods(STILL),
         per_still: real(1.0 / f64::from(periods(STILL).max(1))),
         turn: real(TAU),
-        way: real(body.sun_lever),
+        deflection: real(body.sun_lever),
         least: real(4.0 * count + friction),
         variance: real(4.0 * (friction * friction + count * count / 12.0)),
     })

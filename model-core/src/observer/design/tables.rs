@@ -63,17 +63,18 @@ pub fn design_observer<T: Real>(
     let rated_force = settings.torque_limit / body.sun_lever;
     let force_variance = drive.quiet[2] / (body.sun_lever * body.sun_lever);
     let periods = libm::round(LEARNING_INTERVAL / step).max(1.0);
-    let way_variance = drive.quiet[0] * body.sun_lever.powi(2) + load.quiet[0] * body.output_lever.powi(2);
+    let deflection_variance = drive.quiet[0] * body.sun_lever.powi(2) + load.quiet[0] * body.output_lever.powi(2);
     let ripple = settings.torque_ripple / body.sun_lever;
     let wind_up_variance = body.compliance.powi(2) * (force_variance / periods + ripple * ripple);
-    let blind = load_filter(
+    let motor_only = load_filter(
         &body,
         settings,
-        (way_variance + body.compliance.powi(2) * (force_variance + ripple * ripple)) / body.output_lever.powi(2),
+        (deflection_variance + body.compliance.powi(2) * (force_variance + ripple * ripple))
+            / body.output_lever.powi(2),
         step,
     );
     let unmodelled = 0.1 * settings.motor_encoder.harmonic_error * body.sun_lever;
-    let noise = libm::sqrt(way_variance + wind_up_variance + unmodelled * unmodelled);
+    let noise = libm::sqrt(deflection_variance + wind_up_variance + unmodelled * unmodelled);
     let block = libm::round(BLOCK / LEARNING_INTERVAL).max(1.0);
 
     let stop = libm::round(STOP / step).clamp(1.0, 250.0);
@@ -121,20 +122,20 @@ pub fn design_observer<T: Real>(
             speed: real(load.response[(1, 0)]),
             gain: [0, 1, 2].map(|state| real(load.gain[state])),
             variance: [real(load.variance[0]), real(load.variance[2])],
-            blind_gain: [0, 1, 2].map(|state| real(blind.gain[state])),
-            blind_variance: [real(blind.variance[1]), real(blind.variance[2])],
-            way_per_torque: real(0.5 * body.output_lever / body.load_inertia),
+            motor_only_gain: [0, 1, 2].map(|state| real(motor_only.gain[state])),
+            motor_only_variance: [real(motor_only.variance[1]), real(motor_only.variance[2])],
+            deflection_per_torque: real(0.5 * body.output_lever / body.load_inertia),
         },
         inertia: inertia::table(&load, settings, &body, periods as u32, step),
         contact: ContactTable {
             force_variance: real(force_variance),
             ripple_variance: real(ripple * ripple),
-            way_variance: real(way_variance),
+            deflection_variance: real(deflection_variance),
             bias_noise: real((force_variance + ripple * ripple) * 5.0),
             bias_prior: real((settings.torque_uncertainty / body.sun_lever).powi(2)),
             bias_drift: real((settings.torque_uncertainty / body.sun_lever).powi(2) * LEARNING_INTERVAL / 10.0),
             bias_limit: real(3.0 * settings.torque_uncertainty / body.sun_lever),
-            still: real(3.0 * libm::sqrt(2.0 * (way_variance + wind_up_variance)) / WINDOW),
+            still: real(3.0 * libm::sqrt(2.0 * (deflection_variance + wind_up_variance)) / WINDOW),
             still_per_speed: real(
                 2.0 * (2.2 * motor_harmonic + (output_harmonic + meshes * body.transmission_error) / body.ratio),
             ),

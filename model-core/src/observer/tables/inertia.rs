@@ -1,4 +1,4 @@
-//! What learning the link's inertia needs as plain numbers. How they come about is left to the design.
+//! What learning the link's inertia needs as plain numbers.
 
 use crate::numbers::Real;
 

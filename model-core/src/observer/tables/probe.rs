@@ -28,9 +28,9 @@ pub struct ProbeTable<T: Real> {
     /// A turn [rad].
     pub turn: T,
     /// Way along the line of action in a radian of the motor [m].
-    pub way: T,
+    pub deflection: T,
     /// Way between the flanks below which nothing has moved [m].
     pub least: T,
-    /// Variance of the way between the flanks [m^2].
+    /// Variance of the deflection between the flanks [m^2].
     pub variance: T,
 }

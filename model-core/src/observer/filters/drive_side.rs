@@ -1,0 +1,72 @@
+//! The motor side: a disturbance observer that says what torque meshes and friction take from the motor. `learnt::bias`
+//! tells the two apart.
+//!
+//! State: angle beyond the counts, speed, taken torque, air-gap torque. Over a period the state follows the linear flow
+//! of the tables (current loop included), then each is corrected by its gain times the innovation, the measured less the
+//! predicted angle.
+
+use super::delayed::Delayed;
+use crate::numbers::Real;
+use crate::observer::tables::{CurrentTable, DriveTable, MOST_DELAY};
+
+/// State of the motor side.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct DriveSide<T: Real> {
+    /// Angle beyond the counts [rad].
+    pub ahead: T,
+    /// [rad/s].
+    pub speed: T,
+    /// Torque taken from the motor by meshes and friction [N m].
+    pub taken: T,
+    air_gap: T,
+    /// Commands on their way to the motor, the newest first.
+    commands: [T; MOST_DELAY],
+}
+
+impl<T: Real> DriveSide<T> {
+    /// Over one period, under the command in force during it; `turned` is by how much the counts moved [rad].
+    pub fn predict(&mut self, table: &DriveTable<T>, current: &CurrentTable<T>, command: T, turned: T) {
+        self.commands.rotate_right(1);
+        self.commands[0] = command;
+        let at = |ago: u32| self.commands.get(ago as usize).copied().unwrap_or(command);
+        let newer = at(current.whole_delay);
+        let wanted = newer + current.part_delay * (at(current.whole_delay + 1) - newer);
+        let [from_speed, from_taken, from_air_gap, from_wanted] = table.angle;
+        self.ahead +=
+            from_speed * self.speed + from_taken * self.taken + from_air_gap * self.air_gap + from_wanted * wanted
+                - turned;
+        let [from_taken, from_air_gap, from_wanted] = table.speed;
+        self.speed += from_taken * self.taken + from_air_gap * self.air_gap + from_wanted * wanted;
+        self.air_gap += current.rise * (wanted - self.air_gap);
+    }
+
+    /// Corrects by a reading of this period, `age` old [s].
+    pub fn correct(&mut self, table: &DriveTable<T>, age: T) {
+        self.apply(&table.gain, self.speed * age - self.ahead);
+    }
+
+    /// Corrects by an older reading, where the change of speed since then matters.
+    #[cold]
+    pub fn correct_late(&mut self, table: &DriveTable<T>, age: T) {
+        let [period, ..] = table.angle;
+        let [speed_per_torque, ..] = table.speed;
+        let speed_change = speed_per_torque * (self.taken - self.air_gap);
+        let delayed = Delayed { periods: age.over(period), period, speed_change, speed_per_torque };
+        self.apply(&delayed.gain_now(&table.late_gain), delayed.travel(self.speed) - self.ahead);
+    }
+
+    /// Adds gain times innovation [rad].
+    fn apply(&mut self, gain: &[T; 3], innovation: T) {
+        let [angle, speed, taken] = *gain;
+        self.ahead += angle * innovation;
+        self.speed += speed * innovation;
+        self.taken += taken * innovation;
+    }
+
+    /// Without any usable reading the motor is taken to stand where its counts were.
+    pub fn hold(&mut self) {
+        self.ahead = T::ZERO;
+        self.speed = T::ZERO;
+        self.taken = T::ZERO;
+    }
+}

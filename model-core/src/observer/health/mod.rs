@@ -1,0 +1,150 @@
+//! The health of the output encoder: when it is given up, why, when it is taken back, and what is known of the link without
+//! it. The motor encoder's own readings are judged in `sensors`.
+
+pub mod motor_only;
+mod output_faults;
+mod plausibility;
+mod recovery;
+
+use motor_only::MotorOnly;
+use output_faults::OutputFaults;
+use recovery::Recovery;
+
+use super::estimates::{Doubt, Source};
+use super::filters::Filters;
+use super::learnt::fusion::{Fused, small};
+use super::learnt::regressors::{self, Touch};
+use super::learnt::{Learnt, Reading};
+use super::sensors::{Sensed, Sensors};
+use crate::numbers::Real;
+use crate::observer::tables::ObserverTables;
+
+pub use output_faults::{LastMotion, Screened};
+pub use recovery::Return;
+
+/// Learning intervals between two looks at the load torque: longer than it takes to find a fault.
+const LOOK: u16 = 16;
+
+/// Which encoders are used, and what that is decided by.
+#[derive(Debug, Clone, Copy)]
+pub struct Health<T: Real> {
+    source: Source,
+    faults: OutputFaults<T>,
+    recovery: Recovery<T>,
+    /// What is known of the link without its encoder.
+    pub motor_only: MotorOnly<T>,
+    /// Load torque of the last and of the last but one look, before a failing encoder could spoil it [N m].
+    load_torques: [T; 2],
+    looked: u16,
+}
+
+impl<T: Real> Health<T> {
+    /// Until the output encoder is heard of for the first time there is the motor's only.
+    pub fn new(has_output: bool) -> Self {
+        Self {
+            source: Source::MotorOnly(if has_output { Doubt::Silent } else { Doubt::Absent }),
+            faults: OutputFaults::new(),
+            recovery: Recovery::new(),
+            motor_only: MotorOnly::default(),
+            load_torques: [T::ZERO; 2],
+            looked: 0,
+        }
+    }
+
+    /// Which encoders are used.
+    pub fn source(&self) -> Source {
+        self.source
+    }
+
+    /// Whether both encoders are used.
+    pub fn both_encoders(&self) -> bool {
+        matches!(self.source, Source::Both)
+    }
+
+    /// Whether the deflection has been where it could not be for longer than impacts ring: teeth have worn, or the encoder
+    /// fails.
+    pub fn is_at_odds(&self, tables: &ObserverTables<T>) -> bool {
+        self.faults.is_at_odds(&tables.supervisor)
+    }
+
+    /// Judges the output's reading by itself. Where that gives the encoder up, the caller goes on without it.
+    #[inline]
+    pub fn screen(&mut self, tables: &ObserverTables<T>, sensed: &Sensed<T>) -> Screened<T> {
+        let screened = self.faults.screen(tables, sensed, self.both_encoders());
+        match &screened {
+            Screened::First => self.source = Source::Both,
+            Screened::GivenUp(fault, _) => self.give_up(*fault),
+            Screened::Used | Screened::NotUsed => {}
+        }
+        screened
+    }
+
+    /// Judges the output encoder by the deflection; true where that gives it up, so that the caller goes on without it.
+    pub fn judge<const P: usize>(
+        &mut self,
+        tables: &ObserverTables<T>,
+        fused: &Fused<T>,
+        learnt: &Learnt<T, P>,
+    ) -> bool {
+        let fault = self.faults.judge(tables, fused, learnt, self.both_encoders());
+        if let Some(fault) = fault {
+            self.give_up(fault);
+        }
+        fault.is_some()
+    }
+
+    /// The output encoder is not used from now on.
+    pub fn give_up(&mut self, fault: Doubt) {
+        self.source = Source::MotorOnly(fault);
+        self.faults.begin();
+        self.recovery.begin();
+        self.motor_only = MotorOnly::default();
+    }
+
+    /// Load torque as it was before the last possible fault began [N m].
+    pub fn load_torque_before(&self) -> T {
+        let [_, before] = self.load_torques;
+        before
+    }
+
+    /// Once a learning interval, with both encoders in use: remembers the load torque [N m].
+    pub fn remember(&mut self, load_torque: T) {
+        self.looked += 1;
+        if self.looked >= LOOK {
+            self.looked = 0;
+            self.load_torques = [load_torque, self.load_torques[0]];
+        }
+    }
+
+    /// Once a learning interval without the output encoder: says when and how it is taken back.
+    pub fn reconsider<const P: usize>(
+        &mut self,
+        tables: &ObserverTables<T>,
+        sensors: &Sensors,
+        filters: &Filters<T>,
+        learnt: &Learnt<T, P>,
+        reading: &Reading<T>,
+    ) -> Option<Return> {
+        let phase = sensors.counts.motor.phase(&tables.counts.motor);
+        let output = sensors.counts.output.phase(&tables.counts.output);
+        let free = regressors::free(filters.load.speed, phase, Some(output));
+        let measured =
+            tables.counts.length * small(sensors.counts.difference) + tables.levers.sun * filters.drive.ahead;
+        let room = tables.supervisor.margin + T::TWO * learnt.uncertainty.edge_deviation;
+        let force = reading.force();
+        let settled = reading.flank.map(|flank| {
+            let touch = Touch { flank: Some(flank), force, mesh: reading.mesh };
+            (flank, measured - learnt.learner.deflection(&touch.on(&free)))
+        });
+        // A link that turns with the motor between the flanks is seen as it was, whether or not teeth are felt.
+        let deflection = measured - learnt.learner.deflection(&free) - learnt.transmission_error(&reading.mesh);
+        let between = output_faults::is_possible(learnt, deflection, force);
+        let silent = self.faults.is_silent();
+        let back = self.recovery.step(&tables.supervisor, settled, room, between, (!silent).then_some(output))?;
+        if self.source == Source::MotorOnly(Doubt::Absent) {
+            return None;
+        }
+        self.source = Source::Both;
+        Some(back)
+    }
+}

@@ -1,0 +1,121 @@
+//! The link without an output encoder: it is seen through the teeth while they touch and cannot be seen while they do not.
+//!
+//! In contact the deflection is the half-gap and the wind-up of the mesh force, which the motor side gives; the load side is
+//! corrected towards that. In the open gap it runs on under the load torque that it had, and the variance of the gap
+//! coordinate grows with the square of time for the speed and with the fourth power for the torque.
+
+use crate::gears::{Flank, sign};
+use crate::numbers::Real;
+use crate::observer::contact::by_force::with_hysteresis;
+use crate::observer::filters::LoadCorrection;
+use crate::observer::learnt::Learnt;
+use crate::observer::learnt::fusion::Fused;
+use crate::observer::tables::ObserverTables;
+
+/// Control periods by which contact may have gone before the smoothed force says so.
+const GONE_BEFORE: i32 = 30;
+
+/// Standard deviations of the smoothed force that make contact: only what no bias can be.
+const MAKES_CONTACT: i32 = 4;
+
+/// Standard deviations of the smoothed force that keep it.
+const KEEPS_CONTACT: i32 = 3;
+
+/// What is known of the link without its encoder.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct MotorOnly<T: Real> {
+    /// Contact that is felt for sure now.
+    pub felt: Option<Flank>,
+    /// Periods since contact was last felt for sure, as far as they count.
+    open_for: u16,
+    /// Contact has been felt since the output encoder was given up, or the link's speed was known then.
+    anchored: bool,
+    /// Mesh force, smoothed [N].
+    force: T,
+    /// Speed at which the teeth landed last, dying away as bounces do [m/s].
+    bounce: T,
+}
+
+impl<T: Real> MotorOnly<T> {
+    /// Part of the bounce's decay in that of the smoothed force [-]: bounces last eight times as long.
+    const BOUNCE_DECAY: T = T::EIGHTH;
+
+    /// The link's place and speed were known when its encoder was given up.
+    pub fn anchor(&mut self) {
+        self.anchored = true;
+    }
+
+    /// The flank that touches: by force where there is enough of it; otherwise the one before, until the link has left it
+    /// for sure.
+    #[cold]
+    pub fn contact<const P: usize>(
+        &self,
+        tables: &ObserverTables<T>,
+        fused: &Fused<T>,
+        learnt: &Learnt<T, P>,
+        before: Option<Flank>,
+    ) -> Option<Flank> {
+        if self.felt.is_some() {
+            return self.felt;
+        }
+        let [half_gap, _] = learnt.shape();
+        let left = half_gap - sign::<T>(before) * fused.of_teeth();
+        let noise = T::TWO * tables.contact.deflection_variance + self.drift_variance(tables);
+        if left > T::ZERO && left * left > T::TWO * T::TWO * noise { None } else { before }
+    }
+
+    /// Feels for contact in one period; how that corrects the load side.
+    pub fn step<const P: usize>(
+        &mut self,
+        tables: &ObserverTables<T>,
+        fused: &Fused<T>,
+        learnt: &Learnt<T, P>,
+    ) -> LoadCorrection<T> {
+        let levers = &tables.levers;
+        let [half_gap, compliance] = learnt.shape();
+        self.force += (fused.force - self.force) * tables.contact.smoothing;
+        let deviation = learnt.uncertainty.mean_force_deviation;
+        let [on, off] = [MAKES_CONTACT, KEEPS_CONTACT].map(|deviations| T::from_i32(deviations) * deviation);
+        let before = self.felt;
+        self.felt = with_hysteresis(before, self.force, on, off);
+        let side: T = sign(self.felt);
+        let innovation = (fused.of_teeth() - side * half_gap - compliance * fused.force) * levers.per_output;
+        if self.felt.is_none() {
+            self.open_for = self.open_for.saturating_add(1);
+            // Beyond an edge there is contact, however light: the link goes with the motor.
+            let deflection = fused.of_teeth();
+            if deflection.abs() <= half_gap {
+                return LoadCorrection::None;
+            }
+            let edge = if deflection > T::ZERO { half_gap } else { -half_gap };
+            return LoadCorrection::TurnsWithMotor((deflection - edge) * levers.per_output);
+        }
+        self.open_for = 0;
+        if self.felt == before {
+            self.bounce -= self.bounce * tables.contact.smoothing * Self::BOUNCE_DECAY;
+            return LoadCorrection::InContact(innovation);
+        }
+        // A landing says where the link is, and that it goes with the motor; of its torque it says nothing.
+        self.bounce += fused.rate.abs();
+        self.anchored = true;
+        LoadCorrection::TurnsWithMotor(innovation)
+    }
+
+    /// Variance of the gap coordinate [m^2]; `None` where nothing is known of it.
+    pub fn gap_variance<const P: usize>(&self, tables: &ObserverTables<T>, learnt: &Learnt<T, P>) -> Option<T> {
+        let edge = learnt.uncertainty.edge_deviation;
+        self.anchored.then(|| edge * edge + tables.contact.deflection_variance + self.drift_variance(tables))
+    }
+
+    /// What has been added since contact was last felt [m^2].
+    fn drift_variance(&self, tables: &ObserverTables<T>) -> T {
+        let load = &tables.load;
+        let open_for = if self.open_for > 0 { i32::from(self.open_for) + GONE_BEFORE } else { 0 };
+        let time = tables.period * T::from_i32(open_for);
+        let [speed_variance, torque_variance] = load.motor_only_variance;
+        let lever = tables.levers.output;
+        let bounce = self.bounce;
+        let by_torque = time * load.deflection_per_torque;
+        (bounce * bounce + lever * lever * speed_variance + by_torque * by_torque * torque_variance) * time * time
+    }
+}

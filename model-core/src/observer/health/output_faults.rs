@@ -1,0 +1,239 @@
+//! How a fault of the output encoder is found. In the order in which they are looked for; the first that is found gives the
+//! encoder up:
+//!
+//! | # | found by | what it takes | why it is there |
+//! |---|---|---|---|
+//! | 1 | counts that leapt for good ([`Advance::Jumped`]) | readings further apart than any motor turns | a lost reference, a wrong absolute word |
+//! | 2 | [`Plausibility`]: counts that leap | a few readings that say the same | a slipped coupling, an offset; before the deflection is spoilt |
+//! | 3 | [`Plausibility`]: counts that stand still at once | fewer counts than any stop explains | a frozen encoder in motion, in a few periods |
+//! | 4 | silence ([`Doubt::Silent`]) | no fresh reading for as long as the settings allow | a broken line |
+//! | 5 | the motor outruns counts that stand still | more than gap and wind-up | a frozen encoder that was slow, or at rest, when it froze |
+//! | 6 | a deflection that no teeth allow | outside for longer than impacts ring | everything else: slow slip, missing counts |
+//! | 7 | teeth that seem to have grown ([`learnt::Outcome::EncoderFails`]) | a half-gap trusted on both flanks | missing counts that stay within the gap |
+//!
+//! [`learnt::Outcome::EncoderFails`]: crate::observer::learnt::Outcome::EncoderFails
+
+use super::plausibility::{Plausibility, Verdict};
+use crate::numbers::Real;
+use crate::observer::estimates::Doubt;
+use crate::observer::learnt::Learnt;
+use crate::observer::learnt::fusion::Fused;
+use crate::observer::sensors::Sensed;
+use crate::observer::sensors::counts::Advance;
+use crate::observer::tables::{ObserverTables, SupervisorTable};
+
+/// Control periods between two readings over which a link is taken to keep its speed.
+const SPEED_KEPT: u32 = 6;
+
+/// What watches the output encoder while it is used.
+#[derive(Debug, Clone, Copy)]
+pub struct OutputFaults<T: Real> {
+    plausibility: Plausibility,
+    silent_for: u16,
+    unmoved_for: u16,
+    outside_for: u16,
+    /// The deflection of the teeth at the last period, and whether it leapt to where it is [m].
+    deflection: T,
+    leapt: bool,
+    /// The deflection less wind-up when the counts moved last [m].
+    stood_at: T,
+}
+
+/// What a reading came to.
+#[derive(Debug, Clone, Copy)]
+pub enum Screened<T: Real> {
+    /// It is the first ever.
+    First,
+    /// It is used.
+    Used,
+    /// There is none, or it is not used.
+    NotUsed,
+    /// It gives the encoder up; where the link was going before, if that is known.
+    GivenUp(Doubt, Option<LastMotion<T>>),
+}
+
+/// Where the link was going when its readings broke off.
+#[derive(Debug, Clone, Copy)]
+pub struct LastMotion<T: Real> {
+    /// Counts by which it is ahead of them.
+    pub ahead: T,
+    /// Counts in a period.
+    pub speed: T,
+}
+
+/// Where a deflection lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Range {
+    /// Between the flanks, or as far beyond as forces wind up.
+    Possible,
+    /// Beyond that, by no more than teeth can have worn.
+    Worn,
+    /// Where no teeth could let it be.
+    Impossible,
+}
+
+impl<T: Real> OutputFaults<T> {
+    pub fn new() -> Self {
+        Self {
+            plausibility: Plausibility::new(),
+            silent_for: 0,
+            unmoved_for: 0,
+            outside_for: 0,
+            deflection: T::ZERO,
+            leapt: false,
+            stood_at: T::ZERO,
+        }
+    }
+
+    /// The encoder was given up now.
+    pub fn begin(&mut self) {
+        self.outside_for = 0;
+    }
+
+    /// Whether the deflection has been outside for longer than impacts ring.
+    pub fn is_at_odds(&self, table: &SupervisorTable<T>) -> bool {
+        self.outside_for >= table.failed_after
+    }
+
+    /// Whether there was no reading in the last period.
+    pub fn is_silent(&self) -> bool {
+        self.silent_for > 0
+    }
+
+    /// Judges the reading of one period by those before.
+    #[inline]
+    pub fn screen(&mut self, tables: &ObserverTables<T>, sensed: &Sensed<T>, both_encoders: bool) -> Screened<T> {
+        let by = match sensed.output {
+            None => {
+                self.silent_for = self.silent_for.saturating_add(1);
+                return Screened::NotUsed;
+            }
+            Some(Advance::By(by)) => by,
+            Some(advance) => return self.screen_odd(advance, both_encoders),
+        };
+        self.silent_for = 0;
+        self.unmoved_for = if by == 0 { self.unmoved_for.saturating_add(1) } else { 0 };
+        let used = if both_encoders { Screened::Used } else { Screened::NotUsed };
+        let clock = &tables.clock;
+        let beyond = sensed.output_interval.wrapping_sub(clock.shortest);
+        if beyond > clock.longer {
+            self.plausibility.miss(by, beyond > clock.period.saturating_mul(SPEED_KEPT));
+            return used;
+        }
+        match self.plausibility.take(&tables.supervisor, by) {
+            Verdict::Plausible => used,
+            Verdict::Suspect => Screened::NotUsed,
+            Verdict::Implausible => self.implausible(both_encoders),
+        }
+    }
+
+    /// The first reading, or one that is far from those before.
+    #[cold]
+    fn screen_odd(&mut self, advance: Advance, both_encoders: bool) -> Screened<T> {
+        self.silent_for = 0;
+        self.unmoved_for = 0;
+        match advance {
+            Advance::Began => Screened::First,
+            Advance::Jumped(_) if both_encoders => {
+                self.plausibility.lose();
+                Screened::GivenUp(Doubt::OutOfRange, None)
+            }
+            Advance::Jumped(_) | Advance::Doubted | Advance::By(_) => Screened::NotUsed,
+        }
+    }
+
+    /// Readings that no link could follow.
+    #[cold]
+    fn implausible(&mut self, both_encoders: bool) -> Screened<T> {
+        let last = self.plausibility.speed().map(|speed| LastMotion { ahead: self.plausibility.ahead(), speed });
+        let frozen = last.is_some() && self.plausibility.stands_still();
+        self.plausibility.lose();
+        if both_encoders {
+            Screened::GivenUp(if frozen { Doubt::Frozen } else { Doubt::OutOfRange }, last)
+        } else {
+            Screened::NotUsed
+        }
+    }
+
+    /// Whether the deflection is one that teeth allow. Teeth that have worn let it go on beyond where it could be, step by
+    /// step; an encoder that slips leaps there. A link that sticks beyond a half-gap that is too small looks like a frozen
+    /// encoder, until the deflection goes further than teeth can be worn.
+    pub fn judge<const P: usize>(
+        &mut self,
+        tables: &ObserverTables<T>,
+        fused: &Fused<T>,
+        learnt: &Learnt<T, P>,
+        both_encoders: bool,
+    ) -> Option<Doubt> {
+        let table = &tables.supervisor;
+        let deflection = fused.of_teeth();
+        let [half_gap, compliance] = learnt.shape();
+        let range = {
+            let unwound = fused.deflection - fused.flank_shift - compliance * fused.force;
+            if self.unmoved_for == 0 {
+                self.stood_at = unwound;
+            }
+            let went_on = (unwound - self.stood_at).abs();
+            if went_on > half_gap && outruns(tables, learnt, went_on, fused.force) {
+                Range::Impossible
+            } else if deflection.abs() < learnt.uncertainty.reach {
+                Range::Possible
+            } else {
+                far_range(learnt, deflection, fused.force)
+            }
+        };
+        let by = deflection - core::mem::replace(&mut self.deflection, deflection);
+        if !both_encoders {
+            return None;
+        }
+        if range == Range::Possible {
+            self.leapt = false;
+            self.outside_for = 0;
+        } else {
+            self.leapt |= by.abs() > table.margin;
+            self.outside_for = self.outside_for.saturating_add(1);
+        }
+        if self.silent_for > table.silent_after {
+            Some(Doubt::Silent)
+        } else if self.outside_for < table.failed_after || range == Range::Worn && !self.leapt {
+            None
+        } else if self.unmoved_for >= table.failed_after {
+            Some(Doubt::Frozen)
+        } else {
+            Some(Doubt::OutOfRange)
+        }
+    }
+}
+
+/// Whether the motor has gone on by more than gap and shafts let it while the output's counts stood still: a link that
+/// sticks does not let it, wherever the teeth are, which may not be known yet.
+#[cold]
+fn outruns<T: Real, const P: usize>(tables: &ObserverTables<T>, learnt: &Learnt<T, P>, went_on: T, force: T) -> bool {
+    let known = &learnt.uncertainty;
+    let [half_gap, _] = learnt.shape();
+    let [half_gap_variance, ..] = known.variances;
+    let count = tables.counts.output.angle * tables.levers.output;
+    let gap = T::TWO * (half_gap + T::THREE * half_gap_variance.square_root());
+    went_on > gap + count + T::TWO * (tables.supervisor.margin + known.softness * force.abs())
+}
+
+/// Whether a deflection of the teeth [m] is between the flanks, or as far beyond as a force [N] winds up.
+pub fn is_possible<T: Real, const P: usize>(learnt: &Learnt<T, P>, deflection: T, force: T) -> bool {
+    far_range(learnt, deflection, force) == Range::Possible
+}
+
+/// What a deflection beyond the flanks is.
+#[cold]
+fn far_range<T: Real, const P: usize>(learnt: &Learnt<T, P>, deflection: T, force: T) -> Range {
+    let [half_gap, compliance] = learnt.shape();
+    let (beyond, force) = if deflection > T::ZERO { (deflection, force) } else { (-deflection, -force) };
+    let wind_up = if force > T::ZERO { compliance * force } else { T::ZERO };
+    let beyond = beyond - wind_up - learnt.uncertainty.reach;
+    if beyond < T::ZERO {
+        Range::Possible
+    } else if beyond < half_gap {
+        Range::Worn
+    } else {
+        Range::Impossible
+    }
+}

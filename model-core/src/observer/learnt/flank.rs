@@ -1,0 +1,125 @@
+//! On which flank teeth rest, as far as it is told for learning. In their order; the first that tells it decides:
+//!
+//! | # | told by | needs | why it is there |
+//! |---|---|---|---|
+//! | 1 | [`settled`] contact, by deflection and force | the half-gap | the surest: what says the flank is not what says the force |
+//! | 2 | [`settled`] contact, by the steady force | force above bias and ripple | all there is before the half-gap is known |
+//! | 3 | [`loaded`] contact that has not settled | force above noise, twice | a link thrown to and fro never settles; one flank next to the other tells the half-gap |
+//! | 4 | the change of the deflection since the last rest ([`LastRest::flank`]) | a crossing beyond noise, a force on that side | where bias hides the sign of a light force |
+//! | 5 | motor and link moving together ([`CoMotion::flank`]) | a crossing and a link that has gone astray since | where there is no force at all |
+//!
+//! Where none tells it, a rest teaches only what does not depend on the flank.
+//!
+//! [`LastRest::flank`]: super::last_rest::LastRest::flank
+//! [`CoMotion::flank`]: super::co_motion::CoMotion::flank
+
+use super::interval::Interval;
+use super::uncertainty::Uncertainty;
+use crate::gears::Flank;
+use crate::numbers::Real;
+use crate::observer::contact::by_force::with_hysteresis;
+use crate::observer::contact::by_position::ByPosition;
+use crate::observer::tables::LearnerTable;
+
+/// Intervals of a touch that ended early from which it is learnt, once the half-gap is known: one is mostly landing.
+const SHORTEST_TOUCH: u8 = 2;
+
+/// Standard deviations of one deflection's noise by which a force that changes may move the deflection while its estimate
+/// lags behind.
+const LAGGING: i32 = 4;
+
+/// The same by which the wind-up changes in an interval where teeth may part.
+const PARTING: i32 = 2;
+
+/// Standard deviations of the steady force above which contact is loaded that no deflection confirms yet.
+const UNCONFIRMED: i32 = 4;
+
+/// What an interval has to tell the flank by.
+#[derive(Debug, Clone, Copy)]
+pub struct Signs<'now, T: Real> {
+    /// How uncertain it is.
+    pub uncertainty: &'now Uncertainty<T>,
+    /// Where the mean deflection is in the gap.
+    pub position: ByPosition<T>,
+    /// Mean mesh force [N].
+    pub force: T,
+    /// From sun to link [m/N].
+    pub compliance: T,
+}
+
+/// The flank on which contact has settled in an interval of rest, by deflection and force where the half-gap is known and
+/// both encoders are `seen`, else by the steady force.
+pub fn settled<T: Real>(signs: &Signs<'_, T>, interval: &Interval<T>, seen: bool) -> Option<Flank> {
+    let uncertainty = signs.uncertainty;
+    if uncertainty.half_gap_is_known && seen {
+        let (contact, _) = signs.position.contact(None, signs.force, uncertainty.both_deviation);
+        return contact;
+    }
+    // A flank that nothing has left since takes less to be believed.
+    let twice = T::TWO * uncertainty.steady_force_deviation;
+    let thrice = twice + uncertainty.steady_force_deviation;
+    let needed = |flank| if interval.flank == Some(flank) { twice } else { thrice };
+    if interval.steady > needed(Flank::Drive) {
+        Some(Flank::Drive)
+    } else if -interval.steady > needed(Flank::Back) {
+        Some(Flank::Back)
+    } else {
+        None
+    }
+}
+
+/// The flank on which teeth are pressed together by more than any bias, at rest or not, while the force does not change so
+/// fast that the lag of its estimate would matter; the force rises by `rise` in an interval [N]. Once the half-gap is known,
+/// the deflection has to agree.
+pub fn loaded<T: Real>(
+    signs: &Signs<'_, T>,
+    interval: &Interval<T>,
+    table: &LearnerTable<T>,
+    rise: T,
+) -> Option<Flank> {
+    let uncertainty = signs.uncertainty;
+    let lags = rise.abs() * signs.compliance * table.force_lag;
+    if lags > T::from_i32(LAGGING) * table.noise {
+        return None;
+    }
+    if !uncertainty.half_gap_is_known {
+        return loaded_by_force(signs, interval);
+    }
+    if signs.force.abs() <= T::THREE * uncertainty.mean_force_deviation {
+        return None;
+    }
+    let (contact, _) = signs.position.contact(None, signs.force, uncertainty.both_deviation);
+    contact.filter(|flank| flank.sign::<T>() * signs.force > T::ZERO)
+}
+
+/// The flank that an interval's force tells alone. Motors that are held coarsely shake more from interval to interval than
+/// teeth press that meet softly, so it takes the steady force to be sure; that lags, so the present one has to agree.
+fn loaded_by_force<T: Real>(signs: &Signs<'_, T>, interval: &Interval<T>) -> Option<Flank> {
+    let uncertainty = signs.uncertainty;
+    let told = |force: T, least: T| with_hysteresis(None, force, least, least);
+    let steadily = told(interval.steady, T::from_i32(UNCONFIRMED) * uncertainty.steady_force_deviation);
+    let now = told(signs.force, T::TWO * uncertainty.mean_force_deviation);
+    if steadily == now { now } else { None }
+}
+
+/// Whether teeth that are felt on a flank stay there until the interval is over: what is measured of the force lags, so
+/// teeth that part seem to be pressed still. Once the half-gap is known, the deflection says so sooner. The steady force
+/// rises by `rise` in an interval [N].
+pub fn stays<T: Real>(
+    signs: &Signs<'_, T>,
+    interval: &Interval<T>,
+    table: &LearnerTable<T>,
+    flank: Flank,
+    rise: T,
+) -> bool {
+    let side: T = flank.sign();
+    let falls = -side * rise * signs.compliance > T::from_i32(PARTING) * table.noise;
+    let ahead = interval.steady + (T::ONE + table.force_lag) * rise;
+    signs.uncertainty.half_gap_is_known || !falls || side * ahead > signs.uncertainty.force_deviation
+}
+
+/// Intervals of a touch that ended early from which it is learnt. Until the half-gap is known, half a block of rest counts
+/// too: a link that is thrown to and fro rests no longer than that on a flank.
+pub fn shortest_touch<T: Real>(uncertainty: &Uncertainty<T>, table: &LearnerTable<T>) -> u8 {
+    if uncertainty.half_gap_is_known { SHORTEST_TOUCH } else { (table.block as u8).div_ceil(2) }
+}

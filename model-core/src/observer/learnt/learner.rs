@@ -1,0 +1,235 @@
+//! One small recursive least squares for everything about joint and encoders that contact shows: half-gap, offset,
+//! compliance, skew, transmission error and, with `P` = [`MAPPED`](super::regressors::MAPPED), the error maps.
+//!
+//! Deflection = side * half-gap + offset + compliance * force + skew * speed + maps. The covariance is kept in units of the
+//! parameters' standard deviations beforehand and as U D U^T (Bierman), so that it stays positive in single precision
+//! whatever happens.
+
+#[cfg(test)]
+mod tests;
+
+use core::array;
+
+use super::regressors::{COMPLIANCE, ERROR, HALF_GAP, OFFSET, Regressors, SKEW};
+use crate::numbers::Real;
+use crate::numbers::arithmetic::clamp;
+use crate::observer::tables::LearnerTable;
+
+/// Standard deviations beforehand beyond which nothing is believed of a parameter, whatever a failing encoder shows: four
+/// times what a joint that fits its file can reach. An offset may be any.
+const FURTHEST: i32 = 16;
+
+/// Parameters with their covariance.
+#[derive(Debug, Clone, Copy)]
+pub struct Learner<T: Real, const P: usize> {
+    /// U above the diagonal, D on it; the row of a column's entries is contiguous.
+    factors: [[T; P]; P],
+    /// Parameters, in SI.
+    pub values: [T; P],
+}
+
+/// What a deflection is beyond the predicted one, in standard deviations of one deflection's noise.
+#[derive(Debug, Clone, Copy)]
+pub struct Innovation<T: Real, const P: usize> {
+    /// Regressors in the factors' coordinates, U^T h.
+    projected: [T; P],
+    /// Measured less predicted deflection.
+    pub value: T,
+    /// Variance of that.
+    pub variance: T,
+}
+
+impl<T: Real, const P: usize> Innovation<T, P> {
+    /// Whether the deflection belongs to what was learnt: its normalised innovation is within so many standard deviations.
+    pub fn is_within(&self, deviations: i32) -> bool {
+        self.value * self.value < T::from_i32(deviations * deviations) * self.variance
+    }
+}
+
+impl<T: Real, const P: usize> Learner<T, P> {
+    pub fn new(table: &LearnerTable<T>) -> Self {
+        let values = array::from_fn(|parameter| table.mean.get(parameter).copied().unwrap_or(T::ZERO));
+        let mut learner = Self { factors: [[T::ZERO; P]; P], values };
+        learner.reopen();
+        learner
+    }
+
+    /// A parameter, in SI.
+    pub fn value(&self, parameter: usize) -> T {
+        self.values.get(parameter).copied().unwrap_or(T::ZERO)
+    }
+
+    /// Deflection that a set of regressors has [m].
+    pub fn deflection(&self, regressors: &Regressors<T, P>) -> T {
+        self.values.iter().zip(regressors).fold(T::ZERO, |sum, (value, regressor)| sum + *value * *regressor)
+    }
+
+    /// Variance of that deflection as far as the parameters are uncertain [m^2].
+    pub fn variance(&self, table: &LearnerTable<T>, regressors: &Regressors<T, P>) -> T {
+        let scaled = Self::scaled(table, regressors, T::ONE);
+        let mut sum = T::ZERO;
+        for j in 0..P {
+            let (f, d) = self.column(&scaled, j);
+            sum += d * f * f;
+        }
+        sum
+    }
+
+    /// Variance of one parameter, in SI.
+    pub fn variance_of(&self, table: &LearnerTable<T>, parameter: usize) -> T {
+        let mut sum = T::ZERO;
+        for j in parameter..P {
+            let Some(column) = self.factors.get(j) else { break };
+            let d = column.get(j).copied().unwrap_or(T::ZERO);
+            let u = if j == parameter { T::ONE } else { column.get(parameter).copied().unwrap_or(T::ZERO) };
+            sum += d * u * u;
+        }
+        let deviation = table.deviation.get(parameter).copied().unwrap_or(T::ZERO);
+        sum * deviation * deviation
+    }
+
+    /// Standard deviation that the transmission error has, and by how much less that is than beforehand [m].
+    pub fn error_deviation(&self, table: &LearnerTable<T>) -> (T, T) {
+        let [sine, cosine] = [ERROR, ERROR + 1].map(|parameter| self.variance_of(table, parameter));
+        let before = [ERROR, ERROR + 1].map(|parameter| table.deviation.get(parameter).copied().unwrap_or(T::ZERO));
+        let before = (before[0] * before[0] + before[1] * before[1]).square_root();
+        let now = (sine + cosine).square_root();
+        (now, if now < before { before - now } else { T::ZERO })
+    }
+
+    /// Everything that is learnt: parameters, then each column of the factors down to its diagonal.
+    pub fn numbers(&self) -> impl Iterator<Item = T> {
+        let columns = self.factors.iter().enumerate().flat_map(|(index, column)| column.iter().take(index + 1));
+        self.values.iter().chain(columns).copied()
+    }
+
+    /// Takes the same back.
+    pub fn set_numbers(&mut self, next: &mut impl FnMut() -> T) {
+        self.values.iter_mut().for_each(|value| *value = next());
+        self.keep_half_gap();
+        for (index, column) in self.factors.iter_mut().enumerate() {
+            column.iter_mut().take(index + 1).for_each(|factor| *factor = next());
+        }
+    }
+
+    /// Forgets how sure everything is that depends on where the encoders' zeros are.
+    pub fn forget_places(&mut self) {
+        for (index, column) in self.factors.iter_mut().enumerate() {
+            let kept = [HALF_GAP, COMPLIANCE, SKEW].contains(&index);
+            for (row, factor) in column.iter_mut().enumerate() {
+                if row < index {
+                    *factor = T::ZERO;
+                } else if row == index && !kept {
+                    *factor = T::ONE;
+                }
+            }
+        }
+    }
+
+    /// The innovation of a deflection [m] whose noise has a standard deviation of 1 over `weight` [1/m].
+    pub fn innovation(
+        &self,
+        table: &LearnerTable<T>,
+        regressors: &Regressors<T, P>,
+        deflection: T,
+        weight: T,
+    ) -> Innovation<T, P> {
+        let scaled = Self::scaled(table, regressors, weight);
+        let mut innovation = Innovation { projected: [T::ZERO; P], value: T::ZERO, variance: T::ONE };
+        innovation.value = (deflection - self.deflection(regressors)) * weight;
+        for (j, projected) in innovation.projected.iter_mut().enumerate() {
+            let (f, d) = self.column(&scaled, j);
+            *projected = f;
+            innovation.variance += d * f * f;
+        }
+        innovation
+    }
+
+    /// Learns from an innovation.
+    pub fn learn(&mut self, table: &LearnerTable<T>, innovation: &Innovation<T, P>) {
+        let mut gain = [T::ZERO; P];
+        let mut alpha = T::ONE;
+        for (j, (column, f)) in self.factors.iter_mut().zip(&innovation.projected).enumerate() {
+            let d = column.get(j).copied().unwrap_or(T::ZERO);
+            let v = d * *f;
+            let before = alpha;
+            alpha += *f * v;
+            let rise = -f.over(before);
+            for (entry, carried) in column.iter_mut().zip(gain.iter_mut()).take(j) {
+                let u = *entry;
+                *entry = u + rise * *carried;
+                *carried += v * u;
+            }
+            if let (Some(d), Some(g)) = (column.get_mut(j), gain.get_mut(j)) {
+                *d *= before.over(alpha);
+                *g = v;
+            }
+        }
+        let step = innovation.value.over(alpha);
+        for (index, ((value, gain), deviation)) in self.values.iter_mut().zip(&gain).zip(&table.deviation).enumerate() {
+            *value += *deviation * (*gain * step);
+            if index != OFFSET {
+                let mean = table.mean.get(index).copied().unwrap_or(T::ZERO);
+                let most = T::from_i32(FURTHEST) * *deviation;
+                *value = clamp(*value, mean - most, mean + most);
+            }
+        }
+        self.keep_half_gap();
+    }
+
+    /// Teeth do not overlap, whatever a failing encoder shows.
+    fn keep_half_gap(&mut self) {
+        if let Some(half_gap) = self.values.get_mut(HALF_GAP)
+            && *half_gap < T::ZERO
+        {
+            *half_gap = T::ZERO;
+        }
+    }
+
+    /// Lets what was learnt grow uncertain, up to what was known beforehand.
+    pub fn forget(&mut self, by: T) {
+        for (index, column) in self.factors.iter_mut().enumerate() {
+            if let Some(d) = column.get_mut(index) {
+                *d += *d * by;
+                if *d > T::ONE {
+                    *d = T::ONE;
+                }
+            }
+        }
+    }
+
+    /// Keeps the parameters and forgets how sure the half-gap is, and nothing else: it is the first of them, so its
+    /// entry on the diagonal is its own.
+    pub fn doubt_half_gap(&mut self) {
+        if let Some(width) = self.factors.first_mut().and_then(|column| column.first_mut()) {
+            *width = T::ONE;
+        }
+    }
+
+    /// Keeps the parameters and forgets how sure they are.
+    pub fn reopen(&mut self) {
+        for (index, column) in self.factors.iter_mut().enumerate() {
+            *column = [T::ZERO; P];
+            if let Some(d) = column.get_mut(index) {
+                *d = T::ONE;
+            }
+        }
+    }
+
+    /// f_j = (U^T h)_j and d_j.
+    fn column(&self, scaled: &[T; P], j: usize) -> (T, T) {
+        let Some(column) = self.factors.get(j) else { return (T::ZERO, T::ZERO) };
+        let mut f = scaled.get(j).copied().unwrap_or(T::ZERO);
+        for (u, h) in column.iter().zip(scaled).take(j) {
+            f += *u * *h;
+        }
+        (f, column.get(j).copied().unwrap_or(T::ZERO))
+    }
+
+    fn scaled(table: &LearnerTable<T>, regressors: &Regressors<T, P>, weight: T) -> [T; P] {
+        array::from_fn(|i| match (regressors.get(i), table.deviation.get(i)) {
+            (Some(regressor), Some(deviation)) => *regressor * *deviation * weight,
+            _ => T::ZERO,
+        })
+    }
+}

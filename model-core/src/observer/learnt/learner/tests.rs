@@ -1,0 +1,56 @@
+//! What is believed of a parameter, and what is not.
+
+use super::super::regressors::{COMPLIANCE, OFFSET, PLAIN};
+use super::{FURTHEST, Learner};
+use crate::observer::tables::{LearnerTable, MOST_PARAMETERS};
+
+const DEVIATION: f32 = 1e-3;
+
+fn table() -> LearnerTable<f32> {
+    LearnerTable {
+        periods: 10,
+        per_periods: 0.1,
+        middle: 5,
+        block: 8,
+        per_block: 0.125,
+        span: 1e-3,
+        mean: [0.0; MOST_PARAMETERS],
+        deviation: [DEVIATION; MOST_PARAMETERS],
+        weight: 1e6,
+        noise: 1e-6,
+        force_noise: 1.0,
+        force_lag: 0.0,
+        forgetting: 0.0,
+        mesh_compliance: 0.0,
+    }
+}
+
+#[test]
+fn nothing_but_an_offset_is_believed_beyond_what_can_be() {
+    let table = table();
+    let furthest = FURTHEST as f32 * DEVIATION;
+    for parameter in 0..PLAIN {
+        let mut learner = Learner::<f32, PLAIN>::new(&table);
+        let mut regressors = [0.0; PLAIN];
+        regressors[parameter] = 1.0;
+        let innovation = learner.innovation(&table, &regressors, 1.0, table.weight);
+        learner.learn(&table, &innovation);
+        let value = learner.value(parameter);
+        if parameter == OFFSET {
+            assert!((value - 1.0).abs() < 1e-3, "an offset may be any: {value}");
+        } else {
+            assert!((value - furthest).abs() < 1e-6 * furthest, "parameter {parameter}: {value}");
+        }
+    }
+}
+
+#[test]
+fn what_can_be_is_believed() {
+    let table = table();
+    let mut learner = Learner::<f32, PLAIN>::new(&table);
+    let mut regressors = [0.0; PLAIN];
+    regressors[COMPLIANCE] = 2.0;
+    let innovation = learner.innovation(&table, &regressors, 8e-3, table.weight);
+    learner.learn(&table, &innovation);
+    assert!((learner.value(COMPLIANCE) - 4e-3).abs() < 1e-6);
+}

@@ -1,0 +1,472 @@
+//! What is learnt of joint, encoders and motor while they move: half-gap, offset, compliance, skew, transmission error and
+//! error maps by one recursive least squares (`learner`), bias and friction of the motor (`bias`), inertia of the link
+//! (`inertia`), and how uncertain all of it is (`uncertainty`).
+//!
+//! Learning goes in intervals of a few control periods (`interval`). `travel` says from each whether the teeth rest or cross
+//! the gap, and `flank` on which flank they rest. Intervals of rest are averaged (`block`), and `consistency` says whether
+//! their mean belongs to what was learnt. What can wait is done a task a period.
+
+pub mod bias;
+mod block;
+mod co_motion;
+mod consistency;
+mod flank;
+pub mod fusion;
+mod inertia;
+mod interval;
+mod last_rest;
+pub mod learner;
+pub mod position_errors;
+pub mod regressors;
+mod travel;
+pub mod uncertainty;
+
+use bias::Bias;
+use block::{Block, Settled};
+use consistency::{Consistency, GATE, Verdict};
+use flank::Signs;
+use fusion::Fused;
+use inertia::Inertia;
+use interval::{Interval, Mean, Rest, Task, rests};
+use last_rest::LastRest;
+use learner::Learner;
+use position_errors::PositionErrors;
+use regressors::{COMPLIANCE, ERROR, HALF_GAP, OFFSET, Regressors, Touch};
+use travel::{Travel, TravelDetector};
+use uncertainty::Uncertainty;
+
+use crate::gears::{Flank, sign};
+use crate::numbers::Real;
+use crate::numbers::phase::sine_cosine;
+use crate::observer::contact::by_position::ByPosition;
+use crate::observer::filters::Filters;
+use crate::observer::filters::load_side::LoadSide;
+use crate::observer::sensors::Sensors;
+use crate::observer::tables::{LearnerTable, ObserverTables};
+
+/// Intervals over which the force of a rest is averaged at most.
+const LONG_REST: u8 = 16;
+
+/// Intervals well inside the gap after which the mesh force counts as gone from the motor side's estimate.
+const OPEN_AFTER: u8 = 3;
+
+/// Everything that is learnt, and what it is learnt from. `P` is the number of parameters.
+#[derive(Debug, Clone)]
+pub struct Learnt<T: Real, const P: usize> {
+    pub learner: Learner<T, P>,
+    pub bias: Bias<T>,
+    pub inertia: Inertia<T>,
+    pub errors: PositionErrors<T, P>,
+    pub uncertainty: Uncertainty<T>,
+    interval: Interval<T>,
+    travel: TravelDetector<T>,
+    block: Block<T, P>,
+    last_rest: LastRest<T, P>,
+    consistency: Consistency,
+}
+
+/// What an interval showed, before anything is learnt from it.
+#[derive(Debug, Clone, Copy)]
+pub struct Reading<T: Real> {
+    mean: Mean<T>,
+    /// Sine and cosine of the mesh phase in its middle.
+    pub mesh: [T; 2],
+    /// Mean deflection with everything taken out that was learnt [m].
+    deflection: T,
+    /// Transmission error in its middle [m].
+    flank_shift: T,
+    travel: Travel<T>,
+    /// The flank on which contact has settled.
+    pub flank: Option<Flank>,
+    /// Rise of the steady force in it [N].
+    steady_rise: T,
+    /// Transmission error that is not learnt yet, while the half-gap is not known [m].
+    unlearnt: T,
+}
+
+impl<T: Real> Reading<T> {
+    /// Mean mesh force [N].
+    pub fn force(&self) -> T {
+        self.mean.force
+    }
+}
+
+/// What came of a period's learning.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    /// Nothing that anyone else has to know.
+    Nothing,
+    /// What is known until the next interval has changed.
+    Concluded,
+    /// The teeth seem to have grown: the output encoder fails.
+    EncoderFails,
+}
+
+impl<T: Real, const P: usize> Learnt<T, P> {
+    /// Part of its change by which the mesh force over a few intervals follows an interval's [-]: a quarter, so that its
+    /// noise is that of seven of them.
+    const STEADY: T = T::QUARTER;
+
+    /// Part of the half-gap that the transmission error must be able to hide for any rest to be learnt from before the
+    /// half-gap is known [-]; see [`TravelDetector::tells_rest`].
+    const HIDDEN: T = T::QUARTER;
+
+    /// Part that is left of the error maps' blur once they and the half-gap are known [-].
+    const BLUR_LEFT: T = T::EIGHTH;
+
+    /// Distance from a flank within which the gap may not be open any more, as a part of the half-gap [-]: teeth of a motor
+    /// that crosses in a moment land before the deflection says so.
+    const NEAR_FLANK: T = T::EIGHTH;
+
+    /// What was designed.
+    pub fn new(tables: &ObserverTables<T>) -> Self {
+        let learner = Learner::new(&tables.learner);
+        Self {
+            bias: Bias::new(&tables.contact),
+            inertia: Inertia::new(&tables.inertia),
+            errors: PositionErrors::new(),
+            uncertainty: Uncertainty::new(tables, &learner),
+            learner,
+            interval: Interval::new(),
+            travel: TravelDetector::new(),
+            block: Block::new(),
+            last_rest: LastRest::new(),
+            consistency: Consistency::default(),
+        }
+    }
+
+    /// Half-gap [m] and compliance [m/N] as learnt so far.
+    pub fn shape(&self) -> [T; 2] {
+        [self.learner.value(HALF_GAP), self.learner.value(COMPLIANCE)]
+    }
+
+    /// Transmission error at a mesh phase, given by sine and cosine [m].
+    pub fn transmission_error(&self, mesh: &[T; 2]) -> T {
+        mesh[0] * self.learner.value(ERROR) + mesh[1] * self.learner.value(ERROR + 1)
+    }
+
+    /// Where a deflection of the teeth is in the gap, and how far it goes on [m].
+    pub fn position(&self, deflection: T, travel: T) -> ByPosition<T> {
+        let [half_gap, _] = self.shape();
+        let known = &self.uncertainty;
+        ByPosition {
+            deflection,
+            travel,
+            half_gap,
+            blur: known.blur,
+            near: known.near,
+            stiffness: known.stiffness,
+            weight: known.position_weight,
+        }
+    }
+
+    /// The motor's encoder has jumped, or the output's has come back elsewhere: everything may be wrong.
+    pub fn reopen(&mut self) {
+        self.learner.reopen();
+    }
+
+    /// The output encoder has come back elsewhere: so has the rest that was remembered.
+    pub fn forget_rest(&mut self) {
+        self.last_rest = LastRest::new();
+    }
+
+    /// Finds exactly what the deflection depends on by where the shafts are.
+    pub fn find_errors(
+        &mut self,
+        tables: &ObserverTables<T>,
+        sensors: &Sensors,
+        filters: &Filters<T>,
+        both_encoders: bool,
+    ) {
+        let (free, mesh) = exact_errors(tables, sensors, filters, both_encoders);
+        self.errors.put(&self.learner, &free, mesh);
+    }
+
+    /// Adds a period to the interval, and finds the errors in its middle; false when there is no task to do.
+    #[inline]
+    pub fn add(&mut self, fused: &Fused<T>) {
+        self.interval.add(fused);
+    }
+
+    /// Whether this period is the middle of the interval.
+    pub fn in_the_middle(&self, table: &LearnerTable<T>) -> bool {
+        self.interval.periods == table.middle
+    }
+
+    /// Whether this period is the last of the interval.
+    pub fn at_the_end(&self, table: &LearnerTable<T>) -> bool {
+        self.interval.periods >= table.periods
+    }
+
+    /// Whether the last interval has left work to do.
+    pub fn has_work(&self) -> bool {
+        self.interval.task != Task::Done
+    }
+
+    /// The errors in the middle of an interval: what is learnt from it was there.
+    pub fn keep_errors(
+        &mut self,
+        tables: &ObserverTables<T>,
+        sensors: &Sensors,
+        filters: &Filters<T>,
+        both_encoders: bool,
+    ) {
+        let (free, mesh) = exact_errors(tables, sensors, filters, both_encoders);
+        self.errors.put(&self.learner, &free, mesh);
+        self.errors.free = free;
+        self.errors.mesh_then = mesh;
+    }
+
+    /// What the interval that ends now showed, at a motor speed [rad/s].
+    pub fn read(&mut self, tables: &ObserverTables<T>, motor_speed: T, both_encoders: bool) -> Reading<T> {
+        let mean = self.interval.close(tables.learner.per_periods);
+        let mesh = self.errors.mesh_then;
+        let deflection = mean.measured - self.learner.deflection(&self.errors.free);
+        let [_, compliance] = self.shape();
+        let turned = motor_speed.abs() * tables.learner.span;
+        // Until the half-gap is known, what is learnt of the transmission error hides no crossing; it is left in afterwards.
+        let (unlearnt, blur, known_shift) = if self.uncertainty.half_gap_is_known {
+            (T::ZERO, tables.contact.still_per_speed * Self::BLUR_LEFT, T::ZERO)
+        } else {
+            let (unlearnt, learnt) = self.learner.error_deviation(&tables.learner);
+            let per_turned = T::TWO * tables.counts.mesh_periods * tables.levers.per_ratio;
+            let blur = tables.contact.still_per_speed - per_turned * learnt;
+            (unlearnt, blur, self.transmission_error(&mesh))
+        };
+        let less_wind_up = deflection - compliance * mean.force - known_shift;
+        let read = (mean.lost, mean.direction);
+        let travel = self.travel.step(&tables.contact, less_wind_up, read, blur * turned, self.uncertainty.softness);
+        let steady_rise = (mean.force - self.interval.steady) * Self::STEADY;
+        self.interval.steady += steady_rise;
+        let rested = if let Travel::AtRest(intervals) = travel { i32::from(intervals.min(LONG_REST)) } else { 1 };
+        self.interval.rested += (mean.force - self.interval.rested).over(T::from_i32(rested));
+        let flank_shift = self.transmission_error(&mesh);
+        let signs = self.signs(deflection - flank_shift, mean.force);
+        let flank = if rests(travel) { flank::settled(&signs, &self.interval, both_encoders) } else { None };
+        Reading { mean, mesh, deflection, flank_shift, travel, flank, steady_rise, unlearnt }
+    }
+
+    /// What an interval has to tell the flank by: a deflection of the teeth [m] and a force [N].
+    fn signs(&self, deflection: T, force: T) -> Signs<'_, T> {
+        let [_, compliance] = self.shape();
+        Signs { uncertainty: &self.uncertainty, position: self.position(deflection, T::ZERO), force, compliance }
+    }
+
+    /// Takes in an interval that was read, and begins the next.
+    pub fn close(&mut self, tables: &ObserverTables<T>, reading: &Reading<T>, both_encoders: bool) -> Outcome {
+        let Reading { mean, travel, .. } = reading;
+        let deflection = reading.deflection - reading.flank_shift;
+        self.learn_bias(tables, reading, deflection, both_encoders);
+        self.bias.age(&tables.contact);
+        if reading.flank.is_some() || matches!(travel, Travel::Crossing(..)) {
+            self.interval.flank = reading.flank;
+        }
+        self.uncertainty.settled = reading.flank.is_some();
+        let verdict = self.consistency.step(self.force_between_flanks(deflection, *travel));
+        self.obey(verdict);
+        let encoder_fails = verdict == Verdict::EncoderFails;
+
+        let rise = mean.force - core::mem::replace(&mut self.interval.force, mean.force);
+        let rest = self.rest(tables, reading, rise, both_encoders && !encoder_fails);
+        if rest == Rest::No {
+            self.last_rest.interrupt();
+        }
+        let force = mean.force + tables.learner.force_lag * rise;
+        let settled = Settled { free: &self.errors.free, mesh: &reading.mesh, measured: mean.measured, force };
+        let shortest = flank::shortest_touch(&self.uncertainty, &tables.learner);
+        let full = self.block.add(&settled, rest, shortest, &tables.learner);
+        self.interval.task = Task::Inertia(full);
+        self.interval.direction = mean.direction;
+        self.interval.nearer = if reading.deflection < reading.flank_shift { Flank::Back } else { Flank::Drive };
+        if encoder_fails { Outcome::EncoderFails } else { Outcome::Nothing }
+    }
+
+    /// Whether teeth rest in an interval so that it may be learnt from, and on which flank; the force rises by `rise` [N].
+    fn rest(&mut self, tables: &ObserverTables<T>, reading: &Reading<T>, rise: T, both_encoders: bool) -> Rest {
+        let [half_gap, _] = self.shape();
+        let known = self.uncertainty.half_gap_is_known;
+        // Teeth at rest are on a flank while the motor turns, even if no force says on which. Where the transmission error
+        // could hide a crossing, it has to be learnt before that can be said of any rest.
+        let wide = self.last_rest.co_motion().half_gap_at_least(half_gap);
+        let rests_somewhere =
+            rests(reading.travel) && !known && (reading.unlearnt > wide * Self::HIDDEN || self.travel.tells_rest(wide));
+        // A motor that stands still says the same again and again, rounded by its encoder, under a force that its friction
+        // hides: that is worth learning once on either flank.
+        let turns = reading.mean.direction.abs() > T::HALF;
+        let signs = self.signs(reading.deflection - reading.flank_shift, reading.mean.force);
+        let loaded = flank::loaded(&signs, &self.interval, &tables.learner, rise);
+        // The first millisecond of a landing is not learnt from.
+        let twice = loaded.filter(|_| loaded == self.interval.loaded);
+        let told = reading
+            .flank
+            .or(twice)
+            .filter(|flank| flank::stays(&signs, &self.interval, &tables.learner, *flank, reading.steady_rise));
+        self.interval.loaded = loaded;
+        let new = turns || told.is_some() && told != self.interval.learnt_on;
+        if both_encoders && new && (told.is_some() || rests_somewhere) { Rest::On(told) } else { Rest::No }
+    }
+
+    /// Whether there is force at rest between the flanks, bias and stiction aside.
+    fn force_between_flanks(&self, deflection: T, travel: Travel<T>) -> bool {
+        let known = &self.uncertainty;
+        let [half_gap, _] = self.shape();
+        let thrice = T::THREE * known.steady_force_deviation + T::TWO * self.bias.friction.abs();
+        let between = known.half_gap_is_known && deflection.abs() < half_gap - known.blur;
+        between && rests(travel) && self.interval.steady.abs() > thrice
+    }
+
+    /// Reads the torque bias where the gap is open for sure.
+    fn learn_bias(&mut self, tables: &ObserverTables<T>, reading: &Reading<T>, deflection: T, both_encoders: bool) {
+        let [half_gap, _] = self.shape();
+        let known = self.uncertainty.half_gap_is_known;
+        let (blur, near) = (self.uncertainty.blur, Self::NEAR_FLANK * half_gap);
+        let inside = half_gap - T::TWO * if blur > near { blur } else { near };
+        let open = known && deflection.abs() < inside;
+        self.interval.open_for = if open { self.interval.open_for.saturating_add(1) } else { 0 };
+        let read = match reading.travel {
+            _ if !both_encoders => None,
+            _ if self.interval.open_for >= OPEN_AFTER => Some((reading.mean.lost, reading.mean.direction)),
+            Travel::Crossing(lost, direction) if !known => Some((lost, direction)),
+            _ => None,
+        };
+        if let Some((lost, direction)) = read {
+            self.bias.learn(&tables.contact, lost, direction);
+        }
+    }
+
+    /// Does the next task that the last interval has left.
+    pub fn work(&mut self, tables: &ObserverTables<T>, load: &mut LoadSide<T>, both_encoders: bool) -> Outcome {
+        let mut outcome = Outcome::Nothing;
+        self.interval.task = match self.interval.task {
+            Task::Inertia(rest) => {
+                let seen = both_encoders && self.uncertainty.half_gap_serves;
+                self.inertia.learn(&tables.inertia, load, seen);
+                if rest { Task::Flank } else { Task::Uncertainty }
+            }
+            Task::Flank => {
+                if self.tell_flank(tables) {
+                    Task::Learn
+                } else {
+                    Task::Uncertainty
+                }
+            }
+            Task::Learn => {
+                self.interval.learnt_on = self.block.flank();
+                if self.learn_rest(tables) == Verdict::EncoderFails {
+                    outcome = Outcome::EncoderFails;
+                }
+                Task::Uncertainty
+            }
+            Task::Uncertainty => {
+                self.learner.forget(tables.learner.forgetting);
+                self.find_uncertainty(tables, both_encoders);
+                Task::Conclude
+            }
+            Task::Conclude | Task::Done => {
+                self.uncertainty.of_learnt(tables, &self.learner);
+                outcome = Outcome::Concluded;
+                Task::Done
+            }
+        };
+        outcome
+    }
+
+    /// On which flank teeth came to rest: by force, or by how they came there. True if it is known.
+    fn tell_flank(&mut self, tables: &ObserverTables<T>) -> bool {
+        let (regressors, deflection) = self.block.full();
+        let mut flank = self.block.flank();
+        if let Some(told) = flank {
+            self.last_rest.co_motion().told(told);
+        } else {
+            flank = self.flank_without_force(tables, &regressors, deflection);
+        }
+        self.last_rest.put(&regressors, deflection, flank);
+        self.block.tell(flank);
+        flank.is_some()
+    }
+
+    /// On which flank teeth came to rest, by the deflection. Where that is not known, what the deflection depends on beside
+    /// the flank is learnt, if it is known at least that it is one.
+    fn flank_without_force(
+        &mut self,
+        tables: &ObserverTables<T>,
+        regressors: &Regressors<T, P>,
+        deflection: T,
+    ) -> Option<Flank> {
+        let [half_gap, _] = self.shape();
+        let innovation = self.last_rest.innovation(&tables.learner, &self.learner, regressors, deflection)?;
+        let flank = self.last_rest.flank(&tables.learner, &innovation, regressors, half_gap, tables.levers.output);
+        if self.travel.tells_rest(self.last_rest.co_motion().half_gap_at_least(half_gap)) {
+            // Teeth also turn round inside the gap, for a moment at rest: then nothing has stopped them; and they leave a
+            // flank slowly, at rest for a while: then they carry nothing any more.
+            let force = if self.last_rest.was_on(flank) { self.interval.steady } else { self.interval.rested };
+            let felt = sign::<T>(flank) * force > self.uncertainty.steady_force_deviation;
+            let flank = if felt { flank } else { self.last_rest.co_motion().flank() };
+            if flank.is_some() {
+                return flank;
+            }
+        }
+        if innovation.is_within(GATE) && self.last_rest.co_motion().lasts(half_gap) {
+            self.errors.relearn(&mut self.learner, |learner| learner.learn(&tables.learner, &innovation));
+        }
+        None
+    }
+
+    /// Learns from a rest on a flank, unless it does not belong to the model.
+    fn learn_rest(&mut self, tables: &ObserverTables<T>) -> Verdict {
+        let table = &tables.learner;
+        let [half_gap, _] = self.shape();
+        let (regressors, deflection) = self.block.full();
+        let weight = table.weight * self.block.worth(table, self.uncertainty.half_gap_is_known);
+        let innovation = self.learner.innovation(table, &regressors, deflection, weight);
+        if !innovation.is_within(GATE) {
+            let short = sign::<T>(self.block.flank()) * innovation.value < T::ZERO;
+            let large = innovation.value.abs() * table.noise > half_gap * tables.contact.known_part;
+            let verdict = self.consistency.outlier(short, large);
+            self.obey(verdict);
+            return verdict;
+        }
+        self.consistency.fits(self.block.flank());
+        self.errors.relearn(&mut self.learner, |learner| learner.learn(table, &innovation));
+        Verdict::Keep
+    }
+
+    /// Forgets what a verdict says is wrong.
+    fn obey(&mut self, verdict: Verdict) {
+        match verdict {
+            Verdict::Keep | Verdict::EncoderFails => {}
+            Verdict::RelearnHalfGap => self.learner.doubt_half_gap(),
+            Verdict::RelearnAll => self.learner.reopen(),
+        }
+    }
+
+    /// How uncertain everything is after an interval.
+    fn find_uncertainty(&mut self, tables: &ObserverTables<T>, both_encoders: bool) {
+        let mut seen = self.errors.free;
+        if let (Some(offset), false) = (seen.get_mut(OFFSET), both_encoders) {
+            // Without an output encoder there is no offset to be wrong.
+            *offset = T::ZERO;
+        }
+        let touch = Touch { flank: Some(self.interval.nearer), force: T::ZERO, mesh: self.errors.mesh_then };
+        let [_, compliance] = self.shape();
+        self.uncertainty.of_force(tables, &self.bias, compliance, self.interval.direction);
+        self.uncertainty.next(tables, &self.learner, &seen, &touch);
+    }
+}
+
+/// Regressors of teeth that do not touch, and sine and cosine of the mesh phase, where the shafts are now.
+fn exact_errors<T: Real, const P: usize>(
+    tables: &ObserverTables<T>,
+    sensors: &Sensors,
+    filters: &Filters<T>,
+    both_encoders: bool,
+) -> (Regressors<T, P>, [T; 2]) {
+    let table = &tables.counts;
+    let (output, _) = sensors.counts.used();
+    let link_speed = if both_encoders { filters.load.speed } else { T::ZERO };
+    let output_phase = output.phase(&table.output);
+    let motor_phase = sensors.counts.motor.phase(&table.motor);
+    let free = regressors::free(link_speed, motor_phase, both_encoders.then_some(output_phase));
+    let (sine, cosine) = sine_cosine(output_phase.wrapping_mul(table.meshes));
+    (free, [sine, cosine])
+}

@@ -1,0 +1,106 @@
+//! The sensors: raw samples of one control period become counts that are exact over any number of turns, ages, and what
+//! was wrong with them. Nothing is filtered here.
+
+pub mod counts;
+pub mod latency;
+
+use counts::{Advance, Counts};
+use latency::{Freshness, Latency};
+
+use crate::numbers::Real;
+use crate::observer::estimates::Notices;
+use crate::observer::samples::{Reading, Samples};
+use crate::observer::tables::{ClockTable, ObserverTables};
+
+/// Both encoders, the clock of their readings, and how late the motor's come.
+#[derive(Debug, Clone)]
+pub struct Sensors {
+    pub counts: Counts,
+    pub latency: Latency,
+    /// When the last samples were taken [ticks].
+    time: u32,
+}
+
+/// What the samples of one period came to.
+#[derive(Debug, Clone, Copy)]
+pub struct Sensed<T: Real> {
+    /// Torque that was commanded; zero where it was not a number [N m].
+    pub command: T,
+    /// What the motor's reading came to.
+    pub motor: Advance,
+    /// Angle by which the motor's counts moved [rad].
+    pub motor_turned: T,
+    /// Age of the motor's reading [ticks].
+    pub motor_age: u32,
+    /// How fresh it is.
+    pub freshness: Freshness,
+    /// What the output's reading came to; `None` when there was no fresh one.
+    pub output: Option<Advance>,
+    /// Angle by which the output moved that is in use [rad].
+    pub output_turned: T,
+    /// Age of the output's reading [ticks].
+    pub output_age: u32,
+    /// Time between that reading and the fresh one before [ticks].
+    pub output_interval: u32,
+    /// What was wrong with the samples.
+    pub notices: Notices,
+}
+
+impl Sensors {
+    /// Sensors that have seen nothing yet.
+    pub fn new(has_output: bool) -> Self {
+        let mut counts = Counts::default();
+        if !has_output {
+            counts.imply();
+        }
+        Self { counts, latency: Latency::default(), time: 0 }
+    }
+
+    /// Takes the samples of one period.
+    #[inline(always)]
+    pub fn step<T: Real>(&mut self, tables: &ObserverTables<T>, samples: &Samples<T>) -> Sensed<T> {
+        let known = samples.torque.is_finite();
+        let command = if known { samples.torque } else { T::ZERO };
+        let clock = &tables.clock;
+        let motor_age = age(samples.time, &samples.motor);
+        let freshness = self.latency.step((motor_age <= clock.oldest).then_some(motor_age), clock.period);
+        let output_age = samples.output.map_or(0, |reading| age(samples.time, &reading));
+        let output = samples.output.filter(|_| output_age <= clock.oldest);
+        let taken = self.counts.take(&tables.counts, samples.motor, output);
+        let before = core::mem::replace(&mut self.time, samples.time);
+        let lasted = if taken.motor == Advance::Began { clock.shortest } else { samples.time.wrapping_sub(before) };
+        let out_of_time = lasted.wrapping_sub(clock.shortest) > clock.longer;
+        let motor_by = if let Advance::By(by) = taken.motor { by } else { 0 };
+        let mut notices = Notices::default();
+        if !known || out_of_time || !matches!(taken.motor, Advance::By(_)) {
+            notices = Notices {
+                torque_unknown: !known,
+                out_of_time,
+                motor_doubted: taken.motor == Advance::Doubted,
+                motor_jumped: matches!(taken.motor, Advance::Jumped(_)),
+            };
+        }
+        Sensed {
+            command,
+            motor: taken.motor,
+            motor_turned: tables.counts.motor.angle * T::from_i32(motor_by),
+            motor_age,
+            freshness,
+            output: taken.output,
+            output_turned: tables.counts.output.angle * T::from_i32(taken.turned),
+            output_age,
+            output_interval: taken.apart,
+            notices,
+        }
+    }
+}
+
+/// Age of a reading [ticks]. One from the future is of now.
+fn age(now: u32, reading: &Reading) -> u32 {
+    (now.wrapping_sub(reading.time) as i32).max(0).unsigned_abs()
+}
+
+/// Ticks as seconds.
+pub fn seconds<T: Real>(table: &ClockTable<T>, ticks: u32) -> T {
+    T::from_i32(ticks as i32) * table.tick
+}

@@ -159,7 +159,7 @@ fn source(jobs: &[Job<'_>]) -> Outcome<String> {
 fn lists(index: usize, case: &Case) -> String {
     let mut text = format!("static TORQUES_{index}: [Change; {}] = [\n", case.torques.len());
     for segment in &case.torques {
-        let (tick, drive, load) = (segment.from_tick, segment.drive as f32, segment.load as f32);
+        let (tick, drive, load) = (segment.from_tick, segment.drive_torque as f32, segment.load_torque as f32);
         let _ = writeln!(text, "    Change {{ tick: {tick}, drive: {drive:?}, load: {load:?} }},");
     }
     let (count, ticks) = (case.restarts.len(), &case.restarts);

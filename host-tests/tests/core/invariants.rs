@@ -1,5 +1,5 @@
 //! What the core may not break, whatever it steps by: energy against work over a hundred thousand mesh periods, shift
-//! of the backlash, scaling, mirroring (oracles 5 and 6). The reference's own are in `invariants`.
+//! of the backlash, scaling, mirroring (oracles 5 and 6). The reference's own are in `the_reference`.
 
 use std::f64::consts::TAU;
 
@@ -9,6 +9,8 @@ use model_core::gears::{Model, Outputs, Relative, Scheme, State, Tables, Torques
 use parameters::{ContactState, DampingLaw, JointParameters};
 use reference::scenarios::{CASE_A_OMEGA, Scenario, case, regime, same};
 
+use super::oracles::closed_forms::ClosedForm;
+
 fn tables(joint: &JointParameters, tick_rate: u32, scheme: Scheme) -> Tables<f64, 3> {
     design_scheme(joint, tick_rate, scheme, Effort::Accurate).expect("the paper's joint is sound")
 }
@@ -16,8 +18,7 @@ fn tables(joint: &JointParameters, tick_rate: u32, scheme: Scheme) -> Tables<f64
 /// Energy of set P and the work that changes it, dimensionless (unit K_m b_c^2), by the sums of oracle 5. Masses and
 /// damping are written out again: none comes from the core.
 struct Book {
-    masses: [f64; 3],
-    damping: [f64; 2],
+    form: ClosedForm,
     half_backlash: f64,
     omega: f64,
     drive_force: f64,
@@ -33,15 +34,9 @@ struct Entry {
 
 impl Book {
     fn of_set_p(half_backlash: f64, drive_torque: f64) -> Self {
-        let (sun, planet) = (0.39_f64, 0.61_f64);
-        let carrier = (6.29 + 3.0 * 0.66) / 24.6_f64.to_radians().cos().powi(2);
-        // omega_n^2 / K_m.
-        let square = 1.0 / sun + 1.0 / planet;
-        let damping = |mass: f64| 2.0 * 0.05 * (mass * square).sqrt();
         let drive_force = drive_torque / 36.8241e-3 / (1e8 * 10e-6);
         Self {
-            masses: [sun, planet, carrier].map(|mass| mass * square),
-            damping: [damping(sun * planet / (sun + planet)), damping(planet)],
+            form: ClosedForm::with_ring(3, 0.05, 1.0),
             half_backlash: half_backlash / 10e-6,
             omega: 2.1,
             drive_force,
@@ -57,7 +52,7 @@ impl Book {
         let Relative { planets: rates, gap: gap_rate, .. } = &state.rate;
 
         // Speeds of the bodies while the rigid body stands still: 2 M_s u_s + M_p sum u_p + M_c u_c = 0.
-        let [sun, planet, carrier] = self.masses;
+        let ClosedForm { sun, planet, carrier, damping, .. } = self.form;
         let shares = 2.0 * sun * gap_rate + planet * rates.iter().map(|rate| gap_rate - rate).sum::<f64>();
         let carrier_speed = -shares / (4.0 * sun + 3.0 * planet + carrier);
         let sun_speed = gap_rate + 2.0 * carrier_speed;
@@ -67,7 +62,7 @@ impl Book {
         for (position, rate) in planets.iter().zip(rates) {
             energy += 0.5 * planet * (sun_speed - rate - carrier_speed).powi(2);
             let sides = [(*position, *rate), (gap - position, gap_rate - rate)];
-            for ((across, across_rate), damping) in sides.into_iter().zip(self.damping) {
+            for ((across, across_rate), damping) in sides.into_iter().zip(damping) {
                 let (deflection, speed) = (across - error, across_rate - error_rate);
                 let overlap = (deflection - self.half_backlash).max(0.0) + (deflection + self.half_backlash).min(0.0);
                 energy += 0.5 * stiffness * overlap * overlap;

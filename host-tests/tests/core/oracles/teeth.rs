@@ -7,8 +7,8 @@ use host_tests::tolerance::core::CORE_TOOTH_PHASE;
 use parameters::{Excitation, JointParameters, MeshPhases, StiffnessWave};
 use reference::scenarios::{PAPER_LENGTH, same};
 
-use crate::closed_forms::joint;
-use crate::{Start, run};
+use super::closed_forms::joint;
+use super::{Start, run};
 
 /// Ticks in a mesh period, divisible by three, four and five planets.
 const PERIOD: usize = 60;

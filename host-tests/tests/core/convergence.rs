@@ -1,37 +1,20 @@
 //! The order of each scheme of the core: how fast its error against the reference falls as the tick rate rises, on a
 //! motion in which contact holds and on one in which meshes part and hit. In f64; what f32 adds is asked elsewhere.
 
-use std::array;
 use std::ops::RangeInclusive;
 
 use host_tests::tolerance::core::{ORDER, ORDER_AT_KINKS, ORDER_OF_EULER, ORDER_OF_RUNGE_KUTTA_AT_KINKS};
 use model_core::gears::design::{Effort, design_scheme};
-use model_core::gears::{Model, Relative, Scales, Scheme, State, Tables, Torques};
-use reference::joint::Start;
+use model_core::gears::{Scheme, Tables};
 use reference::scenarios::{CASE_A_OMEGA, CASE_Q_OMEGA, Scenario, case, regime, run_at};
+
+use super::comparison::rms_error;
 
 /// Ticks a second of the coarsest run; samples are taken at its ticks.
 const COARSEST: u32 = 5_000;
 
 /// Step of the core, dimensionless, and its RMS error over all mesh deflections, over b_c.
 type Point = (f64, f64);
-
-fn start(tables: &Tables<f64, 3>, scenario: &Scenario) -> State<f64, 3> {
-    let Start::Relative(given) = &scenario.start else { return State::REST };
-    let length = scenario.joint.characteristic_length;
-    let speed = length * Scales::new(&scenario.joint).frequency;
-    let relative = |planets: &[f64], gap: f64, unit: f64| Relative {
-        planets: array::from_fn(|i| planets[i] / unit),
-        gap: gap / unit,
-        wind_up: 0.0,
-    };
-    State::from_deflections(
-        tables,
-        &relative(&given.sun_planet, given.gap, length),
-        &relative(&given.sun_planet_rate, given.gap_rate, speed),
-        given.rigid_speed,
-    )
-}
 
 /// Errors at tick rates of COARSEST times 2^k, for k in the given range; `step` says what the scheme steps by.
 fn errors(
@@ -40,7 +23,6 @@ fn errors(
     doublings: RangeInclusive<u32>,
     step: fn(&Tables<f64, 3>) -> f64,
 ) -> Vec<Point> {
-    let length = scenario.joint.characteristic_length;
     let samples = scenario.duration() * f64::from(COARSEST);
     let times: Vec<f64> = (1..=samples as u32).map(|sample| f64::from(sample) / f64::from(COARSEST)).collect();
     let expected = run_at(scenario, &times).expect("the reference follows").samples;
@@ -49,20 +31,7 @@ fn errors(
             let ticks = 1 << doublings;
             let tables: Tables<f64, 3> =
                 design_scheme(&scenario.joint, COARSEST * ticks, scheme, Effort::Accurate).expect("a sound joint");
-            let mut model = Model::new(&tables);
-            model.set_state(start(&tables, scenario));
-            let (drive, load) = scenario.torques_at(0);
-            let mut squares = 0.0;
-            for expected in &expected {
-                for _ in 0..ticks {
-                    model.step(Torques { drive, load });
-                }
-                let found = model.outputs().deflections;
-                for (found, expected) in found.iter().flatten().zip(expected.deflections.iter().flatten()) {
-                    squares += ((found - expected) / length).powi(2);
-                }
-            }
-            let error = (squares / (6 * expected.len()) as f64).sqrt();
+            let error = rms_error(&scenario.joint, &tables, &scenario.start, scenario.torques_at(0), &expected);
             println!("{}, {scheme:?}: step {:.4}, error {error:.2e}", scenario.name, step(&tables));
             (step(&tables), error)
         })

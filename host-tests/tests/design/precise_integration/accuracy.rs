@@ -9,7 +9,7 @@ use model_core::gears::design::hamiltonian;
 use nalgebra::DMatrix;
 use reference::scenarios::{paper_joint, q1, same};
 
-use crate::fixtures::{Expected, Fixture, models, others};
+use super::fixtures::{Expected, Fixture, models, others};
 
 /// u of an f64.
 const UNIT: f64 = 1.0 / 9_007_199_254_740_992.0;

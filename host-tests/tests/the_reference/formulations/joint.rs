@@ -4,7 +4,7 @@
 use std::array;
 
 use parameters::{JointParameters, MAX_PLANETS, MeshPhases, StiffnessWave};
-use reference::integrator::Guards;
+use reference::integrator::{Entries, Guards, SwitchedSystem};
 use reference::scenarios::{PAPER_LENGTH, paper_natural_frequency};
 
 /// omega / omega_n.
@@ -30,6 +30,65 @@ pub struct Mesh {
 pub struct Moving {
     pub deflection: f64,
     pub rate: f64,
+}
+
+/// Equations of motion of the joint, in coordinates of their own.
+pub trait Formulation {
+    /// X = X' = 0, as the reference starts.
+    fn start(&self, joint: &Joint) -> Entries;
+
+    /// Deflections and their rates in a state.
+    fn meshes(&self, joint: &Joint, time: f64, state: &Entries) -> [[Moving; MAX_PLANETS]; 2];
+
+    /// Rates of a state on the sides that are held.
+    fn derivative(&self, joint: &Joint, time: f64, state: &Entries, rates: &mut Entries);
+}
+
+/// A joint in a formulation, as the reference's integrator takes it.
+pub struct System<F> {
+    pub joint: Joint,
+    pub formulation: F,
+}
+
+impl<F: Formulation> System<F> {
+    fn meshes(&self, time: f64, state: &Entries) -> [[Moving; MAX_PLANETS]; 2] {
+        self.formulation.meshes(&self.joint, time, state)
+    }
+
+    pub fn deflections(&self, time: f64, state: &Entries) -> Deflections {
+        self.joint.list(&self.meshes(time, state))
+    }
+}
+
+impl<F: Formulation> SwitchedSystem for System<F> {
+    fn dimension(&self) -> usize {
+        2 * (self.joint.planets + 1)
+    }
+
+    fn derivative(&self, time: f64, state: &Entries, rates: &mut Entries) {
+        self.formulation.derivative(&self.joint, time, state, rates);
+    }
+
+    fn freeze(&mut self, time: f64, state: &Entries) {
+        let meshes = self.meshes(time, state);
+        self.joint.hold(&meshes);
+    }
+
+    fn guards(&self, time: f64, state: &Entries, _: &Entries, guards: &mut Guards) {
+        self.joint.watch(&self.meshes(time, state), guards);
+    }
+
+    fn guard_resolution(&self) -> f64 {
+        1e-12
+    }
+
+    fn tolerance(&self, _: usize) -> f64 {
+        1e-12
+    }
+
+    fn longest_step(&self) -> f64 {
+        0.5
+    }
 }
 
 /// Masses, meshes and torques.

@@ -9,13 +9,13 @@ mod joint;
 use host_tests::tolerance::FORMULATIONS;
 use model_core::gears::Mechanics;
 use parameters::{ContactState, JointParameters, MeshPhases, PerPlanet};
-use reference::integrator::{Entries, Integrator, SwitchedSystem};
-use reference::joint::{RelativeState, Start};
+use reference::integrator::Integrator;
+use reference::joint::RelativeState;
 use reference::scenarios::{PAPER_LENGTH, Scenario, TorqueSegment, paper_joint, paper_natural_frequency, run_at};
 
 use equation_19::Equation19;
 use equation_20::Equation20;
-use joint::{Deflections, Joint, OMEGA};
+use joint::{Deflections, Formulation, Joint, OMEGA, System};
 
 /// Drive torque [N m]: some 7 um of deflection a mesh, so that errors of 10 um part it again and again.
 const DRIVE_TORQUE: f64 = 80.0;
@@ -45,16 +45,8 @@ fn parameters(planets: usize) -> JointParameters {
 fn reference(parameters: &JointParameters) -> Vec<Deflections> {
     let load_torque = parameters.balanced_load_torque(DRIVE_TORQUE);
     let planets = parameters.geometry.planets;
-    let scenario = Scenario {
-        name: "three formulations".into(),
-        joint: parameters.clone(),
-        start: Start::Relative(RelativeState::centred(planets)),
-        torques: vec![TorqueSegment { from_tick: 0, drive_torque: DRIVE_TORQUE, load_torque }],
-        tick_rate: 20_000,
-        ticks: 0,
-        sample_every: 1,
-        predictable: true,
-    };
+    let mut scenario = Scenario::new("three formulations", parameters.clone(), RelativeState::centred(planets));
+    scenario.torques = vec![TorqueSegment { from_tick: 0, drive_torque: DRIVE_TORQUE, load_torque }];
     let times: Vec<f64> = (1..=SAMPLES).map(|k| f64::from(k) * INTERVAL / paper_natural_frequency()).collect();
     let found = run_at(&scenario, &times).expect("the reference follows");
     let contacts = || found.samples.iter().flat_map(|sample| sample.contacts.iter().flatten());
@@ -65,23 +57,21 @@ fn reference(parameters: &JointParameters) -> Vec<Deflections> {
 }
 
 /// Integrates a formulation and reads its mesh deflections at the reference's times.
-fn follow<S: SwitchedSystem>(
-    mut system: S,
-    state: Entries,
-    read: impl Fn(&S, f64, &Entries) -> Deflections,
-) -> Vec<Deflections> {
-    let mut integrator = Integrator::new(0.0, state);
+fn follow(joint: &Joint, formulation: impl Formulation) -> Vec<Deflections> {
+    let mut integrator = Integrator::new(0.0, formulation.start(joint));
+    let mut system = System { joint: joint.clone(), formulation };
     let sample = |k| {
         let time = f64::from(k) * INTERVAL;
         integrator.advance(&mut system, time).expect("it runs");
-        read(&system, time, integrator.state())
+        system.deflections(time, integrator.state())
     };
     (1..=SAMPLES).map(sample).collect()
 }
 
-fn check(expected: &[Deflections], found: &[Deflections]) {
+/// Largest difference of a mesh deflection, over b_c.
+fn apart(expected: &[Deflections], found: &[Deflections]) -> f64 {
     let pairs = expected.iter().flatten().flatten().zip(found.iter().flatten().flatten());
-    FORMULATIONS.check(pairs.map(|(expected, found)| (expected - found).abs()).fold(0.0, f64::max));
+    pairs.map(|(expected, found)| (expected - found).abs()).fold(0.0, f64::max)
 }
 
 #[test]
@@ -90,12 +80,8 @@ fn equations_1_to_6_and_19_and_20_are_one_motion() {
         let parameters = parameters(planets);
         let expected = reference(&parameters);
         let joint = Joint::new(&parameters, DRIVE_TORQUE);
-        let by_hand = Equation19::new(joint.clone());
-        let start = by_hand.start();
-        check(&expected, &follow(by_hand, start, |system, time, state| system.deflections(time, state)));
-        let hamiltonian = Equation20::new(joint, &parameters);
-        let start = hamiltonian.start();
-        check(&expected, &follow(hamiltonian, start, |system, time, state| system.deflections(time, state)));
+        FORMULATIONS.check(apart(&expected, &follow(&joint, Equation19 { sum_of_the_second_row: true })));
+        FORMULATIONS.check(apart(&expected, &follow(&joint, Equation20::new(&parameters))));
     }
 }
 
@@ -104,11 +90,7 @@ fn equations_1_to_6_and_19_and_20_are_one_motion() {
 fn equation_19_as_printed_is_another_motion() {
     let parameters = parameters(3);
     let expected = reference(&parameters);
-    let mut printed = Equation19::new(Joint::new(&parameters, DRIVE_TORQUE));
-    printed.sum_of_the_second_row = false;
-    let start = printed.start();
-    let found = follow(printed, start, |system, time, state| system.deflections(time, state));
-    let apart = expected.iter().flatten().flatten().zip(found.iter().flatten().flatten());
-    let apart = apart.map(|(expected, found)| (expected - found).abs()).fold(0.0, f64::max);
+    let joint = Joint::new(&parameters, DRIVE_TORQUE);
+    let apart = apart(&expected, &follow(&joint, Equation19 { sum_of_the_second_row: false }));
     assert!(apart > 1.0, "the print differs by {apart} b_c only");
 }

@@ -5,7 +5,7 @@ use host_tests::tolerance::DIGITS_KEPT;
 use model_core::gears::design::exponential::exponential_minus_identity;
 use nalgebra::DMatrix;
 
-use crate::fixtures::{Expected, Fixture, models};
+use super::fixtures::{Expected, Fixture, models};
 
 fn the_paper_s() -> Fixture {
     models().into_iter().find(|fixture| fixture.name == "paper_3").expect("the fixture is there")

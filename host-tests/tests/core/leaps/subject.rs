@@ -4,32 +4,20 @@
 use model_core::gears::design::dynamics::Dynamics;
 use model_core::gears::design::{Effort, design_scheme, light_tables};
 use model_core::gears::tables::Mobility;
-use model_core::gears::{Kinematics, Model, Scales, Scheme, State, Tables, Torques};
+use model_core::gears::{Kinematics, Scales, Scheme, State, Tables};
 use parameters::{DampingLaw, JointParameters, Mesh};
 use reference::joint::{Observation, Reference, RelativeState, Start};
-use reference::scenarios::{case_r, same};
+use reference::scenarios::{case_r, same, with_teeth};
 use simulation::sim::start::core_state;
 
 /// Case R's joint with so many planets, under a damping law.
 pub fn joint(planets: usize, law: DampingLaw) -> JointParameters {
-    let mut joint = case_r::case_r().joint;
-    let (sun, planet, ring) = match planets {
-        3 => (15, 30, 75),
-        4 => (16, 28, 72),
-        _ => (20, 30, 80),
+    let teeth = match planets {
+        3 => [15, 30, 75],
+        4 => [16, 28, 72],
+        _ => [20, 30, 80],
     };
-    let geometry = &mut joint.geometry;
-    let per_tooth = geometry.sun_base_radius / f64::from(geometry.sun_teeth);
-    (geometry.planets, geometry.sun_teeth, geometry.planet_teeth, geometry.ring_teeth) = (planets, sun, planet, ring);
-    geometry.sun_base_radius = per_tooth * f64::from(sun);
-    geometry.planet_base_radius = per_tooth * f64::from(planet);
-    geometry.carrier_radius = per_tooth * f64::from(sun + planet) / geometry.working_pressure_angle.cos();
-    joint.damping_law = law;
-    for mesh in [&mut joint.sun_planet, &mut joint.ring_planet] {
-        mesh.half_backlash = same(planets, 40e-6);
-        mesh.transmission_error = same(planets, 3e-6);
-    }
-    joint
+    JointParameters { damping_law: law, ..with_teeth(case_r::case_r().joint, planets, teeth) }
 }
 
 /// Tables in so many leaps a tick.
@@ -103,30 +91,4 @@ pub fn reference(
         seen.push(reference.observe());
     }
     seen
-}
-
-/// RMS over all mesh deflections at the reference's moments, over b_c.
-pub fn error<const N: usize>(
-    joint: &JointParameters,
-    tables: &Tables<f64, N>,
-    start: &RelativeState,
-    torques: (f64, f64),
-    expected: &[Observation],
-) -> f64 {
-    let mut model = Model::new(tables);
-    model.set_state(state(joint, tables, start));
-    let mut now = 0;
-    let mut squares = 0.0;
-    for seen in expected {
-        let ticks = (seen.time * f64::from(tables.tick_rate)).round() as u32;
-        for _ in now..ticks {
-            model.step(Torques { drive: torques.0, load: torques.1 });
-        }
-        now = ticks;
-        let found = model.outputs().deflections;
-        for (found, right) in found.iter().flatten().zip(seen.deflections.iter().flatten()) {
-            squares += ((found - right) / joint.characteristic_length).powi(2);
-        }
-    }
-    (squares / (2 * N * expected.len()) as f64).sqrt()
 }

@@ -6,7 +6,7 @@ use parameters::{ContactState, DampingLaw, JointParameters};
 use reference::joint::{Observation, RelativeState};
 use reference::scenarios::same;
 
-use crate::subject::{joint, leaping, pressed, reference, state};
+use super::subject::{joint, leaping, pressed, reference, state};
 
 const RATE: u32 = 10_000;
 const LEAPS: u32 = 8;

@@ -22,7 +22,7 @@ pub struct Expected {
 
 macro_rules! files {
     ($($name:literal)*) => {
-        [$(($name, include_str!(concat!("../../data/exponential/", $name, ".txt")))),*]
+        [$(($name, include_str!(concat!("../../../data/exponential/", $name, ".txt")))),*]
     };
 }
 

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use host_tests::tolerance::{INVARIANCE, RECTANGULAR_WAVE};
 use parameters::{Excitation, JointParameters, MeshPhases, PerPlanet, StiffnessWave};
-use reference::joint::{RelativeState, Start};
+use reference::joint::RelativeState;
 use reference::scenarios::{PAPER_LENGTH, Scenario, TorqueSegment, l1, paper_joint, run, run_at, same};
 
 /// Phases of stiffness and error, sun-planet and ring-planet.
@@ -24,16 +24,9 @@ fn with_phases(mut joint: JointParameters, turn: fn(f64) -> f64) -> JointParamet
 /// L1 turning at constant speed under balanced torques.
 fn turning(joint: JointParameters, rigid_speed: f64) -> Scenario {
     let ratio = 2.0 * 90.3 / 38.7;
-    Scenario {
-        name: "turning".into(),
-        joint,
-        start: Start::Relative(RelativeState { rigid_speed, ..RelativeState::centred(3) }),
-        torques: vec![TorqueSegment { from_tick: 0, drive_torque: 60.0, load_torque: 60.0 * ratio }],
-        tick_rate: 20_000,
-        ticks: 400,
-        sample_every: 1,
-        predictable: true,
-    }
+    let start = RelativeState { rigid_speed, ..RelativeState::centred(3) };
+    let torques = vec![TorqueSegment { from_tick: 0, drive_torque: 60.0, load_torque: 60.0 * ratio }];
+    Scenario { torques, ticks: 400, ..Scenario::new("turning", joint, start) }
 }
 
 #[test]

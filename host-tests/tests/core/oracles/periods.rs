@@ -8,8 +8,8 @@ use model_core::gears::Relative;
 use parameters::JointParameters;
 use reference::scenarios::{PAPER_LENGTH, same};
 
-use crate::closed_forms::joint;
-use crate::{Start, run};
+use super::closed_forms::joint;
+use super::{Start, run};
 
 const TICK_RATE: u32 = 1_000_000;
 const SUN: f64 = 0.39;

@@ -6,13 +6,12 @@ use model_core::gears::design::dynamics::Dynamics;
 use model_core::gears::design::hamiltonian;
 use nalgebra::{DMatrix, DVector};
 use parameters::{JointParameters, MAX_PLANETS};
-use reference::integrator::{Entries, Guards, MAX_ENTRIES, SwitchedSystem};
+use reference::integrator::{Entries, MAX_ENTRIES};
 
-use crate::joint::{Deflections, Joint, Moving};
+use super::joint::{Formulation, Joint, Moving};
 
 /// State: v.
 pub struct Equation20 {
-    joint: Joint,
     dynamics: Dynamics,
     hamiltonian: DMatrix<f64>,
     /// omega_n^2 / K_m makes forces dimensionless.
@@ -20,18 +19,28 @@ pub struct Equation20 {
 }
 
 impl Equation20 {
-    pub fn new(joint: Joint, parameters: &JointParameters) -> Self {
+    pub fn new(parameters: &JointParameters) -> Self {
         let scales = Scales::new(parameters);
         let dynamics = Dynamics::new(parameters, &scales);
         let hamiltonian = hamiltonian::matrix(&dynamics);
-        Self { joint, dynamics, hamiltonian, force: scales.frequency.powi(2) / scales.stiffness }
+        Self { dynamics, hamiltonian, force: scales.frequency.powi(2) / scales.stiffness }
     }
 
+    /// X and X' = Y - C X / 2.
+    fn motion(&self, joint: &Joint, state: &Entries) -> (DVector<f64>, DVector<f64>) {
+        let size = joint.planets + 1;
+        let positions = DVector::from_column_slice(&state[..size]);
+        let rates = DVector::from_column_slice(&state[size..2 * size]) - 0.5 * &self.dynamics.damping * &positions;
+        (positions, rates)
+    }
+}
+
+impl Formulation for Equation20 {
     /// Deflections and their rates zero on the sun side, as is the gap.
-    pub fn start(&self) -> Entries {
-        let n = self.joint.planets;
+    fn start(&self, joint: &Joint) -> Entries {
+        let n = joint.planets;
         let errors = |order: usize| {
-            let row = |i| if i < n { self.joint.error(0, i, 0.0)[order] } else { 0.0 };
+            let row = |i| if i < n { joint.error(0, i, 0.0)[order] } else { 0.0 };
             DVector::from_fn(n + 1, |i, _| row(i))
         };
         let mut state = [0.0; MAX_ENTRIES];
@@ -41,41 +50,23 @@ impl Equation20 {
         state
     }
 
-    pub fn deflections(&self, time: f64, state: &Entries) -> Deflections {
-        self.joint.list(&self.meshes(time, state))
-    }
-
-    /// X and X' = Y - C X / 2.
-    fn motion(&self, state: &Entries) -> (DVector<f64>, DVector<f64>) {
-        let size = self.joint.planets + 1;
-        let positions = DVector::from_column_slice(&state[..size]);
-        let rates = DVector::from_column_slice(&state[size..2 * size]) - 0.5 * &self.dynamics.damping * &positions;
-        (positions, rates)
-    }
-
-    fn meshes(&self, time: f64, state: &Entries) -> [[Moving; MAX_PLANETS]; 2] {
-        let (positions, rates) = self.motion(state);
+    fn meshes(&self, joint: &Joint, time: f64, state: &Entries) -> [[Moving; MAX_PLANETS]; 2] {
+        let (positions, rates) = self.motion(joint, state);
         let mut meshes = [[Moving::default(); MAX_PLANETS]; 2];
-        for (kind, i) in self.joint.each() {
+        for (kind, i) in joint.each() {
             let across = |values: &DVector<f64>| match kind {
                 0 => values[i],
-                _ => values[self.joint.planets] - values[i],
+                _ => values[joint.planets] - values[i],
             };
-            let [error, error_rate, _] = self.joint.error(kind, i, time);
+            let [error, error_rate, _] = joint.error(kind, i, time);
             meshes[kind][i] = Moving { deflection: across(&positions) - error, rate: across(&rates) - error_rate };
         }
         meshes
     }
-}
 
-impl SwitchedSystem for Equation20 {
-    fn dimension(&self) -> usize {
-        2 * (self.joint.planets + 1)
-    }
-
-    fn derivative(&self, time: f64, state: &Entries, rates: &mut Entries) {
-        let (joint, n) = (&self.joint, self.joint.planets);
-        let meshes = self.meshes(time, state);
+    fn derivative(&self, joint: &Joint, time: f64, state: &Entries, rates: &mut Entries) {
+        let n = joint.planets;
+        let meshes = self.meshes(joint, time, state);
         // What the linear part takes off too much: its own force of each mesh less the true one.
         let mut excess = DVector::zeros(2 * n);
         for (kind, i) in joint.each() {
@@ -93,26 +84,5 @@ impl SwitchedSystem for Equation20 {
         for (rate, force) in rates[n + 1..].iter_mut().zip(other.iter()) {
             *rate += force;
         }
-    }
-
-    fn freeze(&mut self, time: f64, state: &Entries) {
-        let meshes = self.meshes(time, state);
-        self.joint.hold(&meshes);
-    }
-
-    fn guards(&self, time: f64, state: &Entries, _: &Entries, guards: &mut Guards) {
-        self.joint.watch(&self.meshes(time, state), guards);
-    }
-
-    fn guard_resolution(&self) -> f64 {
-        1e-12
-    }
-
-    fn tolerance(&self, _: usize) -> f64 {
-        1e-12
-    }
-
-    fn longest_step(&self) -> f64 {
-        0.5
     }
 }

@@ -1,7 +1,7 @@
 //! The core against closed forms that no integrator enters, for three, four and five planets: oracles 1 to 4, 7 and 8.
-//! Oracles 5 and 6 are in `core_invariants`; the reference meets its own in `linear_oracles` and its neighbours.
+//! Oracles 5 and 6 are in `invariants`; the reference meets its own in `the_reference`.
 
-mod closed_forms;
+pub mod closed_forms;
 mod linear;
 mod periods;
 mod teeth;

@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use host_tests::tolerance::{EIGENVALUE, ELLIPSE, ELLIPSE_PURITY, NATURAL_FREQUENCY, STATIC};
 use nalgebra::{Complex, Matrix4, Vector4};
 use parameters::{DampingLaw, JointParameters};
-use reference::joint::{RelativeState, Start};
+use reference::joint::RelativeState;
 use reference::scenarios::{PAPER_LENGTH, Scenario, TorqueSegment, paper_joint, paper_natural_frequency, q1, run_at};
 
 /// Dimensionless sampling interval, short against every mode.
@@ -14,16 +14,7 @@ const INTERVAL: f64 = 0.5;
 
 /// A scenario without torques.
 fn free(joint: JointParameters, start: RelativeState) -> Scenario {
-    Scenario {
-        name: "free vibration".into(),
-        joint,
-        start: Start::Relative(start),
-        torques: Vec::new(),
-        tick_rate: 20_000,
-        ticks: 0,
-        sample_every: 1,
-        predictable: true,
-    }
+    Scenario::new("free vibration", joint, start)
 }
 
 /// Free vibration of the paper's joint without backlash, ripple and error, all modes excited: sum of the sun-planet

@@ -5,8 +5,8 @@ use host_tests::tolerance::CASE_DATA;
 use reference::integrator::Counters;
 use reference::scenarios::{CASE_A_OMEGA, CASE_Q_OMEGA, PAPER_LENGTH, case, paper_natural_frequency, run_at};
 
-const CASE_A: &str = include_str!("../data/case_a.csv");
-const CASE_Q: &str = include_str!("../data/case_q.csv");
+const CASE_A: &str = include_str!("../../data/case_a.csv");
+const CASE_Q: &str = include_str!("../../data/case_q.csv");
 
 /// tau, then the six mesh deflections over b_c.
 fn rows(text: &str) -> Vec<[f64; 7]> {

@@ -6,7 +6,7 @@ use model_core::gears::{Model, Tables, Torques};
 use parameters::{ContactState, DampingLaw, JointParameters};
 use reference::joint::RelativeState;
 
-use crate::subject::{joint, leaping, reference, resting, state, tables};
+use super::subject::{joint, leaping, reference, resting, state, tables};
 
 const RATE: u32 = 10_000;
 const LEAPS: u32 = 8;

@@ -11,8 +11,8 @@ use nalgebra::{Complex, Matrix2, Matrix3, Vector3};
 use parameters::DampingLaw;
 use reference::scenarios::{PAPER_LENGTH, paper_natural_frequency, same};
 
-use crate::closed_forms::{ClosedForm, joint};
-use crate::{Start, run};
+use super::closed_forms::{ClosedForm, joint};
+use super::{Start, run};
 
 /// Preload [N m] and half-backlash [m] under which small vibrations keep contact.
 const DRIVE: f64 = 2400.0;

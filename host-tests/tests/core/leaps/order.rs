@@ -4,9 +4,10 @@
 
 use host_tests::tolerance::light_planets::{LEAPS, ORDER_OF_LEAPS};
 use parameters::{ContactState, DampingLaw, JointParameters};
-use reference::joint::RelativeState;
+use reference::joint::{RelativeState, Start};
 
-use crate::subject::{error, joint, leaping, pressed, reference};
+use super::subject::{joint, leaping, pressed, reference};
+use crate::comparison::rms_error;
 
 /// Ticks a second of the coarsest run, where samples are taken; leaps a tick.
 const COARSEST: u32 = 10_000;
@@ -30,7 +31,7 @@ fn errors<const N: usize>(joint: &JointParameters, doublings: &[u32]) -> Vec<f64
     assert!(is(ContactState::Separated) && is(ContactState::DriveSide), "contact is lost and found again");
     let one = |doublings: &u32| {
         let tables = leaping::<N>(joint, COARSEST << doublings, LEAPS_A_TICK);
-        error(joint, &tables, &start, (0.0, 0.0), &expected)
+        rms_error(joint, &tables, &Start::Relative(start.clone()), (0.0, 0.0), &expected)
     };
     doublings.iter().map(one).collect()
 }

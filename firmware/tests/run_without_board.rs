@@ -1,6 +1,7 @@
 //! A whole run over the line on a board without hardware: the board does what the model does, loses nothing, and goes
 //! to its safe state when it must. Timing on a real processor is for the emulator tests.
 
+#[allow(dead_code, reason = "shared with the host's tests of boards")]
 mod bench;
 
 use bench::{Bench, PERIOD};

@@ -13,7 +13,7 @@ use firmware::conversation::{Conversation, LogEnd};
 use firmware::identity::{StartUp, hello};
 use firmware::page::Page;
 use firmware::plant::Plant;
-use firmware::queues::Queues;
+use firmware::queues::{Progress, Queues};
 use firmware::serial::{Line, Serial, Uart};
 use firmware::tables::{PLANETS, TABLES};
 use firmware::timing_report::Resources;
@@ -125,6 +125,8 @@ where
     pub wire: Rc<RefCell<Wire>>,
     pub enable: Rc<Cell<bool>>,
     pub flash: Flash,
+    /// How far the run is, as tick and idle tell one another.
+    pub progress: &'static Progress,
     /// First look at the timer in a tick, and what each look adds.
     pub timing: (u32, u32),
 }
@@ -164,6 +166,7 @@ where
             watchdog_reset: false,
             remembered: Remembered::Nothing,
         };
+        let progress = idle_end.progress;
         Self {
             control: Control::new(work, Enable(enable.clone()), PERIOD, tick_end),
             conversation: Conversation::new(
@@ -178,6 +181,7 @@ where
             wire,
             enable,
             flash: Flash { memory: [0xff; MEMORY_BYTES], works: true, erased: 0 },
+            progress,
             timing: (20, 100),
         }
     }

@@ -46,11 +46,6 @@ impl Findings {
         file.clone_into(&mut self.file);
     }
 
-    /// So many values were the same.
-    pub fn same(&mut self, values: u64) {
-        self.values += values;
-    }
-
     /// A value differs, or one side does not have it.
     pub fn differs(&mut self, place: impl Into<String>, old: Option<String>, new: Option<String>) {
         self.values += 1;

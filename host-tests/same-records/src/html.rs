@@ -4,60 +4,58 @@
 
 use std::collections::BTreeMap;
 
-use crate::findings::Findings;
-use crate::page::{Page, read};
+use crate::listing::{Listing, Row};
+use crate::page::{self, Page};
 use crate::text;
 
 /// What counts on a page.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum Level {
-    /// How often each word with a digit stands there.
+    /// Each word with a digit, as often as it stands there.
     Numbers,
-    /// That, and the texts of tables' cells.
+    /// Those, and the texts of tables' cells.
     #[default]
     Figures,
-    /// The whole text in its order.
+    /// All of it, in order.
     Text,
 }
 
-/// Compares two pages; `may_grow` lets the new one have more.
-pub fn compare(old: &str, new: &str, level: Level, may_grow: bool, findings: &mut Findings) {
-    let (old, new) = (read(old), read(new));
-    if level == Level::Text {
-        text::compare(&old.lines.join("\n"), &new.lines.join("\n"), findings);
-    } else {
-        let figures = |page: &Page| counted(page.lines.iter().flat_map(|line| with_digits(line)));
-        compare_counts("figure", &figures(&old), &figures(&new), may_grow, findings);
-    }
-    if level == Level::Figures {
-        let cells = |page: &Page| counted(page.cells.iter().cloned());
-        compare_counts("cell", &cells(&old), &cells(&new), may_grow, findings);
-    }
-    text::leave_out(old.hidden.iter(), new.hidden.iter(), findings);
-}
+/// How often each text is there.
+type Counts = BTreeMap<String, usize>;
 
-fn compare_counts(
-    what: &str,
-    old: &BTreeMap<String, usize>,
-    new: &BTreeMap<String, usize>,
-    may_grow: bool,
-    findings: &mut Findings,
-) {
-    let times = |count: usize| (count > 0).then(|| format!("{count} times"));
-    for (word, count) in old {
-        let now = new.get(word).copied().unwrap_or_default();
-        match now == *count || may_grow && now > *count {
-            true => findings.same(*count as u64),
-            false => findings.differs(format!("{what} `{word}`"), times(*count), times(now)),
+/// What two pages say; `may_grow` lets the new one have more. Fails if one is no page.
+pub fn read(pages: [&str; 2], level: Level, may_grow: bool) -> Result<[Listing; 2], String> {
+    let [old, new] = pages.map(page::read);
+    let pages = [old?, new?];
+    if level == Level::Text {
+        return Ok(pages.map(|page| {
+            let mut listing = text::read(&page.lines.join("\n"));
+            listing.hidden.extend(page.hidden);
+            listing
+        }));
+    }
+    let figures = |page: &Page| counted(page.lines.iter().flat_map(|line| with_digits(line)));
+    let mut kinds = vec![("figure", pages.each_ref().map(figures))];
+    if level == Level::Figures {
+        kinds.push(("cell", pages.each_ref().map(|page| counted(page.cells.iter().cloned()))));
+    }
+    let mut listings = pages.map(|page| Listing { rows: Vec::new(), hidden: page.hidden });
+    for (what, [old, mut new]) in kinds {
+        if may_grow {
+            new.retain(|word, _| old.contains_key(word));
+            new.iter_mut().for_each(|(word, count)| *count = old[word].min(*count));
+        }
+        for (listing, counts) in listings.iter_mut().zip([old, new]) {
+            let mut row = Row::default();
+            counts.iter().for_each(|(word, count)| row.say(format!("{what} `{word}`"), format!("{count} times")));
+            listing.rows.push(row);
         }
     }
-    for (word, count) in new.iter().filter(|(word, _)| !may_grow && !old.contains_key(*word)) {
-        findings.differs(format!("{what} `{word}`"), None, times(*count));
-    }
+    Ok(listings)
 }
 
-fn counted(words: impl Iterator<Item = String>) -> BTreeMap<String, usize> {
-    let mut counts = BTreeMap::new();
+fn counted(words: impl Iterator<Item = String>) -> Counts {
+    let mut counts = Counts::new();
     words.for_each(|word| *counts.entry(word).or_default() += 1);
     counts
 }
@@ -74,10 +72,12 @@ fn with_digits(line: &str) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::findings::Findings;
 
     fn differences(old: &str, new: &str, level: Level, may_grow: bool) -> Vec<String> {
         let mut findings = Findings::default();
-        compare(old, new, level, may_grow, &mut findings);
+        let [old, new] = read([old, new], level, may_grow).expect("two pages");
+        crate::listing::compare([&old, &new], &mut findings);
         findings.differences.into_iter().map(|difference| difference.place).collect()
     }
 

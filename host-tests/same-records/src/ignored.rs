@@ -1,6 +1,8 @@
 //! Everything that is not compared, in one place: what two runs of the same sources do not share. Each rule has a name, by
 //! which the report counts what was left out, and a reason. Nothing else is left out anywhere.
 
+use std::fmt;
+
 /// When it ran.
 pub const DATE: &str = "date";
 /// At what time of day.
@@ -19,164 +21,111 @@ pub const ELF_DIGEST: &str = "digest of an ELF file";
 /// tick are compared, so are the RAM of statics, and the deepest stack that `joint hil --check` finds in the image.
 pub const LINE_TIMING: &str = "timing of the line";
 
-/// Keys of JSON, and of the remarks in an MCAP log, by the end of the way to them; everything below such a key is left out.
-pub const KEYS: &[(&str, &str)] = &[
-    ("date", DATE),
-    ("git_commit", COMMIT),
-    ("commit", COMMIT),
-    ("elf_sha256", ELF_DIGEST),
-    // A test or a whole run of them.
-    ("seconds", HOST_TIME),
-    // Schemes of `joint sim --scheme all`.
-    ("cost_ratio", HOST_TIME),
-    ("cost_s_per_s", HOST_TIME),
-    // Libraries of `joint bench`.
-    ("host.times.cost", HOST_TIME),
-    ("host_at_equal_error", HOST_TIME),
-    // Runs on the emulated board.
-    ("timing.counters.waited", LINE_TIMING),
-    ("timing.idle_percent", LINE_TIMING),
-    ("timing.stack_used_bytes", LINE_TIMING),
-    ("samples.computation_s", LINE_TIMING),
-];
-
-/// Values of JSON that say what they are by a `name` beside them: the keys in such an object that are left out.
-pub const NAMED: &[Named] = &[
-    Named { name: "idle time", keys: &["figure"], rule: LINE_TIMING },
-    Named { name: "ticks that waited for the schedule or the line", keys: &["figure"], rule: LINE_TIMING },
-    Named { name: "RAM used", keys: &["figure", "note"], rule: LINE_TIMING },
-];
-
-/// Attributes of XML.
-pub const ATTRIBUTES: &[(&str, &str)] = &[("time", HOST_TIME), ("timestamp", DATE)];
-
-/// Words of a text, whichever file it is in: `#` is a number that is left out, `@` a digest of hexadecimal digits.
-pub const PHRASES: &[Phrase] = &[
-    Phrase { words: "runs, # s)", rule: HOST_TIME },
-    Phrase { words: "commit @", rule: COMMIT },
-    Phrase { words: "Commit @,", rule: COMMIT },
-    Phrase { words: "image @", rule: ELF_DIGEST },
-    Phrase { words: "idle time # %", rule: LINE_TIMING },
-    Phrase { words: "waited for the schedule or the line #", rule: LINE_TIMING },
-    Phrase { words: "RAM used # B", rule: LINE_TIMING },
-    Phrase { words: "and # B of stack at its deepest", rule: LINE_TIMING },
-];
-
-/// Behind a commit: the sources were not quite it.
-pub const CHANGED: &str = " (changed)";
-
-/// Columns of tables in text and HTML, by the head of the table's first column and their own.
-pub const COLUMNS: &[Column] = &[Column { first: "scheme", column: "cost", rule: HOST_TIME }];
-
-/// Cells of HTML tables that have their meaning in the cell to the left; that may end with the mark [`MARK`].
-pub const ROWS: &[(&str, &str)] = &[
-    ("Source commit", COMMIT),
-    ("Sources", COMMIT),
-    ("Date", DATE),
-    ("idle time", LINE_TIMING),
-    ("Idle share", LINE_TIMING),
-    ("ticks that waited for the schedule or the line", LINE_TIMING),
-    ("Waits", LINE_TIMING),
-    ("RAM used", LINE_TIMING),
-    ("Deepest stack", LINE_TIMING),
-];
-
-/// Figures that stand beside their name on a page, before it or behind it, with the form that they have.
-pub const TILES: &[Tile] = &[
-    Tile { name: "On the clock", form: "# s", rule: HOST_TIME },
-    Tile { name: "Idle", form: "# %", rule: LINE_TIMING },
-];
+/// Where something stands that is left out. In words, `#` is a number that is left out, `@` a digest of hexadecimal digits.
+#[derive(Debug, Clone, Copy)]
+pub enum Place {
+    /// Below this key of JSON, or of the remarks in an MCAP log: the end of the way to it.
+    Key(&'static str),
+    /// In an object of JSON that has this `name`, below this key.
+    Named(&'static str, &'static str),
+    /// In this attribute of XML.
+    Attribute(&'static str),
+    /// In these words of a text with one space between them, whichever file it is in.
+    Phrase(&'static str),
+    /// In a table of text or HTML whose first column has this head, in small letters or large ones: in this column.
+    Column(&'static str, &'static str),
+    /// In a cell of an HTML table to the right of this one, which may end with [`MARK`].
+    Beside(&'static str),
+    /// On a page, beside the line with this name of a figure, before it or behind it: in a line of this form.
+    Tile(&'static str, &'static str),
+}
 
 /// What stands behind the name of a figure that an emulator has measured.
 pub const MARK: &str = " EMULATED";
 
-/// An object with this `name`.
-#[derive(Debug, Clone, Copy)]
-pub struct Named {
-    /// Its name.
-    pub name: &'static str,
-    /// The keys.
-    pub keys: &'static [&'static str],
-    /// Name of the rule.
-    pub rule: &'static str,
+/// Behind a commit: the sources were not quite it.
+pub const CHANGED: &str = " (changed)";
+
+/// Where which rule holds; those for dates, times of day and folders hold everywhere besides.
+pub const RULES: &[(Place, &str)] = &[
+    (Place::Key("date"), DATE),
+    (Place::Key("git_commit"), COMMIT),
+    (Place::Key("commit"), COMMIT),
+    (Place::Key("elf_sha256"), ELF_DIGEST),
+    // A test or a whole run of them.
+    (Place::Key("seconds"), HOST_TIME),
+    // Schemes of `joint sim --scheme all`.
+    (Place::Key("cost_ratio"), HOST_TIME),
+    (Place::Key("cost_s_per_s"), HOST_TIME),
+    // Libraries of `joint bench`.
+    (Place::Key("host.times.cost"), HOST_TIME),
+    (Place::Key("host_at_equal_error"), HOST_TIME),
+    // Runs on the emulated board.
+    (Place::Key("timing.counters.waited"), LINE_TIMING),
+    (Place::Key("timing.idle_percent"), LINE_TIMING),
+    (Place::Key("timing.stack_used_bytes"), LINE_TIMING),
+    (Place::Key("samples.computation_s"), LINE_TIMING),
+    (Place::Named("idle time", "figure"), LINE_TIMING),
+    (Place::Named("ticks that waited for the schedule or the line", "figure"), LINE_TIMING),
+    (Place::Named("RAM used", "figure"), LINE_TIMING),
+    (Place::Named("RAM used", "note"), LINE_TIMING),
+    (Place::Attribute("time"), HOST_TIME),
+    (Place::Attribute("timestamp"), DATE),
+    (Place::Phrase("runs, # s)"), HOST_TIME),
+    (Place::Phrase("commit @"), COMMIT),
+    (Place::Phrase("Commit @,"), COMMIT),
+    (Place::Phrase("image @"), ELF_DIGEST),
+    (Place::Phrase("idle time # %"), LINE_TIMING),
+    (Place::Phrase("waited for the schedule or the line #"), LINE_TIMING),
+    (Place::Phrase("RAM used # B"), LINE_TIMING),
+    (Place::Phrase("and # B of stack at its deepest"), LINE_TIMING),
+    (Place::Column("scheme", "cost"), HOST_TIME),
+    (Place::Beside("Source commit"), COMMIT),
+    (Place::Beside("Sources"), COMMIT),
+    (Place::Beside("Date"), DATE),
+    (Place::Beside("idle time"), LINE_TIMING),
+    (Place::Beside("Idle share"), LINE_TIMING),
+    (Place::Beside("ticks that waited for the schedule or the line"), LINE_TIMING),
+    (Place::Beside("Waits"), LINE_TIMING),
+    (Place::Beside("RAM used"), LINE_TIMING),
+    (Place::Beside("Deepest stack"), LINE_TIMING),
+    (Place::Tile("On the clock", "# s"), HOST_TIME),
+    (Place::Tile("Idle", "# %"), LINE_TIMING),
+];
+
+/// The rule that holds at such a place.
+pub fn rule(is_there: impl Fn(&Place) -> bool) -> Option<&'static str> {
+    RULES.iter().find(|(place, _)| is_there(place)).map(|(_, rule)| *rule)
 }
 
-/// A phrase.
-#[derive(Debug, Clone, Copy)]
-pub struct Phrase {
-    /// Its words with one space between them.
-    pub words: &'static str,
-    /// Name of the rule.
-    pub rule: &'static str,
+/// The rule that leaves out what is below a key, by all keys that lead to it with a dot between them.
+pub fn ignored_key(way: &str) -> Option<&'static str> {
+    let ends = |end: &str| way.strip_suffix(end).is_some_and(|before| before.is_empty() || before.ends_with('.'));
+    rule(|place| matches!(place, Place::Key(end) if ends(end)))
 }
 
-/// A column.
-#[derive(Debug, Clone, Copy)]
-pub struct Column {
-    /// What stands at the head of the table's first column, in small letters or large ones.
-    pub first: &'static str,
-    /// Its own.
-    pub column: &'static str,
-    /// Name of the rule.
-    pub rule: &'static str,
-}
-
-/// A figure beside its name.
-#[derive(Debug, Clone, Copy)]
-pub struct Tile {
-    /// Its name, a line of its own.
-    pub name: &'static str,
-    /// The line beside it; `#` is the number.
-    pub form: &'static str,
-    /// Name of the rule.
-    pub rule: &'static str,
-}
-
-/// The rule that leaves a value out, by the keys that lead to it.
-pub fn ignored_key(keys: &[&str]) -> Option<&'static str> {
-    let ends = |end: &str| {
-        let end: Vec<&str> = end.split('.').collect();
-        keys.ends_with(&end)
-    };
-    KEYS.iter().find(|(end, _)| ends(end)).map(|(_, rule)| *rule)
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Key(end) => write!(f, "key {end}"),
+            Self::Named(name, key) => write!(f, "{key} of `{name}`"),
+            Self::Attribute(name) => write!(f, "attribute {name}"),
+            Self::Phrase(words) => write!(f, "`#` or `@` in `{words}`"),
+            Self::Column(first, column) => write!(f, "column {column} of a table that begins with {first}"),
+            Self::Beside(name) => write!(f, "cell beside {name}"),
+            Self::Tile(name, form) => write!(f, "`#` in `{form}` beside `{name}`"),
+        }
+    }
 }
 
 /// All of it, to be read.
 pub fn list() -> String {
-    let mut text = String::from("Not compared, wherever it stands:\n");
-    for rule in [DATE, CLOCK, PATH] {
-        text += &format!("  {rule}\n");
-    }
-    let named = |what: &'static str, list: &[(&'static str, &'static str)]| {
-        list.iter().map(move |(name, rule)| format!("  {what} {name}: {rule}\n")).collect::<String>()
-    };
-    text += &named("key", KEYS);
-    for Named { name, keys, rule } in NAMED {
-        text += &format!("  {} of `{name}`: {rule}\n", keys.join(" and "));
-    }
-    text += &named("attribute", ATTRIBUTES);
-    text += &named("cell beside", ROWS);
-    for Phrase { words, rule } in PHRASES {
-        text += &format!("  `#` or `@` in `{words}`: {rule}\n");
-    }
-    text += &format!("  `{}`: {COMMIT}\n", CHANGED.trim());
-    for Column { first, column, rule } in COLUMNS {
-        text += &format!("  column {column} of a table that begins with {first}: {rule}\n");
-    }
-    for Tile { name, form, rule } in TILES {
-        text += &format!("  `#` in `{form}` beside `{name}`: {rule}\n");
-    }
-    text
-}
-
-/// The rule that leaves a value out, by the name beside it.
-pub fn ignored_by_name(name: &str, key: &str) -> Option<&'static str> {
-    NAMED.iter().find(|named| named.name == name && named.keys.contains(&key)).map(|named| named.rule)
-}
-
-/// The rule that leaves an attribute out.
-pub fn ignored_attribute(name: &str) -> Option<&'static str> {
-    ATTRIBUTES.iter().find(|(ignored, _)| *ignored == name).map(|(_, rule)| *rule)
+    let places: String = RULES.iter().map(|(place, rule)| format!("  {place}: {rule}\n")).collect();
+    format!(
+        "Not compared, wherever it stands:\n  {DATE}\n  {CLOCK}\n  {PATH}\n  `{}`: {COMMIT}\n\
+         Not compared, where it stands:\n{places}",
+        CHANGED.trim()
+    )
 }
 
 #[cfg(test)]
@@ -185,10 +134,10 @@ mod tests {
 
     #[test]
     fn a_key_is_known_by_the_end_of_its_way() {
-        assert_eq!(ignored_key(&["identity", "date"]), Some(DATE));
-        assert_eq!(ignored_key(&["host", "times", "cost"]), Some(HOST_TIME));
-        for kept in [&["methods", "cost"][..], &["duration_s"], &["date", "figure"], &["update"]] {
-            assert_eq!(ignored_key(kept), None, "{kept:?}");
+        assert_eq!(ignored_key("identity.date"), Some(DATE));
+        assert_eq!(ignored_key("host.times.cost"), Some(HOST_TIME));
+        for kept in ["methods.cost", "duration_s", "date.figure", "update"] {
+            assert_eq!(ignored_key(kept), None, "{kept}");
         }
     }
 }

@@ -2,15 +2,16 @@
 //! written: before a change of the sources, and after it. Whatever differs is named with its file, its place, the old and
 //! the new value; what was not compared is in one list, [`ignored`], and is counted.
 //!
-//! A kind of file has a module of its own: [`json`], [`csv`], [`text`], [`html`], [`xml`], [`log`] for MCAP; all others are
-//! compared byte by byte. How records are made, and whether a difference is meant, is the business of who calls this.
+//! Each kind of file is read into one form, a [`listing`] of values and their places, and that is compared: [`json`],
+//! [`csv`], [`text`], [`html`], [`xml`], [`log`] for MCAP; all others are compared byte by byte. How records are made, and
+//! whether a difference is meant, is for the caller.
 
-pub mod align;
 pub mod csv;
 pub mod findings;
 pub mod html;
 pub mod ignored;
 pub mod json;
+pub mod listing;
 pub mod log;
 pub mod markup;
 pub mod mask;

@@ -2,100 +2,55 @@
 //! root of the disk, and the words that follow or precede a known phrase. What is left is compared word by word, so that
 //! neither the width of columns nor broken lines count.
 
-use crate::ignored::{CHANGED, CLOCK, DATE, PATH, PHRASES};
+use std::sync::LazyLock;
 
-/// What stands for a word that is left out.
+use regex::{Captures, Regex};
+
+use crate::ignored::{CHANGED, CLOCK, DATE, PATH, Place, RULES};
+
+/// What stands for words that are left out.
 pub(crate) const HIDDEN: &str = "<left out>";
 
-/// A text without what was left out, and which rules have left something out.
-#[derive(Debug, Default, Clone, PartialEq, Eq)]
-pub struct Masked {
-    /// Its words.
-    pub words: Vec<String>,
-    /// The rules with the words that they have left out.
-    pub hidden: Vec<(&'static str, String)>,
+/// A rule, and what it has left out.
+pub type Hidden = (&'static str, String);
+
+/// What is left out of a text in which each word has a space before it and one behind it: the second group of each.
+static PATTERNS: LazyLock<Vec<(Regex, &str)>> = LazyLock::new(|| {
+    let [before, after] = [r#"( [(\["'`<]*)"#, r#"([)\]"'`>,.;]* )"#];
+    let own = [
+        (DATE, format!(r"{before}(\d{{4}}-\d\d-\d\d(?:T\d\d:\d\d:\d\dZ*)?){after}")),
+        (CLOCK, format!(r"{before}(\d\d:\d\d:\d\d){after}")),
+        // What stands before a path in the same word, as in `--out=/tmp/x`, stays; so does the name of the file, which
+        // says what it is.
+        (PATH, r#"( [(\["'`<]*(?:[^ ]*?=)?)(/[^ ]*)(/[^ /]* )"#.to_owned()),
+    ];
+    let phrases = RULES.iter().filter_map(|(place, rule)| match place {
+        Place::Phrase(words) => Some((*rule, format!(" {} ", form(words).replace(' ', "  ")))),
+        _ => None,
+    });
+    let all = own.into_iter().chain(phrases);
+    all.map(|(rule, pattern)| (Regex::new(&pattern).expect("a pattern"), rule)).collect()
+});
+
+/// Words with `#` for a number or `@` for a digest as a pattern with three groups: what is before it, itself, what is behind.
+pub(crate) fn form(words: &str) -> String {
+    let sign = if words.contains('#') { r"[-+.\dEe]+" } else { "[0-9A-Fa-f]{7,}" };
+    let (before, after) = words.split_once(['#', '@']).expect("a sign for what is left out");
+    format!("({})({sign})({})", regex::escape(before), regex::escape(after))
 }
 
-/// Masks a line or another short text.
-pub fn masked(text: &str) -> Masked {
+/// A text without what is left out, and that.
+pub fn masked(text: &str) -> (String, Vec<Hidden>) {
     let mut hidden = Vec::new();
-    let text = text.replace(CHANGED, "");
-    let mut words: Vec<String> = text.split_whitespace().map(|word| without_own(word, &mut hidden)).collect();
-    for phrase in PHRASES {
-        let pattern: Vec<&str> = phrase.words.split(' ').collect();
-        for start in 0..words.len().saturating_sub(pattern.len() - 1) {
-            let place = &words[start..start + pattern.len()];
-            if !place.iter().zip(&pattern).all(|(word, wanted)| fits(word, wanted)) {
-                continue;
-            }
-            for (word, wanted) in words[start..].iter_mut().zip(&pattern) {
-                if let Some((before, after)) = wanted.split_once(SIGNS) {
-                    let whole = std::mem::replace(word, format!("{before}{HIDDEN}{after}"));
-                    hidden.push((phrase.rule, whole));
-                }
-            }
-        }
+    let mut text: String = text.replace(CHANGED, "").split_whitespace().map(|word| format!(" {word} ")).collect();
+    for (pattern, rule) in &*PATTERNS {
+        let hide = |found: &Captures<'_>| {
+            hidden.push((*rule, found[2].to_owned()));
+            format!("{}{HIDDEN}{}", &found[1], &found[3])
+        };
+        text = pattern.replace_all(&text, hide).into_owned();
     }
-    Masked { words, hidden }
-}
-
-/// What stands for a number and for a digest in a phrase.
-const SIGNS: [char; 2] = ['#', '@'];
-
-/// Whether a word is the phrase's.
-pub(crate) fn fits(word: &str, wanted: &str) -> bool {
-    let Some((before, after)) = wanted.split_once(SIGNS) else { return word == wanted };
-    let Some(inside) = word.strip_prefix(before).and_then(|rest| rest.strip_suffix(after)) else { return false };
-    match wanted.contains('#') {
-        true => inside.parse::<f64>().is_ok(),
-        false => inside.len() >= 7 && inside.chars().all(|c| c.is_ascii_hexdigit()),
-    }
-}
-
-/// A word without what tells by itself that it is a date, a time of day or a path.
-fn without_own(word: &str, hidden: &mut Vec<(&'static str, String)>) -> String {
-    let opening = word.len() - word.trim_start_matches(OPENING).len();
-    let (before, rest) = word.split_at(opening);
-    let closing = rest.trim_end_matches(CLOSING).len();
-    let (core, after) = rest.split_at(closing);
-    if let Some(rule) = is_date(core).or_else(|| is_clock(core)) {
-        hidden.push((rule, core.to_owned()));
-        return format!("{before}{HIDDEN}{after}");
-    }
-    // What stands before a path in the same word, as in `--out=/tmp/x`, stays.
-    let start = match core.find("=/") {
-        Some(sign) => sign + 1,
-        None => 0,
-    };
-    let (name, path) = core.split_at(start);
-    match path.strip_prefix('/').and_then(|rest| rest.rsplit_once('/')) {
-        Some((folder, file)) => {
-            hidden.push((PATH, format!("/{folder}/")));
-            // The name of the file itself says what it is.
-            format!("{before}{name}{HIDDEN}/{file}{after}")
-        }
-        None => word.to_owned(),
-    }
-}
-
-const OPENING: [char; 6] = ['(', '[', '"', '\'', '`', '<'];
-const CLOSING: [char; 9] = [')', ']', '"', '\'', '`', '>', ',', '.', ';'];
-
-/// `2026-11-22`, or with a time behind it.
-fn is_date(word: &str) -> Option<&'static str> {
-    let (date, time) = word.split_once('T').map_or((word, None), |(date, time)| (date, Some(time)));
-    let is_time = time.is_none_or(|time| is_clock(time.trim_end_matches('Z')).is_some());
-    (shape(date) == "0000-00-00" && is_time).then_some(DATE)
-}
-
-/// `09:57:43`.
-fn is_clock(word: &str) -> Option<&'static str> {
-    (shape(word) == "00:00:00").then_some(CLOCK)
-}
-
-/// Every digit as a zero.
-fn shape(word: &str) -> String {
-    word.chars().map(|c| if c.is_ascii_digit() { '0' } else { c }).collect()
+    (text.split_whitespace().collect::<Vec<_>>().join(" "), hidden)
 }
 
 #[cfg(test)]
@@ -103,7 +58,7 @@ mod tests {
     use super::*;
 
     fn text(text: &str) -> String {
-        masked(text).words.join(" ")
+        masked(text).0
     }
 
     #[test]
@@ -119,17 +74,18 @@ mod tests {
 
     #[test]
     fn what_was_left_out_is_told_with_its_rule() {
-        let hidden = masked("at 2026-11-22 in /home/base/x").hidden;
-        assert_eq!(hidden, [(DATE, "2026-11-22".to_owned()), (PATH, "/home/base/".to_owned())]);
+        let hidden = masked("at 2026-11-22 in /home/base/x").1;
+        assert_eq!(hidden, [(DATE, "2026-11-22".to_owned()), (PATH, "/home/base".to_owned())]);
     }
 
     #[test]
     fn phrases_hide_only_the_figure_or_digest_in_them() {
-        for phrase in PHRASES {
-            let say = |number: &str, digest: &str| phrase.words.replace('#', number).replace('@', digest);
-            let found = masked(&format!("before {} after", say("12.5", "b1f3478181d7")));
-            assert_eq!(found.words.join(" "), format!("before {} after", say(HIDDEN, HIDDEN)));
-            assert_eq!(found.hidden.len(), 1);
+        for (place, _) in RULES {
+            let Place::Phrase(words) = place else { continue };
+            let say = |number: &str, digest: &str| words.replace('#', number).replace('@', digest);
+            let (found, hidden) = masked(&format!("before {} after", say("12.5", "b1f3478181d7")));
+            assert_eq!(found, format!("before {} after", say(HIDDEN, HIDDEN)));
+            assert_eq!(hidden.len(), 1);
             let other = format!("before {} after", say("q1", "q1"));
             assert_eq!(text(&other), other);
         }

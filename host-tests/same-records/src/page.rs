@@ -1,9 +1,11 @@
 //! What can be read on an HTML page: its lines, a line for each block, and the cells of its tables, both masked. Pictures,
 //! styles and scripts are passed over.
 
-use crate::ignored::{COLUMNS, MARK, ROWS, TILES};
+use regex::Regex;
+
+use crate::ignored::{MARK, Place, RULES, rule};
 use crate::markup::{Piece, pieces};
-use crate::mask::{fits, masked};
+use crate::mask::{Hidden, form, masked};
 
 /// What can be read on a page.
 #[derive(Debug, Default)]
@@ -13,7 +15,7 @@ pub struct Page {
     /// Cells of tables.
     pub cells: Vec<String>,
     /// What a rule has left out.
-    pub hidden: Vec<(&'static str, String)>,
+    pub hidden: Vec<Hidden>,
 }
 
 /// Elements that cannot be read.
@@ -22,144 +24,103 @@ const UNSEEN: [&str; 4] = ["svg", "style", "script", "template"];
 const INLINE: [&str; 14] =
     ["a", "b", "code", "em", "i", "span", "strong", "sub", "sup", "small", "abbr", "var", "mark", "kbd"];
 
-/// Where reading has come to in a table.
+/// The table that is being read.
 #[derive(Debug, Default)]
 struct Table {
     head: Vec<String>,
     row: Vec<String>,
-    rows: usize,
 }
 
-/// Reads a page.
-pub fn read(document: &str) -> Page {
-    let (mut page, mut line) = (Page::default(), String::new());
-    let mut cell: Option<String> = None;
-    let mut tables: Vec<Table> = Vec::new();
-    let mut unseen: Vec<String> = Vec::new();
-    for piece in pieces(document) {
-        match piece {
-            Piece::Open { name, empty, .. } => {
-                if !unseen.is_empty() || UNSEEN.contains(&name.as_str()) {
-                    if !empty {
-                        unseen.push(name);
-                    }
-                    continue;
-                }
-                if !INLINE.contains(&name.as_str()) {
-                    end_line(&mut line, &mut page);
-                }
-                match name.as_str() {
-                    "table" => tables.push(Table::default()),
-                    "td" | "th" => cell = Some(String::new()),
-                    _ => {}
-                }
+/// Reads a page; fails if it is none.
+pub fn read(document: &str) -> Result<Page, String> {
+    let (mut page, mut table, mut text) = (Page::default(), Table::default(), String::new());
+    let (mut unseen, mut in_cell) = (0_usize, false);
+    for piece in pieces(document)? {
+        let (name, opens) = match piece {
+            // A narrow space stands between the thousands of a number.
+            Piece::Text(part) if unseen == 0 => {
+                text += &part.replace('\u{202f}', "");
+                continue;
             }
-            Piece::Close(name) => {
-                if !unseen.is_empty() {
-                    // What is left open inside ends with what it stands in.
-                    if let Some(place) = unseen.iter().rposition(|open| *open == name) {
-                        unseen.truncate(place);
-                    }
-                    continue;
-                }
-                match (name.as_str(), &mut cell) {
-                    ("td" | "th", Some(text)) => {
-                        end_cell(text, tables.last_mut(), &mut page);
-                        cell = None;
-                    }
-                    (name, None) if !INLINE.contains(&name) => end_line(&mut line, &mut page),
-                    // Blocks in a cell are words of their own.
-                    (name, Some(text)) if !INLINE.contains(&name) => text.push(' '),
-                    _ => {}
-                }
-                match (name.as_str(), tables.last_mut()) {
-                    ("tr", Some(table)) => table.end_row(),
-                    ("table", _) => drop(tables.pop()),
-                    _ => {}
-                }
+            Piece::Text(_) => continue,
+            Piece::Open { name, .. } => (name, true),
+            Piece::Close(name) => (name, false),
+        };
+        if UNSEEN.contains(&name.as_str()) {
+            unseen = if opens { unseen + 1 } else { unseen.saturating_sub(1) };
+        } else if unseen == 0 && !INLINE.contains(&name.as_str()) {
+            match (name.as_str(), opens) {
+                ("td" | "th", false) => page.end_cell(&std::mem::take(&mut text), &mut table),
+                // Blocks in a cell are words of their own.
+                _ if in_cell => text.push(' '),
+                _ => page.end_line(&std::mem::take(&mut text)),
             }
-            Piece::Text(text) if unseen.is_empty() => {
-                // A narrow space stands between the thousands of a number.
-                let text = text.replace('\u{202f}', "");
-                match &mut cell {
-                    Some(cell) => *cell += &text,
-                    None => line += &text,
-                }
+            match (name.as_str(), opens) {
+                ("td" | "th", _) => in_cell = opens,
+                ("table", true) => table = Table::default(),
+                ("tr", false) if table.head.is_empty() => table.head = std::mem::take(&mut table.row),
+                ("tr", false) => table.row.clear(),
+                _ => {}
             }
-            Piece::Text(_) => {}
         }
     }
-    end_line(&mut line, &mut page);
-    leave_out_tiles(&mut page);
-    page
+    page.end_line(&text);
+    page.leave_out_tiles();
+    Ok(page)
 }
 
-/// Takes out the lines beside the names of figures that do not count.
-fn leave_out_tiles(page: &mut Page) {
-    for tile in TILES {
-        let form: Vec<&str> = tile.form.split(' ').collect();
-        let is_form = |line: &String| {
-            let words: Vec<&str> = line.split(' ').collect();
-            words.len() == form.len() && words.iter().zip(&form).all(|(word, wanted)| fits(word, wanted))
-        };
-        while let Some(name) = page.lines.iter().position(|line| unmarked(line) == tile.name) {
-            let beside = [name.wrapping_sub(1), name + 1];
-            let found = beside.into_iter().find(|place| page.lines.get(*place).is_some_and(is_form));
-            page.lines[name] += ":";
-            if let Some(place) = found {
-                page.hidden.push((tile.rule, page.lines.remove(place)));
+impl Page {
+    fn end_line(&mut self, text: &str) {
+        let (text, hidden) = masked(text);
+        self.hidden.extend(hidden);
+        if !text.is_empty() {
+            self.lines.push(text);
+        }
+    }
+
+    fn end_cell(&mut self, text: &str, table: &mut Table) {
+        let (text, hidden) = masked(text);
+        if let Some(rule) = table.rule() {
+            self.hidden.push((rule, text.clone()));
+        } else if !text.is_empty() {
+            self.hidden.extend(hidden);
+            self.lines.push(text.clone());
+            self.cells.push(text.clone());
+        }
+        table.row.push(text);
+    }
+
+    /// Takes out the lines beside the names of figures that do not count.
+    fn leave_out_tiles(&mut self) {
+        for (place, rule) in RULES {
+            let Place::Tile(tile, words) = place else { continue };
+            let form = Regex::new(&format!("^{}$", form(words))).expect("a pattern");
+            while let Some(name) = self.lines.iter().position(|line| unmarked(line) == *tile) {
+                let beside = [name.wrapping_sub(1), name + 1];
+                let found = beside.into_iter().find(|at| self.lines.get(*at).is_some_and(|line| form.is_match(line)));
+                self.lines[name] += ":";
+                if let Some(at) = found {
+                    self.hidden.push((rule, self.lines.remove(at)));
+                }
             }
         }
     }
 }
 
 impl Table {
-    fn end_row(&mut self) {
-        let row = std::mem::take(&mut self.row);
-        if self.rows == 0 {
-            self.head = row;
-        }
-        self.rows += 1;
-    }
-
     /// The rule by which the next cell is left out.
     fn rule(&self) -> Option<&'static str> {
-        let by_row = self.row.last().and_then(|before| ROWS.iter().find(|(name, _)| *name == unmarked(before)));
-        let first = self.head.first().map_or("", String::as_str);
-        let of_column = |name: &String| {
-            COLUMNS.iter().find(|column| column.first.eq_ignore_ascii_case(first) && column.column == name)
-        };
-        let by_column = self.head.get(self.row.len()).filter(|_| self.rows > 0).and_then(of_column);
-        by_row.map(|(_, rule)| *rule).or_else(|| by_column.map(|column| column.rule))
+        let (before, first) = (self.row.last()?, self.head.first().map_or("", String::as_str));
+        let own = self.head.get(self.row.len()).map_or("", String::as_str);
+        rule(|place| match place {
+            Place::Beside(name) => *name == unmarked(before),
+            Place::Column(head, column) => head.eq_ignore_ascii_case(first) && *column == own,
+            _ => false,
+        })
     }
 }
 
 /// The name of a figure without the mark of an emulated one.
 fn unmarked(name: &str) -> &str {
     name.strip_suffix(MARK).unwrap_or(name)
-}
-
-fn end_cell(text: &str, table: Option<&mut Table>, page: &mut Page) {
-    let masked = masked(text);
-    let text = masked.words.join(" ");
-    match table.as_ref().and_then(|table| table.rule()) {
-        Some(rule) => page.hidden.push((rule, text.clone())),
-        None if text.is_empty() => {}
-        None => {
-            page.hidden.extend(masked.hidden);
-            page.lines.push(text.clone());
-            page.cells.push(text.clone());
-        }
-    }
-    if let Some(table) = table {
-        table.row.push(text);
-    }
-}
-
-fn end_line(line: &mut String, page: &mut Page) {
-    let masked = masked(&std::mem::take(line));
-    page.hidden.extend(masked.hidden);
-    if !masked.words.is_empty() {
-        page.lines.push(masked.words.join(" "));
-    }
 }

@@ -1,43 +1,45 @@
 //! Messages of ROS 2 in CDR, as far as our logs need them: fields of 64-bit floats, single or in lists. A message of any
 //! other form is compared by its bytes.
 
-/// A field by its name, and the numbers in it.
-pub type Field = (String, Vec<f64>);
+use std::rc::Rc;
 
-/// Fields of a message, if its schema has no others than those that are understood.
-pub fn decoded(schema: &str, message: &[u8]) -> Option<Vec<Field>> {
-    // The head says: little endian.
-    let body = message.strip_prefix(&[0, 1, 0, 0])?;
-    let mut at = 0;
-    let mut fields = Vec::new();
-    for line in schema.lines() {
-        let said = line.split('#').next()?.trim();
-        if said.is_empty() {
-            continue;
-        }
-        let (kind, name) = said.split_once(char::is_whitespace)?;
-        let count = match kind {
-            "float64" => 1,
-            "float64[]" => {
-                at = usize::next_multiple_of(at, 4);
-                let count = u32::from_le_bytes(body.get(at..at + 4)?.try_into().ok()?);
-                at += 4;
-                usize::try_from(count).ok()?
-            }
-            _ => return None,
+/// Fields by their names, and whether they are lists.
+#[derive(Debug, Clone)]
+pub struct Form(Vec<(Rc<str>, bool)>);
+
+impl Form {
+    /// What a schema says, if it has no other fields than those that are understood.
+    pub fn of(schema: &str) -> Option<Self> {
+        let lines = schema.lines().map(|line| line.split('#').next().unwrap_or_default().trim());
+        let field = |line: &str| match line.split_once(char::is_whitespace)? {
+            ("float64", name) => Some((name.trim().into(), false)),
+            ("float64[]", name) => Some((name.trim().into(), true)),
+            _ => None,
         };
-        if count > body.len() {
-            return None;
-        }
-        at = at.next_multiple_of(8);
-        let mut numbers = Vec::with_capacity(count);
-        for _ in 0..count {
-            numbers.push(f64::from_le_bytes(body.get(at..at + 8)?.try_into().ok()?));
-            at += 8;
-        }
-        fields.push((name.trim().to_owned(), numbers));
+        lines.filter(|line| !line.is_empty()).map(field).collect::<Option<_>>().map(Self)
     }
-    (at == body.len()).then_some(fields)
+
+    /// The numbers of each field of a message.
+    pub fn decoded(&self, message: &[u8]) -> Option<Vec<(Rc<str>, Vec<f64>)>> {
+        // The head says: little endian.
+        let body = message.strip_prefix(&[0, 1, 0, 0])?;
+        let mut at = 0_usize;
+        let mut fields = Vec::new();
+        for (name, is_list) in &self.0 {
+            let mut count = 1;
+            if *is_list {
+                at = at.next_multiple_of(4);
+                count = usize::try_from(u32::from_le_bytes(body.get(at..at + 4)?.try_into().ok()?)).ok()?;
+                at += 4;
+            }
+            at = at.next_multiple_of(8);
+            let end = count.checked_mul(8)?.checked_add(at)?;
+            let (numbers, _) = body.get(at..end)?.as_chunks();
+            fields.push((Rc::clone(name), numbers.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect()));
+            at = end;
+        }
+        (at == body.len()).then_some(fields)
+    }
 }
 
 #[cfg(test)]
@@ -51,9 +53,9 @@ mod tests {
         message.extend(2_u32.to_le_bytes());
         message.extend([0; 4]);
         [2.5_f64, 3.5].iter().for_each(|number| message.extend(number.to_le_bytes()));
+        let decoded = |schema: &str, message: &[u8]| Form::of(schema)?.decoded(message);
         let schema = "float64 a  # [m]\nfloat64[] b\n";
-        let wanted = vec![("a".to_owned(), vec![1.5]), ("b".to_owned(), vec![2.5, 3.5])];
-        assert_eq!(decoded(schema, &message), Some(wanted));
+        assert_eq!(decoded(schema, &message), Some(vec![("a".into(), vec![1.5]), ("b".into(), vec![2.5, 3.5])]));
         assert_eq!(decoded("float64 a\n", &message), None);
         assert_eq!(decoded("string a\n", &message), None);
         assert_eq!(decoded(schema, &message[..message.len() - 1]), None);

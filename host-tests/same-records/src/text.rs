@@ -3,53 +3,45 @@
 
 use std::ops::Range;
 
-use crate::align::{Step, steps};
-use crate::findings::Findings;
-use crate::ignored::{COLUMNS, Column};
-use crate::mask::{HIDDEN, Masked, masked};
+use crate::ignored::{Place, RULES};
+use crate::listing::{Listing, Row};
+use crate::mask::HIDDEN;
 
-/// A line that says something.
-struct Line<'a> {
-    number: usize,
-    said: &'a str,
-    masked: Masked,
-}
-
-fn lines(text: &str) -> Vec<Line<'_>> {
-    let mut table = None;
-    let mut lines = Vec::new();
+/// What a text says: a row for each line that is not empty.
+pub fn read(text: &str) -> Listing {
+    let (mut listing, mut column) = (Listing::default(), None);
     for (index, said) in text.lines().enumerate() {
-        table = under_head(said, table);
-        let hidden = table.and_then(|(end, rule)| Some((word_that_ends_at(said, end)?, rule)));
-        let masked = match hidden {
-            Some((word, rule)) => {
-                let mut rest = masked(&format!("{}{HIDDEN}{}", &said[..word.start], &said[word.end..]));
-                rest.hidden.push((rule, said[word].to_owned()));
-                rest
-            }
-            None => masked(said),
-        };
-        if !masked.words.is_empty() {
-            lines.push(Line { number: index + 1, said, masked });
+        column = under_head(said, column);
+        let mut line = said.to_owned();
+        if let Some((end, rule)) = column
+            && let Some(word) = word_that_ends_at(said, end)
+        {
+            listing.hidden.push((rule, said[word.clone()].to_owned()));
+            line.replace_range(word, HIDDEN);
+        }
+        let line = listing.masked(&line);
+        if !line.is_empty() {
+            let mut row = Row::at(format!("line {}", index + 1));
+            row.say("", line);
+            listing.rows.push(row);
         }
     }
-    lines
+    listing
 }
 
 /// Where the words of a column that is left out end, in characters, and by which rule: from the head of its table to the
 /// next empty line.
 fn under_head(line: &str, before: Option<(usize, &'static str)>) -> Option<(usize, &'static str)> {
-    if line.trim().is_empty() {
-        return None;
-    }
-    let first = line.split_whitespace().next();
-    let head = |column: &&Column| {
-        first.is_some_and(|first| first.eq_ignore_ascii_case(column.first))
-            && line.split_whitespace().any(|w| w == column.column)
+    let first = line.split_whitespace().next()?;
+    let end = |(place, rule): &(Place, &'static str)| match place {
+        Place::Column(head, column) if head.eq_ignore_ascii_case(first) => {
+            let start = line.find(&format!(" {column}"))?;
+            let words = line.split_whitespace().any(|word| word == *column);
+            words.then_some((line[..start].chars().count() + 1 + column.chars().count(), *rule))
+        }
+        _ => None,
     };
-    let Some(column) = COLUMNS.iter().find(head) else { return before };
-    let end = line.find(&format!(" {}", column.column))? + 1 + column.column.len();
-    Some((line[..end].chars().count(), column.rule))
+    RULES.iter().find_map(end).or(before)
 }
 
 /// Bytes of the figure whose last character is the one before this place.
@@ -61,69 +53,25 @@ fn word_that_ends_at(line: &str, end: usize) -> Option<Range<usize>> {
     (ends && is_figure).then_some(start..end)
 }
 
-/// Compares two texts.
-pub fn compare(old: &str, new: &str, findings: &mut Findings) {
-    let (old, new) = (lines(old), lines(new));
-    let words = |lines: &[Line<'_>]| lines.iter().map(|line| line.masked.words.clone()).collect::<Vec<_>>();
-    let steps = steps(&words(&old), &words(&new));
-    let count: usize = old.iter().map(|line| line.masked.words.len()).sum();
-    let mut differing = 0;
-    let said = |line: &Line<'_>| Some(line.said.trim().to_owned());
-    for step in steps {
-        match step {
-            Step::Pair(a, b) => {
-                differing += old[a].masked.words.len();
-                findings.differs(format!("line {}", old[a].number), said(&old[a]), said(&new[b]));
-            }
-            Step::OnlyOld(a) => {
-                differing += old[a].masked.words.len();
-                findings.differs(format!("line {}", old[a].number), said(&old[a]), None);
-            }
-            Step::OnlyNew(b) => findings.differs(format!("line {}", new[b].number), None, said(&new[b])),
-        }
-    }
-    findings.same((count - differing) as u64);
-    leave_out(
-        old.iter().flat_map(|line| &line.masked.hidden),
-        new.iter().flat_map(|line| &line.masked.hidden),
-        findings,
-    );
-}
-
-/// Counts what masking has left out on both sides.
-pub(crate) fn leave_out<'a>(
-    old: impl Iterator<Item = &'a (&'static str, String)>,
-    new: impl Iterator<Item = &'a (&'static str, String)>,
-    findings: &mut Findings,
-) {
-    let mut new = new;
-    for hidden in old {
-        findings.leave_out(hidden.0, new.next() != Some(hidden));
-    }
-    new.for_each(|hidden| findings.leave_out(hidden.0, true));
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn a_column_of_the_host_s_time_is_left_out_until_its_table_ends() {
-        let table = |error: &str, cost: &str, behind: &str| {
-            format!(
+        let lines = |error: &str, cost: &str, behind: &str| {
+            let table = format!(
                 "scheme      deflections          gap  link offset      cost  sub-steps\n\
                  reference             -            -            -    {cost}    its own\n\
                  rk4             {error}      7.11e-3      7.91e-3    {cost}          2\n\n\
                  behind it                                           {behind}\n"
-            )
+            );
+            read(&table).rows.into_iter().map(|row| row.values).collect::<Vec<_>>()
         };
-        let differing = |new: &str| {
-            let mut findings = Findings::default();
-            compare(&table("2.03e-2", "  3.45", "3.45"), new, &mut findings);
-            findings.differences.len()
-        };
-        assert_eq!(differing(&table("2.03e-2", "276.26", "3.45")), 0);
-        assert_eq!(differing(&table("2.04e-2", "  3.45", "3.45")), 1);
-        assert_eq!(differing(&table("2.03e-2", "  3.45", "3.46")), 1);
+        let old = lines("2.03e-2", "  3.45", "3.45");
+        let differing = |new: Vec<_>| old.iter().zip(&new).filter(|(old, new)| old != new).count();
+        assert_eq!(differing(lines("2.03e-2", "276.26", "3.45")), 0);
+        assert_eq!(differing(lines("2.04e-2", "  3.45", "3.45")), 1);
+        assert_eq!(differing(lines("2.03e-2", "  3.45", "3.46")), 1);
     }
 }

@@ -1,19 +1,24 @@
-//! Walks two trees side by side and hands each pair of files to those who know their kind. Files on one side only are
+//! Walks two trees side by side and has each pair of files read by those who know their kind. Files on one side only are
 //! differences.
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use walkdir::WalkDir;
+
 use crate::findings::Findings;
+use crate::listing::{self, Listing, Row};
 use crate::{csv, html, json, log, text, xml};
 
 /// What counts where it is not the same for everybody.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, clap::Args)]
 pub struct Options {
-    /// What counts on a page.
+    /// What counts on HTML pages
+    #[arg(long, value_name = "LEVEL", value_enum, default_value_t)]
     pub html: html::Level,
-    /// Pages of the new tree may have more than those of the old one.
+    /// Pages of NEW may have more figures and cells than those of OLD, but none may be gone
+    #[arg(long)]
     pub html_may_grow: bool,
 }
 
@@ -55,17 +60,11 @@ fn read(path: &Path) -> Result<Vec<u8>, String> {
 
 /// All files below a folder, relative to it.
 fn files(folder: &Path) -> Result<BTreeSet<PathBuf>, String> {
-    let (mut found, mut open) = (BTreeSet::new(), vec![PathBuf::new()]);
-    while let Some(place) = open.pop() {
-        let unreadable = |error: std::io::Error| format!("{}: {error}", folder.join(&place).display());
-        for entry in fs::read_dir(folder.join(&place)).map_err(unreadable)? {
-            let entry = entry.map_err(unreadable)?;
-            let path = place.join(entry.file_name());
-            if folder.join(&path).is_dir() {
-                open.push(path);
-            } else {
-                found.insert(path);
-            }
+    let mut found = BTreeSet::new();
+    for entry in WalkDir::new(folder).follow_links(true) {
+        let entry = entry.map_err(|error| error.to_string())?;
+        if !entry.file_type().is_dir() {
+            found.insert(entry.path().strip_prefix(folder).unwrap_or(entry.path()).to_owned());
         }
     }
     Ok(found)
@@ -74,48 +73,49 @@ fn files(folder: &Path) -> Result<BTreeSet<PathBuf>, String> {
 /// Kinds of files that are text whatever is in them.
 const TEXTS: [&str; 11] = ["txt", "md", "log", "toml", "stdout", "stderr", "exit", "command", "from", "rs", "yaml"];
 
-fn compare_files(name: &str, [old, new]: [&[u8]; 2], options: Options, findings: &mut Findings) {
+fn compare_files(name: &str, files: [&[u8]; 2], options: Options, findings: &mut Findings) {
     findings.begin(name);
     let kind = Path::new(name).extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    // Two that cannot be read, as a log that is cut off, may still be the same.
+    let listings = listings(&kind, files, options).unwrap_or_else(|why| bytes(files, &why));
+    listing::compare(listings.each_ref(), findings);
+}
+
+/// What two files of a kind say; fails, with what is before the place of a byte, if one is not of that kind.
+fn listings(kind: &str, files: [&[u8]; 2], options: Options) -> Result<[Listing; 2], String> {
+    let both = |[old, new]: [Result<Listing, String>; 2]| -> Result<_, String> { Ok([old?, new?]) };
     if kind == "mcap" {
-        if let Err(why) = log::compare(old, new, findings) {
-            // Two that are cut off may still be the same.
-            compare_bytes(old, new, &format!("a log that cannot be read ({why})"), findings);
-        }
-        return;
+        return both(files.map(log::read)).map_err(|why| format!("a log that cannot be read ({why}), "));
     }
-    let (Ok(a), Ok(b)) = (std::str::from_utf8(old), std::str::from_utf8(new)) else {
-        return compare_bytes(old, new, "", findings);
-    };
-    match kind.as_str() {
-        "json" => compare_json(a, b, findings),
-        "csv" => csv::compare(a, b, findings),
-        "html" | "htm" => html::compare(a, b, options.html, options.html_may_grow, findings),
-        "xml" => xml::compare(a, b, findings),
+    let [Ok(old), Ok(new)] = files.map(std::str::from_utf8) else { return Err(String::new()) };
+    let texts = [old, new];
+    match kind {
         // A command may have been asked for JSON in place of its text.
-        "stdout" if a.trim_start().starts_with('{') => compare_json(a, b, findings),
-        kind if TEXTS.contains(&kind) => text::compare(a, b, findings),
-        _ => compare_bytes(old, new, "", findings),
+        "json" | "stdout" if kind == "json" || old.trim_start().starts_with('{') => Ok(json_or_text(texts)),
+        "csv" => Ok(csv::read(texts)),
+        "html" | "htm" => html::read(texts, options.html, options.html_may_grow)
+            .map_err(|why| format!("a page that cannot be read ({why}), ")),
+        "xml" => both(texts.map(xml::read)).map_err(|why| format!("XML that cannot be read ({why}), ")),
+        kind if TEXTS.contains(&kind) => Ok(texts.map(text::read)),
+        _ => Err(String::new()),
     }
 }
 
 /// What is no JSON is a text.
-fn compare_json(old: &str, new: &str, findings: &mut Findings) {
-    match (serde_json::from_str(old), serde_json::from_str(new)) {
-        (Ok(old), Ok(new)) => json::compare(&old, &new, findings),
-        _ => text::compare(old, new, findings),
+fn json_or_text(texts: [&str; 2]) -> [Listing; 2] {
+    match texts.map(serde_json::from_str) {
+        [Ok(old), Ok(new)] => [old, new].map(|document| json::read(&document)),
+        _ => texts.map(text::read),
     }
 }
 
-fn compare_bytes(old: &[u8], new: &[u8], what: &str, findings: &mut Findings) {
-    if old == new {
-        return findings.same(1);
-    }
-    let at = old.iter().zip(new).take_while(|(a, b)| a == b).count();
-    let said = |bytes: &[u8]| {
-        let rest: &[u8] = &bytes[at..bytes.len().min(at + 16)];
-        Some(format!("{} bytes, here {:?}", bytes.len(), String::from_utf8_lossy(rest)))
-    };
-    let place = if what.is_empty() { format!("byte {at}") } else { format!("{what}, byte {at}") };
-    findings.differs(place, said(old), said(new));
+/// The bytes of two files from the first that differs.
+fn bytes(files: [&[u8]; 2], why: &str) -> [Listing; 2] {
+    let at = files[0].iter().zip(files[1]).take_while(|(old, new)| old == new).count();
+    files.map(|file| {
+        let here = file[at..file.len().min(at + 16)].escape_ascii();
+        let mut row = Row::at(format!("{why}byte {at}"));
+        row.say("", format!("{} bytes, here {here}", file.len()));
+        Listing::of(row)
+    })
 }

@@ -1,69 +1,39 @@
-//! XML such as JUnit's: every attribute and every text, with the way to its element, in the document's order.
+//! XML such as JUnit's: every element, attribute and text, with the way to it, in the document's order.
 
-use crate::align::{Step, steps};
-use crate::findings::Findings;
-use crate::ignored::ignored_attribute;
+use crate::ignored::{Place, rule};
+use crate::listing::{Listing, Row};
 use crate::markup::{Piece, pieces};
-use crate::mask::masked;
 
-/// Where something stands, and what: an element itself has an empty value.
-type Entry = (String, String);
-
-/// What a rule has left out.
-type Hidden = (&'static str, String);
-
-/// Compares two documents.
-pub fn compare(old: &str, new: &str, findings: &mut Findings) {
-    let ((old, old_hidden), (new, new_hidden)) = (entries(old), entries(new));
-    let steps = steps(&old, &new);
-    let value = |(_, value): &Entry| Some(value.clone());
-    let lost = steps.iter().filter(|step| !matches!(step, Step::OnlyNew(_))).count();
-    findings.same((old.len() - lost) as u64);
-    for step in steps {
-        match step {
-            Step::Pair(a, b) if old[a].0 == new[b].0 => findings.differs(&old[a].0, value(&old[a]), value(&new[b])),
-            Step::Pair(a, b) => {
-                findings.differs(&old[a].0, value(&old[a]), None);
-                findings.differs(&new[b].0, None, value(&new[b]));
-            }
-            Step::OnlyOld(a) => findings.differs(&old[a].0, value(&old[a]), None),
-            Step::OnlyNew(b) => findings.differs(&new[b].0, None, value(&new[b])),
-        }
-    }
-    crate::text::leave_out(old_hidden.iter(), new_hidden.iter(), findings);
-}
-
-fn entries(document: &str) -> (Vec<Entry>, Vec<Hidden>) {
-    let mut way: Vec<String> = Vec::new();
-    let (mut entries, mut hidden) = (Vec::new(), Vec::new());
-    for piece in pieces(document) {
+/// What a document says; fails if it is none.
+pub fn read(document: &str) -> Result<Listing, String> {
+    let (mut way, mut listing) = (Vec::new(), Listing::default());
+    let say = |listing: &mut Listing, place: String, value: String| {
+        let mut row = Row::default();
+        row.say(place, value);
+        listing.rows.push(row);
+    };
+    for piece in pieces(document)? {
         match piece {
-            Piece::Open { name, attributes, empty } => {
-                let own = attributes.get("name").map_or(name.clone(), |own| format!("{name} `{own}`"));
-                way.push(own);
+            Piece::Open { name, attributes } => {
+                let own = attributes.iter().find(|(key, _)| key == "name");
+                way.push(own.map_or(name.clone(), |(_, own)| format!("{name} `{own}`")));
                 let place = way.join("/");
-                entries.push((place.clone(), String::new()));
+                say(&mut listing, place.clone(), String::new());
                 for (key, value) in attributes {
-                    match ignored_attribute(&key) {
-                        Some(rule) => hidden.push((rule, value)),
-                        None => entries.push((format!("{place} @{key}"), value)),
+                    match rule(|place| matches!(place, Place::Attribute(name) if *name == key)) {
+                        Some(rule) => listing.hidden.push((rule, value)),
+                        None => say(&mut listing, format!("{place} @{key}"), value),
                     }
                 }
-                if empty {
-                    way.pop();
-                }
             }
-            Piece::Close(_) => {
-                way.pop();
-            }
+            Piece::Close(_) => drop(way.pop()),
             Piece::Text(text) => {
-                let masked = masked(&text);
-                hidden.extend(masked.hidden);
-                if !masked.words.is_empty() {
-                    entries.push((way.join("/"), masked.words.join(" ")));
+                let text = listing.masked(&text);
+                if !text.is_empty() {
+                    say(&mut listing, way.join("/"), text);
                 }
             }
         }
     }
-    (entries, hidden)
+    Ok(listing)
 }

@@ -1,15 +1,15 @@
 //! The core and the reference through the same scenario, and how far they are apart. Bounds are the tests' business;
 //! neither side sees the other.
 
-use std::array;
-
 use host_tests::tolerance::Bound;
 use model_core::gears::design::{Effort, design_scheme};
-use model_core::gears::{Model, Relative, Scales, Scheme, State, Tables, Torques};
+use model_core::gears::{Model, Scheme, Tables, Torques};
 use model_core::numbers::Real;
+use parameters::JointParameters;
 use reference::joint::{Observation, Start};
 use reference::scenarios;
 use reference::scenarios::Scenario;
+use simulation::sim::start::core_state;
 
 /// What the core and the reference both say at one moment: mesh deflections, gap, link less rigid body.
 struct Moment {
@@ -32,29 +32,12 @@ impl Errors {
     }
 }
 
-fn state<T: Real, const N: usize>(tables: &Tables<T, N>, scenario: &Scenario) -> State<T, N> {
-    let Start::Relative(start) = &scenario.start else { return State::REST };
-    let length = scenario.joint.characteristic_length;
-    let speed = length * Scales::new(&scenario.joint).frequency;
-    let relative = |planets: &[f64], gap: f64, wind_up: f64, unit: f64| Relative {
-        planets: array::from_fn(|i| T::from_f64(planets[i] / unit)),
-        gap: T::from_f64(gap / unit),
-        wind_up: T::from_f64(wind_up / unit),
-    };
-    State::from_deflections(
-        tables,
-        &relative(&start.sun_planet, start.gap, start.wind_up, length),
-        &relative(&start.sun_planet_rate, start.gap_rate, start.wind_up_rate, speed),
-        T::from_f64(start.rigid_speed),
-    )
-}
-
 /// The core through a scenario, sampled as the reference is.
 fn follow<T: Real, const N: usize>(scenario: &Scenario, scheme: Scheme, effort: Effort) -> Vec<Moment> {
     let tables: Tables<T, N> =
         design_scheme(&scenario.joint, scenario.tick_rate, scheme, effort).expect("a scenario's joint is sound");
     let mut model = Model::new(&tables);
-    model.set_state(state(&tables, scenario));
+    model.set_state(core_state(&scenario.joint, &tables, &scenario.start));
     let mut moments = Vec::new();
     for tick in 0..=scenario.ticks {
         if tick % scenario.sample_every == 0 {
@@ -102,6 +85,32 @@ pub fn errors<T: Real, const N: usize>(scenario: &Scenario, scheme: Scheme, effo
         gap: relative(&|expected| expected.gap, &|moment| moment.gap),
         link: relative(&|expected| expected.link_offset, &|moment| moment.link_offset),
     }
+}
+
+/// RMS over all mesh deflections at the reference's moments, over b_c.
+pub fn rms_error<const N: usize>(
+    joint: &JointParameters,
+    tables: &Tables<f64, N>,
+    start: &Start,
+    torques: (f64, f64),
+    expected: &[Observation],
+) -> f64 {
+    let mut model = Model::new(tables);
+    model.set_state(core_state(joint, tables, start));
+    let mut now = 0;
+    let mut squares = 0.0;
+    for seen in expected {
+        let ticks = (seen.time * f64::from(tables.tick_rate)).round() as u32;
+        for _ in now..ticks {
+            model.step(Torques { drive: torques.0, load: torques.1 });
+        }
+        now = ticks;
+        let found = model.outputs().deflections;
+        for (found, right) in found.iter().flatten().zip(seen.deflections.iter().flatten()) {
+            squares += ((found - right) / joint.characteristic_length).powi(2);
+        }
+    }
+    (squares / (2 * N * expected.len()) as f64).sqrt()
 }
 
 /// Holds f32 and f64 against a bound.

@@ -1,7 +1,13 @@
-//! The core: against the independent reference, against the paper's equations written out, and by its own promises.
+//! The core: against the independent reference, against closed forms and the paper's equations written out, and by its own
+//! promises.
 
 mod comparison;
+mod convergence;
 mod equations;
+mod invariants;
+mod leaps;
+mod oracles;
 mod promises;
 mod range;
 mod scenarios;
+mod table_sizes;

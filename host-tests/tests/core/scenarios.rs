@@ -8,7 +8,7 @@ use reference::joint::{RelativeState, Start};
 use reference::scenarios;
 use reference::scenarios::Scenario;
 
-use crate::comparison::{check, errors};
+use super::comparison::{check, errors};
 
 fn named(name: &str) -> Scenario {
     let all = scenarios::motions();

@@ -1,12 +1,12 @@
 //! Encoders that fail and samples that make no sense: found, said, bounded, recovered from.
 
 use host_tests::tolerance::observer::{FAILURE_FOUND, FAILURE_FOUND_AT_SPEED, GAP_COARSE, LOST_COUNTS_FOUND};
-use model_core::observer::{Doubt, Estimates, MAPPED, Observer, Samples, Source};
+use model_core::observer::{Doubt, Estimates, MAPPED, Samples, Source};
 use reference::drive_train::Disturbance;
 use scenario::rig::Moment;
 
 use crate::motion::{Profile, uniform};
-use crate::replay::{replay, samples};
+use crate::replay::samples;
 use crate::trial::{Encoders, Trial};
 
 /// A recording of Q1 that turns all the time, with its trial.
@@ -29,12 +29,11 @@ fn turns_by(log: &[Moment], from: f64, speed: f64) -> usize {
 
 /// Source after every period.
 fn sources(trial: &Trial, log: &[Moment]) -> Vec<Source> {
-    let mut sources = Vec::new();
-    replay::<f64, MAPPED>(&trial.setup.joint, &trial.tables(), &trial.settings, log, 1.0, |_, _, estimates| {
+    let source = |estimates: &Estimates<f64>| {
         assert!(estimates.gap.value.is_finite() && estimates.gap.variance.is_finite());
-        sources.push(estimates.source);
-    });
-    sources
+        estimates.source
+    };
+    trial.said(log, |_, _| {}).iter().map(source).collect()
 }
 
 #[test]
@@ -115,14 +114,8 @@ fn noise_glitches_blows_coarse_counts_and_late_or_lost_readings_are_no_failure()
         }
     };
     for (name, spoil) in [("noise", noisy), ("glitches", glitches), ("lost", losing), ("late", late)] {
-        let tables = trial.tables();
-        let mut observer = Observer::<f64, MAPPED>::new(&tables);
-        for (k, moment) in log.iter().enumerate() {
-            let mut samples = samples(&trial.settings, moment, k);
-            spoil(k, &mut samples);
-            let source = observer.step(&samples).source;
-            assert!(k < 10 || source == Source::Both, "a false alarm at period {k} under {name}");
-        }
+        let alarm = trial.said(&log, spoil)[10..].iter().position(|estimates| estimates.source != Source::Both);
+        assert_eq!(alarm, None, "a false alarm so many periods behind the tenth under {name}");
     }
     let coarse = Trial::new("q1", "gravity", Encoders::Bits(14, 12), Some(40e-6), 25).lasting(3.0);
     let sources = sources(&coarse, &coarse.record());
@@ -156,7 +149,7 @@ fn an_output_encoder_that_loses_counts_never_makes_a_width_less_than_none() {
         moment.output_counts -= (0.01 * (moment.output_counts - start) as f64).round() as i64;
     });
     let (mut least, mut found) = (f64::INFINITY, false);
-    replay::<f64, MAPPED>(&trial.setup.joint, &trial.tables(), &trial.settings, &log, 1.0, |k, _, estimates| {
+    trial.replay::<MAPPED>(&log, 1.0, |k, _, estimates| {
         least = least.min(estimates.half_backlash.value);
         found |= k > 15_000 && estimates.source != Source::Both;
     });
@@ -181,17 +174,7 @@ fn an_output_encoder_that_makes_the_gap_narrower_is_given_up_for_teeth_do_not_gr
 /// Runs the observer with samples that a test may spoil.
 fn spoilt(spoil: impl Fn(usize, &mut Samples<f64>)) -> (Trial, Vec<Moment>, Vec<Estimates<f64>>) {
     let (trial, log) = turning();
-    let tables = trial.tables();
-    let mut observer = Observer::<f64, MAPPED>::new(&tables);
-    let said = log
-        .iter()
-        .enumerate()
-        .map(|(period, moment)| {
-            let mut samples = samples(&trial.settings, moment, period);
-            spoil(period, &mut samples);
-            *observer.step(&samples)
-        })
-        .collect();
+    let said = trial.said(&log, spoil);
     (trial, log, said)
 }
 

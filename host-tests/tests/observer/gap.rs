@@ -3,10 +3,9 @@
 use host_tests::tolerance::observer::*;
 use model_core::observer::{Estimate, MAPPED, PLAIN};
 use reference::drive_train::Disturbance;
-use scenario::rig::Moment;
 
 use crate::motion::growing;
-use crate::replay::{Figures, replay, with_encoders};
+use crate::replay::{Figures, with_encoders};
 use crate::trial::{Encoders, Trial};
 
 /// Half-backlash of the trials with a seed each [m].
@@ -15,25 +14,14 @@ const WIDTHS: [(u64, f64); 3] = [(1, 20e-6), (2, 40e-6), (3, 80e-6)];
 /// Figures of a Q1 trial with the map, once a second of contact has been seen.
 fn figures(motion: &str, encoders: Encoders, half_backlash: f64, seed: u64) -> Figures {
     let trial = Trial::new("q1", motion, encoders, Some(half_backlash), seed).lasting(4.5);
-    figures_of(&trial, &trial.record())
-}
-
-fn figures_of(trial: &Trial, log: &[Moment]) -> Figures {
-    replay::<f64, MAPPED>(&trial.setup.joint, &trial.tables(), &trial.settings, log, 2.0, |_, _, _| {})
+    trial.figures(&trial.record(), 2.0)
 }
 
 #[test]
 fn ideal_encoders_give_the_gap_to_half_a_percent() {
     for (seed, half_backlash) in WIDTHS {
         let trial = Trial::new("q1", "inertia", Encoders::Ideal, Some(half_backlash), seed).lasting(4.0);
-        let figures = replay::<f64, PLAIN>(
-            &trial.setup.joint,
-            &trial.tables(),
-            &trial.settings,
-            &trial.record(),
-            1.5,
-            |_, _, _| {},
-        );
+        let figures = trial.replay::<PLAIN>(&trial.record(), 1.5, |_, _, _| {});
         GAP_IDEAL.check(figures.gap);
         CONTACT_WRONG.check(1.0 - figures.contact);
     }
@@ -65,7 +53,7 @@ fn real_encoders_give_gap_contact_torque_and_width() {
 fn finer_encoders_do_better_and_slow_motion_against_friction_is_enough() {
     GAP_FINE.check(figures("gravity", Encoders::Bits(16, 18), 40e-6, 4).gap);
     let slow = Trial::new("q1", "slow", Encoders::Preset, Some(40e-6), 5).lasting(6.0);
-    let figures = figures_of(&slow, &slow.record());
+    let figures = slow.figures(&slow.record(), 2.0);
     GAP_COARSE.check(figures.gap);
     WIDTH.check(figures.width);
 }
@@ -74,7 +62,7 @@ fn finer_encoders_do_better_and_slow_motion_against_friction_is_enough() {
 fn two_stages_and_a_stiff_joint_are_seen_as_well() {
     for (name, seed) in [("d2", 6), ("l1", 7)] {
         let trial = Trial::new(name, "gravity", Encoders::Preset, None, seed).lasting(3.0);
-        let figures = figures_of(&trial, &trial.record());
+        let figures = trial.figures(&trial.record(), 2.0);
         println!("{name}: {figures:?}");
         GAP_COARSE.check(figures.gap);
         WIDTH.check(figures.width);
@@ -88,14 +76,9 @@ fn the_error_maps_are_worth_a_factor_and_hold_when_the_range_grows() {
     let mut trial = Trial::new("q1", "inertia", Encoders::Preset, Some(40e-6), 8).lasting(5.0);
     trial.setup.motion = growing(trial.setup.motion, 2.5);
     let log = trial.record();
-    let figures = |from| {
-        let tables = trial.tables();
-        replay::<f64, MAPPED>(&trial.setup.joint, &tables, &trial.settings, &log, from, |_, _, _| {}).gap
-    };
-    GAP_COARSE.check(figures(2.4));
-    let tables = trial.tables();
-    let plain = replay::<f64, PLAIN>(&trial.setup.joint, &tables, &trial.settings, &log, 1.5, |_, _, _| {});
-    WITHOUT_MAP.check(figures(1.5) / plain.gap);
+    GAP_COARSE.check(trial.figures(&log, 2.4).gap);
+    let plain = trial.replay::<PLAIN>(&log, 1.5, |_, _, _| {});
+    WITHOUT_MAP.check(trial.figures(&log, 1.5).gap / plain.gap);
 }
 
 #[test]
@@ -109,7 +92,7 @@ fn a_harmonic_that_is_not_in_the_map_costs_little() {
         let error = 0.02_f64.to_radians() * (4.0 * moment.motor[0] + 1.0).sin();
         moment.motor_counts += (error / count).round() as i64;
     }
-    FOURTH_HARMONIC.check(figures_of(&trial, &dirty).gap - figures_of(&trial, &clean).gap);
+    FOURTH_HARMONIC.check(trial.figures(&dirty, 2.0).gap - trial.figures(&clean, 2.0).gap);
 }
 
 #[test]
@@ -120,10 +103,7 @@ fn an_inertia_that_is_wrong_is_learnt_from_landings() {
         let mut trial = right.clone();
         trial.told.link_inertia *= wrong;
         let mut learnt = Estimate::default();
-        let (tables, settings) = (trial.tables(), &trial.settings);
-        let figures = replay::<f64, MAPPED>(&trial.setup.joint, &tables, settings, &log, 2.0, |_, _, estimates| {
-            learnt = estimates.link_inertia_ratio;
-        });
+        let figures = trial.replay::<MAPPED>(&log, 2.0, |_, _, estimates| learnt = estimates.link_inertia_ratio);
         GAP_COARSE.check(figures.gap);
         LOAD_TORQUE_WRONG_INERTIA.check(figures.load_torque);
         LINK_INERTIA.check((learnt.value * wrong - 1.0).abs());
@@ -141,8 +121,7 @@ fn a_link_that_is_pushed_time_after_time_says_nothing_of_its_inertia() {
         torque: if n % 3 == 1 { -0.3 * rated } else { 0.3 * rated },
     };
     trial.setup.disturbances = (0..12).map(push).collect();
-    let (tables, settings) = (trial.tables(), &trial.settings);
-    replay::<f64, MAPPED>(&trial.setup.joint, &tables, settings, &trial.record(), 1.0, |_, _, estimates| {
+    trial.replay::<MAPPED>(&trial.record(), 1.0, |_, _, estimates| {
         let learnt = estimates.link_inertia_ratio;
         assert!(!learnt.valid && (learnt.value - 1.0).abs() < 0.1, "{learnt:?}");
     });
@@ -155,7 +134,7 @@ fn a_torque_bias_is_read_inside_the_gap() {
         let mut log = trial.record();
         let bias = part * trial.setup.train.surroundings.torque_limit;
         log.iter_mut().for_each(|moment| moment.command += bias);
-        let figures = figures_of(&trial, &log);
+        let figures = trial.figures(&log, 2.0);
         GAP_WITH_BIAS.check(figures.gap);
         assert_eq!(figures.missed, 0, "a landing was missed");
     }

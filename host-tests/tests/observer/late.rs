@@ -2,7 +2,7 @@
 //! for; and an encoder that comes back. Those that fail otherwise are left to `faults`.
 
 use host_tests::tolerance::observer::GAP_WORST;
-use model_core::observer::{Doubt, Estimates, MAPPED, Observer, Samples, Source};
+use model_core::observer::{Doubt, Samples, Source};
 use scenario::rig::Moment;
 
 use crate::motion::Profile;
@@ -11,18 +11,6 @@ use crate::trial::{Encoders, Trial};
 
 /// When readings begin to be late, and when they are on time again [periods].
 const LATE: core::ops::Range<usize> = 15_000..20_000;
-
-/// What the observer says of a recording with samples that a test may spoil.
-fn said(trial: &Trial, log: &[Moment], spoil: impl Fn(usize, &mut Samples<f32>)) -> Vec<Estimates<f32>> {
-    let tables = trial.tables();
-    let mut observer = Observer::<f32, MAPPED>::new(&tables);
-    let step = |(period, moment): (usize, &Moment)| {
-        let mut samples = samples(&trial.settings, moment, period);
-        spoil(period, &mut samples);
-        *observer.step(&samples)
-    };
-    log.iter().enumerate().map(step).collect()
-}
 
 /// A recording of a joint to and fro, about inertia alone.
 fn to_and_fro(name: &str, profile: Profile) -> (Trial, Vec<Moment>) {
@@ -43,7 +31,7 @@ fn late_readings_of_the_output_say_where_the_gap_is_now() {
         let (trial, log) = to_and_fro(name, Profile::Sine(0.5, 1.0));
         let gap = 4.0 * trial.setup.joint.sun_planet.half_backlash[0];
         for late in [2, 5, 10] {
-            let said = said(&trial, &log, |period, samples| {
+            let said = trial.said::<f32>(&log, |period, samples| {
                 if LATE.contains(&period) {
                     samples.output = ago(&trial, &log, period, late).output;
                 }
@@ -60,7 +48,7 @@ fn late_readings_of_the_output_say_where_the_gap_is_now() {
 #[test]
 fn readings_of_the_output_that_are_too_old_count_as_lost() {
     let (trial, log) = to_and_fro("q1", Profile::Sine(0.5, 1.0));
-    let said = said(&trial, &log, |period, samples| {
+    let said = trial.said::<f32>(&log, |period, samples| {
         if LATE.contains(&period) {
             samples.output = ago(&trial, &log, period, 30).output;
         }
@@ -74,7 +62,7 @@ fn readings_of_the_output_that_are_too_old_count_as_lost() {
 fn late_readings_of_the_motor_are_bounded_and_not_vouched_for() {
     for (name, late) in [("q1", 3), ("l1", 3), ("s1", 3), ("l1", 10), ("l1", 30)] {
         let (trial, log) = to_and_fro(name, Profile::Sine(0.5, 1.0));
-        let said = said(&trial, &log, |period, samples| {
+        let said = trial.said::<f32>(&log, |period, samples| {
             if LATE.contains(&period) {
                 samples.motor = ago(&trial, &log, period, late).motor;
             }
@@ -98,7 +86,7 @@ fn lost_readings_of_the_motor_cost_little() {
         let gap = 4.0 * trial.setup.joint.sun_planet.half_backlash[0];
         // Each ninth, and after each seventieth one more.
         let lost = |period: usize| LATE.contains(&period) && (period.is_multiple_of(9) || period % 70 < 2);
-        let said = said(&trial, &log, |period, samples| {
+        let said = trial.said::<f32>(&log, |period, samples| {
             if lost(period) {
                 let before = (0..period).rev().find(|before| !lost(*before)).unwrap_or(0);
                 samples.motor = ago(&trial, &log, period, period - before).motor;
@@ -118,7 +106,7 @@ fn an_output_encoder_that_turns_again_is_taken_back_though_teeth_are_hardly_pres
     let (trial, mut log) = to_and_fro("l1", Profile::Sine(0.2, 1.0));
     let counts = log[13_000].output_counts;
     log[13_000..20_000].iter_mut().for_each(|moment| moment.output_counts = counts);
-    let said = said(&trial, &log, |_, _| {});
+    let said = trial.said::<f32>(&log, |_, _| {});
     assert!(matches!(said[19_999].source, Source::MotorOnly(_)), "it is given up");
     let back = said[20_000..].iter().position(|estimates| estimates.source == Source::Both);
     println!("taken back after {back:?} periods");

@@ -2,14 +2,14 @@
 //! transmission error is larger than their gap. Figures of ordinary joints are in `gap`.
 
 use host_tests::tolerance::observer::*;
-use model_core::observer::{MAPPED, Observer, Source};
+use model_core::observer::{MAPPED, Source};
 use model_core::virtual_joint::fault::{Fault, FaultKind};
 use reference::drive_train::Disturbance;
 use scenario::file::OnHost;
 
 use crate::motion::Profile;
 use crate::presets::with_backlash;
-use crate::replay::{Figures, replay, samples};
+use crate::replay::Figures;
 use crate::trial::{Encoders, Trial};
 
 #[test]
@@ -18,12 +18,12 @@ fn teeth_that_wear_are_learnt_anew_and_the_encoder_is_kept() {
         let mut trial = Trial::new("q1", "inertia", Encoders::Preset, Some(40e-6), seed).lasting(4.5);
         let kind = FaultKind::Other(OnHost::GrownBacklash(worn));
         trial.setup.faults = vec![Fault { start: 2.0, end: f64::INFINITY, seed: (), kind }];
+        let log = trial.record();
+        // What is learnt is held against the teeth as they are then.
+        trial.setup.joint = with_backlash(&trial.setup.joint, worn);
         let mut kept = true;
-        let joint = with_backlash(&trial.setup.joint, worn);
         let figures =
-            replay::<f64, MAPPED>(&joint, &trial.tables(), &trial.settings, &trial.record(), 3.0, |k, _, estimates| {
-                kept &= k < 10 || estimates.source == Source::Both
-            });
+            trial.replay::<MAPPED>(&log, 3.0, |k, _, estimates| kept &= k < 10 || estimates.source == Source::Both);
         println!("{worn}: {figures:?}");
         GAP_COARSE.check(figures.gap);
         WIDTH.check(figures.width);
@@ -37,14 +37,7 @@ fn teeth_that_touch_a_flank_for_some_milliseconds_on_their_way_show_the_width() 
     // round a second later.
     for (half_backlash, seed) in [(56.744_186e-6, 657), (70e-6, 644), (63.33e-6, 646)] {
         let trial = Trial::new("q1", "slow", Encoders::Preset, Some(half_backlash), seed).lasting(2.5);
-        let figures = replay::<f64, MAPPED>(
-            &trial.setup.joint,
-            &trial.tables(),
-            &trial.settings,
-            &trial.record(),
-            2.0,
-            |_, _, _| {},
-        );
+        let figures = trial.figures(&trial.record(), 2.0);
         println!("{half_backlash}: {figures:?}");
         WIDTH_AFTER.check(figures.width_after);
     }
@@ -62,18 +55,10 @@ fn a_link_that_is_pushed_from_flank_to_flank_shows_the_width_though_it_never_res
         trial.setup.train.surroundings.cogging_torque = 0.0;
         let torque = 0.125 * trial.setup.joint.rated_output_torque;
         trial.setup.disturbances = vec![Disturbance::Pulse { start: 0.2, duration: 20e-3, torque }];
-        let log = trial.record();
         let mut known = 0;
-        let figures = replay::<f64, MAPPED>(
-            &trial.setup.joint,
-            &trial.tables(),
-            &trial.settings,
-            &log,
-            0.5,
-            |_, _, estimates| {
-                known += usize::from(estimates.half_backlash.valid);
-            },
-        );
+        let figures = trial.replay::<MAPPED>(&trial.record(), 0.5, |_, _, estimates| {
+            known += usize::from(estimates.half_backlash.valid);
+        });
         println!("{half_backlash}: {figures:?}, known for {known} periods");
         WIDTH_IN_PASSING.check(figures.width.abs());
         assert!(known > 2000, "{half_backlash} was not learnt in passing");
@@ -84,8 +69,7 @@ fn a_link_that_is_pushed_from_flank_to_flank_shows_the_width_though_it_never_res
 /// motion takes.
 fn under_a_wide_bias(mut trial: Trial, from: f64) -> Figures {
     trial.settings.torque_uncertainty = 0.1 * trial.settings.torque_limit;
-    let log = trial.record();
-    replay::<f64, MAPPED>(&trial.setup.joint, &trial.tables(), &trial.settings, &log, from, |_, _, _| {})
+    trial.figures(&trial.record(), from)
 }
 
 #[test]
@@ -119,10 +103,7 @@ fn a_joint_that_hardly_feels_its_load_shows_the_width_by_where_its_link_goes() {
 #[test]
 fn teeth_whose_error_is_larger_than_their_gap_are_not_vouched_for() {
     let trial = Trial::new("s1", "gravity", Encoders::Preset, None, 36).lasting(4.0);
-    let tables = trial.tables();
-    let mut observer = Observer::<f64, MAPPED>::new(&tables);
-    for (k, moment) in trial.record().iter().enumerate() {
-        let estimates = observer.step(&samples(&trial.settings, moment, k));
+    for (k, estimates) in trial.said::<f64>(&trial.record(), |_, _| {}).iter().enumerate() {
         assert!(k < 20_000 || !estimates.contact_valid, "contact at {k} would be over before anyone could act on it");
     }
 }

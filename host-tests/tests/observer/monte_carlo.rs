@@ -2,7 +2,7 @@
 
 use model_core::observer::{MAPPED, Source};
 
-use crate::replay::{Figures, replay, with_encoders};
+use crate::replay::{Figures, with_encoders};
 use crate::trial::{Encoders, MOTIONS, Trial};
 
 /// First seed of the long run: none that anything was chosen on.
@@ -25,9 +25,7 @@ fn worst_of_many_seeds() {
             for (encoders, worst) in kinds.into_iter().zip(&mut worst) {
                 let trial = Trial::new("q1", motion, encoders, half_backlash, seed);
                 let log = with_encoders(&log, &trial.setup.train);
-                let tables = trial.tables();
-                let (joint, settings) = (&trial.setup.joint, &trial.settings);
-                let figures = replay::<f64, MAPPED>(joint, &tables, settings, &log, 2.0, |_, _, estimates| {
+                let figures = trial.replay::<MAPPED>(&log, 2.0, |_, _, estimates| {
                     alarms += usize::from(estimates.source != Source::Both);
                 });
                 *worst = worst.worse(&figures);

@@ -3,7 +3,6 @@
 use host_tests::tolerance::observer::MOTOR_ONLY_HONESTY;
 use model_core::observer::{Doubt, MAPPED, Source};
 
-use crate::replay::replay;
 use crate::trial::{Encoders, Trial};
 
 /// A trial without an output encoder, told a width right to 2 %.
@@ -21,18 +20,16 @@ fn the_variance_is_honest_and_long_separations_are_refused() {
     for (motion, seed) in [("inertia", 31), ("gravity", 32)] {
         let trial = trial(motion, seed);
         let log = trial.record();
-        let tables = trial.tables();
         let (mut open_for, mut refused, mut long) = (0, 0, 0);
-        let figures =
-            replay::<f64, MAPPED>(&trial.setup.joint, &tables, &trial.settings, &log, 1.0, |_, moment, estimates| {
-                assert_eq!(estimates.source, Source::MotorOnly(Doubt::Absent));
-                assert!(estimates.half_backlash.variance > 1e-14, "the width never counts as known for sure");
-                open_for = if moment.sun_force == 0.0 { open_for + 1 } else { 0 };
-                if open_for > 300 {
-                    long += 1;
-                    refused += usize::from(!estimates.gap.valid);
-                }
-            });
+        let figures = trial.replay::<MAPPED>(&log, 1.0, |_, moment, estimates| {
+            assert_eq!(estimates.source, Source::MotorOnly(Doubt::Absent));
+            assert!(estimates.half_backlash.variance > 1e-14, "the width never counts as known for sure");
+            open_for = if moment.sun_force == 0.0 { open_for + 1 } else { 0 };
+            if open_for > 300 {
+                long += 1;
+                refused += usize::from(!estimates.gap.valid);
+            }
+        });
         println!("{motion}: {figures:?}; {refused} of {long} refused");
         MOTOR_ONLY_HONESTY.check(figures.honesty);
         assert!(figures.valid > 0.2, "it says something");
@@ -44,8 +41,7 @@ fn the_variance_is_honest_and_long_separations_are_refused() {
 fn a_width_that_nobody_knows_is_not_made_up() {
     let mut trial = trial("inertia", 33);
     trial.settings.backlash_uncertainty = 0.5;
-    let log = trial.record();
-    replay::<f64, MAPPED>(&trial.setup.joint, &trial.tables(), &trial.settings, &log, 1.0, |_, _, estimates| {
+    trial.replay::<MAPPED>(&trial.record(), 1.0, |_, _, estimates| {
         assert!(!estimates.gap.valid && !estimates.half_backlash.valid);
     });
 }

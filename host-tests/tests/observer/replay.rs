@@ -119,15 +119,15 @@ impl Figures {
 }
 
 /// Replays a recording; figures are taken from `from` seconds on. `watch` sees every estimate.
-pub fn replay<T: Real, const P: usize>(
+pub fn replay<const P: usize>(
     joint: &JointParameters,
-    tables: &ObserverTables<T>,
+    tables: &ObserverTables<f64>,
     settings: &ObserverSettings,
     log: &[Moment],
     from: f64,
-    mut watch: impl FnMut(usize, &Moment, &Estimates<T>),
+    mut watch: impl FnMut(usize, &Moment, &Estimates<f64>),
 ) -> Figures {
-    let mut observer = Observer::<T, P>::new(tables);
+    let mut observer = Observer::<f64, P>::new(tables);
     let largest_of = |errors: &[f64]| errors.iter().fold(0.0, |most: f64, error| most.max(error.abs()));
     let [of_sun, of_ring] = [&joint.sun_planet, &joint.ring_planet].map(|mesh| largest_of(&mesh.transmission_error));
     let shift = of_sun + of_ring;
@@ -152,8 +152,7 @@ pub fn replay<T: Real, const P: usize>(
     for (k, moment) in log.iter().enumerate() {
         let estimates = *observer.step(&samples(settings, moment, k));
         watch(k, moment, &estimates);
-        let value = |value: T| value.to_f64();
-        width = value(estimates.half_backlash.value) / half_backlash - 1.0;
+        width = estimates.half_backlash.value / half_backlash - 1.0;
         if moment.sun_force.abs() > 0.05 * rated_force {
             touched[usize::from(moment.sun_force > 0.0)] = true;
         }
@@ -166,14 +165,14 @@ pub fn replay<T: Real, const P: usize>(
         if k < first {
             continue;
         }
-        let error = (value(estimates.gap.value) - moment.gap) / gap;
+        let error = (estimates.gap.value - moment.gap) / gap;
         sums[0] += error * error;
         worst = worst.max(error.abs());
-        sums[1] += ((value(estimates.load_torque.value) - moment.load_torque) / largest).powi(2);
-        sums[2] += ((value(estimates.mesh_torque.value) - moment.sun_force * lever) / largest).powi(2);
+        sums[1] += ((estimates.load_torque.value - moment.load_torque) / largest).powi(2);
+        sums[2] += ((estimates.mesh_torque.value - moment.sun_force * lever) / largest).powi(2);
         if estimates.gap.valid {
             valid += 1;
-            sums[3] += (error * gap).powi(2) / value(estimates.gap.variance).max(1e-30);
+            sums[3] += (error * gap).powi(2) / estimates.gap.variance.max(1e-30);
             sums[4] += error * error;
         }
         let side = if moment.sun_force > 0.0 {

@@ -3,8 +3,8 @@
 
 use model_core::gears::Kinematics;
 use model_core::numbers::Real;
-use model_core::observer::ObserverTables;
 use model_core::observer::design::{ObserverSettings, design_observer};
+use model_core::observer::{Estimates, MAPPED, Observer, ObserverTables, Samples};
 use parameters::{AbsoluteEncoder, JointParameters};
 use reference::drive_train::{DriveTrainParameters, Stepping};
 use reference::joint::Start;
@@ -13,7 +13,7 @@ use scenario::sender::Sender;
 
 use crate::motion::{MotorController, Profile, inertia_at_motor, uniform};
 use crate::presets::{preset, with_backlash};
-use crate::replay::settings;
+use crate::replay::{Figures, replay, samples, settings};
 
 /// Encoders of a trial.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -89,6 +89,33 @@ impl Trial {
     pub fn lasting(mut self, duration: f64) -> Self {
         self.setup.duration = duration;
         self
+    }
+
+    /// What the estimates of a recording are worth from a moment on [s]; `watch` sees every estimate.
+    pub fn replay<const P: usize>(
+        &self,
+        log: &[Moment],
+        from: f64,
+        watch: impl FnMut(usize, &Moment, &Estimates<f64>),
+    ) -> Figures {
+        replay::<P>(&self.setup.joint, &self.tables(), &self.settings, log, from, watch)
+    }
+
+    /// The same, of the observer with its maps.
+    pub fn figures(&self, log: &[Moment], from: f64) -> Figures {
+        self.replay::<MAPPED>(log, from, |_, _, _| {})
+    }
+
+    /// What an observer says of a recording, period by period, with samples that a test may spoil.
+    pub fn said<T: Real>(&self, log: &[Moment], mut spoil: impl FnMut(usize, &mut Samples<T>)) -> Vec<Estimates<T>> {
+        let tables = self.tables();
+        let mut observer = Observer::<T, MAPPED>::new(&tables);
+        let step = |(period, moment): (usize, &Moment)| {
+            let mut samples = samples(&self.settings, moment, period);
+            spoil(period, &mut samples);
+            *observer.step(&samples)
+        };
+        log.iter().enumerate().map(step).collect()
     }
 
     /// The recording, under a plain motor controller.

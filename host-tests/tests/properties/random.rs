@@ -6,7 +6,7 @@ use std::ops::Range;
 use parameters::{Compliance, DampingLaw, Excitation, JointParameters, Mesh, MeshPhases, PerPlanet, StiffnessWave};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use reference::joint::{RelativeState, Start};
+use reference::joint::RelativeState;
 use reference::scenarios::{Scenario, TorqueSegment, l1, same};
 
 /// Ticks a second of every scenario.
@@ -82,16 +82,10 @@ pub fn scenario() -> impl Strategy<Value = Scenario> {
         |(joint, drive, load, later, speed)| {
             let planets = joint.geometry.planets;
             let segment = |from_tick, drive_torque, load_torque| TorqueSegment { from_tick, drive_torque, load_torque };
-            Scenario {
-                name: "random".into(),
-                start: Start::Relative(RelativeState { rigid_speed: speed, ..RelativeState::centred(planets) }),
-                joint,
-                torques: vec![segment(0, drive, load), segment(60, later, -load)],
-                tick_rate: TICK_RATE,
-                ticks: 120,
-                sample_every: 1,
-                predictable: false,
-            }
+            let start = RelativeState { rigid_speed: speed, ..RelativeState::centred(planets) };
+            let torques = vec![segment(0, drive, load), segment(60, later, -load)];
+            let scenario = Scenario::new("random", joint, start);
+            Scenario { torques, tick_rate: TICK_RATE, ticks: 120, predictable: false, ..scenario }
         },
     )
 }

@@ -75,10 +75,6 @@ impl Surroundings for RealBoard {
     fn interrupted(&self) -> bool {
         interruption::requested()
     }
-
-    fn gone(&mut self) -> Option<String> {
-        None
-    }
 }
 
 /// The emulator, which is killed with its owner.

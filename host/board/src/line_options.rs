@@ -2,7 +2,7 @@
 //! left to `bench`.
 
 use clap::ValueEnum;
-use link::messages::RunMode;
+use link::messages::{Role, RunMode};
 
 use crate::target::board::Board;
 
@@ -34,6 +34,15 @@ pub enum RoleName {
     Observer,
     /// Joint, motor, observer and compensation
     Loop,
+}
+
+impl From<RoleName> for Role {
+    fn from(role: RoleName) -> Self {
+        match role {
+            RoleName::Observer => Self::Observer,
+            RoleName::Loop => Self::Loop,
+        }
+    }
 }
 
 /// Who waits for whom.

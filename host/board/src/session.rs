@@ -37,7 +37,9 @@ pub trait Surroundings {
     /// The user wants to stop.
     fn interrupted(&self) -> bool;
     /// Why the other end is gone, if it is known to be.
-    fn gone(&mut self) -> Option<String>;
+    fn gone(&mut self) -> Option<String> {
+        None
+    }
 }
 
 /// A conversation with a board.

@@ -18,15 +18,9 @@ pub struct FaultEntry {
     pub text: String,
 }
 
-struct Words {
-    name: &'static str,
-    tick: Option<u32>,
-    what: &'static str,
-    mend: &'static str,
-}
-
-fn words(trip: &Trip) -> Words {
-    let (name, tick, what, mend) = match *trip {
+/// Short name, tick where there is one, what it means, what to do.
+fn words(trip: &Trip) -> (&'static str, Option<u32>, &'static str, &'static str) {
+    match *trip {
         Trip::CommandLoss { tick } => (
             "command_loss",
             Some(tick),
@@ -72,19 +66,18 @@ fn words(trip: &Trip) -> Words {
             "commands came that are for another role than the board's",
             "flash the image of the role that this run asks for",
         ),
-    };
-    Words { name, tick, what, mend }
+    }
 }
 
 /// A trip as the end of a run.
 pub fn failure(trip: &Trip) -> Failure {
-    let Words { name, tick, what, mend } = words(trip);
+    let (name, tick, what, mend) = words(trip);
     let place = tick.map(|tick| format!(" at tick {tick}")).unwrap_or_default();
     Failure::check_failed(format!("the board went into its safe state{place}: {what} ({name})")).with_help(mend)
 }
 
 /// A trip as a line of the record.
 pub fn entry(trip: &Trip) -> FaultEntry {
-    let Words { name, tick, what, mend } = words(trip);
+    let (name, tick, what, mend) = words(trip);
     FaultEntry { tick, name: name.to_owned(), text: format!("{what}; {mend}") }
 }

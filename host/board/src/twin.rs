@@ -39,7 +39,12 @@ pub struct Difference {
 
 /// Digest of the tables that a board with this joint must state.
 pub fn tables_digest(joint: &JointParameters, board: Board, tick_rate: u32) -> Outcome<u64> {
-    for_planets(joint, Digest { joint, board, tick_rate })
+    match joint.geometry.planets {
+        3 => Ok(tables::<3>(joint, board, tick_rate)?.digest),
+        4 => Ok(tables::<4>(joint, board, tick_rate)?.digest),
+        5 => Ok(tables::<5>(joint, board, tick_rate)?.digest),
+        other => Err(so_many_planets(joint, other)),
+    }
 }
 
 /// Replays the commands and compares every sample. Samples are in rising order of ticks.
@@ -74,23 +79,17 @@ pub fn replay(
     commands: &[Command],
     ticks: &[u32],
 ) -> Outcome<Vec<Sample>> {
-    for_planets(joint, Replay { joint, board, tick_rate, commands, ticks })
-}
-
-/// Work that is written for any number of planets.
-trait ForPlanets {
-    type Result;
-    fn run<const N: usize>(self) -> Outcome<Self::Result>;
-}
-
-fn for_planets<W: ForPlanets>(joint: &JointParameters, work: W) -> Outcome<W::Result> {
     match joint.geometry.planets {
-        3 => work.run::<3>(),
-        4 => work.run::<4>(),
-        5 => work.run::<5>(),
-        other => Err(Failure::new(format!("joint `{}` has {other} planets", joint.name))
-            .with_help("a joint may have 3, 4 or 5 planets")),
+        3 => Ok(replayed(&tables::<3>(joint, board, tick_rate)?, commands, ticks)),
+        4 => Ok(replayed(&tables::<4>(joint, board, tick_rate)?, commands, ticks)),
+        5 => Ok(replayed(&tables::<5>(joint, board, tick_rate)?, commands, ticks)),
+        other => Err(so_many_planets(joint, other)),
     }
+}
+
+fn so_many_planets(joint: &JointParameters, planets: usize) -> Failure {
+    Failure::new(format!("joint `{}` has {planets} planets", joint.name))
+        .with_help("a joint may have 3, 4 or 5 planets")
 }
 
 fn tables<const N: usize>(joint: &JointParameters, board: Board, tick_rate: u32) -> Outcome<Tables<f32, N>> {
@@ -105,51 +104,25 @@ fn tables<const N: usize>(joint: &JointParameters, board: Board, tick_rate: u32)
     })
 }
 
-struct Digest<'a> {
-    joint: &'a JointParameters,
-    board: Board,
-    tick_rate: u32,
-}
-
-impl ForPlanets for Digest<'_> {
-    type Result = u64;
-    fn run<const N: usize>(self) -> Outcome<u64> {
-        Ok(tables::<N>(self.joint, self.board, self.tick_rate)?.digest)
-    }
-}
-
-struct Replay<'a> {
-    joint: &'a JointParameters,
-    board: Board,
-    tick_rate: u32,
-    commands: &'a [Command],
-    ticks: &'a [u32],
-}
-
-impl ForPlanets for Replay<'_> {
-    type Result = Vec<Sample>;
-
-    fn run<const N: usize>(self) -> Outcome<Vec<Sample>> {
-        let tables = tables::<N>(self.joint, self.board, self.tick_rate)?;
-        let mut model = Model::new(&tables);
-        let mut torques = Torques { drive: 0.0, load: 0.0 };
-        let mut running = digest::START;
-        let mut commands = self.commands.iter().peekable();
-        let mut tick = 0;
-        let mut samples = Vec::with_capacity(self.ticks.len());
-        for &wanted in self.ticks {
-            while tick < wanted {
-                while let Some(command) = commands.next_if(|command| command.tick <= tick) {
-                    torques = Torques { drive: command.drive_torque, load: command.load_torque };
-                }
-                model.step(torques);
-                running = digest::chain(running, model.state_digest());
-                tick += 1;
+fn replayed<const N: usize>(tables: &Tables<f32, N>, commands: &[Command], ticks: &[u32]) -> Vec<Sample> {
+    let mut model = Model::new(tables);
+    let mut torques = Torques { drive: 0.0, load: 0.0 };
+    let mut running = digest::START;
+    let mut commands = commands.iter().peekable();
+    let mut tick = 0;
+    let mut samples = Vec::with_capacity(ticks.len());
+    for &wanted in ticks {
+        while tick < wanted {
+            while let Some(command) = commands.next_if(|command| command.tick <= tick) {
+                torques = Torques { drive: command.drive_torque, load: command.load_torque };
             }
-            samples.push(sample(&model, tick, running, 0));
+            model.step(torques);
+            running = digest::chain(running, model.state_digest());
+            tick += 1;
         }
-        Ok(samples)
+        samples.push(sample(&model, tick, running, 0));
     }
+    samples
 }
 
 /// The first field in which the board's sample is not the twin's, the digest last: it says least.

@@ -6,7 +6,7 @@ use model_core::observer::tables::LeverTable;
 use model_core::observer::{MAPPED, Memory, MemoryError, Observer, ObserverTables, memory_numbers};
 use serde::Serialize;
 
-use crate::findings::Finding;
+use crate::findings::{Finding, angles};
 use crate::page;
 use joint_file::named::Loaded;
 use report::document::{Document, terminal};
@@ -171,38 +171,14 @@ fn values(numbers: &Numbers, tables: &ObserverTables<f32>) -> Vec<Finding> {
         ),
         numbers.inertia_ratio(tables).finding("inertia of the link over the joint file's", "-", "", ""),
     ];
-    let maps = [
-        ("gears: error along the line of action", "um", "", 4, 1e6),
-        (
-            "motor encoder: error once a turn",
-            "deg",
-            "drive_train.motor_encoder.once_per_turn_error_deg",
-            6,
-            per_sun.to_degrees(),
-        ),
-        (
-            "motor encoder: error twice a turn",
-            "deg",
-            "drive_train.motor_encoder.twice_per_turn_error_deg",
-            8,
-            per_sun.to_degrees(),
-        ),
-        (
-            "output encoder: error once a turn",
-            "deg",
-            "drive_train.output_encoder.once_per_turn_error_deg",
-            10,
-            per_output.to_degrees(),
-        ),
-        (
-            "output encoder: error twice a turn",
-            "deg",
-            "drive_train.output_encoder.twice_per_turn_error_deg",
-            12,
-            per_output.to_degrees(),
-        ),
-    ];
-    values.extend(maps.map(|(name, unit, key, first, factor)| {
+    let mut maps = vec![("gears: error along the line of action".to_owned(), "um", String::new(), 4, 1e6)];
+    for (encoder, first, lever) in [("motor", 6, per_sun), ("output", 10, per_output)] {
+        for (order, word) in [(0, "once"), (1, "twice")] {
+            let (name, key) = angles::names(encoder, word);
+            maps.push((name, "deg", key, first + 2 * order, lever.to_degrees()));
+        }
+    }
+    values.extend(maps.into_iter().map(|(name, unit, key, first, factor)| {
         let [along, across] = [first, first + 1].map(|index| parameter(index).times(factor));
         let phase = across.value.atan2(along.value).to_degrees();
         let size = Learnt::size(along, across);
@@ -211,7 +187,7 @@ fn values(numbers: &Numbers, tables: &ObserverTables<f32>) -> Vec<Finding> {
         } else {
             "may well be zero".to_owned()
         };
-        let mut finding = size.finding(name, unit, key, &note);
+        let mut finding = size.finding(&name, unit, &key, &note);
         finding.interval = finding.interval.map(|ends| ends.map(|end| end.max(0.0)));
         finding
     }));

@@ -30,11 +30,10 @@ mod twist;
 pub mod virtual_test;
 
 pub use arguments::Arguments;
-use findings::Finding;
+use findings::{Finding, Record};
 use log::Log;
 use plan::Plan;
 use rows::Rows;
-use serde::Serialize;
 use twist::Twist;
 
 use joint_file::named::{self, Loaded};
@@ -62,18 +61,6 @@ const LEAST_RELIABLE: f64 = 0.5;
 /// Fits one after the other, each with the errors by angle of the last taken off the accelerations.
 const ROUNDS: usize = 3;
 
-/// What identification leaves behind as JSON.
-#[derive(Debug, Serialize)]
-struct Findings<'a> {
-    schema: &'static str,
-    joint: &'a str,
-    log: &'a str,
-    duration_s: f64,
-    crossings: usize,
-    assumptions: &'a [String],
-    findings: &'a [Finding],
-}
-
 /// What a log has shown.
 struct Identified {
     log: Log,
@@ -97,17 +84,7 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
     let patched = patch::patch(&loaded, &plan, &identified.findings, &name)?;
     let assumptions = assumptions(&plan, &identified.log);
     let Identified { log, rows, twist, findings } = &identified;
-    let document = page::document(page::Content {
-        joint: &plan.name,
-        log: &name,
-        duration: log.time.last().copied().unwrap_or_default(),
-        crossings: rows.crossings,
-        findings,
-        file: &loaded.text,
-        figures: vec![pictures::loop_of(log, rows, twist, &plan), pictures::course(log, twist)],
-        assumptions: &assumptions,
-    });
-    let record = Findings {
+    let record = Record {
         schema: "joint-identify/1",
         joint: &plan.name,
         log: &name,
@@ -116,6 +93,8 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
         assumptions: &assumptions,
         findings,
     };
+    let figures = vec![pictures::loop_of(log, rows, twist, &plan), pictures::course(log, twist)];
+    let document = page::document(&record, &loaded.text, figures);
     let json = output::json("findings", &record)?;
     let [report, joint] = [folder.file("report.html"), folder.file("joint.toml")];
     write_text(&report, &html(&document))?;

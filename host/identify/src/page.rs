@@ -1,7 +1,7 @@
 //! The findings as a document: a table of every parameter with its interval beside what the joint file says, the fit, and
 //! what it rests on. Figures are made elsewhere.
 
-use super::findings::Finding;
+use super::findings::{Finding, Record};
 use report::document::{
     Align, Block, Document, PAGES, Text, notes, numbers, picture, row, section, section_bare, strong, table, text,
     words,
@@ -10,38 +10,17 @@ use report::number::ESTIMATE;
 use report::plot::Figure;
 use report::provenance::VERSION;
 
-/// What the document is made from.
-pub struct Content<'a> {
-    /// Name of the joint.
-    pub joint: &'a str,
-    /// Name of the log.
-    pub log: &'a str,
-    /// How long it is [s].
-    pub duration: f64,
-    /// Changes of the carrying flank in it.
-    pub crossings: usize,
-    /// What was found.
-    pub findings: &'a [Finding],
-    /// Text of the joint file.
-    pub file: &'a str,
-    /// The pictures, first the most telling.
-    pub figures: Vec<Figure>,
-    /// What the numbers rest on.
-    pub assumptions: &'a [String],
-}
-
-/// All of it.
-pub fn document(content: Content<'_>) -> Document {
-    let heading = text("Joint ") + content.joint + " identified";
-    let figures = content.figures.into_iter().map(|figure| picture(figure, Text::default()));
-    let assumptions = content.assumptions.iter().map(|assumption| typeset(assumption).into());
+/// All of it: findings beside what a joint file says, whose text is given, and pictures, first the most telling.
+pub fn document(record: &Record<'_>, file: &str, figures: Vec<Figure>) -> Document {
+    let Record { joint, log, duration_s, crossings, findings, .. } = record;
+    let figures = figures.into_iter().map(|figure| picture(figure, Text::default()));
+    let assumptions = record.assumptions.iter().map(|assumption| typeset(assumption).into());
     Document {
-        title: format!("Joint {} identified", content.joint),
-        heading,
-        subtitle: format!("{} · {:.2} s · {} crossings of the gap", content.log, content.duration, content.crossings)
-            .into(),
+        title: format!("Joint {joint} identified"),
+        heading: format!("Joint {joint} identified").into(),
+        subtitle: format!("{log} · {duration_s:.2} s · {crossings} crossings of the gap").into(),
         blocks: vec![
-            section_bare("What was found", findings(content.findings, content.file)),
+            section_bare("What was found", self::findings(findings, file)),
             section("How it fits", figures.collect()),
             section("What it rests on", vec![Block::List(assumptions.collect())]),
         ],

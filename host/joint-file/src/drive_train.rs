@@ -53,7 +53,7 @@ fn control_rate(section: &Section<'_>) -> Option<u32> {
     if f64::from(rate) != stated {
         let message = format!("`{key}` = {stated} is taken as {rate}");
         let help = "give a whole number of control periods a second";
-        section.notes().problem(section.place(key), message, help, Severity::Warning);
+        section.notes.problem(section.place(key), message, help, Severity::Warning);
     }
     Some(rate)
 }

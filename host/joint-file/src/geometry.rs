@@ -19,7 +19,7 @@ pub(crate) fn read(section: &Section<'_>, coherence: Coherence) -> Option<Geomet
     let (sun, planet, carrier) = if section.has("module_mm") {
         for radius in RADII.into_iter().filter(|radius| section.has(radius)) {
             let message = format!("`{radius}` and `module_mm` both set the radii");
-            section.notes().error(section.place(radius), message, "keep the module, or all radii and no module");
+            section.notes.error(section.place(radius), message, "keep the module, or all radii and no module");
         }
         let half_module = section.number("module_mm").map(|module| module / 2.0);
         let base = |teeth: Option<u32>| Some(half_module? * f64::from(teeth?) * reference?.cos());
@@ -31,7 +31,7 @@ pub(crate) fn read(section: &Section<'_>, coherence: Coherence) -> Option<Geomet
         if section.has("reference_pressure_angle_deg") {
             let message = "`reference_pressure_angle_deg` says nothing without `module_mm`";
             let help = "leave it out, or give module_mm instead of the radii";
-            section.notes().error(section.place("reference_pressure_angle_deg"), message, help);
+            section.notes.error(section.place("reference_pressure_angle_deg"), message, help);
         }
         let sun = section.required_number("sun_base_radius_mm");
         let planet = section.required_number("planet_base_radius_mm");

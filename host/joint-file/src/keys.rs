@@ -2,6 +2,8 @@
 //! parameters is left to the readers of the sections; docs/joint-file.md says the same in more words.
 
 use crate::bound::{Bound, Unit};
+use crate::table::{self, Keys};
+use crate::wording::listed;
 
 /// What a key holds.
 #[derive(Debug, Clone, Copy)]
@@ -20,15 +22,20 @@ pub(crate) enum Kind {
     Section,
 }
 
-/// One key.
-#[derive(Debug)]
-pub(crate) struct Key {
-    /// The section that it stands in; empty at the top of the file. `[mesh.sun_planet]` has the keys of `[mesh]`.
-    pub section: &'static str,
-    pub name: &'static str,
-    pub kind: Kind,
-    /// Shown when the value is refused or missing.
-    pub hint: &'static str,
+/// One key; `[mesh.sun_planet]` has the keys of `[mesh]`.
+pub(crate) type Key = table::Key<Kind>;
+
+impl Keys for Kind {
+    const FILE: &'static str = "a joint file";
+    const ALL: &'static [Key] = KEYS;
+
+    fn stray(section: &str, word: &str) -> String {
+        if Self::find("encoder", word).is_some() {
+            return "it belongs in [drive_train.motor_encoder] or [drive_train.output_encoder]".to_owned();
+        }
+        let known: Vec<&str> = Self::of(section).map(|key| key.name).collect();
+        Self::belongs(word).unwrap_or_else(|| format!("known here: {}", listed(&known)))
+    }
 }
 
 const fn key(section: &'static str, name: &'static str, kind: Kind, hint: &'static str) -> Key {
@@ -317,17 +324,6 @@ pub(crate) const KEYS: &[Key] = &[
     key("encoder", "twice_per_turn_error_deg", Number(Degrees, Between(0.0, 10.0)), "an amplitude in degrees"),
     key("encoder", "skew_us", Number(Micro, Between(0.0, 1e5)), "how late the reading is, in us"),
 ];
-
-/// The keys of one section.
-pub(crate) fn of(section: &str) -> impl Iterator<Item = &'static Key> {
-    let section = section.to_owned();
-    KEYS.iter().filter(move |key| key.section == section)
-}
-
-/// The key of that name; every name that a reader asks for is in the list, as the tests see.
-pub(crate) fn find(section: &str, name: &str) -> &'static Key {
-    of(section).find(|key| key.name == name).expect("readers ask for listed keys only")
-}
 
 /// Whether a section has that name.
 pub(crate) fn find_section(name: &str) -> bool {

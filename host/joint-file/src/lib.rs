@@ -2,9 +2,10 @@
 //! at once, each with its place in the text. Drawing the underlined messages is left to the caller, so that build
 //! scripts can read joint files too.
 //!
-//! `keys` lists every key with its unit, bound and meaning; `section` takes values out of a table by that list; one
-//! file for each section of a joint file turns them into parameters; `coherence` asks whether the gears fit together.
-//! `wording` is what their complaints share. `change` sets single values in a file's text.
+//! `keys` lists every key with its unit, bound and meaning; `table` finds values by such a list and `notes` keeps what is
+//! wrong with them, here and for other files that users write; `section` takes a joint's values; one file for each section
+//! of a joint file turns them into parameters; `coherence` asks whether the gears fit together. `wording` is what their
+//! complaints share. `change` sets single values in a file's text.
 
 mod bodies;
 mod bound;
@@ -25,13 +26,14 @@ mod problem;
 mod reader;
 mod section;
 mod spelling;
-mod unknown;
+mod table;
 mod wording;
 
 pub use change::{Refused, change, change_noting, full_key, value};
 pub use motion::Profile;
-pub use notes::Source;
+pub use notes::{Notes, Source};
 pub use presets::{PRESETS, preset};
 pub use problem::{Problem, Severity};
 pub use reader::{JointFile, read};
 pub use spelling::nearest;
+pub use table::{Key, Keys, Table};

@@ -83,7 +83,7 @@ impl Layers<'_, '_> {
                 let section = self.holder(&[key]);
                 if section.has(key) {
                     let message = format!("`{key}` belongs to the rectangular wave, and this one is harmonic");
-                    section.notes().error(section.place(key), message, "write stiffness_wave = \"rectangular\"");
+                    section.notes.error(section.place(key), message, "write stiffness_wave = \"rectangular\"");
                 }
             }
             return stiffness_ratio.map(|stiffness_ratio| StiffnessWave::Harmonic { stiffness_ratio });
@@ -101,7 +101,7 @@ impl Layers<'_, '_> {
             let message = format!("the harmonics of this wave sum to {swing:.3} of the mean: the stiffness may vanish");
             let largest = 0.999 * stiffness_ratio? / swing;
             let help = format!("at this contact ratio and order, `{ratio_key}` must stay below {largest:.3}");
-            section.notes().error(section.place(ratio_key), message, help);
+            section.notes.error(section.place(ratio_key), message, help);
             return None;
         }
         Some(wave)
@@ -130,7 +130,7 @@ impl Layers<'_, '_> {
                 let section = self.holder(&[keys[list]]);
                 let message = format!("`{}` is a list and `{}` is not", keys[list], keys[other]);
                 let help = "state every planet's phase for both, or let both follow from the teeth";
-                section.notes().error(section.place(keys[list]), message, help);
+                section.notes.error(section.place(keys[list]), message, help);
                 None
             }
         }

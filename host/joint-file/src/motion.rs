@@ -25,7 +25,7 @@ pub(crate) fn read_contact(section: Option<&Section<'_>>) -> Option<(DampingLaw,
         _ => {
             if section.has("sharpness") {
                 let message = "`sharpness` belongs to the tanh dead zone, and this one is sharp";
-                section.notes().error(section.place("sharpness"), message, "write dead_zone = \"tanh\"");
+                section.notes.error(section.place("sharpness"), message, "write dead_zone = \"tanh\"");
             }
             DeadZone::Sharp
         }
@@ -52,7 +52,7 @@ pub(crate) fn read_excitation(section: Option<&Section<'_>>, omega_n: Option<f64
     for key in FREQUENCIES.into_iter().filter(|key| section.has(key)) {
         let message =
             format!("`{key}` belongs to mode \"time\"; in mode \"angle\" the frequency follows from the motion");
-        section.notes().error(section.place(key), message, "leave it out, or write mode = \"time\"");
+        section.notes.error(section.place(key), message, "leave it out, or write mode = \"time\"");
     }
     Some(Excitation::Angle)
 }
@@ -81,7 +81,7 @@ pub(crate) fn read_profile(
             profile.drive_torque
         );
         let help = "raise the limit, or lower `drive_torque_N_m` or `rated_output_torque_N_m`";
-        section.notes().error(section.place("motor_torque_limit_N_m"), message, help);
+        section.notes.error(section.place("motor_torque_limit_N_m"), message, help);
     }
     Some(profile)
 }

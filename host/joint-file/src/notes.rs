@@ -1,4 +1,4 @@
-//! What is found while a joint file is read: problems, where each value stands, and what the file says about the
+//! What is found while a file that users write is read: problems, where each value stands, and what the file says about the
 //! source of each number. It knows nothing of joints.
 
 use std::cell::RefCell;
@@ -17,7 +17,7 @@ pub struct Source {
 }
 
 /// Collects while the sections of one file are read.
-pub(crate) struct Notes<'t> {
+pub struct Notes<'t> {
     text: &'t str,
     problems: RefCell<Vec<Problem>>,
     places: RefCell<BTreeMap<String, Range<usize>>>,
@@ -25,21 +25,18 @@ pub(crate) struct Notes<'t> {
 }
 
 impl<'t> Notes<'t> {
-    pub(crate) fn new(text: &'t str) -> Self {
+    /// Of the text of a file.
+    pub fn new(text: &'t str) -> Self {
         Self { text, problems: RefCell::default(), places: RefCell::default(), sources: RefCell::default() }
     }
 
-    pub(crate) fn error(&self, span: Range<usize>, message: impl Into<String>, help: impl Into<String>) {
+    /// Notes what keeps the file from being used.
+    pub fn error(&self, span: Range<usize>, message: impl Into<String>, help: impl Into<String>) {
         self.problem(span, message, help, Severity::Error);
     }
 
-    pub(crate) fn problem(
-        &self,
-        span: Range<usize>,
-        message: impl Into<String>,
-        help: impl Into<String>,
-        severity: Severity,
-    ) {
+    /// Notes what is wrong, unless it has been.
+    pub fn problem(&self, span: Range<usize>, message: impl Into<String>, help: impl Into<String>, severity: Severity) {
         let problem = Problem { span, message: message.into(), help: help.into(), severity };
         let mut problems = self.problems.borrow_mut();
         // What stands in [mesh] is read once for each mesh family and would be reported twice.
@@ -48,12 +45,21 @@ impl<'t> Notes<'t> {
         }
     }
 
+    /// Notes what the parser says of text that is no TOML.
+    pub fn syntax(&self, error: &toml::de::Error) {
+        let help = match error.message() {
+            "duplicate key" => "leave one of the two out",
+            _ => "write lines of the form key = value",
+        };
+        self.error(error.span().unwrap_or(self.top()), format!("not TOML: {}", error.message()), help);
+    }
+
     pub(crate) fn has_errors(&self) -> bool {
         self.problems.borrow().iter().any(|problem| problem.severity == Severity::Error)
     }
 
     /// Remembers where the value of `key` stands.
-    pub(crate) fn place(&self, key: String, span: Range<usize>) {
+    pub fn place(&self, key: String, span: Range<usize>) {
         self.places.borrow_mut().insert(key, span);
     }
 
@@ -88,7 +94,7 @@ impl<'t> Notes<'t> {
     }
 
     /// Problems in the order of the text, and sources in the order of reading.
-    pub(crate) fn into_parts(self) -> (Vec<Problem>, Vec<Source>) {
+    pub fn into_parts(self) -> (Vec<Problem>, Vec<Source>) {
         let mut problems = self.problems.into_inner();
         problems.sort_by_key(|problem| (problem.span.start, problem.span.end));
         (problems, self.sources.into_inner())

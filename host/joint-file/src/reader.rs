@@ -39,11 +39,7 @@ pub fn read(text: &str) -> Result<JointFile, Vec<Problem>> {
         // One slip makes the parser stumble on for the rest of its line.
         if !blamed_lines.contains(&line) {
             blamed_lines.push(line);
-            let help = match error.message() {
-                "duplicate key" => "leave one of the two out",
-                _ => "write lines of the form key = value",
-            };
-            notes.error(span, format!("not TOML: {}", error.message()), help);
+            notes.syntax(error);
         }
     }
     // What was recovered from broken syntax would be blamed for what the parser dropped.
@@ -82,7 +78,7 @@ fn read_table(top: &Section<'_>) -> Option<JointFile> {
         && masses.link_inertia == 0.0
     {
         let help = "give `link_inertia_kg_m2` in [bodies], or leave [compliance] out";
-        top.notes().error(section.header(), "a compliance needs a link behind it", help);
+        top.notes.error(section.header.clone(), "a compliance needs a link behind it", help);
     }
     let contact = motion::read_contact(top.section("contact", "contact").as_ref());
     let profile_section = top.section("profile", "profile");
@@ -90,7 +86,7 @@ fn read_table(top: &Section<'_>) -> Option<JointFile> {
     let surroundings = drive_train::read(top.section("drive_train", "drive_train").as_ref());
 
     if let Some(geometry) = &geometry {
-        coherence::check(geometry, top.notes());
+        coherence::check(geometry, top.notes);
     }
 
     let assemble = || {
@@ -140,7 +136,7 @@ fn read_name(top: &Section<'_>) -> Option<heapless::String<32>> {
             33.. => format!("`name` has {} letters", text.chars().count()),
             _ => format!("`name` cannot be \"{text}\""),
         };
-        top.notes().error(top.place("name"), message, crate::keys::find("", "name").hint);
+        top.notes.error(top.place("name"), message, top.value("name")?.1.hint);
     }
     good
 }

@@ -1,27 +1,17 @@
 //! Takes values out of one table of a joint file by the list of keys: right type, finite, within bounds, in SI. What the
 //! values mean together is left to the reader of each section.
 
-use std::ops::Range;
-
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use crate::bound::{Bound, Unit};
-use crate::keys::{self, Key, Kind};
+use crate::keys::{Key, Kind};
 use crate::notes::Notes;
-use crate::unknown;
+use crate::table::{Keys, Table};
 use crate::wording::{kind, listed, listed_as, shown};
 
 /// One table of the file.
-pub(crate) struct Section<'a> {
-    /// As typed between brackets; empty at the top of the file.
-    path: String,
-    /// Whose keys it has, as in `keys::Key::section`.
-    schema: &'static str,
-    header: Range<usize>,
-    table: &'a DeTable<'a>,
-    notes: &'a Notes<'a>,
-}
+pub(crate) type Section<'a> = Table<'a, Kind>;
 
 /// One number for every planet, or a list.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,10 +21,9 @@ pub(crate) enum PerPlanetValue {
 }
 
 impl<'a> Section<'a> {
-    /// The top of the file. Complains about keys that nobody knows, here and in every section taken from it.
+    /// The top of the file.
     pub(crate) fn top(table: &'a DeTable<'a>, notes: &'a Notes<'a>) -> Self {
-        unknown::check("", "", table, notes);
-        Self { path: String::new(), schema: "", header: notes.top(), table, notes }
+        Self::new(String::new(), "", notes.top(), table, notes)
     }
 
     /// The table `name` with the keys of `schema`; `None` if it is absent or no table.
@@ -46,42 +35,16 @@ impl<'a> Section<'a> {
             self.notes.error(value.span(), format!("`{name}` must be a section, not {}", kind(value)), hint);
             return None;
         };
-        let path = self.full(name);
-        unknown::check(&path, schema, table, self.notes);
-        Some(Section { path, schema, header: value.span(), table, notes: self.notes })
+        Some(Self::new(self.full(name), schema, value.span(), table, self.notes))
     }
 
     /// The table `name`, which must be there.
     pub(crate) fn required_section(&self, name: &str, schema: &'static str) -> Option<Section<'a>> {
         if self.table.get(name).is_none() {
-            let hint = keys::find(self.schema, name).hint;
+            let hint = Kind::find(self.schema, name).map_or("", |key| key.hint);
             self.notes.error(self.header.clone(), format!("the section [{}] is missing", self.full(name)), hint);
         }
         self.section(name, schema)
-    }
-
-    pub(crate) fn header(&self) -> Range<usize> {
-        self.header.clone()
-    }
-
-    pub(crate) fn notes(&self) -> &'a Notes<'a> {
-        self.notes
-    }
-
-    pub(crate) fn has(&self, name: &str) -> bool {
-        self.table.get(name).is_some()
-    }
-
-    /// Where a key stands; the section's header if it does not.
-    pub(crate) fn place(&self, name: &str) -> Range<usize> {
-        self.table.get(name).map_or(self.header.clone(), Spanned::span)
-    }
-
-    /// Complains that a key is missing.
-    pub(crate) fn missing(&self, name: &str) {
-        let hint = keys::find(self.schema, name).hint;
-        let place = if self.path.is_empty() { "the top of the file".to_owned() } else { format!("[{}]", self.path) };
-        self.notes.error(self.header.clone(), format!("`{name}` is missing from {place}"), hint);
     }
 
     /// The one of two or three keys that the section holds. More than one is an error, and so is none if `needed`.
@@ -95,7 +58,8 @@ impl<'a> Section<'a> {
             }
             (None, _) if needed => {
                 let message = format!("[{}] needs one of {}", self.path, listed(names));
-                self.notes.error(self.header.clone(), message, keys::find(self.schema, names[0]).hint);
+                let hint = Kind::find(self.schema, names[0]).map_or("", |key| key.hint);
+                self.notes.error(self.header.clone(), message, hint);
             }
             _ => {}
         }
@@ -115,12 +79,10 @@ impl<'a> Section<'a> {
         let (value, key) = self.value(name)?;
         let Kind::Choice(words) = key.kind else { return None };
         let DeValue::String(text) = value.get_ref() else { return self.wrong_type(value, key, "a string") };
-        let found = words.iter().find(|word| **word == *text);
-        if found.is_none() {
+        words.iter().find(|word| **word == *text).copied().or_else(|| {
             let message = format!("`{name}` must be {}, not \"{text}\"", listed_as(words, '"', "or"));
-            self.notes.error(value.span(), message, key.hint);
-        }
-        found.copied()
+            self.refuse(value, key, message)
+        })
     }
 
     pub(crate) fn whole(&self, name: &str) -> Option<u32> {
@@ -130,11 +92,7 @@ impl<'a> Section<'a> {
         self.source(name, value);
         let number = i64::from_str_radix(integer.as_str(), integer.radix()).ok().and_then(|n| u32::try_from(n).ok());
         let within = number.filter(|number| (low..=high).contains(number));
-        if within.is_none() {
-            let message = format!("`{name}` must be between {low} and {high}, not {integer}");
-            self.notes.error(value.span(), message, key.hint);
-        }
-        within
+        within.or_else(|| self.refuse(value, key, format!("`{name}` must be between {low} and {high}, not {integer}")))
     }
 
     /// A number in SI.
@@ -191,14 +149,7 @@ impl<'a> Section<'a> {
             return Some(unit.to_si(number));
         }
         let limits = if number.is_finite() { bound.text() } else { "a finite number".to_owned() };
-        self.notes.error(value.span(), format!("`{}` must be {limits}, not {}", key.name, shown(value)), key.hint);
-        None
-    }
-
-    fn value(&self, name: &str) -> Option<(&'a Spanned<DeValue<'a>>, &'static Key)> {
-        let value = self.table.get(name)?;
-        self.notes.place(self.full(name), value.span());
-        Some((value, keys::find(self.schema, name)))
+        self.refuse(value, key, format!("`{}` must be {limits}, not {}", key.name, shown(value)))
     }
 
     fn source(&self, name: &str, value: &Spanned<DeValue<'_>>) {
@@ -206,12 +157,6 @@ impl<'a> Section<'a> {
     }
 
     fn wrong_type<T>(&self, value: &Spanned<DeValue<'_>>, key: &Key, wanted: &str) -> Option<T> {
-        let message = format!("`{}` must be {wanted}, not {}", key.name, kind(value));
-        self.notes.error(value.span(), message, key.hint);
-        None
-    }
-
-    fn full(&self, name: &str) -> String {
-        if self.path.is_empty() { name.to_owned() } else { format!("{}.{name}", self.path) }
+        self.refuse(value, key, format!("`{}` must be {wanted}, not {}", key.name, kind(value)))
     }
 }

@@ -1,5 +1,5 @@
-//! What a run leaves on disk: report, record and log in one folder. A folder that cannot be written is found before the
-//! run; if the disk is full after it, what was recorded goes elsewhere rather than nowhere.
+//! What a run leaves on disk: report, record and log in one folder. If the disk is full after a run, what was recorded goes
+//! elsewhere rather than nowhere.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,33 +9,18 @@ use crate::record::RunRecord;
 use board::logs;
 use report::failure::{Failure, Outcome};
 use report::folder::Folder;
-use report::write::write_text;
+use report::write::{write_record, write_text};
 
-/// Where a run's files go.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Files {
-    folder: Folder,
-    json: Option<PathBuf>,
-}
-
-impl Files {
-    /// Makes the folder and tries to write to it.
-    pub fn prepare(folder: Option<&Path>, json: Option<&Path>, joint: &str) -> Outcome<Self> {
-        let folder = Folder::prepare(folder, "hil", joint)?;
-        Ok(Self { folder, json: json.map(Path::to_owned) })
-    }
-
-    /// Writes everything; returns where the report is.
-    pub fn write(&self, record: &RunRecord) -> Outcome<PathBuf> {
-        let kept = write_to(self.folder.path(), record);
-        let asked = self.json.as_ref().map_or(Ok(()), |json| report::write::write_record(json, record));
-        match (kept, asked) {
-            (Ok(report), Ok(())) => Ok(report),
-            (Ok(_), Err(failure)) => {
-                Err(failure.with_help(format!("the record is in {}", self.folder.file("record.json").display())))
-            }
-            (Err(failure), _) => Err(elsewhere(failure, record)),
+/// Writes everything, the record also to a file that was asked for by name; returns where the report is.
+pub fn write(folder: &Folder, json: Option<&Path>, record: &RunRecord) -> Outcome<PathBuf> {
+    let kept = write_to(folder.path(), record);
+    let asked = json.map_or(Ok(()), |json| write_record(json, record));
+    match (kept, asked) {
+        (Ok(report), Ok(())) => Ok(report),
+        (Ok(_), Err(failure)) => {
+            Err(failure.with_help(format!("the record is in {}", folder.file("record.json").display())))
         }
+        (Err(failure), _) => Err(elsewhere(failure, record)),
     }
 }
 

@@ -1,8 +1,8 @@
 //! A joint run on a board: driven through a torque profile, held against twin and reference, judged and reported.
 //!
-//! The order of a run: `plan` finds everything that is wrong with the request, `files` that the report can be written; the
-//! image is built and the board found, driven and heard by `board`; `comparison` computes the same run by the f64
-//! reference, `evaluation` fills the `record`, `checks` judges, `page` shows it.
+//! The order of a run: `plan` finds everything that is wrong with the request, and the folder is tried; the image is built
+//! and the board found, driven and heard by `board`; `comparison` computes the same run by the f64 reference, `evaluation`
+//! fills the `record`, `checks` judges, `page` shows it, `files` writes it.
 
 pub mod checks;
 pub mod comparison;
@@ -22,21 +22,21 @@ use board::target::board::Board;
 use board::target::image::{self, Image};
 use board::target::toolchain::Toolchain;
 use evaluation::Ran;
-use files::Files;
 use link::messages::Role;
 use plan::{Plan, Request};
 use record::RunRecord;
 use report::checks::all_hold;
 use report::failure::Outcome;
+use report::folder::{self, Folder};
+use report::output;
 use report::progress::Progress;
-use report::{folder, output};
 
 /// Runs a joint on a board; succeeds only if every check held.
 pub fn run(request: &Request<'_>, progress: &Progress) -> Outcome<()> {
     let plan = Plan::new(request)?;
     let wanted = [("json", request.json), ("picture", request.picture)];
     folder::check_files(&wanted, &[&plan.path, Path::new(request.profile)])?;
-    let files = Files::prepare(request.out, request.json, &plan.expected.joint)?;
+    let folder = Folder::prepare(request.out, "hil", &plan.expected.joint)?;
     let bench = prepare(request, &plan, progress)?;
     let mut record = origin::record(request, &plan, &bench.transport);
     let image = bench.image.clone();
@@ -47,7 +47,7 @@ pub fn run(request: &Request<'_>, progress: &Progress) -> Outcome<()> {
     let ran = Ran { plan: &plan, recording: &recording, image: image.as_ref(), outcome: &outcome };
     let evaluated = evaluation::evaluate(&mut record, &ran, references);
     progress.stage("writing the report");
-    let report = files.write(&record);
+    let report = files::write(&folder, request.json, &record);
     progress.clear();
     evaluated?;
     show(&record)?;

@@ -6,8 +6,7 @@ mod command;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use command::{joint, text};
-use tempfile::TempDir;
+use command::{folder, joint, text};
 
 /// A test that is over in a moment.
 const SHORT: &str = "duration_s = 0.2\nsettle_s = 0.1\nprofile = \"T2\"\n[controller]\nrivals = []\n";
@@ -28,10 +27,6 @@ fn nothing(folder: &Path) -> Vec<PathBuf> {
         write("no-utf8", b"name = \"\xff\"\n"),
         write("utf16", b"\xff\xfen\0a\0m\0e\0"),
     ]
-}
-
-fn folder() -> TempDir {
-    tempfile::tempdir().expect("a folder")
 }
 
 #[test]

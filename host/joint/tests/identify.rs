@@ -7,13 +7,9 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use command::{Ended, joint, text};
+use command::{Ended, folder, joint, json, text};
 use identify::virtual_test::record;
 use serde_json::Value;
-
-fn folder() -> tempfile::TempDir {
-    tempfile::tempdir().expect("a folder")
-}
 
 /// What is found in the recommended test of a joint with values changed, by someone who has the unchanged joint file.
 fn identified(name: &str, changes: &[(&str, &str)], seed: u64, with_output_torque: bool) -> Value {
@@ -30,7 +26,7 @@ fn identified(name: &str, changes: &[(&str, &str)], seed: u64, with_output_torqu
     joint_file::read(&patched).expect("the patched file is a joint file");
     let page = fs::read_to_string(out.join("report.html")).expect("written");
     assert!(page.contains("<svg") && page.contains("half-backlash"), "a page with pictures");
-    serde_json::from_str(&fs::read_to_string(out.join("findings.json")).expect("written")).expect("JSON")
+    json(&out.join("findings.json"))
 }
 
 /// Value and interval of a finding, by its key.
@@ -159,35 +155,22 @@ fn log(folder: &Path, change: impl Fn(usize, &mut [String; 4])) -> Ended {
 fn logs_that_cannot_tell_are_refused_by_name() {
     let folder = folder();
     let log = |change: &dyn Fn(usize, &mut [String; 4])| log(folder.path(), change);
+    let once = |at: usize, place: usize, cell: &str| {
+        log(&|row, cells| {
+            if row == at {
+                cells[place] = cell.into();
+            }
+        })
+    };
     log(&|_, cells| cells[3] = "1.0".into()).refused(&["bad.csv", "no reversal", "1.0000"]);
     log(&|row, cells| cells[3] = (if row < 1500 { "0.05" } else { "-0.05" }).into())
         .refused(&["torque is too small to close both flanks", "0.0300 N m"]);
     log(&|row, cells| cells[3] = (if row < 1500 { "1" } else { "-1" }).into())
         .refused(&["too few crossings", "1 times"]);
-    log(&|row, cells| {
-        if row == 700 {
-            cells[0] = "0.04".into();
-        }
-    })
-    .refused(&["the time does not rise", "line 702"]);
-    log(&|row, cells| {
-        if row == 40 {
-            cells[3] = "NaN".into();
-        }
-    })
-    .refused(&["line 42", "no finite number", "motor_torque_N_m"]);
-    log(&|row, cells| {
-        if row == 40 {
-            cells[1] = "90000".into();
-        }
-    })
-    .refused(&["motor_counts", "jumps", "line 42"]);
-    log(&|row, cells| {
-        if row == 40 {
-            cells[2] = "1.5".into();
-        }
-    })
-    .refused(&["output_counts", "no whole number", "line 42"]);
+    once(700, 0, "0.04").refused(&["the time does not rise", "line 702"]);
+    once(40, 3, "NaN").refused(&["line 42", "no finite number", "motor_torque_N_m"]);
+    once(40, 1, "90000").refused(&["motor_counts", "jumps", "line 42"]);
+    once(40, 2, "1.5").refused(&["output_counts", "no whole number", "line 42"]);
     log(&|_, cells| cells[1] = "5".into()).refused(&["the motor does not move", "0.0 counts"]);
     log(&|row, cells| cells[2] = (row * 14).to_string()).refused(&["do not turn together", "--output-bits"]);
     log(&|row, cells| {
@@ -266,9 +249,7 @@ fn a_lab_s_own_mcap_log_says_what_the_same_log_as_csv_says() {
     let findings = |log: &Path, options: &[&str]| {
         let out = folder.path().join("out");
         joint(&[&["identify", text(log), "--out", text(&out)], options].concat()).well();
-        let record: Value =
-            serde_json::from_str(&fs::read_to_string(out.join("findings.json")).expect("written")).expect("JSON");
-        record["findings"].clone()
+        command::json(&out.join("findings.json"))["findings"].clone()
     };
     let wanted = findings(&plain, &[]);
     let ros = ["motor_counts=raw", "output_counts=position[0]", "motor_torque_N_m=torque"];

@@ -4,10 +4,8 @@
 mod command;
 
 use std::collections::BTreeMap;
-use std::fs;
 
-use command::{joint, text};
-use serde_json::Value;
+use command::{folder, joint, json, text};
 
 /// Motor and output encoders [bits].
 const ENCODERS: [(u32, u32); 5] = [(14, 17), (14, 18), (16, 17), (16, 18), (18, 18)];
@@ -51,7 +49,7 @@ fn identified(name: &str, seed: u64, count: &mut Count) {
         let by = draw.between(least, most);
         truths.extend(stated(key).map(|value| (key, by * value)));
     }
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder();
     let [log, out] = ["log.csv", "out"].map(|name| folder.path().join(name));
     let (seed, motor, output) = (seed.to_string(), motor.to_string(), output.to_string());
     let common = ["identify", text(&log), "--joint", name, "--motor-bits", &motor, "--output-bits", &output];
@@ -59,9 +57,7 @@ fn identified(name: &str, seed: u64, count: &mut Count) {
     let sets = sets.iter().flat_map(|set| ["--set", set.as_str()]);
     joint(&common.into_iter().chain(["--simulate", "--seed", &seed]).chain(sets).collect::<Vec<_>>()).well();
     joint(&[&common[..], &["--out", text(&out)]].concat()).well();
-    let findings = fs::read_to_string(out.join("findings.json")).expect("written");
-    let findings: Value = serde_json::from_str(&findings).expect("JSON");
-    for finding in findings["findings"].as_array().expect("a list") {
+    for finding in json(&out.join("findings.json"))["findings"].as_array().expect("a list") {
         let Some(key) = finding["key"].as_str() else { continue };
         let (Some(value), Some(ends)) = (finding["value"].as_f64(), finding["interval"].as_array()) else { continue };
         // What a file does not state is not there.

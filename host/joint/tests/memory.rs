@@ -2,19 +2,20 @@
 //! The emulator is left to `emulated_board`.
 
 mod command;
-#[allow(dead_code, reason = "every test binary uses its own part of it")]
-mod fake_board;
-mod learning_board;
+mod learning;
 mod pseudo_terminal;
+#[allow(dead_code, reason = "every test binary uses its own part of it")]
+mod thread_board;
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use command::{Ended, joint, text};
+use command::{Ended, folder, joint, text};
 use identify::learnt::Content;
-use learning_board::{Flash, learnt};
+use learning::learnt;
 use model_core::observer::{MEMORY_BYTES, Memory};
 use tempfile::TempDir;
+use thread_board::Flash;
 
 const EMPTY: Memory = [0xff; MEMORY_BYTES];
 /// Long enough to learn the width: one second.
@@ -22,8 +23,8 @@ const PERIODS: u32 = 10_000;
 
 /// A memory of joint Q1 whose teeth are wider than its file says, in a file.
 fn stored(folder: &TempDir) -> (PathBuf, Memory) {
-    let q1 = learning_board::joint(&[]);
-    let wide = learning_board::joint(&[("mesh.half_backlash_um", "55")]);
+    let q1 = learning::joint(&[]);
+    let wide = learning::joint(&[("mesh.half_backlash_um", "55")]);
     let (memory, _) = learnt(&q1, &wide, PERIODS);
     let path = folder.path().join("q1.memory");
     fs::write(&path, memory).expect("written");
@@ -33,7 +34,8 @@ fn stored(folder: &TempDir) -> (PathBuf, Memory) {
 /// A board of a joint behind a port, which stays open as long as the file.
 fn board(changes: &[(&str, &str)], flash: &Flash) -> (String, fs::File) {
     let (master, slave, path) = pseudo_terminal::pair();
-    learning_board::start(master, learning_board::joint(changes), flash.clone());
+    let joint = learning::joint(changes);
+    thread_board::start_observer(master, move || learning::controller(&joint), flash.clone());
     (path, slave)
 }
 
@@ -43,7 +45,7 @@ fn memory(words: &[&str], port: &str) -> Ended {
 
 #[test]
 fn what_was_learnt_is_shown_with_units_beside_the_joint_file() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder();
     let (path, memory) = stored(&folder);
     let shown = joint(&["memory", "show", text(&path)]).well();
     let line = |name: &str| shown.out.lines().find(|line| line.starts_with(name)).unwrap_or_default().to_owned();
@@ -57,7 +59,7 @@ fn what_was_learnt_is_shown_with_units_beside_the_joint_file() {
     let value = json["values"][0]["value"].as_f64().expect("a width");
     assert!((value - 55.0).abs() < 5.0, "{value}");
     assert_eq!(fs::read(&path).expect("a file"), memory, "looking changes nothing");
-    let q1 = learning_board::joint(&[]);
+    let q1 = learning::joint(&[]);
     fs::write(&path, learnt(&q1, &q1, 0).0).expect("written");
     let shown = joint(&["memory", "show", text(&path)]).well();
     assert_eq!(shown.out.matches("not learnt").count(), 12, "nobody has moved it: {}", shown.out);
@@ -65,8 +67,8 @@ fn what_was_learnt_is_shown_with_units_beside_the_joint_file() {
 
 #[test]
 fn what_is_shown_is_what_the_observer_says() {
-    let q1 = learning_board::joint(&[]);
-    let (memory, said) = learnt(&q1, &learning_board::joint(&[("mesh.half_backlash_um", "55")]), PERIODS);
+    let q1 = learning::joint(&[]);
+    let (memory, said) = learnt(&q1, &learning::joint(&[("mesh.half_backlash_um", "55")]), PERIODS);
     let loaded = joint_file::named::load(Path::new("q1")).expect("a preset");
     let content = Content::of(&memory, &loaded).expect("its own");
     let near = |name: &str, factor: f64, said: f32| {
@@ -82,7 +84,7 @@ fn what_is_shown_is_what_the_observer_says() {
 
 #[test]
 fn a_memory_moves_over_the_line_and_back() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder();
     let (path, bytes) = stored(&folder);
     let flash = Flash::new(EMPTY, true);
     let (port, _open) = board(&[], &flash);
@@ -102,7 +104,7 @@ fn a_memory_moves_over_the_line_and_back() {
 
 #[test]
 fn a_memory_of_another_joint_is_refused_by_the_board_and_by_show() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder();
     let (path, _) = stored(&folder);
     let flash = Flash::new(EMPTY, true);
     let (port, _open) = board(&[("mesh.half_backlash_um", "30")], &flash);
@@ -113,7 +115,7 @@ fn a_memory_of_another_joint_is_refused_by_the_board_and_by_show() {
 
 #[test]
 fn files_that_are_no_good_are_refused_before_a_board_is_asked() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder();
     let (path, bytes) = stored(&folder);
     let damaged = folder.path().join("damaged.memory");
     let mut changed = bytes;
@@ -137,7 +139,7 @@ fn files_that_are_no_good_are_refused_before_a_board_is_asked() {
 
 #[test]
 fn damaged_flash_and_flash_that_takes_nothing_are_named_with_what_to_do() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder();
     let (path, bytes) = stored(&folder);
     let mut changed = bytes;
     changed[300] ^= 4;
@@ -155,7 +157,7 @@ fn damaged_flash_and_flash_that_takes_nothing_are_named_with_what_to_do() {
 #[test]
 fn a_board_that_learns_nothing_is_refused_with_the_image_that_does() {
     let (master, _slave, port) = pseudo_terminal::pair();
-    drop(fake_board::start(master, fake_board::Misbehaviour::None));
+    drop(thread_board::start(master, thread_board::Misbehaviour::None));
     memory(&["erase"], &port).refused(&["role `plant`, which learns nothing", "cargo joint flash q1 --role observer"]);
 }
 

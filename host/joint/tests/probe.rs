@@ -6,7 +6,7 @@ mod command;
 use std::fs;
 use std::path::Path;
 
-use command::{Ended, joint, text};
+use command::{Ended, folder, joint, json, text};
 use serde_json::Value;
 
 fn run(folder: &Path, test: &str, options: &[&str]) -> Ended {
@@ -16,14 +16,12 @@ fn run(folder: &Path, test: &str, options: &[&str]) -> Ended {
 }
 
 fn first_run(folder: &Path) -> Value {
-    let json = fs::read_to_string(folder.join("out/record.json")).expect("written");
-    let record: Value = serde_json::from_str(&json).expect("JSON");
-    record["tests"][0]["runs"].as_array().expect("runs")[0].clone()
+    json(&folder.join("out/record.json"))["tests"][0]["runs"].as_array().expect("runs")[0].clone()
 }
 
 #[test]
 fn a_held_link_gives_the_width() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder();
     let test = "profile = \"held\"\n[assert]\nprobe_error_percent = \"<= 10\"\nprobe_time_ms = \"<= 500\"\n";
     run(folder.path(), test, &["--host"]).well();
     let run = first_run(folder.path());
@@ -33,7 +31,7 @@ fn a_held_link_gives_the_width() {
 
 #[test]
 fn a_link_that_nobody_holds_gives_the_reason() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder();
     let free =
         "profile = \"held\"\n[known]\nload_coulomb_friction_N_m = 0.05\n[assert]\nprobe_error_percent = \"<= 10\"\n";
     let ended = run(folder.path(), free, &["--host"]);
@@ -45,7 +43,7 @@ fn a_link_that_nobody_holds_gives_the_reason() {
 
 #[test]
 fn what_has_no_probe_says_so() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder();
     let loop_ = run(folder.path(), "profile = \"held\"\n", &["--role", "loop"]);
     assert_eq!(loop_.code, Some(2), "{loop_:?}");
     assert!(loop_.err.contains("the role `loop` does not know") && loop_.err.contains("--role observer"), "{loop_:?}");

@@ -2,7 +2,7 @@
 //! ports and the emulator are left to the other tests.
 
 #[allow(dead_code, reason = "every test binary uses its own part of it")]
-mod fake_board;
+mod thread_board;
 
 use std::os::unix::net::UnixStream;
 use std::time::{Duration, Instant};
@@ -12,36 +12,21 @@ use board::recording::Recording;
 use board::session::{Expected, Mend, Session, Surroundings};
 use board::target::board::Board;
 use board::transport::Socket;
-use board::twin;
-use fake_board::{Misbehaviour, TICK_RATE, joint};
+use board::twin::{self, Agreement};
 use link::messages::{Role, RunMode, RunSettings, Trip};
 use report::failure::{Failure, Outcome};
+use thread_board::{Misbehaviour, TICK_RATE, joint};
 
 /// A message is due within 2 s by design; a busy machine is given ten times that.
 const LIVENESS: Duration = Duration::from_secs(20);
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// Nobody interrupts, and nothing is known about the other end.
-struct Calm;
+/// A user who presses Ctrl-C at a moment, if at all; nothing is known about the other end.
+struct User(Option<Instant>);
 
-impl Surroundings for Calm {
+impl Surroundings for User {
     fn interrupted(&self) -> bool {
-        false
-    }
-    fn gone(&mut self) -> Option<String> {
-        None
-    }
-}
-
-/// The user presses Ctrl-C after a time.
-struct CtrlCAfter(Instant, Duration);
-
-impl Surroundings for CtrlCAfter {
-    fn interrupted(&self) -> bool {
-        self.0.elapsed() > self.1
-    }
-    fn gone(&mut self) -> Option<String> {
-        None
+        self.0.is_some_and(|at| Instant::now() > at)
     }
 }
 
@@ -61,16 +46,12 @@ fn profile() -> Profile {
     Profile::load("reversals", &joint(), TICK_RATE, Some(1.0)).expect("built in")
 }
 
-fn run_with(
-    misbehaviour: Misbehaviour,
-    mode: RunMode,
-    surroundings: impl Surroundings + 'static,
-) -> (Outcome<()>, Recording) {
+fn run_with(misbehaviour: Misbehaviour, mode: RunMode, user: User) -> (Outcome<()>, Recording) {
     let (ours, theirs) = UnixStream::pair().expect("a pair of sockets");
     theirs.set_read_timeout(Some(Duration::from_millis(2))).expect("an option");
-    let board = fake_board::start(theirs, misbehaviour);
-    let line = Socket::new(ours, "the fake board").expect("options");
-    let mut session = Session::new(Box::new(line), Box::new(surroundings));
+    let board = thread_board::start(theirs, misbehaviour);
+    let line = Socket::new(ours, "the board in a thread").expect("options");
+    let mut session = Session::new(Box::new(line), Box::new(user));
     let start = Instant::now();
     let settings = RunSettings { mode, decimation: 50, command_timeout: TICK_RATE, from_memory: false };
     let outcome = session
@@ -89,7 +70,7 @@ fn run_with(
 }
 
 fn run(misbehaviour: Misbehaviour) -> (Outcome<()>, Recording) {
-    run_with(misbehaviour, RunMode::Lockstep, Calm)
+    run_with(misbehaviour, RunMode::Lockstep, User(None))
 }
 
 fn failure(misbehaviour: Misbehaviour) -> (Failure, Recording) {
@@ -99,16 +80,21 @@ fn failure(misbehaviour: Misbehaviour) -> (Failure, Recording) {
     (failure, recording)
 }
 
+/// The recorded run against the same run computed here.
+fn agreement(recording: &Recording) -> Agreement {
+    let Recording { accepted, samples, .. } = recording;
+    twin::compare(&joint(), Board::Stm32f405, TICK_RATE, accepted, samples).expect("designed")
+}
+
 #[test]
 fn a_good_run_brings_every_sample_and_equals_the_twin() {
     for mode in [RunMode::Lockstep, RunMode::Realtime] {
-        let (outcome, recording) = run_with(Misbehaviour::None, mode, Calm);
+        let (outcome, recording) = run_with(Misbehaviour::None, mode, User(None));
         outcome.expect("good weather");
         assert_eq!(recording.samples.len(), 400, "{mode:?}");
         assert_eq!(recording.accepted, profile().commands, "{mode:?}");
         assert_eq!(recording.traffic.bad_frames + recording.traffic.lost_batches, 0);
-        let agreement = twin::compare(&joint(), Board::Stm32f405, TICK_RATE, &recording.accepted, &recording.samples)
-            .expect("designed");
+        let agreement = agreement(&recording);
         assert_eq!((agreement.steps, agreement.different), (TICK_RATE, 0), "{mode:?}: {:?}", agreement.first);
         assert!(recording.statistics.is_some_and(|statistics| statistics.ticks >= TICK_RATE));
     }
@@ -118,19 +104,15 @@ fn a_good_run_brings_every_sample_and_equals_the_twin() {
 fn torques_a_tick_late_break_the_agreement() {
     let (outcome, recording) = run(Misbehaviour::LateTorques);
     outcome.expect("the line itself is good");
-    let agreement = twin::compare(&joint(), Board::Stm32f405, TICK_RATE, &recording.accepted, &recording.samples)
-        .expect("designed");
-    assert!(agreement.different > 0);
+    assert!(agreement(&recording).different > 0);
 }
 
 #[test]
 fn a_board_that_hangs_up_in_mid_run_leaves_what_was_recorded() {
     let (failure, recording) = failure(Misbehaviour::HangsUpAt(10_000));
-    assert!(failure.message().contains("the fake board"), "{failure}");
+    assert!(failure.message().contains("the board in a thread"), "{failure}");
     assert!(recording.samples.len() >= 100, "{} samples kept", recording.samples.len());
-    let agreement = twin::compare(&joint(), Board::Stm32f405, TICK_RATE, &recording.accepted, &recording.samples)
-        .expect("designed");
-    assert_eq!(agreement.different, 0, "what was kept is still good");
+    assert_eq!(agreement(&recording).different, 0, "what was kept is still good");
 }
 
 #[test]
@@ -197,7 +179,7 @@ fn a_fault_ends_the_run_in_words() {
 
 #[test]
 fn ctrl_c_ends_the_wait_for_a_board() {
-    let surroundings = CtrlCAfter(Instant::now(), Duration::from_millis(50));
-    let (outcome, _) = run_with(Misbehaviour::Mute, RunMode::Lockstep, surroundings);
+    let user = User(Some(Instant::now() + Duration::from_millis(50)));
+    let (outcome, _) = run_with(Misbehaviour::Mute, RunMode::Lockstep, user);
     assert_eq!(outcome.expect_err("interrupted").exit_code(), 130);
 }

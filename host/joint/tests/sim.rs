@@ -6,23 +6,19 @@ mod command;
 use std::fs;
 use std::path::Path;
 
-use command::{contents, interrupt, joint, joint_on_a_full_disk, size, start, text, until, wait};
+use command::{contents, folder, interrupt, joint, joint_on_a_full_disk, json, size, start, text, until, wait};
 use host_tests::tolerance;
 use mcap::MessageStream;
 use mcap::read::Options;
 use serde_json::Value;
 
-fn folder() -> tempfile::TempDir {
-    tempfile::tempdir().expect("a folder")
-}
-
 /// Runs a simulation and gives its figures.
 fn figures(arguments: &[&str]) -> Value {
     let folder = folder();
-    let json = folder.path().join("figures-elsewhere.json");
-    let all = [&["sim"], arguments, &["--out", text(folder.path()), "--json", text(&json)]].concat();
+    let elsewhere = folder.path().join("figures-elsewhere.json");
+    let all = [&["sim"], arguments, &["--out", text(folder.path()), "--json", text(&elsewhere)]].concat();
     joint(&all).well();
-    let value: Value = serde_json::from_str(&fs::read_to_string(json).expect("written")).expect("JSON");
+    let value = json(&elsewhere);
     assert_eq!(value["schema"], "joint-sim/1");
     value
 }

@@ -6,14 +6,10 @@ mod command;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use command::{Ended, contents, interrupt, joint, joint_on_a_full_disk, start, text, until, wait};
+use command::{Ended, contents, folder, interrupt, joint, joint_on_a_full_disk, start, text, until, wait};
 
 /// A grid of 31 points of a few milliseconds each.
 const GRID: [&str; 6] = ["sweep", "paper", "--vary", "half_backlash_um=0:150:5", "--duration", "0.01"];
-
-fn folder() -> tempfile::TempDir {
-    tempfile::tempdir().expect("a folder")
-}
 
 fn sweep(more: &[&str], out: &Path) -> Ended {
     joint(&[&GRID[..], more, &["--out", text(out)]].concat())

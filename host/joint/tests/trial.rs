@@ -6,7 +6,7 @@ mod command;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use command::{Ended, joint, text};
+use command::{Ended, folder, joint, json, text};
 use link::messages::Role;
 use scenario::plant::PlantName;
 use scenario::suite;
@@ -28,12 +28,7 @@ fn run(folder: &Path, more: &str, options: &[&str]) -> Ended {
 }
 
 fn results(folder: &Path) -> Value {
-    let json = fs::read_to_string(folder.join("out/record.json")).expect("written");
-    serde_json::from_str(&json).expect("JSON")
-}
-
-fn folder() -> tempfile::TempDir {
-    tempfile::tempdir().expect("a folder")
+    json(&folder.join("out/record.json"))
 }
 
 #[test]
@@ -142,8 +137,7 @@ fn what_cannot_run_in_a_folder_is_named_and_the_rest_runs() {
     }
     assert!(ended.out.contains("ok       rms_mrad") && !ended.out.contains("g-joint.toml"), "{ended:?}");
     assert!(ended.err.contains("5 of 6 tests were not run"), "{ended:?}");
-    let record: Value =
-        serde_json::from_str(&fs::read_to_string(out.join("record.json")).expect("written")).expect("JSON");
+    let record = json(&out.join("record.json"));
     assert_eq!((record["passed"].clone(), record["tests"][0]["passed"].clone()), (false.into(), true.into()));
     let not_run = record["not_run"].as_array().expect("a list");
     assert!(

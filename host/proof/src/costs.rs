@@ -33,8 +33,7 @@ pub struct Counted {
 pub fn count(toolchain: &Toolchain, say: Say<'_>) -> Outcome<Vec<Counted>> {
     let files = write_files(toolchain.target_directory())?;
     let elf = measuring::build_measuring(toolchain, "costs", &files, DEFAULT_TICK_RATE, say)?;
-    let lines = measuring::run(&elf)?;
-    lines.iter().map(|line| parse(line).ok_or_else(|| Failure::new(format!("the board said: {line}")))).collect()
+    measuring::read(&elf, parse)
 }
 
 fn parse(line: &str) -> Option<Counted> {

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use joint_file::JointFile;
 
+use board::target::cross_build::cannot_write;
 use report::failure::{Failure, Outcome};
 
 /// A joint that the step is tried on.
@@ -76,10 +77,8 @@ pub fn write_files(folder: &Path) -> Outcome<Vec<PathBuf>> {
         if fs::read_to_string(&path).is_ok_and(|found| found == text) {
             return Ok(path);
         }
-        fs::create_dir_all(&folder).and_then(|()| fs::write(&path, text)).map_err(|error| {
-            Failure::new(format!("cannot write {}: {error}", path.display()))
-                .with_help("make room, or set CARGO_TARGET_DIR to a folder that can be written")
-        })?;
+        let written = fs::create_dir_all(&folder).and_then(|()| fs::write(&path, text));
+        written.map_err(|error| cannot_write(&path, &error))?;
         Ok(path)
     };
     TRIAL_JOINTS.iter().enumerate().map(write).collect()

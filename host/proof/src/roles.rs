@@ -45,8 +45,7 @@ impl fmt::Display for Load {
 /// Counts on the emulated board.
 pub fn count(toolchain: &Toolchain, say: Say<'_>) -> Outcome<Vec<Load>> {
     let elf = measuring::build_measuring(toolchain, "roles", &[], CONTROL_RATE, say)?;
-    let lines = measuring::run(&elf)?;
-    lines.iter().map(|line| parse(line).ok_or_else(|| Failure::new(format!("the board said: {line}")))).collect()
+    measuring::read(&elf, parse)
 }
 
 fn parse(line: &str) -> Option<Load> {

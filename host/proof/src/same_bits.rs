@@ -21,14 +21,8 @@ pub struct Digests {
     pub name: String,
     /// Of its tables.
     pub tables: u64,
-    /// Of state and outputs over the long motion.
-    pub long: u64,
-    /// Of the state over the motion that ends in infinite torques.
-    pub unbounded: u64,
-    /// Of the state over the motions from tiny numbers.
-    pub tiny: u64,
-    /// Steps that changed the contact set, in the long motion.
-    pub changes: u32,
+    /// Of its motions.
+    pub motions: motion::Digests,
 }
 
 /// Digests by the board, and how its floating-point unit was set.
@@ -44,7 +38,7 @@ pub struct OnBoard {
 
 impl fmt::Display for Digests {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { name, tables, long, unbounded, tiny, changes } = self;
+        let Self { name, tables, motions: motion::Digests { long, unbounded, tiny, changes } } = self;
         write!(f, "{name},{tables:016x},{long:016x},{unbounded:016x},{tiny:016x},{changes}")
     }
 }
@@ -66,18 +60,16 @@ pub fn on_host(joint: &TrialJoint, in_mode: InMode<'_>) -> Outcome<Digests> {
 fn with_planets<const N: usize>(name: &str, parameters: &JointParameters, in_mode: InMode<'_>) -> Outcome<Digests> {
     let tables = design::<f32, N>(parameters, DEFAULT_TICK_RATE)
         .map_err(|error| Failure::new(error.to_string()).while_doing(format_args!("joint {name}")))?;
-    let mut digests = motion::Digests::default();
-    in_mode(&mut || digests = motion::digests(&tables));
-    let motion::Digests { long, unbounded, tiny, changes } = digests;
-    Ok(Digests { name: name.to_owned(), tables: tables.digest, long, unbounded, tiny, changes })
+    let mut motions = motion::Digests::default();
+    in_mode(&mut || motions = motion::digests(&tables));
+    Ok(Digests { name: name.to_owned(), tables: tables.digest, motions })
 }
 
 /// The digests of all joints by the emulated board, in every setting.
 pub fn on_board(toolchain: &Toolchain, say: Say<'_>) -> Outcome<Vec<OnBoard>> {
     let files = write_files(toolchain.target_directory())?;
     let elf = measuring::build_measuring(toolchain, "same_bits", &files, DEFAULT_TICK_RATE, say)?;
-    let lines = measuring::run(&elf)?;
-    lines.iter().map(|line| parse(line).ok_or_else(|| Failure::new(format!("the board said: {line}")))).collect()
+    measuring::read(&elf, parse)
 }
 
 /// name,flush,nan,tables,long,unbounded,changes: names may hold commas.
@@ -88,7 +80,8 @@ fn parse(line: &str) -> Option<OnBoard> {
     let (tiny, unbounded, long, tables) = (digest()?, digest()?, digest()?, digest()?);
     let (default_nan, flush_to_zero) = (fields.next()?.parse().ok()?, fields.next()?.parse().ok()?);
     let name = fields.next()?.to_owned();
-    Some(OnBoard { digests: Digests { name, tables, long, unbounded, tiny, changes }, flush_to_zero, default_nan })
+    let motions = motion::Digests { long, unbounded, tiny, changes };
+    Some(OnBoard { digests: Digests { name, tables, motions }, flush_to_zero, default_nan })
 }
 
 /// Every joint on the board in every setting against the host: the first difference ends it. Returns how many runs were
@@ -112,9 +105,9 @@ fn difference(run: &OnBoard, host: &Digests) -> Failure {
     let (flush, nan) = (on(run.flush_to_zero), on(run.default_nan));
     let what = if run.digests.tables != host.tables {
         "the tables"
-    } else if run.digests.long != host.long {
+    } else if run.digests.motions.long != host.motions.long {
         "the long motion"
-    } else if run.digests.tiny != host.tiny {
+    } else if run.digests.motions.tiny != host.motions.tiny {
         "the motions from tiny numbers"
     } else {
         "the motion under infinite torques"
@@ -135,7 +128,8 @@ mod tests {
     use super::*;
 
     fn on_board(name: &str, long: u64) -> OnBoard {
-        let digests = Digests { name: name.into(), tables: 1, long, unbounded: 3, tiny: 4, changes: 5 };
+        let motions = motion::Digests { long, unbounded: 3, tiny: 4, changes: 5 };
+        let digests = Digests { name: name.into(), tables: 1, motions };
         OnBoard { digests, flush_to_zero: true, default_nan: false }
     }
 

@@ -80,9 +80,7 @@ pub fn search(toolchain: &Toolchain, say: Say<'_>) -> Outcome<Vec<Search>> {
     let files = write_files(toolchain.target_directory())?;
     let elf = measuring::build_measuring(toolchain, "worst_case", &files, DEFAULT_TICK_RATE, say)?;
     let mut found = Vec::new();
-    for line in measuring::run(&elf)? {
-        parse(&line, &mut found).ok_or_else(|| Failure::new(format!("the board said: {line}")))?;
-    }
+    measuring::read(&elf, |line| parse(line, &mut found))?;
     Ok(found)
 }
 

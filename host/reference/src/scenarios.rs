@@ -7,12 +7,12 @@ mod joints;
 mod motions;
 
 pub use cases::{CASE_A_OMEGA, CASE_Q_OMEGA, case, poincare_point, regime};
-pub use joints::{PAPER_LENGTH, l1, paper_joint, paper_natural_frequency, q1, same};
+pub use joints::{PAPER_LENGTH, l1, paper_joint, paper_natural_frequency, q1, same, with_teeth};
 pub use motions::motions;
 use parameters::JointParameters;
 
 use crate::integrator::Counters;
-use crate::joint::{Observation, Reference, ReferenceError, Start};
+use crate::joint::{Observation, Reference, ReferenceError, RelativeState, Start};
 
 /// Torques from one tick on, until the next segment begins.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,6 +57,20 @@ pub struct Trajectory {
 }
 
 impl Scenario {
+    /// No torques and no length yet, at 20,000 ticks a second, each of them sampled; taken for predictable.
+    pub fn new(name: impl Into<String>, joint: JointParameters, start: RelativeState) -> Self {
+        Self {
+            name: name.into(),
+            joint,
+            start: Start::Relative(start),
+            torques: Vec::new(),
+            tick_rate: 20_000,
+            ticks: 0,
+            sample_every: 1,
+            predictable: true,
+        }
+    }
+
     /// Drive and load torque during a tick [N m].
     pub fn torques_at(&self, tick: u64) -> (f64, f64) {
         let segment = self.torques.iter().rev().find(|segment| segment.from_tick <= tick);

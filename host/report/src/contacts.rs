@@ -14,11 +14,11 @@ use crate::plot::unit::Unit;
 #[serde(into = "u8", try_from = "u8")]
 pub enum Contact {
     /// Neither: 0.
-    Separated,
+    Separated = 0,
     /// The flank that drives forwards: 1.
-    DriveSide,
+    DriveSide = 1,
     /// The other one: 2.
-    BackSide,
+    BackSide = 2,
 }
 
 /// Strips over the whole width: more cannot be told apart.
@@ -38,21 +38,13 @@ const STATES: [(Contact, Ink, &str); 3] = [
 impl Contact {
     /// State of a mesh in the two-bit form of the line.
     pub fn from_bits(bits: u32, mesh: usize) -> Self {
-        match (bits >> (2 * mesh)) & 3 {
-            1 => Self::DriveSide,
-            2 => Self::BackSide,
-            _ => Self::Separated,
-        }
+        Self::try_from((bits >> (2 * mesh) & 3) as u8).unwrap_or(Self::Separated)
     }
 }
 
 impl From<Contact> for u8 {
     fn from(contact: Contact) -> Self {
-        match contact {
-            Contact::Separated => 0,
-            Contact::DriveSide => 1,
-            Contact::BackSide => 2,
-        }
+        contact as Self
     }
 }
 

@@ -31,7 +31,7 @@ pub type Points = Vec<(f64, f64)>;
 
 /// A line of the usual width.
 pub fn line(points: Points, ink: Ink, label: &str) -> Mark {
-    Mark::Line { points, ink, label: label.into(), width: LINE }
+    Mark::line(points, ink, label, LINE)
 }
 
 /// Drive and load torque.
@@ -99,7 +99,7 @@ pub fn planets(lines: Vec<Points>, most: f64) -> Vec<Mark> {
         let label = if together { format!("all {planets} planets, alike") } else { format!("planet {}", planet + 1) };
         // Lines may lie on each other: wider ones below show that they are there.
         let width = LINE + if together { 0.0 } else { (planets - 1 - planet) as f64 };
-        Mark::Line { points, ink: LINES[planet % LINES.len()], label, width }
+        Mark::line(points, LINES[planet % LINES.len()], label, width)
     };
     lines.into_iter().enumerate().take(if together { 1 } else { planets }).map(mark).collect()
 }

@@ -1,7 +1,6 @@
 //! Runs one test: every seed and every controller, on all cores, and puts together what came of them. Order of
 //! completion never shows in the results.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
@@ -153,16 +152,7 @@ fn one(test: &Test, conduct: &Conduct<'_>, job: &Job, deadline: Instant) -> Outc
         boards.tell(&mut case)?;
     }
     let order = Order { controller: job.controller, plant: conduct.plant, without_gap: false };
-    let mut run = TestRun {
-        seed: job.seed,
-        controller: job.controller.word().to_owned(),
-        digest: String::new(),
-        log: None,
-        broken: None,
-        refusal: None,
-        figures: BTreeMap::new(),
-        board: None,
-    };
+    let mut run = TestRun { seed: job.seed, controller: job.controller.word().to_owned(), ..TestRun::default() };
     let ran = match conduct.boards.filter(|_| job.controller == test.file.controller) {
         None => execute(&test.file, &case, job.seed, order, deadline),
         Some(boards) => boards.run(test, &case, job.seed, order).map(|(ran, board)| {

@@ -70,45 +70,36 @@ impl ControllerName {
     /// From its word in a file; `none` and `locked` stand for the baseline.
     pub fn of_word(word: &str, impedance: bool) -> Self {
         let found = Self::ALL.into_iter().find(|name| name.word() == word);
-        found.unwrap_or(if impedance { Self::MotorSide } else { Self::MotorPid })
+        found.unwrap_or(Self::baseline(impedance))
+    }
+
+    /// Its word, and its name in reports.
+    fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Preview => ("preview", "compensation, preview"),
+            Self::NoPreview => ("no_preview", "compensation, no preview"),
+            Self::Impedance => ("impedance", "compensation, impedance"),
+            Self::Probe => ("probe", "width probe"),
+            Self::MotorPid => ("motor_pid", "motor PID"),
+            Self::VelocitySign => ("velocity_sign", "velocity-sign offset"),
+            Self::LoadCascade => ("load_cascade", "load cascade"),
+            Self::OutputIntegral => ("output_integral", "output integral and jump"),
+            Self::MotorSide => ("motor_side", "motor-side impedance"),
+            Self::LinkSpring => ("link_spring", "link spring, motor damper"),
+            Self::LinkSide => ("link_side", "link-side impedance"),
+            Self::Off => ("off", "no torque"),
+            Self::PerfectSight => ("perfect_sight", "compensation on the truth"),
+        }
     }
 
     /// Its word.
     pub fn word(self) -> &'static str {
-        match self {
-            Self::Preview => "preview",
-            Self::NoPreview => "no_preview",
-            Self::Impedance => "impedance",
-            Self::Probe => "probe",
-            Self::MotorPid => "motor_pid",
-            Self::VelocitySign => "velocity_sign",
-            Self::LoadCascade => "load_cascade",
-            Self::OutputIntegral => "output_integral",
-            Self::MotorSide => "motor_side",
-            Self::LinkSpring => "link_spring",
-            Self::LinkSide => "link_side",
-            Self::Off => "off",
-            Self::PerfectSight => "perfect_sight",
-        }
+        self.names().0
     }
 
     /// Its name in reports.
     pub fn label(self) -> &'static str {
-        match self {
-            Self::Preview => "compensation, preview",
-            Self::NoPreview => "compensation, no preview",
-            Self::Impedance => "compensation, impedance",
-            Self::Probe => "width probe",
-            Self::MotorPid => "motor PID",
-            Self::VelocitySign => "velocity-sign offset",
-            Self::LoadCascade => "load cascade",
-            Self::OutputIntegral => "output integral and jump",
-            Self::MotorSide => "motor-side impedance",
-            Self::LinkSpring => "link spring, motor damper",
-            Self::LinkSide => "link-side impedance",
-            Self::Off => "no torque",
-            Self::PerfectSight => "compensation on the truth",
-        }
+        self.names().1
     }
 
     /// Observer and compensation.

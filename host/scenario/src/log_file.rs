@@ -48,14 +48,8 @@ fn fill(path: &Path, ran: &Ran, remarks: BTreeMap<String, String>) -> std::io::R
     let schema: String = FIELDS.iter().map(|(name, meaning)| format!("float64 {name}  # {meaning}\n")).collect();
     let out = BufWriter::new(File::create(path)?);
     let mut channel = Channel::begin(out, TOPIC, SCHEMA_NAME, &schema, remarks)?;
-    let every = (1.0 / (RATE * ran.run.period)).round().max(1.0) as usize;
-    let mut peak = 0.0_f64;
-    for (index, (sample, truth)) in ran.run.samples.iter().zip(&ran.truths).enumerate() {
-        peak = peak.max(sample.mesh_force.abs());
-        if (index + 1) % every != 0 {
-            continue;
-        }
-        let sight = ran.sights.get(index).copied().unwrap_or_default();
+    for (sample, truth, sight, peak) in ran.thinned(RATE) {
+        let sight = sight.copied().unwrap_or_default();
         let numbers: [f64; FIELDS.len()] = [
             sample.time,
             sample.wanted,
@@ -79,7 +73,6 @@ fn fill(path: &Path, ran: &Ran, remarks: BTreeMap<String, String>) -> std::io::R
         let mut message = vec![0, 1, 0, 0];
         numbers.into_iter().for_each(|number| message.extend(number.to_le_bytes()));
         channel.write(sample.time, &message)?;
-        peak = 0.0;
     }
     channel.finish()?.into_inner().map_err(std::io::IntoInnerError::into_error)?.sync_data()
 }

@@ -83,6 +83,17 @@ impl Ran {
         }
     }
 
+    /// Samples at a rate [Hz], each with what is true beside it, what the observer made of it, and the largest net force of
+    /// the sun's meshes since the one before [N].
+    pub fn thinned(&self, rate: f64) -> impl Iterator<Item = (&Sample, &Truth, Option<&Sight>, f64)> {
+        let every = (1.0 / (rate * self.run.period)).round().max(1.0) as usize;
+        self.run.samples.chunks_exact(every).zip(1..).map(move |(chunk, number)| {
+            let last = number * every - 1;
+            let peak = chunk.iter().map(|sample| sample.mesh_force.abs()).fold(0.0, f64::max);
+            (&self.run.samples[last], &self.truths[last], self.sights.get(last), peak)
+        })
+    }
+
     /// Adds a period of a rig.
     pub fn note(&mut self, period: &Period<'_>) {
         let joint = period.plant.joint();

@@ -127,7 +127,7 @@ pub struct AssertionRecord {
 }
 
 /// One controller in one seed.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct TestRun {
     /// The seed.

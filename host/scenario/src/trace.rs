@@ -1,6 +1,7 @@
 //! A run thinned for pictures: a point each millisecond, and each crossing of the gap. Figures are never made from it.
 
-use super::ran::Ran;
+use super::ran::{Ran, Sight, Truth};
+use reference::closed_loop::Sample;
 
 /// One point.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -32,6 +33,9 @@ pub struct Trace {
     pub half_gap: f64,
 }
 
+/// Points a second [Hz].
+const RATE: f64 = 1000.0;
+
 /// Share of the half-gap within which a flank counts as touching.
 const NEAR: f64 = 0.9;
 
@@ -53,32 +57,27 @@ impl Trace {
 
     /// Of a run.
     pub fn of(ran: &Ran) -> Self {
-        let every = (1e-3 / ran.run.period).round().max(1.0) as usize;
-        let mut trace =
-            Self { half_gap: ran.truths.last().map_or(0.0, |truth| 2.0 * truth.half_backlash), ..Self::default() };
-        let (mut force, mut touched) = (0.0_f64, None::<(f64, f64)>);
-        for (index, (sample, truth)) in ran.run.samples.iter().zip(&ran.truths).enumerate() {
-            force = force.max(sample.mesh_force.abs());
-            if sample.gap.abs() > NEAR {
-                let side = sample.gap.signum();
-                if let Some((_, since)) = touched.filter(|(before, _)| *before != side) {
-                    trace.crossings.push((sample.time, sample.time - since));
-                }
-                touched = Some((side, sample.time));
+        let point = |(sample, truth, sight, peak): (&Sample, &Truth, Option<&Sight>, f64)| Point {
+            time: sample.time as f32,
+            wanted: sample.wanted as f32,
+            error: (sample.wanted - sample.link) as f32,
+            gap: truth.gap as f32,
+            estimated_gap: sight.map_or(f32::NAN, |sight| sight.gap),
+            torque: sample.command as f32,
+            force: peak as f32,
+        };
+        let mut trace = Self {
+            points: ran.thinned(RATE).map(point).collect(),
+            crossings: Vec::new(),
+            half_gap: ran.truths.last().map_or(0.0, |truth| 2.0 * truth.half_backlash),
+        };
+        let mut touched = None::<(f64, f64)>;
+        for sample in ran.run.samples.iter().filter(|sample| sample.gap.abs() > NEAR) {
+            let side = sample.gap.signum();
+            if let Some((_, since)) = touched.filter(|(before, _)| *before != side) {
+                trace.crossings.push((sample.time, sample.time - since));
             }
-            if (index + 1) % every == 0 {
-                let sight = ran.sights.get(index);
-                trace.points.push(Point {
-                    time: sample.time as f32,
-                    wanted: sample.wanted as f32,
-                    error: (sample.wanted - sample.link) as f32,
-                    gap: truth.gap as f32,
-                    estimated_gap: sight.map_or(f32::NAN, |sight| sight.gap),
-                    torque: sample.command as f32,
-                    force: force as f32,
-                });
-                force = 0.0;
-            }
+            touched = Some((side, sample.time));
         }
         trace
     }

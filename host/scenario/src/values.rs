@@ -107,7 +107,7 @@ impl Values {
                 .iter()
                 .zip(&ran.truths)
                 .filter(|(sample, _)| sample.time >= file.settle)
-                .map(|(sample, truth)| (sample.transmitted_or(truth), sample.link - truth.motor / ratio))
+                .map(|(sample, truth)| (transmitted(sample, truth), sample.link - truth.motor / ratio))
         };
         let largest = points().map(|(torque, _)| torque.abs()).fold(0.0, f64::max);
         let near = |from: f64, to: f64| {
@@ -153,13 +153,7 @@ fn reversal_error(settle: f64, case: &Case, ran: &Ran) -> Option<f64> {
 }
 
 /// Torque through the teeth, felt at the link.
-trait Transmitted {
-    fn transmitted_or(&self, truth: &Truth) -> f64;
-}
-
-impl Transmitted for Sample {
-    fn transmitted_or(&self, truth: &Truth) -> f64 {
-        // Without a compliance nothing is measured between carrier and link: the load stands for it.
-        if self.transmitted == 0.0 { truth.load_torque } else { self.transmitted }
-    }
+fn transmitted(sample: &Sample, truth: &Truth) -> f64 {
+    // Without a compliance nothing is measured between carrier and link: the load stands for it.
+    if sample.transmitted == 0.0 { truth.load_torque } else { sample.transmitted }
 }

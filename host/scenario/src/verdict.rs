@@ -43,7 +43,7 @@ fn one(file: &TestFile, assertion: &Assertion, results: &Results<'_>) -> Asserti
     if had.len() > 1 {
         let all = || had.iter().map(|(_, figure)| *figure);
         let (least, greatest) = (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max));
-        note += &format!("; {} seeds from {} to {}", had.len(), short(least), short(greatest));
+        note += &format!("; {} seeds from {} to {}", had.len(), PAGE.write(least), PAGE.write(greatest));
     }
     if let Some(first) = missing.first() {
         let why = absence(assertion.figure.base().stem);
@@ -94,8 +94,4 @@ fn median(mut figures: Vec<f64>) -> Option<f64> {
         count if count % 2 == 1 => Some(figures[middle]),
         _ => Some(0.5 * (figures[middle - 1] + figures[middle])),
     }
-}
-
-fn short(value: f64) -> String {
-    PAGE.write(value)
 }

@@ -5,7 +5,7 @@ use contest::method::Method;
 
 use super::libraries::Time;
 use super::lineup::{CaseFigures, Entry};
-use super::verdicts::{CLOCK, CYCLES, front};
+use super::verdicts::{CLOCK, CYCLES, curve, front};
 use report::plot::ink::Ink;
 use report::plot::mark::Mark;
 use report::plot::panel::{Panel, VerticalAxis};
@@ -97,8 +97,7 @@ pub fn host(case: &CaseFigures, times: &[Time]) -> Option<Figure> {
     let curves = names
         .iter()
         .map(|name| {
-            let of = times.iter().filter(|time| time.case == case.key && time.name == *name);
-            let points = front(of.filter_map(|time| Some((time.cost, time.error?))).collect());
+            let points = curve(times, &case.key, name);
             let own = name.starts_with("this step");
             let ink = if own { Ink::First } else { colours.next().unwrap_or(Ink::Reference) };
             Curve { points, ink, name, own }
@@ -135,7 +134,7 @@ fn figure(
             label: String::new(),
             size: if own { 7.0 } else { 5.0 },
         });
-        marks.push(Mark::Line { points, ink, label: short(name).into(), width: WIDTHS[usize::from(!own)] });
+        marks.push(Mark::line(points, ink, short(name), WIDTHS[usize::from(!own)]));
     }
     let axis_of_error =
         VerticalAxis::Decades { from: low.log10().floor() as i32, to: (high.log10().ceil() as i32).clamp(-8, 1) };

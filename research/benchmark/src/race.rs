@@ -13,6 +13,7 @@ use contest::run;
 use contest::start::Deflected;
 use peers::two_mass::{Contact, TwoMass};
 
+use board::target::cross_build::cannot_write;
 use board::target::toolchain::Toolchain;
 use board::target::{Say, measuring};
 use report::failure::{Failure, Outcome};
@@ -111,10 +112,8 @@ fn parse(line: &str) -> Option<(usize, (Count, u64))> {
 
 fn write(folder: &Path, source: &str) -> Outcome<PathBuf> {
     let place = folder.join("contest-jobs.rs");
-    fs::create_dir_all(folder).and_then(|()| fs::write(&place, source)).map_err(|error| {
-        Failure::new(format!("cannot write {}: {error}", place.display()))
-            .with_help("make room, or set CARGO_TARGET_DIR to a folder that can be written")
-    })?;
+    let written = fs::create_dir_all(folder).and_then(|()| fs::write(&place, source));
+    written.map_err(|error| cannot_write(&place, &error))?;
     place.canonicalize().map_err(|error| Failure::new(format!("{}: {error}", place.display())))
 }
 
@@ -160,7 +159,7 @@ fn source(jobs: &[Job<'_>]) -> Outcome<String> {
 fn lists(index: usize, case: &Case) -> String {
     let mut text = format!("static TORQUES_{index}: [Change; {}] = [\n", case.torques.len());
     for segment in &case.torques {
-        let (tick, drive, load) = (segment.from_tick, segment.drive as f32, segment.load as f32);
+        let (tick, drive, load) = (segment.from_tick, segment.drive_torque as f32, segment.load_torque as f32);
         let _ = writeln!(text, "    Change {{ tick: {tick}, drive: {drive:?}, load: {load:?} }},");
     }
     let (count, ticks) = (case.restarts.len(), &case.restarts);

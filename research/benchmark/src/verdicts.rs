@@ -79,10 +79,7 @@ pub fn host_at_equal_error(times: &[Time]) -> Vec<AtError> {
             names.push(name);
         }
     }
-    let curve = |case: &str, name: &str| {
-        let of = times.iter().filter(|time| time.case == case && time.name == name);
-        front(of.filter_map(|time| Some((time.cost, time.error?))).collect())
-    };
+    let curve = |case: &str, name: &str| curve(times, case, name);
     let own = |case: &str, level: f64| {
         let both = names.iter().filter(|name| name.0 == case && name.1.starts_with("this step"));
         both.filter_map(|name| cost_at(&curve(case, name.1), level)).min_by(f64::total_cmp)
@@ -91,6 +88,12 @@ pub fn host_at_equal_error(times: &[Time]) -> Vec<AtError> {
         ratio((*case).into(), (*name).into(), level, cost_at(&curve(case, name), level), own(case, level))
     };
     names.iter().flat_map(|name| LEVELS.map(|error| level(name, error))).collect()
+}
+
+/// Cost and error of a contestant of the host.
+pub fn curve(times: &[Time], case: &str, name: &str) -> Vec<(f64, f64)> {
+    let of = times.iter().filter(|time| time.case == case && time.name == name);
+    front(of.filter_map(|time| Some((time.cost, time.error?))).collect())
 }
 
 fn ratio(case: String, name: String, error: f64, cost: Option<f64>, own: Option<f64>) -> AtError {

@@ -9,12 +9,12 @@ mod contest {
     use cortex_m::peripheral::Peripherals;
     use cortex_m_rt::entry;
     use firmware::measuring::{self, InstructionCounter};
-    use model_core::gears::{Model, State, Tables, Torques};
-    use model_core::numbers::digest;
-    use peers::peer::{Peer, Start};
+    use model_core::gears::{Model, State, Tables};
+    use peers::moving::{self, Core, Gap, Moving, Whole};
+    use peers::peer::Start;
     use peers::plant::Plant;
     use peers::scheme::Scheme;
-    use peers::two_mass::{TwoMass, TwoMassPeer};
+    use peers::two_mass::TwoMass;
 
     /// Every job, as `run(race)`.
     mod jobs {
@@ -76,21 +76,10 @@ mod contest {
         counter: InstructionCounter,
     }
 
-    /// Something that moves in steps.
-    trait Moving {
-        /// Puts it back to the so-many-th start.
-        fn restart(&mut self, count: usize);
-        fn set_torques(&mut self, drive: f32, load: f32);
-        fn step(&mut self);
-        fn digest(&self) -> u64;
-    }
-
     impl Race {
         /// The core, by the scheme of its tables.
         pub fn core<const N: usize>(&self, job: u32, tables: &Tables<f32, N>, starts: &[State<f32, N>], way: &Way) {
-            let model = Model::new(black_box(tables));
-            let starts = black_box(starts);
-            self.run(job, way, &mut Core { model, starts, torques: Torques { drive: 0.0, load: 0.0 } });
+            self.run(job, way, &mut Core::new(Model::new(black_box(tables)), black_box(starts)));
         }
 
         /// A peer.
@@ -101,132 +90,41 @@ mod contest {
             starts: &[Start<f32, N>],
             way: &Way,
         ) {
-            let (plant, starts) = (black_box(plant), black_box(starts));
-            let Some(start) = starts.first() else { return };
-            self.run(job, way, &mut Whole::<N, S> { peer: Peer::new(plant, start), plant, starts });
+            if let Some(mut whole) = Whole::<f32, N, S>::new(black_box(plant), black_box(starts)) {
+                self.run(job, way, &mut whole);
+            }
         }
 
         /// The model of two masses, from displacements and their rates.
         pub fn two_mass(&self, job: u32, model: &TwoMass<f32>, starts: &[[f32; 2]], way: &Way) {
-            let (model, starts) = (black_box(model), black_box(starts));
-            self.run(job, way, &mut Gap { peer: TwoMassPeer::new(model, 0.0, 0.0), model, starts });
+            self.run(job, way, &mut Gap::new(black_box(model), black_box(starts)));
         }
 
-        fn run<M: Moving>(&self, job: u32, way: &Way, moving: &mut M) {
-            let mut changes = black_box(way.torques).iter().peekable();
-            let mut restarts = black_box(way.restarts).iter().zip(1..).peekable();
-            let (mut drive, mut load) = (0.0, 0.0);
-            let mut digest = digest::START;
-            moving.restart(0);
+        fn run<M: Moving<f32>>(&self, job: u32, way: &Way, moving: &mut M) {
             let begins = |tick: u32| (u64::from(tick) * u64::from(way.rate)).div_ceil(way.tick_rate.into());
             let (mut sum, mut most) = (0_u64, 0);
             let mut samples = SAMPLE_RATES.map(|sample_rate| Sample::new(way.rate, sample_rate));
-            for step in 0..black_box(way.steps) {
-                while let Some((_, count)) = restarts.next_if(|(tick, _)| begins(**tick) <= step.into()) {
-                    digest = digest::chain(digest, moving.digest());
-                    moving.restart(count);
-                    moving.set_torques(drive, load);
-                }
-                while let Some(change) = changes.next_if(|change| begins(change.tick) <= step.into()) {
-                    (drive, load) = (change.drive, change.load);
-                    moving.set_torques(drive, load);
-                }
+            let steps = moving::Way {
+                steps: black_box(way.steps).into(),
+                restarts: black_box(way.restarts).iter().map(|tick| begins(*tick)),
+                changes: black_box(way.torques).iter().map(|change| (begins(change.tick), change.drive, change.load)),
+            };
+            let step = |moving: &mut M| {
                 let count = self.counter.count(|| call(moving));
                 sum += u64::from(count);
                 most = most.max(count);
                 samples.iter_mut().for_each(|sample| sample.add(count));
-            }
+            };
+            let digest = moving::follow(moving, steps, |_| (), step);
             let [slow, middle, fast] = samples.map(|sample| sample.most);
-            let digest = digest::chain(digest, moving.digest());
             measuring::say(format_args!("{job},{},{sum},{most},{slow},{middle},{fast},{digest:016x}", way.steps));
         }
     }
 
     /// A call that is not inlined, so that nothing moves out of the count.
     #[inline(never)]
-    fn call<M: Moving>(moving: &mut M) {
+    fn call<M: Moving<f32>>(moving: &mut M) {
         moving.step();
-    }
-
-    struct Core<'a, const N: usize> {
-        model: Model<'a, f32, N>,
-        starts: &'a [State<f32, N>],
-        torques: Torques<f32>,
-    }
-
-    struct Whole<'a, const N: usize, S> {
-        peer: Peer<'a, f32, N, S>,
-        plant: &'a Plant<f32, N>,
-        starts: &'a [Start<f32, N>],
-    }
-
-    struct Gap<'a> {
-        peer: TwoMassPeer<'a, f32>,
-        model: &'a TwoMass<f32>,
-        starts: &'a [[f32; 2]],
-    }
-
-    impl<const N: usize> Moving for Core<'_, N> {
-        fn restart(&mut self, count: usize) {
-            if let Some(start) = self.starts.get(count) {
-                self.model.set_state(*start);
-            }
-        }
-
-        fn set_torques(&mut self, drive: f32, load: f32) {
-            self.torques = Torques { drive, load };
-        }
-
-        #[inline(always)]
-        fn step(&mut self) {
-            self.model.step(self.torques);
-        }
-
-        fn digest(&self) -> u64 {
-            self.model.state_digest()
-        }
-    }
-
-    impl<const N: usize, S: Scheme<f32, N>> Moving for Whole<'_, N, S> {
-        fn restart(&mut self, count: usize) {
-            if let Some(start) = self.starts.get(count) {
-                self.peer = Peer::new(self.plant, start);
-            }
-        }
-
-        fn set_torques(&mut self, drive: f32, load: f32) {
-            self.peer.set_torques(drive, load);
-        }
-
-        #[inline(always)]
-        fn step(&mut self) {
-            self.peer.step();
-        }
-
-        fn digest(&self) -> u64 {
-            self.peer.motion().digest()
-        }
-    }
-
-    impl Moving for Gap<'_> {
-        fn restart(&mut self, count: usize) {
-            if let Some([place, rate]) = self.starts.get(count) {
-                self.peer = TwoMassPeer::new(self.model, *place, *rate);
-            }
-        }
-
-        fn set_torques(&mut self, drive: f32, load: f32) {
-            self.peer.set_torques(drive, load);
-        }
-
-        #[inline(always)]
-        fn step(&mut self) {
-            self.peer.step();
-        }
-
-        fn digest(&self) -> u64 {
-            digest::chain(digest::START, self.peer.link_offset().to_bits().into())
-        }
     }
 
     #[entry]

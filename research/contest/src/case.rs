@@ -4,20 +4,9 @@
 use model_core::gears::{Kinematics, MeshPhasing};
 use parameters::{Excitation, JointParameters, MESH_KINDS, MeshKind, MeshPhases};
 use reference::joint::{RelativeState, Start};
-use reference::scenarios::Scenario;
 use reference::scenarios::case_r::{CaseR, TICK_RATE};
+use reference::scenarios::{Scenario, TorqueSegment};
 use std::f64::consts::TAU;
-
-/// Torques from one tick on.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Segment {
-    /// First tick that they act in.
-    pub from_tick: u64,
-    /// On the sun [N m].
-    pub drive: f64,
-    /// Braking the link [N m].
-    pub load: f64,
-}
 
 /// What counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,7 +29,7 @@ pub struct Case {
     /// Its state at time zero.
     pub start: Start,
     /// Torques, in order.
-    pub torques: Vec<Segment>,
+    pub torques: Vec<TorqueSegment>,
     /// Ticks of `torques` in a second [Hz]: a method's rate must be a multiple of it where torques change.
     pub tick_rate: u32,
     /// Length in these ticks.
@@ -58,6 +47,21 @@ pub struct Case {
     pub measure: Measure,
 }
 
+/// Bodies still and undeflected: the deflections are the imposed errors, negated.
+pub fn at_rest(joint: &JointParameters) -> RelativeState {
+    let rate = match joint.excitation {
+        Excitation::Time { mesh_frequency } => mesh_frequency,
+        Excitation::Angle => 0.0,
+    };
+    let mut start = RelativeState::centred(joint.geometry.planets);
+    for (planet, amplitude) in joint.sun_planet.transmission_error.iter().enumerate() {
+        let (sine, cosine) = joint.error_phase(MeshKind::SunPlanet, planet).sin_cos();
+        start.sun_planet[planet] = -(amplitude * sine);
+        start.sun_planet_rate[planet] = -(amplitude * rate * cosine);
+    }
+    start
+}
+
 impl Case {
     /// A scenario of which all deflections count from a moment [s] on.
     pub fn of_scenario(key: &str, title: &str, scenario: Scenario, sample_rate: u32, counts_from: f64) -> Self {
@@ -65,11 +69,7 @@ impl Case {
             key: key.into(),
             title: title.into(),
             start: scenario.start,
-            torques: scenario
-                .torques
-                .iter()
-                .map(|s| Segment { from_tick: s.from_tick, drive: s.drive_torque, load: s.load_torque })
-                .collect(),
+            torques: scenario.torques,
             joint: scenario.joint,
             tick_rate: scenario.tick_rate,
             ticks: scenario.ticks,
@@ -83,10 +83,10 @@ impl Case {
 
     /// The motion of a robot joint.
     pub fn of_robot_joint(key: &str, title: &str, case: CaseR) -> Self {
-        let mut torques: Vec<Segment> = Vec::new();
+        let mut torques: Vec<TorqueSegment> = Vec::new();
         for (tick, [drive, load]) in case.torques.iter().enumerate() {
-            if torques.last().is_none_or(|last| (last.drive, last.load) != (*drive, *load)) {
-                torques.push(Segment { from_tick: tick as u64, drive: *drive, load: *load });
+            if torques.last().is_none_or(|last| (last.drive_torque, last.load_torque) != (*drive, *load)) {
+                torques.push(TorqueSegment { from_tick: tick as u64, drive_torque: *drive, load_torque: *load });
             }
         }
         Self {
@@ -121,16 +121,7 @@ impl Case {
         let by = part * self.joint.characteristic_length;
         let mut start = match &self.start {
             Start::Relative(start) => start.clone(),
-            Start::Still => {
-                let mut start = RelativeState::centred(self.joint.geometry.planets);
-                for planet in 0..self.joint.geometry.planets {
-                    let (sine, cosine) = self.joint.error_phase(MeshKind::SunPlanet, planet).sin_cos();
-                    let amplitude = self.joint.sun_planet.transmission_error[planet];
-                    start.sun_planet[planet] = -amplitude * sine;
-                    start.sun_planet_rate[planet] = -amplitude * cosine * self.phase_rate(0.0);
-                }
-                start
-            }
+            Start::Still => at_rest(&self.joint),
         };
         start.sun_planet.iter_mut().for_each(|planet| *planet += by);
         start.gap += by;

@@ -6,10 +6,10 @@ use model_core::gears::{Kinematics, MeshPhasing, Scales};
 use parameters::{Excitation, JointParameters, MeshKind, MeshPhases, PerPlanet};
 use reference::joint::{RelativeState, Start};
 use reference::scenarios::{
-    CASE_A_OMEGA, CASE_Q_OMEGA, Scenario, case, case_r, motions, paper_natural_frequency, same,
+    CASE_A_OMEGA, CASE_Q_OMEGA, Scenario, TorqueSegment, case, case_r, motions, paper_natural_frequency, same,
 };
 
-use crate::case::{Case, Segment};
+use crate::case::Case;
 
 /// Dimensionless time from which cases with a prescribed phase count: what the start stirred up has died down.
 const SETTLED: f64 = 100.0;
@@ -68,7 +68,7 @@ pub fn of_joint(joint: &JointParameters) -> Case {
         title: "steady running under half the rated torque".into(),
         joint: joint.clone(),
         start: Start::Relative(start),
-        torques: vec![Segment { from_tick: 0, drive, load }],
+        torques: vec![TorqueSegment { from_tick: 0, drive_torque: drive, load_torque: load }],
         tick_rate,
         ticks: (LENGTH / frequency * f64::from(tick_rate)).ceil() as u64,
         sample_rate: 2 * tick_rate,

@@ -86,7 +86,7 @@ impl Course {
             // What begins at the sample itself acts after it.
             while let Some(change) = changes.next_if(|change| begins(change.from_tick) < time) {
                 reference.advance(begins(change.from_tick), drive, load)?;
-                (drive, load) = (change.drive, change.load);
+                (drive, load) = (change.drive_torque, change.load_torque);
             }
             reference.advance(time, drive, load)?;
             let now = reference.observe();

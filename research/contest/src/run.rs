@@ -4,20 +4,21 @@
 use std::f64::consts::TAU;
 
 use model_core::gears::design::{DesignError, Effort, design_scheme};
-use model_core::gears::{Kinematics, Model, Scales, Scheme, State, Tables, Torques};
-use model_core::numbers::{Real, digest};
+use model_core::gears::{Kinematics, Model, Relative, Scales, Scheme, State, Tables};
+use model_core::numbers::Real;
 use parameters::{Excitation, JointParameters};
 use peers::clock::Clock;
 use peers::etd1::Etd1;
 use peers::euler::SemiImplicitEuler;
 use peers::instant::Rotor;
 use peers::motion::{Coordinates, Motion};
-use peers::peer::{Peer, Start};
+use peers::moving::{self, Core, Gap, Moving, Way, Whole};
+use peers::peer::Start;
 use peers::plant::Plant;
 use peers::runge_kutta::RungeKutta4;
 use peers::scheme::Scheme as PeerScheme;
 use peers::trapezoid::Trapezoid;
-use peers::two_mass::{Contact, TwoMass, TwoMassPeer};
+use peers::two_mass::{Contact, TwoMass};
 
 use crate::case::Case;
 use crate::course::Restart;
@@ -44,7 +45,7 @@ pub fn steps(case: &Case, rate: u32) -> u64 {
 /// Torques by steps of a method at a rate: (first step, drive, load).
 pub fn torques_by_step(case: &Case, rate: u32) -> Vec<(u64, f64, f64)> {
     let step = |tick: u64| (tick * u64::from(rate)).div_ceil(u64::from(case.tick_rate));
-    case.torques.iter().map(|segment| (step(segment.from_tick), segment.drive, segment.load)).collect()
+    case.torques.iter().map(|segment| (step(segment.from_tick), segment.drive_torque, segment.load_torque)).collect()
 }
 
 /// Sub-steps of the core's step that the design chooses for a board, leapfrog sub-steps among them.
@@ -89,11 +90,11 @@ pub fn run<T: Real, const N: usize>(
     Ok(match method {
         Method::Realtime => {
             let tables: Tables<T, N> = tables(&case.joint, rate, substeps)?;
-            let mut model = Model::new(&tables);
             let starts: Vec<_> = starts.iter().map(|start| start.state(&case.joint, &tables)).collect();
-            model.set_state(starts[0]);
-            let torques = Torques { drive: T::ZERO, load: T::ZERO };
-            follow(case, rate, clock, &mut Core { model, starts, torques, gauge: Gauge::new(&case.joint), case, rate })
+            let gauge = Gauge::new(&case.joint);
+            let read = |state: &State<T, N>| read_core(case, rate, &gauge, state);
+            let mut core = Core::new(Model::new(&tables), &starts);
+            follow(case, rate, clock, &mut core, |core| *core.model.state(), read)
         }
         Method::PaperEtd1 => whole::<T, N, Etd1<T>>(case, method, rate, clock, &starts),
         Method::RungeKutta4 | Method::RungeKutta4Tanh => {
@@ -115,9 +116,26 @@ fn whole<T: Real, const N: usize, S: PeerScheme<T, N>>(
 ) -> Run {
     let plant = plant(&case.joint, method, rate);
     let starts: Vec<Start<T, N>> = starts.iter().map(|start| start.peer(&case.joint, f64::from(rate))).collect();
-    let peer: Peer<'_, T, N, S> = Peer::new(&plant, &starts[0]);
     let gauge = Gauge::new(&case.joint);
-    follow(case, rate, clock, &mut Whole { peer, plant: &plant, starts, gauge, carrier: 0.0, last: 0 })
+    // Angle of the rigid carrier, whole turns included, and where the clock was at the last reading.
+    let (mut carrier, mut last) = (0.0, 0_u64);
+    let read = |(motion, clock): &(Motion<T, N>, Clock<T>)| {
+        let wide = |values: &Coordinates<T, N>| Coordinates {
+            planets: values.planets.map(Real::to_f64),
+            gap: values.gap.to_f64(),
+            wind_up: values.wind_up.to_f64(),
+        };
+        let motion = Motion { position: wide(&motion.position), rate: wide(&motion.rate) };
+        if let Some(place) = clock.carrier() {
+            carrier += TAU * place.wrapping_sub(last) as i64 as f64 / TURN;
+            last = place;
+        }
+        let now = clock.now();
+        let phase = Rotor { sine: now.sine.to_f64(), cosine: now.cosine.to_f64(), rate: now.rate.to_f64() };
+        gauge.read(&motion, &phase, carrier)
+    };
+    let mut whole = Whole::<T, N, S>::new(&plant, &starts).expect("a case has a start");
+    follow(case, rate, clock, &mut whole, |whole| (*whole.peer.motion(), *whole.peer.clock()), read)
 }
 
 fn two_mass<T: Real, const N: usize>(
@@ -128,214 +146,110 @@ fn two_mass<T: Real, const N: usize>(
     starts: &[Deflected<N>],
 ) -> Run {
     let model = TwoMass::<T>::new(&case.joint, f64::from(rate), contact);
-    let start = |start: &Deflected<N>| {
-        let (place, speed) = start.two_mass(&case.joint);
-        let peer = TwoMassPeer::new(&model, T::from_f64(place), T::from_f64(speed));
-        (peer, RigidCarrier::new(&case.joint, TAU * start.turns, start.speed, rate))
+    let carriers: Vec<_> =
+        starts.iter().map(|start| RigidCarrier::new(&case.joint, TAU * start.turns, start.speed, rate)).collect();
+    let place_and_rate = |start: &Deflected<N>| <[f64; 2]>::from(start.two_mass(&case.joint)).map(T::from_f64);
+    let starts: Vec<[T; 2]> = starts.iter().map(place_and_rate).collect();
+    let mut carried = Carried { gap: Gap::new(&model, &starts), carrier: carriers[0].clone(), carriers };
+    // Link angle and mesh force.
+    let moment = |it: &Carried<'_, T>| {
+        let Carried { gap: Gap { peer, .. }, carrier, .. } = it;
+        (carrier.angle + peer.link_offset().to_f64(), peer.mesh_force().to_f64().abs())
     };
-    let starts: Vec<_> = starts.iter().map(start).collect();
-    let (peer, carrier) = starts[0].clone();
-    follow(case, rate, clock, &mut Gap { peer, carrier, starts })
+    let read = |&(link_angle, mesh_force): &(f64, f64)| Reading { deflections: Vec::new(), link_angle, mesh_force };
+    follow(case, rate, clock, &mut carried, moment, read)
 }
 
-/// Something that moves in steps.
-trait Moving {
-    /// All that a reading is made of.
-    type Moment;
-    /// Puts it back, the so-many-th time.
-    fn restart(&mut self, count: usize);
-    fn set_torques(&mut self, drive: f64, load: f64);
-    fn step(&mut self);
-    fn moment(&self) -> Self::Moment;
-    /// Moments must be read in their order.
-    fn read(&mut self, moment: &Self::Moment) -> Reading;
-    fn digest(&self) -> u64;
-}
-
-fn follow<M: Moving>(case: &Case, rate: u32, clock: &dyn Fn() -> f64, moving: &mut M) -> Run {
-    let mut changes = torques_by_step(case, rate).into_iter().peekable();
-    let mut restarts = restarts_by_step(case, rate).zip(1..).peekable();
-    let mut torques = (0.0, 0.0);
-    let mut digest = digest::START;
+/// `moment` takes all that a reading is made of, which `read` makes when the clock has stopped, in the moments' order.
+fn follow<T: Real, M: Moving<T>, X>(
+    case: &Case,
+    rate: u32,
+    clock: &dyn Fn() -> f64,
+    moving: &mut M,
+    moment: impl Fn(&M) -> X,
+    mut read: impl FnMut(&X) -> Reading,
+) -> Run {
+    let way = Way {
+        steps: steps(case, rate),
+        restarts: restarts_by_step(case, rate),
+        changes: torques_by_step(case, rate)
+            .into_iter()
+            .map(|(step, drive, load)| (step, T::from_f64(drive), T::from_f64(load))),
+    };
     // Steps at which a sample of the reference falls.
     let divisor = greatest_divisor(rate, case.sample_rate);
     let (every, stride) = (u64::from(rate / divisor), (case.sample_rate / divisor) as usize);
-    let last = steps(case, rate);
-    let mut moments = Vec::with_capacity((last / every) as usize + 1);
-    let start = clock();
+    let mut moments = Vec::with_capacity((way.steps / every) as usize + 1);
     let mut until_sample = 0;
-    for step in 0..=last {
+    let look = |moving: &M| {
         if until_sample == 0 {
-            moments.push(moving.moment());
+            moments.push(moment(moving));
             until_sample = every;
         }
         until_sample -= 1;
-        while let Some((_, count)) = restarts.next_if(|restart| restart.0 <= step) {
-            digest = digest::chain(digest, moving.digest());
-            moving.restart(count);
-            moving.set_torques(torques.0, torques.1);
-        }
-        while let Some((_, drive, load)) = changes.next_if(|change| change.0 <= step) {
-            moving.set_torques(drive, load);
-            torques = (drive, load);
-        }
-        if step < last {
-            moving.step();
-        }
-    }
+    };
+    let start = clock();
+    let digest = moving::follow(moving, way, look, M::step);
     let seconds = clock() - start;
-    let readings = moments.iter().enumerate().map(|(index, moment)| (index * stride, moving.read(moment))).collect();
-    Run { readings, digest: digest::chain(digest, moving.digest()), seconds }
+    let readings = moments.iter().enumerate().map(|(index, moment)| (index * stride, read(moment))).collect();
+    Run { readings, digest, seconds }
 }
 
 fn greatest_divisor(a: u32, b: u32) -> u32 {
     if b == 0 { a } else { greatest_divisor(b, a % b) }
 }
 
-struct Core<'a, T: Real, const N: usize> {
-    model: Model<'a, T, N>,
-    starts: Vec<State<T, N>>,
-    torques: Torques<T>,
-    gauge: Gauge<N>,
-    case: &'a Case,
-    rate: u32,
-}
-
-impl<T: Real, const N: usize> Moving for Core<'_, T, N> {
-    type Moment = State<T, N>;
-
-    fn restart(&mut self, count: usize) {
-        self.model.set_state(self.starts[count]);
-    }
-
-    fn set_torques(&mut self, drive: f64, load: f64) {
-        self.torques = Torques { drive: T::from_f64(drive), load: T::from_f64(load) };
-    }
-
-    fn step(&mut self) {
-        self.model.step(self.torques);
-    }
-
-    fn moment(&self) -> State<T, N> {
-        *self.model.state()
-    }
-
-    fn read(&mut self, state: &State<T, N>) -> Reading {
-        let wide = |values: &model_core::gears::Relative<T, N>| Coordinates {
-            planets: values.planets.map(Real::to_f64),
-            gap: values.gap.to_f64(),
-            wind_up: values.wind_up.to_f64(),
-        };
-        let motion = Motion { position: wide(&state.position), rate: wide(&state.rate) };
-        let turns = |part: u64| TAU * (part as f64 / TURN);
-        let carrier = TAU * f64::from(state.rigid.turns) + turns(state.rigid.fraction);
-        let speed = TAU * state.rigid.speed as f64 / TURN * f64::from(self.rate);
-        let teeth = self.case.joint.geometry.ring_teeth;
-        let frequency = Scales::new(&self.case.joint).frequency;
-        let (angle, rate, carrier) = match self.case.joint.excitation {
-            Excitation::Time { mesh_frequency } => (turns(state.phase), mesh_frequency, 0.0),
-            Excitation::Angle => {
-                (turns(state.rigid.fraction.wrapping_mul(teeth.into())), f64::from(teeth) * speed, carrier)
-            }
-        };
-        let (sine, cosine) = angle.sin_cos();
-        self.gauge.read(&motion, &Rotor { sine, cosine, rate: rate / frequency }, carrier)
-    }
-
-    fn digest(&self) -> u64 {
-        self.model.state_digest()
-    }
+/// Reads a state of the core.
+fn read_core<T: Real, const N: usize>(case: &Case, rate: u32, gauge: &Gauge<N>, state: &State<T, N>) -> Reading {
+    let wide = |values: &Relative<T, N>| Coordinates {
+        planets: values.planets.map(Real::to_f64),
+        gap: values.gap.to_f64(),
+        wind_up: values.wind_up.to_f64(),
+    };
+    let motion = Motion { position: wide(&state.position), rate: wide(&state.rate) };
+    let turns = |part: u64| TAU * (part as f64 / TURN);
+    let carrier = TAU * f64::from(state.rigid.turns) + turns(state.rigid.fraction);
+    let speed = TAU * state.rigid.speed as f64 / TURN * f64::from(rate);
+    let teeth = case.joint.geometry.ring_teeth;
+    let frequency = Scales::new(&case.joint).frequency;
+    let (angle, rate, carrier) = match case.joint.excitation {
+        Excitation::Time { mesh_frequency } => (turns(state.phase), mesh_frequency, 0.0),
+        Excitation::Angle => {
+            (turns(state.rigid.fraction.wrapping_mul(teeth.into())), f64::from(teeth) * speed, carrier)
+        }
+    };
+    let (sine, cosine) = angle.sin_cos();
+    gauge.read(&motion, &Rotor { sine, cosine, rate: rate / frequency }, carrier)
 }
 
 /// 2^64.
 const TURN: f64 = 18_446_744_073_709_551_616.0;
 
-struct Whole<'a, T: Real, const N: usize, S> {
-    peer: Peer<'a, T, N, S>,
-    plant: &'a Plant<T, N>,
-    starts: Vec<Start<T, N>>,
-    gauge: Gauge<N>,
-    /// Angle of the rigid carrier, whole turns included.
-    carrier: f64,
-    /// Where the clock was at the last reading.
-    last: u64,
-}
-
-impl<T: Real, const N: usize, S: PeerScheme<T, N>> Moving for Whole<'_, T, N, S> {
-    type Moment = (Motion<T, N>, Clock<T>);
-
-    fn restart(&mut self, count: usize) {
-        self.peer = Peer::new(self.plant, &self.starts[count]);
-    }
-
-    fn set_torques(&mut self, drive: f64, load: f64) {
-        self.peer.set_torques(T::from_f64(drive), T::from_f64(load));
-    }
-
-    fn step(&mut self) {
-        self.peer.step();
-    }
-
-    fn moment(&self) -> Self::Moment {
-        (*self.peer.motion(), *self.peer.clock())
-    }
-
-    fn read(&mut self, (motion, clock): &Self::Moment) -> Reading {
-        let Motion { position, rate } = motion;
-        let wide = |values: &Coordinates<T, N>| Coordinates {
-            planets: values.planets.map(Real::to_f64),
-            gap: values.gap.to_f64(),
-            wind_up: values.wind_up.to_f64(),
-        };
-        let motion = Motion { position: wide(position), rate: wide(rate) };
-        if let Some(place) = clock.carrier() {
-            self.carrier += TAU * place.wrapping_sub(self.last) as i64 as f64 / TURN;
-            self.last = place;
-        }
-        let now = clock.now();
-        let phase = Rotor { sine: now.sine.to_f64(), cosine: now.cosine.to_f64(), rate: now.rate.to_f64() };
-        self.gauge.read(&motion, &phase, self.carrier)
-    }
-
-    fn digest(&self) -> u64 {
-        self.peer.motion().digest()
-    }
-}
-
-struct Gap<'a, T: Real> {
-    peer: TwoMassPeer<'a, T>,
+/// The model of two masses with the rigid carrier that it has none of, and where that is at each restart.
+struct Carried<'a, T: Real> {
+    gap: Gap<'a, T>,
     carrier: RigidCarrier,
-    starts: Vec<(TwoMassPeer<'a, T>, RigidCarrier)>,
+    carriers: Vec<RigidCarrier>,
 }
 
-impl<T: Real> Moving for Gap<'_, T> {
-    /// Link angle and mesh force.
-    type Moment = (f64, f64);
-
+impl<T: Real> Moving<f64> for Carried<'_, T> {
     fn restart(&mut self, count: usize) {
-        (self.peer, self.carrier) = self.starts[count].clone();
+        self.gap.restart(count);
+        self.carrier = self.carriers[count].clone();
     }
 
     fn set_torques(&mut self, drive: f64, load: f64) {
-        self.peer.set_torques(T::from_f64(drive), T::from_f64(load));
+        self.gap.set_torques(T::from_f64(drive), T::from_f64(load));
         self.carrier.set_torques(drive, load);
     }
 
     fn step(&mut self) {
-        self.peer.step();
+        self.gap.step();
         self.carrier.step();
     }
 
-    fn moment(&self) -> (f64, f64) {
-        (self.carrier.angle + self.peer.link_offset().to_f64(), self.peer.mesh_force().to_f64().abs())
-    }
-
-    fn read(&mut self, (link_angle, mesh_force): &(f64, f64)) -> Reading {
-        Reading { deflections: Vec::new(), link_angle: *link_angle, mesh_force: *mesh_force }
-    }
-
     fn digest(&self) -> u64 {
-        digest::chain(digest::START, self.peer.link_offset().bits())
+        self.gap.digest()
     }
 }
 

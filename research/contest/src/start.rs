@@ -3,13 +3,14 @@
 use std::array;
 use std::f64::consts::TAU;
 
-use model_core::gears::{MeshPhasing, Relative, RigidBody, Scales, State, Tables};
+use model_core::gears::{Relative, RigidBody, Scales, State, Tables};
 use model_core::numbers::Real;
-use parameters::{Excitation, JointParameters, MeshKind};
+use parameters::JointParameters;
 use peers::motion::Coordinates;
 use peers::peer;
 use reference::joint::Start;
 
+use crate::case::at_rest;
 use crate::course::Restart;
 
 /// 2^64.
@@ -45,23 +46,7 @@ impl<const N: usize> Deflected<N> {
                 turns: 0.0,
                 speed: given.rigid_speed,
             },
-            Start::Still => {
-                let rate = match joint.excitation {
-                    Excitation::Time { mesh_frequency } => mesh_frequency,
-                    Excitation::Angle => 0.0,
-                };
-                let error = |i: usize| {
-                    let (sine, cosine) = joint.error_phase(MeshKind::SunPlanet, i).sin_cos();
-                    let amplitude = joint.sun_planet.transmission_error[i];
-                    [amplitude * sine, amplitude * rate * cosine]
-                };
-                let at = |which: usize| Coordinates {
-                    planets: array::from_fn(|i| -error(i)[which]),
-                    gap: 0.0,
-                    wind_up: 0.0,
-                };
-                Self { position: at(0), rate: at(1), turns: 0.0, speed: 0.0 }
-            }
+            Start::Still => Self::new(joint, &Start::Relative(at_rest(joint))),
         }
     }
 

@@ -2,7 +2,7 @@
 //! what depends on the start. What the paper's authors may have had in mind is not guessed at.
 
 use super::pictures::micrometres;
-use super::record::{ClassRecord, ClassWindow, Reading, StudyRecord, Sweep};
+use super::record::{Class, ClassWindow, Reading, StudyRecord, Sweep};
 use super::windows::chaos_below;
 
 /// With a sign and four decimals.
@@ -59,11 +59,11 @@ fn classes(reading: &Reading) -> String {
 }
 
 fn regimes(reading: &Reading) -> Finding {
-    let wanted = [ClassRecord::Periodic(1), ClassRecord::Periodic(1), ClassRecord::Periodic(3), ClassRecord::Chaotic];
-    let found: Vec<ClassRecord> = reading.attractors.iter().map(|attractor| attractor.class).collect();
+    let wanted = [Class::Periodic(1), Class::Periodic(1), Class::Periodic(3), Class::Chaotic];
+    let found: Vec<Class> = reading.attractors.iter().map(|attractor| attractor.class).collect();
     let found_all = is_papers(reading) && found == wanted;
     let head = if found_all { "The paper’s four regimes are real." } else { "Regimes." };
-    let chaotic = reading.attractors.iter().find(|attractor| attractor.class == ClassRecord::Chaotic);
+    let chaotic = reading.attractors.iter().find(|attractor| attractor.class == Class::Chaotic);
     let chaos = chaotic.map_or(String::new(), |attractor| {
         format!(
             " Chaos is chaos by its exponent: {} per τ by a tangent vector, {} by two trajectories.",
@@ -83,10 +83,10 @@ fn span(window: &ClassWindow) -> String {
 
 /// Whether more backlash always means a motion farther from order.
 fn route(reading: &Reading, sweep: &Sweep) -> Option<Finding> {
-    let periodic = |attractor: &&super::record::AttractorRecord| matches!(attractor.class, ClassRecord::Periodic(_));
+    let periodic = |attractor: &&super::record::AttractorRecord| matches!(attractor.class, Class::Periodic(_));
     let last_periodic = reading.attractors.iter().filter(periodic).map(|a| a.half_backlash_m).fold(0.0, f64::max);
     let before = chaos_below(&sweep.windows, last_periodic);
-    let onset = sweep.windows.iter().rev().find(|window| window.class == ClassRecord::Chaotic);
+    let onset = sweep.windows.iter().rev().find(|window| window.class == Class::Chaotic);
     if before.is_empty() {
         let onset = onset?;
         return Some(finding(

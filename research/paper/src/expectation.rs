@@ -1,53 +1,32 @@
 //! Classes that a user asks the attractors to have (`--expect 1,1,3,chaos`), and what is said when one has another.
 
 use super::pictures::micrometres;
-use super::record::{AttractorRecord, ClassRecord};
+use super::record::AttractorRecord;
+use crate::numerics::attractor::Class;
 use report::failure::{Failure, Outcome};
 
-/// What an attractor must be.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Expectation {
-    /// Of this period.
-    Period(usize),
-    /// Chaotic.
-    Chaos,
-}
-
 /// Reads as many expectations as there are half-backlashes.
-pub fn list(text: &str, count: usize) -> Outcome<Vec<Expectation>> {
+pub fn list(text: &str, count: usize) -> Outcome<Vec<Class>> {
     let failed = |what: String| {
         let help = "write a period or the word chaos for each half-backlash, such as --expect 1,1,3,chaos";
         Failure::new(format!("--expect {text}: {what}")).with_help(help)
     };
     let one = |part: &str| match (part.trim(), part.trim().parse::<usize>()) {
-        ("chaos", _) => Ok(Expectation::Chaos),
-        (_, Ok(period)) if period > 0 => Ok(Expectation::Period(period)),
+        ("chaos", _) => Ok(Class::Chaotic),
+        (_, Ok(period)) if period > 0 => Ok(Class::Periodic(period)),
         (other, _) => Err(failed(format!("`{other}` is neither a period nor `chaos`"))),
     };
-    let expected: Vec<Expectation> = text.split(',').map(one).collect::<Outcome<_>>()?;
+    let expected: Vec<Class> = text.split(',').map(one).collect::<Outcome<_>>()?;
     if expected.len() != count {
         return Err(failed(format!("{} classes for {count} half-backlashes", expected.len())));
     }
     Ok(expected)
 }
 
-impl Expectation {
-    fn holds(self, class: ClassRecord) -> bool {
-        match self {
-            Self::Period(period) => class == ClassRecord::Periodic(period),
-            Self::Chaos => class == ClassRecord::Chaotic,
-        }
-    }
-}
-
 /// Fails at the first attractor of a joint that is not what was asked for.
-pub fn judge(joint: &str, expected: &[Expectation], attractors: &[AttractorRecord]) -> Outcome<()> {
-    let Some((expectation, found)) = expected.iter().zip(attractors).find(|(e, found)| !e.holds(found.class)) else {
+pub fn judge(joint: &str, expected: &[Class], attractors: &[AttractorRecord]) -> Outcome<()> {
+    let Some((asked, found)) = expected.iter().zip(attractors).find(|(asked, found)| **asked != found.class) else {
         return Ok(());
-    };
-    let asked = match expectation {
-        Expectation::Period(period) => format!("period {period}"),
-        Expectation::Chaos => "chaos".to_owned(),
     };
     let message = format!(
         "{joint}: at b = {} um {asked} was asked for, and the motion from rest settles on {} \
@@ -68,7 +47,7 @@ mod tests {
     #[test]
     fn expectations_are_as_many_as_half_backlashes() {
         let read = list("1,1,3,chaos", 4).expect("four classes");
-        assert_eq!(read, [Expectation::Period(1), Expectation::Period(1), Expectation::Period(3), Expectation::Chaos]);
+        assert_eq!(read, [Class::Periodic(1), Class::Periodic(1), Class::Periodic(3), Class::Chaotic]);
         for (text, count) in [("1,1,3,chaos", 3), ("0", 1), ("order", 1), ("", 1), ("-1", 1)] {
             assert!(list(text, count).expect_err(text).help().is_some());
         }

@@ -1,55 +1,31 @@
-//! What a study leaves on disk: report, record, pictures and tables in one folder. A folder that cannot be written is
-//! found before anything is computed; each file is written whole or not at all.
+//! What a study leaves on disk: report, record, pictures and tables in one folder. Each file is written whole or not at
+//! all.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use super::pictures::{self, Picture};
-use super::record::{ClassRecord, Reading, StudyRecord};
+use super::record::{Class, Reading, StudyRecord};
 use report::document::{Document, html};
-use report::failure::{Failure, Outcome};
-use report::folder;
+use report::failure::Outcome;
 use report::folder::{Folder, file_part};
-use report::write::write_text;
+use report::write::{write_record, write_text};
 
-/// Where a study's files go.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Files {
-    folder: Folder,
-    json: Option<PathBuf>,
-}
-
-impl Files {
-    /// Makes the folder and tries to write to it; `read` is what the study is made of.
-    pub fn prepare(folder: Option<&Path>, json: Option<&Path>, joint: &str, read: &[&Path]) -> Outcome<Self> {
-        folder::check_files(&[("json", json)], read)?;
-        let folder = Folder::prepare(folder, "paper", joint)?;
-        Ok(Self { folder, json: json.map(Path::to_owned) })
+/// Writes everything, the record also to a file that was asked for by name; returns where the report is.
+pub fn write(folder: &Folder, json: Option<&Path>, record: &StudyRecord, document: &Document) -> Outcome<PathBuf> {
+    // What was asked for by name comes first: nothing after it can cost it.
+    for path in json.into_iter().chain([folder.file("study.json").as_path()]) {
+        write_record(path, record)?;
     }
-
-    /// Writes everything; returns where the report is.
-    pub fn write(&self, record: &StudyRecord, document: &Document) -> Outcome<PathBuf> {
-        let text = serde_json::to_string(record)
-            .map(|json| json + "\n")
-            .map_err(|error| Failure::new(format!("the study cannot be written as JSON: {error}")))?;
-        // What was asked for by name comes first: nothing after it can cost it.
-        if let Some(json) = &self.json {
-            write_text(json, &text)?;
-        }
-        self.put("study.json", &text)?;
-        for (name, table) in tables(record) {
-            self.put(&format!("{name}.csv"), &table)?;
-        }
-        for Picture { name, figure } in all_pictures(record) {
-            self.put(&format!("{name}.svg"), &figure.to_file())?;
-        }
-        self.put("report.html", &html(document))?;
-        Ok(self.folder.file("report.html"))
+    for (name, table) in tables(record) {
+        write_text(&folder.file(&format!("{name}.csv")), &table)?;
     }
-
-    fn put(&self, name: &str, text: &str) -> Outcome<()> {
-        write_text(&self.folder.file(name), text)
+    for Picture { name, figure } in all_pictures(record) {
+        write_text(&folder.file(&format!("{name}.svg")), &figure.to_file())?;
     }
+    let report = folder.file("report.html");
+    write_text(&report, &html(document))?;
+    Ok(report)
 }
 
 fn all_pictures(record: &StudyRecord) -> Vec<Picture> {
@@ -90,11 +66,11 @@ fn micrometres(length: f64) -> f64 {
     (length * 1e12).round() / 1e6
 }
 
-fn class_columns(class: ClassRecord) -> (&'static str, String) {
+fn class_columns(class: Class) -> (&'static str, String) {
     match class {
-        ClassRecord::Periodic(period) => ("periodic", period.to_string()),
-        ClassRecord::Chaotic => ("chaotic", String::new()),
-        ClassRecord::Unsettled => ("unsettled", String::new()),
+        Class::Periodic(period) => ("periodic", period.to_string()),
+        Class::Chaotic => ("chaotic", String::new()),
+        Class::Unsettled => ("unsettled", String::new()),
     }
 }
 

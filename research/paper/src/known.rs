@@ -3,7 +3,7 @@
 //! held against each other.
 
 use super::plan::{Plan, SweepStart};
-use super::record::{AttractorRecord, ClassRecord, ClassWindow, DeadZoneFigure, Reading};
+use super::record::{AttractorRecord, Class, ClassWindow, DeadZoneFigure, Reading};
 use report::checks::{Bound, Check, Source};
 
 /// Distance allowed to a known Poincare point, over b_c.
@@ -24,7 +24,7 @@ const DEAD_ZONE: f64 = 0.13924;
 /// What is known at one half-backlash.
 struct Known {
     half_backlash_um: f64,
-    class: ClassRecord,
+    class: Class,
     exponent: f64,
     points: &'static [[f64; 4]],
     non_fundamental_ratio: Option<f64>,
@@ -35,7 +35,7 @@ struct Known {
 const CORRECTED: [Known; 4] = [
     Known {
         half_backlash_um: 0.0,
-        class: ClassRecord::Periodic(1),
+        class: Class::Periodic(1),
         exponent: -0.0324,
         points: &[[-0.0678, 0.8675, -11.5051, -5.0495]],
         non_fundamental_ratio: Some(0.007),
@@ -43,7 +43,7 @@ const CORRECTED: [Known; 4] = [
     },
     Known {
         half_backlash_um: 10.0,
-        class: ClassRecord::Periodic(1),
+        class: Class::Periodic(1),
         exponent: -0.0324,
         points: &[[0.3748, 1.4129, -9.0687, -2.7137]],
         non_fundamental_ratio: Some(0.005),
@@ -51,7 +51,7 @@ const CORRECTED: [Known; 4] = [
     },
     Known {
         half_backlash_um: 60.0,
-        class: ClassRecord::Periodic(3),
+        class: Class::Periodic(3),
         exponent: -0.0319,
         points: &[
             [0.7489, 6.1283, -13.9408, -6.2729],
@@ -63,7 +63,7 @@ const CORRECTED: [Known; 4] = [
     },
     Known {
         half_backlash_um: 120.0,
-        class: ClassRecord::Chaotic,
+        class: Class::Chaotic,
         exponent: 0.1402,
         points: &[],
         non_fundamental_ratio: None,
@@ -73,24 +73,24 @@ const CORRECTED: [Known; 4] = [
 
 /// The carrier as printed.
 const PRINTED: [Known; 4] = [
-    known_class(0.0, ClassRecord::Periodic(1), -0.0374),
-    known_class(10.0, ClassRecord::Periodic(1), -0.0374),
-    known_class(60.0, ClassRecord::Periodic(3), -0.0371),
-    known_class(120.0, ClassRecord::Chaotic, 0.1410),
+    known_class(0.0, Class::Periodic(1), -0.0374),
+    known_class(10.0, Class::Periodic(1), -0.0374),
+    known_class(60.0, Class::Periodic(3), -0.0371),
+    known_class(120.0, Class::Chaotic, 0.1410),
 ];
 
-const fn known_class(half_backlash_um: f64, class: ClassRecord, exponent: f64) -> Known {
+const fn known_class(half_backlash_um: f64, class: Class, exponent: f64) -> Known {
     Known { half_backlash_um, class, exponent, points: &[], non_fundamental_ratio: None, peak_to_peak: None }
 }
 
 /// Windows from rest with the corrected carrier: class, first and last half-backlash [um], where they are known.
-const WINDOWS: [(ClassRecord, Option<f64>, Option<f64>); 6] = [
-    (ClassRecord::Periodic(1), None, Some(19.0)),
-    (ClassRecord::Periodic(2), None, Some(34.5)),
-    (ClassRecord::Chaotic, Some(35.0), Some(41.5)),
-    (ClassRecord::Periodic(3), Some(46.5), Some(69.0)),
-    (ClassRecord::Periodic(6), None, Some(70.5)),
-    (ClassRecord::Chaotic, Some(71.0), None),
+const WINDOWS: [(Class, Option<f64>, Option<f64>); 6] = [
+    (Class::Periodic(1), None, Some(19.0)),
+    (Class::Periodic(2), None, Some(34.5)),
+    (Class::Chaotic, Some(35.0), Some(41.5)),
+    (Class::Periodic(3), Some(46.5), Some(69.0)),
+    (Class::Periodic(6), None, Some(70.5)),
+    (Class::Chaotic, Some(71.0), None),
 ];
 
 /// About here lies a narrow chaotic window from rest [um].
@@ -132,13 +132,13 @@ fn attractor(reading: &Reading, known: &Known, found: &AttractorRecord, checks: 
     };
     debug_assert!((found.half_backlash_m * 1e6 - known.half_backlash_um).abs() < 1e-6, "the same half-backlash");
     let (figure, bound, exponent_bound) = match (known.class, found.class) {
-        (ClassRecord::Periodic(expected), ClassRecord::Periodic(period)) => {
+        (Class::Periodic(expected), Class::Periodic(period)) => {
             (period as f64, Bound::Exactly(expected as f64), PERIODIC_EXPONENT)
         }
-        (ClassRecord::Periodic(expected), _) => (f64::NAN, Bound::Exactly(expected as f64), PERIODIC_EXPONENT),
+        (Class::Periodic(expected), _) => (f64::NAN, Bound::Exactly(expected as f64), PERIODIC_EXPONENT),
         _ => (f64::from(u8::from(found.class == known.class)), Bound::Exactly(1.0), CHAOTIC_EXPONENT),
     };
-    let what = if known.class == ClassRecord::Chaotic { "chaos" } else { "period count" };
+    let what = if known.class == Class::Chaotic { "chaos" } else { "period count" };
     judge(format!("{place}: {what}"), figure, bound, format!("known: {}", known.class));
     judge(
         format!("{place}: Lyapunov exponent"),
@@ -200,7 +200,7 @@ fn windows(reading: &Reading, checks: &mut Vec<Check>) {
         };
         checks.push(Check::judge(name, figure, "µm", bound, Source::Host).note(note));
     };
-    let nearest = |windows: &[ClassWindow], class: ClassRecord, at: f64, end: fn(&ClassWindow) -> f64| {
+    let nearest = |windows: &[ClassWindow], class: Class, at: f64, end: fn(&ClassWindow) -> f64| {
         let own = windows.iter().filter(|window| window.class == class).map(end);
         own.min_by(|a, b| (a * 1e6 - at).abs().total_cmp(&(b * 1e6 - at).abs()))
     };
@@ -215,11 +215,11 @@ fn windows(reading: &Reading, checks: &mut Vec<Check>) {
                 edge(format!("from rest: {class} ends"), found, to);
             }
         }
-        let found = nearest(&rest.windows, ClassRecord::Chaotic, NARROW_WINDOW, |window| window.from_m);
+        let found = nearest(&rest.windows, Class::Chaotic, NARROW_WINDOW, |window| window.from_m);
         edge("from rest: narrow chaotic window".to_owned(), found, NARROW_WINDOW);
     }
     if let Some(up) = sweep(SweepStart::Up) {
-        let found = nearest(&up.windows, ClassRecord::Periodic(2), PERIOD_2_UPWARD, |window| window.to_m);
+        let found = nearest(&up.windows, Class::Periodic(2), PERIOD_2_UPWARD, |window| window.to_m);
         edge("upward: period 2 ends".to_owned(), found, PERIOD_2_UPWARD);
     }
 }

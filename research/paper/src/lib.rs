@@ -24,16 +24,16 @@ mod witness;
 
 use std::path::Path;
 
-use files::Files;
 pub use plan::{Arguments, Plan, StartChoice, Subject, SweepStart};
 pub use record::{
-    AttractorRecord, ClassRecord, ClassWindow, DeadZoneError, DeadZoneFigure, History, Identity, Reading,
-    SCHEMA_VERSION, Smoothed, SpectrumRecord, StiffnessFigure, StudyRecord, Sweep, SweepPoint,
+    AttractorRecord, Class, ClassWindow, DeadZoneError, DeadZoneFigure, History, Identity, Reading, SCHEMA_VERSION,
+    Smoothed, SpectrumRecord, StiffnessFigure, StudyRecord, Sweep, SweepPoint,
 };
 
 use report::checks::all_hold;
 use report::document::terminal;
 use report::failure::Outcome;
+use report::folder::{self, Folder};
 use report::progress::Progress;
 use report::provenance;
 use report::{interruption, output};
@@ -46,13 +46,14 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
     interruption::watch()?;
     let plan = Plan::new(arguments)?;
     let read: Vec<&Path> = arguments.file.as_deref().into_iter().collect();
-    let files = Files::prepare(arguments.out.as_deref(), arguments.json.as_deref(), plan.name(), &read)?;
+    folder::check_files(&[("json", arguments.json.as_deref())], &read)?;
+    let folder = Folder::prepare(arguments.out.as_deref(), "paper", plan.name())?;
     let progress = Progress::new();
     let studied = study(&plan, &progress);
     progress.clear();
     let record = interruption::explain(studied)?;
     let document = page::document(&record);
-    let report = files.write(&record, &document)?;
+    let report = files::write(&folder, arguments.json.as_deref(), &record, &document)?;
     output::print(&terminal(&document))?;
     output::print(&format!("report: {}\n", report.display()))?;
     if let Some(expected) = &plan.expected {

@@ -4,7 +4,7 @@
 
 use super::conclusion::{self, exponent, start};
 use super::pictures::{self, Picture, micrometres};
-use super::record::{AttractorRecord, ClassRecord, Reading, StudyRecord, Sweep};
+use super::record::{AttractorRecord, Class, Reading, StudyRecord, Sweep};
 use report::checks::Verdict;
 use report::document::{
     Block, Checks, Details, Document, PAGES, Picture as Shown, Row, Section, TERMINALS, Text, facts, indexed, inked,
@@ -63,11 +63,11 @@ fn tiles(record: &StudyRecord) -> Block {
     Block::Tiles(tiles)
 }
 
-fn class(class: ClassRecord) -> Text {
+fn class(class: Class) -> Text {
     let ink = match class {
-        ClassRecord::Periodic(_) => Ink::First,
-        ClassRecord::Chaotic => Ink::Second,
-        ClassRecord::Unsettled => Ink::Third,
+        Class::Periodic(_) => Ink::First,
+        Class::Chaotic => Ink::Second,
+        Class::Unsettled => Ink::Third,
     };
     inked(class.to_string(), ink)
 }
@@ -124,7 +124,7 @@ fn attractors(reading: &Reading) -> Block {
 fn attractor(found: &AttractorRecord) -> Row {
     let coordinate = |value: f64| format!("{value:.4}").replace('-', "\u{2212}");
     let points = match found.class {
-        ClassRecord::Periodic(period) if period <= 8 => {
+        Class::Periodic(period) if period <= 8 => {
             let each =
                 found.poincare_points.iter().map(|point| format!("({})", point.map(coordinate).join(", ")).into());
             Text::join(each, &line_break())

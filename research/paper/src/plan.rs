@@ -7,8 +7,8 @@ use clap::ValueEnum;
 use model_core::gears::{Mechanics, Scales};
 use parameters::{Excitation, JointParameters};
 
-use super::expectation::{self, Expectation};
-use super::grid;
+use super::{expectation, grid};
+use crate::numerics::attractor::Class;
 use crate::numerics::system::{StudyError, System};
 use joint_file::named::{self, Loaded};
 use report::failure::{Failure, Outcome};
@@ -108,7 +108,7 @@ pub struct Plan {
     /// Diagrams.
     pub starts: Vec<SweepStart>,
     /// What the attractors must be, if the user says so.
-    pub expected: Option<Vec<Expectation>>,
+    pub expected: Option<Vec<Class>>,
     /// Whether these are the paper's joint and settings, whose results are known.
     pub is_set_p: bool,
     /// Command line that runs this again.

@@ -4,7 +4,7 @@
 
 use serde::Serialize;
 
-use crate::numerics::attractor::Class;
+pub use crate::numerics::attractor::Class;
 use report::checks::Check;
 
 /// Version of the JSON form; raised when a key changes its meaning or goes away.
@@ -78,19 +78,6 @@ pub struct Reading {
     pub sweeps: Vec<Sweep>,
 }
 
-/// What the motion settles on.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-#[serde(tag = "class", content = "period", rename_all = "snake_case")]
-pub enum ClassRecord {
-    /// It repeats after so many mesh periods.
-    Periodic(usize),
-    /// Neighbours part exponentially.
-    Chaotic,
-    /// Quasi-periodic, of a longer period than is looked for, or not settled.
-    Unsettled,
-}
-
 /// One attractor.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -99,7 +86,7 @@ pub struct AttractorRecord {
     pub half_backlash_m: f64,
     /// Its class.
     #[serde(flatten)]
-    pub class: ClassRecord,
+    pub class: Class,
     /// Points (X_sp, X_sc, X_sp', X_sc') at tau = 2 pi k / Omega: one cycle, or some hundreds of an attractor without.
     pub poincare_points: Vec<[f64; 4]>,
     /// Points looked at, and how many of them can be told apart.
@@ -171,7 +158,7 @@ pub struct SweepPoint {
     pub half_backlash_m: f64,
     /// Class of the attractor.
     #[serde(flatten)]
-    pub class: ClassRecord,
+    pub class: Class,
     /// Largest Lyapunov exponent by a tangent vector.
     pub exponent: f64,
     /// X_sp at the Poincare points: one cycle, or all that were looked at.
@@ -188,7 +175,7 @@ pub struct ClassWindow {
     pub to_m: f64,
     /// Class of all in it.
     #[serde(flatten)]
-    pub class: ClassRecord,
+    pub class: Class,
 }
 
 /// Fig. 3: stiffness over one mesh period, over its mean.
@@ -251,24 +238,4 @@ pub struct DeadZoneError {
     pub corrected: f64,
     /// Eq. 13 as printed.
     pub printed: f64,
-}
-
-impl From<Class> for ClassRecord {
-    fn from(class: Class) -> Self {
-        match class {
-            Class::Periodic(period) => Self::Periodic(period),
-            Class::Chaotic => Self::Chaotic,
-            Class::Unsettled => Self::Unsettled,
-        }
-    }
-}
-
-impl std::fmt::Display for ClassRecord {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Periodic(period) => write!(formatter, "period {period}"),
-            Self::Chaotic => write!(formatter, "chaos"),
-            Self::Unsettled => write!(formatter, "no period found"),
-        }
-    }
 }

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::pictures::micrometres;
 use super::plan::{Plan, Subject, SweepStart};
-use super::record::{AttractorRecord, ClassRecord, History, Reading, SpectrumRecord, Sweep, SweepPoint};
+use super::record::{AttractorRecord, History, Reading, SpectrumRecord, Sweep, SweepPoint};
 use super::{windows, witness};
 use crate::numerics::attractor::{self, Class, Effort};
 use crate::numerics::motion::Motion;
@@ -44,75 +44,35 @@ const HIGHEST_LINE: f64 = 6.0;
 /// An attractor is so much more work than a point of a diagram, for the progress bar.
 const ATTRACTOR_WORK: u64 = 20;
 
-/// One piece of work.
-enum Job<'a> {
-    Attractor(&'a Subject, f64),
-    FromRest(&'a Subject, f64),
-    Carried(&'a Subject, SweepStart),
-}
-
-/// What came of it.
-enum Done {
-    Attractor(Box<AttractorRecord>),
-    Points(Vec<SweepPoint>),
-}
-
 /// Everything, for every joint of the plan.
 pub fn run(plan: &Plan, progress: &Progress) -> Outcome<Vec<Reading>> {
-    let mut jobs = Vec::new();
-    for subject in &plan.subjects {
-        jobs.extend(plan.values.iter().map(|b| Job::Attractor(subject, *b)));
-        for start in &plan.starts {
-            match start {
-                SweepStart::Rest => jobs.extend(plan.grid.iter().map(|b| Job::FromRest(subject, *b))),
-                carried => jobs.push(Job::Carried(subject, *carried)),
-            }
-        }
-    }
     let points = plan.subjects.len() * plan.grid.len() * plan.starts.len();
     let attractors = (plan.subjects.len() * plan.values.len()) as u64;
     progress.run("computing", points as u64 + ATTRACTOR_WORK * attractors);
-    // Chains of points cannot be split: whoever is free takes them first.
-    let order = |job: &Job<'_>| if matches!(job, Job::Carried(..)) { 0 } else { 1 };
-    let mut ordered: Vec<usize> = (0..jobs.len()).collect();
-    ordered.sort_by_key(|index| order(&jobs[*index]));
-    let mut done: Vec<(usize, Done)> = ordered
-        .into_par_iter()
-        .with_max_len(1)
-        .map(|index| Ok((index, perform(&jobs[index], plan, progress)?)))
-        .collect::<Outcome<_>>()?;
-    done.sort_by_key(|(index, _)| *index);
-    let mut results = done.into_iter().map(|(_, result)| result);
-    Ok(plan.subjects.iter().map(|subject| reading(subject, plan, &mut results)).collect())
+    plan.subjects.par_iter().with_max_len(1).map(|subject| reading(subject, plan, progress)).collect()
 }
 
-/// Collects the results of one joint, which come in the order of its jobs.
-fn reading(subject: &Subject, plan: &Plan, results: &mut impl Iterator<Item = Done>) -> Reading {
+/// One joint: its diagrams beside its attractors.
+fn reading(subject: &Subject, plan: &Plan, progress: &Progress) -> Outcome<Reading> {
     let parameters = &subject.parameters;
     let scales = Scales::new(parameters);
-    let (mut attractors, mut sweeps) = (Vec::new(), Vec::new());
-    for result in results.by_ref().take(plan.values.len()) {
-        if let Done::Attractor(attractor) = result {
-            attractors.push(*attractor);
-        }
-    }
-    for start in &plan.starts {
-        let jobs = if *start == SweepStart::Rest { plan.grid.len() } else { 1 };
-        let points: Vec<SweepPoint> = results
-            .by_ref()
-            .take(jobs)
-            .flat_map(|result| match result {
-                Done::Points(points) => points,
-                Done::Attractor(_) => Vec::new(),
-            })
-            .collect();
-        sweeps.push(Sweep { start: start.word().to_owned(), windows: windows::windows(&points), points });
-    }
+    let sweep = |start: &SweepStart| sweep(subject, *start, &plan.grid, progress);
+    let attractor = |half_backlash: &f64| {
+        stop_if_asked()?;
+        let attractor = attractor_at(subject, *half_backlash)?;
+        progress.done(ATTRACTOR_WORK);
+        Ok(attractor)
+    };
+    let (sweeps, attractors) = rayon::join(
+        || plan.starts.par_iter().with_max_len(1).map(sweep).collect::<Outcome<Vec<_>>>(),
+        || plan.values.par_iter().with_max_len(1).map(attractor).collect::<Outcome<Vec<_>>>(),
+    );
+    let (sweeps, attractors) = (sweeps?, attractors?);
     let omega = match parameters.excitation {
         parameters::Excitation::Time { mesh_frequency } => mesh_frequency / scales.frequency,
         parameters::Excitation::Angle => f64::NAN,
     };
-    Reading {
+    Ok(Reading {
         joint: parameters.name.to_string(),
         joint_file: subject.loaded.name.clone(),
         description: subject.loaded.file.description.clone(),
@@ -129,26 +89,23 @@ fn reading(subject: &Subject, plan: &Plan, results: &mut impl Iterator<Item = Do
         carrier_equivalent_mass_kg: parameters.carrier_equivalent_mass(),
         attractors,
         sweeps,
-    }
+    })
 }
 
-fn perform(job: &Job<'_>, plan: &Plan, progress: &Progress) -> Outcome<Done> {
-    stop_if_asked()?;
-    let done = match job {
-        Job::Attractor(subject, b) => {
-            let attractor = attractor_at(subject, *b)?;
-            progress.done(ATTRACTOR_WORK);
-            Done::Attractor(Box::new(attractor))
-        }
-        Job::FromRest(subject, b) => {
-            let system = subject.system(*b)?;
-            let point = point(subject, *b, &mut Motion::from_rest(&system))?;
-            progress.done(1);
-            Done::Points(vec![point])
-        }
-        Job::Carried(subject, start) => Done::Points(carried(subject, *start, &plan.grid, progress)?),
+/// One diagram. Points from rest are shared out; a chain of points cannot be split.
+fn sweep(subject: &Subject, start: SweepStart, grid: &[f64], progress: &Progress) -> Outcome<Sweep> {
+    let from_rest = |half_backlash: &f64| {
+        stop_if_asked()?;
+        let system = subject.system(*half_backlash)?;
+        let point = point(subject, *half_backlash, &mut Motion::from_rest(&system))?;
+        progress.done(1);
+        Ok(point)
     };
-    Ok(done)
+    let points: Vec<SweepPoint> = match start {
+        SweepStart::Rest => grid.par_iter().with_max_len(1).map(from_rest).collect::<Outcome<_>>()?,
+        SweepStart::Up | SweepStart::Down => carried(subject, start, grid, progress)?,
+    };
+    Ok(Sweep { start: start.word().to_owned(), windows: windows::windows(&points), points })
 }
 
 fn stop_if_asked() -> Outcome<()> {
@@ -163,7 +120,7 @@ fn stop_if_asked() -> Outcome<()> {
 fn point(subject: &Subject, half_backlash: f64, motion: &mut Motion<'_>) -> Outcome<SweepPoint> {
     let found = attractor::find(motion, &DIAGRAM).map_err(|error| at(subject, half_backlash, error))?;
     let x_sp = found.cycle().iter().map(|point| rounded(point[0])).collect();
-    Ok(SweepPoint { half_backlash_m: half_backlash, class: found.class.into(), exponent: found.exponent, x_sp })
+    Ok(SweepPoint { half_backlash_m: half_backlash, class: found.class, exponent: found.exponent, x_sp })
 }
 
 /// Points one after another, each from where the one before ended.
@@ -192,18 +149,13 @@ fn carried(subject: &Subject, start: SweepStart, grid: &[f64], progress: &Progre
 }
 
 /// One row of the table, with what Figs 5-8 show of it.
-pub fn attractor_at(subject: &Subject, half_backlash: f64) -> Outcome<AttractorRecord> {
-    attractor_with(subject, half_backlash, &TABLE)
-}
-
-/// The same with another effort.
-pub fn attractor_with(subject: &Subject, half_backlash: f64, effort: &Effort) -> Outcome<AttractorRecord> {
+fn attractor_at(subject: &Subject, half_backlash: f64) -> Outcome<AttractorRecord> {
     let failed = |error| at(subject, half_backlash, error);
     let system = subject.system(half_backlash)?;
     let mut motion = Motion::from_rest(&system);
-    let mut found = attractor::find(&mut motion, effort).map_err(failed)?;
-    let two = attractor::by_two_trajectories(&system, &found, effort).map_err(failed)?;
-    let between = attractor::between_planets(&motion, effort).map_err(failed)?;
+    let mut found = attractor::find(&mut motion, &TABLE).map_err(failed)?;
+    let two = attractor::by_two_trajectories(&system, &found, &TABLE).map_err(failed)?;
+    let between = attractor::between_planets(&motion, &TABLE).map_err(failed)?;
     found.points.truncate(KEPT_POINTS);
     let reference_distance = witness::distance(subject, half_backlash, &motion, found.class);
     let (periods, window) = match found.class {
@@ -214,7 +166,7 @@ pub fn attractor_with(subject: &Subject, half_backlash: f64, effort: &Effort) ->
     let shares = signal.contact;
     Ok(AttractorRecord {
         half_backlash_m: half_backlash,
-        class: ClassRecord::from(found.class),
+        class: found.class,
         poincare_points: found.cycle().to_vec(),
         points_looked_at: found.points.len(),
         distinct_points: found.distinct_points(),

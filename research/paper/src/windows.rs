@@ -1,6 +1,6 @@
 //! Stretches of one class in a sweep. What a class means is `study`'s, how a stretch is drawn the pictures'.
 
-use super::record::{ClassRecord, ClassWindow, SweepPoint};
+use super::record::{Class, ClassWindow, SweepPoint};
 
 /// Neighbouring points of one class, in the order of the points.
 pub fn windows(points: &[SweepPoint]) -> Vec<ClassWindow> {
@@ -16,7 +16,7 @@ pub fn windows(points: &[SweepPoint]) -> Vec<ClassWindow> {
 
 /// Chaotic windows that end below a half-backlash [m] at which the motion is periodic.
 pub fn chaos_below(windows: &[ClassWindow], half_backlash: f64) -> Vec<&ClassWindow> {
-    let chaotic = |window: &&ClassWindow| window.class == ClassRecord::Chaotic;
+    let chaotic = |window: &&ClassWindow| window.class == Class::Chaotic;
     windows.iter().filter(chaotic).filter(|window| window.to_m < half_backlash).collect()
 }
 
@@ -26,7 +26,7 @@ mod tests {
 
     #[test]
     fn neighbours_of_one_class_are_one_window() {
-        use ClassRecord::{Chaotic, Periodic};
+        use Class::{Chaotic, Periodic};
         let classes = [Periodic(1), Periodic(1), Periodic(2), Chaotic, Chaotic, Periodic(1)];
         let points: Vec<SweepPoint> = classes
             .iter()

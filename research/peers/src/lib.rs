@@ -5,7 +5,7 @@
 //!
 //! [`peer::Peer`] runs the whole joint by a [`scheme::Scheme`]: [`runge_kutta::RungeKutta4`],
 //! [`euler::SemiImplicitEuler`], [`trapezoid::Trapezoid`], [`etd1::Etd1`]. [`two_mass`] holds the gap model of two masses that controls
-//! people use, as spring-damper and with restitution.
+//! people use, as spring-damper and with restitution. [`moving`] runs any of them, and the core, along a case.
 
 #![allow(clippy::needless_range_loop, reason = "one index walks several tables of the same mesh")]
 
@@ -20,6 +20,7 @@ pub mod forces;
 mod from_parameters;
 pub mod instant;
 pub mod motion;
+pub mod moving;
 pub mod peer;
 pub mod plant;
 pub mod runge_kutta;

@@ -21,22 +21,13 @@ impl Session<'_> {
     /// Sends the samples and set-point of a control period and waits for the answer.
     pub fn exchange(&mut self, exchange: Exchange) -> Outcome<Answered> {
         let tick = exchange.tick;
-        let commands = [exchange].into_iter().collect();
-        self.send(&ToBoard::Exchanges(Schedule { sequence: tick as u16, horizon: tick.wrapping_add(1), commands }))?;
-        let start = Instant::now();
-        loop {
-            for message in self.hear()? {
-                match message {
-                    FromBoard::Answer(answered) if answered.tick == tick.wrapping_add(1) => return Ok(answered),
-                    FromBoard::Tripped(raised) => return Err(trip::failure(&raised)),
-                    FromBoard::Hello(_) => return Err(started_anew()),
-                    _ => {}
-                }
-            }
-            if start.elapsed() > SILENCE {
-                return Err(self.silent(&format!("no answer to control period {tick} came")));
-            }
-        }
+        let (horizon, commands) = (tick.wrapping_add(1), [exchange].into_iter().collect());
+        let exchanges = ToBoard::Exchanges(Schedule { sequence: tick as u16, horizon, commands });
+        self.ask(&exchanges, &format!("answer to control period {tick}"), SILENCE, |message| match message {
+            FromBoard::Answer(answered) if answered.tick == horizon => Some(Ok(answered)),
+            FromBoard::Hello(_) => Some(Err(started_anew())),
+            _ => None,
+        })?
     }
 
     /// Gives the board faults between joint and controller, before the motion begins.

@@ -21,7 +21,7 @@ pub(super) fn clean(command: &mut Command) -> &mut Command {
 }
 
 /// A file of a build that cannot be written, with the mend.
-pub(super) fn cannot_write(path: &Path, error: &io::Error) -> Failure {
+pub fn cannot_write(path: &Path, error: &io::Error) -> Failure {
     Failure::new(format!("cannot write {}: {error}", path.display()))
         .with_help("make room, or set CARGO_TARGET_DIR to a folder that can be written")
 }

@@ -39,10 +39,13 @@ pub fn build_measuring(
         .map_err(|error| Failure::new(format!("joint files cannot be listed for the firmware's build: {error}")))?;
     let rate = tick_rate.to_string();
     let environment = [("MEASURED_JOINTS", list.as_ref()), ("JOINT_TICK_RATE", rate.as_ref())];
-    let elf = compile(toolchain, FIRMWARE, binary, &measuring_features(), &environment, say)?;
+    stored(toolchain, binary, &compile(toolchain, FIRMWARE, binary, &measuring_features(), &environment, say)?)
+}
+
+fn stored(toolchain: &Toolchain, binary: &str, elf: &[u8]) -> Outcome<PathBuf> {
     let images = toolchain.target_directory().join("images");
     let place = images.join(format!("{binary}.elf"));
-    store(&images, &place, &elf)?;
+    store(&images, &place, elf)?;
     Ok(place)
 }
 
@@ -58,11 +61,13 @@ pub fn build_other(
     environment: &[(&str, &OsStr)],
     say: Say<'_>,
 ) -> Outcome<PathBuf> {
-    let elf = compile(toolchain, package, package, "", environment, say)?;
-    let images = toolchain.target_directory().join("images");
-    let place = images.join(format!("{package}.elf"));
-    store(&images, &place, &elf)?;
-    Ok(place)
+    stored(toolchain, package, &compile(toolchain, package, package, "", environment, say)?)
+}
+
+/// Runs a measuring binary and reads each of its lines.
+pub fn read<R>(elf: &Path, mut parse: impl FnMut(&str) -> Option<R>) -> Outcome<Vec<R>> {
+    let read = |line: &String| parse(line).ok_or_else(|| Failure::new(format!("the board said: {line}")));
+    run(elf)?.iter().map(read).collect()
 }
 
 /// Runs a measuring binary and returns its lines.

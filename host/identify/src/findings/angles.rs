@@ -18,6 +18,12 @@ const OF_BOTH: f64 = 1.25;
 /// Degrees in a radian.
 const DEGREES: f64 = 180.0 / std::f64::consts::PI;
 
+/// What an encoder's error that comes so often a turn is called, and its key in a joint file.
+pub(crate) fn names(encoder: &str, word: &str) -> (String, String) {
+    let key = format!("drive_train.{encoder}_encoder.{word}_per_turn_error_deg");
+    (format!("{encoder} encoder: error {word} a turn"), key)
+}
+
 /// Errors that come once and twice a turn of either encoder.
 pub(super) fn maps(twist: &Twist, plan: &Plan) -> Vec<Finding> {
     let solution = &twist.solution;
@@ -37,8 +43,7 @@ pub(super) fn maps(twist: &Twist, plan: &Plan) -> Vec<Finding> {
             let narrow = [sine, cosine].iter().all(|part| solution.deviation(*part) < NARROWED * twist::width(first));
             let phase = across.atan2(along) * DEGREES;
             let reach = (estimate.half / amplitude).min(std::f64::consts::PI) * DEGREES;
-            let name = format!("{encoder} encoder: error {word} a turn");
-            let key = format!("drive_train.{encoder}_encoder.{word}_per_turn_error_deg");
+            let (name, key) = names(encoder, word);
             let why = format!("the {encoder} must make a whole turn and more under torque");
             let note = match amplitude > estimate.half {
                 true => format!("phase at count zero {phase:.1} deg, +- {reach:.1}"),

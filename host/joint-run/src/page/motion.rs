@@ -101,8 +101,7 @@ impl View<'_> {
         let reference = self.record.reference.as_ref().filter(|_| sparse).map(|reference| &reference.samples);
         let points =
             reference.map(|samples| self.points(samples, &values(samples))).filter(|points| !points.is_empty());
-        let label = "f64 reference".into();
-        let below = points.map(|points| Mark::Line { points, ink: Ink::Reference, label, width: BROAD });
+        let below = points.map(|points| Mark::line(points, Ink::Reference, "f64 reference", BROAD));
         below.into_iter().chain([line(self.points(self.samples, &values(self.samples)), Ink::First, "board")]).collect()
     }
 

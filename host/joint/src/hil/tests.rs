@@ -35,10 +35,7 @@ pub fn wanted(arguments: &Arguments) -> Outcome<Wanted<'_>> {
         return Err(Failure::new(format!("--host runs without a board, and --port {port} names one"))
             .with_help("leave one of them out"));
     }
-    let role = match arguments.role {
-        Some(RoleName::Observer) => Role::Observer,
-        Some(RoleName::Loop) | None => Role::Loop,
-    };
+    let role = arguments.role.map_or(Role::Loop, Role::from);
     let path = arguments.file().to_owned();
     let part = Part {
         choice: if arguments.full { Choice::Full } else { Choice::Short },

@@ -5,10 +5,7 @@ use link::messages::{Hello, Role};
 
 use super::arguments::Place;
 use board::bench::Bench;
-use board::line_options::RoleName;
 use board::session::{Mend, Session};
-use board::target::board::Board;
-use board::target::emulator;
 use board::target::image;
 use board::target::image::CONTROL_RATE;
 use board::target::image::word;
@@ -82,17 +79,12 @@ impl Found {
 
 fn emulated(place: &Place, loaded: &Loaded, progress: &Progress) -> Outcome<Bench> {
     let say = |line: &str| progress.say(line);
-    progress.stage("finding the emulator");
-    let version = emulator::ensure(&say)?;
-    progress.stage("preparing the toolchain");
-    let toolchain = Toolchain::prepare(&say)?;
-    progress.stage("building the firmware");
-    let role = match place.role {
-        Some(RoleName::Loop) => Role::Loop,
-        Some(RoleName::Observer) | None => Role::Observer,
-    };
+    let role = place.role.map_or(Role::Observer, Role::from);
     let joint = image::joint_file(&place.joint, &loaded.name);
-    let image = image::build_image(&toolchain, &joint, Board::Stm32f405, role, CONTROL_RATE, &say)?;
-    progress.stage("booting the emulated board");
-    Bench::in_emulator(&version, image)
+    Bench::emulated(progress, |board| {
+        progress.stage("preparing the toolchain");
+        let toolchain = Toolchain::prepare(&say)?;
+        progress.stage("building the firmware");
+        image::build_image(&toolchain, &joint, board, role, CONTROL_RATE, &say)
+    })
 }

@@ -7,6 +7,9 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
+use serde_json::Value;
+use tempfile::TempDir;
+
 /// What a process left behind.
 #[derive(Debug)]
 pub struct Ended {
@@ -57,9 +60,17 @@ pub fn interrupt(child: &Child) {
 
 /// Waits until something is so.
 pub fn until(what: &str, mut so: impl FnMut() -> bool) {
+    within(PATIENCE, what, || so().then_some(()));
+}
+
+/// Waits for something that is due.
+pub fn within<T>(limit: Duration, what: &str, mut found: impl FnMut() -> Option<T>) -> T {
     let start = Instant::now();
-    while !so() {
-        assert!(start.elapsed() < PATIENCE, "{what}: not after {PATIENCE:?}");
+    loop {
+        if let Some(found) = found() {
+            return found;
+        }
+        assert!(start.elapsed() < limit, "{what}: not after {limit:?}");
         std::thread::sleep(Duration::from_millis(1));
     }
 }
@@ -72,6 +83,16 @@ pub fn size(path: &Path) -> u64 {
 /// A path as an argument.
 pub fn text(path: &(impl AsRef<OsStr> + ?Sized)) -> &str {
     path.as_ref().to_str().expect("temporary folders have plain names")
+}
+
+/// A folder that goes away by itself.
+pub fn folder() -> TempDir {
+    tempfile::tempdir().expect("a folder")
+}
+
+/// What a command has left as JSON.
+pub fn json(path: &Path) -> Value {
+    serde_json::from_str(&std::fs::read_to_string(path).expect("it was written")).expect("JSON, all of it")
 }
 
 /// Names and contents of all files of a folder.
@@ -90,7 +111,13 @@ impl Ended {
     /// Bad input: exit code 2 with all these words in the message, and no panic.
     #[track_caller]
     pub fn refused(&self, words: &[&str]) {
-        assert_eq!(self.code, Some(2), "{self:?}");
+        self.said(2, words);
+    }
+
+    /// An exit code with all these words in the message, and no panic.
+    #[track_caller]
+    pub fn said(&self, code: i32, words: &[&str]) {
+        assert_eq!(self.code, Some(code), "{self:?}");
         // Underlined messages break lines and draw a rule beside them.
         let plain = self.err.replace(['│', '╰', '─', '├', '▶'], " ").split_whitespace().collect::<Vec<_>>().join(" ");
         for word in words {

@@ -49,23 +49,23 @@ pub fn judge(reach: &Reach) -> Outcome<()> {
             help.push(mend);
         }
     };
-    for way in &reach.panics {
-        note(
-            format!("the tick can panic, by the call at {:#010x}: {}", way.at, arrow(&way.names)),
+    let found = [
+        (
+            &reach.panics,
+            "the tick can panic, by the call",
             "in the function before the panic, take `get`, `checked_` and `match` in place of indexing, division and unwrap",
-        );
-    }
-    for way in &reach.traps {
-        note(
-            format!("the tick can stop the processor at {:#010x}: {}", way.at, arrow(&way.names)),
-            "take out the `unreachable`, abort or breakpoint there",
-        );
-    }
-    for way in &reach.pointers {
-        note(
-            format!("the tick calls through a pointer at {:#010x}: {}", way.at, arrow(&way.names)),
+        ),
+        (&reach.traps, "the tick can stop the processor", "take out the `unreachable`, abort or breakpoint there"),
+        (
+            &reach.pointers,
+            "the tick calls through a pointer",
             "call by a generic in place of `dyn` or a function pointer, so that what runs is known",
-        );
+        ),
+    ];
+    for (ways, what, mend) in found {
+        for way in ways {
+            note(format!("{what} at {:#010x}: {}", way.at, arrow(&way.names)), mend);
+        }
     }
     for ring in &reach.rings {
         note(format!("the tick can call in a ring: {}", arrow(ring)), "make a bounded loop of the recursion");

@@ -15,31 +15,19 @@ pub enum Stepping {
 
 /// A joint in motion.
 pub trait Inside {
-    /// Moves on to `time` [s] under constant torques: `drive_torque` on the sun, `load_torque` braking the link [N m].
-    fn advance(
-        &mut self,
-        time: f64,
-        drive_torque: f64,
-        load_torque: f64,
-        stepping: Stepping,
-    ) -> Result<(), ReferenceError>;
+    /// Moves on to `time` [s] under constant torques: `drive` on the sun, `load` braking the link [N m].
+    fn advance(&mut self, time: f64, drive: f64, load: f64, stepping: Stepping) -> Result<(), ReferenceError>;
 
     /// What can be read off now.
     fn observe(&self) -> Observation;
 }
 
 impl Inside for Reference {
-    fn advance(
-        &mut self,
-        time: f64,
-        drive_torque: f64,
-        load_torque: f64,
-        stepping: Stepping,
-    ) -> Result<(), ReferenceError> {
+    fn advance(&mut self, time: f64, drive: f64, load: f64, stepping: Stepping) -> Result<(), ReferenceError> {
         match stepping {
-            Stepping::Adaptive => Reference::advance(self, time, drive_torque, load_torque),
+            Stepping::Adaptive => Reference::advance(self, time, drive, load),
             Stepping::Fixed => {
-                self.advance_by_fixed_steps(time, drive_torque, load_torque);
+                self.advance_by_fixed_steps(time, drive, load);
                 Ok(())
             }
         }
@@ -51,14 +39,8 @@ impl Inside for Reference {
 }
 
 impl<I: Inside + ?Sized> Inside for Box<I> {
-    fn advance(
-        &mut self,
-        time: f64,
-        drive_torque: f64,
-        load_torque: f64,
-        stepping: Stepping,
-    ) -> Result<(), ReferenceError> {
-        (**self).advance(time, drive_torque, load_torque, stepping)
+    fn advance(&mut self, time: f64, drive: f64, load: f64, stepping: Stepping) -> Result<(), ReferenceError> {
+        (**self).advance(time, drive, load, stepping)
     }
 
     fn observe(&self) -> Observation {

@@ -7,7 +7,7 @@ use parameters::{JointParameters, MeshPhases, PerPlanet};
 
 use super::joints::{PAPER_LENGTH, paper_joint, paper_natural_frequency};
 use super::{Scenario, TorqueSegment};
-use crate::joint::{Observation, RelativeState, Start};
+use crate::joint::{Observation, RelativeState};
 
 /// omega/omega_n of case A: meshes part and hit, without chaos.
 pub const CASE_A_OMEGA: f64 = 0.8;
@@ -45,13 +45,13 @@ pub fn case(name: &str, omega: f64) -> Scenario {
         gap: 15.0 * PAPER_LENGTH,
         ..RelativeState::centred(3)
     };
-    balanced(name, joint, Start::Relative(start), drive_torque, 300.0, true)
+    balanced(name, joint, start, drive_torque, 300.0, true)
 }
 
 /// Set P at a half-backlash [m], from X = X' = 0, up to a dimensionless time.
 pub fn regime(name: &str, half_backlash: f64, tau: f64) -> Scenario {
     let joint = paper_joint(0.1, 30e-6, half_backlash, REGIME_OMEGA);
-    balanced(name, joint, Start::Relative(RelativeState::centred(3)), 80.0, tau, half_backlash < CHAOTIC_BACKLASH)
+    balanced(name, joint, RelativeState::centred(3), 80.0, tau, half_backlash < CHAOTIC_BACKLASH)
 }
 
 /// X_sp of planet 0, X_sc, X_sp', X_sc' at the k-th Poincare section, tau = 2 pi k / Omega.
@@ -69,7 +69,7 @@ pub fn poincare_point(observation: &Observation) -> [f64; 4] {
 fn balanced(
     name: &str,
     joint: JointParameters,
-    start: Start,
+    start: RelativeState,
     drive_torque: f64,
     tau: f64,
     predictable: bool,
@@ -77,14 +77,6 @@ fn balanced(
     let geometry = &joint.geometry;
     let ratio = 2.0 * geometry.carrier_radius * geometry.working_pressure_angle.cos() / geometry.sun_base_radius;
     let load_torque = drive_torque * ratio;
-    Scenario {
-        name: name.into(),
-        torques: vec![TorqueSegment { from_tick: 0, drive_torque, load_torque }],
-        joint,
-        start,
-        tick_rate: TICK_RATE,
-        ticks: ticks(tau),
-        sample_every: 1,
-        predictable,
-    }
+    let torques = vec![TorqueSegment { from_tick: 0, drive_torque, load_torque }];
+    Scenario { torques, ticks: ticks(tau), predictable, ..Scenario::new(name, joint, start) }
 }

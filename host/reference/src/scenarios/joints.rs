@@ -63,6 +63,22 @@ pub fn paper_joint(stiffness_ratio: f64, transmission_error: f64, half_backlash:
     }
 }
 
+/// A joint with so many planets and other teeth of its module on sun, planets and ring; every mesh is like the first one of
+/// its kind.
+pub fn with_teeth(mut joint: JointParameters, planets: usize, [sun, planet, ring]: [u32; 3]) -> JointParameters {
+    for mesh in [&mut joint.sun_planet, &mut joint.ring_planet] {
+        mesh.half_backlash = same(planets, mesh.half_backlash[0]);
+        mesh.transmission_error = same(planets, mesh.transmission_error[0]);
+    }
+    let geometry = &mut joint.geometry;
+    let per_tooth = geometry.sun_base_radius / f64::from(geometry.sun_teeth);
+    (geometry.planets, geometry.sun_teeth, geometry.planet_teeth, geometry.ring_teeth) = (planets, sun, planet, ring);
+    geometry.sun_base_radius = per_tooth * f64::from(sun);
+    geometry.planet_base_radius = per_tooth * f64::from(planet);
+    geometry.carrier_radius = per_tooth * f64::from(sun + planet) / geometry.working_pressure_angle.cos();
+    joint
+}
+
 /// omega_n of the paper's joint, eq. 18 [rad/s].
 pub fn paper_natural_frequency() -> f64 {
     (1e8 * (1.0 / 0.39 + 1.0 / 0.61_f64)).sqrt()

@@ -10,9 +10,7 @@ use parameters::{DampingLaw, JointParameters, MeshPhases, StiffnessWave};
 
 use super::joints::{l1, q1, same};
 use super::{Scenario, TorqueSegment};
-use crate::joint::{RelativeState, Start};
-
-const TICK_RATE: u32 = 20_000;
+use crate::joint::RelativeState;
 
 /// A joint, the drive torque that its motions are made of, and what of it can be predicted.
 struct Subject {
@@ -132,15 +130,8 @@ impl Subject {
             drive_torque: drive * self.unit,
             load_torque: load * self.unit * self.ratio(),
         };
-        Scenario {
-            name: format!("{}, {name}", self.name),
-            joint: self.joint.clone(),
-            start: Start::Relative(start),
-            torques: steps.iter().map(segment).collect(),
-            tick_rate: TICK_RATE,
-            ticks,
-            sample_every: 1,
-            predictable,
-        }
+        let name = format!("{}, {name}", self.name);
+        let torques = steps.iter().map(segment).collect();
+        Scenario { torques, ticks, predictable, ..Scenario::new(name, self.joint.clone(), start) }
     }
 }

@@ -264,6 +264,28 @@ impl Table {
     pub fn shown(&self, medium: Medium) -> Vec<(usize, &Column)> {
         self.columns.iter().enumerate().filter(|(_, column)| column.shown.contains(&medium)).collect()
     }
+
+    /// Headings with their units, and rows with the cells that they have, as a medium writes text.
+    pub fn texts(&self, medium: Medium, write: fn(&Text) -> String) -> (Vec<String>, Vec<Vec<String>>) {
+        let shown = self.shown(medium);
+        let heads = shown.iter().map(|(_, column)| match column.unit {
+            "" => write(&column.heading),
+            unit => format!("{} [{}]", write(&column.heading), write(&unit.into())),
+        });
+        let cells = |row: &Row| shown.iter().filter_map(|(index, _)| row.cells.get(*index)).map(write).collect();
+        (heads.collect(), self.rows.iter().map(cells).collect())
+    }
+}
+
+impl Align {
+    /// A cell in its place within so many letters.
+    pub fn placed(self, cell: &str, width: usize) -> String {
+        match self {
+            Self::Left | Self::Note => format!("{cell:<width$}"),
+            Self::Centre => format!("{cell:^width$}"),
+            Self::Right => format!("{cell:>width$}"),
+        }
+    }
 }
 
 impl Column {

@@ -93,17 +93,10 @@ fn block(block: &Block, medium: Medium, text: &mut String) {
 }
 
 fn table(table: &Table, medium: Medium) -> String {
-    let shown = table.shown(medium);
-    let heads = shown.iter().map(|(_, column)| match column.unit {
-        "" => inline(&column.heading),
-        unit => format!("{} [{unit}]", inline(&column.heading)),
-    });
-    let aligns: Vec<Align> = shown.iter().map(|(_, column)| column.align).collect();
-    let cells = |row: &super::blocks::Row| {
-        shown.iter().map(|(index, _)| row.cells.get(*index).map(inline).unwrap_or_default()).collect()
-    };
-    let rows: Vec<Vec<String>> = table.rows.iter().map(cells).collect();
-    aligned(&heads.collect::<Vec<_>>(), &aligns, &rows)
+    let (heads, mut rows) = table.texts(medium, inline);
+    rows.iter_mut().for_each(|row| row.resize(heads.len(), String::new()));
+    let aligns: Vec<Align> = table.shown(medium).iter().map(|(_, column)| column.align).collect();
+    aligned(&heads, &aligns, &rows)
 }
 
 /// A table whose columns line up.
@@ -114,11 +107,8 @@ fn aligned(heads: &[String], aligns: &[Align], rows: &[Vec<String>]) -> String {
     };
     let widths: Vec<usize> = (0..heads.len()).map(width).collect();
     let line = |cells: &[String]| {
-        let cells = cells.iter().zip(&widths).zip(aligns).map(|((cell, width), align)| match align {
-            Align::Left | Align::Note => format!(" {cell:<width$} "),
-            Align::Centre => format!(" {cell:^width$} "),
-            Align::Right => format!(" {cell:>width$} "),
-        });
+        let places = widths.iter().zip(aligns);
+        let cells = cells.iter().zip(places).map(|(cell, (width, align))| format!(" {} ", align.placed(cell, *width)));
         format!("|{}|", cells.collect::<Vec<_>>().join("|"))
     };
     let rule = widths.iter().zip(aligns).map(|(width, align)| match align {

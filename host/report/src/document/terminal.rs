@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use super::blocks::{Align, Block, Checks, Document, Medium, Notice, Section, Table};
+use super::blocks::{Block, Checks, Document, Medium, Notice, Section, Table};
 use super::text::{Span, Text};
 use crate::checks::{Check, Source, Verdict};
 use crate::number::TERMINAL;
@@ -190,38 +190,23 @@ impl Page {
 
     fn table(&mut self, table: &Table) {
         let shown = table.shown(Medium::Terminal);
-        let heads = shown.iter().map(|(_, column)| match column.unit {
-            "" => plain(&column.heading),
-            unit => format!("{} [{}]", plain(&column.heading), typed(unit)),
-        });
-        let heads: Vec<String> = heads.collect();
-        // Columns that every row of this table has; a cell that goes over all that are left has no part in their widths.
-        let rows: Vec<(Vec<String>, bool)> = table
-            .rows
-            .iter()
-            .map(|row| {
-                let cells = shown.iter().filter_map(|(index, _)| row.cells.get(*index)).map(plain);
-                (cells.collect(), row.spans)
-            })
-            .collect();
+        let (heads, rows) = table.texts(Medium::Terminal, plain);
         let width = |place: usize| {
-            let cells = rows.iter().filter_map(|(cells, spans)| {
-                let own = !spans || place + 1 < cells.len();
+            // A cell that goes over all columns that are left has no part in their widths.
+            let cells = rows.iter().zip(&table.rows).filter_map(|(cells, row)| {
+                let own = !row.spans || place + 1 < cells.len();
                 cells.get(place).filter(|_| own).map(|cell| cell.chars().count())
             });
             cells.chain([heads[place].chars().count()]).max().unwrap_or(0)
         };
         let widths: Vec<usize> = (0..shown.len()).map(width).collect();
         let line = |cells: &[String]| {
-            let cells = cells.iter().zip(&widths).zip(&shown).map(|((cell, width), (_, column))| match column.align {
-                Align::Left | Align::Note => format!("{cell:<width$}"),
-                Align::Centre => format!("{cell:^width$}"),
-                Align::Right => format!("{cell:>width$}"),
-            });
+            let places = widths.iter().zip(&shown).map(|(width, (_, column))| (column.align, *width));
+            let cells = cells.iter().zip(places).map(|(cell, (align, width))| align.placed(cell, width));
             cells.collect::<Vec<_>>().join(GAP)
         };
         self.line(&line(&heads));
-        for (cells, _) in &rows {
+        for cells in &rows {
             self.line(&line(cells));
         }
     }

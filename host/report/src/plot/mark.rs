@@ -53,6 +53,11 @@ pub enum Mark {
 }
 
 impl Mark {
+    /// A line.
+    pub fn line(points: Vec<(f64, f64)>, ink: Ink, label: impl Into<String>, width: f64) -> Self {
+        Self::Line { points, ink, label: label.into(), width }
+    }
+
     /// Legend entry.
     pub fn label(&self) -> (&str, Ink) {
         match self {

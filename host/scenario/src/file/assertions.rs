@@ -3,11 +3,12 @@
 
 use std::ops::Range;
 
+use joint_file::Notes;
 use toml::Spanned;
 use toml::de::DeValue;
 
 use super::motion::Profile;
-use super::section::{Problems, Section};
+use super::section::Section;
 use crate::controller::ControllerName;
 use crate::figures::{About as Scope, Named, Relation, names, others};
 use report::checks::Bound;
@@ -72,15 +73,15 @@ pub(super) fn read(top: &Section<'_>, about: &About<'_>) -> Vec<Assertion> {
         let word = name.get_ref().as_ref();
         let Some(figure) = Named::find(word, about.gains) else {
             let help = likely(word, about.gains);
-            top.problems.error(name.span(), format!("there is no figure `{word}` in this test"), help);
+            top.notes.error(name.span(), format!("there is no figure `{word}` in this test"), help);
             continue;
         };
         if let Some((message, help)) = out_of_place(&figure, about) {
-            top.problems.error(name.span(), format!("`{word}` {message}"), help);
+            top.notes.error(name.span(), format!("`{word}` {message}"), help);
             continue;
         }
         let mut add = |aggregate, value: &Spanned<DeValue<'_>>| {
-            if let Some(bound) = bound(value, top.problems) {
+            if let Some(bound) = bound(value, top.notes) {
                 assertions.push(Assertion { figure, name: word.to_owned(), aggregate, bound });
             }
         };
@@ -88,14 +89,14 @@ pub(super) fn read(top: &Section<'_>, about: &About<'_>) -> Vec<Assertion> {
             DeValue::Table(inner) => {
                 if inner.is_empty() {
                     let message = format!("nothing is asked of `{word}`");
-                    top.problems.error(value.span(), message, "write a bound, such as { median = \">= 3\" }");
+                    top.notes.error(value.span(), message, "write a bound, such as { median = \">= 3\" }");
                 }
                 for (aggregate, value) in inner {
                     match aggregate.get_ref().as_ref() {
                         "worst" => add(Aggregate::Worst, value),
                         "median" => add(Aggregate::Median, value),
                         "mean" => add(Aggregate::Mean, value),
-                        other => top.problems.error(
+                        other => top.notes.error(
                             aggregate.span(),
                             format!("`{other}` cannot be made of the seeds' figures"),
                             "write worst, median or mean, as in { median = \">= 3\", worst = \">= 1\" }",
@@ -145,10 +146,10 @@ fn out_of_place(figure: &Named, about: &About<'_>) -> Option<(&'static str, &'st
 }
 
 /// `>= 8`, `<= 0.8` or `== 0`.
-fn bound(value: &Spanned<DeValue<'_>>, problems: &Problems) -> Option<Bound> {
+fn bound(value: &Spanned<DeValue<'_>>, notes: &Notes<'_>) -> Option<Bound> {
     const HELP: &str = "write a bound as a string, such as \">= 8\", \"<= 0.8\" or \"== 0\"";
     let refuse = |span: Range<usize>| -> Option<Bound> {
-        problems.error(span, "this is no bound", HELP);
+        notes.error(span, "this is no bound", HELP);
         None
     };
     let DeValue::String(text) = value.get_ref() else { return refuse(value.span()) };

@@ -3,10 +3,11 @@
 
 use std::ops::Range;
 
+use joint_file::Notes;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::section::{Problems, Section, number};
+use super::section::{Section, number};
 use crate::draw::Quantity;
 
 /// One value of the joint that is changed.
@@ -38,12 +39,12 @@ const ALWAYS_KNOWN: [&str; 6] = ["bits", "control_rate_Hz", "sun_teeth", "planet
 pub(super) fn read(top: &Section<'_>, name: &'static str) -> Vec<Change> {
     let mut changes = Vec::new();
     if let Some((_, table)) = top.table(name) {
-        collect(table, "", name, top.problems, &mut changes);
+        collect(table, "", name, top.notes, &mut changes);
     }
     changes
 }
 
-fn collect(table: &DeTable<'_>, path: &str, section: &str, problems: &Problems, changes: &mut Vec<Change>) {
+fn collect(table: &DeTable<'_>, path: &str, section: &str, notes: &Notes<'_>, changes: &mut Vec<Change>) {
     for (name, value) in table {
         let path = match path {
             "" => name.get_ref().to_string(),
@@ -51,17 +52,17 @@ fn collect(table: &DeTable<'_>, path: &str, section: &str, problems: &Problems, 
         };
         if let DeValue::Table(inner) = value.get_ref() {
             if let Some(times) = inner.get("times").filter(|_| inner.len() == 1) {
-                if let Some(factor) = quantity(times, problems) {
-                    push(&path, NewValue::Times(factor), name.span(), section, problems, changes);
+                if let Some(factor) = quantity(times, notes) {
+                    push(&path, NewValue::Times(factor), name.span(), section, notes, changes);
                 }
             } else {
-                collect(inner, &path, section, problems, changes);
+                collect(inner, &path, section, notes, changes);
             }
             continue;
         }
         let new = match value.get_ref() {
             DeValue::String(text) if text.trim().parse::<f64>().is_ok() => {
-                problems.error(value.span(), format!("\"{text}\" is a text"), "write the number without quotes");
+                notes.error(value.span(), format!("\"{text}\" is a text"), "write the number without quotes");
                 None
             }
             DeValue::String(text) => Some(NewValue::Text(text.to_string())),
@@ -71,29 +72,22 @@ fn collect(table: &DeTable<'_>, path: &str, section: &str, problems: &Problems, 
                     list.iter().map(|item| number(item).map(|number| number.to_string())).collect();
                 numbers.map(|numbers| NewValue::Text(format!("[{}]", numbers.join(", "))))
             }
-            _ => quantity(value, problems).map(NewValue::Number),
+            _ => quantity(value, notes).map(NewValue::Number),
         };
         if let Some(new) = new {
-            push(&path, new, name.span(), section, problems, changes);
+            push(&path, new, name.span(), section, notes, changes);
         }
     }
 }
 
-fn push(
-    path: &str,
-    value: NewValue,
-    span: Range<usize>,
-    section: &str,
-    problems: &Problems,
-    changes: &mut Vec<Change>,
-) {
+fn push(path: &str, value: NewValue, span: Range<usize>, section: &str, notes: &Notes<'_>, changes: &mut Vec<Change>) {
     match joint_file::full_key(path) {
-        Err(refused) => problems.error(span, refused.message, refused.help),
+        Err(refused) => notes.error(span, refused.message, refused.help),
         Ok(key) => {
             let last = key.rsplit('.').next().unwrap_or(&key);
             if section == "plant" && ALWAYS_KNOWN.contains(&last) {
                 let message = format!("no controller can do without knowing `{last}`");
-                problems.error(span, message, "write it in [known]: plant and controllers then agree on it");
+                notes.error(span, message, "write it in [known]: plant and controllers then agree on it");
             } else {
                 changes.push(Change { key, value, span });
             }
@@ -102,7 +96,7 @@ fn push(
 }
 
 /// A number, or [least, greatest].
-fn quantity(value: &Spanned<DeValue<'_>>, problems: &Problems) -> Option<Quantity> {
+fn quantity(value: &Spanned<DeValue<'_>>, notes: &Notes<'_>) -> Option<Quantity> {
     const HELP: &str = "write a number, [least, greatest] for one drawn by every seed, or { times = 1.3 }";
     let found = match value.get_ref() {
         DeValue::Array(list) => match list.iter().map(number).collect::<Option<Vec<f64>>>().as_deref() {
@@ -112,7 +106,7 @@ fn quantity(value: &Spanned<DeValue<'_>>, problems: &Problems) -> Option<Quantit
         _ => number(value).map(Quantity::Exactly),
     };
     if found.is_none() {
-        problems.error(value.span(), "this is neither a number nor a range", HELP);
+        notes.error(value.span(), "this is neither a number nor a range", HELP);
     }
     found
 }

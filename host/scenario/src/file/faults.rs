@@ -87,10 +87,7 @@ pub fn fault_stream(fault: &Fault, place: usize, seed: u64) -> Stream {
 
 /// Reads one `[[fault]]`.
 pub(super) fn read(section: &Section<'_>) -> Option<Fault> {
-    if !section.has("kind") {
-        section.missing("kind");
-    }
-    let word = section.word("kind")?;
+    let word = section.required("kind", Section::word)?;
     let own: &[&'static str] = match word {
         "encoder_frozen" => &["encoder"],
         "encoder_offset" => &["encoder", "counts", "offset_mrad"],
@@ -115,12 +112,7 @@ pub(super) fn read(section: &Section<'_>) -> Option<Fault> {
         Some("set_points") => Frames::SetPoints,
         _ => Frames::Readings(Shaft::Link),
     };
-    let needed = |name: &str| {
-        if !section.has(name) {
-            section.missing(name);
-        }
-        section.number(name)
-    };
+    let needed = |name: &str| section.required(name, Section::number);
     let one_of = |names: [&str; 2]| {
         if !names.iter().any(|name| section.has(name)) {
             section.missing(names[0]);
@@ -144,7 +136,7 @@ pub(super) fn read(section: &Section<'_>) -> Option<Fault> {
             let limit = needed("torque_N_m")?;
             if limit < 0.0 {
                 let help = "write the most that the motor gives, to either side";
-                section.problems.error(section.span("torque_N_m"), format!("a limit of {limit} N m is none"), help);
+                section.notes.error(section.place("torque_N_m"), format!("a limit of {limit} N m is none"), help);
             }
             FaultKind::Saturation(limit)
         }
@@ -169,7 +161,7 @@ pub(super) fn read(section: &Section<'_>) -> Option<Fault> {
     let end = section.number("end_s").unwrap_or(f64::INFINITY);
     if end <= start {
         let help = "give an `end_s` after `start_s`, or leave it out for a fault that stays";
-        section.problems.error(section.span("end_s"), format!("the fault ends at {end} s, before it begins"), help);
+        section.notes.error(section.place("end_s"), format!("the fault ends at {end} s, before it begins"), help);
         return None;
     }
     Some(Fault { start, end, seed: (), kind })

@@ -4,17 +4,13 @@
 use super::section::Section;
 use crate::controller::Gains;
 
-/// Modes that are sent impedance set-points.
-pub(super) fn needed(mode: &str) -> bool {
-    matches!(mode, "impedance" | "motor_side" | "link_spring" | "link_side")
-}
-
+/// The impedance, where one is needed.
 pub(super) fn read(controller: &Section<'_>, needed: bool) -> Option<Gains> {
     const KEYS: [&str; 4] = ["stiffness_N_m_per_rad", "damping_N_m_s_per_rad", "rate_Hz", "feed_forward_kg_m2"];
     if !needed {
         for name in KEYS.into_iter().filter(|name| controller.has(name)) {
             let help = "write mode = \"impedance\", or leave it out";
-            controller.problems.error(controller.span(name), format!("`{name}` belongs to an impedance"), help);
+            controller.notes.error(controller.place(name), format!("`{name}` belongs to an impedance"), help);
         }
         return None;
     }

@@ -1,6 +1,8 @@
 //! Every key of a test file: its section, what it holds, its bound, and a hint for who got it wrong. What the values
 //! mean together is left to the readers of the sections; docs/hil-file.md says the same in more words.
 
+use joint_file::Keys;
+
 /// What a key holds.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Kind {
@@ -25,14 +27,19 @@ pub(super) enum Kind {
 }
 
 /// One key.
-#[derive(Debug)]
-pub(super) struct Key {
-    /// The section that it stands in; empty at the top of the file.
-    pub section: &'static str,
-    pub name: &'static str,
-    pub kind: Kind,
-    /// Shown when the value is refused or missing.
-    pub hint: &'static str,
+pub(super) type Key = joint_file::Key<Kind>;
+
+impl Keys for Kind {
+    const FILE: &'static str = "a test file";
+    const ALL: &'static [Key] = KEYS;
+
+    fn stray(section: &str, word: &str) -> String {
+        if section.is_empty() && joint_file::full_key(word).is_ok() {
+            return "this is a key of the joint file: write it in [known] or in [plant]".to_owned();
+        }
+        let known: Vec<String> = Self::of(section).map(|key| format!("`{}`", key.name)).collect();
+        Self::belongs(word).unwrap_or_else(|| format!("known here: {}", known.join(", ")))
+    }
 }
 
 const fn key(section: &'static str, name: &'static str, kind: Kind, hint: &'static str) -> Key {
@@ -191,17 +198,6 @@ pub(super) const KEYS: &[Key] = &[
     key("fault", "half_backlash_um", Number(0.0, 1000.0), "half-backlash of every mesh from then on"),
     key("fault", "stiffness_ratio", Number(0.01, 1.0), "stiffness left while the broken tooth is in mesh"),
 ];
-
-/// The keys of one section.
-pub(super) fn of(section: &str) -> impl Iterator<Item = &'static Key> {
-    let section = section.to_owned();
-    KEYS.iter().filter(move |key| key.section == section)
-}
-
-/// The key of that name; readers ask for listed keys only.
-pub(super) fn find(section: &str, name: &str) -> Option<&'static Key> {
-    KEYS.iter().find(|key| key.section == section && key.name == name)
-}
 
 #[cfg(test)]
 mod tests {

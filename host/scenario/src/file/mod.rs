@@ -17,14 +17,15 @@ pub use changes::{Change, NewValue};
 pub use faults::{Fault, Offset, OnHost, Si, fault_is_on, fault_stream, fault_word};
 pub use motion::{Course, Load, Profile, Push, Wave};
 
-use joint_file::Problem;
+use joint_file::{Keys, Notes, Problem};
 use link::messages::Role;
 use toml::de::{DeTable, DeValue};
 
 use super::controller::{ControllerName, Gains};
 use super::draw::Quantity;
 
-use section::{Problems, Section};
+use keys::Kind;
+use section::Section;
 
 /// A test file that can be run, once its joint has been found.
 #[derive(Debug, Clone, PartialEq)]
@@ -98,34 +99,27 @@ pub fn is_test_file(text: &str) -> bool {
 
 /// Reads the text of a test file. On failure gives every problem in the order of the text.
 pub fn read(text: &str) -> Result<TestFile, Vec<Problem>> {
-    let problems = Problems::default();
+    let notes = Notes::new(text);
     let (table, syntax) = DeTable::parse_recoverable(text);
-    for error in syntax.iter().take(1) {
-        let span = error.span().unwrap_or(0..0);
-        let help = match error.message() {
-            "duplicate key" => "leave one of the two out",
-            _ => "write lines of the form key = value",
-        };
-        problems.error(span, format!("not TOML: {}", error.message()), help);
-    }
+    syntax.iter().take(1).for_each(|error| notes.syntax(error));
     // What was recovered from broken syntax would be blamed for what the parser dropped.
-    let file = if syntax.is_empty() { read_table(table.get_ref(), &problems) } else { None };
-    let problems = problems.into_sorted();
+    let file = if syntax.is_empty() { read_table(table.get_ref(), &notes) } else { None };
+    let (problems, _) = notes.into_parts();
     file.filter(|_| problems.is_empty()).ok_or(problems)
 }
 
-fn read_table(table: &DeTable<'_>, problems: &Problems) -> Option<TestFile> {
-    let top = Section::new("", 0..0, table, problems);
+fn read_table(table: &DeTable<'_>, notes: &Notes<'_>) -> Option<TestFile> {
+    let top = Section::new("", 0..0, table, notes);
     let profile = match table.get("profile") {
         Some(value) if matches!(value.get_ref(), DeValue::String(_)) => {
-            let kind = keys::find("profile", "kind").and_then(|key| top.word_of(value, key));
+            let kind = Kind::find("profile", "kind").and_then(|key| top.word_of(value, key));
             kind.map(Profile::of_kind)
         }
         _ => match top.table("profile") {
-            Some((span, table)) => motion::read(&Section::new("profile", span, table, problems)),
+            Some((span, table)) => motion::read(&Section::new("profile", span, table, notes)),
             None => {
                 if !top.has("profile") {
-                    problems.error(0..0, "`profile` is missing", "write profile = \"T2\", or a section [profile]");
+                    notes.error(0..0, "`profile` is missing", "write profile = \"T2\", or a section [profile]");
                 }
                 None
             }
@@ -133,7 +127,7 @@ fn read_table(table: &DeTable<'_>, problems: &Problems) -> Option<TestFile> {
     };
     let empty = DeTable::new();
     let (span, table) = top.table("controller").unwrap_or((0..0, &empty));
-    let controller = Section::new("controller", span, table, problems);
+    let controller = Section::new("controller", span, table, notes);
     let impedance_profile = profile.as_ref().is_some_and(|profile| profile.kind == "impedance");
     let default_mode = match profile.as_ref().map(|profile| profile.kind) {
         Some("impedance") => "impedance",
@@ -141,9 +135,12 @@ fn read_table(table: &DeTable<'_>, problems: &Problems) -> Option<TestFile> {
         Some("held") => "probe",
         _ => "preview",
     };
-    let mode = if controller.has("mode") { controller.word("mode") } else { Some(default_mode) };
+    let mode = controller.or("mode", Section::word, default_mode);
     let bare = matches!(mode, Some("none" | "locked" | "off"));
-    let gains = gains::read(&controller, (impedance_profile && bare) || mode.is_some_and(gains::needed));
+    let gains = gains::read(
+        &controller,
+        (impedance_profile && bare) || mode.is_some_and(|mode| ControllerName::of_word(mode, false).wants_gains()),
+    );
     let name = mode.map(|mode| ControllerName::of_word(mode, gains.is_some()));
     let rivals = if controller.has("rivals") {
         controller.words("rivals")
@@ -162,7 +159,7 @@ fn read_table(table: &DeTable<'_>, problems: &Problems) -> Option<TestFile> {
                 Some(_) => "an impedance test has motor_side, link_spring and link_side to be held against",
                 None => "a position test has motor_pid, velocity_sign, load_cascade and output_integral",
             };
-            problems.error(controller.span("rivals"), format!("{} cannot run beside this", rival.word()), help);
+            notes.error(controller.place("rivals"), format!("{} cannot run beside this", rival.word()), help);
         }
     }
     let about = assertions::About { controller: name, gains: gains.is_some(), profile: profile.as_ref() };
@@ -176,48 +173,40 @@ fn read_table(table: &DeTable<'_>, problems: &Problems) -> Option<TestFile> {
     let [push_sections, fault_sections] = ["disturbance", "fault"].map(|name| top.tables(name));
     let pushes = push_sections.iter().filter_map(motion::read_push).collect();
     let faults = fault_sections.iter().filter_map(faults::read).collect();
-    let number = |section: &Section<'_>, name: &str, default: f64| {
-        if section.has(name) { section.number(name) } else { Some(default) }
-    };
-    let seeds = if top.has("seeds") { top.seeds("seeds")? } else { vec![1] };
-    let full_seeds = if top.has("full_seeds") { top.seeds("full_seeds")? } else { seeds.clone() };
+    let seeds = top.or("seeds", Section::seeds, vec![1])?;
+    let full_seeds = top.or("full_seeds", Section::seeds, seeds.clone())?;
     let known = changes::read(&top, "known");
     let plant = changes::read(&top, "plant");
     let profile = profile?;
-    let settle = number(&top, "settle_s", profile.settle)?;
-    let duration = number(&top, "duration_s", profile.duration.max(settle + 1.0))?;
+    let settle = top.or("settle_s", Section::number, profile.settle)?;
+    let duration = top.or("duration_s", Section::number, profile.duration.max(settle + 1.0))?;
     if settle >= duration {
         let help = "raise `duration_s`, or lower `settle_s`: figures are taken between the two";
-        problems.error(top.span("settle_s"), format!("nothing is left of {duration} s after {settle} s"), help);
+        notes.error(top.place("settle_s"), format!("nothing is left of {duration} s after {settle} s"), help);
     }
     // How long a recorded motion is says its file, unless this one does.
     if top.has("duration_s") || !matches!(profile.course, Course::File(_)) {
         refuse_late(push_sections.iter().chain(&fault_sections), duration);
     }
-    let from_memory = if controller.has("from_memory") { controller.flag("from_memory")? } else { false };
+    let from_memory = controller.or("from_memory", Section::flag, false)?;
     if let (true, Some(name)) = (from_memory, name.filter(|name| !name.is_ours())) {
         let help = "write mode = \"preview\", \"no_preview\" or \"impedance\", or leave it out";
-        problems.error(controller.span("from_memory"), format!("{} learns nothing", name.word()), help);
+        notes.error(controller.place("from_memory"), format!("{} learns nothing", name.word()), help);
     }
     Some(TestFile {
-        title: if top.has("title") { top.text("title")? } else { String::new() },
-        joint: if top.has("joint") { top.text("joint")? } else { "q1".to_owned() },
-        short_run: match top.has("short_run") {
-            true => Some(if top.word("short_run")? == "loop" { Role::Loop } else { Role::Observer }),
-            false => None,
+        title: top.or("title", Section::text, String::new())?,
+        joint: top.or("joint", Section::text, "q1".to_owned())?,
+        short_run: match top.or("short_run", Section::word, "")? {
+            "loop" => Some(Role::Loop),
+            "" => None,
+            _ => Some(Role::Observer),
         },
-        only_with_full: if top.has("only_with_full") { top.flag("only_with_full")? } else { false },
-        timeout: number(&top, "timeout_s", TIMEOUT)?,
-        bandwidth: number(&controller, "bandwidth_rad_per_s", BANDWIDTH)?,
-        peak_torque: match controller.has("peak_torque_N_m") {
-            true => Some(controller.number("peak_torque_N_m")?),
-            false => None,
-        },
-        width_guess: match controller.has("width_guess_ratio") {
-            true => Some(controller.range("width_guess_ratio")?),
-            false => None,
-        },
-        output_encoder: if controller.has("output_encoder") { controller.flag("output_encoder")? } else { true },
+        only_with_full: top.or("only_with_full", Section::flag, false)?,
+        timeout: top.or("timeout_s", Section::number, TIMEOUT)?,
+        bandwidth: controller.or("bandwidth_rad_per_s", Section::number, BANDWIDTH)?,
+        peak_torque: controller.or("peak_torque_N_m", |section, name| section.number(name).map(Some), None)?,
+        width_guess: controller.or("width_guess_ratio", |section, name| section.range(name).map(Some), None)?,
+        output_encoder: controller.or("output_encoder", Section::flag, true)?,
         from_memory,
         controller: name?,
         seeds,
@@ -243,7 +232,7 @@ fn refuse_late<'s>(sections: impl Iterator<Item = &'s Section<'s>>, duration: f6
         if start.is_some_and(|start| start >= duration) {
             let message = format!("this begins when the run is over, at {} s", (1e3 * duration).round() / 1e3);
             let help = "raise `duration_s`, or let it begin earlier";
-            section.problems.error(section.span("start_s"), message, help);
+            section.notes.error(section.place("start_s"), message, help);
         }
     }
 }

@@ -122,10 +122,7 @@ impl Profile {
 
 /// Reads `[profile]`.
 pub(super) fn read(section: &Section<'_>) -> Option<Profile> {
-    if !section.has("kind") {
-        section.missing("kind");
-    }
-    let kind = section.word("kind")?;
+    let kind = section.required("kind", Section::word)?;
     let mut profile = Profile::of_kind(kind);
     let mut taken = vec!["kind"];
     {
@@ -176,10 +173,7 @@ pub(super) fn read(section: &Section<'_>) -> Option<Profile> {
     }
     if kind == "csv" {
         taken.push("file");
-        if !section.has("file") {
-            section.missing("file");
-        }
-        profile.course = Course::File(section.text("file")?);
+        profile.course = Course::File(section.required("file", Section::text)?);
     }
     refuse_others(section, &taken, kind);
     Some(profile)
@@ -187,10 +181,7 @@ pub(super) fn read(section: &Section<'_>) -> Option<Profile> {
 
 /// Reads one `[[disturbance]]`.
 pub(super) fn read_push(section: &Section<'_>) -> Option<Push> {
-    if !section.has("kind") {
-        section.missing("kind");
-    }
-    let kind = section.word("kind")?;
+    let kind = section.required("kind", Section::word)?;
     let taken: &[&str] = match kind {
         "step" => &["kind", "start_s", "torque_N_m"],
         "pulse" => &["kind", "start_s", "length_s", "torque_N_m"],
@@ -215,7 +206,7 @@ pub(super) fn refuse_others(section: &Section<'_>, taken: &[&str], kind: &str) {
         if !taken.contains(&name) && super::keys::KEYS.iter().any(|key| key.name == name) {
             let known: Vec<String> = taken.iter().map(|name| format!("`{name}`")).collect();
             let help = format!("kind \"{kind}\" has {}", known.join(", "));
-            section.problems.error(Spanned::span(value), format!("`{name}` means nothing to \"{kind}\""), help);
+            section.notes.error(Spanned::span(value), format!("`{name}` means nothing to \"{kind}\""), help);
         }
     }
 }

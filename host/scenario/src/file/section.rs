@@ -1,55 +1,31 @@
 //! Takes values out of one table of a test file by the list of keys: right type, finite, within bounds. What the values
 //! mean together is left to the reader of each section.
 
-use std::cell::RefCell;
-use std::ops::Range;
+use std::ops::{Deref, Range};
 
-use joint_file::{Problem, Severity};
+use joint_file::{Notes, Table};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::keys::{self, Key, Kind};
+use super::keys::{Key, Kind};
 use crate::draw::Quantity;
 use report::number::TYPED;
 
-/// Problems of one file, as they are found.
-#[derive(Default)]
-pub(super) struct Problems(RefCell<Vec<Problem>>);
-
-impl Problems {
-    pub fn error(&self, span: Range<usize>, message: impl Into<String>, help: impl Into<String>) {
-        let problem = Problem { span, message: message.into(), help: help.into(), severity: Severity::Error };
-        self.0.borrow_mut().push(problem);
-    }
-
-    /// All of them in the order of the text.
-    pub fn into_sorted(self) -> Vec<Problem> {
-        let mut problems = self.0.into_inner();
-        problems.sort_by_key(|problem| (problem.span.start, problem.span.end));
-        problems
-    }
-}
-
 /// One table of the file.
-pub(super) struct Section<'a> {
-    /// Whose keys it has.
-    schema: &'static str,
-    pub header: Range<usize>,
-    pub table: &'a DeTable<'a>,
-    pub problems: &'a Problems,
+pub(super) struct Section<'a>(Table<'a, Kind>);
+
+impl<'a> Deref for Section<'a> {
+    type Target = Table<'a, Kind>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.0
+    }
 }
 
 impl<'a> Section<'a> {
     /// A table; complains about keys that nobody knows.
-    pub fn new(schema: &'static str, header: Range<usize>, table: &'a DeTable<'a>, problems: &'a Problems) -> Self {
-        let section = Self { schema, header, table, problems };
-        for name in table.keys() {
-            let word = name.get_ref().as_ref();
-            if keys::find(schema, word).is_none() {
-                problems.error(name.span(), format!("unknown key `{word}` in {}", section.place()), near(schema, word));
-            }
-        }
-        section
+    pub fn new(schema: &'static str, header: Range<usize>, table: &'a DeTable<'a>, notes: &'a Notes<'a>) -> Self {
+        Self(Table::new(schema.to_owned(), schema, header, table, notes))
     }
 
     /// The table `name`; `None` if it is absent or no table.
@@ -71,25 +47,23 @@ impl<'a> Section<'a> {
         };
         list.iter()
             .filter_map(|item| match item.get_ref() {
-                DeValue::Table(table) => Some(Section::new(name, item.span(), table, self.problems)),
+                DeValue::Table(table) => Some(Section::new(name, item.span(), table, self.notes)),
                 _ => self.wrong_type(item, key, "a table"),
             })
             .collect()
     }
 
-    pub fn has(&self, name: &str) -> bool {
-        self.table.get(name).is_some()
+    /// A value that must be there.
+    pub fn required<T>(&self, name: &str, read: impl Fn(&Self, &str) -> Option<T>) -> Option<T> {
+        if !self.has(name) {
+            self.missing(name);
+        }
+        read(self, name)
     }
 
-    /// Where a key's value stands; the section's header if it does not.
-    pub fn span(&self, name: &str) -> Range<usize> {
-        self.table.get(name).map_or(self.header.clone(), Spanned::span)
-    }
-
-    /// Complains that a key is missing.
-    pub fn missing(&self, name: &str) {
-        let hint = keys::find(self.schema, name).map_or("", |key| key.hint);
-        self.problems.error(self.header.clone(), format!("`{name}` is missing from {}", self.place()), hint);
+    /// A value, or what stands for it if the key is left out; `None` only if it is there and wrong.
+    pub fn or<T>(&self, name: &str, read: impl Fn(&Self, &str) -> Option<T>, default: T) -> Option<T> {
+        if self.has(name) { read(self, name) } else { Some(default) }
     }
 
     pub fn text(&self, name: &str) -> Option<String> {
@@ -135,7 +109,7 @@ impl<'a> Section<'a> {
                 Some(near) => format!("did you mean \"{near}\"? known: {}", words.join(", ")),
                 None => format!("{}: {}", key.hint, words.join(", ")),
             };
-            self.problems.error(value.span(), format!("\"{text}\" is no {} of {}", key.name, self.place()), help);
+            self.notes.error(value.span(), format!("\"{text}\" is no {} of {}", key.name, self.called()), help);
         }
         found
     }
@@ -159,7 +133,7 @@ impl<'a> Section<'a> {
             [low, high] if low <= high => Some(Quantity::Between(*low, *high)),
             _ => {
                 let help = "write [least, greatest]: every seed draws one value between them";
-                self.problems.error(value.span(), "this is no range", help);
+                self.notes.error(value.span(), "this is no range", help);
                 None
             }
         }
@@ -178,7 +152,7 @@ impl<'a> Section<'a> {
         };
         let good = seeds.filter(|seeds| !seeds.is_empty());
         match &good {
-            None => self.problems.error(value.span(), format!("`{name}` names no seeds"), key.hint),
+            None => self.notes.error(value.span(), format!("`{name}` names no seeds"), key.hint),
             Some(seeds) => self.refuse_twice(value, seeds),
         }
         good
@@ -187,7 +161,7 @@ impl<'a> Section<'a> {
     /// Complains about what a list names more than once.
     fn refuse_twice<T: PartialEq + std::fmt::Display>(&self, value: &Spanned<DeValue<'_>>, list: &[T]) {
         if let Some((_, twice)) = list.iter().enumerate().find(|(place, item)| list[..*place].contains(item)) {
-            self.problems.error(value.span(), format!("{twice} is named twice"), "name it once: the same runs once");
+            self.notes.error(value.span(), format!("{twice} is named twice"), "name it once: the same runs once");
         }
     }
 
@@ -196,24 +170,13 @@ impl<'a> Section<'a> {
         let Some(number) = number(value) else { return self.wrong_type(value, key, "a number") };
         if !(low..=high).contains(&number) {
             let message = format!("`{}` must be between {low} and {high}, not {}", key.name, TYPED.write(number));
-            self.problems.error(value.span(), message, key.hint);
-            return None;
+            return self.refuse(value, key, message);
         }
         Some(number)
     }
 
-    /// How a reader calls the section.
-    pub fn place(&self) -> String {
-        if self.schema.is_empty() { "a test file".to_owned() } else { format!("[{}]", self.schema) }
-    }
-
-    fn value(&self, name: &str) -> Option<(&'a Spanned<DeValue<'a>>, &'static Key)> {
-        Some((self.table.get(name)?, keys::find(self.schema, name)?))
-    }
-
     fn wrong_type<T>(&self, value: &Spanned<DeValue<'_>>, key: &Key, wanted: &str) -> Option<T> {
-        self.problems.error(value.span(), format!("`{}` must be {wanted}", key.name), key.hint);
-        None
+        self.refuse(value, key, format!("`{}` must be {wanted}", key.name))
     }
 }
 
@@ -225,23 +188,4 @@ pub(super) fn number(value: &Spanned<DeValue<'_>>) -> Option<f64> {
         _ => None,
     };
     parsed.filter(|number: &f64| !number.is_nan())
-}
-
-/// What to say to an unknown key.
-fn near(schema: &str, word: &str) -> String {
-    if let Some(near) = joint_file::nearest(word, keys::of(schema).map(|key| key.name)) {
-        let hint = keys::find(schema, near).map_or("", |key| key.hint);
-        return format!("did you mean `{near}`? {hint}");
-    }
-    if schema.is_empty() && joint_file::full_key(word).is_ok() {
-        return "this is a key of the joint file: write it in [known] or in [plant]".to_owned();
-    }
-    if let Some(key) = keys::KEYS.iter().find(|key| key.name == word) {
-        return match key.section {
-            "" => "it belongs at the top of the file, above all sections".to_owned(),
-            section => format!("it belongs in [{section}]"),
-        };
-    }
-    let known: Vec<String> = keys::of(schema).map(|key| format!("`{}`", key.name)).collect();
-    format!("known here: {}", known.join(", "))
 }

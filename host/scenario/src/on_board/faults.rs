@@ -36,10 +36,6 @@ fn kind(fault: &file::Fault, bits: [u32; 2]) -> Outcome<FaultKind<FixedPoint<f32
     // A whole turn more or less is none.
     let angle = |parts: f64| (parts.round() as i64) as u32;
     let share = |share: f64| (share * WHOLE).min(WHOLE - 1.0) as u32;
-    let refused = |why: &str, help: &str| {
-        Err(Failure::new(format!("the fault `{}` cannot be in a whole loop on a board: {why}", fault_word(fault)))
-            .with_help(help))
-    };
     Ok(match fault.kind {
         FaultKind::Frozen(of) => FaultKind::Frozen(of),
         FaultKind::Offset(of, Offset { counts, angle: offset }) => {
@@ -51,20 +47,17 @@ fn kind(fault: &file::Fault, bits: [u32; 2]) -> Outcome<FaultKind<FixedPoint<f32
         FaultKind::LostReadings(of, part) => FaultKind::LostReadings(of, share(part)),
         FaultKind::TorqueBias(ratio, torque) => FaultKind::TorqueBias(ratio as f32, torque as f32),
         FaultKind::Saturation(torque) => FaultKind::Saturation(torque as f32),
-        FaultKind::Other(OnHost::LostSetPoints(_) | OnHost::LateSetPoints(_)) => {
-            let why = "its motion comes in polynomials of some milliseconds, not in set-points";
-            return refused(why, "run it with --role observer, or with --host");
-        }
-        FaultKind::Other(OnHost::LateReadings(..)) => {
-            return refused("it keeps no readings of the past", "run it with --role observer, or with --host");
-        }
-        FaultKind::Other(OnHost::GrownBacklash(_)) => {
-            let why = "its teeth are tables in flash";
-            return refused(why, "run it with --role observer --plant reference, or with --host");
-        }
-        FaultKind::Other(OnHost::BrokenTooth(_)) => {
-            let why = "its planets share their stiffness";
-            return refused(why, "run it with --role observer --plant reference, or with --host");
+        FaultKind::Other(other) => {
+            let (why, plant) = match other {
+                OnHost::LostSetPoints(_) | OnHost::LateSetPoints(_) => {
+                    ("its motion comes in polynomials of some milliseconds, not in set-points", "")
+                }
+                OnHost::LateReadings(..) => ("it keeps no readings of the past", ""),
+                OnHost::GrownBacklash(_) => ("its teeth are tables in flash", " --plant reference"),
+                OnHost::BrokenTooth(_) => ("its planets share their stiffness", " --plant reference"),
+            };
+            let message = format!("the fault `{}` cannot be in a whole loop on a board: {why}", fault_word(fault));
+            return Err(Failure::new(message).with_help(format!("run it with --role observer{plant}, or with --host")));
         }
     })
 }

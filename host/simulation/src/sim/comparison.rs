@@ -1,7 +1,6 @@
 //! All schemes over one run: the error of each against the reference as far as the motion can be predicted at all, and
 //! what each costs. Which scheme is good enough for what is the reader's to judge.
 
-use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use serde::Serialize;
@@ -32,17 +31,15 @@ pub struct Track {
     pub scheme: SchemeName,
     /// How it ended.
     pub end: End,
+    /// Times of the samples [s].
+    pub times: Vec<f64>,
     /// Deflections of every mesh, then gap, then link offset; one list a quantity [m, m, rad].
     pub columns: Vec<Vec<f64>>,
-    /// What it costs.
-    pub cost: Cost,
 }
 
 /// All schemes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
-    /// Times of the samples [s].
-    pub times: Vec<f64>,
     /// The reference first.
     pub tracks: Vec<Track>,
     /// Samples up to which the motion can be predicted.
@@ -69,13 +66,13 @@ pub struct Row {
 }
 
 /// Runs all schemes, every `every`-th tick compared; `progress` is told the ticks done by all together.
-pub fn compare(run: &Run<'_>, every: u32, progress: &(dyn Fn(u32) + Sync)) -> Outcome<Comparison> {
+pub fn compare(run: &Run, every: u32, progress: &(dyn Fn(u32) + Sync)) -> Outcome<Comparison> {
     let done = AtomicU32::new(0);
     let tick = || progress(done.fetch_add(1, Ordering::Relaxed));
     let jobs: [(SchemeName, f64); 6] = std::array::from_fn(|job| {
         if job == 0 { (SchemeName::Reference, DISTURBANCE) } else { (SchemeName::ALL[job - 1], 0.0) }
     });
-    let followed: Vec<Outcome<Recorded>> = std::thread::scope(|scope| {
+    let followed: Vec<Outcome<Track>> = std::thread::scope(|scope| {
         let threads: Vec<_> = jobs
             .iter()
             .map(|&(scheme, disturbance)| scope.spawn(move || record(run, every, scheme, disturbance, &tick)))
@@ -85,40 +82,36 @@ pub fn compare(run: &Run<'_>, every: u32, progress: &(dyn Fn(u32) + Sync)) -> Ou
         };
         threads.into_iter().map(join).collect()
     });
-    let mut followed = followed.into_iter().collect::<Outcome<Vec<_>>>()?;
-    let disturbed = followed.remove(0).columns;
+    let mut tracks = followed.into_iter().collect::<Outcome<Vec<_>>>()?;
+    let disturbed = tracks.remove(0).columns;
     let costs = costs(run)?;
-    let times = followed[0].times.clone();
-    let tracks: Vec<Track> = followed
-        .into_iter()
-        .zip(SchemeName::ALL)
-        .zip(costs)
-        .map(|((Recorded { end, columns, .. }, scheme), cost)| Track { scheme, end, columns, cost })
-        .collect();
     let predictable = predictable(&tracks[0].columns, &disturbed);
-    let rate = f64::from(run.tick_rate);
-    let board = tracks.iter().find(|track| track.scheme == SchemeName::Realtime).map_or(1.0, |t| t.cost.per_second);
+    let board = SchemeName::ALL.iter().position(|scheme| *scheme == SchemeName::Realtime);
+    let board = board.map_or(1.0, |board| costs[board].per_second);
     let rows = tracks
         .iter()
-        .map(|track| Row {
+        .zip(costs)
+        .map(|(track, cost)| Row {
             scheme: track.scheme.name(),
             errors: errors(&tracks[0].columns, &track.columns, predictable),
-            cost_ratio: track.cost.per_second / board,
-            cost_s_per_s: track.cost.per_second,
-            substeps: track.cost.substeps,
-            diverged_at_s: match track.end {
-                End::Diverged(tick) => Some(f64::from(tick) / rate),
-                End::Whole | End::Stopped => None,
-            },
+            cost_ratio: cost.per_second / board,
+            cost_s_per_s: cost.per_second,
+            substeps: cost.substeps,
+            diverged_at_s: track.end.diverged_at(run.tick_rate),
         })
         .collect();
-    Ok(Comparison { times, tracks, predictable, rows })
+    Ok(Comparison { tracks, predictable, rows })
 }
 
 impl Comparison {
+    /// Times of the reference's samples [s].
+    pub fn times(&self) -> &[f64] {
+        &self.tracks[0].times
+    }
+
     /// Until when errors are compared [s].
     pub fn predictable_until(&self) -> f64 {
-        self.predictable.checked_sub(1).map_or(0.0, |last| self.times[last])
+        self.predictable.checked_sub(1).map_or(0.0, |last| self.times()[last])
     }
 
     /// Error of a track's first deflection over the standard deviation: root mean square of short stretches, each at its
@@ -127,7 +120,7 @@ impl Comparison {
         let exact = &self.tracks[0].columns[0][..self.predictable];
         let spread = spread(exact);
         let pairs: Vec<(f64, f64)> =
-            exact.iter().zip(&track.columns[0]).zip(&self.times).map(|((a, b), time)| (*time, b - a)).collect();
+            exact.iter().zip(&track.columns[0]).zip(self.times()).map(|((a, b), time)| (*time, b - a)).collect();
         let stretch = self.predictable.div_ceil(STRETCHES).max(1);
         pairs
             .chunks(stretch)
@@ -139,21 +132,8 @@ impl Comparison {
     }
 }
 
-/// What a scheme has said of the compared quantities, with the times of the samples.
-struct Recorded {
-    end: End,
-    times: Vec<f64>,
-    columns: Vec<Vec<f64>>,
-}
-
 /// Follows a scheme.
-fn record(
-    run: &Run<'_>,
-    every: u32,
-    scheme: SchemeName,
-    disturbance: f64,
-    tick: &(dyn Fn() + Sync),
-) -> Outcome<Recorded> {
+fn record(run: &Run, every: u32, scheme: SchemeName, disturbance: f64, tick: &(dyn Fn() + Sync)) -> Outcome<Track> {
     let mut times = Vec::new();
     let mut columns = vec![Vec::new(); 2 * run.joint.geometry.planets + 2];
     let mut observer = |moment: &Moment| {
@@ -163,20 +143,17 @@ fn record(
             columns.iter_mut().zip(values).for_each(|(column, value)| column.push(value));
         }
         tick();
-        Ok(if interruption::requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+        Ok(())
     };
-    let end = match scheme {
-        SchemeName::Reference => follow::follow_reference(run, disturbance, &mut observer)?,
-        _ => follow::follow(run, scheme, &mut observer)?,
-    };
+    let end = follow::follow(run, scheme, disturbance, &mut observer)?;
     if end == End::Stopped {
         return Err(Failure::interrupted("stopped by the user"));
     }
-    Ok(Recorded { end, times, columns })
+    Ok(Track { scheme, end, times, columns })
 }
 
 /// Least of several measurements of each scheme, in the order of [`SchemeName::ALL`].
-fn costs(run: &Run<'_>) -> Outcome<Vec<Cost>> {
+fn costs(run: &Run) -> Outcome<Vec<Cost>> {
     let mut least: Vec<Cost> = Vec::new();
     for round in 0..COST_ROUNDS {
         for (place, scheme) in SchemeName::ALL.into_iter().enumerate() {

@@ -173,7 +173,6 @@ fn start(moment: &Moment) -> Start {
 #[cfg(test)]
 mod tests {
     use model_core::gears::{Kinematics, Mechanics};
-    use std::ops::ControlFlow;
 
     use host_tests::tolerance;
     use link::messages::Command;
@@ -200,17 +199,17 @@ mod tests {
             Command { tick: 600, drive_torque: -drive as f32, load_torque: -load as f32 },
         ];
         let run = Run {
-            joint,
+            joint: joint.clone(),
             tick_rate,
             ticks: 1500,
-            torques: &torques,
-            start: &start,
+            torques: torques.into(),
+            start,
             double: true,
             effort: Effort::Accurate,
         };
-        follow(&run, scheme, &mut |moment| {
+        follow(&run, scheme, 0.0, &mut |moment| {
             each(moment);
-            Ok(ControlFlow::Continue(()))
+            Ok(())
         })
         .expect("a good joint");
     }

@@ -5,12 +5,10 @@ use serde::Serialize;
 
 use super::comparison::{Comparison, Row};
 use super::energy::Balance;
-use super::follow::End;
-use super::plan::Plan;
+use super::ran::Ran;
 use super::scheme::SchemeName;
-use super::statistics::{MeshFigures, Statistics};
+use super::statistics::MeshFigures;
 use report::contacts::mesh_name;
-use report::spectrum::Spectrum;
 
 /// Says which fields there are; rises when one changes its meaning or goes.
 const SCHEMA: &str = "joint-sim/1";
@@ -73,64 +71,38 @@ pub struct Mesh {
     pub figures: MeshFigures,
 }
 
-/// What the figures are made from.
-pub struct Gathered<'a> {
-    /// What was asked.
-    pub plan: &'a Plan,
-    /// Values changed.
-    pub set: &'a [String],
-    /// Which scheme.
-    pub scheme: SchemeName,
-    /// How it ended.
-    pub end: End,
-    /// Ticks done.
-    pub ticks: u32,
-    /// Counted after settling.
-    pub statistics: &'a Statistics,
-    /// Of the first deflection after settling.
-    pub spectrum: Option<&'a Spectrum>,
-    /// The books.
-    pub energy: Option<Balance>,
-    /// All schemes.
-    pub comparison: Option<&'a Comparison>,
-}
-
 impl Figures {
-    /// Puts them together.
-    pub fn of(run: &Gathered<'_>) -> Self {
-        let plan = run.plan;
-        let meshes = run.statistics.meshes();
+    /// Puts them together; `set` are the values changed on the command line.
+    pub fn of(ran: &Ran<'_>, set: &[String]) -> Self {
+        let (plan, spectrum) = (ran.plan, ran.spectrum.as_ref());
+        let meshes = ran.statistics.meshes();
         let count = meshes.len();
-        let rate = f64::from(plan.tick_rate);
         Self {
             schema: SCHEMA,
             file: plan.name.clone(),
             joint: plan.parameters().name.to_string(),
-            set: run.set.to_vec(),
-            scheme: run.scheme.name(),
-            scalar: if plan.double || run.scheme == SchemeName::Reference { "f64" } else { "f32" },
-            tick_rate_Hz: plan.tick_rate,
-            ticks: run.ticks,
-            of_ticks: plan.ticks,
-            settle_s: f64::from(plan.settle) / rate,
+            set: set.to_vec(),
+            scheme: ran.scheme.name(),
+            scalar: if plan.run.double || ran.scheme == SchemeName::Reference { "f64" } else { "f32" },
+            tick_rate_Hz: plan.run.tick_rate,
+            ticks: ran.ticks,
+            of_ticks: plan.run.ticks,
+            settle_s: f64::from(plan.settle) / f64::from(plan.run.tick_rate),
             torques: plan.torques_name.clone(),
             start: plan.start_name.name(),
-            diverged_at_s: match run.end {
-                End::Diverged(tick) => Some(f64::from(tick) / rate),
-                End::Whole | End::Stopped => None,
-            },
+            diverged_at_s: ran.end.diverged_at(plan.run.tick_rate),
             impacts_per_s: meshes.iter().map(|mesh| mesh.impacts_per_s).sum(),
             meshes: meshes
                 .into_iter()
                 .enumerate()
                 .map(|(mesh, figures)| Mesh { name: mesh_name(mesh, count), figures })
                 .collect(),
-            period: run.statistics.period(),
-            non_fundamental_over_fundamental: run.spectrum.and_then(|spectrum| spectrum.beside(plan.mesh_frequency())),
-            strongest_frequency_Hz: run.spectrum.map(|spectrum| spectrum.greatest().0),
-            energy: run.energy,
-            schemes: run.comparison.map(|comparison| comparison.rows.clone()),
-            compared_until_s: run.comparison.map(Comparison::predictable_until),
+            period: ran.statistics.period(),
+            non_fundamental_over_fundamental: spectrum.and_then(|spectrum| spectrum.beside(plan.mesh_frequency())),
+            strongest_frequency_Hz: spectrum.map(|spectrum| spectrum.greatest().0),
+            energy: ran.balance(),
+            schemes: ran.comparison.as_ref().map(|comparison| comparison.rows.clone()),
+            compared_until_s: ran.comparison.as_ref().map(Comparison::predictable_until),
         }
     }
 

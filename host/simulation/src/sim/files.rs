@@ -8,8 +8,8 @@ use std::path::PathBuf;
 
 use parameters::JointParameters;
 
-use super::csv::CsvFile;
-use super::log_file::LogFile;
+use super::csv;
+use super::log_file::{self, Channel, SCHEMA_NAME, TOPIC, encoded};
 use super::moment::Moment;
 use report::failure::Outcome;
 use report::folder::Folder;
@@ -18,8 +18,9 @@ use report::write::unwritten;
 /// CSV and log of one run, growing.
 pub struct HistoryFiles<'a> {
     folder: &'a Folder,
-    csv: CsvFile<'a, BufWriter<File>>,
-    log: LogFile<'a, BufWriter<File>>,
+    joint: &'a JointParameters,
+    csv: BufWriter<File>,
+    log: Channel<BufWriter<File>>,
 }
 
 /// Growing and final name.
@@ -33,22 +34,26 @@ impl<'a> HistoryFiles<'a> {
             let path = folder.file(name);
             File::create(&path).map(BufWriter::new).map_err(|error| unwritten(&path, &error))
         };
-        let csv = CsvFile::begin(create(CSV[0])?, joint).map_err(|error| unwritten(&folder.file(CSV[0]), &error))?;
-        let log =
-            LogFile::begin(create(LOG[0])?, joint, remarks).map_err(|error| unwritten(&folder.file(LOG[0]), &error))?;
-        Ok(Self { folder, csv, log })
+        let mut csv = create(CSV[0])?;
+        csv::write_head(&mut csv, joint.geometry.planets).map_err(|error| unwritten(&folder.file(CSV[0]), &error))?;
+        let log = Channel::begin(create(LOG[0])?, TOPIC, SCHEMA_NAME, &log_file::schema(), remarks)
+            .map_err(|error| unwritten(&folder.file(LOG[0]), &error))?;
+        Ok(Self { folder, joint, csv, log })
     }
 
     /// One sample.
     pub fn write(&mut self, moment: &Moment) -> Outcome<()> {
-        self.csv.write(moment).map_err(|error| unwritten(&self.folder.file(CSV[0]), &error))?;
-        self.log.write(moment).map_err(|error| unwritten(&self.folder.file(LOG[0]), &error))
+        csv::write_row(&mut self.csv, self.joint, moment)
+            .map_err(|error| unwritten(&self.folder.file(CSV[0]), &error))?;
+        self.log
+            .write(moment.time, &encoded(self.joint, moment))
+            .map_err(|error| unwritten(&self.folder.file(LOG[0]), &error))
     }
 
     /// Ends both properly. A whole history takes its final name; one that was cut short keeps the growing one.
     pub fn finish(self, whole: bool) -> Outcome<[PathBuf; 2]> {
-        let Self { folder, csv, log } = self;
-        let ended = [csv.finish(), log.finish()];
+        let Self { folder, csv, log, .. } = self;
+        let ended = [Ok(csv), log.finish()];
         let mut paths = [PathBuf::new(), PathBuf::new()];
         for (place, (file, [growing, whole_name])) in ended.into_iter().zip([CSV, LOG]).enumerate() {
             let path = folder.file(growing);

@@ -1,8 +1,6 @@
 //! Moves a joint by a named scheme and shows every tick to whoever asked. What is kept of a tick, and for how long, is
 //! the observer's business.
 
-use std::ops::ControlFlow;
-
 use cpu_time::ThreadTime;
 use link::messages::Command;
 use model_core::gears::design::{DesignError, Effort, design_scheme};
@@ -15,20 +13,21 @@ use super::moment::{Moment, Reader, Teeth};
 use super::scheme::SchemeName;
 use super::start::core_state;
 use report::failure::{Failure, Outcome};
+use report::interruption;
 
 /// A run, whichever scheme makes it.
-#[derive(Debug, Clone, Copy)]
-pub struct Run<'a> {
+#[derive(Debug, Clone)]
+pub struct Run {
     /// The joint.
-    pub joint: &'a JointParameters,
+    pub joint: JointParameters,
     /// Steps a second [Hz].
     pub tick_rate: u32,
     /// Length in ticks.
     pub ticks: u32,
     /// Torques by tick, in rising order from tick 0; each holds until the next.
-    pub torques: &'a [Command],
+    pub torques: Vec<Command>,
     /// State at tick 0.
-    pub start: &'a Start,
+    pub start: Start,
     /// The core in f64 in place of the board's f32.
     pub double: bool,
     /// How many sub-steps a tick may have.
@@ -43,46 +42,46 @@ const ABSURD: f64 = 0.1;
 pub enum End {
     /// All its ticks are done.
     Whole,
-    /// The observer wanted no more.
+    /// The user wanted no more.
     Stopped,
     /// The state is infinite, not a number or absurd after so many ticks.
     Diverged(u32),
 }
 
-/// What is shown every tick: the start, then the joint after each tick.
-pub type Observer<'o> = dyn FnMut(&Moment) -> Outcome<ControlFlow<()>> + 'o;
-
-/// Runs a scheme under an observer.
-pub fn follow(run: &Run<'_>, scheme: SchemeName, observer: &mut Observer<'_>) -> Outcome<End> {
-    match scheme.of_core() {
-        Some(core) => with_core(run, FollowCore { run, scheme: core, observer }),
-        None => follow_reference(run, 0.0, observer),
+impl End {
+    /// Time at which the state was not finite any more, at a tick rate [Hz]; none if it always was [s].
+    pub fn diverged_at(self, tick_rate: u32) -> Option<f64> {
+        match self {
+            Self::Diverged(tick) => Some(f64::from(tick) / f64::from(tick_rate)),
+            Self::Whole | Self::Stopped => None,
+        }
     }
 }
 
-/// The reference, with torques wrong by a part of themselves, up and down in turn from tick to tick.
-pub fn follow_reference(run: &Run<'_>, disturbance: f64, observer: &mut Observer<'_>) -> Outcome<End> {
-    let mut reference = Reference::start(run.joint, run.start).map_err(|error| not_referable(run.joint, &error))?;
-    let mut torques = Schedule::new(run.torques);
-    let mut factor = 1.0 + disturbance;
-    for tick in 0..=run.ticks {
-        let command = torques.at(tick);
-        let mut moment = Moment::of_reference(tick, run.joint, &reference.observe());
-        (moment.drive, moment.load) = (command.drive_torque.into(), command.load_torque.into());
-        if observer(&moment)?.is_break() {
-            return Ok(End::Stopped);
-        }
-        if tick < run.ticks {
-            let end = f64::from(tick + 1) / f64::from(run.tick_rate);
-            match reference.advance(end, factor * moment.drive, factor * moment.load) {
-                Ok(()) => {}
-                Err(ReferenceError::Integration(_)) => return Ok(End::Diverged(tick + 1)),
-                Err(error) => return Err(not_referable(run.joint, &error)),
+/// What is shown every tick: the start, then the joint after each tick.
+pub type Observer<'o> = dyn FnMut(&Moment) -> Outcome<()> + 'o;
+
+/// Runs a scheme under an observer until its end, or until the user wants no more. Torques are wrong by a part of
+/// themselves, the disturbance, up and down in turn from tick to tick.
+pub fn follow(run: &Run, scheme: SchemeName, disturbance: f64, observer: &mut Observer<'_>) -> Outcome<End> {
+    with_scheme(run, scheme, |joint| {
+        let mut torques = Schedule::new(&run.torques);
+        let mut factor = 1.0 + disturbance;
+        for tick in 0..=run.ticks {
+            let command = torques.at(tick);
+            let Some(mut moment) = joint.read(tick) else { return Ok(End::Diverged(tick)) };
+            (moment.drive, moment.load) = (command.drive_torque.into(), command.load_torque.into());
+            observer(&moment)?;
+            if interruption::requested() {
+                return Ok(End::Stopped);
             }
+            if tick < run.ticks && !joint.step(tick, factor * moment.drive, factor * moment.load)? {
+                return Ok(End::Diverged(tick + 1));
+            }
+            factor = 2.0 - factor;
         }
-        factor = 2.0 - factor;
-    }
-    Ok(End::Whole)
+        Ok(End::Whole)
+    })
 }
 
 /// What a scheme costs: processor time of its ticks alone, and sub-steps a tick (none stand for the reference's own).
@@ -95,30 +94,23 @@ pub struct Cost {
 }
 
 /// Measures a scheme over some ticks of a run.
-pub fn cost(run: &Run<'_>, scheme: SchemeName, ticks: u32) -> Outcome<Cost> {
+pub fn cost(run: &Run, scheme: SchemeName, ticks: u32) -> Outcome<Cost> {
     let ticks = ticks.clamp(1, run.ticks.max(1));
-    match scheme.of_core() {
-        Some(core) => with_core(run, CostOfCore { run, scheme: core, ticks }),
-        None => {
-            let mut reference =
-                Reference::start(run.joint, run.start).map_err(|error| not_referable(run.joint, &error))?;
-            let mut torques = Schedule::new(run.torques);
-            let clock = ThreadTime::now();
-            for tick in 0..ticks {
-                let command = torques.at(tick);
-                let end = f64::from(tick + 1) / f64::from(run.tick_rate);
-                // A run that breaks off has its cost too.
-                if reference.advance(end, command.drive_torque.into(), command.load_torque.into()).is_err() {
-                    break;
-                }
+    with_scheme(run, scheme, |joint| {
+        let mut torques = Schedule::new(&run.torques);
+        let clock = ThreadTime::now();
+        for tick in 0..ticks {
+            let command = torques.at(tick);
+            // A run that breaks off has its cost too.
+            if !joint.step(tick, command.drive_torque.into(), command.load_torque.into())? {
+                break;
             }
-            Ok(Cost { per_second: per_second(&clock, run, ticks), substeps: None })
         }
-    }
-}
-
-fn per_second(clock: &ThreadTime, run: &Run<'_>, ticks: u32) -> f64 {
-    clock.elapsed().as_secs_f64() * f64::from(run.tick_rate) / f64::from(ticks)
+        let per_second = clock.elapsed().as_secs_f64() * f64::from(run.tick_rate) / f64::from(ticks);
+        // The result must be wanted, or nothing is computed.
+        std::hint::black_box(&joint);
+        Ok(Cost { per_second, substeps: joint.substeps() })
+    })
 }
 
 /// What the reference refuses, with the mend where there is one on the command line.
@@ -152,27 +144,47 @@ impl<'a> Schedule<'a> {
     }
 }
 
-/// Work that is written for any scalar and number of planets.
-trait CoreWork {
-    type Result;
-    fn run<T: Real, const N: usize>(self) -> Outcome<Self::Result>;
+/// A joint that a scheme moves.
+trait Moved {
+    /// The joint after so many ticks; none if the state is infinite, not a number or absurd.
+    fn read(&self, tick: u32) -> Option<Moment>;
+    /// The tick after so many, under these torques [N m]; false if the scheme breaks off.
+    fn step(&mut self, tick: u32, drive: f64, load: f64) -> Outcome<bool>;
+    /// Sub-steps a tick, if they are of one number.
+    fn substeps(&self) -> Option<u32>;
 }
 
-fn with_core<W: CoreWork>(run: &Run<'_>, work: W) -> Outcome<W::Result> {
+/// Does some work on a joint that a scheme moves, from the start of a run.
+fn with_scheme<R>(run: &Run, scheme: SchemeName, work: impl FnOnce(&mut dyn Moved) -> Outcome<R>) -> Outcome<R> {
+    let Some(scheme) = scheme.of_core() else {
+        let reference = Reference::start(&run.joint, &run.start).map_err(|error| not_referable(&run.joint, &error))?;
+        return work(&mut ByReference { run, reference });
+    };
     match (run.joint.geometry.planets, run.double) {
-        (3, false) => work.run::<f32, 3>(),
-        (4, false) => work.run::<f32, 4>(),
-        (5, false) => work.run::<f32, 5>(),
-        (3, true) => work.run::<f64, 3>(),
-        (4, true) => work.run::<f64, 4>(),
-        (5, true) => work.run::<f64, 5>(),
+        (3, false) => with_core::<f32, 3, R>(run, scheme, work),
+        (4, false) => with_core::<f32, 4, R>(run, scheme, work),
+        (5, false) => with_core::<f32, 5, R>(run, scheme, work),
+        (3, true) => with_core::<f64, 3, R>(run, scheme, work),
+        (4, true) => with_core::<f64, 4, R>(run, scheme, work),
+        (5, true) => with_core::<f64, 5, R>(run, scheme, work),
         (other, _) => Err(Failure::new(format!("joint `{}` has {other} planets", run.joint.name))
             .with_help("a joint may have 3, 4 or 5 planets")),
     }
 }
 
-fn tables<T: Real, const N: usize>(run: &Run<'_>, scheme: Scheme) -> Outcome<Tables<T, N>> {
-    design_scheme(run.joint, run.tick_rate, scheme, run.effort).map_err(|error| {
+fn with_core<T: Real, const N: usize, R>(
+    run: &Run,
+    scheme: Scheme,
+    work: impl FnOnce(&mut dyn Moved) -> Outcome<R>,
+) -> Outcome<R> {
+    let tables = tables::<T, N>(run, scheme)?;
+    let mut model = Model::new(&tables);
+    model.set_state(core_state(&run.joint, &tables, &run.start));
+    work(&mut ByCore { reader: Reader::new(&run.joint, &tables), model, substeps: tables.substeps })
+}
+
+fn tables<T: Real, const N: usize>(run: &Run, scheme: Scheme) -> Outcome<Tables<T, N>> {
+    design_scheme(&run.joint, run.tick_rate, scheme, run.effort).map_err(|error| {
         let name = &run.joint.name;
         let failure = Failure::new(format!("joint `{name}` cannot be designed for {} Hz: {error}", run.tick_rate));
         match error {
@@ -182,63 +194,51 @@ fn tables<T: Real, const N: usize>(run: &Run<'_>, scheme: Scheme) -> Outcome<Tab
     })
 }
 
-struct FollowCore<'a, 'o> {
-    run: &'a Run<'a>,
-    scheme: Scheme,
-    observer: &'a mut Observer<'o>,
+/// By the core.
+struct ByCore<'a, T: Real, const N: usize> {
+    reader: Reader<'a, T, N>,
+    model: Model<'a, T, N>,
+    substeps: u32,
 }
 
-impl CoreWork for FollowCore<'_, '_> {
-    type Result = End;
+impl<T: Real, const N: usize> Moved for ByCore<'_, T, N> {
+    fn read(&self, tick: u32) -> Option<Moment> {
+        let moment = self.reader.read(tick, &self.model);
+        let sound = |teeth: &Teeth| teeth.deflection.abs() < ABSURD;
+        (self.model.is_finite() && moment.teeth.iter().all(sound)).then_some(moment)
+    }
 
-    fn run<T: Real, const N: usize>(self) -> Outcome<End> {
-        let run = self.run;
-        let tables = tables::<T, N>(run, self.scheme)?;
-        let reader = Reader::new(run.joint, &tables);
-        let mut model = Model::new(&tables);
-        model.set_state(core_state(run.joint, &tables, run.start));
-        let mut torques = Schedule::new(run.torques);
-        for tick in 0..=run.ticks {
-            let command = torques.at(tick);
-            let mut moment = reader.read(tick, &model);
-            let sound = |teeth: &Teeth| teeth.deflection.abs() < ABSURD;
-            if !model.is_finite() || !moment.teeth.iter().all(sound) {
-                return Ok(End::Diverged(tick));
-            }
-            (moment.drive, moment.load) = (command.drive_torque.into(), command.load_torque.into());
-            if (self.observer)(&moment)?.is_break() {
-                return Ok(End::Stopped);
-            }
-            model.step(Torques { drive: T::from_f64(moment.drive), load: T::from_f64(moment.load) });
-        }
-        Ok(End::Whole)
+    fn step(&mut self, _: u32, drive: f64, load: f64) -> Outcome<bool> {
+        self.model.step(Torques { drive: T::from_f64(drive), load: T::from_f64(load) });
+        Ok(true)
+    }
+
+    fn substeps(&self) -> Option<u32> {
+        Some(self.substeps)
     }
 }
 
-struct CostOfCore<'a> {
-    run: &'a Run<'a>,
-    scheme: Scheme,
-    ticks: u32,
+/// By the reference.
+struct ByReference<'a> {
+    run: &'a Run,
+    reference: Reference,
 }
 
-impl CoreWork for CostOfCore<'_> {
-    type Result = Cost;
+impl Moved for ByReference<'_> {
+    fn read(&self, tick: u32) -> Option<Moment> {
+        Some(Moment::of_reference(tick, &self.run.joint, &self.reference.observe()))
+    }
 
-    fn run<T: Real, const N: usize>(self) -> Outcome<Cost> {
-        let run = self.run;
-        let tables = tables::<T, N>(run, self.scheme)?;
-        let mut model = Model::new(&tables);
-        model.set_state(core_state(run.joint, &tables, run.start));
-        let mut torques = Schedule::new(run.torques);
-        let clock = ThreadTime::now();
-        for tick in 0..self.ticks {
-            let command = torques.at(tick);
-            let (drive, load) = (command.drive_torque.into(), command.load_torque.into());
-            model.step(Torques { drive: T::from_f64(drive), load: T::from_f64(load) });
+    fn step(&mut self, tick: u32, drive: f64, load: f64) -> Outcome<bool> {
+        let end = f64::from(tick + 1) / f64::from(self.run.tick_rate);
+        match self.reference.advance(end, drive, load) {
+            Ok(()) => Ok(true),
+            Err(ReferenceError::Integration(_)) => Ok(false),
+            Err(error) => Err(not_referable(&self.run.joint, &error)),
         }
-        let per_second = per_second(&clock, run, self.ticks);
-        // The result must be wanted, or nothing is computed.
-        std::hint::black_box(model.state_digest());
-        Ok(Cost { per_second, substeps: Some(tables.substeps) })
+    }
+
+    fn substeps(&self) -> Option<u32> {
+        None
     }
 }

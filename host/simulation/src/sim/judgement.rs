@@ -62,29 +62,18 @@ pub fn schemes(plan: &Plan, comparison: &Comparison) -> Vec<Figure> {
     let length = (6.0 / plan.mesh_frequency()).min(until);
     let from = (until - length).max(0.0);
     let inside = |time: f64| (from..=until).contains(&time);
-    let tracks = comparison.tracks.iter().map(|track| {
-        let points = comparison.times.iter().copied().zip(track.columns[0].iter().copied());
-        Mark::Line {
-            points: points.filter(|(time, _)| inside(*time)).collect(),
-            ink: ink(track.scheme),
-            label: track.scheme.name().into(),
-            width: if track.scheme == SchemeName::Reference { BROAD } else { LINE },
-        }
-    });
     // A scheme far off must not flatten the others: the axis is the reference's, with air.
-    let exact = comparison.times.iter().zip(&comparison.tracks[0].columns[0]);
+    let exact = comparison.times().iter().zip(&comparison.tracks[0].columns[0]);
     let (low, high) = axis_range(exact.filter(|(time, _)| inside(**time)).map(|(_, value)| *value));
     let air = 0.5 * (high - low);
-    let clip = |mark: Mark| match mark {
-        Mark::Line { points, ink, label, width } => {
-            let points = points.into_iter().map(|(time, value)| (time, value.clamp(low - air, high + air))).collect();
-            Mark::Line { points, ink, label, width }
-        }
-        other => other,
-    };
+    let tracks = comparison.tracks.iter().map(|track| {
+        let points = comparison.times().iter().zip(&track.columns[0]).filter(|(time, _)| inside(**time));
+        let clipped = points.map(|(time, value)| (*time, value.clamp(low - air, high + air))).collect();
+        let width = if track.scheme == SchemeName::Reference { BROAD } else { LINE };
+        Mark::line(clipped, ink(track.scheme), track.scheme.name(), width)
+    });
     let unit = Unit::of_length(greatest([low, high].into_iter()));
-    let panel =
-        Panel { height: 300, ..Panel::lines("Sun–planet deflection of planet 1", unit, tracks.map(clip).collect()) };
+    let panel = Panel { height: 300, ..Panel::lines("Sun–planet deflection of planet 1", unit, tracks.collect()) };
     let view = |range| View { plan, samples: &[], range };
     let errors = comparison.tracks.iter().skip(1).map(|track| {
         let error = |(time, error): (f64, f64)| (time, 20.0 * error.max(SMALLEST_ERROR).log10());

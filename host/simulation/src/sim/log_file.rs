@@ -9,8 +9,8 @@ use mcap::write::NoSeek;
 use mcap::{Compression, McapError, WriteOptions, Writer};
 use parameters::JointParameters;
 
-use super::csv::code;
 use super::moment::Moment;
+use super::quantities::{QUANTITIES, code};
 
 /// Topic of the motion.
 pub const TOPIC: &str = "/joint/motion";
@@ -18,22 +18,6 @@ pub const TOPIC: &str = "/joint/motion";
 pub const SCHEMA_NAME: &str = "joint_msgs/msg/Motion";
 /// Bytes of a chunk before compression: what a crash may cost at most.
 const CHUNK: u64 = 128 << 10;
-
-/// Fields that are single numbers, with what they mean.
-const NUMBERS: [(&str, &str); 12] = [
-    ("drive_torque_nm", "torque on the sun shaft [N m]"),
-    ("load_torque_nm", "torque that brakes the link [N m]"),
-    ("motor_angle_rad", "[rad]"),
-    ("link_angle_rad", "[rad]"),
-    ("twist_rad", "motor angle over ratio, less link angle [rad]"),
-    ("carrier_speed_rad_per_s", "of the rigid body [rad/s]"),
-    ("mesh_periods", "mesh phase [periods]"),
-    ("gap_um", "gap coordinate u_s - 2 u_c [um]"),
-    ("gap_rate_mm_per_s", "[mm/s]"),
-    ("wind_up_um", "carrier less link along the line of action [um]"),
-    ("wind_up_rate_mm_per_s", "[mm/s]"),
-    ("time_s", "since the start [s]"),
-];
 
 /// Fields that hold one number for each planet.
 const LISTS: [(&str, &str); 6] = [
@@ -47,7 +31,9 @@ const LISTS: [(&str, &str); 6] = [
 
 /// The message as ROS 2 writes it down.
 pub fn schema() -> String {
-    let numbers = NUMBERS.iter().map(|(name, meaning)| format!("float64 {name}  # {meaning}\n"));
+    let numbers = QUANTITIES.iter().map(|quantity| (quantity.field, quantity.meaning));
+    let numbers = numbers.chain([("time_s", "since the start [s]")]);
+    let numbers = numbers.map(|(name, meaning)| format!("float64 {name}  # {meaning}\n"));
     let lists = LISTS.iter().map(|(name, meaning)| format!("float64[] {name}  # {meaning}, one for each planet\n"));
     numbers.chain(lists).collect()
 }
@@ -96,29 +82,6 @@ impl<W: Write> Channel<W> {
     }
 }
 
-/// Writes moments of a run.
-pub struct LogFile<'a, W: Write> {
-    channel: Channel<W>,
-    joint: &'a JointParameters,
-}
-
-impl<'a, W: Write> LogFile<'a, W> {
-    /// Begins a log; `remarks` say where it comes from.
-    pub fn begin(out: W, joint: &'a JointParameters, remarks: BTreeMap<String, String>) -> io::Result<Self> {
-        Ok(Self { channel: Channel::begin(out, TOPIC, SCHEMA_NAME, &schema(), remarks)?, joint })
-    }
-
-    /// One message, at the run's own time.
-    pub fn write(&mut self, moment: &Moment) -> io::Result<()> {
-        self.channel.write(moment.time, &encoded(self.joint, moment))
-    }
-
-    /// Writes the index and the end, without which readers call a log damaged.
-    pub fn finish(self) -> io::Result<W> {
-        self.channel.finish()
-    }
-}
-
 /// What the system said, where it was the system.
 fn cause(error: McapError) -> io::Error {
     match error {
@@ -127,27 +90,15 @@ fn cause(error: McapError) -> io::Error {
     }
 }
 
-/// A message in CDR: little endian, numbers on multiples of their size behind a head of four bytes.
-fn encoded(joint: &JointParameters, moment: &Moment) -> Vec<u8> {
+/// A moment as a message in CDR: little endian, numbers on multiples of their size behind a head of four bytes.
+pub fn encoded(joint: &JointParameters, moment: &Moment) -> Vec<u8> {
     let mut bytes = vec![0, 1, 0, 0];
     let number = |bytes: &mut Vec<u8>, value: f64| bytes.extend(value.to_le_bytes());
     let micro = |value: f64| 1e6 * value;
-    let milli = |value: f64| 1e3 * value;
-    let numbers: [f64; NUMBERS.len()] = [
-        moment.drive,
-        moment.load,
-        moment.motor_angle(joint),
-        moment.link_angle(),
-        moment.twist(joint),
-        moment.carrier_speed,
-        moment.mesh_periods,
-        micro(moment.gap),
-        milli(moment.gap_rate),
-        micro(moment.wind_up),
-        milli(moment.wind_up_rate),
-        moment.time,
-    ];
-    numbers.into_iter().for_each(|value| number(&mut bytes, value));
+    for quantity in &QUANTITIES {
+        number(&mut bytes, quantity.scale * (quantity.value)(moment, joint));
+    }
+    number(&mut bytes, moment.time);
     let (sun, ring) = moment.teeth.split_at(moment.teeth.len() / 2);
     let lists: [Vec<f64>; LISTS.len()] = [
         sun.iter().map(|teeth| micro(teeth.deflection)).collect(),

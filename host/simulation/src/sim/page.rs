@@ -1,16 +1,13 @@
 //! The report of a simulation as a document. Pictures come from `pictures`, `portraits` and `judgement`, figures from
 //! `figures`; a terminal shows what the figures hold.
 
-use super::comparison::{Comparison, Row as SchemeRow};
-use super::energy::Entry;
+use super::comparison::Row as SchemeRow;
 use super::figures::Figures;
 use super::judgement;
-use super::moment::Moment;
 use super::pictures::View;
-use super::plan::Plan;
 use super::portraits::{self, Portrait};
+use super::ran::Ran;
 use super::scheme::SchemeName;
-use super::statistics::Point;
 use report::document::{
     Block, Document, PAGES, Section, TERMINALS, alert, code, facts, indexed, notes, notice, number, number_as, numbers,
     picture, quiet, row, section, section_bare, strong, table, text, tile, words,
@@ -18,41 +15,17 @@ use report::document::{
 use report::number::{PAGE, fixed, powers_of_ten};
 use report::panels::{DEFLECTIONS, THINNED, gap_coordinate};
 use report::provenance::VERSION;
-use report::spectrum::Spectrum;
-
-/// What a report is made from.
-pub struct Content<'a> {
-    /// What was asked.
-    pub plan: &'a Plan,
-    /// Figures.
-    pub figures: &'a Figures,
-    /// Which scheme.
-    pub scheme: SchemeName,
-    /// Kept samples.
-    pub samples: &'a [Moment],
-    /// Poincare points.
-    pub points: &'a [Point],
-    /// Spectrum.
-    pub spectrum: Option<&'a Spectrum>,
-    /// The books of energy.
-    pub energy: &'a [Entry],
-    /// All schemes.
-    pub comparison: Option<&'a Comparison>,
-    /// Command that makes this run again.
-    pub replay: &'a str,
-}
 
 /// All of it.
-pub fn document(content: &Content<'_>) -> Document {
-    let figures = content.figures;
+pub fn document(ran: &Ran<'_>, figures: &Figures, replay: &str) -> Document {
     let rate = f64::from(figures.tick_rate_Hz);
-    let mut blocks = notices(content);
-    blocks.extend([tiles(content), motion(content)]);
-    blocks.extend(portraits(content));
-    blocks.push(contacts(content));
-    blocks.extend(energy(content));
-    blocks.extend(schemes(content));
-    blocks.push(origin(content));
+    let mut blocks = notices(ran, figures);
+    blocks.extend([tiles(ran, figures), motion(ran)]);
+    blocks.extend(portraits(ran, figures));
+    blocks.push(contacts(figures));
+    blocks.extend(energy(ran, figures));
+    blocks.extend(schemes(ran, figures));
+    blocks.push(origin(ran, figures, replay));
     Document {
         title: format!("Joint {}, simulated", figures.joint),
         heading: text("Joint ") + &figures.joint,
@@ -60,7 +33,7 @@ pub fn document(content: &Content<'_>) -> Document {
             + strong(figures.scheme)
             + format!(
                 " ({}, {}) · {} · from {} · {} kHz",
-                content.scheme.description(),
+                ran.scheme.description(),
                 figures.scalar,
                 figures.torques,
                 figures.start,
@@ -84,8 +57,7 @@ pub fn document(content: &Content<'_>) -> Document {
     }
 }
 
-fn notices(content: &Content<'_>) -> Vec<Block> {
-    let figures = content.figures;
+fn notices(ran: &Ran<'_>, figures: &Figures) -> Vec<Block> {
     let mut notices = Vec::new();
     if let Some(time) = figures.diverged_at_s {
         notices.push(alert(
@@ -96,14 +68,13 @@ fn notices(content: &Content<'_>) -> Vec<Block> {
         ));
     }
     let changed = figures.set.iter().map(|change| notice(strong("Changed for this run: ") + code(change)));
-    let warned = content.plan.joint.warnings.iter();
+    let warned = ran.plan.warnings.iter();
     let warned = warned.map(|warning| notice(strong("The joint file: ") + &warning.message));
     notices.push(Block::Only(PAGES, changed.chain(warned).collect()));
     notices
 }
 
-fn tiles(content: &Content<'_>) -> Block {
-    let figures = content.figures;
+fn tiles(ran: &Ran<'_>, figures: &Figures) -> Block {
     let done = f64::from(figures.ticks) / f64::from(figures.tick_rate_Hz);
     let (length, unit) = if done < 0.5 { (1e3 * done, " ms") } else { (done, " s") };
     let mut tiles = vec![
@@ -112,7 +83,7 @@ fn tiles(content: &Content<'_>) -> Block {
         tile("Impacts", number(figures.impacts_per_s) + quiet(" /s, all meshes")),
         tile("Peak mesh force", number(figures.peak_force()) + quiet(" N")),
     ];
-    if content.plan.constant {
+    if ran.plan.constant {
         let period = match figures.period {
             Some(period) => text(period) + quiet(if period == 1 { " mesh period" } else { " mesh periods" }),
             None => text("–") + quiet(" not within 32 periods"),
@@ -122,13 +93,13 @@ fn tiles(content: &Content<'_>) -> Block {
     Block::Tiles(tiles)
 }
 
-fn motion(content: &Content<'_>) -> Block {
-    let whole = View::whole(content.plan, content.samples);
-    if content.samples.len() < 2 {
+fn motion(ran: &Ran<'_>) -> Block {
+    let whole = View::whole(ran.plan, &ran.samples);
+    if ran.samples.len() < 2 {
         return section("Motion", vec![Block::Paragraph("Nothing moved.".into())]);
     }
-    let mut blocks = vec![Block::Lead(number(content.samples.len() as f64) + " samples. " + THINNED)];
-    if !content.plan.constant {
+    let mut blocks = vec![Block::Lead(number(ran.samples.len() as f64) + " samples. " + THINNED)];
+    if !ran.plan.constant {
         blocks.push(picture(whole.figure("Torques", whole.torques()), "Torques as asked for.".into()));
     }
     let gap = gap_coordinate()
@@ -150,14 +121,12 @@ fn motion(content: &Content<'_>) -> Block {
     section("Motion", blocks)
 }
 
-fn portraits(content: &Content<'_>) -> Option<Block> {
-    let (plan, figures) = (content.plan, content.figures);
-    let settled = content.samples.partition_point(|moment| moment.tick < plan.settle);
-    let samples = &content.samples[settled..];
+fn portraits(ran: &Ran<'_>, figures: &Figures) -> Option<Block> {
+    let (plan, samples) = (ran.plan, ran.settled());
     if samples.len() < 16 {
         return None;
     }
-    let points = (content.points, figures.period);
+    let points = (ran.statistics.points(), figures.period);
     let repeats = match figures.period {
         _ if !plan.constant => String::new(),
         Some(1) => "The motion repeats with every mesh period.".to_owned(),
@@ -175,13 +144,13 @@ fn portraits(content: &Content<'_>) -> Option<Block> {
             format!(
                 "Deflection rate over deflection. Marked: the points at which the mesh phase comes round (Poincaré \
                  points), {} of them.",
-                content.points.len()
+                ran.statistics.points().len()
             )
             .into(),
         ),
         picture(portraits::portrait(plan, samples, points, Portrait::Gap), "The same of the gap coordinate.".into()),
     ];
-    if let Some(spectrum) = content.spectrum {
+    if let Some(spectrum) = &ran.spectrum {
         let beside = figures.non_fundamental_over_fundamental.map(|ratio| {
             format!("Beside the mesh frequency there is {} of what is at it (root of the powers).", PAGE.write(ratio))
         });
@@ -191,8 +160,7 @@ fn portraits(content: &Content<'_>) -> Option<Block> {
     Some(section("Phase portraits and spectrum", blocks))
 }
 
-fn contacts(content: &Content<'_>) -> Block {
-    let figures = content.figures;
+fn contacts(figures: &Figures) -> Block {
     let columns = ["drive side", "parted", "back side", "impacts", "mean", "RMS", "peak to peak", "peak force"];
     let columns = [words("Mesh")].into_iter().chain(columns.map(numbers)).collect();
     let rows = figures.meshes.iter().map(|mesh| {
@@ -243,8 +211,8 @@ fn motion_facts(figures: &Figures) -> Vec<(&'static str, String)> {
     facts
 }
 
-fn energy(content: &Content<'_>) -> Option<Block> {
-    let balance = content.figures.energy.as_ref()?;
+fn energy(ran: &Ran<'_>, figures: &Figures) -> Option<Block> {
+    let (balance, book) = (figures.energy.as_ref()?, ran.energy.as_ref()?);
     let rows = [
         ("Stored energy has grown by", balance.stored_at_end_J - balance.stored_at_start_J),
         ("Drive torque less load has supplied", balance.supplied_J),
@@ -264,20 +232,20 @@ fn energy(content: &Content<'_>) -> Option<Block> {
         "Balance of energy",
         vec![
             Block::Lead(indexed(&lead)),
-            picture(judgement::energy(content.plan, content.energy), "The books over the run.".into()),
+            picture(judgement::energy(ran.plan, &book.entries), "The books over the run.".into()),
             table(vec![words(""), numbers("")], rows.into()),
         ],
     ))
 }
 
-fn schemes(content: &Content<'_>) -> Option<Block> {
-    let (comparison, until) = (content.comparison?, content.figures.compared_until_s?);
+fn schemes(ran: &Ran<'_>, figures: &Figures) -> Option<Block> {
+    let (comparison, until) = (ran.comparison.as_ref()?, figures.compared_until_s?);
     let percent = |row: &SchemeRow, error: Option<f64>| match error {
         _ if row.scheme == SchemeName::Reference.name() => text("–"),
         Some(error) => number(1e2 * error) + " %",
         None => text("diverged"),
     };
-    let whole = content.plan.duration();
+    let whole = ran.plan.duration();
     let predictable = if until < 0.99 * whole {
         ": a millionth of the torque moves the reference itself visibly from then on"
     } else {
@@ -302,16 +270,16 @@ fn schemes(content: &Content<'_>) -> Option<Block> {
     });
     let mut blocks = vec![Block::Lead(lead.into()), table(columns, rows.collect())];
     let caption = "The reference is the broad line; 0 dB is an error as large as the motion, −40 dB is 1 %.";
-    let figures = judgement::schemes(content.plan, comparison);
-    blocks.extend(figures.into_iter().map(|figure| picture(figure, caption.into())));
+    let pictures = judgement::schemes(ran.plan, comparison);
+    blocks.extend(pictures.into_iter().map(|figure| picture(figure, caption.into())));
     Some(section_bare("Schemes", blocks))
 }
 
-fn origin(content: &Content<'_>) -> Block {
-    let (plan, figures) = (content.plan, content.figures);
+fn origin(ran: &Ran<'_>, figures: &Figures, replay: &str) -> Block {
+    let plan = ran.plan;
     let rows = [
         ("Joint", format!("{} ({})", figures.joint, figures.file)),
-        ("Scheme", format!("{}: {}", figures.scheme, content.scheme.description())),
+        ("Scheme", format!("{}: {}", figures.scheme, ran.scheme.description())),
         ("Scalar", figures.scalar.to_owned()),
         ("Rate", format!("{} Hz", figures.tick_rate_Hz)),
         ("Torques", figures.torques.clone()),
@@ -319,5 +287,5 @@ fn origin(content: &Content<'_>) -> Block {
         ("Mesh frequency", format!("{} Hz", PAGE.write(plan.mesh_frequency()))),
         ("Command", VERSION.to_owned()),
     ];
-    section("What ran", vec![facts(rows), Block::Again(content.replay.to_owned())])
+    section("What ran", vec![facts(rows), Block::Again(replay.to_owned())])
 }

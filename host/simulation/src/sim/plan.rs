@@ -4,11 +4,10 @@
 use model_core::gears::{Kinematics, Mechanics};
 use std::f64::consts::TAU;
 
-use joint_file::JointFile;
+use joint_file::{JointFile, Problem};
 use link::messages::Command;
 use model_core::gears::design::Effort;
 use parameters::{Excitation, JointParameters};
-use reference::joint::Start;
 
 use super::arguments::Motion;
 use super::follow::Run;
@@ -35,30 +34,20 @@ const MOST_TICKS: f64 = 2e10;
 pub struct Plan {
     /// The joint file as the user named it.
     pub name: String,
-    /// What it says.
-    pub joint: JointFile,
-    /// [Hz].
-    pub tick_rate: u32,
-    /// Length.
-    pub ticks: u32,
+    /// What is odd in it but can be used.
+    pub warnings: Vec<Problem>,
+    /// What to run.
+    pub run: Run,
     /// Ticks that do not count.
     pub settle: u32,
-    /// Torques by tick.
-    pub torques: Vec<Command>,
     /// What the torques are, for reports.
     pub torques_name: String,
     /// Whether the torques change.
     pub constant: bool,
-    /// State at tick 0.
-    pub start: Start,
-    /// Its name.
+    /// Name of the state at tick 0.
     pub start_name: StartName,
     /// Carrier speed at the start [rad/s].
     pub speed: f64,
-    /// f64 in place of f32.
-    pub double: bool,
-    /// Sub-steps.
-    pub effort: Effort,
 }
 
 impl Plan {
@@ -120,32 +109,19 @@ impl Plan {
         let first = torques.first().map_or((0.0, 0.0), |first| (first.drive_torque.into(), first.load_torque.into()));
         let start = start_name.of(parameters, speed, first);
         let effort = if motion.accurate { Effort::Accurate } else { Effort::Board };
-        let double = motion.f64;
-        Ok(Self {
-            name,
-            tick_rate,
-            ticks,
-            settle,
-            torques,
-            torques_name,
-            constant,
-            start,
-            start_name,
-            speed,
-            double,
-            effort,
-            joint,
-        })
+        let JointFile { parameters: joint, warnings, .. } = joint;
+        let run = Run { joint, tick_rate, ticks, torques, start, double: motion.f64, effort };
+        Ok(Self { name, warnings, run, settle, torques_name, constant, start_name, speed })
     }
 
     /// The joint.
     pub fn parameters(&self) -> &JointParameters {
-        &self.joint.parameters
+        &self.run.joint
     }
 
     /// Length [s].
     pub fn duration(&self) -> f64 {
-        f64::from(self.ticks) / f64::from(self.tick_rate)
+        f64::from(self.run.ticks) / f64::from(self.run.tick_rate)
     }
 
     /// Prescribed mesh frequency, or that of the start's speed [Hz].
@@ -153,19 +129,6 @@ impl Plan {
         match self.parameters().excitation {
             Excitation::Time { mesh_frequency } => mesh_frequency / TAU,
             Excitation::Angle => (self.speed / TAU * f64::from(self.parameters().geometry.ring_teeth)).abs(),
-        }
-    }
-
-    /// What to run.
-    pub fn run(&self) -> Run<'_> {
-        Run {
-            joint: self.parameters(),
-            tick_rate: self.tick_rate,
-            ticks: self.ticks,
-            torques: &self.torques,
-            start: &self.start,
-            double: self.double,
-            effort: self.effort,
         }
     }
 }

@@ -82,10 +82,7 @@ pub fn portrait(
     };
     let most = greatest(curve.iter().map(|point| point.1));
     let unit = if most < 1.0 { Unit { factor: 1e3, name: "mm/s" } } else { Unit { factor: 1.0, name: "m/s" } };
-    let marks = vec![
-        Mark::Line { points: curve, ink: Ink::Bar, label: String::new(), width: 1.0 },
-        Mark::Boxes { boxes, ink: Ink::Limit, label: label.into() },
-    ];
+    let marks = vec![Mark::line(curve, Ink::Bar, "", 1.0), Mark::Boxes { boxes, ink: Ink::Limit, label: label.into() }];
     let panel = Panel { height: 380, ..Panel::lines(format!("{title}: rate"), unit, marks) };
     let across = Unit::of_length(greatest([range.0, range.1].into_iter()));
     Figure::new(format!("{title} of joint {}", plan.parameters().name), axis, across, range, vec![panel])

@@ -75,6 +75,11 @@ impl SchemeName {
 }
 
 impl Choice {
+    /// The word for it.
+    pub fn name(self) -> &'static str {
+        if self == Self::All { "all" } else { self.shown().name() }
+    }
+
     /// The scheme whose motion is shown; of all it is the board's.
     pub fn shown(self) -> SchemeName {
         match self {

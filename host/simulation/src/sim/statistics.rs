@@ -3,7 +3,7 @@
 
 use parameters::ContactState;
 
-use super::moment::Moment;
+use super::moment::{Moment, Teeth};
 
 /// Points kept at most; a longer run keeps the last ones.
 const MOST_POINTS: usize = 2000;
@@ -23,15 +23,7 @@ pub struct MeshSums {
     least: f64,
     greatest: f64,
     peak_force: f64,
-    touched: Option<Flank>,
-}
-
-/// The flank of the last tick.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Flank {
-    None,
-    Drive,
-    Back,
+    touched: Option<ContactState>,
 }
 
 /// Figures of one mesh.
@@ -87,7 +79,7 @@ impl Statistics {
             self.first = moment.time;
         }
         for (sums, teeth) in self.meshes.iter_mut().zip(&moment.teeth) {
-            sums.take(self.ticks, teeth.deflection, teeth.force, teeth.contact);
+            sums.take(self.ticks, teeth);
         }
         if let Some(last) = &self.last {
             self.points.extend(crossing(last, moment));
@@ -136,7 +128,7 @@ impl Statistics {
 }
 
 impl MeshSums {
-    fn take(&mut self, ticks: u64, deflection: f64, force: f64, contact: ContactState) {
+    fn take(&mut self, ticks: u64, &Teeth { deflection, force, contact, .. }: &Teeth) {
         if ticks == 0 {
             (self.least, self.greatest) = (deflection, deflection);
         }
@@ -145,15 +137,11 @@ impl MeshSums {
         self.sum += deflection;
         self.square += deflection * deflection;
         self.peak_force = self.peak_force.max(force.abs());
-        let flank = match contact {
-            ContactState::DriveSide => Flank::Drive,
-            ContactState::Separated => Flank::None,
-            ContactState::BackSide => Flank::Back,
-        };
-        self.drive_side += u64::from(flank == Flank::Drive);
-        self.back_side += u64::from(flank == Flank::Back);
-        self.landings += u64::from(flank != Flank::None && self.touched.is_some_and(|before| before != flank));
-        self.touched = Some(flank);
+        self.drive_side += u64::from(contact == ContactState::DriveSide);
+        self.back_side += u64::from(contact == ContactState::BackSide);
+        let landed = contact != ContactState::Separated && self.touched.is_some_and(|before| before != contact);
+        self.landings += u64::from(landed);
+        self.touched = Some(contact);
     }
 
     fn figures(&self, ticks: u64, span: f64) -> MeshFigures {
@@ -202,7 +190,6 @@ fn hermite(values: [f64; 2], slopes: [f64; 2], width: f64, part: f64) -> (f64, f
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sim::moment::Teeth;
 
     /// A sine of the given period in mesh periods, 50 ticks a mesh period, with the teeth parted below zero.
     fn gathered(wave: impl Fn(f64) -> (f64, f64)) -> Statistics {

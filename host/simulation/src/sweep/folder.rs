@@ -97,11 +97,11 @@ impl Folder {
         Ok(())
     }
 
-    /// Writes the result, all points in their order.
-    pub fn write_result(&self, manifest: &Manifest, grid: &Grid, points: &Points) -> Outcome<PathBuf> {
+    /// Writes the result, all points in their order, and says where it is.
+    pub fn write_result(&self, manifest: &Manifest, grid: &Grid, points: &Points) -> Outcome<String> {
         let path = self.path.join(RESULT);
         write_text(&path, &result(manifest, grid, points))?;
-        Ok(path)
+        Ok(format!("{} points: {}\n", grid.points, path.display()))
     }
 }
 

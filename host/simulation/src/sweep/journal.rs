@@ -93,13 +93,16 @@ pub fn line(point: u64, result: &str) -> String {
 
 /// What a journal holds: good lines count, others are as if they had never been.
 pub fn read(path: &Path, digest: &str) -> Outcome<Points> {
-    let bytes = std::fs::read(path).map_err(|error| {
-        Failure::new(format!("cannot read {}: {error}", path.display()))
-            .with_help("see that the folder and its files may be read")
-    })?;
+    let bytes = std::fs::read(path).map_err(|error| unread(path, &error))?;
     let whole = &bytes[..whole_lines(&bytes)];
     check_head(path, whole, digest)?;
     Ok(String::from_utf8_lossy(whole).lines().skip(1).filter_map(point_of).collect())
+}
+
+/// A file of a sweep that cannot be read, with the mend.
+pub fn unread(path: &Path, error: &io::Error) -> Failure {
+    Failure::new(format!("cannot read {}: {error}", path.display()))
+        .with_help("see that the folder and its files may be read")
 }
 
 /// Number and result of a good line.

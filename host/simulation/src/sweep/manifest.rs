@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::grid::Grid;
+use super::journal::unread;
 use super::metrics::Metric;
 use report::failure::{Failure, Outcome};
 use report::output;
@@ -68,10 +69,7 @@ impl Manifest {
             Failure::new(format!("{} is not what a sweep wrote: {why}", path.display()))
                 .with_help("name another folder by --out DIR; this one is left as it is")
         };
-        let text = std::fs::read_to_string(path).map_err(|error| {
-            Failure::new(format!("cannot read {}: {error}", path.display()))
-                .with_help("see that the folder and its files may be read")
-        })?;
+        let text = std::fs::read_to_string(path).map_err(|error| unread(path, &error))?;
         let manifest: Self = serde_json::from_str(&text).map_err(|error| spoilt(error.to_string()))?;
         if manifest.schema != SCHEMA {
             return Err(spoilt(format!("its schema is `{}`, not `{SCHEMA}`", manifest.schema)));

@@ -38,9 +38,7 @@ pub fn merge(folders: &[PathBuf], out: Option<&Path>) -> Outcome<String> {
     };
     let grid = manifest.grid()?;
     complete(&grid, &points, &shards)?;
-    let out = Folder::prepare(out.unwrap_or(&first), &manifest)?;
-    let result = out.write_result(&manifest, &grid, &points)?;
-    Ok(format!("{} points: {}\n", grid.points, result.display()))
+    Folder::prepare(out.unwrap_or(&first), &manifest)?.write_result(&manifest, &grid, &points)
 }
 
 /// Every point must be there, and no other.

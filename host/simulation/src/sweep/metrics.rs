@@ -1,8 +1,6 @@
 //! What is measured at a point of the grid, and how it is written: always the same bytes for the same joint. The motion
 //! comes from the scheme, its figures from `sim::statistics`.
 
-use std::ops::ControlFlow;
-
 use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 
@@ -13,7 +11,6 @@ use crate::sim::scheme::SchemeName;
 use crate::sim::statistics::{MeshFigures, Statistics};
 use joint_file::named::Loaded;
 use report::failure::Outcome;
-use report::interruption;
 
 /// A column of the result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
@@ -65,11 +62,11 @@ pub fn compute(loaded: Outcome<Loaded>, motion: &Motion, scheme: SchemeName, met
     let without = |status, remark| Result { status, values: vec![String::new(); metrics.len()], remark };
     let mut statistics = Statistics::default();
     let followed = loaded.and_then(|loaded| Plan::new(loaded, motion)).and_then(|plan| {
-        follow::follow(&plan.run(), scheme, &mut |moment| {
+        follow::follow(&plan.run, scheme, 0.0, &mut |moment| {
             if moment.tick >= plan.settle {
                 statistics.take(moment);
             }
-            Ok(if interruption::requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+            Ok(())
         })
     });
     match followed {

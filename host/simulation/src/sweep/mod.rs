@@ -28,6 +28,7 @@ use crate::sim::scheme::{Choice, SchemeName};
 use board::profile::BUILTIN;
 use joint_file::named::{self, Loaded};
 use report::failure::{Failure, Outcome};
+use report::folder::file_part;
 use report::output;
 use report::progress::Progress;
 use report::workspace::workspace;
@@ -117,8 +118,7 @@ fn conclude(arguments: &Arguments, folder: &Folder, manifest: &Manifest, grid: &
     let mut points = Points::new();
     folder.points(&manifest.digest, &mut points)?;
     if points.len() as u64 == grid.points {
-        let result = folder.write_result(manifest, grid, &points)?;
-        return Ok(format!("{} points: {}\n", grid.points, result.display()));
+        return folder.write_result(manifest, grid, &points);
     }
     Ok(format!(
         "shard {} is done: {} of {} points are in {}\nwhen all shards are: cargo joint merge {}\n",
@@ -174,9 +174,7 @@ fn manifest(base: &Loaded, grid: &Grid, metrics: &[Metric], scheme: SchemeName, 
 }
 
 fn usual_folder(manifest: &Manifest) -> PathBuf {
-    let plain = |letter: char| if letter.is_ascii_alphanumeric() { letter.to_ascii_lowercase() } else { '-' };
-    let joint: String = manifest.joint.chars().map(plain).collect();
-    workspace().join("target/sweep").join(format!("{joint}-{}", &manifest.digest[..8]))
+    workspace().join("target/sweep").join(format!("{}-{}", file_part(&manifest.joint), &manifest.digest[..8]))
 }
 
 /// The command that goes on with this sweep.

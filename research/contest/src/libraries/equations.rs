@@ -36,7 +36,8 @@ impl<const N: usize, const D: usize> Equations<N, D> {
             return None;
         }
         let gains = &plant.gains;
-        let push = Push { sun: gains.sun * torques.drive, carrier: -gains.carrier * torques.load, link: 0.0 };
+        let push =
+            Push { sun: gains.sun * torques.drive_torque, carrier: -gains.carrier * torques.load_torque, link: 0.0 };
         let deflected = Deflected::<N>::new(&case.joint, &case.start);
         let omega = mesh_frequency / scales.frequency;
         let error = Instant::at(&plant, &rotor(omega, 0.0));

@@ -5,9 +5,9 @@ use host_tests::tolerance::light_planets::{
     FAR_ROBOTS_LINK_RMS, FAR_ROBOTS_LINK_WORST, ROBOT_LINK_RMS, ROBOT_LINK_WORST, ROBOTS_PEAK_FORCE,
 };
 use parameters::{DampingLaw, JointParameters, PerPlanet};
-use reference::scenarios::{case_r, same};
+use reference::scenarios::{case_r, same, with_teeth};
 
-use crate::variants::{joint, with_meshes, with_teeth};
+use crate::variants::{joint, with_meshes};
 use crate::windows::errors;
 
 fn check(joint: JointParameters, shift: f64) {
@@ -32,7 +32,7 @@ fn other_mesh_phases_stay_with_the_reference() {
 
 #[test]
 fn other_teeth_and_backlash_stay_with_the_reference() {
-    check(with_teeth(3, 27, 36, 99), 0.0);
+    check(with_teeth(joint(), 3, [27, 36, 99]), 0.0);
     check(with_meshes(|mesh| mesh.half_backlash = same(3, 20e-6)), 0.0);
     check(with_meshes(|mesh| mesh.half_backlash = same(3, 80e-6)), 0.0);
 }
@@ -56,8 +56,8 @@ fn the_other_damping_law_stays_with_the_reference() {
 #[test]
 fn planets_that_move_one_by_one_or_are_heavy_beside_the_link_stay_near_the_reference() {
     // 25 / 5 is whole, 16 / 3 is not.
-    check_far(with_teeth(5, 25, 25, 75));
-    check_far(with_teeth(3, 16, 29, 74));
+    check_far(with_teeth(joint(), 5, [25, 25, 75]));
+    check_far(with_teeth(joint(), 3, [16, 29, 74]));
     let mut unequal = joint();
     unequal.sun_planet.half_backlash = [35e-6, 40e-6, 46e-6].into_iter().collect::<PerPlanet>();
     check_far(unequal);

@@ -1,6 +1,10 @@
 //! What a motion settles on: of which period, or chaotic, by its Poincare points and its largest Lyapunov exponent.
 //! How points are drawn and what a change of class means is left to the commands.
 
+use std::fmt;
+
+use serde::Serialize;
+
 use super::lyapunov::{Growth, generic, measured_period, normalise, two_trajectories};
 use super::motion::{Motion, State};
 use super::shooting::periodic_state;
@@ -22,14 +26,26 @@ const CHAOTIC_EXPONENT: f64 = 0.004;
 const DISTINCT: f64 = 1e-2;
 
 /// What a motion settles on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(tag = "class", content = "period", rename_all = "snake_case")]
 pub enum Class {
     /// It repeats after so many mesh periods.
     Periodic(usize),
     /// Neighbours part exponentially.
     Chaotic,
-    /// Neither has shown itself: quasi-periodic, of a longer period than is looked for, or still settling.
+    /// Quasi-periodic, of a longer period than is looked for, or not settled.
     Unsettled,
+}
+
+impl fmt::Display for Class {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Periodic(period) => write!(formatter, "period {period}"),
+            Self::Chaotic => write!(formatter, "chaos"),
+            Self::Unsettled => write!(formatter, "no period found"),
+        }
+    }
 }
 
 /// How long to look.

@@ -13,12 +13,8 @@ const HALF: Shape = Shape { width: 540, left: 64 };
 
 /// f(x, b), sharp, smoothed and as printed.
 pub fn curves(data: &DeadZoneFigure) -> Figure {
-    let line = |values: &[f64], ink, label: String, width| Mark::Line {
-        points: points(&data.deflection, values),
-        ink,
-        label,
-        width,
-    };
+    let line =
+        |values: &[f64], ink, label: String, width| Mark::line(points(&data.deflection, values), ink, label, width);
     let mut marks = vec![line(&data.sharp, Ink::Reference, "eq. 12".into(), 5.0)];
     for (smoothed, ink) in data.smoothed.iter().zip([LINES[0], LINES[2], LINES[3]]) {
         marks.push(line(&smoothed.force, ink, format!("σ = {}", PAGE.write(smoothed.sharpness)), 1.5));
@@ -33,11 +29,8 @@ pub fn curves(data: &DeadZoneFigure) -> Figure {
 
 /// Largest distance from the sharp dead zone by sharpness.
 pub fn errors(data: &DeadZoneFigure) -> Figure {
-    let line = |value: fn(&DeadZoneError) -> f64, ink, label: &str| Mark::Line {
-        points: data.errors.iter().map(|error| (error.sharpness, value(error))).collect(),
-        ink,
-        label: label.to_owned(),
-        width: 2.0,
+    let line = |value: fn(&DeadZoneError) -> f64, ink, label| {
+        Mark::line(data.errors.iter().map(|error| (error.sharpness, value(error))).collect(), ink, label, 2.0)
     };
     let marks = vec![
         line(|error| error.corrected, Ink::First, "eq. 13 corrected"),

@@ -2,7 +2,7 @@
 
 use super::axes::plain;
 use super::picture::Picture;
-use crate::record::{ClassRecord, Reading, Sweep, SweepPoint};
+use crate::record::{Class, Reading, Sweep, SweepPoint};
 use report::folder::file_part;
 use report::plot::Figure;
 use report::plot::ink::Ink;
@@ -27,9 +27,9 @@ pub fn diagram(reading: &Reading, sweep: &Sweep) -> Picture {
     let mut upper = guides(reading, values);
     upper.extend(classes(sweep, values));
     let mut lower = guides(reading, exponents);
-    lower.push(line(vec![(ends.0 - air, 0.0), (ends.1 + air, 0.0)], Ink::Axis, 1.2));
+    lower.push(Mark::line(vec![(ends.0 - air, 0.0), (ends.1 + air, 0.0)], Ink::Axis, "", 1.2));
     let curve = sweep.points.iter().map(|point| (point.half_backlash_m, point.exponent)).collect();
-    lower.push(line(curve, Ink::Fourth, 1.6));
+    lower.push(Mark::line(curve, Ink::Fourth, "", 1.6));
     let title = format!("Bifurcation diagram of {}, start {}", reading.joint, sweep.start);
     let panels = vec![
         Panel { height: 380, ..Panel::lines("X_sp at the Poincaré sections", plain("X_sp"), upper) },
@@ -43,26 +43,22 @@ fn extremes(values: impl Iterator<Item = f64>) -> (f64, f64) {
     values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
 }
 
-fn line(points: Vec<(f64, f64)>, ink: Ink, width: f64) -> Mark {
-    Mark::Line { points, ink, label: String::new(), width }
-}
-
 /// Upright lines at the half-backlashes of Figs 5 to 8.
 fn guides(reading: &Reading, range: (f64, f64)) -> Vec<Mark> {
-    let at = |b: f64| line(vec![(b, range.0), (b, range.1)], Ink::Reference, 1.0);
+    let at = |b: f64| Mark::line(vec![(b, range.0), (b, range.1)], Ink::Reference, "", 1.0);
     reading.attractors.iter().map(|attractor| at(attractor.half_backlash_m)).collect()
 }
 
 fn classes(sweep: &Sweep, range: (f64, f64)) -> Vec<Mark> {
-    let of = |wanted: fn(ClassRecord) -> bool, ink: Ink, label: &str, size: f64| {
+    let of = |wanted: fn(Class) -> bool, ink: Ink, label: &str, size: f64| {
         let own = sweep.points.iter().filter(|point| wanted(point.class));
         let points: Vec<(f64, f64)> = own.flat_map(|point| spots(point, range)).collect();
         (!points.is_empty()).then(|| Mark::Points { points, ink, label: label.to_owned(), size })
     };
     let marks = [
-        of(|class| matches!(class, ClassRecord::Periodic(_)), Ink::First, "periodic", 2.5),
-        of(|class| class == ClassRecord::Chaotic, Ink::Second, "chaotic", 1.75),
-        of(|class| class == ClassRecord::Unsettled, Ink::Third, "no period found", 1.75),
+        of(|class| matches!(class, Class::Periodic(_)), Ink::First, "periodic", 2.5),
+        of(|class| class == Class::Chaotic, Ink::Second, "chaotic", 1.75),
+        of(|class| class == Class::Unsettled, Ink::Third, "no period found", 1.75),
     ];
     marks.into_iter().flatten().collect()
 }

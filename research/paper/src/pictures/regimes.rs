@@ -2,7 +2,7 @@
 
 use super::axes::{micrometres, plain, points};
 use super::picture::Picture;
-use crate::record::{AttractorRecord, ClassRecord, Reading};
+use crate::record::{AttractorRecord, Class, Reading};
 use report::folder::file_part;
 use report::plot::ink::Ink;
 use report::plot::mark::Mark;
@@ -38,7 +38,7 @@ fn figure(title: String, axis: &str, range: (f64, f64), width: i32, panel: Panel
 fn history(attractor: &AttractorRecord, b: &str) -> Figure {
     let history = &attractor.history;
     let shown = points(&history.periods, &history.x_sp).into_iter().filter(|point| point.0 <= PERIODS).collect();
-    let marks = vec![Mark::Line { points: shown, ink: Ink::First, label: String::new(), width: 1.3 }];
+    let marks = vec![Mark::line(shown, Ink::First, "", 1.3)];
     let panel = Panel::lines(format!("b = {b} µm: {}", attractor.class), plain("X_sp"), marks);
     figure(format!("Time history at b = {b} µm"), "mesh periods", (0.0, PERIODS), 400, panel)
 }
@@ -47,7 +47,7 @@ fn portrait(attractor: &AttractorRecord, b: &str) -> Figure {
     let history = &attractor.history;
     // A closed curve is drawn once; what never closes is drawn as far as the record goes, in a thinner line.
     let (cycles, width) = match attractor.class {
-        ClassRecord::Periodic(period) => (period as f64, 1.6),
+        Class::Periodic(period) => (period as f64, 1.6),
         _ => (f64::INFINITY, 0.5),
     };
     let until = history.periods.iter().take_while(|time| **time <= cycles + 0.02).count();
@@ -56,7 +56,7 @@ fn portrait(attractor: &AttractorRecord, b: &str) -> Figure {
     let range = axis_range(curve.iter().chain(&section).map(|point| point.0));
     let size = if section.len() > 24 { 2.5 } else { 7.0 };
     let marks = vec![
-        Mark::Line { points: curve, ink: Ink::First, label: String::new(), width },
+        Mark::line(curve, Ink::First, "", width),
         Mark::Points { points: section, ink: Ink::Limit, label: "Poincaré".into(), size },
     ];
     let panel = Panel::lines("Phase portrait", plain("X_sp′"), marks);
@@ -67,7 +67,7 @@ fn spectrum(attractor: &AttractorRecord, b: &str) -> Figure {
     let spectrum = &attractor.spectrum;
     let shown = spectrum.over_mesh_frequency.iter().take_while(|frequency| **frequency <= HIGHEST).count();
     let lines = points(&spectrum.over_mesh_frequency[..shown], &spectrum.amplitude);
-    let marks = vec![Mark::Line { points: lines, ink: Ink::First, label: String::new(), width: 1.0 }];
+    let marks = vec![Mark::line(lines, Ink::First, "", 1.0)];
     let axis = VerticalAxis::Decades { from: -4, to: 2 };
     let panel = Panel { axis, ..Panel::lines("Spectrum of X_sp", plain("amplitude"), marks) };
     figure(format!("Spectrum at b = {b} µm"), "frequency over mesh frequency", (0.0, HIGHEST), 380, panel)

@@ -9,12 +9,7 @@ use report::plot::panel::Panel;
 
 /// The picture.
 pub fn figure(data: &StiffnessFigure) -> Figure {
-    let line = |values: &[f64], ink, label: &str, width| Mark::Line {
-        points: points(&data.phase, values),
-        ink,
-        label: label.to_owned(),
-        width,
-    };
+    let line = |values: &[f64], ink, label, width| Mark::line(points(&data.phase, values), ink, label, width);
     let marks = vec![
         line(&data.eight_harmonics, Ink::Reference, "first eight harmonics", 1.6),
         line(&data.rectangular, Ink::Second, "rectangular wave", 1.6),

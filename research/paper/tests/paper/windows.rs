@@ -1,7 +1,7 @@
 //! Where set P changes its class, from rest and carried, and that the number of threads changes nothing.
 
 use paper::numerics::attractor::Class;
-use paper::{ClassRecord, StudyRecord, study};
+use paper::{StudyRecord, study};
 use report::progress::Progress;
 
 use super::{SHORT, from_rest, plan, subject};
@@ -42,7 +42,7 @@ fn carried_upward_the_period_of_two_holds_longer_than_from_rest() {
     let record = studied(&["paper", "--b", "60", "--grid", "30:42:1", "--sweep", "all"], 2);
     let last_of_two = |start: &str| {
         let sweep = record.readings[0].sweeps.iter().find(|sweep| sweep.start == start).expect("a sweep");
-        let two = sweep.windows.iter().filter(|window| window.class == ClassRecord::Periodic(2));
+        let two = sweep.windows.iter().filter(|window| window.class == Class::Periodic(2));
         two.map(|window| window.to_m * 1e6).fold(0.0, f64::max)
     };
     assert!((last_of_two("rest") - 34.0).abs() < 1e-6, "{}", last_of_two("rest"));

@@ -1,0 +1,114 @@
+//! The order of each scheme of the core: how fast its error against the reference falls as the tick rate rises, on a
+//! motion in which contact holds and on one in which meshes part and hit. In f64; what f32 adds is asked elsewhere.
+
+use std::ops::RangeInclusive;
+
+use host_tests::tolerance::core::{ORDER, ORDER_AT_KINKS, ORDER_OF_EULER, ORDER_OF_RUNGE_KUTTA_AT_KINKS};
+use model_core::gears::design::{Effort, design_scheme};
+use model_core::gears::{Scheme, Tables};
+use reference::scenarios::{CASE_A_OMEGA, CASE_Q_OMEGA, Scenario, case, regime, run_at};
+
+use super::comparison::rms_error;
+
+/// Ticks a second of the coarsest run; samples are taken at its ticks.
+const COARSEST: u32 = 5_000;
+
+/// Step of the core, dimensionless, and its RMS error over all mesh deflections, over b_c.
+type Point = (f64, f64);
+
+/// Errors at tick rates of COARSEST times 2^k, for k in the given range; `step` says what the scheme steps by.
+fn errors(
+    scenario: &Scenario,
+    scheme: Scheme,
+    doublings: RangeInclusive<u32>,
+    step: fn(&Tables<f64, 3>) -> f64,
+) -> Vec<Point> {
+    let samples = scenario.duration() * f64::from(COARSEST);
+    let times: Vec<f64> = (1..=samples as u32).map(|sample| f64::from(sample) / f64::from(COARSEST)).collect();
+    let expected = run_at(scenario, &times).expect("the reference follows").samples;
+    doublings
+        .map(|doublings| {
+            let ticks = 1 << doublings;
+            let tables: Tables<f64, 3> =
+                design_scheme(&scenario.joint, COARSEST * ticks, scheme, Effort::Accurate).expect("a sound joint");
+            let error = rms_error(&scenario.joint, &tables, &scenario.start, scenario.torques_at(0), &expected);
+            println!("{}, {scheme:?}: step {:.4}, error {error:.2e}", scenario.name, step(&tables));
+            (step(&tables), error)
+        })
+        .collect()
+}
+
+/// Slope of log error over log step, by least squares.
+fn order(points: &[Point]) -> f64 {
+    let count = points.len() as f64;
+    let mean = |of: fn(&Point) -> f64| points.iter().map(of).sum::<f64>() / count;
+    let (x, y) = (mean(|point| point.0.ln()), mean(|point| point.1.ln()));
+    let along: f64 = points.iter().map(|point| (point.0.ln() - x) * (point.1.ln() - y)).sum();
+    along / points.iter().map(|point| (point.0.ln() - x).powi(2)).sum::<f64>()
+}
+
+/// The scenario over its first ticks.
+fn shortened(mut scenario: Scenario, ticks: u64) -> Scenario {
+    scenario.ticks = ticks;
+    scenario
+}
+
+#[test]
+fn while_contact_holds_a_whole_tick_is_of_fourth_order_in_the_ripple() {
+    // Up to 4 dimensionless seconds a tick, where no method of sub-steps is stable; without ripple there is no error.
+    let scenario = shortened(case("case Q", CASE_Q_OMEGA), 200);
+    // Finer steps reach what the reference is good for; coarser ones show the next order.
+    let points = errors(&scenario, Scheme::Realtime, 1..=4, |tables| tables.flow.step);
+    ORDER.check((4.0 - order(&points)).max(0.0));
+}
+
+#[test]
+fn sub_steps_are_of_third_order_at_least_on_smooth_motion() {
+    // No backlash, but an excitation too fast for a whole tick.
+    let scenario = shortened(regime("set P, b = 0", 0.0, 300.0), 100);
+    let points = errors(&scenario, Scheme::Realtime, 5..=8, |tables| tables.substep);
+    // The foreseen rate is of second order and acts through damping alone, so the fourth order of the rest still shows.
+    ORDER.check((3.0 - order(&points)).max(0.0));
+}
+
+#[test]
+fn sub_steps_keep_at_least_third_order_through_parting_and_hitting() {
+    // Without its corrections a crossing would leave an error of second order, wherever in the step it falls.
+    let scenario = shortened(case("case A", CASE_A_OMEGA), 100);
+    let points = errors(&scenario, Scheme::Realtime, 2..=8, |tables| tables.substep);
+    ORDER_AT_KINKS.check((3.0 - order(&points)).max(0.0));
+}
+
+#[test]
+fn the_paper_s_scheme_is_of_first_order_whatever_the_motion() {
+    for (scenario, doublings) in [
+        (shortened(case("case Q", CASE_Q_OMEGA), 200), 0..=6),
+        (shortened(regime("set P, b = 0", 0.0, 300.0), 100), 5..=8),
+        (shortened(case("case A", CASE_A_OMEGA), 100), 5..=9),
+    ] {
+        let points = errors(&scenario, Scheme::PaperEtd1, doublings, |tables| tables.flow.step);
+        ORDER.check(order(&points) - 1.0);
+    }
+}
+
+#[test]
+fn runge_kutta_is_of_fourth_order_where_nothing_parts_and_of_second_where_meshes_hit() {
+    let smooth = shortened(regime("set P, b = 0", 0.0, 300.0), 100);
+    ORDER.check(order(&errors(&smooth, Scheme::RungeKutta4, 5..=8, |tables| tables.substep)) - 4.0);
+    let kinked = shortened(case("case A", CASE_A_OMEGA), 100);
+    let kinked = order(&errors(&kinked, Scheme::RungeKutta4, 2..=8, |tables| tables.substep));
+    println!("Runge-Kutta through kinks: order {kinked:.2}");
+    // A kink inside the step leaves an error of the step's square, whatever the method's own order.
+    ORDER_OF_RUNGE_KUTTA_AT_KINKS.check(kinked - 2.0);
+}
+
+#[test]
+fn semi_implicit_euler_is_of_first_order_whatever_the_motion() {
+    for (scenario, doublings) in [
+        (shortened(regime("set P, b = 0", 0.0, 300.0), 100), 7..=10),
+        (shortened(case("case A", CASE_A_OMEGA), 100), 6..=9),
+    ] {
+        let points = errors(&scenario, Scheme::SemiImplicitEuler, doublings, |tables| tables.substep);
+        ORDER_OF_EULER.check(order(&points) - 1.0);
+    }
+}

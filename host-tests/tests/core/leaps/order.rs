@@ -1,0 +1,75 @@
+//! How fast the error of leaps falls with their length on motions in which light planets lose contact and find it again,
+//! for 3, 4 and 5 planets and both damping laws. Ticks shrink with the leaps, as in a tick ripple and errors are taken
+//! from its middle.
+
+use host_tests::tolerance::light_planets::{LEAPS, ORDER_OF_LEAPS};
+use parameters::{ContactState, DampingLaw, JointParameters};
+use reference::joint::{RelativeState, Start};
+
+use super::subject::{joint, leaping, pressed, reference};
+use crate::comparison::rms_error;
+
+/// Ticks a second of the coarsest run, where samples are taken; leaps a tick.
+const COARSEST: u32 = 10_000;
+const LEAPS_A_TICK: u32 = 8;
+/// Length in ticks of the coarsest run.
+const LENGTH: u32 = 60;
+
+/// On its flanks, but for planets that have been pushed off the sun and bounce back.
+fn bouncing(joint: &JointParameters) -> RelativeState {
+    let mut start = pressed(joint, 0.0);
+    start.gap -= 10e-6;
+    start.gap_rate = 0.02;
+    start
+}
+
+/// RMS errors at tick rates of COARSEST times 2^k, for each k.
+fn errors<const N: usize>(joint: &JointParameters, doublings: &[u32]) -> Vec<f64> {
+    let start = bouncing(joint);
+    let expected = reference(joint, &start, (0.0, 0.0), COARSEST, LENGTH);
+    let is = |state| expected.iter().any(|seen| seen.contacts.iter().flatten().any(|contact| *contact == state));
+    assert!(is(ContactState::Separated) && is(ContactState::DriveSide), "contact is lost and found again");
+    let one = |doublings: &u32| {
+        let tables = leaping::<N>(joint, COARSEST << doublings, LEAPS_A_TICK);
+        rms_error(joint, &tables, &Start::Relative(start.clone()), (0.0, 0.0), &expected)
+    };
+    doublings.iter().map(one).collect()
+}
+
+/// Mean slope of log error over log step.
+fn order(errors: &[f64]) -> f64 {
+    (errors[0] / errors[errors.len() - 1]).log2() / (errors.len() - 1) as f64
+}
+
+fn undamped<const N: usize>() {
+    let mut joint = joint(N, DampingLaw::Contact);
+    joint.sun_planet.damping_ratio = 0.0;
+    joint.ring_planet.damping_ratio = 0.0;
+    let order = order(&errors::<N>(&joint, &[3, 4, 5, 6]));
+    println!("{N} planets, no mesh damping: order {order:.2}");
+    ORDER_OF_LEAPS.check((2.0 - order).max(0.0));
+}
+
+fn damped<const N: usize>() {
+    for law in [DampingLaw::Contact, DampingLaw::Paper] {
+        let errors = errors::<N>(&joint(N, law), &[0, 3, 4, 5, 6]);
+        let order = order(&errors[1..]);
+        println!("{N} planets, law {law:?}: order {order:.2}, {:.1e} at the coarsest", errors[0]);
+        ORDER_OF_LEAPS.check((1.0 - order).max(0.0));
+        LEAPS.check(errors[0]);
+    }
+}
+
+#[test]
+fn leaps_are_of_second_order_through_parting_and_hitting() {
+    undamped::<3>();
+    undamped::<4>();
+    undamped::<5>();
+}
+
+#[test]
+fn mesh_damping_lags_by_half_a_leap_and_leaves_first_order_with_a_small_factor() {
+    damped::<3>();
+    damped::<4>();
+    damped::<5>();
+}

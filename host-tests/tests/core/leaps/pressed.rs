@@ -1,0 +1,95 @@
+//! Exponential ticks of light planets: taken where every tooth keeps pressing, and refused where one opens within the
+//! tick. A refused tick is one in leaps, in every bit.
+
+use host_tests::tolerance::light_planets::{HELD_OVER_AN_OPENING, PRESSED};
+use model_core::gears::{Model, Tables, Torques};
+use parameters::{ContactState, DampingLaw, JointParameters};
+use reference::joint::RelativeState;
+
+use super::subject::{joint, leaping, reference, resting, state, tables};
+
+const RATE: u32 = 10_000;
+const LEAPS: u32 = 8;
+/// Moments at which the reference is looked at within the tick.
+const MOMENTS: u32 = 100;
+
+/// Ticks by what happened in them.
+#[derive(Debug, Default)]
+struct Found {
+    /// Every tooth kept pressing: taken by the exponential, left to leaps.
+    closed: [u32; 2],
+    /// A tooth opened: the same.
+    opened: [u32; 2],
+    /// Largest error of the first kind taken, over b_c.
+    error: f64,
+    /// Widest opening that the exponential took for none, over b_c.
+    unseen: f64,
+}
+
+impl Found {
+    fn add<const N: usize>(
+        &mut self,
+        joint: &JointParameters,
+        both: &[Tables<f64, N>; 2],
+        start: &RelativeState,
+        torques: (f64, f64),
+    ) {
+        let seen = reference(joint, start, torques, MOMENTS * RATE, MOMENTS);
+        let length = joint.characteristic_length;
+        let separated = |contact: &ContactState| *contact == ContactState::Separated;
+        let opens = seen.iter().any(|seen| seen.contacts.iter().flatten().any(separated));
+        let [ours, leapt] = both.each_ref().map(|tables| {
+            let mut model = Model::new(tables);
+            model.set_state(state(joint, tables, start));
+            model.step(Torques { drive: torques.0, load: torques.1 });
+            (model.state_digest(), model.outputs().deflections)
+        });
+        let refused = ours.0 == leapt.0;
+        let count = if opens { &mut self.opened } else { &mut self.closed };
+        count[usize::from(refused)] += 1;
+        if !refused && !opens {
+            let right = seen[MOMENTS as usize].deflections.iter().flatten();
+            let off = ours.1.iter().flatten().zip(right).map(|(found, right)| (found - right).abs() / length);
+            self.error = off.fold(self.error, f64::max);
+        }
+        if !refused && opens {
+            let half = joint.sun_planet.half_backlash[0];
+            let open =
+                seen.iter().flat_map(|seen| seen.deflections.iter().flatten()).map(|d| (half - d.abs()) / length);
+            self.unseen = open.fold(self.unseen, f64::max);
+        }
+    }
+}
+
+/// A joint that turns under balanced torques of either sign, one planet moving away from the sun at one speed after another.
+fn found<const N: usize>(law: DampingLaw) -> Found {
+    let joint = joint(N, law);
+    let both = [tables::<N>(&joint, RATE, LEAPS), leaping::<N>(&joint, RATE, LEAPS)];
+    let mut found = Found::default();
+    for drive in [-3.0_f64, -1.0, 0.1, 0.5, 2.0, 3.0] {
+        let (start, load) = resting(&joint, drive);
+        for step in 0..12 {
+            let mut start = RelativeState { rigid_speed: 3.0, ..start.clone() };
+            start.sun_planet_rate[0] = -drive.signum() * 0.003 * f64::from(step);
+            found.add(&joint, &both, &start, (drive, load));
+        }
+    }
+    println!("{N} planets, {law:?}: {found:?}");
+    found
+}
+
+fn check<const N: usize>() {
+    for law in [DampingLaw::Contact, DampingLaw::Paper] {
+        let found = found::<N>(law);
+        assert!(found.closed[0] >= 5 && found.opened[1] >= 5, "ticks of both kinds: {found:?}");
+        PRESSED.check(found.error);
+        HELD_OVER_AN_OPENING.check(found.unseen);
+    }
+}
+
+#[test]
+fn a_tick_in_which_a_tooth_opens_is_left_to_leaps() {
+    check::<3>();
+    check::<4>();
+    check::<5>();
+}

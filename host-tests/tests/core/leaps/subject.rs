@@ -1,0 +1,94 @@
+//! Joint Q1 with light planets, ripple and errors, its tables in stated leaps, and one run of core and reference side by
+//! side. No bound is stated here.
+
+use model_core::gears::design::dynamics::Dynamics;
+use model_core::gears::design::{Effort, design_scheme, light_tables};
+use model_core::gears::tables::Mobility;
+use model_core::gears::{Kinematics, Scales, Scheme, State, Tables};
+use parameters::{DampingLaw, JointParameters, Mesh};
+use reference::joint::{Observation, Reference, RelativeState, Start};
+use reference::scenarios::{case_r, same, with_teeth};
+use simulation::sim::start::core_state;
+
+/// Case R's joint with so many planets, under a damping law.
+pub fn joint(planets: usize, law: DampingLaw) -> JointParameters {
+    let teeth = match planets {
+        3 => [15, 30, 75],
+        4 => [16, 28, 72],
+        _ => [20, 30, 80],
+    };
+    JointParameters { damping_law: law, ..with_teeth(case_r::case_r().joint, planets, teeth) }
+}
+
+/// Tables in so many leaps a tick.
+pub fn tables<const N: usize>(joint: &JointParameters, rate: u32, leaps: u32) -> Tables<f64, N> {
+    let mut tables: Tables<f64, N> =
+        design_scheme(joint, rate, Scheme::Realtime, Effort::Substeps(16)).expect("a sound joint");
+    let scales = Scales::new(joint);
+    let dynamics = Dynamics::new(joint, &scales);
+    let (wind_up_stiffness, wind_up_damping) = dynamics.wind_up.expect("Q1 is compliant");
+    let unit = Mobility {
+        sun: dynamics.mobilities[0],
+        planet: dynamics.mobilities[1],
+        carrier: dynamics.mobilities[N + 1],
+        link: dynamics.mobilities[N + 2],
+        wind_up: 1.0,
+        wind_up_stiffness,
+        wind_up_damping,
+    };
+    tables.light = light_tables::light(joint, &unit, scales.frequency / f64::from(rate), leaps);
+    tables
+}
+
+/// The same without exponential ticks.
+pub fn leaping<const N: usize>(joint: &JointParameters, rate: u32, leaps: u32) -> Tables<f64, N> {
+    let mut tables = tables(joint, rate, leaps);
+    tables.flow.longest_way = -1.0;
+    tables
+}
+
+/// A start as the core takes it.
+pub fn state<const N: usize>(joint: &JointParameters, tables: &Tables<f64, N>, start: &RelativeState) -> State<f64, N> {
+    core_state(joint, tables, &Start::Relative(start.clone()))
+}
+
+/// All meshes pressed alike on the drive side [m], nothing moving.
+pub fn pressed(joint: &JointParameters, overlap: f64) -> RelativeState {
+    let planets = joint.geometry.planets;
+    let deflection = joint.sun_planet.half_backlash[0] + overlap;
+    RelativeState { sun_planet: same(planets, deflection), gap: 2.0 * deflection, ..RelativeState::centred(planets) }
+}
+
+/// All bodies at rest relative to each other under a drive torque and the load torque beside it that balances it.
+pub fn resting(joint: &JointParameters, drive: f64) -> (RelativeState, f64) {
+    let geometry = &joint.geometry;
+    let force = drive / (geometry.planets as f64 * geometry.sun_base_radius);
+    let load = drive * geometry.ratio_by_radii();
+    let at_rest = |mesh: &Mesh| mesh.half_backlash[0] * force.signum() + force / mesh.mean_stiffness;
+    let deflection = at_rest(&joint.sun_planet);
+    let torsion = joint.compliance.map_or(0.0, |compliance| load / compliance.stiffness);
+    let start = RelativeState {
+        sun_planet: same(geometry.planets, deflection),
+        gap: deflection + at_rest(&joint.ring_planet),
+        wind_up: torsion * geometry.carrier_base_radius(),
+        ..RelativeState::centred(geometry.planets)
+    };
+    (start, load)
+}
+
+/// What the reference does over so many ticks: the start, then the end of each.
+pub fn reference(
+    joint: &JointParameters,
+    start: &RelativeState,
+    torques: (f64, f64),
+    rate: u32,
+    ticks: u32,
+) -> Vec<Observation> {
+    let mut reference = Reference::start(joint, &Start::Relative(start.clone())).expect("a sound joint");
+    let mut seen = vec![reference.observe()];
+    for tick in 1..=ticks {
+        reference.advance(f64::from(tick) / f64::from(rate), torques.0, torques.1).expect("the reference follows");
+        seen.push(reference.observe());
+    }
+    seen
+}

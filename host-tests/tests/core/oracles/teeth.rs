@@ -1,0 +1,62 @@
+//! Oracle 8 on the core: planets are ahead of one another by the fraction of a tooth that Z / n leaves, and move as one
+//! where it leaves none.
+
+use std::f64::consts::TAU;
+
+use host_tests::tolerance::core::CORE_TOOTH_PHASE;
+use parameters::{Excitation, JointParameters, MeshPhases, StiffnessWave};
+use reference::scenarios::{PAPER_LENGTH, same};
+
+use super::closed_forms::joint;
+use super::{Start, run};
+
+/// Ticks in a mesh period, divisible by three, four and five planets.
+const PERIOD: usize = 60;
+const TICK_RATE: u32 = 400_000;
+
+fn by_teeth(planets: usize, sun_teeth: u32, ring_teeth: u32, ripple: f64) -> JointParameters {
+    let mut parameters = joint(planets, 0.05, 10e-6, 0.0);
+    parameters.geometry.sun_teeth = sun_teeth;
+    parameters.geometry.ring_teeth = ring_teeth;
+    parameters.excitation = Excitation::Time { mesh_frequency: TAU * f64::from(TICK_RATE) / PERIOD as f64 };
+    for (mesh, error) in [(&mut parameters.sun_planet, 0.0), (&mut parameters.ring_planet, 0.7)] {
+        mesh.stiffness_wave = StiffnessWave::Harmonic { stiffness_ratio: ripple };
+        mesh.transmission_error = same(planets, 3e-6);
+        mesh.phases = MeshPhases::FromTeeth { stiffness: 0.4, error };
+    }
+    parameters
+}
+
+/// Under load, so that contact holds and the motion has the period of its meshes.
+fn planets_follow_one_another<const N: usize>(sun_teeth: u32, ring_teeth: u32, lead: usize) {
+    let parameters = by_teeth(N, sun_teeth, ring_teeth, 0.05);
+    let found = run(&parameters, TICK_RATE, &Start::<N>::centred(2400.0), 200 * PERIOD, 2 * PERIOD);
+    for kind in [0, 1] {
+        for planet in 1..N {
+            let ahead = (lead * planet) % N * PERIOD / N;
+            for sample in 0..PERIOD {
+                let later = found[sample + ahead].0.deflections[kind][0];
+                CORE_TOOTH_PHASE.check((found[sample].0.deflections[kind][planet] - later) / PAPER_LENGTH);
+            }
+        }
+    }
+    let apart = found.iter().map(|(outputs, _)| (outputs.deflections[0][0] - outputs.deflections[0][1]).abs());
+    assert!(apart.fold(0.0, f64::max) > 0.1 * PAPER_LENGTH, "the planets are not in phase");
+}
+
+#[test]
+fn the_core_s_planets_follow_one_another_by_the_fraction_of_a_tooth() {
+    planets_follow_one_another::<3>(28, 98, 1);
+    planets_follow_one_another::<4>(26, 98, 2);
+    planets_follow_one_another::<5>(27, 98, 2);
+}
+
+#[test]
+fn the_core_s_planets_of_whole_tooth_counts_move_as_one_bit_for_bit() {
+    // Without load and through the gap, where the smallest difference would grow.
+    for (outputs, _) in run(&by_teeth(3, 27, 99, 0.2), TICK_RATE, &Start::<3>::centred(2.0), 0, 20_000) {
+        for family in outputs.deflections {
+            assert_eq!(family, [family[0]; 3]);
+        }
+    }
+}

@@ -1,0 +1,63 @@
+//! Why E = exp(A h) - I is kept apart from I while it is doubled: what is left of the paper's joint when I + E is
+//! squared instead, as one would without thinking. The board adds its tables to the identity for the same reason.
+
+use host_tests::tolerance::DIGITS_KEPT;
+use model_core::gears::design::exponential::exponential_minus_identity;
+use nalgebra::DMatrix;
+
+use super::fixtures::{Expected, Fixture, models};
+
+fn the_paper_s() -> Fixture {
+    models().into_iter().find(|fixture| fixture.name == "paper_3").expect("the fixture is there")
+}
+
+/// Taylor series at h / 2^doublings, then squared, in f64; less the identity only at the end.
+fn plain_squaring(matrix: &DMatrix<f64>, step: f64, doublings: u32) -> DMatrix<f64> {
+    let start = matrix * (step / f64::from(2_u32.pow(doublings)));
+    let identity = DMatrix::identity(start.nrows(), start.ncols());
+    let horner = |sum: DMatrix<f64>, term: u32| &identity + &start * sum / f64::from(term);
+    let mut whole = (1..=20).rev().fold(identity.clone(), horner);
+    for _ in 0..doublings {
+        whole = &whole * &whole;
+    }
+    whole - identity
+}
+
+/// Largest relative error on the diagonal, where the identity stands.
+fn error(found: &DMatrix<f64>, expected: &Expected) -> f64 {
+    found.diagonal().zip_fold(&expected.transition.diagonal(), 0.0, |worst: f64, found, exact| {
+        worst.max(((found - exact) / exact).abs())
+    })
+}
+
+/// Decimal digits that plain squaring has fewer than precise integration.
+fn digits_lost(expected: &Expected, matrix: &DMatrix<f64>, doublings: u32) -> f64 {
+    let apart = error(&exponential_minus_identity(matrix, expected.step), expected);
+    let lost = (error(&plain_squaring(matrix, expected.step, doublings), expected) / f64::EPSILON).log10();
+    print!("step {}, {doublings} doublings, {lost:.1} digits lost: ", expected.step);
+    DIGITS_KEPT.check(apart);
+    lost
+}
+
+#[test]
+fn at_small_steps_plain_squaring_loses_the_digits_that_the_identity_takes() {
+    let fixture = the_paper_s();
+    let [smallest, small] = [0, 1].map(|index| &fixture.steps[index]);
+    assert_eq!([smallest.step, small.step], [1e-4, 0.05]);
+    // Damping moves the diagonal by some 1e-5 beside 1, so five digits are gone before the first squaring.
+    let lost = digits_lost(smallest, &fixture.matrix, 0);
+    assert!((4.0..6.0).contains(&lost), "{lost} digits lost");
+    let lost = digits_lost(small, &fixture.matrix, 0);
+    assert!((1.0..3.0).contains(&lost), "{lost} digits lost");
+}
+
+#[test]
+fn each_doubling_of_plain_squaring_costs_the_third_of_a_digit() {
+    let fixture = the_paper_s();
+    // A tick at 20 kHz. Zhong's precise integration starts at 2^-20 of the step.
+    let tick = &fixture.steps[2];
+    assert_eq!(tick.step, 1.025);
+    let lost = [5, 10, 20].map(|doublings| digits_lost(tick, &fixture.matrix, doublings));
+    assert!(lost[0] < lost[1] && lost[1] < lost[2], "{lost:?}");
+    assert!((4.0..7.0).contains(&lost[2]), "20 doublings cost {} digits", lost[2]);
+}

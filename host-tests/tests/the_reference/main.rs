@@ -1,0 +1,13 @@
+//! The reference: the integrator itself, then the joint against closed forms, printed figures, another integrator's data and
+//! the laws that no motion may break, and the drive train around it.
+
+mod drive_train;
+mod excitation;
+mod formulations;
+mod invariants;
+mod known_trajectories;
+mod lin_parker;
+mod linear_oracles;
+mod mesh_forces;
+mod one_degree_of_freedom;
+mod planets_and_regimes;

@@ -1,0 +1,205 @@
+//! A board in a thread: the firmware's own bench behind any byte stream, which misbehaves on demand. Its clock is the
+//! thread's own.
+
+#[path = "../../../../firmware/tests/bench/mod.rs"]
+mod bench;
+
+use std::io::{ErrorKind, Read, Write};
+use std::sync::atomic::Ordering::Relaxed;
+use std::sync::{Arc, Mutex};
+use std::thread::JoinHandle;
+
+use bench::Bench;
+use firmware::observer::Observing;
+use firmware::page::recall;
+use firmware::port::Direct;
+use firmware::words::Words;
+use firmware::work::Work;
+use link::framing::{Receiver, encode};
+use link::messages::{FromBoard, ToBoard, Trip};
+use model_core::controller::Controller;
+use model_core::observer::Memory;
+use parameters::JointParameters;
+
+/// Fixed steps a second [Hz].
+pub const TICK_RATE: u32 = 20_000;
+
+/// Most ticks between two looks at the line.
+const TICKS: u32 = 200;
+
+/// What the board does wrong, or its line.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub enum Misbehaviour {
+    /// Nothing.
+    #[default]
+    None,
+    /// Hangs up at a tick.
+    HangsUpAt(u32),
+    /// Says nothing more from a tick on, but keeps the line.
+    FallsSilentAt(u32),
+    /// Garbage before its first word, half a frame in mid-run at a tick.
+    HalfFrameAt(u32),
+    /// Sends random bytes only.
+    OnlyGarbage,
+    /// Keeps every answer to itself.
+    Mute,
+    /// States this protocol version.
+    Protocol(u16),
+    /// States a role that this host does not know.
+    AnotherRole,
+    /// States another digest.
+    AnotherDigest,
+    /// Leaves out the batch with this number.
+    LosesBatch(u16),
+    /// Applies every torque a tick late.
+    LateTorques,
+    /// Reports a fault at a tick.
+    TripAt(u32, Trip),
+    /// Ignores the schedule with this number.
+    LosesSchedule(u16),
+    /// States overruns.
+    Overruns(u32),
+}
+
+/// The joint of its image.
+pub fn joint() -> JointParameters {
+    joint_file::read(joint_file::preset("q1").expect("the default preset")).expect("a good preset").parameters
+}
+
+/// Starts a board that simulates the joint on a stream; it ends when the stream does. The stream must have a short read
+/// timeout.
+pub fn start<S: Read + Write + Send + 'static>(stream: S, misbehaviour: Misbehaviour) -> JoinHandle<()> {
+    std::thread::spawn(move || {
+        // It is over when the line is.
+        let _ = serve(stream, Bench::new(), misbehaviour, &|_| {});
+    })
+}
+
+/// A page of flash that a test can look at.
+#[derive(Clone)]
+pub struct Flash {
+    pub memory: Arc<Mutex<Memory>>,
+    works: bool,
+}
+
+impl Flash {
+    pub fn new(memory: Memory, works: bool) -> Self {
+        Self { memory: Arc::new(Mutex::new(memory)), works }
+    }
+}
+
+/// Starts a board that observes on a stream, with a page of flash that takes what is written or does not.
+pub fn start_observer<S: Read + Write + Send + 'static>(
+    stream: S,
+    controller: impl FnOnce() -> Controller<'static, f32> + Send + 'static,
+    flash: Flash,
+) {
+    std::thread::spawn(move || {
+        let memory = *flash.memory.lock().expect("no test panics in between");
+        let page = bench::Flash { memory, works: flash.works, erased: 0 };
+        let mut work = Observing::new(Direct(controller()), true);
+        // What is not good is not used.
+        let _ = recall(&page).map(|memory| work.remember(&memory));
+        let mut bench = Bench::with(work);
+        bench.flash = page;
+        let show = |page: &bench::Flash| *flash.memory.lock().expect("no test panics in between") = page.memory;
+        let _ = serve(stream, bench, Misbehaviour::None, &show);
+    });
+}
+
+/// The line is gone, or the board hangs up.
+struct Gone;
+
+/// Plays a board on a stream. While schedules come its clock waits for them: a busy machine starves no run.
+fn serve<W: Work>(
+    mut stream: impl Read + Write,
+    mut bench: Bench<W>,
+    mut misbehaviour: Misbehaviour,
+    show: &dyn Fn(&bench::Flash),
+) -> Result<(), Gone>
+where
+    W::Words: Words<Command: 'static, Sample: 'static> + 'static,
+{
+    let (mut receiver, mut scheduled, mut buffer) = (Receiver::new(), false, [0; 512]);
+    if matches!(misbehaviour, Misbehaviour::HalfFrameAt(_)) {
+        stream.write_all(&[0x55, 0xaa, 0x01, 0x00, 0x13, 0x37]).map_err(|_| Gone)?;
+    }
+    loop {
+        let count = match stream.read(&mut buffer) {
+            Ok(0) => return Err(Gone),
+            Ok(count) => count,
+            Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => 0,
+            Err(_) => return Err(Gone),
+        };
+        for message in buffer[..count].iter().filter_map(|&byte| receiver.push::<ToBoard>(byte)) {
+            scheduled = matches!(message, ToBoard::Schedule(_));
+            misbehaviour.heard(message).iter().for_each(|message| bench.send(message));
+        }
+        bench.settle();
+        let left = bench.progress.horizon.load(Relaxed).saturating_sub(bench.progress.steps.load(Relaxed));
+        bench.run(if scheduled { left.min(TICKS) } else { TICKS });
+        show(&bench.flash);
+        for message in bench.said() {
+            stream.write_all(&misbehaviour.said(message)?).map_err(|_| Gone)?;
+        }
+    }
+}
+
+impl Misbehaviour {
+    /// What the board hears of a message.
+    fn heard(&self, message: ToBoard) -> Option<ToBoard> {
+        match (self, message) {
+            (Self::LosesSchedule(number), ToBoard::Schedule(schedule)) if schedule.sequence == *number => None,
+            (Self::LateTorques, ToBoard::Schedule(mut schedule)) => {
+                schedule.commands.iter_mut().for_each(|command| command.tick += 1);
+                Some(ToBoard::Schedule(schedule))
+            }
+            (_, message) => Some(message),
+        }
+    }
+
+    /// What goes over the line for a message of the board.
+    fn said(&mut self, mut message: FromBoard) -> Result<Vec<u8>, Gone> {
+        let sampled = match &message {
+            FromBoard::Samples(batch) => batch.samples.last().map(|sample| sample.tick),
+            _ => None,
+        };
+        let reached = |tick: u32| sampled.is_some_and(|sampled| sampled >= tick);
+        let mut bytes = Vec::new();
+        match self.clone() {
+            Self::HangsUpAt(tick) if reached(tick) => return Err(Gone),
+            Self::FallsSilentAt(tick) if reached(tick) => *self = Self::Mute,
+            Self::HalfFrameAt(tick) if reached(tick) => {
+                let frame = frame(&FromBoard::Tripped(Trip::BadDigest))?;
+                bytes.extend(&frame[..frame.len() / 2]);
+                bytes.push(0);
+                *self = Self::None;
+            }
+            Self::TripAt(tick, trip) if reached(tick) => {
+                bytes.extend(frame(&FromBoard::Tripped(trip))?);
+                *self = Self::None;
+            }
+            _ => {}
+        }
+        match (&*self, &mut message) {
+            (Self::Mute, _) => return Ok(Vec::new()),
+            (Self::OnlyGarbage, _) => return Ok(vec![0xa5, 0x5a, 0x11, 0x00, 0x22]),
+            (Self::LosesBatch(number), FromBoard::Samples(batch)) if batch.sequence == *number => {
+                return Ok(Vec::new());
+            }
+            (Self::AnotherRole, FromBoard::Hello(_)) => {
+                return frame(&(0u32, link::PROTOCOL_VERSION, [0u8, 1, 0], 9u32, "cook", 0u64));
+            }
+            (Self::AnotherDigest, FromBoard::Hello(hello)) => hello.joint_digest = !hello.joint_digest,
+            (Self::Protocol(version), FromBoard::Hello(hello)) => hello.protocol = *version,
+            (Self::Overruns(count), FromBoard::Statistics(statistics)) => statistics.overruns = *count,
+            _ => {}
+        }
+        bytes.extend(frame(&message)?);
+        Ok(bytes)
+    }
+}
+
+fn frame<M: serde::Serialize>(message: &M) -> Result<Vec<u8>, Gone> {
+    encode(message).map(|frame| frame.to_vec()).map_err(|_| Gone)
+}

@@ -1,0 +1,174 @@
+//! What a comparison of methods runs, on the host as on the board: something that moves in steps, and one run of it under
+//! torques that change and restarts. What is read off it and what a step costs are left to the caller.
+
+use model_core::gears::{Model, State, Torques};
+use model_core::numbers::{Real, digest};
+
+use crate::peer::{Peer, Start};
+use crate::plant::Plant;
+use crate::scheme::Scheme;
+use crate::two_mass::{TwoMass, TwoMassPeer};
+
+/// Something that moves in steps.
+pub trait Moving<T> {
+    /// Puts it back to the so-many-th start; nothing if there is none.
+    fn restart(&mut self, count: usize);
+    /// Torques from now on [N m].
+    fn set_torques(&mut self, drive: T, load: T);
+    /// One step.
+    fn step(&mut self);
+    /// Digest over where it is.
+    fn digest(&self) -> u64;
+}
+
+/// The core, by the scheme of its tables.
+pub struct Core<'a, T: Real, const N: usize> {
+    /// The model.
+    pub model: Model<'a, T, N>,
+    starts: &'a [State<T, N>],
+    torques: Torques<T>,
+}
+
+/// A joint by a scheme.
+pub struct Whole<'a, T: Real, const N: usize, S> {
+    /// The joint.
+    pub peer: Peer<'a, T, N, S>,
+    plant: &'a Plant<T, N>,
+    starts: &'a [Start<T, N>],
+}
+
+/// The gap model of two masses.
+pub struct Gap<'a, T: Real> {
+    /// The model.
+    pub peer: TwoMassPeer<'a, T>,
+    model: &'a TwoMass<T>,
+    starts: &'a [[T; 2]],
+}
+
+impl<'a, T: Real, const N: usize> Core<'a, T, N> {
+    /// At the first of its starts.
+    pub fn new(model: Model<'a, T, N>, starts: &'a [State<T, N>]) -> Self {
+        let mut core = Self { model, starts, torques: Torques { drive: T::ZERO, load: T::ZERO } };
+        core.restart(0);
+        core
+    }
+}
+
+impl<'a, T: Real, const N: usize, S: Scheme<T, N>> Whole<'a, T, N, S> {
+    /// At the first of its starts; none if there is none.
+    pub fn new(plant: &'a Plant<T, N>, starts: &'a [Start<T, N>]) -> Option<Self> {
+        Some(Self { peer: Peer::new(plant, starts.first()?), plant, starts })
+    }
+}
+
+impl<'a, T: Real> Gap<'a, T> {
+    /// At the first of its starts: displacements and their rates.
+    pub fn new(model: &'a TwoMass<T>, starts: &'a [[T; 2]]) -> Self {
+        let mut gap = Self { peer: TwoMassPeer::new(model, T::ZERO, T::ZERO), model, starts };
+        gap.restart(0);
+        gap
+    }
+}
+
+impl<T: Real, const N: usize> Moving<T> for Core<'_, T, N> {
+    fn restart(&mut self, count: usize) {
+        if let Some(start) = self.starts.get(count) {
+            self.model.set_state(*start);
+        }
+    }
+
+    fn set_torques(&mut self, drive: T, load: T) {
+        self.torques = Torques { drive, load };
+    }
+
+    #[inline(always)]
+    fn step(&mut self) {
+        self.model.step(self.torques);
+    }
+
+    fn digest(&self) -> u64 {
+        self.model.state_digest()
+    }
+}
+
+impl<T: Real, const N: usize, S: Scheme<T, N>> Moving<T> for Whole<'_, T, N, S> {
+    fn restart(&mut self, count: usize) {
+        if let Some(start) = self.starts.get(count) {
+            self.peer = Peer::new(self.plant, start);
+        }
+    }
+
+    fn set_torques(&mut self, drive: T, load: T) {
+        self.peer.set_torques(drive, load);
+    }
+
+    #[inline(always)]
+    fn step(&mut self) {
+        self.peer.step();
+    }
+
+    fn digest(&self) -> u64 {
+        self.peer.motion().digest()
+    }
+}
+
+impl<T: Real> Moving<T> for Gap<'_, T> {
+    fn restart(&mut self, count: usize) {
+        if let Some([place, rate]) = self.starts.get(count) {
+            self.peer = TwoMassPeer::new(self.model, *place, *rate);
+        }
+    }
+
+    fn set_torques(&mut self, drive: T, load: T) {
+        self.peer.set_torques(drive, load);
+    }
+
+    #[inline(always)]
+    fn step(&mut self) {
+        self.peer.step();
+    }
+
+    fn digest(&self) -> u64 {
+        digest::chain(digest::START, self.peer.link_offset().bits())
+    }
+}
+
+/// How far something moves, and when what changes: restarts and torques (drive, load) by the step before which they come,
+/// both in order.
+pub struct Way<R, C> {
+    /// Number of steps.
+    pub steps: u64,
+    /// Steps of the restarts.
+    pub restarts: R,
+    /// Steps and torques.
+    pub changes: C,
+}
+
+/// Moves something along a way. `look` is called before each step and after the last, ahead of what changes there; `step`
+/// takes a step. The digest is over the last state, and the last before every restart.
+pub fn follow<T: Real, M: Moving<T>>(
+    moving: &mut M,
+    way: Way<impl Iterator<Item = u64>, impl Iterator<Item = (u64, T, T)>>,
+    mut look: impl FnMut(&M),
+    mut step: impl FnMut(&mut M),
+) -> u64 {
+    let (mut restarts, mut changes) = (way.restarts.zip(1..).peekable(), way.changes.peekable());
+    let mut torques = (T::ZERO, T::ZERO);
+    let mut digest = digest::START;
+    for now in 0..=way.steps {
+        look(moving);
+        while let Some((_, count)) = restarts.next_if(|restart| restart.0 <= now) {
+            digest = digest::chain(digest, moving.digest());
+            moving.restart(count);
+            moving.set_torques(torques.0, torques.1);
+        }
+        while let Some((_, drive, load)) = changes.next_if(|change| change.0 <= now) {
+            moving.set_torques(drive, load);
+            torques = (drive, load);
+        }
+        if now < way.steps {
+            step(moving);
+        }
+    }
+    digest::chain(digest, moving.digest())
+}

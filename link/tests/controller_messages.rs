@@ -8,6 +8,7 @@ use link::virtual_joint::{KNOTS_PER_SCHEDULE, Knot, LOOP_SAMPLES_PER_BATCH, Loop
 use model_core::compensation::{Command, ImpedancePoint, Motion, Position, Shaped, Stage};
 use model_core::controller::Answer;
 use model_core::controller::course::{Demand, Stretch};
+use model_core::gears::Flank;
 use model_core::observer::{Doubt, Estimate, Estimates, Notices, Progress, Reading, Refusal, Samples, Shaft, Source};
 use parameters::ContactState;
 
@@ -83,7 +84,7 @@ fn probes() -> Vec<Option<Progress<f32>>> {
 #[test]
 fn answers_come_out_as_they_went_in() {
     for stage in [Stage::Touching, Stage::Crossing, Stage::Landing, Stage::Plain] {
-        let shaped = Shaped { torque: 1.0, stage, side: -1.0, demand: 2.0, load: [3.0, 4.0], trust: 0.5 };
+        let shaped = Shaped { torque: 1.0, stage, flank: Some(Flank::Back), demand: 2.0, load: [3.0, 4.0], trust: 0.5 };
         for probed in probes() {
             let answer = Answer { estimates: estimates(), shaped, probed };
             let wire = Answered {

@@ -23,7 +23,7 @@ impl Sender {
     /// For one controller of a case.
     pub fn new(file: &TestFile, case: &Case, controller: ControllerName, designed: Option<&Designed>) -> Self {
         let preview = controller == ControllerName::Preview;
-        let lead = designed.filter(|_| preview).map(|designed| f64::from(designed.compensation.lead));
+        let lead = designed.filter(|_| preview).map(|designed| f64::from(designed.compensation.crossing.lead));
         let gains = file.gains.filter(|_| controller.wants_gains() || controller == ControllerName::Off);
         let inertia = |gains: &Gains| gains.inertia.unwrap_or_else(|| inertia_at_link(&case.told));
         let impedance = gains.map(|gains| (gains, inertia(&gains)));

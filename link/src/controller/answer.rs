@@ -3,6 +3,7 @@
 
 use model_core::compensation::{Shaped, Stage};
 use model_core::controller::Answer;
+use model_core::gears::{Flank, sign};
 use model_core::observer::{Doubt, Estimate, Estimates, Notices, Progress, Refusal, Shaft, Source};
 use parameters::ContactState;
 use serde::{Deserialize, Serialize};
@@ -69,7 +70,7 @@ pub struct WireShaped {
     pub torque: f32,
     /// 0 touching, 1 crossing, 2 landing, 3 plain.
     pub stage: u8,
-    /// The flank in use.
+    /// The flank in use: 1 the drive flank, -1 the back flank, 0 none.
     pub side: f32,
     /// Torque that the teeth will have to pass on [N m].
     pub demand: f32,
@@ -104,8 +105,8 @@ pub struct WireEstimates {
 
 impl From<&Shaped<f32>> for WireShaped {
     fn from(shaped: &Shaped<f32>) -> Self {
-        let Shaped { torque, stage, side, demand, load, trust } = *shaped;
-        Self { torque, stage: stage as u8, side, demand, load, trust }
+        let Shaped { torque, stage, flank, demand, load, trust } = *shaped;
+        Self { torque, stage: stage as u8, side: sign(flank), demand, load, trust }
     }
 }
 
@@ -118,7 +119,7 @@ impl From<WireShaped> for Shaped<f32> {
             2 => Stage::Landing,
             _ => Stage::Plain,
         };
-        Self { torque, stage, side, demand, load, trust }
+        Self { torque, stage, flank: Flank::towards(side), demand, load, trust }
     }
 }
 

@@ -1,4 +1,4 @@
-//! How long a crossing takes. The path itself is left to `path`.
+//! How long a crossing takes.
 
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
@@ -18,13 +18,14 @@ impl<T: Real> Crossing<T> {
     /// the rated force or, up to the rated force, than what will be passed on anyway (`demand`); ramps are as steep as the
     /// motor's torque and the loop's delays allow.
     pub fn new(tables: &CompensationTables<T>, half: T, demand: T) -> Self {
-        let force = clamp(demand.abs(), tables.strike_torque, tables.hardest_strike);
-        let speed = force * tables.strike_speed_per_torque;
-        let longest = tables.longest_crossing;
+        let force = clamp(demand.abs(), tables.crossing.strike_torque, tables.crossing.hardest_strike);
+        let speed = force * tables.crossing.strike_speed_per_torque;
+        let longest = tables.crossing.longest;
         if speed <= T::ZERO {
-            return Self { duration: longest, ramp: tables.shortest_ramp };
+            return Self { duration: longest, ramp: tables.crossing.shortest_ramp };
         }
-        let Self { duration, ramp } = Self::at(speed, half + half, tables.ramp_per_speed, tables.shortest_ramp);
+        let Self { duration, ramp } =
+            Self::at(speed, half + half, tables.crossing.ramp_per_speed, tables.crossing.shortest_ramp);
         Self { duration: clamp(duration, T::ZERO, longest), ramp: clamp(ramp, T::ZERO, T::HALF * longest) }
     }
 

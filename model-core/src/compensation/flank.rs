@@ -1,20 +1,35 @@
-//! Which flank carries, when to leave it, and the way across. What torque the law wants is given; how the load will
-//! behave in between is taken as ballistic.
+//! Which flank carries, when to leave it, and the way across. The load is taken to move freely in between.
+//!
+//! [`transitions`](super::transitions) says what follows from the signs of a period; here are the signs, what is done, and
+//! the torque of each stage.
 
 use super::crossing::Crossing;
 use super::intent::Intent;
 use super::path::Path;
 use super::set_point::{Position, Stage};
 use super::situation::Situation;
+use super::transitions::{Action, Event, Events};
 use crate::compensation::tables::CompensationTables;
+use crate::gears::Flank;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
 
+/// Landing speeds up to which a motor that meets a flank on a path counts as braked: blows go with the speed, and four times
+/// what a landing makes is what planets that are struck on the way make.
+const BRAKED: i32 = 4;
+
+/// What a period shows.
+struct Signs {
+    events: Events,
+    /// A spring asks for the other flank, if not by enough to change for it.
+    against: bool,
+}
+
 /// The flank in use and the way to the next.
 #[derive(Debug, Clone)]
-pub(super) struct Flank<T: Real> {
-    /// 1 or -1: the flank that carries or is being gone to.
-    side: T,
+pub(super) struct FlankControl<T: Real> {
+    /// The flank that carries or is being gone to.
+    flank: Flank,
     stage: Stage,
     path: Path<T>,
     /// Position of the set-point when the path was laid.
@@ -27,15 +42,15 @@ pub(super) struct Flank<T: Real> {
     /// Impulse that the load has missed while no flank carried [N m s].
     owed: T,
     /// How much more than usual feedback has to ask for before the flank is changed for it: grows with every change.
-    patience: T,
+    hysteresis: T,
     /// Whether the flank in use has been asked for since the motor set out for it, or the joint to rest.
     asked: bool,
 }
 
-impl<T: Real> Flank<T> {
+impl<T: Real> FlankControl<T> {
     pub fn new() -> Self {
         Self {
-            side: T::ONE,
+            flank: Flank::Drive,
             stage: Stage::Touching,
             path: Path::default(),
             origin: Position::default(),
@@ -43,7 +58,7 @@ impl<T: Real> Flank<T> {
             opened: T::ZERO,
             rise: T::ONE,
             owed: T::ZERO,
-            patience: T::ONE,
+            hysteresis: T::ONE,
             asked: true,
         }
     }
@@ -57,8 +72,9 @@ impl<T: Real> Flank<T> {
         self.stage == Stage::Touching && !self.asked
     }
 
-    pub fn side(&self) -> T {
-        self.side
+    /// The flank that carries or is being gone to.
+    pub fn flank(&self) -> Flank {
+        self.flank
     }
 
     /// Nothing is known: whatever flank touches is the one.
@@ -67,149 +83,171 @@ impl<T: Real> Flank<T> {
         self.asked = true;
         self.rise = T::ONE;
         self.owed = T::ZERO;
-        if situation.contact != T::ZERO {
-            self.side = situation.contact;
-        }
+        self.flank = situation.contact.unwrap_or(self.flank);
     }
 
     /// Torque of this period, limits aside [N m].
     pub fn step(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, intent: &Intent<T>) -> T {
         let opened = self.opened_to(situation);
-        // A force that seems to come from the far flank while the teeth are just leaving the near one does not.
-        let felt = situation.contact * self.side > T::ZERO && opened < situation.half;
-        // A flank that is met softly is seen before it is felt.
-        let seen = opened < tables.landed * situation.half;
-        // One that stops the motor's approach is there, wherever it was thought to be.
-        let stopped = self.stage == Stage::Landing
-            && self.elapsed > tables.shortest_ramp + tables.shortest_ramp
-            && opened < tables.opening * situation.half
-            && self.opened - opened < T::HALF * tables.landing_speed * self.elapsed;
-        let closing = self.side * (situation.motor_speed - situation.link_speed);
-        let touching = felt || seen || stopped;
-        let [now, ahead] = [intent.demand_now, intent.demand_ahead].map(|demand| self.side * (demand + intent.expects));
-        let turned = now + ahead < -tables.hysteresis && ahead < -tables.hysteresis;
-        // What is only as large as its noise has to grow, and more so soon after a change of flank.
-        let later = ahead + ahead - now;
-        let grown = clamp(tables.doubt * (self.patience - T::ONE), T::ZERO, tables.most_doubt * situation.half);
-        let doubt = tables.doubt * tables.least_doubt + grown;
-        let turned = turned && later < -doubt;
+        let signs = self.signs(tables, situation, intent, opened);
         // Of a joint that idles nothing but a flank puts the error right.
-        let left = if intent.idles { tables.patience_left * tables.patience_left } else { tables.patience_left };
-        self.patience = T::ONE + left * (self.patience - T::ONE);
-        // A spring needs no flank but the one that it asks for: while that is in doubt, its own torque finds it.
-        let against = intent.spring && now < T::ZERO && ahead < T::ZERO;
-        match self.stage {
-            // What has just been met is let carry first.
-            stage if turned && (stage != Stage::Touching || self.rise >= T::ONE || !felt) => {
-                self.side = -self.side;
-                self.set_out(tables, situation, intent);
-            }
-            Stage::Touching | Stage::Landing if against => {
-                self.stage = Stage::Touching;
-                if situation.contact * self.side < T::ZERO && opened > situation.half {
-                    self.side = -self.side;
-                }
-            }
-            Stage::Touching if !touching && opened > tables.opening * situation.half && self.rise >= T::ONE => {
-                if opened > T::HALF * situation.half {
-                    self.set_out(tables, situation, intent);
-                } else {
-                    self.land(opened);
-                }
-            }
-            // Teeth that meet before the motor has been braked are about to be struck: braking comes first, unless the blow
-            // is no harder than what is to be carried.
-            Stage::Crossing if touching && closing < T::from_i32(4) * landing_speed(tables, intent.demand_now) => {
-                self.touch();
-            }
-            Stage::Landing if touching => self.touch(),
-            Stage::Crossing if self.elapsed >= self.path.duration() => self.land(opened),
-            Stage::Crossing => {
-                let crossing = self.rest_of_way(tables, situation, intent);
-                if crossing.duration < tables.hurry * (self.path.duration() - self.elapsed) {
-                    let [place, speed, _] = self.path.at(self.elapsed + tables.reaction);
-                    self.lay(tables, situation, intent, crossing, [place - self.drift(tables, situation), speed]);
-                }
-            }
-            _ => {}
+        let left = tables.switching.growth_left;
+        let left = if intent.idles { left * left } else { left };
+        self.hysteresis = T::ONE + left * (self.hysteresis - T::ONE);
+        if let Some(action) = signs.events.action(self.stage) {
+            self.act(tables, situation, intent, opened, action);
         }
+        let side: T = self.flank.sign();
         if self.stage == Stage::Touching {
-            self.rise = clamp(self.rise + tables.landing_rise, T::ZERO, T::ONE);
-            let repaid = self.rise * self.owed * tables.repayment;
+            self.rise = clamp(self.rise + tables.landing.rise, T::ZERO, T::ONE);
+            let repaid = self.rise * self.owed * tables.landing.repayment;
             self.owe(tables, (T::ONE - self.rise) * intent.demand_now - repaid, intent);
             let torque = self.rise * intent.law + repaid;
-            self.asked |= intent.rests || self.side * intent.demand_now > T::ZERO;
+            self.asked |= intent.rests || side * intent.demand_now > T::ZERO;
             // What only the flank that was left could give takes an early motor nowhere but off the one that will be needed.
             let along = along(tables, situation, intent, situation.error_speed);
-            let stays = self.waits() && !against || self.side * intent.expects > T::ZERO;
-            return if stays && self.side * (torque - along) < T::ZERO { along } else { torque };
+            let stays = self.waits() && !signs.against || side * intent.expects > T::ZERO;
+            return if stays && side * (torque - along) < T::ZERO { along } else { torque };
         }
-        self.elapsed += tables.period;
+        self.elapsed += tables.clock.period;
         self.owe(tables, intent.demand_now, intent);
         if self.stage == Stage::Landing {
             // Where the flank is does not enter, so that a wrong width costs time only; nor can it be chased for ever.
-            let speed = landing_speed(tables, intent.demand_now) + tables.landing_haste * self.elapsed;
-            let closing = self.side * clamp(speed, T::ZERO, tables.fastest_landing);
+            let speed = landing_speed(tables, intent.demand_now) + tables.landing.acceleration * self.elapsed;
+            let closing = side * clamp(speed, T::ZERO, tables.landing.fastest);
             return along(tables, situation, intent, closing);
         }
         // Torque acts one reaction time after it is asked for.
         let [target, rate, _] = self.path.at(self.elapsed);
-        let [_, _, acceleration] = self.path.at(self.elapsed + tables.reaction);
-        tables.motor_inertia * acceleration
-            + tables.gap_stiffness * (target - self.drift(tables, situation) - situation.motor)
-            + tables.motor_damping * (rate - situation.motor_speed)
+        let [_, _, acceleration] = self.path.at(self.elapsed + tables.crossing.reaction);
+        tables.body.motor_inertia * acceleration
+            + tables.crossing.stiffness * (target - self.drift(tables, situation) - situation.motor)
+            + tables.law.motor_damping * (rate - situation.motor_speed)
             + situation.lost(tables, rate, T::ZERO)
+    }
+
+    /// What a period shows.
+    fn signs(&self, tables: &CompensationTables<T>, situation: &Situation<T>, intent: &Intent<T>, opened: T) -> Signs {
+        let (landing, switching) = (&tables.landing, &tables.switching);
+        let side: T = self.flank.sign();
+        // A force that seems to come from the far flank while the teeth are just leaving the near one does not.
+        let felt = situation.contact == Some(self.flank) && opened < situation.half;
+        // A flank that is met softly is seen before it is felt.
+        let seen = opened < landing.landed * situation.half;
+        // One that stops the motor's approach is there, wherever it was thought to be.
+        let stopped = self.stage == Stage::Landing
+            && self.elapsed > tables.crossing.shortest_ramp + tables.crossing.shortest_ramp
+            && opened < landing.opening * situation.half
+            && self.opened - opened < T::HALF * landing.speed * self.elapsed;
+        let touching = felt || seen || stopped;
+        let carries = self.rise >= T::ONE;
+        let [now, ahead] = [intent.demand_now, intent.demand_ahead].map(|demand| side * (demand + intent.expects));
+        let turned = now + ahead < -switching.planned && ahead < -switching.planned;
+        // What is only as large as its noise has to grow, and more so soon after a change of flank.
+        let later = ahead + ahead - now;
+        let most = switching.most_growth * situation.half;
+        let grown = clamp(switching.measured * (self.hysteresis - T::ONE), T::ZERO, most);
+        let turned = turned && later < -(switching.measured * switching.least + grown);
+        // What has just been met is let carry first.
+        let turned = turned && (self.stage != Stage::Touching || carries || !felt);
+        // A spring needs no flank but the one that it asks for: while that is in doubt, its own torque finds it.
+        let against = intent.spring && now < T::ZERO && ahead < T::ZERO;
+        let opens = !touching && carries && opened > landing.opening * situation.half;
+        let lost = opens && opened > T::HALF * situation.half;
+        // Teeth that meet before the motor has been braked are about to be struck: braking comes first, unless the blow is
+        // no harder than what is to be carried.
+        let met = touching && (self.stage != Stage::Crossing || self.is_braked(tables, situation, intent));
+        let ended = self.elapsed >= self.path.duration();
+        let events = Events::UNDERWAY
+            .with(Event::DemandTurned, turned)
+            .with(Event::SpringUndecided, against)
+            .with(Event::FlankLost, lost)
+            .with(Event::FlankOpening, opens)
+            .with(Event::FlankMet, met)
+            .with(Event::PathEnded, ended);
+        Signs { events, against }
+    }
+
+    /// Whether the motor closes on the flank no faster than a landing that strikes as hard as what is to be carried.
+    fn is_braked(&self, tables: &CompensationTables<T>, situation: &Situation<T>, intent: &Intent<T>) -> bool {
+        let closing = self.flank.sign::<T>() * (situation.motor_speed - situation.link_speed);
+        closing < T::from_i32(BRAKED) * landing_speed(tables, intent.demand_now)
+    }
+
+    /// Does what follows from the signs.
+    fn act(
+        &mut self,
+        tables: &CompensationTables<T>,
+        situation: &Situation<T>,
+        intent: &Intent<T>,
+        opened: T,
+        action: Action,
+    ) {
+        let before = core::mem::replace(&mut self.stage, action.stage());
+        match action {
+            Action::CrossOver => {
+                self.flank = self.flank.opposite();
+                self.set_out(tables, situation, intent, before);
+            }
+            Action::CrossBack => self.set_out(tables, situation, intent, before),
+            Action::Land => {
+                self.elapsed = T::ZERO;
+                self.opened = opened;
+            }
+            Action::Carry => self.rise = T::ZERO,
+            Action::LetSpringFind => {
+                let other = self.flank.opposite();
+                if situation.contact == Some(other) && opened > situation.half {
+                    self.flank = other;
+                }
+            }
+            Action::Shorten => {
+                let crossing = self.rest_of_way(tables, situation, intent);
+                if crossing.duration < tables.crossing.shorten * (self.path.duration() - self.elapsed) {
+                    let [place, speed, _] = self.path.at(self.elapsed + tables.crossing.reaction);
+                    self.lay(tables, situation, intent, crossing, [place - self.drift(tables, situation), speed]);
+                }
+            }
+        }
     }
 
     /// How far the flank in use is from the teeth, felt at the link [rad].
     fn opened_to(&self, situation: &Situation<T>) -> T {
-        situation.half - self.side * (situation.gap - situation.shift)
+        situation.half - self.flank.sign::<T>() * (situation.gap - situation.shift)
     }
 
     /// How far the set-point has moved since the path was laid [rad].
     fn drift(&self, tables: &CompensationTables<T>, situation: &Situation<T>) -> T {
-        tables.turn * situation.origin.less(self.origin.turns, self.origin.fraction)
+        tables.gear.turn * situation.origin.less(self.origin.turns, self.origin.fraction)
     }
 
     /// Torque that the load does not get now is owed to it.
     fn owe(&mut self, tables: &CompensationTables<T>, torque: T, intent: &Intent<T>) {
-        let most = tables.torque_limit * tables.longest_crossing;
-        self.owed = if intent.spring { clamp(self.owed + tables.period * torque, -most, most) } else { T::ZERO };
+        let most = tables.limits.motor * tables.crossing.longest;
+        self.owed = if intent.spring { clamp(self.owed + tables.clock.period * torque, -most, most) } else { T::ZERO };
     }
 
-    fn touch(&mut self) {
-        self.stage = Stage::Touching;
-        self.rise = T::ZERO;
-    }
-
-    fn land(&mut self, opened: T) {
-        self.stage = Stage::Landing;
-        self.elapsed = T::ZERO;
-        self.opened = opened;
-    }
-
-    /// Leaves for the flank of `side`.
-    fn set_out(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, intent: &Intent<T>) {
-        let crossing = if self.stage == Stage::Touching {
-            Crossing::new(tables, situation.half, intent.haste)
+    /// Leaves for the flank, from a stage.
+    fn set_out(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, intent: &Intent<T>, from: Stage) {
+        let crossing = if from == Stage::Touching {
+            Crossing::new(tables, situation.half, intent.far_demand)
         } else {
             self.rest_of_way(tables, situation, intent)
         };
-        self.stage = Stage::Crossing;
         self.asked = false;
-        self.patience = clamp(self.patience + self.patience + T::TWO, T::ONE, tables.most_patience);
-        let start = [situation.motor + tables.reaction * situation.motor_speed, situation.motor_speed];
+        self.hysteresis = clamp(self.hysteresis + self.hysteresis + T::TWO, T::ONE, tables.switching.most_factor);
+        let start = [situation.motor + tables.crossing.reaction * situation.motor_speed, situation.motor_speed];
         self.lay(tables, situation, intent, crossing, start);
     }
 
-    /// The crossing of what is left of the gap on the way to the flank of `side`: one that turns round on its way has less
+    /// The crossing of what is left of the gap on the way to the flank: one that turns round on its way has less
     /// of it before it, and what it still goes the other way.
     fn rest_of_way(&self, tables: &CompensationTables<T>, situation: &Situation<T>, intent: &Intent<T>) -> Crossing<T> {
         let opened = self.opened_to(situation);
-        let opening = self.side * (situation.link_speed - situation.motor_speed);
-        let still = tables.shortest_ramp * clamp(opening, T::ZERO, opening.abs());
+        let opening = self.flank.sign::<T>() * (situation.link_speed - situation.motor_speed);
+        let still = tables.crossing.shortest_ramp * clamp(opening, T::ZERO, opening.abs());
         let half = clamp(T::HALF * (opened + still), T::ZERO, situation.half);
-        Crossing::new(tables, half, intent.haste)
+        Crossing::new(tables, half, intent.far_demand)
     }
 
     /// Lays a path to the flank where the load will be, left to itself, meeting it at a small speed. It begins when
@@ -222,27 +260,30 @@ impl<T: Real> Flank<T> {
         crossing: Crossing<T>,
         start: [T; 2],
     ) {
-        let time = crossing.duration + tables.reaction;
+        let time = crossing.duration + tables.crossing.reaction;
         let [acceleration, jerk] = [intent.free_acceleration, intent.free_jerk];
         let speed = situation.link_speed + time * (acceleration + T::HALF * time * jerk);
         let way = time * (situation.link_speed + T::HALF * time * (acceleration + T::THIRD * time * jerk));
         let place = way - situation.error + situation.shift_after(tables, way);
-        let end = [place + self.side * situation.half, speed + self.side * landing_speed(tables, intent.demand_ahead)];
+        let end = [
+            place + self.flank.sign::<T>() * situation.half,
+            speed + self.flank.sign::<T>() * landing_speed(tables, intent.demand_ahead),
+        ];
         self.path = Path::new(start, end, crossing);
         self.origin = situation.origin;
         // What is measured in this period is the path's start.
-        self.elapsed = -tables.reaction - tables.period;
+        self.elapsed = -tables.crossing.reaction - tables.clock.period;
     }
 }
 
 /// Torque of a motor that goes along with the free link, and by so much faster [N m].
 fn along<T: Real>(tables: &CompensationTables<T>, situation: &Situation<T>, intent: &Intent<T>, faster: T) -> T {
-    tables.motor_inertia * intent.free_acceleration
-        + tables.motor_damping * (situation.link_speed + faster - situation.motor_speed)
+    tables.body.motor_inertia * intent.free_acceleration
+        + tables.law.motor_damping * (situation.link_speed + faster - situation.motor_speed)
         + situation.lost(tables, situation.link_speed, T::ZERO)
 }
 
 /// Speed against the load at which a flank is met: hard enough for what it shall carry, and no harder.
 fn landing_speed<T: Real>(tables: &CompensationTables<T>, demand: T) -> T {
-    clamp(tables.landing_speed_per_torque * demand.abs(), tables.landing_speed, tables.fastest_landing)
+    clamp(tables.landing.speed_per_torque * demand.abs(), tables.landing.speed, tables.landing.fastest)
 }

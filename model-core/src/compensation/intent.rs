@@ -20,7 +20,7 @@ pub(super) struct Intent<T: Real> {
     /// Its rate [rad/s^3].
     pub free_jerk: T,
     /// How hard the far flank will be needed, which says how fast to go there [N m].
-    pub haste: T,
+    pub far_demand: T,
     /// Whether the law is a spring that was asked for: an impulse that the load missed on the way is made good afterwards,
     /// which a law stiff enough does itself, and a flank that is in doubt is left to it.
     pub spring: bool,
@@ -43,17 +43,17 @@ impl<T: Real> Intent<T> {
         demand: impl Fn(T) -> T,
         spring: bool,
     ) -> Self {
-        let unhurried = Crossing::new(tables, situation.half, T::ZERO).duration + tables.reaction;
-        let haste = demand(unhurried);
-        let crossing = Crossing::new(tables, situation.half, haste);
-        let ahead = crossing.duration + tables.reaction;
+        let unhurried = Crossing::new(tables, situation.half, T::ZERO).duration + tables.crossing.reaction;
+        let far_demand = demand(unhurried);
+        let crossing = Crossing::new(tables, situation.half, far_demand);
+        let ahead = crossing.duration + tables.crossing.reaction;
         Self {
             law,
             demand_now: demand(T::ZERO),
             demand_ahead: demand(ahead),
-            free_acceleration: -load.free() * tables.inverse_load_inertia,
-            free_jerk: -load.rate() * tables.inverse_load_inertia,
-            haste,
+            free_acceleration: -load.free() * tables.body.inverse_load_inertia,
+            free_jerk: -load.rate() * tables.body.inverse_load_inertia,
+            far_demand,
             spring,
             idles: false,
             rests: false,

@@ -1,5 +1,5 @@
 //! How much torque may be asked for so that the teeth do not pass on more than they should, with what motor and link swing
-//! against each other counted in. What the law wants is left to `position`.
+//! against each other counted in.
 //!
 //! While torque stays as it is, the torque in the teeth swings about what they will pass on at rest, T, and motor and link
 //! close at a speed v: with K between them and their reduced inertia I it comes to T + sqrt((T - F)^2 + K I v^2), F being
@@ -15,7 +15,7 @@ use crate::numbers::arithmetic::clamp;
 /// What the teeth pass on at rest under a torque that is not lost on the way, with what brakes the link if left to itself:
 /// law and load accelerate motor and load together, and the motor's share stays behind [N m].
 pub(super) fn passed<T: Real>(tables: &CompensationTables<T>, free: T, useful: T) -> T {
-    free + tables.load_share * (useful - free)
+    free + tables.body.load_share * (useful - free)
 }
 
 /// A useful torque without what would carry the teeth beyond their limit [N m].
@@ -32,24 +32,24 @@ pub(super) fn limited<T: Real>(
     let side = if passed < T::ZERO { -T::ONE } else { T::ONE };
     let allowed = allowed(tables, situation, side);
     let asked = side * passed;
-    if asked > allowed { useful - side * tables.inverse_load_share * (asked - allowed) } else { useful }
+    if asked > allowed { useful - side * tables.body.inverse_load_share * (asked - allowed) } else { useful }
 }
 
 /// The most that the flank of a side may be asked to pass on at rest: between half of the limit and the limit. Less than
 /// half would brake the motor, with delays that are a third of a swing on stiff joints.
 fn allowed<T: Real>(tables: &CompensationTables<T>, situation: &Situation<T>, side: T) -> T {
-    let most = tables.most_passed;
+    let most = tables.limits.teeth;
     let closing = side * (situation.motor_speed - situation.link_speed);
     let wound = side * (situation.motor + situation.error - situation.shift) - situation.half;
     // Seen by places without delay, but by as much wrong as a stiff joint makes of their errors; taken for too large it
     // costs a third of what it costs if taken for too small.
-    let seen = situation.stiffness * (wound + tables.reaction * closing);
+    let seen = situation.stiffness * (wound + tables.crossing.reaction * closing);
     let felt = side * situation.mesh_torque;
     let force = clamp(if felt > seen { felt } else { seen }, T::ZERO, most + most);
     let room = most - force;
     let swing =
-        if closing > T::ZERO { situation.stiffness * tables.reduced_inertia * closing * closing } else { T::ZERO };
-    let least = tables.least_room;
+        if closing > T::ZERO { situation.stiffness * tables.body.reduced_inertia * closing * closing } else { T::ZERO };
+    let least = tables.limits.least_room;
     let taken = room.abs() + swing.over(if room > least { room } else { least });
     clamp(most - T::HALF * taken, T::HALF * most, most)
 }

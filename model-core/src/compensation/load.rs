@@ -16,7 +16,7 @@ pub(super) struct LoadModel<T: Real> {
     /// By how much the link is slower than asked, smoothed [rad/s].
     slip: T,
     /// Its speed over that at which dry friction has its full size.
-    pace: T,
+    speed: T,
     /// Rate of the even part [N m/s].
     rate: T,
     /// What brakes a link that no flank carries, smoothed [N m].
@@ -40,12 +40,16 @@ struct Creep<T: Real> {
 }
 
 impl<T: Real> LoadModel<T> {
+    /// A link that creeps moves again only at a speed of which this part [-] is no creeping: noise makes up to three times
+    /// the speed of creeping.
+    const STILL_CREEPS: T = T::THIRD;
+
     pub fn new() -> Self {
         Self {
             even: T::ZERO,
             friction: T::ZERO,
             slip: T::ZERO,
-            pace: T::ZERO,
+            speed: T::ZERO,
             rate: T::ZERO,
             alone: None,
             hardest: T::ZERO,
@@ -57,7 +61,7 @@ impl<T: Real> LoadModel<T> {
 
     /// -1 to 1: what share of the dry friction brakes the link.
     fn direction(&self) -> T {
-        clamp(self.pace, -T::ONE, T::ONE)
+        clamp(self.speed, -T::ONE, T::ONE)
     }
 
     pub fn even(&self) -> T {
@@ -73,9 +77,9 @@ impl<T: Real> LoadModel<T> {
         self.friction
     }
 
-    /// Whether the link was pushed of late with more than the teeth shall pass on. Sparing them then is left to whoever pushes.
+    /// Whether the link was pushed of late with more than the teeth shall pass on. Then the teeth are not spared: whoever pushes presses them.
     pub fn throws(&self, tables: &CompensationTables<T>) -> bool {
-        self.hardest > tables.most_passed
+        self.hardest > tables.limits.teeth
     }
 
     /// What would brake the link now if no flank carried it.
@@ -86,8 +90,8 @@ impl<T: Real> LoadModel<T> {
     /// What the start of a link at rest will ask for at least, if friction can hold it: what it can needs no flank before,
     /// and is to be overcome then. 0 for a link that has to be held [N m].
     pub fn start(&self, tables: &CompensationTables<T>) -> T {
-        let held = beyond(self.even, tables.doubt + self.friction) == T::ZERO;
-        if held { T::TWO * tables.doubt + self.friction } else { T::ZERO }
+        let held = beyond(self.even, tables.switching.measured + self.friction) == T::ZERO;
+        if held { T::TWO * tables.switching.measured + self.friction } else { T::ZERO }
     }
 
     /// Friction at a speed that is planned.
@@ -102,7 +106,7 @@ impl<T: Real> LoadModel<T> {
 
     /// Whether the link is so slow that it may rub with any part of its friction.
     fn creeps(&self) -> bool {
-        creeps(self.pace)
+        creeps(self.speed)
     }
 
     /// Takes the estimate of the load torque, unless the teeth are known to be open.
@@ -112,17 +116,17 @@ impl<T: Real> LoadModel<T> {
         if self.creeps() {
             self.rate = T::ZERO;
         }
-        self.even = clamp(self.even + tables.period * self.rate, -tables.torque_limit, tables.torque_limit);
+        self.even = clamp(self.even + tables.clock.period * self.rate, -tables.limits.motor, tables.limits.motor);
         // Without a link to be seen the integral of plain control takes over.
         if !situation.feels {
-            self.even -= tables.back_calculation * self.even;
+            self.even -= tables.law.back_calculation * self.even;
         }
         let torque = estimates.load_torque;
         let known = torque.valid && torque.value.is_finite() && situation.feels;
         // More than the motor can hold is no load that it carries.
-        let held = clamp(torque.value, -tables.torque_limit, tables.torque_limit);
-        self.hardest *= tables.patience_left;
-        let push = clamp(torque.value.abs(), T::ZERO, tables.torque_limit + tables.torque_limit);
+        let held = clamp(torque.value, -tables.limits.motor, tables.limits.motor);
+        self.hardest *= tables.switching.growth_left;
+        let push = clamp(torque.value.abs(), T::ZERO, tables.limits.motor + tables.limits.motor);
         if known && push > self.hardest {
             self.hardest = push;
         }
@@ -130,10 +134,10 @@ impl<T: Real> LoadModel<T> {
         if carried {
             self.learn(tables, held);
         } else {
-            self.rate *= tables.load_rate_left;
+            self.rate *= tables.load.rate_left;
         }
         let before = self.free();
-        self.alone = (known && !carried).then(|| before + tables.settling * (held - before));
+        self.alone = (known && !carried).then(|| before + tables.switching.smoothing * (held - before));
         // What holds a link that rests alone is its friction.
         if let Some(alone) = self.alone
             && self.creeps()
@@ -144,31 +148,31 @@ impl<T: Real> LoadModel<T> {
 
     /// Integrates an error instead, where a flank should carry and no estimate says with what force.
     pub fn lean(&mut self, tables: &CompensationTables<T>, error: T) {
-        let next = self.even + tables.integral_gain * error;
+        let next = self.even + tables.law.integral * error;
         if next.is_finite() {
-            self.even = clamp(next, -tables.torque_limit, tables.torque_limit);
+            self.even = clamp(next, -tables.limits.motor, tables.limits.motor);
         }
     }
 
     /// Follows the link's speed: what is asked for has no noise, and a link that is controlled keeps to it.
     fn follow(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>) {
         let asked = situation.link_speed + situation.error_rate;
-        let slip = self.slip + tables.settling * (situation.error_rate - self.slip);
-        let pace = tables.friction_slope * (asked - slip);
-        if pace.is_finite() {
-            (self.slip, self.pace) = (slip, pace);
+        let slip = self.slip + tables.switching.smoothing * (situation.error_rate - self.slip);
+        let speed = tables.load.friction_slope * (asked - slip);
+        if speed.is_finite() {
+            (self.slip, self.speed) = (slip, speed);
         }
     }
 
     /// Learns from a reading while a flank carries. A link that creeps may rub with any part of its friction: what brakes
     /// it is followed then without asking which part it is, until it moves again.
     fn learn(&mut self, tables: &CompensationTables<T>, torque: T) {
-        let [growth_even, growth_friction, noise] = tables.load_learner;
+        let [growth_even, growth_friction, noise] = tables.load.variances;
         // Once it creeps, a speed that noise may have made does not say that it moves.
-        if creeps(if self.creep.is_some() { T::THIRD * self.pace } else { self.pace }) {
+        if creeps(if self.creep.is_some() { Self::STILL_CREEPS * self.speed } else { self.speed }) {
             let creep = self.creep.get_or_insert(Creep { even: self.even, variance: T::ZERO });
             creep.variance += growth_even;
-            self.even += tables.load_gain * (torque - self.even - self.drag());
+            self.even += tables.load.gain * (torque - self.even - self.drag());
             return;
         }
         let direction = self.direction();
@@ -178,13 +182,13 @@ impl<T: Real> LoadModel<T> {
             let followed = self.even + self.friction * direction;
             self.even = creep.even;
             self.variance[0] += creep.variance;
-            self.split(tables, followed, direction, tables.load_gain * noise);
+            self.split(tables, followed, direction, tables.load.gain * noise);
         }
         self.moved = direction;
         self.variance[0] += growth_even;
         self.variance[1] += growth_friction;
         let by = self.split(tables, torque, direction, noise);
-        self.rate = clamp(self.rate + tables.load_rate_gain * by, -tables.fastest_load, tables.fastest_load);
+        self.rate = clamp(self.rate + tables.load.rate_gain * by, -tables.load.fastest, tables.load.fastest);
     }
 
     /// Shares out what a moving link is braked with, read with the given variance; gives what the even part gets.
@@ -196,16 +200,16 @@ impl<T: Real> LoadModel<T> {
             return T::ZERO;
         }
         let (gain_even, gain_friction) = (to_even.over(total), to_friction.over(total));
-        let surprise = torque - self.even - self.friction * direction;
-        self.even += gain_even * surprise;
-        self.friction = clamp(self.friction + gain_friction * surprise, T::ZERO, tables.torque_limit);
+        let innovation = torque - self.even - self.friction * direction;
+        self.even += gain_even * innovation;
+        self.friction = clamp(self.friction + gain_friction * innovation, T::ZERO, tables.limits.motor);
         self.variance =
             [even - gain_even * to_even, friction - gain_friction * to_friction, both - gain_even * to_friction];
-        gain_even * surprise
+        gain_even * innovation
     }
 }
 
-/// Whether a link of this pace is so slow that it may rub with any part of its friction.
-fn creeps<T: Real>(pace: T) -> bool {
-    pace < T::ONE && pace > -T::ONE
+/// Whether a link of this speed is so slow that it may rub with any part of its friction.
+fn creeps<T: Real>(speed: T) -> bool {
+    speed < T::ONE && speed > -T::ONE
 }

@@ -1,13 +1,13 @@
-//! Takes the lost motion out: from estimates and a set-point to a motor torque, once a control period. Estimating is
-//! left to `observer`, limits of the motor's current to the motor controller.
+//! Takes the lost motion out: from estimates and a set-point to a motor torque, once a control period.
 //!
 //! The structure, front to back:
 //! 1. `position` and `impedance` turn a set-point into an `Intent`: the torque that the control law
 //!    gives while a flank carries, and the torque that the teeth will have to pass on, now and one crossing later.
-//! 2. `flank` decides from that which flank shall carry, and when to leave for it.
+//! 2. `flank` decides from that which flank shall carry, and when to leave for it, by the table in [`transitions`].
 //! 3. `crossing` and `path` take the motor through the gap to where the load will be, and softly onto the flank.
 //! 4. `limit` keeps what the teeth pass on within bounds.
-//! 5. `load` knows what brakes the link and how that changes when the motion turns round, `habit` how motions start.
+//! 5. `load` knows what brakes the link and how that changes when the motion turns round, `start_prediction` how
+//!    motions start.
 //! 6. `plain` is the same control law on the motor alone, without compensation; it takes over, blended, where the
 //!    estimates are not valid.
 //!
@@ -17,7 +17,6 @@ mod crossing;
 #[cfg(feature = "design")]
 pub mod design;
 mod flank;
-mod habit;
 mod impedance;
 mod intent;
 mod limit;
@@ -25,11 +24,13 @@ mod load;
 mod path;
 mod plain;
 mod position;
-mod sender;
 mod set_point;
 mod situation;
+mod start_prediction;
 mod step;
+mod stream;
 pub mod tables;
+pub mod transitions;
 
 pub use set_point::{Command, ImpedancePoint, Motion, Position, Shaped, Stage};
 pub use step::Compensation;

@@ -1,6 +1,6 @@
 //! The path of a crossing: up to a steady speed, along, and down to the speed of arrival. Planets hang loose in the gap
 //! and are struck somewhere on the way, so that the steady speed is what a crossing's force depends on, and a path
-//! that rises above it anywhere would be slower for the same blow. How long a crossing may take is left to `crossing`.
+//! that rises above it anywhere would be slower for the same blow.
 
 use super::crossing::Crossing;
 use crate::numbers::Real;

@@ -18,6 +18,13 @@ pub(super) struct Plain<T: Real> {
 }
 
 impl<T: Real> Plain<T> {
+    /// Speed of the link against the set-point beyond which it counts as thrown, as travel in a time constant of the loop
+    /// over the half-gap [-].
+    const THROWN: T = T::QUARTER;
+
+    /// By how much slower than the loop itself what lies between motor and link is smoothed [-].
+    const SMOOTHING: T = T::QUARTER;
+
     pub fn new() -> Self {
         Self { integral: T::ZERO, beyond: T::ZERO }
     }
@@ -37,8 +44,9 @@ impl<T: Real> Plain<T> {
     ) -> T {
         // A blow is over before it could be answered.
         let known = if load.throws(tables) { T::ZERO } else { load.even() + load.planned_drag(tables, now.speed) };
-        (tables.load_inertia + tables.motor_inertia) * now.acceleration - tables.position_gain * self.place(situation)
-            + tables.damping_gain * (now.speed - situation.motor_speed)
+        (tables.body.load_inertia + tables.body.motor_inertia) * now.acceleration
+            - tables.law.position * self.place(situation)
+            + tables.law.damping * (now.speed - situation.motor_speed)
             + known
             + self.integral
     }
@@ -51,21 +59,22 @@ impl<T: Real> Plain<T> {
     /// Integrates; `cut` is what the limit took off. Under compensation the integral fades, so that it is ready and
     /// empty when it is needed.
     pub fn take(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, cut: T, trust: T) {
-        let growth = tables.back_calculation * cut - tables.integral_gain * self.place(situation);
+        let growth = tables.law.back_calculation * cut - tables.law.integral * self.place(situation);
         // What a flank carries is as far from the link as it is; nothing is said by teeth that may be open, nor while the
         // link is thrown to and fro.
-        let thrown = tables.period * situation.error_rate.abs() > T::QUARTER * tables.back_calculation * situation.half;
+        let thrown = tables.clock.period * situation.error_rate.abs()
+            > Self::THROWN * tables.law.back_calculation * situation.half;
         let beyond = if !situation.feels {
             T::ZERO
-        } else if situation.contact == T::ZERO || thrown {
+        } else if situation.contact.is_none() || thrown {
             self.beyond
         } else {
             situation.confirmed_motor + situation.error
         };
-        self.beyond += T::QUARTER * tables.back_calculation * (beyond - self.beyond);
-        let next = self.integral + (T::ONE - trust) * growth - trust * tables.back_calculation * self.integral;
+        self.beyond += Self::SMOOTHING * tables.law.back_calculation * (beyond - self.beyond);
+        let next = self.integral + (T::ONE - trust) * growth - trust * tables.law.back_calculation * self.integral;
         if next.is_finite() {
-            self.integral = clamp(next, -tables.torque_limit, tables.torque_limit);
+            self.integral = clamp(next, -tables.limits.motor, tables.limits.motor);
         }
     }
 }

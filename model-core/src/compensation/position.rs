@@ -1,17 +1,19 @@
 //! The control law of position mode: spring on the link, damper on the motor, acceleration and load fed forward. The
 //! load estimate takes the place of an integral.
 
-use super::habit::Habit;
 use super::intent::Intent;
 use super::limit::{limited, passed};
 use super::load::LoadModel;
 use super::set_point::Motion;
 use super::situation::Situation;
+use super::start_prediction::StartPrediction;
 use crate::compensation::tables::CompensationTables;
+use crate::gears::{Flank, sign};
 use crate::numbers::Real;
-use crate::numbers::arithmetic::{beyond, clamp, sign};
+use crate::numbers::arithmetic::{beyond, clamp};
 
-/// How much faster the growth of what is asked for is smoothed than torque that is measured.
+/// How much faster the growth of what is asked for is smoothed than torque that is measured: planners' steps are coarse, but
+/// without noise.
 const SOONER: i32 = 8;
 
 /// What position mode remembers.
@@ -20,15 +22,15 @@ pub(super) struct PositionLaw<T: Real> {
     /// Acceleration asked for one period ago.
     before: Option<T>,
     /// Error that is let be while the motion rests, grown by crossings that feedback alone has caused [rad].
-    indulgence: T,
-    /// Sign of the demand ahead, one period ago.
-    asked: T,
+    deadband: T,
+    /// The flank that the demand ahead asked for last, at this rest.
+    asked: Option<Flank>,
     /// How long ago it last changed, as far as that matters [s].
     since: T,
     /// Demand as far as it is measured and not planned, smoothed [N m].
     level: T,
     /// How the motion usually starts.
-    habit: Habit<T>,
+    start: StartPrediction<T>,
     /// By how much the acceleration asked for grows in a period, smoothed: planners send it in coarser steps [rad/s^2].
     growth: T,
 }
@@ -37,11 +39,11 @@ impl<T: Real> PositionLaw<T> {
     pub fn new() -> Self {
         Self {
             before: None,
-            indulgence: T::ZERO,
-            asked: T::ZERO,
+            deadband: T::ZERO,
+            asked: None,
             since: T::ZERO,
             level: T::ZERO,
-            habit: Habit::new(),
+            start: StartPrediction::new(),
             growth: T::ZERO,
         }
     }
@@ -52,7 +54,7 @@ impl<T: Real> PositionLaw<T> {
 
     /// The error, less what is let be.
     pub fn heeded(&self, situation: &Situation<T>) -> T {
-        beyond(situation.error, self.indulgence)
+        beyond(situation.error, self.deadband)
     }
 
     pub fn intend(
@@ -63,86 +65,92 @@ impl<T: Real> PositionLaw<T> {
         now: &Motion<T>,
         ahead: Option<&Motion<T>>,
     ) -> Intent<T> {
-        let (asked, known) = self.course(tables, now, ahead);
+        let (asked, known) = self.trajectory(tables, now, ahead);
         let rests = now.speed == T::ZERO && now.acceleration == T::ZERO && (ahead.is_none() || asked == [T::ZERO; 2]);
-        let let_be = if rests { self.indulgence } else { T::ZERO };
+        let let_be = if rests { self.deadband } else { T::ZERO };
 
-        let useful = (tables.load_inertia + tables.motor_inertia) * now.acceleration
+        let useful = (tables.body.load_inertia + tables.body.motor_inertia) * now.acceleration
             + load.even()
             + load.planned_drag(tables, now.speed)
-            + tables.position_gain * beyond(situation.error, let_be)
-            + tables.damping_gain * situation.error_rate;
+            + tables.law.position * beyond(situation.error, let_be)
+            + tables.law.damping * situation.error_rate;
         // What is beyond the limits must not drown the damper.
         let all = passed(tables, load.free(), useful);
-        let most = if load.throws(tables) { all.abs() } else { tables.most_passed };
+        let most = if load.throws(tables) { all.abs() } else { tables.limits.teeth };
         let passed = clamp(all, -most, most);
-        let useful = useful - tables.inverse_load_share * (all - passed);
+        let useful = useful - tables.body.inverse_load_share * (all - passed);
         let asked_for = useful + situation.lost(tables, now.speed, passed);
-        let law = clamp(asked_for, -tables.torque_limit, tables.torque_limit) + situation.calm(tables);
+        let law = clamp(asked_for, -tables.limits.motor, tables.limits.motor) + situation.damping_torque(tables);
         let lost = situation.lost(tables, situation.link_speed, passed);
         let law = limited(tables, load, situation, law - lost) + lost;
         let level = load.even()
             + (load.drag() - load.planned_drag(tables, now.speed))
-            + tables.position_gain * beyond(situation.error, let_be)
-            + tables.damping_gain * situation.error_rate;
-        // News that are large against the doubt are no noise, and are taken up faster.
-        self.level += tables.period * load.rate();
-        let news = level - self.level;
-        let weight = tables.eagerness * news;
-        self.level += clamp(tables.settling * clamp(weight * weight, T::ONE, tables.rate), T::ZERO, T::HALF) * news;
+            + tables.law.position * beyond(situation.error, let_be)
+            + tables.law.damping * situation.error_rate;
+        // Changes that are large against the noise are taken up faster.
+        self.level += tables.clock.period * load.rate();
+        let change = level - self.level;
+        let weight = tables.switching.inverse_step * change;
+        self.level +=
+            clamp(tables.switching.smoothing * clamp(weight * weight, T::ONE, tables.clock.rate), T::ZERO, T::HALF)
+                * change;
         let planned = |time: T| {
             let part = time.over(known);
             let speed = now.speed + time * (now.acceleration + T::HALF * part * asked[1]);
             let speed = if ahead.is_some() { now.speed + part * asked[0] } else { speed };
-            tables.load_inertia * (now.acceleration + part * asked[1]) + load.planned_drag(tables, speed)
+            tables.body.load_inertia * (now.acceleration + part * asked[1]) + load.planned_drag(tables, speed)
         };
         let level = self.level;
         let rate = load.rate();
         let demand = |time: T| planned(time) + level + time * rate;
         // A load that is felt has its reasons, and a flank that carries it rests.
-        let idles = rests && beyond(load.even(), tables.doubt) == T::ZERO;
-        let course = if now.speed == T::ZERO { now.acceleration } else { now.speed };
-        let likely = self.habit.follow(tables, situation, course, rests);
-        let expects = if ahead.is_none() { likely * load.start(tables) } else { T::ZERO };
+        let idles = rests && beyond(load.even(), tables.switching.measured) == T::ZERO;
+        let direction = if now.speed == T::ZERO { now.acceleration } else { now.speed };
+        let likely = self.start.step(tables, situation, direction, rests);
+        let expects = if ahead.is_none() { sign::<T>(likely) * load.start(tables) } else { T::ZERO };
         let intent = Intent { idles, rests, expects, ..Intent::new(tables, load, situation, law, demand, false) };
-        let surely = beyond(intent.demand_ahead, tables.doubt * tables.least_doubt);
-        self.indulge(tables, rests, idles, surely, situation.half);
+        let surely = beyond(intent.demand_ahead, tables.switching.measured * tables.switching.least);
+        self.find_deadband(tables, rests, idles, surely, situation.half);
         intent
     }
 
     /// By how much speed and acceleration asked for will have changed after a time that is never zero: as the preview
     /// says or, without one, as the jerk does.
-    fn course(&mut self, tables: &CompensationTables<T>, now: &Motion<T>, ahead: Option<&Motion<T>>) -> ([T; 2], T) {
+    fn trajectory(
+        &mut self,
+        tables: &CompensationTables<T>,
+        now: &Motion<T>,
+        ahead: Option<&Motion<T>>,
+    ) -> ([T; 2], T) {
         let before = self.before.replace(now.acceleration);
         match ahead {
-            Some(ahead) => ([ahead.speed - now.speed, ahead.acceleration - now.acceleration], tables.lead),
+            Some(ahead) => ([ahead.speed - now.speed, ahead.acceleration - now.acceleration], tables.crossing.lead),
             None => {
                 let by = before.map_or(T::ZERO, |before| now.acceleration - before);
-                self.growth += T::from_i32(SOONER) * tables.settling * (by - self.growth);
-                ([T::ZERO, self.growth], tables.period)
+                self.growth += T::from_i32(SOONER) * tables.switching.smoothing * (by - self.growth);
+                ([T::ZERO, self.growth], tables.clock.period)
             }
         }
     }
 
     /// Doubles the error that is let be whenever a joint at rest asks for the other flank soon after it asked for this
     /// one, which no load does but a loop that hunts; forgives it slowly, and at once when the joint is to move.
-    fn indulge(&mut self, tables: &CompensationTables<T>, rests: bool, idles: bool, demand: T, half: T) {
-        self.since = clamp(self.since + tables.period, T::ZERO, tables.hunting);
+    fn find_deadband(&mut self, tables: &CompensationTables<T>, rests: bool, idles: bool, demand: T, half: T) {
+        self.since = clamp(self.since + tables.clock.period, T::ZERO, tables.rest.hunting);
         if !rests {
-            self.indulgence = T::ZERO;
-            self.asked = T::ZERO;
+            self.deadband = T::ZERO;
+            self.asked = None;
             return;
         }
-        self.indulgence = if idles { self.indulgence * tables.forgiving } else { T::ZERO };
-        if self.asked * demand < T::ZERO {
-            if self.since < tables.hunting {
-                let grown = self.indulgence + self.indulgence + tables.first_indulgence * half;
-                self.indulgence = clamp(grown, T::ZERO, tables.last_indulgence * half);
+        self.deadband = if idles { self.deadband * tables.rest.deadband_left } else { T::ZERO };
+        let asks = Flank::towards(demand);
+        if asks.is_some_and(|flank| self.asked == Some(flank.opposite())) {
+            if self.since < tables.rest.hunting {
+                let grown = self.deadband + self.deadband + tables.rest.first_deadband * half;
+                self.deadband = clamp(grown, T::ZERO, tables.rest.largest_deadband * half);
             }
             self.since = T::ZERO;
         }
-        if demand != T::ZERO {
-            self.asked = sign(demand);
-        }
+        self.asked = asks.or(self.asked);
     }
 }

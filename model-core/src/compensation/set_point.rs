@@ -1,5 +1,6 @@
-//! What the compensation is asked for and what it answers. Sending either over a wire is left to the roles of a board.
+//! What the compensation is asked for and what it answers.
 
+use crate::gears::Flank;
 use crate::numbers::Real;
 
 /// An angle over any number of turns.
@@ -79,8 +80,8 @@ pub struct Shaped<T: Real> {
     pub torque: T,
     /// What it is about.
     pub stage: Stage,
-    /// The flank that carries or is being gone to: 1 drives forwards.
-    pub side: T,
+    /// The flank that carries or is being gone to; `None` without a compensation.
+    pub flank: Option<Flank>,
     /// Torque that the teeth will have to pass on after a crossing that began now [N m].
     pub demand: T,
     /// What brakes the link besides dry friction, and the dry friction, as learnt [N m].

@@ -3,11 +3,11 @@
 
 use super::set_point::{Command, Position};
 use crate::compensation::tables::CompensationTables;
+use crate::gears::Flank;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
 use crate::numbers::phase::sine_cosine;
 use crate::observer::{Estimates, Source};
-use parameters::ContactState;
 
 /// Where everything is; angles are less the set-point's position, so that they stay small at any number of turns.
 #[derive(Debug, Clone, Copy)]
@@ -43,8 +43,8 @@ pub(super) struct Situation<T: Real> {
     pub shift_slope: T,
     /// Gap coordinate, felt at the link: from -half to half about the shift while every mesh is free [rad].
     pub gap: T,
-    /// 1 or -1 with a flank touching, else 0.
-    pub contact: T,
+    /// The flank that touches.
+    pub contact: Option<Flank>,
     /// Whether the teeth are known to pass on nothing.
     pub open: bool,
     /// Whether both shafts are seen.
@@ -59,21 +59,17 @@ impl<T: Real> Situation<T> {
             Command::Position { now, .. } => (now.position, now.speed),
             Command::Impedance(point) => (point.position, point.speed),
         };
-        let contact = match estimates.reported_contact {
-            ContactState::DriveSide => T::ONE,
-            ContactState::BackSide => -T::ONE,
-            ContactState::Separated => T::ZERO,
-        };
-        let [numerator, denominator] = tables.ratio.map(i64::from);
+        let contact = Flank::touched(estimates.reported_contact);
+        let [numerator, denominator] = tables.gear.ratio.map(i64::from);
         let whole = denominator * i64::from(estimates.motor.turns) - numerator * i64::from(origin.turns);
-        let motor_turns =
-            T::from_i64(whole) * tables.inverse_denominator + estimates.motor.fraction - tables.gear * origin.fraction;
-        let motor = tables.turn * tables.inverse_gear * motor_turns - offset;
-        let half = clamp(tables.inverse_lever * estimates.half_backlash.value, T::ZERO, tables.widest_half);
-        let [softest, stiffest] = tables.compliances;
+        let motor_turns = T::from_i64(whole) * tables.gear.inverse_denominator + estimates.motor.fraction
+            - tables.gear.motor_per_link * origin.fraction;
+        let motor = tables.gear.turn * tables.gear.link_per_motor * motor_turns - offset;
+        let half = clamp(tables.gear.inverse_lever * estimates.half_backlash.value, T::ZERO, tables.body.widest_half);
+        let [softest, stiffest] = tables.body.compliances;
         let stiffness = T::ONE.over(clamp(estimates.compliance.value, stiffest, softest));
-        let at_link = T::HALF * tables.inverse_lever;
-        let error = tables.turn * origin.less(estimates.link.turns, estimates.link.fraction);
+        let at_link = T::HALF * tables.gear.inverse_lever;
+        let error = tables.gear.turn * origin.less(estimates.link.turns, estimates.link.fraction);
         let confirmed_motor = if estimates.source == Source::Both && error.is_finite() {
             clamp(motor, -error - half - half, half + half - error)
         } else {
@@ -84,19 +80,20 @@ impl<T: Real> Situation<T> {
             error_rate: speed - estimates.link.speed,
             motor,
             confirmed_motor,
-            motor_speed: tables.inverse_gear * estimates.motor.speed,
+            motor_speed: tables.gear.link_per_motor * estimates.motor.speed,
             link_speed: estimates.link.speed,
             origin,
             half,
             mesh_torque: estimates.mesh_torque.value,
             stiffness,
-            losses: [estimates.torque_bias, estimates.motor_friction].map(|loss| tables.gear * loss.value),
+            losses: [estimates.torque_bias, estimates.motor_friction]
+                .map(|loss| tables.gear.motor_per_link * loss.value),
             error_speed: at_link * estimates.flank_shift_slope * estimates.link.speed,
             shift: at_link * estimates.flank_shift,
             shift_slope: at_link * estimates.flank_shift_slope,
             gap: at_link * estimates.gap.value,
             contact,
-            open: estimates.contact_valid && contact == T::ZERO,
+            open: estimates.contact_valid && contact.is_none(),
             feels: false,
             sees: false,
         };
@@ -108,28 +105,28 @@ impl<T: Real> Situation<T> {
         Self { feels, sees: feels && knows, ..situation }
     }
 
-    /// The shift of the flanks when the link will have turned so far [rad].
-    pub fn shift_after(&self, tables: &CompensationTables<T>, way: T) -> T {
-        let (sine, cosine) = sine_cosine((tables.mesh_phase_per_radian * way).to_phase());
-        self.shift * cosine + self.shift_slope * tables.radians_per_mesh * sine
+    /// The shift of the flanks when the link will have turned by an angle [rad].
+    pub fn shift_after(&self, tables: &CompensationTables<T>, angle: T) -> T {
+        let (sine, cosine) = sine_cosine((tables.gear.mesh_phase_per_radian * angle).to_phase());
+        self.shift * cosine + self.shift_slope * tables.gear.radians_per_mesh * sine
     }
 
     /// Torque that is lost between motor and load at a speed, while the teeth pass on a torque [N m].
     pub fn lost(&self, tables: &CompensationTables<T>, speed: T, passed: T) -> T {
         let direction = planned_direction(tables, speed);
-        let [driving, driven] = tables.gear_losses;
+        let [driving, driven] = tables.gear.losses;
         let ratio = if passed * direction > T::ZERO { driving } else { driven };
         self.losses[0] + (self.losses[1] + ratio * passed.abs()) * direction
     }
 
-    /// Torque of the damper on the motor against the link; what the transmission error makes it do is none of its
-    /// business [N m].
-    pub fn calm(&self, tables: &CompensationTables<T>) -> T {
-        tables.motor_damping * (self.link_speed + self.error_speed - self.motor_speed)
+    /// Torque of the damper on the motor against the link; it leaves alone what the transmission error makes the motor do
+    /// [N m].
+    pub fn damping_torque(&self, tables: &CompensationTables<T>) -> T {
+        tables.law.motor_damping * (self.link_speed + self.error_speed - self.motor_speed)
     }
 }
 
 /// -1 to 1: what share of the dry friction brakes the link at a speed that is planned: no noise hides its sign.
 pub(super) fn planned_direction<T: Real>(tables: &CompensationTables<T>, speed: T) -> T {
-    clamp(tables.planned_friction_slope * speed, -T::ONE, T::ONE)
+    clamp(tables.load.planned_friction_slope * speed, -T::ONE, T::ONE)
 }

@@ -1,7 +1,6 @@
 //! One control period of the compensation: the law that the command asks for, which flank carries it, and the torque.
-//! What each of these is stands beside it.
 
-use super::flank::Flank;
+use super::flank::FlankControl;
 use super::impedance::ImpedanceLaw;
 use super::load::LoadModel;
 use super::plain::Plain;
@@ -18,11 +17,11 @@ use crate::observer::Estimates;
 pub struct Compensation<'tables, T: Real> {
     tables: &'tables CompensationTables<T>,
     load: LoadModel<T>,
-    flank: Flank<T>,
+    flank: FlankControl<T>,
     position: PositionLaw<T>,
     impedance: ImpedanceLaw<T>,
     plain: Plain<T>,
-    /// By how much the motor's encoder leads the output's, as last vouched for alone or as part of the gap coordinate; at
+    /// By how much the motor's encoder leads the output's, as last valid alone or as part of the gap coordinate; at
     /// the output [rad].
     offset: T,
     /// 0: plain control; 1: compensation.
@@ -35,7 +34,7 @@ impl<'tables, T: Real> Compensation<'tables, T> {
         Self {
             tables,
             load: LoadModel::new(),
-            flank: Flank::new(),
+            flank: FlankControl::new(),
             position: PositionLaw::new(),
             impedance: ImpedanceLaw::new(),
             plain: Plain::new(),
@@ -47,7 +46,7 @@ impl<'tables, T: Real> Compensation<'tables, T> {
     /// Back to what was designed, part by part: a whole new compensation would need as much stack again.
     pub fn restart(&mut self) {
         self.load = LoadModel::new();
-        self.flank = Flank::new();
+        self.flank = FlankControl::new();
         self.position.forget();
         self.impedance.forget();
         self.plain = Plain::new();
@@ -58,8 +57,8 @@ impl<'tables, T: Real> Compensation<'tables, T> {
     /// Takes the estimates and the command of one control period. The torque is always finite and within its limit.
     pub fn step(&mut self, estimates: &Estimates<T>, command: &Command<T>) -> Shaped<T> {
         let tables = self.tables;
-        let vouched = estimates.encoder_offset.valid || estimates.gap.valid;
-        if vouched && estimates.encoder_offset.value.is_finite() {
+        let known = estimates.encoder_offset.valid || estimates.gap.valid;
+        if known && estimates.encoder_offset.value.is_finite() {
             self.offset = estimates.encoder_offset.value;
         }
         let situation = Situation::new(tables, estimates, self.offset, command);
@@ -80,7 +79,7 @@ impl<'tables, T: Real> Compensation<'tables, T> {
             }
         };
         let sees = situation.sees && intent.is_finite();
-        let change = if sees { tables.trust_step } else { -tables.trust_step };
+        let change = if sees { tables.law.trust_step } else { -tables.law.trust_step };
         self.trust = clamp(self.trust + change, T::ZERO, T::ONE);
         let compensated = if sees {
             self.flank.step(tables, &situation, &intent)
@@ -92,13 +91,13 @@ impl<'tables, T: Real> Compensation<'tables, T> {
         };
         let wanted = plain + self.trust * (compensated - plain);
         let torque =
-            if wanted.is_finite() { clamp(wanted, -tables.torque_limit, tables.torque_limit) } else { T::ZERO };
+            if wanted.is_finite() { clamp(wanted, -tables.limits.motor, tables.limits.motor) } else { T::ZERO };
         self.plain.take(tables, &situation, torque - wanted, self.trust);
         let stage = if self.trust > T::ZERO { self.flank.stage() } else { Stage::Plain };
         Shaped {
-            torque: torque * tables.inverse_gear,
+            torque: torque * tables.gear.link_per_motor,
             stage,
-            side: self.flank.side(),
+            flank: Some(self.flank.flank()),
             demand: if sees { intent.demand_ahead } else { T::ZERO },
             load: [self.load.even(), self.load.friction()],
             trust: self.trust,

@@ -1,21 +1,51 @@
-//! What the compensation needs as plain numbers, made by `compensation::design`. Angles, torques and inertias are felt
-//! at the link; how the numbers come about is left to the design.
+//! What the compensation needs as plain numbers, made by `compensation::design`, a struct for each of its subjects. Angles,
+//! torques and inertias are felt at the link.
 
 use crate::numbers::Real;
 
 /// Tables of the compensation of one joint at one control rate and bandwidth.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CompensationTables<T: Real> {
+    /// The control clock.
+    pub clock: ClockTable<T>,
+    /// From motor to link, and from lengths along the line of action to angles.
+    pub gear: GearTable<T>,
+    /// Inertias and compliance of the joint.
+    pub body: BodyTable<T>,
+    /// Limits of motor and teeth.
+    pub limits: LimitTable<T>,
+    /// Gains of the control laws.
+    pub law: LawTable<T>,
+    /// The way through the gap.
+    pub crossing: CrossingTable<T>,
+    /// Meeting a flank, and losing it.
+    pub landing: LandingTable<T>,
+    /// When the flank is changed.
+    pub switching: SwitchingTable<T>,
+    /// A joint at rest whose flank hunts.
+    pub rest: RestTable<T>,
+    /// Learner of the load.
+    pub load: LoadTable<T>,
+}
+
+/// The control clock.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ClockTable<T: Real> {
     /// Control periods a second [Hz].
     pub rate: T,
     /// Control period [s].
     pub period: T,
+}
+
+/// From motor to link, and from lengths along the line of action to angles.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GearTable<T: Real> {
     /// Motor turns over link turns as a fraction of whole numbers.
     pub ratio: [i32; 2],
     /// The same as a number.
-    pub gear: T,
+    pub motor_per_link: T,
     /// Its inverse.
-    pub inverse_gear: T,
+    pub link_per_motor: T,
     /// Inverse of the ratio's denominator.
     pub inverse_denominator: T,
     /// A whole turn [rad].
@@ -26,8 +56,13 @@ pub struct CompensationTables<T: Real> {
     pub mesh_phase_per_radian: T,
     /// Radians of the link for each radian of the mesh phase.
     pub radians_per_mesh: T,
-    /// Half the lost motion is never taken for more than this [rad].
-    pub widest_half: T,
+    /// What the gears lose over what the teeth pass on, while the motor drives and while the load does.
+    pub losses: [T; 2],
+}
+
+/// Inertias and compliance of the joint.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BodyTable<T: Real> {
     /// What turns with the motor while the gap is open [kg m^2].
     pub motor_inertia: T,
     /// The rest [kg m^2].
@@ -42,32 +77,51 @@ pub struct CompensationTables<T: Real> {
     pub reduced_inertia: T,
     /// Largest and smallest compliance that is believed [rad/(N m)].
     pub compliances: [T; 2],
-    /// What the gears lose over what the teeth pass on, while the motor drives and while the load does.
-    pub gear_losses: [T; 2],
+    /// Half the lost motion is never taken for more than this [rad].
+    pub widest_half: T,
+}
+
+/// Limits of motor and teeth.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LimitTable<T: Real> {
+    /// Largest torque [N m].
+    pub motor: T,
     /// Most that the teeth shall pass on in position mode [N m].
-    pub most_passed: T,
+    pub teeth: T,
     /// What is left to that, at least, as far as a swing is divided by it [N m].
     pub least_room: T,
+}
+
+/// Gains of the control laws.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LawTable<T: Real> {
     /// Spring of the loop [N m/rad].
-    pub position_gain: T,
+    pub position: T,
     /// Damper of the loop, on the link [N m s/rad].
-    pub damping_gain: T,
+    pub damping: T,
     /// Damper on the motor against the link, and on the way through the gap [N m s/rad].
     pub motor_damping: T,
     /// Share of that damper in impedance mode.
-    pub impedance_calm: T,
-    /// Spring on the way through the gap [N m/rad].
-    pub gap_stiffness: T,
+    pub impedance_damping: T,
     /// Integral of the plain loop over one period [N m/rad].
-    pub integral_gain: T,
+    pub integral: T,
     /// Share of what the limit cut off that the integral gives back each period.
     pub back_calculation: T,
-    /// Largest torque [N m].
-    pub torque_limit: T,
+    /// Change of the trust in the estimates in one period.
+    pub trust_step: T,
+    /// How long an impedance set-point may be held before it counts as standing still [s].
+    pub longest_hold: T,
+}
+
+/// The way through the gap.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CrossingTable<T: Real> {
     /// How far ahead set-points are wanted [s].
     pub lead: T,
     /// From deciding to the torque's effect [s].
     pub reaction: T,
+    /// Spring on the way through the gap [N m/rad].
+    pub stiffness: T,
     /// Speed against the link at which planets that are struck stand for a torque, for each N m of it [rad/s/(N m)].
     pub strike_speed_per_torque: T,
     /// That torque at little demand [N m].
@@ -79,65 +133,81 @@ pub struct CompensationTables<T: Real> {
     /// Time that torque needs on the ramp for each rad/s [s^2/rad].
     pub ramp_per_speed: T,
     /// Longest crossing [s].
-    pub longest_crossing: T,
+    pub longest: T,
     /// A way through the gap is laid anew when less than this share of what is left of it would do.
-    pub hurry: T,
+    pub shorten: T,
+}
+
+/// Meeting a flank, and losing it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LandingTable<T: Real> {
     /// Speed against the load at which a flank is met [rad/s].
-    pub landing_speed: T,
+    pub speed: T,
     /// The same for each N m that the flank will carry, if that is more [rad/s/(N m)].
-    pub landing_speed_per_torque: T,
+    pub speed_per_torque: T,
     /// By how much a landing quickens while it finds nothing [rad/s^2].
-    pub landing_haste: T,
+    pub acceleration: T,
     /// Its highest speed [rad/s].
-    pub fastest_landing: T,
+    pub fastest: T,
     /// Rise of the law's torque after a landing, in one period.
-    pub landing_rise: T,
+    pub rise: T,
     /// Rate at which a missed impulse is made good [1/s].
     pub repayment: T,
     /// Share of the half-gap that has to open before the loss of a flank is believed.
     pub opening: T,
     /// Share of the half-gap within which a flank is as good as touched.
     pub landed: T,
+}
+
+/// When the flank is changed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SwitchingTable<T: Real> {
     /// Demand beyond which a change of its sign counts [N m].
-    pub hysteresis: T,
+    pub planned: T,
     /// Measured torque below which no flank is changed for it soon after a change, for each unit of patience [N m].
-    pub doubt: T,
-    /// Share of news that the measured torque takes up in one period.
-    pub settling: T,
-    /// Inverse of the news from which on they are taken up faster [1/(N m)].
-    pub eagerness: T,
+    pub measured: T,
     /// How much of it is left when nothing has changed for long.
-    pub least_doubt: T,
-    /// What is left of a grown patience after one period.
-    pub patience_left: T,
-    /// The most patience: how many times the feedback torque above.
-    pub most_patience: T,
+    pub least: T,
     /// The most that the doubt grows by, for each radian of half the lost motion [N m/rad].
-    pub most_doubt: T,
+    pub most_growth: T,
+    /// What is left of a grown patience after one period.
+    pub growth_left: T,
+    /// The most patience: how many times the feedback torque above.
+    pub most_factor: T,
+    /// Share of news that the measured torque takes up in one period.
+    pub smoothing: T,
+    /// Inverse of the news from which on they are taken up faster [1/(N m)].
+    pub inverse_step: T,
+}
+
+/// A joint at rest whose flank hunts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RestTable<T: Real> {
     /// A joint at rest that asks for the other flank within this time hunts [s].
     pub hunting: T,
     /// Error let be after the first crossing that feedback alone has caused, over half the lost motion.
-    pub first_indulgence: T,
+    pub first_deadband: T,
     /// The most that is let be, over half the lost motion.
-    pub last_indulgence: T,
+    pub largest_deadband: T,
     /// What is left of it after one period.
-    pub forgiving: T,
+    pub deadband_left: T,
+}
+
+/// Learner of the load.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoadTable<T: Real> {
     /// Learner of the load: growth of variances in one period (even part, friction), variance of a reading.
-    pub load_learner: [T; 3],
+    pub variances: [T; 3],
     /// Share of a reading that the even part takes up in the long run.
-    pub load_gain: T,
+    pub gain: T,
     /// Rate of the load for each N m by which its even part is moved [1/s].
-    pub load_rate_gain: T,
+    pub rate_gain: T,
     /// What is left of the load's rate after one period.
-    pub load_rate_left: T,
+    pub rate_left: T,
     /// The load's greatest rate [N m/s].
-    pub fastest_load: T,
+    pub fastest: T,
     /// Inverse of the speed at which friction has its full size [s/rad].
     pub friction_slope: T,
     /// The same for a speed that is planned [s/rad].
     pub planned_friction_slope: T,
-    /// How long an impedance set-point may be held before it counts as standing still [s].
-    pub longest_hold: T,
-    /// Change of the trust in the estimates in one period.
-    pub trust_step: T,
 }

@@ -9,14 +9,10 @@ use crate::compensation::design::{compensation_settings, design_compensation};
 use crate::gears::design::{DesignError, Effort, Processor, design_scheme};
 use crate::gears::{Scheme, Tables};
 use crate::numbers::digest;
-use crate::observer::design::{observer_settings, observer_statics};
+use crate::observer::design::{observer_settings, observer_source};
 use crate::virtual_joint::SurroundingsTable;
 use crate::virtual_joint::design::design_surroundings;
 use parameters::{JointParameters, ParameterError, Surroundings};
-
-/// Where the digest of a controller's tables starts: after the import lines of its first version. It is taken over the
-/// statics alone, so that a controller keeps its digest wherever types live.
-const DIGEST_START: u64 = 0xdae8_511f_fc23_8683;
 
 /// What a controller is made for besides the joint and its surroundings.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,7 +39,7 @@ pub struct Told<'t> {
 pub struct ControlSource {
     /// The statics `OBSERVER`, `PROBE`, `COMPENSATION` and `SURROUNDINGS` and the constant `CONTROL_DIGEST`, as a module's text.
     pub text: String,
-    /// The constant: a digest over the statics.
+    /// The constant: a digest over the numbers of the statics.
     pub digest: u64,
 }
 
@@ -58,7 +54,7 @@ pub fn control_source(
     if !told.wish.output_encoder {
         settings.output_encoder = None;
     }
-    let observer = observer_statics(told.joint, &settings)?;
+    let observer = observer_source(told.joint, &settings)?;
     let compensation: CompensationTables<f32> =
         design_compensation(told.joint, &compensation_settings(told.surroundings, told.wish.bandwidth))?;
     let surroundings: SurroundingsTable<f32> = match joint.geometry.planets {
@@ -70,20 +66,30 @@ pub fn control_source(
     let statics = format!(
         "{observer}\n\
          /// Tables of the compensation.\n\
-         pub static COMPENSATION: CompensationTables<f32> = {compensation:#?};\n\
+         pub static COMPENSATION: model_core::compensation::tables::CompensationTables<f32> = {{\n\
+         use model_core::compensation::tables::*;\n{compensation:#?}\n}};\n\
          /// What surrounds the virtual joint.\n\
-         pub static SURROUNDINGS: SurroundingsTable<f32> = {surroundings:#?};\n"
+         pub static SURROUNDINGS: model_core::virtual_joint::SurroundingsTable<f32> = {{\n\
+         use model_core::virtual_joint::tables::*;\n{surroundings:#?}\n}};\n"
     );
-    let digest = statics.bytes().fold(DIGEST_START, |running, byte| digest::chain(running, byte.into()));
+    let digest = digest_of(&statics);
     let text = format!(
-        "use model_core::compensation::tables::*;\n\
-         use model_core::observer::tables::*;\n\
-         use model_core::virtual_joint::tables::*;\n\n\
-         {statics}\
-         /// Digest over these tables.\n\
+        "{statics}/// Digest over the numbers of these tables.\n\
          pub const CONTROL_DIGEST: u64 = {digest:#x};\n"
     );
     Ok(ControlSource { text, digest })
+}
+
+/// Digest over everything in the statics that is no name: numbers in their order, `true`, `false` and `None`. So every field
+/// counts, and none by what it is called.
+fn digest_of(statics: &str) -> u64 {
+    let words = statics.split(|character: char| character.is_whitespace() || "{}()[],:;=".contains(character));
+    let is_value = |word: &&str| {
+        word.starts_with(|first: char| first == '-' || first.is_ascii_digit())
+            || ["true", "false", "None"].contains(word)
+    };
+    let bytes = words.filter(is_value).flat_map(|word| word.bytes().chain([b'\n']));
+    bytes.fold(digest::START, |running, byte| digest::chain(running, byte.into()))
 }
 
 fn surroundings<const N: usize>(
@@ -97,15 +103,19 @@ fn surroundings<const N: usize>(
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::digest_of;
 
     #[test]
-    fn the_digest_starts_after_the_imports_of_its_first_version() {
-        let imports = ["compensation", "virtual_joint", "observer"]
-            .map(|subject| format!("use model_core::tables::{subject}::*;\n"))
-            .concat();
-        let start =
-            imports.bytes().chain(*b"\n").fold(digest::START, |running, byte| digest::chain(running, byte.into()));
-        assert_eq!(start, DIGEST_START);
+    fn a_digest_is_of_every_value_in_its_order_and_of_no_name() {
+        let of = digest_of("static A: B<f32> = B { first: 1.5e-7, second: [-2, 3], third: true, fourth: None };");
+        assert_eq!(of, digest_of("static A: C<f32> = C { one: 1.5e-7, two: [-2, 3], three: true, four: None };"));
+        for other in [
+            "static A: B<f32> = B { first: 1.5e-8, second: [-2, 3], third: true, fourth: None };",
+            "static A: B<f32> = B { first: 1.5e-7, second: [3, -2], third: true, fourth: None };",
+            "static A: B<f32> = B { first: 1.5e-7, second: [-2, 3], third: false, fourth: None };",
+            "static A: B<f32> = B { first: 1.5e-7, second: [-23], third: true, fourth: None };",
+        ] {
+            assert_ne!(of, digest_of(other), "{other}");
+        }
     }
 }

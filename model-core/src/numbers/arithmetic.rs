@@ -17,14 +17,3 @@ pub fn clamp<T: Real>(value: T, low: T, high: T) -> T {
 pub fn beyond<T: Real>(value: T, band: T) -> T {
     value - clamp(value, -band, band)
 }
-
-/// 1, -1, or 0 for zero.
-pub fn sign<T: Real>(value: T) -> T {
-    if value > T::ZERO {
-        T::ONE
-    } else if value < T::ZERO {
-        -T::ONE
-    } else {
-        T::ZERO
-    }
-}

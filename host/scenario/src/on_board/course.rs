@@ -24,7 +24,7 @@ pub fn knots(file: &TestFile, case: &Case, designed: &Designed, first_turn: i32)
     let every = (stretch * rate).round().max(1.0) as u32;
     let mut sender = Sender::new(file, case, file.controller, Some(designed));
     let translator = Translator::from_turn(designed.ticks, first_turn);
-    let lead = f64::from(designed.compensation.lead);
+    let lead = f64::from(designed.compensation.crossing.lead);
     let rests = |tick: u32| {
         let at = |time: f64| still(case.motion.at(time));
         let time = f64::from(tick) / rate;

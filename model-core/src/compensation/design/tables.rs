@@ -1,5 +1,4 @@
-//! Tables of the compensation: from joint, bandwidth and limits to gains, times and thresholds. What is done with them
-//! is left to `compensation`.
+//! Tables of the compensation: from joint, bandwidth and limits to gains, times and thresholds. 
 //!
 //! Gains follow from inertias and bandwidth, times from the motor's torque, the loop's delays and the force that a
 //! landing may cause. What is left are shares, each a constant here with its reason.
@@ -9,7 +8,10 @@ use core::f64::consts::TAU;
 use super::body::Body;
 use super::settings::{CompensationSettings, check};
 use crate::compensation::crossing::Crossing;
-use crate::compensation::tables::CompensationTables;
+use crate::compensation::tables::{
+    BodyTable, ClockTable, CompensationTables, CrossingTable, GearTable, LandingTable, LawTable, LimitTable, LoadTable,
+    RestTable, SwitchingTable,
+};
 use crate::gears::design::{DesignError, validate};
 use crate::gears::gear_losses;
 use crate::numbers::Real;
@@ -44,7 +46,7 @@ const CROSSING_TORQUE: f64 = 0.8;
 const MOTOR_DAMPING: f64 = 2.5;
 
 /// Share of that damper in impedance mode: what a commanded damper loses by the loop's delays.
-const IMPEDANCE_CALM: f64 = 0.1;
+const IMPEDANCE_DAMPING: f64 = 0.1;
 
 /// A crossing shorter than so many reaction times would be over before feedback has had a say.
 const REACTIONS_IN_A_CROSSING: f64 = 8.0;
@@ -52,8 +54,9 @@ const REACTIONS_IN_A_CROSSING: f64 = 8.0;
 /// A gap that turns out wider than guessed may be crossed in so many times the guess's time.
 const LONGEST: f64 = 3.0;
 
-/// Share of what is left of a crossing that has to do before it is hurried: demand that grows a little does not matter.
-const HURRY: f64 = 0.8;
+/// Share of what is left of a crossing that has to do before its path is laid anew: demand that grows a little does not
+/// matter.
+const SHORTEN: f64 = 0.8;
 
 /// Landing at the end of a path may cause this share of the rated torque.
 const LANDING: f64 = 0.03;
@@ -75,37 +78,37 @@ const OPENING: f64 = 0.3;
 const LANDED: f64 = 0.03;
 
 /// Planned torque over the largest, beyond which its change of sign counts.
-const HYSTERESIS: f64 = 0.005;
+const PLANNED: f64 = 0.005;
 
 /// Measured torque over the largest, as uncertain as it is after an impact.
-const DOUBT: f64 = 0.02;
+const MEASURED: f64 = 0.02;
 
-/// Share of that doubt left when no flank has changed for long.
-const LEAST_DOUBT: f64 = 0.3;
+/// Share of that which is left when no flank has changed for long.
+const LEAST_MEASURED: f64 = 0.3;
 
-/// Largest doubt after several changes, over the first.
-const MOST_PATIENCE: f64 = 6.0;
+/// Largest hysteresis after several changes, over the first.
+const MOST_FACTOR: f64 = 6.0;
 
-/// The most that doubt grows by, over what half the lost motion asks for as an error: a flank that is waited for any
+/// The most that the hysteresis grows by, over what half the lost motion asks for as an error: a flank that is waited for any
 /// longer costs more than one changed in vain.
-const MOST_DOUBT: f64 = 0.3;
+const MOST_GROWTH: f64 = 0.3;
 
-/// Time over which patience is lost again, times the bandwidth: a transient of the loop is over by then, and an error that
+/// Time over which that growth is lost again, times the bandwidth: a transient of the loop is over by then, and an error that
 /// a crossing too early has left was put right by the flank that it led to.
-const PATIENCE: f64 = 6.0;
+const GROWTH_KEPT: f64 = 6.0;
 
 /// Changes of the wanted flank within this time, times the bandwidth, are hunting.
 const HUNTING: f64 = 15.0;
 
-/// News over the largest torque that are taken up faster.
-const EAGER: f64 = 0.05;
+/// Change of a torque over the largest that is taken up faster.
+const LARGE_STEP: f64 = 0.05;
 
 /// Error let be at rest after the first hunt and at most, over half the lost motion: with the most, the joint rests
 /// within half of its lost motion.
-const INDULGENCE: [f64; 2] = [0.05, 0.5];
+const DEADBAND: [f64; 2] = [0.05, 0.5];
 
-/// Time in which it is forgiven [s]: rarely against the hunt that it ends.
-const FORGIVING: f64 = 30.0;
+/// Time in which the deadband is lost again [s]: long against the hunt that it ends.
+const DEADBAND_KEPT: f64 = 30.0;
 
 /// Speed at which dry friction has its full size [rad/s], for want of a better number: what encoders resolve.
 const FRICTION_SPEED: f64 = 0.01;
@@ -168,74 +171,87 @@ pub fn design_compensation<T: Real>(
     let blow = libm::sqrt(body.stiffness * body.motor);
     let landing_speed = LANDING * rated / blow;
     Ok(CompensationTables {
-        rate: real(f64::from(settings.control_rate)),
-        period: real(period),
-        ratio: [(joint.geometry.sun_teeth + joint.geometry.ring_teeth) as i32, joint.geometry.sun_teeth as i32],
-        gear: real(body.gear),
-        inverse_gear: real(1.0 / body.gear),
-        inverse_denominator: real(1.0 / f64::from(joint.geometry.sun_teeth)),
-        turn: real(TAU),
-        inverse_lever: real(1.0 / body.lever),
-        mesh_phase_per_radian: real(f64::from(joint.geometry.ring_teeth) / TAU * f64::powi(2.0, 32)),
-        radians_per_mesh: real(1.0 / f64::from(joint.geometry.ring_teeth)),
-        widest_half: real(WIDEST * half),
-        motor_inertia: real(body.motor),
-        load_inertia: real(body.load),
-        inverse_load_inertia: real(1.0 / body.load),
-        load_share: real(body.load / inertia),
-        inverse_load_share: real(inertia / body.load),
-        reduced_inertia: real(body.motor * body.load / inertia),
-        compliances: [real(COMPLIANCE / body.stiffness), real(1.0 / (COMPLIANCE * body.stiffness))],
-        gear_losses: gear_losses(settings.efficiency).map(real),
-        most_passed: real(most_passed),
-        least_room: real(LEAST_ROOM * most_passed),
-        position_gain: real(3.0 * inertia * pole * pole),
-        damping_gain: real(3.0 * inertia * pole),
-        motor_damping: real(motor_damping),
-        impedance_calm: real(IMPEDANCE_CALM),
-        // Both poles of the motor alone in one place.
-        gap_stiffness: real(motor_damping * motor_damping / (4.0 * body.motor)),
-        integral_gain: real(inertia * pole * pole * pole * period),
-        back_calculation: real(pole * period),
-        torque_limit: real(limit),
-        lead: real(crossing + reaction),
-        reaction: real(reaction),
-        strike_speed_per_torque: real(1.0 / body.strike_impedance),
-        strike_torque: real(strike_torque),
-        hardest_strike: real(hardest_strike),
-        shortest_ramp: real(shortest_ramp),
-        ramp_per_speed: real(ramp_per_speed),
-        longest_crossing: real(LONGEST * crossing),
-        hurry: real(HURRY),
-        landing_speed: real(landing_speed),
-        landing_haste: real(landing_speed / crossing),
-        landing_speed_per_torque: real(LANDING_UNDER_LOAD / blow),
-        fastest_landing: real((LANDING_UNDER_LOAD * limit / blow).max(landing_speed)),
-        landing_rise: real(period / (RISE * reaction)),
-        repayment: real(1.0 / (REPAYMENT * crossing)),
-        opening: real(OPENING),
-        landed: real(LANDED),
-        hysteresis: real(HYSTERESIS * limit),
-        doubt: real(DOUBT * limit),
-        settling: real(1.0 - libm::exp(-period / (SETTLING * reaction))),
-        eagerness: real(1.0 / (EAGER * limit)),
-        least_doubt: real(LEAST_DOUBT),
-        patience_left: real(libm::exp(-period * pole / PATIENCE)),
-        most_patience: real(MOST_PATIENCE),
-        most_doubt: real(MOST_DOUBT * 3.0 * inertia * pole * pole),
-        hunting: real(HUNTING / pole),
-        first_indulgence: real(INDULGENCE[0]),
-        last_indulgence: real(INDULGENCE[1]),
-        forgiving: real(libm::exp(-period / FORGIVING)),
-        load_learner: [real(LOAD_GROWTH), real(FRICTION_GROWTH), T::ONE],
-        // Of a random walk in noise, as far as it grows much more slowly than it is read.
-        load_gain: real(libm::sqrt(LOAD_GROWTH)),
-        load_rate_gain: real(1.0 / LOAD_RATE),
-        load_rate_left: real(libm::exp(-period / LOAD_RATE_KEPT)),
-        fastest_load: real(limit / LOAD_RATE),
-        friction_slope: real(1.0 / FRICTION_SPEED),
-        planned_friction_slope: real(1.0 / PLANNED_FRICTION_SPEED),
-        longest_hold: real(LONGEST_HOLD),
-        trust_step: real(period * pole / TRUST),
+        clock: ClockTable { rate: real(f64::from(settings.control_rate)), period: real(period) },
+        gear: GearTable {
+            ratio: [(joint.geometry.sun_teeth + joint.geometry.ring_teeth) as i32, joint.geometry.sun_teeth as i32],
+            motor_per_link: real(body.gear),
+            link_per_motor: real(1.0 / body.gear),
+            inverse_denominator: real(1.0 / f64::from(joint.geometry.sun_teeth)),
+            turn: real(TAU),
+            inverse_lever: real(1.0 / body.lever),
+            mesh_phase_per_radian: real(f64::from(joint.geometry.ring_teeth) / TAU * f64::powi(2.0, 32)),
+            radians_per_mesh: real(1.0 / f64::from(joint.geometry.ring_teeth)),
+            losses: gear_losses(settings.efficiency).map(real),
+        },
+        body: BodyTable {
+            motor_inertia: real(body.motor),
+            load_inertia: real(body.load),
+            inverse_load_inertia: real(1.0 / body.load),
+            load_share: real(body.load / inertia),
+            inverse_load_share: real(inertia / body.load),
+            reduced_inertia: real(body.motor * body.load / inertia),
+            compliances: [real(COMPLIANCE / body.stiffness), real(1.0 / (COMPLIANCE * body.stiffness))],
+            widest_half: real(WIDEST * half),
+        },
+        limits: LimitTable { motor: real(limit), teeth: real(most_passed), least_room: real(LEAST_ROOM * most_passed) },
+        law: LawTable {
+            position: real(3.0 * inertia * pole * pole),
+            damping: real(3.0 * inertia * pole),
+            motor_damping: real(motor_damping),
+            impedance_damping: real(IMPEDANCE_DAMPING),
+            integral: real(inertia * pole * pole * pole * period),
+            back_calculation: real(pole * period),
+            trust_step: real(period * pole / TRUST),
+            longest_hold: real(LONGEST_HOLD),
+        },
+        crossing: CrossingTable {
+            lead: real(crossing + reaction),
+            reaction: real(reaction),
+            // Both poles of the motor alone in one place.
+            stiffness: real(motor_damping * motor_damping / (4.0 * body.motor)),
+            strike_speed_per_torque: real(1.0 / body.strike_impedance),
+            strike_torque: real(strike_torque),
+            hardest_strike: real(hardest_strike),
+            shortest_ramp: real(shortest_ramp),
+            ramp_per_speed: real(ramp_per_speed),
+            longest: real(LONGEST * crossing),
+            shorten: real(SHORTEN),
+        },
+        landing: LandingTable {
+            speed: real(landing_speed),
+            speed_per_torque: real(LANDING_UNDER_LOAD / blow),
+            acceleration: real(landing_speed / crossing),
+            fastest: real((LANDING_UNDER_LOAD * limit / blow).max(landing_speed)),
+            rise: real(period / (RISE * reaction)),
+            repayment: real(1.0 / (REPAYMENT * crossing)),
+            opening: real(OPENING),
+            landed: real(LANDED),
+        },
+        switching: SwitchingTable {
+            planned: real(PLANNED * limit),
+            measured: real(MEASURED * limit),
+            least: real(LEAST_MEASURED),
+            most_growth: real(MOST_GROWTH * 3.0 * inertia * pole * pole),
+            growth_left: real(libm::exp(-period * pole / GROWTH_KEPT)),
+            most_factor: real(MOST_FACTOR),
+            smoothing: real(1.0 - libm::exp(-period / (SETTLING * reaction))),
+            inverse_step: real(1.0 / (LARGE_STEP * limit)),
+        },
+        rest: RestTable {
+            hunting: real(HUNTING / pole),
+            first_deadband: real(DEADBAND[0]),
+            largest_deadband: real(DEADBAND[1]),
+            deadband_left: real(libm::exp(-period / DEADBAND_KEPT)),
+        },
+        load: LoadTable {
+            variances: [real(LOAD_GROWTH), real(FRICTION_GROWTH), T::ONE],
+            // Of a random walk in noise, as far as it grows much more slowly than it is read.
+            gain: real(libm::sqrt(LOAD_GROWTH)),
+            rate_gain: real(1.0 / LOAD_RATE),
+            rate_left: real(libm::exp(-period / LOAD_RATE_KEPT)),
+            fastest: real(limit / LOAD_RATE),
+            friction_slope: real(1.0 / FRICTION_SPEED),
+            planned_friction_slope: real(1.0 / PLANNED_FRICTION_SPEED),
+        },
     })
 }

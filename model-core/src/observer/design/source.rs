@@ -13,17 +13,14 @@ use parameters::JointParameters;
 
 /// The statics `OBSERVER` and `PROBE` of a joint, as a module's text.
 pub fn observer_source(joint: &JointParameters, settings: &ObserverSettings) -> Result<String, DesignError> {
-    Ok(format!("use model_core::observer::tables::*;\n\n{}", observer_statics(joint, settings)?))
-}
-
-/// The same without what it imports.
-pub(crate) fn observer_statics(joint: &JointParameters, settings: &ObserverSettings) -> Result<String, DesignError> {
     let tables: ObserverTables<f32> = design_observer(joint, settings)?;
     let probe: Option<ProbeTable<f32>> = design_usual_probe(joint, settings)?;
     Ok(format!(
         "/// Tables of the observer.\n\
-         pub static OBSERVER: ObserverTables<f32> = {tables:#?};\n\
+         pub static OBSERVER: model_core::observer::tables::ObserverTables<f32> = {{\n\
+         use model_core::observer::tables::*;\n{tables:#?}\n}};\n\
          /// Table of the width probe, where one can be.\n\
-         pub static PROBE: Option<ProbeTable<f32>> = {probe:#?};\n"
+         pub static PROBE: Option<model_core::observer::tables::ProbeTable<f32>> = {{\n\
+         use model_core::observer::tables::*;\n{probe:#?}\n}};\n"
     ))
 }

@@ -37,6 +37,9 @@ pub enum Travel<T: Real> {
 }
 
 impl<T: Real> TravelDetector<T> {
+    /// Part of the half-gap that noise may hide in a window of rest [-].
+    const HIDDEN: T = T::QUARTER;
+
     pub fn new() -> Self {
         Self {
             deflections: [T::ZERO; WINDOW + 1],
@@ -100,9 +103,8 @@ impl<T: Real> TravelDetector<T> {
         if at >= intervals { at - intervals } else { at + WINDOW + 1 - intervals }
     }
 
-    /// Whether standing still tells rest from a slow crossing of a gap: what noise hides is less than a quarter of the
-    /// half-gap, so nothing as wide could have gone by in a window.
+    /// Whether standing still tells rest from a slow crossing of a gap: what noise hides is a small part of the half-gap, so nothing as wide could have gone by in a window.
     pub fn tells_rest(&self, half_gap: T) -> bool {
-        self.limit < half_gap * T::QUARTER
+        self.limit < half_gap * Self::HIDDEN
     }
 }

@@ -1,0 +1,116 @@
+//! When the compensation changes its stage or its flank: one table, which the control runs and the documentation prints.
+
+use super::set_point::Stage;
+
+/// What a period can show.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Event {
+    /// The teeth will have to pass on torque of the other sign, by more than hysteresis and noise.
+    DemandTurned = 1,
+    /// An impedance's own spring asks for the other flank, by less than that.
+    SpringUndecided = 2,
+    /// The flank has gone further than half of the half-gap.
+    FlankLost = 4,
+    /// The flank has gone by more than the estimates' errors, but no further than that.
+    FlankOpening = 8,
+    /// The flank touches and, on a path, the motor has been braked.
+    FlankMet = 16,
+    /// The path is at its end.
+    PathEnded = 32,
+    /// None of these.
+    Underway = 64,
+}
+
+/// What follows from it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Action {
+    /// A path to the other flank.
+    CrossOver,
+    /// A path to the same flank.
+    CrossBack,
+    /// On towards the flank at a small speed.
+    Land,
+    /// The flank carries; the law's torque rises from nothing.
+    Carry,
+    /// The law's torque finds the flank by itself; the one that is felt is taken.
+    LetSpringFind,
+    /// A shorter path, if what is left takes that much less now.
+    Shorten,
+}
+
+/// A line of the table: an event and what follows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Transition {
+    /// What has to be so.
+    pub when: Event,
+    /// What follows.
+    pub action: Action,
+}
+
+const fn on(when: Event, action: Action) -> Transition {
+    Transition { when, action }
+}
+
+/// A flank carries.
+const TOUCHING: &[Transition] = &[
+    on(Event::DemandTurned, Action::CrossOver),
+    on(Event::SpringUndecided, Action::LetSpringFind),
+    on(Event::FlankLost, Action::CrossBack),
+    on(Event::FlankOpening, Action::Land),
+];
+
+/// On a path through the gap.
+const CROSSING: &[Transition] = &[
+    on(Event::DemandTurned, Action::CrossOver),
+    on(Event::FlankMet, Action::Carry),
+    on(Event::PathEnded, Action::Land),
+    on(Event::Underway, Action::Shorten),
+];
+
+/// Closing on a flank at a small speed.
+const LANDING: &[Transition] = &[
+    on(Event::DemandTurned, Action::CrossOver),
+    on(Event::SpringUndecided, Action::LetSpringFind),
+    on(Event::FlankMet, Action::Carry),
+];
+
+/// What may follow in a stage: of its lines the first whose event is there. Where none is, the stage goes on.
+pub const fn transitions(stage: Stage) -> &'static [Transition] {
+    match stage {
+        Stage::Touching => TOUCHING,
+        Stage::Crossing => CROSSING,
+        Stage::Landing => LANDING,
+        Stage::Plain => &[],
+    }
+}
+
+impl Action {
+    /// The stage that follows.
+    pub const fn stage(self) -> Stage {
+        match self {
+            Self::CrossOver | Self::CrossBack | Self::Shorten => Stage::Crossing,
+            Self::Land => Stage::Landing,
+            Self::Carry | Self::LetSpringFind => Stage::Touching,
+        }
+    }
+}
+
+/// Events of a period.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Events(u8);
+
+impl Events {
+    /// None but that time goes by.
+    pub const UNDERWAY: Self = Self(Event::Underway as u8);
+
+    /// These, and an event if it is there.
+    pub fn with(self, event: Event, there: bool) -> Self {
+        Self(self.0 | if there { event as u8 } else { 0 })
+    }
+
+    /// What follows in a stage.
+    pub fn action(self, stage: Stage) -> Option<Action> {
+        transitions(stage).iter().find(|line| self.0 & line.when as u8 != 0).map(|line| line.action)
+    }
+}

@@ -1,6 +1,6 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 //! Counts the instructions of two steps whose course is known, for every joint of this image: contact holds, and all
-//! teeth are apart. What they should take is the host's business.
+//! teeth are apart.
 
 #[cfg(target_os = "none")]
 mod measurement {

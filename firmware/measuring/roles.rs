@@ -1,7 +1,7 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 //! Counts the instructions of the roles that control, tick by tick, in a motion with reversals, pushes and an output
 //! encoder that falls silent: each role's own work, as its tick does it, and the observer's alone, with error maps and
-//! without. How many are too many is the host's business.
+//! without.
 
 #[cfg(target_os = "none")]
 mod measurement {

@@ -1,6 +1,6 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 //! Digests of the trial motions of every joint of this image, once for each way in which a caller may have set the
-//! floating-point unit. Which digests are right is the host's business.
+//! floating-point unit.
 
 #[cfg(target_os = "none")]
 mod measurement {

@@ -1,6 +1,6 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 //! Counts the instructions of one step from a great many states, by chance and by malice, for every joint of this
-//! image. The states are those of the crate `trials`; how many instructions are too many is the host's business.
+//! image. The states are those of the crate `trials`.
 
 #[cfg(target_os = "none")]
 mod measurement {

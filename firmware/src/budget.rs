@@ -1,5 +1,5 @@
-//! The timing monitor: what each tick cost and how late it began, as least, mean, greatest and a histogram, beside
-//! the counts of everything that went wrong in time. Reading the timer is left to `clock`, the wire to `timing_report`.
+//! The timing monitor: what each tick cost and how late it began, as least, mean, greatest and a histogram, beside the
+//! counts of everything that went wrong in time.
 
 use link::messages::{HISTOGRAM_BINS, Timing};
 

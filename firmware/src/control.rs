@@ -1,7 +1,7 @@
-//! One tick of any role: obey what idle orders, take the command that is due, do the role's work, hand out a sample every
-//! so often, and watch the clock. Called at the tick rate at the highest priority, it must end before the next call: a
-//! miss is counted as an overrun. Nothing here allocates, panics, logs, loops without a bound or knows what board it is
-//! on; what the work is, is left to the roles.
+//! One tick of any role: obey what idle orders, take the command that is due, do the role's work, hand out a sample
+//! every so often, and watch the clock. Called at the tick rate at the highest priority, it must end before the next
+//! call: a miss is counted as an overrun. Nothing here allocates, panics, logs, loops without a bound or knows what
+//! board it is on.
 
 use core::convert::Infallible;
 use core::sync::atomic::Ordering::{Acquire, Relaxed, Release};

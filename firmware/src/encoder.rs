@@ -1,5 +1,5 @@
-//! Sources of counts: what gives the observer its encoder readings, and how a reading can fail. Each kind of encoder has
-//! a file of its own; what a doubtful reading means for the joint is the observer's business.
+//! Sources of counts: what gives the observer its encoder readings, and how a reading can fail. Each kind of encoder
+//! has a file of its own.
 
 mod as5047p;
 

@@ -1,5 +1,5 @@
 //! What becomes of commands that the host sends: queued for the tick in time and in order, held until there is room, or
-//! refused for a reason. Talking about it is left to `conversation`.
+//! refused for a reason.
 
 use core::sync::atomic::Ordering::{Acquire, Release};
 

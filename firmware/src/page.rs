@@ -1,5 +1,5 @@
-//! Where what an observer has learnt outlives a reset: one page of flash, read at start, written and erased between runs.
-//! What is read there is judged before it is used; how a page is erased and written is the board's business.
+//! Where what an observer has learnt outlives a reset: one page of flash, read at start, written and erased between
+//! runs. What is read there is judged before it is used.
 
 use core::convert::Infallible;
 

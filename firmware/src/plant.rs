@@ -1,5 +1,4 @@
-//! Role `plant`: the joint is simulated; torques in, motion out. When a step is due, and what becomes of its samples, is
-//! left to `control` and `telemetry`.
+//! Role `plant`: the joint is simulated; torques in, motion out.
 
 use core::convert::Infallible;
 

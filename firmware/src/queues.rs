@@ -1,5 +1,5 @@
 //! All that passes between the tick and idle: single-producer queues, each with one end on either side, and a few
-//! counters that either side may read at any time. What the entries mean is left to the two sides.
+//! counters that either side may read at any time.
 
 use core::sync::atomic::{AtomicBool, AtomicU32};
 

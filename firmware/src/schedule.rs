@@ -1,6 +1,5 @@
 //! Which command is due, and whether there is a next step: commands by tick number, in lockstep with the host or by the
-//! board's own clock. Filling the queue, and refusing commands that are bad in themselves, is left to `conversation`;
-//! what a command does, to the role's work.
+//! board's own clock.
 
 use link::messages::{RunMode, RunSettings, Trip};
 

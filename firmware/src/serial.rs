@@ -1,5 +1,4 @@
-//! Bytes between a UART and idle: the interrupt's side and idle's side of two byte queues. Frames and their meaning
-//! are left to `conversation`, registers to the board.
+//! Bytes between a UART and idle: the interrupt's side and idle's side of two byte queues.
 
 use core::sync::atomic::Ordering::{Acquire, Relaxed, Release};
 use core::sync::atomic::{AtomicBool, AtomicU32};

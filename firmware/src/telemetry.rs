@@ -1,5 +1,4 @@
-//! The plant's samples, as the tick leaves them and in the wire's form. Taking them is left to `plant`, collecting them to
-//! `batcher`.
+//! The plant's samples, as the tick leaves them and in the wire's form.
 
 use heapless::Vec;
 use link::messages::{FromBoard, MAX_MESHES, SAMPLES_PER_BATCH, Sample, SampleBatch};

@@ -1,6 +1,5 @@
 //! The firmware on the emulated board, spoken to in bare frames: what it says of itself, and that its f32 state is the
-//! core's on this machine in every bit of every step. How a run is driven, recorded and reported is the host command's
-//! business and tested there.
+//! core's on this machine in every bit of every step.
 
 use std::io::{ErrorKind, Read, Write};
 use std::os::unix::net::UnixStream;

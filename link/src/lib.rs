@@ -1,7 +1,7 @@
 #![cfg_attr(not(test), no_std)]
 //! What a board and its host say to each other. `messages` holds the words, with those of the roles that control in
 //! `controller` and `virtual_joint`; `framing` puts them on a byte stream: postcard, then CRC-32, then COBS, each frame
-//! ended by a zero byte. Transports, timeouts and policy are left to the two ends.
+//! ended by a zero byte.
 
 pub mod controller;
 pub mod framing;

@@ -1,5 +1,5 @@
 //! Frames on a bad line: what was sent arrives, or is counted as dropped, and the receiver is in step again at the next
-//! zero byte. What the messages mean is the two ends' business.
+//! zero byte.
 
 use link::framing::{MAX_FRAME, Receiver, encode};
 use link::messages::{COMMANDS_PER_SCHEDULE, Command, RunMode, RunSettings, Schedule, ToBoard};

@@ -1,6 +1,5 @@
 //! What a planetary joint is, in SI units: every quantity of He, Jia, Chen and Sun (2015), plus the motor rotor, the
-//! link and the compliance between carrier and link that a real joint has. Files, units in key names and messages
-//! with source spans are left to the `joints` crate; nothing here is read by the fixed step.
+//! link and the compliance between carrier and link that a real joint has. Nothing here is read by the fixed step.
 
 use heapless::String;
 

@@ -1,6 +1,5 @@
-//! One family of gear meshes, sun-planet or ring-planet: stiffness and its ripple (eq. 7), damping, transmission
-//! error (eq. 11), backlash, dead zone and phases. What follows from them, forces above all, is computed by whoever
-//! steps a joint.
+//! One family of gear meshes, sun-planet or ring-planet: stiffness and its ripple (eq. 7), damping, transmission error
+//! (eq. 11), backlash, dead zone and phases.
 
 use crate::planets::PerPlanet;
 

@@ -1,6 +1,5 @@
-//! What surrounds the gears of a joint, as plain data in SI: motor with its current loop, frictions, weight, encoders, and
-//! the controller's rate. What observer, compensation, the virtual joint and the f64 drive train make of it is left to
-//! each of them.
+//! What surrounds the gears of a joint, as plain data in SI: motor with its current loop, frictions, weight, encoders,
+//! and the controller's rate.
 
 /// Everything around the gears.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,4 +1,4 @@
-//! Links SUNDIALS where the feature `cvode` asks for it. Installing it is left to the user, or to the host command.
+//! Links SUNDIALS where the feature `cvode` asks for it.
 
 use std::path::Path;
 use std::{env, fs};

@@ -1,6 +1,6 @@
 //! Another board on a serial line, in the words of the role `observer`: samples go out as soon as the ones before are
 //! answered, so the exchange runs at the rate that the line carries, and in lockstep where the caller waits for each
-//! answer. Bytes are moved by `serial`; finding the board and starting its run is left to the caller.
+//! answer. Bytes are moved by `serial`.
 
 use link::controller::{Answered, Exchange};
 use link::framing::{MAX_FRAME, Receiver, encode};

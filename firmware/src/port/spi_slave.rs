@@ -1,6 +1,6 @@
-//! The other end of SPI: a chip that observes and compensates as the slave of a motor controller. After every transfer it
-//! takes the frame that came, works on it, and has the answer ready for the next; a transfer that broke costs that answer
-//! only. Which pins and which DMA move the bytes is the board's business.
+//! The other end of SPI: a chip that observes and compensates as the slave of a motor controller. After every transfer
+//! it takes the frame that came, works on it, and has the answer ready for the next; a transfer that broke costs that
+//! answer only.
 
 use core::fmt;
 

@@ -1,6 +1,6 @@
 //! A long motion that loses and finds contact, for a comparison bit for bit: torques swing the joint through its gap,
 //! rests let it calm down, a second motion ends in numbers that are none, and many short ones start from the smallest
-//! numbers there are. How the digests are compared is left to whoever runs them.
+//! numbers there are.
 
 use core::array;
 

@@ -1,6 +1,6 @@
 //! Single states that a step is tried on, by chance and by malice: every contact set, all meshes crossing at once,
 //! grazing and exact touch, speeds that leap over the gap, numbers at the ends of their range, states that the joint
-//! comes to by itself, and changes of those that were worst so far. Measuring is left to whoever steps them.
+//! comes to by itself, and changes of those that were worst so far.
 
 use core::array;
 

@@ -1,4 +1,4 @@
-//! Torques of a size that suits a joint, whatever the joint. What is done with them is left to the trials.
+//! Torques of a size that suits a joint, whatever the joint.
 
 use model_core::gears::{Tables, Torques};
 

@@ -1,5 +1,4 @@
-//! Bounds of how often random motions keep what the certificate of a design promises. What they move and how is left to
-//! the tests.
+//! Bounds of how often random motions keep what the certificate of a design promises.
 
 bounds! {
     /// Motions worse than nine in ten are promised to be.

@@ -1,5 +1,4 @@
 //! Bounds on joints with light planets: leaps, exponential ticks beside them, and a robot joint's motion in windows.
-//! Where they are held against anything is the tests' business.
 
 bounds! {
     /// Order of convergence of leaps.

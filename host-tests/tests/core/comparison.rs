@@ -1,5 +1,4 @@
-//! The core and the reference through the same scenario, and how far they are apart. Bounds are the tests' business;
-//! neither side sees the other.
+//! The core and the reference through the same scenario, and how far they are apart. Neither side sees the other.
 
 use host_tests::tolerance::Bound;
 use model_core::gears::design::{Effort, design_scheme};

@@ -1,5 +1,5 @@
 //! An hour of motion on the core's own joint, several joints, motions and seeds: no healthy output encoder is given up.
-//! Ignored by default, for it takes minutes; what the estimates are worth is left to the tests on the fine-step plant.
+//! Ignored by default, for it takes minutes.
 
 use std::f64::consts::TAU;
 

@@ -1,5 +1,5 @@
-//! Readings that come late, by their own time: no estimate runs away, and what cannot be known is not vouched
-//! for; and an encoder that comes back. Those that fail otherwise are left to `faults`.
+//! Readings that come late, by their own time: no estimate runs away, and what cannot be known is not vouched for; and
+//! an encoder that comes back.
 
 use host_tests::tolerance::observer::GAP_WORST;
 use model_core::observer::{Doubt, Samples, Source};

@@ -1,4 +1,4 @@
-//! The observer over a recording, and what its estimates are worth against the truth. Bounds are the tests' business.
+//! The observer over a recording, and what its estimates are worth against the truth.
 
 use model_core::gears::Kinematics;
 use std::f64::consts::TAU;

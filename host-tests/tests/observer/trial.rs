@@ -1,5 +1,5 @@
 //! One trial: a joint in motion, and an observer that was told a wrong width and compliance and nothing of offset, skew
-//! and error maps. What must come of it is the tests' business.
+//! and error maps.
 
 use model_core::gears::Kinematics;
 use model_core::numbers::Real;

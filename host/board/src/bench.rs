@@ -1,5 +1,4 @@
-//! What a run needs besides its plan: the image, and a line to a board, emulated or real. How the line is used is the
-//! session's business.
+//! What a run needs besides its plan: the image, and a line to a board, emulated or real.
 
 use std::time::{Duration, Instant};
 

@@ -1,5 +1,4 @@
-//! The options that name a board, its role and its line, which every command that talks to one has. Finding the board is
-//! left to `bench`.
+//! The options that name a board, its role and its line, which every command that talks to one has.
 
 use clap::ValueEnum;
 use link::messages::{Role, RunMode};

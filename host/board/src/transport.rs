@@ -1,5 +1,4 @@
-//! Byte streams to a board: a serial port, or a Unix socket to the emulator. Frames, messages and deadlines are left to
-//! the session.
+//! Byte streams to a board: a serial port, or a Unix socket to the emulator.
 
 use std::io::{self, Read, Write};
 use std::os::unix::net::UnixStream;

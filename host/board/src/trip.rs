@@ -1,5 +1,4 @@
-//! Trips of a board into its safe state in words: what happened and what to do. When a board trips is left to the
-//! firmware.
+//! Trips of a board into its safe state in words: what happened and what to do.
 
 use link::messages::Trip;
 

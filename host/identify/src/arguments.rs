@@ -1,4 +1,4 @@
-//! What `joint identify` may be asked for on the command line. What it means for a log is `plan`'s and `log`'s business.
+//! What `joint identify` may be asked for on the command line.
 
 use std::path::PathBuf;
 

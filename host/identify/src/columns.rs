@@ -1,5 +1,4 @@
-//! Columns of numbers under names, out of CSV text or row by row: what is missing or no number is named. What the columns
-//! mean is the log's business.
+//! Columns of numbers under names, out of CSV text or row by row: what is missing or no number is named.
 
 use report::failure::{Failure, Outcome};
 

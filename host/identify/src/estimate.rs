@@ -1,4 +1,4 @@
-//! A value with half of its 95 % interval, out of a solution. What a value means is the findings' business.
+//! A value with half of its 95 % interval, out of a solution.
 
 use nalgebra::DVector;
 

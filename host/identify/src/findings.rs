@@ -1,5 +1,5 @@
-//! What was found, each with its 95 % interval in the joint file's unit and the key that it belongs to, or the reason why
-//! the log does not show it: `gap`, `brakes` and `angles`. Fitting is left to `twist` and `friction`, showing to `page`.
+//! What was found, each with its 95 % interval in the joint file's unit and the key that it belongs to, or the reason
+//! why the log does not show it: `gap`, `brakes` and `angles`.
 
 pub(crate) mod angles;
 mod brakes;

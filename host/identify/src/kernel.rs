@@ -1,5 +1,5 @@
 //! One smoothing kernel for everything that enters a fit, and its exact derivatives: a linear relation between signals
-//! holds between their smoothed forms too. Which signals are smoothed is the rows' business.
+//! holds between their smoothed forms too.
 
 /// Four boxes of equal width on one another, and its first and second difference.
 #[derive(Debug, Clone, PartialEq)]

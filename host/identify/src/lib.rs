@@ -1,5 +1,5 @@
-//! `joint identify`: from a recorded reversal test to a joint's backlash, compliance, damping, friction and encoder errors,
-//! each with its interval, and to a patched joint file. Learning on board is the observer's business.
+//! `joint identify`: from a recorded reversal test to a joint's backlash, compliance, damping, friction and encoder
+//! errors, each with its interval, and to a patched joint file.
 //!
 //! `log_file` reads a file into `columns`, an MCAP log by `mcap_log` and `ros_message`; `log` turns them into samples,
 //! checked by `sampling`, whose scatter is `noise`; `plan` says what the joint file knows; `rows` are the moments at which a

@@ -1,5 +1,5 @@
 //! A recorded test as samples: read from columns by their names, checked, encoders as angles and their difference from
-//! whole counts. What the samples tell is left to `rows` and the fits.
+//! whole counts.
 
 use std::f64::consts::TAU;
 

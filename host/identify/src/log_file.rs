@@ -1,5 +1,4 @@
-//! A log's file, CSV or MCAP, read into columns under the names that are known here. What the columns mean is the log's
-//! business.
+//! A log's file, CSV or MCAP, read into columns under the names that are known here.
 
 use std::path::Path;
 

@@ -1,5 +1,5 @@
-//! How much an encoder's readings scatter from sample to sample, counts among the reasons, stretch by stretch: from fourth
-//! differences, which no motion of a joint reaches. What scatter does to a fit is left to `twist`.
+//! How much an encoder's readings scatter from sample to sample, counts among the reasons, stretch by stretch: from
+//! fourth differences, which no motion of a joint reaches.
 
 /// Samples of a stretch.
 const STRETCH: usize = 256;

@@ -1,5 +1,5 @@
 //! Linear least squares with outliers turned down, prior widths for what a log may not show, and intervals from
-//! stretches of time, whose residuals are not independent. What the columns are is the fits' business.
+//! stretches of time, whose residuals are not independent.
 
 use nalgebra::{DMatrix, DVector};
 

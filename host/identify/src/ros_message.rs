@@ -1,5 +1,5 @@
 //! Numbers of messages whose form is ROS 2 message text and whose encoding is CDR, each by its path, as in
-//! `header.stamp.sec` or `position[0]`. Text is passed over; other encodings are left to the caller.
+//! `header.stamp.sec` or `position[0]`. Text is passed over.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

@@ -1,5 +1,4 @@
-//! Whether a log was sampled evenly, fast and long enough for its joint, with the figures of what is needed. What the samples
-//! hold is the log's business.
+//! Whether a log was sampled evenly, fast and long enough for its joint, with the figures of what is needed.
 
 use super::columns::Columns;
 use super::plan::Plan;

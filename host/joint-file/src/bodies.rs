@@ -1,5 +1,5 @@
-//! Reads `[bodies]` and `[compliance]`. Both readings of the paper's Table 1 are accepted, I / r^2 in kg and I in
-//! kg m^2; sums such as the carrier's equivalent mass with its planets are model-core's business.
+//! Reads `[bodies]` and `[compliance]`. Both readings of the paper's Table 1 are accepted, I / r^2 in kg and I in kg
+//! m^2.
 
 use parameters::{Bodies, Compliance, Geometry};
 

@@ -1,6 +1,5 @@
 //! Joint files: TOML with the unit in every key's name, read into `JointParameters` with all problems of a file found
-//! at once, each with its place in the text. Drawing the underlined messages is left to the caller, so that build
-//! scripts can read joint files too.
+//! at once, each with its place in the text.
 //!
 //! `keys` lists every key with its unit, bound and meaning; `table` finds values by such a list and `notes` keeps what is
 //! wrong with them, here and for other files that users write; `section` takes a joint's values; one file for each section

@@ -1,5 +1,5 @@
 //! Reads `[mesh]` with `[mesh.sun_planet]` and `[mesh.ring_planet]`: what both families share stands in `[mesh]`, what
-//! differs in its own section. Forces and phases from tooth counts are model-core's business.
+//! differs in its own section.
 
 use model_core::gears::StiffnessSeries;
 use parameters::{Mesh, MeshPhases, PerPlanet, StiffnessWave};

@@ -1,5 +1,5 @@
-//! Reads `[contact]`, `[excitation]` and `[profile]`: how teeth meet, what drives the mesh phase, and the torques that a
-//! motion profile scales with. The profile itself is the host command's business.
+//! Reads `[contact]`, `[excitation]` and `[profile]`: how teeth meet, what drives the mesh phase, and the torques that
+//! a motion profile scales with.
 
 use model_core::gears::Kinematics;
 use parameters::{DampingLaw, DeadZone, Excitation, Geometry};

@@ -1,4 +1,4 @@
-//! What is wrong with a joint file: where, what, and how to mend it. How it is drawn is the caller's business.
+//! What is wrong with a joint file: where, what, and how to mend it.
 
 use std::ops::Range;
 

@@ -1,5 +1,5 @@
 //! Reads a whole joint file: parses, hands each section to its reader, checks that the gears fit, and gives either the
-//! joint with its warnings or everything that is wrong at once. Each section's rules are left to its reader.
+//! joint with its warnings or everything that is wrong at once.
 
 use model_core::gears::Scales;
 use parameters::{Coherence, Excitation, JointParameters, Surroundings};

@@ -1,5 +1,4 @@
-//! Takes values out of one table of a joint file by the list of keys: right type, finite, within bounds, in SI. What the
-//! values mean together is left to the reader of each section.
+//! Takes values out of one table of a joint file by the list of keys: right type, finite, within bounds, in SI.
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};

@@ -1,5 +1,5 @@
 //! One table of a file that users write, by the list of keys that such a file may hold: where its values stand, what is
-//! missing, what nobody knows. Which values there are, and how they are taken, is left to the reader of each kind of file.
+//! missing, what nobody knows.
 
 use std::ops::Range;
 

@@ -1,5 +1,4 @@
-//! How messages put what stands in a joint file: the type of a value, a number as it was typed, names in a row. What is
-//! wrong with it is said by whoever complains.
+//! How messages put what stands in a joint file: the type of a value, a number as it was typed, names in a row.
 
 use toml::Spanned;
 use toml::de::DeValue;

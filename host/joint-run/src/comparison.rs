@@ -1,5 +1,5 @@
 //! The run against the f64 reference: the same torques through an independent integration, as far as the motion can be
-//! predicted at all. Both are computed beside the run; what the distances mean for the verdict is the checks' business.
+//! predicted at all. Both are computed beside the run.
 
 mod follow;
 mod row;

@@ -1,5 +1,5 @@
 //! All that one run leaves behind, in SI units: who ran, how, what was commanded, what was measured and what the checks
-//! say. How it is drawn is `report`'s business; where the figures come from is the session's.
+//! say. Where the figures come from is the session's.
 
 mod sample;
 mod samples;

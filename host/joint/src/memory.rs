@@ -1,5 +1,5 @@
-//! `joint memory`: what an observer has learnt of its joint, as a file: read off a board, shown, written to a board, kept and
-//! erased there. Learning is the observer's business, what goes over the line the session's.
+//! `joint memory`: what an observer has learnt of its joint, as a file: read off a board, shown, written to a board,
+//! kept and erased there.
 //!
 //! `arguments` is the command line, `bench` finds the board.
 

@@ -1,5 +1,5 @@
 //! The command itself, in good weather and bad, on a board in a thread behind a pseudo-terminal: exit codes, messages,
-//! what is kept. The emulator and the firmware are left to `emulated_board`.
+//! what is kept.
 
 mod command;
 mod pseudo_terminal;

@@ -1,5 +1,5 @@
-//! `joint memory` as a user meets it: with files, and with the board's own firmware in a thread behind a pseudo-terminal.
-//! The emulator is left to `emulated_board`.
+//! `joint memory` as a user meets it: with files, and with the board's own firmware in a thread behind a
+//! pseudo-terminal.
 
 mod command;
 mod learning;

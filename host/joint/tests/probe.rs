@@ -1,5 +1,5 @@
-//! The width probe as a test file has it: a held link gives the width, any other a reason, and what has no probe says so.
-//! How good a width is on many seeds is left to the files in `hil`.
+//! The width probe as a test file has it: a held link gives the width, any other a reason, and what has no probe says
+//! so.
 
 mod command;
 

@@ -1,5 +1,4 @@
-//! A session with a board in a thread, in good weather and bad: what it says, what it keeps, how it ends. Processes,
-//! ports and the emulator are left to the other tests.
+//! A session with a board in a thread, in good weather and bad: what it says, what it keeps, how it ends.
 
 #[allow(dead_code, reason = "every test binary uses its own part of it")]
 mod thread_board;

@@ -1,5 +1,5 @@
 //! What `joint hil --check` does after the run: every board's image and what its tick can reach, clippy over the
-//! firmware, the proofs about the step that need the emulated board, and the tests that need it. Host tests that need no board are `cargo test`'s own business.
+//! firmware, the proofs about the step that need the emulated board, and the tests that need it.
 
 use std::process::{Command, Stdio};
 

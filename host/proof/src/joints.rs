@@ -1,6 +1,5 @@
 //! The joints that the step is tried on: 3, 4 and 5 planets, both damping laws, with compliance and without, mesh phase
-//! by angle and by time, equal, unequal and no backlash. They are presets with a few values changed; what is done with
-//! them is left to the trials.
+//! by angle and by time, equal, unequal and no backlash. They are presets with a few values changed.
 
 use std::fs;
 use std::path::{Path, PathBuf};

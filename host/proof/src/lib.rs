@@ -1,6 +1,5 @@
 //! What is proved about the step that ships, on the emulated board and from the linked image: that its results are the
-//! host's in every bit, what it takes at worst, that it cannot panic and how much stack it needs. Runs with a profile
-//! and a report are left to `hil`.
+//! host's in every bit, what it takes at worst, that it cannot panic and how much stack it needs.
 
 pub mod costs;
 pub mod everything;

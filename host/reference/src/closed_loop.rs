@@ -1,6 +1,5 @@
 //! What a closed loop on the drive train is made of and judged by: controllers behind one trait, the rivals that
-//! compensation is measured against, motions, what happened, and figures of merit. Closing the loop is left to others, bounds
-//! are `tolerance`'s business.
+//! compensation is measured against, motions, what happened, and figures of merit.
 
 mod metrics;
 mod profile;

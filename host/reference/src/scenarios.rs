@@ -1,5 +1,5 @@
 //! Named scenarios as data: a joint, where it starts and what torques act tick by tick, and the reference's trajectory
-//! through them. How closely anything must follow that trajectory is `tolerance`'s business.
+//! through them.
 
 pub mod case_r;
 mod cases;

@@ -1,5 +1,4 @@
-//! The one error that reaches a user: what is wrong, what to do about it, and the exit code. Errors inside a part stay
-//! that part's business until they become one of these.
+//! The one error that reaches a user: what is wrong, what to do about it, and the exit code.
 
 use std::fmt;
 use std::io::{self, Write};

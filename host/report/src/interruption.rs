@@ -1,5 +1,5 @@
 //! Ctrl-C and a polite request to end (SIGTERM, SIGHUP): the first asks the work under way to end in order, the second
-//! ends the process at once. What ending in order means is each part's business.
+//! ends the process at once.
 
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -1,6 +1,5 @@
-//! What every command shares with its user: failures and exit codes, files that are written whole or not at all, progress,
-//! interruption, checks, provenance, HTML pages and vector plots. It knows no physics: what a figure means is told by
-//! whoever brings it.
+//! What every command shares with its user: failures and exit codes, files that are written whole or not at all,
+//! progress, interruption, checks, provenance, HTML pages and vector plots.
 
 pub mod checks;
 pub mod command_line;

@@ -1,5 +1,5 @@
 //! Safe writing: into a temporary file beside the target, then renamed, so that a reader sees the old file or the whole
-//! new one. What to write is left to the callers.
+//! new one.
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind, Write};

@@ -1,5 +1,4 @@
-//! One run of a test file: a case of it is put on the rig, with a controller by its name, until the test's time is up. What
-//! happened is kept by `ran`, what it is worth is `figures`' business.
+//! One run of a test file: a case of it is put on the rig, with a controller by its name, until the test's time is up.
 
 use std::time::Instant;
 

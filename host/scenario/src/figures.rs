@@ -1,5 +1,5 @@
 //! Named figures: what each is called, in which unit, what it means, and how one relates to another controller's. Their
-//! values are made in `values` and `sight`; which must be how good is the file's business.
+//! values are made in `values` and `sight`.
 
 use super::controller::ControllerName;
 

@@ -1,5 +1,4 @@
-//! What happened in a run: the truth in every control period, and what the observer made of it. How it came about is
-//! `rig`'s business, what it is worth is `figures`'.
+//! What happened in a run: the truth in every control period, and what the observer made of it.
 
 use model_core::numbers::digest;
 use model_core::observer::{Progress, Refusal, Source};

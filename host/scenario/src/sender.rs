@@ -1,5 +1,5 @@
 //! Set-points as whoever asks for a motion sends them: every control period, or at an impedance's own rate and held in
-//! between. What is lost on the way is left to `faults`.
+//! between.
 
 use model_core::gears::{Kinematics, Mechanics};
 use parameters::JointParameters;

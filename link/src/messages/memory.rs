@@ -1,5 +1,5 @@
-//! What a controller has learnt, on its way between a board and its host: kept in a page of the board's flash, told, taken
-//! and erased between runs. What its bytes mean is the observer's business.
+//! What a controller has learnt, on its way between a board and its host: kept in a page of the board's flash, told,
+//! taken and erased between runs.
 
 use heapless::Vec;
 use model_core::observer::MEMORY_BYTES;

@@ -1,5 +1,5 @@
 //! Set-points over a stretch of time: a polynomial of fifth degree for each motion, evaluated every control period, so
-//! that a slow line can carry any smooth motion. Making the polynomials is left to whoever plans the motion.
+//! that a slow line can carry any smooth motion.
 
 use crate::compensation::{Command, ImpedancePoint, Motion, Position};
 use crate::numbers::Real;

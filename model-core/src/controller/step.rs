@@ -1,6 +1,5 @@
 //! Observer and compensation as one: samples and a set-point in, estimates and the shaped set-point out, once a control
-//! period; or the width probe in place of the compensation. Where the samples come from, and over which line, is left to
-//! whoever calls.
+//! period; or the width probe in place of the compensation.
 
 use crate::compensation::CompensationTables;
 use crate::compensation::{Command, Compensation, Shaped};

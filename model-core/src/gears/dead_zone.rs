@@ -1,5 +1,4 @@
 //! The dead zone of a gear mesh: sharp (eq. 12) and smoothed by tanh (eq. 13 with the factor that its print lost).
-//! How hard a tooth is pushed once it is outside is the mesh's business, not this file's.
 
 use crate::numbers::Real;
 

@@ -1,6 +1,6 @@
 //! Exponential flow of the closed joint: a whole tick while every mesh stays on its flank. The linear motion is exact;
 //! ripple, backlash and imposed error are a pseudo-force, cubic in time through value and rate at the start and the
-//! values at two looks on the way. Ticks in which contacts change are left to `substep`.
+//! values at two looks on the way.
 
 use core::array;
 

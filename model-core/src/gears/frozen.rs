@@ -1,6 +1,5 @@
 //! The joint at one moment under frozen laws: what every mesh does, and the accelerations that follow, with a sub-step
-//! as the unit of time and accelerations in sixths (see `stages`). What to do when
-//! a law no longer holds is left to `crossing`.
+//! as the unit of time and accelerations in sixths (see `stages`).
 
 use crate::gears::contact::{Drive, Law, Laws, Net};
 use crate::gears::excitation::{Beat, MeshWave, PerMesh};

@@ -1,5 +1,5 @@
-//! The joint, one tick at a time: torques in, motion out. Bounded work, no allocation, no panic; SI only in
-//! [`Torques`] and [`Outputs`]. Scheduling, safety and telemetry are the firmware's business.
+//! The joint, one tick at a time: torques in, motion out. Bounded work, no allocation, no panic; SI only in [`Torques`]
+//! and [`Outputs`].
 
 use core::array;
 

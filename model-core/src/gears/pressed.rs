@@ -1,6 +1,5 @@
 //! A tick with every tooth pressing, by one exponential of the closed joint: ripple and imposed error are a
-//! pseudo-force linear in time through its values at the start and in the middle. Whether teeth part within the tick is
-//! left to a guard: a tick that might is not taken.
+//! pseudo-force linear in time through its values at the start and in the middle.
 
 #![allow(clippy::op_ref, reason = "a product by value would copy the table")]
 

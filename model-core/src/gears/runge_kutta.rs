@@ -1,5 +1,5 @@
 //! The classical fourth-order Runge-Kutta method for x'' = a(x, x', t), written for positions and rates so that the
-//! stages of the position need no evaluation of their own. What the acceleration is made of is the caller's business.
+//! stages of the position need no evaluation of their own.
 
 use crate::gears::state::Relative;
 use crate::numbers::Real;

@@ -1,6 +1,5 @@
 //! Everything the fixed step needs, as plain numbers: the single doorway between the offline half (`design`, f64) and
-//! the fast half (`model`, f32). Dimensionless (see `scales`) except where a unit stands; how the numbers come about is
-//! left to `design`, what is done with them to `model`.
+//! the fast half (`model`, f32). Dimensionless (see `scales`) except where a unit stands.
 
 use core::fmt;
 

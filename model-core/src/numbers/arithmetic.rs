@@ -1,4 +1,4 @@
-//! Bounds on numbers that may be anything. NaN passes through; whoever gives a torque away looks for it there.
+//! Bounds on numbers that may be anything. NaN passes through.
 
 use crate::numbers::real::Real;
 

@@ -1,4 +1,4 @@
-//! Random words that every host and board agree on. Distributions are left to whoever draws.
+//! Random words that every host and board agree on.
 
 /// The next word of a stream, which is all of its state (splitmix64 after Steele, Lea and Flood, 2014).
 pub fn splitmix64(state: &mut u64) -> u64 {

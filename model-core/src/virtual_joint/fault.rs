@@ -1,7 +1,5 @@
-//! Faults between a joint and its controller, described once: encoders that stand still, slip or scatter, readings that do
-//! not come, a motor that gives another torque than it was asked for. [`Fault`] is in the units of whoever holds it: SI in
-//! a test file and on the host, which applies it to the f64 drive train, whole numbers on the wire and on a board, which
-//! applies it to its virtual joint. What a fault does is left to who applies it, what it is to prove to tests.
+//! Faults between a joint and its controller, described once: encoders that stand still, slip or scatter, readings that
+//! do not come, a motor that gives another torque than it was asked for.
 
 use core::fmt::Debug;
 use core::marker::PhantomData;

@@ -1,5 +1,4 @@
-//! Everything that a comparison finds, and where it comes from, as it is written as JSON. How it is shown is left to
-//! `table`, `page` and `document`.
+//! Everything that a comparison finds, and where it comes from, as it is written as JSON.
 
 use serde::Serialize;
 

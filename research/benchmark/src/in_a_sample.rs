@@ -1,5 +1,5 @@
 //! What a controller of a robot joint gets out of one sample, method by method at the same cost: output angle and peak
-//! mesh force. Only of cases that are judged by the output angle; other cases are left to `verdicts`.
+//! mesh force. Only of cases that are judged by the output angle.
 
 use serde::Serialize;
 

@@ -1,5 +1,4 @@
-//! Every method on every case at one step after another: error from the host, instructions from the emulated core. What
-//! follows from the figures is left to `verdicts`, how they look to `table` and `page`.
+//! Every method on every case at one step after another: error from the host, instructions from the emulated core.
 
 use contest::case::{Case, Measure};
 use contest::course::Errors;

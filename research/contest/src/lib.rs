@@ -1,6 +1,6 @@
 //! Who follows a joint how closely at what cost. [`catalogue`] names the cases, [`method`] the fixed-step methods;
-//! [`run`] moves a case by a method, [`course`] is the reference's motion and [`curve`] the error by step, as an envelope
-//! over excitation phases. Counting instructions is left to the host command, which has the emulated core.
+//! [`run`] moves a case by a method, [`course`] is the reference's motion and [`curve`] the error by step, as an
+//! envelope over excitation phases.
 
 pub mod case;
 pub mod catalogue;

@@ -1,5 +1,4 @@
-//! Lists and grids of half-backlash as they are typed: `0,10,60,120` and `0:150:0.5`, in micrometres. What is computed
-//! at them is the study's business.
+//! Lists and grids of half-backlash as they are typed: `0,10,60,120` and `0:150:0.5`, in micrometres.
 
 use report::failure::{Failure, Outcome};
 

@@ -1,5 +1,4 @@
-//! Fig. 3: the rectangular stiffness wave, its duty from the contact ratio, and its first harmonic, eq. 7. How the
-//! motion uses the wave is the core's business.
+//! Fig. 3: the rectangular stiffness wave, its duty from the contact ratio, and its first harmonic, eq. 7.
 
 use model_core::gears::StiffnessSeries;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};

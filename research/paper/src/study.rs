@@ -1,5 +1,5 @@
 //! Computes everything that a plan asks for, in parallel over joints and half-backlashes; results do not depend on the
-//! number of threads. Judging and drawing are left to others.
+//! number of threads.
 
 use model_core::gears::{Mechanics, Scales};
 use parameters::DampingLaw;

@@ -1,5 +1,4 @@
-//! Every mesh at one instant: stiffness and imposed error with its rate, from one sine and one cosine. Where the phase
-//! comes from is the clock's business.
+//! Every mesh at one instant: stiffness and imposed error with its rate, from one sine and one cosine.
 
 use model_core::numbers::Real;
 

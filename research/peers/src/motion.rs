@@ -1,5 +1,4 @@
-//! Relative coordinates of the joint (those of eqs 16 and 17 less the imposed errors) and sums of them. What moves them
-//! is left to the schemes.
+//! Relative coordinates of the joint (those of eqs 16 and 17 less the imposed errors) and sums of them.
 
 use core::array;
 

@@ -1,5 +1,5 @@
-//! What a comparison of methods runs, on the host as on the board: something that moves in steps, and one run of it under
-//! torques that change and restarts. What is read off it and what a step costs are left to the caller.
+//! What a comparison of methods runs, on the host as on the board: something that moves in steps, and one run of it
+//! under torques that change and restarts.
 
 use model_core::gears::{Model, State, Torques};
 use model_core::numbers::{Real, digest};

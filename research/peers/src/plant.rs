@@ -1,6 +1,5 @@
-//! The joint as plain dimensionless numbers (lengths over b_c, times by omega_n, forces over K_m b_c) for one step size.
-//! Where the numbers come from is left to `from_parameters`; printed by `Debug`, a plant is the Rust expression that
-//! makes it, so that a board can carry it.
+//! The joint as plain dimensionless numbers (lengths over b_c, times by omega_n, forces over K_m b_c) for one step
+//! size. Printed by `Debug`, a plant is the Rust expression that makes it, so that a board can carry it.
 
 use model_core::numbers::Real;
 use parameters::MAX_HARMONICS;

@@ -1,6 +1,5 @@
 //! Random joints and motions, far apart in everything that a joint file can say: planets, masses, stiffness, damping,
-//! backlash, ripple, errors, excitation, torques that hold contact or reverse. What is predicted of them, and how well
-//! it holds, is the tests' business.
+//! backlash, ripple, errors, excitation, torques that hold contact or reverse.
 
 use std::f64::consts::TAU;
 

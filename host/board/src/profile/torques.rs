@@ -1,5 +1,4 @@
-//! Torques at one time, as every profile gives them, and the most that is believed of one. On which ticks they are
-//! commanded is left to `Profile`.
+//! Torques at one time, as every profile gives them, and the most that is believed of one.
 
 /// No joint that this is for gives or takes more: it is a slip of the unit [N m].
 pub const STRONGEST: f64 = 1e6;

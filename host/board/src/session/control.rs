@@ -1,5 +1,5 @@
 //! Runs of the roles that control: one exchange after the other with an observer, or a motion streamed to a whole loop.
-//! Every wait has a deadline; what the answers are worth is left to whoever asked.
+//! Every wait has a deadline.
 
 use std::time::{Duration, Instant};
 

@@ -1,5 +1,5 @@
-//! What goes over the line and what is waited for: every wait has a deadline, and who waits in vain is told what to look at.
-//! What is said and what an answer means is the parent's business.
+//! What goes over the line and what is waited for: every wait has a deadline, and who waits in vain is told what to
+//! look at.
 
 use std::time::{Duration, Instant};
 

@@ -1,5 +1,4 @@
-//! Compiles the firmware's binaries, one at a time in a folder, and puts what came of it in place whole. What a binary is
-//! for is its callers' business.
+//! Compiles the firmware's binaries, one at a time in a folder, and puts what came of it in place whole.
 
 use std::ffi::OsStr;
 use std::fs::{self, File};

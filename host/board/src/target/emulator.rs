@@ -1,5 +1,5 @@
 //! The emulated board: QEMU's `netduinoplus2` with its serial line on a Unix socket in a folder that only this user can
-//! enter. What is said on the line is the session's business.
+//! enter.
 //!
 //! The emulator never outlives its owner. Dropping [`Emulator`] kills it and waits for it. It is in a process group of
 //! its own, so that Ctrl-C reaches the owner alone, who ends the run and then drops it. And where there is `setpriv`

@@ -1,5 +1,4 @@
-//! Clippy over the firmware as it is built for a board, warnings denied. Lints of host code are `cargo clippy`'s own
-//! business.
+//! Clippy over the firmware as it is built for a board, warnings denied.
 
 use super::board::Board;
 use super::compile::PROFILE;

@@ -1,5 +1,5 @@
-//! Binaries that measure in the emulator: built for any joints, run to their end without any serial line, their words taken
-//! by semihosting. What they measure, and what is to be thought of it, is their callers' business.
+//! Binaries that measure in the emulator: built for any joints, run to their end without any serial line, their words
+//! taken by semihosting.
 
 use std::env;
 use std::ffi::OsStr;

@@ -1,5 +1,4 @@
-//! The target's side of the host: the compiler for it, images, the emulator, flashing. What is said to a running board
-//! is the session's business.
+//! The target's side of the host: the compiler for it, images, the emulator, flashing.
 //!
 //! The order of use: [`toolchain::Toolchain::prepare`], [`image::build_image`], then [`emulator::Emulator::start`] or
 //! [`flash::flash`]; or [`measuring::build_measuring`] and [`measuring::run`]. An image is built once for its `sources`. Each says

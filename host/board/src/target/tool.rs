@@ -1,5 +1,4 @@
-//! Running other programs: finding them, following their output, and keeping all of it for an error. Which programs,
-//! and why, is the callers' business.
+//! Running other programs: finding them, following their output, and keeping all of it for an error.
 
 use std::env;
 use std::io::{BufRead, BufReader};

@@ -1,6 +1,5 @@
 //! How to build for the board here: by the compiler in use if it has the target, else by a distribution's compiler and
-//! its library source with a private sysroot. What is built is left to `image` and `lint`; nothing is ever downloaded
-//! through rustup from here.
+//! its library source with a private sysroot. Nothing is ever downloaded through rustup from here.
 
 use std::env;
 use std::ffi::OsString;

@@ -1,5 +1,4 @@
-//! One parameter that a log shows, with its interval and its key in the joint file, or why it is not shown. Which parameters
-//! there are is the neighbours' business.
+//! One parameter that a log shows, with its interval and its key in the joint file, or why it is not shown.
 
 use serde::Serialize;
 

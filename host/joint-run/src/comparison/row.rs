@@ -1,5 +1,4 @@
-//! What of a motion is compared: the quantities, with their bounds, at one moment. Where motions come from is left to
-//! the callers.
+//! What of a motion is compared: the quantities, with their bounds, at one moment.
 
 use link::messages::Sample;
 use reference::joint::Observation;

@@ -1,5 +1,5 @@
-//! Pictures of the motion: torques, angles, the gap, deflections with contact, and the error against the reference.
-//! The close-up of a crossing has a module of its own; how a panel is drawn is `plot`'s business.
+//! Pictures of the motion: torques, angles, the gap, deflections with contact, and the error against the reference. The
+//! close-up of a crossing has a module of its own.
 
 use crate::record::{ErrorSeries, RunRecord, Samples, TorqueCommand};
 use report::contacts;

@@ -1,5 +1,4 @@
-//! How the board's time was spent, in SI, made from the raw counts of the line. Judging the figures is left to the
-//! checks.
+//! How the board's time was spent, in SI, made from the raw counts of the line.
 
 use serde::{Deserialize, Serialize};
 

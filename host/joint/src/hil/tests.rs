@@ -1,5 +1,5 @@
 //! Which arguments of `joint hil` belong to test files and which to joints; the wrong ones are named rather than
-//! ignored. Running tests is left to `scenario`.
+//! ignored.
 
 use std::fs;
 use std::path::{Path, PathBuf};

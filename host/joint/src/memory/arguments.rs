@@ -1,4 +1,4 @@
-//! What `joint memory` may be asked for on the command line. What is done about it is the parent's business.
+//! What `joint memory` may be asked for on the command line.
 
 use std::path::PathBuf;
 

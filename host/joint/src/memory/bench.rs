@@ -1,5 +1,4 @@
-//! The board whose memory is asked for: found, called, and refused if it learns nothing. What is asked of it then is the
-//! parent's business.
+//! The board whose memory is asked for: found, called, and refused if it learns nothing.
 
 use link::messages::{Hello, Role};
 

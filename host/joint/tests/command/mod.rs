@@ -1,4 +1,4 @@
-//! Runs the command `joint` as a user does and keeps what it said. What it should have said is the tests' business.
+//! Runs the command `joint` as a user does and keeps what it said.
 
 #![allow(dead_code, reason = "every test file uses a part of it")]
 

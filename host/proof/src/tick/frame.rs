@@ -1,5 +1,5 @@
 //! What one function does on its own: how deep its stack gets, what it calls at which depth, and everything in it that
-//! cannot be followed. Found by following every path through its instructions; what its callees do is left to the walk.
+//! cannot be followed. Found by following every path through its instructions.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,4 +1,4 @@
-//! Figures of merit of a run, all from the truth. Which of them must be how good is `tolerance`'s business.
+//! Figures of merit of a run, all from the truth.
 
 use super::{Run, Sample};
 

@@ -1,5 +1,4 @@
-//! What truly happened in a closed loop, period by period. How it came about is the business of whoever closes the loop,
-//! what it is worth that of `metrics`.
+//! What truly happened in a closed loop, period by period.
 
 use crate::joint::Observation;
 

@@ -1,4 +1,4 @@
-//! An absolute encoder: the past of an angle, its errors, its counts. Estimating anything from counts is left to others.
+//! An absolute encoder: the past of an angle, its errors, its counts.
 
 use std::collections::VecDeque;
 use std::f64::consts::TAU;

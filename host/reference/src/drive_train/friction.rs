@@ -1,5 +1,4 @@
-//! Dry and viscous friction of one shaft over a short part of time, sticking included. Where the torque acts is left to
-//! the drive train.
+//! Dry and viscous friction of one shaft over a short part of time, sticking included.
 
 use parameters::Friction;
 

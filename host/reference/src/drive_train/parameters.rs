@@ -1,5 +1,5 @@
 //! What a drive train is made of, as plain data in SI, with Q1's as an example: its surroundings as a data sheet tells
-//! them, and what only the truth has. Reading them from a joint file is left to others.
+//! them, and what only the truth has.
 
 use std::fmt;
 

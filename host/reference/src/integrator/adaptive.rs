@@ -1,5 +1,4 @@
-//! Steps as long as the error allows, ended by every event, after which the system is frozen anew. The single step is left
-//! to `dormand_prince`, the search for an event to `event`.
+//! Steps as long as the error allows, ended by every event, after which the system is frozen anew.
 
 use std::fmt;
 

@@ -1,5 +1,4 @@
-//! Finds the first moment at which a guard of a switched system turns negative within one step. What is frozen between
-//! two such moments, and what happens after one, is left to the system and to `adaptive`.
+//! Finds the first moment at which a guard of a switched system turns negative within one step.
 
 use super::dormand_prince::{Trial, trial};
 use super::guard::{Guard, Guards};

@@ -1,5 +1,4 @@
-//! What is integrated: a system that is smooth as long as some choices are frozen, and says when they no longer hold. How
-//! it is integrated is left to `adaptive`.
+//! What is integrated: a system that is smooth as long as some choices are frozen, and says when they no longer hold.
 
 use super::guard::Guards;
 

@@ -1,5 +1,5 @@
-//! One gear mesh as eqs 5-7 and 11 have it: stiffness wave, transmission error and the force across the teeth, with
-//! the side of the dead zone frozen between events. Where the teeth are in space is left to `equations`.
+//! One gear mesh as eqs 5-7 and 11 have it: stiffness wave, transmission error and the force across the teeth, with the
+//! side of the dead zone frozen between events.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 

@@ -1,4 +1,4 @@
-//! What can be read off the reference at one moment, in SI. How it is read is left to `reading`; encoders, noise and delays are the drive train's.
+//! What can be read off the reference at one moment, in SI. Encoders, noise and delays are the drive train's.
 
 use heapless::Vec;
 use parameters::{ContactState, MAX_PLANETS, PerPlanet};

@@ -1,5 +1,4 @@
-//! The joint in motion: started, moved on under torques, and kept to small coordinates. What can be read off it is left to
-//! `reading`.
+//! The joint in motion: started, moved on under torques, and kept to small coordinates.
 
 use std::f64::consts::TAU;
 

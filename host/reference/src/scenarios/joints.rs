@@ -1,5 +1,4 @@
-//! The joints that scenarios run on, built in code so that a mistake in a joint file cannot reach them. Joint files
-//! with the source of every number are left to the `joints` crate.
+//! The joints that scenarios run on, built in code so that a mistake in a joint file cannot reach them.
 
 use parameters::{
     Bodies, Coherence, Compliance, DampingLaw, DeadZone, Excitation, Geometry, JointParameters, Mesh, MeshPhases,

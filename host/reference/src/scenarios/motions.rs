@@ -1,6 +1,6 @@
 //! Motions that take the teeth through every state that backlash knows: free motion, load steps, reversals through the
 //! gap, all teeth separated, back-side contact; on joints L1 and Q1, under both damping laws. All open loop on a 20 kHz
-//! tick grid; controllers and friction are left to the drive train.
+//! tick grid.
 //!
 //! Under the law `contact` with a damping ratio of 0.05 the planets rattle between sun and ring for milliseconds after
 //! every crossing, and each bounce amplifies what came before: no two integrators agree on single meshes then. L1 is

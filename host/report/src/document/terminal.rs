@@ -1,5 +1,5 @@
 //! A document as lines for a terminal: no colours, so that a terminal, a file and a log show the same, and none of the
-//! signs that a terminal may not have. Pictures and tiles are left to pages.
+//! signs that a terminal may not have.
 
 use std::fmt::Write as _;
 

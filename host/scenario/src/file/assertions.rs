@@ -1,5 +1,4 @@
-//! Reads `[assert]`: named figures and their bounds, over all seeds the worst unless the file says otherwise. Where
-//! figures come from is `figures`' business.
+//! Reads `[assert]`: named figures and their bounds, over all seeds the worst unless the file says otherwise.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! Reads `[[fault]]`: what goes wrong, from when to when, in SI. How it goes wrong is left to who applies it.
+//! Reads `[[fault]]`: what goes wrong, from when to when, in SI.
 
 use model_core::virtual_joint::fault::{self, FaultKind, Shaft, Units};
 

@@ -1,5 +1,4 @@
-//! The impedance in `[controller]`: who is sent one, and what it is if the file does not say. Who controls is the parent's
-//! business.
+//! The impedance in `[controller]`: who is sent one, and what it is if the file does not say.
 
 use super::section::Section;
 use crate::controller::Gains;

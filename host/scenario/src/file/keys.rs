@@ -1,5 +1,5 @@
-//! Every key of a test file: its section, what it holds, its bound, and a hint for who got it wrong. What the values
-//! mean together is left to the readers of the sections; docs/hil-file.md says the same in more words.
+//! Every key of a test file: its section, what it holds, its bound, and a hint for who got it wrong. Docs/hil-file.md
+//! says the same in more words.
 
 use joint_file::Keys;
 

@@ -1,5 +1,5 @@
-//! Test files, `hil/*.toml`: TOML with the unit in every key's name, read with all problems of a file found at once, each
-//! with its place in the text. Running what they say is left to the rest of `trial`.
+//! Test files, `hil/*.toml`: TOML with the unit in every key's name, read with all problems of a file found at once,
+//! each with its place in the text.
 //!
 //! `keys` lists every key; `section` takes values out of a table by that list; `motion`, `faults`, `changes` and
 //! `assertions` each read one kind of section. docs/hil-file.md tells all of it to users.

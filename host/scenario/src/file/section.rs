@@ -1,5 +1,4 @@
-//! Takes values out of one table of a test file by the list of keys: right type, finite, within bounds. What the values
-//! mean together is left to the reader of each section.
+//! Takes values out of one table of a test file by the list of keys: right type, finite, within bounds.
 
 use std::ops::{Deref, Range};
 

@@ -1,5 +1,5 @@
-//! Observer and compensation on a board, a control period at a time over its line: lockstep, so that every period has its
-//! answer however slow the line is. Finding the board and starting its run is the caller's business.
+//! Observer and compensation on a board, a control period at a time over its line: lockstep, so that every period has
+//! its answer however slow the line is.
 
 use std::cell::RefCell;
 use std::rc::Rc;

@@ -1,5 +1,5 @@
 //! A run of each role on a board beside its twin here, which must be the same in every bit: exchanges in lockstep for
-//! observer and compensation, a motion in knots for the whole loop. Images and lines are the parent's business.
+//! observer and compensation, a motion in knots for the whole loop.
 
 use std::cell::RefCell;
 use std::rc::Rc;

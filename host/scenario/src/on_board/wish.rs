@@ -1,5 +1,4 @@
-//! Which boards tests are to run on, in which role, and what no board can do. Building and reaching them is left to the
-//! parent.
+//! Which boards tests are to run on, in which role, and what no board can do.
 
 use link::messages::{Role, RunMode};
 

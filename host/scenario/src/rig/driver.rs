@@ -1,5 +1,5 @@
-//! A controller at work: the compensation behind its port, one that controls as rivals do, the compensation on the truth, or
-//! nobody. What they are asked for and what becomes of their torque is the rig's business.
+//! A controller at work: the compensation behind its port, one that controls as rivals do, the compensation on the
+//! truth, or nobody.
 
 use reference::closed_loop::rivals::Knowledge;
 use reference::closed_loop::{

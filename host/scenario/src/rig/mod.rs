@@ -1,6 +1,5 @@
-//! The one closed loop of a joint on the host: a plant with what surrounds it, a motion that is asked for, faults between
-//! plant and controller, and whoever controls. All of them are stepped here, one control period after another and in one
-//! order, and each period is shown to whoever keeps something of it.
+//! The one closed loop of a joint on the host: a plant with what surrounds it, a motion that is asked for, faults
+//! between plant and controller, and whoever controls.
 //!
 //! A control period: faults of the teeth; the set-point is sent, and reaches the controller through its faults; the encoders
 //! are read, and reach it through theirs; the controller gives a torque; the motor makes of it what its faults let it, and

@@ -1,5 +1,5 @@
-//! What a loop is closed around: the true joint with everything that surrounds it, what is asked of its link, and what goes
-//! wrong. Plain data; who controls is left to the run.
+//! What a loop is closed around: the true joint with everything that surrounds it, what is asked of its link, and what
+//! goes wrong. Plain data.
 
 use parameters::JointParameters;
 use reference::closed_loop::SharedReference;

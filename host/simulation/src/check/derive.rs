@@ -1,5 +1,4 @@
-//! From a joint file to its figures: closed forms, eigenvalues and the design of the fixed step. The motion itself is
-//! left to the runs on a board.
+//! From a joint file to its figures: closed forms, eigenvalues and the design of the fixed step.
 
 use std::f64::consts::TAU;
 

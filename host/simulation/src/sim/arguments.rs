@@ -1,4 +1,4 @@
-//! What `joint sim` may be asked for on the command line. What it means for a joint is `plan`'s business.
+//! What `joint sim` may be asked for on the command line.
 
 use std::path::PathBuf;
 

@@ -1,5 +1,4 @@
-//! Moves a joint by a named scheme and shows every tick to whoever asked. What is kept of a tick, and for how long, is
-//! the observer's business.
+//! Moves a joint by a named scheme and shows every tick to whoever asked.
 
 use cpu_time::ThreadTime;
 use link::messages::Command;

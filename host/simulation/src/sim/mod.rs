@@ -1,5 +1,4 @@
-//! Any joint moved by a named scheme, on the host. What a board computes and how it is checked is `hil`'s
-//! business, studies over many joints are `sweep`'s.
+//! Any joint moved by a named scheme, on the host.
 //!
 //! `plan` finds everything that is wrong with the request, `follow` moves the joint by a `scheme` from a `start`, and
 //! shows a `moment` every tick to `statistics`, `energy` and the files (`csv`, `log_file`, both with the `quantities`);

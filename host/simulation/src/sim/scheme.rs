@@ -1,5 +1,4 @@
-//! Integration schemes by name, as the user types them and as reports print them. How each steps is the core's or the
-//! reference's business.
+//! Integration schemes by name, as the user types them and as reports print them.
 
 use clap::ValueEnum;
 use model_core::gears::Scheme;

@@ -1,5 +1,5 @@
 //! One axis of a grid: a key of the joint file and the values that it takes, as text, so that 0.1 stays 0.1 in every
-//! file. How axes make a grid is `grid`'s business.
+//! file.
 
 use report::failure::{Failure, Outcome};
 use report::number::TYPED;

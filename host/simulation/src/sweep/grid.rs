@@ -1,5 +1,5 @@
 //! The grid of a sweep: every combination of its axes, numbered with the last axis fastest, and which of them a shard
-//! has. What is computed at a point is `metrics`' business.
+//! has.
 
 use std::str::FromStr;
 

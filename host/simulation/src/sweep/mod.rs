@@ -1,5 +1,4 @@
-//! Any grid of joints through one simulation each, in parallel, resumable and in
-//! shards. How one joint moves and what is counted is `sim`'s business.
+//! Any grid of joints through one simulation each, in parallel, resumable and in shards.
 //!
 //! `axis` and `grid` say which points there are, `manifest` which sweep it is, `folder` and `journal` keep what is done,
 //! `metrics` computes a point, `work` shares the points out, `merge` puts shards together.

@@ -1,5 +1,4 @@
-//! Inertias, stiffness and backlash of a joint as the compensation feels them at the link. What is made of them is left to
-//! the tables' design.
+//! Inertias, stiffness and backlash of a joint as the compensation feels them at the link.
 
 use crate::gears::{Kinematics, Mechanics};
 use parameters::{JointParameters, MeshKind};

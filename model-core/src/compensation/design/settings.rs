@@ -1,5 +1,4 @@
-//! What a compensation is designed from besides the joint, and which settings are refused. Gains are left to the tables'
-//! design.
+//! What a compensation is designed from besides the joint, and which settings are refused.
 
 use crate::gears::design::DesignError;
 use crate::observer::design::NO_LIMIT;

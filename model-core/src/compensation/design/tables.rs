@@ -1,4 +1,4 @@
-//! Tables of the compensation: from joint, bandwidth and limits to gains, times and thresholds. 
+//! Tables of the compensation: from joint, bandwidth and limits to gains, times and thresholds.
 //!
 //! Gains follow from inertias and bandwidth, times from the motor's torque, the loop's delays and the force that a
 //! landing may cause. What is left are shares, each a constant here with its reason.

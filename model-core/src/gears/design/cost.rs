@@ -1,6 +1,6 @@
 //! Instructions of a tick, predicted from what it does. Every constant was counted on an emulated Cortex-M4F (QEMU,
 //! rustc 1.96, opt-level 3, fat LTO) over 108 sets of tables (3, 4 and 5 planets, both laws, with compliance and
-//! without, 1, 2 and 5 harmonics, 1, 2 and 4 sub-steps; leaps apart); caches and pipelines are the processor's business.
+//! without, 1, 2 and 5 harmonics, 1, 2 and 4 sub-steps; leaps apart).
 //!
 //! A tick by the exponential flow costs the same each time. One in sub-steps costs a fixed part (start, first look at
 //! the accelerations, state taken over; half of that in ticks that go on from another one), each sub-step, each

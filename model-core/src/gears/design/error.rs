@@ -1,5 +1,4 @@
-//! What can be wrong with parameters or with a wanted step. Raised offline, never in the loop; rendering with the
-//! place in a file is left to whoever read the file.
+//! What can be wrong with parameters or with a wanted step. Raised offline, never in the loop.
 
 use core::fmt;
 

@@ -1,5 +1,4 @@
-//! Tables of the leapfrog sub-steps that light planets need: mobilities and dampings in the unit of time of a
-//! sub-step. How many sub-steps there are is the pace's business.
+//! Tables of the leapfrog sub-steps that light planets need: mobilities and dampings in the unit of time of a sub-step.
 
 use crate::gears::mechanics::Mechanics;
 use crate::gears::scales::Scales;

@@ -1,4 +1,4 @@
-//! What the observer needs of a joint, felt along the line of action. Gains are left to `sides`.
+//! What the observer needs of a joint, felt along the line of action.
 
 use crate::gears::{Kinematics, Mechanics};
 use parameters::{JointParameters, MeshKind};

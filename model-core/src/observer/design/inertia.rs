@@ -1,5 +1,4 @@
-//! What learning the link's inertia needs: the load side's flow on a link that stands still, and what counts as fast. How
-//! the load side itself comes about is left to `sides`.
+//! What learning the link's inertia needs: the load side's flow on a link that stands still, and what counts as fast.
 
 use super::body::Body;
 use super::filter::Filter;

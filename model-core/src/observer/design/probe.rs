@@ -1,5 +1,4 @@
-//! The table of the width probe: how hard it may push, how long it waits and what its figure is worth. The probe's
-//! course is left to `observer::probe`.
+//! The table of the width probe: how hard it may push, how long it waits and what its figure is worth.
 
 use core::f64::consts::TAU;
 

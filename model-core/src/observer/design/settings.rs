@@ -1,5 +1,5 @@
-//! What the observer is designed from besides the joint, and whether it can be: data-sheet figures and how sure they are.
-//! What becomes of them is left to the design.
+//! What the observer is designed from besides the joint, and whether it can be: data-sheet figures and how sure they
+//! are.
 
 use crate::gears::design::DesignError;
 use crate::observer::tables::MOST_DELAY;

@@ -1,5 +1,4 @@
 //! Flows and gains of the motor side and the load side: how fast torques may change decides how fast the filters are.
-//! Everything that stands on the two is left to the observer's design.
 
 use nalgebra::{DMatrix, DVector};
 

@@ -1,5 +1,4 @@
-//! Tables of the observer: from joint, encoders and how much is known beforehand to flows and gains. What the observer
-//! does with them is left to `observer`.
+//! Tables of the observer: from joint, encoders and how much is known beforehand to flows and gains.
 //!
 //! No gain is typed in. Both filters are steady-state Kalman filters from the encoders' quantisation and from how fast
 //! torques may change; the learner starts from the stated uncertainties; thresholds are multiples of the noise that

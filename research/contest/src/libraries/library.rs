@@ -1,4 +1,4 @@
-//! The libraries' methods by name. What each does is left to `solve`.
+//! The libraries' methods by name.
 
 /// A library's method with its settings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,5 +1,4 @@
 //! What a motion settles on: of which period, or chaotic, by its Poincare points and its largest Lyapunov exponent.
-//! How points are drawn and what a change of class means is left to the commands.
 
 use std::fmt;
 

@@ -1,5 +1,4 @@
-//! The first moment at which a polynomial falls below zero. Knows no gears: which polynomial, and what it means, is
-//! the caller's business.
+//! The first moment at which a polynomial falls below zero.
 
 /// Parts of the interval looked at one by one. Within one a guard has at most one extremum: a step is at most about one
 /// radian of the fastest motion.

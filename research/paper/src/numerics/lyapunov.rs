@@ -1,5 +1,5 @@
 //! The largest Lyapunov exponent, by a tangent vector and by two trajectories: the mean rate at which neighbours part,
-//! per unit of dimensionless time. Where on the attractor the motion is when measuring begins is the caller's business.
+//! per unit of dimensionless time.
 
 use super::motion::{Motion, State};
 use super::system::StudyError;

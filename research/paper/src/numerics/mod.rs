@@ -1,6 +1,5 @@
 //! Numerics for studies of periodically driven joints: motion by Taylor series from contact event to contact event,
-//! Poincare sections, Lyapunov exponents, attractors. Joint files, plans, pictures and records are left to
-//! the commands that study something.
+//! Poincare sections, Lyapunov exponents, attractors.
 //!
 //! `system` makes the equations dimensionless, `zone` says which branch of the force law each mesh is on, `series`
 //! expands motion and tangent vectors, `fall` finds the moment at which a branch ends, `motion` strings the pieces

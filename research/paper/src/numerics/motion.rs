@@ -1,5 +1,5 @@
 //! A joint in motion, mesh period by mesh period: Taylor steps that end at every contact event, with any number of
-//! tangent vectors carried along. Keeps no history; what is made of the motion is the caller's business.
+//! tangent vectors carried along. Keeps no history.
 
 use parameters::{ContactState, DampingLaw};
 

@@ -1,5 +1,5 @@
 //! X_sp over whole mesh periods, evenly sampled, and what is read off such a record: peak to peak, content beside the
-//! mesh frequency, shares of contact. Spectra are left to `report::spectrum`.
+//! mesh frequency, shares of contact.
 
 use std::f64::consts::TAU;
 

@@ -1,5 +1,4 @@
-//! The pictures of a study, each with the name of its file. What they show is in the record; how a panel is drawn is
-//! `report::plot`'s business.
+//! The pictures of a study, each with the name of its file. What they show is in the record.
 
 mod axes;
 mod dead_zone;

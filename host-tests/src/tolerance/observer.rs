@@ -102,6 +102,11 @@ bounds! {
         below 0.03, was 7e-3,
         since "It is read inside the gap, where the meshes carry nothing.";
 
+    /// The bias itself.
+    TORQUE_BIAS: "torque bias as read over the one put in, less one",
+        below 0.1, was 0.05,
+        since "Dry friction is told from it by the two directions of a few crossings.";
+
     /// Finding a failed output encoder.
     FAILURE_FOUND: "time until a frozen output encoder is given up while the joint turns [s]",
         below 15e-3, was 9.4e-3,

@@ -3,6 +3,7 @@
 use host_tests::tolerance::observer::*;
 use model_core::observer::{Estimate, MAPPED, PLAIN};
 use reference::drive_train::Disturbance;
+use scenario::rig::Moment;
 
 use crate::motion::growing;
 use crate::replay::{Figures, with_encoders};
@@ -132,8 +133,14 @@ fn a_torque_bias_is_read_inside_the_gap() {
     for part in [0.05, -0.05] {
         let trial = Trial::new("q1", "inertia", Encoders::Preset, Some(40e-6), 11).lasting(4.0);
         let mut log = trial.record();
+        let read = |log: &[Moment]| trial.said::<f64>(log, |_, _| {}).last().map(|said| said.torque_bias);
+        let own = read(&log).expect("a recording");
+        // The motor gives as much less than it is told to.
         let bias = part * trial.setup.train.surroundings.torque_limit;
         log.iter_mut().for_each(|moment| moment.command += bias);
+        let found = read(&log).expect("a recording");
+        assert!(own.valid && found.valid, "{own:?}, {found:?}");
+        TORQUE_BIAS.check((own.value - found.value) / bias - 1.0);
         let figures = trial.figures(&log, 2.0);
         GAP_WITH_BIAS.check(figures.gap);
         assert_eq!(figures.missed, 0, "a landing was missed");

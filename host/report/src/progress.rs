@@ -108,15 +108,42 @@ fn style(template: &str) -> ProgressStyle {
 mod tests {
     use super::*;
 
+    /// Where the line stands, of how much; `None` without a line.
+    fn stands(progress: &Progress) -> Option<(u64, Option<u64>)> {
+        progress.bar().as_ref().map(|bar| (bar.position(), bar.length()))
+    }
+
     #[test]
-    fn every_stage_can_be_shown_and_cleared() {
+    fn a_run_goes_on_by_its_units_until_it_is_cleared() {
         let progress = Progress::new();
-        progress.say("before any stage");
-        progress.stage("building");
-        progress.say("Compiling firmware");
+        progress.at(3);
+        assert_eq!(stands(&progress), None, "nothing is under way yet");
         progress.run("running", 10_u32);
         progress.at(5);
+        progress.done(2);
+        assert_eq!(stands(&progress), Some((7, Some(10))));
         progress.clear();
         progress.at(6);
+        assert_eq!(stands(&progress), None);
+    }
+
+    #[test]
+    fn a_stage_takes_the_place_of_the_one_before() {
+        let progress = Progress::new();
+        progress.run("running", 10_u32);
+        progress.at(5);
+        progress.stage("building");
+        assert_eq!(stands(&progress), Some((0, None)), "a stage of unknown length");
+        let bar = progress.bar().clone();
+        assert_eq!(bar.map(|bar| bar.prefix()), Some("building".to_owned()));
+    }
+
+    #[test]
+    fn work_ends_without_a_line() {
+        let left = Progress::during(|progress| {
+            progress.run("running", 10_u32);
+            Ok(progress.bar().clone())
+        });
+        assert!(left.ok().flatten().is_some_and(|bar| bar.is_finished()));
     }
 }

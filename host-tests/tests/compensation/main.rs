@@ -6,6 +6,7 @@ mod bad_input;
 mod holding;
 mod impedance;
 mod monte_carlo;
+mod page;
 mod position;
 mod stepping;
 mod width;

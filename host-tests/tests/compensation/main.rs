@@ -1,11 +1,12 @@
 //! The compensation in the loop with the drive train, against the rivals, on few seeds: tests of `hil/`, some of them with a
 //! joint of their own, held to bounds closer than the files'. The long form is ignored unless asked for. How good an observer
-//! is by itself, its own tests say.
+//! is by itself, its own tests say. `page` holds the documentation to the code.
 
 mod bad_input;
 mod holding;
 mod impedance;
 mod monte_carlo;
+mod page;
 mod position;
 mod stepping;
 mod width;

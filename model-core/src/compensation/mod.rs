@@ -11,7 +11,7 @@
 //! 6. `plain` is the same control law on the motor alone, without compensation; it takes over, blended, where the
 //!    estimates are not valid.
 //!
-//! `docs/compensation.md` derives all of it and says where its limits are.
+//! `docs/theory/compensation.md` derives all of it and says where its limits are.
 
 mod crossing;
 #[cfg(feature = "design")]

@@ -22,6 +22,31 @@ pub enum Event {
     Underway = 64,
 }
 
+impl Event {
+    /// The same as a sentence, for the documentation.
+    pub const fn meaning(self) -> &'static str {
+        match self {
+            Self::DemandTurned => {
+                "The torque that the teeth will have to pass on changes its sign, by more than switching hysteresis and noise."
+            }
+            Self::SpringUndecided => {
+                "In impedance mode, the demand now and ahead asks for the other flank, by less than that."
+            }
+            Self::FlankLost => {
+                "Nothing shows contact any more, and the flank is open by more than half of the half-gap."
+            }
+            Self::FlankOpening => {
+                "Nothing shows contact any more, and the flank is open by more than the estimates' errors."
+            }
+            Self::FlankMet => {
+                "The flank is felt, is seen or stops the motor; on a path the motor has been braked as well."
+            }
+            Self::PathEnded => "The time of the path is over.",
+            Self::Underway => "None of the above: the path goes on.",
+        }
+    }
+}
+
 /// What follows from it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Action {
@@ -86,6 +111,20 @@ pub const fn transitions(stage: Stage) -> &'static [Transition] {
 }
 
 impl Action {
+    /// The same as a sentence, for the documentation.
+    pub const fn meaning(self) -> &'static str {
+        match self {
+            Self::CrossOver => "Lay a path to the other flank.",
+            Self::CrossBack => "Lay a path back to the same flank.",
+            Self::Land => "Close on the flank at a small speed, wherever it is.",
+            Self::Carry => "The flank carries; the law's torque rises from nothing.",
+            Self::LetSpringFind => {
+                "The law's torque finds the flank; the other one is taken once it is felt beyond the middle of the gap."
+            }
+            Self::Shorten => "Lay the path anew, if a new one would be over clearly sooner.",
+        }
+    }
+
     /// The stage that follows.
     pub const fn stage(self) -> Stage {
         match self {

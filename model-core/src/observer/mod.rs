@@ -11,7 +11,7 @@
 //! | `learnt` | all of these, in rest and in the open gap | half-gap, offset, compliance, skew, error maps, bias, inertia, and how uncertain they are |
 //! | `health` | counts, deflection | whether the output encoder is used, and what is known of the link without it |
 //!
-//! [`Estimates`] are what comes out. `docs/observer.md` derives all of it and says what it cannot know.
+//! [`Estimates`] are what comes out. `docs/theory/observer.md` derives all of it and says what it cannot know.
 
 mod contact;
 #[cfg(feature = "design")]

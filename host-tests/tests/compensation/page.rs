@@ -1,0 +1,38 @@
+//! What docs/theory/compensation.md says of the stages, held against the table that the control runs.
+
+use model_core::compensation::Stage;
+use model_core::compensation::transitions::transitions;
+
+const PAGE: &str = include_str!("../../../docs/theory/compensation.md");
+const FROM: &str = "<!-- transitions -->";
+const TO: &str = "<!-- /transitions -->";
+
+/// The transitions of the stages that have any, as Markdown.
+fn table() -> String {
+    let mut table = "| stage | # | event | action | next stage |\n|---|---|---|---|---|\n".to_owned();
+    for stage in [Stage::Touching, Stage::Crossing, Stage::Landing] {
+        for (index, line) in transitions(stage).iter().enumerate() {
+            let (number, event, action) = (index + 1, line.when, line.action);
+            let (when, then, next) = (event.meaning(), action.meaning(), action.stage());
+            table += &format!("| {stage:?} | {number} | `{event:?}`: {when} | `{action:?}`: {then} | {next:?} |\n");
+        }
+    }
+    table
+}
+
+#[test]
+fn the_page_shows_the_transitions_that_the_control_runs() {
+    let (_, rest) = PAGE.split_once(FROM).expect("a beginning of the table");
+    let (shown, _) = rest.split_once(TO).expect("an end of the table");
+    let table = table();
+    assert!(
+        shown.trim() == table.trim(),
+        "docs/theory/compensation.md does not show the transitions of model-core/src/compensation/transitions.rs\n  \
+         mend: put this between {FROM} and {TO}:\n\n{table}"
+    );
+}
+
+#[test]
+fn a_stage_without_compensation_has_no_transitions() {
+    assert!(transitions(Stage::Plain).is_empty());
+}

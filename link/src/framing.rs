@@ -28,6 +28,22 @@ fn plain<M: Serialize>(message: &M, buffer: &mut [u8]) -> Result<usize, TooLong>
 }
 
 /// The frame that carries a message.
+///
+/// ```
+/// use link::framing::{Receiver, encode};
+/// use link::messages::ToBoard;
+///
+/// let sent = ToBoard::Hello { protocol: link::PROTOCOL_VERSION };
+/// let mut frame = encode(&sent).unwrap();
+/// assert_eq!(frame.iter().position(|byte| *byte == 0), Some(frame.len() - 1), "a zero ends a frame");
+/// let mut receiver = Receiver::new();
+/// let received: Vec<ToBoard> = frame.iter().filter_map(|byte| receiver.push(*byte)).collect();
+/// assert_eq!(received, [sent]);
+/// // A byte that changes on the way costs the frame.
+/// frame[1] ^= 0x10;
+/// assert!(frame.iter().all(|byte| receiver.push::<ToBoard>(*byte).is_none()));
+/// assert_eq!(receiver.dropped().frames, 1);
+/// ```
 pub fn encode<M: Serialize>(message: &M) -> Result<Vec<u8, MAX_FRAME>, TooLong> {
     let mut buffer = [0u8; MAX_MESSAGE];
     let length = plain(message, &mut buffer)?;
@@ -40,6 +56,18 @@ pub fn encode<M: Serialize>(message: &M) -> Result<Vec<u8, MAX_FRAME>, TooLong> 
 
 /// Fills a frame of fixed length, for buses that clock out as much as they clock in: the message, zeros, and the CRC over
 /// all of that.
+///
+/// ```
+/// use link::framing::{sealed, unsealed};
+/// use link::messages::Command;
+///
+/// let sent = Command { tick: 7, drive_torque: 0.5, load_torque: 0.0 };
+/// let mut frame = [0; 32];
+/// sealed(&sent, &mut frame).unwrap();
+/// assert_eq!(unsealed(&frame), Some(sent));
+/// frame[3] ^= 1;
+/// assert_eq!(unsealed::<Command>(&frame), None);
+/// ```
 pub fn sealed<M: Serialize>(message: &M, frame: &mut [u8]) -> Result<(), TooLong> {
     let (content, seal) = frame.split_last_chunk_mut::<CRC_BYTES>().ok_or(TooLong)?;
     let used = postcard::to_slice(message, content).map_err(|_| TooLong)?.len();

@@ -9,6 +9,57 @@ use crate::mesh::{DampingLaw, DeadZone, Mesh, MeshKind};
 ///
 /// Sign convention: a positive sun angle turns the carrier the same way; positive drive torque accelerates the sun,
 /// positive load torque brakes the link. A positive deflection of either mesh carries drive torque towards the load.
+///
+/// A joint by hand; joint files are the usual way:
+///
+/// ```
+/// use heapless::String;
+/// use parameters::*;
+///
+/// let each = |value: f64| PerPlanet::from_slice(&[value; 3]).unwrap();
+/// let mesh = || Mesh {
+///     mean_stiffness: 1e8,
+///     stiffness_wave: StiffnessWave::Harmonic { stiffness_ratio: 0.15 },
+///     damping_ratio: 0.05,
+///     half_backlash: each(40e-6),
+///     transmission_error: each(3e-6),
+///     phases: MeshPhases::FromTeeth { stiffness: 0.0, error: 0.0 },
+/// };
+/// let mut joint = JointParameters {
+///     name: String::try_from("by hand").unwrap(),
+///     geometry: Geometry {
+///         planets: 3,
+///         sun_teeth: 15,
+///         planet_teeth: 30,
+///         ring_teeth: 75,
+///         working_pressure_angle: 20_f64.to_radians(),
+///         sun_base_radius: 7.048e-3,
+///         planet_base_radius: 14.095e-3,
+///         carrier_radius: 22.5e-3,
+///         coherence: Coherence::Required,
+///     },
+///     bodies: Bodies {
+///         sun_equivalent_mass: 0.02,
+///         planet_equivalent_mass: 0.03,
+///         planet_mass: 0.05,
+///         carrier_inertia_over_radius_squared: 0.13,
+///     },
+///     rotor_inertia: 2.5e-4,
+///     link_inertia: 0.15,
+///     compliance: None,
+///     sun_planet: mesh(),
+///     ring_planet: mesh(),
+///     damping_law: DampingLaw::Contact,
+///     dead_zone: DeadZone::Sharp,
+///     excitation: Excitation::Angle,
+///     characteristic_length: 10e-6,
+///     rated_output_torque: 12.0,
+/// };
+/// assert_eq!(joint.validate(), Ok(()));
+/// joint.ring_planet.half_backlash[1] = -40e-6;
+/// let refused = joint.validate().unwrap_err();
+/// assert!(refused.to_string().contains("half-backlash"), "{refused}");
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointParameters {
     /// A short name, for reports and for the board's hello.

@@ -42,6 +42,16 @@ pub fn value<'t>(text: &'t str, key: &str) -> Result<Option<&'t str>, Refused> {
 
 /// The text with a key set to a value, as typed after the equals sign; quotes around words may be left out, and an
 /// empty value leaves the key out. What the key meant so far is replaced, in whatever form it was stated.
+///
+/// ```
+/// let text = joint_file::preset("q1").unwrap();
+/// let worn = joint_file::change(text, "mesh.half_backlash_um", "55").unwrap();
+/// assert_eq!(joint_file::value(&worn, "mesh.half_backlash_um"), Ok(Some("55")));
+/// let joint = joint_file::read(&worn).unwrap().parameters;
+/// assert!((joint.ring_planet.half_backlash[2] - 55e-6).abs() < 1e-12);
+/// // Keys are known: one that is not is refused.
+/// assert!(joint_file::change(text, "mesh.backlsh_um", "55").is_err());
+/// ```
 pub fn change(text: &str, key: &str, value: &str) -> Result<String, Refused> {
     change_noting(text, key, value, REMARK)
 }

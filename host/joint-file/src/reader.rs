@@ -29,6 +29,21 @@ pub struct JointFile {
 }
 
 /// Reads the text of a joint file. On failure gives every problem, warnings among them, in the order of the text.
+///
+/// ```
+/// let text = joint_file::preset("q1").unwrap();
+/// let q1 = joint_file::read(text).unwrap();
+/// assert_eq!((q1.parameters.name.as_str(), q1.parameters.geometry.planets), ("Q1", 3));
+/// // Units stand in the keys, SI in the parameters.
+/// assert!((q1.parameters.sun_planet.half_backlash[0] - 40e-6).abs() < 1e-12);
+///
+/// let slip = text.replace("half_backlash_um", "half_backlsh_um");
+/// let problems = joint_file::read(&slip).unwrap_err();
+/// // Each problem has its place in the text and a mend; the key is missing as well.
+/// let misspelt = problems.iter().find(|problem| &slip[problem.span.clone()] == "half_backlsh_um").unwrap();
+/// assert!(misspelt.help.contains("half_backlash_um"), "{misspelt}");
+/// assert!(problems.iter().any(|problem| &slip[problem.span.clone()] == "[mesh]"));
+/// ```
 pub fn read(text: &str) -> Result<JointFile, Vec<Problem>> {
     let notes = Notes::new(text);
     let (table, syntax) = DeTable::parse_recoverable(text);

@@ -31,6 +31,36 @@ pub struct Motion<T: Real> {
 }
 
 /// A spring and damper about a moving point.
+///
+/// A spring of 100 N m/rad, and somebody who leans on the link with 2 N m: it gives way by 20 mrad, less what friction
+/// holds.
+///
+/// ```
+/// use model_core::compensation::design::{compensation_settings, design_compensation};
+/// use model_core::compensation::{Command, ImpedancePoint};
+/// use model_core::controller::Controller;
+/// use model_core::gears::{Tables, design::design};
+/// use model_core::observer::design::{design_observer, observer_settings};
+/// use model_core::virtual_joint::{VirtualJoint, design::design_surroundings};
+///
+/// let mut q1 = joint_file::read(joint_file::preset("q1").unwrap()).unwrap();
+/// q1.surroundings.gravity_torque = 0.0;
+/// let gears: Tables<f32, 3> = design(&q1.parameters, q1.surroundings.control_rate)?;
+/// let around = design_surroundings(&q1.parameters, &q1.surroundings, &gears)?;
+/// let observer = design_observer(&q1.parameters, &observer_settings(&q1.surroundings))?;
+/// let compensation = design_compensation(&q1.parameters, &compensation_settings(&q1.surroundings, 60.0))?;
+/// let (mut joint, mut controller) = (VirtualJoint::new(&gears, &around), Controller::new(&observer, &compensation));
+/// let spring = ImpedancePoint { stiffness: 100.0, damping: 4.0, ..ImpedancePoint::default() };
+/// for _ in 0..10_000 {
+///     let answer = controller.step(&joint.samples(), &Command::Impedance(spring));
+///     joint.advance(answer.shaped.torque, 2.0);
+/// }
+/// let answer = controller.step(&joint.samples(), &Command::Impedance(spring));
+/// let link = answer.estimates.link;
+/// let given_way_rad = -6.28 * (link.turns as f32 + link.fraction);
+/// assert!((0.013..0.024).contains(&given_way_rad), "{given_way_rad}");
+/// # Ok::<(), model_core::gears::design::DesignError>(())
+/// ```
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ImpedancePoint<T: Real> {
     /// On the scale of the observer's link shaft.

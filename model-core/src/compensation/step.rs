@@ -13,6 +13,41 @@ use crate::numbers::arithmetic::clamp;
 use crate::observer::Estimates;
 
 /// The compensation of one joint.
+///
+/// The link goes to 0.1 turns in half a second and stays there. Where it will have to be after a crossing of the gap is
+/// known beforehand, so that the motor can leave its flank in time:
+///
+/// ```
+/// use model_core::compensation::design::{compensation_settings, design_compensation};
+/// use model_core::compensation::{Command, Compensation, Motion, Position};
+/// use model_core::gears::{Tables, design::design};
+/// use model_core::observer::{MAPPED, Observer, design::{design_observer, observer_settings}};
+/// use model_core::virtual_joint::{VirtualJoint, design::design_surroundings};
+///
+/// let q1 = joint_file::read(joint_file::preset("q1").unwrap()).unwrap();
+/// let gears: Tables<f32, 3> = design(&q1.parameters, q1.surroundings.control_rate)?;
+/// let around = design_surroundings(&q1.parameters, &q1.surroundings, &gears)?;
+/// let observer_tables = design_observer(&q1.parameters, &observer_settings(&q1.surroundings))?;
+/// let tables = design_compensation(&q1.parameters, &compensation_settings(&q1.surroundings, 60.0))?;
+/// let mut joint = VirtualJoint::new(&gears, &around);
+/// let mut observer = Observer::<f32, MAPPED>::new(&observer_tables);
+/// let mut compensation = Compensation::new(&tables);
+/// let motion = |time: f32| {
+///     let s = (2.0 * time).min(1.0);
+///     let (speed, acceleration) = (7.54 * (s - s * s), 15.08 * (1.0 - 2.0 * s) * f32::from(u8::from(s < 1.0)));
+///     Motion { position: Position { turns: 0, fraction: 0.1 * s * s * (3.0 - 2.0 * s) }, speed, acceleration }
+/// };
+/// for period in 0..20_000 {
+///     let time = tables.clock.period * period as f32;
+///     let command = Command::Position { now: motion(time), ahead: Some(motion(time + tables.crossing.lead)) };
+///     let shaped = compensation.step(observer.step(&joint.samples()), &command);
+///     assert!(shaped.torque.abs() <= 2.5, "the motor's limit");
+///     joint.advance(shaped.torque, 0.0);
+/// }
+/// let error_turns = observer.estimates().link.fraction - 0.1;
+/// assert!(error_turns.abs() < 0.001 / 6.28, "within 1 mrad, though the gap is of 3.8 mrad");
+/// # Ok::<(), model_core::gears::design::DesignError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Compensation<'tables, T: Real> {
     tables: &'tables CompensationTables<T>,

@@ -101,6 +101,22 @@ const LANDING: &[Transition] = &[
 ];
 
 /// What may follow in a stage: of its lines the first whose event is there. Where none is, the stage goes on.
+///
+/// ```
+/// use model_core::compensation::Stage;
+/// use model_core::compensation::transitions::{Action, Event, transitions};
+///
+/// // Whatever else there is: a torque that turns round is answered first.
+/// for stage in [Stage::Touching, Stage::Crossing, Stage::Landing] {
+///     assert_eq!(transitions(stage)[0].when, Event::DemandTurned);
+///     assert_eq!(transitions(stage)[0].action, Action::CrossOver);
+/// }
+/// // A path through the gap ends on its flank or, where the flank is later than thought, at a small speed.
+/// let line = |event| transitions(Stage::Crossing).iter().find(|line| line.when == event).unwrap();
+/// let after = |event| line(event).action.stage();
+/// assert_eq!([Event::FlankMet, Event::PathEnded].map(after), [Stage::Touching, Stage::Landing]);
+/// assert!(transitions(Stage::Plain).is_empty(), "without the gap there is no flank to go to");
+/// ```
 pub const fn transitions(stage: Stage) -> &'static [Transition] {
     match stage {
         Stage::Touching => TOUCHING,

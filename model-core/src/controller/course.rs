@@ -8,6 +8,16 @@ use crate::numbers::Real;
 pub const POWERS: usize = 6;
 
 /// A motion from a moment on.
+///
+/// ```
+/// use model_core::controller::course::Stretch;
+///
+/// // From 2.25 turns on at half a turn a second, for a quarter of a second.
+/// let stretch = Stretch { turns: 2, powers: [0.25, 0.5, 0.0, 0.0, 0.0, 0.0] };
+/// let motion = stretch.at(0.25, core::f32::consts::TAU);
+/// assert_eq!((motion.position.turns, motion.position.fraction), (2, 0.375));
+/// assert_eq!((motion.speed, motion.acceleration), (core::f32::consts::PI, 0.0));
+/// ```
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Stretch<T: Real> {
     /// Whole turns, on the scale of the observer's link shaft.

@@ -34,6 +34,32 @@ impl<T: Real> Answer<T> {
 }
 
 /// Observer, with error maps, and compensation of one joint.
+///
+/// A link is held at angle zero; after a second somebody pulls at it with 3 N m:
+///
+/// ```
+/// use model_core::compensation::design::{compensation_settings, design_compensation};
+/// use model_core::controller::{Controller, course::Demand};
+/// use model_core::gears::{Tables, design::design};
+/// use model_core::observer::design::{design_observer, observer_settings};
+/// use model_core::virtual_joint::{VirtualJoint, design::design_surroundings};
+///
+/// let q1 = joint_file::read(joint_file::preset("q1").unwrap()).unwrap();
+/// let gears: Tables<f32, 3> = design(&q1.parameters, q1.surroundings.control_rate)?;
+/// let around = design_surroundings(&q1.parameters, &q1.surroundings, &gears)?;
+/// let observer = design_observer(&q1.parameters, &observer_settings(&q1.surroundings))?;
+/// let compensation = design_compensation(&q1.parameters, &compensation_settings(&q1.surroundings, 60.0))?;
+/// let (mut joint, mut controller) = (VirtualJoint::new(&gears, &around), Controller::new(&observer, &compensation));
+/// let mut answer = controller.step(&joint.samples(), &Demand::HOLD.at(0.0, around.turn));
+/// for period in 1..30_000 {
+///     joint.advance(answer.shaped.torque, if period < 10_000 { 0.0 } else { 3.0 });
+///     answer = controller.step(&joint.samples(), &Demand::HOLD.at(0.0, around.turn));
+/// }
+/// // The observer knows of the pull, up to what friction takes of it; the motor holds against it through a gear of 6.
+/// assert!((answer.estimates.load_torque.value - 3.0).abs() < 0.5, "{:?}", answer.estimates.load_torque);
+/// assert!((6.0 * answer.shaped.torque - 3.0).abs() < 0.7, "{:?}", answer.shaped);
+/// # Ok::<(), model_core::gears::design::DesignError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Controller<'tables, T: Real> {
     observer: Observer<'tables, T, MAPPED>,

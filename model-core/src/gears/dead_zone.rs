@@ -3,6 +3,15 @@
 use crate::numbers::Real;
 
 /// Eq. 12: x - b above b, x + b below -b, exactly zero between. `half_backlash` must not be negative.
+///
+/// ```
+/// use model_core::gears::dead_zone::{sharp, smoothed};
+///
+/// // Teeth with a half-backlash of 40 um, in um: only what goes beyond it presses.
+/// assert_eq!([-60.0, -40.0, 15.0, 60.0].map(|deflection| sharp(deflection, 40.0)), [-20.0, 0.0, 0.0, 20.0]);
+/// // The smoothed one leaves it by no more than 0.14 / sharpness, at the corner.
+/// assert!((smoothed(40.0, 40.0, 2.0) - sharp(40.0, 40.0_f64)).abs() < 0.14 / 2.0);
+/// ```
 pub fn sharp<T: Real>(deflection: T, half_backlash: T) -> T {
     if deflection > half_backlash {
         deflection - half_backlash

@@ -3,6 +3,20 @@
 use parameters::StiffnessWave;
 
 /// Fourier series of a stiffness wave.
+///
+/// ```
+/// use core::f64::consts::PI;
+/// use model_core::gears::StiffnessSeries;
+/// use parameters::StiffnessWave;
+///
+/// // Two pairs of teeth carry for half of each mesh period: a square wave, whose harmonics are odd.
+/// let wave = StiffnessWave::Rectangular { stiffness_ratio: 0.15, contact_ratio: 1.5, order: 5 };
+/// let (sine, cosine) = wave.coefficients(1);
+/// assert!((sine - 4.0 * 0.15 / PI).abs() < 1e-12 && cosine.abs() < 1e-12);
+/// let (sine, cosine) = wave.coefficients(2);
+/// assert!(sine.abs() < 1e-12 && cosine.abs() < 1e-12);
+/// assert!(wave.swing() < 1.0, "the stiffness stays positive");
+/// ```
 pub trait StiffnessSeries {
     /// Largest swing about the mean that the harmonics kept can add up to, relative to the mean.
     fn swing(&self) -> f64;

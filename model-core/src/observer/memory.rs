@@ -116,6 +116,19 @@ pub(super) fn load<T: Real, const P: usize>(
 /// The numbers in a memory, in their order: parameters, factors of their covariance, column by column down to the diagonal,
 /// bias and friction with their variances and covariance, mobility and its variance. [`Observer::load`](super::Observer::load) says
 /// whether they are sound.
+///
+/// ```
+/// use model_core::observer::design::{design_observer, observer_settings};
+/// use model_core::observer::{MAPPED, Observer, memory_numbers};
+///
+/// let q1 = joint_file::read(joint_file::preset("q1").unwrap()).unwrap();
+/// let tables = design_observer(&q1.parameters, &observer_settings(&q1.surroundings))?;
+/// let memory = Observer::<f32, MAPPED>::new(&tables).save();
+/// // The first is half of the gap along the gap coordinate, twice the half-backlash of a mesh: as designed, here.
+/// assert_eq!(memory_numbers(&memory).next(), Some(80e-6));
+/// assert!(memory_numbers(&memory).take(MAPPED).all(f32::is_finite));
+/// # Ok::<(), model_core::gears::design::DesignError>(())
+/// ```
 pub fn memory_numbers(memory: &Memory) -> impl Iterator<Item = f32> {
     let (numbers, _) = memory.get(HEAD..).unwrap_or_default().as_chunks();
     numbers.iter().map(|bytes| f32::from_le_bytes(*bytes))

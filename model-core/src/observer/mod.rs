@@ -47,6 +47,33 @@ pub use samples::{Reading, Samples};
 pub use tables::{ObserverTables, ProbeTable};
 
 /// The observer of one joint. `P` is [`PLAIN`] or [`MAPPED`].
+///
+/// A joint whose gap is narrower than its designer was told is swung to and fro twice a second:
+///
+/// ```
+/// use model_core::gears::{Tables, design::design};
+/// use model_core::observer::design::{design_observer, observer_settings};
+/// use model_core::observer::{MAPPED, Observer, Source};
+/// use model_core::virtual_joint::{VirtualJoint, design::design_surroundings};
+///
+/// let q1 = joint_file::read(joint_file::preset("q1").unwrap()).unwrap();
+/// let mut told = q1.parameters.clone();
+/// told.sun_planet.half_backlash.iter_mut().for_each(|half_backlash| *half_backlash = 60e-6);
+/// let gears: Tables<f32, 3> = design(&q1.parameters, q1.surroundings.control_rate)?;
+/// let around = design_surroundings(&q1.parameters, &q1.surroundings, &gears)?;
+/// let tables = design_observer(&told, &observer_settings(&q1.surroundings))?;
+/// let mut joint = VirtualJoint::new(&gears, &around);
+/// let mut observer = Observer::<f32, MAPPED>::new(&tables);
+/// for period in 0..30_000 {
+///     observer.step(&joint.samples());
+///     joint.advance((12.6 * 1e-4 * period as f32).cos(), 0.0);
+/// }
+/// let said = observer.estimates();
+/// assert_eq!(said.source, Source::Both);
+/// assert!((said.half_backlash.value / 40e-6 - 1.0).abs() < 0.05, "it is 40 um: {:?}", said.half_backlash);
+/// assert!(said.gap.valid && said.gap.variance.sqrt() < 10e-6);
+/// # Ok::<(), model_core::gears::design::DesignError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Observer<'tables, T: Real, const P: usize> {
     tables: &'tables ObserverTables<T>,
@@ -157,6 +184,23 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
     }
 
     /// What has been learnt so far, as bytes.
+    ///
+    /// ```
+    /// use model_core::observer::design::{design_observer, observer_settings};
+    /// use model_core::observer::{MAPPED, MemoryError, Observer};
+    ///
+    /// let tables = |name| {
+    ///     let joint = joint_file::read(joint_file::preset(name).unwrap()).unwrap();
+    ///     design_observer::<f32>(&joint.parameters, &observer_settings(&joint.surroundings))
+    /// };
+    /// let (q1, s1) = (tables("q1")?, tables("s1")?);
+    /// let mut memory = Observer::<f32, MAPPED>::new(&q1).save();
+    /// assert_eq!(Observer::<f32, MAPPED>::new(&q1).load(&memory), Ok(()));
+    /// assert_eq!(Observer::<f32, MAPPED>::new(&s1).load(&memory), Err(MemoryError::OtherJoint));
+    /// memory[100] ^= 1;
+    /// assert_eq!(Observer::<f32, MAPPED>::new(&q1).load(&memory), Err(MemoryError::Damaged));
+    /// # Ok::<(), model_core::gears::design::DesignError>(())
+    /// ```
     pub fn save(&self) -> Memory {
         memory::save(self.tables, self.sensors.counts.start, &self.learnt)
     }

@@ -57,6 +57,36 @@ pub enum Progress<T: Real> {
 }
 
 /// A probe under way.
+///
+/// A link that somebody holds, and a motor of which no more than 0.5 N m are used:
+///
+/// ```
+/// use model_core::gears::{Tables, design::design};
+/// use model_core::observer::design::{design_observer, design_probe, observer_settings};
+/// use model_core::observer::{MAPPED, Observer, Probe, Progress};
+/// use model_core::virtual_joint::{VirtualJoint, design::design_surroundings};
+///
+/// let mut q1 = joint_file::read(joint_file::preset("q1").unwrap()).unwrap();
+/// q1.surroundings.load_friction.coulomb = 50.0; // the hand
+/// let settings = observer_settings(&q1.surroundings);
+/// let gears: Tables<f32, 3> = design(&q1.parameters, q1.surroundings.control_rate)?;
+/// let around = design_surroundings(&q1.parameters, &q1.surroundings, &gears)?;
+/// let (tables, table) = (design_observer(&q1.parameters, &settings)?, design_probe(&q1.parameters, &settings, 0.5)?);
+/// let (mut joint, mut probe) = (VirtualJoint::new(&gears, &around), Probe::new(&table));
+/// let mut observer = Observer::<f32, MAPPED>::new(&tables);
+/// let mut progress = Progress::Running;
+/// for period in 0..7000 {
+///     let estimates = observer.step(&joint.samples());
+///     let mut torque = 0.0;
+///     if period > 1000 {
+///         (torque, progress) = probe.step(estimates);
+///     }
+///     joint.advance(torque, 0.0);
+/// }
+/// let Progress::Done(half_backlash) = progress else { panic!("{progress:?}") };
+/// assert!((half_backlash.value / 40e-6 - 1.0).abs() < 0.1, "it is 40 um: {half_backlash:?}");
+/// # Ok::<(), model_core::gears::design::DesignError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Probe<'tables, T: Real> {
     table: &'tables ProbeTable<T>,

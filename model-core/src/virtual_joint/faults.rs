@@ -25,6 +25,30 @@ struct Active<T: Real> {
 }
 
 /// The faults of a run on a board, or of its twin on the host; none to begin with.
+///
+/// The link's encoder freezes from the hundredth period on, and the motor gives no more than 0.2 N m all the time:
+///
+/// ```
+/// use model_core::gears::{Tables, design::design};
+/// use model_core::virtual_joint::fault::{Fault, FaultKind, Shaft};
+/// use model_core::virtual_joint::{VirtualJoint, design::design_surroundings, faults::Faults};
+///
+/// let q1 = joint_file::read(joint_file::preset("q1").unwrap()).unwrap();
+/// let gears: Tables<f32, 3> = design(&q1.parameters, q1.surroundings.control_rate)?;
+/// let around = design_surroundings(&q1.parameters, &q1.surroundings, &gears)?;
+/// let (mut joint, mut faults) = (VirtualJoint::new(&gears, &around), Faults::default());
+/// assert!(faults.add(Fault { start: 100, end: u32::MAX, seed: 1, kind: FaultKind::Frozen(Shaft::Link) }));
+/// assert!(faults.add(Fault { start: 0, end: u32::MAX, seed: 2, kind: FaultKind::Saturation(0.2) }));
+/// let mut seen = faults.sense(joint.samples(), &around);
+/// for _ in 0..2000 {
+///     joint.advance(faults.torque(1.0), 0.0);
+///     seen = faults.sense(joint.samples(), &around);
+/// }
+/// assert!(joint.acting().air_gap < 0.21);
+/// assert_eq!(seen.motor, joint.samples().motor);
+/// assert!(seen.output.unwrap().counts + 100 < joint.samples().output.unwrap().counts);
+/// # Ok::<(), model_core::gears::design::DesignError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Faults<T: Real> {
     all: [Option<Active<T>>; MOST_FAULTS],

@@ -22,6 +22,24 @@ pub struct Acting<T: Real> {
 }
 
 /// A joint and what surrounds it.
+///
+/// ```
+/// use model_core::gears::{Tables, design::design};
+/// use model_core::virtual_joint::{VirtualJoint, design::design_surroundings};
+///
+/// let q1 = joint_file::read(joint_file::preset("q1").unwrap()).unwrap();
+/// let gears: Tables<f32, 3> = design(&q1.parameters, q1.surroundings.control_rate)?;
+/// let around = design_surroundings(&q1.parameters, &q1.surroundings, &gears)?;
+/// let mut joint = VirtualJoint::new(&gears, &around);
+/// let turned = |joint: &mut VirtualJoint<'_, f32, 3>, torque: f32| {
+///     (0..500).for_each(|_| joint.advance(torque, 0.0));
+///     joint.samples().output.unwrap().counts
+/// };
+/// // Dry friction of 0.03 N m at the motor holds against 0.02 N m, but not against 1 N m.
+/// assert_eq!(turned(&mut joint, 0.02), 0);
+/// assert!(turned(&mut joint, 1.0) > 100);
+/// # Ok::<(), model_core::gears::design::DesignError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct VirtualJoint<'tables, T: Real, const N: usize> {
     model: Model<'tables, T, N>,

@@ -10,6 +10,22 @@ use super::validity::ReferenceError;
 use crate::integrator::{Counters, Integrator, MAX_ENTRIES, SwitchedSystem};
 
 /// A joint in motion.
+///
+/// Joint Q1 under 1 N m for 10 ms, in which its teeth find their flank; the books of energy close:
+///
+/// ```
+/// use reference::joint::Reference;
+///
+/// let mut joint = Reference::new(&reference::scenarios::q1())?;
+/// let begin = joint.observe();
+/// joint.advance(10e-3, 1.0, 0.0)?;
+/// let end = joint.observe();
+/// assert!(end.motor_speed > 0.0 && joint.counters().events > 0, "teeth have touched");
+/// let energy = |at: &reference::joint::Observation| at.kinetic_energy + at.elastic_energy;
+/// let (grown, net) = (energy(&end) - energy(&begin), end.work.net() - begin.work.net());
+/// assert!((grown - net).abs() < 1e-6 * end.work.supplied, "{grown} J grown, {net} J brought in");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Reference {
     pub(super) equations: JointEquations,

@@ -5,6 +5,23 @@ use crate::checks::Check;
 use crate::plot::Figure;
 
 /// One report.
+///
+/// ```
+/// use report::document::{Document, Medium, facts, html, markdown, number, section_everywhere, terminal};
+///
+/// let gap = facts([("half-backlash [um]", number(40.0)), ("lost motion [mrad]", number(3.78))]);
+/// let document = Document {
+///     title: "Q1".into(),
+///     heading: "Joint Q1".into(),
+///     line: "Joint Q1".into(),
+///     blocks: vec![section_everywhere("The gap", vec![gap])],
+///     ..Document::default()
+/// };
+/// // The same figures wherever it is shown.
+/// for text in [html(&document), terminal(&document), markdown(&document, Medium::Markdown)] {
+///     assert!(text.contains("The gap") && text.contains("lost motion [mrad]") && text.contains("3.78"), "{text}");
+/// }
+/// ```
 #[derive(Default)]
 pub struct Document {
     /// Name of the window and of the file.

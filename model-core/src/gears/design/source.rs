@@ -14,6 +14,16 @@ use parameters::{JointParameters, ParameterError};
 
 /// `PLANETS`, `JOINT_NAME`, `CERTIFICATE` and the static `TABLES` of a joint at a tick rate, as a module's text; made
 /// for an STM32F405.
+///
+/// What a build script writes for a board:
+///
+/// ```
+/// let q1 = joint_file::read(joint_file::preset("q1").unwrap()).unwrap().parameters;
+/// let module = model_core::gears::design::rust_source(&q1, 20_000)?;
+/// assert!(module.contains("pub static TABLES: Tables<f32, 3>"));
+/// assert!(module.contains("tick_rate: 20000") && module.contains("JOINT_NAME: &str = \"Q1\""));
+/// # Ok::<(), model_core::gears::design::DesignError>(())
+/// ```
 pub fn rust_source(parameters: &JointParameters, tick_rate: u32) -> Result<String, DesignError> {
     rust_source_for(parameters, tick_rate, &Processor::STM32F405)
 }

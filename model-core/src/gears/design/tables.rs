@@ -18,6 +18,19 @@ use crate::numbers::Real;
 use parameters::{DeadZone, JointParameters, MAX_HARMONICS, MESH_KINDS, MeshKind};
 
 /// Tables of the scheme that a board runs.
+///
+/// ```
+/// use model_core::gears::{Tables, design::{DesignError, design}};
+///
+/// let s1 = joint_file::read(joint_file::preset("s1").unwrap()).unwrap().parameters;
+/// let tables: Tables<f32, 3> = design(&s1, 10_000)?;
+/// assert_eq!(tables.tick_rate, 10_000);
+/// assert!(tables.digest_is_good(), "what a board asks before it runs");
+/// // A joint with another number of planets is refused, and so is a rate at which its teeth cannot be followed.
+/// assert!(matches!(design::<f32, 4>(&s1, 10_000), Err(DesignError::WrongPlanetCount { wanted: 4, given: 3 })));
+/// assert!(design::<f32, 3>(&s1, 100).is_err());
+/// # Ok::<(), DesignError>(())
+/// ```
 pub fn design<T: Real, const N: usize>(
     parameters: &JointParameters,
     tick_rate: u32,

@@ -1,0 +1,69 @@
+//! Every program runs, ends well and prints numbers, none of which is infinite or NaN.
+
+use std::path::PathBuf;
+use std::process::{Command, Output};
+
+/// Where Cargo puts a program of this package: beside the folder of its tests.
+fn program(name: &str) -> PathBuf {
+    let test = std::env::current_exe().expect("a test has a path");
+    let folder = test.ancestors().nth(2).expect("a test is in a folder of the target folder");
+    folder.join("examples").join(name).with_extension(std::env::consts::EXE_EXTENSION)
+}
+
+fn run(name: &str, arguments: &[&str]) -> Output {
+    let output = Command::new(program(name)).args(arguments).output();
+    output.unwrap_or_else(|error| panic!("{name}: {error}; `cargo test -p examples` builds it"))
+}
+
+/// What a program prints; its words and numbers are checked on the way.
+fn printed(name: &str, arguments: &[&str]) -> String {
+    let output = run(name, arguments);
+    assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout).expect("text");
+    let words = || text.split(|letter: char| !(letter.is_alphanumeric() || "+-._".contains(letter)));
+    let numbers = words().filter_map(|word| word.parse::<f64>().ok());
+    assert!(numbers.clone().count() > 3, "{name} prints no numbers:\n{text}");
+    assert!(numbers.clone().all(f64::is_finite), "{name} prints a number that is none:\n{text}");
+    text
+}
+
+/// The numbers of a line.
+fn numbers(line: &str) -> Vec<f64> {
+    line.split_whitespace().filter_map(|word| word.parse().ok()).collect()
+}
+
+#[test]
+fn a_stepped_model_crosses_its_gap() {
+    let text = printed("step_a_model", &[]);
+    assert!(text.contains("DriveSide") && text.contains("BackSide") && text.contains("Separated"), "{text}");
+}
+
+#[test]
+fn designed_tables_are_a_rust_module() {
+    let text = printed("design_and_print_tables", &["s1", "10000"]);
+    assert!(text.starts_with("// S1 at 10000 Hz") && text.contains("pub static TABLES"), "{text}");
+}
+
+#[test]
+fn a_joint_that_cannot_be_read_ends_with_its_exit_code() {
+    let output = run("design_and_print_tables", &["no/such/joint.toml"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("no/such/joint.toml"));
+}
+
+#[test]
+fn a_log_shows_a_gap_that_has_worn_from_40_to_55_um() {
+    let text = printed("observe_a_log", &[]);
+    let last = numbers(text.lines().last().unwrap_or_default());
+    let [.., half_backlash_um, deviation_um] = last[..] else { panic!("{text}") };
+    assert!((half_backlash_um - 55.0).abs() < 2.0 && deviation_um < 2.0, "{text}");
+}
+
+#[test]
+fn compensation_shortens_the_lost_motion_to_a_third_or_less() {
+    let text = printed("close_a_loop", &[]);
+    let rows: Vec<Vec<f64>> = text.lines().map(numbers).filter(|row| row.len() == 3).collect();
+    let [without, with] = &rows[..] else { panic!("{text}") };
+    assert!(without[0] >= 5.0 && with[0] >= 5.0, "the teeth cross in both: {text}");
+    assert!(with[1] < without[1] / 3.0 && with[2] < without[2] / 3.0, "{text}");
+}

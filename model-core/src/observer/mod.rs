@@ -220,7 +220,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
     /// Both sides put together.
     #[inline]
     fn fuse(&self) -> Fused<T> {
-        Fused::new(self.tables, &self.sensors, &self.filters, &self.learnt, self.health.both_encoders())
+        self.learnt.fuse(self.tables, &self.sensors, &self.filters, self.health.both_encoders())
     }
 
     /// Which flank touches, and what the meshes pass on.

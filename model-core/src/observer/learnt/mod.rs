@@ -25,13 +25,13 @@ use bias::Bias;
 use block::{Block, Settled};
 use consistency::{Consistency, GATE, Verdict};
 use flank::Signs;
-use fusion::Fused;
+use fusion::{Fused, small};
 use inertia::Inertia;
 use interval::{Interval, Mean, Rest, Task, rests};
 use last_rest::LastRest;
 use learner::Learner;
 use position_errors::PositionErrors;
-use regressors::{COMPLIANCE, ERROR, HALF_GAP, OFFSET, Regressors, Touch};
+use regressors::{COMPLIANCE, ERROR, HALF_GAP, MAPPED, OFFSET, Regressors, SKEW, Touch};
 use travel::{Travel, TravelDetector};
 use uncertainty::Uncertainty;
 
@@ -143,6 +143,40 @@ impl<T: Real, const P: usize> Learnt<T, P> {
     /// Transmission error at a mesh phase, given by sine and cosine [m].
     pub fn transmission_error(&self, mesh: &[T; 2]) -> T {
         mesh[0] * self.learner.value(ERROR) + mesh[1] * self.learner.value(ERROR + 1)
+    }
+
+    /// Puts the two sides together: the deflection between motor and link with everything taken out that was learnt, and the
+    /// mesh force.
+    #[inline]
+    pub fn fuse(
+        &self,
+        tables: &ObserverTables<T>,
+        sensors: &Sensors,
+        filters: &Filters<T>,
+        both_encoders: bool,
+    ) -> Fused<T> {
+        let levers = &tables.levers;
+        let (drive, load) = (&filters.drive, &filters.load);
+        let (_, difference) = sensors.counts.used();
+        let flank_shift = self.transmission_error(&self.errors.mesh);
+        let measured = tables.counts.length * small(difference) + levers.sun * drive.ahead - levers.output * load.ahead;
+        let lost = drive.taken * levers.per_sun;
+        let direction = Bias::direction(&tables.contact, drive.speed);
+        let net = lost - self.bias.at(direction);
+        // Losses in proportion to the load are friction too: they take from what drives and add to what holds back.
+        let loss = if net * direction > T::ZERO { tables.contact.loss_driving } else { tables.contact.loss_driven };
+        let force = net + net * direction.abs() * loss;
+        let rate = levers.sun * drive.speed - levers.output * load.speed;
+        let travel = if rate.abs() > tables.contact.rate_deviation { rate * tables.contact.lag } else { T::ZERO };
+        let link_speed = if both_encoders { load.speed } else { T::ZERO };
+        let deflection = measured - self.deflection_beside_teeth(link_speed);
+        Fused { flank_shift, measured, deflection, rate, travel, lost, direction, force }
+    }
+
+    /// Deflection that everything but the teeth makes now [m].
+    fn deflection_beside_teeth(&self, link_speed: T) -> T {
+        let plain = self.learner.value(OFFSET) + self.learner.value(SKEW) * link_speed;
+        if P == MAPPED { plain + self.errors.errors[0] + self.errors.errors[1] } else { plain }
     }
 
     /// Where a deflection of the teeth is in the gap, and how far it goes on [m].

@@ -4,7 +4,7 @@
 //! write the tables in your own build script: those of the model by `model_core::gears::design::rust_source`, those of
 //! the observer by `model_core::observer::design::observer_source`. Once a control period the observer is given what the
 //! loop has measured anyway, encoder counts and torque, and says where the gap is; the model, stepped beside it, says
-//! what the joint would do by itself.
+//! what the gears do under these torques.
 
 #[cfg(target_os = "none")]
 mod guest {
@@ -38,9 +38,9 @@ mod guest {
     }
 
     /// Motor torque [N m] that swings the joint to and fro through its gap.
-    const SWING: f32 = 0.1;
+    const SWING: f32 = 0.5;
     /// Control periods that it acts one way.
-    const HALF_SWING: u32 = 200;
+    const HALF_SWING: u32 = 2000;
     /// Part of it that is left while the teeth are known to be on their way: a soft landing.
     const IN_THE_GAP: f32 = 0.25;
 

@@ -135,12 +135,12 @@ fn a_torque_bias_is_read_inside_the_gap() {
         let mut log = trial.record();
         let read = |log: &[Moment]| trial.said::<f64>(log, |_, _| {}).last().map(|said| said.torque_bias);
         let own = read(&log).expect("a recording");
-        // The motor gives as much less than it is told to.
+        // The motor gives as much less than it is told to: a bias is torque that it loses.
         let bias = part * trial.setup.train.surroundings.torque_limit;
         log.iter_mut().for_each(|moment| moment.command += bias);
         let found = read(&log).expect("a recording");
         assert!(own.valid && found.valid, "{own:?}, {found:?}");
-        TORQUE_BIAS.check((own.value - found.value) / bias - 1.0);
+        TORQUE_BIAS.check((found.value - own.value) / bias - 1.0);
         let figures = trial.figures(&log, 2.0);
         GAP_WITH_BIAS.check(figures.gap);
         assert_eq!(figures.missed, 0, "a landing was missed");

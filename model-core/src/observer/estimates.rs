@@ -102,7 +102,7 @@ pub struct Estimates<T: Real> {
     pub compliance: Estimate<T>,
     /// How old output readings are beyond what their time says, less the same of the motor's [s].
     pub skew: Estimate<T>,
-    /// Torque of the motor beyond what was commanded: a bias that comes with no motion [N m].
+    /// Torque that the motor loses whatever its direction: what was commanded less what it gives [N m].
     pub torque_bias: Estimate<T>,
     /// Dry friction of the motor, as far as it does not grow with the load [N m].
     pub motor_friction: Estimate<T>,

@@ -108,7 +108,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         self.sensors = Sensors::new(has_output);
         self.filters = Filters::default();
         self.contact = Contact::default();
-        self.learnt = Learnt::new(self.tables);
+        self.learnt.restart(self.tables);
         self.health = Health::new(has_output);
         self.estimates = Estimates::default();
         self.begin();

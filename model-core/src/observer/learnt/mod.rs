@@ -135,6 +135,23 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         }
     }
 
+    /// Back to what was designed, part by part: a whole new one would need as much stack again.
+    #[inline(never)]
+    pub fn restart(&mut self, tables: &ObserverTables<T>) {
+        let Self { learner, bias, inertia, errors, uncertainty, interval, travel, block, last_rest, consistency } =
+            self;
+        *learner = Learner::new(&tables.learner);
+        *bias = Bias::new(&tables.contact);
+        *inertia = Inertia::new(&tables.inertia);
+        *errors = PositionErrors::new();
+        *uncertainty = Uncertainty::new(tables, learner);
+        *interval = Interval::new();
+        *travel = TravelDetector::new();
+        *block = Block::new();
+        *last_rest = LastRest::new();
+        *consistency = Consistency::default();
+    }
+
     /// Half-gap [m] and compliance [m/N] as learnt so far.
     pub fn shape(&self) -> [T; 2] {
         [self.learner.value(HALF_GAP), self.learner.value(COMPLIANCE)]

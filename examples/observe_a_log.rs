@@ -14,13 +14,13 @@ use parameters::Surroundings;
 const COLUMNS: &str = "time_s,motor_counts,output_counts,motor_torque_N_m";
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let mut arguments = env::args().skip(1);
-    let log = arguments.next().map_or_else(record, |file| Ok(fs::read_to_string(file)?))?;
-    let name = arguments.next().unwrap_or("q1".into());
+    let log = env::args().nth(1).map_or_else(record, |file| Ok(fs::read_to_string(file)?))?;
+    let name = env::args().nth(2).unwrap_or("q1".into());
     let joint = load_with(Path::new(&name), &[]).map_err(|failure| failure.message().to_owned())?.file;
-    let numbers = log.strip_prefix(COLUMNS).ok_or(format!("the columns of a log are {COLUMNS}"))?.trim();
-    let rows = numbers.lines().map(|line| line.split(',').map(str::parse).collect());
-    let rows: Vec<Vec<f64>> = rows.collect::<Result<_, _>>()?;
+    let mut rows = csv::Reader::from_reader(log.as_bytes());
+    let named = rows.headers()?.iter().eq(COLUMNS.split(','));
+    named.then_some(()).ok_or(format!("the columns of a log are {COLUMNS}"))?;
+    let rows: Vec<[f64; 4]> = rows.deserialize().collect::<Result<_, _>>().map_err(|error| error.to_string())?;
     let [first, second, ..] = &rows[..] else { return Err("the log has less than two rows".into()) };
     let around = Surroundings { control_rate: (1.0 / (second[0] - first[0])).round() as u32, ..joint.surroundings };
     let tables = design::design_observer(&joint.parameters, &design::observer_settings(&around))?;
@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let output = Some(read(row[2], around.output_encoder.bits));
         let said = observer.step(&Samples { time, motor: read(row[1], around.motor_encoder.bits), output, torque });
         torque = row[3] as f32;
-        if (period + 1) % (around.control_rate / 10) == 0 {
+        if (period + 1).is_multiple_of((around.control_rate / 10).max(1)) {
             let flank = if said.contact_valid { format!("{:?}", said.reported_contact) } else { "unknown".into() };
             let [gap, half, deviation] = [said.gap.value, said.half_backlash.value, said.half_backlash.variance.sqrt()];
             let [gap_um, half_um, deviation_um] = [gap, half, deviation].map(|length_m| 1e6 * length_m);

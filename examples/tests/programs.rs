@@ -60,6 +60,25 @@ fn a_log_shows_a_gap_that_has_worn_from_40_to_55_um() {
 }
 
 #[test]
+fn a_log_that_is_none_is_refused_without_a_panic() {
+    let file = std::env::temp_dir().join(format!("no-log-{}.csv", std::process::id()));
+    let head = "time_s,motor_counts,output_counts,motor_torque_N_m\n";
+    for (text, why) in [
+        ("time,motor,output,torque\n0,0,0,0\n".to_owned(), "the columns of a log are"),
+        (format!("{head}0,0,0,0\n0.0001,0,0\n"), "fields"),
+        (format!("{head}0,0,0,zero\n"), "float"),
+        (format!("{head}0,0,0,0\n"), "less than two rows"),
+    ] {
+        std::fs::write(&file, &text).expect("a folder for temporary files");
+        let output = run("observe_a_log", &[file.to_str().expect("a plain name")]);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{text}{said}");
+        assert!(said.contains(why) && !said.contains("panicked"), "{text}{said}");
+    }
+    std::fs::remove_file(&file).expect("it was written");
+}
+
+#[test]
 fn compensation_shortens_the_lost_motion_to_a_third_or_less() {
     let text = printed("close_a_loop", &[]);
     let rows: Vec<Vec<f64>> = text.lines().map(numbers).filter(|row| row.len() == 3).collect();

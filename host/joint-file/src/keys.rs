@@ -1,5 +1,5 @@
-//! Every key of a joint file: its section, its unit, its bound, and a hint for who got it wrong. Docs/joint-file.md
-//! says the same in more words.
+//! Every key of a joint file: its section, its unit, its bound, and a hint for who got it wrong. The page
+//! docs/joint-file.md says the same in more words.
 
 use crate::bound::{Bound, Unit};
 use crate::table::{self, Keys};

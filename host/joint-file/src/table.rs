@@ -116,7 +116,9 @@ impl<'a, K: Keys> Table<'a, K> {
     pub fn value(&self, name: &str) -> Option<(&'a Spanned<DeValue<'a>>, &'static Key<K>)> {
         let value = self.table.get(name)?;
         self.notes.place(self.full(name), value.span());
-        Some((value, K::find(self.schema, name)?))
+        let key = K::find(self.schema, name);
+        debug_assert!(key.is_some(), "`{name}` of [{}] is read, but not listed", self.schema);
+        Some((value, key?))
     }
 
     /// Complains that a key is missing.

@@ -1,8 +1,8 @@
 //! What happened in a run: the truth in every control period, and what the observer made of it.
 
+use model_core::gears::{Flank, sign};
 use model_core::numbers::digest;
 use model_core::observer::{Progress, Refusal, Source};
-use parameters::ContactState;
 use reference::closed_loop::{Run, Sample};
 
 use super::port::Answer;
@@ -130,11 +130,7 @@ impl Sight {
             gap: estimates.gap.value,
             gap_variance: estimates.gap.variance,
             valid: estimates.gap.valid,
-            side: match estimates.reported_contact {
-                ContactState::DriveSide => 1,
-                ContactState::Separated => 0,
-                ContactState::BackSide => -1,
-            },
+            side: sign::<f32>(Flank::touched(estimates.reported_contact)) as i8,
             mesh_torque: estimates.mesh_torque.value,
             load_torque: estimates.load_torque.value,
             half_backlash: estimates.half_backlash.value,

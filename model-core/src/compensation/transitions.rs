@@ -12,7 +12,7 @@ pub enum Event {
     SpringUndecided = 2,
     /// The flank has gone further than half of the half-gap.
     FlankLost = 4,
-    /// The flank has gone by more than the estimates' errors, but no further than that.
+    /// The flank has gone by more than the estimates' errors.
     FlankOpening = 8,
     /// The flank touches and, on a path, the motor has been braked.
     FlankMet = 16,
@@ -151,6 +151,26 @@ impl Action {
     }
 }
 
+/// The events that a stage answers, each a bit.
+const fn answered(stage: Stage) -> u8 {
+    match stage {
+        Stage::Touching => const { bits(TOUCHING) },
+        Stage::Crossing => const { bits(CROSSING) },
+        Stage::Landing => const { bits(LANDING) },
+        Stage::Plain => 0,
+    }
+}
+
+/// The events of some lines, each a bit.
+const fn bits(mut lines: &[Transition]) -> u8 {
+    let mut bits = 0;
+    while let [line, rest @ ..] = lines {
+        bits |= line.when as u8;
+        lines = rest;
+    }
+    bits
+}
+
 /// Events of a period.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Events(u8);
@@ -165,7 +185,12 @@ impl Events {
     }
 
     /// What follows in a stage.
+    #[inline]
     pub fn action(self, stage: Stage) -> Option<Action> {
+        // In most periods there is nothing that the stage would answer.
+        if self.0 & answered(stage) == 0 {
+            return None;
+        }
         transitions(stage).iter().find(|line| self.0 & line.when as u8 != 0).map(|line| line.action)
     }
 }

@@ -27,7 +27,7 @@ mod samples;
 mod sensors;
 pub mod tables;
 
-use contact::{Contact, Evidence};
+use contact::Contact;
 use filters::Filters;
 use health::{Health, LastMotion, Return, Screened};
 use learnt::fusion::Fused;
@@ -129,30 +129,21 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
     pub fn step(&mut self, samples: &Samples<T>) -> &Estimates<T> {
         let tables = self.tables;
         let sensed = self.sensors.step(tables, samples);
-        self.estimates.notices = sensed.notices;
+        self.estimates.notices = sensed.notices();
         self.filters.step(tables, &sensed);
         if matches!(sensed.motor, Advance::Jumped(_)) {
             self.learnt.reopen();
         }
         let screened = self.health.screen(tables, &sensed);
-        let first = match screened {
-            Screened::First => {
-                self.filters.load.ahead = T::ZERO;
-                true
-            }
-            Screened::Used => {
-                self.filters.correct_load(tables, &sensed);
-                false
-            }
-            Screened::NotUsed => false,
-            Screened::GivenUp(_, last) => {
-                self.rely_on_motor(last);
-                false
-            }
-        };
+        match screened {
+            Screened::First => self.filters.load.ahead = T::ZERO,
+            Screened::Used => self.filters.correct_load(tables, &sensed),
+            Screened::NotUsed => {}
+            Screened::GivenUp(_, last) => self.rely_on_motor(last),
+        }
         let meshes = tables.counts.mesh_periods;
         let far = self.learnt.errors.go_on(sensed.motor_turned, sensed.output_turned, meshes);
-        if far || first || !matches!(sensed.motor, Advance::By(_)) {
+        if far || matches!(screened, Screened::First) || !matches!(sensed.motor, Advance::By(_)) {
             self.find_errors();
         }
         if sensed.freshness == Freshness::Unusable {
@@ -229,19 +220,18 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         let tables = self.tables;
         let known = &self.learnt.uncertainty;
         let both = self.health.both_encoders();
-        let evidence = if !both {
+        let deviations = [known.force_deviation, known.both_deviation];
+        let by_force = self.contact.by_force.step(fused.force, known.force_deviation);
+        let mut force = fused.force;
+        if !both {
             let before = self.contact.reported;
-            Evidence::MotorOnly(self.health.motor_only.contact(tables, fused, &self.learnt, before))
+            self.contact.reported = self.health.motor_only.contact(tables, fused, &self.learnt, before);
         } else if known.half_gap_serves {
-            Evidence::Position {
-                position: self.learnt.position(fused.of_teeth(), fused.travel),
-                settled: known.settled,
-                deviation: known.both_deviation,
-            }
+            let position = self.learnt.position(fused.of_teeth(), fused.travel);
+            force = self.contact.step_by_position(&position, force, deviations, known.settled);
         } else {
-            Evidence::Force
-        };
-        let force = self.contact.step(fused.force, known.force_deviation, &evidence);
+            self.contact.reported = by_force;
+        }
         // Where a light contact cannot be told from none, what the motor side says of the force is the best guess.
         let unsure = both && !known.half_gap_serves;
         let open = self.contact.reported.is_none() && !unsure;

@@ -1,4 +1,4 @@
-//! Every key of a test file: its section, what it holds, its bound, and a hint for who got it wrong. Docs/hil-file.md
+//! Every key of a test file: its section, what it holds, its bound, and a hint for who got it wrong. The page docs/hil-file.md
 //! says the same in more words.
 
 use joint_file::Keys;

@@ -21,46 +21,21 @@ pub struct Contact {
     settled: bool,
 }
 
-/// What there is to tell the contact by.
-#[derive(Debug, Clone, Copy)]
-pub enum Evidence<T: Real> {
-    /// The force alone: the half-gap is not known yet.
-    Force,
-    /// Force and deflection. The last learning interval may have been in settled contact, and both together leave the
-    /// force a standard deviation [N].
-    Position {
-        /// Where the deflection is in the gap.
-        position: ByPosition<T>,
-        /// The last learning interval was in settled contact.
-        settled: bool,
-        /// Standard deviation of the force by both together [N].
-        deviation: T,
-    },
-    /// Without an output encoder: the flank that the motor feels.
-    MotorOnly(Option<Flank>),
-}
-
 impl Contact {
-    /// Contact in this period, by the motor side's mesh force with its standard deviation and by what else there is [N].
-    /// Returns the mesh force that follows from all of it [N].
+    /// Contact by force and deflection together, which is reported, and the mesh force that follows from both [N]. The
+    /// standard deviations are of the force alone and of both together [N]; the last learning interval may have been in
+    /// settled contact.
     #[inline]
-    pub fn step<T: Real>(&mut self, force: T, deviation: T, evidence: &Evidence<T>) -> T {
-        let by_force = self.by_force.step(force, deviation);
-        match evidence {
-            Evidence::Force => {
-                self.reported = by_force;
-                force
-            }
-            Evidence::Position { position, settled, deviation: both } => {
-                self.settled = *settled || self.settled && position.deflection.abs() > T::HALF * position.half_gap;
-                let (reported, force) = position.reported(self.reported, force, [deviation, *both], self.settled);
-                self.reported = reported;
-                force
-            }
-            Evidence::MotorOnly(felt) => {
-                self.reported = *felt;
-                force
-            }
-        }
+    pub fn step_by_position<T: Real>(
+        &mut self,
+        position: &ByPosition<T>,
+        force: T,
+        deviations: [T; 2],
+        settled: bool,
+    ) -> T {
+        self.settled = settled || self.settled && position.deflection.abs() > T::HALF * position.half_gap;
+        let (reported, force) = position.reported(self.reported, force, deviations, self.settled);
+        self.reported = reported;
+        force
     }
 }

@@ -68,7 +68,7 @@ impl<T: Real> Health<T> {
     }
 
     /// Judges the output's reading by itself. Where that gives the encoder up, the caller goes on without it.
-    #[inline]
+    #[inline(always)]
     pub fn screen(&mut self, tables: &ObserverTables<T>, sensed: &Sensed<T>) -> Screened<T> {
         let screened = self.faults.screen(tables, sensed, self.both_encoders());
         match &screened {

@@ -101,7 +101,8 @@ impl<T: Real> OutputFaults<T> {
     }
 
     /// Judges the reading of one period by those before.
-    #[inline]
+    // A call and what it hands back cost more than what it does in most periods.
+    #[inline(always)]
     pub fn screen(&mut self, tables: &ObserverTables<T>, sensed: &Sensed<T>, both_encoders: bool) -> Screened<T> {
         let by = match sensed.output {
             None => {
@@ -168,19 +169,17 @@ impl<T: Real> OutputFaults<T> {
         let table = &tables.supervisor;
         let deflection = fused.of_teeth();
         let [half_gap, compliance] = learnt.shape();
-        let range = {
-            let unwound = fused.deflection - fused.flank_shift - compliance * fused.force;
-            if self.unmoved_for == 0 {
-                self.stood_at = unwound;
-            }
-            let went_on = (unwound - self.stood_at).abs();
-            if went_on > half_gap && outruns(tables, learnt, went_on, fused.force) {
-                Range::Impossible
-            } else if deflection.abs() < learnt.uncertainty.reach {
-                Range::Possible
-            } else {
-                far_range(learnt, deflection, fused.force)
-            }
+        let unwound = deflection - compliance * fused.force;
+        if self.unmoved_for == 0 {
+            self.stood_at = unwound;
+        }
+        let went_on = (unwound - self.stood_at).abs();
+        let range = if went_on > half_gap && outruns(tables, learnt, went_on, fused.force) {
+            Range::Impossible
+        } else if deflection.abs() < learnt.uncertainty.reach {
+            Range::Possible
+        } else {
+            far_range(learnt, deflection, fused.force)
         };
         let by = deflection - core::mem::replace(&mut self.deflection, deflection);
         if !both_encoders {

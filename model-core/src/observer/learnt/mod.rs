@@ -221,19 +221,28 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         self.last_rest = LastRest::new();
     }
 
-    /// Finds exactly what the deflection depends on by where the shafts are.
+    /// Finds exactly what the deflection depends on by where the shafts are: regressors of teeth that do not touch, and
+    /// sine and cosine of the mesh phase.
     pub fn find_errors(
         &mut self,
         tables: &ObserverTables<T>,
         sensors: &Sensors,
         filters: &Filters<T>,
         both_encoders: bool,
-    ) {
-        let (free, mesh) = exact_errors(tables, sensors, filters, both_encoders);
+    ) -> (Regressors<T, P>, [T; 2]) {
+        let table = &tables.counts;
+        let (output, _) = sensors.counts.used();
+        let link_speed = if both_encoders { filters.load.speed } else { T::ZERO };
+        let output_phase = output.phase(&table.output);
+        let motor_phase = sensors.counts.motor.phase(&table.motor);
+        let free = regressors::free(link_speed, motor_phase, both_encoders.then_some(output_phase));
+        let (sine, cosine) = sine_cosine(output_phase.wrapping_mul(table.meshes));
+        let mesh = [sine, cosine];
         self.errors.put(&self.learner, &free, mesh);
+        (free, mesh)
     }
 
-    /// Adds a period to the interval, and finds the errors in its middle; false when there is no task to do.
+    /// Adds a period to the interval.
     #[inline]
     pub fn add(&mut self, fused: &Fused<T>) {
         self.interval.add(fused);
@@ -254,7 +263,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         self.interval.task != Task::Done
     }
 
-    /// The errors in the middle of an interval: what is learnt from it was there.
+    /// The same in the middle of an interval: what is learnt from it was there.
     pub fn keep_errors(
         &mut self,
         tables: &ObserverTables<T>,
@@ -262,10 +271,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         filters: &Filters<T>,
         both_encoders: bool,
     ) {
-        let (free, mesh) = exact_errors(tables, sensors, filters, both_encoders);
-        self.errors.put(&self.learner, &free, mesh);
-        self.errors.free = free;
-        self.errors.mesh_then = mesh;
+        (self.errors.free, self.errors.mesh_then) = self.find_errors(tables, sensors, filters, both_encoders);
     }
 
     /// What the interval that ends now showed, at a motor speed [rad/s].
@@ -503,21 +509,4 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         self.uncertainty.of_force(tables, &self.bias, compliance, self.interval.direction);
         self.uncertainty.next(tables, &self.learner, &seen, &touch);
     }
-}
-
-/// Regressors of teeth that do not touch, and sine and cosine of the mesh phase, where the shafts are now.
-fn exact_errors<T: Real, const P: usize>(
-    tables: &ObserverTables<T>,
-    sensors: &Sensors,
-    filters: &Filters<T>,
-    both_encoders: bool,
-) -> (Regressors<T, P>, [T; 2]) {
-    let table = &tables.counts;
-    let (output, _) = sensors.counts.used();
-    let link_speed = if both_encoders { filters.load.speed } else { T::ZERO };
-    let output_phase = output.phase(&table.output);
-    let motor_phase = sensors.counts.motor.phase(&table.motor);
-    let free = regressors::free(link_speed, motor_phase, both_encoders.then_some(output_phase));
-    let (sine, cosine) = sine_cosine(output_phase.wrapping_mul(table.meshes));
-    (free, [sine, cosine])
 }

@@ -42,8 +42,10 @@ pub struct Sensed<T: Real> {
     pub output_age: u32,
     /// Time between that reading and the fresh one before [ticks].
     pub output_interval: u32,
-    /// What was wrong with the samples.
-    pub notices: Notices,
+    /// The torque was a number.
+    pub torque_known: bool,
+    /// The period was too short or too long, or time went backwards.
+    pub out_of_time: bool,
 }
 
 impl Sensors {
@@ -71,15 +73,6 @@ impl Sensors {
         let lasted = if taken.motor == Advance::Began { clock.shortest } else { samples.time.wrapping_sub(before) };
         let out_of_time = lasted.wrapping_sub(clock.shortest) > clock.longer;
         let motor_by = if let Advance::By(by) = taken.motor { by } else { 0 };
-        let mut notices = Notices::default();
-        if !known || out_of_time || !matches!(taken.motor, Advance::By(_)) {
-            notices = Notices {
-                torque_unknown: !known,
-                out_of_time,
-                motor_doubted: taken.motor == Advance::Doubted,
-                motor_jumped: matches!(taken.motor, Advance::Jumped(_)),
-            };
-        }
         Sensed {
             command,
             motor: taken.motor,
@@ -90,7 +83,24 @@ impl Sensors {
             output_turned: tables.counts.output.angle * T::from_i32(taken.turned),
             output_age,
             output_interval: taken.apart,
-            notices,
+            torque_known: known,
+            out_of_time,
+        }
+    }
+}
+
+impl<T: Real> Sensed<T> {
+    /// What was wrong with the samples.
+    #[inline(always)]
+    pub fn notices(&self) -> Notices {
+        if self.torque_known && !self.out_of_time && matches!(self.motor, Advance::By(_)) {
+            return Notices::default();
+        }
+        Notices {
+            torque_unknown: !self.torque_known,
+            out_of_time: self.out_of_time,
+            motor_doubted: self.motor == Advance::Doubted,
+            motor_jumped: matches!(self.motor, Advance::Jumped(_)),
         }
     }
 }

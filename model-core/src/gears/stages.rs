@@ -1,5 +1,5 @@
 //! The method of a sub-step for x'' = a(x, x', t), a smooth: two evaluations for fourth order. Where it comes from and
-//! how far it is stable is in docs/step.md.
+//! how far it is stable is in docs/theory/step.md.
 //!
 //! In units in which the sub-step lasts 1 and accelerations are counted in sixths (A = a/6), with A_- half a step
 //! before, A_0 now, A_m in the middle and A_1 at the end:

@@ -63,7 +63,7 @@ fn check_time(period: f64, samples: usize, plan: &Plan) -> Outcome<()> {
     }
     if time < LEAST_TIME {
         return Err(Failure::new(format!("the log is too short: {time:.3} s, at least {LEAST_TIME} s are needed"))
-            .with_help("record several reversals to both sides; docs/identify.md tells a good test"));
+            .with_help("record several reversals to both sides; docs/reference/identify.md tells a good test"));
     }
     Ok(())
 }

@@ -152,7 +152,7 @@ fn unknown(key: &str) -> Refused {
             let hint = all.iter().find(|(path, _)| path.ends_with(near)).map_or("", |(_, known)| known.hint);
             format!("did you mean `{near}`? {hint}")
         }
-        None => "docs/joint-file.md lists all keys, such as mesh.half_backlash_um".to_owned(),
+        None => "docs/reference/joint-file.md lists all keys, such as mesh.half_backlash_um".to_owned(),
     };
     Refused { message, help }
 }

@@ -1,5 +1,5 @@
 //! Every key of a joint file: its section, its unit, its bound, and a hint for who got it wrong. The page
-//! docs/joint-file.md says the same in more words.
+//! docs/reference/joint-file.md says the same in more words.
 
 use crate::bound::{Bound, Unit};
 use crate::table::{self, Keys};
@@ -336,7 +336,7 @@ mod tests {
 
     #[test]
     fn every_key_is_documented_with_its_bound() {
-        let document = include_str!("../../../docs/joint-file.md");
+        let document = include_str!("../../../docs/reference/joint-file.md");
         for key in KEYS {
             let value = match key.kind {
                 Kind::Text => "text".to_owned(),
@@ -356,7 +356,7 @@ mod tests {
 
     #[test]
     fn every_section_is_documented() {
-        let document = include_str!("../../../docs/joint-file.md");
+        let document = include_str!("../../../docs/reference/joint-file.md");
         for key in KEYS.iter().filter(|key| matches!(key.kind, Kind::Section)) {
             let path =
                 if key.section.is_empty() { key.name.to_owned() } else { format!("{}.{}", key.section, key.name) };

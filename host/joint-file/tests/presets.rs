@@ -134,7 +134,7 @@ fn q1_has_its_drive_train_in_si() {
 
 #[test]
 fn the_documented_example_is_a_joint() {
-    let document = include_str!("../../../docs/joint-file.md");
+    let document = include_str!("../../../docs/reference/joint-file.md");
     let example = document.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).expect("an example");
     let file = read(example).expect("the example is good");
     assert_eq!(file.warnings, []);

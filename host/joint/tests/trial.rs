@@ -1,5 +1,5 @@
-//! Test files of observer and compensation as a user meets them: what they say to bad input, what they leave behind, that
-//! they are repeatable, and that a controller that does nothing fails.
+//! Test files of observer and compensation as a user meets them: what they say to bad input, what they leave behind,
+//! that they are repeatable, and that a controller that does nothing fails.
 
 mod command;
 
@@ -267,7 +267,7 @@ fn a_run_from_memory_knows_the_width_at_once_and_its_rivals_are_the_same() {
 
 #[test]
 fn the_example_of_the_documentation_passes() {
-    let document = include_str!("../../../docs/hil-file.md");
+    let document = include_str!("../../../docs/reference/hil-file.md");
     let (_, rest) = document.split_once("```toml\n").expect("an example");
     let (example, _) = rest.split_once("```").expect("its end");
     let folder = folder();

@@ -1,5 +1,6 @@
-//! What tests leave behind, as JSON: every figure of every run, every assertion with its verdict, and the line that runs
-//! it again. docs/hil-file.md tells the keys, docs/hil-tests.schema.json is their schema; pictures are the page's.
+//! What tests leave behind, as JSON: every figure of every run, every assertion with its verdict, and the line that
+//! runs it again. docs/reference/hil-file.md tells the keys, docs/reference/hil-tests.schema.json is their schema;
+//! pictures are the page's.
 
 use std::collections::BTreeMap;
 

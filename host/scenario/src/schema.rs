@@ -1,5 +1,5 @@
-//! The published schema of test results is that of their types, and `docs/hil-file.md` tells every key and every figure.
-//! Only tests are here.
+//! The published schema of test results is that of their types, and `docs/reference/hil-file.md` tells every key and
+//! every figure. Only tests are here.
 
 use super::figures::FIGURES;
 use super::record::TestsRecord;

@@ -1,6 +1,6 @@
 //! Which test files a command is about: one file, or all of a folder, each read and checked against its joint before
-//! anything runs; what cannot run does not keep the rest of a folder from running. Whether a file is one of tests at all is
-//! asked here too.
+//! anything runs; what cannot run does not keep the rest of a folder from running. Whether a file is one of tests at
+//! all is asked here too.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -100,7 +100,8 @@ pub fn load(path: &Path, choice: Choice, plant: PlantName) -> Outcome<Suite> {
         }
     }
     if suite.tests.is_empty() && suite.not_run.is_empty() {
-        let help = "a test file is TOML, as docs/hil-file.md tells; those with only_with_full run with --full";
+        let help =
+            "a test file is TOML, as docs/reference/hil-file.md tells; those with only_with_full run with --full";
         return Err(Failure::new(format!("there is no test to run in {}", path.display())).with_help(help));
     }
     Ok(suite)

@@ -1,6 +1,7 @@
-//! `joint bench`: the core's step against what people use, error by cost, on the emulated core and on the host. `lineup`
-//! runs the fixed-step methods, by `race` on the emulated core, `libraries` times what a host program would take from
-//! a library, `verdicts` and `in_a_sample` draw the conclusions; all are `figures`, and `page` and `document` show them.
+//! `joint bench`: the core's step against what people use, error by cost, on the emulated core and on the host.
+//! `lineup` runs the fixed-step methods, by `race` on the emulated core, `libraries` times what a host program would
+//! take from a library, `verdicts` and `in_a_sample` draw the conclusions; all are `figures`, and `page` and `document`
+//! show them.
 
 mod document;
 mod figures;
@@ -37,7 +38,7 @@ pub const ABOUT: &str =
   joint bench                                 all named cases, board and host
   joint bench --case A,Q --html bench.html    two of them, with pictures
   joint bench joints/l1.toml --json -         a joint from a file, figures as JSON
-  joint bench --document docs/budget.md       rewrites the comparison in that file
+  joint bench --document docs/reference/budget.md       rewrites the comparison in that file
 
 Error is that of the mesh deflections (RMS over their standard deviation), the worst over 8 phases of the
 excitation; where single meshes rattle without rule, that of the link angle over the lost motion, in windows:

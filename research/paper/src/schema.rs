@@ -1,4 +1,5 @@
-//! The published schema of a study is that of its types, and `docs/paper-study.md` tells every key. Only tests are here.
+//! The published schema of a study is that of its types, and `docs/reference/paper-study.md` tells every key. Only
+//! tests are here.
 
 use super::record::StudyRecord;
 use report::schema::{assert_explained, assert_published};

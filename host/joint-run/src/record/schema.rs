@@ -1,4 +1,5 @@
-//! The published schema of a run is that of its types, and `docs/report-schema.md` tells every key. Only tests are here.
+//! The published schema of a run is that of its types, and `docs/reference/report-schema.md` tells every key. Only
+//! tests are here.
 
 use super::RunRecord;
 use report::schema::{assert_explained, assert_published};

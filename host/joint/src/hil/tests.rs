@@ -29,7 +29,9 @@ pub fn wanted(arguments: &Arguments) -> Outcome<Wanted<'_>> {
     ];
     if let Some((name, _)) = of_joints.iter().find(|(_, given)| *given) {
         let message = format!("--{name} is for joints, and {} holds tests", arguments.file().display());
-        return Err(Failure::new(message).with_help("write it into the test file: docs/hil-file.md tells its keys"));
+        return Err(
+            Failure::new(message).with_help("write it into the test file: docs/reference/hil-file.md tells its keys")
+        );
     }
     if let (true, Some(port)) = (arguments.host, &arguments.line.port) {
         return Err(Failure::new(format!("--host runs without a board, and --port {port} names one"))
@@ -112,5 +114,5 @@ pub fn refuse_for_joints(arguments: &Arguments) -> Outcome<()> {
         (None, Err(error)) => format!("cannot read the test file {file}: {error}"),
     };
     Err(Failure::new(message)
-        .with_help("name a test file such as hil/t2.toml; docs/hil-file.md tells how to write one"))
+        .with_help("name a test file such as hil/t2.toml; docs/reference/hil-file.md tells how to write one"))
 }

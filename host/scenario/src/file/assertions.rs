@@ -118,7 +118,7 @@ fn likely(word: &str, impedance: bool) -> String {
     }
     match joint_file::nearest(word, names(impedance).iter().map(String::as_str)) {
         Some(near) => format!("did you mean `{near}`?"),
-        None => "docs/hil-file.md lists all figures, such as rms_mrad and rms_gain_over_pid".to_owned(),
+        None => "docs/reference/hil-file.md lists all figures, such as rms_mrad and rms_gain_over_pid".to_owned(),
     }
 }
 

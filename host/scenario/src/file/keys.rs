@@ -1,5 +1,5 @@
-//! Every key of a test file: its section, what it holds, its bound, and a hint for who got it wrong. The page docs/hil-file.md
-//! says the same in more words.
+//! Every key of a test file: its section, what it holds, its bound, and a hint for who got it wrong. The page
+//! docs/reference/hil-file.md says the same in more words.
 
 use joint_file::Keys;
 
@@ -205,7 +205,7 @@ mod tests {
 
     #[test]
     fn every_key_and_every_word_is_documented() {
-        let document = include_str!("../../../../docs/hil-file.md");
+        let document = include_str!("../../../../docs/reference/hil-file.md");
         for key in KEYS {
             let row = format!("| `{}` |", key.name);
             let wanted = match key.kind {

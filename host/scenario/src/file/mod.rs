@@ -2,7 +2,7 @@
 //! each with its place in the text.
 //!
 //! `keys` lists every key; `section` takes values out of a table by that list; `motion`, `faults`, `changes` and
-//! `assertions` each read one kind of section. docs/hil-file.md tells all of it to users.
+//! `assertions` each read one kind of section. docs/reference/hil-file.md tells all of it to users.
 
 mod assertions;
 mod changes;

@@ -1,4 +1,5 @@
-//! What holds of this workspace: who imports whom, among files, folders and crates, and how large they are.
+//! What holds of this workspace: who imports whom, among files, folders and crates, how large they are, and that its
+//! pages link to what is there.
 
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
@@ -6,7 +7,7 @@ use std::sync::LazyLock;
 use structure::graph::Graph;
 use structure::members::{Member, Workspace};
 use structure::sources::Sources;
-use structure::{page, rules, size};
+use structure::{links, page, rules, size};
 
 /// A crate and its targets with their kinds.
 type Crate = (&'static Member, Vec<(String, Graph)>);
@@ -98,6 +99,38 @@ fn the_pages_for_newcomers_name_places_that_are_there() {
         let text = std::fs::read_to_string(root().join(name)).expect("a page");
         none(page::missing(&text, |path| root().join(path).exists()));
     }
+}
+
+/// The Markdown pages at the workspace's root, in docs and beside the firmware.
+fn pages() -> links::Pages {
+    let mut folders: Vec<PathBuf> = ["", links::BOOK, "firmware"].map(PathBuf::from).into();
+    let mut pages = links::Pages::new();
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(root().join(&folder)).expect("a folder").map(|entry| entry.expect("an entry")) {
+            let path = folder.join(entry.file_name());
+            if entry.path().is_dir() {
+                // The root's own folders but docs and firmware hold no pages.
+                folders.extend(path.parent().is_some_and(|it| it.starts_with(links::BOOK)).then_some(path));
+            } else if path.extension().is_some_and(|kind| kind == "md") {
+                pages.insert(path, std::fs::read_to_string(entry.path()).expect("a page"));
+            }
+        }
+    }
+    pages
+}
+
+#[test]
+fn every_link_of_a_page_leads_somewhere() {
+    let pages = pages();
+    let count: usize = pages.values().map(|page| links::links(page).len()).sum();
+    println!("{count} links on {} pages", pages.len());
+    assert!(pages.contains_key(Path::new("README.md")) && count > 100);
+    none(links::broken(&pages, |path| root().join(path).exists()));
+}
+
+#[test]
+fn the_book_lists_every_page() {
+    none(links::unlisted(&pages()));
 }
 
 #[test]

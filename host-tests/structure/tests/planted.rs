@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use structure::graph::Graph;
+use structure::links::{Pages, broken, headings, unlisted};
 use structure::members::{Kind, Member, Workspace};
 use structure::rules::{file_circles, folder_circles, runtime_imports_design};
 use structure::sources::Sources;
@@ -352,4 +353,55 @@ fn a_place_that_is_gone_is_found_on_a_page_and_words_are_not_taken_for_places() 
         "open `a/b.rs`, then `a/gone.rs`; `cargo joint hil hil/t2.toml`, `+ - *` and `Model::step` are no places";
     let found = page::missing(page, |path| path == Path::new("a/b.rs"));
     assert!(matches!(&found[..], [one] if one.contains("`a/gone.rs`")), "{found:?}");
+}
+
+fn pages(pages: &[(&str, &str)]) -> Pages {
+    pages.iter().map(|(path, text)| (PathBuf::from(path), text.to_string())).collect()
+}
+
+#[test]
+fn a_heading_is_linked_by_its_words() {
+    let page = "# Error, against `cost`\n## Error, against `cost`\n```\n# a comment\n```\n### [On](x.md#y) a_b-c\n#no";
+    assert_eq!(headings(page), ["error-against-cost", "error-against-cost-1", "on-a_b-c"]);
+}
+
+#[test]
+fn a_link_that_leads_nowhere_is_found_and_code_holds_no_links() {
+    let there = ["docs/b.md", "docs/deep/c.md", "docs/d.svg", "README.md", "docs"].map(Path::new);
+    let found = |text: &str| {
+        let others =
+            [("docs/b.md", "# Here\n"), ("docs/deep/c.md", ""), ("README.md", "# Root\n"), ("docs/a.md", text)];
+        broken(&pages(&others), |path| there.contains(&path) || path == Path::new("docs/a.md"))
+    };
+    for good in [
+        "[b](b.md#here) ![d](d.svg) [c](deep/c.md) [b](deep/../b.md \"title\") [self](#up)\n# Up",
+        "[far](https://gone.example/x.md) `[code](gone.md)` [chapter]()",
+        "```\n[code](gone.md)\n```",
+        "over two\nlines [of\ntext](b.md)",
+    ] {
+        assert_eq!(found(good), [""; 0], "{good}");
+    }
+    for (bad, text) in [
+        ("\n[b](gone.md)", "docs/a.md:2: the link to `gone.md` leads nowhere"),
+        ("![d](gone.svg)", "docs/a.md:1: the link to `gone.svg` leads nowhere"),
+        ("[b](b.md#there)", "docs/b.md has no heading `there`\n  mend: one of here"),
+        ("# Up\n\nsee [it](#down)", "docs/a.md:3: docs/a.md has no heading `down`"),
+        ("[d](d.svg#part)", "docs/d.svg has no heading `part`"),
+        ("[up](../../x.md)", "`../../x.md` leads nowhere"),
+        ("[up](/b.md)", "`/b.md` leads nowhere"),
+        ("[root](../README.md)", "leads out of the book"),
+        ("`one` [b](gone.md) `two`", "`gone.md` leads nowhere"),
+    ] {
+        let found = found(bad);
+        assert!(matches!(&found[..], [one] if one.contains(text)), "{bad}: {found:?}");
+    }
+}
+
+#[test]
+fn a_page_that_the_book_leaves_out_is_found() {
+    let found = |summary: &str| {
+        unlisted(&pages(&[("docs/SUMMARY.md", summary), ("docs/deep/a.md", ""), ("docs/b.md", ""), ("README.md", "")]))
+    };
+    assert_eq!(found("- [a](deep/a.md)\n- [none]()\n- [b](b.md)"), [""; 0]);
+    assert_eq!(found("- [b](b.md)"), ["docs/deep/a.md is not in docs/SUMMARY.md\n  mend: give it a line there"]);
 }

@@ -38,7 +38,8 @@ pub const ABOUT: &str =
   joint bench                                 all named cases, board and host
   joint bench --case A,Q --html bench.html    two of them, with pictures
   joint bench joints/l1.toml --json -         a joint from a file, figures as JSON
-  joint bench --document docs/reference/budget.md       rewrites the comparison in that file
+  joint bench --document docs/reference/budget.md
+                                              rewrites the comparison in that file
 
 Error is that of the mesh deflections (RMS over their standard deviation), the worst over 8 phases of the
 excitation; where single meshes rattle without rule, that of the link angle over the lost motion, in windows:

@@ -85,6 +85,21 @@ fn after_target(at: usize, part: &str) -> &str {
     if at == 0 { part } else { part.split_once(')').map_or("", |(_, rest)| rest) }
 }
 
+/// Pages and files of the book that a source names, in comments and in texts for users, each with its line.
+pub fn named(source: &str) -> Vec<(usize, PathBuf)> {
+    let mut found = vec![];
+    for (at, line) in source.lines().enumerate() {
+        for (start, _) in line.match_indices("docs/") {
+            let name = line[start..].split(|sign: char| !sign.is_ascii_alphanumeric() && !"/._-".contains(sign));
+            let name = PathBuf::from(name.map(|name| name.trim_end_matches('.')).next().unwrap_or_default());
+            if name.extension().is_some() && !line[..start].contains("://") {
+                found.push((at + 1, name));
+            }
+        }
+    }
+    found
+}
+
 /// `file` beside `page`, without `..`; `None` if it leads out of the workspace.
 fn beside(page: &Path, file: &str) -> Option<PathBuf> {
     let mut path = page.parent()?.to_path_buf();

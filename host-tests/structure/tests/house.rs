@@ -1,6 +1,7 @@
 //! What holds of this workspace: who imports whom, among files, folders and crates, how large they are, and that its
 //! pages link to what is there.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
@@ -14,6 +15,9 @@ type Crate = (&'static Member, Vec<(String, Graph)>);
 
 static WORKSPACE: LazyLock<Workspace> = LazyLock::new(|| Workspace::read(&root()));
 static CRATES: LazyLock<Vec<Crate>> = LazyLock::new(|| WORKSPACE.members.iter().map(|it| (it, graphs(it))).collect());
+
+/// Whose pages are not there on purpose.
+const PLANTED: &str = "structure/tests/planted.rs";
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
@@ -126,6 +130,19 @@ fn every_link_of_a_page_leads_somewhere() {
     println!("{count} links on {} pages", pages.len());
     assert!(pages.contains_key(Path::new("README.md")) && count > 100);
     none(links::broken(&pages, |path| root().join(path).exists()));
+}
+
+#[test]
+fn sources_name_pages_that_are_there() {
+    let files = CRATES.iter().flat_map(|(_, graphs)| graphs).flat_map(|(_, graph)| &graph.sources.files);
+    let paths: BTreeSet<&PathBuf> = files.map(|file| &file.path).filter(|path| !path.ends_with(PLANTED)).collect();
+    let mut found = vec![];
+    for path in paths {
+        let text = std::fs::read_to_string(root().join(path)).expect("a source");
+        let lost = links::named(&text).into_iter().filter(|(_, page)| !root().join(page).exists());
+        found.extend(lost.map(|(line, page)| format!("{}:{line}: no {}", path.display(), page.display())));
+    }
+    none(found);
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use structure::graph::Graph;
-use structure::links::{Pages, broken, headings, unlisted};
+use structure::links::{Pages, broken, headings, named, unlisted};
 use structure::members::{Kind, Member, Workspace};
 use structure::rules::{file_circles, folder_circles, runtime_imports_design};
 use structure::sources::Sources;
@@ -404,4 +404,12 @@ fn a_page_that_the_book_leaves_out_is_found() {
     };
     assert_eq!(found("- [a](deep/a.md)\n- [none]()\n- [b](b.md)"), [""; 0]);
     assert_eq!(found("- [b](b.md)"), ["docs/deep/a.md is not in docs/SUMMARY.md\n  mend: give it a line there"]);
+}
+
+#[test]
+fn a_page_that_a_source_names_is_found_with_its_line() {
+    let source = "//! Told in `docs/a-b.md`.\nhelp: \"see docs/deep/c.md.\"; include_str!(\"../docs/d.json\")\n\
+                  // docs/ holds pages; https://far.example/docs/e.md is none of them";
+    let found: Vec<String> = named(source).iter().map(|(line, page)| format!("{line} {}", page.display())).collect();
+    assert_eq!(found, ["1 docs/a-b.md", "2 docs/deep/c.md", "2 docs/d.json"]);
 }

@@ -2,6 +2,7 @@
 //! they are repeatable, and that a controller that does nothing fails.
 
 mod command;
+mod tutorial;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -274,4 +275,9 @@ fn the_example_of_the_documentation_passes() {
     let file = folder.path().join("example.toml");
     fs::write(&file, example).expect("a file");
     joint(&["hil", text(&file), "--host", "--plant", "reference", "--out", text(folder.path())]).well();
+}
+
+#[test]
+fn the_tutorial_prints_what_it_says() {
+    tutorial::follow_the_tutorial(tutorial::Tier::Host);
 }

@@ -4,6 +4,7 @@
 mod command;
 #[allow(dead_code, reason = "every test binary uses its own part of it")]
 mod learning;
+#[allow(dead_code, reason = "every test binary uses its own part of it")]
 mod tutorial;
 
 use std::fs;

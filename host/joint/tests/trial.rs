@@ -2,6 +2,7 @@
 //! they are repeatable, and that a controller that does nothing fails.
 
 mod command;
+#[allow(dead_code, reason = "every test binary uses its own part of it")]
 mod tutorial;
 
 use std::fs;

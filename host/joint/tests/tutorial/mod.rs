@@ -204,8 +204,13 @@ fn allows(said: &str, printed: &str) -> bool {
 /// Of all ways to lay a page's lines beside those that were printed, the one with the fewest changes.
 fn align(said: &[&str], printed: &[&str]) -> Vec<Change> {
     // A line that changed is cheaper than one that went, so that `...` does not swallow what changed beside it.
-    const OTHER: usize = 2;
+    const ALIKE: usize = 2;
     const GONE_OR_NEW: usize = 3;
+    let price = |said: &str, printed: &str| match () {
+        () if allows(said, printed) => 0,
+        () if said.split_whitespace().take(2).eq(printed.split_whitespace().take(2)) => ALIKE,
+        () => 3 * GONE_OR_NEW,
+    };
     let columns = printed.len() + 1;
     // Costs of the rest from here on, and whether that begins with a line of the page, a printed one, or both.
     let mut best = vec![(0, false, false); (said.len() + 1) * columns];
@@ -222,8 +227,7 @@ fn align(said: &[&str], printed: &[&str]) -> Vec<Change> {
                 }
             } else {
                 if is_row && is_column {
-                    let price = if allows(said[row], printed[column]) { 0 } else { OTHER };
-                    ways.push((cost(1, 1) + price, true, true));
+                    ways.push((cost(1, 1) + price(said[row], printed[column]), true, true));
                 }
                 if is_row {
                     ways.push((cost(1, 0) + GONE_OR_NEW, true, false));

@@ -100,14 +100,13 @@ fn file_name<'p>(before: &[&'p str]) -> Option<&'p str> {
 
 /// Runs the commands of a fence whose first line has this number.
 fn run_block(block: &[&str], first: usize, place: &Path, followed: &mut Followed, written: &mut Vec<String>) {
-    let is_command = |line: &&str| line.starts_with("$ ");
-    assert!(block.first().is_some_and(|line| is_command(line)), "line {first}: a command begins with `$ `");
+    assert!(block.first().is_some_and(|line| line.starts_with("$ ")), "line {first}: a command begins with `$ `");
     let mut code = 0;
     let mut rest = block;
     while let [head, after @ ..] = rest {
         let line = first + block.len() - rest.len();
         let command = &head["$ ".len()..];
-        let (said, next) = after.split_at(after.iter().position(|line| is_command(line)).unwrap_or(after.len()));
+        let (said, next) = after.split_at(after.iter().position(|line| line.starts_with("$ ")).unwrap_or(after.len()));
         let (out, ended) = run(command, code, place);
         code = ended;
         followed.commands += 1;

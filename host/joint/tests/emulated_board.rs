@@ -4,6 +4,8 @@
 mod command;
 #[allow(dead_code, reason = "every test binary uses its own part of it")]
 mod learning;
+#[allow(dead_code, reason = "every test binary uses its own part of it")]
+mod tutorial;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -227,4 +229,10 @@ fn a_memory_is_judged_by_the_firmware_of_the_emulated_board() {
     memory(&["read", file]).refused(&["has no flash"]);
     let ended = memory(&["erase"]).well();
     assert!(ended.out.contains("keeps no memory now"), "{ended:?}");
+}
+
+#[test]
+#[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
+fn the_tutorial_prints_what_it_says_on_the_emulated_board() {
+    tutorial::follow_the_tutorial(tutorial::Tier::EmulatedBoard);
 }

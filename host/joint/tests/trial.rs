@@ -2,6 +2,8 @@
 //! that they are repeatable, and that a controller that does nothing fails.
 
 mod command;
+#[allow(dead_code, reason = "every test binary uses its own part of it")]
+mod tutorial;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -274,4 +276,26 @@ fn the_example_of_the_documentation_passes() {
     let file = folder.path().join("example.toml");
     fs::write(&file, example).expect("a file");
     joint(&["hil", text(&file), "--host", "--plant", "reference", "--out", text(folder.path())]).well();
+}
+
+#[test]
+fn the_tutorial_prints_what_it_says() {
+    tutorial::follow_the_tutorial(tutorial::Tier::Host);
+}
+
+#[test]
+fn a_page_that_says_a_wrong_figure_is_refused_by_its_line_and_can_be_mended() {
+    let right = "`a/b.toml`:\n\n```toml\nmass_kg = 3\nlength_m = 1\n```\n\n```console\n$ cat a/b.toml; echo took 7 s\n...\nlength_m = 1\n\
+                 took [...] s\n$ false\n$ echo $?\n1\n```\n";
+    let followed = |page: &str| tutorial::follow(page, tutorial::Tier::Host);
+    assert!(followed(right).differences.is_empty(), "{:?}", followed(right));
+    let wrong = right.replace("...\nlength_m = 1", "...\nlength_m = 2");
+    let found = followed(&wrong);
+    let [difference] = &found.differences[..] else { panic!("{found:?}") };
+    assert!(difference.contains("    11 - length_m = 2\n       + length_m = 1\n"), "{difference}");
+    assert_eq!((found.commands, found.page), (3, right.to_owned()));
+    let silent = right.replace("$ echo $?\n1\n", "");
+    assert!(followed(&silent).differences[0].contains("line 13: `false` ends with 1"), "{:?}", followed(&silent));
+    let missing = right.replace("took [...] s\n", "");
+    assert!(followed(&missing).page.contains("length_m = 1\ntook 7 s\n"), "{:?}", followed(&missing));
 }

@@ -69,7 +69,7 @@ mod measurement {
                 classes[class as usize].add(trial_number, instructions);
                 kinds[trial.kind as usize].add(trial_number, instructions);
             }
-            measuring::say(format_args!("joint;{name};{N};{};{};{SEED}", tables.substeps, tables.light.substeps));
+            measuring::say(format_args!("joint;{name};{N};{};{};{SEED}", tables.substeps, tables.verlet.substeps));
             for (class, count) in Class::ALL.iter().zip(classes) {
                 tell("class", class.name(), count);
             }

@@ -7,7 +7,7 @@ use core::convert::Infallible;
 use core::sync::atomic::Ordering::{Acquire, Relaxed, Release};
 
 use embedded_hal::digital::OutputPin;
-use link::messages::{Kept, RunMode, RunSettings, Trip};
+use link::messages::{MemoryOutcome, RunMode, RunSettings, Trip};
 
 use crate::budget::{Monitor, TickTimer};
 use crate::page::{Learnt, judgement};
@@ -113,7 +113,7 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> Control<'a, E, W> {
                 self.safe_state.trip(trip);
                 Event::Stopped
             }
-            Order::Keep => Event::Memory(Err(Kept::Running)),
+            Order::Keep => Event::Memory(Err(MemoryOutcome::Running)),
             // Has been obeyed: its stack is not needed here.
             Order::Remember => return,
             Order::Forget => {
@@ -142,7 +142,7 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> Control<'a, E, W> {
         let memory = self.work.learnt().filter(|_| there_is);
         // Idle has taken the one before.
         let given = memory.is_some_and(|memory| self.end.learnt.give(memory.clone()).is_ok());
-        let _ = self.end.events.give(Event::Memory(if given { Ok(()) } else { Err(Kept::Nothing) }));
+        let _ = self.end.events.give(Event::Memory(if given { Ok(()) } else { Err(MemoryOutcome::Nothing) }));
     }
 
     /// Between runs only: idle asks for it at no other time.

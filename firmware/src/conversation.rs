@@ -7,7 +7,7 @@ use core::sync::atomic::Ordering::Acquire;
 use heapless::Vec;
 use heapless::spsc::{Consumer, Producer};
 use link::framing::{MAX_FRAME, Receiver, encode};
-use link::messages::{FromBoard, Hello, LOG_BYTES, Log, MemoryWish, RunSettings, ToBoard, Trip};
+use link::messages::{FromBoard, Hello, LOG_BYTES, Log, MemoryRequest, RunSettings, ToBoard, Trip};
 
 use crate::intake::{Intake, Taken};
 use crate::keeping::{Keeping, Step};
@@ -78,7 +78,7 @@ impl<'a, W: Words> Conversation<'a, W> {
             return;
         }
         if let Some(served) = self.keeping.serve(page, writing) {
-            self.hello.remembered = served.remembered.unwrap_or(self.hello.remembered);
+            self.hello.memory = served.remembered.unwrap_or(self.hello.memory);
             self.say(&served.answer);
         }
     }
@@ -142,10 +142,10 @@ impl<'a, W: Words> Conversation<'a, W> {
             }
             // Said once it is written.
             Event::Memory(Ok(())) => {}
-            Event::Memory(Err(why)) => self.say(&FromBoard::Kept(why)),
+            Event::Memory(Err(why)) => self.say(&FromBoard::MemoryOutcome(why)),
             Event::Judged(judgement) => {
                 self.keeping.judged(judgement);
-                self.say(&FromBoard::Judged(judgement));
+                self.say(&FromBoard::MemoryChecked(judgement));
             }
             // Said once the page is erased.
             Event::Forgotten => self.keeping.forgotten(),
@@ -273,7 +273,7 @@ impl<'a, W: Words> Conversation<'a, W> {
         }
     }
 
-    fn begin(&mut self, wish: MemoryWish) {
+    fn begin(&mut self, wish: MemoryRequest) {
         match self.keeping.begin(wish, self.is_running()) {
             Step::Order(order) => self.order(order),
             Step::Say(answer) => self.say(&answer),

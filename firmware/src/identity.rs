@@ -3,7 +3,7 @@
 
 use heapless::String;
 use link::PROTOCOL_VERSION;
-use link::messages::{Clock, Hello, Remembered};
+use link::messages::{Clock, Hello, MemoryState};
 
 use crate::queues::COMMAND_CAPACITY;
 use crate::tables::{JOINT_NAME, PLANETS, TABLES};
@@ -23,7 +23,7 @@ pub struct StartUp {
     /// The last reset came from the watchdog.
     pub watchdog_reset: bool,
     /// What is kept of earlier runs.
-    pub remembered: Remembered,
+    pub memory: MemoryState,
 }
 
 /// The hello of a board in a role, with the digest of its controller's tables if it has any.
@@ -44,7 +44,7 @@ pub fn hello<W: Words>(start_up: StartUp, control_digest: Option<u64>) -> Hello 
         last_panic: start_up.last_panic,
         watchdog_reset: start_up.watchdog_reset,
         control_digest,
-        remembered: start_up.remembered,
+        memory: start_up.memory,
     }
 }
 

@@ -3,7 +3,7 @@
 
 use heapless::Vec;
 use heapless::spsc::{Consumer, Producer};
-use link::messages::{FromBoard, Kept, MEMORY_PARTS, MemoryPart, MemoryWish, PART_BYTES, Remembered};
+use link::messages::{FromBoard, MEMORY_PARTS, MemoryOutcome, MemoryPart, MemoryRequest, MemoryState, PART_BYTES};
 
 use crate::page::{self, Learnt, Page};
 use crate::queues::Order;
@@ -33,7 +33,7 @@ pub struct Served {
     /// To be said.
     pub answer: FromBoard,
     /// What is kept from now on, if that has changed.
-    pub remembered: Option<Remembered>,
+    pub remembered: Option<MemoryState>,
 }
 
 /// Memories under way between page, tick and host.
@@ -60,17 +60,19 @@ impl<'a, L: Learnt> Keeping<'a, L> {
     }
 
     /// Begins what a wish asks for.
-    pub fn begin(&mut self, wish: MemoryWish, running: bool) -> Step {
+    pub fn begin(&mut self, wish: MemoryRequest, running: bool) -> Step {
         let errand = match wish {
             // The tick itself says whether a run goes on, and whether anything is learnt.
-            MemoryWish::Keep => return Step::Order(Order::Keep),
-            _ if self.brought.is_none() => return Step::Say(FromBoard::Kept(Kept::Nothing)),
-            _ if running => return Step::Say(FromBoard::Kept(Kept::Running)),
-            MemoryWish::Erase => return Step::Order(Order::Forget),
-            MemoryWish::Take(part) => return self.take(&part),
-            MemoryWish::Write if !self.is_good => return Step::Say(FromBoard::Kept(Kept::Nothing)),
-            MemoryWish::Write => Errand::Write,
-            MemoryWish::Tell { part } => Errand::Tell(part),
+            MemoryRequest::Save => return Step::Order(Order::Keep),
+            _ if self.brought.is_none() => return Step::Say(FromBoard::MemoryOutcome(MemoryOutcome::Nothing)),
+            _ if running => return Step::Say(FromBoard::MemoryOutcome(MemoryOutcome::Running)),
+            MemoryRequest::Erase => return Step::Order(Order::Forget),
+            MemoryRequest::Load(part) => return self.take(&part),
+            MemoryRequest::Write if !self.is_good => {
+                return Step::Say(FromBoard::MemoryOutcome(MemoryOutcome::Nothing));
+            }
+            MemoryRequest::Write => Errand::Write,
+            MemoryRequest::Read { part } => Errand::Tell(part),
         };
         self.errand = Some(errand);
         Step::Wait
@@ -86,7 +88,7 @@ impl<'a, L: Learnt> Keeping<'a, L> {
             places.get_mut(index)
         });
         let (Some(place), true, PART_BYTES) = (place, part.part == self.next_part, part.bytes.len()) else {
-            return Step::Say(FromBoard::Judged(Remembered::NotAMemory));
+            return Step::Say(FromBoard::MemoryChecked(MemoryState::NotAMemory));
         };
         place.copy_from_slice(&part.bytes);
         self.next_part += 1;
@@ -102,8 +104,8 @@ impl<'a, L: Learnt> Keeping<'a, L> {
     }
 
     /// The role has judged what was brought.
-    pub fn judged(&mut self, judgement: Remembered) {
-        self.is_good = judgement == Remembered::Good;
+    pub fn judged(&mut self, judgement: MemoryState) {
+        self.is_good = judgement == MemoryState::Good;
     }
 
     /// The role has forgotten; so shall the page.
@@ -134,7 +136,7 @@ impl<'a, L: Learnt> Keeping<'a, L> {
             }
             Errand::Erase => {
                 let erased = writing(&mut || page::erase(page));
-                Some(Served { remembered: erased.then_some(Remembered::Nothing), ..Served::written(erased) })
+                Some(Served { remembered: erased.then_some(MemoryState::Nothing), ..Served::written(erased) })
             }
         }
     }
@@ -143,8 +145,8 @@ impl<'a, L: Learnt> Keeping<'a, L> {
 impl Served {
     fn written(stored: bool) -> Self {
         Self {
-            answer: FromBoard::Kept(if stored { Kept::Stored } else { Kept::NotWritten }),
-            remembered: stored.then_some(Remembered::Good),
+            answer: FromBoard::MemoryOutcome(if stored { MemoryOutcome::Stored } else { MemoryOutcome::NotWritten }),
+            remembered: stored.then_some(MemoryState::Good),
         }
     }
 }

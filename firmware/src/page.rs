@@ -3,7 +3,7 @@
 
 use core::convert::Infallible;
 
-use link::messages::Remembered;
+use link::messages::MemoryState;
 use model_core::observer::{MEMORY_BYTES, Memory, MemoryError};
 
 use crate::port::ControllerPort;
@@ -77,15 +77,15 @@ pub fn erase(page: &mut impl Page) -> bool {
 }
 
 /// A judgement in the words of the line.
-pub fn judgement(judged: Option<Result<(), MemoryError>>) -> Remembered {
+pub fn judgement(judged: Option<Result<(), MemoryError>>) -> MemoryState {
     match judged {
-        None => Remembered::Nothing,
-        Some(Ok(())) => Remembered::Good,
-        Some(Err(MemoryError::NotAMemory)) => Remembered::NotAMemory,
-        Some(Err(MemoryError::WrongVersion)) => Remembered::WrongVersion,
-        Some(Err(MemoryError::Damaged)) => Remembered::Damaged,
-        Some(Err(MemoryError::OtherJoint)) => Remembered::OtherJoint,
-        Some(Err(MemoryError::NotFinite)) => Remembered::NotFinite,
+        None => MemoryState::Nothing,
+        Some(Ok(())) => MemoryState::Good,
+        Some(Err(MemoryError::NotAMemory)) => MemoryState::NotAMemory,
+        Some(Err(MemoryError::WrongVersion)) => MemoryState::WrongVersion,
+        Some(Err(MemoryError::Damaged)) => MemoryState::Damaged,
+        Some(Err(MemoryError::OtherJoint)) => MemoryState::OtherJoint,
+        Some(Err(MemoryError::NotFinite)) => MemoryState::NotFinite,
     }
 }
 

@@ -4,7 +4,7 @@
 use core::sync::atomic::{AtomicBool, AtomicU32};
 
 use heapless::spsc::{Consumer, Producer, Queue};
-use link::messages::{Kept, Remembered, RunSettings, Trip};
+use link::messages::{MemoryOutcome, MemoryState, RunSettings, Trip};
 use model_core::virtual_joint::fault::{Fault, FixedPoint};
 
 use crate::budget::Monitor;
@@ -61,9 +61,9 @@ pub enum Event {
     /// The tick itself has found a reason for the safe state: the only event that is no answer to an order.
     Tripped(Trip),
     /// What has been learnt is there to be taken, or why there is nothing.
-    Memory(Result<(), Kept>),
+    Memory(Result<(), MemoryOutcome>),
     /// What the role makes of a memory that it was given.
-    Judged(Remembered),
+    Judged(MemoryState),
     /// Nothing is remembered.
     Forgotten,
     /// Whether a fault between joint and controller was taken.

@@ -17,7 +17,7 @@ mod app {
     use firmware::timing_report::Resources;
     use firmware::work::Work;
     use firmware::{panic_message, stack};
-    use link::messages::Remembered;
+    use link::messages::MemoryState;
 
     use crate::role::{DIGEST, RoleWords, RoleWork, work};
 
@@ -52,7 +52,7 @@ mod app {
         let mut work = work();
         let remembered = remember(&mut work, &page);
         let timer_rate = ThisBoard::CORE_RATE;
-        let start_up = StartUp { board, timer_rate, clock, last_panic, watchdog_reset, remembered };
+        let start_up = StartUp { board, timer_rate, clock, last_panic, watchdog_reset, memory: remembered };
         let hello = identity::hello::<RoleWords>(start_up, DIGEST);
         defmt::info!("{=str} on {=str}, {=u32} Hz", hello.joint.as_str(), board, TABLES.tick_rate);
 
@@ -65,7 +65,7 @@ mod app {
 
     /// Looks for what was learnt before. Its stack is given back.
     #[inline(never)]
-    fn remember(work: &mut RoleWork, page: &<ThisBoard as Board>::Page) -> Remembered {
+    fn remember(work: &mut RoleWork, page: &<ThisBoard as Board>::Page) -> MemoryState {
         let judged = page::recall(page).map(|memory| work.remember(&memory));
         match judged {
             Some(Err(error)) => defmt::warn!("what was kept is not used: {}", defmt::Display2Format(&error)),

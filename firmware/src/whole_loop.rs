@@ -5,7 +5,7 @@ use heapless::Vec;
 use link::messages::{FromBoard, Role, Schedule, ToBoard};
 use link::virtual_joint::{KNOTS_PER_SCHEDULE, Knot, LOOP_SAMPLES_PER_BATCH, LoopBatch, LoopSample};
 use model_core::controller::Answer;
-use model_core::controller::course::Demand;
+use model_core::controller::trajectory::Trajectory;
 use model_core::gears::Tables;
 use model_core::numbers::digest;
 use model_core::observer::{Memory, MemoryError};
@@ -19,8 +19,8 @@ use crate::port::ControllerPort;
 use crate::words::{Timed, WireForm, Words};
 use crate::work::Work;
 
-/// Periods after which a demand that nothing follows stands still: three of the host's knots.
-const LONGEST_STRETCH: u16 = 150;
+/// Periods after which a trajectory that nothing follows stands still: three of the host's knots.
+const LONGEST_SEGMENT: u16 = 150;
 
 /// What the role says and hears.
 pub struct LoopWords;
@@ -34,7 +34,7 @@ impl Words for LoopWords {
     type Learnt = Memory;
 
     fn timetable(message: ToBoard) -> Option<Self::Timetable> {
-        if let ToBoard::Course(schedule) = message { Some(schedule) } else { None }
+        if let ToBoard::Trajectory(schedule) = message { Some(schedule) } else { None }
     }
 }
 
@@ -74,9 +74,9 @@ pub struct WholeLoop<'t, P, const N: usize> {
     port: P,
     /// What runs may begin from.
     at_hand: AtHand,
-    demand: Demand<f32>,
+    trajectory: Trajectory<f32>,
     load_torque: f32,
-    /// Periods since the demand began.
+    /// Periods since the trajectory began.
     elapsed: u16,
     answer: Answer<f32>,
     digest: u64,
@@ -92,7 +92,7 @@ impl<'t, P: ControllerPort, const N: usize> WholeLoop<'t, P, N> {
             faults: Faults::default(),
             port,
             at_hand: AtHand::default(),
-            demand: Demand::HOLD,
+            trajectory: Trajectory::HOLD,
             load_torque: 0.0,
             elapsed: 0,
             answer: Answer::default(),
@@ -116,7 +116,7 @@ impl<P: ControllerPort, const N: usize> Work for WholeLoop<'_, P, N> {
         if from_memory {
             self.at_hand.give(&mut self.port);
         }
-        self.demand = Demand::HOLD;
+        self.trajectory = Trajectory::HOLD;
         self.load_torque = 0.0;
         self.elapsed = 0;
         self.answer = Answer::default();
@@ -124,7 +124,7 @@ impl<P: ControllerPort, const N: usize> Work for WholeLoop<'_, P, N> {
     }
 
     fn take(&mut self, knot: Knot) {
-        self.demand = knot.demand.into();
+        self.trajectory = knot.trajectory.into();
         self.load_torque = knot.load_torque;
         self.elapsed = 0;
     }
@@ -155,9 +155,9 @@ impl<P: ControllerPort, const N: usize> Work for WholeLoop<'_, P, N> {
 
     fn step(&mut self) {
         let table = self.surroundings;
-        let command = self.demand.at(table.period * f32::from(self.elapsed), table.turn);
-        // A motion is a polynomial for a stretch only: one that nobody follows up holds at its last moment.
-        self.elapsed = self.elapsed.saturating_add(1).min(LONGEST_STRETCH);
+        let command = self.trajectory.at(table.period * f32::from(self.elapsed), table.turn);
+        // A motion is a polynomial for a segment only: one that nobody follows up holds at its last moment.
+        self.elapsed = self.elapsed.saturating_add(1).min(LONGEST_SEGMENT);
         let samples = self.faults.sense(self.joint.samples(), table);
         let torque = match self.port.exchange(&samples, &command) {
             Ok(answer) => {

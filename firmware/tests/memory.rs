@@ -12,8 +12,8 @@ use firmware::tables::{PLANETS, TABLES};
 use firmware::work::Work;
 use link::controller::Exchange;
 use link::messages::{
-    FromBoard, Kept, MEMORY_PARTS, MemoryPart, MemoryWish, PART_BYTES, Remembered, RunMode, RunSettings, Schedule,
-    ToBoard,
+    FromBoard, MEMORY_PARTS, MemoryOutcome, MemoryPart, MemoryRequest, MemoryState, PART_BYTES, RunMode, RunSettings,
+    Schedule, ToBoard,
 };
 use model_core::compensation::{Command, Motion, Position};
 use model_core::controller::{Answer, Controller};
@@ -63,10 +63,10 @@ fn run(bench: &mut Bench<Observing<Direct<'static>>>, from_memory: bool, ticks: 
     last.expect("answers")
 }
 
-fn kept(bench: &mut Bench<Observing<Direct<'static>>>) -> Kept {
-    bench.send(&ToBoard::Memory(MemoryWish::Keep));
+fn kept(bench: &mut Bench<Observing<Direct<'static>>>) -> MemoryOutcome {
+    bench.send(&ToBoard::Memory(MemoryRequest::Save));
     bench.run(3);
-    let kept = |message: FromBoard| if let FromBoard::Kept(kept) = message { Some(kept) } else { None };
+    let kept = |message: FromBoard| if let FromBoard::MemoryOutcome(kept) = message { Some(kept) } else { None };
     bench.said().into_iter().find_map(kept).expect("an answer")
 }
 
@@ -76,7 +76,7 @@ fn stop(bench: &mut Bench<Observing<Direct<'static>>>) {
 }
 
 /// A board that starts with this in its flash, and what it says of it.
-fn started(memory: Memory) -> (Bench<Observing<Direct<'static>>>, Remembered) {
+fn started(memory: Memory) -> (Bench<Observing<Direct<'static>>>, MemoryState) {
     let mut work = Observing::new(controller(), true);
     let flash = Flash { memory, works: true, erased: 0 };
     let judged = recall(&flash).map(|memory| work.remember(&memory));
@@ -88,14 +88,14 @@ fn started(memory: Memory) -> (Bench<Observing<Direct<'static>>>, Remembered) {
 #[test]
 fn what_was_learnt_is_kept_and_gone_on_from_after_the_next_start() {
     let (mut bench, nothing) = started([0xff; MEMORY_BYTES]);
-    assert_eq!(nothing, Remembered::Nothing);
+    assert_eq!(nothing, MemoryState::Nothing);
     let learnt = run(&mut bench, false, 12_000).estimates;
-    assert_eq!(kept(&mut bench), Kept::Running, "flash is not written while a motor runs");
+    assert_eq!(kept(&mut bench), MemoryOutcome::Running, "flash is not written while a motor runs");
     stop(&mut bench);
-    assert_eq!((kept(&mut bench), kept(&mut bench)), (Kept::Stored, Kept::Stored));
+    assert_eq!((kept(&mut bench), kept(&mut bench)), (MemoryOutcome::Stored, MemoryOutcome::Stored));
     assert_eq!(bench.flash.erased, 1, "the same is not written twice");
     let (mut again, found) = started(bench.flash.memory);
-    assert_eq!(found, Remembered::Good);
+    assert_eq!(found, MemoryState::Good);
     // Long enough to say what is known, too short to learn.
     let [fresh, remembered] = [false, true].map(|from_memory| run(&mut again, from_memory, 50).estimates);
     assert_ne!(learnt.half_backlash.value, fresh.half_backlash.value, "there was something to learn");
@@ -108,7 +108,7 @@ fn what_is_no_good_memory_is_told_and_not_used() {
     let (mut bench, _) = started([0xff; MEMORY_BYTES]);
     run(&mut bench, false, 100);
     stop(&mut bench);
-    assert_eq!(kept(&mut bench), Kept::Stored);
+    assert_eq!(kept(&mut bench), MemoryOutcome::Stored);
     let good = bench.flash.memory;
     let changed = |at: usize| {
         let mut memory = good;
@@ -116,11 +116,11 @@ fn what_is_no_good_memory_is_told_and_not_used() {
         memory
     };
     let cases = [
-        ([0; MEMORY_BYTES], Remembered::Nothing),
-        (changed(0), Remembered::NotAMemory),
-        (changed(4), Remembered::WrongVersion),
-        (changed(200), Remembered::Damaged),
-        (of_another_joint(good), Remembered::OtherJoint),
+        ([0; MEMORY_BYTES], MemoryState::Nothing),
+        (changed(0), MemoryState::NotAMemory),
+        (changed(4), MemoryState::WrongVersion),
+        (changed(200), MemoryState::Damaged),
+        (of_another_joint(good), MemoryState::OtherJoint),
     ];
     for (memory, expected) in cases {
         let (mut bench, found) = started(memory);
@@ -147,18 +147,18 @@ fn flash_that_takes_nothing_is_found_out() {
     bench.flash.works = false;
     run(&mut bench, false, 10);
     stop(&mut bench);
-    assert_eq!(kept(&mut bench), Kept::NotWritten);
+    assert_eq!(kept(&mut bench), MemoryOutcome::NotWritten);
 }
 
 /// Asks for something about the memory, and hears the answer.
-fn asked(bench: &mut Bench<Observing<Direct<'static>>>, wish: MemoryWish) -> Vec<FromBoard> {
+fn asked(bench: &mut Bench<Observing<Direct<'static>>>, wish: MemoryRequest) -> Vec<FromBoard> {
     bench.send(&ToBoard::Memory(wish));
     bench.run(3);
     bench.said()
 }
 
 fn told(bench: &mut Bench<Observing<Direct<'static>>>) -> Vec<u8> {
-    let part = |part| match asked(bench, MemoryWish::Tell { part }).pop() {
+    let part = |part| match asked(bench, MemoryRequest::Read { part }).pop() {
         Some(FromBoard::Memory(told)) if told.part == part => told.bytes,
         other => panic!("{other:?}"),
     };
@@ -169,7 +169,7 @@ fn told(bench: &mut Bench<Observing<Direct<'static>>>) -> Vec<u8> {
 fn brought(bench: &mut Bench<Observing<Direct<'static>>>, memory: &Memory) -> Vec<FromBoard> {
     let parts = memory.chunks(PART_BYTES).zip(0..);
     let part =
-        |(bytes, part): (&[u8], u8)| MemoryWish::Take(MemoryPart { part, bytes: bytes.iter().copied().collect() });
+        |(bytes, part): (&[u8], u8)| MemoryRequest::Load(MemoryPart { part, bytes: bytes.iter().copied().collect() });
     parts.flat_map(|of| asked(bench, part(of))).collect()
 }
 
@@ -178,7 +178,7 @@ fn learnt() -> Memory {
     let (mut bench, _) = started([0xff; MEMORY_BYTES]);
     run(&mut bench, false, 3000);
     stop(&mut bench);
-    assert_eq!(kept(&mut bench), Kept::Stored);
+    assert_eq!(kept(&mut bench), MemoryOutcome::Stored);
     assert_eq!(told(&mut bench), bench.flash.memory, "it is told as it lies there");
     bench.flash.memory
 }
@@ -187,19 +187,23 @@ fn learnt() -> Memory {
 fn a_memory_moves_from_board_to_board_and_is_erased() {
     let memory = learnt();
     let (mut bench, _) = started([0; MEMORY_BYTES]);
-    assert_eq!(asked(&mut bench, MemoryWish::Write), [FromBoard::Kept(Kept::Nothing)], "there is nothing to write");
-    assert_eq!(brought(&mut bench, &memory), [FromBoard::Judged(Remembered::Good)]);
+    assert_eq!(
+        asked(&mut bench, MemoryRequest::Write),
+        [FromBoard::MemoryOutcome(MemoryOutcome::Nothing)],
+        "there is nothing to write"
+    );
+    assert_eq!(brought(&mut bench, &memory), [FromBoard::MemoryChecked(MemoryState::Good)]);
     let from_memory = run(&mut bench, true, 50);
-    assert_eq!(asked(&mut bench, MemoryWish::Write), [FromBoard::Kept(Kept::Running)]);
+    assert_eq!(asked(&mut bench, MemoryRequest::Write), [FromBoard::MemoryOutcome(MemoryOutcome::Running)]);
     stop(&mut bench);
-    assert_eq!(asked(&mut bench, MemoryWish::Write), [FromBoard::Kept(Kept::Stored)]);
+    assert_eq!(asked(&mut bench, MemoryRequest::Write), [FromBoard::MemoryOutcome(MemoryOutcome::Stored)]);
     assert_eq!(bench.flash.memory, memory);
     let (mut other, found) = started(memory);
-    assert_eq!((found, run(&mut other, true, 50)), (Remembered::Good, from_memory), "as if it had learnt it itself");
+    assert_eq!((found, run(&mut other, true, 50)), (MemoryState::Good, from_memory), "as if it had learnt it itself");
     stop(&mut bench);
-    assert_eq!(asked(&mut bench, MemoryWish::Erase), [FromBoard::Kept(Kept::Stored)]);
+    assert_eq!(asked(&mut bench, MemoryRequest::Erase), [FromBoard::MemoryOutcome(MemoryOutcome::Stored)]);
     assert_eq!((bench.flash.memory, bench.flash.erased), ([0xff; MEMORY_BYTES], 2));
-    assert_eq!(asked(&mut bench, MemoryWish::Erase), [FromBoard::Kept(Kept::Stored)]);
+    assert_eq!(asked(&mut bench, MemoryRequest::Erase), [FromBoard::MemoryOutcome(MemoryOutcome::Stored)]);
     assert_eq!(bench.flash.erased, 2, "what is empty is not worn out");
     assert_ne!(run(&mut bench, true, 50), from_memory, "nothing is left to begin from");
 }
@@ -210,22 +214,26 @@ fn a_memory_that_is_no_good_is_judged_and_never_written() {
     let (mut bench, _) = started([0xff; MEMORY_BYTES]);
     let mut damaged = memory;
     damaged[200] ^= 1;
-    let cases = [(damaged, Remembered::Damaged), (of_another_joint(memory), Remembered::OtherJoint)];
+    let cases = [(damaged, MemoryState::Damaged), (of_another_joint(memory), MemoryState::OtherJoint)];
     for (memory, judgement) in cases {
-        assert_eq!(brought(&mut bench, &memory), [FromBoard::Judged(judgement)]);
-        assert_eq!(asked(&mut bench, MemoryWish::Write), [FromBoard::Kept(Kept::Nothing)]);
+        assert_eq!(brought(&mut bench, &memory), [FromBoard::MemoryChecked(judgement)]);
+        assert_eq!(asked(&mut bench, MemoryRequest::Write), [FromBoard::MemoryOutcome(MemoryOutcome::Nothing)]);
     }
-    let late = MemoryWish::Take(MemoryPart { part: 1, bytes: memory[PART_BYTES..].iter().copied().collect() });
-    assert_eq!(asked(&mut bench, late), [FromBoard::Judged(Remembered::NotAMemory)], "its first part never came");
+    let late = MemoryRequest::Load(MemoryPart { part: 1, bytes: memory[PART_BYTES..].iter().copied().collect() });
+    assert_eq!(
+        asked(&mut bench, late),
+        [FromBoard::MemoryChecked(MemoryState::NotAMemory)],
+        "its first part never came"
+    );
     assert_eq!(bench.flash.erased, 0);
 }
 
 #[test]
 fn a_role_that_learns_nothing_says_so() {
     let mut bench = Bench::new();
-    for wish in [MemoryWish::Keep, MemoryWish::Tell { part: 0 }, MemoryWish::Write, MemoryWish::Erase] {
+    for wish in [MemoryRequest::Save, MemoryRequest::Read { part: 0 }, MemoryRequest::Write, MemoryRequest::Erase] {
         bench.send(&ToBoard::Memory(wish));
         bench.run(3);
-        assert_eq!(bench.said(), [FromBoard::Kept(Kept::Nothing)]);
+        assert_eq!(bench.said(), [FromBoard::MemoryOutcome(MemoryOutcome::Nothing)]);
     }
 }

@@ -11,10 +11,10 @@ use firmware::tables::TABLES;
 use firmware::whole_loop::WholeLoop;
 use link::controller::{Answered, Exchange};
 use link::messages::{FromBoard, RunMode, RunSettings, Schedule, ToBoard, Trip};
-use link::virtual_joint::{Knot, LoopSample, WireDemand};
+use link::virtual_joint::{Knot, LoopSample, WireTrajectory};
 use model_core::compensation::Command;
 use model_core::controller::Controller;
-use model_core::controller::course::Demand;
+use model_core::controller::trajectory::Trajectory;
 use model_core::numbers::digest;
 use model_core::virtual_joint::VirtualJoint;
 use model_core::virtual_joint::fault::{Fault, FaultKind, Shaft};
@@ -39,8 +39,8 @@ fn whole_loop() -> Bench<WholeLoop<'static, Direct<'static>, { firmware::tables:
 
 /// A turn of the link by and by, from a tick on.
 fn knot(tick: u32) -> Knot {
-    let demand = WireDemand::Position((0, [1e-4 * tick as f32, 0.5, 0.0, 0.0, 0.0, 0.0]), None);
-    Knot { tick, load_torque: 0.5, demand }
+    let trajectory = WireTrajectory::Position((0, [1e-4 * tick as f32, 0.5, 0.0, 0.0, 0.0, 0.0]), None);
+    Knot { tick, load_torque: 0.5, trajectory }
 }
 
 fn exchange(
@@ -74,7 +74,7 @@ fn an_observer_on_a_line_answers_like_one_that_is_called_in_every_bit() {
     let mut joint = VirtualJoint::new(&TABLES, &control::SURROUNDINGS);
     let (mut own, mut running) = (controller(), digest::START);
     for tick in 0..300 {
-        let command = Demand::from(knot(0).demand).at(1e-4 * tick as f32, control::SURROUNDINGS.turn);
+        let command = Trajectory::from(knot(0).trajectory).at(1e-4 * tick as f32, control::SURROUNDINGS.turn);
         bench.send(&exchange(tick, &joint, &command));
         bench.run(2);
         let expected = own.step(&joint.samples(), &command);
@@ -90,7 +90,7 @@ fn an_observer_on_a_line_answers_like_one_that_is_called_in_every_bit() {
 fn an_observer_that_is_not_asked_for_estimates_keeps_them_to_its_digest() {
     let mut bench = observer();
     bench.start(RunMode::Lockstep, 1, 1000);
-    let (joint, command) = (VirtualJoint::new(&TABLES, &control::SURROUNDINGS), Demand::HOLD.at(0.0, 1.0));
+    let (joint, command) = (VirtualJoint::new(&TABLES, &control::SURROUNDINGS), Trajectory::HOLD.at(0.0, 1.0));
     let expected = controller().step(&joint.samples(), &command);
     let commands = [Exchange::new(0, &joint.samples(), &command).without_estimates()].into_iter().collect();
     bench.send(&ToBoard::Exchanges(Schedule { sequence: 0, horizon: 1, commands }));
@@ -108,7 +108,7 @@ fn an_observer_whose_controller_falls_silent_goes_to_the_safe_state() {
     let joint = VirtualJoint::new(&TABLES, &control::SURROUNDINGS);
     bench.run(100);
     assert!(bench.enable.get(), "a run begins with its first samples");
-    bench.send(&exchange(0, &joint, &Demand::HOLD.at(0.0, 1.0)));
+    bench.send(&exchange(0, &joint, &Trajectory::HOLD.at(0.0, 1.0)));
     bench.run(40);
     assert!(bench.enable.get());
     bench.run(40);
@@ -130,7 +130,7 @@ fn samples_that_are_no_numbers_are_flagged_and_the_torque_stays_finite() {
     let mut bench = observer();
     bench.start(RunMode::Lockstep, 1, 1000);
     let joint = VirtualJoint::new(&TABLES, &control::SURROUNDINGS);
-    let command = Demand::HOLD.at(0.0, 1.0);
+    let command = Trajectory::HOLD.at(0.0, 1.0);
     for tick in 0..10 {
         let mut samples = joint.samples();
         samples.time = tick * control::SURROUNDINGS.clock_ticks;
@@ -152,7 +152,7 @@ fn a_whole_loop_equals_its_parts_in_every_bit_in_both_modes() {
         bench.start(mode, 7, 1000);
         let knots: Vec<Knot> = (0..6).map(|index| knot(50 * index)).collect();
         let commands = knots.iter().copied().collect();
-        bench.send(&ToBoard::Course(Schedule { sequence: 0, horizon: 300, commands }));
+        bench.send(&ToBoard::Trajectory(Schedule { sequence: 0, horizon: 300, commands }));
         bench.run(301);
         let samples: Vec<LoopSample> = samples(bench.said()).into_iter().filter(|sample| sample.tick <= 300).collect();
         assert_eq!(samples.len(), 300 / 7);
@@ -161,7 +161,7 @@ fn a_whole_loop_equals_its_parts_in_every_bit_in_both_modes() {
         for tick in 0..300_u32 {
             let now = &knots[(tick / 50) as usize];
             let elapsed = control::SURROUNDINGS.period * (tick - now.tick) as f32;
-            let command = Demand::from(now.demand).at(elapsed, control::SURROUNDINGS.turn);
+            let command = Trajectory::from(now.trajectory).at(elapsed, control::SURROUNDINGS.turn);
             let answer = own.step(&joint.samples(), &command);
             joint.advance(answer.shaped.torque, now.load_torque);
             running = digest::chain(answer.digest(running), joint.model().state_digest());
@@ -192,14 +192,14 @@ fn a_whole_loop_takes_faults_before_its_first_period_only_and_no_more_than_fit()
         assert_eq!(taken(bench.said()), number < MOST_FAULTS);
     }
     let commands = [knot(0)].into_iter().collect();
-    bench.send(&ToBoard::Course(Schedule { sequence: 0, horizon: 60, commands }));
+    bench.send(&ToBoard::Trajectory(Schedule { sequence: 0, horizon: 60, commands }));
     bench.run(90);
     let said = samples(bench.said());
     let mut joint = VirtualJoint::new(&TABLES, &control::SURROUNDINGS);
     let (mut own, mut running, mut held) = (controller(), digest::START, None);
     for (tick, sample) in (0..60_u32).zip(&said) {
-        let command =
-            Demand::from(knot(0).demand).at(control::SURROUNDINGS.period * tick as f32, control::SURROUNDINGS.turn);
+        let command = Trajectory::from(knot(0).trajectory)
+            .at(control::SURROUNDINGS.period * tick as f32, control::SURROUNDINGS.turn);
         let (mut samples, on) = (joint.samples(), (20..40).contains(&tick));
         held = if on { held.or(Some(samples.motor.counts)) } else { None };
         samples.motor.counts = held.unwrap_or(samples.motor.counts);
@@ -237,7 +237,7 @@ fn a_motion_with_a_number_that_is_none_trips_and_is_not_followed() {
     let mut bench = whole_loop();
     bench.start(RunMode::Lockstep, 1, 1000);
     let commands = [Knot { load_torque: f32::NAN, ..knot(3) }].into_iter().collect();
-    bench.send(&ToBoard::Course(Schedule { sequence: 0, horizon: 10, commands }));
+    bench.send(&ToBoard::Trajectory(Schedule { sequence: 0, horizon: 10, commands }));
     bench.run(20);
     let said = bench.said();
     assert_eq!(trips(&said), [Trip::BadCommand { tick: 3 }]);

@@ -21,7 +21,7 @@ use firmware::words::Words;
 use firmware::work::Work;
 use heapless::spsc::Queue;
 use link::framing::{Receiver, encode};
-use link::messages::{Clock, Command, FromBoard, Remembered, RunMode, RunSettings, Schedule, ToBoard};
+use link::messages::{Clock, Command, FromBoard, MemoryState, RunMode, RunSettings, Schedule, ToBoard};
 use model_core::gears::Tables;
 use model_core::observer::{MEMORY_BYTES, Memory};
 
@@ -164,7 +164,7 @@ where
             clock: Clock::NotModelled,
             last_panic: None,
             watchdog_reset: false,
-            remembered: Remembered::Nothing,
+            memory: MemoryState::Nothing,
         };
         let progress = idle_end.progress;
         Self {

@@ -1,5 +1,5 @@
-//! Role `loop`: joint, motor, observer and compensation on one chip in real time; a motion asked for comes in, what became
-//! of it goes out. Observer and compensation are behind their port like those of any motor controller.
+//! Role `loop`: joint, motor, observer and compensation on one chip in real time; a trajectory in, samples
+//! of the motion out. Observer and compensation are behind their port like those of any motor controller.
 
 use heapless::Vec;
 use link::messages::{FromBoard, Role, Schedule, ToBoard};
@@ -14,18 +14,18 @@ use model_core::virtual_joint::faults::Faults;
 use model_core::virtual_joint::{SurroundingsTable, VirtualJoint};
 
 use crate::batcher::Batcher;
-use crate::page::AtHand;
+use crate::page::RunMemory;
 use crate::port::ControllerPort;
-use crate::words::{Timed, WireForm, Words};
+use crate::protocol::{Protocol, Timed, WireForm};
 use crate::work::Work;
 
-/// Periods after which a trajectory that nothing follows stands still: three of the host's knots.
+/// Periods after which a segment that no knot follows is held at its end: three of the host's knots.
 const LONGEST_SEGMENT: u16 = 150;
 
-/// What the role says and hears.
-pub struct LoopWords;
+/// Messages of the role.
+pub struct LoopProtocol;
 
-impl Words for LoopWords {
+impl Protocol for LoopProtocol {
     const ROLE: Role = Role::Loop;
     type Command = Knot;
     type Timetable = Schedule<Knot, KNOTS_PER_SCHEDULE>;
@@ -48,7 +48,7 @@ impl Timed for Knot {
     }
 }
 
-/// The form of the loop's samples: the tick leaves them in the wire's.
+/// The form of the loop's samples, which the tick leaves in the wire's form already.
 pub struct LoopForm;
 
 impl WireForm<LOOP_SAMPLES_PER_BATCH> for LoopForm {
@@ -69,14 +69,14 @@ pub struct WholeLoop<'t, P, const N: usize> {
     tables: &'t Tables<f32, N>,
     surroundings: &'t SurroundingsTable<f32>,
     joint: VirtualJoint<'t, f32, N>,
-    /// What goes wrong between joint and port.
+    /// Faults between joint and port.
     faults: Faults<f32>,
     port: P,
-    /// What runs may begin from.
-    at_hand: AtHand,
+    /// The memory at hand.
+    run_memory: RunMemory,
     trajectory: Trajectory<f32>,
     load_torque: f32,
-    /// Periods since the trajectory began.
+    /// Periods since the segment began.
     elapsed: u16,
     answer: Answer<f32>,
     digest: u64,
@@ -91,7 +91,7 @@ impl<'t, P: ControllerPort, const N: usize> WholeLoop<'t, P, N> {
             joint: VirtualJoint::new(tables, surroundings),
             faults: Faults::default(),
             port,
-            at_hand: AtHand::default(),
+            run_memory: RunMemory::default(),
             trajectory: Trajectory::HOLD,
             load_torque: 0.0,
             elapsed: 0,
@@ -102,8 +102,8 @@ impl<'t, P: ControllerPort, const N: usize> WholeLoop<'t, P, N> {
 }
 
 impl<P: ControllerPort, const N: usize> Work for WholeLoop<'_, P, N> {
-    type Words = LoopWords;
-    const GOES_ON: bool = true;
+    type Protocol = LoopProtocol;
+    const FREE_RUNNING: bool = true;
 
     fn is_sound(&self) -> bool {
         self.tables.digest_is_good()
@@ -114,7 +114,7 @@ impl<P: ControllerPort, const N: usize> Work for WholeLoop<'_, P, N> {
         self.faults = Faults::default();
         self.port.reset();
         if from_memory {
-            self.at_hand.give(&mut self.port);
+            self.run_memory.give(&mut self.port);
         }
         self.trajectory = Trajectory::HOLD;
         self.load_torque = 0.0;
@@ -134,15 +134,15 @@ impl<P: ControllerPort, const N: usize> Work for WholeLoop<'_, P, N> {
     }
 
     fn learn(&mut self) -> bool {
-        self.at_hand.learn_from(&self.port)
+        self.run_memory.learn_from(&self.port)
     }
 
     fn learnt(&self) -> Option<&Memory> {
-        self.at_hand.get()
+        self.run_memory.get()
     }
 
     fn remember(&mut self, memory: &Memory) -> Result<(), MemoryError> {
-        self.at_hand.take(memory, &mut self.port)
+        self.run_memory.take(memory, &mut self.port)
     }
 
     fn remember_learnt(&mut self, learnt: &Memory) -> Result<(), MemoryError> {
@@ -150,13 +150,13 @@ impl<P: ControllerPort, const N: usize> Work for WholeLoop<'_, P, N> {
     }
 
     fn forget(&mut self) {
-        self.at_hand.forget();
+        self.run_memory.forget();
     }
 
     fn step(&mut self) {
         let table = self.surroundings;
         let command = self.trajectory.at(table.period * f32::from(self.elapsed), table.turn);
-        // A motion is a polynomial for a segment only: one that nobody follows up holds at its last moment.
+        // The polynomial is for its segment only: one that no knot follows is held at its end.
         self.elapsed = self.elapsed.saturating_add(1).min(LONGEST_SEGMENT);
         let samples = self.faults.sense(self.joint.samples(), table);
         let torque = match self.port.exchange(&samples, &command) {

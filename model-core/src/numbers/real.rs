@@ -54,7 +54,7 @@ pub trait Real:
     /// Least size of a number that the state keeps; what is smaller is zero. So far above the denormal numbers that no
     /// product of a step falls among them, so far below one that nothing is lost.
     const LEAST: Self;
-    /// The one form of what is no number.
+    /// The only NaN that the state keeps.
     const NAN: Self;
     /// Polynomial of sin(2 pi t) / t in t^2; see `numbers::phase`.
     const SINE: [Self; 4];
@@ -75,15 +75,15 @@ pub trait Real:
     fn to_phase(self) -> u32;
     /// Hyperbolic tangent, the same bits on host and target.
     fn tanh(self) -> Self;
-    /// Quotient; the caller has made sure that `divisor` is not zero.
+    /// Quotient; `divisor` must not be zero.
     fn over(self, divisor: Self) -> Self;
     /// Magnitude.
     fn abs(self) -> Self;
     /// Square root of what is not negative, by Newton's iteration from the exponent halved: the same bits everywhere, and
     /// right to a few units in the last place. Zero and what is below it give zero.
     fn square_root(self) -> Self;
-    /// In the form in which a caller's floating-point mode cannot change it: zero if it is smaller than `LEAST`, `NAN` if
-    /// it is not finite. By whole numbers: flags of floating-point comparisons are slow to read on a Cortex-M4F.
+    /// Canonical form, which no floating-point mode changes: zero if it is smaller than `LEAST`, `NAN` if it is not finite.
+    /// By whole numbers: flags of floating-point comparisons are slow to read on a Cortex-M4F.
     fn canonical(self) -> Self;
     /// Neither infinite nor NaN.
     fn is_finite(self) -> bool;

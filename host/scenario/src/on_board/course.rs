@@ -92,7 +92,7 @@ fn polynomial(from: Motion, to: Motion, time: f64) -> Segment<f32> {
 
 #[cfg(test)]
 mod tests {
-    use reference::closed_loop::{Profile, Reference};
+    use reference::closed_loop::{MotionProfile, Profile};
 
     use super::*;
 

@@ -28,8 +28,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let lost_motion_mrad = 2e3 * joint.sun_planet.half_backlash[0] / joint.geometry.carrier_base_radius();
     println!("// {} at {tick_rate_hz} Hz on an STM32F405", joint.name);
     println!("// ratio {}, lost motion {lost_motion_mrad:.2} mrad", joint.geometry.ratio_by_teeth());
-    println!("// omega_n {:.0} rad/s, {} in a tick", scales.frequency, promise.parts);
-    println!("// error in nine motions of ten: {:.1e} of the deflections", promise.holding.nine_in_ten);
+    println!("// omega_n {:.0} rad/s, {} in a tick", scales.frequency, promise.substeps);
+    println!("// error in nine motions of ten: {:.1e} of the deflections", promise.contact_holds.nine_in_ten);
     println!("// at most {} instructions a tick", promise.instructions.bound);
     println!("// {} bytes of flash, {} bytes of RAM", promise.table_bytes, promise.model_bytes);
     println!("// stable from {} Hz on, affordable up to {} Hz\n", promise.lowest_rate, promise.highest_rate);

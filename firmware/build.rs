@@ -9,7 +9,7 @@
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-use model_core::controller::design::{ControlWish, Told, control_source};
+use model_core::controller::design::{ControlRequest, NominalPlant, control_source};
 use model_core::gears::design::Processor;
 
 const DEFAULT_TICK_RATE: u32 = 20_000;
@@ -62,11 +62,11 @@ fn control(file: &Path, told: &Path) -> Result<String, String> {
         None => DEFAULT_BANDWIDTH,
     };
     let tick_rate = tick_rate()?;
-    let wish = ControlWish { bandwidth, output_encoder: variable("JOINT_MOTOR_ONLY") != Some("1".into()) };
-    let (mut joint, mut told_joint) = (read(file)?, read(told)?);
-    [&mut joint, &mut told_joint].into_iter().for_each(|joint| joint.surroundings.control_rate = tick_rate);
-    let told_as = Told { joint: &told_joint.parameters, surroundings: &told_joint.surroundings, wish };
-    match control_source(&joint.parameters, &joint.surroundings, &told_as, &processor()?) {
+    let request = ControlRequest { bandwidth, output_encoder: variable("JOINT_MOTOR_ONLY") != Some("1".into()) };
+    let (mut joint, mut nominal_joint) = (read(file)?, read(told)?);
+    [&mut joint, &mut nominal_joint].into_iter().for_each(|joint| joint.surroundings.control_rate = tick_rate);
+    let nominal = NominalPlant { joint: &nominal_joint.parameters, surroundings: &nominal_joint.surroundings, request };
+    match control_source(&joint.parameters, &joint.surroundings, &nominal, &processor()?) {
         Ok(source) => Ok(source.text),
         Err(error) => Ok(format!("compile_error!({:?});\n", format!("{}: {error}", told.display()))),
     }

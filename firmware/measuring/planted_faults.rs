@@ -1,6 +1,6 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 //! A tick with everything in it that a tick must not have: an index that may fail, recursion, a call through a pointer
-//! and a great deal of stack. The check of the linked image is tried on this; nothing runs it.
+//! and a great deal of stack. It tests the check of the linked image; nothing runs it.
 
 #[cfg(target_os = "none")]
 mod faults {

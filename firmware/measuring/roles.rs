@@ -17,7 +17,7 @@ mod measurement {
     use firmware::work::Work;
     use link::controller::Exchange;
     use link::messages::Command;
-    use link::virtual_joint::{Knot, WireDemand};
+    use link::virtual_joint::{Knot, WireTrajectory};
     use model_core::controller::Controller;
     use model_core::numbers::phase::sine_cosine;
     use model_core::observer::{MAPPED, Observer, PLAIN, Samples};
@@ -31,7 +31,7 @@ mod measurement {
     /// Control periods: every parameter is learnt, and every flank met some twenty times.
     const PERIODS: u32 = 30_000;
     /// Periods between two knots of the motion.
-    const STRETCH: u32 = 50;
+    const SEGMENT: u32 = 50;
     /// The output encoder is silent for a tenth of a second in the middle.
     const SILENT: core::ops::Range<u32> = 15_000..16_000;
     /// Amplitude [turns] and rate [1/s] of the motion.
@@ -93,7 +93,7 @@ mod measurement {
             0.0,
         ];
         let load_torque = if (tick / 1700).is_multiple_of(2) { 1.0 } else { -1.0 };
-        Knot { tick, load_torque, demand: WireDemand::Position((0, powers), Some((0, powers))) }
+        Knot { tick, load_torque, trajectory: WireTrajectory::Position((0, powers), Some((0, powers))) }
     }
 
     fn controller() -> Direct<'static> {
@@ -125,13 +125,13 @@ mod measurement {
         ];
         let mut now = knot(0);
         for tick in 0..PERIODS {
-            if tick.is_multiple_of(STRETCH) {
+            if tick.is_multiple_of(SEGMENT) {
                 now = knot(tick);
                 looping.take(now);
             }
             let elapsed = control::SURROUNDINGS.period * (tick - now.tick) as f32;
-            let command =
-                model_core::controller::course::Demand::from(now.demand).at(elapsed, control::SURROUNDINGS.turn);
+            let command = model_core::controller::trajectory::Trajectory::from(now.trajectory)
+                .at(elapsed, control::SURROUNDINGS.turn);
             let mut samples = joint.samples();
             if SILENT.contains(&tick) {
                 samples.output = None;

@@ -1,5 +1,5 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
-//! Counts the instructions of one step from a great many states, by chance and by malice, for every joint of this
+//! Counts the instructions of one step from a great many states, random and adversarial, for every joint of this
 //! image. The states are those of the crate `trials`.
 
 #[cfg(target_os = "none")]
@@ -60,7 +60,7 @@ mod measurement {
                 if worst.is_none_or(|(most, _)| instructions > most) {
                     worst = Some((instructions, trial));
                 }
-                // Numbers that are none stay so: there is nothing to be found near them.
+                // Random that are none stay so: there is nothing to be found near them.
                 let is_worst = class != Class::NotFinite && instructions > worst_finite;
                 if is_worst {
                     worst_finite = instructions;
@@ -69,7 +69,7 @@ mod measurement {
                 classes[class as usize].add(trial_number, instructions);
                 kinds[trial.kind as usize].add(trial_number, instructions);
             }
-            measuring::say(format_args!("joint;{name};{N};{};{};{SEED}", tables.substeps, tables.light.substeps));
+            measuring::say(format_args!("joint;{name};{N};{};{};{SEED}", tables.substeps, tables.verlet.substeps));
             for (class, count) in Class::ALL.iter().zip(classes) {
                 tell("class", class.name(), count);
             }

@@ -1,10 +1,10 @@
-//! Samples on their way to the line: put into the wire's form, collected, and numbered without gaps. When a batch is sent is
-//! decided by `conversation`, which knows how much room the line has.
+//! Samples on their way to the line: put into the wire's form, collected, and numbered without gaps. `conversation` sends a
+//! batch when the line has room.
 
 use heapless::Vec;
 use link::messages::FromBoard;
 
-use crate::words::{Batch, WireForm};
+use crate::protocol::{Batch, WireForm};
 
 /// Collects samples.
 pub struct Batcher<F: WireForm<MOST>, const MOST: usize> {

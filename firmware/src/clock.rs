@@ -1,5 +1,5 @@
-//! SysTick in its two uses: the timer of the ticks, and a clock that tells how much of the processor's time each part
-//! takes for itself. Where SysTick gets its pulses is set up by the board.
+//! SysTick in its two uses: the timer of the ticks, and a clock that measures how much of the processor's time each part takes.
+//! The board sets up its clock source.
 
 use core::sync::atomic::AtomicU32;
 use core::sync::atomic::Ordering::Relaxed;
@@ -8,8 +8,8 @@ use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m::peripheral::{SCB, SYST};
 
 use crate::board::{Board, ThisBoard};
-use crate::budget::TickTimer;
 use crate::tables::TABLES;
+use crate::timing_monitor::TickTimer;
 
 /// Timer counts between two ticks.
 pub const PERIOD: u32 = ThisBoard::CORE_RATE / TABLES.tick_rate;
@@ -18,7 +18,7 @@ const _: () = assert!(PERIOD * TABLES.tick_rate == ThisBoard::CORE_RATE, "the ti
 const _: () = assert!(PERIOD <= 1 << 24, "SysTick has 24 bits");
 
 /// Ticks since power-up.
-static BEATS: AtomicU32 = AtomicU32::new(0);
+static TICKS: AtomicU32 = AtomicU32::new(0);
 /// Time that interrupts have taken for themselves.
 static BUSY: AtomicU32 = AtomicU32::new(0);
 
@@ -52,50 +52,50 @@ fn elapsed() -> u32 {
 
 /// Runs the tick's work, as called from its interrupt.
 pub fn in_tick(work: impl FnOnce(&TickClock)) {
-    BEATS.store(BEATS.load(Relaxed).wrapping_add(1), Relaxed);
+    TICKS.store(TICKS.load(Relaxed).wrapping_add(1), Relaxed);
     work(&TickClock);
     BUSY.fetch_add(TickClock.since_expiry(), Relaxed);
 }
 
 /// Runs an interrupt's work below the tick's priority, and counts its time as taken.
 pub fn in_interrupt(work: impl FnOnce()) {
-    let start = Moment::now();
+    let start = Instant::now();
     work();
     BUSY.fetch_add(start.own_time(), Relaxed);
 }
 
 /// Time since power-up [ms]; wraps after days.
 pub fn milliseconds() -> u32 {
-    BEATS.load(Relaxed) / (TABLES.tick_rate / 1000).max(1)
+    TICKS.load(Relaxed) / (TABLES.tick_rate / 1000).max(1)
 }
 
 /// Time since power-up [us].
 pub fn microseconds() -> u64 {
-    u64::from(BEATS.load(Relaxed)) * 1_000_000 / u64::from(TABLES.tick_rate)
+    u64::from(TICKS.load(Relaxed)) * 1_000_000 / u64::from(TABLES.tick_rate)
 }
 
-/// A moment, to measure from.
+/// An instant, to measure from.
 #[derive(Debug, Clone, Copy)]
-struct Moment {
+struct Instant {
     counts: u32,
     busy: u32,
 }
 
-impl Moment {
+impl Instant {
     /// Now, as seen below the tick's priority: a tick in between makes it look again, at most twice.
     fn now() -> Self {
         let mut counts = 0;
         for _ in 0..3 {
-            let before = BEATS.load(Relaxed);
+            let before = TICKS.load(Relaxed);
             counts = before.wrapping_mul(PERIOD).wrapping_add(elapsed());
-            if BEATS.load(Relaxed) == before {
+            if TICKS.load(Relaxed) == before {
                 break;
             }
         }
         Self { counts, busy: BUSY.load(Relaxed) }
     }
 
-    /// Time since this moment that no interrupt took.
+    /// Time since this instant that no interrupt took.
     fn own_time(self) -> u32 {
         let now = Self::now();
         let taken = now.busy.wrapping_sub(self.busy);
@@ -106,7 +106,7 @@ impl Moment {
 /// How much of the processor's time is left over.
 #[derive(Debug)]
 pub struct IdleMeter {
-    last: Moment,
+    last: Instant,
     total: u64,
     idle: u64,
 }
@@ -114,12 +114,12 @@ pub struct IdleMeter {
 impl IdleMeter {
     /// Starts to measure.
     pub fn start() -> Self {
-        Self { last: Moment::now(), total: 0, idle: 0 }
+        Self { last: Instant::now(), total: 0, idle: 0 }
     }
 
     /// Sleeps until the next interrupt; that time is idle, apart from what interrupts take of it.
     pub fn sleep(&mut self) {
-        let start = Moment::now();
+        let start = Instant::now();
         cortex_m::asm::wfi();
         self.idle += u64::from(start.own_time());
         self.pass();
@@ -127,7 +127,7 @@ impl IdleMeter {
 
     /// Must be called at least once in half the time in which 32 bits of counts wrap: some ten seconds.
     pub fn pass(&mut self) {
-        let now = Moment::now();
+        let now = Instant::now();
         self.total += u64::from(now.counts.wrapping_sub(self.last.counts));
         self.last = now;
     }

@@ -1,21 +1,21 @@
-//! Idle's part: reads frames from the host, hands commands and orders to the tick, and sends what the tick, the log
-//! and the timing monitor have to say. One thing at a time, and only when the line has room for the longest frame, so
-//! that nothing has to be dropped for want of room; when that matters to the tick, the queues tell it.
+//! The conversation with the host, run in idle: reads frames, hands commands and orders to the tick, and sends samples, events,
+//! log and timing statistics. One message at a time, and only when the line has room for the longest frame, so that none is
+//! dropped for want of room; the tick sees by its queues when idle falls behind.
 
 use core::sync::atomic::Ordering::Acquire;
 
 use heapless::Vec;
 use heapless::spsc::{Consumer, Producer};
 use link::framing::{MAX_FRAME, Receiver, encode};
-use link::messages::{FromBoard, Hello, LOG_BYTES, Log, MemoryWish, RunSettings, ToBoard, Trip};
+use link::messages::{FromBoard, Hello, LOG_BYTES, Log, MemoryRequest, RunSettings, ToBoard, Trip};
 
 use crate::intake::{Intake, Taken};
-use crate::keeping::{Keeping, Step};
+use crate::memory_requests::{MemoryRequests, Reaction};
 use crate::page::Page;
+use crate::protocol::{Batch, Protocol};
 use crate::queues::{Event, IdleEnd, Order, Progress};
 use crate::serial::LineEnd;
 use crate::timing_report::{LineCounts, Resources, statistics};
-use crate::words::{Batch, Words};
 
 /// The encoded log, as far as it waits to be sent.
 pub struct LogEnd<'a> {
@@ -25,12 +25,12 @@ pub struct LogEnd<'a> {
     pub lost: fn() -> u32,
 }
 
-/// Both directions of the talk with the host.
-pub struct Conversation<'a, W: Words> {
+/// Both directions of the conversation with the host.
+pub struct Conversation<'a, W: Protocol> {
     hello: Hello,
     period: u32,
     intake: Intake<'a, W>,
-    keeping: Keeping<'a, W::Learnt>,
+    memory_requests: MemoryRequests<'a, W::Learnt>,
     orders: Producer<'a, Order>,
     samples: Consumer<'a, W::Sample>,
     events: Consumer<'a, Event>,
@@ -46,15 +46,15 @@ pub struct Conversation<'a, W: Words> {
     cleared: LineCounts,
 }
 
-impl<'a, W: Words> Conversation<'a, W> {
-    /// Before the first word; `period` is the tick's, in timer counts.
+impl<'a, W: Protocol> Conversation<'a, W> {
+    /// Before the first message; `period` is the tick's, in timer counts.
     pub fn new(hello: Hello, period: u32, end: IdleEnd<'a, W>, line: LineEnd<'a>, log: LogEnd<'a>) -> Self {
         let IdleEnd { commands, orders, samples, events, learnt, remembered, progress } = end;
         Self {
             hello,
             period,
             intake: Intake::new(commands, progress),
-            keeping: Keeping::new(learnt, remembered),
+            memory_requests: MemoryRequests::new(learnt, remembered),
             orders,
             samples,
             events,
@@ -71,24 +71,23 @@ impl<'a, W: Words> Conversation<'a, W> {
         }
     }
 
-    /// Has the page of flash do what is to be done with it, if anything is: nothing runs until then. `writing` wraps what may
-    /// take a second or two.
+    /// Does the flash page's work, if there is any: nothing runs until then. `writing` wraps what may take a second or two.
     pub fn serve_page(&mut self, page: &mut impl Page, writing: impl FnOnce(&mut dyn FnMut() -> bool) -> bool) {
         if !self.has_room() {
             return;
         }
-        if let Some(served) = self.keeping.serve(page, writing) {
-            self.hello.remembered = served.remembered.unwrap_or(self.hello.remembered);
-            self.say(&served.answer);
+        if let Some(outcome) = self.memory_requests.serve(page, writing) {
+            self.hello.memory = outcome.remembered.unwrap_or(self.hello.memory);
+            self.say(&outcome.answer);
         }
     }
 
-    /// Does one thing of each kind if there is one; says whether there was any. `resources` is asked when a report is
+    /// Does one thing of each kind if there is one; returns whether there was any. `resources` is asked when a report is
     /// due, with `true` if it should start afresh.
     pub fn attend(&mut self, resources: &mut dyn FnMut(bool) -> Resources) -> bool {
         let sampled = self.has_room() && self.report_samples();
         let happened = self.has_room() && self.report_event(resources);
-        let heard = !self.awaiting && !self.keeping.is_busy() && self.has_room() && self.take_held_or_listen();
+        let heard = !self.awaiting && !self.memory_requests.is_busy() && self.has_room() && self.take_held_or_listen();
         let logged = self.has_room() && self.report_log();
         sampled || happened || heard || logged
     }
@@ -125,7 +124,7 @@ impl<'a, W: Words> Conversation<'a, W> {
         taken
     }
 
-    /// Tells the host what the tick says. The end of a run is told after its last sample.
+    /// Sends an event of the tick. The end of a run is sent after its last sample.
     fn report_event(&mut self, resources: &mut dyn FnMut(bool) -> Resources) -> bool {
         let samples_left = self.samples.ready() || !self.batch.is_empty();
         match self.events.peek() {
@@ -140,15 +139,15 @@ impl<'a, W: Words> Conversation<'a, W> {
                 self.forget_run();
                 self.say(&FromBoard::Hello(self.hello.clone()));
             }
-            // Said once it is written.
-            Event::Memory(Ok(())) => {}
-            Event::Memory(Err(why)) => self.say(&FromBoard::Kept(why)),
-            Event::Judged(judgement) => {
-                self.keeping.judged(judgement);
-                self.say(&FromBoard::Judged(judgement));
+            // Answered once it is written.
+            Event::MemoryReady(Ok(())) => {}
+            Event::MemoryReady(Err(why)) => self.say(&FromBoard::MemoryOutcome(why)),
+            Event::MemoryChecked(state) => {
+                self.memory_requests.checked(state);
+                self.say(&FromBoard::MemoryChecked(state));
             }
-            // Said once the page is erased.
-            Event::Forgotten => self.keeping.forgotten(),
+            // Answered once the page is erased.
+            Event::MemoryDiscarded => self.memory_requests.discarded(),
             Event::FaultTaken { taken } => self.say(&FromBoard::FaultTaken { taken }),
             Event::Refused(trip) | Event::Tripped(trip) => self.say(&FromBoard::Tripped(trip)),
             Event::Stopped => {
@@ -232,7 +231,7 @@ impl<'a, W: Words> Conversation<'a, W> {
                 self.order(Order::Report { reset });
             }
             ToBoard::Stop => self.order(Order::Stop),
-            ToBoard::Memory(wish) => self.begin(wish),
+            ToBoard::Memory(request) => self.begin(request),
             ToBoard::Fault(fault) => self.order(Order::Fault(fault)),
             commands => match W::timetable(commands) {
                 Some(timetable) => {
@@ -244,7 +243,7 @@ impl<'a, W: Words> Conversation<'a, W> {
         }
     }
 
-    /// Gives the tick an order and listens to no frame before it is answered.
+    /// Gives the tick an order; no frame is read before it is answered.
     fn order(&mut self, order: Order) {
         let _ = self.orders.enqueue(order);
         self.awaiting = true;
@@ -263,7 +262,7 @@ impl<'a, W: Words> Conversation<'a, W> {
         self.order(Order::Reset(settings));
     }
 
-    /// Tells the host what became of a schedule.
+    /// Sends the outcome of a schedule.
     fn tell(&mut self, taken: Taken) {
         match taken {
             Taken::Accepted(accepted) => self.say(&FromBoard::Accepted(accepted)),
@@ -273,11 +272,11 @@ impl<'a, W: Words> Conversation<'a, W> {
         }
     }
 
-    fn begin(&mut self, wish: MemoryWish) {
-        match self.keeping.begin(wish, self.is_running()) {
-            Step::Order(order) => self.order(order),
-            Step::Say(answer) => self.say(&answer),
-            Step::Wait => {}
+    fn begin(&mut self, request: MemoryRequest) {
+        match self.memory_requests.begin(request, self.is_running()) {
+            Reaction::Order(order) => self.order(order),
+            Reaction::Say(answer) => self.say(&answer),
+            Reaction::Wait => {}
         }
     }
 }

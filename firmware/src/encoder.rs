@@ -1,5 +1,5 @@
-//! Sources of counts: what gives the observer its encoder readings, and how a reading can fail. Each kind of encoder
-//! has a file of its own.
+//! Encoder drivers: sources of counts for the observer, and the ways in which a reading can fail. Each kind of encoder has a
+//! file of its own.
 
 mod as5047p;
 

@@ -1,15 +1,15 @@
-//! What the board says about itself in its hello: everything that does not change between two resets. What the joint
-//! is comes from the generated tables, what the start-up found from the board.
+//! The board's identity in its hello: everything that does not change between two resets, from the generated tables and from
+//! the board's start-up.
 
 use heapless::String;
 use link::PROTOCOL_VERSION;
-use link::messages::{Clock, Hello, Remembered};
+use link::messages::{Clock, Hello, MemoryState};
 
+use crate::protocol::Protocol;
 use crate::queues::COMMAND_CAPACITY;
 use crate::tables::{JOINT_NAME, PLANETS, TABLES};
-use crate::words::Words;
 
-/// What a start-up finds out.
+/// Findings of the start-up.
 #[derive(Debug, Clone)]
 pub struct StartUp {
     /// Board that the image was built for.
@@ -22,12 +22,12 @@ pub struct StartUp {
     pub last_panic: Option<String<96>>,
     /// The last reset came from the watchdog.
     pub watchdog_reset: bool,
-    /// What is kept of earlier runs.
-    pub remembered: Remembered,
+    /// Validity of the memory of earlier runs.
+    pub memory: MemoryState,
 }
 
 /// The hello of a board in a role, with the digest of its controller's tables if it has any.
-pub fn hello<W: Words>(start_up: StartUp, control_digest: Option<u64>) -> Hello {
+pub fn hello<W: Protocol>(start_up: StartUp, control_digest: Option<u64>) -> Hello {
     Hello {
         protocol: PROTOCOL_VERSION,
         firmware_version: VERSION,
@@ -44,7 +44,7 @@ pub fn hello<W: Words>(start_up: StartUp, control_digest: Option<u64>) -> Hello 
         last_panic: start_up.last_panic,
         watchdog_reset: start_up.watchdog_reset,
         control_digest,
-        remembered: start_up.remembered,
+        memory: start_up.memory,
     }
 }
 

@@ -1,29 +1,29 @@
-//! What becomes of commands that the host sends: queued for the tick in time and in order, held until there is room, or
-//! refused for a reason.
+//! Commands from the host: checked, queued for the tick in time and in order, held until there is room, or refused for a
+//! reason.
 
 use core::sync::atomic::Ordering::{Acquire, Release};
 
 use heapless::spsc::Producer;
 use link::messages::{Accepted, RunMode, Trip};
 
+use crate::protocol::{Protocol, Timed, Timetable};
 use crate::queues::Progress;
-use crate::words::{Timed, Timetable, Words};
 
-/// What became of a schedule.
+/// Outcome of a schedule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Taken {
     /// It is queued, or was before.
     Accepted(Accepted),
     /// There is no run that it could be for.
     NotRunning,
-    /// It cannot be obeyed: the run ends.
+    /// It cannot be executed: the run ends.
     Unfit(Trip),
     /// It follows a gap, or waits for room: nothing is to be said.
     Nothing,
 }
 
-/// The way of commands to the tick.
-pub struct Intake<'a, W: Words> {
+/// Checks commands and queues them for the tick.
+pub struct Intake<'a, W: Protocol> {
     commands: Producer<'a, W::Command>,
     progress: &'a Progress,
     mode: RunMode,
@@ -32,7 +32,7 @@ pub struct Intake<'a, W: Words> {
     lost: u32,
 }
 
-impl<'a, W: Words> Intake<'a, W> {
+impl<'a, W: Protocol> Intake<'a, W> {
     /// Before the first run.
     pub fn new(commands: Producer<'a, W::Command>, progress: &'a Progress) -> Self {
         Self { commands, progress, mode: RunMode::Lockstep, held: None, next_sequence: 0, lost: 0 }

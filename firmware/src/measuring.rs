@@ -67,12 +67,12 @@ impl InstructionCounter {
     }
 }
 
-/// Tells the host a line.
+/// Prints a line on the host.
 pub fn say(line: fmt::Arguments<'_>) {
     hprintln!("{}", line);
 }
 
-/// Ends the emulator: all has been said.
+/// Ends the emulator: the measurement is complete.
 pub fn finish() -> ! {
     hprintln!("{}", END);
     end(debug::EXIT_SUCCESS)

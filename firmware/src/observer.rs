@@ -7,15 +7,15 @@ use model_core::controller::Answer;
 use model_core::numbers::digest;
 use model_core::observer::{Memory, MemoryError};
 
-use crate::page::AtHand;
+use crate::page::RunMemory;
 use crate::port::{ControllerPort, asked};
-use crate::words::{Batch, Timed, Words};
+use crate::protocol::{Batch, Protocol, Timed};
 use crate::work::Work;
 
-/// What the role says and hears.
-pub struct ObserverWords;
+/// Messages of the role.
+pub struct ObserverProtocol;
 
-impl Words for ObserverWords {
+impl Protocol for ObserverProtocol {
     const ROLE: Role = Role::Observer;
     type Command = Exchange;
     type Timetable = Schedule<Exchange, EXCHANGES_PER_SCHEDULE>;
@@ -33,13 +33,13 @@ impl Timed for Exchange {
         self.tick
     }
 
-    /// Observer and compensation flag numbers that are none themselves, and go on.
+    /// Observer and compensation flag numbers that are not finite themselves, and go on.
     fn is_sound(&self) -> bool {
         true
     }
 }
 
-/// One answer on its way: nobody could wait for a second.
+/// One answer on its way: the controller waits for each.
 #[derive(Debug, Default)]
 pub struct AnswerBatch(Option<Answered>);
 
@@ -74,8 +74,8 @@ impl Batch for AnswerBatch {
 /// The controller at work.
 pub struct Observing<P> {
     port: P,
-    /// What runs may begin from.
-    at_hand: AtHand,
+    /// The memory at hand.
+    run_memory: RunMemory,
     /// Tables and their digest agree.
     sound: bool,
     next: Option<Exchange>,
@@ -86,11 +86,11 @@ pub struct Observing<P> {
 }
 
 impl<P: ControllerPort> Observing<P> {
-    /// In front of a controller; `sound` is whether its tables are what they were made to be.
+    /// In front of a controller; `sound` is whether its tables match their digest.
     pub fn new(port: P, sound: bool) -> Self {
         Self {
             port,
-            at_hand: AtHand::default(),
+            run_memory: RunMemory::default(),
             sound,
             next: None,
             answer: Answer::default(),
@@ -101,8 +101,8 @@ impl<P: ControllerPort> Observing<P> {
 }
 
 impl<P: ControllerPort> Work for Observing<P> {
-    type Words = ObserverWords;
-    const GOES_ON: bool = false;
+    type Protocol = ObserverProtocol;
+    const FREE_RUNNING: bool = false;
 
     fn is_sound(&self) -> bool {
         self.sound
@@ -111,7 +111,7 @@ impl<P: ControllerPort> Work for Observing<P> {
     fn reset(&mut self, from_memory: bool) {
         self.port.reset();
         if from_memory {
-            self.at_hand.give(&mut self.port);
+            self.run_memory.give(&mut self.port);
         }
         self.next = None;
         self.answer = Answer::default();
@@ -124,15 +124,15 @@ impl<P: ControllerPort> Work for Observing<P> {
     }
 
     fn learn(&mut self) -> bool {
-        self.at_hand.learn_from(&self.port)
+        self.run_memory.learn_from(&self.port)
     }
 
     fn learnt(&self) -> Option<&Memory> {
-        self.at_hand.get()
+        self.run_memory.get()
     }
 
     fn remember(&mut self, memory: &Memory) -> Result<(), MemoryError> {
-        self.at_hand.take(memory, &mut self.port)
+        self.run_memory.take(memory, &mut self.port)
     }
 
     fn remember_learnt(&mut self, learnt: &Memory) -> Result<(), MemoryError> {
@@ -140,7 +140,7 @@ impl<P: ControllerPort> Work for Observing<P> {
     }
 
     fn forget(&mut self) {
-        self.at_hand.forget();
+        self.run_memory.forget();
     }
 
     fn step(&mut self) {

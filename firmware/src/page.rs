@@ -1,18 +1,18 @@
 //! Where what an observer has learnt outlives a reset: one page of flash, read at start, written and erased between
-//! runs. What is read there is judged before it is used.
+//! runs. What is read there is checked before it is used.
 
 use core::convert::Infallible;
 
-use link::messages::Remembered;
+use link::messages::MemoryState;
 use model_core::observer::{MEMORY_BYTES, Memory, MemoryError};
 
 use crate::port::ControllerPort;
 
-/// What a role learns, if it learns anything: room is taken only where it does.
+/// The memory of a role that learns; a role that learns nothing takes no room for it.
 pub trait Learnt: Clone {
     /// Room for one; none where nothing is learnt.
     const EMPTY: Option<Self>;
-    /// As it is kept.
+    /// The memory's bytes.
     fn memory(&self) -> &Memory;
     /// The same, to be changed.
     fn memory_mut(&mut self) -> &mut Memory;
@@ -58,7 +58,7 @@ pub fn recall(page: &impl Page) -> Option<Memory> {
     (!empty).then_some(memory)
 }
 
-/// Writes a memory, and says whether it now reads as it should.
+/// Writes a memory; returns whether it reads back as written.
 pub fn keep(page: &mut impl Page, memory: &Memory) -> bool {
     // What is there already is not worn out by writing it again.
     if page.read() != *memory {
@@ -67,7 +67,7 @@ pub fn keep(page: &mut impl Page, memory: &Memory) -> bool {
     page.read() == *memory
 }
 
-/// Leaves nothing in it, and says whether nothing is there now.
+/// Erases it; returns whether it reads back as empty.
 pub fn erase(page: &mut impl Page) -> bool {
     // One that is empty is not worn out by erasing it again.
     if recall(page).is_some() {
@@ -76,35 +76,35 @@ pub fn erase(page: &mut impl Page) -> bool {
     recall(page).is_none()
 }
 
-/// A judgement in the words of the line.
-pub fn judgement(judged: Option<Result<(), MemoryError>>) -> Remembered {
+/// The wire's form of the result of a check.
+pub fn memory_state(judged: Option<Result<(), MemoryError>>) -> MemoryState {
     match judged {
-        None => Remembered::Nothing,
-        Some(Ok(())) => Remembered::Good,
-        Some(Err(MemoryError::NotAMemory)) => Remembered::NotAMemory,
-        Some(Err(MemoryError::WrongVersion)) => Remembered::WrongVersion,
-        Some(Err(MemoryError::Damaged)) => Remembered::Damaged,
-        Some(Err(MemoryError::OtherJoint)) => Remembered::OtherJoint,
-        Some(Err(MemoryError::NotFinite)) => Remembered::NotFinite,
+        None => MemoryState::Nothing,
+        Some(Ok(())) => MemoryState::Good,
+        Some(Err(MemoryError::NotAMemory)) => MemoryState::NotAMemory,
+        Some(Err(MemoryError::WrongVersion)) => MemoryState::WrongVersion,
+        Some(Err(MemoryError::Damaged)) => MemoryState::Damaged,
+        Some(Err(MemoryError::OtherJoint)) => MemoryState::OtherJoint,
+        Some(Err(MemoryError::NotFinite)) => MemoryState::NotFinite,
     }
 }
 
-/// What a role keeps at hand of a page, for the runs that begin from it.
+/// The memory at hand, from which runs may begin.
 #[derive(Debug, Clone)]
-pub struct AtHand {
+pub struct RunMemory {
     memory: Memory,
-    /// It holds something.
+    /// It holds a valid memory.
     good: bool,
 }
 
-impl Default for AtHand {
+impl Default for RunMemory {
     fn default() -> Self {
         Self { memory: [0; MEMORY_BYTES], good: false }
     }
 }
 
-impl AtHand {
-    /// Takes what a controller has learnt; `false` if it is not at hand.
+impl RunMemory {
+    /// Copies what a controller has learnt; `false` where the port cannot provide it.
     #[inline(never)]
     pub fn learn_from(&mut self, port: &impl ControllerPort) -> bool {
         let learnt = port.memory(&mut self.memory);
@@ -112,7 +112,7 @@ impl AtHand {
         learnt
     }
 
-    /// What there is.
+    /// The memory, if there is one.
     pub fn get(&self) -> Option<&Memory> {
         self.good.then_some(&self.memory)
     }
@@ -125,12 +125,12 @@ impl AtHand {
         Ok(())
     }
 
-    /// Nothing any more.
+    /// Discards it.
     pub fn forget(&mut self) {
         self.good = false;
     }
 
-    /// Has a controller that was reset go on from it.
+    /// Loads it into a controller that was reset.
     pub fn give(&self, port: &mut impl ControllerPort) {
         if self.good {
             // It was found good when it was taken.

@@ -1,5 +1,5 @@
-//! Last words: a panic or a hard fault leaves a message in memory that a reset does not clear, and resets; the next
-//! start tells the host. Nothing is sent from here: the line may be what failed.
+//! The message of a panic or a hard fault: left in memory that a reset does not clear, then a reset; the next start sends it
+//! in the hello. Nothing is sent from here, because the line may be what failed.
 
 use core::cell::UnsafeCell;
 use core::fmt::{self, Write};

@@ -7,14 +7,14 @@ use model_core::gears::{Model, Tables, Torques};
 use model_core::numbers::digest;
 
 use crate::batcher::Batcher;
+use crate::protocol::{Protocol, Timed};
 use crate::telemetry::{PlantForm, RawSample};
-use crate::words::{Timed, Words};
 use crate::work::Work;
 
-/// What the plant says and hears.
-pub struct PlantWords<const N: usize>;
+/// Messages of the plant.
+pub struct PlantProtocol<const N: usize>;
 
-impl<const N: usize> Words for PlantWords<N> {
+impl<const N: usize> Protocol for PlantProtocol<N> {
     const ROLE: Role = Role::Plant;
     type Command = Command;
     type Timetable = Schedule;
@@ -55,8 +55,8 @@ impl<'a, const N: usize> Plant<'a, N> {
 }
 
 impl<const N: usize> Work for Plant<'_, N> {
-    type Words = PlantWords<N>;
-    const GOES_ON: bool = true;
+    type Protocol = PlantProtocol<N>;
+    const FREE_RUNNING: bool = true;
 
     fn is_sound(&self) -> bool {
         self.tables.digest_is_good()

@@ -31,20 +31,20 @@ pub trait ControllerPort {
     /// One control tick; bounded, and never waits for the other side.
     fn exchange(&mut self, samples: &Samples<f32>, command: &Command<f32>) -> Result<Answer<f32>, PortError>;
 
-    /// One control tick of a width probe, the load being held; late for good where that is not at hand.
+    /// One control tick of a width probe, the load being held; always late where the port has no probe.
     fn probe(&mut self, _samples: &Samples<f32>) -> Result<Answer<f32>, PortError> {
         Err(PortError::Late)
     }
 
-    /// Back to what was designed, as far as this side can do it.
+    /// Back to the initial state, as far as this side can do it.
     fn reset(&mut self);
 
-    /// Writes down what has been learnt; `false` where that is not at hand.
+    /// Copies what has been learnt; `false` where the port cannot provide it.
     fn memory(&self, _memory: &mut Memory) -> bool {
         false
     }
 
-    /// Goes on from what was learnt before; refused where it is not at hand.
+    /// Continues from what was learnt before; refused where the port cannot.
     fn recall(&mut self, _memory: &Memory) -> Result<(), MemoryError> {
         Err(MemoryError::OtherJoint)
     }
@@ -69,7 +69,7 @@ pub enum PortError {
     Late,
     /// The bus could not transfer.
     Bus,
-    /// What came is no answer: cut off, or changed on the way.
+    /// What was received is no valid answer.
     Damaged,
 }
 

@@ -1,15 +1,14 @@
-//! All that passes between the tick and idle: single-producer queues, each with one end on either side, and a few
-//! counters that either side may read at any time.
+//! Everything between the tick and idle: single-producer queues and a few counters that either side may read at any time.
 
 use core::sync::atomic::{AtomicBool, AtomicU32};
 
 use heapless::spsc::{Consumer, Producer, Queue};
-use link::messages::{Kept, Remembered, RunSettings, Trip};
+use link::messages::{MemoryOutcome, MemoryState, RunSettings, Trip};
 use model_core::virtual_joint::fault::{Fault, FixedPoint};
 
-use crate::budget::Monitor;
-use crate::ends::{Giver, Taker};
-use crate::words::Words;
+use crate::protocol::Protocol;
+use crate::sized_queue::{SizedConsumer, SizedProducer};
+use crate::timing_monitor::Monitor;
 
 /// Places for commands; one is lost to telling full from empty.
 const COMMANDS: usize = 128;
@@ -24,7 +23,7 @@ const LEARNT: usize = 2;
 /// Most commands that can wait for their tick.
 pub const COMMAND_CAPACITY: u16 = COMMANDS as u16 - 1;
 
-/// From idle to the tick, obeyed at the start of the next one.
+/// From idle to the tick, handled at the start of the next one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Order {
     /// Back to rest at tick 0 with these settings; answered by [`Event::ResetDone`] or [`Event::Refused`].
@@ -33,12 +32,12 @@ pub enum Order {
     Stop,
     /// Safe state for a reason that idle has found; answered by [`Event::Stopped`].
     Trip(Trip),
-    /// What has been learnt; answered by [`Event::Memory`].
-    Keep,
-    /// Take what is in the queue for it as learnt before; answered by [`Event::Judged`].
-    Remember,
-    /// Forget what runs may begin from; answered by [`Event::Forgotten`].
-    Forget,
+    /// Copy what has been learnt; answered by [`Event::MemoryReady`].
+    SaveMemory,
+    /// Check the memory in its queue and take it as the one at hand; answered by [`Event::MemoryChecked`].
+    LoadMemory,
+    /// Discard the memory at hand; answered by [`Event::MemoryDiscarded`].
+    DiscardMemory,
     /// A fault between joint and controller; answered by [`Event::FaultTaken`].
     Fault(Fault<FixedPoint<f32>>),
     /// A copy of the timing monitor as [`Event::Timing`].
@@ -60,18 +59,18 @@ pub enum Event {
     Refused(Trip),
     /// The tick itself has found a reason for the safe state: the only event that is no answer to an order.
     Tripped(Trip),
-    /// What has been learnt is there to be taken, or why there is nothing.
-    Memory(Result<(), Kept>),
-    /// What the role makes of a memory that it was given.
-    Judged(Remembered),
-    /// Nothing is remembered.
-    Forgotten,
+    /// A copy of what has been learnt is in its queue, or why there is none.
+    MemoryReady(Result<(), MemoryOutcome>),
+    /// Validity of a memory that was loaded.
+    MemoryChecked(MemoryState),
+    /// The memory at hand is discarded.
+    MemoryDiscarded,
     /// Whether a fault between joint and controller was taken.
     FaultTaken {
         /// It was.
         taken: bool,
     },
-    /// How the tick's time was spent.
+    /// A copy of the timing monitor.
     Timing(Monitor),
 }
 
@@ -82,8 +81,8 @@ pub struct Progress {
     pub horizon: AtomicU32,
     /// Steps done since the reset; written by the tick.
     pub steps: AtomicU32,
-    /// Times the tick has run since power-up, steps or not; written by the tick.
-    pub beats: AtomicU32,
+    /// Ticks since power-up, steps or not; written by the tick.
+    pub ticks: AtomicU32,
     /// The run goes on; written by the tick.
     pub running: AtomicBool,
     /// The safe state has been entered; written by the tick.
@@ -91,7 +90,7 @@ pub struct Progress {
 }
 
 /// The queues themselves.
-pub struct Queues<W: Words> {
+pub struct Queues<W: Protocol> {
     commands: Queue<W::Command, COMMANDS>,
     orders: Queue<Order, NOTES>,
     samples: Queue<W::Sample, SAMPLES>,
@@ -102,25 +101,25 @@ pub struct Queues<W: Words> {
 }
 
 /// The tick's ends.
-pub struct TickEnd<'a, W: Words> {
+pub struct TickEnd<'a, W: Protocol> {
     /// What is to come.
-    pub commands: Taker<'a, W::Command, COMMANDS>,
+    pub commands: SizedConsumer<'a, W::Command, COMMANDS>,
     /// What idle wants.
-    pub orders: Taker<'a, Order, NOTES>,
+    pub orders: SizedConsumer<'a, Order, NOTES>,
     /// What is to be reported.
-    pub samples: Giver<'a, W::Sample, SAMPLES>,
+    pub samples: SizedProducer<'a, W::Sample, SAMPLES>,
     /// What has happened.
-    pub events: Giver<'a, Event, NOTES>,
-    /// What is to be kept.
-    pub learnt: Giver<'a, W::Learnt, LEARNT>,
-    /// What was learnt before.
-    pub remembered: Taker<'a, W::Learnt, LEARNT>,
+    pub events: SizedProducer<'a, Event, NOTES>,
+    /// Memories to be saved.
+    pub learnt: SizedProducer<'a, W::Learnt, LEARNT>,
+    /// Memories to be checked.
+    pub remembered: SizedConsumer<'a, W::Learnt, LEARNT>,
     /// Shared counters.
     pub progress: &'a Progress,
 }
 
 /// Idle's ends.
-pub struct IdleEnd<'a, W: Words> {
+pub struct IdleEnd<'a, W: Protocol> {
     /// What is to come.
     pub commands: Producer<'a, W::Command>,
     /// What idle wants.
@@ -129,15 +128,15 @@ pub struct IdleEnd<'a, W: Words> {
     pub samples: Consumer<'a, W::Sample>,
     /// What has happened.
     pub events: Consumer<'a, Event>,
-    /// What is to be kept.
+    /// Memories to be saved.
     pub learnt: Consumer<'a, W::Learnt>,
-    /// What was learnt before.
+    /// Memories to be checked.
     pub remembered: Producer<'a, W::Learnt>,
     /// Shared counters.
     pub progress: &'a Progress,
 }
 
-impl<W: Words> Queues<W> {
+impl<W: Protocol> Queues<W> {
     /// Empty.
     pub const fn new() -> Self {
         Self {
@@ -150,7 +149,7 @@ impl<W: Words> Queues<W> {
             progress: Progress {
                 horizon: AtomicU32::new(0),
                 steps: AtomicU32::new(0),
-                beats: AtomicU32::new(0),
+                ticks: AtomicU32::new(0),
                 running: AtomicBool::new(false),
                 tripped: AtomicBool::new(false),
             },
@@ -166,8 +165,10 @@ impl<W: Words> Queues<W> {
         let (learnt, learnt_out) = self.learnt.split();
         let (remembered_in, remembered) = self.remembered.split();
         let progress = &self.progress;
-        let (commands, orders, remembered) = (Taker::new(commands), Taker::new(orders), Taker::new(remembered));
-        let (samples, events, learnt) = (Giver::new(samples), Giver::new(events), Giver::new(learnt));
+        let (commands, orders, remembered) =
+            (SizedConsumer::new(commands), SizedConsumer::new(orders), SizedConsumer::new(remembered));
+        let (samples, events, learnt) =
+            (SizedProducer::new(samples), SizedProducer::new(events), SizedProducer::new(learnt));
         (
             TickEnd { commands, orders, samples, events, learnt, remembered, progress },
             IdleEnd {
@@ -183,7 +184,7 @@ impl<W: Words> Queues<W> {
     }
 }
 
-impl<W: Words> Default for Queues<W> {
+impl<W: Protocol> Default for Queues<W> {
     fn default() -> Self {
         Self::new()
     }

@@ -1,11 +1,11 @@
-// The application of every role, included by its binary: who runs at which priority and who holds which end of which
-// queue. What the role is, the binary says in its module `role`; the work is in the library.
+// The application of every role, included by its binary: tasks, priorities, and the ends of the queues that each task holds.
+// The binary defines its role in its module `role`; the work is in the library.
 
 #[rtic::app(device = firmware::board::pac)]
 mod app {
     use firmware::board::{Board, Started, ThisBoard, Watchdog};
     use firmware::clock::{self, IdleMeter, PERIOD};
-    use firmware::control::Control;
+    use firmware::tick_handler::TickHandler;
     use firmware::conversation::{Conversation, LogEnd};
     use firmware::identity::{self, StartUp};
     use firmware::page;
@@ -17,9 +17,9 @@ mod app {
     use firmware::timing_report::Resources;
     use firmware::work::Work;
     use firmware::{panic_message, stack};
-    use link::messages::Remembered;
+    use link::messages::MemoryState;
 
-    use crate::role::{DIGEST, RoleWords, RoleWork, work};
+    use crate::role::{DIGEST, RoleProtocol, RoleWork, work};
 
     #[shared]
     struct Shared {
@@ -29,15 +29,15 @@ mod app {
 
     #[local]
     struct Local {
-        control: Control<'static, <ThisBoard as Board>::Enable, RoleWork>,
-        conversation: Conversation<'static, RoleWords>,
+        control: TickHandler<'static, <ThisBoard as Board>::Enable, RoleWork>,
+        conversation: Conversation<'static, RoleProtocol>,
         progress: &'static Progress,
         light: StatusLight<<ThisBoard as Board>::Light>,
         watchdog: Watchdog,
         page: <ThisBoard as Board>::Page,
     }
 
-    #[init(local = [queues: Queues<RoleWords> = Queues::new(), line: Line = Line::new(), log: LogQueue = LogQueue::new()])]
+    #[init(local = [queues: Queues<RoleProtocol> = Queues::new(), line: Line = Line::new(), log: LogQueue = LogQueue::new()])]
     fn init(cx: init::Context) -> (Shared, Local) {
         let last_panic = panic_message::take();
         let mut core = cx.core;
@@ -52,27 +52,27 @@ mod app {
         let mut work = work();
         let remembered = remember(&mut work, &page);
         let timer_rate = ThisBoard::CORE_RATE;
-        let start_up = StartUp { board, timer_rate, clock, last_panic, watchdog_reset, remembered };
-        let hello = identity::hello::<RoleWords>(start_up, DIGEST);
+        let start_up = StartUp { board, timer_rate, clock, last_panic, watchdog_reset, memory: remembered };
+        let hello = identity::hello::<RoleProtocol>(start_up, DIGEST);
         defmt::info!("{=str} on {=str}, {=u32} Hz", hello.joint.as_str(), board, TABLES.tick_rate);
 
-        let control = Control::new(work, enable, PERIOD, tick_end);
+        let control = TickHandler::new(work, enable, PERIOD, tick_end);
         let conversation = Conversation::new(hello, PERIOD, idle_end, line_end, log_end);
         clock::start(&mut core.SYST);
         let light = StatusLight::new(light);
         (Shared { serial }, Local { control, conversation, progress, light, watchdog, page })
     }
 
-    /// Looks for what was learnt before. Its stack is given back.
+    /// Looks for what was learnt before. Not inlined, so that its stack is free afterwards.
     #[inline(never)]
-    fn remember(work: &mut RoleWork, page: &<ThisBoard as Board>::Page) -> Remembered {
+    fn remember(work: &mut RoleWork, page: &<ThisBoard as Board>::Page) -> MemoryState {
         let judged = page::recall(page).map(|memory| work.remember(&memory));
         match judged {
             Some(Err(error)) => defmt::warn!("what was kept is not used: {}", defmt::Display2Format(&error)),
             Some(Ok(())) => defmt::info!("what was learnt in earlier runs is at hand"),
             None => {}
         }
-        page::judgement(judged)
+        page::memory_state(judged)
     }
 
     /// The role's work, above everything else.
@@ -102,13 +102,13 @@ mod app {
         clock::in_interrupt(|| cx.shared.serial.service());
     }
 
-    /// The talk with the host, the light, and the watchdog, which is fed only while the ticks go on.
+    /// The conversation with the host, the light, and the watchdog, which is fed only while the ticks go on.
     #[idle(local = [conversation, progress, light, watchdog, page])]
     fn idle(cx: idle::Context) -> ! {
         use core::sync::atomic::Ordering::Relaxed;
         let idle::LocalResources { conversation, progress, light, watchdog, page, .. } = cx.local;
         let mut meter = IdleMeter::start();
-        let mut last_beat = progress.beats.load(Relaxed);
+        let mut last_tick = progress.ticks.load(Relaxed);
         loop {
             let busy = conversation.attend(&mut |reset| Resources {
                 idle_permille: meter.permille(reset),
@@ -117,9 +117,9 @@ mod app {
             });
             conversation.serve_page(page, |write| watchdog.while_writing(write));
             light.show(Pattern::of(progress), clock::milliseconds());
-            let beat = progress.beats.load(Relaxed);
-            if beat != last_beat {
-                last_beat = beat;
+            let tick = progress.ticks.load(Relaxed);
+            if tick != last_tick {
+                last_tick = tick;
                 watchdog.feed();
             }
             if busy { meter.pass() } else { meter.sleep() }

@@ -1,12 +1,12 @@
-//! The safe state: enable output off and no torque, latched until a reset. What leads to it is found elsewhere;
-//! this file only makes sure that there is one way in and one way out.
+//! The safe state: enable output off and no torque, latched until a reset. One way in, one way out; the conditions that trip it
+//! are checked by the callers.
 
 use core::convert::Infallible;
 
 use embedded_hal::digital::OutputPin;
 use link::messages::Trip;
 
-/// What the board does.
+/// State of the board.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum State {
     /// Nothing runs; a reset starts a run.
@@ -31,12 +31,12 @@ impl<E: OutputPin<Error = Infallible>> SafeState<E> {
         Self { enable, state: State::Stopped }
     }
 
-    /// What the board does.
+    /// State of the board.
     pub fn state(&self) -> State {
         self.state
     }
 
-    /// Starts a run; refused for good once the tables were found bad.
+    /// Starts a run; always refused once the tables were found bad.
     pub fn run(&mut self) -> Result<(), Trip> {
         if let State::Tripped(Trip::BadDigest) = self.state {
             return Err(Trip::BadDigest);

@@ -1,5 +1,5 @@
 //! The status light: a slow blink when stopped, a quick one in a run, three flashes and a pause in the safe state.
-//! It is told the time and the state; where either comes from is not its business.
+//! Time and state are given by the caller.
 
 use core::convert::Infallible;
 use core::sync::atomic::Ordering::Relaxed;

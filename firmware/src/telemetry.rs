@@ -5,7 +5,7 @@ use link::messages::{FromBoard, MAX_MESHES, SAMPLES_PER_BATCH, Sample, SampleBat
 use model_core::gears::Outputs;
 use parameters::ContactState;
 
-use crate::words::WireForm;
+use crate::protocol::WireForm;
 
 /// The motion after a step.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,9 +1,8 @@
-//! The timing monitor as the wire wants it: the tick's own counts joined with those of idle and of the serial line.
-//! Nothing is measured here.
+//! The wire's form of the timing statistics: the tick's own counts joined with those of idle and of the serial line.
 
 use link::messages::Statistics;
 
-use crate::budget::Monitor;
+use crate::timing_monitor::Monitor;
 
 /// What idle and the serial line count; cleared together with the tick's monitor.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -31,7 +30,7 @@ impl LineCounts {
     }
 }
 
-/// How the rest of the processor fares; read when a report is due.
+/// Idle time and memory use; read when a report is due.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Resources {
     /// Idle time, in thousandths of all time.

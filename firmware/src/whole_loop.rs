@@ -1,11 +1,11 @@
-//! Role `loop`: joint, motor, observer and compensation on one chip in real time; a motion asked for comes in, what became
-//! of it goes out. Observer and compensation are behind their port like those of any motor controller.
+//! Role `loop`: joint, motor, observer and compensation on one chip in real time; a trajectory in, samples
+//! of the motion out. Observer and compensation are behind their port like those of any motor controller.
 
 use heapless::Vec;
 use link::messages::{FromBoard, Role, Schedule, ToBoard};
 use link::virtual_joint::{KNOTS_PER_SCHEDULE, Knot, LOOP_SAMPLES_PER_BATCH, LoopBatch, LoopSample};
 use model_core::controller::Answer;
-use model_core::controller::course::Demand;
+use model_core::controller::trajectory::Trajectory;
 use model_core::gears::Tables;
 use model_core::numbers::digest;
 use model_core::observer::{Memory, MemoryError};
@@ -14,18 +14,18 @@ use model_core::virtual_joint::faults::Faults;
 use model_core::virtual_joint::{SurroundingsTable, VirtualJoint};
 
 use crate::batcher::Batcher;
-use crate::page::AtHand;
+use crate::page::RunMemory;
 use crate::port::ControllerPort;
-use crate::words::{Timed, WireForm, Words};
+use crate::protocol::{Protocol, Timed, WireForm};
 use crate::work::Work;
 
-/// Periods after which a demand that nothing follows stands still: three of the host's knots.
-const LONGEST_STRETCH: u16 = 150;
+/// Periods after which a segment that no knot follows is held at its end: three of the host's knots.
+const LONGEST_SEGMENT: u16 = 150;
 
-/// What the role says and hears.
-pub struct LoopWords;
+/// Messages of the role.
+pub struct LoopProtocol;
 
-impl Words for LoopWords {
+impl Protocol for LoopProtocol {
     const ROLE: Role = Role::Loop;
     type Command = Knot;
     type Timetable = Schedule<Knot, KNOTS_PER_SCHEDULE>;
@@ -34,7 +34,7 @@ impl Words for LoopWords {
     type Learnt = Memory;
 
     fn timetable(message: ToBoard) -> Option<Self::Timetable> {
-        if let ToBoard::Course(schedule) = message { Some(schedule) } else { None }
+        if let ToBoard::Trajectory(schedule) = message { Some(schedule) } else { None }
     }
 }
 
@@ -48,7 +48,7 @@ impl Timed for Knot {
     }
 }
 
-/// The form of the loop's samples: the tick leaves them in the wire's.
+/// The form of the loop's samples, which the tick leaves in the wire's form already.
 pub struct LoopForm;
 
 impl WireForm<LOOP_SAMPLES_PER_BATCH> for LoopForm {
@@ -69,14 +69,14 @@ pub struct WholeLoop<'t, P, const N: usize> {
     tables: &'t Tables<f32, N>,
     surroundings: &'t SurroundingsTable<f32>,
     joint: VirtualJoint<'t, f32, N>,
-    /// What goes wrong between joint and port.
+    /// Faults between joint and port.
     faults: Faults<f32>,
     port: P,
-    /// What runs may begin from.
-    at_hand: AtHand,
-    demand: Demand<f32>,
+    /// The memory at hand.
+    run_memory: RunMemory,
+    trajectory: Trajectory<f32>,
     load_torque: f32,
-    /// Periods since the demand began.
+    /// Periods since the segment began.
     elapsed: u16,
     answer: Answer<f32>,
     digest: u64,
@@ -91,8 +91,8 @@ impl<'t, P: ControllerPort, const N: usize> WholeLoop<'t, P, N> {
             joint: VirtualJoint::new(tables, surroundings),
             faults: Faults::default(),
             port,
-            at_hand: AtHand::default(),
-            demand: Demand::HOLD,
+            run_memory: RunMemory::default(),
+            trajectory: Trajectory::HOLD,
             load_torque: 0.0,
             elapsed: 0,
             answer: Answer::default(),
@@ -102,8 +102,8 @@ impl<'t, P: ControllerPort, const N: usize> WholeLoop<'t, P, N> {
 }
 
 impl<P: ControllerPort, const N: usize> Work for WholeLoop<'_, P, N> {
-    type Words = LoopWords;
-    const GOES_ON: bool = true;
+    type Protocol = LoopProtocol;
+    const FREE_RUNNING: bool = true;
 
     fn is_sound(&self) -> bool {
         self.tables.digest_is_good()
@@ -114,9 +114,9 @@ impl<P: ControllerPort, const N: usize> Work for WholeLoop<'_, P, N> {
         self.faults = Faults::default();
         self.port.reset();
         if from_memory {
-            self.at_hand.give(&mut self.port);
+            self.run_memory.give(&mut self.port);
         }
-        self.demand = Demand::HOLD;
+        self.trajectory = Trajectory::HOLD;
         self.load_torque = 0.0;
         self.elapsed = 0;
         self.answer = Answer::default();
@@ -124,7 +124,7 @@ impl<P: ControllerPort, const N: usize> Work for WholeLoop<'_, P, N> {
     }
 
     fn take(&mut self, knot: Knot) {
-        self.demand = knot.demand.into();
+        self.trajectory = knot.trajectory.into();
         self.load_torque = knot.load_torque;
         self.elapsed = 0;
     }
@@ -134,15 +134,15 @@ impl<P: ControllerPort, const N: usize> Work for WholeLoop<'_, P, N> {
     }
 
     fn learn(&mut self) -> bool {
-        self.at_hand.learn_from(&self.port)
+        self.run_memory.learn_from(&self.port)
     }
 
     fn learnt(&self) -> Option<&Memory> {
-        self.at_hand.get()
+        self.run_memory.get()
     }
 
     fn remember(&mut self, memory: &Memory) -> Result<(), MemoryError> {
-        self.at_hand.take(memory, &mut self.port)
+        self.run_memory.take(memory, &mut self.port)
     }
 
     fn remember_learnt(&mut self, learnt: &Memory) -> Result<(), MemoryError> {
@@ -150,14 +150,14 @@ impl<P: ControllerPort, const N: usize> Work for WholeLoop<'_, P, N> {
     }
 
     fn forget(&mut self) {
-        self.at_hand.forget();
+        self.run_memory.forget();
     }
 
     fn step(&mut self) {
         let table = self.surroundings;
-        let command = self.demand.at(table.period * f32::from(self.elapsed), table.turn);
-        // A motion is a polynomial for a stretch only: one that nobody follows up holds at its last moment.
-        self.elapsed = self.elapsed.saturating_add(1).min(LONGEST_STRETCH);
+        let command = self.trajectory.at(table.period * f32::from(self.elapsed), table.turn);
+        // The polynomial is for its segment only: one that no knot follows is held at its end.
+        self.elapsed = self.elapsed.saturating_add(1).min(LONGEST_SEGMENT);
         let samples = self.faults.sense(self.joint.samples(), table);
         let torque = match self.port.exchange(&samples, &command) {
             Ok(answer) => {

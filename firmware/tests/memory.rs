@@ -2,23 +2,23 @@
 //! starts, gone on from where a run asks for it. What the memory is worth is tested elsewhere.
 
 #[allow(dead_code, reason = "shared with the tests of the roles")]
-mod bench;
+mod test_board;
 
-use bench::{Bench, Flash};
 use firmware::observer::Observing;
-use firmware::page::{judgement, recall};
+use firmware::page::{memory_state, recall};
 use firmware::port::Direct;
 use firmware::tables::{PLANETS, TABLES};
 use firmware::work::Work;
 use link::controller::Exchange;
 use link::messages::{
-    FromBoard, Kept, MEMORY_PARTS, MemoryPart, MemoryWish, PART_BYTES, Remembered, RunMode, RunSettings, Schedule,
-    ToBoard,
+    FromBoard, MEMORY_PARTS, MemoryOutcome, MemoryPart, MemoryRequest, MemoryState, PART_BYTES, RunMode, RunSettings,
+    Schedule, ToBoard,
 };
 use model_core::compensation::{Command, Motion, Position};
 use model_core::controller::{Answer, Controller};
 use model_core::observer::{MEMORY_BYTES, Memory};
 use model_core::virtual_joint::VirtualJoint;
+use test_board::{Flash, TestBoard};
 
 mod control {
     #![allow(missing_docs, dead_code, clippy::all, clippy::excessive_precision, reason = "generated numbers")]
@@ -37,22 +37,22 @@ fn command(tick: u32) -> Command<f32> {
 }
 
 /// Runs exchanges with a virtual joint at the other end of the line; the last answer.
-fn run(bench: &mut Bench<Observing<Direct<'static>>>, from_memory: bool, ticks: u32) -> Answer<f32> {
-    bench.send(&ToBoard::Reset(RunSettings {
+fn run(board: &mut TestBoard<Observing<Direct<'static>>>, from_memory: bool, ticks: u32) -> Answer<f32> {
+    board.send(&ToBoard::Reset(RunSettings {
         mode: RunMode::Lockstep,
         decimation: 1,
         command_timeout: 1000,
         from_memory,
     }));
-    bench.run(2);
-    assert!(matches!(bench.said()[..], [FromBoard::Hello(_)]));
+    board.run(2);
+    assert!(matches!(board.said()[..], [FromBoard::Hello(_)]));
     let mut joint = VirtualJoint::<f32, PLANETS>::new(&TABLES, &control::SURROUNDINGS);
     let mut last = None;
     for tick in 0..ticks {
         let commands = [Exchange::new(tick, &joint.samples(), &command(tick))].into_iter().collect();
-        bench.send(&ToBoard::Exchanges(Schedule { sequence: tick as u16, horizon: tick + 1, commands }));
-        bench.run(2);
-        let said = bench.said();
+        board.send(&ToBoard::Exchanges(Schedule { sequence: tick as u16, horizon: tick + 1, commands }));
+        board.run(2);
+        let said = board.said();
         let answer = said.iter().find_map(|message| match message {
             FromBoard::Answer(answered) => answered.answer(),
             _ => None,
@@ -63,39 +63,39 @@ fn run(bench: &mut Bench<Observing<Direct<'static>>>, from_memory: bool, ticks: 
     last.expect("answers")
 }
 
-fn kept(bench: &mut Bench<Observing<Direct<'static>>>) -> Kept {
-    bench.send(&ToBoard::Memory(MemoryWish::Keep));
-    bench.run(3);
-    let kept = |message: FromBoard| if let FromBoard::Kept(kept) = message { Some(kept) } else { None };
-    bench.said().into_iter().find_map(kept).expect("an answer")
+fn saved(board: &mut TestBoard<Observing<Direct<'static>>>) -> MemoryOutcome {
+    board.send(&ToBoard::Memory(MemoryRequest::Save));
+    board.run(3);
+    let kept = |message: FromBoard| if let FromBoard::MemoryOutcome(kept) = message { Some(kept) } else { None };
+    board.said().into_iter().find_map(kept).expect("an answer")
 }
 
-fn stop(bench: &mut Bench<Observing<Direct<'static>>>) {
-    bench.send(&ToBoard::Stop);
-    bench.run(3);
+fn stop(board: &mut TestBoard<Observing<Direct<'static>>>) {
+    board.send(&ToBoard::Stop);
+    board.run(3);
 }
 
 /// A board that starts with this in its flash, and what it says of it.
-fn started(memory: Memory) -> (Bench<Observing<Direct<'static>>>, Remembered) {
+fn started(memory: Memory) -> (TestBoard<Observing<Direct<'static>>>, MemoryState) {
     let mut work = Observing::new(controller(), true);
     let flash = Flash { memory, works: true, erased: 0 };
     let judged = recall(&flash).map(|memory| work.remember(&memory));
-    let mut bench = Bench::with(work);
-    bench.flash = flash;
-    (bench, judgement(judged))
+    let mut board = TestBoard::with(work);
+    board.flash = flash;
+    (board, memory_state(judged))
 }
 
 #[test]
 fn what_was_learnt_is_kept_and_gone_on_from_after_the_next_start() {
-    let (mut bench, nothing) = started([0xff; MEMORY_BYTES]);
-    assert_eq!(nothing, Remembered::Nothing);
-    let learnt = run(&mut bench, false, 12_000).estimates;
-    assert_eq!(kept(&mut bench), Kept::Running, "flash is not written while a motor runs");
-    stop(&mut bench);
-    assert_eq!((kept(&mut bench), kept(&mut bench)), (Kept::Stored, Kept::Stored));
-    assert_eq!(bench.flash.erased, 1, "the same is not written twice");
-    let (mut again, found) = started(bench.flash.memory);
-    assert_eq!(found, Remembered::Good);
+    let (mut board, nothing) = started([0xff; MEMORY_BYTES]);
+    assert_eq!(nothing, MemoryState::Nothing);
+    let learnt = run(&mut board, false, 12_000).estimates;
+    assert_eq!(saved(&mut board), MemoryOutcome::Running, "flash is not written while a motor runs");
+    stop(&mut board);
+    assert_eq!((saved(&mut board), saved(&mut board)), (MemoryOutcome::Stored, MemoryOutcome::Stored));
+    assert_eq!(board.flash.erased, 1, "the same is not written twice");
+    let (mut again, found) = started(board.flash.memory);
+    assert_eq!(found, MemoryState::Good);
     // Long enough to say what is known, too short to learn.
     let [fresh, remembered] = [false, true].map(|from_memory| run(&mut again, from_memory, 50).estimates);
     assert_ne!(learnt.half_backlash.value, fresh.half_backlash.value, "there was something to learn");
@@ -105,27 +105,27 @@ fn what_was_learnt_is_kept_and_gone_on_from_after_the_next_start() {
 
 #[test]
 fn what_is_no_good_memory_is_told_and_not_used() {
-    let (mut bench, _) = started([0xff; MEMORY_BYTES]);
-    run(&mut bench, false, 100);
-    stop(&mut bench);
-    assert_eq!(kept(&mut bench), Kept::Stored);
-    let good = bench.flash.memory;
+    let (mut board, _) = started([0xff; MEMORY_BYTES]);
+    run(&mut board, false, 100);
+    stop(&mut board);
+    assert_eq!(saved(&mut board), MemoryOutcome::Stored);
+    let good = board.flash.memory;
     let changed = |at: usize| {
         let mut memory = good;
         memory[at] ^= 1;
         memory
     };
     let cases = [
-        ([0; MEMORY_BYTES], Remembered::Nothing),
-        (changed(0), Remembered::NotAMemory),
-        (changed(4), Remembered::WrongVersion),
-        (changed(200), Remembered::Damaged),
-        (of_another_joint(good), Remembered::OtherJoint),
+        ([0; MEMORY_BYTES], MemoryState::Nothing),
+        (changed(0), MemoryState::NotAMemory),
+        (changed(4), MemoryState::WrongVersion),
+        (changed(200), MemoryState::Damaged),
+        (of_another_joint(good), MemoryState::OtherJoint),
     ];
     for (memory, expected) in cases {
-        let (mut bench, found) = started(memory);
+        let (mut board, found) = started(memory);
         assert_eq!(found, expected);
-        let asked_for = run(&mut bench, true, 50);
+        let asked_for = run(&mut board, true, 50);
         let (mut other, _) = started([0xff; MEMORY_BYTES]);
         assert_eq!(asked_for, run(&mut other, false, 50), "{found:?}: it begins as it was designed");
     }
@@ -143,22 +143,22 @@ fn of_another_joint(mut memory: Memory) -> Memory {
 
 #[test]
 fn flash_that_takes_nothing_is_found_out() {
-    let (mut bench, _) = started([0xff; MEMORY_BYTES]);
-    bench.flash.works = false;
-    run(&mut bench, false, 10);
-    stop(&mut bench);
-    assert_eq!(kept(&mut bench), Kept::NotWritten);
+    let (mut board, _) = started([0xff; MEMORY_BYTES]);
+    board.flash.works = false;
+    run(&mut board, false, 10);
+    stop(&mut board);
+    assert_eq!(saved(&mut board), MemoryOutcome::NotWritten);
 }
 
 /// Asks for something about the memory, and hears the answer.
-fn asked(bench: &mut Bench<Observing<Direct<'static>>>, wish: MemoryWish) -> Vec<FromBoard> {
-    bench.send(&ToBoard::Memory(wish));
-    bench.run(3);
-    bench.said()
+fn asked(board: &mut TestBoard<Observing<Direct<'static>>>, request: MemoryRequest) -> Vec<FromBoard> {
+    board.send(&ToBoard::Memory(request));
+    board.run(3);
+    board.said()
 }
 
-fn told(bench: &mut Bench<Observing<Direct<'static>>>) -> Vec<u8> {
-    let part = |part| match asked(bench, MemoryWish::Tell { part }).pop() {
+fn told(board: &mut TestBoard<Observing<Direct<'static>>>) -> Vec<u8> {
+    let part = |part| match asked(board, MemoryRequest::Read { part }).pop() {
         Some(FromBoard::Memory(told)) if told.part == part => told.bytes,
         other => panic!("{other:?}"),
     };
@@ -166,66 +166,74 @@ fn told(bench: &mut Bench<Observing<Direct<'static>>>) -> Vec<u8> {
 }
 
 /// Sends a memory, and hears what is made of it.
-fn brought(bench: &mut Bench<Observing<Direct<'static>>>, memory: &Memory) -> Vec<FromBoard> {
+fn brought(board: &mut TestBoard<Observing<Direct<'static>>>, memory: &Memory) -> Vec<FromBoard> {
     let parts = memory.chunks(PART_BYTES).zip(0..);
     let part =
-        |(bytes, part): (&[u8], u8)| MemoryWish::Take(MemoryPart { part, bytes: bytes.iter().copied().collect() });
-    parts.flat_map(|of| asked(bench, part(of))).collect()
+        |(bytes, part): (&[u8], u8)| MemoryRequest::Load(MemoryPart { part, bytes: bytes.iter().copied().collect() });
+    parts.flat_map(|of| asked(board, part(of))).collect()
 }
 
 /// A memory that a board has learnt.
 fn learnt() -> Memory {
-    let (mut bench, _) = started([0xff; MEMORY_BYTES]);
-    run(&mut bench, false, 3000);
-    stop(&mut bench);
-    assert_eq!(kept(&mut bench), Kept::Stored);
-    assert_eq!(told(&mut bench), bench.flash.memory, "it is told as it lies there");
-    bench.flash.memory
+    let (mut board, _) = started([0xff; MEMORY_BYTES]);
+    run(&mut board, false, 3000);
+    stop(&mut board);
+    assert_eq!(saved(&mut board), MemoryOutcome::Stored);
+    assert_eq!(told(&mut board), board.flash.memory, "it is told as it lies there");
+    board.flash.memory
 }
 
 #[test]
 fn a_memory_moves_from_board_to_board_and_is_erased() {
     let memory = learnt();
-    let (mut bench, _) = started([0; MEMORY_BYTES]);
-    assert_eq!(asked(&mut bench, MemoryWish::Write), [FromBoard::Kept(Kept::Nothing)], "there is nothing to write");
-    assert_eq!(brought(&mut bench, &memory), [FromBoard::Judged(Remembered::Good)]);
-    let from_memory = run(&mut bench, true, 50);
-    assert_eq!(asked(&mut bench, MemoryWish::Write), [FromBoard::Kept(Kept::Running)]);
-    stop(&mut bench);
-    assert_eq!(asked(&mut bench, MemoryWish::Write), [FromBoard::Kept(Kept::Stored)]);
-    assert_eq!(bench.flash.memory, memory);
+    let (mut board, _) = started([0; MEMORY_BYTES]);
+    assert_eq!(
+        asked(&mut board, MemoryRequest::Write),
+        [FromBoard::MemoryOutcome(MemoryOutcome::Nothing)],
+        "there is nothing to write"
+    );
+    assert_eq!(brought(&mut board, &memory), [FromBoard::MemoryChecked(MemoryState::Good)]);
+    let from_memory = run(&mut board, true, 50);
+    assert_eq!(asked(&mut board, MemoryRequest::Write), [FromBoard::MemoryOutcome(MemoryOutcome::Running)]);
+    stop(&mut board);
+    assert_eq!(asked(&mut board, MemoryRequest::Write), [FromBoard::MemoryOutcome(MemoryOutcome::Stored)]);
+    assert_eq!(board.flash.memory, memory);
     let (mut other, found) = started(memory);
-    assert_eq!((found, run(&mut other, true, 50)), (Remembered::Good, from_memory), "as if it had learnt it itself");
-    stop(&mut bench);
-    assert_eq!(asked(&mut bench, MemoryWish::Erase), [FromBoard::Kept(Kept::Stored)]);
-    assert_eq!((bench.flash.memory, bench.flash.erased), ([0xff; MEMORY_BYTES], 2));
-    assert_eq!(asked(&mut bench, MemoryWish::Erase), [FromBoard::Kept(Kept::Stored)]);
-    assert_eq!(bench.flash.erased, 2, "what is empty is not worn out");
-    assert_ne!(run(&mut bench, true, 50), from_memory, "nothing is left to begin from");
+    assert_eq!((found, run(&mut other, true, 50)), (MemoryState::Good, from_memory), "as if it had learnt it itself");
+    stop(&mut board);
+    assert_eq!(asked(&mut board, MemoryRequest::Erase), [FromBoard::MemoryOutcome(MemoryOutcome::Stored)]);
+    assert_eq!((board.flash.memory, board.flash.erased), ([0xff; MEMORY_BYTES], 2));
+    assert_eq!(asked(&mut board, MemoryRequest::Erase), [FromBoard::MemoryOutcome(MemoryOutcome::Stored)]);
+    assert_eq!(board.flash.erased, 2, "what is empty is not worn out");
+    assert_ne!(run(&mut board, true, 50), from_memory, "nothing is left to begin from");
 }
 
 #[test]
 fn a_memory_that_is_no_good_is_judged_and_never_written() {
     let memory = learnt();
-    let (mut bench, _) = started([0xff; MEMORY_BYTES]);
+    let (mut board, _) = started([0xff; MEMORY_BYTES]);
     let mut damaged = memory;
     damaged[200] ^= 1;
-    let cases = [(damaged, Remembered::Damaged), (of_another_joint(memory), Remembered::OtherJoint)];
-    for (memory, judgement) in cases {
-        assert_eq!(brought(&mut bench, &memory), [FromBoard::Judged(judgement)]);
-        assert_eq!(asked(&mut bench, MemoryWish::Write), [FromBoard::Kept(Kept::Nothing)]);
+    let cases = [(damaged, MemoryState::Damaged), (of_another_joint(memory), MemoryState::OtherJoint)];
+    for (memory, state) in cases {
+        assert_eq!(brought(&mut board, &memory), [FromBoard::MemoryChecked(state)]);
+        assert_eq!(asked(&mut board, MemoryRequest::Write), [FromBoard::MemoryOutcome(MemoryOutcome::Nothing)]);
     }
-    let late = MemoryWish::Take(MemoryPart { part: 1, bytes: memory[PART_BYTES..].iter().copied().collect() });
-    assert_eq!(asked(&mut bench, late), [FromBoard::Judged(Remembered::NotAMemory)], "its first part never came");
-    assert_eq!(bench.flash.erased, 0);
+    let late = MemoryRequest::Load(MemoryPart { part: 1, bytes: memory[PART_BYTES..].iter().copied().collect() });
+    assert_eq!(
+        asked(&mut board, late),
+        [FromBoard::MemoryChecked(MemoryState::NotAMemory)],
+        "its first part never came"
+    );
+    assert_eq!(board.flash.erased, 0);
 }
 
 #[test]
 fn a_role_that_learns_nothing_says_so() {
-    let mut bench = Bench::new();
-    for wish in [MemoryWish::Keep, MemoryWish::Tell { part: 0 }, MemoryWish::Write, MemoryWish::Erase] {
-        bench.send(&ToBoard::Memory(wish));
-        bench.run(3);
-        assert_eq!(bench.said(), [FromBoard::Kept(Kept::Nothing)]);
+    let mut board = TestBoard::new();
+    for request in [MemoryRequest::Save, MemoryRequest::Read { part: 0 }, MemoryRequest::Write, MemoryRequest::Erase] {
+        board.send(&ToBoard::Memory(request));
+        board.run(3);
+        assert_eq!(board.said(), [FromBoard::MemoryOutcome(MemoryOutcome::Nothing)]);
     }
 }

@@ -2,23 +2,23 @@
 //! bit, and a host that errs or falls silent leads where it should. What the answers are worth is tested elsewhere.
 
 #[allow(dead_code, reason = "shared with the tests of the plant")]
-mod bench;
+mod test_board;
 
-use bench::Bench;
 use firmware::observer::Observing;
 use firmware::port::Direct;
 use firmware::tables::TABLES;
 use firmware::whole_loop::WholeLoop;
 use link::controller::{Answered, Exchange};
 use link::messages::{FromBoard, RunMode, RunSettings, Schedule, ToBoard, Trip};
-use link::virtual_joint::{Knot, LoopSample, WireDemand};
+use link::virtual_joint::{Knot, LoopSample, WireTrajectory};
 use model_core::compensation::Command;
 use model_core::controller::Controller;
-use model_core::controller::course::Demand;
+use model_core::controller::trajectory::Trajectory;
 use model_core::numbers::digest;
 use model_core::virtual_joint::VirtualJoint;
 use model_core::virtual_joint::fault::{Fault, FaultKind, Shaft};
 use model_core::virtual_joint::faults::MOST_FAULTS;
+use test_board::TestBoard;
 
 mod control {
     #![allow(missing_docs, dead_code, clippy::all, clippy::excessive_precision, reason = "generated numbers")]
@@ -29,18 +29,18 @@ fn controller() -> Controller<'static, f32> {
     Controller::new(&control::OBSERVER, &control::COMPENSATION)
 }
 
-fn observer() -> Bench<Observing<Direct<'static>>> {
-    Bench::with(Observing::new(Direct(controller()), true))
+fn observer() -> TestBoard<Observing<Direct<'static>>> {
+    TestBoard::with(Observing::new(Direct(controller()), true))
 }
 
-fn whole_loop() -> Bench<WholeLoop<'static, Direct<'static>, { firmware::tables::PLANETS }>> {
-    Bench::with(WholeLoop::new(&TABLES, &control::SURROUNDINGS, Direct(controller())))
+fn whole_loop() -> TestBoard<WholeLoop<'static, Direct<'static>, { firmware::tables::PLANETS }>> {
+    TestBoard::with(WholeLoop::new(&TABLES, &control::SURROUNDINGS, Direct(controller())))
 }
 
 /// A turn of the link by and by, from a tick on.
 fn knot(tick: u32) -> Knot {
-    let demand = WireDemand::Position((0, [1e-4 * tick as f32, 0.5, 0.0, 0.0, 0.0, 0.0]), None);
-    Knot { tick, load_torque: 0.5, demand }
+    let trajectory = WireTrajectory::Position((0, [1e-4 * tick as f32, 0.5, 0.0, 0.0, 0.0, 0.0]), None);
+    Knot { tick, load_torque: 0.5, trajectory }
 }
 
 fn exchange(
@@ -69,17 +69,17 @@ fn trips(said: &[FromBoard]) -> Vec<Trip> {
 
 #[test]
 fn an_observer_on_a_line_answers_like_one_that_is_called_in_every_bit() {
-    let mut bench = observer();
-    bench.start(RunMode::Lockstep, 1, 1000);
+    let mut board = observer();
+    board.start(RunMode::Lockstep, 1, 1000);
     let mut joint = VirtualJoint::new(&TABLES, &control::SURROUNDINGS);
     let (mut own, mut running) = (controller(), digest::START);
     for tick in 0..300 {
-        let command = Demand::from(knot(0).demand).at(1e-4 * tick as f32, control::SURROUNDINGS.turn);
-        bench.send(&exchange(tick, &joint, &command));
-        bench.run(2);
+        let command = Trajectory::from(knot(0).trajectory).at(1e-4 * tick as f32, control::SURROUNDINGS.turn);
+        board.send(&exchange(tick, &joint, &command));
+        board.run(2);
         let expected = own.step(&joint.samples(), &command);
         running = expected.digest(running);
-        let said = answers(bench.said());
+        let said = answers(board.said());
         let [answered] = &said[..] else { panic!("{said:?}") };
         assert_eq!((answered.tick, answered.digest, answered.answer()), (tick + 1, running, Some(expected)));
         joint.advance(expected.shaped.torque, 0.0);
@@ -88,14 +88,14 @@ fn an_observer_on_a_line_answers_like_one_that_is_called_in_every_bit() {
 
 #[test]
 fn an_observer_that_is_not_asked_for_estimates_keeps_them_to_its_digest() {
-    let mut bench = observer();
-    bench.start(RunMode::Lockstep, 1, 1000);
-    let (joint, command) = (VirtualJoint::new(&TABLES, &control::SURROUNDINGS), Demand::HOLD.at(0.0, 1.0));
+    let mut board = observer();
+    board.start(RunMode::Lockstep, 1, 1000);
+    let (joint, command) = (VirtualJoint::new(&TABLES, &control::SURROUNDINGS), Trajectory::HOLD.at(0.0, 1.0));
     let expected = controller().step(&joint.samples(), &command);
     let commands = [Exchange::new(0, &joint.samples(), &command).without_estimates()].into_iter().collect();
-    bench.send(&ToBoard::Exchanges(Schedule { sequence: 0, horizon: 1, commands }));
-    bench.run(2);
-    let said = answers(bench.said());
+    board.send(&ToBoard::Exchanges(Schedule { sequence: 0, horizon: 1, commands }));
+    board.run(2);
+    let said = answers(board.said());
     let [answered] = &said[..] else { panic!("{said:?}") };
     assert_eq!((answered.estimates, answered.digest), (None, expected.digest(digest::START)));
     assert_eq!(answered.shaped, (&expected.shaped).into());
@@ -103,65 +103,65 @@ fn an_observer_that_is_not_asked_for_estimates_keeps_them_to_its_digest() {
 
 #[test]
 fn an_observer_whose_controller_falls_silent_goes_to_the_safe_state() {
-    let mut bench = observer();
-    bench.start(RunMode::Lockstep, 1, 50);
+    let mut board = observer();
+    board.start(RunMode::Lockstep, 1, 50);
     let joint = VirtualJoint::new(&TABLES, &control::SURROUNDINGS);
-    bench.run(100);
-    assert!(bench.enable.get(), "a run begins with its first samples");
-    bench.send(&exchange(0, &joint, &Demand::HOLD.at(0.0, 1.0)));
-    bench.run(40);
-    assert!(bench.enable.get());
-    bench.run(40);
-    assert!(!bench.enable.get());
-    assert_eq!(trips(&bench.said()), [Trip::CommandLoss { tick: 1 }]);
+    board.run(100);
+    assert!(board.enable.get(), "a run begins with its first samples");
+    board.send(&exchange(0, &joint, &Trajectory::HOLD.at(0.0, 1.0)));
+    board.run(40);
+    assert!(board.enable.get());
+    board.run(40);
+    assert!(!board.enable.get());
+    assert_eq!(trips(&board.said()), [Trip::CommandLoss { tick: 1 }]);
 }
 
 #[test]
 fn an_observer_does_not_run_without_samples() {
-    let mut bench = observer();
+    let mut board = observer();
     let settings = RunSettings { mode: RunMode::Realtime, decimation: 1, command_timeout: 100, from_memory: false };
-    bench.send(&ToBoard::Reset(settings));
-    bench.run(3);
-    assert_eq!(trips(&bench.said()), [Trip::BadSettings]);
+    board.send(&ToBoard::Reset(settings));
+    board.run(3);
+    assert_eq!(trips(&board.said()), [Trip::BadSettings]);
 }
 
 #[test]
 fn samples_that_are_no_numbers_are_flagged_and_the_torque_stays_finite() {
-    let mut bench = observer();
-    bench.start(RunMode::Lockstep, 1, 1000);
+    let mut board = observer();
+    board.start(RunMode::Lockstep, 1, 1000);
     let joint = VirtualJoint::new(&TABLES, &control::SURROUNDINGS);
-    let command = Demand::HOLD.at(0.0, 1.0);
+    let command = Trajectory::HOLD.at(0.0, 1.0);
     for tick in 0..10 {
         let mut samples = joint.samples();
         samples.time = tick * control::SURROUNDINGS.clock_ticks;
         samples.torque = if tick > 5 { f32::NAN } else { 0.0 };
         let commands = [Exchange::new(tick, &samples, &command)].into_iter().collect();
-        bench.send(&ToBoard::Exchanges(Schedule { sequence: tick as u16, horizon: tick + 1, commands }));
-        bench.run(2);
-        let answer = answers(bench.said())[0].answer().expect("estimates");
+        board.send(&ToBoard::Exchanges(Schedule { sequence: tick as u16, horizon: tick + 1, commands }));
+        board.run(2);
+        let answer = answers(board.said())[0].answer().expect("estimates");
         assert_eq!(answer.estimates.notices.torque_unknown, tick > 5);
         assert!(answer.shaped.torque.is_finite());
     }
-    assert!(bench.enable.get());
+    assert!(board.enable.get());
 }
 
 #[test]
 fn a_whole_loop_equals_its_parts_in_every_bit_in_both_modes() {
     for mode in [RunMode::Lockstep, RunMode::Realtime] {
-        let mut bench = whole_loop();
-        bench.start(mode, 7, 1000);
+        let mut board = whole_loop();
+        board.start(mode, 7, 1000);
         let knots: Vec<Knot> = (0..6).map(|index| knot(50 * index)).collect();
         let commands = knots.iter().copied().collect();
-        bench.send(&ToBoard::Course(Schedule { sequence: 0, horizon: 300, commands }));
-        bench.run(301);
-        let samples: Vec<LoopSample> = samples(bench.said()).into_iter().filter(|sample| sample.tick <= 300).collect();
+        board.send(&ToBoard::Trajectory(Schedule { sequence: 0, horizon: 300, commands }));
+        board.run(301);
+        let samples: Vec<LoopSample> = samples(board.said()).into_iter().filter(|sample| sample.tick <= 300).collect();
         assert_eq!(samples.len(), 300 / 7);
         let mut joint = VirtualJoint::new(&TABLES, &control::SURROUNDINGS);
         let (mut own, mut running, mut expected) = (controller(), digest::START, samples.iter());
         for tick in 0..300_u32 {
             let now = &knots[(tick / 50) as usize];
             let elapsed = control::SURROUNDINGS.period * (tick - now.tick) as f32;
-            let command = Demand::from(now.demand).at(elapsed, control::SURROUNDINGS.turn);
+            let command = Trajectory::from(now.trajectory).at(elapsed, control::SURROUNDINGS.turn);
             let answer = own.step(&joint.samples(), &command);
             joint.advance(answer.shaped.torque, now.load_torque);
             running = digest::chain(answer.digest(running), joint.model().state_digest());
@@ -176,30 +176,30 @@ fn a_whole_loop_equals_its_parts_in_every_bit_in_both_modes() {
 
 #[test]
 fn a_whole_loop_takes_faults_before_its_first_period_only_and_no_more_than_fit() {
-    let mut bench = whole_loop();
+    let mut board = whole_loop();
     let fault = |kind| ToBoard::Fault(Fault { start: 20, end: 40, seed: 1, kind });
     let taken = |said: Vec<FromBoard>| {
         let of = |message: &FromBoard| if let FromBoard::FaultTaken { taken } = message { Some(*taken) } else { None };
         said.iter().find_map(of).expect("an answer")
     };
-    bench.send(&fault(FaultKind::Saturation(0.0)));
-    bench.run(3);
-    assert!(!taken(bench.said()), "nothing runs yet");
-    bench.start(RunMode::Lockstep, 1, 1000);
+    board.send(&fault(FaultKind::Saturation(0.0)));
+    board.run(3);
+    assert!(!taken(board.said()), "nothing runs yet");
+    board.start(RunMode::Lockstep, 1, 1000);
     for number in 0..=MOST_FAULTS {
-        bench.send(&fault(if number == 0 { FaultKind::Frozen(Shaft::Motor) } else { FaultKind::Saturation(0.01) }));
-        bench.run(3);
-        assert_eq!(taken(bench.said()), number < MOST_FAULTS);
+        board.send(&fault(if number == 0 { FaultKind::Frozen(Shaft::Motor) } else { FaultKind::Saturation(0.01) }));
+        board.run(3);
+        assert_eq!(taken(board.said()), number < MOST_FAULTS);
     }
     let commands = [knot(0)].into_iter().collect();
-    bench.send(&ToBoard::Course(Schedule { sequence: 0, horizon: 60, commands }));
-    bench.run(90);
-    let said = samples(bench.said());
+    board.send(&ToBoard::Trajectory(Schedule { sequence: 0, horizon: 60, commands }));
+    board.run(90);
+    let said = samples(board.said());
     let mut joint = VirtualJoint::new(&TABLES, &control::SURROUNDINGS);
     let (mut own, mut running, mut held) = (controller(), digest::START, None);
     for (tick, sample) in (0..60_u32).zip(&said) {
-        let command =
-            Demand::from(knot(0).demand).at(control::SURROUNDINGS.period * tick as f32, control::SURROUNDINGS.turn);
+        let command = Trajectory::from(knot(0).trajectory)
+            .at(control::SURROUNDINGS.period * tick as f32, control::SURROUNDINGS.turn);
         let (mut samples, on) = (joint.samples(), (20..40).contains(&tick));
         held = if on { held.or(Some(samples.motor.counts)) } else { None };
         samples.motor.counts = held.unwrap_or(samples.motor.counts);
@@ -211,9 +211,9 @@ fn a_whole_loop_takes_faults_before_its_first_period_only_and_no_more_than_fit()
         assert_eq!((sample.tick, sample.digest), (tick + 1, running));
     }
     assert_eq!(said.len(), 60);
-    bench.send(&fault(FaultKind::Saturation(0.0)));
-    bench.run(3);
-    assert!(!taken(bench.said()), "the run has begun");
+    board.send(&fault(FaultKind::Saturation(0.0)));
+    board.run(3);
+    assert!(!taken(board.said()), "the run has begun");
 }
 
 /// What the motor was asked for in the period before.
@@ -223,23 +223,23 @@ fn own_torque(said: &[LoopSample], tick: u32) -> f32 {
 
 #[test]
 fn words_for_another_role_are_refused_and_change_nothing() {
-    let mut bench = whole_loop();
-    bench.start(RunMode::Lockstep, 1, 1000);
-    bench.send(&ToBoard::Schedule(Schedule { sequence: 0, horizon: 10, commands: heapless::Vec::new() }));
-    bench.run(5);
-    let said = bench.said();
+    let mut board = whole_loop();
+    board.start(RunMode::Lockstep, 1, 1000);
+    board.send(&ToBoard::Schedule(Schedule { sequence: 0, horizon: 10, commands: heapless::Vec::new() }));
+    board.run(5);
+    let said = board.said();
     assert_eq!(trips(&said), [Trip::WrongRole]);
-    assert!(samples(said).is_empty() && bench.enable.get());
+    assert!(samples(said).is_empty() && board.enable.get());
 }
 
 #[test]
 fn a_motion_with_a_number_that_is_none_trips_and_is_not_followed() {
-    let mut bench = whole_loop();
-    bench.start(RunMode::Lockstep, 1, 1000);
+    let mut board = whole_loop();
+    board.start(RunMode::Lockstep, 1, 1000);
     let commands = [Knot { load_torque: f32::NAN, ..knot(3) }].into_iter().collect();
-    bench.send(&ToBoard::Course(Schedule { sequence: 0, horizon: 10, commands }));
-    bench.run(20);
-    let said = bench.said();
+    board.send(&ToBoard::Trajectory(Schedule { sequence: 0, horizon: 10, commands }));
+    board.run(20);
+    let said = board.said();
     assert_eq!(trips(&said), [Trip::BadCommand { tick: 3 }]);
-    assert!(samples(said).is_empty() && !bench.enable.get());
+    assert!(samples(said).is_empty() && !board.enable.get());
 }

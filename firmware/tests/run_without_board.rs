@@ -2,13 +2,13 @@
 //! to its safe state when it must. Timing on a real processor is for the emulator tests.
 
 #[allow(dead_code, reason = "shared with the host's tests of boards")]
-mod bench;
+mod test_board;
 
-use bench::{Bench, PERIOD};
 use firmware::tables::{PLANETS, TABLES};
 use link::messages::{COMMANDS_PER_SCHEDULE, FromBoard, RunMode, Sample, Statistics, ToBoard, Trip};
 use model_core::gears::{Model, Torques};
 use model_core::numbers::digest;
+use test_board::{PERIOD, TestBoard};
 
 fn samples(said: &[FromBoard]) -> Vec<Sample> {
     let batches = said.iter().filter_map(|message| match message {
@@ -39,10 +39,10 @@ fn accepted(said: &[FromBoard]) -> Vec<u16> {
     said.iter().filter_map(sequence).collect()
 }
 
-fn statistics(bench: &mut Bench, reset: bool) -> Statistics {
-    bench.send(&ToBoard::Statistics { reset });
-    bench.run(2);
-    let statistics = bench.said().into_iter().find_map(|message| match message {
+fn statistics(board: &mut TestBoard, reset: bool) -> Statistics {
+    board.send(&ToBoard::Statistics { reset });
+    board.run(2);
+    let statistics = board.said().into_iter().find_map(|message| match message {
         FromBoard::Statistics(statistics) => Some(statistics),
         _ => None,
     });
@@ -52,11 +52,11 @@ fn statistics(bench: &mut Bench, reset: bool) -> Statistics {
 #[test]
 fn a_lockstep_run_equals_the_model_bit_for_bit_and_loses_nothing() {
     let torques = [(0, 0.2, 0.0), (100, -0.3, 1.0), (250, 0.1, -1.0)];
-    let mut bench = Bench::new();
-    bench.start(RunMode::Lockstep, 7, 1);
-    bench.schedule(0, 400, &torques);
-    bench.run(1000);
-    let samples = samples(&bench.said());
+    let mut board = TestBoard::new();
+    board.start(RunMode::Lockstep, 7, 1);
+    board.schedule(0, 400, &torques);
+    board.run(1000);
+    let samples = samples(&board.said());
     assert_eq!(samples.iter().map(|sample| sample.tick).collect::<Vec<_>>(), (7..=400).step_by(7).collect::<Vec<_>>());
 
     let mut twin = Model::<f32, PLANETS>::new(&TABLES);
@@ -72,68 +72,68 @@ fn a_lockstep_run_equals_the_model_bit_for_bit_and_loses_nothing() {
             assert_eq!(sample.gap.to_bits(), twin.outputs().gap.to_bits());
         }
     }
-    assert_eq!(statistics(&mut bench, false).ticks, 400);
+    assert_eq!(statistics(&mut board, false).ticks, 400);
 }
 
 #[test]
 fn a_host_that_does_not_read_makes_lockstep_wait_and_costs_no_sample() {
-    let mut bench = Bench::new();
-    bench.start(RunMode::Lockstep, 1, 1);
-    bench.schedule(0, 500, &[(0, 0.2, 0.0)]);
-    bench.settle();
-    bench.wire.borrow_mut().blocked = true;
-    bench.run(1000);
-    bench.wire.borrow_mut().blocked = false;
-    bench.run(1000);
-    assert_eq!(samples(&bench.said()).len(), 500);
-    let statistics = statistics(&mut bench, false);
+    let mut board = TestBoard::new();
+    board.start(RunMode::Lockstep, 1, 1);
+    board.schedule(0, 500, &[(0, 0.2, 0.0)]);
+    board.settle();
+    board.wire.borrow_mut().blocked = true;
+    board.run(1000);
+    board.wire.borrow_mut().blocked = false;
+    board.run(1000);
+    assert_eq!(samples(&board.said()).len(), 500);
+    let statistics = statistics(&mut board, false);
     assert!(statistics.waited > 0);
     assert_eq!((statistics.ticks, statistics.lost_samples), (500, 0));
 }
 
 #[test]
 fn a_host_that_does_not_read_costs_counted_samples_in_realtime() {
-    let mut bench = Bench::new();
-    bench.start(RunMode::Realtime, 1, 1000);
-    bench.schedule(0, 500, &[]);
-    bench.settle();
-    bench.wire.borrow_mut().blocked = true;
-    bench.run(500);
-    bench.wire.borrow_mut().blocked = false;
-    let statistics = statistics(&mut bench, false);
+    let mut board = TestBoard::new();
+    board.start(RunMode::Realtime, 1, 1000);
+    board.schedule(0, 500, &[]);
+    board.settle();
+    board.wire.borrow_mut().blocked = true;
+    board.run(500);
+    board.wire.borrow_mut().blocked = false;
+    let statistics = statistics(&mut board, false);
     assert!(statistics.lost_samples > 0);
     assert!(statistics.ticks >= 500);
 }
 
 #[test]
 fn a_realtime_run_without_commands_ends_in_the_safe_state() {
-    let mut bench = Bench::new();
-    bench.start(RunMode::Realtime, 10, 50);
-    bench.schedule(0, 100, &[(0, 0.2, 0.0)]);
-    bench.run(120);
-    assert!(bench.enable.get());
-    bench.run(100);
-    assert!(!bench.enable.get());
-    assert_eq!(trips(&bench.said()), [Trip::CommandLoss { tick: 150 }]);
-    assert_eq!(statistics(&mut bench, false).starved, 50);
+    let mut board = TestBoard::new();
+    board.start(RunMode::Realtime, 10, 50);
+    board.schedule(0, 100, &[(0, 0.2, 0.0)]);
+    board.run(120);
+    assert!(board.enable.get());
+    board.run(100);
+    assert!(!board.enable.get());
+    assert_eq!(trips(&board.said()), [Trip::CommandLoss { tick: 150 }]);
+    assert_eq!(statistics(&mut board, false).starved, 50);
 }
 
 #[test]
 fn a_schedule_that_never_arrived_is_counted_and_lockstep_waits_for_it() {
-    let mut bench = Bench::new();
-    bench.start(RunMode::Lockstep, 10, 1);
-    bench.schedule(0, 100, &[(0, 0.2, 0.0)]);
-    bench.schedule(2, 300, &[(200, 0.1, 0.0)]);
-    bench.run(500);
-    assert_eq!(accepted(&bench.said()), [0]);
-    let counted = statistics(&mut bench, false);
+    let mut board = TestBoard::new();
+    board.start(RunMode::Lockstep, 10, 1);
+    board.schedule(0, 100, &[(0, 0.2, 0.0)]);
+    board.schedule(2, 300, &[(200, 0.1, 0.0)]);
+    board.run(500);
+    assert_eq!(accepted(&board.said()), [0]);
+    let counted = statistics(&mut board, false);
     assert_eq!((counted.ticks, counted.lost_schedules), (100, 1));
-    bench.schedule(1, 200, &[(100, 0.1, 0.0)]);
-    bench.schedule(2, 300, &[(200, 0.1, 0.0)]);
-    bench.schedule(1, 200, &[(100, 0.1, 0.0)]);
-    bench.run(500);
-    assert_eq!(accepted(&bench.said()), [1, 2, 1]);
-    assert_eq!(statistics(&mut bench, false).ticks, 300);
+    board.schedule(1, 200, &[(100, 0.1, 0.0)]);
+    board.schedule(2, 300, &[(200, 0.1, 0.0)]);
+    board.schedule(1, 200, &[(100, 0.1, 0.0)]);
+    board.run(500);
+    assert_eq!(accepted(&board.said()), [1, 2, 1]);
+    assert_eq!(statistics(&mut board, false).ticks, 300);
 }
 
 #[test]
@@ -142,12 +142,12 @@ fn a_full_queue_makes_the_host_wait_in_lockstep_and_trips_in_realtime() {
         (0..COMMANDS_PER_SCHEDULE as u32).map(|i| ((schedule * 24 + i) * 10, 0.1, 0.0)).collect()
     };
     for mode in [RunMode::Lockstep, RunMode::Realtime] {
-        let mut bench = Bench::new();
-        bench.start(mode, 100, 1000);
-        (0..12).for_each(|i| bench.schedule(i, (u32::from(i) + 1) * 240, &commands(i.into())));
-        bench.settle();
-        bench.run(3000);
-        let said = bench.said();
+        let mut board = TestBoard::new();
+        board.start(mode, 100, 1000);
+        (0..12).for_each(|i| board.schedule(i, (u32::from(i) + 1) * 240, &commands(i.into())));
+        board.settle();
+        board.run(3000);
+        let said = board.said();
         match mode {
             RunMode::Lockstep => assert_eq!(accepted(&said), (0..12).collect::<Vec<_>>()),
             RunMode::Realtime => assert_eq!(trips(&said)[0], Trip::QueueFull),
@@ -165,148 +165,148 @@ fn bad_commands_trip_and_are_not_applied() {
         (vec![(100, 0.1, 0.0)], Trip::LateCommand { tick: 100 }),
     ];
     for (commands, fault) in cases {
-        let mut bench = Bench::new();
-        bench.start(RunMode::Lockstep, 1, 1);
-        bench.schedule(0, 100, &commands);
-        bench.run(200);
-        let said = bench.said();
+        let mut board = TestBoard::new();
+        board.start(RunMode::Lockstep, 1, 1);
+        board.schedule(0, 100, &commands);
+        board.run(200);
+        let said = board.said();
         assert_eq!(trips(&said), [fault]);
-        assert!(samples(&said).is_empty() && !bench.enable.get());
+        assert!(samples(&said).is_empty() && !board.enable.get());
     }
 }
 
 #[test]
 fn a_fault_lasts_until_a_reset() {
-    let mut bench = Bench::new();
-    bench.schedule(0, 10, &[]);
-    bench.run(2);
-    assert_eq!(trips(&bench.said()), [Trip::NotRunning]);
-    bench.start(RunMode::Lockstep, 1, 1);
-    bench.schedule(0, 10, &[(0, f32::NAN, 0.0)]);
-    bench.schedule(0, 10, &[]);
-    bench.run(10);
-    assert_eq!(trips(&bench.said()), [Trip::BadCommand { tick: 0 }, Trip::NotRunning]);
-    bench.start(RunMode::Lockstep, 1, 1);
-    bench.schedule(0, 10, &[]);
-    bench.run(20);
-    assert_eq!(samples(&bench.said()).len(), 10);
+    let mut board = TestBoard::new();
+    board.schedule(0, 10, &[]);
+    board.run(2);
+    assert_eq!(trips(&board.said()), [Trip::NotRunning]);
+    board.start(RunMode::Lockstep, 1, 1);
+    board.schedule(0, 10, &[(0, f32::NAN, 0.0)]);
+    board.schedule(0, 10, &[]);
+    board.run(10);
+    assert_eq!(trips(&board.said()), [Trip::BadCommand { tick: 0 }, Trip::NotRunning]);
+    board.start(RunMode::Lockstep, 1, 1);
+    board.schedule(0, 10, &[]);
+    board.run(20);
+    assert_eq!(samples(&board.said()).len(), 10);
 }
 
 #[test]
 fn settings_that_cannot_be_run_with_are_refused() {
     for (decimation, command_timeout) in [(0, 1), (1, 0)] {
-        let mut bench = Bench::new();
+        let mut board = TestBoard::new();
         let settings =
             link::messages::RunSettings { mode: RunMode::Realtime, decimation, command_timeout, from_memory: false };
-        bench.send(&ToBoard::Reset(settings));
-        bench.run(3);
-        assert_eq!(trips(&bench.said()), [Trip::BadSettings]);
-        assert!(!bench.enable.get());
+        board.send(&ToBoard::Reset(settings));
+        board.run(3);
+        assert_eq!(trips(&board.said()), [Trip::BadSettings]);
+        assert!(!board.enable.get());
     }
 }
 
 #[test]
 fn stop_switches_the_output_off_after_every_sample_is_out() {
-    let mut bench = Bench::new();
-    bench.start(RunMode::Lockstep, 1, 1);
-    assert!(bench.enable.get());
-    bench.schedule(0, 9, &[]);
-    bench.run(20);
-    bench.send(&ToBoard::Stop);
-    bench.run(3);
-    assert!(!bench.enable.get());
-    assert_eq!(samples(&bench.said()).len(), 9);
+    let mut board = TestBoard::new();
+    board.start(RunMode::Lockstep, 1, 1);
+    assert!(board.enable.get());
+    board.schedule(0, 9, &[]);
+    board.run(20);
+    board.send(&ToBoard::Stop);
+    board.run(3);
+    assert!(!board.enable.get());
+    assert_eq!(samples(&board.said()).len(), 9);
 }
 
 #[test]
 fn tables_that_do_not_match_their_digest_are_never_run() {
     let mut tables = TABLES.clone();
     tables.tick_rate += 1;
-    let mut bench = Bench::with_tables(Box::leak(Box::new(tables)));
-    bench.send(&ToBoard::Reset(link::messages::RunSettings {
+    let mut board = TestBoard::with_tables(Box::leak(Box::new(tables)));
+    board.send(&ToBoard::Reset(link::messages::RunSettings {
         mode: RunMode::Lockstep,
         decimation: 1,
         command_timeout: 1,
         from_memory: false,
     }));
-    bench.run(3);
-    assert_eq!(trips(&bench.said()), [Trip::BadDigest]);
-    assert!(!bench.enable.get());
+    board.run(3);
+    assert_eq!(trips(&board.said()), [Trip::BadDigest]);
+    assert!(!board.enable.get());
 }
 
 #[test]
 fn ticks_that_outlast_their_period_are_counted_and_the_counts_can_be_cleared() {
-    let mut bench = Bench::new();
-    bench.start(RunMode::Lockstep, 1000, 1);
-    bench.schedule(0, 10, &[]);
-    bench.timing = (30, PERIOD);
-    bench.run(20);
-    let before = statistics(&mut bench, true);
+    let mut board = TestBoard::new();
+    board.start(RunMode::Lockstep, 1000, 1);
+    board.schedule(0, 10, &[]);
+    board.timing = (30, PERIOD);
+    board.run(20);
+    let before = statistics(&mut board, true);
     assert!(before.overruns >= 10, "{}", before.overruns);
     assert_eq!((before.lateness.min, before.computation.max), (20, PERIOD));
-    bench.timing = (25, 100);
-    bench.run(2);
-    statistics(&mut bench, true);
-    bench.run(5);
-    let after = statistics(&mut bench, false);
+    board.timing = (25, 100);
+    board.run(2);
+    statistics(&mut board, true);
+    board.run(5);
+    let after = statistics(&mut board, false);
     assert_eq!((after.overruns, after.lateness.max, after.ticks), (0, 25, 0));
 }
 
 #[test]
 fn garbage_on_the_line_is_counted_and_does_no_harm() {
-    let mut bench = Bench::new();
-    bench.start(RunMode::Lockstep, 1, 1);
-    bench.send_bytes(&[1, 2, 3, 0, 9, 9, 0]);
-    bench.schedule(0, 5, &[]);
-    bench.run(10);
-    assert_eq!(samples(&bench.said()).len(), 5);
-    assert_eq!(statistics(&mut bench, false).bad_frames, 2);
+    let mut board = TestBoard::new();
+    board.start(RunMode::Lockstep, 1, 1);
+    board.send_bytes(&[1, 2, 3, 0, 9, 9, 0]);
+    board.schedule(0, 5, &[]);
+    board.run(10);
+    assert_eq!(samples(&board.said()).len(), 5);
+    assert_eq!(statistics(&mut board, false).bad_frames, 2);
 }
 
 #[test]
 fn the_board_says_who_it_is_in_every_state() {
-    let mut bench = Bench::new();
+    let mut board = TestBoard::new();
     for _ in 0..3 {
-        bench.send(&ToBoard::Hello { protocol: 99 });
-        bench.settle();
-        match &bench.said()[..] {
+        board.send(&ToBoard::Hello { protocol: 99 });
+        board.settle();
+        match &board.said()[..] {
             [FromBoard::Hello(hello)] => assert_eq!((hello.joint_digest, hello.digest_good), (TABLES.digest, true)),
             other => panic!("{other:?}"),
         }
-        bench.schedule(0, 5, &[]);
-        bench.run(2);
-        bench.said();
+        board.schedule(0, 5, &[]);
+        board.run(2);
+        board.said();
     }
 }
 
 #[test]
 fn a_run_after_a_reset_equals_the_first() {
-    let mut bench = Bench::new();
+    let mut board = TestBoard::new();
     let mut runs = Vec::new();
     for _ in 0..2 {
-        bench.start(RunMode::Lockstep, 3, 1);
-        bench.schedule(0, 90, &[(0, 0.2, 0.0), (40, -0.2, 0.5)]);
-        bench.run(100);
-        runs.push(samples(&bench.said()).iter().map(|sample| (sample.tick, sample.state_digest)).collect::<Vec<_>>());
-        bench.send_bytes(&[1, 2, 3, 0]);
-        bench.run(2);
+        board.start(RunMode::Lockstep, 3, 1);
+        board.schedule(0, 90, &[(0, 0.2, 0.0), (40, -0.2, 0.5)]);
+        board.run(100);
+        runs.push(samples(&board.said()).iter().map(|sample| (sample.tick, sample.state_digest)).collect::<Vec<_>>());
+        board.send_bytes(&[1, 2, 3, 0]);
+        board.run(2);
     }
     assert_eq!(runs[0].len(), 30);
     assert_eq!(runs[0], runs[1]);
-    bench.start(RunMode::Lockstep, 3, 1);
-    let fresh = statistics(&mut bench, false);
+    board.start(RunMode::Lockstep, 3, 1);
+    let fresh = statistics(&mut board, false);
     assert_eq!((fresh.ticks, fresh.bad_frames), (0, 0));
 }
 
 #[test]
 fn a_fault_is_told_after_the_last_sample_of_its_run() {
-    let mut bench = Bench::new();
-    bench.start(RunMode::Realtime, 1, 8);
-    bench.schedule(0, 2, &[]);
-    bench.settle();
-    (0..12).for_each(|_| bench.tick());
-    bench.settle();
-    let said = bench.said();
+    let mut board = TestBoard::new();
+    board.start(RunMode::Realtime, 1, 8);
+    board.schedule(0, 2, &[]);
+    board.settle();
+    (0..12).for_each(|_| board.tick());
+    board.settle();
+    let said = board.said();
     assert_eq!(samples(&said).len(), 10);
     assert_eq!(said.last(), Some(&FromBoard::Tripped(Trip::CommandLoss { tick: 10 })));
 }

@@ -1,5 +1,5 @@
-//! What passes between a motor controller and observer with compensation: samples and set-points one way, in the wire's own
-//! form; the other way is in `answer`. Times are ticks of the samples' clock; every field is SI.
+//! Messages between a motor controller and observer with compensation, in the wire's own form: samples and set-points here,
+//! the answers in `answer`. Times are ticks of the samples' clock; every field is SI.
 
 mod answer;
 
@@ -26,7 +26,7 @@ pub struct Exchange {
     pub torque: f32,
     /// What is asked for.
     pub set_point: SetPoint,
-    /// The answer shall bring all that the observer says; its torque and digest come in any case.
+    /// The answer shall contain all estimates; torque and digest come in any case.
     pub wants_estimates: bool,
 }
 
@@ -40,7 +40,7 @@ pub enum SetPoint {
         /// Ahead by the compensation's lead.
         ahead: Option<Motion>,
     },
-    /// Be a spring and damper.
+    /// Act as a spring and damper.
     Impedance(Impedance),
     /// Probe the width: the load is held.
     Probe,
@@ -96,7 +96,7 @@ impl Exchange {
         }
     }
 
-    /// The same for who has the estimates from elsewhere: most of an answer's bytes stay off the line.
+    /// The same without estimates in the answer, which are most of its bytes.
     pub fn without_estimates(self) -> Self {
         Self { wants_estimates: false, ..self }
     }

@@ -1,5 +1,5 @@
 //! Messages on a byte stream: postcard, CRC-32 (ISO-HDLC, little-endian), COBS, a zero byte. A receiver that starts in
-//! mid-frame, or meets garbage, is in step again after the next zero byte; what it had to drop, it counts.
+//! mid-frame, or meets garbage, is synchronised again after the next zero byte; it counts the frames that it drops.
 
 use crc::{CRC_32_ISO_HDLC, Crc, Table};
 use heapless::Vec;

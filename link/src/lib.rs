@@ -1,5 +1,5 @@
 #![cfg_attr(not(test), no_std)]
-//! What a board and its host say to each other. `messages` holds the words, with those of the roles that control in
+//! The protocol between a board and its host. `messages` defines the messages, with those of the roles that control in
 //! `controller` and `virtual_joint`; `framing` puts them on a byte stream: postcard, then CRC-32, then COBS, each frame
 //! ended by a zero byte.
 

@@ -1,6 +1,6 @@
 //! The messages. Every physical field is SI; times are ticks of the board's own fixed step or of its timer, never
-//! wall-clock time. Sequence numbers wrap and rise by one, so that a gap can be counted. What a board says of itself, of its
-//! motion, its time and its memory is in files of its own.
+//! wall-clock time. Sequence numbers rise by one and wrap, so that a gap can be counted. Identity, motion, timing statistics
+//! and memory have files of their own.
 
 mod identity;
 mod memory;
@@ -9,7 +9,7 @@ mod statistics;
 
 use heapless::Vec;
 pub use identity::{Clock, Hello, Role};
-pub use memory::{Kept, MEMORY_PARTS, MemoryPart, MemoryWish, PART_BYTES, Remembered};
+pub use memory::{MEMORY_PARTS, MemoryOutcome, MemoryPart, MemoryRequest, MemoryState, PART_BYTES};
 use model_core::virtual_joint::fault::{Fault, FixedPoint};
 pub use motion::{MAX_MESHES, SAMPLES_PER_BATCH, Sample, SampleBatch};
 use serde::{Deserialize, Serialize};
@@ -27,7 +27,7 @@ pub const LOG_BYTES: usize = 96;
 #[allow(clippy::large_enum_variant, reason = "a board has no allocator to box with")]
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum ToBoard {
-    /// Who are you? Answered by [`FromBoard::Hello`] in every state, also to an unknown protocol version.
+    /// Asks for the board's identity. Answered by [`FromBoard::Hello`] in every state, also to an unknown protocol version.
     Hello {
         /// The host's [`crate::PROTOCOL_VERSION`].
         protocol: u16,
@@ -45,16 +45,16 @@ pub enum ToBoard {
     Stop,
     /// Samples and set-points, for the role that observes.
     Exchanges(Schedule<Exchange, EXCHANGES_PER_SCHEDULE>),
-    /// Motion to come, for the role that runs the whole loop.
-    Course(Schedule<Knot, KNOTS_PER_SCHEDULE>),
-    /// About the memory of what the controller has learnt: between runs only.
-    Memory(MemoryWish),
+    /// The trajectory to come, for the role that runs the whole loop.
+    Trajectory(Schedule<Knot, KNOTS_PER_SCHEDULE>),
+    /// A request about the memory of what the controller has learnt: between runs only.
+    Memory(MemoryRequest),
     /// A fault between the virtual joint and its controller, for the same role, between a reset and the first motion.
     /// Answered by [`FromBoard::FaultTaken`].
     Fault(Fault<FixedPoint<f32>>),
 }
 
-/// How a run goes.
+/// Settings of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct RunSettings {
     /// Who waits for whom.
@@ -63,8 +63,7 @@ pub struct RunSettings {
     pub decimation: u16,
     /// Safe state after so many ticks without a schedule (realtime only); 0 is refused.
     pub command_timeout: u32,
-    /// The controller goes on from what the board keeps of earlier runs, if it keeps anything good; else it begins as it was
-    /// designed.
+    /// The controller begins from the memory that the board keeps of earlier runs, if that is valid; else as it was designed.
     pub from_memory: bool,
 }
 
@@ -109,27 +108,27 @@ pub enum FromBoard {
     Accepted(Accepted),
     /// Measured motion.
     Samples(SampleBatch),
-    /// How the board's time was spent.
+    /// Timing statistics.
     Statistics(Statistics),
     /// The board has gone to, or is in, its safe state.
     Tripped(Trip),
     /// Encoded defmt bytes.
     Log(Log),
-    /// What observer and compensation make of an exchange.
+    /// The outputs of observer and compensation for an exchange.
     Answer(Answered),
-    /// What joint and controller did.
+    /// Motion of joint and controller in the whole loop.
     Loop(LoopBatch),
-    /// What became of what was to be kept, or why nothing was done about the memory.
-    Kept(Kept),
-    /// Whether a fault was taken: there is room for some, before the first period only, in one role only.
+    /// Outcome of a request about the memory, or why nothing was done.
+    MemoryOutcome(MemoryOutcome),
+    /// Whether a fault was accepted: a limited number, before the first period only, in the role `loop` only.
     FaultTaken {
         /// It was.
         taken: bool,
     },
-    /// What the page of flash holds, whatever that is.
+    /// A part of what the flash page holds, valid or not.
     Memory(MemoryPart),
-    /// What the controller makes of a memory that the host gave it.
-    Judged(Remembered),
+    /// Validity of a memory that the host has loaded.
+    MemoryChecked(MemoryState),
 }
 
 /// A schedule was taken.

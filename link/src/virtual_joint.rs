@@ -1,8 +1,8 @@
-//! What passes between a host and a board that runs the whole loop: the motion asked for as polynomials over stretches of
-//! time, so that a slow line can carry it, and what joint and controller did.
+//! Messages between a host and a board that runs the whole loop: the trajectory as polynomials over segments of time, so that
+//! a slow line can carry it, and samples of joint and controller.
 
 use heapless::Vec;
-use model_core::controller::course::{Demand, POWERS, Stretch};
+use model_core::controller::trajectory::{POWERS, Segment, Trajectory};
 use serde::{Deserialize, Serialize};
 
 use crate::controller::Impedance;
@@ -12,57 +12,57 @@ pub const KNOTS_PER_SCHEDULE: usize = 6;
 /// Most samples in one [`LoopBatch`].
 pub const LOOP_SAMPLES_PER_BATCH: usize = 4;
 
-/// What is asked for from a tick on, until the next knot.
+/// The trajectory from a tick on, until the next knot.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Knot {
     /// First control period that it is for.
     pub tick: u32,
     /// Torque that brakes the link, beside its friction and weight [N m].
     pub load_torque: f32,
-    /// What the controller is asked for.
-    pub demand: WireDemand,
+    /// The set-points of the segment.
+    pub trajectory: WireTrajectory,
 }
 
-/// Whole turns and the powers of a motion over a stretch of time.
-pub type WireStretch = (i32, [f32; POWERS]);
+/// Whole turns and the powers of a motion over a segment of time.
+pub type WireSegment = (i32, [f32; POWERS]);
 
-/// What is asked for over a stretch of time.
+/// Set-points over a segment of time.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub enum WireDemand {
+pub enum WireTrajectory {
     /// Follow a motion: now, and ahead by the compensation's lead.
-    Position(WireStretch, Option<WireStretch>),
-    /// Be a spring and damper.
+    Position(WireSegment, Option<WireSegment>),
+    /// Act as a spring and damper.
     Impedance(Impedance),
 }
 
-impl From<&Demand<f32>> for WireDemand {
-    fn from(demand: &Demand<f32>) -> Self {
-        let stretch = |of: &Stretch<f32>| (of.turns, of.powers);
-        match demand {
-            Demand::Position { now, ahead } => Self::Position(stretch(now), ahead.as_ref().map(stretch)),
-            Demand::Impedance(point) => Self::Impedance((*point).into()),
+impl From<&Trajectory<f32>> for WireTrajectory {
+    fn from(trajectory: &Trajectory<f32>) -> Self {
+        let segment = |of: &Segment<f32>| (of.turns, of.powers);
+        match trajectory {
+            Trajectory::Position { now, ahead } => Self::Position(segment(now), ahead.as_ref().map(segment)),
+            Trajectory::Impedance(point) => Self::Impedance((*point).into()),
         }
     }
 }
 
-impl From<WireDemand> for Demand<f32> {
-    fn from(wire: WireDemand) -> Self {
-        let stretch = |(turns, powers)| Stretch { turns, powers };
+impl From<WireTrajectory> for Trajectory<f32> {
+    fn from(wire: WireTrajectory) -> Self {
+        let segment = |(turns, powers)| Segment { turns, powers };
         match wire {
-            WireDemand::Position(now, ahead) => Self::Position { now: stretch(now), ahead: ahead.map(stretch) },
-            WireDemand::Impedance(point) => Self::Impedance(point.into()),
+            WireTrajectory::Position(now, ahead) => Self::Position { now: segment(now), ahead: ahead.map(segment) },
+            WireTrajectory::Impedance(point) => Self::Impedance(point.into()),
         }
     }
 }
 
 impl Knot {
-    /// Nothing in it is infinite or no number.
+    /// Every number in it is finite.
     pub fn is_finite(&self) -> bool {
-        let stretch = |(_, powers): &WireStretch| powers.iter().all(|power| power.is_finite());
+        let segment = |(_, powers): &WireSegment| powers.iter().all(|power| power.is_finite());
         self.load_torque.is_finite()
-            && match &self.demand {
-                WireDemand::Position(now, ahead) => stretch(now) && ahead.as_ref().is_none_or(stretch),
-                WireDemand::Impedance(point) => {
+            && match &self.trajectory {
+                WireTrajectory::Position(now, ahead) => segment(now) && ahead.as_ref().is_none_or(segment),
+                WireTrajectory::Impedance(point) => {
                     let Impedance { position, speed, torque, stiffness, damping } = *point;
                     [position.1, speed, torque, stiffness, damping].iter().all(|value| value.is_finite())
                 }
@@ -81,15 +81,15 @@ pub struct LoopSample {
     pub carrier: (i32, u32),
     /// Link angle less that [rad].
     pub link_offset: f32,
-    /// Gap coordinate as it is, and as the observer has it [m].
+    /// Gap coordinate, true and estimated [m].
     pub gaps: (f32, f32),
-    /// Whether the observer stands by it.
+    /// Whether the estimate is valid.
     pub gap_valid: bool,
     /// Half-backlash as learnt [m].
     pub half_backlash: f32,
     /// Torque that was commanded [N m].
     pub torque: f32,
-    /// What brakes the link, as it is and as the observer has it [N m].
+    /// Torque that brakes the link, true and estimated [N m].
     pub loads: (f32, f32),
     /// Share of the compensation.
     pub trust: f32,

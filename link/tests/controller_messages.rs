@@ -4,12 +4,14 @@
 use link::controller::{Answered, EXCHANGES_PER_SCHEDULE, Exchange, WireEstimates, WireProbed};
 use link::framing::{Receiver, encode};
 use link::messages::{FromBoard, Schedule, ToBoard};
-use link::virtual_joint::{KNOTS_PER_SCHEDULE, Knot, LOOP_SAMPLES_PER_BATCH, LoopBatch, LoopSample, WireDemand};
+use link::virtual_joint::{KNOTS_PER_SCHEDULE, Knot, LOOP_SAMPLES_PER_BATCH, LoopBatch, LoopSample, WireTrajectory};
 use model_core::compensation::{Command, ImpedancePoint, Motion, Position, Shaped, Stage};
 use model_core::controller::Answer;
-use model_core::controller::course::{Demand, Stretch};
+use model_core::controller::trajectory::{Segment, Trajectory};
 use model_core::gears::Flank;
-use model_core::observer::{Doubt, Estimate, Estimates, Notices, Progress, Reading, Refusal, Samples, Shaft, Source};
+use model_core::observer::{
+    Estimate, Estimates, Notices, OutputFault, Progress, Reading, Refusal, Samples, Shaft, Source,
+};
 use parameters::ContactState;
 
 const MOTION: Motion<f32> =
@@ -31,8 +33,8 @@ fn samples() -> Samples<f32> {
 fn estimates() -> Estimates<f32> {
     let estimate = |value: f32| Estimate { value, variance: value * value, valid: value > 3.0 };
     Estimates {
-        source: Source::MotorOnly(Doubt::Frozen),
-        notices: Notices { torque_unknown: true, out_of_time: false, motor_doubted: true, motor_jumped: false },
+        source: Source::MotorOnly(OutputFault::Frozen),
+        notices: Notices { torque_unknown: true, out_of_time: false, motor_implausible: true, motor_jumped: false },
         gap: estimate(1.0),
         gap_rate: 2.0,
         flank_shift: 2.25,
@@ -98,7 +100,7 @@ fn answers_come_out_as_they_went_in() {
             assert_eq!(wire.answer(), Some(answer));
         }
     }
-    use Doubt::*;
+    use OutputFault::*;
     let doubts = [Absent, Silent, Frozen, OutOfRange].map(Source::MotorOnly);
     for source in doubts.into_iter().chain([Source::Both, Source::Nothing]) {
         let one = Estimates { source, ..estimates() };
@@ -108,29 +110,29 @@ fn answers_come_out_as_they_went_in() {
 
 #[test]
 fn motions_come_out_as_they_went_in() {
-    let stretch = Stretch { turns: -3, powers: [0.1, 0.2, 0.3, 0.4, 0.5, 0.6] };
-    let demands = [
-        Demand::Position { now: stretch, ahead: None },
-        Demand::Position { now: stretch, ahead: Some(Stretch { turns: 4, ..stretch }) },
-        Demand::Impedance(IMPEDANCE),
+    let segment = Segment { turns: -3, powers: [0.1, 0.2, 0.3, 0.4, 0.5, 0.6] };
+    let trajectories = [
+        Trajectory::Position { now: segment, ahead: None },
+        Trajectory::Position { now: segment, ahead: Some(Segment { turns: 4, ..segment }) },
+        Trajectory::Impedance(IMPEDANCE),
     ];
-    for demand in demands {
-        assert_eq!(Demand::from(WireDemand::from(&demand)), demand);
+    for trajectory in trajectories {
+        assert_eq!(Trajectory::from(WireTrajectory::from(&trajectory)), trajectory);
     }
 }
 
 #[test]
 fn a_knot_with_a_number_that_is_none_is_told() {
-    let stretch = Stretch { turns: 0, powers: [0.0; 6] };
-    let good = Knot { tick: 0, load_torque: 0.0, demand: WireDemand::Position((0, stretch.powers), None) };
+    let segment = Segment { turns: 0, powers: [0.0; 6] };
+    let good = Knot { tick: 0, load_torque: 0.0, trajectory: WireTrajectory::Position((0, segment.powers), None) };
     assert!(good.is_finite());
     assert!(!Knot { load_torque: f32::NAN, ..good }.is_finite());
-    let mut powers = stretch.powers;
+    let mut powers = segment.powers;
     powers[5] = f32::INFINITY;
-    assert!(!Knot { demand: WireDemand::Position((0, powers), None), ..good }.is_finite());
-    assert!(!Knot { demand: WireDemand::Position((0, stretch.powers), Some((0, powers))), ..good }.is_finite());
+    assert!(!Knot { trajectory: WireTrajectory::Position((0, powers), None), ..good }.is_finite());
+    assert!(!Knot { trajectory: WireTrajectory::Position((0, segment.powers), Some((0, powers))), ..good }.is_finite());
     let soft = ImpedancePoint { damping: f32::NAN, ..IMPEDANCE };
-    assert!(!Knot { demand: WireDemand::Impedance(soft.into()), ..good }.is_finite());
+    assert!(!Knot { trajectory: WireTrajectory::Impedance(soft.into()), ..good }.is_finite());
 }
 
 #[test]
@@ -142,10 +144,10 @@ fn the_longest_forms_fit_into_a_frame() {
     let commands = std::iter::repeat_n(exchange, EXCHANGES_PER_SCHEDULE).collect();
     let exchanges = ToBoard::Exchanges(Schedule { sequence: u16::MAX, horizon: u32::MAX, commands });
     let far = (i32::MIN, [f32::MAX; 6]);
-    let knot = Knot { tick: u32::MAX, load_torque: 1.0, demand: WireDemand::Position(far, Some(far)) };
+    let knot = Knot { tick: u32::MAX, load_torque: 1.0, trajectory: WireTrajectory::Position(far, Some(far)) };
     let commands = std::iter::repeat_n(knot, KNOTS_PER_SCHEDULE).collect();
-    let course = ToBoard::Course(Schedule { sequence: u16::MAX, horizon: u32::MAX, commands });
-    for message in [exchanges, course] {
+    let trajectory = ToBoard::Trajectory(Schedule { sequence: u16::MAX, horizon: u32::MAX, commands });
+    for message in [exchanges, trajectory] {
         let mut receiver = Receiver::new();
         assert_eq!(encode(&message).unwrap().iter().find_map(|&byte| receiver.push(byte)), Some(message));
     }

@@ -1,6 +1,6 @@
 //! Precise integration against closed forms that share nothing with it.
 
-use model_core::gears::design::exponential::{Plan, REMAINDER, exponential_minus_identity, flow};
+use model_core::gears::design::exponential::{REMAINDER, ScalingPlan, exponential_minus_identity, flow};
 use nalgebra::DMatrix;
 
 fn square(rows: &[f64]) -> DMatrix<f64> {
@@ -63,7 +63,7 @@ fn input_integrals_are_those_of_powers_of_time() {
 #[test]
 fn the_plan_neither_over_nor_undershoots() {
     for norm in [0.0, 1e-6, 0.125, 0.1251, 1.0, 7.9, 1e3] {
-        let plan = Plan::new(norm);
+        let plan = ScalingPlan::new(norm);
         let start = norm / f64::from(2_u32.pow(plan.doublings));
         assert!(start <= 0.125, "series starts at {start}");
         assert!(plan.doublings == 0 || start > 0.0625, "{} doublings for {norm}", plan.doublings);

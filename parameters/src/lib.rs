@@ -1,6 +1,6 @@
 #![no_std]
 //! What a planetary joint and its surroundings are, as plain data in SI: every number that a data sheet or a
-//! measurement gives, the limits within which it can be one, and nothing that follows from it.
+//! measurement gives and the limits of each, and nothing that follows from them.
 //!
 //! The core and the reference that judges it are both built from this data, each by its own laws: coefficients of the
 //! stiffness wave, phases from teeth, equivalent masses, damping, dead zones and gear losses stand on either side, so

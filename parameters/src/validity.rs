@@ -1,5 +1,5 @@
-//! Whether parameters can be a joint's at all: lists of the right length, physical signs, finite numbers. Whether the
-//! geometry is coherent is judged where joint files are read; what only laws can tell, where these are.
+//! Validity of parameters: lists of the right length, physical signs, finite numbers. Coherence of the geometry is checked
+//! where joint files are read, limits that follow from the gears' laws where these are.
 
 use core::fmt;
 

@@ -5,7 +5,7 @@
 /// What this image is: `role_app.rs` asks for it.
 #[cfg(target_os = "none")]
 mod role {
-    pub use firmware::observer::ObserverWords as RoleWords;
+    pub use firmware::observer::ObserverProtocol as RoleProtocol;
     use firmware::observer::Observing;
     use firmware::port::Direct;
     use firmware::tables::TABLES;

@@ -5,11 +5,11 @@
 /// What this image is: `role_app.rs` asks for it.
 #[cfg(target_os = "none")]
 mod role {
-    use firmware::plant::{Plant, PlantWords};
+    use firmware::plant::{Plant, PlantProtocol};
     use firmware::tables::{PLANETS, TABLES};
 
     pub const DIGEST: Option<u64> = None;
-    pub type RoleWords = PlantWords<PLANETS>;
+    pub type RoleProtocol = PlantProtocol<PLANETS>;
     pub type RoleWork = Plant<'static, PLANETS>;
 
     pub fn work() -> RoleWork {

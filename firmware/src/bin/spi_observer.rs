@@ -1,6 +1,6 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 //! Observer and compensation as a slave on SPI, beside a motor controller on another chip: each transfer brings samples and
-//! takes the answer to those before. No talk with a host: what the joint is was settled when the image was built.
+//! takes the answer to those before. There is no host: the joint is fixed when the image is built.
 
 #[cfg(target_os = "none")]
 #[rtic::app(device = firmware::board::pac)]

@@ -1,5 +1,5 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
-//! Role `loop`: joint, motor, observer and compensation on one chip; a motion in, what became of it out. The application
+//! Role `loop`: joint, motor, observer and compensation on one chip; a trajectory in, samples of the motion out. The application
 //! is that of every role, the work is in the library.
 
 /// What this image is: `role_app.rs` asks for it.
@@ -7,7 +7,7 @@
 mod role {
     use firmware::port::Direct;
     use firmware::tables::{PLANETS, TABLES};
-    pub use firmware::whole_loop::LoopWords as RoleWords;
+    pub use firmware::whole_loop::LoopProtocol as RoleProtocol;
     use firmware::whole_loop::WholeLoop;
     use model_core::controller::Controller;
 

@@ -10,9 +10,9 @@
 //!
 //! Compiled and linted like the whole image; it has been run neither on silicon nor in an emulator.
 
+use super::bounded_wait::wait_until;
 use super::dma_slave::Unit;
 use super::pac;
-use super::patience::wait_until;
 use crate::port::spi::FRAME_BYTES;
 
 /// Channels of DMA1, counted from 0.

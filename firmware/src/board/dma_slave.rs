@@ -1,4 +1,4 @@
-//! A slave on SPI whose bytes are moved by DMA: what a transfer brought, and what the next one takes.
+//! A slave on SPI whose bytes are moved by DMA: what a transfer received, and what the next one takes.
 //!
 //! The emulated board has neither DMA nor EXTI: this is compiled and linted, and only a board can show that it works. What
 //! is to be shown there: a frame of 192 bytes each way, a transfer cut short and one too long, each answered by the next

@@ -1,12 +1,12 @@
 //! A page of a board's flash: unlocked, erased, written word by word and locked again, every wait bounded. Which page, and
-//! its registers, each board's file says. What became of it is found by reading: a board that only pretends to have flash,
-//! as the emulated one does, is found out too.
+//! its registers, each board's file says. The result is verified by reading back, which also detects a board
+//! without flash, such as the emulated one.
 
 use core::ptr::{read_volatile, write_volatile};
 
 use model_core::observer::{MEMORY_BYTES, Memory};
 
-use super::patience::wait_longer;
+use super::bounded_wait::wait_longer;
 use crate::page::Page;
 
 /// Keys of every family.
@@ -18,7 +18,7 @@ const WORD: usize = 4;
 pub trait Flash {
     /// First byte of the page, outside of what an image may take.
     const ADDRESS: usize;
-    /// Words that are written at a time.
+    /// Protocol that are written at a time.
     const TOGETHER: usize;
     /// Lets its registers be changed, and forgets errors.
     fn unlock(&mut self);

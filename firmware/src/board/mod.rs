@@ -1,5 +1,5 @@
-//! The boards: what differs between them, behind one trait, and the one that this image is for. Each board's file says
-//! which pins it takes, how its clock is made and what it was checked on; the loop knows none of it.
+//! The boards: what differs between them, behind one trait, and the one that this image is for. Each board's file has
+//! its pins, its clock and what it was checked on.
 
 use core::convert::Infallible;
 
@@ -18,13 +18,13 @@ compile_error!("choose a board: one of the features stm32f405, stm32g474, stm32h
 ))]
 compile_error!("one board at a time: build with --no-default-features --features <board>");
 
+mod bounded_wait;
 #[cfg(feature = "spi_slave")]
 pub mod dma_slave;
 pub mod flash_page;
 #[cfg(any(feature = "stm32f405", feature = "stm32g474"))]
 pub mod flash_unit;
 mod output;
-mod patience;
 mod watchdog;
 
 pub use output::Output;

@@ -20,10 +20,10 @@ use cortex_m::peripheral::NVIC;
 use embedded_hal::digital::{ErrorType, OutputPin};
 use link::messages::Clock;
 
+use super::bounded_wait::wait_until;
 use super::flash_page::FlashPage;
 use super::flash_unit::{Bits, FlashUnit};
 use super::output::{Output, ports};
-use super::patience::wait_until;
 use super::{Board, Started, Watchdog};
 use crate::serial::Uart;
 

@@ -14,11 +14,11 @@ pub use stm32g4::stm32g474 as pac;
 
 use link::messages::Clock;
 
+use super::bounded_wait::wait_until;
 use super::fifo_uart::FifoUart;
 use super::flash_page::FlashPage;
 use super::flash_unit::{Bits, FlashUnit};
 use super::output::{Output, ports};
-use super::patience::wait_until;
 use super::{Board, Started, Watchdog, serial_usart};
 
 const BAUD_RATE: u32 = 921_600;

@@ -14,10 +14,10 @@ pub use stm32h7::stm32h743 as pac;
 
 use link::messages::Clock;
 
+use super::bounded_wait::wait_until;
 use super::fifo_uart::FifoUart;
 use super::flash_page::{Flash, FlashPage, KEYS};
 use super::output::{Output, ports};
-use super::patience::wait_until;
 use super::{Board, Started, Watchdog, serial_usart};
 
 const BAUD_RATE: u32 = 921_600;

@@ -7,9 +7,9 @@
 //! | to the master | PA6 | DMA2 stream 3, channel 3 |
 //! | from the master | PA7 | DMA2 stream 0, channel 3 |
 
+use super::bounded_wait::wait_until;
 use super::dma_slave::Unit;
 use super::pac;
-use super::patience::wait_until;
 use crate::port::spi::FRAME_BYTES;
 
 /// Streams of DMA2.

@@ -1,8 +1,8 @@
-//! The independent watchdog, the same on all boards: resets the board when it is not fed for half a second. When to
-//! feed it is for idle to decide. The emulated board has none: there the writes go nowhere.
+//! The independent watchdog, the same on all boards: resets the board when it is not fed for half a second. Idle
+//! feeds it. The emulated board has none: there the writes have no effect.
 
+use super::bounded_wait::wait_until;
 use super::pac::IWDG;
-use super::patience::wait_until;
 
 /// Milliseconds to the reset.
 const COUNTS: u16 = 500;
@@ -28,7 +28,7 @@ impl Watchdog {
         watchdog
     }
 
-    /// Has patience while flash is written, then no more than usual.
+    /// Allows a longer time while flash is written, then the usual one.
     pub fn while_writing<T>(&mut self, write: impl FnOnce() -> T) -> T {
         self.0.kr().write(|w| w.key().unlock());
         self.0.pr().write(|w| w.pr().divide_by256());

@@ -1,4 +1,4 @@
-//! Observer and compensation called where they are. Nothing is queued, so the answer is to the samples at hand.
+//! Observer and compensation by a function call. Nothing is queued, so the answer is to these samples.
 
 use model_core::compensation::Command;
 use model_core::controller::{Answer, Controller};

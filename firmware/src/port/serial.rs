@@ -1,4 +1,4 @@
-//! Another board on a serial line, in the words of the role `observer`: samples go out as soon as the ones before are
+//! Another board on a serial line, by the protocol of the role `observer`: samples go out as soon as the ones before are
 //! answered, so the exchange runs at the rate that the line carries, and in lockstep where the caller waits for each
 //! answer. Bytes are moved by `serial`.
 

@@ -17,7 +17,7 @@ pub trait SlaveBus {
     fn arm(&mut self, next: &Frame);
 }
 
-/// Why a transfer brought no frame.
+/// Why a transfer received no frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Broken {
     /// The master ended it early: so many bytes were missing.

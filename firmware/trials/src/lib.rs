@@ -1,10 +1,10 @@
 #![no_std]
-//! What the fixed step is put through, the same on every machine: `motion` goes on and on and is compared bit for bit;
-//! `states` are single ones, by chance and by malice, and `outcome` says what became of them; `torque` suits torques to
-//! the joint, `numbers` is chance that repeats itself.
+//! Trials of the fixed step, the same on every machine: `motion` is long and compared bit for bit; `states` are single ones,
+//! random and adversarial, and `outcome` classifies what the step does with them; `torque` scales torques to the joint,
+//! `random` is a repeatable generator.
 
 pub mod motion;
-pub mod numbers;
 pub mod outcome;
+pub mod random;
 pub mod states;
 pub mod torque;

@@ -7,8 +7,8 @@ use core::array;
 use model_core::gears::{Model, Outputs, Relative, State, Tables, Torques};
 use model_core::numbers::digest::{self, chain};
 
-use crate::numbers::Numbers;
-use crate::torque::{NONE, Size};
+use crate::random::Random;
+use crate::torque::{NONE, TorqueScale};
 
 /// Steps of the long motion.
 pub const STEPS: u32 = 100_000;
@@ -49,12 +49,12 @@ pub fn digests<const N: usize>(tables: &Tables<f32, N>) -> Digests {
 }
 
 fn long<const N: usize>(tables: &Tables<f32, N>) -> (u64, u32) {
-    let (mut hand, mut model) = (Hand::new(tables), Model::new(tables));
+    let (mut generator, mut model) = (RandomTorques::new(tables), Model::new(tables));
     let mut contacts = model.outputs().contacts;
     let (mut running, mut changes) = (digest::START, 0);
     for step in 0..STEPS {
         let resting = step % REST_EVERY >= REST_EVERY - REST;
-        model.step(if resting { NONE } else { hand.torques() });
+        model.step(if resting { NONE } else { generator.torques() });
         let outputs = model.outputs();
         changes += u32::from(outputs.contacts != contacts);
         contacts = outputs.contacts;
@@ -64,10 +64,10 @@ fn long<const N: usize>(tables: &Tables<f32, N>) -> (u64, u32) {
 }
 
 fn unbounded<const N: usize>(tables: &Tables<f32, N>) -> u64 {
-    let (mut hand, mut model) = (Hand::new(tables), Model::new(tables));
+    let (mut generator, mut model) = (RandomTorques::new(tables), Model::new(tables));
     let mut running = digest::START;
     for step in 0..SHORT {
-        let torques = hand.torques();
+        let torques = generator.torques();
         model.step(if step < UNBOUNDED_FROM { torques } else { Torques { drive: f32::INFINITY, ..torques } });
         running = chain(running, model.state_digest());
     }
@@ -76,7 +76,7 @@ fn unbounded<const N: usize>(tables: &Tables<f32, N>) -> u64 {
 
 fn tiny<const N: usize>(tables: &Tables<f32, N>) -> u64 {
     let mut model = Model::new(tables);
-    let mut numbers = Numbers::new(2);
+    let mut random = Random::new(2);
     let (mut running, mut size) = (digest::START, 1.0_f32);
     for halving in 0..HALVINGS.end {
         // At the end by whole numbers: a mode that flushes tiny numbers must not choose where the motions start.
@@ -84,7 +84,7 @@ fn tiny<const N: usize>(tables: &Tables<f32, N>) -> u64 {
         if halving < HALVINGS.start {
             continue;
         }
-        let mut any = || f32::from_bits(size.to_bits() | (u32::from(numbers.below(2) == 1) << 31));
+        let mut any = || f32::from_bits(size.to_bits() | (u32::from(random.below(2) == 1) << 31));
         let mut relative = || Relative { planets: array::from_fn(|_| any()), gap: any(), wind_up: any() };
         model.set_state(State { position: relative(), rate: relative(), ..State::REST });
         let torques = Torques { drive: any(), load: any() };
@@ -105,22 +105,22 @@ fn chain_outputs<const N: usize>(running: u64, outputs: &Outputs<f32, N>) -> u64
 }
 
 /// Torques that change by chance.
-struct Hand {
-    numbers: Numbers,
-    size: Size,
+struct RandomTorques {
+    random: Random,
+    size: TorqueScale,
     torques: Torques<f32>,
     left: u32,
 }
 
-impl Hand {
+impl RandomTorques {
     fn new<const N: usize>(tables: &Tables<f32, N>) -> Self {
-        Self { numbers: Numbers::new(1), size: Size::of(tables), torques: NONE, left: 0 }
+        Self { random: Random::new(1), size: TorqueScale::of(tables), torques: NONE, left: 0 }
     }
 
     fn torques(&mut self) -> Torques<f32> {
         if self.left == 0 {
-            self.left = 1 + self.numbers.below(LONGEST_HOLD);
-            self.torques = self.size.any(&mut self.numbers);
+            self.left = 1 + self.random.below(LONGEST_HOLD);
+            self.torques = self.size.any(&mut self.random);
         }
         self.left -= 1;
         self.torques

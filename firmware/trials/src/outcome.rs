@@ -1,5 +1,4 @@
-//! What became of a mesh set in one tick: the classes that worst cases are reported by. Found from the outputs before
-//! and after, so that nothing of the step's inside is known here.
+//! What the contact set did in one tick: the classes that worst cases are reported by, from the outputs before and after.
 
 use model_core::gears::Outputs;
 use parameters::ContactState;
@@ -19,7 +18,7 @@ pub enum Class {
     SomeChanged,
     /// Every mesh changed.
     AllChanged,
-    /// Numbers that are infinite, or none.
+    /// Random that are infinite, or none.
     NotFinite,
 }
 

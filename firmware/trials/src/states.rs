@@ -1,13 +1,13 @@
-//! Single states that a step is tried on, by chance and by malice: every contact set, all meshes crossing at once,
-//! grazing and exact touch, speeds that leap over the gap, numbers at the ends of their range, states that the joint
+//! Single states that a step is tried on, random and adversarial: every contact set, all meshes crossing at once,
+//! grazing and exact touch, speeds that cross the whole gap in a tick, numbers at the limits of their range, states that the joint
 //! comes to by itself, and changes of those that were worst so far.
 
 use core::array;
 
 use model_core::gears::{Model, Relative, RigidBody, State, Tables, Torques};
 
-use crate::numbers::Numbers;
-use crate::torque::{NONE, Size};
+use crate::random::Random;
+use crate::torque::{NONE, TorqueScale};
 
 /// How a trial came about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,7 +40,7 @@ impl Kind {
             Self::AllCrossing => "all crossing at once",
             Self::Grazing => "grazing, touching",
             Self::Fast => "many gaps a tick",
-            Self::Extreme => "ends of the numbers",
+            Self::Extreme => "ends of the random",
             Self::Reached => "reached by itself",
             Self::Mutated => "worst so far, changed",
         }
@@ -58,8 +58,8 @@ pub struct Trial<const N: usize> {
     pub torques: Torques<f32>,
 }
 
-/// Numbers at the ends of their range.
-const ENDS: [f32; 12] = [
+/// Random at the ends of their range.
+const EXTREMES: [f32; 12] = [
     0.0,
     -0.0,
     f32::from_bits(1),
@@ -77,12 +77,12 @@ const ENDS: [f32; 12] = [
 /// Makes trials for a joint.
 pub struct Trials<'a, const N: usize> {
     tables: &'a Tables<f32, N>,
-    numbers: Numbers,
+    random: Random,
     /// Length of a tick, in dimensionless time.
     tick: f32,
     /// Greatest half-backlash; one for a joint without.
     half_gap: f32,
-    size: Size,
+    size: TorqueScale,
     reached: State<f32, N>,
     torques: Torques<f32>,
     worst: Option<Trial<N>>,
@@ -94,10 +94,10 @@ impl<'a, const N: usize> Trials<'a, N> {
         let widest = tables.meshes.iter().flatten().fold(0.0, |most: f32, mesh| most.max(mesh.half_backlash));
         Self {
             tables,
-            numbers: Numbers::new(seed),
+            random: Random::new(seed),
             tick: tables.substep * tables.substeps as f32,
             half_gap: if widest > 0.0 { widest } else { 1.0 },
-            size: Size::of(tables),
+            size: TorqueScale::of(tables),
             reached: State::REST,
             torques: NONE,
             worst: None,
@@ -106,7 +106,7 @@ impl<'a, const N: usize> Trials<'a, N> {
 
     /// The next trial.
     pub fn make(&mut self) -> Trial<N> {
-        let kind = Kind::ALL[self.numbers.below(Kind::ALL.len() as u32) as usize];
+        let kind = Kind::ALL[self.random.below(Kind::ALL.len() as u32) as usize];
         match (kind, self.worst) {
             (Kind::Reached, _) => self.onward(),
             (Kind::Mutated, Some(worst)) => self.mutate(worst),
@@ -127,14 +127,14 @@ impl<'a, const N: usize> Trials<'a, N> {
 
     /// The joint goes on from where it is, now and then under other torques.
     fn onward(&mut self) -> Trial<N> {
-        if self.numbers.below(100) == 0 {
-            self.torques = self.size.any(&mut self.numbers);
+        if self.random.below(100) == 0 {
+            self.torques = self.size.any(&mut self.random);
         }
         Trial { kind: Kind::Reached, state: self.reached, torques: self.torques }
     }
 
     fn place(&mut self, kind: Kind) -> Trial<N> {
-        let (rigid, phase) = (self.rigid(), self.numbers.bits());
+        let (rigid, phase) = (self.rigid(), self.random.bits());
         let mut state = State { rigid, phase, ..State::REST };
         // What the meshes' deflections lack of the coordinates at this phase: their imposed errors.
         let mut model = Model::new(self.tables);
@@ -143,21 +143,21 @@ impl<'a, const N: usize> Trials<'a, N> {
         let errors = model.outputs().deflections.map(|family| family.map(|deflection| -deflection / length));
 
         let leap = self.half_gap / self.tick * self.magnitude(-1, 1);
-        let way = if self.numbers.below(2) == 0 { leap } else { -leap };
+        let way = if self.random.below(2) == 0 { leap } else { -leap };
         let sun: [f32; N] = array::from_fn(|i| errors[0][i] + self.deflection(kind, 0, i));
-        let chosen = self.numbers.below(N as u32) as usize;
+        let chosen = self.random.below(N as u32) as usize;
         let ring = self.deflection(kind, 1, chosen);
         state.position = Relative {
             planets: sun,
             gap: sun[chosen] + errors[1][chosen] + ring,
-            wind_up: self.numbers.signed() * self.half_gap,
+            wind_up: self.random.signed() * self.half_gap,
         };
-        let near = |numbers: &mut Numbers, value: f32| value * (1.0 + 0.2 * numbers.signed());
+        let near = |random: &mut Random, value: f32| value * (1.0 + 0.2 * random.signed());
         state.rate = match kind {
             Kind::AllCrossing => Relative {
-                planets: array::from_fn(|_| near(&mut self.numbers, way)),
-                gap: near(&mut self.numbers, 2.0 * way),
-                wind_up: near(&mut self.numbers, way),
+                planets: array::from_fn(|_| near(&mut self.random, way)),
+                gap: near(&mut self.random, 2.0 * way),
+                wind_up: near(&mut self.random, way),
             },
             Kind::Grazing => self.rates(1e-6),
             Kind::Fast => self.rates(10.0 * self.half_gap / self.tick),
@@ -166,8 +166,8 @@ impl<'a, const N: usize> Trials<'a, N> {
         let mut trial = Trial { kind, state, torques: self.torques() };
         if kind == Kind::Extreme {
             each(&mut trial, |value| {
-                if self.numbers.below(3) == 0 {
-                    *value = ENDS[self.numbers.below(ENDS.len() as u32) as usize];
+                if self.random.below(3) == 0 {
+                    *value = EXTREMES[self.random.below(EXTREMES.len() as u32) as usize];
                 }
             });
         }
@@ -177,75 +177,75 @@ impl<'a, const N: usize> Trials<'a, N> {
     /// One to all numbers of a trial changed, most of them a little.
     fn mutate(&mut self, worst: Trial<N>) -> Trial<N> {
         let mut trial = Trial { kind: Kind::Mutated, ..worst };
-        let one_in = 1 + self.numbers.below(8);
+        let one_in = 1 + self.random.below(8);
         let width = self.magnitude(-5, 0);
         each(&mut trial, |value| {
-            if self.numbers.below(one_in) == 0 {
-                *value *= 1.0 + width * self.numbers.signed();
+            if self.random.below(one_in) == 0 {
+                *value *= 1.0 + width * self.random.signed();
             }
         });
-        if self.numbers.below(4) == 0 {
-            trial.state.phase = self.numbers.bits();
-            trial.state.rigid.fraction = self.numbers.bits();
+        if self.random.below(4) == 0 {
+            trial.state.phase = self.random.bits();
+            trial.state.rigid.fraction = self.random.bits();
         }
         trial
     }
 
     fn deflection(&mut self, kind: Kind, family: usize, planet: usize) -> f32 {
         let half = self.tables.meshes[family][planet].half_backlash;
-        let side = if self.numbers.below(2) == 0 { half } else { -half };
+        let side = if self.random.below(2) == 0 { half } else { -half };
         match kind {
-            Kind::Grazing => match self.numbers.below(4) {
+            Kind::Grazing => match self.random.below(4) {
                 0 => side,
                 1 => side.next_up(),
                 2 => side.next_down(),
-                _ => side + 1e-5 * self.half_gap * self.numbers.signed(),
+                _ => side + 1e-5 * self.half_gap * self.random.signed(),
             },
-            Kind::AllCrossing => 1.2 * half * self.numbers.signed(),
-            _ => match self.numbers.below(3) {
-                0 => half * self.numbers.signed(),
-                _ => side + self.half_gap * self.numbers.signed() * self.magnitude(-4, 0),
+            Kind::AllCrossing => 1.2 * half * self.random.signed(),
+            _ => match self.random.below(3) {
+                0 => half * self.random.signed(),
+                _ => side + self.half_gap * self.random.signed() * self.magnitude(-4, 0),
             },
         }
     }
 
     fn rates(&mut self, most: f32) -> Relative<f32, N> {
         // Now and then the whole joint stands still.
-        let most = if self.numbers.below(8) == 0 { 0.0 } else { most };
-        let mut any = || most * self.numbers.signed();
+        let most = if self.random.below(8) == 0 { 0.0 } else { most };
+        let mut any = || most * self.random.signed();
         Relative { planets: array::from_fn(|_| any()), gap: any(), wind_up: any() }
     }
 
     fn rigid(&mut self) -> RigidBody {
-        let speed = match self.numbers.below(8) {
+        let speed = match self.random.below(8) {
             0 => 0,
             1 => i64::MAX,
             2 => i64::MIN,
             // Up to some turns a second, and up to a turn in two ticks.
-            3..=5 => (self.numbers.bits() as i64) >> 14,
-            _ => self.numbers.bits() as i64,
+            3..=5 => (self.random.bits() as i64) >> 14,
+            _ => self.random.bits() as i64,
         };
-        RigidBody { turns: self.numbers.bits() as i32, fraction: self.numbers.bits(), speed }
+        RigidBody { turns: self.random.bits() as i32, fraction: self.random.bits(), speed }
     }
 
     fn torques(&mut self) -> Torques<f32> {
-        let scale = match self.numbers.below(8) {
+        let scale = match self.random.below(8) {
             0 => 0.0,
             1 => 1e3,
             2 => 1e-6,
             _ => 1.0,
         };
         Torques {
-            drive: self.size.drive * scale * self.numbers.signed(),
-            load: self.size.load * scale * self.numbers.signed(),
+            drive: self.size.drive * scale * self.random.signed(),
+            load: self.size.load * scale * self.random.signed(),
         }
     }
 
     /// A size from 10^`from` to 10^`to`.
     fn magnitude(&mut self, from: i32, to: i32) -> f32 {
-        let power = from + self.numbers.below(to.abs_diff(from)) as i32;
+        let power = from + self.random.below(to.abs_diff(from)) as i32;
         let factor = if power < 0 { 0.1 } else { 10.0 };
-        (0..power.unsigned_abs()).fold(1.0 + 9.0 * self.numbers.part(), |size, _| size * factor)
+        (0..power.unsigned_abs()).fold(1.0 + 9.0 * self.random.part(), |size, _| size * factor)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use model_core::gears::{Tables, Torques};
 
-use crate::numbers::Numbers;
+use crate::random::Random;
 
 /// Deflection of the sun-planet meshes at rest under a strong torque, in units of b_c: some times a joint's rating.
 const DEFLECTION: f32 = 1.0;
@@ -12,14 +12,14 @@ pub const NONE: Torques<f32> = Torques { drive: 0.0, load: 0.0 };
 
 /// Sizes of a joint's torques [N m].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Size {
+pub struct TorqueScale {
     /// A strong drive torque.
     pub drive: f32,
     /// The load torque that balances it.
     pub load: f32,
 }
 
-impl Size {
+impl TorqueScale {
     /// For the joint of these tables.
     pub fn of<const N: usize>(tables: &Tables<f32, N>) -> Self {
         let force = N as f32 * tables.springs[0].stiffness * DEFLECTION;
@@ -28,8 +28,8 @@ impl Size {
     }
 
     /// Up to strong either way, with a load of half to one and a half times what balances it.
-    pub fn any(&self, numbers: &mut Numbers) -> Torques<f32> {
-        let part = numbers.signed();
-        Torques { drive: self.drive * part, load: self.load * part * (1.0 + 0.5 * numbers.signed()) }
+    pub fn any(&self, random: &mut Random) -> Torques<f32> {
+        let part = random.signed();
+        Torques { drive: self.drive * part, load: self.load * part * (1.0 + 0.5 * random.signed()) }
     }
 }

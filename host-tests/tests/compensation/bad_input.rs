@@ -2,7 +2,7 @@
 
 use model_core::compensation::design::{CompensationSettings, compensation_settings, design_compensation};
 use model_core::compensation::{Command, Compensation, ImpedancePoint, Motion, Stage};
-use model_core::observer::{Doubt, Estimate, Estimates, Source};
+use model_core::observer::{Estimate, Estimates, OutputFault, Source};
 use reference::drive_train::DriveTrainParameters;
 use reference::scenarios::q1;
 
@@ -77,7 +77,7 @@ fn a_gap_that_cannot_be_seen_leaves_plain_control() {
         compensation.step(&sound(), &at_rest());
     }
     assert_ne!(compensation.step(&sound(), &at_rest()).stage, Stage::Plain);
-    let blind = Estimates { source: Source::MotorOnly(Doubt::Frozen), ..sound() };
+    let blind = Estimates { source: Source::MotorOnly(OutputFault::Frozen), ..sound() };
     for _ in 0..1000 {
         compensation.step(&blind, &at_rest());
     }

@@ -1,7 +1,7 @@
 //! Encoders that fail and samples that make no sense: found, said, bounded, recovered from.
 
 use host_tests::tolerance::observer::{FAILURE_FOUND, FAILURE_FOUND_AT_SPEED, GAP_COARSE, LOST_COUNTS_FOUND};
-use model_core::observer::{Doubt, Estimates, MAPPED, Samples, Source};
+use model_core::observer::{Estimates, MAPPED, OutputFault, Samples, Source};
 use reference::drive_train::Disturbance;
 use scenario::rig::Moment;
 
@@ -46,7 +46,7 @@ fn a_frozen_output_encoder_is_given_up_soon_and_taken_back_when_it_turns_again()
     assert!(sources[..at].iter().all(|source| *source == Source::Both), "a false alarm");
     let found = sources[at..].iter().position(|source| *source != Source::Both).expect("it is found");
     FAILURE_FOUND.check(found as f64 * 1e-4);
-    assert_eq!(sources[at + found], Source::MotorOnly(Doubt::Frozen));
+    assert_eq!(sources[at + found], Source::MotorOnly(OutputFault::Frozen));
     assert_eq!(sources.last(), Some(&Source::Both), "it is taken back");
 }
 
@@ -67,7 +67,7 @@ fn an_encoder_that_freezes_or_jumps_at_speed_is_given_up_within_a_millisecond() 
             let found = sources[at..].iter().position(|source| *source != Source::Both).expect("it is found");
             println!("{name} at {speed} rad/s, jump of {jump} counts: after {found} periods");
             FAILURE_FOUND_AT_SPEED.check(found as f64 * 1e-4);
-            let doubt = if jump == 0 { Doubt::Frozen } else { Doubt::OutOfRange };
+            let doubt = if jump == 0 { OutputFault::Frozen } else { OutputFault::OutOfRange };
             assert_eq!(sources[at + found], Source::MotorOnly(doubt));
         }
     }
@@ -89,7 +89,7 @@ fn an_encoder_that_freezes_before_the_gap_is_known_is_found_by_how_far_the_motor
     let found = sources[at..].iter().position(|source| *source != Source::Both).expect("it is found");
     println!("at {:.2} rad/s: after {found} periods", speed(&log[at]));
     FAILURE_FOUND.check(found as f64 * 1e-4);
-    assert_eq!(sources[at + found], Source::MotorOnly(Doubt::Frozen));
+    assert_eq!(sources[at + found], Source::MotorOnly(OutputFault::Frozen));
 }
 
 #[test]
@@ -137,7 +137,7 @@ fn an_output_encoder_that_slips_is_given_up() {
     let sources = sources(&trial, &log);
     let found = sources[at..].iter().position(|source| *source != Source::Both).expect("it is found");
     FAILURE_FOUND.check(found as f64 * 1e-4);
-    assert_eq!(sources[at + found], Source::MotorOnly(Doubt::OutOfRange));
+    assert_eq!(sources[at + found], Source::MotorOnly(OutputFault::OutOfRange));
 }
 
 #[test]
@@ -168,7 +168,7 @@ fn an_output_encoder_that_makes_the_gap_narrower_is_given_up_for_teeth_do_not_gr
     let sources = sources(&trial, &log);
     let found = sources[20_000..].iter().position(|source| *source != Source::Both).expect("it is found");
     LOST_COUNTS_FOUND.check(found as f64 * 1e-4);
-    assert!(sources[20_000 + found] == Source::MotorOnly(Doubt::OutOfRange));
+    assert!(sources[20_000 + found] == Source::MotorOnly(OutputFault::OutOfRange));
 }
 
 /// Runs the observer with samples that a test may spoil.
@@ -192,7 +192,7 @@ fn a_silent_output_encoder_is_said_and_waited_for() {
             samples.output = None;
         }
     });
-    assert_eq!(said[21_999].source, Source::MotorOnly(Doubt::Silent));
+    assert_eq!(said[21_999].source, Source::MotorOnly(OutputFault::Silent));
     assert_eq!(said.last().map(|estimates| estimates.source), Some(Source::Both));
     GAP_COARSE.check(late_error(&log, &said));
 }
@@ -207,7 +207,7 @@ fn samples_that_make_no_sense_are_noticed_and_survived() {
         _ => {}
     });
     assert!(said[20_000].notices.torque_unknown && !said[20_001].notices.torque_unknown);
-    assert!(said[20_500].notices.motor_doubted && !said[20_502].notices.motor_doubted);
+    assert!(said[20_500].notices.motor_implausible && !said[20_502].notices.motor_implausible);
     assert!(said[21_000].notices.out_of_time && !said[21_010].notices.out_of_time);
     assert!(said[21_500].notices.torque_unknown);
     GAP_COARSE.check(late_error(&log, &said));

@@ -2,7 +2,7 @@
 //! an encoder that comes back.
 
 use host_tests::tolerance::observer::GAP_WORST;
-use model_core::observer::{Doubt, Samples, Source};
+use model_core::observer::{OutputFault, Samples, Source};
 use scenario::rig::Moment;
 
 use crate::motion::Profile;
@@ -53,8 +53,8 @@ fn readings_of_the_output_that_are_too_old_count_as_lost() {
             samples.output = ago(&trial, &log, period, 30).output;
         }
     });
-    assert_eq!(said[LATE.start + 150].source, Source::MotorOnly(Doubt::Silent));
-    assert_eq!(said[LATE.end - 1].source, Source::MotorOnly(Doubt::Silent));
+    assert_eq!(said[LATE.start + 150].source, Source::MotorOnly(OutputFault::Silent));
+    assert_eq!(said[LATE.end - 1].source, Source::MotorOnly(OutputFault::Silent));
     assert_eq!(said.last().map(|estimates| estimates.source), Some(Source::Both), "it is taken back");
 }
 

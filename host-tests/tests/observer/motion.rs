@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use parameters::JointParameters;
-use reference::closed_loop::{Controller, Motion, Reference, SetPoint, SharedReference};
+use reference::closed_loop::{Controller, Motion, MotionProfile, SetPoint, SharedProfile};
 use reference::drive_train::{DriveTrainParameters, Measurement};
 
 /// Poles of the motor controller [rad/s].
@@ -30,11 +30,11 @@ pub enum Profile {
 struct Tones(Vec<[f64; 3]>);
 
 /// A fifth of a motion until a moment [s], all of it half a second later.
-struct Growing(SharedReference, f64);
+struct Growing(SharedProfile, f64);
 
 impl Profile {
     /// The motion, as a seed determines it.
-    pub fn motion(&self, seed: u64) -> SharedReference {
+    pub fn motion(&self, seed: u64) -> SharedProfile {
         Arc::new(match *self {
             Self::Hold => Tones(Vec::new()),
             Self::Sine(amplitude, frequency) => Tones(vec![[amplitude, TAU * frequency, 0.0]]),
@@ -57,11 +57,11 @@ impl Profile {
 }
 
 /// A motion that grows from a fifth to all of itself at a moment [s].
-pub fn growing(motion: SharedReference, at: f64) -> SharedReference {
+pub fn growing(motion: SharedProfile, at: f64) -> SharedProfile {
     Arc::new(Growing(motion, at))
 }
 
-impl Reference for Tones {
+impl MotionProfile for Tones {
     fn at(&self, time: f64) -> Motion {
         let s = (time / 0.2).min(1.0);
         let start = [
@@ -85,7 +85,7 @@ impl Reference for Tones {
     }
 }
 
-impl Reference for Growing {
+impl MotionProfile for Growing {
     fn at(&self, time: f64) -> Motion {
         let Self(motion, at) = self;
         let part = 0.2 + 0.8 * ((time - at) / 0.5).clamp(0.0, 1.0);

@@ -1,7 +1,7 @@
 //! Without an output encoder: an honest variance, and a refusal where nothing can be known.
 
 use host_tests::tolerance::observer::MOTOR_ONLY_HONESTY;
-use model_core::observer::{Doubt, MAPPED, Source};
+use model_core::observer::{MAPPED, OutputFault, Source};
 
 use crate::trial::{Encoders, Trial};
 
@@ -22,7 +22,7 @@ fn the_variance_is_honest_and_long_separations_are_refused() {
         let log = trial.record();
         let (mut open_for, mut refused, mut long) = (0, 0, 0);
         let figures = trial.replay::<MAPPED>(&log, 1.0, |_, moment, estimates| {
-            assert_eq!(estimates.source, Source::MotorOnly(Doubt::Absent));
+            assert_eq!(estimates.source, Source::MotorOnly(OutputFault::Absent));
             assert!(estimates.half_backlash.variance > 1e-14, "the width never counts as known for sure");
             open_for = if moment.sun_force == 0.0 { open_for + 1 } else { 0 };
             if open_for > 300 {

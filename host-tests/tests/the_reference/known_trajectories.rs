@@ -40,7 +40,7 @@ fn case_a_parts_and_hits_as_in_the_data() {
     CASE_DATA.check(error);
     // 300 omega_n seconds are 38.2 mesh periods, each with 11.3 events.
     assert!((420..=440).contains(&counters.events), "{counters:?}");
-    assert_eq!(counters.blind_steps, 0);
+    assert_eq!(counters.unguarded_steps, 0);
 }
 
 #[test]

@@ -38,7 +38,7 @@ impl SwitchedSystem for Mass {
         rates[1] = self.force - self.side.abs() * (state[0] - self.side * self.half_backlash);
     }
 
-    fn freeze(&mut self, _: f64, state: &Entries) {
+    fn select_mode(&mut self, _: f64, state: &Entries) {
         self.side = if state[0].abs() > self.half_backlash { state[0].signum() } else { 0.0 };
     }
 

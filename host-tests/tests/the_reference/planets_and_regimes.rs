@@ -121,7 +121,7 @@ fn set_p_with_a_hundred_and_twenty_micrometres_never_repeats() {
         }
     }
     assert!(distinct.len() > 250, "{} distinct points of 300", distinct.len());
-    assert_eq!(counters.blind_steps, 0);
+    assert_eq!(counters.unguarded_steps, 0);
 }
 
 #[test]

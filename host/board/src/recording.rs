@@ -60,9 +60,9 @@ impl Recording {
             FromBoard::Answer(_)
             | FromBoard::Loop(_)
             | FromBoard::FaultTaken { .. }
-            | FromBoard::Kept(_)
+            | FromBoard::MemoryOutcome(_)
             | FromBoard::Memory(_)
-            | FromBoard::Judged(_) => {}
+            | FromBoard::MemoryChecked(_) => {}
         }
     }
 

@@ -13,7 +13,7 @@ pub use arguments::Arguments;
 use arguments::{Command, Place};
 use bench::Found;
 use identify::learnt::Content;
-use link::messages::{Kept, Remembered};
+use link::messages::{MemoryOutcome, MemoryState};
 use model_core::observer::{MEMORY_BYTES, Memory, MemoryError};
 
 use board::session::Session;
@@ -24,7 +24,7 @@ use report::progress::Progress;
 use report::write::unwritten;
 
 /// What a board is asked to do with its flash.
-type Ask = fn(&mut Session<'static>) -> Outcome<Kept>;
+type Ask = fn(&mut Session<'static>) -> Outcome<MemoryOutcome>;
 
 /// Does what is asked for.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
@@ -90,7 +90,9 @@ fn write(file: &Path, place: &Place, progress: &Progress) -> Outcome<()> {
     let kept = found.session.write_memory()?;
     progress.clear();
     match kept {
-        Kept::Stored => output::print(&format!("{name} is in the flash of {}: runs may begin from it\n", found.name)),
+        MemoryOutcome::Stored => {
+            output::print(&format!("{name} is in the flash of {}: runs may begin from it\n", found.name))
+        }
         _ if found.is_emulated() => output::print(&format!(
             "{name} is good: the firmware of {} takes it; nothing of it stays, since that board has no flash\n",
             found.name
@@ -106,7 +108,7 @@ fn change(place: &Place, progress: &Progress, ask: Ask, done: &str) -> Outcome<(
     let kept = ask(&mut found.session)?;
     progress.clear();
     match kept {
-        Kept::Stored => output::print(&format!("{} {done}\n", found.name)),
+        MemoryOutcome::Stored => output::print(&format!("{} {done}\n", found.name)),
         _ => Err(found.not_written()),
     }
 }
@@ -150,13 +152,13 @@ fn parts(error: MemoryError) -> (String, String) {
 }
 
 /// A judgement of a board, unless it is good.
-fn fault(judged: Remembered) -> Option<MemoryError> {
+fn fault(judged: MemoryState) -> Option<MemoryError> {
     match judged {
-        Remembered::Good => None,
-        Remembered::Nothing | Remembered::NotAMemory => Some(MemoryError::NotAMemory),
-        Remembered::WrongVersion => Some(MemoryError::WrongVersion),
-        Remembered::Damaged => Some(MemoryError::Damaged),
-        Remembered::OtherJoint => Some(MemoryError::OtherJoint),
-        Remembered::NotFinite => Some(MemoryError::NotFinite),
+        MemoryState::Good => None,
+        MemoryState::Nothing | MemoryState::NotAMemory => Some(MemoryError::NotAMemory),
+        MemoryState::WrongVersion => Some(MemoryError::WrongVersion),
+        MemoryState::Damaged => Some(MemoryError::Damaged),
+        MemoryState::OtherJoint => Some(MemoryError::OtherJoint),
+        MemoryState::NotFinite => Some(MemoryError::NotFinite),
     }
 }

@@ -1,7 +1,7 @@
 //! Instructions that the certificate promises, against those counted on the emulated board: what a step takes while
 //! contact holds and with all teeth apart, and that no searched state takes more than the bound.
 
-use model_core::gears::design::{Cost, Parts};
+use model_core::gears::design::{Cost, Substeps};
 use parameters::{Excitation, JointParameters};
 
 use super::joints::{TRIAL_JOINTS, write_files};
@@ -22,7 +22,7 @@ pub struct Counted {
     /// The joint.
     pub name: String,
     /// Parts of its tick where contacts change.
-    pub parts: Parts,
+    pub parts: Substeps,
     /// Under a load.
     pub holding: u32,
     /// At rest in the middle of its gaps.
@@ -66,8 +66,8 @@ fn compare(parameters: &JointParameters, counted: &Counted, most: u32) -> Outcom
         .iter()
         .all(|mesh| mesh.half_backlash.iter().all(|half_backlash| *half_backlash > 0.0));
     for (what, predicted, found, applies) in [
-        ("while contact holds", cost.holding(*divided), counted.holding, holds),
-        ("with all teeth apart", cost.losing(*divided), counted.apart, parts),
+        ("while contact holds", cost.contact_holds(*divided), counted.holding, holds),
+        ("with all teeth apart", cost.contact_changes(*divided), counted.apart, parts),
     ] {
         let off = predicted / f64::from(found) - 1.0;
         if applies && off.abs() > MARGIN {
@@ -87,9 +87,9 @@ fn compare(parameters: &JointParameters, counted: &Counted, most: u32) -> Outcom
     Ok(format!(
         "{name}: contact holds {} of {:.0} promised, apart {} of {:.0}, worst {most} of {bound:.0}",
         counted.holding,
-        cost.holding(*divided),
+        cost.contact_holds(*divided),
         counted.apart,
-        cost.losing(*divided)
+        cost.contact_changes(*divided)
     ))
 }
 
@@ -101,8 +101,8 @@ mod tests {
     fn counts_off_by_more_than_the_margin_fail_and_so_does_a_worst_case_above_the_bound() {
         let joint = TRIAL_JOINTS[0].read().unwrap().parameters;
         let cost = Cost::new(&joint);
-        let parts = Parts::Substeps(2);
-        let (holding, apart) = (cost.holding(parts) as u32, cost.losing(parts) as u32);
+        let parts = Substeps::Corrected(2);
+        let (holding, apart) = (cost.contact_holds(parts) as u32, cost.contact_changes(parts) as u32);
         let good = Counted { name: "Q1".into(), parts, holding, apart };
         let most = (0.9 * cost.bound(parts)) as u32;
         assert!(compare(&joint, &good, most).is_ok());
@@ -114,8 +114,8 @@ mod tests {
     #[test]
     fn a_line_of_the_board_is_read() {
         let counted = |parts| Counted { name: "Q1".into(), parts, holding: 2567, apart: 2925 };
-        assert_eq!(parse("Q1;2;0;2567;2925"), Some(counted(Parts::Substeps(2))));
-        assert_eq!(parse("Q1;2;5;2567;2925"), Some(counted(Parts::Leaps(5))));
+        assert_eq!(parse("Q1;2;0;2567;2925"), Some(counted(Substeps::Corrected(2))));
+        assert_eq!(parse("Q1;2;5;2567;2925"), Some(counted(Substeps::Verlet(5))));
         assert_eq!(parse("panicked at x.rs"), None);
     }
 }

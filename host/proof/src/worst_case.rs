@@ -4,7 +4,7 @@
 use std::fmt;
 
 use super::joints::write_files;
-use model_core::gears::certificate::Parts;
+use model_core::gears::certificate::Substeps;
 
 use board::target::board::Board;
 use board::target::image::DEFAULT_TICK_RATE;
@@ -41,7 +41,7 @@ pub struct Search {
     /// Its planets.
     pub planets: u32,
     /// How its tick goes through contacts that change.
-    pub parts: Parts,
+    pub parts: Substeps,
     /// Seed of the trials.
     pub seed: u64,
     /// By what the contact set did.

@@ -13,7 +13,7 @@ mod current_loop;
 mod disturbance;
 mod encoder;
 mod friction;
-mod inside;
+mod joint_model;
 mod parameters;
 
 use std::f64::consts::TAU;
@@ -23,7 +23,7 @@ use current_loop::CurrentLoop;
 pub use disturbance::Disturbance;
 use encoder::Encoder;
 use friction::Shaft;
-pub use inside::{Inside, Stepping};
+pub use joint_model::{JointModel, Stepping};
 pub use parameters::{DriveTrainError, DriveTrainParameters, ErrorPhases};
 
 use crate::joint::{Observation, Reference, Start};
@@ -67,12 +67,12 @@ pub struct TrueTorques {
     pub disturbance: f64,
 }
 
-/// A joint with everything around it; `J` is what moves inside.
+/// A joint with everything around it; `J` is the joint model.
 #[derive(Debug, Clone)]
 pub struct DriveTrain<J = Reference> {
     parameters: DriveTrainParameters,
     disturbances: Vec<Disturbance>,
-    inside: J,
+    joint_model: J,
     /// State of the joint at the end of the last part.
     joint: Observation,
     current_loop: CurrentLoop,
@@ -104,17 +104,17 @@ impl DriveTrain {
     }
 }
 
-impl<J: Inside> DriveTrain<J> {
+impl<J: JointModel> DriveTrain<J> {
     /// A drive train around a joint that is at time zero.
     pub fn around(
-        inside: J,
+        joint_model: J,
         joint: &JointParameters,
         parameters: DriveTrainParameters,
         disturbances: Vec<Disturbance>,
         seed: u64,
     ) -> Result<Self, DriveTrainError> {
         parameters.check()?;
-        let observation = inside.observe();
+        let observation = joint_model.observe();
         let around = &parameters.surroundings;
         let part = 1.0 / (f64::from(around.control_rate) * f64::from(parameters.parts_per_period));
         let sun_radius = joint.geometry.sun_base_radius;
@@ -138,7 +138,7 @@ impl<J: Inside> DriveTrain<J> {
             compliant,
             stepping: Stepping::default(),
             parameters,
-            inside,
+            joint_model,
             joint: observation,
         };
         train.note();
@@ -159,8 +159,8 @@ impl<J: Inside> DriveTrain<J> {
             let load = self.torques.load_friction + self.torques.gravity + self.torques.disturbance;
             self.parts_done += 1;
             let end = self.parts_done as f64 * self.part;
-            self.inside.advance(end, drive, load, self.stepping)?;
-            self.joint = self.inside.observe();
+            self.joint_model.advance(end, drive, load, self.stepping)?;
+            self.joint = self.joint_model.observe();
             self.note();
         }
         Ok(())
@@ -180,9 +180,9 @@ impl<J: Inside> DriveTrain<J> {
         &self.joint
     }
 
-    /// What moves inside, for those who change it on the way.
-    pub fn inside(&mut self) -> &mut J {
-        &mut self.inside
+    /// The joint model, for tests that change it during a run.
+    pub fn joint_model(&mut self) -> &mut J {
+        &mut self.joint_model
     }
 
     /// Torques of the last part of time.

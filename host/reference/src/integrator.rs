@@ -1,7 +1,7 @@
-//! Integrates a system whose right-hand side is smooth as long as some choices are frozen, restarting at every moment
-//! at which a choice changes (a tooth touches or parts). Knows no gears and no units, and keeps no history.
+//! Integration of a switched system: smooth within a discrete mode, restarted at every event that changes the mode (a tooth
+//! touches or parts). It depends on no gears and no units, and keeps no history.
 //!
-//! `system` is what is integrated, `guard` what tells that a choice no longer holds; `adaptive` takes steps of
+//! `system` defines the system, `guard` the functions whose zeros are events; `adaptive` takes steps of
 //! `dormand_prince` as long as the error allows, and `event` finds where one must end.
 
 mod adaptive;

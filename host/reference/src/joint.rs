@@ -2,9 +2,8 @@
 //! adaptive method of order 8 that restarts at every contact event. It shares no matrix, force law or phase with the
 //! core, whose parameters it reads as plain data; eq. 13's smoothed dead zone is refused.
 //!
-//! `reference` is the joint in motion by `equations`, whose numbers are by `assembly` and whose teeth are by `mesh_law`;
-//! `start` is where it begins, `reading` makes an `observation` of it, `fixed_step` and `wear` move and change it in
-//! other ways.
+//! `reference` moves the joint by `equations`, with parameters from `assembly` and mesh forces from `mesh_law`; `start` has its
+//! initial states, `reading` computes an `observation`, `fixed_step` is a faster integration, `wear` changes the teeth.
 
 mod assembly;
 mod equations;

@@ -11,7 +11,7 @@ use model_core::observer::design::{design_observer, design_usual_probe, observer
 use model_core::observer::{ObserverTables, ProbeTable};
 use parameters::{JointParameters, Surroundings};
 use reference::closed_loop::rivals::Knowledge;
-use reference::closed_loop::{Profile as Standard, SharedReference};
+use reference::closed_loop::{Profile as Standard, SharedProfile};
 use reference::drive_train::{Disturbance, DriveTrainParameters};
 
 use super::draw::{Quantity, Stream};
@@ -35,7 +35,7 @@ pub struct Case {
     /// Guessed over true half-backlash.
     pub width_guess: f64,
     /// Where the link shall be.
-    pub motion: SharedReference,
+    pub motion: SharedProfile,
     /// What pushes it.
     pub disturbances: Vec<Disturbance>,
     /// Texts of the joint files: as controllers know the joint but for its backlash, and the truth.
@@ -226,7 +226,7 @@ pub fn recorded(file: &TestFile, folder: &Path) -> Outcome<Option<Recorded>> {
     }
 }
 
-fn course(file: &TestFile, recorded: Option<&Recorded>, seed: u64) -> SharedReference {
+fn course(file: &TestFile, recorded: Option<&Recorded>, seed: u64) -> SharedProfile {
     match (&file.profile.course, recorded) {
         (_, Some(recorded)) => Arc::new(recorded.clone()),
         (Course::Sine(amplitude, frequency), _) => {

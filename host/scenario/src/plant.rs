@@ -5,7 +5,7 @@ use clap::ValueEnum;
 use model_core::gears::design::design;
 use model_core::gears::{Kinematics, Mechanics, Model, Scales, State, Tables, Torques};
 use parameters::{ContactState, JointParameters};
-use reference::drive_train::{Disturbance, DriveTrain, DriveTrainParameters, Inside, Stepping};
+use reference::drive_train::{Disturbance, DriveTrain, DriveTrainParameters, JointModel, Stepping};
 use reference::joint::{Observation, Reference, ReferenceError, RelativeState, Start, Work};
 
 use board::target::image::DEFAULT_TICK_RATE;
@@ -32,7 +32,7 @@ impl PlantName {
 }
 
 /// A joint whose teeth can change.
-pub trait Teeth: Inside {
+pub trait Teeth: JointModel {
     /// From now on every mesh has this half-backlash [m].
     fn set_half_backlash(&mut self, half_backlash: f64);
     /// From now on the sun-planet mesh of one planet has this mean stiffness [N/m].
@@ -160,7 +160,7 @@ impl<const N: usize> Teeth for CoreJoint<N> {
     }
 }
 
-impl<const N: usize> Inside for CoreJoint<N> {
+impl<const N: usize> JointModel for CoreJoint<N> {
     fn advance(&mut self, time: f64, drive: f64, load: f64, _: Stepping) -> Result<(), ReferenceError> {
         let until = (time * f64::from(self.tables.tick_rate)).round() as u32;
         let mut model = self.model();

@@ -4,7 +4,7 @@
 
 use std::path::Path;
 
-use reference::closed_loop::{Motion, Reference};
+use reference::closed_loop::{Motion, MotionProfile};
 
 use board::profile::{FASTEST, STRONGEST};
 use report::failure::{Failure, Outcome};
@@ -143,7 +143,7 @@ fn set_speeds(rows: &mut [Row]) {
     }
 }
 
-impl Reference for Recorded {
+impl MotionProfile for Recorded {
     fn at(&self, time: f64) -> Motion {
         let after = self.rows.partition_point(|row| row.time <= time);
         let (Some(from), Some(to)) =

@@ -3,7 +3,7 @@
 
 use model_core::gears::{Kinematics, Mechanics};
 use parameters::JointParameters;
-use reference::closed_loop::{Motion, SetPoint, SharedReference};
+use reference::closed_loop::{Motion, SetPoint, SharedProfile};
 
 use super::case::{Case, Designed};
 use super::controller::{ControllerName, Gains};
@@ -11,7 +11,7 @@ use super::file::TestFile;
 
 /// Makes set-points as whoever asks for the motion sends them.
 pub struct Sender {
-    motion: SharedReference,
+    motion: SharedProfile,
     /// How far ahead the motion is told [s].
     lead: Option<f64>,
     /// An impedance, and the torque that is sent along for each unit of acceleration [kg m^2].
@@ -31,7 +31,7 @@ impl Sender {
     }
 
     /// The positions of a motion, none of them told ahead.
-    pub fn of_positions(motion: SharedReference) -> Self {
+    pub fn of_positions(motion: SharedProfile) -> Self {
         Self { motion, lead: None, impedance: None, held: None }
     }
 

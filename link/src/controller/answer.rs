@@ -1,23 +1,23 @@
-//! What a control period came to, in the wire's own form: the shaped set-point, and all that the observer says where it was
-//! asked for. What is asked is in the parent; every field is SI.
+//! Outputs of a control period in the wire's own form: the shaped set-point, and all estimates where they were asked for.
+//! Every field is SI.
 
 use model_core::compensation::{Shaped, Stage};
 use model_core::controller::Answer;
 use model_core::gears::{Flank, sign};
-use model_core::observer::{Doubt, Estimate, Estimates, Notices, Progress, Refusal, Shaft, Source};
+use model_core::observer::{Estimate, Estimates, Notices, OutputFault, Progress, Refusal, Shaft, Source};
 use parameters::ContactState;
 use serde::{Deserialize, Serialize};
 
-/// What a control period came to.
+/// Outputs of a control period.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Answered {
     /// Control periods done.
     pub tick: u32,
     /// Running digest over every answer so far.
     pub digest: u64,
-    /// The shaped set-point: the torque to give, and what it is about.
+    /// The shaped set-point: the torque for the motor, and the stage of the compensation.
     pub shaped: WireShaped,
-    /// All that the observer says, if it was asked for.
+    /// All estimates, if they were asked for.
     pub estimates: Option<WireEstimates>,
     /// Where the width probe stands, in a period of one.
     pub probed: Option<WireProbed>,
@@ -86,9 +86,9 @@ pub type WireEstimate = (f32, f32, bool);
 /// The observer's answer.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct WireEstimates {
-    /// 0 both encoders; motor only since the output's is 1 absent, 2 silent, 3 frozen, 4 out of range; 5 nothing.
+    /// 0 both encoders; motor only, because the output's is 1 absent, 2 silent, 3 frozen, 4 out of range; 5 nothing.
     pub source: u8,
-    /// Bits, the first lowest: torque unknown, out of time, motor doubted, motor jumped, contact valid, settled.
+    /// Bits, the first lowest: torque unknown, out of time, motor implausible, motor jumped, contact valid, settled.
     pub flags: u8,
     /// Contact by force and as reported: 0 separated, 1 drive side, 2 back side.
     pub contacts: (u8, u8),
@@ -153,7 +153,7 @@ impl From<&Estimates<f32>> for WireEstimates {
         let flags = [
             notices.torque_unknown,
             notices.out_of_time,
-            notices.motor_doubted,
+            notices.motor_implausible,
             notices.motor_jumped,
             of.contact_valid,
             of.settled,
@@ -162,10 +162,10 @@ impl From<&Estimates<f32>> for WireEstimates {
         Self {
             source: match of.source {
                 Source::Both => 0,
-                Source::MotorOnly(Doubt::Absent) => 1,
-                Source::MotorOnly(Doubt::Silent) => 2,
-                Source::MotorOnly(Doubt::Frozen) => 3,
-                Source::MotorOnly(Doubt::OutOfRange) => 4,
+                Source::MotorOnly(OutputFault::Absent) => 1,
+                Source::MotorOnly(OutputFault::Silent) => 2,
+                Source::MotorOnly(OutputFault::Frozen) => 3,
+                Source::MotorOnly(OutputFault::OutOfRange) => 4,
                 Source::Nothing => 5,
             },
             flags: flags.iter().rev().fold(0, |bits, flag| bits << 1 | u8::from(*flag)),
@@ -201,16 +201,16 @@ impl From<WireEstimates> for Estimates<f32> {
         Self {
             source: match wire.source {
                 0 => Source::Both,
-                1 => Source::MotorOnly(Doubt::Absent),
-                2 => Source::MotorOnly(Doubt::Silent),
-                3 => Source::MotorOnly(Doubt::Frozen),
-                4 => Source::MotorOnly(Doubt::OutOfRange),
+                1 => Source::MotorOnly(OutputFault::Absent),
+                2 => Source::MotorOnly(OutputFault::Silent),
+                3 => Source::MotorOnly(OutputFault::Frozen),
+                4 => Source::MotorOnly(OutputFault::OutOfRange),
                 _ => Source::Nothing,
             },
             notices: Notices {
                 torque_unknown: flag(0),
                 out_of_time: flag(1),
-                motor_doubted: flag(2),
+                motor_implausible: flag(2),
                 motor_jumped: flag(3),
             },
             gap: estimated(wire.gap),
@@ -237,7 +237,7 @@ impl From<WireEstimates> for Estimates<f32> {
 }
 
 impl Answered {
-    /// The answer, if it brings all of it.
+    /// The answer, if it contains the estimates.
     pub fn answer(&self) -> Option<Answer<f32>> {
         let probed = self.probed.map(Progress::from);
         Some(Answer { estimates: self.estimates?.into(), shaped: self.shaped.into(), probed })

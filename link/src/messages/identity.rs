@@ -1,9 +1,9 @@
-//! Who a board is and what it runs, said before anything else. What follows from that is for the host to decide.
+//! Identity of a board and its image: the first message of a session.
 
 use heapless::String;
 use serde::{Deserialize, Serialize};
 
-use super::Remembered;
+use super::MemoryState;
 
 /// Who the board is and what it runs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -38,8 +38,8 @@ pub struct Hello {
     pub watchdog_reset: bool,
     /// Digest over the tables of observer, compensation and surroundings, for the roles that have them.
     pub control_digest: Option<u64>,
-    /// What it keeps of earlier runs.
-    pub remembered: Remembered,
+    /// Validity of the memory that it keeps of earlier runs.
+    pub memory: MemoryState,
 }
 
 /// What an image is for.
@@ -49,7 +49,7 @@ pub enum Role {
     Plant,
     /// Observer and compensation beside a motor controller; samples and set-points in, estimates and torques out.
     Observer,
-    /// The joint, its motor and both of them on one chip; motion asked for in, motion made out.
+    /// The joint, its motor and both of them on one chip; a trajectory in, the motion out.
     Loop,
 }
 

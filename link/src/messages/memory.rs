@@ -1,5 +1,5 @@
-//! What a controller has learnt, on its way between a board and its host: kept in a page of the board's flash, told,
-//! taken and erased between runs.
+//! The memory of what a controller has learnt, on its way between a board and its host: saved in a page of the board's
+//! flash, read, loaded and erased between runs.
 
 use heapless::Vec;
 use model_core::observer::MEMORY_BYTES;
@@ -10,23 +10,26 @@ pub const MEMORY_PARTS: u8 = 2;
 /// Bytes in each of them.
 pub const PART_BYTES: usize = MEMORY_BYTES / MEMORY_PARTS as usize;
 
-/// What a host wants of a memory. Answered by [`FromBoard::Kept`](super::FromBoard::Kept) with why if nothing comes of it.
+/// A request about the memory. One that cannot be done is answered by
+/// [`FromBoard::MemoryOutcome`](super::FromBoard::MemoryOutcome) with the reason.
 #[allow(clippy::large_enum_variant, reason = "a board has no allocator to box with")]
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub enum MemoryWish {
-    /// Keep what the controller has learnt, in flash. Answered by [`FromBoard::Kept`](super::FromBoard::Kept).
-    Keep,
-    /// Tell a part of what the page holds. Answered by [`FromBoard::Memory`](super::FromBoard::Memory).
-    Tell {
+pub enum MemoryRequest {
+    /// Save what the controller has learnt to flash. Answered by
+    /// [`FromBoard::MemoryOutcome`](super::FromBoard::MemoryOutcome).
+    Save,
+    /// Read a part of what the flash page holds. Answered by [`FromBoard::Memory`](super::FromBoard::Memory).
+    Read {
         /// Number of the part, from 0.
         part: u8,
     },
-    /// A part of a memory for runs that begin from one. The last part is answered by
-    /// [`FromBoard::Judged`](super::FromBoard::Judged), once the controller has looked at the whole.
-    Take(MemoryPart),
-    /// Write the memory that was taken last, and found good, to flash. Answered by [`FromBoard::Kept`](super::FromBoard::Kept).
+    /// Load a part of a memory for runs that begin from one. The last part is answered by
+    /// [`FromBoard::MemoryChecked`](super::FromBoard::MemoryChecked), once the controller has checked the whole.
+    Load(MemoryPart),
+    /// Write the memory that was loaded last, and found good, to flash. Answered by
+    /// [`FromBoard::MemoryOutcome`](super::FromBoard::MemoryOutcome).
     Write,
-    /// Forget it, in flash too. Answered by [`FromBoard::Kept`](super::FromBoard::Kept).
+    /// Discard it, in flash too. Answered by [`FromBoard::MemoryOutcome`](super::FromBoard::MemoryOutcome).
     Erase,
 }
 
@@ -39,12 +42,12 @@ pub struct MemoryPart {
     pub bytes: Vec<u8, PART_BYTES>,
 }
 
-/// What a board found where it keeps what its controller has learnt.
+/// Validity of the memory that a board has found in flash or was given.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Remembered {
-    /// Nothing: its role learns nothing, or nothing was kept yet.
+pub enum MemoryState {
+    /// None: the role learns nothing, or nothing was saved yet.
     Nothing,
-    /// What can be gone on from.
+    /// Valid: runs may begin from it.
     Good,
     /// Something that was never a memory.
     NotAMemory,
@@ -54,16 +57,16 @@ pub enum Remembered {
     Damaged,
     /// A memory of another joint or of other encoders.
     OtherJoint,
-    /// A memory with a number that is none.
+    /// A memory with a number that is not finite.
     NotFinite,
 }
 
-/// What became of what was to be kept.
+/// Outcome of a request about the memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Kept {
+pub enum MemoryOutcome {
     /// It is in flash, and reads as it was written.
     Stored,
-    /// There is nothing to keep: the role learns nothing, or no memory that was taken is good.
+    /// There is nothing to save: the role learns nothing, or no valid memory was loaded.
     Nothing,
     /// A run goes on: stop it first, since writing flash may hold the board up for a second.
     Running,

@@ -1,5 +1,5 @@
-//! The motion of a simulated joint as a board reports it. Motion of the whole loop has words of its own in
-//! `virtual_joint`.
+//! The motion of a simulated joint as a board reports it. The samples of the whole loop
+//! are in `virtual_joint`.
 
 use heapless::Vec;
 use serde::{Deserialize, Serialize};

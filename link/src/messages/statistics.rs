@@ -1,11 +1,11 @@
-//! How a board's time and memory were spent, and what it lost. Whether that is good enough is judged by the host.
+//! Timing statistics of a board, its memory use, and what it lost. The host checks them against its limits.
 
 use serde::{Deserialize, Serialize};
 
 /// Bins of the computation-time histogram.
 pub const HISTOGRAM_BINS: usize = 32;
 
-/// How the board's time was spent since the last clearing. Times are timer counts.
+/// Timing statistics since the last clearing. Times are timer counts.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Statistics {
     /// Steps done.

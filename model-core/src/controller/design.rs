@@ -14,24 +14,24 @@ use crate::virtual_joint::SurroundingsTable;
 use crate::virtual_joint::design::design_surroundings;
 use parameters::{JointParameters, ParameterError, Surroundings};
 
-/// What a controller is made for besides the joint and its surroundings.
+/// Requirements on a controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ControlWish {
+pub struct ControlRequest {
     /// Bandwidth of the loop [rad/s].
     pub bandwidth: f64,
     /// Whether the observer is shown the output encoder.
     pub output_encoder: bool,
 }
 
-/// What a controller is told, and what is wanted of it.
+/// The nominal plant that a controller is designed for, and the requirements on it.
 #[derive(Debug, Clone, Copy)]
-pub struct Told<'t> {
+pub struct NominalPlant<'t> {
     /// The joint; its backlash may be a guess.
     pub joint: &'t JointParameters,
     /// What surrounds it.
     pub surroundings: &'t Surroundings,
-    /// What is wanted.
-    pub wish: ControlWish,
+    /// Requirements.
+    pub request: ControlRequest,
 }
 
 /// Tables as Rust source.
@@ -43,20 +43,20 @@ pub struct ControlSource {
     pub digest: u64,
 }
 
-/// Tables of a controller, and of what truly surrounds the joint, as source.
+/// Tables of a controller for the nominal plant, and of the true surroundings of the joint, as source.
 pub fn control_source(
     joint: &JointParameters,
     around: &Surroundings,
-    told: &Told<'_>,
+    nominal: &NominalPlant<'_>,
     processor: &Processor,
 ) -> Result<ControlSource, DesignError> {
-    let mut settings = observer_settings(told.surroundings);
-    if !told.wish.output_encoder {
+    let mut settings = observer_settings(nominal.surroundings);
+    if !nominal.request.output_encoder {
         settings.output_encoder = None;
     }
-    let observer = observer_source(told.joint, &settings)?;
+    let observer = observer_source(nominal.joint, &settings)?;
     let compensation: CompensationTables<f32> =
-        design_compensation(told.joint, &compensation_settings(told.surroundings, told.wish.bandwidth))?;
+        design_compensation(nominal.joint, &compensation_settings(nominal.surroundings, nominal.request.bandwidth))?;
     let surroundings: SurroundingsTable<f32> = match joint.geometry.planets {
         3 => surroundings::<3>(joint, around, processor)?,
         4 => surroundings::<4>(joint, around, processor)?,
@@ -80,8 +80,8 @@ pub fn control_source(
     Ok(ControlSource { text, digest })
 }
 
-/// Digest over everything in the statics that is no name: numbers in their order, `true`, `false` and `None`. So every field
-/// counts, and none by what it is called.
+/// Digest over all values in the statics, numbers in their order, `true`, `false` and `None`, and over no name: every field
+/// counts, whatever it is called.
 fn digest_of(statics: &str) -> u64 {
     let words = statics.split(|character: char| character.is_whitespace() || "{}()[],:;=".contains(character));
     let is_value = |word: &&str| {

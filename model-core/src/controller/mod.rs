@@ -1,8 +1,8 @@
-//! Observer and compensation as one, and the courses that they are asked to follow.
+//! Observer and compensation as one controller, the trajectories that it follows, and the design of its tables.
 
-pub mod course;
 #[cfg(feature = "design")]
 pub mod design;
 mod step;
+pub mod trajectory;
 
 pub use step::{Answer, Controller};

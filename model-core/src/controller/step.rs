@@ -8,19 +8,19 @@ use crate::numbers::digest::chain;
 use crate::observer::{Estimates, MAPPED, Memory, MemoryError, Observer, Probe, Progress, Samples};
 use crate::observer::{ObserverTables, ProbeTable};
 
-/// What one control period came to.
+/// Outputs of one control period.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Answer<T: Real> {
-    /// What the observer makes of the samples.
+    /// Outputs of the observer.
     pub estimates: Estimates<T>,
-    /// What the compensation makes of estimates and set-point.
+    /// Outputs of the compensation.
     pub shaped: Shaped<T>,
-    /// Where the width probe stands, if this was a period of one.
+    /// Progress of the width probe, in a period of one.
     pub probed: Option<Progress<T>>,
 }
 
 impl<T: Real> Answer<T> {
-    /// Extends a digest by what says most about the rest: torque, gap, width, load, trust, the width that was probed.
+    /// Extends a digest by the main outputs: torque, gap, half-backlash, load, trust, the half-backlash that was probed.
     pub fn digest(&self, running: u64) -> u64 {
         let Self { estimates, shaped, probed } = self;
         let running = match probed {
@@ -39,7 +39,7 @@ impl<T: Real> Answer<T> {
 ///
 /// ```
 /// use model_core::compensation::design::{compensation_settings, design_compensation};
-/// use model_core::controller::{Controller, course::Demand};
+/// use model_core::controller::{Controller, trajectory::Trajectory};
 /// use model_core::gears::{Tables, design::design};
 /// use model_core::observer::design::{design_observer, observer_settings};
 /// use model_core::virtual_joint::{VirtualJoint, design::design_surroundings};
@@ -50,10 +50,10 @@ impl<T: Real> Answer<T> {
 /// let observer = design_observer(&q1.parameters, &observer_settings(&q1.surroundings))?;
 /// let compensation = design_compensation(&q1.parameters, &compensation_settings(&q1.surroundings, 60.0))?;
 /// let (mut joint, mut controller) = (VirtualJoint::new(&gears, &around), Controller::new(&observer, &compensation));
-/// let mut answer = controller.step(&joint.samples(), &Demand::HOLD.at(0.0, around.turn));
+/// let mut answer = controller.step(&joint.samples(), &Trajectory::HOLD.at(0.0, around.turn));
 /// for period in 1..30_000 {
 ///     joint.advance(answer.shaped.torque, if period < 10_000 { 0.0 } else { 3.0 });
-///     answer = controller.step(&joint.samples(), &Demand::HOLD.at(0.0, around.turn));
+///     answer = controller.step(&joint.samples(), &Trajectory::HOLD.at(0.0, around.turn));
 /// }
 /// // The observer knows of the pull, up to what friction takes of it; the motor holds against it through a gear of 6.
 /// assert!((answer.estimates.load_torque.value - 3.0).abs() < 0.5, "{:?}", answer.estimates.load_torque);
@@ -68,7 +68,7 @@ pub struct Controller<'tables, T: Real> {
     probing: Option<Probing<'tables, T>>,
 }
 
-/// A probe, and how long it waits until the observer has seen the joint.
+/// A probe, and for how many periods it waits until the observer has settled.
 #[derive(Debug, Clone)]
 struct Probing<'tables, T: Real> {
     probe: Probe<'tables, T>,
@@ -76,7 +76,7 @@ struct Probing<'tables, T: Real> {
 }
 
 impl<'tables, T: Real> Controller<'tables, T> {
-    /// Both as they are after a reset.
+    /// Both in their initial state.
     pub fn new(observer: &'tables ObserverTables<T>, compensation: &'tables CompensationTables<T>) -> Self {
         Self {
             observer: Observer::new(observer),
@@ -91,7 +91,7 @@ impl<'tables, T: Real> Controller<'tables, T> {
         Self { probe_table: table, ..self }
     }
 
-    /// Forgets everything but what was designed.
+    /// Back to the initial state: all that was learnt is discarded.
     pub fn reset(&mut self) {
         self.observer.restart();
         self.compensation.restart();
@@ -103,7 +103,7 @@ impl<'tables, T: Real> Controller<'tables, T> {
         self.observer.save()
     }
 
-    /// Goes on from what was saved. Refused memories change nothing.
+    /// Continues from what was saved. A memory that is refused changes nothing.
     pub fn load(&mut self, memory: &[u8]) -> Result<(), MemoryError> {
         self.observer.load(memory)
     }
@@ -117,8 +117,8 @@ impl<'tables, T: Real> Controller<'tables, T> {
         Answer { estimates, shaped, probed: None }
     }
 
-    /// One control period of a width probe, which begins with the first of them in a row and stays at its result until
-    /// [`step`](Self::step) is called again. Without a probe no torque is given and nothing is said.
+    /// One control period of a width probe, which begins with the first of them in a row and keeps its result until
+    /// [`step`](Self::step) is called again. Without a probe table the torque is zero and there is no progress.
     #[inline(never)]
     pub fn probe(&mut self, samples: &Samples<T>) -> Answer<T> {
         let estimates = *self.observer.step(samples);

@@ -1,56 +1,56 @@
-//! What is promised of a fixed step before it runs: error, instructions, memory, limits. Plain numbers that lie beside
-//! the tables; where they come from is in `gears::design`, whether they suffice is the reader's judgement.
+//! The certificate of a fixed step, known before it runs: error, instructions, memory, stability limits. Plain numbers that
+//! accompany the tables; `gears::design` computes them.
 
 use core::fmt;
 
-/// Parts of a tick in which contacts change.
+/// The sub-steps of a tick in which contacts change: by which method, and how many.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Parts {
+pub enum Substeps {
     /// Runge-Kutta sub-steps with corrected crossings.
-    Substeps(u32),
-    /// Leapfrog sub-steps, for light planets.
-    Leaps(u32),
+    Corrected(u32),
+    /// Velocity-Verlet (leapfrog) sub-steps, for light planets.
+    Verlet(u32),
 }
 
-impl fmt::Display for Parts {
+impl fmt::Display for Substeps {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Substeps(count) => write!(f, "{count} corrected sub-steps"),
-            Self::Leaps(count) => write!(f, "{count} leapfrog sub-steps"),
+            Self::Corrected(count) => write!(f, "{count} corrected sub-steps"),
+            Self::Verlet(count) => write!(f, "{count} leapfrog sub-steps"),
         }
     }
 }
 
-impl Parts {
+impl Substeps {
     /// How many.
     pub fn count(self) -> u32 {
-        let (Self::Substeps(count) | Self::Leaps(count)) = self;
+        let (Self::Corrected(count) | Self::Verlet(count)) = self;
         count
     }
 }
 
-/// The promise for one joint at one tick rate.
+/// The certificate of one joint at one tick rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Certificate {
     /// Fixed steps a second [Hz].
     pub tick_rate: u32,
-    /// Parts of a tick while contacts change.
-    pub parts: Parts,
-    /// While every mesh stays on its flank.
-    pub holding: ErrorPromise,
-    /// While meshes part and hit.
-    pub losing: ErrorPromise,
+    /// Sub-steps of a tick while contacts change.
+    pub substeps: Substeps,
+    /// Error while every mesh stays on its flank.
+    pub contact_holds: ErrorQuantiles,
+    /// Error while meshes part and hit.
+    pub contact_changes: ErrorQuantiles,
     /// Of a tick.
     pub instructions: Instructions,
     /// Flash that the tables take [byte].
     pub table_bytes: u32,
     /// RAM that the model takes between ticks [byte].
     pub model_bytes: u32,
-    /// Phase of the fastest mode in a part [rad].
+    /// Phase of the fastest mode in a sub-step [rad].
     pub phase: f64,
-    /// Phase from which on parts would be unstable [rad].
+    /// Phase from which on sub-steps would be unstable [rad].
     pub largest_phase: f64,
-    /// What contact changes are not seen.
+    /// Contact changes that may go unnoticed.
     pub unseen: Unseen,
     /// Lowest tick rate that is stable [Hz].
     pub lowest_rate: u32,
@@ -61,7 +61,7 @@ pub struct Certificate {
 /// RMS error of the mesh deflections over their standard deviations, for motions of 200 / omega_n that can be predicted
 /// at all: a vanishing change of the start grows less than a hundredfold in them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ErrorPromise {
+pub struct ErrorQuantiles {
     /// Half of all motions stay below it.
     pub typical: f64,
     /// Nine in ten do.
@@ -72,21 +72,22 @@ pub struct ErrorPromise {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Instructions {
     /// While every mesh stays on its flank and excitation is slow: by the exponential flow.
-    pub holding: u32,
-    /// In parts that see no crossing.
-    pub losing: u32,
-    /// Every mesh crosses in two sub-steps, or in one after an exponential tick was given up; or touches in every leap.
+    pub contact_holds: u32,
+    /// In sub-steps, none of which has a crossing.
+    pub contact_changes: u32,
+    /// Every mesh crosses in two sub-steps, or in one after an exponential tick was given up; or touches in every
+    /// Verlet sub-step.
     pub all_crossing: u32,
-    /// Every mesh crosses its gap in every part: no state of a search through a million takes more.
+    /// Every mesh crosses its gap in every sub-step: an upper bound on every state of a search through a million.
     pub bound: u32,
 }
 
-/// Contact changes that no look at the meshes falls into.
+/// Contact changes that begin and end between two checks of the meshes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unseen {
     /// A mesh that leaves its flank and returns within this time may go unseen [s].
     pub duration: f64,
-    /// So far beyond its flank it may go in that time, over the deflection that its load gives it; `None` where looks are
-    /// half a period of the fastest mode apart or more, and anything may go unseen.
+    /// So far beyond its flank it may go in that time, over the deflection that its load gives it; `None` where checks are
+    /// half a period of the fastest mode apart or more: then there is no limit.
     pub departure: Option<f64>,
 }

@@ -1,5 +1,5 @@
-//! Which law each mesh is under, and what mesh forces do to the joint. A law is affine in deflection and rate, so a
-//! frozen contact set makes the joint linear; what a contact set does over time is in `frozen`.
+//! The contact law of each mesh, and the accelerations that mesh forces cause. A law is affine in deflection and rate, so
+//! the joint is linear while the contact set is fixed (`fixed_contact_set`).
 
 use crate::gears::excitation::PerMesh;
 use crate::gears::state::Relative;
@@ -7,9 +7,9 @@ use crate::gears::tables::{Mobility, Tables};
 use crate::numbers::Real;
 use parameters::{ContactState, DampingLaw};
 
-/// Accelerations of the bodies other than by mesh forces, in units of b_c omega_n^2.
+/// Accelerations of the bodies by the applied torques alone, without mesh forces, in units of b_c omega_n^2.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Drive<T> {
+pub struct AppliedAcceleration<T> {
     /// Of the sun, by the drive torque.
     pub sun: T,
     /// Of the carrier, by the load torque when there is no compliance (negative for a positive load).
@@ -18,12 +18,12 @@ pub struct Drive<T> {
     pub link: T,
 }
 
-impl<T: Real> Drive<T> {
-    /// None at all: what is left is the response to forces.
+impl<T: Real> AppliedAcceleration<T> {
+    /// No torque: what remains is the response to mesh forces.
     pub const NONE: Self = Self { sun: T::ZERO, carrier: T::ZERO, link: T::ZERO };
 
-    /// What it is beyond another.
-    pub fn less(&self, other: &Self) -> Self {
+    /// The difference to another.
+    pub fn minus(&self, other: &Self) -> Self {
         Self { sun: self.sun - other.sun, carrier: self.carrier - other.carrier, link: self.link - other.link }
     }
 
@@ -38,7 +38,7 @@ impl<T: Real> Drive<T> {
         }
     }
 
-    /// In other units.
+    /// All of them times a factor.
     pub fn times(&self, scale: T) -> Self {
         Self { sun: scale * self.sun, carrier: scale * self.carrier, link: scale * self.link }
     }
@@ -57,9 +57,9 @@ pub fn contact<T: Real>(deflection: T, half_backlash: T) -> ContactState {
     }
 }
 
-/// Mesh coordinate of eq. 4 without imposed error: a planet's own (sun-planet), or what the gap leaves (ring-planet).
+/// Mesh coordinates of eq. 4 without imposed error: the planet's own (sun-planet), the gap less that (ring-planet).
 #[inline]
-pub fn spread<T: Real, const N: usize>(motion: &Relative<T, N>) -> PerMesh<T, N> {
+pub fn mesh_coordinates<T: Real, const N: usize>(motion: &Relative<T, N>) -> PerMesh<T, N> {
     let mut meshes = [motion.planets; 2];
     for ring in &mut meshes[1] {
         *ring = motion.gap - *ring;
@@ -111,13 +111,13 @@ impl<T: Real> Law<T> {
         speed: T,
         stiffness: T,
     ) -> Self {
-        let pushes_only = tables.damping_law == DampingLaw::Contact;
+        let contact_law = tables.damping_law == DampingLaw::Contact;
         let damping = tables.stage.damping[kind];
         let half_backlash = tables.meshes[kind][planet].half_backlash;
         let drive_side = deflection >= half_backlash;
         let offset = if drive_side { half_backlash } else { -half_backlash };
         let mut closed = drive_side || deflection <= -half_backlash;
-        if pushes_only {
+        if contact_law {
             // Teeth only push: a force against the side of contact is no force.
             let force = stiffness * (deflection - offset) + damping * speed;
             closed &= if drive_side { force > T::ZERO } else { force < T::ZERO };
@@ -127,23 +127,23 @@ impl<T: Real> Law<T> {
                 if drive_side { (ContactState::DriveSide, T::ONE) } else { (ContactState::BackSide, -T::ONE) };
             Self { contact, closed: T::ONE, offset, damping, side, open: T::ZERO }
         } else {
-            Self { damping: if pushes_only { T::ZERO } else { damping }, ..Self::OPEN }
+            Self { damping: if contact_law { T::ZERO } else { damping }, ..Self::OPEN }
         }
     }
 }
 
 /// Mesh forces summed up as the bodies feel them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Net<T, const N: usize> {
+pub struct NetForces<T, const N: usize> {
     sun_planet: T,
     ring_planet: T,
-    /// Sun-planet less ring-planet force of every planet.
-    apart: [T; N],
+    /// Sun-planet force less ring-planet force of every planet.
+    differences: [T; N],
 }
 
-impl<T: Real, const N: usize> Net<T, N> {
+impl<T: Real, const N: usize> NetForces<T, N> {
     /// No force.
-    pub const NONE: Self = Self { sun_planet: T::ZERO, ring_planet: T::ZERO, apart: [T::ZERO; N] };
+    pub const NONE: Self = Self { sun_planet: T::ZERO, ring_planet: T::ZERO, differences: [T::ZERO; N] };
 
     /// All mesh forces.
     #[inline(always)]
@@ -160,7 +160,7 @@ impl<T: Real, const N: usize> Net<T, N> {
     pub fn add(&mut self, i: usize, sun_planet: T, ring_planet: T) {
         self.sun_planet += sun_planet;
         self.ring_planet += ring_planet;
-        self.apart[i] = sun_planet - ring_planet;
+        self.differences[i] = sun_planet - ring_planet;
     }
 
     /// Sums over planets: sun-planet, ring-planet.
@@ -177,8 +177,8 @@ impl<T: Real, const N: usize> Net<T, N> {
 
     /// Sun-planet less ring-planet force of one planet.
     #[inline(always)]
-    pub fn apart(&self, i: usize) -> T {
-        self.apart[i]
+    pub fn difference_of(&self, i: usize) -> T {
+        self.differences[i]
     }
 
     /// The force of one more mesh.
@@ -186,31 +186,40 @@ impl<T: Real, const N: usize> Net<T, N> {
     pub fn add_one(&mut self, (kind, i): (usize, usize), force: T) {
         if kind == 0 {
             self.sun_planet += force;
-            self.apart[i] += force;
+            self.differences[i] += force;
         } else {
             self.ring_planet += force;
-            self.apart[i] -= force;
+            self.differences[i] -= force;
         }
     }
 
     /// Relative accelerations (eqs 1-3 in the coordinates of eqs 16 and 17).
     #[inline(always)]
-    pub fn accelerations(&self, mobility: &Mobility<T>, drive: &Drive<T>, wind_up_force: T) -> Relative<T, N> {
-        let own = self.drive(mobility, wind_up_force);
-        let all = Drive { sun: drive.sun + own.sun, carrier: drive.carrier + own.carrier, link: drive.link + own.link };
+    pub fn accelerations(
+        &self,
+        mobility: &Mobility<T>,
+        applied: &AppliedAcceleration<T>,
+        wind_up_force: T,
+    ) -> Relative<T, N> {
+        let own = self.body_accelerations(mobility, wind_up_force);
+        let all = AppliedAcceleration {
+            sun: applied.sun + own.sun,
+            carrier: applied.carrier + own.carrier,
+            link: applied.link + own.link,
+        };
         self.relative(mobility, &all)
     }
 
     /// What these forces alone cause.
     #[inline(always)]
     pub fn response(&self, mobility: &Mobility<T>, wind_up_force: T) -> Relative<T, N> {
-        self.relative(mobility, &self.drive(mobility, wind_up_force))
+        self.relative(mobility, &self.body_accelerations(mobility, wind_up_force))
     }
 
     /// Accelerations of all bodies but the planets.
     #[inline(always)]
-    fn drive(&self, mobility: &Mobility<T>, wind_up_force: T) -> Drive<T> {
-        Drive {
+    fn body_accelerations(&self, mobility: &Mobility<T>, wind_up_force: T) -> AppliedAcceleration<T> {
+        AppliedAcceleration {
             sun: -(mobility.sun * self.sun_planet),
             carrier: mobility.carrier * (self.sun_planet + self.ring_planet - wind_up_force),
             link: mobility.link * wind_up_force,
@@ -218,9 +227,9 @@ impl<T: Real, const N: usize> Net<T, N> {
     }
 
     #[inline(always)]
-    fn relative(&self, mobility: &Mobility<T>, all: &Drive<T>) -> Relative<T, N> {
+    fn relative(&self, mobility: &Mobility<T>, all: &AppliedAcceleration<T>) -> Relative<T, N> {
         let mut relative = all.relative(mobility);
-        for (planet, apart) in relative.planets.iter_mut().zip(&self.apart) {
+        for (planet, apart) in relative.planets.iter_mut().zip(&self.differences) {
             *planet -= mobility.planet * *apart;
         }
         relative
@@ -231,11 +240,11 @@ impl<T: Real, const N: usize> Net<T, N> {
 #[inline(always)]
 pub fn acceleration<T: Real, const N: usize>(
     tables: &Tables<T, N>,
-    drive: &Drive<T>,
+    applied: &AppliedAcceleration<T>,
     mesh_forces: &PerMesh<T, N>,
     wind_up_force: T,
 ) -> Relative<T, N> {
-    Net::of(mesh_forces, |force| *force).accelerations(&tables.mobility, drive, wind_up_force)
+    NetForces::of(mesh_forces, |force| *force).accelerations(&tables.mobility, applied, wind_up_force)
 }
 
 /// Force between carrier and link.

@@ -1,37 +1,38 @@
-//! Correction of a step for meshes that parted or met inside it, from its end alone. Known from
-//! real-time simulation as in-step correction of a switched right-hand side (R. M. Howe, Dynamics of Real-Time
-//! Simulation, ch. 11); a mesh that leaves and returns within the step is not seen.
+//! Correction of a sub-step for meshes that parted or met inside it, from the state at its end alone: in-step correction
+//! of a switched right-hand side, as real-time simulation knows it (R. M. Howe, Dynamics of Real-Time Simulation, ch. 11).
+//! A mesh that leaves its flank and returns within the sub-step is not noticed.
 //!
-//! After the crossing, s before the end, the frozen law misses a force m. Near the end m(t) is known to second order,
+//! After the crossing, s before the end, the fixed contact law misses a force m. Near the end m(t) is known to second order,
 //! so its first three integrals over [t - s, t] are closed forms; they correct rate, position and the integral of the
 //! position. These corrections deform the other meshes too: one linear pass adds the forces that this causes.
 
-use crate::gears::contact::{Law, Laws, Net};
-use crate::gears::excitation::{Beat, PerMesh};
-use crate::gears::frozen::{Frozen, Moment};
+use crate::gears::contact::{Law, Laws, NetForces};
+use crate::gears::excitation::{PerMesh, PhaseHarmonics};
+use crate::gears::fixed_contact_set::{FixedContactSet, MeshState};
 use crate::gears::planets::each_planet;
-use crate::gears::stages::Course;
+use crate::gears::stages::SubstepState;
 use crate::numbers::Real;
 
 /// The end of a step that was taken with one contact set throughout.
-pub struct End<'a, T: Real, const N: usize, const OVERTONES: usize> {
+pub struct StepEnd<'a, T: Real, const N: usize, const OVERTONES: usize> {
     /// The joint.
-    pub frozen: &'a Frozen<'a, T, N, OVERTONES>,
-    /// Way that the mesh phase goes in the step [rad].
+    pub fixed: &'a FixedContactSet<'a, T, N, OVERTONES>,
+    /// Advance of the mesh phase in the sub-step [rad].
     pub rate: T,
     /// The excitation.
-    pub beat: &'a Beat<T, OVERTONES>,
-    /// Meshes whose law does not hold: those with more than zero.
-    pub trespasses: &'a PerMesh<T, N>,
+    pub harmonics_now: &'a PhaseHarmonics<T, OVERTONES>,
+    /// How far each mesh violates its law: positive where the law no longer holds.
+    pub violations: &'a PerMesh<T, N>,
 }
 
-impl<T: Real, const N: usize, const OVERTONES: usize> End<'_, T, N, OVERTONES> {
+impl<T: Real, const N: usize, const OVERTONES: usize> StepEnd<'_, T, N, OVERTONES> {
     /// Corrects the motion for every law that does not hold, and the accelerations now and half a step before, which
     /// become those that the new laws would have caused on the same path.
     #[inline(never)]
-    pub fn correct(&self, laws: &mut Laws<T, N>, course: &mut Course<T, N>) {
-        let tables = self.frozen.tables;
-        let (mut impulse, mut shift, mut jump, mut past) = (Net::NONE, Net::NONE, Net::NONE, Net::NONE);
+    pub fn correct(&self, laws: &mut Laws<T, N>, state: &mut SubstepState<T, N>) {
+        let tables = self.fixed.tables;
+        let (mut impulse, mut shift, mut jump, mut past) =
+            (NetForces::NONE, NetForces::NONE, NetForces::NONE, NetForces::NONE);
         let mut longest = T::ZERO;
         let mut add = |mesh: (usize, usize), missed: &Missed<T>| {
             impulse.add_one(mesh, missed.impulse);
@@ -43,11 +44,11 @@ impl<T: Real, const N: usize, const OVERTONES: usize> End<'_, T, N, OVERTONES> {
             }
         };
         each_planet!(N, i => {
-            if self.trespasses[0][i] > T::ZERO {
-                add((0, i), &self.cross((0, i), laws, course));
+            if self.violations[0][i] > T::ZERO {
+                add((0, i), &self.cross((0, i), laws, state));
             }
-            if self.trespasses[1][i] > T::ZERO {
-                add((1, i), &self.cross((1, i), laws, course));
+            if self.violations[1][i] > T::ZERO {
+                add((1, i), &self.cross((1, i), laws, state));
             }
         });
         let mobility = &tables.stage.mobility;
@@ -56,7 +57,7 @@ impl<T: Real, const N: usize, const OVERTONES: usize> End<'_, T, N, OVERTONES> {
         // integral of the rate, which is the position, and springs about s/4 of the position: it grew with the third
         // power of time. Ripple is left out of it.
         let quarter = T::QUARTER * longest;
-        let mut later = Net::NONE;
+        let mut later = NetForces::NONE;
         for i in 0..N {
             let (sun, sun_rate) = (position.planets[i], rate.planets[i]);
             for (kind, moved, moving) in [(0, sun, sun_rate), (1, position.gap - sun, rate.gap - sun_rate)] {
@@ -70,42 +71,42 @@ impl<T: Real, const N: usize, const OVERTONES: usize> End<'_, T, N, OVERTONES> {
         let jump = jump.response(mobility, wind_up + mobility.wind_up_damping * rate.wind_up);
         let wind_up = quarter * wind_up + mobility.wind_up_damping * position.wind_up;
         let later = later.response(mobility, T::SIX * wind_up);
-        course.each(&position, |coordinate, position| coordinate.position += position);
-        course.each(&rate, |coordinate, rate| coordinate.rate += rate);
-        course.each(&later, |coordinate, later| coordinate.rate += later);
-        course.each(&jump, |coordinate, jump| coordinate.now += jump);
-        course.each(&past.response(mobility, T::ZERO), |coordinate, past| coordinate.before += past);
+        state.for_each(&position, |coordinate, position| coordinate.position += position);
+        state.for_each(&rate, |coordinate, rate| coordinate.rate += rate);
+        state.for_each(&later, |coordinate, later| coordinate.rate += later);
+        state.for_each(&jump, |coordinate, jump| coordinate.now += jump);
+        state.for_each(&past.response(mobility, T::ZERO), |coordinate, past| coordinate.before += past);
     }
 
-    /// Puts one mesh under the law that holds; what the law before it missed.
+    /// Puts one mesh under the law that holds; returns the force that the law before it missed.
     #[inline(never)]
-    fn cross(&self, (kind, i): (usize, usize), laws: &mut Laws<T, N>, course: &Course<T, N>) -> Missed<T> {
-        let tables = self.frozen.tables;
-        let planet = course.planets[i];
+    fn cross(&self, (kind, i): (usize, usize), laws: &mut Laws<T, N>, state: &SubstepState<T, N>) -> Missed<T> {
+        let tables = self.fixed.tables;
+        let planet = state.planets[i];
         let (mut at, mut acceleration) = (planet.point(), planet.now);
         if kind == 1 {
-            (at, acceleration) = (course.gap.point().less(at), course.gap.now - acceleration);
+            (at, acceleration) = (state.gap.point().minus(at), state.gap.now - acceleration);
         }
         let was = laws[kind][i];
-        let Moment { overlap: deflection, speed, stiffness, error, .. } =
-            self.frozen.mesh(&Law::OPEN, (kind, i), self.beat, at);
+        let MeshState { overlap: deflection, speed, stiffness, error, .. } =
+            self.fixed.mesh(&Law::OPEN, (kind, i), self.harmonics_now, at);
         let is = Law::of(tables, (kind, i), deflection, speed, stiffness);
         laws[kind][i] = is;
         // Without backlash both flanks are one.
         if was.closed == is.closed && was.offset == is.offset {
             return Missed::NOTHING;
         }
-        let stiffness_rate = tables.meshes[kind][i].stiffness_rate(self.beat, tables.excitation.harmonics);
+        let stiffness_rate = tables.meshes[kind][i].stiffness_rate(self.harmonics_now, tables.excitation.harmonics);
         // e'' = -rate^2 e for the sine of eq. 11.
         let acceleration = T::SIX * acceleration + self.rate * self.rate * error;
         // Damping that acts whatever the contact is not missed.
-        let base = self.frozen.adheres * tables.stage.damping[kind];
+        let base = self.fixed.paper_law * tables.stage.damping[kind];
         let mesh = Crossing { deflection, speed, acceleration, stiffness, stiffness_rate, base };
         mesh.missed(&was, &is)
     }
 }
 
-/// One mesh at the end of a sub-step, on the path that the frozen laws gave.
+/// One mesh at the end of a sub-step, on the path that the fixed laws gave.
 struct Crossing<T> {
     deflection: T,
     speed: T,
@@ -115,7 +116,7 @@ struct Crossing<T> {
     base: T,
 }
 
-/// What a frozen law missed.
+/// The force that a fixed law missed, and its integrals.
 struct Missed<T> {
     /// Six times the integral of the force since the crossing.
     impulse: T,

@@ -9,9 +9,9 @@ use parameters::MAX_HARMONICS;
 /// One value for each mesh: sun-planet of every planet, then ring-planet.
 pub type PerMesh<T, const N: usize> = [[T; N]; 2];
 
-/// All meshes at one instant, dimensionless.
+/// Excitation of all meshes at one instant, dimensionless.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Instant<T, const N: usize> {
+pub struct MeshExcitations<T, const N: usize> {
     /// Stiffness.
     pub stiffness: PerMesh<T, N>,
     /// Imposed error e.
@@ -20,14 +20,14 @@ pub struct Instant<T, const N: usize> {
     pub error_rate: PerMesh<T, N>,
 }
 
-/// Sine and cosine of the mesh phase, or of a part of it to be added.
+/// Sine and cosine of the mesh phase, or of an advance to be added to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Rotor<T> {
+pub struct Phasor<T> {
     pub sine: T,
     pub cosine: T,
 }
 
-impl<T: Real> Rotor<T> {
+impl<T: Real> Phasor<T> {
     /// At a phase in 2^-32 periods.
     #[inline]
     pub fn at(phase: u32) -> Self {
@@ -45,70 +45,70 @@ impl<T: Real> Rotor<T> {
     }
 }
 
-/// How the mesh phase goes over a tick.
+/// The mesh phase over a tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeshPhase<T> {
     /// Where it starts.
-    pub start: Rotor<T>,
-    /// Periods over the tick, in 2^-32.
-    pub way: T,
+    pub start: Phasor<T>,
+    /// Its advance over the tick, in 2^-32 periods.
+    pub advance: T,
     /// d(phase)/d(tau) [rad].
     pub rate: T,
 }
 
 impl<T: Real> MeshPhase<T> {
-    /// What a part of the tick adds to the phase.
+    /// The advance over a part of the tick.
     #[inline]
-    pub fn over(&self, part: T) -> Rotor<T> {
-        Rotor::at((self.way * part).to_phase())
+    pub fn over(&self, part: T) -> Phasor<T> {
+        Phasor::at((self.advance * part).to_phase())
     }
 }
 
-/// Mesh periods, in 2^-32, over a tick in which the rigid body goes `way` (2^-64 turns).
+/// Mesh periods, in 2^-32, over a tick in which the rigid body travels `travel` (2^-64 turns).
 #[inline]
-pub fn mesh_way<T: Real>(excitation: &Excitation<T>, way: i64) -> T {
+pub fn mesh_phase_advance<T: Real>(excitation: &Excitation<T>, travel: i64) -> T {
     if excitation.periods_per_turn == 0 {
-        excitation.phase_way
+        excitation.phase_advance
     } else {
         // 2^31 turns times the teeth of any ring stays inside 64 bits.
-        T::from_i64((way >> 32) * i64::from(excitation.periods_per_turn))
+        T::from_i64((travel >> 32) * i64::from(excitation.periods_per_turn))
     }
 }
 
 /// Harmonics above the first that a joint may have.
-pub const MOST_OVERTONES: usize = MAX_HARMONICS - 1;
+pub const MAX_OVERTONES: usize = MAX_HARMONICS - 1;
 
-/// The mesh phase at one moment and how fast it goes, and room for multiples of it, from the second on.
+/// Phasors of the mesh phase at one moment, with its rate: the fundamental, and room for the higher harmonics.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Beat<T, const OVERTONES: usize> {
+pub struct PhaseHarmonics<T, const OVERTONES: usize> {
     /// Sine and cosine.
-    pub rotor: Rotor<T>,
+    pub phasor: Phasor<T>,
     /// Their rates.
-    pub rates: Rotor<T>,
+    pub rates: Phasor<T>,
     rate: T,
-    /// Sines and cosines of the multiples, as many as the joint has.
-    multiples: [Rotor<T>; OVERTONES],
+    /// Phasors of the higher harmonics, as many as the joint has.
+    multiples: [Phasor<T>; OVERTONES],
 }
 
-impl<T: Real, const OVERTONES: usize> Beat<T, OVERTONES> {
-    /// At a phase that goes at `rate` [rad a unit of dimensionless time].
+impl<T: Real, const OVERTONES: usize> PhaseHarmonics<T, OVERTONES> {
+    /// At a phase with this rate [rad a unit of dimensionless time].
     #[inline]
-    pub fn new(rotor: Rotor<T>, rate: T, harmonics: u32) -> Self {
-        let mut multiples = [rotor; OVERTONES];
+    pub fn new(phasor: Phasor<T>, rate: T, harmonics: u32) -> Self {
+        let mut multiples = [phasor; OVERTONES];
         if OVERTONES > 0 {
-            let mut multiple = rotor;
+            let mut multiple = phasor;
             for place in multiples.iter_mut().take(harmonics.saturating_sub(1) as usize) {
-                multiple = multiple.turned(&rotor);
+                multiple = multiple.turned(&phasor);
                 *place = multiple;
             }
         }
-        Self { rotor, rates: Rotor { sine: rate * rotor.cosine, cosine: -(rate * rotor.sine) }, rate, multiples }
+        Self { phasor, rates: Phasor { sine: rate * phasor.cosine, cosine: -(rate * phasor.sine) }, rate, multiples }
     }
 }
 
-/// One mesh at one moment.
+/// Excitation of one mesh at one instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MeshWave<T> {
+pub struct MeshExcitation<T> {
     /// Stiffness.
     pub stiffness: T,
     /// Imposed error e.
@@ -120,31 +120,40 @@ pub struct MeshWave<T> {
 impl<T: Real> MeshTable<T> {
     /// At a moment; `mean` is that of its kind, `harmonics` that of the joint.
     #[inline(always)]
-    pub fn at<const OVERTONES: usize>(&self, beat: &Beat<T, OVERTONES>, mean: T, harmonics: u32) -> MeshWave<T> {
-        let Beat { rotor, rates, .. } = beat;
+    pub fn at<const OVERTONES: usize>(
+        &self,
+        harmonics_now: &PhaseHarmonics<T, OVERTONES>,
+        mean: T,
+        harmonics: u32,
+    ) -> MeshExcitation<T> {
+        let PhaseHarmonics { phasor, rates, .. } = harmonics_now;
         let [error_sine, error_cosine] = self.error;
         let [first_sine, first_cosine] = self.ripple[0];
-        let mut stiffness = mean + first_sine * rotor.sine + first_cosine * rotor.cosine;
+        let mut stiffness = mean + first_sine * phasor.sine + first_cosine * phasor.cosine;
         if OVERTONES > 0 && harmonics > 1 {
-            stiffness += self.overtones(beat, harmonics);
+            stiffness += self.overtones(harmonics_now, harmonics);
         }
-        MeshWave {
+        MeshExcitation {
             stiffness,
-            error: error_sine * rotor.sine + error_cosine * rotor.cosine,
+            error: error_sine * phasor.sine + error_cosine * phasor.cosine,
             error_rate: error_sine * rates.sine + error_cosine * rates.cosine,
         }
     }
 
     /// Rate of the stiffness.
     #[inline]
-    pub fn stiffness_rate<const OVERTONES: usize>(&self, beat: &Beat<T, OVERTONES>, harmonics: u32) -> T {
+    pub fn stiffness_rate<const OVERTONES: usize>(
+        &self,
+        harmonics_now: &PhaseHarmonics<T, OVERTONES>,
+        harmonics: u32,
+    ) -> T {
         let [sine, cosine] = self.ripple[0];
-        let mut sum = sine * beat.rates.sine + cosine * beat.rates.cosine;
+        let mut sum = sine * harmonics_now.rates.sine + cosine * harmonics_now.rates.cosine;
         if OVERTONES > 0 {
             let mut order = T::ONE;
-            for ([sine, cosine], multiple) in self.above(beat, harmonics) {
+            for ([sine, cosine], multiple) in self.above(harmonics_now, harmonics) {
                 order += T::ONE;
-                sum += order * beat.rate * (*sine * multiple.cosine - *cosine * multiple.sine);
+                sum += order * harmonics_now.rate * (*sine * multiple.cosine - *cosine * multiple.sine);
             }
         }
         sum
@@ -152,8 +161,8 @@ impl<T: Real> MeshTable<T> {
 
     /// Sum of the harmonics above the first.
     #[inline(never)]
-    fn overtones<const OVERTONES: usize>(&self, beat: &Beat<T, OVERTONES>, harmonics: u32) -> T {
-        self.above(beat, harmonics)
+    fn overtones<const OVERTONES: usize>(&self, harmonics_now: &PhaseHarmonics<T, OVERTONES>, harmonics: u32) -> T {
+        self.above(harmonics_now, harmonics)
             .fold(T::ZERO, |sum, ([sine, cosine], multiple)| sum + *sine * multiple.sine + *cosine * multiple.cosine)
     }
 
@@ -161,28 +170,29 @@ impl<T: Real> MeshTable<T> {
     #[inline(always)]
     fn above<'a, const OVERTONES: usize>(
         &'a self,
-        beat: &'a Beat<T, OVERTONES>,
+        harmonics_now: &'a PhaseHarmonics<T, OVERTONES>,
         harmonics: u32,
-    ) -> impl Iterator<Item = (&'a [T; 2], &'a Rotor<T>)> {
-        self.ripple.iter().skip(1).zip(&beat.multiples).take(harmonics.saturating_sub(1) as usize)
+    ) -> impl Iterator<Item = (&'a [T; 2], &'a Phasor<T>)> {
+        self.ripple.iter().skip(1).zip(&harmonics_now.multiples).take(harmonics.saturating_sub(1) as usize)
     }
 }
 
 /// Evaluates every mesh.
 #[inline]
-pub fn instant<T: Real, const N: usize, const OVERTONES: usize>(
+pub fn mesh_excitations<T: Real, const N: usize, const OVERTONES: usize>(
     tables: &Tables<T, N>,
-    beat: &Beat<T, OVERTONES>,
-) -> Instant<T, N> {
-    let mut instant = Instant { stiffness: [[T::ZERO; N]; 2], error: [[T::ZERO; N]; 2], error_rate: [[T::ZERO; N]; 2] };
+    harmonics_now: &PhaseHarmonics<T, OVERTONES>,
+) -> MeshExcitations<T, N> {
+    let mut mesh_excitations =
+        MeshExcitations { stiffness: [[T::ZERO; N]; 2], error: [[T::ZERO; N]; 2], error_rate: [[T::ZERO; N]; 2] };
     for kind in 0..2 {
         for i in 0..N {
-            let MeshWave { stiffness, error, error_rate } =
-                tables.meshes[kind][i].at(beat, tables.springs[kind].stiffness, tables.excitation.harmonics);
-            instant.stiffness[kind][i] = stiffness;
-            instant.error[kind][i] = error;
-            instant.error_rate[kind][i] = error_rate;
+            let MeshExcitation { stiffness, error, error_rate } =
+                tables.meshes[kind][i].at(harmonics_now, tables.springs[kind].stiffness, tables.excitation.harmonics);
+            mesh_excitations.stiffness[kind][i] = stiffness;
+            mesh_excitations.error[kind][i] = error;
+            mesh_excitations.error_rate[kind][i] = error_rate;
         }
     }
-    instant
+    mesh_excitations
 }

@@ -1,6 +1,7 @@
-//! What gears lose in proportion to what their teeth pass on.
+//! Load-dependent losses of gears, from their efficiency.
 
-/// What gears of an efficiency lose over what their teeth pass on, while the motor drives and while the load does.
+/// Loss over the torque that the teeth transmit, for gears of this efficiency: while the motor drives, and while the load
+/// drives back.
 ///
 /// ```
 /// let [driving, driven] = model_core::gears::gear_losses(0.97);

@@ -3,13 +3,15 @@
 
 use core::array;
 
-use crate::gears::contact::{Drive, contact, spread};
-use crate::gears::excitation::{Beat, MOST_OVERTONES, MeshPhase, PerMesh, Rotor, instant, mesh_way};
+use crate::gears::contact::{AppliedAcceleration, contact, mesh_coordinates};
+use crate::gears::excitation::{
+    MAX_OVERTONES, MeshPhase, PerMesh, PhaseHarmonics, Phasor, mesh_excitations, mesh_phase_advance,
+};
 use crate::gears::runge_kutta::Motion;
-use crate::gears::sharp::Sharp;
 use crate::gears::state::State;
 use crate::gears::tables::{Scheme, Tables};
-use crate::gears::{light, paper, unfrozen};
+use crate::gears::warm_start::WarmStart;
+use crate::gears::{full_forces, light, paper};
 use crate::numbers::Real;
 use parameters::ContactState;
 
@@ -45,7 +47,8 @@ pub struct Outputs<T, const N: usize> {
     pub contacts: PerMesh<ContactState, N>,
 }
 
-/// Tables and the state that they move.
+/// The model: tables and the state that they advance.
+///
 /// A motor torque of 1 N m turns the joint for 10 ms, 20,000 ticks a second; the angular momentum that it brings in is
 /// shared by everything that turns:
 ///
@@ -74,13 +77,13 @@ pub struct Outputs<T, const N: usize> {
 pub struct Model<'a, T: Real, const N: usize> {
     tables: &'a Tables<T, N>,
     state: State<T, N>,
-    sharp: Sharp<T, N>,
+    warm_start: WarmStart<T, N>,
 }
 
 impl<'a, T: Real, const N: usize> Model<'a, T, N> {
     /// At rest, undeformed, at angle and phase zero.
     pub const fn new(tables: &'a Tables<T, N>) -> Self {
-        Self { tables, state: State::REST, sharp: Sharp::UNKNOWN }
+        Self { tables, state: State::REST, warm_start: WarmStart::EMPTY }
     }
 
     /// Back to rest.
@@ -96,7 +99,7 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
     /// Goes on from another state.
     pub fn set_state(&mut self, state: State<T, N>) {
         self.state = state;
-        self.sharp.forget();
+        self.warm_start.invalidate();
     }
 
     /// Digest of every bit of the state.
@@ -109,35 +112,37 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
         self.state.is_finite()
     }
 
-    /// One tick. Paths that a joint does not take have frames of their own, so that they cost the others no stack.
+    /// One tick. Each method has a stack frame of its own, so that methods that a joint does not use cost it no stack.
     pub fn step(&mut self, torques: Torques<T>) {
         let tables = self.tables;
         let units = &tables.units;
-        let drive = Drive {
+        let applied = AppliedAcceleration {
             sun: units.drive * torques.drive,
             carrier: -(units.load_on_carrier * torques.load),
             link: -(units.load_on_link * torques.load),
         };
-        let start = Rotor::at(self.phase());
-        let way = self.state.rigid.advance(&tables.rigid, torques.drive, torques.load);
-        let way = mesh_way(&tables.excitation, way);
-        let phase = MeshPhase { start, way, rate: tables.excitation.rate * way };
+        let start = Phasor::at(self.phase());
+        let travel = self.state.rigid.advance(&tables.rigid, torques.drive, torques.load);
+        let advance = mesh_phase_advance(&tables.excitation, travel);
+        let phase = MeshPhase { start, advance, rate: tables.excitation.rate * advance };
         self.state.phase = self.state.phase.wrapping_add(tables.excitation.phase_step);
 
         let motion = Motion { position: self.state.position, rate: self.state.rate };
         let Motion { position, rate } = match tables.scheme {
-            Scheme::PaperEtd1 => paper::step(tables, &drive, &phase, &motion),
-            Scheme::RungeKutta4 => unfrozen::runge_kutta(tables, &drive, &phase, &motion),
-            Scheme::SemiImplicitEuler => unfrozen::semi_implicit_euler(tables, &drive, &phase, &motion),
-            Scheme::Realtime if tables.sharpness > T::ZERO => unfrozen::runge_kutta(tables, &drive, &phase, &motion),
-            Scheme::Realtime if tables.light.substeps > 0 => light::tick(tables, &drive, &phase, &motion),
-            Scheme::Realtime if tables.excitation.harmonics > 1 => {
-                self.sharp.tick::<MOST_OVERTONES>(tables, &drive, &phase, &motion)
+            Scheme::PaperEtd1 => paper::step(tables, &applied, &phase, &motion),
+            Scheme::RungeKutta4 => full_forces::runge_kutta(tables, &applied, &phase, &motion),
+            Scheme::SemiImplicitEuler => full_forces::semi_implicit_euler(tables, &applied, &phase, &motion),
+            Scheme::Realtime if tables.sharpness > T::ZERO => {
+                full_forces::runge_kutta(tables, &applied, &phase, &motion)
             }
-            Scheme::Realtime => self.sharp.tick::<0>(tables, &drive, &phase, &motion),
+            Scheme::Realtime if tables.verlet.substeps > 0 => light::tick(tables, &applied, &phase, &motion),
+            Scheme::Realtime if tables.excitation.harmonics > 1 => {
+                self.warm_start.tick::<MAX_OVERTONES>(tables, &applied, &phase, &motion)
+            }
+            Scheme::Realtime => self.warm_start.tick::<0>(tables, &applied, &phase, &motion),
         };
         (self.state.position, self.state.rate) = (position, rate);
-        self.state.settle();
+        self.state.canonicalise();
     }
 
     /// The motion now, in SI.
@@ -146,8 +151,9 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
         let units = &self.tables.units;
         let planets = position.planets.iter().fold(T::ZERO, |sum, planet| sum + *planet);
         let offset = |gains: &[T; 3]| gains[0] * planets + gains[1] * position.gap + gains[2] * position.wind_up;
-        let errors = instant(self.tables, &Beat::<T, 0>::new(Rotor::at(self.phase()), T::ZERO, 1)).error;
-        let meshes = spread(position);
+        let errors =
+            mesh_excitations(self.tables, &PhaseHarmonics::<T, 0>::new(Phasor::at(self.phase()), T::ZERO, 1)).error;
+        let meshes = mesh_coordinates(position);
         let deflections: PerMesh<T, N> = array::from_fn(|kind| array::from_fn(|i| meshes[kind][i] - errors[kind][i]));
         Outputs {
             carrier_turns: rigid.turns,

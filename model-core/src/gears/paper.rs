@@ -7,12 +7,12 @@ use core::array;
 
 use nalgebra::SVector;
 
-use crate::gears::contact::{Drive, spread};
-use crate::gears::excitation::{Beat, MOST_OVERTONES, MeshPhase, PerMesh, instant};
+use crate::gears::contact::{AppliedAcceleration, mesh_coordinates};
+use crate::gears::excitation::{MAX_OVERTONES, MeshPhase, PerMesh, PhaseHarmonics, mesh_excitations};
+use crate::gears::full_forces::forces;
 use crate::gears::runge_kutta::Motion;
 use crate::gears::state::Relative;
 use crate::gears::tables::{Inputs, Tables, Transition};
-use crate::gears::unfrozen::forces;
 use crate::numbers::Real;
 
 /// One tick of the paper's scheme: constant exponential, pseudo-force held over each sub-step (first-order
@@ -20,15 +20,18 @@ use crate::numbers::Real;
 #[inline(never)]
 pub fn step<T: Real, const N: usize>(
     tables: &Tables<T, N>,
-    drive: &Drive<T>,
+    applied: &AppliedAcceleration<T>,
     phase: &MeshPhase<T>,
     motion: &Motion<T, N>,
 ) -> Motion<T, N> {
-    let half = phase.over(tables.half_part);
-    let (mut motion, mut rotor) = (*motion, phase.start);
-    let mut now = instant(tables, &Beat::<T, MOST_OVERTONES>::new(rotor, phase.rate, tables.excitation.harmonics));
+    let half = phase.over(tables.half_substep_share);
+    let (mut motion, mut phasor) = (*motion, phase.start);
+    let mut now = mesh_excitations(
+        tables,
+        &PhaseHarmonics::<T, MAX_OVERTONES>::new(phasor, phase.rate, tables.excitation.harmonics),
+    );
     for _ in 0..tables.substeps {
-        let (positions, rates) = (spread(&motion.position), spread(&motion.rate));
+        let (positions, rates) = (mesh_coordinates(&motion.position), mesh_coordinates(&motion.rate));
         let mut force = forces(tables, &positions, &rates, &now);
         for kind in 0..2 {
             let spring = &tables.springs[kind];
@@ -37,24 +40,27 @@ pub fn step<T: Real, const N: usize>(
                 force[kind][i] = linear - force[kind][i];
             }
         }
-        let force = Sorted::new(tables.planet_share, &force);
-        let free = Modes::of(tables.planet_share, &motion).free(&tables.flow.whole, drive);
+        let force = PseudoForce::new(tables.planet_share, &force);
+        let free = Modes::of(tables.planet_share, &motion).free(&tables.flow.whole, applied);
         motion = free.with([(&tables.flow.whole_constant, &force)]).motion();
-        rotor = rotor.turned(&half).turned(&half);
-        now = instant(tables, &Beat::<T, MOST_OVERTONES>::new(rotor, phase.rate, tables.excitation.harmonics));
+        phasor = phasor.turned(&half).turned(&half);
+        now = mesh_excitations(
+            tables,
+            &PhaseHarmonics::<T, MAX_OVERTONES>::new(phasor, phase.rate, tables.excitation.harmonics),
+        );
     }
     motion
 }
 
-/// Mesh forces as the flow's inputs take them.
-struct Sorted<T, const N: usize> {
+/// Mesh forces in the form that the flow's inputs take.
+struct PseudoForce<T, const N: usize> {
     /// Sums over planets: sun-planet, ring-planet.
     sums: [T; 2],
     /// Deviation of (sun-planet - ring-planet) from its mean.
     apart: [T; N],
 }
 
-impl<T: Real, const N: usize> Sorted<T, N> {
+impl<T: Real, const N: usize> PseudoForce<T, N> {
     #[inline]
     fn new(share: T, force: &PerMesh<T, N>) -> Self {
         let sums = [total(&force[0]), total(&force[1])];
@@ -67,7 +73,7 @@ impl<T: Real, const N: usize> Sorted<T, N> {
     }
 }
 
-/// Motion split into what the planets do together and what each does apart, which the flow keeps apart.
+/// Motion split into what the planets do together and what each does apart, which the flow decouples.
 #[derive(Clone, Copy)]
 struct Modes<T: Real, const N: usize> {
     in_phase: SVector<T, 6>,
@@ -88,8 +94,8 @@ impl<T: Real, const N: usize> Modes<T, N> {
 
     /// Linear flow under constant torques.
     #[inline]
-    fn free(&self, transition: &Transition<T>, drive: &Drive<T>) -> Self {
-        let torques = SVector::from([drive.sun, drive.carrier, drive.link]);
+    fn free(&self, transition: &Transition<T>, applied: &AppliedAcceleration<T>) -> Self {
+        let torques = SVector::from([applied.sun, applied.carrier, applied.link]);
         Self {
             in_phase: self.in_phase + (&transition.in_phase.0 * &self.in_phase + &transition.torques.0 * &torques),
             deviations: array::from_fn(|i| self.deviations[i] + &transition.deviation.0 * &self.deviations[i]),
@@ -98,7 +104,7 @@ impl<T: Real, const N: usize> Modes<T, N> {
 
     /// Plus the response to pseudo-forces, each under its time weight.
     #[inline]
-    fn with<const K: usize>(&self, terms: [(&Inputs<T>, &Sorted<T, N>); K]) -> Self {
+    fn with<const K: usize>(&self, terms: [(&Inputs<T>, &PseudoForce<T, N>); K]) -> Self {
         let mut sum = *self;
         for (inputs, force) in terms {
             sum.in_phase += &inputs.in_phase.0 * SVector::from(force.sums);

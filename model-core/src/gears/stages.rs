@@ -11,7 +11,7 @@
 
 use core::array;
 
-use crate::gears::contact::Drive;
+use crate::gears::contact::AppliedAcceleration;
 use crate::gears::runge_kutta::Motion;
 use crate::gears::state::Relative;
 use crate::gears::tables::Mobility;
@@ -22,7 +22,7 @@ use crate::numbers::Real;
 pub struct Coordinate<T> {
     /// Position.
     pub position: T,
-    /// Way that its rate goes in a sub-step.
+    /// Distance that its rate covers in a sub-step.
     pub rate: T,
     /// Acceleration now, in sixths.
     pub now: T,
@@ -40,9 +40,9 @@ pub struct Point<T> {
 }
 
 impl<T: Real> Point<T> {
-    /// What is left of it beyond another.
+    /// The difference to another.
     #[inline(always)]
-    pub fn less(self, other: Self) -> Self {
+    pub fn minus(self, other: Self) -> Self {
         Self { position: self.position - other.position, rate: self.rate - other.rate }
     }
 }
@@ -67,15 +67,15 @@ impl<T: Real> Coordinate<T> {
         }
     }
 
-    /// Goes to the end of the sub-step but for what `finish` adds; the rate that is returned is foreseen.
+    /// Advances to the end of the sub-step but for the part that `finish` adds; the rate that is returned is predicted.
     #[inline(always)]
-    pub fn arrive(&mut self, middle: T) -> Point<T> {
+    pub fn predict(&mut self, middle: T) -> Point<T> {
         let Self { position, rate, now, .. } = *self;
-        let foreseen = rate + T::SIX * middle;
+        let predicted = rate + T::SIX * middle;
         self.position = position + rate + now + T::TWO * middle;
         self.rate = rate + now + T::FOUR * middle;
         self.before = middle;
-        Point { position: self.position, rate: foreseen }
+        Point { position: self.position, rate: predicted }
     }
 
     /// The acceleration at the end, for the last part of Simpson's rule and for the next sub-step.
@@ -88,7 +88,7 @@ impl<T: Real> Coordinate<T> {
 
 /// All coordinates, with a sub-step as the unit of time.
 #[derive(Debug, Clone)]
-pub struct Course<T, const N: usize> {
+pub struct SubstepState<T, const N: usize> {
     /// u_s - u_pi - u_c of every planet, without imposed error.
     pub planets: [Coordinate<T>; N],
     /// u_s - 2 u_c.
@@ -97,22 +97,22 @@ pub struct Course<T, const N: usize> {
     pub wind_up: Coordinate<T>,
 }
 
-impl<T: Real, const N: usize> Course<T, N> {
-    /// Nowhere yet.
+impl<T: Real, const N: usize> SubstepState<T, N> {
+    /// Before any motion is set.
     pub const EMPTY: Self = Self { planets: [Coordinate::ZERO; N], gap: Coordinate::ZERO, wind_up: Coordinate::ZERO };
 
     /// Takes position and rate from a motion; accelerations are left as they are.
     #[inline(always)]
-    pub fn place(&mut self, motion: &Motion<T, N>, length: T) {
+    pub fn set_motion(&mut self, motion: &Motion<T, N>, length: T) {
         let Motion { position, rate } = motion;
-        self.each(position, |coordinate, position| coordinate.position = position);
-        self.each(rate, |coordinate, rate| coordinate.rate = length * rate);
+        self.for_each(position, |coordinate, position| coordinate.position = position);
+        self.for_each(rate, |coordinate, rate| coordinate.rate = length * rate);
     }
 
-    /// Accelerations as if torques had always been larger by so much.
+    /// Shifts both accelerations as if the torques had always been larger by so much.
     #[inline(always)]
-    pub fn pushed(&mut self, drive: &Drive<T>, mobility: &Mobility<T>) {
-        self.each(&drive.relative(mobility), |coordinate, more| {
+    pub fn shift_accelerations(&mut self, applied: &AppliedAcceleration<T>, mobility: &Mobility<T>) {
+        self.for_each(&applied.relative(mobility), |coordinate, more| {
             coordinate.now += more;
             coordinate.before += more;
         });
@@ -120,9 +120,9 @@ impl<T: Real, const N: usize> Course<T, N> {
 
     /// A motion whose accelerations are not yet known, in sub-steps of a length.
     pub fn of(motion: &Motion<T, N>, length: T) -> Self {
-        let mut course = Self::EMPTY;
-        course.place(motion, length);
-        course
+        let mut state = Self::EMPTY;
+        state.set_motion(motion, length);
+        state
     }
 
     /// The motion without its accelerations, from sub-steps at a rate, after it was `before`. Rates are taken over as
@@ -144,9 +144,9 @@ impl<T: Real, const N: usize> Course<T, N> {
         }
     }
 
-    /// Does the same to every coordinate with a value that belongs to it.
+    /// Calls `act` for every coordinate with the value that belongs to it.
     #[inline(always)]
-    pub fn each(&mut self, values: &Relative<T, N>, mut act: impl FnMut(&mut Coordinate<T>, T)) {
+    pub fn for_each(&mut self, values: &Relative<T, N>, mut act: impl FnMut(&mut Coordinate<T>, T)) {
         for i in 0..N {
             act(&mut self.planets[i], values.planets[i]);
         }

@@ -3,7 +3,7 @@
 
 use core::array;
 
-use crate::gears::excitation::{Beat, Rotor, mesh_way};
+use crate::gears::excitation::{PhaseHarmonics, Phasor, mesh_phase_advance};
 use crate::gears::tables::{Rigid, Tables};
 use crate::numbers::Real;
 use crate::numbers::digest::{self, chain};
@@ -36,11 +36,11 @@ impl<T: Real, const N: usize> Relative<T, N> {
         }
     }
 
-    /// Numbers that a caller's floating-point mode cannot change: none so small that it may be flushed to zero, and
-    /// whatever is not finite in one form.
+    /// The canonical form of every number, which no floating-point mode changes: none so small that it may be flushed to
+    /// zero, and one NaN for all that is not finite.
     #[inline]
-    fn settled(&self) -> Self {
-        Self { planets: self.planets.map(T::settled), gap: self.gap.settled(), wind_up: self.wind_up.settled() }
+    fn canonical(&self) -> Self {
+        Self { planets: self.planets.map(T::canonical), gap: self.gap.canonical(), wind_up: self.wind_up.canonical() }
     }
 
     fn is_finite(&self) -> bool {
@@ -69,21 +69,21 @@ impl RigidBody {
     /// At rest at angle zero.
     pub const REST: Self = Self { turns: 0, fraction: 0, speed: 0 };
 
-    /// One tick under constant torques (exact: x += v + a/2, v += a); returns how far it went, in 2^-64 turns.
+    /// One tick under constant torques (exact: x += v + a/2, v += a); returns its travel, in 2^-64 turns.
     #[inline]
     pub fn advance<T: Real>(&mut self, table: &Rigid<T>, drive: T, load: T) -> i64 {
         let change = (table.drive * drive - table.load * load).to_i64();
-        let way = self.speed.saturating_add(change >> 1);
+        let travel = self.speed.saturating_add(change >> 1);
         self.speed = self.speed.saturating_add(change);
-        let (fraction, carried) = self.fraction.overflowing_add(way as u64);
+        let (fraction, carried) = self.fraction.overflowing_add(travel as u64);
         self.fraction = fraction;
-        // Adding a negative way as a whole number of 2^64 carries unless a turn is left behind.
-        self.turns = match (way < 0, carried) {
+        // Adding a negative travel as a whole number of 2^64 carries unless a turn is left behind.
+        self.turns = match (travel < 0, carried) {
             (false, true) => self.turns.wrapping_add(1),
             (true, false) => self.turns.wrapping_sub(1),
             _ => self.turns,
         };
-        way
+        travel
     }
 }
 
@@ -127,20 +127,20 @@ impl<T: Real, const N: usize> State<T, N> {
         let mut state = Self { position: *deflections, rate: *rates, rigid, phase: 0 };
         let excitation = &tables.excitation;
         let phase = rigid.fraction.wrapping_mul(excitation.periods_per_turn.into());
-        let phase_rate = excitation.rate * mesh_way(excitation, rigid.speed);
-        let beat = Beat::<T, 0>::new(Rotor::at((phase >> 32) as u32), phase_rate, 1);
+        let phase_rate = excitation.rate * mesh_phase_advance(excitation, rigid.speed);
+        let harmonics_now = PhaseHarmonics::<T, 0>::new(Phasor::at((phase >> 32) as u32), phase_rate, 1);
         for (i, mesh) in tables.meshes[0].iter().enumerate() {
-            let imposed = mesh.at(&beat, T::ZERO, 1);
+            let imposed = mesh.at(&harmonics_now, T::ZERO, 1);
             state.position.planets[i] += imposed.error;
             state.rate.planets[i] += imposed.error_rate;
         }
         state
     }
 
-    /// Puts every number into the form in which the next tick finds it, whatever the caller's floating-point mode.
+    /// Brings every number into its canonical form, so that the next tick does not depend on the floating-point mode.
     #[inline]
-    pub(super) fn settle(&mut self) {
-        (self.position, self.rate) = (self.position.settled(), self.rate.settled());
+    pub(super) fn canonicalise(&mut self) {
+        (self.position, self.rate) = (self.position.canonical(), self.rate.canonical());
     }
 
     /// Neither infinite nor NaN anywhere.

@@ -18,10 +18,10 @@ pub struct Tables<T: Real, const N: usize> {
     pub tick_rate: u32,
     /// How a tick is stepped.
     pub scheme: Scheme,
-    /// Parts of a tick that the sub-stepped path takes.
+    /// Sub-steps of a tick in which contacts may change.
     pub substeps: u32,
-    /// Half a sub-step as a part of the tick.
-    pub half_part: T,
+    /// Half a sub-step over the tick.
+    pub half_substep_share: T,
     /// A sub-step in dimensionless time, h omega_n / substeps.
     pub substep: T,
     /// 1/N.
@@ -46,13 +46,13 @@ pub struct Tables<T: Real, const N: usize> {
     pub stage: Stage<T>,
     /// Exponential flow of the closed joint over one tick (or one sub-step, for [`Scheme::PaperEtd1`]).
     pub flow: Flow<T>,
-    /// How contacts that change are stepped when planets are light.
-    pub light: Light<T>,
+    /// Verlet sub-steps for light planets.
+    pub verlet: VerletTable<T>,
 }
 
-/// Leapfrog sub-steps, in a unit of time in which one lasts one.
+/// Velocity-Verlet (leapfrog) sub-steps, in a unit of time in which a sub-step lasts one.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Light<T: Real> {
+pub struct VerletTable<T: Real> {
     /// Sub-steps of a tick; zero where planets are not light.
     pub substeps: u32,
     /// Half their number.
@@ -76,7 +76,7 @@ pub struct Light<T: Real> {
     /// What curvature of the path adds to the mean deflection, for a unit of acceleration.
     pub curvature: T,
     /// A mesh is in contact throughout if its overlap in the middle exceeds its speed times (constant - stiffness
-    /// times slope): half a sub-step and damping over stiffness, by which a mesh that parts lets go early.
+    /// times slope): half a sub-step and damping over stiffness, by which a mesh that parts loses contact early.
     pub release: [[T; 2]; 2],
 }
 
@@ -97,12 +97,12 @@ pub struct Stage<T: Real> {
 /// How a tick is stepped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scheme {
-    /// Exponential flow while the contact set holds over the tick; otherwise sub-steps with the contact set frozen
-    /// and corrected for every crossing.
+    /// Exponential flow while the contact set holds over the tick; otherwise sub-steps with a fixed contact set,
+    /// corrected for every crossing.
     Realtime,
     /// The paper's: one constant exponential, everything nonlinear held as a pseudo-force over the sub-step.
     PaperEtd1,
-    /// Classical Runge-Kutta on the full forces, what people use today.
+    /// Classical Runge-Kutta on the full forces, for comparison.
     RungeKutta4,
     /// Semi-implicit Euler on the full forces, likewise.
     SemiImplicitEuler,
@@ -161,7 +161,7 @@ pub struct Excitation<T: Real> {
     /// `time` mode: fraction of a mesh period that a tick adds, in 2^-64; zero in `angle` mode.
     pub phase_step: u64,
     /// `time` mode: mesh periods a tick in 2^-32, whole periods included; zero in `angle` mode.
-    pub phase_way: T,
+    pub phase_advance: T,
     /// `angle` mode: ring teeth, mesh periods a carrier turn; zero in `time` mode.
     pub periods_per_turn: u32,
     /// Phase rate in radians a unit of dimensionless time, for each 2^-32 period a tick.
@@ -198,20 +198,20 @@ pub struct MeshTable<T: Real> {
 pub struct Flow<T: Real> {
     /// Over the whole step.
     pub whole: Transition<T>,
-    /// Up to the first look on the way.
+    /// Up to the first node within the step.
     pub early: Transition<T>,
-    /// Up to the second look.
+    /// Up to the second node.
     pub late: Transition<T>,
-    /// Input integrals up to the first look, of a pseudo-force linear through its value and its rate (a sub-step) at
+    /// Input integrals up to the first node, of a pseudo-force linear through its value and its rate (a sub-step) at
     /// the start.
     pub early_inputs: [Inputs<T>; 2],
-    /// Up to the second look, of a parabola: value and rate at the start, value at the first look.
+    /// Up to the second node, of a parabola: value and rate at the start, value at the first node.
     pub late_inputs: [Inputs<T>; 3],
-    /// Over the whole step, of a cubic: value and rate at the start, values at both looks.
+    /// Over the whole step, of a cubic: value and rate at the start, values at both nodes.
     pub whole_inputs: [Inputs<T>; 4],
-    /// When the looks are, as parts of the step.
-    pub looks: [T; 2],
-    /// Up to the middle: for light planets, whose whole tick looks at its pseudo-force there alone.
+    /// Where the nodes are, as parts of the step.
+    pub nodes: [T; 2],
+    /// Up to the middle: for light planets, whose whole tick evaluates its pseudo-force there alone.
     pub half: Transition<T>,
     /// Input integrals up to the middle, of a constant pseudo-force.
     pub half_constant: Inputs<T>,
@@ -224,7 +224,7 @@ pub struct Flow<T: Real> {
     /// A mesh counts as safely closed at a node when its overlap exceeds this times its speed.
     pub reach: T,
     /// Mesh periods over the step, in 2^-32, up to which the excitation counts as quadratic in time.
-    pub longest_way: T,
+    pub longest_advance: T,
 }
 
 /// exp(H h) - I in both subspaces, and the response to torques constant over the step.
@@ -276,7 +276,7 @@ impl<T: Real, const N: usize> Tables<T, N> {
         digest.whole(self.scheme as u64);
         digest.whole(self.substeps.into());
         digest.whole(self.damping_law as u64);
-        digest.reals(&[self.substep, self.planet_share, self.sharpness, self.half_part]);
+        digest.reals(&[self.substep, self.planet_share, self.sharpness, self.half_substep_share]);
         let units = &self.units;
         digest.reals(&[units.drive, units.load_on_carrier, units.load_on_link, units.length, units.carrier_speed]);
         digest.reals(&units.motor_offset);
@@ -289,7 +289,7 @@ impl<T: Real, const N: usize> Tables<T, N> {
         digest.whole(self.excitation.phase_step);
         digest.whole(self.excitation.periods_per_turn.into());
         digest.whole(self.excitation.harmonics.into());
-        digest.reals(&[self.excitation.phase_way, self.excitation.rate]);
+        digest.reals(&[self.excitation.phase_advance, self.excitation.rate]);
         for spring in &self.springs {
             digest.reals(&[spring.stiffness, spring.damping]);
         }
@@ -299,7 +299,7 @@ impl<T: Real, const N: usize> Tables<T, N> {
             mesh.ripple.iter().for_each(|pair| digest.reals(pair));
         }
         digest.flow(&self.flow);
-        digest.light(&self.light);
+        digest.verlet(&self.verlet);
         digest.0
     }
 }
@@ -325,12 +325,12 @@ impl Digest {
         self.reals(&[mobility.wind_up, mobility.wind_up_stiffness, mobility.wind_up_damping]);
     }
 
-    fn light<T: Real>(&mut self, light: &Light<T>) {
-        self.whole(light.substeps.into());
-        self.mobility(&light.mobility);
-        self.reals(&[light.half_count, light.substep, light.square, light.per_substep]);
-        self.reals(&[light.wind_up_mobility, light.wind_up_yield, light.curvature]);
-        for values in [&light.damping, &light.half_damped].into_iter().chain(&light.release) {
+    fn verlet<T: Real>(&mut self, verlet: &VerletTable<T>) {
+        self.whole(verlet.substeps.into());
+        self.mobility(&verlet.mobility);
+        self.reals(&[verlet.half_count, verlet.substep, verlet.square, verlet.per_substep]);
+        self.reals(&[verlet.wind_up_mobility, verlet.wind_up_yield, verlet.curvature]);
+        for values in [&verlet.damping, &verlet.half_damped].into_iter().chain(&verlet.release) {
             self.reals(values);
         }
     }
@@ -341,12 +341,12 @@ impl Digest {
             self.block(&transition.deviation);
             self.block(&transition.torques);
         }
-        let looks = flow.early_inputs.iter().chain(&flow.late_inputs).chain(&flow.whole_inputs);
-        for inputs in looks.chain(&flow.whole_linear).chain([&flow.whole_constant, &flow.half_constant]) {
+        let nodes = flow.early_inputs.iter().chain(&flow.late_inputs).chain(&flow.whole_inputs);
+        for inputs in nodes.chain(&flow.whole_linear).chain([&flow.whole_constant, &flow.half_constant]) {
             self.block(&inputs.in_phase);
             self.reals(&inputs.deviation);
         }
-        self.reals(&flow.looks);
-        self.reals(&[flow.step, flow.reach, flow.longest_way]);
+        self.reals(&flow.nodes);
+        self.reals(&[flow.step, flow.reach, flow.longest_advance]);
     }
 }

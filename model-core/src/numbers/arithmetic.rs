@@ -1,8 +1,8 @@
-//! Bounds on numbers that may be anything. NaN passes through.
+//! Clamp and dead band. NaN passes through.
 
 use crate::numbers::real::Real;
 
-/// The value, or the bound that it is beyond.
+/// The value, limited to the range from `low` to `high`.
 pub fn clamp<T: Real>(value: T, low: T, high: T) -> T {
     if value < low {
         low
@@ -13,7 +13,7 @@ pub fn clamp<T: Real>(value: T, low: T, high: T) -> T {
     }
 }
 
-/// By how much the value is beyond a dead band on either side of zero.
+/// The value with a dead band about zero: its excess over the band on either side, else zero.
 pub fn beyond<T: Real>(value: T, band: T) -> T {
     value - clamp(value, -band, band)
 }

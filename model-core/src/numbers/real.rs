@@ -54,7 +54,7 @@ pub trait Real:
     /// Least size of a number that the state keeps; what is smaller is zero. So far above the denormal numbers that no
     /// product of a step falls among them, so far below one that nothing is lost.
     const LEAST: Self;
-    /// The one form of what is no number.
+    /// The only NaN that the state keeps.
     const NAN: Self;
     /// Polynomial of sin(2 pi t) / t in t^2; see `numbers::phase`.
     const SINE: [Self; 4];
@@ -70,21 +70,21 @@ pub trait Real:
     fn from_i64(value: i64) -> Self;
     /// Towards zero, saturating; NaN gives 0.
     fn to_i64(self) -> i64;
-    /// A way in 2^-32 periods as a phase, whole periods left out, towards zero to at least 24 binary digits of a period;
+    /// An advance in 2^-32 periods as a phase, whole periods left out, towards zero to at least 24 binary digits of a period;
     /// NaN gives 0.
     fn to_phase(self) -> u32;
     /// Hyperbolic tangent, the same bits on host and target.
     fn tanh(self) -> Self;
-    /// Quotient; the caller has made sure that `divisor` is not zero.
+    /// Quotient; `divisor` must not be zero.
     fn over(self, divisor: Self) -> Self;
     /// Magnitude.
     fn abs(self) -> Self;
     /// Square root of what is not negative, by Newton's iteration from the exponent halved: the same bits everywhere, and
     /// right to a few units in the last place. Zero and what is below it give zero.
     fn square_root(self) -> Self;
-    /// In the form in which a caller's floating-point mode cannot change it: zero if it is smaller than `LEAST`, `NAN` if
-    /// it is not finite. By whole numbers: flags of floating-point comparisons are slow to read on a Cortex-M4F.
-    fn settled(self) -> Self;
+    /// Canonical form, which no floating-point mode changes: zero if it is smaller than `LEAST`, `NAN` if it is not finite.
+    /// By whole numbers: flags of floating-point comparisons are slow to read on a Cortex-M4F.
+    fn canonical(self) -> Self;
     /// Neither infinite nor NaN.
     fn is_finite(self) -> bool;
     /// Bits for a digest.
@@ -156,7 +156,7 @@ macro_rules! real {
                     0.0
                 }
             }
-            fn settled(self) -> Self {
+            fn canonical(self) -> Self {
                 let size = self.abs().to_bits();
                 if size < Self::LEAST.to_bits() {
                     0.0
@@ -177,12 +177,12 @@ macro_rules! real {
 }
 
 /// By a conversion of the hardware: one to 64 bits is a library call of 29 instructions on a Cortex-M4F.
-fn single_phase(way: f32) -> u32 {
-    ((way * (1.0 / 256.0)) as i32 as u32) << 8
+fn single_phase(advance: f32) -> u32 {
+    ((advance * (1.0 / 256.0)) as i32 as u32) << 8
 }
 
-fn double_phase(way: f64) -> u32 {
-    way as i64 as u32
+fn double_phase(advance: f64) -> u32 {
+    advance as i64 as u32
 }
 
 // 2^-40 and 2^-300; the quiet NaN without sign or payload; first guesses of an inverse root (three halves of the

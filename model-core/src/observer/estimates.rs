@@ -31,7 +31,7 @@ pub enum Source {
     /// Motor and output encoder.
     Both,
     /// The motor encoder alone, and why. The load cannot be seen while the gap is open.
-    MotorOnly(Doubt),
+    MotorOnly(OutputFault),
     /// No motor encoder either, or one that is late time after time: nothing is valid, and what is not heard of is held.
     #[default]
     Nothing,
@@ -39,7 +39,7 @@ pub enum Source {
 
 /// Why the output encoder is not used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Doubt {
+pub enum OutputFault {
     /// There is none by design.
     Absent,
     /// It has given no fresh reading for longer than the settings allow.
@@ -58,7 +58,7 @@ pub struct Notices {
     /// The period was too short or too long, or time went backwards.
     pub out_of_time: bool,
     /// The motor's counts were further away than it can turn, and were not believed.
-    pub motor_doubted: bool,
+    pub motor_implausible: bool,
     /// The motor's counts have jumped for good: the offset is learnt anew.
     pub motor_jumped: bool,
 }

@@ -39,7 +39,7 @@ use sensors::latency::Freshness;
 use crate::gears::sign;
 use crate::numbers::Real;
 
-pub use estimates::{Doubt, Estimate, Estimates, Notices, Shaft, Source};
+pub use estimates::{Estimate, Estimates, Notices, OutputFault, Shaft, Source};
 pub use learnt::regressors::{MAPPED, PLAIN};
 pub use memory::{MEMORY_BYTES, Memory, MemoryError, memory_numbers};
 pub use probe::{Probe, Progress, Refusal};
@@ -321,7 +321,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
             Outcome::Nothing => {}
             Outcome::Concluded => self.say_learnt(),
             Outcome::EncoderFails => {
-                self.health.give_up(Doubt::OutOfRange);
+                self.health.give_up(OutputFault::OutOfRange);
                 self.rely_on_motor(None);
             }
         }

@@ -139,7 +139,7 @@ impl<'tables, T: Real> Probe<'tables, T> {
     fn advance(&mut self, estimates: &Estimates<T>) -> Progress<T> {
         let table = self.table;
         let notices = estimates.notices;
-        if notices.torque_unknown || notices.out_of_time || notices.motor_doubted || notices.motor_jumped {
+        if notices.torque_unknown || notices.out_of_time || notices.motor_implausible || notices.motor_jumped {
             return Progress::Refused(Refusal::BadSamples);
         }
         let speed = estimates.motor.speed.abs();

@@ -1,16 +1,16 @@
-//! Faults between a joint and its controller, described once: encoders that stand still, slip or scatter, readings that
-//! do not come, a motor that gives another torque than it was asked for.
+//! Description of the faults between a joint and its controller: encoders that freeze, slip or scatter, readings that are
+//! lost, a motor with a torque bias or a limit.
 
 use core::fmt::Debug;
 use core::marker::PhantomData;
 
 use crate::numbers::Real;
 
-/// Units that faults are described in, and the faults that only their holder can apply.
+/// Units that faults are described in, and further faults that not every user can apply.
 pub trait Units: Copy + Debug + PartialEq {
     /// When a fault begins and ends.
     type Time: Copy + Debug + PartialEq;
-    /// What the random numbers of a fault begin with.
+    /// Seed of a fault's random numbers.
     type Seed: Copy + Debug + PartialEq;
     /// How far an encoder is off.
     type Offset: Copy + Debug + PartialEq;
@@ -20,7 +20,7 @@ pub trait Units: Copy + Debug + PartialEq {
     type Share: Copy + Debug + PartialEq;
     /// Amplitudes of angles, ratios, torques.
     type Real: Copy + Debug + PartialEq;
-    /// What goes wrong beside the kinds that every holder can apply.
+    /// Further faults, besides the kinds that every user can apply.
     type Other: Copy + Debug + PartialEq;
 }
 
@@ -55,11 +55,11 @@ pub enum NoOther {}
     ))
 )]
 pub struct Fault<U: Units> {
-    /// From when on it acts.
+    /// It acts from here on.
     pub start: U::Time,
-    /// From when on it acts no more.
+    /// It acts up to here.
     pub end: U::Time,
-    /// Begins its random numbers.
+    /// Seed of its random numbers.
     pub seed: U::Seed,
     /// What goes wrong.
     pub kind: FaultKind<U>,
@@ -81,20 +81,20 @@ pub enum Shaft {
 pub enum FaultKind<U: Units> {
     /// Counts stand still.
     Frozen(Shaft),
-    /// Counts are off.
+    /// Counts are offset.
     Offset(Shaft, U::Offset),
     /// Counts scatter by a standard deviation.
     Noise(Shaft, U::Deviation),
-    /// A part of the motion is not counted, and stays uncounted afterwards.
+    /// A share of the motion is not counted, and stays uncounted afterwards.
     MissingCounts(Shaft, U::Share),
     /// An error that comes once a turn: the sine of the angle that is read, times an amplitude.
     Eccentric(Shaft, U::Real),
-    /// A part of the readings does not come; the motor's last one stands in for those that do not.
+    /// A share of the readings is lost; the motor's last one is repeated in their place.
     LostReadings(Shaft, U::Share),
     /// The motor gives so much beyond the command: a ratio of it, and a torque [N m].
     TorqueBias(U::Real, U::Real),
     /// The motor gives no more than this, to either side [N m].
     Saturation(U::Real),
-    /// What only this holder can apply.
+    /// A fault that only this user can apply.
     Other(U::Other),
 }

@@ -1,5 +1,5 @@
-//! Faults at work between a virtual joint and its controller, on a board and in its twin on the host, in whole numbers.
-//! What there is to apply is described in `fault`; faults of teeth are left out, and so are readings that come late.
+//! Application of faults between a virtual joint and its controller, on a board and in its twin on the host, in whole numbers.
+//! `fault` describes them; faults of teeth and late readings are not supported.
 
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
@@ -12,7 +12,7 @@ use crate::virtual_joint::tables::SurroundingsTable;
 /// Most faults of a run on a board.
 pub const MOST_FAULTS: usize = 8;
 
-/// A fault with what it remembers.
+/// A fault with its state.
 #[derive(Debug, Clone, Copy)]
 struct Active<T: Real> {
     fault: Fault<FixedPoint<T>>,
@@ -53,7 +53,7 @@ struct Active<T: Real> {
 pub struct Faults<T: Real> {
     all: [Option<Active<T>>; MOST_FAULTS],
     period: u32,
-    /// What the motor was asked for last: a motor that gives something else does not know it.
+    /// Torque that was commanded last: a motor that gives another torque does not report it.
     asked: T,
     /// Last word of the motor's encoder.
     motor: Option<Reading>,
@@ -73,7 +73,7 @@ impl<T: Real> Faults<T> {
         true
     }
 
-    /// What the controller sees of a period's samples; begins the period.
+    /// Samples as the controller receives them; begins the period.
     pub fn sense(&mut self, samples: Samples<T>, table: &SurroundingsTable<T>) -> Samples<T> {
         let Self { all, period, asked, motor } = self;
         if all.iter().all(Option::is_none) {
@@ -101,7 +101,7 @@ impl<T: Real> Faults<T> {
         Samples { motor, output: output_comes.then_some(output), torque: clamp(*asked, -limit, limit), ..samples }
     }
 
-    /// What the motor makes of a command; ends the period.
+    /// Torque that the motor gives for a command; ends the period.
     pub fn torque(&mut self, command: T) -> T {
         let period = self.period;
         self.period = period.saturating_add(1);
@@ -146,16 +146,16 @@ impl<T: Real> Active<T> {
         }
     }
 
-    /// Whether a reading does not come.
+    /// Whether a reading is lost.
     fn loses(&mut self, shaft: Shaft, on: bool) -> bool {
         match self.fault.kind {
-            FaultKind::LostReadings(of, share) if of == shaft && on => self.even() < share,
+            FaultKind::LostReadings(of, share) if of == shaft && on => self.uniform() < share,
             _ => false,
         }
     }
 
     /// The upper half of a random word.
-    fn even(&mut self) -> u32 {
+    fn uniform(&mut self) -> u32 {
         (splitmix64(&mut self.random) >> 32) as u32
     }
 }

@@ -1,5 +1,5 @@
-//! A whole joint in real time, for a controller to be tried on: the gears' fixed step with what surrounds it, and faults
-//! between the two.
+//! A simulated joint in real time for tests of a controller: the gears' fixed step with motor, frictions and encoders, and
+//! faults between joint and controller.
 
 #[cfg(feature = "design")]
 pub mod design;
@@ -8,5 +8,5 @@ pub mod faults;
 mod plant;
 pub mod tables;
 
-pub use plant::{Acting, VirtualJoint};
+pub use plant::{ActingTorques, VirtualJoint};
 pub use tables::SurroundingsTable;

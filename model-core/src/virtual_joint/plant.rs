@@ -8,11 +8,11 @@ use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
 use crate::numbers::phase::sine_cosine;
 use crate::observer::{Reading, Samples};
-use crate::virtual_joint::tables::{COMMANDS_UNDER_WAY, EncoderErrorTable, FrictionTable, SurroundingsTable};
+use crate::virtual_joint::tables::{COMMANDS_IN_FLIGHT, EncoderErrorTable, FrictionTable, SurroundingsTable};
 
 /// Torques of the last period [N m].
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Acting<T: Real> {
+pub struct ActingTorques<T: Real> {
     /// In the motor's air gap.
     pub air_gap: T,
     /// On the sun, friction and cogging included.
@@ -45,16 +45,16 @@ pub struct VirtualJoint<'tables, T: Real, const N: usize> {
     model: Model<'tables, T, N>,
     table: &'tables SurroundingsTable<T>,
     /// Commands on their way, the newest first.
-    commands: [T; COMMANDS_UNDER_WAY],
+    commands: [T; COMMANDS_IN_FLIGHT],
     current: T,
     periods: u32,
-    acting: Acting<T>,
-    /// The gears now, and where that puts the shafts.
+    acting: ActingTorques<T>,
+    /// Outputs of the gears, and the shafts that follow from them.
     outputs: Outputs<T, N>,
     shafts: Shafts<T>,
 }
 
-/// Where both shafts are and how fast they turn.
+/// Angles and speeds of both shafts.
 #[derive(Debug, Clone, Copy, Default)]
 struct Shafts<T: Real> {
     /// [2^-32 turns]: the motor's within its turn, the link's with its turns.
@@ -73,18 +73,18 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
             shafts: Shafts::default(),
             model,
             table,
-            commands: [T::ZERO; COMMANDS_UNDER_WAY],
+            commands: [T::ZERO; COMMANDS_IN_FLIGHT],
             current: T::ZERO,
             periods: 0,
-            acting: Acting::default(),
+            acting: ActingTorques::default(),
         };
-        joint.look();
+        joint.update();
         joint
     }
 
-    /// Notes where everything is now.
+    /// Updates outputs and shafts after a step.
     #[inline(never)]
-    fn look(&mut self) {
+    fn update(&mut self) {
         self.outputs = self.model.outputs();
         self.shafts = self.shafts();
     }
@@ -92,11 +92,11 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
     /// Back to rest.
     pub fn reset(&mut self) {
         self.model.reset();
-        self.commands = [T::ZERO; COMMANDS_UNDER_WAY];
+        self.commands = [T::ZERO; COMMANDS_IN_FLIGHT];
         self.current = T::ZERO;
         self.periods = 0;
-        self.acting = Acting::default();
-        self.look();
+        self.acting = ActingTorques::default();
+        self.update();
     }
 
     /// The gears.
@@ -110,11 +110,11 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
     }
 
     /// Torques of the last period.
-    pub fn acting(&self) -> Acting<T> {
+    pub fn acting(&self) -> ActingTorques<T> {
         self.acting
     }
 
-    /// What is measured now: counts within the encoders' turns, and the torque that was commanded last.
+    /// Measurements now: counts within the encoders' turns, and the torque that was commanded last.
     pub fn samples(&self) -> Samples<T> {
         let (table, shafts) = (self.table, self.shafts);
         let time = self.periods.wrapping_mul(table.clock_ticks);
@@ -133,18 +133,18 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
     }
 
     /// Moves on by one period under a torque command and a torque that brakes the link [N m]. Its parts are not inlined: each
-    /// needs much of the stack, and they take turns.
+    /// needs much stack, and they do not run at the same time.
     #[inline(never)]
     pub fn advance(&mut self, command: T, disturbance: T) {
-        self.act(command, disturbance);
+        self.find_torques(command, disturbance);
         self.model.step(Torques { drive: self.acting.drive, load: self.acting.load });
         self.periods = self.periods.wrapping_add(1);
-        self.look();
+        self.update();
     }
 
     /// Finds the torques that act over the period.
     #[inline(never)]
-    fn act(&mut self, command: T, disturbance: T) {
+    fn find_torques(&mut self, command: T, disturbance: T) {
         let table = self.table;
         self.commands.rotate_right(1);
         let limit = table.current.limit;
@@ -153,18 +153,18 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
         let shafts = self.shafts;
         let (sine, _) = sine_cosine::<T>(shafts.motor.wrapping_mul(table.cogging_periods));
         let driving = air_gap + table.cogging_torque * sine;
-        let passed_on = self.passed_on();
+        let mesh_torque = self.mesh_torque();
         let [motor_speed, link_speed] = shafts.speeds;
-        let loss = table.losses[usize::from(passed_on * motor_speed < T::ZERO)] * passed_on.abs();
-        let lost = friction(&table.motor_friction, motor_speed, driving - passed_on, loss);
+        let loss = table.losses[usize::from(mesh_torque * motor_speed < T::ZERO)] * mesh_torque.abs();
+        let lost = friction(&table.motor_friction, motor_speed, driving - mesh_torque, loss);
 
         let (sine, _) = sine_cosine::<T>(shafts.link as u32);
         let braking = table.weight * sine + disturbance;
         let [from_sun, from_wind_up, from_rate] = table.to_link;
         let to_link =
-            from_sun * passed_on + from_wind_up * self.outputs.wind_up + from_rate * self.model.state().rate.wind_up;
-        let rubbed = friction(&table.load_friction, link_speed, to_link - braking, T::ZERO);
-        self.acting = Acting { air_gap, drive: driving - lost, load: braking + rubbed };
+            from_sun * mesh_torque + from_wind_up * self.outputs.wind_up + from_rate * self.model.state().rate.wind_up;
+        let rubbing = friction(&table.load_friction, link_speed, to_link - braking, T::ZERO);
+        self.acting = ActingTorques { air_gap, drive: driving - lost, load: braking + rubbing };
     }
 
     /// Mean torque in the air gap over this period.
@@ -176,12 +176,13 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
         (wanted - missing * table.lacking) * table.gain
     }
 
-    /// Torque that the sun passes on to the planets, by the springs of its teeth alone.
-    fn passed_on(&self) -> T {
+    /// Torque that the sun transmits to the planets, by mesh stiffness alone.
+    fn mesh_torque(&self) -> T {
         let table = self.table;
         let meshes = self.outputs.deflections[0].iter().zip(&table.half_backlash);
-        let way = meshes.fold(T::ZERO, |sum, (deflection, half)| sum + *deflection - clamp(*deflection, -*half, *half));
-        table.sun_torque * way
+        let overlap =
+            meshes.fold(T::ZERO, |sum, (deflection, half)| sum + *deflection - clamp(*deflection, -*half, *half));
+        table.sun_torque * overlap
     }
 
     fn shafts(&self) -> Shafts<T> {

@@ -1,11 +1,10 @@
-//! What a joint simulated in real time needs around its gears, as plain numbers made by `virtual_joint::design`: current
-//! loop, frictions, weight, encoders. SI; angles that wrap are whole numbers of 2^-32 turns.
+//! Tables of a virtual joint's surroundings, made by `virtual_joint::design`: current loop, frictions, weight, encoders. SI; angles that wrap are whole numbers of 2^-32 turns.
 
 use crate::numbers::Real;
 use crate::observer::tables::MOST_DELAY;
 
-/// Places for commands on their way to the motor.
-pub const COMMANDS_UNDER_WAY: usize = MOST_DELAY + 1;
+/// Places for delayed commands to the motor.
+pub const COMMANDS_IN_FLIGHT: usize = MOST_DELAY + 1;
 
 /// Surroundings of one joint at one tick rate; a tick is a control period.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,13 +35,13 @@ pub struct SurroundingsTable<T: Real> {
     pub motor_friction: FrictionTable<T>,
     /// At the link.
     pub load_friction: FrictionTable<T>,
-    /// Dry friction in proportion to the torque that the sun passes on, while the motor drives and while it is driven.
+    /// Dry friction in proportion to the torque that the sun transmits, while the motor drives and while it is driven.
     pub losses: [T; 2],
     /// Half-backlash of the sun's meshes, one for each planet [m].
     pub half_backlash: [T; 5],
     /// Torque of a sun's mesh at the sun for each metre beyond its flank [N m/m].
     pub sun_torque: T,
-    /// What the gears pass on to the link, for each unit of: sun's torque, wind-up, rate of wind-up [N m].
+    /// Torque of the gears on the link, for each unit of: sun's torque, wind-up, rate of wind-up [N m].
     pub to_link: [T; 3],
     /// Weight [N m].
     pub weight: T,
@@ -53,11 +52,11 @@ pub struct SurroundingsTable<T: Real> {
 /// From commanded torque to torque in the air gap.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CurrentLoopTable<T: Real> {
-    /// Whole periods of delay, less than [`COMMANDS_UNDER_WAY`].
+    /// Whole periods of delay, less than [`COMMANDS_IN_FLIGHT`].
     pub delay: u32,
-    /// Part of the lacking torque that is made good in a period.
+    /// Share of the missing torque that is made up in a period.
     pub rise: T,
-    /// Part of the lacking torque that is lacking on the average over a period.
+    /// Share of the missing torque that is missing on average over a period.
     pub lacking: T,
     /// True over nominal torque constant.
     pub gain: T,
@@ -80,7 +79,7 @@ pub struct FrictionTable<T: Real> {
     pub stop: T,
 }
 
-/// What an encoder makes of its shaft's angle.
+/// Errors of an encoder.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EncoderErrorTable<T: Real> {
     /// 32 less its bits.

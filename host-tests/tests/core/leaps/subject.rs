@@ -2,7 +2,7 @@
 //! side. No bound is stated here.
 
 use model_core::gears::design::dynamics::Dynamics;
-use model_core::gears::design::{Effort, design_scheme, light_tables};
+use model_core::gears::design::{Effort, design_scheme, verlet_tables};
 use model_core::gears::tables::Mobility;
 use model_core::gears::{Kinematics, Scales, Scheme, State, Tables};
 use parameters::{DampingLaw, JointParameters, Mesh};
@@ -36,14 +36,14 @@ pub fn tables<const N: usize>(joint: &JointParameters, rate: u32, leaps: u32) ->
         wind_up_stiffness,
         wind_up_damping,
     };
-    tables.light = light_tables::light(joint, &unit, scales.frequency / f64::from(rate), leaps);
+    tables.verlet = verlet_tables::verlet(joint, &unit, scales.frequency / f64::from(rate), leaps);
     tables
 }
 
 /// The same without exponential ticks.
 pub fn leaping<const N: usize>(joint: &JointParameters, rate: u32, leaps: u32) -> Tables<f64, N> {
     let mut tables = tables(joint, rate, leaps);
-    tables.flow.longest_way = -1.0;
+    tables.flow.longest_advance = -1.0;
     tables
 }
 

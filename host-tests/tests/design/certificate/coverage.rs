@@ -1,7 +1,7 @@
 //! In what share of random cases the measured error stays below the promised one.
 
 use host_tests::tolerance::certificate::{LEAST_COVERAGE, LEAST_COVERAGE_OF_A_KIND, MOST_COVERAGE_OF_TYPICAL};
-use model_core::gears::design::{Pace, Processor, certificate};
+use model_core::gears::design::{Processor, StepSize, certificate};
 
 use super::motion::{Outcome, follow};
 use super::random::{Case, Chance};
@@ -19,7 +19,7 @@ struct Tally {
 }
 
 impl Tally {
-    fn add(&mut self, error: f64, promise: model_core::gears::certificate::ErrorPromise) {
+    fn add(&mut self, error: f64, promise: model_core::gears::certificate::ErrorQuantiles) {
         self.cases += 1;
         self.below_typical += usize::from(error <= promise.typical);
         self.below_nine_in_ten += usize::from(error <= promise.nine_in_ten);
@@ -43,11 +43,11 @@ fn tally(mut next: impl FnMut() -> Case) -> [Tally; 2] {
     let (mut holding, mut losing, mut unpredictable) = (Tally::default(), Tally::default(), 0);
     for _ in 0..CASES {
         let case = next();
-        let rate = (Pace::new(&case.joint).phase(1, case.parts.count()) / case.phase).ceil() as u32;
+        let rate = (StepSize::new(&case.joint).phase(1, case.parts.count()) / case.phase).ceil() as u32;
         let promise = certificate(&case.joint, rate, case.effort(), &Processor::STM32F405).expect("a sound joint");
         match measured(&case, rate) {
-            Some(Outcome { error, holds: true }) => holding.add(error, promise.holding),
-            Some(Outcome { error, holds: false }) => losing.add(error, promise.losing),
+            Some(Outcome { error, holds: true }) => holding.add(error, promise.contact_holds),
+            Some(Outcome { error, holds: false }) => losing.add(error, promise.contact_changes),
             None => unpredictable += 1,
         }
     }

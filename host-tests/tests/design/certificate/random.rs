@@ -3,7 +3,7 @@
 
 use std::f64::consts::TAU;
 
-use model_core::gears::design::{Effort, Parts};
+use model_core::gears::design::{Effort, Substeps};
 use model_core::gears::{Mechanics, Scales};
 use parameters::{Compliance, DampingLaw, Excitation, JointParameters, Mesh, MeshPhases, PerPlanet, StiffnessWave};
 use rand_chacha::ChaCha8Rng;
@@ -25,15 +25,15 @@ pub struct Case {
     pub speed: f64,
     /// Phase of the fastest mode in a part, about, and parts of a tick.
     pub phase: f64,
-    pub parts: Parts,
+    pub parts: Substeps,
 }
 
 impl Case {
     /// What makes a tick of these parts.
     pub fn effort(&self) -> Effort {
         match self.parts {
-            Parts::Substeps(substeps) => Effort::Substeps(substeps),
-            Parts::Leaps(leaps) => Effort::Leaps(leaps),
+            Substeps::Corrected(substeps) => Effort::Substeps(substeps),
+            Substeps::Verlet(leaps) => Effort::Verlet(leaps),
         }
     }
 }
@@ -134,7 +134,7 @@ impl Chance {
             deflection,
             speed,
             phase: self.scaled(0.08, 2.2),
-            parts: Parts::Substeps(self.whole(1, 6)),
+            parts: Substeps::Corrected(self.whole(1, 6)),
             joint,
         }
     }
@@ -144,7 +144,7 @@ impl Chance {
         let mut case = self.case();
         case.joint.bodies.planet_equivalent_mass = self.scaled(0.005, 0.05);
         case.phase = self.between(0.5, 1.1);
-        case.parts = Parts::Leaps(self.whole(2, 10));
+        case.parts = Substeps::Verlet(self.whole(2, 10));
         case
     }
 }

@@ -1,6 +1,6 @@
 //! The number of doublings and of series terms, over norms of every size: never one too few, never one too many.
 
-use model_core::gears::design::exponential::{Plan, REMAINDER, SERIES_NORM};
+use model_core::gears::design::exponential::{REMAINDER, SERIES_NORM, ScalingPlan};
 
 /// Norms from the smallest to the largest f64, and both neighbours of every power of two.
 fn norms() -> Vec<f64> {
@@ -13,7 +13,7 @@ fn norms() -> Vec<f64> {
 }
 
 /// Norm at which the series of a plan starts.
-fn start(norm: f64, plan: &Plan) -> f64 {
+fn start(norm: f64, plan: &ScalingPlan) -> f64 {
     // In two parts, since 2^N itself may be beyond an f64.
     let half = plan.doublings / 2;
     norm * 2.0_f64.powi(-(half as i32)) * 2.0_f64.powi(-((plan.doublings - half) as i32))
@@ -28,7 +28,7 @@ fn left_out(start: f64, terms: u32) -> f64 {
 #[test]
 fn doublings_bring_the_norm_to_the_series_and_no_further() {
     for norm in norms() {
-        let plan = Plan::new(norm);
+        let plan = ScalingPlan::new(norm);
         let start = start(norm, &plan);
         assert!(start <= SERIES_NORM, "{norm:e}: {plan:?} leaves the series {start}");
         assert!(plan.doublings == 0 || 2.0 * start > SERIES_NORM, "{norm:e}: {plan:?} doubles once too often");
@@ -38,7 +38,7 @@ fn doublings_bring_the_norm_to_the_series_and_no_further() {
 #[test]
 fn the_series_leaves_less_than_is_allowed_and_has_no_term_too_many() {
     for norm in norms() {
-        let plan = Plan::new(norm);
+        let plan = ScalingPlan::new(norm);
         let start = start(norm, &plan);
         assert!(left_out(start, plan.terms) <= REMAINDER, "{norm:e}: {plan:?} leaves too much");
         // The plan's bound on the remainder is a geometric series, above the sum by less than a hundredth.
@@ -50,6 +50,6 @@ fn the_series_leaves_less_than_is_allowed_and_has_no_term_too_many() {
 #[test]
 fn a_norm_beyond_numbers_still_ends() {
     for norm in [f64::INFINITY, f64::NAN] {
-        assert_eq!(Plan::new(norm).doublings, 0);
+        assert_eq!(ScalingPlan::new(norm).doublings, 0);
     }
 }

@@ -69,7 +69,7 @@ impl<F: Formulation> SwitchedSystem for System<F> {
         self.formulation.derivative(&self.joint, time, state, rates);
     }
 
-    fn freeze(&mut self, time: f64, state: &Entries) {
+    fn select_mode(&mut self, time: f64, state: &Entries) {
         let meshes = self.meshes(time, state);
         self.joint.hold(&meshes);
     }

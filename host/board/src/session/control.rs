@@ -65,7 +65,7 @@ impl Session<'_> {
                 next += count;
                 let horizon = knots.get(next).map_or(periods + beyond, |knot| knot.tick);
                 self.unanswered.sent(sequence, &[]);
-                self.send(&ToBoard::Course(Schedule { sequence, horizon, commands }))?;
+                self.send(&ToBoard::Trajectory(Schedule { sequence, horizon, commands }))?;
                 sequence = sequence.wrapping_add(1);
                 said = Instant::now();
             }

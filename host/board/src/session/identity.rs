@@ -143,7 +143,7 @@ mod tests {
             last_panic: None,
             watchdog_reset: false,
             control_digest: None,
-            remembered: link::messages::Remembered::Nothing,
+            memory: link::messages::MemoryState::Nothing,
         }
     }
 

@@ -4,7 +4,7 @@
 use std::time::Duration;
 
 use link::messages::{
-    FromBoard, Kept, MEMORY_PARTS, MemoryPart, MemoryWish, PART_BYTES, Remembered, RunSettings, ToBoard,
+    FromBoard, MEMORY_PARTS, MemoryOutcome, MemoryPart, MemoryRequest, MemoryState, PART_BYTES, RunSettings, ToBoard,
 };
 use model_core::observer::{MEMORY_BYTES, Memory};
 
@@ -19,7 +19,7 @@ impl Session<'_> {
     pub fn stored_memory(&mut self) -> Outcome<Memory> {
         let mut memory = [0; MEMORY_BYTES];
         for (part, place) in (0..MEMORY_PARTS).zip(memory.as_chunks_mut::<PART_BYTES>().0) {
-            let told = self.ask_about(MemoryWish::Tell { part }, SILENCE, |message| match message {
+            let told = self.ask_about(MemoryRequest::Read { part }, SILENCE, |message| match message {
                 FromBoard::Memory(told) if told.part == part && told.bytes.len() == PART_BYTES => Some(told.bytes),
                 _ => None,
             })?;
@@ -29,10 +29,10 @@ impl Session<'_> {
     }
 
     /// Brings it a memory that runs may begin from; what its controller makes of it.
-    pub fn bring_memory(&mut self, memory: &Memory) -> Outcome<Remembered> {
+    pub fn bring_memory(&mut self, memory: &Memory) -> Outcome<MemoryState> {
         let mut parts = (0..MEMORY_PARTS)
             .zip(memory.as_chunks::<PART_BYTES>().0)
-            .map(|(part, bytes)| MemoryWish::Take(MemoryPart { part, bytes: bytes.iter().copied().collect() }));
+            .map(|(part, bytes)| MemoryRequest::Load(MemoryPart { part, bytes: bytes.iter().copied().collect() }));
         let last = parts.next_back();
         for part in parts {
             self.send(&ToBoard::Memory(part))?;
@@ -41,18 +41,18 @@ impl Session<'_> {
         self.ask_about(
             last,
             SILENCE,
-            |message| if let FromBoard::Judged(judged) = message { Some(judged) } else { None },
+            |message| if let FromBoard::MemoryChecked(judged) = message { Some(judged) } else { None },
         )
     }
 
     /// Has it write the memory that was brought to its flash.
-    pub fn write_memory(&mut self) -> Outcome<Kept> {
-        self.write(MemoryWish::Write)
+    pub fn write_memory(&mut self) -> Outcome<MemoryOutcome> {
+        self.write(MemoryRequest::Write)
     }
 
     /// Has it write what it has learnt to its flash.
-    pub fn keep_memory(&mut self) -> Outcome<Kept> {
-        self.write(MemoryWish::Keep)
+    pub fn keep_memory(&mut self) -> Outcome<MemoryOutcome> {
+        self.write(MemoryRequest::Save)
     }
 
     /// Ends a run, has what was learnt in it kept, and begins anew from that. Where there is no flash it is at hand until the
@@ -66,24 +66,24 @@ impl Session<'_> {
     }
 
     /// Has it forget what it has learnt, in its flash too.
-    pub fn erase_memory(&mut self) -> Outcome<Kept> {
-        self.write(MemoryWish::Erase)
+    pub fn erase_memory(&mut self) -> Outcome<MemoryOutcome> {
+        self.write(MemoryRequest::Erase)
     }
 
-    fn write(&mut self, wish: MemoryWish) -> Outcome<Kept> {
+    fn write(&mut self, wish: MemoryRequest) -> Outcome<MemoryOutcome> {
         self.ask(&ToBoard::Memory(wish), "answer about the memory", WRITING, kept).and_then(unless_running)
     }
 
     /// Asks for something that flash need not be written for.
     fn ask_about<T>(
         &mut self,
-        wish: MemoryWish,
+        wish: MemoryRequest,
         patience: Duration,
         answer: impl Fn(FromBoard) -> Option<T>,
     ) -> Outcome<T> {
         let answered =
             self.ask(&ToBoard::Memory(wish), "answer about the memory", patience, |message| match message {
-                FromBoard::Kept(why) => Some(Err(why)),
+                FromBoard::MemoryOutcome(why) => Some(Err(why)),
                 other => answer(other).map(Ok),
             })?;
         answered.or_else(|why| {
@@ -93,14 +93,16 @@ impl Session<'_> {
     }
 }
 
-fn kept(message: FromBoard) -> Option<Kept> {
-    if let FromBoard::Kept(kept) = message { Some(kept) } else { None }
+fn kept(message: FromBoard) -> Option<MemoryOutcome> {
+    if let FromBoard::MemoryOutcome(kept) = message { Some(kept) } else { None }
 }
 
-fn unless_running(kept: Kept) -> Outcome<Kept> {
+fn unless_running(kept: MemoryOutcome) -> Outcome<MemoryOutcome> {
     match kept {
-        Kept::Running => Err(Failure::new("a run goes on on the board, and its memory is for the time between runs")
-            .with_help("end the run first, or reset the board")),
+        MemoryOutcome::Running => {
+            Err(Failure::new("a run goes on on the board, and its memory is for the time between runs")
+                .with_help("end the run first, or reset the board"))
+        }
         kept => Ok(kept),
     }
 }

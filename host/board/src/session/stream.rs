@@ -66,9 +66,9 @@ impl Session<'_> {
                     | FromBoard::Answer(_)
                     | FromBoard::Loop(_)
                     | FromBoard::FaultTaken { .. }
-                    | FromBoard::Kept(_)
+                    | FromBoard::MemoryOutcome(_)
                     | FromBoard::Memory(_)
-                    | FromBoard::Judged(_) => {}
+                    | FromBoard::MemoryChecked(_) => {}
                 }
             }
             progress(stream.board_tick.min(profile.ticks));

@@ -1,25 +1,25 @@
-//! A board in a thread: the firmware's own bench behind any byte stream, which misbehaves on demand. Its clock is the
+//! A board in a thread: the firmware's own test board behind any byte stream, which misbehaves on demand. Its clock is the
 //! thread's own.
 
-#[path = "../../../../firmware/tests/bench/mod.rs"]
-mod bench;
+#[path = "../../../../firmware/tests/test_board/mod.rs"]
+mod test_board;
 
 use std::io::{ErrorKind, Read, Write};
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 
-use bench::Bench;
 use firmware::observer::Observing;
 use firmware::page::recall;
 use firmware::port::Direct;
-use firmware::words::Words;
+use firmware::protocol::Protocol;
 use firmware::work::Work;
 use link::framing::{Receiver, encode};
 use link::messages::{FromBoard, ToBoard, Trip};
 use model_core::controller::Controller;
 use model_core::observer::Memory;
 use parameters::JointParameters;
+use test_board::TestBoard;
 
 /// Fixed steps a second [Hz].
 pub const TICK_RATE: u32 = 20_000;
@@ -71,7 +71,7 @@ pub fn joint() -> JointParameters {
 pub fn start<S: Read + Write + Send + 'static>(stream: S, misbehaviour: Misbehaviour) -> JoinHandle<()> {
     std::thread::spawn(move || {
         // It is over when the line is.
-        let _ = serve(stream, Bench::new(), misbehaviour, &|_| {});
+        let _ = serve(stream, TestBoard::new(), misbehaviour, &|_| {});
     })
 }
 
@@ -96,14 +96,14 @@ pub fn start_observer<S: Read + Write + Send + 'static>(
 ) {
     std::thread::spawn(move || {
         let memory = *flash.memory.lock().expect("no test panics in between");
-        let page = bench::Flash { memory, works: flash.works, erased: 0 };
+        let page = test_board::Flash { memory, works: flash.works, erased: 0 };
         let mut work = Observing::new(Direct(controller()), true);
         // What is not good is not used.
         let _ = recall(&page).map(|memory| work.remember(&memory));
-        let mut bench = Bench::with(work);
-        bench.flash = page;
-        let show = |page: &bench::Flash| *flash.memory.lock().expect("no test panics in between") = page.memory;
-        let _ = serve(stream, bench, Misbehaviour::None, &show);
+        let mut board = TestBoard::with(work);
+        board.flash = page;
+        let show = |page: &test_board::Flash| *flash.memory.lock().expect("no test panics in between") = page.memory;
+        let _ = serve(stream, board, Misbehaviour::None, &show);
     });
 }
 
@@ -113,12 +113,12 @@ struct Gone;
 /// Plays a board on a stream. While schedules come its clock waits for them: a busy machine starves no run.
 fn serve<W: Work>(
     mut stream: impl Read + Write,
-    mut bench: Bench<W>,
+    mut board: TestBoard<W>,
     mut misbehaviour: Misbehaviour,
-    show: &dyn Fn(&bench::Flash),
+    show: &dyn Fn(&test_board::Flash),
 ) -> Result<(), Gone>
 where
-    W::Words: Words<Command: 'static, Sample: 'static> + 'static,
+    W::Protocol: Protocol<Command: 'static, Sample: 'static> + 'static,
 {
     let (mut receiver, mut scheduled, mut buffer) = (Receiver::new(), false, [0; 512]);
     if matches!(misbehaviour, Misbehaviour::HalfFrameAt(_)) {
@@ -133,13 +133,13 @@ where
         };
         for message in buffer[..count].iter().filter_map(|&byte| receiver.push::<ToBoard>(byte)) {
             scheduled = matches!(message, ToBoard::Schedule(_));
-            misbehaviour.heard(message).iter().for_each(|message| bench.send(message));
+            misbehaviour.heard(message).iter().for_each(|message| board.send(message));
         }
-        bench.settle();
-        let left = bench.progress.horizon.load(Relaxed).saturating_sub(bench.progress.steps.load(Relaxed));
-        bench.run(if scheduled { left.min(TICKS) } else { TICKS });
-        show(&bench.flash);
-        for message in bench.said() {
+        board.settle();
+        let left = board.progress.horizon.load(Relaxed).saturating_sub(board.progress.steps.load(Relaxed));
+        board.run(if scheduled { left.min(TICKS) } else { TICKS });
+        show(&board.flash);
+        for message in board.said() {
             stream.write_all(&misbehaviour.said(message)?).map_err(|_| Gone)?;
         }
     }

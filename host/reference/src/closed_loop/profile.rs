@@ -1,5 +1,4 @@
-//! What the link is asked to do: the standard motions, each smooth in its beginning. Disturbances and frictions that
-//! belong to a test are its own.
+//! Motion profiles of the link: the standard ones, each with a smooth beginning.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -10,13 +9,13 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use super::Motion;
 
 /// A motion over time.
-pub trait Reference {
+pub trait MotionProfile {
     /// At a moment [s].
     fn at(&self, time: f64) -> Motion;
 }
 
 /// A motion that several runs follow at once.
-pub type SharedReference = Arc<dyn Reference + Send + Sync>;
+pub type SharedProfile = Arc<dyn MotionProfile + Send + Sync>;
 
 /// The standard motions.
 #[derive(Debug, Clone, PartialEq)]
@@ -87,7 +86,7 @@ fn uniform(random: &mut ChaCha8Rng) -> f64 {
     (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-impl Reference for Profile {
+impl MotionProfile for Profile {
     fn at(&self, time: f64) -> Motion {
         match *self {
             Self::Sine { amplitude, frequency } => swelling(time, sine(amplitude, frequency, 0.0, time)),

@@ -1,4 +1,4 @@
-//! What truly happened in a closed loop, period by period.
+//! Record of a closed-loop run, with the true motion period by period.
 
 use crate::joint::Observation;
 

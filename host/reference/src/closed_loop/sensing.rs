@@ -1,5 +1,5 @@
-//! What a controller without an observer makes of its encoders: angles from counts, speeds from tracking filters that
-//! know the commanded torque. Encoder errors are left in, as a controller that does not know them would.
+//! Encoder processing of a controller without an observer: angles from counts, speeds from tracking filters with the commanded
+//! torque as input. Encoder errors are not corrected.
 
 use std::f64::consts::TAU;
 

@@ -20,7 +20,7 @@ struct Command {
 pub(super) struct CurrentLoop {
     around: Surroundings,
     part: f64,
-    on_the_way: VecDeque<Command>,
+    pending: VecDeque<Command>,
     wanted: f64,
     current: f64,
     noise: f64,
@@ -32,7 +32,7 @@ impl CurrentLoop {
         Self {
             around,
             part,
-            on_the_way: VecDeque::new(),
+            pending: VecDeque::new(),
             wanted: 0.0,
             current: 0.0,
             noise: 0.0,
@@ -43,15 +43,15 @@ impl CurrentLoop {
     /// Takes a command that will act from a part of time on, and draws the noise of this period.
     pub fn command(&mut self, torque: f64, acts_from: u64) {
         let limit = self.around.torque_limit;
-        self.on_the_way.push_back(Command { acts_from, torque: torque.clamp(-limit, limit) });
+        self.pending.push_back(Command { acts_from, torque: torque.clamp(-limit, limit) });
         self.noise = self.normal();
     }
 
     /// Mean torque in the air gap during a part of time: exact for a command that does not change within it [N m].
     pub fn torque(&mut self, part: u64) -> f64 {
-        while let Some(command) = self.on_the_way.front().filter(|command| command.acts_from <= part) {
+        while let Some(command) = self.pending.front().filter(|command| command.acts_from <= part) {
             self.wanted = command.torque;
-            self.on_the_way.pop_front();
+            self.pending.pop_front();
         }
         let mean = if self.around.current_lag > 0.0 {
             let ratio = self.part / self.around.current_lag;

@@ -1,4 +1,4 @@
-//! Torques that nobody commanded, acting on the link. They brake when positive, as the load torque of the joint does.
+//! Disturbance torques on the link. Positive brakes, as the load torque of the joint does.
 
 use std::f64::consts::TAU;
 

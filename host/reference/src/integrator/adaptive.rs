@@ -1,4 +1,4 @@
-//! Steps as long as the error allows, ended by every event, after which the system is frozen anew.
+//! Steps as long as the error allows, ended by every event, after which the mode is selected again.
 
 use std::fmt;
 
@@ -35,14 +35,14 @@ pub struct Counters {
     pub refused: u64,
     /// Events located.
     pub events: u64,
-    /// Steps taken without looking for events, to leave a graze behind.
-    pub blind_steps: u64,
+    /// Steps taken without event detection, to get past a graze.
+    pub unguarded_steps: u64,
 }
 
 /// So many events within a sliver of time are one graze: its guard hovers about zero, where both choices agree.
 const EVENTS_IN_A_GRAZE: u32 = 32;
 
-/// Length of such a sliver, and of the blind step that ends it, over the longest step.
+/// Length of such a sliver, and of the unguarded step that ends it, over the longest step.
 const GRAZE: f64 = 1e-5;
 
 /// State and step size of a running integration.
@@ -93,9 +93,9 @@ impl Integrator {
         self.restart(system, &mut rates);
         let longest = system.longest_step();
         while self.time < end {
-            let blind = sliver.1 >= EVENTS_IN_A_GRAZE;
+            let unguarded = sliver.1 >= EVENTS_IN_A_GRAZE;
             let remaining = end - self.time;
-            let wanted = if blind { GRAZE * longest } else { self.step.min(longest) };
+            let wanted = if unguarded { GRAZE * longest } else { self.step.min(longest) };
             // Two equal parts instead of a full step and a crumb.
             let step = if wanted >= remaining { remaining } else { wanted.min(0.5 * remaining) };
             let whole = trial(system, self.time, &self.state, &rates, step);
@@ -115,12 +115,12 @@ impl Integrator {
             }
             self.counters.steps += 1;
             let search = Search { system, time: self.time, state: &self.state, rates: &rates };
-            let event = if blind { None } else { search.first_event(&whole) };
+            let event = if unguarded { None } else { search.first_event(&whole) };
             let accepted = event.as_ref().unwrap_or(&whole);
             self.time = if accepted.step == remaining { end } else { self.time + accepted.step };
             self.state = accepted.state;
             rates = accepted.rates;
-            if !blind {
+            if !unguarded {
                 // A step cut short by the end of the interval says nothing against the one that was wanted.
                 self.step = if step < wanted { wanted.max(step * factor) } else { step * factor };
             }
@@ -128,8 +128,8 @@ impl Integrator {
                 self.counters.events += 1;
                 sliver = if self.time - sliver.0 > GRAZE * longest { (self.time, 1) } else { (sliver.0, sliver.1 + 1) };
                 self.restart(system, &mut rates);
-            } else if blind {
-                self.counters.blind_steps += 1;
+            } else if unguarded {
+                self.counters.unguarded_steps += 1;
                 sliver = (self.time, 0);
                 self.restart(system, &mut rates);
             }
@@ -138,7 +138,7 @@ impl Integrator {
     }
 
     fn restart<S: SwitchedSystem>(&self, system: &mut S, rates: &mut Entries) {
-        system.freeze(self.time, &self.state);
+        system.select_mode(self.time, &self.state);
         system.derivative(self.time, &self.state, rates);
     }
 }

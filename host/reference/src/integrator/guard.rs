@@ -1,9 +1,9 @@
-//! Guards: what a system lists to tell that its frozen choices still hold. Where one turns negative is found by `event`.
+//! Guards: functions of the state that are positive while the mode holds. `event` finds where one turns negative.
 
-/// A quantity that stays above zero as long as the frozen choices of a system hold.
+/// A quantity that stays above zero as long as the mode of a system holds.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Guard {
-    /// Negative once the choice no longer holds.
+    /// Negative once the mode no longer holds.
     pub value: f64,
     /// Its rate of change [1/s].
     pub rate: f64,
@@ -24,7 +24,7 @@ impl Guards {
         Self { list: [Guard::default(); MAX_GUARDS], length: 0 }
     }
 
-    /// Adds one; the order must not change while the choices are frozen.
+    /// Adds one; the order must not change within a mode.
     pub fn watch(&mut self, value: f64, rate: f64) {
         self.list[self.length] = Guard { value, rate };
         self.length += 1;

@@ -42,7 +42,7 @@ pub(super) struct JointEquations {
     pub highest_frequency: f64,
     /// Highest harmonic of the stiffness waves.
     pub harmonics: f64,
-    /// Phase rate when the zones were frozen [rad/s].
+    /// Phase rate when the zones were selected [rad/s].
     pub phase_rate: f64,
     /// T_D / r_bs.
     pub drive_force: f64,
@@ -50,8 +50,8 @@ pub(super) struct JointEquations {
     pub load_force: f64,
 }
 
-/// Every mesh and the compliance at one moment.
-pub(super) struct Moment {
+/// State of every mesh, and the force between carrier and link, at one instant.
+pub(super) struct InternalForces {
     pub meshes: [[MeshState; MAX_PLANETS]; 2],
     pub wind_up_force: f64,
 }
@@ -115,7 +115,7 @@ impl JointEquations {
         }
     }
 
-    pub fn moment(&self, time: f64, state: &Entries) -> Moment {
+    pub fn internal_forces(&self, time: f64, state: &Entries) -> InternalForces {
         let phase = self.phase(time, state);
         let speeds = &state[self.bodies()..];
         let mut meshes = [[MeshState::default(); MAX_PLANETS]; 2];
@@ -129,7 +129,7 @@ impl JointEquations {
             let (carrier, link) = (self.carrier(), self.link());
             stiffness * (state[carrier] - state[link]) + damping * (speeds[carrier] - speeds[link])
         });
-        Moment { meshes, wind_up_force }
+        InternalForces { meshes, wind_up_force }
     }
 }
 
@@ -142,13 +142,13 @@ impl SwitchedSystem for JointEquations {
         let bodies = self.bodies();
         let (carrier, link) = (self.carrier(), self.link());
         let speeds = &state[bodies..2 * bodies];
-        let moment = self.moment(time, state);
+        let internal = self.internal_forces(time, state);
         let mut forces = [0.0; MAX_PLANETS + 3];
         let (mut dissipated, mut against_errors, mut by_stiffness) = (0.0, 0.0, 0.0);
         forces[0] += self.drive_force;
         for planet in 0..self.planets {
-            let sun_planet = &moment.meshes[SUN_PLANET][planet];
-            let ring_planet = &moment.meshes[RING_PLANET][planet];
+            let sun_planet = &internal.meshes[SUN_PLANET][planet];
+            let ring_planet = &internal.meshes[RING_PLANET][planet];
             forces[0] -= sun_planet.force;
             forces[1 + planet] = sun_planet.force - ring_planet.force;
             forces[carrier] += sun_planet.force + ring_planet.force;
@@ -159,8 +159,8 @@ impl SwitchedSystem for JointEquations {
             }
         }
         if let Some((_, damping)) = self.compliance {
-            forces[carrier] -= moment.wind_up_force;
-            forces[link] += moment.wind_up_force;
+            forces[carrier] -= internal.wind_up_force;
+            forces[link] += internal.wind_up_force;
             dissipated += damping * (speeds[carrier] - speeds[link]).powi(2);
         }
         forces[link] -= self.load_force;
@@ -172,7 +172,7 @@ impl SwitchedSystem for JointEquations {
         rates[2 * bodies..2 * bodies + WORKS].copy_from_slice(&[supplied, dissipated, against_errors, by_stiffness]);
     }
 
-    fn freeze(&mut self, time: f64, state: &Entries) {
+    fn select_mode(&mut self, time: f64, state: &Entries) {
         let phase = self.phase(time, state);
         self.phase_rate = phase.rate;
         let speeds = &state[self.bodies()..];
@@ -189,12 +189,12 @@ impl SwitchedSystem for JointEquations {
 
     fn guards(&self, time: f64, state: &Entries, rates: &Entries, guards: &mut Guards) {
         let phase = self.phase(time, state);
-        let moment = self.moment(time, state);
+        let internal = self.internal_forces(time, state);
         let accelerations = &rates[self.bodies()..];
         for (kind, family) in self.meshes.iter().enumerate() {
             for (planet, mesh) in family.iter().enumerate() {
                 let acceleration = self.across(kind, planet, accelerations) - mesh.transmission_error(phase)[2];
-                mesh.watch(self.zones[kind][planet], &moment.meshes[kind][planet], acceleration, guards);
+                mesh.watch(self.zones[kind][planet], &internal.meshes[kind][planet], acceleration, guards);
             }
         }
     }
@@ -209,7 +209,7 @@ impl SwitchedSystem for JointEquations {
         } else if entry < 2 * self.bodies() {
             STEP_TOLERANCE * self.length * self.highest_frequency
         } else {
-            // The works follow the motion and never steer the step.
+            // The works follow from the motion and do not limit the step.
             f64::INFINITY
         }
     }

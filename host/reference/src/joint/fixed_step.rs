@@ -65,7 +65,7 @@ impl Reference {
         }
         self.integrator.move_time(time);
         // What is read off next goes by the zones.
-        self.equations.freeze(time, self.integrator.state());
+        self.equations.select_mode(time, self.integrator.state());
     }
 }
 

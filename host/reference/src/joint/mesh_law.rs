@@ -1,5 +1,5 @@
 //! One gear mesh as eqs 5-7 and 11 have it: stiffness wave, transmission error and the force across the teeth, with the
-//! side of the dead zone frozen between events.
+//! zone of the dead zone fixed between events.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -101,7 +101,7 @@ impl MeshConstants {
         (self.mean_stiffness * value, self.mean_stiffness * slope * phase.rate)
     }
 
-    /// Everything about the mesh under a frozen zone.
+    /// State of the mesh in a zone.
     pub fn state(&self, zone: Zone, displacement: f64, displacement_rate: f64, phase: Phase) -> MeshState {
         let [error, error_rate, _] = self.transmission_error(phase);
         let (stiffness, stiffness_rate) = self.stiffness(phase);
@@ -121,7 +121,7 @@ impl MeshConstants {
         MeshState { deflection, deflection_rate, stiffness, stiffness_rate, error_rate, overlap, force }
     }
 
-    /// Force of the teeth by geometry, with no zone frozen.
+    /// Force of the teeth, with the zone by geometry.
     pub fn force(&self, deflection: f64, deflection_rate: f64, stiffness: f64) -> f64 {
         let overlap = if deflection > self.half_backlash {
             deflection - self.half_backlash

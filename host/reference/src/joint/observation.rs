@@ -1,4 +1,4 @@
-//! What can be read off the reference at one moment, in SI. Encoders, noise and delays are the drive train's.
+//! Outputs of the reference at one instant, in SI, without encoders, noise and delays.
 
 use heapless::Vec;
 use parameters::{ContactState, MAX_PLANETS, PerPlanet};

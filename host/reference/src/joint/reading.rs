@@ -1,5 +1,4 @@
-//! Reads an observation off the reference: angles, forces and energies from the coordinates along the line of action. It
-//! changes nothing.
+//! Outputs of the reference: angles, forces and energies from the coordinates along the line of action.
 
 use std::f64::consts::TAU;
 
@@ -24,7 +23,7 @@ impl Reference {
         let lever = equations.carrier_lever;
         // What the teeth that have been counted off come to, at the carrier [rad].
         let counted = TAU * whole_turns;
-        let moment = equations.moment(time, state);
+        let internal = equations.internal_forces(time, state);
 
         let list = |kind: usize, value: &dyn Fn(usize) -> f64| -> PerPlanet {
             debug_assert!(kind < 2);
@@ -33,7 +32,7 @@ impl Reference {
         let both = |value: &dyn Fn(usize, usize) -> f64| [0, 1].map(|kind| list(kind, &|planet| value(kind, planet)));
         let kinetic = 0.5 * equations.masses.iter().zip(speeds).map(|(mass, speed)| mass * speed * speed).sum::<f64>();
         let in_meshes: f64 =
-            moment.meshes.iter().flatten().map(|mesh| 0.5 * mesh.stiffness * mesh.overlap.powi(2)).sum();
+            internal.meshes.iter().flatten().map(|mesh| 0.5 * mesh.stiffness * mesh.overlap.powi(2)).sum();
         let wind_up = positions[carrier] - positions[link];
         let in_compliance = equations.compliance.map_or(0.0, |(stiffness, _)| 0.5 * stiffness * wind_up * wind_up);
         let work = &state[2 * bodies..];
@@ -53,15 +52,15 @@ impl Reference {
             gap_rate: speeds[0] - 2.0 * speeds[carrier],
             wind_up,
             wind_up_rate: speeds[carrier] - speeds[link],
-            deflections: both(&|kind, planet| moment.meshes[kind][planet].deflection),
-            deflection_rates: both(&|kind, planet| moment.meshes[kind][planet].deflection_rate),
-            mesh_forces: both(&|kind, planet| moment.meshes[kind][planet].force),
+            deflections: both(&|kind, planet| internal.meshes[kind][planet].deflection),
+            deflection_rates: both(&|kind, planet| internal.meshes[kind][planet].deflection_rate),
+            mesh_forces: both(&|kind, planet| internal.meshes[kind][planet].force),
             contacts: [0, 1].map(|kind| {
                 (0..equations.planets)
-                    .map(|planet| equations.meshes[kind][planet].contact(moment.meshes[kind][planet].deflection))
+                    .map(|planet| equations.meshes[kind][planet].contact(internal.meshes[kind][planet].deflection))
                     .collect()
             }),
-            wind_up_torque: moment.wind_up_force * lever,
+            wind_up_torque: internal.wind_up_force * lever,
             kinetic_energy: kinetic,
             elastic_energy: in_meshes + in_compliance,
             work: Work { supplied: work[0], dissipated: work[1], against_errors: work[2], by_stiffness: work[3] },

@@ -47,7 +47,7 @@ impl Reference {
     pub fn start(joint: &JointParameters, start: &Start) -> Result<Self, ReferenceError> {
         let mut equations = JointEquations::new(joint)?;
         let state = resolve(start, &equations);
-        equations.freeze(0.0, &state);
+        equations.select_mode(0.0, &state);
         Ok(Self { equations, integrator: Integrator::new(0.0, state), teeth_passed: 0 })
     }
 

@@ -1,4 +1,4 @@
-//! What the reference refuses, each with the culprit and the mend. Whether a geometry is coherent is not asked: the
+//! Parameters that the reference refuses, each error with its cause and remedy. Coherence of the geometry is not checked: the
 //! equations hold for any radii.
 
 use std::fmt;
@@ -64,7 +64,7 @@ impl From<IntegrationError> for ReferenceError {
     }
 }
 
-/// Refuses what would divide by zero, never end, or quietly mean something else.
+/// Refuses parameters that would divide by zero, never end, or be misinterpreted.
 pub(super) fn check(joint: &JointParameters) -> Result<(), ReferenceError> {
     if joint.dead_zone != DeadZone::Sharp {
         return Err(ReferenceError::SmoothDeadZone);

@@ -1,5 +1,5 @@
-//! Teeth that change while the joint moves: backlash that has grown, a mesh that has gone soft. When and why they change
-//! is the caller's; between changes the equations are those of any joint.
+//! Teeth that change while the joint moves: backlash that has grown, a mesh whose stiffness has fallen. Between changes the
+//! equations are those of any joint.
 
 use super::reference::Reference;
 use crate::integrator::SwitchedSystem;
@@ -10,7 +10,7 @@ impl Reference {
         for mesh in self.equations.meshes.iter_mut().flatten() {
             mesh.half_backlash = half_backlash;
         }
-        self.freeze_again();
+        self.select_mode_again();
     }
 
     /// From now on the sun-planet mesh of one planet has this mean stiffness [N/m].
@@ -18,11 +18,11 @@ impl Reference {
         if let Some(mesh) = self.equations.meshes[0].get_mut(planet) {
             mesh.mean_stiffness = mean_stiffness;
         }
-        self.freeze_again();
+        self.select_mode_again();
     }
 
-    fn freeze_again(&mut self) {
+    fn select_mode_again(&mut self) {
         let time = self.integrator.time();
-        self.equations.freeze(time, self.integrator.state());
+        self.equations.select_mode(time, self.integrator.state());
     }
 }

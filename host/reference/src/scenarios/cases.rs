@@ -1,5 +1,5 @@
-//! The paper's joint under the settings whose results are known from elsewhere: cases A and Q, kept as data files from
-//! an independent integration, and the four regimes of set P. Dimensionless quantities are over b_c and omega_n.
+//! The paper's joint under settings with independently known results: cases A and Q, stored as data files from an independent
+//! integration, and the four regimes of set P. Dimensionless quantities are over b_c and omega_n.
 
 use std::f64::consts::TAU;
 

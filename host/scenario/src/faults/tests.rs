@@ -103,14 +103,14 @@ fn grown_backlash_and_a_broken_tooth_reach_the_teeth_and_end() {
     let (mut faults, case) = at_work(fault);
     let mut plant = plant(PlantName::Reference, &case.truth.parameters, &case.train, Vec::new(), 1).expect("a plant");
     let mut joint = plant.joint().clone();
-    faults.wear(0.5, &joint, plant.inside().as_mut());
+    faults.wear(0.5, &joint, plant.joint_model().as_mut());
     assert_eq!(faults.half_backlash_now(), 40e-6);
     assert_eq!(faults.teeth.soft, [true, false, false], "the broken tooth starts at planet 0");
-    faults.wear(1.5, &joint, plant.inside().as_mut());
+    faults.wear(1.5, &joint, plant.joint_model().as_mut());
     assert!((faults.half_backlash_now() - 90e-6).abs() < 1e-18);
     // A third of a turn of the sun against the carrier later it is at the next planet.
     joint.motor_angle = joint.carrier_angle + TAU / 3.0 + 0.01;
-    faults.wear(2.5, &joint, plant.inside().as_mut());
+    faults.wear(2.5, &joint, plant.joint_model().as_mut());
     assert_eq!(faults.half_backlash_now(), 40e-6);
     assert_eq!(faults.teeth.soft, [false, true, false]);
 }

@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 
 use link::virtual_joint::Knot;
-use model_core::controller::course::{Demand, Stretch};
+use model_core::controller::trajectory::{Segment, Trajectory};
 use reference::closed_loop::{Motion, SetPoint};
 
 use crate::case::{Case, Designed};
@@ -37,18 +37,18 @@ pub fn knots(file: &TestFile, case: &Case, designed: &Designed, first_turn: i32)
         let demand = match sender.at(start, tick.into()).1 {
             SetPoint::Position { ahead, .. } => {
                 let between = |from: f64, to: f64| polynomial(case.motion.at(from), case.motion.at(to), end - start);
-                let turned = |stretch: Stretch<f32>| Stretch { turns: stretch.turns - first_turn, ..stretch };
+                let turned = |stretch: Segment<f32>| Segment { turns: stretch.turns - first_turn, ..stretch };
                 let ahead = ahead.map(|_| turned(between(start + lead, end + lead)));
-                Demand::Position { now: turned(between(start, end)), ahead }
+                Trajectory::Position { now: turned(between(start, end)), ahead }
             }
             impedance => match translator.command(&impedance) {
-                model_core::compensation::Command::Impedance(point) => Demand::Impedance(point),
-                model_core::compensation::Command::Position { .. } => Demand::HOLD,
+                model_core::compensation::Command::Impedance(point) => Trajectory::Impedance(point),
+                model_core::compensation::Command::Position { .. } => Trajectory::HOLD,
             },
         };
         let middle = 0.5 * (start + end);
         let load_torque = case.disturbances.iter().map(|push| push.torque(middle)).sum::<f64>() as f32;
-        list.push(Knot { tick, load_torque, demand: (&demand).into() });
+        list.push(Knot { tick, load_torque, trajectory: (&demand).into() });
         tick = next;
     }
     list
@@ -74,7 +74,7 @@ fn end_of_stretch(tick: u32, every: u32, rests: impl Fn(u32) -> [bool; 2]) -> u3
 }
 
 /// From one moment of a motion to another.
-fn polynomial(from: Motion, to: Motion, time: f64) -> Stretch<f32> {
+fn polynomial(from: Motion, to: Motion, time: f64) -> Segment<f32> {
     let way = to.position - from.position - time * (from.speed + 0.5 * time * from.acceleration);
     let gain = (to.speed - from.speed - time * from.acceleration) * time;
     let bend = (to.acceleration - from.acceleration) * time * time;
@@ -87,12 +87,12 @@ fn polynomial(from: Motion, to: Motion, time: f64) -> Stretch<f32> {
         (-15.0 * way + 7.0 * gain - bend) / time.powi(4),
         (6.0 * way - 3.0 * gain + 0.5 * bend) / time.powi(5),
     ];
-    Stretch { turns: turns as i32, powers: powers.map(|power| (power / TAU) as f32) }
+    Segment { turns: turns as i32, powers: powers.map(|power| (power / TAU) as f32) }
 }
 
 #[cfg(test)]
 mod tests {
-    use reference::closed_loop::{Profile, Reference};
+    use reference::closed_loop::{MotionProfile, Profile};
 
     use super::*;
 

@@ -16,7 +16,7 @@ mod wish;
 
 use joint_file::JointFile;
 use link::messages::{Role, RunMode, RunSettings, Statistics};
-use model_core::controller::design::{ControlWish, Told, control_source};
+use model_core::controller::design::{ControlRequest, NominalPlant, control_source};
 pub use wish::BoardWish;
 use wish::{can_be, may_run};
 
@@ -154,9 +154,9 @@ impl<'w> Boards<'w> {
 
     fn expected(&self, pair: &Pair, image: Option<&Image>) -> Outcome<Expected> {
         let Pair { told, truth, control, .. } = pair;
-        let wish = ControlWish { bandwidth: control.bandwidth, output_encoder: control.output_encoder };
+        let request = ControlRequest { bandwidth: control.bandwidth, output_encoder: control.output_encoder };
         let board = self.wish.board;
-        let told = Told { joint: &told.parameters, surroundings: &told.surroundings, wish };
+        let told = NominalPlant { joint: &told.parameters, surroundings: &told.surroundings, request };
         let source = control_source(&truth.parameters, &truth.surroundings, &told, &board.processor())
             .map_err(|error| Failure::new(format!("joint `{}`: {error}", truth.parameters.name)))?;
         let chip = board.chip();

@@ -4,7 +4,7 @@
 use joint_file::JointFile;
 use link::virtual_joint::Knot;
 use model_core::controller::Controller;
-use model_core::controller::course::Demand;
+use model_core::controller::trajectory::Trajectory;
 use model_core::gears::design::{Effort, design_scheme};
 use model_core::gears::{Scheme, Tables};
 use model_core::numbers::digest;
@@ -98,10 +98,10 @@ impl Twin<'_> {
         let half = self.case.half_backlash();
         let mut ran = Ran::begin(1.0 / rate, periods.into());
         let (mut digests, mut running) = (Vec::with_capacity(periods as usize), digest::START);
-        let (mut coming, mut demand, mut load, mut since) = (knots.iter().peekable(), Demand::HOLD, 0.0, 0);
+        let (mut coming, mut demand, mut load, mut since) = (knots.iter().peekable(), Trajectory::HOLD, 0.0, 0);
         for period in 0..periods {
             if let Some(knot) = coming.next_if(|knot| knot.tick == period) {
-                (demand, load, since) = (Demand::from(knot.demand), knot.load_torque, period);
+                (demand, load, since) = (Trajectory::from(knot.trajectory), knot.load_torque, period);
             }
             let elapsed = f32::from((period - since).min(u16::MAX.into()) as u16);
             let command = demand.at(table.period * elapsed, table.turn);

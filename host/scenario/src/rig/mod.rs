@@ -21,7 +21,7 @@ pub use period::Period;
 pub use recording::Moment;
 pub use setup::Setup;
 
-use reference::closed_loop::SharedReference;
+use reference::closed_loop::SharedProfile;
 use reference::drive_train::Measurement;
 
 use super::faults::HostFaults;
@@ -33,7 +33,7 @@ use report::failure::Outcome;
 pub struct Rig {
     plant: Plant,
     faults: HostFaults,
-    motion: SharedReference,
+    motion: SharedProfile,
     /// Control period [s].
     period: f64,
     /// Length of a run.
@@ -79,7 +79,7 @@ impl Rig {
         for index in 0..*periods {
             let time = index as f64 * *period;
             let joint = plant.joint().clone();
-            faults.wear(time, &joint, plant.inside().as_mut());
+            faults.wear(time, &joint, plant.joint_model().as_mut());
             let (number, set_point) = sender.at(time, index);
             let set_point = faults.receive(time, number, set_point);
             let seen = faults.sense(&plant.measure());

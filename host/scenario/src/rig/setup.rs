@@ -2,7 +2,7 @@
 //! goes wrong. Plain data.
 
 use parameters::JointParameters;
-use reference::closed_loop::SharedReference;
+use reference::closed_loop::SharedProfile;
 use reference::drive_train::{Disturbance, DriveTrainParameters, Stepping};
 use reference::joint::{RelativeState, Start};
 
@@ -27,7 +27,7 @@ pub struct Setup {
     /// What goes wrong, and when.
     pub faults: Vec<Fault>,
     /// Where the link shall be.
-    pub motion: SharedReference,
+    pub motion: SharedProfile,
     /// Of all noise.
     pub seed: u64,
     /// Length [s].
@@ -39,7 +39,7 @@ impl Setup {
     pub fn new(
         joint: JointParameters,
         train: DriveTrainParameters,
-        motion: SharedReference,
+        motion: SharedProfile,
         duration: f64,
         seed: u64,
     ) -> Self {

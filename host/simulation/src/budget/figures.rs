@@ -1,8 +1,8 @@
 //! What `joint budget` says, as data: figures in SI with their units in their names. As JSON it has the schema
 //! `joint-budget/1`; where the figures come from is in `model_core::gears::design`.
 
-use model_core::gears::certificate::{Certificate, ErrorPromise};
-use model_core::gears::design::{DesignError, Effort, Parts, Processor, certificate};
+use model_core::gears::certificate::{Certificate, ErrorQuantiles};
+use model_core::gears::design::{DesignError, Effort, Processor, Substeps, certificate};
 use parameters::JointParameters;
 use serde::Serialize;
 
@@ -97,7 +97,7 @@ fn of(parameters: &JointParameters, board: Board, processor: &Processor, certifi
         time_s: f64::from(instructions) / processor.instructions_per_second(),
         part: processor.part(instructions.into(), rate),
     };
-    let error = |promise: ErrorPromise| Error { typical: promise.typical, nine_in_ten: promise.nine_in_ten };
+    let error = |promise: ErrorQuantiles| Error { typical: promise.typical, nine_in_ten: promise.nine_in_ten };
     let instructions = &certificate.instructions;
     Figures {
         schema: SCHEMA,
@@ -107,15 +107,15 @@ fn of(parameters: &JointParameters, board: Board, processor: &Processor, certifi
         cycles_per_instruction: processor.cycles_per_instruction + processor.flash_wait,
         share: processor.share,
         rate_Hz: rate,
-        method: match certificate.parts {
-            Parts::Substeps(_) => "substeps",
-            Parts::Leaps(_) => "leaps",
+        method: match certificate.substeps {
+            Substeps::Corrected(_) => "substeps",
+            Substeps::Verlet(_) => "leaps",
         },
-        parts: certificate.parts.count(),
-        error_holding: error(certificate.holding),
-        error_losing: error(certificate.losing),
-        holding: work(instructions.holding),
-        losing: work(instructions.losing),
+        parts: certificate.substeps.count(),
+        error_holding: error(certificate.contact_holds),
+        error_losing: error(certificate.contact_changes),
+        holding: work(instructions.contact_holds),
+        losing: work(instructions.contact_changes),
         all_crossing: work(instructions.all_crossing),
         bound: work(instructions.bound),
         table_bytes: certificate.table_bytes,

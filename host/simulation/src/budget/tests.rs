@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use joint_file::{PRESETS, named};
-use model_core::gears::design::{Effort, Pace, certificate};
+use model_core::gears::design::{Effort, StepSize, certificate};
 use parameters::JointParameters;
 
 use super::figures;
@@ -32,7 +32,7 @@ fn a_rate_that_takes_too_long_is_refused_with_the_nearest_that_fits() {
     assert!(failure.message().contains("q1") || failure.message().contains("Q1"), "{failure}");
     assert!(failure.message().contains("of the period"), "{failure}");
     assert_eq!(failure.exit_code(), 2);
-    let offered = nearest(&Pace::new(&q1), &Board::Stm32f405.processor(), 80_000).expect("there is one");
+    let offered = nearest(&StepSize::new(&q1), &Board::Stm32f405.processor(), 80_000).expect("there is one");
     assert!(failure.help().expect("a mend").contains(&format!("--rate {offered}")), "{failure}");
     assert!(refuse(&q1, Board::Stm32f405, offered).is_ok(), "{offered}");
 }
@@ -48,9 +48,9 @@ fn a_rate_that_is_unstable_or_cannot_be_made_is_refused_with_one_that_can() {
 
 #[test]
 fn what_is_offered_is_nearest() {
-    let (pace, processor) = (Pace::new(&preset("l1")), Board::Stm32f405.processor());
+    let (step_size, processor) = (StepSize::new(&preset("l1")), Board::Stm32f405.processor());
     for rate in [19_999, 33_333, 70_000] {
-        let offered = nearest(&pace, &processor, rate).expect("there is one");
+        let offered = nearest(&step_size, &processor, rate).expect("there is one");
         let l1 = preset("l1");
         let nearer = (1..offered.abs_diff(rate)).flat_map(|off| [rate.saturating_sub(off), rate + off]);
         let fits = |rate: &u32| *rate > 0 && refuse(&l1, Board::Stm32f405, *rate).is_ok();
@@ -82,7 +82,9 @@ fn errors_fall_with_the_rate_and_the_typical_one_is_the_smaller() {
     for name in PRESETS {
         let (joint, processor) = (preset(name), Board::Stm32f405.processor());
         let at = |rate| certificate(&joint, rate, Effort::Substeps(2), &processor).expect("a certificate");
-        let promises = [20_000, 40_000, 80_000, 160_000].map(|rate| [at(rate).holding, at(rate).losing]).into_iter();
+        let promises = [20_000, 40_000, 80_000, 160_000]
+            .map(|rate| [at(rate).contact_holds, at(rate).contact_changes])
+            .into_iter();
         let pairs = promises.clone().zip(promises.skip(1));
         for (slow, fast) in pairs.flat_map(|(slow, fast)| slow.into_iter().zip(fast)) {
             assert!(fast.typical <= slow.typical && fast.nine_in_ten <= slow.nine_in_ten, "{name}");

@@ -1,7 +1,7 @@
 //! Whether a board can step a joint at a rate: the rate can be made of its clock, is stable, and leaves time for a tick in
 //! which every mesh crosses twice. Otherwise the nearest rate that can is found.
 
-use model_core::gears::design::{Effort, Pace, Processor};
+use model_core::gears::design::{Effort, Processor, StepSize};
 use parameters::JointParameters;
 
 use board::target::board::Board;
@@ -12,26 +12,26 @@ const HIGHEST: u32 = 500_000;
 
 /// Refuses a rate that cannot be met; names the nearest that can.
 pub fn refuse(parameters: &JointParameters, board: Board, rate: u32) -> Outcome<()> {
-    let (pace, processor) = (Pace::new(parameters), board.processor());
-    let Some(why) = obstacle(&pace, &processor, rate) else { return Ok(()) };
+    let (step_size, processor) = (StepSize::new(parameters), board.processor());
+    let Some(why) = obstacle(&step_size, &processor, rate) else { return Ok(()) };
     let message = format!("{} cannot be stepped at {rate} Hz on {}: {why}", parameters.name, board.name());
-    Err(Failure::new(message).with_help(match nearest(&pace, &processor, rate) {
+    Err(Failure::new(message).with_help(match nearest(&step_size, &processor, rate) {
         Some(nearest) => format!("the nearest rate that can be met is {nearest} Hz: `--rate {nearest}`"),
         None => "no rate can be met on this board: take a faster one, or fewer planets or harmonics".to_owned(),
     }))
 }
 
 /// What stands against a rate.
-fn obstacle(pace: &Pace, processor: &Processor, rate: u32) -> Option<String> {
-    let lowest = pace.lowest_rate(Effort::Within(*processor));
+fn obstacle(step_size: &StepSize, processor: &Processor, rate: u32) -> Option<String> {
+    let lowest = step_size.lowest_rate(Effort::Within(*processor));
     if rate < lowest {
         return Some(format!("below {lowest} Hz no step is stable"));
     }
     if !processor.clock.is_multiple_of(rate) {
         return Some(format!("its clock of {} Hz is no multiple of it", processor.clock));
     }
-    let parts = pace.parts(rate, Effort::Within(*processor)).ok()?;
-    let most = pace.cost().all_crossing(parts);
+    let parts = step_size.substeps(rate, Effort::Within(*processor)).ok()?;
+    let most = step_size.cost().all_crossing(parts);
     let part = processor.part(most, rate);
     (part > processor.share).then(|| {
         format!(
@@ -43,12 +43,12 @@ fn obstacle(pace: &Pace, processor: &Processor, rate: u32) -> Option<String> {
 }
 
 /// The nearest rate that nothing stands against; of two as near, the higher.
-pub(super) fn nearest(pace: &Pace, processor: &Processor, rate: u32) -> Option<u32> {
-    let lowest = pace.lowest_rate(Effort::Within(*processor));
+pub(super) fn nearest(step_size: &StepSize, processor: &Processor, rate: u32) -> Option<u32> {
+    let lowest = step_size.lowest_rate(Effort::Within(*processor));
     let divisors = processor.clock / HIGHEST..=processor.clock / lowest;
     divisors
         .filter(|divisor| *divisor > 0 && processor.clock.is_multiple_of(*divisor))
         .map(|divisor| processor.clock / divisor)
-        .filter(|candidate| obstacle(pace, processor, *candidate).is_none())
+        .filter(|candidate| obstacle(step_size, processor, *candidate).is_none())
         .min_by_key(|candidate| (candidate.abs_diff(rate), u32::MAX - candidate))
 }

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use joint_file::Severity;
 use model_core::gears::design::modes::natural_frequencies;
-use model_core::gears::design::{Effort, Pace};
+use model_core::gears::design::{Effort, StepSize};
 use model_core::gears::{Kinematics, Mechanics, MeshPhasing, Scales};
 use parameters::{DampingLaw, JointParameters, MESH_KINDS, MeshKind, PerPlanet};
 
@@ -164,8 +164,8 @@ fn fixed_step(parameters: &JointParameters, rate: u32) -> Outcome<FixedStep> {
             .with_help("`--rate` sets the steps a second")
     };
     let step = step(parameters, rate).map_err(failed)?;
-    let pace = Pace::new(parameters);
-    let (lowest, recommended) = (pace.lowest_rate(Effort::Board), pace.recommended_rate());
+    let step_size = StepSize::new(parameters);
+    let (lowest, recommended) = (step_size.lowest_rate(Effort::Board), step_size.recommended_rate());
     Ok(FixedStep {
         rate_Hz: rate,
         lowest_rate_Hz: lowest,
@@ -173,7 +173,7 @@ fn fixed_step(parameters: &JointParameters, rate: u32) -> Outcome<FixedStep> {
         recommended_rate_Hz: recommended,
         recommended_step_s: 1.0 / f64::from(recommended),
         substeps: step.substeps,
-        fastest_mode_phase_rad: pace.phase(rate, step.substeps),
+        fastest_mode_phase_rad: step_size.phase(rate, step.substeps),
         table_bytes: step.table_bytes,
         digest: format!("{:016x}", step.digest),
     })

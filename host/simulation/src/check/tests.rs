@@ -5,7 +5,7 @@ use std::path::Path;
 
 use joint_file::PRESETS;
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
-use model_core::gears::design::{Effort, Pace};
+use model_core::gears::design::{Effort, StepSize};
 use parameters::JointParameters;
 
 use super::derive::arcmin;
@@ -138,7 +138,7 @@ fn mesh_phases_of_unequal_planets_are_shown_for_each() {
 fn the_lowest_rate_can_be_stepped_and_the_one_below_cannot() {
     for name in PRESETS {
         let parameters = load(Path::new(name)).expect("a preset").file.parameters;
-        let lowest = Pace::new(&parameters).lowest_rate(Effort::Board);
+        let lowest = StepSize::new(&parameters).lowest_rate(Effort::Board);
         assert!(step::step(&parameters, lowest).is_ok(), "{name}: {lowest}");
         assert!(step::step(&parameters, lowest - 1).is_err(), "{name}: {lowest}");
     }

@@ -144,7 +144,7 @@ impl<'a, T: Real, const N: usize> Reader<'a, T, N> {
         let turns = f64::from(state.rigid.turns) + state.rigid.fraction as f64 * (-64f64).exp2();
         let (phase, way, mesh_periods) = match self.joint.excitation {
             Excitation::Time { mesh_frequency } => {
-                (state.phase, excitation.phase_way.to_f64(), mesh_frequency * time / TAU)
+                (state.phase, excitation.phase_advance.to_f64(), mesh_frequency * time / TAU)
             }
             Excitation::Angle => {
                 let periods = excitation.periods_per_turn;

@@ -1,13 +1,13 @@
 //! Instructions of a tick, predicted from what it does. Every constant was counted on an emulated Cortex-M4F (QEMU,
 //! rustc 1.96, opt-level 3, fat LTO) over 108 sets of tables (3, 4 and 5 planets, both laws, with compliance and
-//! without, 1, 2 and 5 harmonics, 1, 2 and 4 sub-steps; leaps apart).
+//! without, 1, 2 and 5 harmonics, 1, 2 and 4 sub-steps; Verlet sub-steps apart).
 //!
-//! A tick by the exponential flow costs the same each time. One in sub-steps costs a fixed part (start, first look at
-//! the accelerations, state taken over; half of that in ticks that go on from another one), each sub-step, each
-//! correction and each mesh that crosses; before it an exponential tick may have been given up half-way. More than one harmonic of the stiffness wave makes every look at
+//! A tick by the exponential flow costs the same each time. One in sub-steps costs a fixed part (start, first
+//! evaluation of the accelerations, state taken over; half of that in ticks that start warm), each sub-step, each
+//! correction and each mesh that crosses; before it an exponential tick may have been given up half-way. More than one harmonic of the stiffness wave makes every evaluation of
 //! a mesh dearer.
 
-use crate::gears::certificate::Parts;
+use crate::gears::certificate::Substeps;
 use parameters::{DampingLaw, JointParameters, MESH_KINDS, MIN_PLANETS};
 
 /// Instructions with one number of planets, one harmonic, law `paper`, without compliance.
@@ -21,29 +21,29 @@ struct Counted {
     correction: f64,
 }
 
-/// Leaps of light planets with one number of planets; compliance and overtones change them less than counts differ.
+/// Verlet sub-steps of light planets with one number of planets; compliance and overtones change them less than counts differ.
 #[derive(Debug, PartialEq)]
-struct Leaping {
-    /// Every tooth presses.
+struct VerletCost {
+    /// Every mesh is in contact.
     hold: f64,
     /// More if that is given up in the middle of the tick and not at its start.
     given_up: f64,
     /// Law `paper`, `contact`.
     fixed: [f64; 2],
     /// All teeth apart, law `paper`, `contact`.
-    leap: [f64; 2],
+    substep: [f64; 2],
 }
 
-/// 3, 4 and 5 planets, each counted to the instruction at 3, 5 and 9 leaps.
-const LEAPING: [Leaping; 3] = [
-    Leaping { hold: 1489.0, given_up: 343.0, fixed: [1032.0, 1048.0], leap: [140.0, 132.0] },
-    Leaping { hold: 1844.0, given_up: 444.0, fixed: [1135.0, 1200.0], leap: [275.0, 173.0] },
-    Leaping { hold: 2156.0, given_up: 545.0, fixed: [1514.0, 1399.0], leap: [350.0, 231.0] },
+/// 3, 4 and 5 planets, each counted to the instruction at 3, 5 and 9 Verlet sub-steps.
+const VERLET: [VerletCost; 3] = [
+    VerletCost { hold: 1489.0, given_up: 343.0, fixed: [1032.0, 1048.0], substep: [140.0, 132.0] },
+    VerletCost { hold: 1844.0, given_up: 444.0, fixed: [1135.0, 1200.0], substep: [275.0, 173.0] },
+    VerletCost { hold: 2156.0, given_up: 545.0, fixed: [1514.0, 1399.0], substep: [350.0, 231.0] },
 ];
-/// More for a mesh that touches its flank in a leap, and for one whose numbers are none more than that; found by the
+/// More for a mesh that touches its flank in a Verlet sub-step, and still more for one that is not a number; found by the
 /// search for the worst tick.
 const TOUCH: f64 = 40.0;
-const NO_NUMBER: f64 = 20.0;
+const NOT_A_NUMBER: f64 = 20.0;
 
 /// 3, 4 and 5 planets. Counted to the instruction, but for `given_up`: what a tick that is forced open in its first
 /// half takes beyond the rest (three planets), in proportion to `hold`.
@@ -54,8 +54,8 @@ const COUNTED: [Counted; 3] = [
 ];
 /// One mesh of a correction that parts or meets.
 const CROSSING: f64 = 211.0;
-/// One that leaps from flank to flank, or whose numbers are none: more than that, found by the search for the worst tick.
-const LEAP: f64 = 120.0;
+/// One that crosses from flank to flank, or is not a number: more than that, found by the search for the worst tick.
+const FLANK_TO_FLANK: f64 = 120.0;
 /// More under the law `contact`: a mesh that crosses, a planet of an exponential tick, a tick in sub-steps.
 const CONTACT: [f64; 3] = [10.0, 12.0, 8.0];
 /// More with compliance: a sub-step.
@@ -79,7 +79,7 @@ pub struct Cost {
     correction: f64,
     crossing: f64,
     meshes: f64,
-    leaping: &'static Leaping,
+    verlet: &'static VerletCost,
     /// 0 for law `paper`, 1 for `contact`.
     law: usize,
 }
@@ -108,54 +108,59 @@ impl Cost {
                 + contact[0]
                 + with(beyond_first > 0.0, CROSSING_OVERTONES + CROSSING_OVERTONE * beyond_first),
             meshes: 2.0 * planets,
-            leaping: &LEAPING[row],
+            verlet: &VERLET[row],
             law: usize::from(parameters.damping_law == DampingLaw::Contact),
         }
     }
 
     /// While contact holds.
-    pub fn holding(&self, parts: Parts) -> f64 {
-        match parts {
-            Parts::Substeps(_) => self.hold,
-            Parts::Leaps(_) => self.leaping.hold,
+    pub fn contact_holds(&self, substeps: Substeps) -> f64 {
+        match substeps {
+            Substeps::Corrected(_) => self.hold,
+            Substeps::Verlet(_) => self.verlet.hold,
         }
     }
 
-    /// In parts, none of which sees a crossing.
-    pub fn losing(&self, parts: Parts) -> f64 {
-        match parts {
-            Parts::Substeps(substeps) => self.fixed + f64::from(substeps) * self.substep,
-            Parts::Leaps(leaps) => self.leaping.fixed[self.law] + f64::from(leaps) * self.leaping.leap[self.law],
+    /// In sub-steps, none of which has a crossing.
+    pub fn contact_changes(&self, substeps: Substeps) -> f64 {
+        match substeps {
+            Substeps::Corrected(count) => self.fixed + f64::from(count) * self.substep,
+            Substeps::Verlet(count) => self.verlet.fixed[self.law] + f64::from(count) * self.verlet.substep[self.law],
         }
     }
 
     /// Every mesh crosses in two of the sub-steps (joints that rattle come to that by themselves), or in one after an
-    /// exponential tick was given up, or late in an exponential tick; or touches its flank in every leap.
-    pub fn all_crossing(&self, parts: Parts) -> f64 {
-        match parts {
-            Parts::Substeps(substeps) => {
-                let twice = self.losing(parts) + f64::from(substeps.min(2)) * self.all();
+    /// exponential tick was given up, or late in an exponential tick; or touches its flank in every
+    /// Verlet sub-step.
+    pub fn all_crossing(&self, substeps: Substeps) -> f64 {
+        match substeps {
+            Substeps::Corrected(count) => {
+                let twice = self.contact_changes(substeps) + f64::from(count.min(2)) * self.all();
                 let late = self.hold + 0.5 * self.substep + self.all();
-                twice.max(self.given_up + self.losing(parts) + self.all()).max(late)
+                twice.max(self.given_up + self.contact_changes(substeps) + self.all()).max(late)
             }
-            Parts::Leaps(leaps) => self.leaping.given_up + self.losing(parts) + f64::from(leaps) * self.meshes * TOUCH,
+            Substeps::Verlet(count) => {
+                self.verlet.given_up + self.contact_changes(substeps) + f64::from(count) * self.meshes * TOUCH
+            }
         }
     }
 
-    /// Every mesh crosses in every sub-step, from flank to flank, or has no number in any leap: more than any state of the
-    /// search takes.
-    pub fn bound(&self, parts: Parts) -> f64 {
-        let count = f64::from(parts.count().max(1));
-        match parts {
-            Parts::Substeps(_) => self.given_up + self.losing(parts) + count * (self.all() + self.meshes * LEAP),
-            Parts::Leaps(_) => self.all_crossing(parts) + count * self.meshes * NO_NUMBER,
+    /// Every mesh crosses in every sub-step, from flank to flank, or is not a number in any Verlet sub-step: an
+    /// upper bound on every state of the search.
+    pub fn bound(&self, substeps: Substeps) -> f64 {
+        let count = f64::from(substeps.count().max(1));
+        match substeps {
+            Substeps::Corrected(_) => {
+                self.given_up + self.contact_changes(substeps) + count * (self.all() + self.meshes * FLANK_TO_FLANK)
+            }
+            Substeps::Verlet(_) => self.all_crossing(substeps) + count * self.meshes * NOT_A_NUMBER,
         }
     }
 
     /// The most sub-steps, of so many, with which `all_crossing` stays within so many instructions; zero if not even one
     /// does.
     pub fn affordable(&self, instructions: f64, most: u32) -> u32 {
-        let fits = |substeps: &u32| self.all_crossing(Parts::Substeps(*substeps)) <= instructions;
+        let fits = |substeps: &u32| self.all_crossing(Substeps::Corrected(*substeps)) <= instructions;
         (1..=most).take_while(fits).last().unwrap_or(0)
     }
 

@@ -4,33 +4,33 @@
 //! With E(t) = exp(A t) - I, E(2t) = 2 E(t) + E(t)^2. Doubling E instead of exp(A t) keeps the small increment apart
 //! from the identity: squaring I + E would round E to the unit's grid N times over (Zhong, precise integration).
 //! Doubling also multiplies rounding, without limit where the motion grows before it decays; so everything is done in
-//! twofold numbers and rounded once, at the end.
+//! double-double numbers and rounded once, at the end.
 
-mod twofold;
+mod double_double;
 
+use double_double::DoubleDouble;
 use nalgebra::DMatrix;
 use std::vec::Vec;
-use twofold::Twofold;
 
 /// Norm of A h / 2^N up to which the series is used: below it the series needs few terms.
 pub const SERIES_NORM: f64 = 0.125;
 
-/// Relative remainder allowed to the series, a unit of a twofold number: 2^-106.
+/// Relative remainder allowed to the series, a unit of a double-double number: 2^-106.
 pub const REMAINDER: f64 = 1.232_595_164_407_831e-32;
 
 /// Doublings and series terms for a matrix of a given norm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Plan {
+pub struct ScalingPlan {
     /// N: the interval is h / 2^N at first.
     pub doublings: u32,
     /// Highest power of A h / 2^N in the series.
     pub terms: u32,
 }
 
-impl Plan {
+impl ScalingPlan {
     /// The fewest doublings that bring `norm` (of A h) to 1/8 or below, then the fewest terms whose remainder,
     /// bounded by a^L / (L + 1)! / (1 - a / (L + 2)) relative to the leading term, is below what is allowed. A norm
-    /// that is not finite has no plan worth anything; it is given one all the same.
+    /// that is not finite is treated as zero: its result means nothing.
     pub fn new(norm: f64) -> Self {
         let mut start = if norm.is_finite() { norm } else { 0.0 };
         let mut doublings = 0;
@@ -68,29 +68,29 @@ pub fn exponential_minus_identity(matrix: &DMatrix<f64>, step: f64) -> DMatrix<f
 
 /// Flow of v' = A v + B u and its response to u = (s / h)^k for every k below `powers`; entries must be finite.
 pub fn flow(matrix: &DMatrix<f64>, inputs: &DMatrix<f64>, step: f64, powers: usize) -> Flow {
-    let plan = Plan::new(norm(matrix) * step.abs());
+    let plan = ScalingPlan::new(norm(matrix) * step.abs());
     let part = libm::ldexp(1.0, -(plan.doublings as i32));
-    let over_part = |values: &DMatrix<f64>| values.map(|value| Twofold::product(value, step).scaled(part));
+    let over_part = |values: &DMatrix<f64>| values.map(|value| DoubleDouble::product(value, step).scaled(part));
     let mut response = Response::series(&over_part(matrix), &over_part(inputs), powers, plan.terms);
     for _ in 0..plan.doublings {
         response = response.doubled();
     }
-    let rounded = |values: &DMatrix<Twofold>| values.map(Twofold::rounded);
+    let rounded = |values: &DMatrix<DoubleDouble>| values.map(DoubleDouble::rounded);
     Flow { transition: rounded(&response.increment), input_integrals: response.integrals.iter().map(rounded).collect() }
 }
 
 /// What a flow is over an interval t, before it is rounded.
 struct Response {
     /// E(t) = exp(A t) - I.
-    increment: DMatrix<Twofold>,
+    increment: DMatrix<DoubleDouble>,
     /// J_k(t): the integral over s in [0, t] of exp(A (t - s)) B (s / t)^k.
-    integrals: Vec<DMatrix<Twofold>>,
+    integrals: Vec<DMatrix<DoubleDouble>>,
 }
 
 impl Response {
     /// E = sum over m >= 1 of (A t)^m / m!, and J_k = sum over m >= 0 of (A t)^m B t k! / (m + k + 1)!, from A t and
     /// B t. The remainder of any J_k, relative to its leading term, is at most that of E.
-    fn series(matrix: &DMatrix<Twofold>, inputs: &DMatrix<Twofold>, powers: usize, terms: u32) -> Self {
+    fn series(matrix: &DMatrix<DoubleDouble>, inputs: &DMatrix<DoubleDouble>, powers: usize, terms: u32) -> Self {
         // Of m! / (k! (m - k)!), all whole numbers far below 2^53.
         let choose = |m: u32, k: u32| (0..k).fold(1.0, |value, i| value * f64::from(m - i) / f64::from(i + 1));
         // (A t)^m / m! and (A t)^(m - 1) B t / m!.
@@ -123,7 +123,7 @@ impl Response {
                 .integrals
                 .iter()
                 .zip(&row)
-                .fold(first_half, |sum, (second, ways)| sum + second.map(|value| value * Twofold::new(*ways)));
+                .fold(first_half, |sum, (second, ways)| sum + second.map(|value| value * DoubleDouble::new(*ways)));
             both.map(|value| value.scaled(libm::ldexp(1.0, -(k as i32))))
         });
         let integrals = integrals.collect();
@@ -131,6 +131,6 @@ impl Response {
     }
 }
 
-fn over(matrix: &DMatrix<Twofold>, divisor: f64) -> DMatrix<Twofold> {
+fn over(matrix: &DMatrix<DoubleDouble>, divisor: f64) -> DMatrix<DoubleDouble> {
     matrix.map(|value| value.over(divisor))
 }

@@ -15,27 +15,27 @@ use crate::gears::tables::{Block, Flow, Inputs, Transition};
 use crate::numbers::Real;
 
 /// Mesh periods over a step up to which a parabola follows the excitation: it leaves some 1e-3 of its amplitude.
-pub const LARGEST_WAY: f64 = 0.06;
+pub const LARGEST_ADVANCE: f64 = 0.06;
 
-/// When a whole tick looks at its pseudo-force on the way: where, with value and rate at the start, a cubic leaves the
-/// least (searched over the unit square on a joint that rings, error 4e-6 where looks at 1/2 and 1 leave 7e-6).
-const LOOKS: [f64; 2] = [0.4, 0.9];
+/// Where within a whole tick its pseudo-force is evaluated: where, with value and rate at the start, a cubic leaves the
+/// least (searched over the unit square on a joint that rings, error 4e-6 where nodes at 1/2 and 1 leave 7e-6).
+const NODES: [f64; 2] = [0.4, 0.9];
 
 /// Tables of the flow over `step` (dimensionless), which the sub-stepped path would take in `substeps`.
 pub fn flow<T: Real>(dynamics: &Dynamics, step: f64, substeps: u32) -> Flow<T> {
     let sorting = Sorting::new(dynamics);
-    let [first, second] = LOOKS;
+    let [first, second] = NODES;
     let whole = sorting.integrate(step, 4);
     let early = sorting.integrate(first * step, 2);
     let late = sorting.integrate(second * step, 3);
     let half = sorting.integrate(0.5 * step, 1);
     let [constant, linear] = [0, 1].map(|power| &whole.input_integrals[power]);
-    // Weights of a polynomial's powers of time, in units of the way up to a look, for each value that it goes through.
-    let inputs = |flow: &exponential::Flow, way: f64, values: &[Vec<f64>]| -> Vec<Inputs<T>> {
+    // Weights of a polynomial's powers of time, in units of the step up to a node, for each value that it goes through.
+    let inputs = |flow: &exponential::Flow, node: f64, values: &[Vec<f64>]| -> Vec<Inputs<T>> {
         let of = |powers: &Vec<f64>| {
             let zero = &flow.input_integrals[0] * 0.0;
             powers.iter().enumerate().fold(zero, |sum, (power, weight)| {
-                sum + &flow.input_integrals[power] * (weight * libm::pow(way, power as f64))
+                sum + &flow.input_integrals[power] * (weight * libm::pow(node, power as f64))
             })
         };
         values.iter().map(|powers| sorting.inputs(&of(powers))).collect()
@@ -57,18 +57,18 @@ pub fn flow<T: Real>(dynamics: &Dynamics, step: f64, substeps: u32) -> Flow<T> {
         early_inputs: array::from_fn(|i| early_inputs[i].clone()),
         late_inputs: array::from_fn(|i| late_inputs[i].clone()),
         whole_inputs: array::from_fn(|i| whole_inputs[i].clone()),
-        looks: LOOKS.map(T::from_f64),
+        nodes: NODES.map(T::from_f64),
         step: T::from_f64(step),
         // A whole step: planets that ring are taken in sub-steps. Beyond it a mesh also pushes under the law `contact`.
         reach: T::from_f64(step.max(dynamics.longest_relaxation)),
-        longest_way: T::from_f64(LARGEST_WAY * 4_294_967_296.0),
+        longest_advance: T::from_f64(LARGEST_ADVANCE * 4_294_967_296.0),
     }
 }
 
-/// Powers of time in the cubic through value and rate (a `rate`-th of the step) at the start and values at two looks:
+/// Powers of time in the cubic through value and rate (a `rate`-th of the step) at the start and values at two nodes:
 /// one row for each of the four.
 fn cubic(first: f64, second: f64, rate: f64) -> [Vec<f64>; 4] {
-    // The rest beyond value and rate, divided by the square of time, is linear through both looks.
+    // The rest beyond value and rate, divided by the square of time, is linear through both nodes.
     let line = |at_first: f64, at_second: f64| {
         let slope = (at_second - at_first) / (second - first);
         [at_first - first * slope, slope]

@@ -1,5 +1,5 @@
 //! What a processor gives the step: clock, cycles an instruction, waiting for flash, its part of the period. None of
-//! the cycles was measured on silicon; what a board does beside the step is its own business.
+//! the cycles was measured on silicon. Work of a board besides the step is not counted.
 
 /// A processor and what it leaves to the step.
 #[derive(Debug, Clone, Copy, PartialEq)]

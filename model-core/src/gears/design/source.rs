@@ -6,8 +6,8 @@ use std::string::String;
 
 use crate::gears::design::certificate::certificate;
 use crate::gears::design::error::DesignError;
-use crate::gears::design::pace::Effort;
 use crate::gears::design::processor::Processor;
+use crate::gears::design::step_size::Effort;
 use crate::gears::design::tables::design_scheme;
 use crate::gears::tables::{Scheme, Tables};
 use parameters::{JointParameters, ParameterError};
@@ -51,16 +51,16 @@ fn source<const N: usize>(
     let tables: Tables<f32, N> = design_scheme(parameters, tick_rate, Scheme::Realtime, effort)?;
     let certificate = certificate(parameters, tick_rate, effort, processor)?;
     let name = &parameters.name;
-    let (holding, losing) = (certificate.holding.nine_in_ten, certificate.losing.nine_in_ten);
+    let (holding, losing) = (certificate.contact_holds.nine_in_ten, certificate.contact_changes.nine_in_ten);
     let (most, bytes) = (certificate.instructions.all_crossing, certificate.table_bytes);
     Ok(format!(
-        "use model_core::gears::certificate::{{Parts::*, *}};\n\
+        "use model_core::gears::certificate::{{Substeps::*, *}};\n\
          use model_core::gears::tables::{{DampingLaw::*, Scheme::*, *}};\n\n\
          /// Number of planets.\n\
          pub const PLANETS: usize = {N};\n\
          /// Name of the joint.\n\
          pub const JOINT_NAME: &str = {name:?};\n\
-         /// What is promised: error in nine motions of ten {holding:.1e} while contact holds and {losing:.1e} while it\n\
+         /// Certificate: error in nine motions of ten {holding:.1e} while contact holds and {losing:.1e} while it\n\
          /// is lost; {most} instructions when every mesh crosses twice; {bytes} bytes of tables.\n\
          pub const CERTIFICATE: Certificate = {certificate:#?};\n\
          /// Tables of the joint.\n\

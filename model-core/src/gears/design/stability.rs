@@ -1,5 +1,5 @@
-//! How long a sub-step or a leap may be: the spectral radius of its method on a damped oscillator, from a start as
-//! `substep` makes it over so many sub-steps. Kinks and ripple are not in it: they bend a stable motion, but do not
+//! How long a sub-step may be: the spectral radius of its method on a damped oscillator; for corrected sub-steps from a
+//! start as `substep` makes it, over so many of them. Kinks and ripple are not in it: they bend a stable motion, but do not
 //! make it grow.
 
 /// Largest phase that is looked at [rad]; no explicit method of two evaluations comes near it.
@@ -43,8 +43,8 @@ impl Oscillator {
         [position, rate]
     }
 
-    /// Position in the middle and rate after a leap of `gears::light` in firm contact.
-    fn leap(&self, middle: f64, rate: f64) -> [f64; 2] {
+    /// Position in the middle and rate after a Verlet sub-step of `gears::light` in contact throughout.
+    fn verlet(&self, middle: f64, rate: f64) -> [f64; 2] {
         let square = self.phase * self.phase;
         let damping = 2.0 * self.damping_ratio * self.phase;
         let yielding = square / 12.0 + 0.5 * damping;
@@ -73,9 +73,9 @@ pub fn largest_phase(damping_ratio: f64, substeps: u32) -> f64 {
     largest(damping_ratio, |oscillator| spectral_radius(|position, rate| oscillator.tick(position, rate, substeps)))
 }
 
-/// The same for leaps.
-pub fn largest_leap(damping_ratio: f64) -> f64 {
-    largest(damping_ratio, |oscillator| spectral_radius(|middle, rate| oscillator.leap(middle, rate)))
+/// The same for Verlet sub-steps.
+pub fn largest_verlet_phase(damping_ratio: f64) -> f64 {
+    largest(damping_ratio, |oscillator| spectral_radius(|middle, rate| oscillator.verlet(middle, rate)))
 }
 
 #[cfg(test)]

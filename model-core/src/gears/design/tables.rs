@@ -5,9 +5,9 @@ use core::f64::consts::TAU;
 
 use crate::gears::design::dynamics::{Dynamics, MovingMasses};
 use crate::gears::design::error::DesignError;
-use crate::gears::design::pace::{Effort, Pace, Parts};
+use crate::gears::design::step_size::{Effort, StepSize, Substeps};
 use crate::gears::design::validate::validate;
-use crate::gears::design::{flow_tables, light_tables};
+use crate::gears::design::{flow_tables, verlet_tables};
 use crate::gears::kinematics::Kinematics;
 use crate::gears::mechanics::Mechanics;
 use crate::gears::mesh_phases::MeshPhasing;
@@ -53,11 +53,11 @@ pub fn design_scheme<T: Real, const N: usize>(
     let scales = Scales::new(parameters);
     let dynamics = Dynamics::new(parameters, &scales);
     let real = T::from_f64;
-    let pace = Pace::new(parameters);
-    let substeps = pace.substeps(tick_rate, effort)?;
-    let leaps = match pace.parts(tick_rate, effort)? {
-        Parts::Leaps(leaps) => leaps,
-        Parts::Substeps(_) => 0,
+    let step_size = StepSize::new(parameters);
+    let substeps = step_size.corrected_substeps(tick_rate, effort)?;
+    let verlet_substeps = match step_size.substeps(tick_rate, effort)? {
+        Substeps::Verlet(substeps) => substeps,
+        Substeps::Corrected(_) => 0,
     };
     let tick = scales.frequency / f64::from(tick_rate);
     let substep = tick / f64::from(substeps);
@@ -70,7 +70,7 @@ pub fn design_scheme<T: Real, const N: usize>(
         tick_rate,
         scheme,
         substeps,
-        half_part: real(0.5 / f64::from(substeps)),
+        half_substep_share: real(0.5 / f64::from(substeps)),
         substep: real(substep),
         planet_share: real(1.0 / N as f64),
         damping_law: parameters.damping_law,
@@ -94,7 +94,7 @@ pub fn design_scheme<T: Real, const N: usize>(
             damping: MESH_KINDS.map(|kind| real(scales.damping(parameters.damping_coefficient(kind)) / substep)),
         },
         flow: flow_tables::flow(&dynamics, flow_step, substeps),
-        light: light_tables::light(parameters, &mobility(&dynamics, 1.0, 1.0), tick, leaps),
+        verlet: verlet_tables::verlet(parameters, &mobility(&dynamics, 1.0, 1.0), tick, verlet_substeps),
     };
     tables.digest = tables.numbers_digest();
     Ok(tables)
@@ -162,7 +162,7 @@ fn excitation<T: Real>(parameters: &JointParameters, tick_rate: u32, tick: f64) 
     let order = MESH_KINDS.map(|kind| parameters.mesh(kind).stiffness_wave.order());
     Excitation {
         phase_step: ((periods - libm::floor(periods)) * libm::ldexp(1.0, 64)) as u64,
-        phase_way: real(periods * unit),
+        phase_advance: real(periods * unit),
         periods_per_turn,
         rate: real(TAU / (unit * tick)),
         harmonics: order[0].max(order[1]) as u32,

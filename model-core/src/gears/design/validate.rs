@@ -1,4 +1,4 @@
-//! Whether parameters can be designed for at all: what their own limits say, and what only the gears' laws can tell.
+//! Whether tables can be designed from parameters: their own limits, and those that follow from the gears' laws.
 
 use parameters::{JointParameters, MESH_KINDS};
 

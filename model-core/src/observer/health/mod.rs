@@ -7,10 +7,10 @@ mod plausibility;
 mod recovery;
 
 use motor_only::MotorOnly;
-use output_faults::OutputFaults;
+use output_faults::OutputFaultDetector;
 use recovery::Recovery;
 
-use super::estimates::{Doubt, Source};
+use super::estimates::{OutputFault, Source};
 use super::filters::Filters;
 use super::learnt::fusion::{Fused, small};
 use super::learnt::regressors::{self, Touch};
@@ -29,7 +29,7 @@ const LOOK: u16 = 16;
 #[derive(Debug, Clone, Copy)]
 pub struct Health<T: Real> {
     source: Source,
-    faults: OutputFaults<T>,
+    faults: OutputFaultDetector<T>,
     recovery: Recovery<T>,
     /// What is known of the link without its encoder.
     pub motor_only: MotorOnly<T>,
@@ -42,8 +42,8 @@ impl<T: Real> Health<T> {
     /// Until the output encoder is heard of for the first time there is the motor's only.
     pub fn new(has_output: bool) -> Self {
         Self {
-            source: Source::MotorOnly(if has_output { Doubt::Silent } else { Doubt::Absent }),
-            faults: OutputFaults::new(),
+            source: Source::MotorOnly(if has_output { OutputFault::Silent } else { OutputFault::Absent }),
+            faults: OutputFaultDetector::new(),
             recovery: Recovery::new(),
             motor_only: MotorOnly::default(),
             load_torques: [T::ZERO; 2],
@@ -94,7 +94,7 @@ impl<T: Real> Health<T> {
     }
 
     /// The output encoder is not used from now on.
-    pub fn give_up(&mut self, fault: Doubt) {
+    pub fn give_up(&mut self, fault: OutputFault) {
         self.source = Source::MotorOnly(fault);
         self.faults.begin();
         self.recovery.begin();
@@ -141,7 +141,7 @@ impl<T: Real> Health<T> {
         let between = output_faults::is_possible(learnt, deflection, force);
         let silent = self.faults.is_silent();
         let back = self.recovery.step(&tables.supervisor, settled, room, between, (!silent).then_some(output))?;
-        if self.source == Source::MotorOnly(Doubt::Absent) {
+        if self.source == Source::MotorOnly(OutputFault::Absent) {
             return None;
         }
         self.source = Source::Both;

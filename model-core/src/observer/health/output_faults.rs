@@ -6,7 +6,7 @@
 //! | 1 | counts that leapt for good ([`Advance::Jumped`]) | readings further apart than any motor turns | a lost reference, a wrong absolute word |
 //! | 2 | [`Plausibility`]: counts that leap | a few readings that say the same | a slipped coupling, an offset; before the deflection is spoilt |
 //! | 3 | [`Plausibility`]: counts that stand still at once | fewer counts than any stop explains | a frozen encoder in motion, in a few periods |
-//! | 4 | silence ([`Doubt::Silent`]) | no fresh reading for as long as the settings allow | a broken line |
+//! | 4 | silence ([`OutputFault::Silent`]) | no fresh reading for as long as the settings allow | a broken line |
 //! | 5 | the motor outruns counts that stand still | more than gap and wind-up | a frozen encoder that was slow, or at rest, when it froze |
 //! | 6 | a deflection that no teeth allow | outside for longer than impacts ring | everything else: slow slip, missing counts |
 //! | 7 | teeth that seem to have grown ([`learnt::Outcome::EncoderFails`]) | a half-gap trusted on both flanks | missing counts that stay within the gap |
@@ -15,7 +15,7 @@
 
 use super::plausibility::{Plausibility, Verdict};
 use crate::numbers::Real;
-use crate::observer::estimates::Doubt;
+use crate::observer::estimates::OutputFault;
 use crate::observer::learnt::Learnt;
 use crate::observer::learnt::fusion::Fused;
 use crate::observer::sensors::Sensed;
@@ -27,7 +27,7 @@ const SPEED_KEPT: u32 = 6;
 
 /// What watches the output encoder while it is used.
 #[derive(Debug, Clone, Copy)]
-pub struct OutputFaults<T: Real> {
+pub struct OutputFaultDetector<T: Real> {
     plausibility: Plausibility,
     silent_for: u16,
     unmoved_for: u16,
@@ -49,7 +49,7 @@ pub enum Screened<T: Real> {
     /// There is none, or it is not used.
     NotUsed,
     /// It gives the encoder up; where the link was going before, if that is known.
-    GivenUp(Doubt, Option<LastMotion<T>>),
+    GivenUp(OutputFault, Option<LastMotion<T>>),
 }
 
 /// Where the link was going when its readings broke off.
@@ -72,7 +72,7 @@ enum Range {
     Impossible,
 }
 
-impl<T: Real> OutputFaults<T> {
+impl<T: Real> OutputFaultDetector<T> {
     pub fn new() -> Self {
         Self {
             plausibility: Plausibility::new(),
@@ -137,7 +137,7 @@ impl<T: Real> OutputFaults<T> {
             Advance::Began => Screened::First,
             Advance::Jumped(_) if both_encoders => {
                 self.plausibility.lose();
-                Screened::GivenUp(Doubt::OutOfRange, None)
+                Screened::GivenUp(OutputFault::OutOfRange, None)
             }
             Advance::Jumped(_) | Advance::Doubted | Advance::By(_) => Screened::NotUsed,
         }
@@ -150,7 +150,7 @@ impl<T: Real> OutputFaults<T> {
         let frozen = last.is_some() && self.plausibility.stands_still();
         self.plausibility.lose();
         if both_encoders {
-            Screened::GivenUp(if frozen { Doubt::Frozen } else { Doubt::OutOfRange }, last)
+            Screened::GivenUp(if frozen { OutputFault::Frozen } else { OutputFault::OutOfRange }, last)
         } else {
             Screened::NotUsed
         }
@@ -165,7 +165,7 @@ impl<T: Real> OutputFaults<T> {
         fused: &Fused<T>,
         learnt: &Learnt<T, P>,
         both_encoders: bool,
-    ) -> Option<Doubt> {
+    ) -> Option<OutputFault> {
         let table = &tables.supervisor;
         let deflection = fused.of_teeth();
         let [half_gap, compliance] = learnt.shape();
@@ -193,13 +193,13 @@ impl<T: Real> OutputFaults<T> {
             self.outside_for = self.outside_for.saturating_add(1);
         }
         if self.silent_for > table.silent_after {
-            Some(Doubt::Silent)
+            Some(OutputFault::Silent)
         } else if self.outside_for < table.failed_after || range == Range::Worn && !self.leapt {
             None
         } else if self.unmoved_for >= table.failed_after {
-            Some(Doubt::Frozen)
+            Some(OutputFault::Frozen)
         } else {
-            Some(Doubt::OutOfRange)
+            Some(OutputFault::OutOfRange)
         }
     }
 }

@@ -1,5 +1,5 @@
-//! The usual practice: the motor PID with half the guessed lost motion added in the direction of the wanted speed. What
-//! drives the joint, friction or inertia, is not asked.
+//! The usual practice: the motor PID with half the guessed lost motion added in the direction of the wanted speed,
+//! whether friction or inertia drives the joint.
 
 use super::Knowledge;
 use super::motor_pid::{MotorPid, geared};

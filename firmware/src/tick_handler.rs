@@ -1,31 +1,31 @@
-//! One tick of any role: obey what idle orders, take the command that is due, do the role's work, hand out a sample
-//! every so often, and watch the clock. Called at the tick rate at the highest priority, it must end before the next
-//! call: a miss is counted as an overrun. Nothing here allocates, panics, logs, loops without a bound or knows what
-//! board it is on.
+//! The tick of any role: handles an order from idle, takes the command that is due, does the role's work, hands out a sample
+//! every so often, and records its time. Called at the tick rate at the highest priority, it must end before the next call;
+//! one that does not is counted as an overrun. Nothing here allocates, panics, logs, loops without a bound or depends on
+//! the board.
 
 use core::convert::Infallible;
 use core::sync::atomic::Ordering::{Acquire, Relaxed, Release};
 
 use embedded_hal::digital::OutputPin;
-use link::messages::{Kept, RunMode, RunSettings, Trip};
+use link::messages::{MemoryOutcome, RunMode, RunSettings, Trip};
 
-use crate::budget::{Monitor, TickTimer};
-use crate::page::{Learnt, judgement};
+use crate::page::{Learnt, memory_state};
+use crate::protocol::Protocol;
 use crate::queues::{COMMAND_CAPACITY, Event, Order, TickEnd};
 use crate::safe_state::{SafeState, State};
-use crate::schedule::{Schedule, Turn};
-use crate::words::Words;
+use crate::schedule::{Schedule, TickAction};
+use crate::timing_monitor::{Monitor, TickTimer};
 use crate::work::Work;
 
-/// What a board is told before its first reset.
+/// Settings before the first reset.
 const BEFORE_ANY_RUN: RunSettings =
     RunSettings { mode: RunMode::Lockstep, decimation: 1, command_timeout: 1, from_memory: false };
 
-/// A role's work with its commands and its watchmen.
-pub struct Control<'a, E, W: Work> {
+/// A role's work with its command schedule, safe state and timing monitor.
+pub struct TickHandler<'a, E, W: Work> {
     work: W,
     steps: u32,
-    /// A reset was granted, and the work has not heard of it yet.
+    /// A reset was granted, and the work has not been reset yet.
     is_fresh: bool,
     decimation: u16,
     until_sample: u16,
@@ -33,13 +33,13 @@ pub struct Control<'a, E, W: Work> {
     safe_state: SafeState<E>,
     monitor: Monitor,
     period: u32,
-    end: TickEnd<'a, W::Words>,
+    end: TickEnd<'a, W::Protocol>,
 }
 
-impl<'a, E: OutputPin<Error = Infallible>, W: Work> Control<'a, E, W> {
+impl<'a, E: OutputPin<Error = Infallible>, W: Work> TickHandler<'a, E, W> {
     /// Work at rest with the enable output off; `period` is the tick's, in timer counts. Tables that do not match their
-    /// digest leave it in the safe state for good.
-    pub fn new(work: W, enable: E, period: u32, end: TickEnd<'a, W::Words>) -> Self {
+    /// digest trip it, and no reset clears that.
+    pub fn new(work: W, enable: E, period: u32, end: TickEnd<'a, W::Protocol>) -> Self {
         let mut safe_state = SafeState::new(enable);
         if !work.is_sound() {
             safe_state.trip(Trip::BadDigest);
@@ -60,7 +60,7 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> Control<'a, E, W> {
         control
     }
 
-    /// What the board does.
+    /// State of the board.
     pub fn state(&self) -> State {
         self.safe_state.state()
     }
@@ -68,7 +68,7 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> Control<'a, E, W> {
     /// One tick. Deadline: the next expiry of the timer.
     pub fn tick(&mut self, timer: &impl TickTimer) {
         let lateness = timer.since_expiry();
-        self.end.progress.beats.store(self.end.progress.beats.load(Relaxed).wrapping_add(1), Relaxed);
+        self.end.progress.ticks.store(self.end.progress.ticks.load(Relaxed).wrapping_add(1), Relaxed);
         self.monitor.lateness.record(lateness);
         self.obey();
         let stepped = matches!(self.state(), State::Running) && self.advance(timer, lateness);
@@ -81,16 +81,16 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> Control<'a, E, W> {
         }
     }
 
-    /// Takes one order: idle has at most one under way. Its parts are kept out of line, since their stack is not needed while
+    /// Handles one order: idle has at most one under way. Its parts are kept out of line, since their stack is not needed while
     /// stepping, nor by one another.
     fn obey(&mut self) {
         match self.end.orders.take() {
             None => {}
-            Some(Order::Keep) if !matches!(self.state(), State::Running) => {
+            Some(Order::SaveMemory) if !matches!(self.state(), State::Running) => {
                 let there_is = self.work.learn();
                 self.hand_out_memory(there_is);
             }
-            Some(Order::Remember) => self.take_memory(),
+            Some(Order::LoadMemory) => self.take_memory(),
             Some(order) => {
                 self.answer(order);
                 if let (Order::Reset(settings), true) = (order, self.is_fresh) {
@@ -113,12 +113,12 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> Control<'a, E, W> {
                 self.safe_state.trip(trip);
                 Event::Stopped
             }
-            Order::Keep => Event::Memory(Err(Kept::Running)),
+            Order::SaveMemory => Event::MemoryReady(Err(MemoryOutcome::Running)),
             // Has been obeyed: its stack is not needed here.
-            Order::Remember => return,
-            Order::Forget => {
+            Order::LoadMemory => return,
+            Order::DiscardMemory => {
                 self.work.forget();
-                Event::Forgotten
+                Event::MemoryDiscarded
             }
             Order::Fault(fault) => {
                 let begins = matches!(self.state(), State::Running) && self.steps == 0;
@@ -142,24 +142,24 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> Control<'a, E, W> {
         let memory = self.work.learnt().filter(|_| there_is);
         // Idle has taken the one before.
         let given = memory.is_some_and(|memory| self.end.learnt.give(memory.clone()).is_ok());
-        let _ = self.end.events.give(Event::Memory(if given { Ok(()) } else { Err(Kept::Nothing) }));
+        let _ = self.end.events.give(Event::MemoryReady(if given { Ok(()) } else { Err(MemoryOutcome::Nothing) }));
     }
 
     /// Between runs only: idle asks for it at no other time.
     #[inline(never)]
     fn take_memory(&mut self) {
-        if <W::Words as Words>::Learnt::EMPTY.is_none() {
+        if <W::Protocol as Protocol>::Learnt::EMPTY.is_none() {
             return;
         }
         // Looked at where it lies: the stack has no room for a copy.
         let Some(learnt) = self.end.remembered.peek() else { return };
         let judged = self.work.remember_learnt(learnt);
         self.end.remembered.take();
-        let _ = self.end.events.give(Event::Judged(judgement(Some(judged))));
+        let _ = self.end.events.give(Event::MemoryChecked(memory_state(Some(judged))));
     }
 
     fn reset(&mut self, settings: RunSettings) -> Event {
-        if settings.mode == RunMode::Realtime && !W::GOES_ON {
+        if settings.mode == RunMode::Realtime && !W::FREE_RUNNING {
             return Event::Refused(Trip::BadSettings);
         }
         if let Err(trip) = self.safe_state.run() {
@@ -178,7 +178,7 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> Control<'a, E, W> {
         Event::ResetDone
     }
 
-    /// Steps if there is a step to do; says whether there was.
+    /// Steps if there is a step to do; returns whether there was.
     fn advance(&mut self, timer: &impl TickTimer, lateness: u32) -> bool {
         let lockstep = self.schedule.mode() == RunMode::Lockstep;
         if lockstep && self.until_sample == 1 && !self.end.samples.has_room() {
@@ -186,15 +186,15 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> Control<'a, E, W> {
             return false;
         }
         let horizon = self.end.progress.horizon.load(Acquire);
-        match self.schedule.turn(self.steps, horizon, W::GOES_ON, &mut self.end.commands) {
-            Turn::Step(None) => {}
-            Turn::Step(Some(command)) => self.work.take(command),
-            Turn::StarvedStep => self.monitor.starved = self.monitor.starved.saturating_add(1),
-            Turn::Wait => {
+        match self.schedule.next_action(self.steps, horizon, W::FREE_RUNNING, &mut self.end.commands) {
+            TickAction::Step(None) => {}
+            TickAction::Step(Some(command)) => self.work.take(command),
+            TickAction::StarvedStep => self.monitor.starved = self.monitor.starved.saturating_add(1),
+            TickAction::Wait => {
                 self.monitor.waited = self.monitor.waited.saturating_add(lockstep.into());
                 return false;
             }
-            Turn::Trip(trip) => {
+            TickAction::Trip(trip) => {
                 self.trip(trip);
                 return false;
             }

@@ -1,16 +1,16 @@
-//! The tick's ends of the queues between it and idle: heapless's, with the number of places in the type. heapless takes
-//! remainders by a number that it reads from memory; where the compiler cannot tell that it is not zero, the tick
-//! could panic, and divides where a mask would do. The queues themselves are in `queues`.
+//! Producer and consumer of a heapless queue with its number of places in the type, for the tick. heapless takes remainders
+//! by a number that it reads from memory: where the compiler cannot tell that it is not zero, the tick could panic, and
+//! would divide where a mask is enough. The queues themselves are in `queues`.
 
 use heapless::spsc::{Consumer, Producer};
 
 /// Puts entries in.
-pub struct Giver<'a, T, const PLACES: usize>(Producer<'a, T>);
+pub struct SizedProducer<'a, T, const PLACES: usize>(Producer<'a, T>);
 
 /// Takes entries out.
-pub struct Taker<'a, T, const PLACES: usize>(Consumer<'a, T>);
+pub struct SizedConsumer<'a, T, const PLACES: usize>(Consumer<'a, T>);
 
-impl<'a, T, const PLACES: usize> Giver<'a, T, PLACES> {
+impl<'a, T, const PLACES: usize> SizedProducer<'a, T, PLACES> {
     /// The end of a queue of so many places; with another number of places nothing could be given.
     pub fn new(end: Producer<'a, T>) -> Self {
         Self(end)
@@ -30,7 +30,7 @@ impl<'a, T, const PLACES: usize> Giver<'a, T, PLACES> {
     }
 }
 
-impl<'a, T, const PLACES: usize> Taker<'a, T, PLACES> {
+impl<'a, T, const PLACES: usize> SizedConsumer<'a, T, PLACES> {
     /// The end of a queue of so many places; with another number of places nothing could be taken.
     pub fn new(end: Consumer<'a, T>) -> Self {
         Self(end)
@@ -66,7 +66,7 @@ mod tests {
     fn entries_come_out_as_they_went_in_until_there_is_no_room() {
         let mut queue = Queue::<u8, 4>::new();
         let (entry, exit) = queue.split();
-        let (mut giver, mut taker) = (Giver::<_, 4>::new(entry), Taker::<_, 4>::new(exit));
+        let (mut giver, mut taker) = (SizedProducer::<_, 4>::new(entry), SizedConsumer::<_, 4>::new(exit));
         for round in 0..3 {
             assert_eq!([0, 1, 2].map(|entry| giver.give(entry + round)), [Ok(()); 3]);
             assert!(!giver.has_room());

@@ -1,6 +1,6 @@
-//! A number held as an unevaluated sum of two f64, some 32 digits (Dekker; Knuth's exact sum): what doubling works in,
-//! so that its rounding never shows in the f64 that comes out. Only what matrix products need; nothing is fused, so the
-//! bits are the same on every host.
+//! Double-double arithmetic: a number held as an unevaluated sum of two f64, some 32 digits (Dekker; Knuth's exact sum). The
+//! doublings are done in it, so that their rounding never shows in the f64 that comes out. Only the operations of matrix
+//! products; nothing is fused, so the bits are the same on every host.
 
 use core::ops::{Add, AddAssign, Mul, MulAssign};
 
@@ -8,7 +8,7 @@ use num_traits::{One, Zero};
 
 /// high + low, with |low| at most half a unit of high.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Twofold {
+pub struct DoubleDouble {
     high: f64,
     low: f64,
 }
@@ -16,7 +16,7 @@ pub struct Twofold {
 /// 2^27 + 1 splits an f64 into halves whose products are exact.
 const SPLITTER: f64 = 134_217_729.0;
 
-impl Twofold {
+impl DoubleDouble {
     /// An f64 as it is.
     pub fn new(value: f64) -> Self {
         Self { high: value, low: 0.0 }
@@ -54,19 +54,19 @@ fn halves(value: f64) -> (f64, f64) {
 }
 
 /// Sum of two f64, exact.
-fn sum(a: f64, b: f64) -> Twofold {
+fn sum(a: f64, b: f64) -> DoubleDouble {
     let high = a + b;
     let b_part = high - a;
-    Twofold { high, low: (a - (high - b_part)) + (b - b_part) }
+    DoubleDouble { high, low: (a - (high - b_part)) + (b - b_part) }
 }
 
 /// Sum of two f64 of which the first is the larger, exact.
-fn joined(high: f64, low: f64) -> Twofold {
+fn joined(high: f64, low: f64) -> DoubleDouble {
     let total = high + low;
-    Twofold { high: total, low: low - (total - high) }
+    DoubleDouble { high: total, low: low - (total - high) }
 }
 
-impl Add for Twofold {
+impl Add for DoubleDouble {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
@@ -76,7 +76,7 @@ impl Add for Twofold {
     }
 }
 
-impl Mul for Twofold {
+impl Mul for DoubleDouble {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {
@@ -85,19 +85,19 @@ impl Mul for Twofold {
     }
 }
 
-impl AddAssign for Twofold {
+impl AddAssign for DoubleDouble {
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
-impl MulAssign for Twofold {
+impl MulAssign for DoubleDouble {
     fn mul_assign(&mut self, other: Self) {
         *self = *self * other;
     }
 }
 
-impl Zero for Twofold {
+impl Zero for DoubleDouble {
     fn zero() -> Self {
         Self::new(0.0)
     }
@@ -107,7 +107,7 @@ impl Zero for Twofold {
     }
 }
 
-impl One for Twofold {
+impl One for DoubleDouble {
     fn one() -> Self {
         Self::new(1.0)
     }

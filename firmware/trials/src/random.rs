@@ -1,11 +1,11 @@
-//! Chance that repeats itself: the generator SplitMix64 (Steele, Lea, Flood, "Fast Splittable Pseudorandom Number
-//! Generators", 2014) and the few distributions that the trials want. Nothing here is fit for statistics.
+//! A repeatable pseudo-random generator, SplitMix64 (Steele, Lea, Flood, "Fast Splittable Pseudorandom Number
+//! Generators", 2014) and the few distributions that the trials need. Not fit for statistics.
 
 /// A sequence of numbers that depends on its seed alone.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Numbers(u64);
+pub struct Random(u64);
 
-impl Numbers {
+impl Random {
     /// The sequence of a seed.
     pub const fn new(seed: u64) -> Self {
         Self(seed)
@@ -42,18 +42,18 @@ mod tests {
     #[test]
     fn a_seed_gives_the_published_sequence() {
         // The first numbers of seed 1234567, as the authors' own program prints them.
-        let mut numbers = Numbers::new(1_234_567);
-        assert_eq!(numbers.bits(), 6_457_827_717_110_365_317);
-        assert_eq!(numbers.bits(), 3_203_168_211_198_807_973);
+        let mut random = Random::new(1_234_567);
+        assert_eq!(random.bits(), 6_457_827_717_110_365_317);
+        assert_eq!(random.bits(), 3_203_168_211_198_807_973);
     }
 
     #[test]
     fn parts_and_whole_numbers_stay_in_their_ranges() {
-        let mut numbers = Numbers::new(1);
+        let mut random = Random::new(1);
         for _ in 0..10_000 {
-            assert!(numbers.below(7) < 7);
-            assert!((0.0..1.0).contains(&numbers.part()));
-            assert!((-1.0..=1.0).contains(&numbers.signed()));
+            assert!(random.below(7) < 7);
+            assert!((0.0..1.0).contains(&random.part()));
+            assert!((-1.0..=1.0).contains(&random.signed()));
         }
     }
 }

@@ -7,21 +7,21 @@ use std::convert::Infallible;
 use std::rc::Rc;
 
 use embedded_hal::digital::{ErrorType, OutputPin};
-use firmware::budget::TickTimer;
-use firmware::control::Control;
 use firmware::conversation::{Conversation, LogEnd};
 use firmware::identity::{StartUp, hello};
 use firmware::page::Page;
 use firmware::plant::Plant;
+use firmware::protocol::Protocol;
 use firmware::queues::{Progress, Queues};
 use firmware::serial::{Line, Serial, Uart};
 use firmware::tables::{PLANETS, TABLES};
+use firmware::tick_handler::TickHandler;
+use firmware::timing_monitor::TickTimer;
 use firmware::timing_report::Resources;
-use firmware::words::Words;
 use firmware::work::Work;
 use heapless::spsc::Queue;
 use link::framing::{Receiver, encode};
-use link::messages::{Clock, Command, FromBoard, Remembered, RunMode, RunSettings, Schedule, ToBoard};
+use link::messages::{Clock, Command, FromBoard, MemoryState, RunMode, RunSettings, Schedule, ToBoard};
 use model_core::gears::Tables;
 use model_core::observer::{MEMORY_BYTES, Memory};
 
@@ -113,13 +113,13 @@ impl Page for Flash {
     }
 }
 
-/// A board on the bench.
-pub struct Bench<W: Work = Plant<'static, PLANETS>>
+/// A board without hardware.
+pub struct TestBoard<W: Work = Plant<'static, PLANETS>>
 where
-    W::Words: Words<Command: 'static, Sample: 'static> + 'static,
+    W::Protocol: Protocol<Command: 'static, Sample: 'static> + 'static,
 {
-    control: Control<'static, Enable, W>,
-    conversation: Conversation<'static, W::Words>,
+    control: TickHandler<'static, Enable, W>,
+    conversation: Conversation<'static, W::Protocol>,
     serial: Serial<'static, WireEnd>,
     receiver: Receiver,
     pub wire: Rc<RefCell<Wire>>,
@@ -131,7 +131,7 @@ where
     pub timing: (u32, u32),
 }
 
-impl Bench {
+impl TestBoard {
     pub fn new() -> Self {
         Self::with_tables(&TABLES)
     }
@@ -147,11 +147,11 @@ impl Bench {
     }
 }
 
-impl<W: Work> Bench<W>
+impl<W: Work> TestBoard<W>
 where
-    W::Words: Words<Command: 'static, Sample: 'static> + 'static,
+    W::Protocol: Protocol<Command: 'static, Sample: 'static> + 'static,
 {
-    /// A role's work on the bench.
+    /// With a role's work.
     pub fn with(work: W) -> Self {
         let wire = Rc::new(RefCell::new(Wire::default()));
         let enable = Rc::new(Cell::new(true));
@@ -164,13 +164,13 @@ where
             clock: Clock::NotModelled,
             last_panic: None,
             watchdog_reset: false,
-            remembered: Remembered::Nothing,
+            memory: MemoryState::Nothing,
         };
         let progress = idle_end.progress;
         Self {
-            control: Control::new(work, Enable(enable.clone()), PERIOD, tick_end),
+            control: TickHandler::new(work, Enable(enable.clone()), PERIOD, tick_end),
             conversation: Conversation::new(
-                hello::<W::Words>(start_up, None),
+                hello::<W::Protocol>(start_up, None),
                 PERIOD,
                 idle_end,
                 line,

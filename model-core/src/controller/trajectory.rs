@@ -1,33 +1,33 @@
-//! Set-points over a stretch of time: a polynomial of fifth degree for each motion, evaluated every control period, so
+//! Trajectories as segments of time: a polynomial of fifth degree for each motion, evaluated every control period, so
 //! that a slow line can carry any smooth motion.
 
 use crate::compensation::{Command, ImpedancePoint, Motion, Position};
 use crate::numbers::Real;
 
-/// Coefficients of a stretch.
+/// Coefficients of a segment.
 pub const POWERS: usize = 6;
 
-/// A motion from a moment on.
+/// A motion over a segment of time.
 ///
 /// ```
-/// use model_core::controller::course::Stretch;
+/// use model_core::controller::trajectory::Segment;
 ///
 /// // From 2.25 turns on at half a turn a second, for a quarter of a second.
-/// let stretch = Stretch { turns: 2, powers: [0.25, 0.5, 0.0, 0.0, 0.0, 0.0] };
-/// let motion = stretch.at(0.25, core::f32::consts::TAU);
+/// let segment = Segment { turns: 2, powers: [0.25, 0.5, 0.0, 0.0, 0.0, 0.0] };
+/// let motion = segment.at(0.25, core::f32::consts::TAU);
 /// assert_eq!((motion.position.turns, motion.position.fraction), (2, 0.375));
 /// assert_eq!((motion.speed, motion.acceleration), (core::f32::consts::PI, 0.0));
 /// ```
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Stretch<T: Real> {
+pub struct Segment<T: Real> {
     /// Whole turns, on the scale of the observer's link shaft.
     pub turns: i32,
-    /// The rest: by powers of the time since that moment [turns, turns/s, turns/s^2, ...].
+    /// The rest: by powers of the time since the segment began [turns, turns/s, turns/s^2, ...].
     pub powers: [T; POWERS],
 }
 
-impl<T: Real> Stretch<T> {
-    /// The motion so long after its moment [s]; `turn` is a whole turn [rad].
+impl<T: Real> Segment<T> {
+    /// The motion so long after the segment began [s]; `turn` is a whole turn [rad].
     pub fn at(&self, elapsed: T, turn: T) -> Motion<T> {
         // Horner's scheme for value, derivative and half the second derivative at once.
         let (mut value, mut rate, mut half) = (T::ZERO, T::ZERO, T::ZERO);
@@ -44,25 +44,25 @@ impl<T: Real> Stretch<T> {
     }
 }
 
-/// What is asked for over a stretch of time.
+/// Set-points over a segment of time.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Demand<T: Real> {
+pub enum Trajectory<T: Real> {
     /// Follow a motion.
     Position {
         /// The motion.
-        now: Stretch<T>,
+        now: Segment<T>,
         /// The same motion ahead by the compensation's lead, if it is known.
-        ahead: Option<Stretch<T>>,
+        ahead: Option<Segment<T>>,
     },
-    /// Be a spring and damper.
+    /// Act as a spring and damper.
     Impedance(ImpedancePoint<T>),
 }
 
-impl<T: Real> Demand<T> {
+impl<T: Real> Trajectory<T> {
     /// Hold angle zero of the observer's link shaft.
-    pub const HOLD: Self = Self::Position { now: Stretch { turns: 0, powers: [T::ZERO; POWERS] }, ahead: None };
+    pub const HOLD: Self = Self::Position { now: Segment { turns: 0, powers: [T::ZERO; POWERS] }, ahead: None };
 
-    /// The set-point so long after the demand began [s].
+    /// The set-point so long after the segment began [s].
     pub fn at(&self, elapsed: T, turn: T) -> Command<T> {
         match self {
             Self::Position { now, ahead } => Command::Position {

@@ -1,24 +1,24 @@
-//! What a role says and hears: the one place where roles differ on the line, so that queues, conversation and tick are
-//! written once. What a role does in its tick is `work::Work`.
+//! The messages of a role: commands in, samples out. Roles differ on the line in this only, so that queues, conversation and
+//! tick are written once. The work of a role's tick is `work::Work`.
 
 use heapless::Vec;
 use link::messages::{FromBoard, Role, Schedule, ToBoard};
 
 use crate::page::Learnt;
 
-/// The words of a role.
-pub trait Words {
+/// The messages of a role.
+pub trait Protocol {
     /// Which role.
     const ROLE: Role;
-    /// What waits for its tick.
+    /// A command, which waits for its tick.
     type Command: Timed + Clone;
     /// Commands as they come over the line.
     type Timetable: Timetable<Command = Self::Command>;
-    /// What the tick leaves for idle to report.
+    /// A sample, which the tick hands to idle to be sent.
     type Sample;
     /// Samples on their way to the line.
     type Batch: Batch<Sample = Self::Sample>;
-    /// What it learns, to be kept.
+    /// The memory of what it learns.
     type Learnt: Learnt;
 
     /// Commands in a message, if it is one for this role.
@@ -29,7 +29,7 @@ pub trait Words {
 pub trait Timed {
     /// First tick that it is for.
     fn tick(&self) -> u32;
-    /// Whether it may be obeyed: nothing in it is infinite or no number.
+    /// Whether it may be executed: every number in it is finite.
     fn is_sound(&self) -> bool;
 }
 
@@ -75,11 +75,11 @@ pub trait Batch: Default {
     fn take(&mut self) -> FromBoard;
 }
 
-/// What batches of up to `MOST` samples look like, which differs from role to role.
+/// The wire's form of batches of up to `MOST` samples, which differs from role to role.
 pub trait WireForm<const MOST: usize> {
-    /// What the tick leaves.
+    /// A sample as the tick leaves it.
     type Raw;
-    /// What goes over the line.
+    /// The same as it goes over the line.
     type Wire;
 
     /// From the one to the other.

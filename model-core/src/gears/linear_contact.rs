@@ -1,29 +1,29 @@
-//! A tick with every tooth pressing, by one exponential of the closed joint: ripple and imposed error are a
-//! pseudo-force linear in time through its values at the start and in the middle.
+//! A tick in which every mesh is in contact on one flank, so that the joint is linear, by one exponential of the closed
+//! joint: ripple and imposed error are a pseudo-force linear in time through its values at the start and in the middle.
 
 #![allow(clippy::op_ref, reason = "a product by value would copy the table")]
 
 use nalgebra::SVector;
 
-use crate::gears::contact::Drive;
-use crate::gears::excitation::{Instant, MeshPhase};
+use crate::gears::contact::AppliedAcceleration;
+use crate::gears::excitation::{MeshExcitations, MeshPhase};
 use crate::gears::runge_kutta::Motion;
 use crate::gears::state::Relative;
 use crate::gears::tables::Tables;
 use crate::numbers::Real;
 
-/// One tick; `None` unless every mesh presses so far that its speed cannot open it.
+/// One tick; `None` unless every mesh has so much overlap that its speed cannot open it.
 #[inline(never)]
-pub fn hold<T: Real, const N: usize>(
+pub fn tick<T: Real, const N: usize>(
     tables: &Tables<T, N>,
-    drive: &Drive<T>,
+    applied: &AppliedAcceleration<T>,
     phase: &MeshPhase<T>,
-    middle: &Instant<T, N>,
+    middle: &MeshExcitations<T, N>,
     motion: &Motion<T, N>,
 ) -> Option<Motion<T, N>> {
     let flow = &tables.flow;
     let Motion { position, rate } = motion;
-    if phase.way > flow.longest_way || -phase.way > flow.longest_way {
+    if phase.advance > flow.longest_advance || -phase.advance > flow.longest_advance {
         return None;
     }
     let half_step = T::HALF * flow.step;
@@ -55,7 +55,7 @@ pub fn hold<T: Real, const N: usize>(
         }
     }
     let share = tables.planet_share;
-    let start = Sorted::new(share, &from[1]);
+    let start = PseudoForce::new(share, &from[1]);
     // Over the first half errors go on: their mean there is that of its middle.
     let mut forces = from[1];
     for kind in 0..2 {
@@ -63,9 +63,9 @@ pub fn hold<T: Real, const N: usize>(
             forces[kind][i] += T::HALF * half_step * middle.stiffness[kind][i] * middle.error_rate[kind][i];
         }
     }
-    let early = Sorted::new(share, &forces);
+    let early = PseudoForce::new(share, &forces);
 
-    let torques = SVector::from([drive.sun, drive.carrier, drive.link]);
+    let torques = SVector::from([applied.sun, applied.carrier, applied.link]);
     let (mean, mean_rate) = (share * total(&position.planets), share * total(&rate.planets));
     let in_phase = SVector::from([mean, position.gap, position.wind_up, mean_rate, rate.gap, rate.wind_up]);
 
@@ -94,7 +94,7 @@ pub fn hold<T: Real, const N: usize>(
         forces[0][i] += from[0][0][i] * x;
         forces[1][i] += from[0][1][i] * y;
     }
-    let middle = Sorted::new(share, &forces);
+    let middle = PseudoForce::new(share, &forces);
 
     let whole = &flow.whole;
     let [first, second] = &flow.whole_linear;
@@ -125,15 +125,15 @@ pub fn hold<T: Real, const N: usize>(
     })
 }
 
-/// Mesh forces as the flow's inputs take them.
-struct Sorted<T, const N: usize> {
+/// Mesh forces in the form that the flow's inputs take.
+struct PseudoForce<T, const N: usize> {
     /// Sums over planets: sun-planet, ring-planet.
     sums: [T; 2],
     /// Deviation of (sun-planet - ring-planet) from its mean.
     apart: [T; N],
 }
 
-impl<T: Real, const N: usize> Sorted<T, N> {
+impl<T: Real, const N: usize> PseudoForce<T, N> {
     #[inline(always)]
     fn new(share: T, force: &[[T; N]; 2]) -> Self {
         let sums = [total(&force[0]), total(&force[1])];

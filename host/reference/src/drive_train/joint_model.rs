@@ -1,9 +1,9 @@
-//! What moves inside a drive train, and how finely: the reference, or another model of the same joint that is to be held against it.
-//! Torques and sensors are the drive train's, so that both get the same ones.
+//! The joint model inside a drive train, and its step: the reference, or another model of the same joint to be compared with
+//! it under the same torques and sensors.
 
 use crate::joint::{Observation, Reference, ReferenceError};
 
-/// How the joint inside moves over a part of time.
+/// How the joint model is integrated over a part of time.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Stepping {
     /// Adaptive steps of order 8 that end at every contact event.
@@ -14,15 +14,15 @@ pub enum Stepping {
 }
 
 /// A joint in motion.
-pub trait Inside {
+pub trait JointModel {
     /// Moves on to `time` [s] under constant torques: `drive` on the sun, `load` braking the link [N m].
     fn advance(&mut self, time: f64, drive: f64, load: f64, stepping: Stepping) -> Result<(), ReferenceError>;
 
-    /// What can be read off now.
+    /// Outputs now.
     fn observe(&self) -> Observation;
 }
 
-impl Inside for Reference {
+impl JointModel for Reference {
     fn advance(&mut self, time: f64, drive: f64, load: f64, stepping: Stepping) -> Result<(), ReferenceError> {
         match stepping {
             Stepping::Adaptive => Reference::advance(self, time, drive, load),
@@ -38,7 +38,7 @@ impl Inside for Reference {
     }
 }
 
-impl<I: Inside + ?Sized> Inside for Box<I> {
+impl<I: JointModel + ?Sized> JointModel for Box<I> {
     fn advance(&mut self, time: f64, drive: f64, load: f64, stepping: Stepping) -> Result<(), ReferenceError> {
         (**self).advance(time, drive, load, stepping)
     }

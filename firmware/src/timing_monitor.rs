@@ -1,5 +1,5 @@
-//! The timing monitor: what each tick cost and how late it began, as least, mean, greatest and a histogram, beside the
-//! counts of everything that went wrong in time.
+//! The timing monitor: computation time and lateness of the ticks, as minimum, mean, maximum and a histogram, and counts of
+//! overruns, starved and waiting ticks.
 
 use link::messages::{HISTOGRAM_BINS, Timing};
 
@@ -11,14 +11,14 @@ pub trait TickTimer {
 
 /// Least, mean and greatest of a time in timer counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Spread {
+pub struct MinMeanMax {
     min: u32,
     max: u32,
     sum: u64,
     count: u32,
 }
 
-impl Spread {
+impl MinMeanMax {
     /// Of no times yet.
     pub const EMPTY: Self = Self { min: u32::MAX, max: 0, sum: 0, count: 0 };
 
@@ -45,9 +45,9 @@ pub struct Monitor {
     /// Steps done.
     pub steps: u32,
     /// Time from the first to the last instruction of ticks that stepped.
-    pub computation: Spread,
+    pub computation: MinMeanMax,
     /// From the timer's expiry to the first instruction, of all ticks.
-    pub lateness: Spread,
+    pub lateness: MinMeanMax,
     /// Computation times by [`Monitor::bin_width`].
     pub histogram: [u32; HISTOGRAM_BINS],
     /// Counts a bin.
@@ -69,8 +69,8 @@ impl Monitor {
     pub const fn new(period: u32) -> Self {
         Self {
             steps: 0,
-            computation: Spread::EMPTY,
-            lateness: Spread::EMPTY,
+            computation: MinMeanMax::EMPTY,
+            lateness: MinMeanMax::EMPTY,
             histogram: [0; HISTOGRAM_BINS],
             bin_width: period.div_ceil(HISTOGRAM_BINS as u32),
             overruns: 0,
@@ -98,19 +98,20 @@ mod tests {
 
     #[test]
     fn no_times_are_all_zero() {
-        assert_eq!(Spread::EMPTY.timing(), Timing { min: 0, mean: 0, max: 0 });
+        assert_eq!(MinMeanMax::EMPTY.timing(), Timing { min: 0, mean: 0, max: 0 });
     }
 
     #[test]
     fn least_mean_and_greatest_are_those_of_the_times() {
-        let mut spread = Spread::EMPTY;
+        let mut spread = MinMeanMax::EMPTY;
         [7, 3, 5].iter().for_each(|&time| spread.record(time));
         assert_eq!(spread.timing(), Timing { min: 3, mean: 5, max: 7 });
     }
 
     #[test]
     fn the_mean_does_not_overflow_in_a_long_run() {
-        let spread = Spread { min: 1, max: u32::MAX, sum: u64::from(u32::MAX) * u64::from(u32::MAX), count: u32::MAX };
+        let spread =
+            MinMeanMax { min: 1, max: u32::MAX, sum: u64::from(u32::MAX) * u64::from(u32::MAX), count: u32::MAX };
         assert_eq!(spread.timing().mean, u32::MAX);
     }
 

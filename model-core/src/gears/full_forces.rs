@@ -1,10 +1,10 @@
 //! The classical Runge-Kutta method and semi-implicit Euler on the full nonlinear forces at every evaluation: the path
-//! of the tanh dead zone, which has no contact set to freeze, and what people use today, for comparison. No crossing is
+//! of the tanh dead zone, which has no contact set to fix, and the common methods, for comparison. No crossing is
 //! corrected.
 
-use crate::gears::contact::{Drive, Law, acceleration, spread, wind_up_force};
+use crate::gears::contact::{AppliedAcceleration, Law, acceleration, mesh_coordinates, wind_up_force};
 use crate::gears::dead_zone;
-use crate::gears::excitation::{Beat, Instant, MOST_OVERTONES, MeshPhase, PerMesh, instant};
+use crate::gears::excitation::{MAX_OVERTONES, MeshExcitations, MeshPhase, PerMesh, PhaseHarmonics, mesh_excitations};
 use crate::gears::runge_kutta::{self, Motion};
 use crate::gears::state::Relative;
 use crate::gears::tables::Tables;
@@ -14,21 +14,30 @@ use crate::numbers::Real;
 #[inline(never)]
 pub fn runge_kutta<T: Real, const N: usize>(
     tables: &Tables<T, N>,
-    drive: &Drive<T>,
+    applied: &AppliedAcceleration<T>,
     phase: &MeshPhase<T>,
     motion: &Motion<T, N>,
 ) -> Motion<T, N> {
-    let half = phase.over(tables.half_part);
-    let (mut motion, mut rotor) = (*motion, phase.start);
-    let mut start = instant(tables, &Beat::<T, MOST_OVERTONES>::new(rotor, phase.rate, tables.excitation.harmonics));
+    let half = phase.over(tables.half_substep_share);
+    let (mut motion, mut phasor) = (*motion, phase.start);
+    let mut start = mesh_excitations(
+        tables,
+        &PhaseHarmonics::<T, MAX_OVERTONES>::new(phasor, phase.rate, tables.excitation.harmonics),
+    );
     for _ in 0..tables.substeps {
-        rotor = rotor.turned(&half);
-        let middle = instant(tables, &Beat::<T, MOST_OVERTONES>::new(rotor, phase.rate, tables.excitation.harmonics));
-        rotor = rotor.turned(&half);
-        let end = instant(tables, &Beat::<T, MOST_OVERTONES>::new(rotor, phase.rate, tables.excitation.harmonics));
+        phasor = phasor.turned(&half);
+        let middle = mesh_excitations(
+            tables,
+            &PhaseHarmonics::<T, MAX_OVERTONES>::new(phasor, phase.rate, tables.excitation.harmonics),
+        );
+        phasor = phasor.turned(&half);
+        let end = mesh_excitations(
+            tables,
+            &PhaseHarmonics::<T, MAX_OVERTONES>::new(phasor, phase.rate, tables.excitation.harmonics),
+        );
         let nodes = [&start, &middle, &end];
         motion = runge_kutta::step(tables.substep, &motion, |node, position, rate| {
-            forced(tables, drive, position, rate, nodes[node])
+            forced(tables, applied, position, rate, nodes[node])
         });
         start = end;
     }
@@ -39,33 +48,39 @@ pub fn runge_kutta<T: Real, const N: usize>(
 #[inline(never)]
 pub fn semi_implicit_euler<T: Real, const N: usize>(
     tables: &Tables<T, N>,
-    drive: &Drive<T>,
+    applied: &AppliedAcceleration<T>,
     phase: &MeshPhase<T>,
     motion: &Motion<T, N>,
 ) -> Motion<T, N> {
-    let half = phase.over(tables.half_part);
-    let (mut motion, mut rotor) = (*motion, phase.start);
-    let mut now = instant(tables, &Beat::<T, MOST_OVERTONES>::new(rotor, phase.rate, tables.excitation.harmonics));
+    let half = phase.over(tables.half_substep_share);
+    let (mut motion, mut phasor) = (*motion, phase.start);
+    let mut now = mesh_excitations(
+        tables,
+        &PhaseHarmonics::<T, MAX_OVERTONES>::new(phasor, phase.rate, tables.excitation.harmonics),
+    );
     for _ in 0..tables.substeps {
-        let acceleration = forced(tables, drive, &motion.position, &motion.rate, &now);
+        let acceleration = forced(tables, applied, &motion.position, &motion.rate, &now);
         let rate = motion.rate.plus(tables.substep, &acceleration);
         motion = Motion { position: motion.position.plus(tables.substep, &rate), rate };
-        rotor = rotor.turned(&half).turned(&half);
-        now = instant(tables, &Beat::<T, MOST_OVERTONES>::new(rotor, phase.rate, tables.excitation.harmonics));
+        phasor = phasor.turned(&half).turned(&half);
+        now = mesh_excitations(
+            tables,
+            &PhaseHarmonics::<T, MAX_OVERTONES>::new(phasor, phase.rate, tables.excitation.harmonics),
+        );
     }
     motion
 }
 
-/// Acceleration under the forces of this very moment.
+/// Acceleration under the forces at this instant.
 fn forced<T: Real, const N: usize>(
     tables: &Tables<T, N>,
-    drive: &Drive<T>,
+    applied: &AppliedAcceleration<T>,
     position: &Relative<T, N>,
     rate: &Relative<T, N>,
-    instant: &Instant<T, N>,
+    mesh_excitations: &MeshExcitations<T, N>,
 ) -> Relative<T, N> {
-    let forces = forces(tables, &spread(position), &spread(rate), instant);
-    acceleration(tables, drive, &forces, wind_up_force(tables, position, rate))
+    let forces = forces(tables, &mesh_coordinates(position), &mesh_coordinates(rate), mesh_excitations);
+    acceleration(tables, applied, &forces, wind_up_force(tables, position, rate))
 }
 
 /// Mesh forces with the joint's dead zone, sharp or tanh, from mesh coordinates without imposed errors. With the tanh
@@ -74,14 +89,14 @@ pub fn forces<T: Real, const N: usize>(
     tables: &Tables<T, N>,
     positions: &PerMesh<T, N>,
     rates: &PerMesh<T, N>,
-    instant: &Instant<T, N>,
+    mesh_excitations: &MeshExcitations<T, N>,
 ) -> PerMesh<T, N> {
     let mut forces = [[T::ZERO; N]; 2];
     for kind in 0..2 {
         for i in 0..N {
-            let deflection = positions[kind][i] - instant.error[kind][i];
-            let speed = rates[kind][i] - instant.error_rate[kind][i];
-            let stiffness = instant.stiffness[kind][i];
+            let deflection = positions[kind][i] - mesh_excitations.error[kind][i];
+            let speed = rates[kind][i] - mesh_excitations.error_rate[kind][i];
+            let stiffness = mesh_excitations.stiffness[kind][i];
             forces[kind][i] = if tables.sharpness > T::ZERO {
                 let half_backlash = tables.meshes[kind][i].half_backlash;
                 let elastic = dead_zone::smoothed(deflection, half_backlash, tables.sharpness);

@@ -1,13 +1,13 @@
-//! Tables of the leapfrog sub-steps that light planets need: mobilities and dampings in the unit of time of a sub-step.
+//! Tables of the velocity-Verlet (leapfrog) sub-steps that light planets need: mobilities and dampings in the unit of time of a sub-step.
 
 use crate::gears::mechanics::Mechanics;
 use crate::gears::scales::Scales;
-use crate::gears::tables::{Light, Mobility};
+use crate::gears::tables::{Mobility, VerletTable};
 use crate::numbers::Real;
 use parameters::{JointParameters, MESH_KINDS};
 
 /// Tables for a tick (dimensionless) in so many sub-steps.
-pub fn light<T: Real>(parameters: &JointParameters, unit: &Mobility<f64>, tick: f64, substeps: u32) -> Light<T> {
+pub fn verlet<T: Real>(parameters: &JointParameters, unit: &Mobility<f64>, tick: f64, substeps: u32) -> VerletTable<T> {
     let scales = Scales::new(parameters);
     let real = T::from_f64;
     let count = f64::from(substeps.max(1));
@@ -16,7 +16,7 @@ pub fn light<T: Real>(parameters: &JointParameters, unit: &Mobility<f64>, tick: 
     let damping = MESH_KINDS.map(|kind| scales.damping(parameters.damping_coefficient(kind)) / substep);
     let wind_up_damping = unit.wind_up_damping / substep;
     let wind_up_mobility = square * (unit.carrier + unit.link);
-    Light {
+    VerletTable {
         substeps,
         half_count: real(0.5 * count),
         substep: real(substep),
@@ -35,7 +35,7 @@ pub fn light<T: Real>(parameters: &JointParameters, unit: &Mobility<f64>, tick: 
         wind_up_yield: real(0.5 * wind_up_damping / (1.0 + 0.5 * wind_up_damping * wind_up_mobility)),
         damping: damping.map(real),
         half_damped: damping.map(|value| real(0.5 * value)),
-        // Makes a leapfrog's frequencies right to fourth order (the modified potential of Takahashi and Imada).
+        // Makes the method's frequencies right to fourth order (the modified potential of Takahashi and Imada).
         curvature: real(1.0 / 12.0),
         release: [0, 1].map(|kind| {
             let stiffness = parameters.mesh(MESH_KINDS[kind]).mean_stiffness / scales.stiffness;

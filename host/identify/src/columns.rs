@@ -1,4 +1,4 @@
-//! Columns of numbers under names, out of CSV text or row by row: what is missing or no number is named.
+//! Named columns of numbers, from CSV text or row by row. A missing or non-numeric value is reported with its place.
 
 use report::failure::{Failure, Outcome};
 

@@ -45,7 +45,7 @@ impl Failure {
         Self { report: Some(report), ..Self::new(message) }
     }
 
-    /// Says how to mend it.
+    /// Adds the help: what to do about it.
     #[must_use]
     pub fn with_help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
@@ -64,13 +64,13 @@ impl Failure {
         &self.message
     }
 
-    /// How to mend it.
+    /// The help: what to do about it.
     pub fn help(&self) -> Option<&str> {
         self.help.as_deref()
     }
 
-    /// How to mend it, place after place of a diagnostic.
-    pub fn mend(&self) -> Option<String> {
+    /// The help, or that of every place of a diagnostic.
+    pub fn full_help(&self) -> Option<String> {
         let places = self.report.iter().flat_map(|report| report.related().into_iter().flatten());
         let of_places: Vec<String> = places.filter_map(|place| Some(place.help()?.to_string())).collect();
         self.help.clone().or_else(|| (!of_places.is_empty()).then(|| of_places.join("; ")))

@@ -1,5 +1,5 @@
 //! Panels of a joint's motion, the same in every report that shows one: torques, gap, twist, wind-up, and one line for
-//! each planet. Where the points come from is each report's to know; contact strips are in `contacts`.
+//! each planet. Contact strips are in `contacts`.
 
 use crate::document::{Text, indexed};
 use crate::plot::ink::{Ink, LINES};

@@ -1,5 +1,4 @@
-//! Amplitudes of an evenly sampled signal by frequency. Only what the samples hold is in it: what is faster than half
-//! their rate is folded back. Where the samples come from and which lines mean what is the caller's to know.
+//! Amplitude spectrum of an evenly sampled signal. Frequencies above half the sampling rate are aliased.
 
 use std::f64::consts::TAU;
 

@@ -1,4 +1,5 @@
-//! One parameter that a log shows, with its interval and its key in the joint file, or why it is not shown.
+//! One identified parameter with its interval and its key in the joint file, or the reason why it could not be
+//! identified.
 
 use serde::Serialize;
 

@@ -1,5 +1,5 @@
-//! What one function does on its own: how deep its stack gets, what it calls at which depth, and everything in it that
-//! cannot be followed. Found by following every path through its instructions.
+//! One function of the image on its own: its greatest stack depth, its calls with the depth at each, and every
+//! instruction that the analysis cannot follow. Found by following every path through its instructions.
 
 use std::collections::{BTreeMap, BTreeSet};
 

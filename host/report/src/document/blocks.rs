@@ -1,4 +1,4 @@
-//! A document as plain data: what a report says, in the order in which it says it. Nothing here knows how it is shown.
+//! A document as plain data: its blocks in reading order, independent of the output format.
 
 use super::text::{Text, Tone};
 use crate::checks::Check;

@@ -1,5 +1,5 @@
 //! One panel: a title with its legend above the plot, so that nothing covers data, axes with units, and marks. Ranges
-//! are found from the marks; what the marks mean is the caller's.
+//! are computed from the marks.
 
 use plotters::coord::ranged1d::ValueFormatter;
 use plotters::coord::types::RangedCoordf64;

@@ -1,20 +1,20 @@
-//! What differs from seed to seed: values drawn from ranges, each from a stream of its own, so that one more variation
-//! in a file leaves the others as they were. Noise of motor and encoders is the drive train's.
+//! What varies from seed to seed: values drawn from ranges, each from a random stream of its own, so that another
+//! variation in a file leaves the others as they were. Noise of motor and encoders is drawn in the drive train.
 
 use model_core::numbers::random::splitmix64;
 
 /// A number, or a range to draw from.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Quantity {
+pub enum NumberOrRange {
     /// The same for every seed.
     Exactly(f64),
     /// Evenly between two ends.
     Between(f64, f64),
 }
 
-impl Quantity {
+impl NumberOrRange {
     /// The value for a stream.
-    pub fn draw(self, stream: &mut Stream) -> f64 {
+    pub fn draw(self, stream: &mut RandomStream) -> f64 {
         match self {
             Self::Exactly(value) => value,
             Self::Between(low, high) => low + (high - low) * stream.uniform(),
@@ -30,11 +30,11 @@ impl Quantity {
     }
 }
 
-/// Random numbers that depend on a seed and a name only (splitmix64 after Steele, Lea and Flood, 2014).
+/// A random stream that depends on a seed and a name only (splitmix64 after Steele, Lea and Flood, 2014).
 #[derive(Debug, Clone)]
-pub struct Stream(u64);
+pub struct RandomStream(u64);
 
-impl Stream {
+impl RandomStream {
     /// The stream of a name for a seed.
     pub fn new(seed: u64, name: &str) -> Self {
         // FNV-1a keeps the streams of different names apart.
@@ -68,7 +68,7 @@ mod tests {
 
     #[test]
     fn a_stream_depends_on_seed_and_name_and_keeps_within_its_range() {
-        let draw = |seed, name| Quantity::Between(-2.0, 3.0).draw(&mut Stream::new(seed, name));
+        let draw = |seed, name| NumberOrRange::Between(-2.0, 3.0).draw(&mut RandomStream::new(seed, name));
         assert_eq!(draw(1, "a"), draw(1, "a"));
         assert_ne!(draw(1, "a"), draw(2, "a"));
         assert_ne!(draw(1, "a"), draw(1, "b"));

@@ -1,18 +1,17 @@
-//! What goes over the line and what is waited for: every wait has a deadline, and who waits in vain is told what to
-//! look at.
+//! Sending, receiving and waiting on the line. Every wait has a timeout, and its error says what to check.
 
 use std::time::{Duration, Instant};
 
 use link::framing::encode;
 use link::messages::{FromBoard, ToBoard};
 
-use super::{DRAIN, HelloHead, Mend, SILENCE, Session};
+use super::{ANSWER_TIMEOUT, BoardHelp, DRAIN_TIMEOUT, HelloHead, Session};
 use crate::recording::Recording;
 use crate::trip;
 use report::failure::{Failure, Outcome};
 
-/// A line that has been quiet for so long has nothing more under way.
-const QUIET: Duration = Duration::from_millis(100);
+/// A line without a byte for so long is idle.
+const IDLE_TIME: Duration = Duration::from_millis(100);
 
 impl Session<'_> {
     pub(super) fn send(&mut self, message: &ToBoard) -> Outcome<()> {
@@ -23,23 +22,25 @@ impl Session<'_> {
                 Ok(())
             }
             Err(error) => {
-                // What had come before the line broke is still there to be heard.
-                let deadline = Instant::now() + DRAIN;
-                while Instant::now() < deadline && self.hear_regardless().is_ok_and(|messages| !messages.is_empty()) {}
+                // Bytes that arrived before the line broke can still be read.
+                let deadline = Instant::now() + DRAIN_TIMEOUT;
+                while Instant::now() < deadline
+                    && self.receive_uninterrupted().is_ok_and(|messages| !messages.is_empty())
+                {}
                 Err(self.lost(&error))
             }
         }
     }
 
-    /// Takes what has come within a slice of time.
-    pub(super) fn hear(&mut self) -> Outcome<Vec<FromBoard>> {
-        if self.surroundings.interrupted() {
+    /// Receives what comes within one receive timeout; fails if the user has interrupted the session.
+    pub(super) fn receive(&mut self) -> Outcome<Vec<FromBoard>> {
+        if self.supervisor.interrupted() {
             return Err(Failure::interrupted("stopped by the user"));
         }
-        self.hear_regardless()
+        self.receive_uninterrupted()
     }
 
-    pub(super) fn hear_regardless(&mut self) -> Outcome<Vec<FromBoard>> {
+    pub(super) fn receive_uninterrupted(&mut self) -> Outcome<Vec<FromBoard>> {
         let mut buffer = [0; 4096];
         let count = match self.line.receive(&mut buffer) {
             Ok(count) => count,
@@ -50,7 +51,7 @@ impl Session<'_> {
         for &byte in &buffer[..count] {
             if let Some(message) = self.receiver.push::<FromBoard>(byte) {
                 if let FromBoard::Accepted(accepted) = &message {
-                    self.recording.accepted.extend(self.unanswered.answered(*accepted));
+                    self.recording.accepted.extend(self.unacknowledged.acknowledged(*accepted));
                 }
                 self.recording.take(message.clone());
                 messages.push(message);
@@ -63,15 +64,15 @@ impl Session<'_> {
         Ok(messages)
     }
 
-    /// Waits for something to be heard; gives up after [`SILENCE`].
+    /// Waits until `done` holds for what was received; fails after [`ANSWER_TIMEOUT`].
     pub(super) fn wait(&mut self, what: &str, done: impl Fn(&Recording) -> bool) -> Outcome<()> {
         let start = Instant::now();
         while !done(&self.recording) {
-            self.hear()?;
+            self.receive()?;
             if let Some(trip) = self.recording.trips.first() {
                 return Err(trip::failure(trip));
             }
-            if start.elapsed() > SILENCE {
+            if start.elapsed() > ANSWER_TIMEOUT {
                 return Err(self.silent(&format!("no {what} came")));
             }
         }
@@ -83,13 +84,13 @@ impl Session<'_> {
         &mut self,
         message: &ToBoard,
         what: &str,
-        patience: Duration,
+        timeout: Duration,
         answer: impl Fn(FromBoard) -> Option<T>,
     ) -> Outcome<T> {
         self.send(message)?;
         let start = Instant::now();
         loop {
-            for message in self.hear()? {
+            for message in self.receive()? {
                 if let FromBoard::Tripped(raised) = &message {
                     return Err(trip::failure(raised));
                 }
@@ -97,19 +98,19 @@ impl Session<'_> {
                     return Ok(answer);
                 }
             }
-            if start.elapsed() > patience {
-                return Err(self.silent_for(patience, &format!("no {what} came")));
+            if start.elapsed() > timeout {
+                return Err(self.silent_for(timeout, &format!("no {what} came")));
             }
         }
     }
 
-    /// Listens until nothing is under way any more.
+    /// Receives until the line is idle.
     pub(super) fn drain(&mut self) -> Outcome<()> {
-        let deadline = Instant::now() + DRAIN;
+        let deadline = Instant::now() + DRAIN_TIMEOUT;
         let mut last = Instant::now();
-        while last.elapsed() < QUIET && Instant::now() < deadline {
+        while last.elapsed() < IDLE_TIME && Instant::now() < deadline {
             let before = self.recording.traffic.received_bytes;
-            self.hear()?;
+            self.receive()?;
             if self.recording.traffic.received_bytes != before {
                 last = Instant::now();
             }
@@ -117,28 +118,28 @@ impl Session<'_> {
         Ok(())
     }
 
-    pub(super) fn no_answer(&self, patience: Duration, mend: &Mend) -> Failure {
-        let (name, seconds) = (self.line.name(), patience.as_secs_f64());
+    pub(super) fn no_answer(&self, timeout: Duration, help: &BoardHelp) -> Failure {
+        let (name, seconds) = (self.line.name(), timeout.as_secs_f64());
         let bytes = self.recording.traffic.received_bytes;
         if bytes == 0 {
             let message = format!("no board answers on {name}: nothing came in {seconds} s");
-            return Failure::new(message).with_help(mend.of_silence("check power, wiring (TX to RX) and port"));
+            return Failure::new(message).with_help(help.of_silence("check power, wiring (TX to RX) and port"));
         }
         let message = format!("no board answers on {name}: {bytes} bytes came in {seconds} s, but no valid frame");
-        Failure::new(message).with_help(mend.of_silence("check --baud, and that this checkout's image is on the board"))
+        Failure::new(message).with_help(help.of_silence("check --baud, and that this checkout's image is on the board"))
     }
 
     pub(super) fn silent(&self, what: &str) -> Failure {
-        self.silent_for(SILENCE, what)
+        self.silent_for(ANSWER_TIMEOUT, what)
     }
 
-    pub(super) fn silent_for(&self, patience: Duration, what: &str) -> Failure {
+    pub(super) fn silent_for(&self, timeout: Duration, what: &str) -> Failure {
         let traffic = &self.recording.traffic;
         let message = format!(
             "the board on {} has fallen silent at tick {}: {what} for {} s ({} bad frames dropped)",
             self.line.name(),
             self.recording.last_tick(),
-            patience.as_secs(),
+            timeout.as_secs(),
             traffic.bad_frames
         );
         Failure::new(message).with_help("check the line and the board's power, reset the board and run again")
@@ -147,7 +148,7 @@ impl Session<'_> {
     pub(super) fn lost(&mut self, error: &std::io::Error) -> Failure {
         let name = self.line.name().to_owned();
         let tick = self.recording.last_tick();
-        match self.surroundings.gone() {
+        match self.supervisor.gone() {
             Some(why) => Failure::new(format!("{name} is gone at tick {tick}: {why}"))
                 .with_help("run again; if it happens again its last words are above or in the run's log"),
             None => Failure::new(format!("the line to {name} was lost at tick {tick}: {error}"))

@@ -1,5 +1,5 @@
-//! What the joint file says before a log is read: ratio in whole teeth, levers, inertias on either side of the gap, the
-//! compliance that is expected. Nothing in it is found from a log.
+//! What is known of the joint before a log is read, from its joint file: ratio in whole teeth, lever arms, inertias on
+//! either side of the gap, the expected compliance.
 
 use joint_file::JointFile;
 use model_core::gears::{Kinematics, Mechanics};
@@ -10,7 +10,7 @@ use joint_file::named::Loaded;
 
 /// What is known beforehand.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Plan {
+pub struct PriorModel {
     /// Name of the joint.
     pub name: String,
     /// Sun's teeth, and sun's and ring's together: the ratio is the second over the first.
@@ -48,14 +48,14 @@ pub struct Plan {
     pub torque_error: f64,
 }
 
-impl Plan {
+impl PriorModel {
     /// Of a joint file and the command line.
     pub fn new(loaded: &Loaded, arguments: &Arguments) -> Self {
-        let mut plan = Self::of(&loaded.file);
-        plan.motor_bits = arguments.motor_bits.unwrap_or(plan.motor_bits);
-        plan.output_bits = arguments.output_bits.unwrap_or(plan.output_bits);
-        plan.torque_error = arguments.torque_error.map_or(plan.torque_error, |percent| percent / 100.0);
-        plan
+        let mut prior = Self::of(&loaded.file);
+        prior.motor_bits = arguments.motor_bits.unwrap_or(prior.motor_bits);
+        prior.output_bits = arguments.output_bits.unwrap_or(prior.output_bits);
+        prior.torque_error = arguments.torque_error.map_or(prior.torque_error, |percent| percent / 100.0);
+        prior
     }
 
     /// Of a joint file alone.

@@ -1,5 +1,5 @@
-//! The command itself, in good weather and bad, on a board in a thread behind a pseudo-terminal: exit codes, messages,
-//! what is kept.
+//! The command itself, in normal operation and in its failure modes, on a board in a thread behind a pseudo-terminal:
+//! exit codes, messages, kept files.
 
 mod command;
 mod pseudo_terminal;

@@ -1,4 +1,4 @@
-//! Moves a joint by a named scheme and shows every tick to whoever asked.
+//! Steps a joint by a named scheme and calls a hook after every tick.
 
 use cpu_time::ThreadTime;
 use link::messages::Command;
@@ -8,15 +8,15 @@ use model_core::numbers::Real;
 use parameters::{DeadZone, JointParameters};
 use reference::joint::{Reference, ReferenceError, Start};
 
-use super::moment::{Moment, Reader, Teeth};
 use super::scheme::SchemeName;
+use super::snapshot::{MeshSnapshot, Reader, Snapshot};
 use super::start::core_state;
 use report::failure::{Failure, Outcome};
 use report::interruption;
 
 /// A run, whichever scheme makes it.
 #[derive(Debug, Clone)]
-pub struct Run {
+pub struct SimulationSpec {
     /// The joint.
     pub joint: JointParameters,
     /// Steps a second [Hz].
@@ -36,18 +36,18 @@ pub struct Run {
 /// A mesh that is deflected by more than this has left all teeth behind: the scheme has failed, finite or not [m].
 const ABSURD: f64 = 0.1;
 
-/// How a run came to its end.
+/// How a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum End {
+pub enum RunEnd {
     /// All its ticks are done.
     Whole,
-    /// The user wanted no more.
+    /// The user stopped it.
     Stopped,
     /// The state is infinite, not a number or absurd after so many ticks.
     Diverged(u32),
 }
 
-impl End {
+impl RunEnd {
     /// Time at which the state was not finite any more, at a tick rate [Hz]; none if it always was [s].
     pub fn diverged_at(self, tick_rate: u32) -> Option<f64> {
         match self {
@@ -57,29 +57,34 @@ impl End {
     }
 }
 
-/// What is shown every tick: the start, then the joint after each tick.
-pub type Observer<'o> = dyn FnMut(&Moment) -> Outcome<()> + 'o;
+/// Called with the start, then with the joint after each tick.
+pub type TickHook<'o> = dyn FnMut(&Snapshot) -> Outcome<()> + 'o;
 
-/// Runs a scheme under an observer until its end, or until the user wants no more. Torques are wrong by a part of
+/// Runs a scheme to its end, or until the user stops it, with a hook after every tick. Torques are wrong by a part of
 /// themselves, the disturbance, up and down in turn from tick to tick.
-pub fn follow(run: &Run, scheme: SchemeName, disturbance: f64, observer: &mut Observer<'_>) -> Outcome<End> {
+pub fn simulate(
+    run: &SimulationSpec,
+    scheme: SchemeName,
+    disturbance: f64,
+    hook: &mut TickHook<'_>,
+) -> Outcome<RunEnd> {
     with_scheme(run, scheme, |joint| {
-        let mut torques = Schedule::new(&run.torques);
+        let mut torques = TorqueSchedule::new(&run.torques);
         let mut factor = 1.0 + disturbance;
         for tick in 0..=run.ticks {
             let command = torques.at(tick);
-            let Some(mut moment) = joint.read(tick) else { return Ok(End::Diverged(tick)) };
-            (moment.drive, moment.load) = (command.drive_torque.into(), command.load_torque.into());
-            observer(&moment)?;
+            let Some(mut snapshot) = joint.read(tick) else { return Ok(RunEnd::Diverged(tick)) };
+            (snapshot.drive, snapshot.load) = (command.drive_torque.into(), command.load_torque.into());
+            hook(&snapshot)?;
             if interruption::requested() {
-                return Ok(End::Stopped);
+                return Ok(RunEnd::Stopped);
             }
-            if tick < run.ticks && !joint.step(tick, factor * moment.drive, factor * moment.load)? {
-                return Ok(End::Diverged(tick + 1));
+            if tick < run.ticks && !joint.step(tick, factor * snapshot.drive, factor * snapshot.load)? {
+                return Ok(RunEnd::Diverged(tick + 1));
             }
             factor = 2.0 - factor;
         }
-        Ok(End::Whole)
+        Ok(RunEnd::Whole)
     })
 }
 
@@ -93,10 +98,10 @@ pub struct Cost {
 }
 
 /// Measures a scheme over some ticks of a run.
-pub fn cost(run: &Run, scheme: SchemeName, ticks: u32) -> Outcome<Cost> {
+pub fn cost(run: &SimulationSpec, scheme: SchemeName, ticks: u32) -> Outcome<Cost> {
     let ticks = ticks.clamp(1, run.ticks.max(1));
     with_scheme(run, scheme, |joint| {
-        let mut torques = Schedule::new(&run.torques);
+        let mut torques = TorqueSchedule::new(&run.torques);
         let clock = ThreadTime::now();
         for tick in 0..ticks {
             let command = torques.at(tick);
@@ -112,7 +117,7 @@ pub fn cost(run: &Run, scheme: SchemeName, ticks: u32) -> Outcome<Cost> {
     })
 }
 
-/// What the reference refuses, with the mend where there is one on the command line.
+/// The error of a joint that the reference refuses, with the help where an option can help.
 fn not_referable(joint: &JointParameters, error: &ReferenceError) -> Failure {
     let failure = Failure::new(format!("the reference does not take joint `{}`: {error}", joint.name));
     match joint.dead_zone {
@@ -124,12 +129,12 @@ fn not_referable(joint: &JointParameters, error: &ReferenceError) -> Failure {
 }
 
 /// Torques as they come due.
-struct Schedule<'a> {
+struct TorqueSchedule<'a> {
     next: std::iter::Peekable<std::slice::Iter<'a, Command>>,
     now: Command,
 }
 
-impl<'a> Schedule<'a> {
+impl<'a> TorqueSchedule<'a> {
     fn new(commands: &'a [Command]) -> Self {
         Self { next: commands.iter().peekable(), now: Command { tick: 0, drive_torque: 0.0, load_torque: 0.0 } }
     }
@@ -144,9 +149,9 @@ impl<'a> Schedule<'a> {
 }
 
 /// A joint that a scheme moves.
-trait Moved {
+trait SteppedJoint {
     /// The joint after so many ticks; none if the state is infinite, not a number or absurd.
-    fn read(&self, tick: u32) -> Option<Moment>;
+    fn read(&self, tick: u32) -> Option<Snapshot>;
     /// The tick after so many, under these torques [N m]; false if the scheme breaks off.
     fn step(&mut self, tick: u32, drive: f64, load: f64) -> Outcome<bool>;
     /// Sub-steps a tick, if they are of one number.
@@ -154,7 +159,11 @@ trait Moved {
 }
 
 /// Does some work on a joint that a scheme moves, from the start of a run.
-fn with_scheme<R>(run: &Run, scheme: SchemeName, work: impl FnOnce(&mut dyn Moved) -> Outcome<R>) -> Outcome<R> {
+fn with_scheme<R>(
+    run: &SimulationSpec,
+    scheme: SchemeName,
+    work: impl FnOnce(&mut dyn SteppedJoint) -> Outcome<R>,
+) -> Outcome<R> {
     let Some(scheme) = scheme.of_core() else {
         let reference = Reference::start(&run.joint, &run.start).map_err(|error| not_referable(&run.joint, &error))?;
         return work(&mut ByReference { run, reference });
@@ -172,9 +181,9 @@ fn with_scheme<R>(run: &Run, scheme: SchemeName, work: impl FnOnce(&mut dyn Move
 }
 
 fn with_core<T: Real, const N: usize, R>(
-    run: &Run,
+    run: &SimulationSpec,
     scheme: Scheme,
-    work: impl FnOnce(&mut dyn Moved) -> Outcome<R>,
+    work: impl FnOnce(&mut dyn SteppedJoint) -> Outcome<R>,
 ) -> Outcome<R> {
     let tables = tables::<T, N>(run, scheme)?;
     let mut model = Model::new(&tables);
@@ -182,7 +191,7 @@ fn with_core<T: Real, const N: usize, R>(
     work(&mut ByCore { reader: Reader::new(&run.joint, &tables), model, substeps: tables.substeps })
 }
 
-fn tables<T: Real, const N: usize>(run: &Run, scheme: Scheme) -> Outcome<Tables<T, N>> {
+fn tables<T: Real, const N: usize>(run: &SimulationSpec, scheme: Scheme) -> Outcome<Tables<T, N>> {
     design_scheme(&run.joint, run.tick_rate, scheme, run.effort).map_err(|error| {
         let name = &run.joint.name;
         let failure = Failure::new(format!("joint `{name}` cannot be designed for {} Hz: {error}", run.tick_rate));
@@ -200,11 +209,11 @@ struct ByCore<'a, T: Real, const N: usize> {
     substeps: u32,
 }
 
-impl<T: Real, const N: usize> Moved for ByCore<'_, T, N> {
-    fn read(&self, tick: u32) -> Option<Moment> {
-        let moment = self.reader.read(tick, &self.model);
-        let sound = |teeth: &Teeth| teeth.deflection.abs() < ABSURD;
-        (self.model.is_finite() && moment.teeth.iter().all(sound)).then_some(moment)
+impl<T: Real, const N: usize> SteppedJoint for ByCore<'_, T, N> {
+    fn read(&self, tick: u32) -> Option<Snapshot> {
+        let snapshot = self.reader.read(tick, &self.model);
+        let sound = |teeth: &MeshSnapshot| teeth.deflection.abs() < ABSURD;
+        (self.model.is_finite() && snapshot.teeth.iter().all(sound)).then_some(snapshot)
     }
 
     fn step(&mut self, _: u32, drive: f64, load: f64) -> Outcome<bool> {
@@ -219,13 +228,13 @@ impl<T: Real, const N: usize> Moved for ByCore<'_, T, N> {
 
 /// By the reference.
 struct ByReference<'a> {
-    run: &'a Run,
+    run: &'a SimulationSpec,
     reference: Reference,
 }
 
-impl Moved for ByReference<'_> {
-    fn read(&self, tick: u32) -> Option<Moment> {
-        Some(Moment::of_reference(tick, &self.run.joint, &self.reference.observe()))
+impl SteppedJoint for ByReference<'_> {
+    fn read(&self, tick: u32) -> Option<Snapshot> {
+        Some(Snapshot::of_reference(tick, &self.run.joint, &self.reference.observe()))
     }
 
     fn step(&mut self, tick: u32, drive: f64, load: f64) -> Outcome<bool> {

@@ -1,10 +1,10 @@
-//! Torques on the link: what belongs to the profile, what the file adds, what a recorded motion brings. Torques that are
-//! not given scale with the rated one.
+//! Disturbance torques on the link: of the profile, of the file, and of a recorded motion. Torques that are not given
+//! scale with the rated torque.
 
 use reference::drive_train::Disturbance;
 
 use super::file::{Load, TestFile, Wave};
-use super::recorded::Recorded;
+use super::recorded::RecordedMotion;
 
 /// A hold is disturbed by this part of the rated torque: 1.5 N m for Q1.
 const DISTURBED: f64 = 0.125;
@@ -15,7 +15,7 @@ const IMPACT: f64 = 3.0;
 const BEFORE: f64 = 0.1;
 
 /// All torques on the link in a run.
-pub fn disturbances(file: &TestFile, recorded: Option<&Recorded>, rated: f64) -> Vec<Disturbance> {
+pub fn disturbances(file: &TestFile, recorded: Option<&RecordedMotion>, rated: f64) -> Vec<Disturbance> {
     let mut list = Vec::new();
     match file.profile.load {
         Load::None => {}
@@ -38,8 +38,8 @@ pub fn disturbances(file: &TestFile, recorded: Option<&Recorded>, rated: f64) ->
         }
         Load::Impacts(torque, length) => {
             let torque = torque.unwrap_or(IMPACT * rated);
-            let pushes = (file.duration - file.settle).ceil() as usize;
-            list.extend((0..pushes).map(|push| {
+            let disturbances = (file.duration - file.settle).ceil() as usize;
+            list.extend((0..disturbances).map(|push| {
                 let sign = if push % 2 == 0 { 1.0 } else { -1.0 };
                 Disturbance::Pulse { start: file.settle + push as f64 + 0.2, duration: length, torque: sign * torque }
             }));
@@ -48,7 +48,7 @@ pub fn disturbances(file: &TestFile, recorded: Option<&Recorded>, rated: f64) ->
             list.push(Disturbance::Sine { amplitude: torque.unwrap_or(rated), frequency });
         }
     }
-    list.extend(file.pushes.iter().map(|push| match push.kind {
+    list.extend(file.disturbances.iter().map(|push| match push.kind {
         "step" => Disturbance::Step { start: push.start, torque: push.torque },
         "pulse" => Disturbance::Pulse { start: push.start, duration: push.length, torque: push.torque },
         _ => Disturbance::Sine { amplitude: push.torque, frequency: push.frequency },

@@ -1,8 +1,9 @@
-//! What a run needs besides its plan: the image, and a line to a board, emulated or real.
+//! A connection to a board, emulated or real: the serial line, who watches over it (Ctrl-C, the emulator's process),
+//! the timeout of the first answer, and the firmware image if it was built here.
 
 use std::time::{Duration, Instant};
 
-use super::session::{SILENCE, Surroundings};
+use super::session::{ANSWER_TIMEOUT, Supervisor};
 use super::transport::{Line, Port, Socket};
 use crate::target::board::Board;
 use crate::target::emulator::{self, Emulator};
@@ -12,32 +13,32 @@ use report::interruption;
 use report::progress::Progress;
 
 /// The emulator needs this long to boot on a busy machine; if it ends meanwhile, that is noticed at once.
-const BOOT: Duration = Duration::from_secs(10);
+const BOOT_TIMEOUT: Duration = Duration::from_secs(10);
 /// A process that has closed its line needs a moment to end.
-const LAST_BREATH: Duration = Duration::from_millis(500);
+const EXIT_TIMEOUT: Duration = Duration::from_millis(500);
 
-/// A board on a line.
-pub struct Bench {
+/// A connection to a board.
+pub struct Connection {
     /// The line.
     pub line: Box<dyn Line>,
-    /// What the session asks about its surroundings; owns the emulator.
-    pub surroundings: Box<dyn Surroundings>,
-    /// Longest wait for the board's first word.
-    pub patience: Duration,
+    /// Polled by the session while it waits; owns the emulator.
+    pub supervisor: Box<dyn Supervisor>,
+    /// Longest wait for the board's first message.
+    pub timeout: Duration,
     /// The emulator's version, or the port.
     pub transport: String,
     /// The image, if it was built here.
     pub image: Option<Image>,
 }
 
-impl Bench {
+impl Connection {
     /// The board behind a port, which is opened before its image is built.
     pub fn on_port(path: &str, baud: u32, image: impl FnOnce() -> Outcome<Option<Image>>) -> Outcome<Self> {
         let port = Port::open(path, baud)?;
         Ok(Self {
             line: Box::new(port),
-            surroundings: Box::new(RealBoard),
-            patience: SILENCE,
+            supervisor: Box::new(RealBoard),
+            timeout: ANSWER_TIMEOUT,
             transport: format!("{path} at {baud} baud"),
             image: image()?,
         })
@@ -50,8 +51,8 @@ impl Bench {
             .map_err(|error| Failure::new(format!("the emulator's serial line cannot be used: {error}")))?;
         Ok(Self {
             line: Box::new(line),
-            surroundings: Box::new(EmulatedBoard(emulator)),
-            patience: BOOT,
+            supervisor: Box::new(EmulatedBoard(emulator)),
+            timeout: BOOT_TIMEOUT,
             transport: format!("{version}, -M {}, -icount {}", emulator::MACHINE, emulator::CLOCK),
             image: Some(image),
         })
@@ -67,10 +68,10 @@ impl Bench {
     }
 }
 
-/// Nothing is known about a real board but what it says.
+/// A real board: whether it is gone is known only from the line.
 struct RealBoard;
 
-impl Surroundings for RealBoard {
+impl Supervisor for RealBoard {
     fn interrupted(&self) -> bool {
         interruption::requested()
     }
@@ -79,13 +80,13 @@ impl Surroundings for RealBoard {
 /// The emulator, which is killed with its owner.
 struct EmulatedBoard(Emulator);
 
-impl Surroundings for EmulatedBoard {
+impl Supervisor for EmulatedBoard {
     fn interrupted(&self) -> bool {
         interruption::requested()
     }
 
     fn gone(&mut self) -> Option<String> {
-        let deadline = Instant::now() + LAST_BREATH;
+        let deadline = Instant::now() + EXIT_TIMEOUT;
         while Instant::now() < deadline {
             if let Err(failure) = self.0.check() {
                 return Some(failure.message().to_owned());

@@ -1,4 +1,4 @@
-//! What happened in a run: the truth in every control period, and what the observer made of it.
+//! The history of a run: the true values in every control period, and the observer's outputs.
 
 use model_core::gears::{Flank, sign};
 use model_core::numbers::digest;
@@ -10,20 +10,20 @@ use super::rig::Period;
 
 /// What happened.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Ran {
+pub struct RunHistory {
     /// The truth, one sample for each control period.
     pub run: Run,
     /// What the observer made of it, in the same order; empty for controllers without one.
-    pub sights: Vec<Sight>,
+    pub observer_outputs: Vec<ObserverOutput>,
     /// Half of the true gap at every period [m]: teeth may wear.
-    pub truths: Vec<Truth>,
+    pub truths: Vec<TrueValues>,
     /// Digest over every bit of all of it.
     pub digest: u64,
 }
 
 /// What is true beside the sample.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Truth {
+pub struct TrueValues {
     /// Gap coordinate [m].
     pub gap: f64,
     /// Half-backlash now [m].
@@ -36,7 +36,7 @@ pub struct Truth {
 
 /// What the observer says in one period.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Sight {
+pub struct ObserverOutput {
     /// Gap coordinate [m].
     pub gap: f32,
     /// Its variance [m^2].
@@ -63,20 +63,20 @@ pub struct Sight {
     pub probed: Option<Progress<f32>>,
 }
 
-impl Ran {
+impl RunHistory {
     /// Nothing has happened yet.
     pub fn begin(period: f64, periods: u64) -> Self {
         Self {
             run: Run { samples: Vec::with_capacity(periods as usize), period },
-            sights: Vec::new(),
+            observer_outputs: Vec::new(),
             truths: Vec::with_capacity(periods as usize),
             digest: digest::START,
         }
     }
 
-    /// Why the width probe said no width, if it refused.
+    /// Why the width probe refused, if it did.
     pub fn refusal(&self) -> Option<Refusal> {
-        match self.sights.last()?.probed {
+        match self.observer_outputs.last()?.probed {
             Some(Progress::Refused(refusal)) => Some(refusal),
             _ => None,
         }
@@ -84,12 +84,12 @@ impl Ran {
 
     /// Samples at a rate [Hz], each with what is true beside it, what the observer made of it, and the largest net force of
     /// the sun's meshes since the one before [N].
-    pub fn thinned(&self, rate: f64) -> impl Iterator<Item = (&Sample, &Truth, Option<&Sight>, f64)> {
+    pub fn thinned(&self, rate: f64) -> impl Iterator<Item = (&Sample, &TrueValues, Option<&ObserverOutput>, f64)> {
         let every = (1.0 / (rate * self.run.period)).round().max(1.0) as usize;
         self.run.samples.chunks_exact(every).zip(1..).map(move |(chunk, number)| {
             let last = number * every - 1;
             let peak = chunk.iter().map(|sample| sample.mesh_force.abs()).fold(0.0, f64::max);
-            (&self.run.samples[last], &self.truths[last], self.sights.get(last), peak)
+            (&self.run.samples[last], &self.truths[last], self.observer_outputs.get(last), peak)
         })
     }
 
@@ -97,7 +97,7 @@ impl Ran {
     pub fn note(&mut self, period: &Period<'_>) {
         let joint = period.plant.joint();
         let sample = Sample::of(joint, period.wanted, period.half_backlash, period.command);
-        let truth = Truth {
+        let truth = TrueValues {
             gap: joint.gap,
             half_backlash: period.half_backlash,
             load_torque: period.load_torque(),
@@ -107,23 +107,23 @@ impl Ran {
     }
 
     /// Adds a period.
-    pub fn add(&mut self, sample: Sample, truth: Truth, answer: Option<&Answer>) {
+    pub fn add(&mut self, sample: Sample, truth: TrueValues, answer: Option<&Answer>) {
         for value in [sample.link, sample.mesh_force, sample.command, truth.gap, truth.motor] {
             self.digest = digest::chain(self.digest, value.to_bits());
         }
         if let Some(answer) = answer {
-            let sight = Sight::of(answer);
-            for value in [sight.gap, sight.half_backlash, sight.load_torque, sight.trust] {
+            let observed = ObserverOutput::of(answer);
+            for value in [observed.gap, observed.half_backlash, observed.load_torque, observed.trust] {
                 self.digest = digest::chain(self.digest, value.to_bits().into());
             }
-            self.sights.push(sight);
+            self.observer_outputs.push(observed);
         }
         self.run.samples.push(sample);
         self.truths.push(truth);
     }
 }
 
-impl Sight {
+impl ObserverOutput {
     fn of(answer: &Answer) -> Self {
         let Answer { estimates, shaped, probed } = *answer;
         Self {

@@ -1,4 +1,4 @@
-//! The reference's books: momentum against torques, energy against work, and no tooth that pulls.
+//! Balances of the reference: momentum against torques, energy against work, and no tooth that pulls.
 
 use host_tests::tolerance::ENERGY;
 use host_tests::tolerance::core::MOMENTUM;

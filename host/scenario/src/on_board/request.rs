@@ -1,4 +1,4 @@
-//! Which boards tests are to run on, in which role, and what no board can do.
+//! Which boards tests shall run on and in which role, and what no board can run.
 
 use link::messages::{Role, RunMode};
 
@@ -11,7 +11,7 @@ use report::failure::{Failure, Outcome};
 
 /// Which boards tests are to run on.
 #[derive(Debug, Clone, Copy)]
-pub struct BoardWish<'w> {
+pub struct BoardRequest<'w> {
     /// What they do.
     pub role: Role,
     /// The port of a real one.
@@ -22,26 +22,26 @@ pub struct BoardWish<'w> {
     pub board: Board,
     /// Its image is there already.
     pub no_build: bool,
-    /// Who waits for whom, of a whole loop.
+    /// Lockstep or real time, of a whole loop.
     pub mode: Option<RunMode>,
 }
 
-/// Whether the wish itself can be met.
-pub fn can_be(wish: &BoardWish<'_>, plant: PlantName) -> Outcome<()> {
-    if wish.role == Role::Loop && plant == PlantName::Reference {
+/// Refuses a request that no board can meet.
+pub fn check_request(request: &BoardRequest<'_>, plant: PlantName) -> Outcome<()> {
+    if request.role == Role::Loop && plant == PlantName::Reference {
         return Err(Failure::new("the f64 reference does not run on a board").with_help("leave --plant out"));
     }
     Ok(())
 }
 
-/// Whether a test can run on such a board at all.
-pub fn may_run(wish: &BoardWish<'_>, test: &Test) -> Outcome<()> {
+/// Refuses a test that such a board cannot run.
+pub fn check_test(request: &BoardRequest<'_>, test: &Test) -> Outcome<()> {
     let name = &test.name;
-    if !test.file.controller.is_ours() {
+    if !test.file.controller.is_compensation() {
         let message = format!("{name} tests `{}`, which no board runs", test.file.controller.word());
         return Err(Failure::new(message).with_help("run it with --host"));
     }
-    if wish.role == Role::Loop {
+    if request.role == Role::Loop {
         if test.file.controller == ControllerName::Probe {
             let message = format!("{name} tests `probe`, which the role `loop` does not know");
             return Err(Failure::new(message).with_help("run it with --role observer, or with --host"));

@@ -1,13 +1,12 @@
-//! Everything that `joint sim` says of a run, as data. As JSON it has the schema `joint-sim/1`; pictures and tables are
-//! made from it elsewhere.
+//! The result of `joint sim` as data, as JSON in the schema `joint-sim/1`.
 
 use serde::Serialize;
 
 use super::comparison::{Comparison, Row};
 use super::energy::Balance;
-use super::ran::Ran;
+use super::result::SimulationResult;
 use super::scheme::SchemeName;
-use super::statistics::MeshFigures;
+use super::statistics::MeshStatistics;
 use report::contacts::mesh_name;
 
 /// Says which fields there are; rises when one changes its meaning or goes.
@@ -16,7 +15,7 @@ const SCHEMA: &str = "joint-sim/1";
 /// All figures of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[allow(non_snake_case, reason = "units are written as they are")]
-pub struct Figures {
+pub struct SimulationSummary {
     /// `joint-sim/1`.
     pub schema: &'static str,
     /// Path or preset.
@@ -68,41 +67,41 @@ pub struct Mesh {
     pub name: String,
     /// Its figures.
     #[serde(flatten)]
-    pub figures: MeshFigures,
+    pub figures: MeshStatistics,
 }
 
-impl Figures {
+impl SimulationSummary {
     /// Puts them together; `set` are the values changed on the command line.
-    pub fn of(ran: &Ran<'_>, set: &[String]) -> Self {
-        let (plan, spectrum) = (ran.plan, ran.spectrum.as_ref());
-        let meshes = ran.statistics.meshes();
+    pub fn of(result: &SimulationResult<'_>, set: &[String]) -> Self {
+        let (plan, spectrum) = (result.plan, result.spectrum.as_ref());
+        let meshes = result.statistics.meshes();
         let count = meshes.len();
         Self {
             schema: SCHEMA,
             file: plan.name.clone(),
             joint: plan.parameters().name.to_string(),
             set: set.to_vec(),
-            scheme: ran.scheme.name(),
-            scalar: if plan.run.double || ran.scheme == SchemeName::Reference { "f64" } else { "f32" },
+            scheme: result.scheme.name(),
+            scalar: if plan.run.double || result.scheme == SchemeName::Reference { "f64" } else { "f32" },
             tick_rate_Hz: plan.run.tick_rate,
-            ticks: ran.ticks,
+            ticks: result.ticks,
             of_ticks: plan.run.ticks,
             settle_s: f64::from(plan.settle) / f64::from(plan.run.tick_rate),
             torques: plan.torques_name.clone(),
             start: plan.start_name.name(),
-            diverged_at_s: ran.end.diverged_at(plan.run.tick_rate),
+            diverged_at_s: result.end.diverged_at(plan.run.tick_rate),
             impacts_per_s: meshes.iter().map(|mesh| mesh.impacts_per_s).sum(),
             meshes: meshes
                 .into_iter()
                 .enumerate()
                 .map(|(mesh, figures)| Mesh { name: mesh_name(mesh, count), figures })
                 .collect(),
-            period: ran.statistics.period(),
+            period: result.statistics.period(),
             non_fundamental_over_fundamental: spectrum.and_then(|spectrum| spectrum.beside(plan.mesh_frequency())),
             strongest_frequency_Hz: spectrum.map(|spectrum| spectrum.greatest().0),
-            energy: ran.balance(),
-            schemes: ran.comparison.as_ref().map(|comparison| comparison.rows.clone()),
-            compared_until_s: ran.comparison.as_ref().map(Comparison::predictable_until),
+            energy: result.balance(),
+            schemes: result.comparison.as_ref().map(|comparison| comparison.rows.clone()),
+            compared_until_s: result.comparison.as_ref().map(Comparison::predictable_until),
         }
     }
 

@@ -1,5 +1,5 @@
-//! What `joint budget` says, as data: figures in SI with their units in their names. As JSON it has the schema
-//! `joint-budget/1`; where the figures come from is in `model_core::gears::design`.
+//! The result of `joint budget` as data: figures in SI with their units in their names, as JSON in the schema
+//! `joint-budget/1`. They are computed by `model_core::gears::design`.
 
 use model_core::gears::certificate::{Certificate, ErrorPromise};
 use model_core::gears::design::{DesignError, Effort, Parts, Processor, certificate};
@@ -14,7 +14,7 @@ const SCHEMA: &str = "joint-budget/1";
 /// A certificate on a board.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[allow(non_snake_case, reason = "Hz is written Hz")]
-pub struct Figures {
+pub struct BudgetSummary {
     /// `joint-budget/1`.
     pub schema: &'static str,
     /// The joint.
@@ -34,17 +34,17 @@ pub struct Figures {
     /// Into how many parts it is divided there.
     pub parts: u32,
     /// Errors while contact holds.
-    pub error_holding: Error,
+    pub error_holding: PredictedError,
     /// Errors while meshes part and hit.
-    pub error_losing: Error,
+    pub error_losing: PredictedError,
     /// Work of a tick.
-    pub holding: Work,
+    pub holding: TickWork,
     /// In parts, none of which sees a crossing.
-    pub losing: Work,
+    pub losing: TickWork,
     /// Every mesh crosses in two sub-steps, or touches in every leap.
-    pub all_crossing: Work,
+    pub all_crossing: TickWork,
     /// Every mesh crosses in every part.
-    pub bound: Work,
+    pub bound: TickWork,
     /// Flash of the tables.
     pub table_bytes: u32,
     /// RAM of the model.
@@ -65,7 +65,7 @@ pub struct Figures {
 
 /// RMS error over the motion's standard deviation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Error {
+pub struct PredictedError {
     /// Half of all motions stay below.
     pub typical: f64,
     /// Nine in ten do.
@@ -74,7 +74,7 @@ pub struct Error {
 
 /// What a tick takes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Work {
+pub struct TickWork {
     /// Instructions.
     pub instructions: u32,
     /// Time.
@@ -84,22 +84,22 @@ pub struct Work {
 }
 
 /// The figures of a joint on a board at a rate [Hz].
-pub fn figures(parameters: &JointParameters, board: Board, rate: u32) -> Result<Figures, DesignError> {
+pub fn summary(parameters: &JointParameters, board: Board, rate: u32) -> Result<BudgetSummary, DesignError> {
     let processor = board.processor();
     let certificate = certificate(parameters, rate, Effort::Within(processor), &processor)?;
     Ok(of(parameters, board, &processor, &certificate))
 }
 
-fn of(parameters: &JointParameters, board: Board, processor: &Processor, certificate: &Certificate) -> Figures {
+fn of(parameters: &JointParameters, board: Board, processor: &Processor, certificate: &Certificate) -> BudgetSummary {
     let rate = certificate.tick_rate;
-    let work = |instructions: u32| Work {
+    let work = |instructions: u32| TickWork {
         instructions,
         time_s: f64::from(instructions) / processor.instructions_per_second(),
         part: processor.part(instructions.into(), rate),
     };
-    let error = |promise: ErrorPromise| Error { typical: promise.typical, nine_in_ten: promise.nine_in_ten };
+    let error = |promise: ErrorPromise| PredictedError { typical: promise.typical, nine_in_ten: promise.nine_in_ten };
     let instructions = &certificate.instructions;
-    Figures {
+    BudgetSummary {
         schema: SCHEMA,
         joint: parameters.name.to_string(),
         board: board.name(),

@@ -1,5 +1,5 @@
-//! A joint at one moment in SI, whichever scheme moved it: read off the core's state or off the reference. Forces of a
-//! core state are computed here in f64 by eq. 5 and the joint's damping law; nothing is stepped.
+//! A joint at one instant in SI, for any scheme: read from the core's state or from the reference. Forces of a core
+//! state are computed here in f64 by eq. 5 and the joint's damping law.
 
 use std::f64::consts::TAU;
 
@@ -13,7 +13,7 @@ use reference::joint::{Observation, Work};
 
 /// The joint at one moment.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Moment {
+pub struct Snapshot {
     /// Ticks done.
     pub tick: u32,
     /// [s].
@@ -41,14 +41,14 @@ pub struct Moment {
     /// Mesh phase, unwrapped [mesh periods].
     pub mesh_periods: f64,
     /// Sun-planet meshes of every planet, then ring-planet meshes.
-    pub teeth: Vec<Teeth, { 2 * MAX_PLANETS }>,
+    pub teeth: Vec<MeshSnapshot, { 2 * MAX_PLANETS }>,
     /// Energies, where the scheme itself keeps account of them.
     pub energy: Option<Energy>,
 }
 
 /// One mesh at one moment.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Teeth {
+pub struct MeshSnapshot {
     /// Deflection d [m].
     pub deflection: f64,
     /// d' [m/s].
@@ -68,7 +68,7 @@ pub struct Energy {
     pub work: Work,
 }
 
-impl Moment {
+impl Snapshot {
     /// Motor angle [rad].
     pub fn motor_angle(&self, joint: &JointParameters) -> f64 {
         joint.geometry.ratio_by_radii() * self.carrier_angle + self.motor_offset
@@ -88,7 +88,7 @@ impl Moment {
     pub fn of_reference(tick: u32, joint: &JointParameters, observation: &Observation) -> Self {
         let kinds = [0, 1];
         let teeth = kinds.into_iter().flat_map(|kind| {
-            (0..joint.geometry.planets).map(move |planet| Teeth {
+            (0..joint.geometry.planets).map(move |planet| MeshSnapshot {
                 deflection: observation.deflections[kind][planet],
                 rate: observation.deflection_rates[kind][planet],
                 force: observation.mesh_forces[kind][planet],
@@ -136,7 +136,7 @@ impl<'a, T: Real, const N: usize> Reader<'a, T, N> {
     }
 
     /// The joint after so many ticks.
-    pub fn read(&self, tick: u32, model: &Model<'_, T, N>) -> Moment {
+    pub fn read(&self, tick: u32, model: &Model<'_, T, N>) -> Snapshot {
         let state = model.state();
         let outputs = model.outputs();
         let excitation = &self.tables.excitation;
@@ -167,7 +167,7 @@ impl<'a, T: Real, const N: usize> Reader<'a, T, N> {
                 self.teeth(kind, &self.tables.meshes[kind][planet], instant, position, rate)
             })
         });
-        Moment {
+        Snapshot {
             tick,
             time,
             drive: 0.0,
@@ -187,7 +187,7 @@ impl<'a, T: Real, const N: usize> Reader<'a, T, N> {
     }
 
     /// Eq. 5 with the joint's damping law, dimensionless up to the last lines.
-    fn teeth(&self, kind: usize, mesh: &MeshTable<T>, instant: &Instant, position: f64, rate: f64) -> Teeth {
+    fn teeth(&self, kind: usize, mesh: &MeshTable<T>, instant: &Instant, position: f64, rate: f64) -> MeshSnapshot {
         let (error, error_rate) = instant.error(mesh);
         let (deflection, rate) = (position - error, rate - error_rate);
         let half_backlash = mesh.half_backlash.to_f64();
@@ -212,7 +212,7 @@ impl<'a, T: Real, const N: usize> Reader<'a, T, N> {
                 (DampingLaw::Contact, ContactState::Separated) => 0.0,
             }
         };
-        Teeth {
+        MeshSnapshot {
             deflection: self.scales.length * deflection,
             rate: self.scales.length * self.scales.frequency * rate,
             force: self.scales.force() * force,

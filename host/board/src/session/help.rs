@@ -1,13 +1,13 @@
-//! What to do about a board that is not the one that is expected: another image on it, or another host command. Whether it is
-//! the right one is judged elsewhere.
+//! Help for errors about a board that runs another image, or about a host command of another version. The check itself
+//! is in `identity`.
 
 use link::PROTOCOL_VERSION;
 
 use report::failure::Failure;
 
-/// How a board is put right.
+/// How to get the right image onto a board, or the right host command.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Mend {
+pub enum BoardHelp {
     /// By the command that puts the right image onto it.
     Flash(String),
     /// By the same command; the image was built just now, so a board that has it already is not what is wrong.
@@ -16,11 +16,11 @@ pub enum Mend {
     Rebuild,
 }
 
-/// The mend of a program that is not of the sources that it builds images from.
+/// Help for a host command built from other sources than those that it builds images from.
 const REBUILD: &str = "the image was built just now from the sources in this checkout, and this `joint` was built from others: \
                        build it anew, as `cargo joint` does by itself (else: cargo build --release --package joint)";
 
-impl Mend {
+impl BoardHelp {
     /// For a board with an image that is not the right one.
     pub fn of_another_image(&self) -> String {
         match self {
@@ -32,7 +32,7 @@ impl Mend {
         }
     }
 
-    /// For a line on which nothing useful is heard; `first` is to be looked at before.
+    /// For a line without a valid frame; `first` is what to check first.
     pub fn of_silence(&self, first: &str) -> String {
         match self {
             Self::Flash(command) | Self::FlashBuilt(command) => {
@@ -68,8 +68,8 @@ mod tests {
 
     #[test]
     fn the_older_of_image_and_program_is_the_one_to_be_renewed() {
-        let flash = Mend::Flash("cargo joint flash q1".to_owned());
-        let help = |mend: &Mend, board| mend.of_protocol(board).help().expect("a help").to_owned();
+        let flash = BoardHelp::Flash("cargo joint flash q1".to_owned());
+        let help = |help: &BoardHelp, board| help.of_protocol(board).help().expect("a help").to_owned();
         let newer = help(&flash, PROTOCOL_VERSION + 1);
         assert!(newer.contains("this `joint` is older") && newer.contains("cargo joint flash q1"), "{newer}");
         let older = help(&flash, PROTOCOL_VERSION - 1);
@@ -78,11 +78,13 @@ mod tests {
 
     #[test]
     fn an_image_that_was_built_just_now_is_not_to_be_flashed_again() {
-        for help in [Mend::Rebuild.of_another_image(), Mend::Rebuild.of_protocol(1).help().expect("a help").to_owned()]
-        {
+        for help in [
+            BoardHelp::Rebuild.of_another_image(),
+            BoardHelp::Rebuild.of_protocol(1).help().expect("a help").to_owned(),
+        ] {
             assert!(help.contains("build it anew") && !help.contains("flash"), "{help}");
         }
-        let built = Mend::FlashBuilt("probe-rs download x".to_owned()).of_another_image();
+        let built = BoardHelp::FlashBuilt("probe-rs download x".to_owned()).of_another_image();
         assert!(built.contains("probe-rs download x") && built.contains("build it anew"), "{built}");
     }
 }

@@ -1,4 +1,4 @@
-//! What holds of this workspace: who imports whom, among files, folders and crates, and how large they are.
+//! What must hold of this workspace: who imports whom, among files, folders and crates, and how large they are.
 
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;

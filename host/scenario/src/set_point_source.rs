@@ -1,5 +1,4 @@
-//! Set-points as whoever asks for a motion sends them: every control period, or at an impedance's own rate and held in
-//! between.
+//! Makes the set-points of a run: every control period, or at an impedance's own rate and held in between.
 
 use model_core::gears::{Kinematics, Mechanics};
 use parameters::JointParameters;
@@ -9,8 +8,8 @@ use super::case::{Case, Designed};
 use super::controller::{ControllerName, Gains};
 use super::file::TestFile;
 
-/// Makes set-points as whoever asks for the motion sends them.
-pub struct Sender {
+/// Makes the set-points of a run.
+pub struct SetPointSource {
     motion: SharedReference,
     /// How far ahead the motion is told [s].
     lead: Option<f64>,
@@ -19,13 +18,13 @@ pub struct Sender {
     held: Option<(u64, Motion)>,
 }
 
-impl Sender {
+impl SetPointSource {
     /// For one controller of a case.
     pub fn new(file: &TestFile, case: &Case, controller: ControllerName, designed: Option<&Designed>) -> Self {
         let preview = controller == ControllerName::Preview;
         let lead = designed.filter(|_| preview).map(|designed| f64::from(designed.compensation.crossing.lead));
         let gains = file.gains.filter(|_| controller.wants_gains() || controller == ControllerName::Off);
-        let inertia = |gains: &Gains| gains.inertia.unwrap_or_else(|| inertia_at_link(&case.told));
+        let inertia = |gains: &Gains| gains.inertia.unwrap_or_else(|| inertia_at_link(&case.nominal));
         let impedance = gains.map(|gains| (gains, inertia(&gains)));
         Self { motion: case.motion.clone(), lead, impedance, held: None }
     }

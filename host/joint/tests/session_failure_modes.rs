@@ -1,4 +1,5 @@
-//! A session with a board in a thread, in good weather and bad: what it says, what it keeps, how it ends.
+//! A session with a board in a thread, in normal operation and in its failure modes: messages, kept recordings, how it
+//! ends.
 
 #[allow(dead_code, reason = "every test binary uses its own part of it")]
 mod thread_board;
@@ -6,9 +7,9 @@ mod thread_board;
 use std::os::unix::net::UnixStream;
 use std::time::{Duration, Instant};
 
-use board::profile::Profile;
+use board::profile::TorqueProfile;
 use board::recording::Recording;
-use board::session::{Expected, Mend, Session, Surroundings};
+use board::session::{BoardHelp, Expected, Session, Supervisor};
 use board::target::board::Board;
 use board::transport::Socket;
 use board::twin::{self, Agreement};
@@ -18,12 +19,12 @@ use thread_board::{Misbehaviour, TICK_RATE, joint};
 
 /// A message is due within 2 s by design; a busy machine is given ten times that.
 const LIVENESS: Duration = Duration::from_secs(20);
-const PATIENCE: Duration = Duration::from_secs(2);
+const TIMEOUT: Duration = Duration::from_secs(2);
 
 /// A user who presses Ctrl-C at a moment, if at all; nothing is known about the other end.
 struct User(Option<Instant>);
 
-impl Surroundings for User {
+impl Supervisor for User {
     fn interrupted(&self) -> bool {
         self.0.is_some_and(|at| Instant::now() > at)
     }
@@ -37,12 +38,12 @@ fn expected() -> Expected {
         planets: 3,
         role: Role::Plant,
         control_digest: None,
-        mend: Mend::Flash("cargo joint flash q1".into()),
+        help: BoardHelp::Flash("cargo joint flash q1".into()),
     }
 }
 
-fn profile() -> Profile {
-    Profile::load("reversals", &joint(), TICK_RATE, Some(1.0)).expect("built in")
+fn profile() -> TorqueProfile {
+    TorqueProfile::load("reversals", &joint(), TICK_RATE, Some(1.0)).expect("built in")
 }
 
 fn run_with(misbehaviour: Misbehaviour, mode: RunMode, user: User) -> (Outcome<()>, Recording) {
@@ -54,7 +55,7 @@ fn run_with(misbehaviour: Misbehaviour, mode: RunMode, user: User) -> (Outcome<(
     let start = Instant::now();
     let settings = RunSettings { mode, decimation: 50, command_timeout: TICK_RATE, from_memory: false };
     let outcome = session
-        .connect(&expected(), PATIENCE)
+        .connect(&expected(), TIMEOUT)
         .and_then(|_| session.reset(settings))
         .and_then(|()| session.stream(&profile(), &mut |_| {}))
         .and_then(|()| session.finish(TICK_RATE));
@@ -74,7 +75,7 @@ fn run(misbehaviour: Misbehaviour) -> (Outcome<()>, Recording) {
 
 fn failure(misbehaviour: Misbehaviour) -> (Failure, Recording) {
     let (outcome, recording) = run(misbehaviour);
-    let failure = outcome.expect_err("bad weather");
+    let failure = outcome.expect_err("a failure mode");
     assert!(failure.help().is_some(), "{failure}");
     (failure, recording)
 }
@@ -89,7 +90,7 @@ fn agreement(recording: &Recording) -> Agreement {
 fn a_good_run_brings_every_sample_and_equals_the_twin() {
     for mode in [RunMode::Lockstep, RunMode::Realtime] {
         let (outcome, recording) = run_with(Misbehaviour::None, mode, User(None));
-        outcome.expect("good weather");
+        outcome.expect("normal operation");
         assert_eq!(recording.samples.len(), 400, "{mode:?}");
         assert_eq!(recording.accepted, profile().commands, "{mode:?}");
         assert_eq!(recording.traffic.bad_frames + recording.traffic.lost_batches, 0);

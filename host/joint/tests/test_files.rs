@@ -1,5 +1,5 @@
-//! Test files of observer and compensation as a user meets them: what they say to bad input, what they leave behind, that
-//! they are repeatable, and that a controller that does nothing fails.
+//! Test files of observer and compensation as a user meets them: messages for bad input, results on disk,
+//! repeatability, and that a controller that does nothing fails.
 
 mod command;
 
@@ -49,7 +49,7 @@ fn the_run_without_a_file_has_tests_of_both_roles_and_none_that_its_board_would_
         let suite = suite::load(&hil, Choice::OnBoard(role), plant).expect("a folder of tests");
         assert!(!suite.tests.is_empty() && suite.not_run.is_empty(), "{:?}", suite.not_run);
         for test in suite.tests {
-            assert!(test.file.controller.is_ours() && !test.file.only_with_full, "{}", test.name);
+            assert!(test.file.controller.is_compensation() && !test.file.only_with_full, "{}", test.name);
             assert!(role == Role::Observer || test.file.faults.is_empty(), "{}", test.name);
         }
     }

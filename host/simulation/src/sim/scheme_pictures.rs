@@ -1,10 +1,10 @@
-//! Pictures that judge a scheme: its books of energy, and all schemes beside each other. The figures come from `energy`
-//! and `comparison`.
+//! Pictures about schemes: the energy balance, and all schemes compared. Their data come from `energy` and
+//! `comparison`.
 
 use super::comparison::Comparison;
 use super::energy::Entry;
 use super::pictures::View;
-use super::plan::Plan;
+use super::plan::SimulationPlan;
 use super::scheme::SchemeName;
 use report::panels;
 use report::panels::{BROAD, LINE};
@@ -18,7 +18,7 @@ use report::plot::unit::{DECIBELS, Unit, axis_range, greatest};
 const SMALLEST_ERROR: f64 = 1e-8;
 
 /// Stored energy and work, and the residual on a scale of its own.
-pub fn energy(plan: &Plan, entries: &[Entry]) -> Figure {
+pub fn energy(plan: &SimulationPlan, entries: &[Entry]) -> Figure {
     let joules = |most: f64| match most {
         most if most < 1e-6 => Unit { factor: 1e9, name: "nJ" },
         most if most < 1e-3 => Unit { factor: 1e6, name: "µJ" },
@@ -37,12 +37,13 @@ pub fn energy(plan: &Plan, entries: &[Entry]) -> Figure {
         line(&|entry| entry.stored - start, Ink::Fifth, "stored"),
     ];
     let works = entries.iter().flat_map(|entry| [entry.work.supplied, entry.work.dissipated, entry.stored - start]);
-    let books = Panel::lines("Energy since the start", joules(greatest(works)), marks);
+    let account = Panel::lines("Energy since the start", joules(greatest(works)), marks);
     let residual = line(&|entry| entry.residual, Ink::Limit, "");
     let most = greatest(entries.iter().map(|entry| entry.residual));
     let residual = Panel { height: 150, ..Panel::lines("Residual of the balance", joules(most), vec![residual]) };
     let end = entries.last().map_or(1.0, |entry| entry.time);
-    View { plan, samples: &[], range: (0.0, if end > 0.0 { end } else { 1.0 }) }.figure("Energy", vec![books, residual])
+    View { plan, samples: &[], range: (0.0, if end > 0.0 { end } else { 1.0 }) }
+        .figure("Energy", vec![account, residual])
 }
 
 /// Colours of the schemes.
@@ -57,7 +58,7 @@ fn ink(scheme: SchemeName) -> Ink {
 }
 
 /// One deflection by every scheme at the end of the predictable part, and the error of each over all of it.
-pub fn schemes(plan: &Plan, comparison: &Comparison) -> Vec<Figure> {
+pub fn schemes(plan: &SimulationPlan, comparison: &Comparison) -> Vec<Figure> {
     let until = comparison.predictable_until();
     let length = (6.0 / plan.mesh_frequency()).min(until);
     let from = (until - length).max(0.0);

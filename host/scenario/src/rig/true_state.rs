@@ -1,5 +1,5 @@
-//! The compensation on the truth in place of an observer: what it could do if nothing had to be learnt. A controller of the
-//! rig alone; no file names it.
+//! The compensation fed with the true state in place of an observer's estimates: the best it could do with perfect
+//! knowledge. Used by tests only; no test file names it.
 
 use model_core::compensation::{Compensation, CompensationTables};
 use model_core::gears::Kinematics;
@@ -18,7 +18,7 @@ const TOUCHING: f64 = 0.98;
 
 /// A compensation that is shown the truth of a joint.
 #[derive(Debug)]
-pub struct PerfectSight<'t> {
+pub struct TrueStateCompensation<'t> {
     compensation: Compensation<'t, f64>,
     estimates: Estimates<f64>,
     half_backlash: f64,
@@ -28,7 +28,7 @@ pub struct PerfectSight<'t> {
     lever: f64,
 }
 
-impl<'t> PerfectSight<'t> {
+impl<'t> TrueStateCompensation<'t> {
     /// For a true joint.
     pub fn new(tables: &'t CompensationTables<f64>, joint: &JointParameters) -> Self {
         Self {

@@ -1,5 +1,5 @@
-//! A motion as a board that runs the whole loop takes it: polynomials of fifth degree that meet position, speed and
-//! acceleration of the motion at their ends, or impedance points at their own rate, with the torque on the link.
+//! A motion as a board that runs the whole loop receives it: quintic polynomials between knots that match position,
+//! speed and acceleration at both ends, or impedance set-points at their own rate, with the torque on the link.
 
 use std::f64::consts::TAU;
 
@@ -11,18 +11,18 @@ use crate::case::{Case, Designed};
 use crate::controller::ControllerName;
 use crate::file::TestFile;
 use crate::port::Translator;
-use crate::sender::Sender;
+use crate::set_point_source::SetPointSource;
 
 /// Length of a polynomial at most [s]: a motion of 20 Hz is met to a millionth.
-const STRETCH: f64 = 5e-3;
+const SEGMENT: f64 = 5e-3;
 
 /// The knots of a test, `first_turn` being the turn from which the observer counts the link's.
 pub fn knots(file: &TestFile, case: &Case, designed: &Designed, first_turn: i32) -> Vec<Knot> {
-    let rate = f64::from(case.told_surroundings.control_rate);
+    let rate = f64::from(case.nominal_surroundings.control_rate);
     let periods = (file.duration * rate).round() as u32;
-    let stretch = file.gains.map_or(STRETCH, |gains| 1.0 / gains.rate);
-    let every = (stretch * rate).round().max(1.0) as u32;
-    let mut sender = Sender::new(file, case, file.controller, Some(designed));
+    let segment = file.gains.map_or(SEGMENT, |gains| 1.0 / gains.rate);
+    let every = (segment * rate).round().max(1.0) as u32;
+    let mut set_points = SetPointSource::new(file, case, file.controller, Some(designed));
     let translator = Translator::from_turn(designed.ticks, first_turn);
     let lead = f64::from(designed.compensation.crossing.lead);
     let rests = |tick: u32| {
@@ -32,12 +32,12 @@ pub fn knots(file: &TestFile, case: &Case, designed: &Designed, first_turn: i32)
     };
     let (mut list, mut tick) = (Vec::new(), 0);
     while tick < periods {
-        let next = if file.gains.is_some() { tick + every } else { end_of_stretch(tick, every, rests) };
+        let next = if file.gains.is_some() { tick + every } else { end_of_segment(tick, every, rests) };
         let [start, end] = [tick, next].map(|tick| f64::from(tick) / rate);
-        let demand = match sender.at(start, tick.into()).1 {
+        let demand = match set_points.at(start, tick.into()).1 {
             SetPoint::Position { ahead, .. } => {
                 let between = |from: f64, to: f64| polynomial(case.motion.at(from), case.motion.at(to), end - start);
-                let turned = |stretch: Stretch<f32>| Stretch { turns: stretch.turns - first_turn, ..stretch };
+                let turned = |segment: Stretch<f32>| Stretch { turns: segment.turns - first_turn, ..segment };
                 let ahead = ahead.map(|_| turned(between(start + lead, end + lead)));
                 Demand::Position { now: turned(between(start, end)), ahead }
             }
@@ -60,7 +60,7 @@ fn still(motion: Motion) -> bool {
 
 /// The tick that ends a stretch: where one of the motions comes to rest or still does for the last time, and after `every`
 /// periods at the latest. A polynomial over such a moment would begin by going back.
-fn end_of_stretch(tick: u32, every: u32, rests: impl Fn(u32) -> [bool; 2]) -> u32 {
+fn end_of_segment(tick: u32, every: u32, rests: impl Fn(u32) -> [bool; 2]) -> u32 {
     let mut here = rests(tick + 1);
     let mut before = rests(tick);
     for next in tick + 1..tick + every {
@@ -104,9 +104,9 @@ mod tests {
             Motion { position: 0.1 * sine - 7.0, speed: 0.1 * rate * cosine, acceleration: -0.1 * rate * rate * sine }
         };
         for start in [0.0, 0.013, 0.021] {
-            let stretch = polynomial(at(start), at(start + STRETCH), STRETCH);
+            let segment = polynomial(at(start), at(start + SEGMENT), SEGMENT);
             for part in [0.0, 0.3, 0.5, 0.9] {
-                let (motion, wanted) = (stretch.at((part * STRETCH) as f32, TAU as f32), at(start + part * STRETCH));
+                let (motion, wanted) = (segment.at((part * SEGMENT) as f32, TAU as f32), at(start + part * SEGMENT));
                 let position = TAU * (f64::from(motion.position.turns) + f64::from(motion.position.fraction));
                 assert!((position - wanted.position).abs() < 2e-6, "{position} {}", wanted.position);
                 assert!((f64::from(motion.speed) - wanted.speed).abs() < 1e-3 * 0.1 * TAU * 20.0);
@@ -123,22 +123,22 @@ mod tests {
         for seed in 0..5 {
             let motion = Profile::Steps { height, duration, rest: 0.2137, seed };
             let at = |tick: u32| motion.at(f64::from(tick) / rate);
-            let (mut tick, mut stretches, largest) = (0, 0, 5.8 * height / duration.powi(2));
+            let (mut tick, mut segments, largest) = (0, 0, 5.8 * height / duration.powi(2));
             while tick < 20_000 {
-                let next = end_of_stretch(tick, 50, |tick| [still(at(tick)); 2]);
-                let stretch = polynomial(at(tick), at(next), f64::from(next - tick) / rate);
+                let next = end_of_segment(tick, 50, |tick| [still(at(tick)); 2]);
+                let segment = polynomial(at(tick), at(next), f64::from(next - tick) / rate);
                 for between in tick..next {
-                    let planned = stretch.at((f64::from(between - tick) / rate) as f32, TAU as f32);
+                    let planned = segment.at((f64::from(between - tick) / rate) as f32, TAU as f32);
                     let error = f64::from(planned.acceleration) - at(between).acceleration;
                     assert!(error.abs() < 0.02 * largest, "seed {seed}, tick {between}: {error}");
                     if still(at(between)) && still(at(between + 1)) {
                         assert_eq!([planned.speed, planned.acceleration], [0.0; 2], "seed {seed}, tick {between}");
                     }
                 }
-                (tick, stretches) = (next, stretches + 1);
+                (tick, segments) = (next, segments + 1);
             }
             // Few more than without: a line carries only so many.
-            assert!(stretches < 420, "{stretches}");
+            assert!(segments < 420, "{segments}");
         }
     }
 }

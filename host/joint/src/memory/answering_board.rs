@@ -1,10 +1,10 @@
-//! The board whose memory is asked for: found, called, and refused if it learns nothing.
+//! Connects to the board whose memory is asked for, and refuses a board whose image learns nothing.
 
 use link::messages::{Hello, Role};
 
-use super::arguments::Place;
-use board::bench::Bench;
-use board::session::{Mend, Session};
+use super::arguments::BoardArguments;
+use board::connection::Connection;
+use board::session::{BoardHelp, Session};
 use board::target::image;
 use board::target::image::CONTROL_RATE;
 use board::target::image::word;
@@ -14,7 +14,7 @@ use report::failure::{Failure, Outcome};
 use report::progress::Progress;
 
 /// A board that has answered.
-pub(super) struct Found {
+pub(super) struct AnsweringBoard {
     pub session: Session<'static>,
     pub hello: Hello,
     /// As a user knows it.
@@ -24,23 +24,23 @@ pub(super) struct Found {
     emulated: bool,
 }
 
-impl Found {
+impl AnsweringBoard {
     /// Finds the board and calls it.
-    pub fn call(place: &Place, loaded: &Loaded, progress: &Progress) -> Outcome<Self> {
+    pub fn call(place: &BoardArguments, loaded: &Loaded, progress: &Progress) -> Outcome<Self> {
         let file = place.joint.display();
-        let (bench, options) = match &place.line.port {
+        let (connection, options) = match &place.line.port {
             Some(path) => {
                 let baud = place.line.baud_rate();
                 let options = format!(" --port {path} --board {}", place.line.board.name());
-                (Bench::on_port(path, baud, || Ok(None))?, options)
+                (Connection::on_port(path, baud, || Ok(None))?, options)
             }
             None => (emulated(place, loaded, progress)?, String::new()),
         };
         progress.stage("calling the board");
         let flash = format!("cargo joint flash {file} --role observer --board {}", place.line.board.name());
-        let mend = if place.line.port.is_some() { Mend::Flash(flash.clone()) } else { Mend::Rebuild };
-        let mut session = Session::new(bench.line, bench.surroundings);
-        let hello = session.call(&mend, bench.patience)?;
+        let help = if place.line.port.is_some() { BoardHelp::Flash(flash.clone()) } else { BoardHelp::Rebuild };
+        let mut session = Session::new(connection.line, connection.supervisor);
+        let hello = session.call(&help, connection.timeout)?;
         let name =
             place.line.port.as_ref().map_or("the emulated board".to_owned(), |path| format!("the board on {path}"));
         if hello.role == Role::Plant {
@@ -76,11 +76,11 @@ impl Found {
     }
 }
 
-fn emulated(place: &Place, loaded: &Loaded, progress: &Progress) -> Outcome<Bench> {
+fn emulated(place: &BoardArguments, loaded: &Loaded, progress: &Progress) -> Outcome<Connection> {
     let say = |line: &str| progress.say(line);
     let role = place.role.map_or(Role::Observer, Role::from);
     let joint = image::joint_file(&place.joint, &loaded.name);
-    Bench::emulated(progress, |board| {
+    Connection::emulated(progress, |board| {
         progress.stage("preparing the toolchain");
         let toolchain = Toolchain::prepare(&say)?;
         progress.stage("building the firmware");

@@ -1,4 +1,4 @@
-//! What the observer's estimates are worth against the truth. Figures of the motion are in `figures`.
+//! Metrics of the observer: its estimates against the truth. Metrics of the motion are in `values`.
 
 use model_core::gears::Kinematics;
 use model_core::observer::Progress;
@@ -6,7 +6,7 @@ use model_core::virtual_joint::fault::{FaultKind, Shaft};
 
 use super::case::Case;
 use super::file::{Fault, TestFile, fault_is_on};
-use super::ran::Ran;
+use super::run_history::RunHistory;
 
 /// A width counts as right within this part.
 const WIDTH_RIGHT: f64 = 0.05;
@@ -16,7 +16,7 @@ const BAND: f64 = 0.05;
 const MOVING: f64 = 1e-3;
 
 /// Stems and values of all figures that could be had.
-pub fn figures(file: &TestFile, case: &Case, ran: &Ran) -> Vec<(&'static str, f64)> {
+pub fn values(file: &TestFile, case: &Case, history: &RunHistory) -> Vec<(&'static str, f64)> {
     let joint = &case.truth.parameters;
     let lever = joint.geometry.carrier_base_radius();
     let rated = joint.rated_output_torque;
@@ -24,11 +24,13 @@ pub fn figures(file: &TestFile, case: &Case, ran: &Ran) -> Vec<(&'static str, f6
     let mut landings = Landings::default();
     let (mut width_wrong_at, mut contact_then, mut contact) = (0.0, 0.0, 0.0);
     // A sample is taken at its period's end, which is where the next period's estimates are made.
-    for ((sample, truth), sight) in ran.run.samples.iter().zip(&ran.truths).zip(ran.sights.iter().skip(1)) {
-        let width = f64::from(sight.half_backlash) / truth.half_backlash - 1.0;
+    for ((sample, truth), observed) in
+        history.run.samples.iter().zip(&history.truths).zip(history.observer_outputs.iter().skip(1))
+    {
+        let width = f64::from(observed.half_backlash) / truth.half_backlash - 1.0;
         let touching = sample.gap.abs() > 1.0 - BAND;
         if touching && sample.link_speed.abs() > MOVING {
-            contact += ran.run.period;
+            contact += history.run.period;
         }
         if width.is_nan() || width.abs() > WIDTH_RIGHT {
             (width_wrong_at, contact_then) = (sample.time, contact);
@@ -37,17 +39,17 @@ pub fn figures(file: &TestFile, case: &Case, ran: &Ran) -> Vec<(&'static str, f6
             continue;
         }
         let gap = 4.0 * truth.half_backlash;
-        let error = f64::from(sight.gap) - truth.gap;
+        let error = f64::from(observed.gap) - truth.gap;
         sums.count += 1.0;
         sums.gap += (error / gap).powi(2);
         sums.worst = sums.worst.max((error / gap).abs());
-        sums.load += ((f64::from(sight.load_torque) - truth.load_torque) / rated).powi(2);
-        sums.mesh += ((f64::from(sight.mesh_torque) - 2.0 * lever * sample.mesh_force) / rated).powi(2);
-        sums.trust += f64::from(sight.trust);
-        if sight.valid {
+        sums.load += ((f64::from(observed.load_torque) - truth.load_torque) / rated).powi(2);
+        sums.mesh += ((f64::from(observed.mesh_torque) - 2.0 * lever * sample.mesh_force) / rated).powi(2);
+        sums.trust += f64::from(observed.trust);
+        if observed.valid {
             sums.valid += 1.0;
             sums.gap_valid += (error / gap).powi(2);
-            sums.surprise += error * error / f64::from(sight.gap_variance).max(1e-30);
+            sums.nees += error * error / f64::from(observed.gap_variance).max(1e-30);
         }
         // Rated force at the sun: the torque over both levers of the carrier.
         let force = sample.mesh_force * 2.0 * lever / rated;
@@ -61,9 +63,9 @@ pub fn figures(file: &TestFile, case: &Case, ran: &Ran) -> Vec<(&'static str, f6
         let clear = if side == 0 { sample.gap.abs() < 1.0 - 2.0 * BAND } else { force.abs() > BAND };
         if clear {
             sums.judged += 1.0;
-            sums.right += f64::from(u8::from(side == sight.side));
+            sums.right += f64::from(u8::from(side == observed.side));
         }
-        landings.note(sample.time, if sample.gap.abs() > 1.0 { side } else { 0 }, sight.side);
+        landings.note(sample.time, if sample.gap.abs() > 1.0 { side } else { 0 }, observed.side);
     }
     let percent = |sum: f64, count: f64| 100.0 * (sum / count).sqrt();
     let mut list = vec![
@@ -71,7 +73,7 @@ pub fn figures(file: &TestFile, case: &Case, ran: &Ran) -> Vec<(&'static str, f6
         ("gap_error_max", 100.0 * sums.worst),
         ("gap_valid", 100.0 * sums.valid / sums.count),
         ("gap_error_valid", percent(sums.gap_valid, sums.valid)),
-        ("gap_surprise", sums.surprise / sums.valid),
+        ("gap_surprise", sums.nees / sums.valid),
         ("side_right", 100.0 * sums.right / sums.judged),
         ("missed_landings", landings.missed as f64),
         ("load_torque_error", percent(sums.load, sums.count)),
@@ -81,20 +83,20 @@ pub fn figures(file: &TestFile, case: &Case, ran: &Ran) -> Vec<(&'static str, f6
         ("compensated", 100.0 * sums.trust / sums.count),
     ];
     list.extend(landings.delays());
-    list.extend(at_the_end(case, ran));
-    list.extend(alarms(file, ran));
-    list.extend(probed(ran));
+    list.extend(at_the_end(case, history));
+    list.extend(alarms(file, history));
+    list.extend(probed(history));
     list
 }
 
-/// What the width probe came to, if there was one and it ended.
-fn probed(ran: &Ran) -> Vec<(&'static str, f64)> {
-    let times = || ran.run.samples.iter().zip(&ran.sights);
-    let ended = times().find(|(_, sight)| !matches!(sight.probed, None | Some(Progress::Running)));
-    let (Some((sample, sight)), Some(truth)) = (ended, ran.truths.last()) else { return Vec::new() };
+/// The width probe's result, if there was a probe and it ended.
+fn probed(history: &RunHistory) -> Vec<(&'static str, f64)> {
+    let times = || history.run.samples.iter().zip(&history.observer_outputs);
+    let ended = times().find(|(_, observed)| !matches!(observed.probed, None | Some(Progress::Running)));
+    let (Some((sample, observed)), Some(truth)) = (ended, history.truths.last()) else { return Vec::new() };
     let first = times().find(|(sample, _)| sample.command != 0.0).map_or(sample.time, |(sample, _)| sample.time);
     let mut list = vec![("probe_time", 1e3 * (sample.time - first)), ("probe_refused", 1.0)];
-    if let Some(Progress::Done(width)) = sight.probed {
+    if let Some(Progress::Done(width)) = observed.probed {
         list[1].1 = 0.0;
         list.push(("probe_error", 100.0 * (f64::from(width.value) / truth.half_backlash - 1.0).abs()));
     }
@@ -111,7 +113,7 @@ struct Sums {
     trust: f64,
     valid: f64,
     gap_valid: f64,
-    surprise: f64,
+    nees: f64,
     judged: f64,
     right: f64,
 }
@@ -154,8 +156,10 @@ impl Landings {
 }
 
 /// What was learnt.
-fn at_the_end(case: &Case, ran: &Ran) -> Vec<(&'static str, f64)> {
-    let (Some(sight), Some(truth)) = (ran.sights.last(), ran.truths.last()) else { return Vec::new() };
+fn at_the_end(case: &Case, history: &RunHistory) -> Vec<(&'static str, f64)> {
+    let (Some(observed), Some(truth)) = (history.observer_outputs.last(), history.truths.last()) else {
+        return Vec::new();
+    };
     let joint = &case.truth.parameters;
     let lever = joint.geometry.carrier_base_radius();
     // Every mesh carries its share of the force; both in a row give way, felt over twice the carrier's lever.
@@ -165,14 +169,14 @@ fn at_the_end(case: &Case, ran: &Ran) -> Vec<(&'static str, f64)> {
     let around = &case.truth.surroundings;
     let skew = around.output_encoder.skew - around.motor_encoder.skew;
     vec![
-        ("width_error", 100.0 * (f64::from(sight.half_backlash) / truth.half_backlash - 1.0).abs()),
-        ("compliance_error", 100.0 * (f64::from(sight.compliance) / compliance - 1.0).abs()),
-        ("skew_error", 1e6 * (f64::from(sight.skew) - skew).abs()),
+        ("width_error", 100.0 * (f64::from(observed.half_backlash) / truth.half_backlash - 1.0).abs()),
+        ("compliance_error", 100.0 * (f64::from(observed.compliance) / compliance - 1.0).abs()),
+        ("skew_error", 1e6 * (f64::from(observed.skew) - skew).abs()),
     ]
 }
 
 /// When the observer gave up the output encoder, and whether it had to.
-fn alarms(file: &TestFile, ran: &Ran) -> Vec<(&'static str, f64)> {
+fn alarms(file: &TestFile, history: &RunHistory) -> Vec<(&'static str, f64)> {
     let of_output = |fault: &&Fault| {
         matches!(
             fault.kind,
@@ -184,20 +188,20 @@ fn alarms(file: &TestFile, ran: &Ran) -> Vec<(&'static str, f64)> {
     };
     let first = file.faults.iter().filter(of_output).map(|fault| fault.start).fold(f64::INFINITY, f64::min);
     let (mut found, mut false_alarms, mut before) = (None, 0, false);
-    for (sample, sight) in ran.run.samples.iter().zip(&ran.sights) {
-        if before && !sight.both {
+    for (sample, observed) in history.run.samples.iter().zip(&history.observer_outputs) {
+        if before && !observed.both {
             if sample.time >= first {
                 found = found.or(Some(sample.time - first));
             }
             let on = file.faults.iter().any(|fault| fault_is_on(fault, sample.time));
             false_alarms += usize::from(!on);
         }
-        before = sight.both;
+        before = observed.both;
     }
     let mut list = vec![("false_alarms", false_alarms as f64)];
     if first.is_finite() {
         // Never found is later than any bound.
-        let end = ran.run.samples.last().map_or(0.0, |sample| sample.time);
+        let end = history.run.samples.last().map_or(0.0, |sample| sample.time);
         list.push(("fault_found", 1e3 * found.unwrap_or((end - first).max(0.0) + 1e3)));
     }
     list

@@ -1,5 +1,5 @@
-//! What `joint check` says of a joint, as data: figures in SI with their units in their names. As JSON it has the schema
-//! `joint-check/1`; how the figures come about is in `derive`.
+//! The result of `joint check` as data: figures in SI with their units in their names, as JSON in the schema
+//! `joint-check/1`. They are computed in `derive`.
 
 use serde::Serialize;
 
@@ -8,7 +8,7 @@ pub(super) const SCHEMA: &str = "joint-check/1";
 
 /// Everything that `joint check` says of a joint.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Figures {
+pub struct CheckSummary {
     /// `joint-check/1`.
     pub schema: String,
     /// Path or preset.

@@ -1,5 +1,5 @@
-//! The fixed-step methods on the emulated core: jobs as Rust source, built into one image, run, and held against the
-//! digests that the host reached. What a job is worth is judged elsewhere.
+//! The fixed-step methods on the emulated core: jobs as Rust source, built into one image, run, and compared with the
+//! digests that the host computed.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -7,10 +7,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use contest::case::Case;
-use contest::course::Restart;
 use contest::method::Method;
 use contest::run;
 use contest::start::Deflected;
+use contest::trajectory::Restart;
 use peers::two_mass::{Contact, TwoMass};
 
 use board::target::cross_build::cannot_write;
@@ -126,7 +126,7 @@ fn source(jobs: &[Job<'_>]) -> Outcome<String> {
          use model_core::gears::tables::{Scheme::*, *};\n\
          use peers::etd1::Etd1;\nuse peers::euler::SemiImplicitEuler;\nuse peers::motion::Coordinates;\nuse peers::peer::Start;\n\
          use peers::plant::{Flow as PlantFlow, Gains, Law::*, Mesh, Phase, Plant};\nuse peers::trapezoid::Trapezoid;\n\
-         use peers::two_mass::{Contact::*, TwoMass};\nuse super::{Change, Race, Way};\n\n\
+         use peers::two_mass::{Contact::*, TwoMass};\nuse super::{Change, JobRunner, StepSchedule};\n\n\
          type RungeKutta<const N: usize> = peers::runge_kutta::RungeKutta4<f32, N>;\n\n",
     );
     let mut calls = String::new();
@@ -138,8 +138,8 @@ fn source(jobs: &[Job<'_>]) -> Outcome<String> {
         }
         let list = torques.iter().position(|key| *key == job.case.key).unwrap_or_default();
         let (steps, rate, tick_rate) = (run::steps(job.case, job.rate), job.rate, job.case.tick_rate);
-        let way = format!(
-            "&Way {{ steps: {steps}, rate: {rate}, tick_rate: {tick_rate}, torques: &TORQUES_{list}, \
+        let schedule = format!(
+            "&StepSchedule {{ steps: {steps}, rate: {rate}, tick_rate: {tick_rate}, torques: &TORQUES_{list}, \
              restarts: &RESTARTS_{list} }}"
         );
         let (statics, call) = match job.case.joint.geometry.planets {
@@ -149,9 +149,9 @@ fn source(jobs: &[Job<'_>]) -> Outcome<String> {
         };
         text += &statics;
         // Writing to a string cannot fail.
-        let _ = writeln!(calls, "    {}, {way});", call);
+        let _ = writeln!(calls, "    {}, {schedule});", call);
     }
-    let _ = write!(text, "\npub fn run(race: &Race) {{\n{calls}}}\n");
+    let _ = write!(text, "\npub fn run(runner: &JobRunner) {{\n{calls}}}\n");
     Ok(text)
 }
 
@@ -166,7 +166,7 @@ fn lists(index: usize, case: &Case) -> String {
     text + &format!("];\nstatic RESTARTS_{index}: [u32; {count}] = {ticks:?};\n")
 }
 
-/// Statics of a job, and its call but for the way.
+/// Statics of a job, and its call but for the schedule.
 fn numbers<const N: usize>(index: usize, job: &Job<'_>) -> Outcome<(String, String)> {
     let joint = &job.case.joint;
     let starts = Deflected::<N>::all(joint, &job.case.start, job.restarts);
@@ -181,7 +181,7 @@ fn numbers<const N: usize>(index: usize, job: &Job<'_>) -> Outcome<(String, Stri
                 "static PLANT_{index}: Plant<f32, {N}> = {plant};\n\
                  static STARTS_{index}: [Start<f32, {N}>; {count}] = {starts:?};\n"
             ),
-            format!("race.peer::<{N}, {scheme}>({index}, &PLANT_{index}, &STARTS_{index}"),
+            format!("runner.peer::<{N}, {scheme}>({index}, &PLANT_{index}, &STARTS_{index}"),
         )
     };
     let two_mass = |contact: Contact| {
@@ -196,7 +196,7 @@ fn numbers<const N: usize>(index: usize, job: &Job<'_>) -> Outcome<(String, Stri
                 "static MODEL_{index}: TwoMass<f32> = {model:?};\n\
                  static STARTS_{index}: [[f32; 2]; {count}] = {starts:?};\n"
             ),
-            format!("race.two_mass({index}, &MODEL_{index}, &STARTS_{index}"),
+            format!("runner.two_mass({index}, &MODEL_{index}, &STARTS_{index}"),
         )
     };
     Ok(match job.method {
@@ -209,7 +209,7 @@ fn numbers<const N: usize>(index: usize, job: &Job<'_>) -> Outcome<(String, Stri
                     "static TABLES_{index}: Tables<f32, {N}> = {tables:?};\n\
                      static STATES_{index}: [State<f32, {N}>; {count}] = {states:?};\n"
                 ),
-                format!("race.core::<{N}>({index}, &TABLES_{index}, &STATES_{index}"),
+                format!("runner.core::<{N}>({index}, &TABLES_{index}, &STATES_{index}"),
             )
         }
         Method::RungeKutta4 | Method::RungeKutta4Tanh => peer(&format!("RungeKutta<{N}>")),

@@ -1,13 +1,13 @@
-//! Every method on every case at one step after another: error from the host, instructions from the emulated core.
+//! Every method on every case over a range of step sizes: error from the host, instructions from the emulated core.
 
 use contest::case::{Case, Measure};
-use contest::course::Errors;
-use contest::curve::{Field, PHASES, Point, Scalar};
+use contest::curve::{PHASES, PhaseEnvelope, Point, Scalar};
 use contest::method::Method;
 use contest::run::AS_DESIGNED;
+use contest::trajectory::Errors;
 use serde::Serialize;
 
-use super::race::{self, Count, Job};
+use super::emulated_runs::{self, Count, Job};
 use board::target::Say;
 use board::target::toolchain::Toolchain;
 use report::failure::{Failure, Outcome};
@@ -25,7 +25,7 @@ const TICKS: [u32; 3] = [1, 2, 4];
 
 /// One method on one case.
 #[derive(Debug, Clone, Serialize)]
-pub struct Entry {
+pub struct MethodResult {
     /// Case.
     pub case: String,
     /// Method.
@@ -33,13 +33,13 @@ pub struct Entry {
     /// In tables and pictures.
     pub name: &'static str,
     /// From coarse to fine.
-    pub marks: Vec<Mark>,
+    pub marks: Vec<StepResult>,
 }
 
 /// One step size.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[allow(non_snake_case, reason = "units are spelled as in every file that this command writes")]
-pub struct Mark {
+pub struct StepResult {
     /// Steps a second; of the core's step ticks a second.
     pub rate_Hz: u32,
     /// Sub-steps of each; 0 for what the design chooses for a board.
@@ -64,11 +64,11 @@ pub struct Mark {
     pub sample_instructions_most: [u32; 3],
 }
 
-impl Entry {
+impl MethodResult {
     /// Cost and error, from coarse to fine, in series that differ in the step alone.
     pub fn series(&self) -> Vec<Vec<(f64, f64)>> {
         // Ticks matter to the core's step alone; what the design chooses is a series of its own.
-        let ticks = |mark: &Mark| match self.method {
+        let ticks = |mark: &StepResult| match self.method {
             Method::Realtime if mark.substeps != AS_DESIGNED => mark.rate_Hz,
             _ => 0,
         };
@@ -83,7 +83,7 @@ impl Entry {
     }
 }
 
-impl Mark {
+impl StepResult {
     /// Instructions for a second of the joint.
     pub fn cost(&self) -> f64 {
         self.instructions * f64::from(self.rate_Hz)
@@ -93,7 +93,7 @@ impl Mark {
 /// A case as it was run.
 #[derive(Debug, Clone, Serialize)]
 #[allow(non_snake_case, reason = "units are spelled as in every file that this command writes")]
-pub struct CaseFigures {
+pub struct CaseRecord {
     /// Short name.
     pub key: String,
     /// What happens.
@@ -118,16 +118,16 @@ pub fn run(
     toolchain: &Toolchain,
     progress: &Progress,
     say: Say<'_>,
-) -> Outcome<(Vec<CaseFigures>, Vec<Entry>)> {
+) -> Outcome<(Vec<CaseRecord>, Vec<MethodResult>)> {
     let (mut figures, mut entries) = (Vec::new(), Vec::new());
     for case in cases {
         progress.stage(&format!("case {}: reference", case.key));
         let failed = |error: &dyn std::fmt::Display| Failure::new(format!("case {}: {error}", case.key));
         // Where the motion is unpredictable a few phases say as much as many.
         let phases = if case.measure == Measure::LinkAngle { 2 } else { PHASES };
-        let field = Field::new(case.clone(), phases).map_err(|error| failed(&error))?;
-        let sensitivity = field.sensitivity().map_err(|error| failed(&error))?;
-        figures.push(CaseFigures {
+        let envelope = PhaseEnvelope::new(case.clone(), phases).map_err(|error| failed(&error))?;
+        let sensitivity = envelope.sensitivity().map_err(|error| failed(&error))?;
+        figures.push(CaseRecord {
             key: case.key.clone(),
             title: case.title.clone(),
             measure: measure(&case),
@@ -138,32 +138,32 @@ pub fn run(
             sensitivity: of_measure(&case, &sensitivity),
         });
         progress.stage(&format!("case {}: methods on the host", case.key));
-        let found = points(&field);
+        let found = points(&envelope);
         let jobs: Vec<Job<'_>> = found
             .iter()
             .map(|(method, point, _)| {
                 let lost = finite(point.errors.link_rms).is_none();
                 let digest = (!lost).then_some(point.digest);
-                let restarts = field.course().restarts();
+                let restarts = envelope.trajectory().restarts();
                 let (rate, substeps) = (point.rate, point.substeps);
-                Job { case: &field.case, restarts, method: *method, rate, substeps, digest }
+                Job { case: &envelope.case, restarts, method: *method, rate, substeps, digest }
             })
             .collect();
         progress.stage(&format!("case {}: methods on the emulated core", case.key));
-        let counts = race::run(&jobs, toolchain, say)?;
+        let counts = emulated_runs::run(&jobs, toolchain, say)?;
         for method in Method::ALL {
             let of_method = found.iter().zip(&counts).filter(|((which, ..), _)| *which == method);
             let marks =
                 of_method.map(|((_, point, double), count)| mark(&case, point, double.as_ref(), count)).collect();
-            entries.push(Entry { case: case.key.clone(), method, name: method.name(), marks });
+            entries.push(MethodResult { case: case.key.clone(), method, name: method.name(), marks });
         }
     }
     Ok((figures, entries))
 }
 
 /// All methods at all rates that they can run at; this step in double precision too.
-fn points(field: &Field) -> Vec<(Method, Point, Option<Point>)> {
-    let case = &field.case;
+fn points(envelope: &PhaseEnvelope) -> Vec<(Method, Point, Option<Point>)> {
+    let case = &envelope.case;
     let constant = case.torques.len() <= 1;
     let unit = if constant { case.sample_rate / 4 } else { case.tick_rate };
     let multiples: &[u32] = if constant { &MULTIPLES } else { &STEPS_A_TICK };
@@ -180,9 +180,9 @@ fn points(field: &Field) -> Vec<(Method, Point, Option<Point>)> {
         };
         for (rate, substeps) in steps {
             // The design refuses what it cannot make tables of.
-            let Ok(point) = field.point(method, Scalar::Single, rate, substeps) else { continue };
+            let Ok(point) = envelope.point(method, Scalar::Single, rate, substeps) else { continue };
             let double = (method == Method::Realtime)
-                .then(|| field.point(method, Scalar::Double, rate, substeps).ok())
+                .then(|| envelope.point(method, Scalar::Double, rate, substeps).ok())
                 .flatten();
             found.push((method, point, double));
         }
@@ -209,8 +209,8 @@ fn finite(error: f64) -> Option<f64> {
     (error.is_finite() && error < 1e6).then_some(error)
 }
 
-fn mark(case: &Case, point: &Point, double: Option<&Point>, count: &Count) -> Mark {
-    Mark {
+fn mark(case: &Case, point: &Point, double: Option<&Point>, count: &Count) -> StepResult {
+    StepResult {
         rate_Hz: point.rate,
         substeps: point.substeps,
         step: point.step,

@@ -1,18 +1,18 @@
-//! Everything that a comparison finds, and where it comes from, as it is written as JSON.
+//! The record of a comparison, with its provenance, as it is written as JSON.
 
 use serde::Serialize;
 
-use crate::{in_a_sample, libraries, lineup, verdicts};
+use crate::{in_a_sample, libraries, method_results, verdicts};
 
 /// Everything found.
 #[derive(Debug, Clone, Serialize)]
-pub struct Figures {
+pub struct BenchmarkRecord {
     /// Where the figures come from.
     pub origin: Origin,
     /// Cases.
-    pub cases: Vec<lineup::CaseFigures>,
+    pub cases: Vec<method_results::CaseRecord>,
     /// Fixed-step methods: error and instructions.
-    pub methods: Vec<lineup::Entry>,
+    pub methods: Vec<method_results::MethodResult>,
     /// Instructions at equal error.
     pub at_equal_error: Vec<verdicts::AtError>,
     /// Robot joints: every method at the same cost.

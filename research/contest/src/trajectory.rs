@@ -1,5 +1,5 @@
-//! The reference's motion through a case, sampled, and how far another motion is from it. The other motion may be sampled
-//! more coarsely.
+//! The reference's sampled trajectory through a case, and the error of another motion against it. The other motion may
+//! be sampled more coarsely.
 
 use parameters::Excitation;
 use reference::joint::{Reference, ReferenceError, RelativeState, Start};
@@ -9,7 +9,7 @@ use crate::reading::Reading;
 
 /// The reference's motion.
 #[derive(Debug, Clone)]
-pub struct Course {
+pub struct ReferenceTrajectory {
     /// From time zero on, `sample_rate` in a second.
     samples: Vec<Reading>,
     /// Its state wherever the case restarts.
@@ -63,7 +63,7 @@ impl Errors {
     }
 }
 
-impl Course {
+impl ReferenceTrajectory {
     /// Follows a case.
     pub fn new(case: &Case) -> Result<Self, ReferenceError> {
         Self::from(case, &case.start)

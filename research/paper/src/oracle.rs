@@ -1,19 +1,19 @@
-//! A second integrator on the same attractor: the event-restarted Runge-Kutta method of order 8 in absolute
-//! coordinates, which shares neither equations nor method with the study. It is too slow for whole diagrams.
+//! An independent check of an attractor: the event-restarted Runge-Kutta method of order 8 in absolute coordinates,
+//! which shares neither equations nor method with the study. It is too slow for whole diagrams.
 
 use model_core::gears::Scales;
 use reference::joint::{Reference, RelativeState, Start};
 
-use super::plan::Subject;
+use super::plan::StudyJoint;
 use crate::numerics::attractor::Class;
-use crate::numerics::motion::{Motion, State};
+use crate::numerics::integrator::{EventIntegrator, State};
 
 /// Periods compared on an attractor without a period: neighbours have not parted much yet.
 const PERIODS: usize = 6;
 
 /// Greatest distance over b_c (rates over b_c omega_n) at the next Poincare points, from where a motion is; none if the
 /// second integrator refuses the joint.
-pub fn distance(subject: &Subject, half_backlash: f64, motion: &Motion<'_>, class: Class) -> Option<f64> {
+pub fn distance(subject: &StudyJoint, half_backlash: f64, motion: &EventIntegrator<'_>, class: Class) -> Option<f64> {
     let parameters = subject.with_half_backlash(half_backlash);
     let scales = Scales::new(&parameters);
     let system = motion.system();
@@ -31,7 +31,7 @@ pub fn distance(subject: &Subject, half_backlash: f64, motion: &Motion<'_>, clas
         rigid_speed: 0.0,
     };
     let mut reference = Reference::start(&parameters, &Start::Relative(start)).ok()?;
-    let mut own = Motion::new(system, motion.state());
+    let mut own = EventIntegrator::new(system, motion.state());
     let periods = match class {
         Class::Periodic(period) => period,
         _ => PERIODS,

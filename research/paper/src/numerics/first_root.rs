@@ -1,4 +1,4 @@
-//! The first moment at which a polynomial falls below zero.
+//! The first time at which a polynomial becomes negative.
 
 /// Parts of the interval looked at one by one. Within one a guard has at most one extremum: a step is at most about one
 /// radian of the fastest motion.

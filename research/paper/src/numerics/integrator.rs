@@ -1,9 +1,9 @@
-//! A joint in motion, mesh period by mesh period: Taylor steps that end at every contact event, with any number of
-//! tangent vectors carried along. Keeps no history.
+//! Integrates a joint mesh period by mesh period: Taylor steps that end at every contact event, with any number of
+//! tangent vectors carried along. No history is kept.
 
 use parameters::{ContactState, DampingLaw};
 
-use super::fall::first_fall;
+use super::first_root::first_fall;
 pub use super::series::{Coordinates, State};
 use super::series::{Moment, Series};
 use super::system::{MAX_COORDINATES, MAX_MESHES, StudyError, System};
@@ -12,7 +12,7 @@ use super::zone::{Guard, Side, Zone};
 /// Size of the last terms kept, over b_c: what a step neglects is smaller still.
 const TOLERANCE: f64 = 1e-12;
 
-/// Longest step in dimensionless time: what `fall` asks for.
+/// Longest step in dimensionless time: what `first_root` asks for.
 const LONGEST_STEP: f64 = 0.6;
 
 /// Shortest step that counts as progress, in periods.
@@ -32,7 +32,7 @@ const FARTHEST: f64 = 1e9;
 
 /// A joint in motion.
 #[derive(Debug, Clone)]
-pub struct Motion<'a> {
+pub struct EventIntegrator<'a> {
     system: &'a System,
     state: State,
     /// Time since the beginning of the present period.
@@ -44,7 +44,7 @@ pub struct Motion<'a> {
 }
 
 /// A stretch of motion between two steps, for reading off what happens within.
-pub struct Stretch<'a> {
+pub struct Segment<'a> {
     system: &'a System,
     series: &'a Series,
     /// Its beginning, since the beginning of the period.
@@ -53,14 +53,14 @@ pub struct Stretch<'a> {
     pub to: f64,
 }
 
-impl Stretch<'_> {
+impl Segment<'_> {
     /// State at a time within.
     pub fn at(&self, time: f64) -> State {
         self.series.at(self.system.coordinates(), time - self.from)
     }
 }
 
-impl<'a> Motion<'a> {
+impl<'a> EventIntegrator<'a> {
     /// A joint at the beginning of a period.
     pub fn new(system: &'a System, state: State) -> Self {
         let mut motion = Self {
@@ -124,7 +124,7 @@ impl<'a> Motion<'a> {
     }
 
     /// The same, showing every stretch on the way.
-    pub fn period_with(&mut self, mut look: impl FnMut(&Stretch<'_>)) -> Result<(), StudyError> {
+    pub fn period_with(&mut self, mut look: impl FnMut(&Segment<'_>)) -> Result<(), StudyError> {
         let end = self.system.period();
         let coordinates = self.system.coordinates();
         let (mut steps, mut idle) = (0, 0);
@@ -145,7 +145,7 @@ impl<'a> Motion<'a> {
             let step = event.as_ref().map_or(whole, |event| event.step);
             if step > 0.0 {
                 let to = if step == remaining { end } else { self.time + step };
-                look(&Stretch { system: self.system, series: &series, from: self.time, to });
+                look(&Segment { system: self.system, series: &series, from: self.time, to });
                 for tangent in &mut self.tangents {
                     *tangent = Series::tangent(self.system, &moment, tangent).at(coordinates, step);
                 }

@@ -15,7 +15,7 @@ use super::prior::PriorModel;
 use super::rows::Rows;
 use super::twist::Twist;
 
-/// What identification leaves behind as JSON, and on its page.
+/// The record of an identification, for JSON and the report.
 #[derive(Debug, Serialize)]
 pub struct Record<'a> {
     /// Name and version of this form.

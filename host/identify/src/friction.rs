@@ -38,7 +38,7 @@ pub fn of_the_link(rows: &Rows, prior: &PriorModel, torque_error: f64, motor_dry
             row.output.cos(),
             1.0,
         ];
-        let from_motor = row.drive + torque_error * row.push - row.leverage * row.direction * motor_dry;
+        let from_motor = row.drive + torque_error * row.motor_torque - row.leverage * row.direction * motor_dry;
         let torque = row.measured.unwrap_or(from_motor);
         equations.push(coefficients, torque, block(row));
     }
@@ -54,7 +54,7 @@ pub fn of_the_motor(rows: &Rows, prior: &PriorModel) -> Option<Solution> {
         // What the joint file says of the viscous part was taken off before.
         let known = prior.surroundings.motor_friction.viscous * row.motor_speed;
         let left = (row.drive - measured) / row.leverage + known;
-        equations.push(vec![row.direction, row.motor_speed, -row.push / row.leverage, 1.0], left, block(row));
+        equations.push(vec![row.direction, row.motor_speed, -row.motor_torque / row.leverage, 1.0], left, block(row));
     }
     equations.solve(&[f64::INFINITY, f64::INFINITY, prior.torque_error.max(1e-9), BIAS * rows.greatest / prior.ratio()])
 }

@@ -1,12 +1,12 @@
 //! Noise of an encoder's readings, quantisation included, block by block: from fourth differences, which the joint's
 //! motion does not reach.
 
-/// Samples of a stretch.
+/// Samples of a block.
 const BLOCK_LENGTH: usize = 256;
 /// Sum of the squares of 1, -4, 6, -4, 1.
 const GAIN: f64 = 70.0;
 
-/// Variance of readings by stretch.
+/// Variance of readings by block.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Noise(Vec<f64>);
 

@@ -8,7 +8,7 @@ use parameters::{Mesh, MeshKind, StiffnessWave, Surroundings};
 use super::arguments::Arguments;
 use joint_file::named::Loaded;
 
-/// What is known beforehand.
+/// The joint as known from its file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PriorModel {
     /// Name of the joint.

@@ -16,12 +16,12 @@ pub const SCATTERING: usize = 3;
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Scatter(pub [[f64; SCATTERING + 1]; SCATTERING + 1]);
 
-/// Equations to be solved together.
+/// A system of equations to be solved in the least-squares sense.
 #[derive(Debug, Clone, Default)]
 pub struct Equations {
     rows: Vec<Vec<f64>>,
     values: Vec<f64>,
-    /// Stretch of time that an equation is of.
+    /// Block of time that an equation belongs to.
     blocks: Vec<usize>,
     /// How coefficients scatter; nothing if none do.
     scatters: Vec<Scatter>,
@@ -149,7 +149,7 @@ impl Equations {
         }
     }
 
-    /// Sum over stretches of time of the square of what each pulls, and how many there are.
+    /// Sum over blocks of time of the square of what each pulls, and how many there are.
     fn scatter(&self, pulls: &Pulls<'_>, noise: f64) -> (DMatrix<f64>, usize) {
         let Pulls { matrix, weights, residuals, solved, scales } = *pulls;
         let unknowns = matrix.ncols();
@@ -173,7 +173,7 @@ impl Equations {
                 }
             }
         }
-        // Each stretch has bent the solution towards itself.
+        // Each block has pulled the solution towards itself.
         let correction = pulls.len() as f64 / (pulls.len() as f64 - 1.0).max(1.0)
             * (self.count() as f64 / (self.count() - unknowns) as f64);
         let mut sum = DMatrix::zeros(unknowns, unknowns);

@@ -26,7 +26,7 @@ const SWING_STEPS: f64 = 6.0;
 /// Counts that an encoder may be off by, from one reading to another.
 const QUICK_COUNTS: f64 = 1.01;
 
-/// One moment.
+/// One sample of the fits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Row {
     /// Its sample.
@@ -52,7 +52,7 @@ pub struct Row {
     /// Output over motor torque: ratio, after the gears' losses.
     pub leverage: f64,
     /// Motor torque alone, likewise at the output [N m].
-    pub push: f64,
+    pub motor_torque: f64,
     /// Rate of the motor torque, at the output [N m/s].
     pub drive_rate: f64,
     /// Measured at the output, if it was [N m].
@@ -63,7 +63,7 @@ pub struct Row {
     pub side: f64,
 }
 
-/// The moments of a log, evenly spaced.
+/// The samples of a log that the fits use, evenly spaced.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rows {
     /// All of them, settled or not.
@@ -166,7 +166,7 @@ fn row(log: &Log, prior: &PriorModel, kernel: &Kernel, sample: usize) -> Row {
         output_acceleration: smooth(&log.output, 2),
         drive: leverage * net,
         leverage,
-        push: leverage * torque,
+        motor_torque: leverage * torque,
         drive_rate: leverage * smooth(&log.torque, 1),
         measured: log.output_torque.as_ref().map(|torque| smooth(torque, 0)),
         direction,

@@ -42,13 +42,13 @@ const DELAY_WIDTH: f64 = 2e-3;
 const RELAXATION_WIDTH: f64 = 1e-2;
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
-/// Length of the stretches whose residuals are taken for independent of one another [s].
+/// Length of the blocks whose residuals are assumed to be independent of one another [s].
 pub const BLOCK_LENGTH: f64 = 0.1;
 
 /// Takes an unknown out of a fit.
 const NONE: f64 = 1e-12;
 
-/// The fit and the moments that it is of.
+/// The fit and the samples that it is made from.
 #[derive(Debug, Clone)]
 pub struct Twist {
     /// The unknowns.
@@ -135,7 +135,7 @@ fn equation(log: &Log, rows: &Rows, prior: &PriorModel, row: &Row) -> Vec<f64> {
         equation.push(smooth(&|place| (order * log.teeth(place, prior)).sin()));
         equation.push(smooth(&|place| (order * log.teeth(place, prior)).cos()));
     }
-    equation.push(if row.measured.is_some() { 0.0 } else { row.push });
+    equation.push(if row.measured.is_some() { 0.0 } else { row.motor_torque });
     // Teeth that pass near the swing's own frequency shake more than two inertias on a spring say.
     let passing = f64::from(prior.ring_teeth) * row.output_speed * prior.swing() / std::f64::consts::TAU;
     equation.push(passing * passing * smooth(&|place| log.teeth(place, prior).sin()));

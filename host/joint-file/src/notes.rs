@@ -16,7 +16,7 @@ pub struct Source {
     pub remark: Option<String>,
 }
 
-/// Collects while the sections of one file are read.
+/// Problems and remarks, collected while the sections of one file are read.
 pub struct Notes<'t> {
     text: &'t str,
     problems: RefCell<Vec<Problem>>,

@@ -11,7 +11,7 @@ use crate::problem::Problem;
 use crate::section::Section;
 use crate::{bodies, coherence, drive_train, geometry, meshes};
 
-/// A joint file that can be used.
+/// A valid joint file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointFile {
     /// The joint, in SI.

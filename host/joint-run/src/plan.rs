@@ -44,7 +44,7 @@ pub struct RunRequest<'a> {
     pub picture: Option<&'a Path>,
 }
 
-/// A run that can be made.
+/// A validated run.
 #[derive(Debug, Clone)]
 pub struct RunPlan {
     /// The joint file as the user named it.

@@ -26,7 +26,7 @@ use report::write::unwritten;
 /// What a board is asked to do with its flash.
 type Ask = fn(&mut Session<'static>) -> Outcome<Kept>;
 
-/// Does what is asked for.
+/// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
     Progress::during(|progress| match &arguments.command {
         Command::Show { file, joint, json } => show(file, joint, json.as_deref()),

@@ -10,7 +10,7 @@ pub const EXIT_BAD_INPUT: u8 = 2;
 /// Exit code after Ctrl-C: 128 + SIGINT.
 pub const EXIT_INTERRUPTED: u8 = 130;
 
-/// Why the command did not succeed.
+/// The error of a command.
 #[derive(Debug)]
 pub struct Failure {
     message: String,
@@ -19,7 +19,7 @@ pub struct Failure {
     exit_code: u8,
 }
 
-/// Result of everything that a user may see fail.
+/// Result of everything whose error is shown to the user.
 pub type Outcome<T> = Result<T, Failure>;
 
 impl Failure {

@@ -9,7 +9,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use crate::failure::Outcome;
 use crate::interruption;
 
-/// The line; any thread may move it on.
+/// The progress line; any thread may update it.
 pub struct Progress {
     bar: Mutex<Option<ProgressBar>>,
 }

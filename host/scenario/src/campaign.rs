@@ -37,7 +37,7 @@ pub struct RunOptions<'c> {
     pub done: &'c (dyn Fn(u32) + Sync),
 }
 
-/// A test with what its pictures need.
+/// A finished test: its record, and the data of its pictures.
 pub struct FinishedTest {
     /// Everything that is written.
     pub record: TestRecord,

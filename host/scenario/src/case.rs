@@ -36,13 +36,13 @@ pub struct Case {
     pub width_guess: f64,
     /// Where the link shall be.
     pub motion: SharedReference,
-    /// What pushes it.
+    /// Disturbance torques on the link.
     pub disturbances: Vec<Disturbance>,
     /// Texts of the joint files: as controllers know the joint but for its backlash, and the truth.
     texts: [String; 2],
 }
 
-/// What observer and compensation are designed to for a case.
+/// The designed tables of observer, compensation and width probe for a case.
 pub struct Designed {
     /// Tables of the observer.
     pub observer: ObserverTables<f32>,

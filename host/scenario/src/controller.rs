@@ -31,7 +31,7 @@ pub enum ControllerName {
     TrueStateCompensation,
 }
 
-/// An impedance, and how often its point is sent.
+/// An impedance, and the rate of its set-points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gains {
     /// [N m/rad].
@@ -122,7 +122,7 @@ impl ControllerName {
         if impedance { Self::LinkSpring } else { Self::OutputIntegral }
     }
 
-    /// Who would do the same on a joint without a gap: what an impedance's deviation is measured from.
+    /// The controller that gives the same impedance on a joint without a gap, from which the deviation is measured.
     pub fn without_gap(self) -> Self {
         if self.is_compensation() { Self::LinkSpring } else { self }
     }

@@ -3,7 +3,7 @@
 
 use reference::drive_train::Disturbance;
 
-use super::file::{Load, TestFile, Wave};
+use super::file::{ProfileLoad, TestFile, Wave};
 use super::recorded::RecordedMotion;
 
 /// A hold is disturbed by this part of the rated torque: 1.5 N m for Q1.
@@ -11,18 +11,18 @@ const DISTURBED: f64 = 0.125;
 /// An impact is this many times the rated torque.
 const IMPACT: f64 = 3.0;
 
-/// A hold that is left alone is pushed so long before its figures begin [s].
+/// In a free hold the disturbing pulse comes so long before the figures begin [s].
 const BEFORE: f64 = 0.1;
 
 /// All torques on the link in a run.
 pub fn disturbances(file: &TestFile, recorded: Option<&RecordedMotion>, rated: f64) -> Vec<Disturbance> {
     let mut list = Vec::new();
     match file.profile.load {
-        Load::None => {}
-        Load::Wave(Wave::Sine, torque, frequency) => {
+        ProfileLoad::None => {}
+        ProfileLoad::Wave(Wave::Sine, torque, frequency) => {
             list.push(Disturbance::Sine { amplitude: torque.unwrap_or(DISTURBED * rated), frequency });
         }
-        Load::Wave(Wave::Square, torque, frequency) => {
+        ProfileLoad::Wave(Wave::Square, torque, frequency) => {
             let torque = torque.unwrap_or(DISTURBED * rated);
             list.push(Disturbance::Step { start: 0.0, torque });
             let half = 0.5 / frequency;
@@ -32,11 +32,11 @@ pub fn disturbances(file: &TestFile, recorded: Option<&RecordedMotion>, rated: f
                 Disturbance::Step { start: turn as f64 * half, torque: sign * torque }
             }));
         }
-        Load::Kick(torque, length) => {
+        ProfileLoad::Kick(torque, length) => {
             let torque = torque.unwrap_or(DISTURBED * rated);
             list.push(Disturbance::Pulse { start: (file.settle - BEFORE).max(0.0), duration: length, torque });
         }
-        Load::Impacts(torque, length) => {
+        ProfileLoad::Impacts(torque, length) => {
             let torque = torque.unwrap_or(IMPACT * rated);
             let disturbances = (file.duration - file.settle).ceil() as usize;
             list.extend((0..disturbances).map(|push| {
@@ -44,7 +44,7 @@ pub fn disturbances(file: &TestFile, recorded: Option<&RecordedMotion>, rated: f
                 Disturbance::Pulse { start: file.settle + push as f64 + 0.2, duration: length, torque: sign * torque }
             }));
         }
-        Load::Slow(torque, frequency) => {
+        ProfileLoad::Slow(torque, frequency) => {
             list.push(Disturbance::Sine { amplitude: torque.unwrap_or(rated), frequency });
         }
     }

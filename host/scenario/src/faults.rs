@@ -28,7 +28,7 @@ pub struct TimedReading {
     pub period: u64,
 }
 
-/// What reaches a controller in one control period.
+/// The sensor readings that reach a controller in one control period.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ControllerInputs {
     /// Now.
@@ -39,7 +39,7 @@ pub struct ControllerInputs {
     pub output: Option<TimedReading>,
 }
 
-/// All faults of a run with what they remember.
+/// All faults of a run with their state.
 #[derive(Debug, Clone)]
 pub struct HostFaults {
     faults: Vec<Active>,

@@ -3,7 +3,7 @@
 
 use super::controller::ControllerName;
 
-/// What kind of test a figure needs.
+/// The kind of test that a metric needs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Requirement {
     /// Any.
@@ -18,7 +18,7 @@ pub enum Requirement {
     Loop,
 }
 
-/// One figure.
+/// One metric.
 #[derive(Debug, PartialEq)]
 pub struct Metric {
     /// Name without its unit.
@@ -37,7 +37,7 @@ const fn metric(stem: &'static str, unit: &'static str, requires: Requirement, m
 
 use Requirement::{Impedance, Loop, Motion, Observer, Probe};
 
-/// All figures that a run itself has.
+/// All metrics of a single run.
 pub static METRICS: &[Metric] = &[
     metric("rms", "mrad", Motion, "link against wanted position, root mean square"),
     metric("peak", "mrad", Motion, "link against wanted position, largest"),
@@ -102,7 +102,7 @@ pub static METRICS: &[Metric] = &[
     metric("loop_stiffness", "N_m_per_rad", Loop, "slope of the loop between half and full torque"),
 ];
 
-/// A figure of the controller's run, or one against another controller's.
+/// A metric of the controller's run, or one relative to another controller's.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NamedMetric {
     index: usize,
@@ -110,7 +110,7 @@ pub struct NamedMetric {
     pub relation: Relation,
 }
 
-/// How a figure relates to runs.
+/// How a metric relates to runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Relation {
     /// The controller's own.

@@ -63,7 +63,7 @@ pub fn remember(controller: &mut Controller<'_, f32>) -> Outcome<()> {
         .map_err(|error| Failure::check_failed(format!("what was learnt is not taken back: {error}")))
 }
 
-/// From a run's numbers to those of the port.
+/// Converts a run's numbers (f64, radians, counts) to those of the port (f32, turns).
 #[derive(Debug, Clone)]
 pub struct Translator {
     /// Clock ticks in a control period.

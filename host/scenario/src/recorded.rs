@@ -16,7 +16,7 @@ const LOAD: &str = "load_torque_N_m";
 /// What positions keep to, as loads and speeds keep to theirs: beyond them no joint can be meant [rad].
 const FARTHEST: f64 = 1e4;
 
-/// Rows of the file, in rising time from 0.
+/// A recorded motion: rows of the file, in rising time from 0.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RecordedMotion {
     rows: Vec<Row>,

@@ -8,7 +8,7 @@ use reference::closed_loop::{Run, Sample};
 use super::port::Answer;
 use super::rig::Period;
 
-/// What happened.
+/// The history of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunHistory {
     /// The truth, one sample for each control period.
@@ -21,7 +21,7 @@ pub struct RunHistory {
     pub digest: u64,
 }
 
-/// What is true beside the sample.
+/// True values beside the sample.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct TrueValues {
     /// Gap coordinate [m].
@@ -34,7 +34,7 @@ pub struct TrueValues {
     pub motor: f64,
 }
 
-/// What the observer says in one period.
+/// The observer's estimates in one period.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ObserverOutput {
     /// Gap coordinate [m].

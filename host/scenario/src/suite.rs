@@ -18,7 +18,7 @@ use joint_file::diagnostic;
 use joint_file::named::{self, Loaded};
 use report::failure::{Failure, Outcome};
 
-/// A test that can run.
+/// A test that has been checked against its joint.
 pub struct Test {
     /// Path as the user named it.
     pub name: String,

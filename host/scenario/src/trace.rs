@@ -4,7 +4,7 @@
 use super::run_history::{ObserverOutput, RunHistory, TrueValues};
 use reference::closed_loop::Sample;
 
-/// One point.
+/// One point of a trace.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct TracePoint {
     /// [s].

@@ -14,7 +14,7 @@ use super::run_history::{RunHistory, TrueValues};
 /// A gain over a controller that is right to the last bit would be infinite; this says enough.
 const MOST_GAIN: f64 = 1e6;
 
-/// Values of all figures, where they could be had.
+/// Values of all metrics that could be computed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MetricValues(Vec<Option<f64>>);
 

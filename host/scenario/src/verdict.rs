@@ -7,7 +7,7 @@ use super::values::MetricValues;
 use report::checks::{Bound, Verdict};
 use report::number::PAGE;
 
-/// Figures of all runs of a test.
+/// Metrics of all runs of a test.
 pub struct Results<'r> {
     /// Seeds that were to run.
     pub seeds: &'r [u64],

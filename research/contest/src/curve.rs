@@ -15,7 +15,7 @@ use crate::trajectory::{Errors, ReferenceTrajectory, Restart};
 /// Phases in the envelope.
 pub const PHASES: usize = 8;
 
-/// A case at all its phases, with the reference's motion.
+/// A case at all its excitation phases, with the reference's trajectories.
 pub struct PhaseEnvelope {
     /// The case as stated: the first phase.
     pub case: Case,

@@ -8,7 +8,7 @@ use crate::plant::Plant;
 use crate::scheme::Scheme;
 use crate::two_mass::{TwoMass, TwoMassPeer};
 
-/// Something that moves in steps.
+/// A model that moves in steps.
 pub trait SteppedModel<T> {
     /// Puts it back to the so-many-th start; nothing if there is none.
     fn restart(&mut self, count: usize);

@@ -7,7 +7,7 @@ use crate::estimate::Estimate;
 
 /// A value counts as found if half of its interval is at most this share of it.
 pub(super) const SHARE: f64 = 0.5;
-/// How well the motor's inertia in a joint file is usually known: what the scale of the torque rests on.
+/// Relative error of the motor's inertia in a joint file, from which the scale of the torque is found.
 pub(super) const INERTIA_SHARE: f64 = 0.015;
 /// What two inertias on a spring leave out of a joint, as a share of a value: widens every interval. Found on simulated
 /// logs of the presets, where the scatter alone promised more than the reference keeps.

@@ -20,7 +20,7 @@ pub struct Call {
     pub depth: u32,
 }
 
-/// Something that cannot be followed, or must not be met.
+/// An instruction that cannot be followed, or must not be reached.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Obstacle {
     /// A call or jump through a pointer.
@@ -42,7 +42,7 @@ impl Obstacle {
     }
 }
 
-/// What a function does.
+/// The analysis of one function.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Frame {
     /// Deepest stack of its own [byte].

@@ -19,7 +19,7 @@ const PANICS: [&str; 8] = [
     "_defmt_panic",
 ];
 
-/// The calls that lead from the handler to a place.
+/// The call path from the handler to a place.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct CallPath {
     /// The functions, the handler first.

@@ -46,7 +46,7 @@ pub enum Span {
     Break,
 }
 
-/// How something is judged.
+/// The colour of a verdict.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Tone {
     /// Good.

@@ -32,7 +32,7 @@ pub struct Panel {
     pub axis: VerticalAxis,
 }
 
-/// How a vertical axis runs.
+/// Linear or logarithmic vertical axis.
 #[derive(Debug, Clone, PartialEq)]
 pub enum VerticalAxis {
     /// Evenly over what the marks need.

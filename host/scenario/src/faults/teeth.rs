@@ -10,7 +10,7 @@ use super::active::Active;
 use crate::file::{HostOnlyFault, fault_is_on};
 use crate::plant::{Teeth, half_backlash};
 
-/// What the teeth were made to be.
+/// The original teeth, and how they are now.
 #[derive(Debug, Clone)]
 pub(super) struct ToothState {
     half_backlash: f64,

@@ -19,13 +19,13 @@ pub struct Assertion {
     pub metric: NamedMetric,
     /// Its name as typed.
     pub name: String,
-    /// What is made of the seeds' figures.
+    /// How the seeds' figures are aggregated.
     pub aggregate: Aggregate,
     /// What it must keep to.
     pub bound: Bound,
 }
 
-/// What is made of the seeds' figures.
+/// How the seeds' figures are aggregated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Aggregate {
     /// The one farthest on the wrong side of the bound.
@@ -36,7 +36,7 @@ pub enum Aggregate {
     Mean,
 }
 
-/// What the test is about, as far as figures depend on it.
+/// The properties of a test that decide which figures it has.
 pub(super) struct TestTraits<'a> {
     pub controller: Option<ControllerName>,
     pub gains: bool,

@@ -21,7 +21,7 @@ pub struct Change {
     pub span: Range<usize>,
 }
 
-/// What a key becomes.
+/// The new value of a key.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NewValue {
     /// A number in the key's unit.

@@ -9,7 +9,7 @@ use crate::random::RandomStream;
 /// One fault of a test.
 pub type Fault = fault::Fault<Si>;
 
-/// What test files say and the host counts in: seconds, radians, counts of the encoder, shares of one, N m. A fault has no
+/// The units of faults in test files and on the host: seconds, radians, counts of the encoder, shares of one, N m. A fault has no
 /// seed yet: every run gives it one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Si;
@@ -33,7 +33,8 @@ pub struct Offset {
     pub angle: f64,
 }
 
-/// What only the host can apply: a board keeps no past, hears of no set-points, and has its teeth in flash.
+/// Faults that only the host can apply: a board stores no past readings, receives no set-points over a line, and has its
+/// teeth as tables in flash.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum HostOnlyFault {
     /// Readings of an encoder come late [s].

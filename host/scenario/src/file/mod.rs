@@ -15,7 +15,7 @@ mod section;
 pub use assertions::{Aggregate, Assertion};
 pub use changes::{Change, NewValue};
 pub use faults::{Fault, HostOnlyFault, Offset, Si, fault_is_on, fault_stream, fault_word};
-pub use motion::{DisturbanceSpec, Load, MotionProfile, Trajectory, Wave};
+pub use motion::{DisturbanceSpec, MotionProfile, ProfileLoad, Trajectory, Wave};
 
 use joint_file::{Keys, Notes, Problem};
 use link::messages::Role;

@@ -5,15 +5,15 @@ use toml::Spanned;
 
 use super::section::Section;
 
-/// A motion with what belongs to it.
+/// A reference motion with its load.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MotionProfile {
     /// Its word.
     pub kind: &'static str,
-    /// Where the link shall be.
+    /// The desired position of the link over time.
     pub trajectory: Trajectory,
-    /// What pushes the link.
-    pub load: Load,
+    /// The load on the link.
+    pub load: ProfileLoad,
     /// Dry friction of the link over the rated output torque, in place of the joint's.
     pub friction: Option<f64>,
     /// Weight of the link over the rated output torque, in place of the joint's.
@@ -24,7 +24,7 @@ pub struct MotionProfile {
     pub settle: f64,
 }
 
-/// Where the link shall be.
+/// The desired position of the link over time.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Trajectory {
     /// Amplitude [rad] times a sine [Hz].
@@ -39,9 +39,9 @@ pub enum Trajectory {
     File(String),
 }
 
-/// What pushes the link as part of the profile; a torque that is not given scales with the rated one.
+/// The load on the link as part of the profile; a torque that is not given scales with the rated one.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Load {
+pub enum ProfileLoad {
     /// Nothing.
     None,
     /// To and fro: torque [N m], frequency [Hz].
@@ -54,7 +54,7 @@ pub enum Load {
     Slow(Option<f64>, f64),
 }
 
-/// How a load goes to and fro.
+/// Waveform of a periodic load.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Wave {
     /// Smoothly.
@@ -63,7 +63,7 @@ pub enum Wave {
     Square,
 }
 
-/// A torque on the link by the file.
+/// A disturbance torque on the link, as given in the file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DisturbanceSpec {
     /// `step`, `pulse` or `sine`.
@@ -91,7 +91,7 @@ impl MotionProfile {
         let usual = Self {
             kind,
             trajectory: Trajectory::Hold(0.0),
-            load: Load::None,
+            load: ProfileLoad::None,
             friction: None,
             gravity: Some(0.0),
             duration: 8.0,
@@ -104,10 +104,10 @@ impl MotionProfile {
             "sine" => Self { trajectory: Trajectory::Sine(0.5, 1.0), gravity: None, ..usual }.timed(1.0),
             "random" => Self { trajectory: Trajectory::Random(0.2, 2.0), ..usual },
             "steps" => Self { trajectory: Trajectory::Steps(0.05, 0.06, 0.3), ..usual },
-            "disturbed_hold" => Self { load: Load::Wave(Wave::Sine, None, 1.0), ..usual },
-            "free_hold" => Self { load: Load::Kick(None, 0.02), duration: 14.0, settle: 2.1, ..usual },
-            "impact" => Self { load: Load::Impacts(None, 0.01), ..usual },
-            "hysteresis" => Self { load: Load::Slow(None, 0.25), duration: 9.0, settle: 1.0, ..usual },
+            "disturbed_hold" => Self { load: ProfileLoad::Wave(Wave::Sine, None, 1.0), ..usual },
+            "free_hold" => Self { load: ProfileLoad::Kick(None, 0.02), duration: 14.0, settle: 2.1, ..usual },
+            "impact" => Self { load: ProfileLoad::Impacts(None, 0.01), ..usual },
+            "hysteresis" => Self { load: ProfileLoad::Slow(None, 0.25), duration: 9.0, settle: 1.0, ..usual },
             "held" => Self { friction: Some(BRAKE), duration: 1.0, settle: 0.0, ..usual },
             // A recording brings its own load, or none.
             _ => Self { gravity: None, ..usual },
@@ -149,18 +149,20 @@ pub(super) fn read(section: &Section<'_>) -> Option<MotionProfile> {
             Trajectory::File(_) => {}
         }
         match &mut profile.load {
-            Load::None => {}
-            Load::Wave(_, _, frequency) | Load::Slow(_, frequency) => set("frequency_Hz", frequency),
-            Load::Kick(_, length) | Load::Impacts(_, length) => set("pulse_s", length),
+            ProfileLoad::None => {}
+            ProfileLoad::Wave(_, _, frequency) | ProfileLoad::Slow(_, frequency) => set("frequency_Hz", frequency),
+            ProfileLoad::Kick(_, length) | ProfileLoad::Impacts(_, length) => set("pulse_s", length),
         }
     }
-    if let Load::Wave(_, torque, _) | Load::Slow(torque, _) | Load::Kick(torque, _) | Load::Impacts(torque, _) =
-        &mut profile.load
+    if let ProfileLoad::Wave(_, torque, _)
+    | ProfileLoad::Slow(torque, _)
+    | ProfileLoad::Kick(torque, _)
+    | ProfileLoad::Impacts(torque, _) = &mut profile.load
     {
         taken.push("torque_N_m");
         *torque = section.number("torque_N_m");
     }
-    if let Load::Wave(wave, ..) = &mut profile.load {
+    if let ProfileLoad::Wave(wave, ..) = &mut profile.load {
         taken.push("wave");
         if section.word("wave") == Some("square") {
             *wave = Wave::Square;

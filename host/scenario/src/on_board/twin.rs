@@ -24,7 +24,7 @@ use board::target::board::Board;
 use report::failure::{Failure, Outcome};
 use simulation::sim::snapshot::Reader;
 
-/// What is run: the test, what was drawn for it, and the truth at the board's rate.
+/// A twin run: the test, its drawn case, and the true joint at the board's rate.
 pub struct Twin<'t> {
     /// The test.
     pub file: &'t TestFile,
@@ -40,7 +40,7 @@ pub struct Twin<'t> {
     pub faults: &'t [Fault<FixedPoint<f32>>],
 }
 
-/// What a twin did.
+/// The result of a twin run.
 pub struct TwinResult {
     /// The motion in knots.
     pub knots: Vec<Knot>,

@@ -59,7 +59,7 @@ impl<'p> ActiveController<'p> {
         Ok(())
     }
 
-    /// Shows the truth, before a period, to whom it is meant for.
+    /// Passes the true state, before a period, to the compensation that is fed with it.
     pub fn show(&mut self, joint: &Observation, torques: &TrueTorques) {
         if let Self::TrueState(from_truth) = self {
             from_truth.show(joint, torques);

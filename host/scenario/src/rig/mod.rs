@@ -27,7 +27,7 @@ use super::plant::{Plant, plant_from};
 use super::set_point_source::SetPointSource;
 use report::failure::Outcome;
 
-/// A joint that waits for a controller, or has been controlled for a while.
+/// A joint in its drive train, with reference motion and faults, ready for a controller.
 pub struct Rig {
     plant: Plant,
     faults: HostFaults,

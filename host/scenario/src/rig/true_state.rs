@@ -16,7 +16,7 @@ use crate::port::{command, position};
 /// touches it.
 const TOUCHING: f64 = 0.98;
 
-/// A compensation that is shown the truth of a joint.
+/// A compensation that is fed with the true state of a joint.
 #[derive(Debug)]
 pub struct TrueStateCompensation<'t> {
     compensation: Compensation<'t, f64>,

@@ -72,7 +72,7 @@ pub struct PredictedError {
     pub nine_in_ten: f64,
 }
 
-/// What a tick takes.
+/// Cost of a tick.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct TickWork {
     /// Instructions.

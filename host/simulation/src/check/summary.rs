@@ -158,7 +158,7 @@ pub struct FixedStep {
     pub digest: String,
 }
 
-/// How well founded the file is.
+/// The sources of the file's numbers.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Numbers {
     /// Numbers in the file.

@@ -24,7 +24,7 @@ const COST_ROUNDS: usize = 5;
 /// Stretches of which the picture shows the error.
 const STRETCHES: usize = 240;
 
-/// One scheme's samples of what is compared.
+/// One scheme's samples of the compared quantities.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Track {
     /// Which scheme.

@@ -13,7 +13,7 @@ use super::snapshot::Snapshot;
 /// Points of the series for the picture, at most.
 const MOST_POINTS: usize = 20_000;
 
-/// Where the energy of a run came from and went to, in J.
+/// Energy balance of a run [J].
 #[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize)]
 #[allow(missing_docs, non_snake_case, reason = "names and units say it")]
 pub struct Balance {

@@ -51,7 +51,7 @@ const USUAL_SAMPLES: u32 = 200_000;
 /// Samples that can be kept: each takes half a kilobyte.
 const MOST_SAMPLES: u32 = 2_000_000;
 
-/// What a simulation leaves.
+/// Texts and paths of a finished simulation.
 pub struct Simulated {
     /// The figures for a terminal.
     pub summary: String,

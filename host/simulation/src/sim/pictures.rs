@@ -17,7 +17,7 @@ use report::plot::unit::{FORCE, Unit, greatest};
 /// Mesh periods shown where every one of them is to be seen.
 const CLOSE_PERIODS: f64 = 12.0;
 
-/// A stretch of a run.
+/// A time range of a run.
 pub struct View<'a> {
     /// Whose.
     pub plan: &'a SimulationPlan,

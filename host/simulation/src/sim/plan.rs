@@ -28,7 +28,7 @@ const SPEED: f64 = TAU;
 /// More ticks than this are a slip of the keyboard: at a microsecond each they take days.
 const MOST_TICKS: f64 = 2e10;
 
-/// A run that can be made.
+/// A validated simulation.
 #[derive(Debug, Clone)]
 pub struct SimulationPlan {
     /// The joint file as the user named it.

@@ -5,7 +5,7 @@ use parameters::{ContactState, JointParameters};
 
 use super::snapshot::Snapshot;
 
-/// A number of a moment.
+/// A quantity of a snapshot.
 pub struct Quantity {
     /// Name of its CSV column.
     pub column: &'static str,
@@ -19,7 +19,7 @@ pub struct Quantity {
     pub value: Value,
 }
 
-/// How a number is had of a moment.
+/// How a quantity is read from a snapshot.
 type Value = fn(&Snapshot, &JointParameters) -> f64;
 
 /// All but the time.

@@ -11,7 +11,7 @@ use model_core::numbers::phase::sine_cosine;
 use parameters::{ContactState, DampingLaw, Excitation, JointParameters, MAX_PLANETS};
 use reference::joint::{Observation, Work};
 
-/// The joint at one moment.
+/// The joint at one instant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Snapshot {
     /// Ticks done.
@@ -46,7 +46,7 @@ pub struct Snapshot {
     pub energy: Option<Energy>,
 }
 
-/// One mesh at one moment.
+/// One mesh at one instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeshSnapshot {
     /// Deflection d [m].

@@ -61,7 +61,7 @@ pub struct PoincarePoint {
     pub gap_rate: f64,
 }
 
-/// Gathers while a run goes on.
+/// Statistics, accumulated while a run goes on.
 #[derive(Debug, Clone, Default)]
 pub struct Statistics {
     ticks: u64,

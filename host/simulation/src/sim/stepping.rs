@@ -14,7 +14,7 @@ use super::start::core_state;
 use report::failure::{Failure, Outcome};
 use report::interruption;
 
-/// A run, whichever scheme makes it.
+/// What is simulated, independent of the scheme.
 #[derive(Debug, Clone)]
 pub struct SimulationSpec {
     /// The joint.

@@ -11,7 +11,7 @@ use report::failure::{Failure, Outcome};
 use report::folder;
 use report::write::write_text;
 
-/// What says which sweep it is.
+/// The manifest.
 pub const MANIFEST: &str = "sweep.json";
 /// The result.
 pub const RESULT: &str = "points.csv";

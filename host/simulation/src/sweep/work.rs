@@ -16,7 +16,7 @@ use report::failure::{Failure, Outcome};
 use report::interruption;
 use report::progress::Progress;
 
-/// What is to be done at every point.
+/// The computation at every point.
 pub struct Work<'a> {
     /// The joint file that the grid changes.
     pub base: &'a Loaded,
@@ -32,7 +32,7 @@ pub struct Work<'a> {
     pub threads: Option<u16>,
 }
 
-/// How it went.
+/// How the work ended.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct WorkOutcome {
     /// Points computed and kept.

@@ -48,7 +48,7 @@ impl fmt::Display for Class {
     }
 }
 
-/// How long to look.
+/// How many periods are spent on each part of the search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Effort {
     /// Periods before anything is looked at.

@@ -30,7 +30,7 @@ const MOST_STEPS: u32 = 1_000_000;
 /// Positions beyond this, over b_c, are no motion of gears any more.
 const FARTHEST: f64 = 1e9;
 
-/// A joint in motion.
+/// A joint with its present state, integrated forwards.
 #[derive(Debug, Clone)]
 pub struct EventIntegrator<'a> {
     system: &'a System,
@@ -43,7 +43,7 @@ pub struct EventIntegrator<'a> {
     steps: u64,
 }
 
-/// A stretch of motion between two steps, for reading off what happens within.
+/// The motion within one step, evaluated at any time in it.
 pub struct Segment<'a> {
     system: &'a System,
     series: &'a Series,
@@ -123,7 +123,7 @@ impl<'a> EventIntegrator<'a> {
         self.period_with(|_| ())
     }
 
-    /// The same, showing every stretch on the way.
+    /// The same, with a callback for every segment.
     pub fn period_with(&mut self, mut look: impl FnMut(&Segment<'_>)) -> Result<(), StudyError> {
         let end = self.system.period();
         let coordinates = self.system.coordinates();

@@ -23,7 +23,7 @@ const TICKS: u32 = 4000;
 /// Ticks from one change of the torques to the next.
 const HOLD: u32 = 100;
 /// A busy machine is given time; nothing here is judged by it.
-const PATIENCE: Duration = Duration::from_secs(120);
+const TIMEOUT: Duration = Duration::from_secs(120);
 
 /// The line to the board, in messages.
 struct Line {
@@ -56,7 +56,7 @@ impl Line {
     /// Repeats a message until an answer is found.
     fn ask<A>(&mut self, message: &ToBoard, answer: impl Fn(FromBoard) -> Option<A>) -> A {
         let start = Instant::now();
-        while start.elapsed() < PATIENCE {
+        while start.elapsed() < TIMEOUT {
             self.send(message);
             if let Some(found) = self.receive().into_iter().find_map(&answer) {
                 return found;
@@ -96,7 +96,7 @@ fn run(line: &mut Line) -> Vec<Sample> {
     let start = Instant::now();
     line.send(&schedule(0));
     while samples.len() < (TICKS / HOLD) as usize {
-        assert!(start.elapsed() < PATIENCE, "{} samples in all that time", samples.len());
+        assert!(start.elapsed() < TIMEOUT, "{} samples in all that time", samples.len());
         for message in line.receive() {
             match message {
                 FromBoard::Accepted(accepted) if accepted.sequence == next => {

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use board::target::emulator;
 use board::target::toolchain::Toolchain;
-use proof::joints::TRIAL_JOINTS;
+use proof::joints::TEST_JOINTS;
 use proof::same_bits::{InMode, compare, on_board, on_host};
 
 /// Digests that were found before, on whatever machine.
@@ -16,7 +16,7 @@ const KNOWN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/step_digests.csv"
 const WRITE: &str = "WRITE_STEP_DIGESTS";
 
 fn here(in_mode: InMode<'_>) -> String {
-    let digests = TRIAL_JOINTS.iter().map(|joint| on_host(joint, in_mode).expect("a sound joint"));
+    let digests = TEST_JOINTS.iter().map(|joint| on_host(joint, in_mode).expect("a sound joint"));
     let lines: Vec<_> = digests.map(|digests| format!("{digests}\n")).collect();
     format!("joint,tables,long motion,infinite torques,tiny numbers,contact changes\n{}", lines.concat())
 }

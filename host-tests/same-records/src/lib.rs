@@ -1,10 +1,9 @@
-//! Are two trees of records the same? A tree is a folder in which everything is kept that some commands have said and
-//! written: before a change of the sources, and after it. Whatever differs is named with its file, its place, the old and
-//! the new value; what was not compared is in one list, [`ignored`], and is counted.
+//! Are two trees of records the same? A tree is a folder with everything that some commands have printed and written:
+//! before a change of the sources, and after it. Every difference is reported with its file, its place, the old and the
+//! new value; values that are not compared are in one list, [`ignored`], and are counted.
 //!
 //! Each kind of file is read into one form, a [`listing`] of values and their places, and that is compared: [`json`],
-//! [`csv`], [`text`], [`html`], [`xml`], [`log`] for MCAP; all others are compared byte by byte. How records are made, and
-//! whether a difference is meant, is for the caller.
+//! [`csv`], [`text`], [`html`], [`xml`], [`log`] for MCAP; all others are compared byte by byte.
 
 pub mod csv;
 pub mod findings;

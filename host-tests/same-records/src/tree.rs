@@ -1,5 +1,4 @@
-//! Walks two trees side by side and has each pair of files read by those who know their kind. Files on one side only are
-//! differences.
+//! Walks two trees side by side and compares each pair of files by its kind. Files on one side only are differences.
 
 use std::collections::BTreeSet;
 use std::fs;

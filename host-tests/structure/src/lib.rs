@@ -1,5 +1,5 @@
 //! The workspace's structure, read from its sources and from Cargo: imports among the files of a crate, imports among
-//! crates, sizes, and the links of its pages. `tests/house.rs` states what must hold of this workspace; `cargo test -p structure -- --nocapture`
+//! crates, sizes, and the links of its pages. `tests/workspace.rs` states what must hold of this workspace; `cargo test -p structure -- --nocapture`
 //! prints the table of crates as well.
 //!
 //! From sources to findings: [`sources`] walks the modules of a target and keeps every name and path, [`resolve`] finds

@@ -149,18 +149,18 @@ impl Workspace {
 
     /// Nobody depends on the command, not even tests: they use the crates below it.
     pub fn imports_of_the_command(&self, command: &str) -> Vec<String> {
-        let mend = "move what is needed into the crate that it belongs to, below the command";
-        self.forbidden(|_, _| true, |other| other.name == command, mend)
+        let help = "move what is needed into the crate that it belongs to, below the command";
+        self.forbidden(|_, _| true, |other| other.name == command, help)
     }
 
     /// What a plain `cargo build` builds is no research, and depends on none.
     pub fn research_by_default(&self) -> Vec<String> {
         let itself = self.members.iter().filter(|member| member.default && member.is_research());
         let mut found: Vec<String> = itself
-            .map(|member| format!("{} is a default member; mend: leave it out of `default-members`", member.name))
+            .map(|member| format!("{} is a default member; help: leave it out of `default-members`", member.name))
             .collect();
-        let mend = "move the test that needs it into the research crate";
-        found.extend(self.forbidden(|member, _| member.default, Member::is_research, mend));
+        let help = "move the test that needs it into the research crate";
+        found.extend(self.forbidden(|member, _| member.default, Member::is_research, help));
         found
     }
 
@@ -168,7 +168,7 @@ impl Workspace {
         &self,
         who: impl Fn(&Member, Kind) -> bool,
         whom: impl Fn(&Member) -> bool,
-        mend: &str,
+        help: &str,
     ) -> Vec<String> {
         let mut found = vec![];
         for member in &self.members {
@@ -176,7 +176,7 @@ impl Workspace {
                 if who(member, *kind) && self.member(name).is_some_and(&whom) {
                     let manifest = member.folder.join("Cargo.toml");
                     let kind = kind.section();
-                    found.push(format!("{}: {name} in [{kind}]\n  mend: {mend}", manifest.display()));
+                    found.push(format!("{}: {name} in [{kind}]\n  help: {help}", manifest.display()));
                 }
             }
         }

@@ -65,11 +65,11 @@ pub fn differences(page: &str, workspace: &Workspace, exists: impl Fn(&Path) -> 
         let place = format!("ARCHITECTURE.md:{line}");
         if workspace.member(name).is_none() {
             found.push(format!(
-                "{place}: `{name}` is no crate of the workspace\n  mend: remove the row or name it anew"
+                "{place}: `{name}` is no crate of the workspace\n  help: remove the row or name it anew"
             ));
         }
         if rows.iter().any(|row| row.name == *name && row.line < *line) {
-            found.push(format!("{place}: `{name}` has a row already\n  mend: remove one"));
+            found.push(format!("{place}: `{name}` has a row already\n  help: remove one"));
         }
         for (other, _) in may_import.iter().filter(|(other, _)| workspace.member(other).is_none()) {
             found.push(format!("{place}: `{name}` may import `{other}`, which is no crate of the workspace"));
@@ -80,7 +80,7 @@ pub fn differences(page: &str, workspace: &Workspace, exists: impl Fn(&Path) -> 
     }
     for member in &workspace.members {
         let Some(row) = rows.iter().find(|row| row.name == member.name) else {
-            found.push(format!("ARCHITECTURE.md has no row for `{}`\n  mend: say there what it is", member.name));
+            found.push(format!("ARCHITECTURE.md has no row for `{}`\n  help: say there what it is", member.name));
             continue;
         };
         for (other, kind) in &member.imports {
@@ -88,9 +88,9 @@ pub fn differences(page: &str, workspace: &Workspace, exists: impl Fn(&Path) -> 
             if !row.may_import.iter().any(allows) {
                 let manifest = member.folder.join("Cargo.toml");
                 let (manifest, section, line) = (manifest.display(), kind.section(), row.line);
-                let mend = "drop the dependency, or move what is needed to where it may be imported from";
+                let help = "drop the dependency, or move what is needed to where it may be imported from";
                 let text = format!("{manifest}: {other} in [{section}] is not allowed by ARCHITECTURE.md:{line}");
-                found.push(format!("{text}\n  mend: {mend}"));
+                found.push(format!("{text}\n  help: {help}"));
             }
         }
     }
@@ -102,5 +102,5 @@ pub fn missing(page: &str, exists: impl Fn(&Path) -> bool) -> Vec<String> {
     let quoted = page.lines().flat_map(|line| line.split('`').skip(1).step_by(2));
     let is_place = |text: &&str| text.contains('/') && !text.contains([' ', '*', '<', '$', '(']);
     let lost = quoted.filter(is_place).filter(|place| !exists(Path::new(place)));
-    lost.map(|place| format!("the page names `{place}`, which is not there\n  mend: name where it is now")).collect()
+    lost.map(|place| format!("the page names `{place}`, which is not there\n  help: name where it is now")).collect()
 }

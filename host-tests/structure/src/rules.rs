@@ -43,8 +43,8 @@ pub fn runtime_imports_design(graph: &Graph) -> Vec<String> {
     let files = &graph.sources.files;
     let wrong = |edge: &&(usize, usize)| !files[edge.0].design && files[edge.1].design;
     let text = |edge: &(usize, usize)| {
-        let mend = "move what both need into a file outside `design`, or the import into it";
-        format!("runtime imports design\n    {}\n  mend: {mend}", line(graph, *edge, &graph.edges[edge]))
+        let help = "move what both need into a file outside `design`, or the import into it";
+        format!("runtime imports design\n    {}\n  help: {help}", line(graph, *edge, &graph.edges[edge]))
     };
     graph.edges.keys().filter(wrong).map(text).collect()
 }
@@ -67,7 +67,7 @@ fn all_circles(graph: &Graph, (count, node): Nodes, title: impl Fn(&[usize]) -> 
             }
         }
         let lines = ties.values().flatten().map(|edge| format!("\n    {}", line(graph, *edge, &graph.edges[edge])));
-        format!("{}{}\n  mend: {}", title(&circle), lines.collect::<String>(), cut(graph, count, &ties))
+        format!("{}{}\n  help: {}", title(&circle), lines.collect::<String>(), cut(graph, count, &ties))
     };
     circles(count, all).into_iter().map(text).collect()
 }

@@ -37,7 +37,7 @@ pub fn sizes(member: &Member, graphs: &[(String, Graph)]) -> BTreeMap<String, us
 /// What is larger than the limit.
 pub fn too_large(sizes: &BTreeMap<String, usize>) -> Vec<String> {
     let text = |(name, lines): (&String, &usize)| {
-        format!("{name} has {lines} lines, more than {LIMIT}\n  mend: make a crate of its own of a subject in it")
+        format!("{name} has {lines} lines, more than {LIMIT}\n  help: make a crate of its own of a subject in it")
     };
     sizes.iter().filter(|(_, lines)| **lines > LIMIT).map(text).collect()
 }

@@ -58,7 +58,7 @@ fn a_circle_of_two_files_is_found_however_the_path_is_written() {
         assert!(found[0].contains("src/a.rs -> src/b.rs: B (line 1)"), "{way}: {found:?}");
         let tie = found[0].lines().find(|line| line.contains("src/b.rs -> src/a.rs: ")).expect(way);
         assert!(tie.contains(&format!("{name} (line 2)")), "{way}: {tie}");
-        assert!(found[0].contains("mend: move "), "{way}: {found:?}");
+        assert!(found[0].contains("help: move "), "{way}: {found:?}");
     }
 }
 
@@ -106,7 +106,7 @@ fn a_parent_that_uses_its_child_and_is_used_by_it_is_a_circle() {
             let there_and_back = ["foo.rs -> foo/child.rs: Child", "foo/child.rs -> foo.rs: Shared"];
             assert!(there_and_back.iter().all(|edge| found.contains(edge)), "{found}");
             assert_eq!((file_circles(&graph).len(), folder_circles(&graph).len()), (1, 0));
-            assert!(file_circles(&graph)[0].contains("mend: move Shared out of src/foo"));
+            assert!(file_circles(&graph)[0].contains("help: move Shared out of src/foo"));
         }
     }
 }

@@ -4,7 +4,7 @@ use host_tests::tolerance::compensation::{
     FREE_HOLD_SWING, HOLD_OVER_PID, HOLD_SWING_OVER_PID, UNKNOWN_FREE_HOLD_SWING,
 };
 use reference::closed_loop::Figures;
-use scenario::controller::ControllerName::{LoadCascade, MotorPid, NoPreview, PerfectSight};
+use scenario::controller::ControllerName::{LoadCascade, MotorPid, NoPreview, TrueStateCompensation};
 
 use super::{figures, run, shipped};
 
@@ -31,7 +31,7 @@ fn a_little_friction_ends_all_crossings() {
 #[test]
 fn without_any_friction_a_known_gap_is_crossed_seldom_and_swings_less_than_it_is_wide() {
     let (test, seed) = (shipped("free-hold-no-friction"), 113);
-    let (ours, cascade) = (figures(&test, seed, PerfectSight), figures(&test, seed, LoadCascade));
+    let (ours, cascade) = (figures(&test, seed, TrueStateCompensation), figures(&test, seed, LoadCascade));
     assert!(ours.crossings < cascade.crossings / 4, "{} crossings against {}", ours.crossings, cascade.crossings);
     FREE_HOLD_SWING.check(ours.peak_to_peak / LOST_MOTION);
 }

@@ -9,7 +9,7 @@ use scenario::case::Case;
 use scenario::controller::ControllerName;
 use scenario::controller::ControllerName::{Impedance, LinkSpring, MotorSide};
 use scenario::controller::Gains;
-use scenario::execution::Order;
+use scenario::execution::RunSpec;
 use scenario::suite::Test;
 
 use super::{case_of, changed, l1_train, on_reference, run_in, shipped};
@@ -22,8 +22,8 @@ fn deviation_of(test: &Test, seed: u64, controller: ControllerName) -> (f64, f64
 
 /// The same in a case of its own.
 fn deviation_in(test: &Test, case: &Case, seed: u64, controller: ControllerName) -> (f64, f64) {
-    let law = Order { without_gap: true, ..on_reference(controller.without_gap()) };
-    let [ours, without_gap] = [on_reference(controller), law].map(|order| run_in(test, case, seed, order));
+    let law = RunSpec { without_gap: true, ..on_reference(controller.without_gap()) };
+    let [ours, without_gap] = [on_reference(controller), law].map(|spec| run_in(test, case, seed, spec));
     let (link, _, torque) = deviation(&ours.run, &without_gap.run, test.file.settle);
     (link, torque)
 }

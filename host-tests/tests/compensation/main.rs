@@ -1,6 +1,6 @@
-//! The compensation in the loop with the drive train, against the rivals, on few seeds: tests of `hil/`, some of them with a
-//! joint of their own, held to bounds closer than the files'. The long form is ignored unless asked for. How good an observer
-//! is by itself, its own tests say. `page` holds the documentation to the code.
+//! The compensation in the loop with the drive train, against the rivals, on few seeds: tests of `hil/`, some of them
+//! with a joint of their own, held to tighter bounds than the files'. The long form is ignored by default. The observer
+//! by itself is tested in `observer`. `page` compares the documentation with the code.
 
 mod bad_input;
 mod holding;
@@ -20,9 +20,9 @@ use reference::closed_loop::Figures;
 use reference::drive_train::DriveTrainParameters;
 use scenario::case::Case;
 use scenario::controller::ControllerName;
-use scenario::execution::{Order, execute};
+use scenario::execution::{RunSpec, execute};
 use scenario::plant::PlantName;
-use scenario::ran::Ran;
+use scenario::run_history::RunHistory;
 use scenario::suite::{Test, from_text};
 
 /// A run takes seconds; more is none.
@@ -51,11 +51,11 @@ fn case_of(test: &Test, seed: u64, joint: &JointParameters, train: &DriveTrainPa
     train.surroundings.load_friction.coulomb = of_file.load_friction.coulomb;
     train.surroundings.gravity_torque = of_file.gravity_torque;
     case.truth.parameters = joint.clone();
-    case.told = joint.clone();
-    for mesh in [&mut case.told.sun_planet, &mut case.told.ring_planet] {
+    case.nominal = joint.clone();
+    for mesh in [&mut case.nominal.sun_planet, &mut case.nominal.ring_planet] {
         mesh.half_backlash.iter_mut().for_each(|half| *half *= case.width_guess);
     }
-    case.told_surroundings = train.surroundings;
+    case.nominal_surroundings = train.surroundings;
     case.train = train;
     case
 }
@@ -66,17 +66,17 @@ fn l1_train() -> DriveTrainParameters {
 }
 
 /// What a controller does in a test, on the reference.
-fn run(test: &Test, seed: u64, controller: ControllerName) -> Ran {
+fn run(test: &Test, seed: u64, controller: ControllerName) -> RunHistory {
     run_in(test, &test.case(seed).expect("a case of the test"), seed, on_reference(controller))
 }
 
 /// The same in a case of its own.
-fn run_in(test: &Test, case: &Case, seed: u64, order: Order) -> Ran {
-    execute(&test.file, case, seed, order, Instant::now() + LONGEST).expect("the test runs")
+fn run_in(test: &Test, case: &Case, seed: u64, spec: RunSpec) -> RunHistory {
+    execute(&test.file, case, seed, spec, Instant::now() + LONGEST).expect("the test runs")
 }
 
-fn on_reference(controller: ControllerName) -> Order {
-    Order { controller, plant: PlantName::Reference, without_gap: false }
+fn on_reference(controller: ControllerName) -> RunSpec {
+    RunSpec { controller, plant: PlantName::Reference, without_gap: false }
 }
 
 /// Figures of a controller, from when a test judges it.

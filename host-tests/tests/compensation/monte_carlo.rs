@@ -1,7 +1,6 @@
-//! The long form: plants that nobody has measured, fifty of them, half on steps that nobody foresaw and half on random
-//! motions. It prints each figure; run it with
-//! `cargo test --release -p host-tests --test compensation -- --ignored --nocapture`. Every test of `hil/` on twenty seeds is
-//! run by `cargo joint hil --full`.
+//! The long form: random plants, fifty of them, half on steps without preview and half on random motions. It prints
+//! each figure; run it with `cargo test --release -p host-tests --test compensation -- --ignored --nocapture`. Every
+//! test of `hil/` is run on twenty seeds by `cargo joint hil --full`.
 
 use host_tests::tolerance::compensation::{PLANTS_GAIN, PLANTS_WORST};
 use scenario::controller::ControllerName::{MotorPid, NoPreview};

@@ -28,7 +28,7 @@ fn the_page_shows_the_transitions_that_the_control_runs() {
     assert!(
         shown.trim() == table.trim(),
         "docs/theory/compensation.md does not show the transitions of model-core/src/compensation/transitions.rs\n  \
-         mend: put this between {FROM} and {TO}:\n\n{table}"
+         help: put this between {FROM} and {TO}:\n\n{table}"
     );
 }
 

@@ -13,7 +13,7 @@ use reference::scenarios::{l1, q1};
 use scenario::case::Case;
 use scenario::controller::ControllerName;
 use scenario::controller::ControllerName::{MotorPid, NoPreview, OutputIntegral, Preview};
-use scenario::file::Course;
+use scenario::file::Trajectory;
 use scenario::suite::Test;
 
 use super::{case_of, changed, figures, figures_in, l1_train, shipped};
@@ -190,7 +190,7 @@ fn the_load_is_fed_forward_although_a_transmission_error_as_large_as_the_gap_hid
 fn a_load_that_never_lets_go_of_a_flank_is_put_where_it_should_be_although_the_gap_is_never_known() {
     let push = "[[disturbance]]\nkind = \"pulse\"\nstart_s = 0\nlength_s = 100\ntorque_N_m = 4";
     let (mut test, seed) = (changed("t2-no-preview", "", push), 114);
-    test.file.profile.course = Course::Sine(0.1, 0.5);
+    test.file.profile.trajectory = Trajectory::Sine(0.1, 0.5);
     let [ours, pid] = against_pid(&test, &case_of(&test, seed, &q1(), &DriveTrainParameters::q1()), seed, NoPreview);
     ONE_FLANK_OVER_PID.check(ours.rms / pid.rms);
 }

@@ -4,8 +4,8 @@ use host_tests::tolerance::compensation::FIXED_STEPS;
 use reference::drive_train::Stepping;
 use scenario::controller::ControllerName;
 use scenario::execution::setup;
-use scenario::rig::{Driver, Rig, Setup};
-use scenario::sender::Sender;
+use scenario::rig::{ActiveController, Rig, Setup};
+use scenario::set_point_source::SetPointSource;
 
 use super::{on_reference, shipped};
 
@@ -17,12 +17,12 @@ fn fixed_steps_move_the_joint_as_adaptive_ones_do() {
     let (mut test, seed) = (shipped("t2"), 131);
     test.file.duration = 1.5;
     let case = test.case(seed).expect("a case of the test");
-    let order = on_reference(ControllerName::MotorPid);
+    let spec = on_reference(ControllerName::MotorPid);
     let [fixed, adaptive] = [Stepping::Fixed, Stepping::Adaptive].map(|stepping| {
-        let setup = Setup { stepping, ..setup(&test.file, &case, seed, order) };
-        let mut driver = Driver::rival(order.controller, case.knowledge(), test.file.bandwidth);
-        let mut sender = Sender::of_positions(case.motion.clone());
-        let moments = Rig::new(&setup).expect("a sound drive train").record(&mut driver, &mut sender);
+        let setup = Setup { stepping, ..setup(&test.file, &case, seed, spec) };
+        let mut controller = ActiveController::rival(spec.controller, case.knowledge(), test.file.bandwidth);
+        let mut set_points = SetPointSource::of_positions(case.motion.clone());
+        let moments = Rig::new(&setup).expect("a sound drive train").record(&mut controller, &mut set_points);
         moments.expect("it runs").into_iter().map(|moment| moment.link[0]).collect::<Vec<f64>>()
     });
     let difference = fixed.iter().zip(&adaptive).map(|(fixed, adaptive)| (fixed - adaptive).abs());

@@ -3,7 +3,7 @@
 
 use host_tests::tolerance::observer::{WIDTH_AFTER, WIDTH_IN_STEPS, WIDTH_IN_STEPS_WORST};
 use scenario::controller::ControllerName::NoPreview;
-use scenario::draw::Quantity;
+use scenario::random::NumberOrRange;
 
 use super::{changed, run};
 
@@ -16,13 +16,15 @@ fn steps_between_two_places_show_the_width() {
     let mut squares = 0.0;
     for (half_backlash, guess, seed) in CASES {
         let mut test = changed("steps-no-preview", "", &format!("[known]\nmesh.half_backlash_um = {half_backlash}"));
-        test.file.width_guess = Some(Quantity::Exactly(guess));
-        let ran = run(&test, seed, NoPreview);
+        test.file.width_guess = Some(NumberOrRange::Exactly(guess));
+        let history = run(&test, seed, NoPreview);
         let (mut moving, mut right_after, mut width) = (0.0, 0.0, 0.0);
         // A sample is taken at its period's end, which is where the next period's estimates are made.
-        for ((sample, truth), sight) in ran.run.samples.iter().zip(&ran.truths).zip(ran.sights.iter().skip(1)) {
-            moving += if sample.gap.abs() > 0.95 && sample.link_speed.abs() > 1e-3 { ran.run.period } else { 0.0 };
-            width = f64::from(sight.half_backlash) / truth.half_backlash - 1.0;
+        for ((sample, truth), observed) in
+            history.run.samples.iter().zip(&history.truths).zip(history.observer_outputs.iter().skip(1))
+        {
+            moving += if sample.gap.abs() > 0.95 && sample.link_speed.abs() > 1e-3 { history.run.period } else { 0.0 };
+            width = f64::from(observed.half_backlash) / truth.half_backlash - 1.0;
             right_after = if width.abs() > 0.05 { moving } else { right_after };
         }
         println!(

@@ -1,4 +1,4 @@
-//! The core and the reference through the same scenario, and how far they are apart. Neither side sees the other.
+//! The core and the reference through the same scenario, and the error between them.
 
 use host_tests::tolerance::Bound;
 use model_core::gears::design::{Effort, design_scheme};
@@ -11,7 +11,7 @@ use reference::scenarios::Scenario;
 use simulation::sim::start::core_state;
 
 /// What the core and the reference both say at one moment: mesh deflections, gap, link less rigid body.
-struct Moment {
+struct Snapshot {
     deflections: [Vec<f64>; 2],
     gap: f64,
     link_offset: f64,
@@ -32,7 +32,7 @@ impl Errors {
 }
 
 /// The core through a scenario, sampled as the reference is.
-fn follow<T: Real, const N: usize>(scenario: &Scenario, scheme: Scheme, effort: Effort) -> Vec<Moment> {
+fn follow<T: Real, const N: usize>(scenario: &Scenario, scheme: Scheme, effort: Effort) -> Vec<Snapshot> {
     let tables: Tables<T, N> =
         design_scheme(&scenario.joint, scenario.tick_rate, scheme, effort).expect("a scenario's joint is sound");
     let mut model = Model::new(&tables);
@@ -41,7 +41,7 @@ fn follow<T: Real, const N: usize>(scenario: &Scenario, scheme: Scheme, effort: 
     for tick in 0..=scenario.ticks {
         if tick % scenario.sample_every == 0 {
             let outputs = model.outputs();
-            moments.push(Moment {
+            moments.push(Snapshot {
                 deflections: outputs.deflections.map(|family| family.map(Real::to_f64).to_vec()),
                 gap: outputs.gap.to_f64(),
                 link_offset: outputs.link_offset.to_f64(),
@@ -67,8 +67,8 @@ pub fn errors<T: Real, const N: usize>(scenario: &Scenario, scheme: Scheme, effo
     let reference = scenarios::run(scenario).expect("the reference follows every scenario").samples;
     let moments = follow::<T, N>(scenario, scheme, effort);
     assert_eq!(reference.len(), moments.len());
-    let pairs: Vec<(&Observation, &Moment)> = reference.iter().zip(&moments).skip(from).collect();
-    let relative = |of: &dyn Fn(&Observation) -> f64, is: &dyn Fn(&Moment) -> f64| {
+    let pairs: Vec<(&Observation, &Snapshot)> = reference.iter().zip(&moments).skip(from).collect();
+    let relative = |of: &dyn Fn(&Observation) -> f64, is: &dyn Fn(&Snapshot) -> f64| {
         let expected: Vec<f64> = pairs.iter().map(|(expected, _)| of(expected)).collect();
         let error: Vec<f64> = pairs.iter().map(|(expected, moment)| is(moment) - of(expected)).collect();
         rms(&error) / deviation(&expected)

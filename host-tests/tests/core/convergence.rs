@@ -1,5 +1,5 @@
 //! The order of each scheme of the core: how fast its error against the reference falls as the tick rate rises, on a
-//! motion in which contact holds and on one in which meshes part and hit. In f64; what f32 adds is asked elsewhere.
+//! motion in which contact holds and on one in which meshes part and hit. In f64.
 
 use std::ops::RangeInclusive;
 

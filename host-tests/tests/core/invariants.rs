@@ -1,5 +1,5 @@
-//! What the core may not break, whatever it steps by: energy against work over a hundred thousand mesh periods, shift
-//! of the backlash, scaling, mirroring (oracles 5 and 6). The reference's own are in `the_reference`.
+//! Invariants of the core, for every scheme: energy against work over a hundred thousand mesh periods, shift of the
+//! backlash, scaling, mirroring (oracles 5 and 6). The reference's own are in `the_reference`.
 
 use std::f64::consts::TAU;
 

@@ -1,5 +1,5 @@
-//! What the core promises of itself, whatever the joint: teeth only push, nothing is silent, the same input gives the
-//! same bits, the digest sees everything.
+//! Guarantees of the core for any joint: teeth only push, NaN is reported, the same input gives the same bits, the
+//! digest covers the whole state.
 
 use host_tests::tolerance;
 use model_core::gears::design::{DesignError, Effort, design, design_scheme, rust_source};

@@ -1,5 +1,5 @@
-//! Does the certificate hold? What it predicts against what is measured, on random joints and motions that nothing was
-//! fitted to. Instructions are held against the emulated board elsewhere.
+//! Does the certificate hold? Its predictions against measured errors, on random joints and motions that nothing was
+//! fitted to. Instruction counts are checked in the crate `proof`.
 
 mod coverage;
 mod motion;

@@ -1,48 +1,48 @@
-//! Encoders that fail and samples that make no sense: found, said, bounded, recovered from.
+//! Encoders that fail and implausible samples: detected, reported, errors bounded, recovery.
 
 use host_tests::tolerance::observer::{FAILURE_FOUND, FAILURE_FOUND_AT_SPEED, GAP_COARSE, LOST_COUNTS_FOUND};
 use model_core::observer::{Estimates, MAPPED, OutputFault, Samples, Source};
 use reference::drive_train::Disturbance;
-use scenario::rig::Moment;
+use scenario::rig::PeriodSample;
 
-use crate::motion::{Profile, uniform};
+use crate::experiment::{Encoders, Experiment};
+use crate::motion::{TestMotion, uniform};
 use crate::replay::samples;
-use crate::trial::{Encoders, Trial};
 
 /// A recording of Q1 that turns all the time, with its trial.
-fn turning() -> (Trial, Vec<Moment>) {
-    let trial = Trial::new("q1", "gravity", Encoders::Preset, Some(40e-6), 21).lasting(4.0);
-    let log = trial.record();
-    (trial, log)
+fn turning() -> (Experiment, Vec<PeriodSample>) {
+    let experiment = Experiment::new("q1", "gravity", Encoders::Preset, Some(40e-6), 21).lasting(4.0);
+    let log = experiment.record();
+    (experiment, log)
 }
 
 /// First moment from `from` seconds on in which the link turns fast.
-fn fast(log: &[Moment], from: f64) -> usize {
+fn fast(log: &[PeriodSample], from: f64) -> usize {
     turns_by(log, from, 1.0)
 }
 
 /// First moment from `from` seconds on in which the link turns by so much [rad/s].
-fn turns_by(log: &[Moment], from: f64, speed: f64) -> usize {
+fn turns_by(log: &[PeriodSample], from: f64, speed: f64) -> usize {
     let first = (from * 10e3) as usize;
     first + log.iter().skip(first).position(|moment| moment.link[1].abs() > speed).expect("it turns")
 }
 
 /// Source after every period.
-fn sources(trial: &Trial, log: &[Moment]) -> Vec<Source> {
+fn sources(experiment: &Experiment, log: &[PeriodSample]) -> Vec<Source> {
     let source = |estimates: &Estimates<f64>| {
         assert!(estimates.gap.value.is_finite() && estimates.gap.variance.is_finite());
         estimates.source
     };
-    trial.said(log, |_, _| {}).iter().map(source).collect()
+    experiment.said(log, |_, _| {}).iter().map(source).collect()
 }
 
 #[test]
 fn a_frozen_output_encoder_is_given_up_soon_and_taken_back_when_it_turns_again() {
-    let (trial, mut log) = turning();
+    let (experiment, mut log) = turning();
     let at = fast(&log, 2.0);
     let counts = log[at].output_counts;
     log[at..at + 3000].iter_mut().for_each(|moment| moment.output_counts = counts);
-    let sources = sources(&trial, &log);
+    let sources = sources(&experiment, &log);
     assert!(sources[..at].iter().all(|source| *source == Source::Both), "a false alarm");
     let found = sources[at..].iter().position(|source| *source != Source::Both).expect("it is found");
     FAILURE_FOUND.check(found as f64 * 1e-4);
@@ -53,8 +53,8 @@ fn a_frozen_output_encoder_is_given_up_soon_and_taken_back_when_it_turns_again()
 #[test]
 fn an_encoder_that_freezes_or_jumps_at_speed_is_given_up_within_a_millisecond() {
     for (name, seed) in [("q1", 22), ("d2", 23)] {
-        let trial = Trial::new(name, "gravity", Encoders::Preset, None, seed).lasting(2.6);
-        let healthy = trial.record();
+        let experiment = Experiment::new(name, "gravity", Encoders::Preset, None, seed).lasting(2.6);
+        let healthy = experiment.record();
         for (speed, jump) in [(0.45, 0), (1.0, 0), (1.0, 40), (0.1, -400)] {
             let mut log = healthy.clone();
             let at = turns_by(&log, 1.9, speed);
@@ -62,7 +62,7 @@ fn an_encoder_that_freezes_or_jumps_at_speed_is_given_up_within_a_millisecond() 
             log[at..].iter_mut().for_each(|moment| {
                 moment.output_counts = if jump == 0 { frozen } else { moment.output_counts + jump };
             });
-            let sources = sources(&trial, &log);
+            let sources = sources(&experiment, &log);
             assert!(sources[10..at].iter().all(|source| *source == Source::Both), "a false alarm");
             let found = sources[at..].iter().position(|source| *source != Source::Both).expect("it is found");
             println!("{name} at {speed} rad/s, jump of {jump} counts: after {found} periods");
@@ -76,15 +76,15 @@ fn an_encoder_that_freezes_or_jumps_at_speed_is_given_up_within_a_millisecond() 
 #[test]
 fn an_encoder_that_freezes_before_the_gap_is_known_is_found_by_how_far_the_motor_goes() {
     // S1's gap is hidden by its transmission error, and its link is light: teeth may stop it at once from this speed.
-    let mut trial = Trial::new("s1", "inertia", Encoders::Preset, None, 27).lasting(2.6);
-    trial.setup.motion = Profile::Sine(0.5, 1.0).motion(trial.setup.seed);
-    let mut log = trial.record();
+    let mut experiment = Experiment::new("s1", "inertia", Encoders::Preset, None, 27).lasting(2.6);
+    experiment.setup.motion = TestMotion::Sine(0.5, 1.0).motion(experiment.setup.seed);
+    let mut log = experiment.record();
     let at = turns_by(&log, 1.9, 0.5);
-    let speed = |moment: &Moment| moment.link[1].abs();
+    let speed = |moment: &PeriodSample| moment.link[1].abs();
     let at = at + log[at..].iter().position(|moment| speed(moment) < 0.9).expect("it turns round");
     let counts = log[at].output_counts;
     log[at..].iter_mut().for_each(|moment| moment.output_counts = counts);
-    let sources = sources(&trial, &log);
+    let sources = sources(&experiment, &log);
     assert!(sources[10..at].iter().all(|source| *source == Source::Both), "a false alarm");
     let found = sources[at..].iter().position(|source| *source != Source::Both).expect("it is found");
     println!("at {:.2} rad/s: after {found} periods", speed(&log[at]));
@@ -94,11 +94,11 @@ fn an_encoder_that_freezes_before_the_gap_is_known_is_found_by_how_far_the_motor
 
 #[test]
 fn noise_glitches_blows_coarse_counts_and_late_or_lost_readings_are_no_failure() {
-    let mut trial = Trial::new("q1", "gravity", Encoders::Preset, Some(40e-6), 25).lasting(3.0);
-    let rated = trial.setup.joint.rated_output_torque;
+    let mut experiment = Experiment::new("q1", "gravity", Encoders::Preset, Some(40e-6), 25).lasting(3.0);
+    let rated = experiment.setup.joint.rated_output_torque;
     let blow = |start, torque| Disturbance::Pulse { start, duration: 10e-3, torque };
-    trial.setup.disturbances = vec![blow(1.2, 3.0 * rated), blow(1.55, -3.0 * rated), blow(2.3, 3.0 * rated)];
-    let log = trial.record();
+    experiment.setup.disturbances = vec![blow(1.2, 3.0 * rated), blow(1.55, -3.0 * rated), blow(2.3, 3.0 * rated)];
+    let log = experiment.record();
     let mut noise = uniform(7);
     let mut normal = move || (0..4).map(|_| noise() - 0.5).sum::<f64>() * 3.0_f64.sqrt();
     let mut lost = uniform(8);
@@ -109,15 +109,15 @@ fn noise_glitches_blows_coarse_counts_and_late_or_lost_readings_are_no_failure()
     let losing: Spoil = &mut |_, samples| samples.output = samples.output.filter(|_| lost() > 0.2);
     let late: Spoil = &mut |k, samples| {
         if k > 15_000 {
-            samples.output =
-                Some(self::samples(&trial.settings, &log[k - 3], k - 3)).and_then(|late: Samples<f64>| late.output);
+            samples.output = Some(self::samples(&experiment.settings, &log[k - 3], k - 3))
+                .and_then(|late: Samples<f64>| late.output);
         }
     };
     for (name, spoil) in [("noise", noisy), ("glitches", glitches), ("lost", losing), ("late", late)] {
-        let alarm = trial.said(&log, spoil)[10..].iter().position(|estimates| estimates.source != Source::Both);
+        let alarm = experiment.said(&log, spoil)[10..].iter().position(|estimates| estimates.source != Source::Both);
         assert_eq!(alarm, None, "a false alarm so many periods behind the tenth under {name}");
     }
-    let coarse = Trial::new("q1", "gravity", Encoders::Bits(14, 12), Some(40e-6), 25).lasting(3.0);
+    let coarse = Experiment::new("q1", "gravity", Encoders::Bits(14, 12), Some(40e-6), 25).lasting(3.0);
     let sources = sources(&coarse, &coarse.record());
     assert!(sources[10..].iter().all(|source| *source == Source::Both), "a false alarm with 12 bits");
 }
@@ -131,10 +131,10 @@ fn shift(samples: &mut Samples<f64>, by: i32, range: u32) {
 
 #[test]
 fn an_output_encoder_that_slips_is_given_up() {
-    let (trial, mut log) = turning();
+    let (experiment, mut log) = turning();
     let at = fast(&log, 2.0);
     log[at..].iter_mut().for_each(|moment| moment.output_counts += 400);
-    let sources = sources(&trial, &log);
+    let sources = sources(&experiment, &log);
     let found = sources[at..].iter().position(|source| *source != Source::Both).expect("it is found");
     FAILURE_FOUND.check(found as f64 * 1e-4);
     assert_eq!(sources[at + found], Source::MotorOnly(OutputFault::OutOfRange));
@@ -142,14 +142,14 @@ fn an_output_encoder_that_slips_is_given_up() {
 
 #[test]
 fn an_output_encoder_that_loses_counts_never_makes_a_width_less_than_none() {
-    let trial = Trial::new("q1", "inertia", Encoders::Preset, Some(40e-6), 902).lasting(2.5);
-    let mut log = trial.record();
+    let experiment = Experiment::new("q1", "inertia", Encoders::Preset, Some(40e-6), 902).lasting(2.5);
+    let mut log = experiment.record();
     let start = log[15_000].output_counts;
     log[15_000..].iter_mut().for_each(|moment| {
         moment.output_counts -= (0.01 * (moment.output_counts - start) as f64).round() as i64;
     });
     let (mut least, mut found) = (f64::INFINITY, false);
-    trial.replay::<MAPPED>(&log, 1.0, |k, _, estimates| {
+    experiment.replay::<MAPPED>(&log, 1.0, |k, _, estimates| {
         least = least.min(estimates.half_backlash.value);
         found |= k > 15_000 && estimates.source != Source::Both;
     });
@@ -159,27 +159,27 @@ fn an_output_encoder_that_loses_counts_never_makes_a_width_less_than_none() {
 
 #[test]
 fn an_output_encoder_that_makes_the_gap_narrower_is_given_up_for_teeth_do_not_grow() {
-    let trial = Trial::new("q1", "inertia", Encoders::Preset, Some(40e-6), 24).lasting(3.0);
-    let mut log = trial.record();
+    let experiment = Experiment::new("q1", "inertia", Encoders::Preset, Some(40e-6), 24).lasting(3.0);
+    let mut log = experiment.record();
     let start = log[20_000].output_counts;
     log[20_000..].iter_mut().for_each(|moment| {
         moment.output_counts -= (0.003 * (moment.output_counts - start) as f64).round() as i64;
     });
-    let sources = sources(&trial, &log);
+    let sources = sources(&experiment, &log);
     let found = sources[20_000..].iter().position(|source| *source != Source::Both).expect("it is found");
     LOST_COUNTS_FOUND.check(found as f64 * 1e-4);
     assert!(sources[20_000 + found] == Source::MotorOnly(OutputFault::OutOfRange));
 }
 
 /// Runs the observer with samples that a test may spoil.
-fn spoilt(spoil: impl Fn(usize, &mut Samples<f64>)) -> (Trial, Vec<Moment>, Vec<Estimates<f64>>) {
-    let (trial, log) = turning();
-    let said = trial.said(&log, spoil);
-    (trial, log, said)
+fn spoilt(spoil: impl Fn(usize, &mut Samples<f64>)) -> (Experiment, Vec<PeriodSample>, Vec<Estimates<f64>>) {
+    let (experiment, log) = turning();
+    let said = experiment.said(&log, spoil);
+    (experiment, log, said)
 }
 
 /// Error of the gap over the last half second, over the gap.
-fn late_error(log: &[Moment], said: &[Estimates<f64>]) -> f64 {
+fn late_error(log: &[PeriodSample], said: &[Estimates<f64>]) -> f64 {
     let late = log.len() - 5000..log.len();
     let sum: f64 = late.clone().map(|period| (said[period].gap.value - log[period].gap).powi(2)).sum();
     (sum / late.len() as f64).sqrt() / 160e-6

@@ -3,26 +3,26 @@
 use host_tests::tolerance::observer::*;
 use model_core::observer::{Estimate, MAPPED, PLAIN};
 use reference::drive_train::Disturbance;
-use scenario::rig::Moment;
+use scenario::rig::PeriodSample;
 
+use crate::experiment::{Encoders, Experiment};
 use crate::motion::growing;
-use crate::replay::{Figures, with_encoders};
-use crate::trial::{Encoders, Trial};
+use crate::replay::{ObserverErrors, with_encoders};
 
 /// Half-backlash of the trials with a seed each [m].
 const WIDTHS: [(u64, f64); 3] = [(1, 20e-6), (2, 40e-6), (3, 80e-6)];
 
-/// Figures of a Q1 trial with the map, once a second of contact has been seen.
-fn figures(motion: &str, encoders: Encoders, half_backlash: f64, seed: u64) -> Figures {
-    let trial = Trial::new("q1", motion, encoders, Some(half_backlash), seed).lasting(4.5);
-    trial.figures(&trial.record(), 2.0)
+/// Errors of a Q1 experiment with the map, once a second of contact has been seen.
+fn figures(motion: &str, encoders: Encoders, half_backlash: f64, seed: u64) -> ObserverErrors {
+    let experiment = Experiment::new("q1", motion, encoders, Some(half_backlash), seed).lasting(4.5);
+    experiment.figures(&experiment.record(), 2.0)
 }
 
 #[test]
 fn ideal_encoders_give_the_gap_to_half_a_percent() {
     for (seed, half_backlash) in WIDTHS {
-        let trial = Trial::new("q1", "inertia", Encoders::Ideal, Some(half_backlash), seed).lasting(4.0);
-        let figures = trial.replay::<PLAIN>(&trial.record(), 1.5, |_, _, _| {});
+        let experiment = Experiment::new("q1", "inertia", Encoders::Ideal, Some(half_backlash), seed).lasting(4.0);
+        let figures = experiment.replay::<PLAIN>(&experiment.record(), 1.5, |_, _, _| {});
         GAP_IDEAL.check(figures.gap);
         CONTACT_WRONG.check(1.0 - figures.contact);
     }
@@ -30,7 +30,7 @@ fn ideal_encoders_give_the_gap_to_half_a_percent() {
 
 #[test]
 fn real_encoders_give_gap_contact_torque_and_width() {
-    let mut all = Figures::default();
+    let mut all = ObserverErrors::default();
     for (seed, half_backlash) in WIDTHS {
         for motion in ["inertia", "random"] {
             println!("{motion}, seed {seed}, half-backlash {half_backlash} m");
@@ -53,7 +53,7 @@ fn real_encoders_give_gap_contact_torque_and_width() {
 #[test]
 fn finer_encoders_do_better_and_slow_motion_against_friction_is_enough() {
     GAP_FINE.check(figures("gravity", Encoders::Bits(16, 18), 40e-6, 4).gap);
-    let slow = Trial::new("q1", "slow", Encoders::Preset, Some(40e-6), 5).lasting(6.0);
+    let slow = Experiment::new("q1", "slow", Encoders::Preset, Some(40e-6), 5).lasting(6.0);
     let figures = slow.figures(&slow.record(), 2.0);
     GAP_COARSE.check(figures.gap);
     WIDTH.check(figures.width);
@@ -62,8 +62,8 @@ fn finer_encoders_do_better_and_slow_motion_against_friction_is_enough() {
 #[test]
 fn two_stages_and_a_stiff_joint_are_seen_as_well() {
     for (name, seed) in [("d2", 6), ("l1", 7)] {
-        let trial = Trial::new(name, "gravity", Encoders::Preset, None, seed).lasting(3.0);
-        let figures = trial.figures(&trial.record(), 2.0);
+        let experiment = Experiment::new(name, "gravity", Encoders::Preset, None, seed).lasting(3.0);
+        let figures = experiment.figures(&experiment.record(), 2.0);
         println!("{name}: {figures:?}");
         GAP_COARSE.check(figures.gap);
         WIDTH.check(figures.width);
@@ -74,37 +74,37 @@ fn two_stages_and_a_stiff_joint_are_seen_as_well() {
 #[test]
 fn the_error_maps_are_worth_a_factor_and_hold_when_the_range_grows() {
     // A fifth of the swing at first, all of it later.
-    let mut trial = Trial::new("q1", "inertia", Encoders::Preset, Some(40e-6), 8).lasting(5.0);
-    trial.setup.motion = growing(trial.setup.motion, 2.5);
-    let log = trial.record();
-    GAP_COARSE.check(trial.figures(&log, 2.4).gap);
-    let plain = trial.replay::<PLAIN>(&log, 1.5, |_, _, _| {});
-    WITHOUT_MAP.check(trial.figures(&log, 1.5).gap / plain.gap);
+    let mut experiment = Experiment::new("q1", "inertia", Encoders::Preset, Some(40e-6), 8).lasting(5.0);
+    experiment.setup.motion = growing(experiment.setup.motion, 2.5);
+    let log = experiment.record();
+    GAP_COARSE.check(experiment.figures(&log, 2.4).gap);
+    let plain = experiment.replay::<PLAIN>(&log, 1.5, |_, _, _| {});
+    WITHOUT_MAP.check(experiment.figures(&log, 1.5).gap / plain.gap);
 }
 
 #[test]
 fn a_harmonic_that_is_not_in_the_map_costs_little() {
-    let trial = Trial::new("q1", "gravity", Encoders::Preset, Some(40e-6), 9).lasting(4.0);
-    let log = trial.record();
-    let clean = with_encoders(&log, &trial.setup.train);
-    let count = core::f64::consts::TAU / f64::from(1 << trial.setup.train.surroundings.motor_encoder.bits);
+    let experiment = Experiment::new("q1", "gravity", Encoders::Preset, Some(40e-6), 9).lasting(4.0);
+    let log = experiment.record();
+    let clean = with_encoders(&log, &experiment.setup.train);
+    let count = core::f64::consts::TAU / f64::from(1 << experiment.setup.train.surroundings.motor_encoder.bits);
     let mut dirty = clean.clone();
     for moment in &mut dirty {
         let error = 0.02_f64.to_radians() * (4.0 * moment.motor[0] + 1.0).sin();
         moment.motor_counts += (error / count).round() as i64;
     }
-    FOURTH_HARMONIC.check(trial.figures(&dirty, 2.0).gap - trial.figures(&clean, 2.0).gap);
+    FOURTH_HARMONIC.check(experiment.figures(&dirty, 2.0).gap - experiment.figures(&clean, 2.0).gap);
 }
 
 #[test]
 fn an_inertia_that_is_wrong_is_learnt_from_landings() {
-    let right = Trial::new("q1", "inertia", Encoders::Preset, Some(40e-6), 10).lasting(4.0);
+    let right = Experiment::new("q1", "inertia", Encoders::Preset, Some(40e-6), 10).lasting(4.0);
     let log = right.record();
     for wrong in [0.7, 1.3] {
-        let mut trial = right.clone();
-        trial.told.link_inertia *= wrong;
+        let mut experiment = right.clone();
+        experiment.nominal.link_inertia *= wrong;
         let mut learnt = Estimate::default();
-        let figures = trial.replay::<MAPPED>(&log, 2.0, |_, _, estimates| learnt = estimates.link_inertia_ratio);
+        let figures = experiment.replay::<MAPPED>(&log, 2.0, |_, _, estimates| learnt = estimates.link_inertia_ratio);
         GAP_COARSE.check(figures.gap);
         LOAD_TORQUE_WRONG_INERTIA.check(figures.load_torque);
         LINK_INERTIA.check((learnt.value * wrong - 1.0).abs());
@@ -114,15 +114,15 @@ fn an_inertia_that_is_wrong_is_learnt_from_landings() {
 
 #[test]
 fn a_link_that_is_pushed_time_after_time_says_nothing_of_its_inertia() {
-    let mut trial = Trial::new("q1", "random", Encoders::Preset, Some(40e-6), 12).lasting(4.0);
-    let rated = trial.setup.joint.rated_output_torque;
+    let mut experiment = Experiment::new("q1", "random", Encoders::Preset, Some(40e-6), 12).lasting(4.0);
+    let rated = experiment.setup.joint.rated_output_torque;
     let push = |n: u32| Disturbance::Pulse {
         start: 0.3 + 0.31 * f64::from(n),
         duration: 0.1,
         torque: if n % 3 == 1 { -0.3 * rated } else { 0.3 * rated },
     };
-    trial.setup.disturbances = (0..12).map(push).collect();
-    trial.replay::<MAPPED>(&trial.record(), 1.0, |_, _, estimates| {
+    experiment.setup.disturbances = (0..12).map(push).collect();
+    experiment.replay::<MAPPED>(&experiment.record(), 1.0, |_, _, estimates| {
         let learnt = estimates.link_inertia_ratio;
         assert!(!learnt.valid && (learnt.value - 1.0).abs() < 0.1, "{learnt:?}");
     });
@@ -131,17 +131,17 @@ fn a_link_that_is_pushed_time_after_time_says_nothing_of_its_inertia() {
 #[test]
 fn a_torque_bias_is_read_inside_the_gap() {
     for part in [0.05, -0.05] {
-        let trial = Trial::new("q1", "inertia", Encoders::Preset, Some(40e-6), 11).lasting(4.0);
-        let mut log = trial.record();
-        let read = |log: &[Moment]| trial.said::<f64>(log, |_, _| {}).last().map(|said| said.torque_bias);
+        let experiment = Experiment::new("q1", "inertia", Encoders::Preset, Some(40e-6), 11).lasting(4.0);
+        let mut log = experiment.record();
+        let read = |log: &[PeriodSample]| experiment.said::<f64>(log, |_, _| {}).last().map(|said| said.torque_bias);
         let own = read(&log).expect("a recording");
         // The motor gives as much less than it is told to: a bias is torque that it loses.
-        let bias = part * trial.setup.train.surroundings.torque_limit;
+        let bias = part * experiment.setup.train.surroundings.torque_limit;
         log.iter_mut().for_each(|moment| moment.command += bias);
         let found = read(&log).expect("a recording");
         assert!(own.valid && found.valid, "{own:?}, {found:?}");
         TORQUE_BIAS.check((found.value - own.value) / bias - 1.0);
-        let figures = trial.figures(&log, 2.0);
+        let figures = experiment.figures(&log, 2.0);
         GAP_WITH_BIAS.check(figures.gap);
         assert_eq!(figures.missed, 0, "a landing was missed");
     }

@@ -9,8 +9,8 @@ use model_core::virtual_joint::design::design_surroundings;
 use model_core::observer::{MAPPED, Observer, Source};
 use model_core::virtual_joint::VirtualJoint;
 
+use crate::experiment::{Encoders, Experiment};
 use crate::motion::{MotorController, uniform};
-use crate::trial::{Encoders, Trial};
 
 /// How long each joint moves in each way [s].
 const LASTS: u32 = 240;
@@ -36,13 +36,13 @@ fn an_hour_of_motion_gives_no_healthy_encoder_up() {
 
 /// How often the output encoder is given up. The weight of the hold changes to and fro; torque noise is the test's own.
 fn given_up(name: &str, motion: &str, seed: u64) -> usize {
-    let trial = Trial::new(name, motion, Encoders::Preset, None, seed);
-    let (joint, train) = (&trial.setup.joint, &trial.setup.train);
+    let experiment = Experiment::new(name, motion, Encoders::Preset, None, seed);
+    let (joint, train) = (&experiment.setup.joint, &experiment.setup.train);
     let rate = train.surroundings.control_rate;
     let gears = design::<f32, 3>(joint, rate).expect("tables of the gears");
     let around = design_surroundings::<f32, 3>(joint, &train.surroundings, &gears).expect("surroundings");
     let mut plant = VirtualJoint::new(&gears, &around);
-    let observer = trial.tables::<f32>();
+    let observer = experiment.tables::<f32>();
     let mut observer = Observer::<f32, MAPPED>::new(&observer);
     let mut controller = MotorController::new(joint, train);
     let mut uniform = uniform(seed);
@@ -59,7 +59,7 @@ fn given_up(name: &str, motion: &str, seed: u64) -> usize {
             alarms += usize::from(seen);
         }
         seen = said.source == Source::Both;
-        let command = controller.step(counts, trial.setup.motion.at(time));
+        let command = controller.step(counts, experiment.setup.motion.at(time));
         commanded = command as f32;
         let noise = 1.0 + train.surroundings.torque_noise_ratio * 3.46 * (uniform() - 0.5);
         let pushed = if motion == "hold" { 0.125 * joint.rated_output_torque * (0.7 * TAU * time).sin() } else { 0.0 };

@@ -1,39 +1,39 @@
-//! Readings that come late, by their own time: no estimate runs away, and what cannot be known is not vouched for; and
-//! an encoder that comes back.
+//! Late readings, by their own time stamps: no estimate diverges, what cannot be known is marked invalid, and an
+//! encoder that comes back is used again.
 
 use host_tests::tolerance::observer::GAP_WORST;
 use model_core::observer::{OutputFault, Samples, Source};
-use scenario::rig::Moment;
+use scenario::rig::PeriodSample;
 
-use crate::motion::Profile;
+use crate::experiment::{Encoders, Experiment};
+use crate::motion::TestMotion;
 use crate::replay::samples;
-use crate::trial::{Encoders, Trial};
 
 /// When readings begin to be late, and when they are on time again [periods].
 const LATE: core::ops::Range<usize> = 15_000..20_000;
 
 /// A recording of a joint to and fro, about inertia alone.
-fn to_and_fro(name: &str, profile: Profile) -> (Trial, Vec<Moment>) {
-    let mut trial = Trial::new(name, "inertia", Encoders::Preset, None, 31).lasting(3.0);
-    trial.setup.motion = profile.motion(trial.setup.seed);
-    let log = trial.record();
-    (trial, log)
+fn to_and_fro(name: &str, profile: TestMotion) -> (Experiment, Vec<PeriodSample>) {
+    let mut experiment = Experiment::new(name, "inertia", Encoders::Preset, None, 31).lasting(3.0);
+    experiment.setup.motion = profile.motion(experiment.setup.seed);
+    let log = experiment.record();
+    (experiment, log)
 }
 
 /// Samples of so many periods ago.
-fn ago(trial: &Trial, log: &[Moment], period: usize, late: usize) -> Samples<f32> {
-    samples(&trial.settings, &log[period - late], period - late)
+fn ago(experiment: &Experiment, log: &[PeriodSample], period: usize, late: usize) -> Samples<f32> {
+    samples(&experiment.settings, &log[period - late], period - late)
 }
 
 #[test]
 fn late_readings_of_the_output_say_where_the_gap_is_now() {
     for name in ["q1", "l1", "d2"] {
-        let (trial, log) = to_and_fro(name, Profile::Sine(0.5, 1.0));
-        let gap = 4.0 * trial.setup.joint.sun_planet.half_backlash[0];
+        let (experiment, log) = to_and_fro(name, TestMotion::Sine(0.5, 1.0));
+        let gap = 4.0 * experiment.setup.joint.sun_planet.half_backlash[0];
         for late in [2, 5, 10] {
-            let said = trial.said::<f32>(&log, |period, samples| {
+            let said = experiment.said::<f32>(&log, |period, samples| {
                 if LATE.contains(&period) {
-                    samples.output = ago(&trial, &log, period, late).output;
+                    samples.output = ago(&experiment, &log, period, late).output;
                 }
             });
             let of = |period: usize| (f64::from(said[period].gap.value) - log[period].gap).abs() / gap;
@@ -47,10 +47,10 @@ fn late_readings_of_the_output_say_where_the_gap_is_now() {
 
 #[test]
 fn readings_of_the_output_that_are_too_old_count_as_lost() {
-    let (trial, log) = to_and_fro("q1", Profile::Sine(0.5, 1.0));
-    let said = trial.said::<f32>(&log, |period, samples| {
+    let (experiment, log) = to_and_fro("q1", TestMotion::Sine(0.5, 1.0));
+    let said = experiment.said::<f32>(&log, |period, samples| {
         if LATE.contains(&period) {
-            samples.output = ago(&trial, &log, period, 30).output;
+            samples.output = ago(&experiment, &log, period, 30).output;
         }
     });
     assert_eq!(said[LATE.start + 150].source, Source::MotorOnly(OutputFault::Silent));
@@ -61,10 +61,10 @@ fn readings_of_the_output_that_are_too_old_count_as_lost() {
 #[test]
 fn late_readings_of_the_motor_are_bounded_and_not_vouched_for() {
     for (name, late) in [("q1", 3), ("l1", 3), ("s1", 3), ("l1", 10), ("l1", 30)] {
-        let (trial, log) = to_and_fro(name, Profile::Sine(0.5, 1.0));
-        let said = trial.said::<f32>(&log, |period, samples| {
+        let (experiment, log) = to_and_fro(name, TestMotion::Sine(0.5, 1.0));
+        let said = experiment.said::<f32>(&log, |period, samples| {
             if LATE.contains(&period) {
-                samples.motor = ago(&trial, &log, period, late).motor;
+                samples.motor = ago(&experiment, &log, period, late).motor;
             }
         });
         assert!(LATE.clone().all(|period| !said[period].gap.valid && !said[period].contact_valid));
@@ -82,14 +82,14 @@ fn late_readings_of_the_motor_are_bounded_and_not_vouched_for() {
 #[test]
 fn lost_readings_of_the_motor_cost_little() {
     for name in ["q1", "l1", "d2"] {
-        let (trial, log) = to_and_fro(name, Profile::Sine(0.5, 1.0));
-        let gap = 4.0 * trial.setup.joint.sun_planet.half_backlash[0];
+        let (experiment, log) = to_and_fro(name, TestMotion::Sine(0.5, 1.0));
+        let gap = 4.0 * experiment.setup.joint.sun_planet.half_backlash[0];
         // Each ninth, and after each seventieth one more.
         let lost = |period: usize| LATE.contains(&period) && (period.is_multiple_of(9) || period % 70 < 2);
-        let said = trial.said::<f32>(&log, |period, samples| {
+        let said = experiment.said::<f32>(&log, |period, samples| {
             if lost(period) {
                 let before = (0..period).rev().find(|before| !lost(*before)).unwrap_or(0);
-                samples.motor = ago(&trial, &log, period, period - before).motor;
+                samples.motor = ago(&experiment, &log, period, period - before).motor;
             }
         });
         let of = |period: usize| (f64::from(said[period].gap.value) - log[period].gap).abs() / gap;
@@ -103,10 +103,10 @@ fn lost_readings_of_the_motor_cost_little() {
 
 #[test]
 fn an_output_encoder_that_turns_again_is_taken_back_though_teeth_are_hardly_pressed() {
-    let (trial, mut log) = to_and_fro("l1", Profile::Sine(0.2, 1.0));
+    let (experiment, mut log) = to_and_fro("l1", TestMotion::Sine(0.2, 1.0));
     let counts = log[13_000].output_counts;
     log[13_000..20_000].iter_mut().for_each(|moment| moment.output_counts = counts);
-    let said = trial.said::<f32>(&log, |_, _| {});
+    let said = experiment.said::<f32>(&log, |_, _| {});
     assert!(matches!(said[19_999].source, Source::MotorOnly(_)), "it is given up");
     let back = said[20_000..].iter().position(|estimates| estimates.source == Source::Both);
     println!("taken back after {back:?} periods");

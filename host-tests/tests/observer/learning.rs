@@ -1,29 +1,29 @@
 //! What is learnt where learning is hard: teeth that wear, forces that do not stand out of what bias can be, teeth whose
-//! transmission error is larger than their gap. Figures of ordinary joints are in `gap`.
+//! transmission error is larger than their gap. Errors of ordinary joints are in `gap`.
 
 use host_tests::tolerance::observer::*;
 use model_core::observer::{MAPPED, Source};
 use model_core::virtual_joint::fault::{Fault, FaultKind};
 use reference::drive_train::Disturbance;
-use scenario::file::OnHost;
+use scenario::file::HostOnlyFault;
 
-use crate::motion::Profile;
+use crate::experiment::{Encoders, Experiment};
+use crate::motion::TestMotion;
 use crate::presets::with_backlash;
-use crate::replay::Figures;
-use crate::trial::{Encoders, Trial};
+use crate::replay::ObserverErrors;
 
 #[test]
 fn teeth_that_wear_are_learnt_anew_and_the_encoder_is_kept() {
     for (seed, worn) in [(31, 46e-6), (32, 60e-6), (33, 80e-6)] {
-        let mut trial = Trial::new("q1", "inertia", Encoders::Preset, Some(40e-6), seed).lasting(4.5);
-        let kind = FaultKind::Other(OnHost::GrownBacklash(worn));
-        trial.setup.faults = vec![Fault { start: 2.0, end: f64::INFINITY, seed: (), kind }];
-        let log = trial.record();
+        let mut experiment = Experiment::new("q1", "inertia", Encoders::Preset, Some(40e-6), seed).lasting(4.5);
+        let kind = FaultKind::Other(HostOnlyFault::GrownBacklash(worn));
+        experiment.setup.faults = vec![Fault { start: 2.0, end: f64::INFINITY, seed: (), kind }];
+        let log = experiment.record();
         // What is learnt is held against the teeth as they are then.
-        trial.setup.joint = with_backlash(&trial.setup.joint, worn);
+        experiment.setup.joint = with_backlash(&experiment.setup.joint, worn);
         let mut kept = true;
-        let figures =
-            trial.replay::<MAPPED>(&log, 3.0, |k, _, estimates| kept &= k < 10 || estimates.source == Source::Both);
+        let figures = experiment
+            .replay::<MAPPED>(&log, 3.0, |k, _, estimates| kept &= k < 10 || estimates.source == Source::Both);
         println!("{worn}: {figures:?}");
         GAP_COARSE.check(figures.gap);
         WIDTH.check(figures.width);
@@ -36,8 +36,8 @@ fn teeth_that_touch_a_flank_for_some_milliseconds_on_their_way_show_the_width() 
     // As the motion begins the teeth cross, rest on the other flank with a few newtons and come back; the link turns
     // round a second later.
     for (half_backlash, seed) in [(56.744_186e-6, 657), (70e-6, 644), (63.33e-6, 646)] {
-        let trial = Trial::new("q1", "slow", Encoders::Preset, Some(half_backlash), seed).lasting(2.5);
-        let figures = trial.figures(&trial.record(), 2.0);
+        let experiment = Experiment::new("q1", "slow", Encoders::Preset, Some(half_backlash), seed).lasting(2.5);
+        let figures = experiment.figures(&experiment.record(), 2.0);
         println!("{half_backlash}: {figures:?}");
         WIDTH_AFTER.check(figures.width_after);
     }
@@ -46,17 +46,17 @@ fn teeth_that_touch_a_flank_for_some_milliseconds_on_their_way_show_the_width() 
 #[test]
 fn a_link_that_is_pushed_from_flank_to_flank_shows_the_width_though_it_never_rests_there() {
     for (half_backlash, seed) in [(30e-6, 38), (40e-6, 37), (60e-6, 37)] {
-        let mut trial = Trial::new("q1", "hold", Encoders::Preset, Some(half_backlash), seed).lasting(0.6);
+        let mut experiment = Experiment::new("q1", "hold", Encoders::Preset, Some(half_backlash), seed).lasting(0.6);
         // Nothing brakes it, so it bounces.
-        trial.setup.train.surroundings.load_friction.coulomb = 0.0;
-        trial.setup.train.surroundings.load_friction.viscous = 0.0;
-        trial.setup.train.surroundings.motor_friction.coulomb = 0.0;
-        trial.setup.train.surroundings.motor_friction.viscous = 0.0;
-        trial.setup.train.surroundings.cogging_torque = 0.0;
-        let torque = 0.125 * trial.setup.joint.rated_output_torque;
-        trial.setup.disturbances = vec![Disturbance::Pulse { start: 0.2, duration: 20e-3, torque }];
+        experiment.setup.train.surroundings.load_friction.coulomb = 0.0;
+        experiment.setup.train.surroundings.load_friction.viscous = 0.0;
+        experiment.setup.train.surroundings.motor_friction.coulomb = 0.0;
+        experiment.setup.train.surroundings.motor_friction.viscous = 0.0;
+        experiment.setup.train.surroundings.cogging_torque = 0.0;
+        let torque = 0.125 * experiment.setup.joint.rated_output_torque;
+        experiment.setup.disturbances = vec![Disturbance::Pulse { start: 0.2, duration: 20e-3, torque }];
         let mut known = 0;
-        let figures = trial.replay::<MAPPED>(&trial.record(), 0.5, |_, _, estimates| {
+        let figures = experiment.replay::<MAPPED>(&experiment.record(), 0.5, |_, _, estimates| {
             known += usize::from(estimates.half_backlash.valid);
         });
         println!("{half_backlash}: {figures:?}, known for {known} periods");
@@ -65,18 +65,18 @@ fn a_link_that_is_pushed_from_flank_to_flank_shows_the_width_though_it_never_res
     }
 }
 
-/// Figures of a trial from a moment on, where bias can be a tenth of the largest torque: three of that are more than the
+/// Errors of an experiment from a moment on, where bias can be a tenth of the largest torque: three of that are more than the
 /// motion takes.
-fn under_a_wide_bias(mut trial: Trial, from: f64) -> Figures {
-    trial.settings.torque_uncertainty = 0.1 * trial.settings.torque_limit;
-    trial.figures(&trial.record(), from)
+fn under_a_wide_bias(mut experiment: Experiment, from: f64) -> ObserverErrors {
+    experiment.settings.torque_uncertainty = 0.1 * experiment.settings.torque_limit;
+    experiment.figures(&experiment.record(), from)
 }
 
 #[test]
 fn flanks_are_told_without_a_force_that_stands_out_of_bias() {
     for (name, seed) in [("l1", 34), ("q1", 35)] {
-        let trial = Trial::new(name, "inertia", Encoders::Preset, None, seed).lasting(4.0);
-        let figures = under_a_wide_bias(trial, 2.5);
+        let experiment = Experiment::new(name, "inertia", Encoders::Preset, None, seed).lasting(4.0);
+        let figures = under_a_wide_bias(experiment, 2.5);
         println!("{name}: {figures:?}");
         GAP_COARSE.check(figures.gap);
         WIDTH.check(figures.width);
@@ -91,9 +91,9 @@ fn a_joint_that_hardly_feels_its_load_shows_the_width_by_where_its_link_goes() {
     for (name, half_backlash, frequency, seed) in
         [("l1", 60e-6, 0.4, 40), ("l1", 40e-6, 0.7, 42), ("s1", 20e-6, 0.7, 43), ("s1", 20e-6, 0.7, 44)]
     {
-        let mut trial = Trial::new(name, "inertia", Encoders::Preset, Some(half_backlash), seed).lasting(5.0);
-        trial.setup.motion = Profile::Sine(0.5, frequency).motion(trial.setup.seed);
-        let figures = under_a_wide_bias(trial, 3.5);
+        let mut experiment = Experiment::new(name, "inertia", Encoders::Preset, Some(half_backlash), seed).lasting(5.0);
+        experiment.setup.motion = TestMotion::Sine(0.5, frequency).motion(experiment.setup.seed);
+        let figures = under_a_wide_bias(experiment, 3.5);
         println!("{name} {half_backlash} {seed}: {figures:?}");
         WIDTH.check(figures.width);
         assert!(figures.valid > 0.99, "{name} is not vouched for");
@@ -102,8 +102,8 @@ fn a_joint_that_hardly_feels_its_load_shows_the_width_by_where_its_link_goes() {
 
 #[test]
 fn teeth_whose_error_is_larger_than_their_gap_are_not_vouched_for() {
-    let trial = Trial::new("s1", "gravity", Encoders::Preset, None, 36).lasting(4.0);
-    for (k, estimates) in trial.said::<f64>(&trial.record(), |_, _| {}).iter().enumerate() {
+    let experiment = Experiment::new("s1", "gravity", Encoders::Preset, None, 36).lasting(4.0);
+    for (k, estimates) in experiment.said::<f64>(&experiment.record(), |_, _| {}).iter().enumerate() {
         assert!(k < 20_000 || !estimates.contact_valid, "contact at {k} would be over before anyone could act on it");
     }
 }

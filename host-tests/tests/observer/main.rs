@@ -1,6 +1,7 @@
 //! The observer against the fine-step plant: gap, contact, torques, width, faults, motor only, precision, memory, probe.
 //! Each test is short; `monte_carlo` is the long run over many seeds, and is ignored by default.
 
+mod experiment;
 mod faults;
 mod gap;
 mod hour;
@@ -14,4 +15,3 @@ mod precision;
 mod presets;
 mod probe;
 mod replay;
-mod trial;

@@ -3,27 +3,27 @@
 use host_tests::tolerance::observer::GAP_COARSE;
 use model_core::numbers::digest;
 use model_core::observer::{MAPPED, MEMORY_BYTES, Memory, MemoryError, Observer, PLAIN};
-use scenario::rig::Moment;
+use scenario::rig::PeriodSample;
 
+use crate::experiment::{Encoders, Experiment};
 use crate::replay::samples;
-use crate::trial::{Encoders, Trial};
 
-fn learnt() -> (Trial, Vec<Moment>, Memory) {
-    let trial = Trial::new("q1", "gravity", Encoders::Preset, Some(40e-6), 51).lasting(3.0);
-    let log = trial.record();
-    let tables = trial.tables();
+fn learnt() -> (Experiment, Vec<PeriodSample>, Memory) {
+    let experiment = Experiment::new("q1", "gravity", Encoders::Preset, Some(40e-6), 51).lasting(3.0);
+    let log = experiment.record();
+    let tables = experiment.tables();
     let mut observer = Observer::<f32, MAPPED>::new(&tables);
     for (period, moment) in log.iter().enumerate() {
-        observer.step(&samples(&trial.settings, moment, period));
+        observer.step(&samples(&experiment.settings, moment, period));
     }
     let memory = observer.save();
-    (trial, log, memory)
+    (experiment, log, memory)
 }
 
 #[test]
 fn an_observer_that_remembers_knows_the_gap_from_the_first_moment() {
-    let (trial, log, memory) = learnt();
-    let tables = trial.tables();
+    let (experiment, log, memory) = learnt();
+    let tables = experiment.tables();
     for loaded_at in [0, 5] {
         let mut observer = Observer::<f32, MAPPED>::new(&tables);
         let mut sum = 0.0;
@@ -33,7 +33,7 @@ fn an_observer_that_remembers_knows_the_gap_from_the_first_moment() {
             if period == loaded_at {
                 observer.load(&memory).expect("its own memory");
             }
-            let estimates = observer.step(&samples(&trial.settings, moment, period));
+            let estimates = observer.step(&samples(&experiment.settings, moment, period));
             if period >= 200 {
                 sum += ((f64::from(estimates.gap.value) - moment.gap) / 160e-6).powi(2);
                 assert!(estimates.gap.valid);
@@ -45,8 +45,8 @@ fn an_observer_that_remembers_knows_the_gap_from_the_first_moment() {
 
 #[test]
 fn memories_that_do_not_fit_are_refused_and_change_nothing() {
-    let (trial, _, memory) = learnt();
-    let tables = trial.tables();
+    let (experiment, _, memory) = learnt();
+    let tables = experiment.tables();
     let refusal = |memory: &[u8]| {
         let mut observer = Observer::<f32, MAPPED>::new(&tables);
         let before = observer.save();
@@ -66,19 +66,19 @@ fn memories_that_do_not_fit_are_refused_and_change_nothing() {
     newer[4] += 1;
     assert_eq!(refusal(&newer), MemoryError::WrongVersion);
 
-    let other = Trial::new("d2", "gravity", Encoders::Preset, None, 52);
+    let other = Experiment::new("d2", "gravity", Encoders::Preset, None, 52);
     let tables = other.tables();
     let mut observer = Observer::<f32, MAPPED>::new(&tables);
     assert_eq!(observer.load(&memory), Err(MemoryError::OtherJoint));
-    let tables = trial.tables();
+    let tables = experiment.tables();
     let mut plain = Observer::<f32, PLAIN>::new(&tables);
     assert_eq!(plain.load(&memory), Err(MemoryError::OtherJoint));
 }
 
 #[test]
 fn a_mobility_that_no_link_has_is_not_believed() {
-    let (trial, log, memory) = learnt();
-    let tables = trial.tables();
+    let (experiment, log, memory) = learnt();
+    let tables = experiment.tables();
     for mobility in [0.0_f32, -1.0, 1e30] {
         let mut odd = memory;
         let at = odd.len() - 8;
@@ -89,7 +89,7 @@ fn a_mobility_that_no_link_has_is_not_believed() {
         let mut observer = Observer::<f32, MAPPED>::new(&tables);
         observer.load(&odd).expect("sealed as it should be");
         for (period, moment) in log.iter().take(100).enumerate() {
-            observer.step(&samples(&trial.settings, moment, period));
+            observer.step(&samples(&experiment.settings, moment, period));
         }
         let estimates = observer.estimates();
         assert!((0.5..=11.0).contains(&estimates.link_inertia_ratio.value), "{:?}", estimates.link_inertia_ratio);

@@ -1,5 +1,5 @@
-//! What the observer's tests move a joint by: motions that are all there soon, and a plain motor controller, which uses the
-//! motor encoder alone, so that no recording depends on the observer that it is to judge.
+//! The motions of the observer's tests: profiles that excite everything quickly, and a plain motor controller that uses
+//! the motor encoder alone, so that no recording depends on the observer under test.
 
 use model_core::gears::{Kinematics, Mechanics};
 use std::f64::consts::TAU;
@@ -17,7 +17,7 @@ const TRACKING: f64 = 1200.0;
 
 /// What the link is to do.
 #[derive(Debug, Clone)]
-pub enum Profile {
+pub enum TestMotion {
     /// Amplitude times a sine [rad, Hz].
     Sine(f64, f64),
     /// Sines from 0.2 Hz up to the highest given, phases and sizes by the seed: [largest acceleration rad/s^2, Hz].
@@ -32,7 +32,7 @@ struct Tones(Vec<[f64; 3]>);
 /// A fifth of a motion until a moment [s], all of it half a second later.
 struct Growing(SharedProfile, f64);
 
-impl Profile {
+impl TestMotion {
     /// The motion, as a seed determines it.
     pub fn motion(&self, seed: u64) -> SharedProfile {
         Arc::new(match *self {

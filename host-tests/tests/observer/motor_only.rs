@@ -1,27 +1,27 @@
-//! Without an output encoder: an honest variance, and a refusal where nothing can be known.
+//! Without an output encoder: a truthful variance, and invalid estimates where nothing can be known.
 
 use host_tests::tolerance::observer::MOTOR_ONLY_HONESTY;
 use model_core::observer::{MAPPED, OutputFault, Source};
 
-use crate::trial::{Encoders, Trial};
+use crate::experiment::{Encoders, Experiment};
 
 /// A trial without an output encoder, told a width right to 2 %.
-fn trial(motion: &str, seed: u64) -> Trial {
-    let mut trial = Trial::new("q1", motion, Encoders::Preset, Some(40e-6), seed).lasting(4.0);
-    trial.told = trial.setup.joint.clone();
-    trial.settings.output_encoder = None;
-    trial.settings.backlash_uncertainty = 0.02;
-    trial.settings.compliance_uncertainty = 0.05;
-    trial
+fn experiment(motion: &str, seed: u64) -> Experiment {
+    let mut experiment = Experiment::new("q1", motion, Encoders::Preset, Some(40e-6), seed).lasting(4.0);
+    experiment.nominal = experiment.setup.joint.clone();
+    experiment.settings.output_encoder = None;
+    experiment.settings.backlash_uncertainty = 0.02;
+    experiment.settings.compliance_uncertainty = 0.05;
+    experiment
 }
 
 #[test]
 fn the_variance_is_honest_and_long_separations_are_refused() {
     for (motion, seed) in [("inertia", 31), ("gravity", 32)] {
-        let trial = trial(motion, seed);
-        let log = trial.record();
+        let experiment = experiment(motion, seed);
+        let log = experiment.record();
         let (mut open_for, mut refused, mut long) = (0, 0, 0);
-        let figures = trial.replay::<MAPPED>(&log, 1.0, |_, moment, estimates| {
+        let figures = experiment.replay::<MAPPED>(&log, 1.0, |_, moment, estimates| {
             assert_eq!(estimates.source, Source::MotorOnly(OutputFault::Absent));
             assert!(estimates.half_backlash.variance > 1e-14, "the width never counts as known for sure");
             open_for = if moment.sun_force == 0.0 { open_for + 1 } else { 0 };
@@ -39,9 +39,9 @@ fn the_variance_is_honest_and_long_separations_are_refused() {
 
 #[test]
 fn a_width_that_nobody_knows_is_not_made_up() {
-    let mut trial = trial("inertia", 33);
-    trial.settings.backlash_uncertainty = 0.5;
-    trial.replay::<MAPPED>(&trial.record(), 1.0, |_, _, estimates| {
+    let mut experiment = experiment("inertia", 33);
+    experiment.settings.backlash_uncertainty = 0.5;
+    experiment.replay::<MAPPED>(&experiment.record(), 1.0, |_, _, estimates| {
         assert!(!estimates.gap.valid && !estimates.half_backlash.valid);
     });
 }

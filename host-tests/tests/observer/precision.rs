@@ -5,20 +5,20 @@ use std::f64::consts::TAU;
 use host_tests::tolerance::observer::SINGLE_PRECISION;
 use model_core::observer::{MAPPED, Observer, Shaft};
 
+use crate::experiment::{Encoders, Experiment};
 use crate::replay::samples;
-use crate::trial::{Encoders, Trial};
 
 #[test]
 fn single_precision_is_enough_at_the_start_and_after_300_turns() {
-    let trial = Trial::new("q1", "gravity", Encoders::Preset, Some(40e-6), 41).lasting(3.0);
-    let log = trial.record();
+    let experiment = Experiment::new("q1", "gravity", Encoders::Preset, Some(40e-6), 41).lasting(3.0);
+    let log = experiment.record();
     for turns in [0, 300] {
-        let (single, double) = (trial.tables::<f32>(), trial.tables::<f64>());
+        let (single, double) = (experiment.tables::<f32>(), experiment.tables::<f64>());
         let mut single = Observer::<f32, MAPPED>::new(&single);
         let mut double = Observer::<f64, MAPPED>::new(&double);
         // The joint goes there smoothly before the recording begins, at some four turns of the output a second.
         let mut period = 0;
-        let train = &trial.setup.train;
+        let train = &experiment.setup.train;
         let (motor_turn, output_turn) =
             (1_i64 << train.surroundings.motor_encoder.bits, 1_i64 << train.surroundings.output_encoder.bits);
         let steps = turns * 10_000 / 4;
@@ -29,8 +29,8 @@ fn single_precision_is_enough_at_the_start_and_after_300_turns() {
             moment.command = 0.0;
             moment.motor_counts += (way * 6.0 * motor_turn as f64).floor() as i64;
             moment.output_counts += (way * output_turn as f64).floor() as i64;
-            single.step(&samples(&trial.settings, &moment, period));
-            double.step(&samples(&trial.settings, &moment, period));
+            single.step(&samples(&experiment.settings, &moment, period));
+            double.step(&samples(&experiment.settings, &moment, period));
             period += 1;
         }
         let (mut sum, mut began) = (0.0, None);
@@ -38,8 +38,8 @@ fn single_precision_is_enough_at_the_start_and_after_300_turns() {
             let mut moment = *moment;
             moment.motor_counts += motor_turn * 6 * turns;
             moment.output_counts += output_turn * turns;
-            let single = *single.step(&samples(&trial.settings, &moment, period));
-            let double = *double.step(&samples(&trial.settings, &moment, period));
+            let single = *single.step(&samples(&experiment.settings, &moment, period));
+            let double = *double.step(&samples(&experiment.settings, &moment, period));
             period += 1;
             sum += (f64::from(single.gap.value) - double.gap.value).powi(2);
             let turned = |shaft: &Shaft<f64>| f64::from(shaft.turns) + shaft.fraction;

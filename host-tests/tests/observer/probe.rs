@@ -5,11 +5,11 @@ use model_core::observer::design::{ObserverSettings, design_observer, design_pro
 use model_core::observer::{MAPPED, Observer, ObserverTables, Probe, ProbeTable, Progress, Refusal};
 use reference::closed_loop::{Controller, SetPoint};
 use reference::drive_train::{Disturbance, Measurement};
-use scenario::rig::{Driver, Moment, Period, Rig, RunError};
-use scenario::sender::Sender;
+use scenario::rig::{ActiveController, Period, PeriodSample, Rig, RunError};
+use scenario::set_point_source::SetPointSource;
 
+use crate::experiment::{Encoders, Experiment};
 use crate::replay::samples;
-use crate::trial::{Encoders, Trial};
 
 /// Periods in which the observer settles before the probe begins.
 const SETTLES: usize = 1000;
@@ -27,11 +27,11 @@ struct Probing<'t> {
 impl Controller for Probing<'_> {
     fn period(&mut self, measurement: &Measurement, _: &SetPoint) -> f64 {
         let Some(period) = (measurement.period as usize).checked_sub(1) else { return self.command };
-        let moment = Moment {
+        let moment = PeriodSample {
             command: self.command,
             motor_counts: self.home.motor_counts + measurement.motor_counts,
             output_counts: self.home.output_counts + measurement.output_counts,
-            ..Moment::default()
+            ..PeriodSample::default()
         };
         let estimates = *self.observer.step(&samples(self.settings, &moment, period));
         if period >= SETTLES && self.progress == Progress::Running {
@@ -46,16 +46,16 @@ impl Controller for Probing<'_> {
 /// Runs a probe on Q1 without an output encoder; the load is held by so much dry friction [N m]. What it came to, and the
 /// largest force on the teeth [N].
 fn probed(half_backlash: f64, seed: u64, holding: f64, pushed_by: f64, torque: f64) -> (Progress<f32>, f64) {
-    let mut trial = Trial::new("q1", "hold", Encoders::Preset, Some(half_backlash), seed).lasting(0.7);
-    trial.setup.train.surroundings.load_friction.coulomb = holding;
-    trial.setup.train.surroundings.gravity_torque = 0.0;
-    trial.setup.disturbances = vec![Disturbance::Step { start: 0.0, torque: pushed_by }];
-    trial.settings.output_encoder = None;
-    let tables: ObserverTables<f32> = design_observer(&trial.told, &trial.settings).expect("tables");
-    let table: ProbeTable<f32> = design_probe(&trial.told, &trial.settings, torque).expect("a table");
-    let rig = Rig::new(&trial.setup).expect("a sound drive train");
+    let mut experiment = Experiment::new("q1", "hold", Encoders::Preset, Some(half_backlash), seed).lasting(0.7);
+    experiment.setup.train.surroundings.load_friction.coulomb = holding;
+    experiment.setup.train.surroundings.gravity_torque = 0.0;
+    experiment.setup.disturbances = vec![Disturbance::Step { start: 0.0, torque: pushed_by }];
+    experiment.settings.output_encoder = None;
+    let tables: ObserverTables<f32> = design_observer(&experiment.nominal, &experiment.settings).expect("tables");
+    let table: ProbeTable<f32> = design_probe(&experiment.nominal, &experiment.settings, torque).expect("a table");
+    let rig = Rig::new(&experiment.setup).expect("a sound drive train");
     let mut probing = Probing {
-        settings: &trial.settings,
+        settings: &experiment.settings,
         observer: Observer::new(&tables),
         probe: Probe::new(&table),
         home: rig.home(),
@@ -67,8 +67,8 @@ fn probed(half_backlash: f64, seed: u64, holding: f64, pushed_by: f64, torque: f
         hardest = hardest.max(period.plant.joint().sun_force().abs());
         Ok(())
     };
-    let mut sender = Sender::of_positions(trial.setup.motion.clone());
-    rig.run(&mut Driver::of(Box::new(&mut probing)), &mut sender, &mut watch).expect("it runs");
+    let mut set_points = SetPointSource::of_positions(experiment.setup.motion.clone());
+    rig.run(&mut ActiveController::of(Box::new(&mut probing)), &mut set_points, &mut watch).expect("it runs");
     assert!(probing.progress != Progress::Running, "a probe ends within half a second");
     (probing.progress, hardest)
 }
@@ -93,7 +93,7 @@ fn a_load_that_is_free_or_pushes_is_refused() {
 
 #[test]
 fn a_probe_that_friction_would_swallow_is_not_designed() {
-    let trial = Trial::new("q1", "hold", Encoders::Preset, Some(40e-6), 66);
-    let refusal = design_probe::<f32>(&trial.told, &trial.settings, 0.05).expect_err("too little torque");
+    let experiment = Experiment::new("q1", "hold", Encoders::Preset, Some(40e-6), 66);
+    let refusal = design_probe::<f32>(&experiment.nominal, &experiment.settings, 0.05).expect_err("too little torque");
     assert!(refusal.to_string().contains("four times the torque uncertainty"), "{refusal}");
 }

@@ -1,4 +1,4 @@
-//! The observer over a recording, and what its estimates are worth against the truth.
+//! The observer over a recording, and the errors of its estimates against the truth.
 
 use model_core::gears::Kinematics;
 use std::f64::consts::TAU;
@@ -8,7 +8,7 @@ use model_core::observer::design::{EncoderSettings, ObserverSettings};
 use model_core::observer::{Estimates, Observer, ObserverTables, Reading, Samples};
 use parameters::{AbsoluteEncoder, ContactState, JointParameters};
 use reference::drive_train::{DriveTrainParameters, ErrorPhases};
-use scenario::rig::Moment;
+use scenario::rig::PeriodSample;
 
 /// Ticks of the samples' clock in a second.
 pub const CLOCK_RATE: u32 = 10_000_000;
@@ -43,7 +43,7 @@ pub fn settings(train: &DriveTrainParameters) -> ObserverSettings {
 }
 
 /// Samples of a recorded moment.
-pub fn samples<T: Real>(settings: &ObserverSettings, moment: &Moment, period: usize) -> Samples<T> {
+pub fn samples<T: Real>(settings: &ObserverSettings, moment: &PeriodSample, period: usize) -> Samples<T> {
     let time = (period as u64 * u64::from(settings.clock_rate / settings.control_rate)) as u32;
     let counts = |counts: i64, encoder: EncoderSettings| {
         let range = if encoder.wraps_at == 0 { 1 << 32 } else { i64::from(encoder.wraps_at) };
@@ -57,16 +57,16 @@ pub fn samples<T: Real>(settings: &ObserverSettings, moment: &Moment, period: us
     }
 }
 
-/// Figures of one replay, from a moment on.
+/// Errors of one replay, from a moment on.
 #[derive(Debug, Clone, Default)]
-pub struct Figures {
+pub struct ObserverErrors {
     /// Root mean square of the gap's error, over the gap 4b.
     pub gap: f64,
     /// Largest.
     pub gap_worst: f64,
     /// Part of the time outside the bands in which the reported contact was right.
     pub contact: f64,
-    /// Landings of which the observer never said anything.
+    /// Landings that the observer never reported.
     pub missed: usize,
     /// Landings.
     pub landings: usize,
@@ -80,7 +80,7 @@ pub struct Figures {
     pub width_after: f64,
     /// Width at the end less the true one, over it.
     pub width: f64,
-    /// Mean of squared gap errors over their variances, where the gap is said to be valid.
+    /// Mean of squared gap errors over their variances, where the gap estimate is valid.
     pub honesty: f64,
     /// Part of the time in which the gap is said to be valid.
     pub valid: f64,
@@ -88,7 +88,7 @@ pub struct Figures {
     pub gap_valid: f64,
 }
 
-impl Figures {
+impl ObserverErrors {
     /// The delay that such a part of the landings stays below [s].
     pub fn delay(&self, part: f64) -> f64 {
         self.delays.get((part * self.delays.len() as f64) as usize).copied().unwrap_or(0.0)
@@ -123,10 +123,10 @@ pub fn replay<const P: usize>(
     joint: &JointParameters,
     tables: &ObserverTables<f64>,
     settings: &ObserverSettings,
-    log: &[Moment],
+    log: &[PeriodSample],
     from: f64,
-    mut watch: impl FnMut(usize, &Moment, &Estimates<f64>),
-) -> Figures {
+    mut watch: impl FnMut(usize, &PeriodSample, &Estimates<f64>),
+) -> ObserverErrors {
     let mut observer = Observer::<f64, P>::new(tables);
     let largest_of = |errors: &[f64]| errors.iter().fold(0.0, |most: f64, error| most.max(error.abs()));
     let [of_sun, of_ring] = [&joint.sun_planet, &joint.ring_planet].map(|mesh| largest_of(&mesh.transmission_error));
@@ -182,7 +182,7 @@ pub fn replay<const P: usize>(
         } else {
             ContactState::Separated
         };
-        // Within 5 % of the gap from an edge, or with less than 5 % of the rated force, nobody is judged.
+        // Within 5 % of the gap from an edge, or with less than 5 % of the rated force, no side is judged.
         let clear = if side == ContactState::Separated {
             moment.gap.abs() < 0.45 * gap
         } else {
@@ -210,7 +210,7 @@ pub fn replay<const P: usize>(
     delays.sort_by(f64::total_cmp);
     let counted = (log.len() - first) as f64;
     let mean = |sum: f64| (sum / counted).sqrt();
-    Figures {
+    ObserverErrors {
         gap: mean(sums[0]),
         gap_worst: worst,
         contact: right as f64 / judged.max(1) as f64,
@@ -228,7 +228,7 @@ pub fn replay<const P: usize>(
 }
 
 /// Readings of other encoders in the same motion: the truth at the control periods, older by the skew at the speed then.
-pub fn with_encoders(log: &[Moment], train: &DriveTrainParameters) -> Vec<Moment> {
+pub fn with_encoders(log: &[PeriodSample], train: &DriveTrainParameters) -> Vec<PeriodSample> {
     let read = |[angle, speed]: [f64; 2], encoder: &AbsoluteEncoder, phases: ErrorPhases| {
         let angle = angle - encoder.skew * speed;
         let error = encoder.once_per_turn_error * (angle + phases.once_per_turn).sin()
@@ -236,7 +236,7 @@ pub fn with_encoders(log: &[Moment], train: &DriveTrainParameters) -> Vec<Moment
         ((angle + error) / TAU * f64::from(1_u32 << encoder.bits)).floor() as i64
     };
     log.iter()
-        .map(|moment| Moment {
+        .map(|moment| PeriodSample {
             motor_counts: read(moment.motor, &train.surroundings.motor_encoder, train.motor_error_phases),
             output_counts: read(moment.link, &train.surroundings.output_encoder, train.output_error_phases),
             ..*moment

@@ -1,5 +1,5 @@
-//! The core on random joints: finite and repeatable in f32, passive without excitation, and
-//! never pulling under the law `contact`. Its digest is looked at elsewhere.
+//! The core on random joints: finite and repeatable in f32, passive without excitation, and never pulling under the law
+//! `contact`. The digest is tested in `digest`.
 
 use host_tests::tolerance::core::{MOMENTUM, PASSIVITY};
 use model_core::gears::design::{DesignError, Effort, design_scheme};
@@ -9,7 +9,7 @@ use parameters::{DampingLaw, DeadZone, JointParameters, StiffnessWave};
 use proptest::prelude::*;
 use reference::scenarios::{Scenario, same};
 
-use crate::books::rigid_gains;
+use crate::balances::rigid_gains;
 use crate::random::{TICK_RATE, config, joint, scenario};
 
 /// Tables at a tick rate, or at the one that a refusal names.

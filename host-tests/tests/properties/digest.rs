@@ -1,4 +1,4 @@
-//! The digest of the tables, on random joints: no parameter changes without it.
+//! The digest of the tables, on random joints: a change of any parameter changes it.
 
 use model_core::gears::design::Effort;
 use parameters::{DampingLaw, DeadZone, Excitation, JointParameters, MeshPhases, StiffnessWave};

@@ -1,7 +1,8 @@
-//! Random joints: three to five planets, both laws, both excitations, both dead zones, ripple, errors, unequal backlash,
-//! with a compliance or without. Whatever they are, the reference keeps its books and the core its promises.
+//! Random joints: three to five planets, both laws, both excitations, both dead zones, ripple, errors, unequal
+//! backlash, with a compliance or without. For all of them the reference's balances close and the core's guarantees
+//! hold.
 
-mod books;
+mod balances;
 mod core;
 mod digest;
 mod random;

@@ -1,4 +1,4 @@
-//! Random joints about the size of L1 and random motions of them; what must be true of them is asked elsewhere.
+//! Random joints about the size of L1, and random motions of them.
 
 use std::f64::consts::TAU;
 use std::ops::Range;

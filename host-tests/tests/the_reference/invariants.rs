@@ -1,5 +1,5 @@
-//! What no integrator may break: energy against work, shift and scaling of the backlash, indifference to turns already
-//! made, and the difference between predictable motions and the rest.
+//! Invariants of any integrator: energy against work, shift and scaling of the backlash, independence of whole turns,
+//! and the difference between predictable motions and the rest.
 
 use std::f64::consts::TAU;
 

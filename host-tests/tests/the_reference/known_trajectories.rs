@@ -1,5 +1,4 @@
-//! The reference against mesh deflections that another integrator found: cases A and Q of the data folder. How the
-//! core follows the reference is asked elsewhere.
+//! The reference against mesh deflections that another integrator computed: cases A and Q of the data folder.
 
 use host_tests::tolerance::CASE_DATA;
 use reference::integrator::Counters;

@@ -1,4 +1,4 @@
-//! The two damping laws at single moments: a joint is set into a state and its mesh forces are read. No time passes.
+//! The two damping laws at single states: a joint is set into a state and its mesh forces are read.
 
 use host_tests::tolerance::MESH_FORCE;
 use parameters::{ContactState, DampingLaw};

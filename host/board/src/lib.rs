@@ -1,9 +1,9 @@
-//! A board as the host sees it: its image is built for it (`target`), it is found in the emulator or behind a port
-//! (`bench`), talked to over a line (`transport`, `session`) and made to follow a torque profile (`profile`); what was
-//! heard is kept (`recording`, `logs`), and the same run is computed here, bit for bit (`twin`). What a run is worth is
-//! judged elsewhere.
+//! A board as the host sees it: build its firmware image (`target`), start the emulator or open the port
+//! (`connection`), talk to it over the line (`transport`, `session`), and drive it through a torque profile
+//! (`profile`). Received messages are kept raw (`recording`, `logs`); `twin` computes the same run on the host and
+//! compares it bit for bit. Verdicts on a run are made in `joint-run`.
 
-pub mod bench;
+pub mod connection;
 pub mod line_options;
 pub mod logs;
 pub mod profile;

@@ -1,5 +1,5 @@
-//! The board's log in words: defmt's encoding, decoded with the image that wrote it. Without that image, or with another
-//! one, the bytes stay bytes.
+//! The board's log as text: decodes defmt frames with the image that wrote them. Without that image the bytes are kept
+//! undecoded.
 
 use std::path::Path;
 

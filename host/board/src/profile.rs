@@ -1,5 +1,5 @@
-//! What is asked of the joint: torques by tick number, built in or read from a CSV. Nothing here knows a board; both
-//! sides of the comparison get the same f32 bits, since torques are rounded once, here.
+//! Torque profiles by tick number, built in or read from a CSV file. Torques are rounded to f32 once, here, so that
+//! board and twin get the same bits.
 
 mod builtin;
 mod recorded;
@@ -14,17 +14,17 @@ use report::failure::{Failure, Outcome};
 use report::number::TYPED;
 
 pub use builtin::BUILTIN;
-pub use torques::STRONGEST;
+pub use torques::MAX_TORQUE;
 use torques::Torques;
 
 /// No link or carrier turns faster [rad/s].
-pub const FASTEST: f64 = 1e4;
+pub const MAX_SPEED: f64 = 1e4;
 /// Commands a second; torques hold in between [Hz].
 pub const COMMAND_RATE: u32 = 1000;
 
 /// A torque profile on the board's tick grid.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Profile {
+pub struct TorqueProfile {
     /// Name of the built-in profile, or path of the CSV.
     pub name: String,
     /// Torque changes, in rising order of ticks, from tick 0.
@@ -33,7 +33,7 @@ pub struct Profile {
     pub ticks: u32,
 }
 
-impl Profile {
+impl TorqueProfile {
     /// A built-in profile by name, or a CSV by path. `duration` cuts the profile or stretches its last torque [s].
     pub fn load(name: &str, joint: &JointParameters, tick_rate: u32, duration: Option<f64>) -> Outcome<Self> {
         if BUILTIN.contains(&name) {
@@ -50,7 +50,7 @@ impl Profile {
             );
             return Err(Failure::new(message).with_help(help));
         }
-        let recording = recorded::Recording::read(path)?;
+        let recording = recorded::RecordedTorques::read(path)?;
         let seconds = duration.unwrap_or(recording.duration());
         Self::sampled(name, tick_rate, seconds, |from, to| recording.mean(from, to))
     }
@@ -102,7 +102,7 @@ mod tests {
 
     #[test]
     fn a_torque_that_does_not_change_is_sent_once() {
-        let profile = Profile::sampled("held", 20_000, 1.0, |_, _| HELD).expect("a profile");
+        let profile = TorqueProfile::sampled("held", 20_000, 1.0, |_, _| HELD).expect("a profile");
         assert_eq!(profile.commands, [Command { tick: 0, drive_torque: 0.5, load_torque: 3.0 }]);
         assert_eq!(profile.ticks, 20_000);
     }
@@ -111,7 +111,7 @@ mod tests {
     fn commands_rise_and_stay_inside_the_run_at_any_tick_rate() {
         for tick_rate in [999, 1000, 20_000, 40_001] {
             let ramp = |from: f64, _| Torques { drive: from, load: -from };
-            let profile = Profile::sampled("ramp", tick_rate, 0.1, ramp).expect("a profile");
+            let profile = TorqueProfile::sampled("ramp", tick_rate, 0.1, ramp).expect("a profile");
             assert!(profile.commands.windows(2).all(|pair| pair[0].tick < pair[1].tick), "{tick_rate}");
             assert!(profile.commands.iter().all(|command| command.tick < profile.ticks), "{tick_rate}");
         }
@@ -120,7 +120,7 @@ mod tests {
     #[test]
     fn a_run_without_a_tick_is_refused() {
         for seconds in [0.0, -1.0, f64::NAN, 1e9] {
-            assert!(Profile::sampled("none", 20_000, seconds, |_, _| HELD).is_err(), "{seconds}");
+            assert!(TorqueProfile::sampled("none", 20_000, seconds, |_, _| HELD).is_err(), "{seconds}");
         }
     }
 }

@@ -1,5 +1,5 @@
-//! What a session hears from the board and what it knows the board to have taken, as raw as it came. Gaps in sequence
-//! numbers are counted here; SI units and verdicts come later.
+//! What a session received from the board, and which commands the board has acknowledged, both unprocessed. Gaps in
+//! sequence numbers are counted here; conversion to SI units and verdicts are in `joint-run`.
 
 use link::messages::{Accepted, Command, FromBoard, Hello, Log, RunSettings, Sample, SampleBatch, Statistics, Trip};
 
@@ -44,7 +44,7 @@ pub struct Traffic {
 }
 
 impl Recording {
-    /// Files a message. What a run is made of is the session's to decide.
+    /// Stores a message by its kind.
     pub fn take(&mut self, message: FromBoard) {
         self.traffic.messages += 1;
         match message {
@@ -56,7 +56,7 @@ impl Recording {
             FromBoard::Tripped(Trip::NotRunning) if !self.trips.is_empty() => {}
             FromBoard::Tripped(trip) => self.trips.push(trip),
             FromBoard::Log(log) => self.take_log(&log),
-            // Kept by whoever asked for them.
+            // Kept by the caller that asked for them.
             FromBoard::Answer(_)
             | FromBoard::Loop(_)
             | FromBoard::FaultTaken { .. }
@@ -107,18 +107,18 @@ impl Recording {
 
 /// Schedules that were sent and not yet answered for.
 #[derive(Debug, Default)]
-pub struct Unanswered {
+pub struct UnacknowledgedSchedules {
     schedules: Vec<(u16, Vec<Command>)>,
 }
 
-impl Unanswered {
+impl UnacknowledgedSchedules {
     /// A schedule has been sent.
     pub fn sent(&mut self, sequence: u16, commands: &[Command]) {
         self.schedules.push((sequence, commands.to_vec()));
     }
 
     /// The board took one: its commands; none if it was not asked.
-    pub fn answered(&mut self, accepted: Accepted) -> Vec<Command> {
+    pub fn acknowledged(&mut self, accepted: Accepted) -> Vec<Command> {
         let place = self.schedules.iter().position(|(sequence, _)| *sequence == accepted.sequence);
         place.map(|place| self.schedules.remove(place).1).unwrap_or_default()
     }

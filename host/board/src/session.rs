@@ -1,14 +1,14 @@
-//! A conversation with a board: find it, reset it, hear it out, stop it. What was heard so far is kept whatever happens;
-//! nothing is judged here.
+//! A session with a board: connect, reset, run, stop. Whatever was received before an error is kept in `recording`.
 //!
-//! `hearing` sends and waits, `identity` says whether it is the right board and `mend` what to do if it is not; `stream` and
-//! `control` are the runs, `memory` is about what a board has learnt.
+//! `line_io` sends, receives and enforces timeouts; `identity` checks that the board runs the expected image and `help`
+//! says what to do if it does not; `stream` and `control` are the runs of the roles, `memory` reads and writes what a
+//! board has learnt.
 
 mod control;
-mod hearing;
+mod help;
 mod identity;
+mod line_io;
 mod memory;
-mod mend;
 mod stream;
 
 use std::time::{Duration, Instant};
@@ -17,23 +17,23 @@ use link::PROTOCOL_VERSION;
 use link::framing::Receiver;
 use link::messages::{Hello, RunSettings, ToBoard};
 
-use super::recording::{Recording, Unanswered};
+use super::recording::{Recording, UnacknowledgedSchedules};
 use super::transport::Line;
 use report::failure::{Failure, Outcome};
 
+pub use help::BoardHelp;
 pub use identity::Expected;
 use identity::HelloHead;
-pub use mend::Mend;
 
-/// Longest silence of a board that has something to say.
-pub const SILENCE: Duration = Duration::from_secs(2);
-/// Time between two calls of the host to a board that has not answered yet.
-const PING: Duration = Duration::from_millis(100);
-/// Longest wait for a line to become quiet.
-const DRAIN: Duration = Duration::from_secs(1);
+/// Longest wait for an answer of a connected board.
+pub const ANSWER_TIMEOUT: Duration = Duration::from_secs(2);
+/// Time between two hello messages to a board that has not answered yet.
+const HELLO_INTERVAL: Duration = Duration::from_millis(100);
+/// Longest wait for the line to become idle.
+const DRAIN_TIMEOUT: Duration = Duration::from_secs(1);
 
-/// What a session asks about its surroundings at every slice of waiting.
-pub trait Surroundings {
+/// What a session polls while it waits: has the user interrupted it, is the other end gone?
+pub trait Supervisor {
     /// The user wants to stop.
     fn interrupted(&self) -> bool;
     /// Why the other end is gone, if it is known to be.
@@ -42,56 +42,56 @@ pub trait Surroundings {
     }
 }
 
-/// A conversation with a board.
+/// A session with a board.
 pub struct Session<'a> {
     line: Box<dyn Line + 'a>,
-    surroundings: Box<dyn Surroundings + 'a>,
+    supervisor: Box<dyn Supervisor + 'a>,
     receiver: Receiver,
     head_receiver: Option<Receiver>,
     foreign: Option<HelloHead>,
     dropped_before: u32,
-    unanswered: Unanswered,
-    /// All that was heard.
+    unacknowledged: UnacknowledgedSchedules,
+    /// All that was received.
     pub recording: Recording,
 }
 
 impl<'a> Session<'a> {
     /// A session on a line; nothing is sent yet.
-    pub fn new(line: Box<dyn Line + 'a>, surroundings: Box<dyn Surroundings + 'a>) -> Self {
+    pub fn new(line: Box<dyn Line + 'a>, supervisor: Box<dyn Supervisor + 'a>) -> Self {
         Self {
             line,
-            surroundings,
+            supervisor,
             receiver: Receiver::new(),
             head_receiver: Some(Receiver::new()),
             foreign: None,
             dropped_before: 0,
-            unanswered: Unanswered::default(),
+            unacknowledged: UnacknowledgedSchedules::default(),
             recording: Recording::default(),
         }
     }
 
     /// Calls the board until it answers, and refuses one that is not as expected.
-    pub fn connect(&mut self, expected: &Expected, patience: Duration) -> Outcome<Hello> {
-        let hello = self.call(&expected.mend, patience)?;
+    pub fn connect(&mut self, expected: &Expected, timeout: Duration) -> Outcome<Hello> {
+        let hello = self.call(&expected.help, timeout)?;
         expected.verify(&hello)?;
         Ok(hello)
     }
 
-    /// Calls the board until it answers, whatever it is as long as it can be understood; `mend` is for a board that cannot be.
-    pub fn call(&mut self, mend: &Mend, patience: Duration) -> Outcome<Hello> {
-        let deadline = Instant::now() + patience;
+    /// Calls the board until it answers, whatever it is as long as it can be understood; `help` is for a board that cannot be.
+    pub fn call(&mut self, help: &BoardHelp, timeout: Duration) -> Outcome<Hello> {
+        let deadline = Instant::now() + timeout;
         let mut next_ping = Instant::now();
         while self.recording.hello.is_none() {
             if Instant::now() >= next_ping {
                 self.send(&ToBoard::Hello { protocol: PROTOCOL_VERSION })?;
-                next_ping = Instant::now() + PING;
+                next_ping = Instant::now() + HELLO_INTERVAL;
             }
-            self.hear()?;
+            self.receive()?;
             if let Some(head) = self.foreign {
-                return Err(head.refusal(mend));
+                return Err(head.refusal(help));
             }
             if Instant::now() > deadline {
-                return Err(self.no_answer(patience, mend));
+                return Err(self.no_answer(timeout, help));
             }
         }
         self.head_receiver = None;
@@ -111,7 +111,7 @@ impl<'a> Session<'a> {
         self.wait("statistics", |recording| recording.statistics.is_some())?;
         self.dropped_before = self.receiver.dropped().frames;
         self.recording.start_run(settings);
-        self.unanswered = Unanswered::default();
+        self.unacknowledged = UnacknowledgedSchedules::default();
         Ok(())
     }
 
@@ -132,9 +132,9 @@ impl<'a> Session<'a> {
         let quickly = |result: Outcome<()>| result.is_ok();
         self.recording.statistics = None;
         let asked = quickly(self.send(&ToBoard::Stop)) && quickly(self.send(&ToBoard::Statistics { reset: false }));
-        let deadline = Instant::now() + DRAIN;
+        let deadline = Instant::now() + DRAIN_TIMEOUT;
         while asked && self.recording.statistics.is_none() && Instant::now() < deadline {
-            if self.hear_regardless().is_err() {
+            if self.receive_uninterrupted().is_err() {
                 return;
             }
         }

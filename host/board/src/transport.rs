@@ -10,7 +10,7 @@ use serialport::{ErrorKind, SerialPort};
 use report::failure::{Failure, Outcome};
 
 /// Longest wait of one [`Line::receive`]; a session looks at its deadlines and at Ctrl-C this often.
-pub const SLICE: Duration = Duration::from_millis(20);
+pub const RECEIVE_TIMEOUT: Duration = Duration::from_millis(20);
 /// Longest wait for the other end to take what is sent.
 const WRITE_TIMEOUT: Duration = Duration::from_secs(2);
 
@@ -18,7 +18,7 @@ const WRITE_TIMEOUT: Duration = Duration::from_secs(2);
 pub trait Line {
     /// Sends everything, or fails.
     fn send(&mut self, bytes: &[u8]) -> io::Result<()>;
-    /// Waits for up to [`SLICE`]; 0 bytes mean that nothing came, an error that the line is gone.
+    /// Waits for up to [`RECEIVE_TIMEOUT`]; 0 bytes mean that nothing came, an error that the line is gone.
     fn receive(&mut self, buffer: &mut [u8]) -> io::Result<usize>;
     /// The line as a user knows it.
     fn name(&self) -> &str;
@@ -33,7 +33,7 @@ pub struct Socket {
 impl Socket {
     /// Takes over a connected socket.
     pub fn new(stream: UnixStream, name: impl Into<String>) -> io::Result<Self> {
-        stream.set_read_timeout(Some(SLICE))?;
+        stream.set_read_timeout(Some(RECEIVE_TIMEOUT))?;
         stream.set_write_timeout(Some(WRITE_TIMEOUT))?;
         Ok(Self { stream, name: name.into() })
     }
@@ -65,7 +65,7 @@ pub struct Port {
 impl Port {
     /// Opens a port for this process alone.
     pub fn open(path: &str, baud: u32) -> Outcome<Self> {
-        let opened = serialport::new(path, baud).timeout(SLICE).exclusive(true).open();
+        let opened = serialport::new(path, baud).timeout(RECEIVE_TIMEOUT).exclusive(true).open();
         match opened {
             Ok(port) => Ok(Self { port, path: path.to_owned() }),
             Err(error) => Err(cannot_open(path, baud, &error)),

@@ -70,13 +70,13 @@ fn words(trip: &Trip) -> (&'static str, Option<u32>, &'static str, &'static str)
 
 /// A trip as the end of a run.
 pub fn failure(trip: &Trip) -> Failure {
-    let (name, tick, what, mend) = words(trip);
+    let (name, tick, what, help) = words(trip);
     let place = tick.map(|tick| format!(" at tick {tick}")).unwrap_or_default();
-    Failure::check_failed(format!("the board went into its safe state{place}: {what} ({name})")).with_help(mend)
+    Failure::check_failed(format!("the board went into its safe state{place}: {what} ({name})")).with_help(help)
 }
 
 /// A trip as a line of the record.
 pub fn entry(trip: &Trip) -> FaultEntry {
-    let (name, tick, what, mend) = words(trip);
-    FaultEntry { tick, name: name.to_owned(), text: format!("{what}; {mend}") }
+    let (name, tick, what, help) = words(trip);
+    FaultEntry { tick, name: name.to_owned(), text: format!("{what}; {help}") }
 }

@@ -1,5 +1,6 @@
-//! The host's twin of the board: the same f32 step over the same torques, held against every sample bit for bit. A
-//! running digest over the whole state covers the ticks between samples; closeness to the truth is the reference's.
+//! The host's twin of the board: the same f32 step under the same torques, compared with every sample bit for bit. A
+//! running digest over the whole state covers the ticks between samples. Accuracy is checked against the reference, in
+//! `joint-run`.
 
 use link::messages::{Command, Sample};
 use model_core::gears::design::{DesignError, Effort, design_scheme};

@@ -1,4 +1,4 @@
-//! Columns of numbers under names, out of CSV text or row by row: what is missing or no number is named.
+//! Named columns of numbers, from CSV text or row by row. A missing or non-numeric value is reported with its place.
 
 use report::failure::{Failure, Outcome};
 
@@ -6,7 +6,7 @@ use report::failure::{Failure, Outcome};
 const HEADER_HELP: &str = "the first line names the columns: time_s,motor_counts,output_counts,motor_torque_N_m and, if it \
                            was measured, output_torque_N_m; --column motor_counts=NAME takes another name";
 
-/// What a column is called here, and what it may be called in a log.
+/// The name of each column, and the names it may have in a log.
 pub const KNOWN: [(&str, &[&str]); 9] = [
     ("time_s", &[]),
     ("time_ms", &[]),

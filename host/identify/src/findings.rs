@@ -1,5 +1,5 @@
-//! What was found, each with its 95 % interval in the joint file's unit and the key that it belongs to, or the reason
-//! why the log does not show it: `gap`, `brakes` and `angles`.
+//! Identified parameters, each with its 95 % interval in the joint file's unit and the key it belongs to, or the reason
+//! why the log does not determine it: `gap`, `brakes` and `angles`.
 
 pub(crate) mod angles;
 mod brakes;
@@ -11,11 +11,11 @@ pub use finding::Finding;
 use serde::Serialize;
 
 use super::log::Log;
-use super::plan::Plan;
+use super::prior::PriorModel;
 use super::rows::Rows;
 use super::twist::Twist;
 
-/// What identification leaves behind as JSON, and on its page.
+/// The record of an identification, for JSON and the report.
 #[derive(Debug, Serialize)]
 pub struct Record<'a> {
     /// Name and version of this form.
@@ -35,10 +35,10 @@ pub struct Record<'a> {
 }
 
 /// Everything that a log shows of a joint.
-pub fn gather(log: &Log, quick: &Rows, slow: &Rows, twist: &Twist, plan: &Plan) -> Vec<Finding> {
-    let mut findings = gap::gap_and_compliance(log, twist, plan);
-    findings.extend(brakes::frictions(quick, slow, twist, plan));
-    findings.extend(angles::maps(twist, plan));
-    findings.push(angles::skew(log, twist, plan));
+pub fn gather(log: &Log, quick: &Rows, slow: &Rows, twist: &Twist, prior: &PriorModel) -> Vec<Finding> {
+    let mut findings = gap::gap_and_compliance(log, twist, prior);
+    findings.extend(brakes::frictions(quick, slow, twist, prior));
+    findings.extend(angles::maps(twist, prior));
+    findings.push(angles::skew(log, twist, prior));
     findings
 }

@@ -1,10 +1,10 @@
-//! What brakes: the link's balance of torque gives dry and viscous friction where it moves, and with a torque measured
-//! at the output the motor's own balance too. Friction at rest is left out.
+//! Friction: the link's torque balance gives Coulomb and viscous friction where the link moves; with a torque sensor at
+//! the output, the motor's own balance does so too. Static friction is not fitted.
 
-use super::plan::Plan;
+use super::prior::PriorModel;
 use super::regression::{Equations, Solution};
 use super::rows::{Row, Rows};
-use super::twist::STRETCH;
+use super::twist::BLOCK_LENGTH;
 
 /// Unknowns of the link's balance by their place, behind its inertia: dry friction [N m].
 pub const DRY: usize = 1;
@@ -26,8 +26,8 @@ const BIAS: f64 = 0.02;
 
 /// Balance of the link, with a motor torque that exceeds the logged one by a ratio and a motor of this dry friction, if
 /// no torque was measured behind them.
-pub fn of_the_link(rows: &Rows, plan: &Plan, torque_error: f64, motor_dry: f64) -> Option<Solution> {
-    let slowest = SLOWEST.max(STRIBECK_SPEEDS * plan.surroundings.load_friction.stribeck_speed);
+pub fn of_the_link(rows: &Rows, prior: &PriorModel, torque_error: f64, motor_dry: f64) -> Option<Solution> {
+    let slowest = SLOWEST.max(STRIBECK_SPEEDS * prior.surroundings.load_friction.stribeck_speed);
     let mut equations = Equations::default();
     for row in rows.carrying().filter(|row| row.output_speed.abs() > slowest && row.direction != 0.0) {
         let coefficients = vec![
@@ -38,27 +38,27 @@ pub fn of_the_link(rows: &Rows, plan: &Plan, torque_error: f64, motor_dry: f64) 
             row.output.cos(),
             1.0,
         ];
-        let from_motor = row.drive + torque_error * row.push - row.leverage * row.direction * motor_dry;
+        let from_motor = row.drive + torque_error * row.motor_torque - row.leverage * row.direction * motor_dry;
         let torque = row.measured.unwrap_or(from_motor);
-        equations.push(coefficients, torque, stretch(row));
+        equations.push(coefficients, torque, block(row));
     }
     let weight = rows.greatest;
     equations.solve(&[f64::INFINITY, f64::INFINITY, f64::INFINITY, weight, weight, BIAS * weight])
 }
 
 /// Balance of the motor against the measured output torque.
-pub fn of_the_motor(rows: &Rows, plan: &Plan) -> Option<Solution> {
+pub fn of_the_motor(rows: &Rows, prior: &PriorModel) -> Option<Solution> {
     let mut equations = Equations::default();
     for row in rows.carrying().filter(|row| row.direction != 0.0) {
         let Some(measured) = row.measured else { continue };
         // What the joint file says of the viscous part was taken off before.
-        let known = plan.surroundings.motor_friction.viscous * row.motor_speed;
+        let known = prior.surroundings.motor_friction.viscous * row.motor_speed;
         let left = (row.drive - measured) / row.leverage + known;
-        equations.push(vec![row.direction, row.motor_speed, -row.push / row.leverage, 1.0], left, stretch(row));
+        equations.push(vec![row.direction, row.motor_speed, -row.motor_torque / row.leverage, 1.0], left, block(row));
     }
-    equations.solve(&[f64::INFINITY, f64::INFINITY, plan.torque_error.max(1e-9), BIAS * rows.greatest / plan.ratio()])
+    equations.solve(&[f64::INFINITY, f64::INFINITY, prior.torque_error.max(1e-9), BIAS * rows.greatest / prior.ratio()])
 }
 
-fn stretch(row: &Row) -> usize {
-    (row.time / STRETCH) as usize
+fn block(row: &Row) -> usize {
+    (row.time / BLOCK_LENGTH) as usize
 }

@@ -1,7 +1,7 @@
 //! One smoothing kernel for everything that enters a fit, and its exact derivatives: a linear relation between signals
 //! holds between their smoothed forms too.
 
-/// Four boxes of equal width on one another, and its first and second difference.
+/// Four boxes of equal width convolved, and its first and second difference.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Kernel {
     /// For the value, the first and the second derivative; all of the same odd length.

@@ -1,5 +1,5 @@
-//! What is in a memory: the observer's parameters with their covariances, in the units of the joint file. Which bytes are
-//! what is told by the observer that writes them.
+//! The content of a memory file: the observer's parameters with their covariances, in the units of the joint file. The
+//! byte layout is defined by the observer (`model_core::observer`).
 
 use model_core::observer::design::{design_observer, observer_settings};
 use model_core::observer::tables::LeverTable;

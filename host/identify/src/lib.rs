@@ -2,7 +2,7 @@
 //! errors, each with its interval, and to a patched joint file.
 //!
 //! `log_file` reads a file into `columns`, an MCAP log by `mcap_log` and `ros_message`; `log` turns them into samples,
-//! checked by `sampling`, whose scatter is `noise`; `plan` says what the joint file knows; `rows` are the moments at which a
+//! checked by `sampling`, whose scatter is `noise`; `prior` says what the joint file knows; `rows` are the moments at which a
 //! flank carries, smoothed by `kernel`; `twist` and `friction` are fitted to them by `regression`; `findings` is what comes
 //! of it, with its `estimate`s; `table`, `page`, `pictures` and `patch` show it. `virtual_test` makes a log without hardware.
 
@@ -20,7 +20,7 @@ mod noise;
 pub(crate) mod page;
 mod patch;
 mod pictures;
-mod plan;
+mod prior;
 mod refusal;
 mod regression;
 mod ros_message;
@@ -32,7 +32,7 @@ pub mod virtual_test;
 pub use arguments::Arguments;
 use findings::{Finding, Record};
 use log::Log;
-use plan::Plan;
+use prior::PriorModel;
 use rows::Rows;
 use twist::Twist;
 
@@ -69,31 +69,31 @@ struct Identified {
     findings: Vec<Finding>,
 }
 
-/// Identifies a joint, or makes a log of one, and says what came of it.
+/// Identifies a joint, or makes a log of one, and prints the result.
 pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
     let loaded = named::load_with(&arguments.joint, &arguments.set)?;
     if arguments.simulate {
         return simulate(arguments, &loaded, progress);
     }
-    let plan = Plan::new(&loaded, arguments);
+    let prior = PriorModel::new(&loaded, arguments);
     folder::check_files(&[("json", arguments.json.as_deref())], &[&arguments.log, &arguments.joint])?;
     progress.stage("fitting");
-    let identified = identify(arguments, &plan)?;
-    let folder = Folder::prepare(arguments.out.as_deref(), "identify", &plan.name)?;
+    let identified = identify(arguments, &prior)?;
+    let folder = Folder::prepare(arguments.out.as_deref(), "identify", &prior.name)?;
     let name = arguments.log.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let patched = patch::patch(&loaded, &plan, &identified.findings, &name)?;
-    let assumptions = assumptions(&plan, &identified.log);
+    let patched = patch::patch(&loaded, &prior, &identified.findings, &name)?;
+    let assumptions = assumptions(&prior, &identified.log);
     let Identified { log, rows, twist, findings } = &identified;
     let record = Record {
         schema: "joint-identify/1",
-        joint: &plan.name,
+        joint: &prior.name,
         log: &name,
         duration_s: log.time.last().copied().unwrap_or_default(),
         crossings: rows.crossings,
         assumptions: &assumptions,
         findings,
     };
-    let figures = vec![pictures::loop_of(log, rows, twist, &plan), pictures::course(log, twist)];
+    let figures = vec![pictures::loop_of(log, rows, twist, &prior), pictures::time_history(log, twist)];
     let document = page::document(&record, &loaded.text, figures);
     let json = output::json("findings", &record)?;
     let [report, joint] = [folder.file("report.html"), folder.file("joint.toml")];
@@ -105,25 +105,25 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
     Ok(format!("{}\nreport: {}\njoint file: {}\n", terminal(&document), report.display(), joint.display()))
 }
 
-fn identify(arguments: &Arguments, plan: &Plan) -> Outcome<Identified> {
+fn identify(arguments: &Arguments, prior: &PriorModel) -> Outcome<Identified> {
     let path = arguments.log.as_path();
-    let read = Log::read(arguments, plan)?;
+    let read = Log::read(arguments, prior)?;
     let in_the_file = |failure: Failure| failure.while_doing(path.display());
-    let shortest = QUICK_BOX.min(plan.swing() / SWING_PARTS);
-    let (length, mut rows, mut twist) = first_fit(&read, plan, shortest).map_err(in_the_file)?;
+    let shortest = QUICK_BOX.min(prior.swing() / SWING_PARTS);
+    let (length, mut rows, mut twist) = first_fit(&read, prior, shortest).map_err(in_the_file)?;
     let mut log = read.clone();
     for _ in 0..ROUNDS {
         let errors: [&dyn Fn(f64) -> f64; 3] =
             [&|angle| twist.error(twist::MOTOR_MAP, angle), &|angle| twist.error(twist::OUTPUT_MAP, angle), &|angle| {
                 twist.error(twist::TEETH, angle)
             }];
-        let corrected = read.without(errors, twist.solution.values[twist::SKEW], plan);
-        let seen = Rows::new(&corrected, plan, length);
-        let Some(better) = twist::fit(&corrected, &seen, plan) else { break };
+        let corrected = read.without(errors, twist.solution.values[twist::SKEW], prior);
+        let seen = Rows::new(&corrected, prior, length);
+        let Some(better) = twist::fit(&corrected, &seen, prior) else { break };
         (log, rows, twist) = (corrected, seen, better);
     }
-    let slow = Rows::new(&log, plan, SLOW_BOX);
-    let findings = findings::gather(&log, &rows, &slow, &twist, plan);
+    let slow = Rows::new(&log, prior, SLOW_BOX);
+    let findings = findings::gather(&log, &rows, &slow, &twist, prior);
     if findings.iter().all(|finding| finding.value.is_none()) {
         return Err(in_the_file(Failure::new("nothing is identifiable from this log"))
             .with_help("record more reversals, with torques well above the friction and of different strength"));
@@ -133,15 +133,15 @@ fn identify(arguments: &Arguments, plan: &Plan) -> Outcome<Identified> {
 
 /// The fit with the shortest box of the kernel at which encoder counts are not most of what an acceleration shows; the best
 /// there is if they always are.
-fn first_fit(log: &Log, plan: &Plan, shortest: f64) -> Outcome<(f64, Rows, Twist)> {
+fn first_fit(log: &Log, prior: &PriorModel, shortest: f64) -> Outcome<(f64, Rows, Twist)> {
     let mut best: Option<(f64, Rows, Twist)> = None;
     let mut refused = None;
     let mut length = shortest;
     while length < LONGEST_BOX {
-        let rows = Rows::new(log, plan, length);
-        match refusal::check(log, &rows, plan) {
+        let rows = Rows::new(log, prior, length);
+        match refusal::check(log, &rows, prior) {
             Ok(()) => {
-                let fitted = twist::fit(log, &rows, plan);
+                let fitted = twist::fit(log, &rows, prior);
                 let reliability = fitted.as_ref().map_or(0.0, |twist| twist.solution.reliability);
                 if best.as_ref().is_none_or(|(_, _, best)| reliability > best.solution.reliability) {
                     best = fitted.map(|twist| (length, rows, twist)).or(best);
@@ -150,7 +150,7 @@ fn first_fit(log: &Log, plan: &Plan, shortest: f64) -> Outcome<(f64, Rows, Twist
                     break;
                 }
             }
-            // A longer box may see what counts hide; why the shortest sees nothing is what a user can mend.
+            // A longer box may see what quantisation hides; the reason for the shortest is the one that a user can act on.
             Err(failure) => refused = refused.or(Some(failure)),
         }
         length *= LONGER;
@@ -164,13 +164,13 @@ fn first_fit(log: &Log, plan: &Plan, shortest: f64) -> Outcome<(f64, Rows, Twist
 }
 
 /// What the numbers take for granted.
-fn assumptions(plan: &Plan, log: &Log) -> Vec<String> {
+fn assumptions(prior: &PriorModel, log: &Log) -> Vec<String> {
     let mut list = vec![
         format!(
             "Ratio {} / {} by whole teeth; levers, inertias and efficiency as in the joint file.",
-            plan.teeth[1], plan.teeth[0]
+            prior.teeth[1], prior.teeth[0]
         ),
-        format!("Encoders of {} bits (motor) and {} bits (output).", plan.motor_bits, plan.output_bits),
+        format!("Encoders of {} bits (motor) and {} bits (output).", prior.motor_bits, prior.output_bits),
         "Motor's inertia right within 1.5 %, readings of motor and torque at the same time within 2 us: both are in the \
          intervals."
             .to_owned(),
@@ -182,7 +182,7 @@ fn assumptions(plan: &Plan, log: &Log) -> Vec<String> {
         format!(
             "Motor torque as logged, its scale expected to be right within {:.1} % (one standard deviation); what the log does \
              not show of it is in the intervals.",
-            100.0 * plan.torque_error
+            100.0 * prior.torque_error
         )
     });
     list

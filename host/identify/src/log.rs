@@ -7,9 +7,9 @@ use super::arguments::Arguments;
 use super::columns::Columns;
 use super::log_file;
 use super::noise::Noise;
-use super::plan::Plan;
+use super::prior::PriorModel;
 use super::sampling::sampling;
-use board::profile::STRONGEST;
+use board::profile::MAX_TORQUE;
 use report::failure::{Failure, Outcome};
 use report::number::TYPED;
 
@@ -51,30 +51,30 @@ enum Readings {
 
 impl Log {
     /// Reads a file.
-    pub fn read(arguments: &Arguments, plan: &Plan) -> Outcome<Self> {
+    pub fn read(arguments: &Arguments, prior: &PriorModel) -> Outcome<Self> {
         let path = arguments.log.as_path();
         let columns = log_file::read(path, arguments.topic.as_deref(), &arguments.column)?;
-        Self::of(&columns, plan).map_err(|failure| failure.while_doing(path.display()))
+        Self::of(&columns, prior).map_err(|failure| failure.while_doing(path.display()))
     }
 
-    fn of(columns: &Columns, plan: &Plan) -> Outcome<Self> {
+    fn of(columns: &Columns, prior: &PriorModel) -> Outcome<Self> {
         let mut time = columns.time()?;
         let start = time.first().copied().unwrap_or_default();
         time.iter_mut().for_each(|time| *time -= start);
-        let period = sampling(&time, columns, plan)?;
-        let motor = readings(columns, ["motor_counts", "motor_angle_rad"], plan.motor_bits)?;
-        let output = readings(columns, ["output_counts", "output_angle_rad"], plan.output_bits)?;
+        let period = sampling(&time, columns, prior)?;
+        let motor = readings(columns, ["motor_counts", "motor_angle_rad"], prior.motor_bits)?;
+        let output = readings(columns, ["output_counts", "output_angle_rad"], prior.output_bits)?;
         let (_, torque) = columns.named(&["motor_torque_N_m"])?;
         let output_torque = columns.maybe("output_torque_N_m")?;
         for (name, torques) in [("motor_torque_N_m", Some(&torque)), ("output_torque_N_m", output_torque.as_ref())] {
             let torques = torques.into_iter().flatten();
-            if let Some((row, torque)) = torques.enumerate().find(|(_, torque)| torque.abs() > STRONGEST) {
+            if let Some((row, torque)) = torques.enumerate().find(|(_, torque)| torque.abs() > MAX_TORQUE) {
                 return Err(Failure::new(format!("{}: `{name}` is {}", columns.place(row), TYPED.write(*torque)))
-                    .with_help(format!("it may be from -{STRONGEST} to {STRONGEST} N m: check the unit")));
+                    .with_help(format!("it may be from -{MAX_TORQUE} to {MAX_TORQUE} N m: check the unit")));
             }
         }
-        let twist = twist(&motor, &output, plan);
-        let (motor, output) = (motor.angles(plan.motor_bits), output.angles(plan.output_bits));
+        let twist = twist(&motor, &output, prior);
+        let (motor, output) = (motor.angles(prior.motor_bits), output.angles(prior.output_bits));
         let log = Self {
             time,
             period,
@@ -86,20 +86,20 @@ impl Log {
             torque,
             output_torque,
         };
-        log.check(plan)?;
+        log.check(prior)?;
         Ok(log)
     }
 
     /// Phase of the teeth: whole periods at the ring, by the joint's angle as the inertias on either side weigh it [rad].
-    pub fn teeth(&self, sample: usize, plan: &Plan) -> f64 {
-        let share = plan.motor_share();
-        let joint = (1.0 - share) * self.output[sample] + share * self.motor[sample] / plan.ratio();
-        f64::from(plan.ring_teeth) * joint
+    pub fn teeth(&self, sample: usize, prior: &PriorModel) -> f64 {
+        let share = prior.motor_share();
+        let joint = (1.0 - share) * self.output[sample] + share * self.motor[sample] / prior.ratio();
+        f64::from(prior.ring_teeth) * joint
     }
 
     /// The same with errors of both encoders and of the teeth, each by its angle, taken off the angles, and with the output
     /// at the motor's time: accelerations and the phase of the teeth are sensitive to them.
-    pub fn without(&self, errors: [&dyn Fn(f64) -> f64; 3], skew: f64, plan: &Plan) -> Self {
+    pub fn without(&self, errors: [&dyn Fn(f64) -> f64; 3], skew: f64, prior: &PriorModel) -> Self {
         let [motor, output, teeth] = errors;
         let corrected = |angles: &[f64], error: &dyn Fn(f64) -> f64| -> Vec<f64> {
             angles.iter().map(|angle| angle - error(angle - error(*angle))).collect()
@@ -113,17 +113,17 @@ impl Log {
         };
         let output: Vec<f64> = (0..read.len()).map(|sample| read[sample] + skew * speed(sample)).collect();
         let mut log = Self { motor, output, carried: Vec::new(), ..self.clone() };
-        let carried = |sample: usize| log.motor[sample] - plan.ratio() * teeth(log.teeth(sample, plan));
+        let carried = |sample: usize| log.motor[sample] - prior.ratio() * teeth(log.teeth(sample, prior));
         log.carried = (0..log.motor.len()).map(carried).collect();
         log
     }
 
-    fn check(&self, plan: &Plan) -> Outcome<()> {
+    fn check(&self, prior: &PriorModel) -> Outcome<()> {
         let travel = |angles: &[f64]| {
             let (least, most) = angles.iter().fold((f64::MAX, f64::MIN), |(a, b), &angle| (a.min(angle), b.max(angle)));
             most - least
         };
-        let counts = travel(&self.motor) * f64::from(1_u32 << plan.motor_bits) / TAU;
+        let counts = travel(&self.motor) * f64::from(1_u32 << prior.motor_bits) / TAU;
         if counts < LEAST_TRAVEL {
             return Err(Failure::new(format!(
                 "the motor does not move in this log: by {counts:.1} counts of its encoder, {LEAST_TRAVEL} are the least"
@@ -131,13 +131,13 @@ impl Log {
             .with_help("the torque must overcome the friction, and turn the motor through the gap"));
         }
         // Where the output turns far, it must turn as the motor does.
-        let (moved, of_motor) = (travel(&self.output), travel(&self.motor) / plan.ratio());
+        let (moved, of_motor) = (travel(&self.output), travel(&self.motor) / prior.ratio());
         let twisted = travel(&self.twist);
         if of_motor.max(moved) > 0.2 && twisted > 0.1 * of_motor.max(moved) {
             return Err(Failure::new(format!(
                 "output and motor do not turn together: {moved:.3} rad and {of_motor:.3} rad (motor over its ratio of \
                  {:.4}), apart by up to {twisted:.3} rad",
-                plan.ratio()
+                prior.ratio()
             ))
             .with_help(
                 "check --motor-bits, --output-bits, the teeth of the joint file, and that both encoders count up when \
@@ -158,21 +158,21 @@ impl Readings {
 }
 
 /// Motor over ratio less output: in whole numbers as long as both are counts, so that turns cost no digit.
-fn twist(motor: &Readings, output: &Readings, plan: &Plan) -> Vec<f64> {
+fn twist(motor: &Readings, output: &Readings, prior: &PriorModel) -> Vec<f64> {
     if let (Readings::Counts(motor), Readings::Counts(output)) = (motor, output) {
-        let [sun, both] = plan.teeth.map(i128::from);
-        let turn = (both << (plan.motor_bits + plan.output_bits)) as f64;
+        let [sun, both] = prior.teeth.map(i128::from);
+        let turn = (both << (prior.motor_bits + prior.output_bits)) as f64;
         let pair = motor.iter().zip(output);
         return pair
             .map(|(&motor, &output)| {
-                let apart =
-                    ((i128::from(motor) * sun) << plan.output_bits) - ((i128::from(output) * both) << plan.motor_bits);
+                let apart = ((i128::from(motor) * sun) << prior.output_bits)
+                    - ((i128::from(output) * both) << prior.motor_bits);
                 apart as f64 / turn * TAU
             })
             .collect();
     }
-    let (motor, output) = (motor.angles(plan.motor_bits), output.angles(plan.output_bits));
-    motor.iter().zip(&output).map(|(motor, output)| motor / plan.ratio() - output).collect()
+    let (motor, output) = (motor.angles(prior.motor_bits), output.angles(prior.output_bits));
+    motor.iter().zip(&output).map(|(motor, output)| motor / prior.ratio() - output).collect()
 }
 
 /// Counts, or else angles.

@@ -1,5 +1,5 @@
-//! The findings as a document: a table of every parameter with its interval beside what the joint file says, the fit, and
-//! what it rests on. Figures are made elsewhere.
+//! The identified parameters as a document: a table of every parameter with its interval beside the joint file's value,
+//! the fit, and its assumptions.
 
 use super::findings::{Finding, Record};
 use report::document::{

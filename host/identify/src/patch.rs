@@ -1,7 +1,7 @@
-//! The joint file with what was found in place of what it said. What was not found stays as it is.
+//! The joint file with identified values in place of its own. Keys without an identified value stay as they are.
 
 use super::findings::Finding;
-use super::plan::Plan;
+use super::prior::PriorModel;
 use joint_file::named::{self, Loaded};
 use report::failure::{Failure, Outcome};
 use report::number::ESTIMATE;
@@ -10,7 +10,7 @@ use report::number::ESTIMATE;
 const SIGNED: [&str; 1] = ["drive_train.torque_constant_error_ratio"];
 
 /// The changed text; it can be read again. What may well be zero stays out of a file that does not speak of it.
-pub fn patch(loaded: &Loaded, plan: &Plan, findings: &[Finding], log: &str) -> Outcome<String> {
+pub fn patch(loaded: &Loaded, prior: &PriorModel, findings: &[Finding], log: &str) -> Outcome<String> {
     let log: String = log.chars().filter(|letter| !letter.is_control()).collect();
     let mut text = loaded.text.clone();
     for finding in findings {
@@ -23,7 +23,7 @@ pub fn patch(loaded: &Loaded, plan: &Plan, findings: &[Finding], log: &str) -> O
         }
         let value = if SIGNED.contains(&key.as_str()) { value } else { value.max(0.0) };
         let remark = format!("identified from {log}: {} to {} (95 %)", ESTIMATE.write(low), ESTIMATE.write(high));
-        for (encoder, bits) in [("motor", plan.motor_bits), ("output", plan.output_bits)] {
+        for (encoder, bits) in [("motor", prior.motor_bits), ("output", prior.output_bits)] {
             // An encoder that the file does not speak of yet begins with its resolution.
             let section = format!("drive_train.{encoder}_encoder.");
             let resolution = format!("{section}bits");

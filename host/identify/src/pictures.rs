@@ -1,7 +1,7 @@
-//! Pictures of the fit: twist over torque with both branches, and what is left over in time. Numbers are the table's.
+//! Pictures of the fit: twist over torque with both branches, and the residual over time.
 
 use super::log::Log;
-use super::plan::Plan;
+use super::prior::PriorModel;
 use super::rows::Rows;
 use super::twist::{self, Twist};
 use report::plot::Figure;
@@ -14,8 +14,8 @@ use report::plot::unit::{SECONDS, TORQUE, Unit};
 const POINTS: usize = 6000;
 
 /// Twist over torque: moments of either flank, those near a change, and the fitted branches.
-pub fn loop_of(log: &Log, rows: &Rows, twist: &Twist, plan: &Plan) -> Figure {
-    let cleaned = twist.cleaned(log, rows, plan);
+pub fn loop_of(log: &Log, rows: &Rows, twist: &Twist, prior: &PriorModel) -> Figure {
+    let cleaned = twist.cleaned(log, rows, prior);
     let every = cleaned.len().div_ceil(POINTS).max(1);
     let points = |side: f64| -> Vec<(f64, f64)> {
         let own = cleaned.iter().filter(|(row, _)| row.side == side);
@@ -45,7 +45,7 @@ pub fn loop_of(log: &Log, rows: &Rows, twist: &Twist, plan: &Plan) -> Figure {
 }
 
 /// Torque and what the fit leaves over, in time.
-pub fn course(log: &Log, twist: &Twist) -> Figure {
+pub fn time_history(log: &Log, twist: &Twist) -> Figure {
     let every = log.time.len().div_ceil(POINTS).max(1);
     let torque = log.time.iter().copied().zip(log.torque.iter().copied()).step_by(every).collect();
     let every = twist.rows.len().div_ceil(POINTS).max(1);

@@ -1,8 +1,8 @@
-//! Logs that cannot tell anything, each with its reason and its mend. What only a single parameter lacks is said beside
-//! that parameter instead.
+//! Logs from which nothing can be identified, each with the reason and the help. A reason that concerns one parameter
+//! only is given with that parameter.
 
 use super::log::Log;
-use super::plan::Plan;
+use super::prior::PriorModel;
 use super::rows::Rows;
 use report::failure::{Failure, Outcome};
 
@@ -12,10 +12,10 @@ const LEAST_CROSSINGS: usize = 4;
 const LEAST_CARRIED: f64 = 0.1;
 
 /// Refuses a log without a usable reversal test in it.
-pub fn check(log: &Log, rows: &Rows, plan: &Plan) -> Outcome<()> {
+pub fn check(log: &Log, rows: &Rows, prior: &PriorModel) -> Outcome<()> {
     let (least, most) =
         log.torque.iter().fold((f64::MAX, f64::MIN), |(least, most), &torque| (least.min(torque), most.max(torque)));
-    let friction = plan.surroundings.motor_friction.coulomb;
+    let friction = prior.surroundings.motor_friction.coulomb;
     if least >= 0.0 || most <= 0.0 {
         return Err(Failure::new(format!(
             "there is no reversal in this log: the motor torque stays between {least:.4} and {most:.4} N m"

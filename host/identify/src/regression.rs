@@ -1,5 +1,5 @@
-//! Linear least squares with outliers turned down, prior widths for what a log may not show, and intervals from
-//! stretches of time, whose residuals are not independent.
+//! Linear least squares with robust weights, prior widths for parameters that a log may not determine, and intervals
+//! from blocks of time, since residuals within a block are correlated.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -16,20 +16,20 @@ pub const SCATTERING: usize = 3;
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Scatter(pub [[f64; SCATTERING + 1]; SCATTERING + 1]);
 
-/// Equations to be solved together.
+/// A system of equations to be solved in the least-squares sense.
 #[derive(Debug, Clone, Default)]
 pub struct Equations {
     rows: Vec<Vec<f64>>,
     values: Vec<f64>,
-    /// Stretch of time that an equation is of.
-    stretches: Vec<usize>,
+    /// Block of time that an equation belongs to.
+    blocks: Vec<usize>,
     /// How coefficients scatter; nothing if none do.
     scatters: Vec<Scatter>,
     /// Which coefficients these are.
     scattering: [usize; SCATTERING],
 }
 
-/// What came of them.
+/// Their solution.
 #[derive(Debug, Clone)]
 pub struct Solution {
     /// The unknowns.
@@ -46,10 +46,10 @@ pub struct Solution {
 
 impl Equations {
     /// One more equation.
-    pub fn push(&mut self, row: Vec<f64>, value: f64, stretch: usize) {
+    pub fn push(&mut self, row: Vec<f64>, value: f64, block: usize) {
         self.rows.push(row);
         self.values.push(value);
-        self.stretches.push(stretch);
+        self.blocks.push(block);
     }
 
     /// One more equation whose coefficients of these unknowns scatter; all equations must be of this kind then.
@@ -57,13 +57,13 @@ impl Equations {
         &mut self,
         row: Vec<f64>,
         value: f64,
-        stretch: usize,
+        block: usize,
         scattering: [usize; SCATTERING],
         scatter: Scatter,
     ) {
         self.scattering = scattering;
         self.scatters.push(scatter);
-        self.push(row, value, stretch);
+        self.push(row, value, block);
     }
 
     /// How many there are.
@@ -119,9 +119,9 @@ impl Equations {
         let inverse = information.cholesky()?.inverse();
         let pulls =
             Pulls { matrix: &matrix, weights: &weights, residuals: &residuals, solved: &solved, scales: &scales };
-        let (meat, stretches) = self.scatter(&pulls, noise);
+        let (meat, blocks) = self.scatter(&pulls, noise);
         let covariance = &inverse * (meat + DMatrix::from_diagonal(&prior)) * &inverse;
-        let freedom = stretches.saturating_sub(unknowns.min(stretches / 2)).max(3) as f64;
+        let freedom = blocks.saturating_sub(unknowns.min(blocks / 2)).max(3) as f64;
         Some(Solution {
             values: DVector::from_fn(unknowns, |column, _| solved[column] / scales[column]),
             covariance: DMatrix::from_fn(unknowns, unknowns, |a, b| covariance[(a, b)] / (scales[a] * scales[b])),
@@ -149,16 +149,16 @@ impl Equations {
         }
     }
 
-    /// Sum over stretches of time of the square of what each pulls, and how many there are.
+    /// Sum over blocks of time of the square of what each pulls, and how many there are.
     fn scatter(&self, pulls: &Pulls<'_>, noise: f64) -> (DMatrix<f64>, usize) {
         let Pulls { matrix, weights, residuals, solved, scales } = *pulls;
         let unknowns = matrix.ncols();
         let mut pulls: Vec<DVector<f64>> = Vec::new();
         let mut last = None;
         for row in 0..self.count() {
-            if last != Some(self.stretches[row]) {
+            if last != Some(self.blocks[row]) {
                 pulls.push(DVector::zeros(unknowns));
-                last = Some(self.stretches[row]);
+                last = Some(self.blocks[row]);
             }
             if let Some(pull) = pulls.last_mut() {
                 let weight = weights[row] / (noise * noise);
@@ -173,7 +173,7 @@ impl Equations {
                 }
             }
         }
-        // Each stretch has bent the solution towards itself.
+        // Each block has pulled the solution towards itself.
         let correction = pulls.len() as f64 / (pulls.len() as f64 - 1.0).max(1.0)
             * (self.count() as f64 / (self.count() - unknowns) as f64);
         let mut sum = DMatrix::zeros(unknowns, unknowns);

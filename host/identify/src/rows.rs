@@ -1,9 +1,9 @@
-//! Moments of a log at which one flank carries torque, with everything that the fits need, smoothed alike. A moment near
-//! a change of flank, or with a motor whose direction cannot be told, is left out.
+//! The samples that the fits use: those at which one flank carries torque, with all signals smoothed alike. Samples
+//! near a change of flank, or where the direction of the motor's motion is uncertain, are skipped.
 
 use super::kernel::Kernel;
 use super::log::Log;
-use super::plan::Plan;
+use super::prior::PriorModel;
 
 /// What a torque may still be on its way, from command to air gap [s].
 const LAG: f64 = 1.5e-3;
@@ -26,7 +26,7 @@ const SWING_STEPS: f64 = 6.0;
 /// Counts that an encoder may be off by, from one reading to another.
 const QUICK_COUNTS: f64 = 1.01;
 
-/// One moment.
+/// One sample of the fits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Row {
     /// Its sample.
@@ -52,7 +52,7 @@ pub struct Row {
     /// Output over motor torque: ratio, after the gears' losses.
     pub leverage: f64,
     /// Motor torque alone, likewise at the output [N m].
-    pub push: f64,
+    pub motor_torque: f64,
     /// Rate of the motor torque, at the output [N m/s].
     pub drive_rate: f64,
     /// Measured at the output, if it was [N m].
@@ -63,7 +63,7 @@ pub struct Row {
     pub side: f64,
 }
 
-/// The moments of a log, evenly spaced.
+/// The samples of a log that the fits use, evenly spaced.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rows {
     /// All of them, settled or not.
@@ -78,19 +78,19 @@ pub struct Rows {
 
 impl Rows {
     /// With a box of the kernel of a length [s].
-    pub fn new(log: &Log, plan: &Plan, length: f64) -> Self {
+    pub fn new(log: &Log, prior: &PriorModel, length: f64) -> Self {
         let samples = ((length / log.period).round() as usize).clamp(2, log.time.len() / 50);
         let kernel = Kernel::new(samples, log.period);
         let half = kernel.half();
         let end = log.time.len().saturating_sub(half);
-        let mut all: Vec<Row> = (half..end).step_by(samples).map(|sample| row(log, plan, &kernel, sample)).collect();
+        let mut all: Vec<Row> = (half..end).step_by(samples).map(|sample| row(log, prior, &kernel, sample)).collect();
         let mut torques: Vec<f64> = all.iter().map(|row| row.torque().abs()).collect();
         torques.sort_by(f64::total_cmp);
         let greatest = torques.get(torques.len() * 19 / 20).copied().unwrap_or_default();
-        let friction = plan.ratio() * plan.surroundings.motor_friction.coulomb;
+        let friction = prior.ratio() * prior.surroundings.motor_friction.coulomb;
         let carrying = (CARRYING_SHARE * greatest).max(OVER_FRICTION * friction);
         let guard = ((half as f64 + LAG / log.period) / samples as f64).ceil() as usize;
-        let per_reading = plan.ratio() * plan.motor_inertia * kernel.products()[2][2].sqrt();
+        let per_reading = prior.ratio() * prior.motor_inertia * kernel.products()[2][2].sqrt();
         let side = |row: &Row| {
             let scatter = if row.measured.is_some() { 0.0 } else { per_reading * log.noise[0].at(row.sample).sqrt() };
             let torque = row.torque();
@@ -103,7 +103,7 @@ impl Rows {
         }
         let carried: Vec<f64> = all.iter().map(|row| row.side).filter(|side| *side != 0.0).collect();
         let crossings = carried.windows(2).filter(|pair| pair[0] != pair[1]).count();
-        if length > UNRESOLVED * plan.swing() {
+        if length > UNRESOLVED * prior.swing() {
             leave_out_landings(&mut all);
         }
         Self { all, kernel, greatest, crossings }
@@ -135,7 +135,7 @@ impl Row {
     }
 }
 
-fn row(log: &Log, plan: &Plan, kernel: &Kernel, sample: usize) -> Row {
+fn row(log: &Log, prior: &PriorModel, kernel: &Kernel, sample: usize) -> Row {
     let smooth = |signal: &[f64], order: usize| {
         // Differences to the middle keep their digits after many turns.
         let middle = if order == 0 { signal[sample] } else { 0.0 };
@@ -144,11 +144,11 @@ fn row(log: &Log, plan: &Plan, kernel: &Kernel, sample: usize) -> Row {
     let [motor_speed, output_speed] = [&log.motor, &log.output].map(|angle| smooth(angle, 1));
     let torque = smooth(&log.torque, 0);
     let net =
-        torque - plan.motor_inertia * smooth(&log.motor, 2) - plan.surroundings.motor_friction.viscous * motor_speed;
-    let direction = direction(log, plan, kernel, sample);
+        torque - prior.motor_inertia * smooth(&log.motor, 2) - prior.surroundings.motor_friction.viscous * motor_speed;
+    let direction = direction(log, prior, kernel, sample);
     // Losses that grow with the load: the link gets less than a driving motor gives, and more has to be braked.
-    let efficiency = plan.surroundings.efficiency;
-    let leverage = plan.ratio()
+    let efficiency = prior.surroundings.efficiency;
+    let leverage = prior.ratio()
         * match net * direction {
             power if power > 0.0 => efficiency,
             power if power < 0.0 => 1.0 / efficiency,
@@ -158,7 +158,7 @@ fn row(log: &Log, plan: &Plan, kernel: &Kernel, sample: usize) -> Row {
         sample,
         time: log.time[sample],
         twist: smooth(&log.twist, 0),
-        wind_rate: smooth(&log.carried, 1) / plan.ratio() - output_speed,
+        wind_rate: smooth(&log.carried, 1) / prior.ratio() - output_speed,
         motor: smooth(&log.motor, 0),
         motor_speed,
         output: smooth(&log.output, 0),
@@ -166,7 +166,7 @@ fn row(log: &Log, plan: &Plan, kernel: &Kernel, sample: usize) -> Row {
         output_acceleration: smooth(&log.output, 2),
         drive: leverage * net,
         leverage,
-        push: leverage * torque,
+        motor_torque: leverage * torque,
         drive_rate: leverage * smooth(&log.torque, 1),
         measured: log.output_torque.as_ref().map(|torque| smooth(torque, 0)),
         direction,
@@ -176,14 +176,14 @@ fn row(log: &Log, plan: &Plan, kernel: &Kernel, sample: usize) -> Row {
 
 /// The way that the motor turns all the time: over the kernel's length in steps that no swing hides in, or over a longer
 /// time if it is too slow for those.
-fn direction(log: &Log, plan: &Plan, kernel: &Kernel, sample: usize) -> f64 {
-    let count = std::f64::consts::TAU / f64::from(1_u32 << plan.motor_bits);
+fn direction(log: &Log, prior: &PriorModel, kernel: &Kernel, sample: usize) -> f64 {
+    let count = std::f64::consts::TAU / f64::from(1_u32 << prior.motor_bits);
     let turns = |half: usize, step: usize, way: f64, least: f64| {
         let places = (sample.saturating_sub(half)..=(sample + half).min(log.motor.len() - 1)).step_by(step.max(1));
         let mut pairs = places.clone().zip(places.skip(1));
         pairs.all(|(before, after)| way * (log.motor[after] - log.motor[before]) > least * count)
     };
-    let step = (plan.swing() / SWING_STEPS / log.period) as usize;
+    let step = (prior.swing() / SWING_STEPS / log.period) as usize;
     let (quick, slow) = (kernel.half(), (SLOW / log.period) as usize);
     let sure = |way: &f64| {
         turns(quick, step, *way, QUICK_COUNTS)

@@ -1,7 +1,7 @@
 //! Whether a log was sampled evenly, fast and long enough for its joint, with the figures of what is needed.
 
 use super::columns::Columns;
-use super::plan::Plan;
+use super::prior::PriorModel;
 use report::failure::{Failure, Outcome};
 
 /// A shorter log cannot hold reversals and what surrounds them [s].
@@ -16,13 +16,13 @@ pub const SWING_SAMPLES: f64 = 16.0;
 const UNEVEN_RATIO: f64 = 0.5;
 
 /// The sampling period of a log that is fast, long and even enough.
-pub fn sampling(time: &[f64], columns: &Columns, plan: &Plan) -> Outcome<f64> {
+pub fn sampling(time: &[f64], columns: &Columns, prior: &PriorModel) -> Outcome<f64> {
     if time.len() < 2 {
         return Err(Failure::new(format!("there are only {} samples", time.len()))
             .with_help(format!("record several reversals, for {LEAST_TIME} s at the very least")));
     }
     let period = evenly_spaced(time, columns)?;
-    check_time(period, time.len(), plan)?;
+    check_time(period, time.len(), prior)?;
     Ok(period)
 }
 
@@ -47,11 +47,11 @@ fn evenly_spaced(time: &[f64], columns: &Columns) -> Outcome<f64> {
 }
 
 /// Refuses a log that is too short, or sampled too slowly for the joint's swing.
-fn check_time(period: f64, samples: usize, plan: &Plan) -> Outcome<()> {
+fn check_time(period: f64, samples: usize, prior: &PriorModel) -> Outcome<()> {
     let (rate, time) = (1.0 / period, period * samples as f64);
-    let needed = LEAST_RATE.max(LEAST_IN_A_SWING / plan.swing());
+    let needed = LEAST_RATE.max(LEAST_IN_A_SWING / prior.swing());
     if rate < 0.999 * needed {
-        let swing = 1.0 / plan.swing();
+        let swing = 1.0 / prior.swing();
         return Err(Failure::new(format!(
             "the log is sampled too slowly: {rate:.0} Hz, at least {needed:.0} Hz are needed for a joint that swings at \
              {swing:.0} Hz"

@@ -4,7 +4,7 @@
 use nalgebra::DVector;
 
 use super::log::Log;
-use super::plan::Plan;
+use super::prior::PriorModel;
 use super::regression::{Equations, SCATTERING, Scatter, Solution};
 use super::rows::{Row, Rows};
 
@@ -42,13 +42,13 @@ const DELAY_WIDTH: f64 = 2e-3;
 const RELAXATION_WIDTH: f64 = 1e-2;
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
-/// Length of the stretches whose residuals are taken for independent of one another [s].
-pub const STRETCH: f64 = 0.1;
+/// Length of the blocks whose residuals are assumed to be independent of one another [s].
+pub const BLOCK_LENGTH: f64 = 0.1;
 
 /// Takes an unknown out of a fit.
 const NONE: f64 = 1e-12;
 
-/// The fit and the moments that it is of.
+/// The fit and the samples that it is made from.
 #[derive(Debug, Clone)]
 pub struct Twist {
     /// The unknowns.
@@ -72,20 +72,20 @@ pub fn width(unknown: usize) -> f64 {
 }
 
 /// Fits; `None` if the moments do not determine gap and compliance.
-pub fn fit(log: &Log, rows: &Rows, plan: &Plan) -> Option<Twist> {
+pub fn fit(log: &Log, rows: &Rows, prior: &PriorModel) -> Option<Twist> {
     let used: Vec<Row> = rows.carrying().filter(|row| row.direction != 0.0).copied().collect();
     let mut equations = Equations::default();
     let products = rows.kernel.products();
     for row in &used {
-        let stretch = (row.time / STRETCH) as usize;
-        let coefficients = equation(log, rows, plan, row);
-        equations.push_scattering(coefficients, row.twist, stretch, MEASURED, scatter(log, &products, plan, row));
+        let block = (row.time / BLOCK_LENGTH) as usize;
+        let coefficients = equation(log, rows, prior, row);
+        equations.push_scattering(coefficients, row.twist, block, MEASURED, scatter(log, &products, prior, row));
     }
     let mut widths: Vec<f64> = (0..UNKNOWNS).map(width).collect();
     // With the torque measured behind them, the motor's friction and its delay do not show in the twist.
     let measured = log.output_torque.is_some();
-    widths[MOTOR_FRICTION] = if measured { NONE } else { plan.compliance * rows.greatest };
-    widths[TORQUE_ERROR] = if measured { NONE } else { (plan.compliance * plan.torque_error).max(NONE) };
+    widths[MOTOR_FRICTION] = if measured { NONE } else { prior.compliance * rows.greatest };
+    widths[TORQUE_ERROR] = if measured { NONE } else { (prior.compliance * prior.torque_error).max(NONE) };
     let solution = equations.solve(&widths)?;
     Some(Twist { solution, rows: used })
 }
@@ -95,10 +95,10 @@ const MEASURED: [usize; SCATTERING] = [COMPLIANCE, RELAXATION, SKEW];
 
 /// How readings that scatter show in those coefficients and in the twist: what of each is their value, first and second
 /// derivative, by motor and output.
-fn scatter(log: &Log, products: &[[f64; 3]; 3], plan: &Plan, row: &Row) -> Scatter {
-    let ratio = plan.ratio();
+fn scatter(log: &Log, products: &[[f64; 3]; 3], prior: &PriorModel, row: &Row) -> Scatter {
+    let ratio = prior.ratio();
     let taken = if row.measured.is_some() { 0.0 } else { -row.leverage };
-    let torque = [0.0, taken * plan.surroundings.motor_friction.viscous, taken * plan.motor_inertia];
+    let torque = [0.0, taken * prior.surroundings.motor_friction.viscous, taken * prior.motor_inertia];
     let of_motor = [torque, [0.0, 1.0 / ratio, 0.0], [0.0; 3], [1.0 / ratio, 0.0, 0.0]];
     let of_output = [[0.0; 3], [0.0, -1.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]];
     let mut covariance = Scatter::default();
@@ -115,14 +115,14 @@ fn scatter(log: &Log, products: &[[f64; 3]; 3], plan: &Plan, row: &Row) -> Scatt
 }
 
 /// Coefficients of the unknowns at a moment.
-fn equation(log: &Log, rows: &Rows, plan: &Plan, row: &Row) -> Vec<f64> {
+fn equation(log: &Log, rows: &Rows, prior: &PriorModel, row: &Row) -> Vec<f64> {
     // Errors by angle are smoothed as the twist is: at speed the kernel takes a part of them.
     let smooth = |of: &dyn Fn(usize) -> f64| rows.kernel.at(of, row.sample, 0);
-    let ratio = plan.ratio();
+    let ratio = prior.ratio();
     let mut equation = vec![1.0, row.side, row.torque(), row.wind_rate];
     equation.push(if row.measured.is_some() { 0.0 } else { row.leverage * row.direction });
     equation.push(row.output_speed);
-    equation.push(if row.measured.is_some() { 0.0 } else { -plan.compliance * row.drive_rate });
+    equation.push(if row.measured.is_some() { 0.0 } else { -prior.compliance * row.drive_rate });
     for order in [1.0, 2.0] {
         equation.push(smooth(&|place| (order * log.motor[place]).sin()) / ratio);
         equation.push(smooth(&|place| (order * log.motor[place]).cos()) / ratio);
@@ -132,14 +132,14 @@ fn equation(log: &Log, rows: &Rows, plan: &Plan, row: &Row) -> Vec<f64> {
         equation.push(-smooth(&|place| (order * log.output[place]).cos()));
     }
     for order in [1.0, 2.0] {
-        equation.push(smooth(&|place| (order * log.teeth(place, plan)).sin()));
-        equation.push(smooth(&|place| (order * log.teeth(place, plan)).cos()));
+        equation.push(smooth(&|place| (order * log.teeth(place, prior)).sin()));
+        equation.push(smooth(&|place| (order * log.teeth(place, prior)).cos()));
     }
-    equation.push(if row.measured.is_some() { 0.0 } else { row.push });
+    equation.push(if row.measured.is_some() { 0.0 } else { row.motor_torque });
     // Teeth that pass near the swing's own frequency shake more than two inertias on a spring say.
-    let passing = f64::from(plan.ring_teeth) * row.output_speed * plan.swing() / std::f64::consts::TAU;
-    equation.push(passing * passing * smooth(&|place| log.teeth(place, plan).sin()));
-    equation.push(passing * passing * smooth(&|place| log.teeth(place, plan).cos()));
+    let passing = f64::from(prior.ring_teeth) * row.output_speed * prior.swing() / std::f64::consts::TAU;
+    equation.push(passing * passing * smooth(&|place| log.teeth(place, prior).sin()));
+    equation.push(passing * passing * smooth(&|place| log.teeth(place, prior).cos()));
     equation
 }
 
@@ -157,9 +157,9 @@ impl Twist {
     }
 
     /// What is left of a moment's twist without encoder, tooth and skew errors: gap and wind-up alone [rad].
-    pub fn cleaned(&self, log: &Log, rows: &Rows, plan: &Plan) -> Vec<(Row, f64)> {
+    pub fn cleaned(&self, log: &Log, rows: &Rows, prior: &PriorModel) -> Vec<(Row, f64)> {
         let cleaned = |row: &Row| {
-            let coefficients = DVector::from_vec(equation(log, rows, plan, row));
+            let coefficients = DVector::from_vec(equation(log, rows, prior, row));
             let errors: f64 = (0..UNKNOWNS)
                 .filter(|unknown| *unknown == OFFSET || (*unknown >= SKEW && *unknown != TORQUE_ERROR))
                 .map(|unknown| coefficients[unknown] * self.solution.values[unknown])

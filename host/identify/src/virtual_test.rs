@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use joint_file::JointFile;
 use reference::drive_train::Measurement;
 
-use super::plan::Plan;
+use super::prior::PriorModel;
 use report::failure::{Failure, Outcome};
 use report::interruption;
 use scenario::plant::{PlantName, plant};
@@ -41,7 +41,7 @@ pub struct Sample {
 
 /// A recorded test.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Recording {
+pub struct VirtualRecording {
     /// Samples in their order.
     pub samples: Vec<Sample>,
     /// Samples a second [Hz].
@@ -49,39 +49,39 @@ pub struct Recording {
 }
 
 /// Torques of the test: how long [s] and how much [N m].
-pub fn course(file: &JointFile) -> Vec<(f64, f64)> {
-    let plan = Plan::of(file);
-    let motor = plan.motor_inertia * plan.ratio() * plan.ratio();
-    let inertia = motor + plan.link_inertia;
-    let dry = plan.surroundings.load_friction.coulomb + plan.ratio() * plan.surroundings.motor_friction.coulomb;
+pub fn torque_sequence(file: &JointFile) -> Vec<(f64, f64)> {
+    let prior = PriorModel::of(file);
+    let motor = prior.motor_inertia * prior.ratio() * prior.ratio();
+    let inertia = motor + prior.link_inertia;
+    let dry = prior.surroundings.load_friction.coulomb + prior.ratio() * prior.surroundings.motor_friction.coulomb;
     let at_motor = |acceleration: f64, brake: f64| {
-        ((inertia * acceleration + brake) / plan.ratio()).min(file.profile.motor_torque_limit)
+        ((inertia * acceleration + brake) / prior.ratio()).min(file.profile.motor_torque_limit)
     };
     let strongest = at_motor(2.0 * FASTEST / QUICK, dry).min(file.profile.drive_torque.abs());
     // From speed to opposite speed the output goes out and back by a parabola.
-    let brake = dry + 1.2 * plan.surroundings.gravity_torque.abs();
+    let brake = dry + 1.2 * prior.surroundings.gravity_torque.abs();
     let slow = at_motor(8.0 * SWING / (SLOW * SLOW), brake);
-    let mut course = vec![(0.05, 0.0)];
+    let mut torque_sequence = vec![(0.05, 0.0)];
     let mut series = |time: f64, torque: f64, reversals: usize| {
-        course.push((0.5 * time, torque));
-        course.extend((1..reversals).map(|index| (time, if index % 2 == 1 { -torque } else { torque })));
-        course.push((0.5 * time, if reversals % 2 == 1 { -torque } else { torque }));
+        torque_sequence.push((0.5 * time, torque));
+        torque_sequence.extend((1..reversals).map(|index| (time, if index % 2 == 1 { -torque } else { torque })));
+        torque_sequence.push((0.5 * time, if reversals % 2 == 1 { -torque } else { torque }));
     };
     SHARES.iter().for_each(|share| series(QUICK, share * strongest, REVERSALS));
-    SLOW_SHARES.iter().for_each(|share| series(SLOW, (share * slow).max(0.3 * slow + brake / plan.ratio()), 3));
-    course
+    SLOW_SHARES.iter().for_each(|share| series(SLOW, (share * slow).max(0.3 * slow + brake / prior.ratio()), 3));
+    torque_sequence
 }
 
 /// Does the test.
-pub fn record(file: &JointFile, seed: u64, at: &dyn Fn(f64)) -> Outcome<Recording> {
+pub fn record(file: &JointFile, seed: u64, at: &dyn Fn(f64)) -> Outcome<VirtualRecording> {
     let train = train(&file.surroundings, seed);
     let rate = f64::from(file.surroundings.control_rate);
     let lever = file.parameters.geometry.carrier_base_radius();
     let mut plant = plant(PlantName::Reference, &file.parameters, &train, Vec::new(), seed)?;
-    let course = course(file);
-    let whole: f64 = course.iter().map(|(time, _)| time).sum();
+    let torque_sequence = torque_sequence(file);
+    let whole: f64 = torque_sequence.iter().map(|(time, _)| time).sum();
     let mut samples = Vec::new();
-    for (time, torque) in course {
+    for (time, torque) in torque_sequence {
         for _ in 0..(time * rate).round() as usize {
             if samples.len() % 1000 == 0 {
                 at(samples.len() as f64 / rate / whole);
@@ -99,10 +99,10 @@ pub fn record(file: &JointFile, seed: u64, at: &dyn Fn(f64)) -> Outcome<Recordin
             plant.advance(torque).map_err(|error| Failure::new(format!("the joint cannot be followed: {error}")))?;
         }
     }
-    Ok(Recording { samples, rate })
+    Ok(VirtualRecording { samples, rate })
 }
 
-impl Recording {
+impl VirtualRecording {
     /// As a log.
     pub fn csv(&self, with_output_torque: bool) -> String {
         let more = if with_output_torque { ",output_torque_N_m" } else { "" };

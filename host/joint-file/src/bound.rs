@@ -1,6 +1,6 @@
 //! Units that keys are typed in and the range that a value must lie in, in that unit. Which key has which is in `keys`.
 
-/// The unit in a key's name, by what it takes to reach SI.
+/// The unit in a key's name, with its conversion to SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Unit {
     /// Already SI, or a pure number.

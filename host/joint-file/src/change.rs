@@ -1,5 +1,5 @@
-//! Changes single values in the text of a joint file, as a command line may ask for: the changed text is then read like
-//! any other, with the same checks and messages. Values are not judged here, only keys are.
+//! Changes single values in the text of a joint file, as a command line may ask for. Only keys are checked here; the
+//! changed text is then read like any other, with the same checks and messages.
 
 use std::ops::Range;
 
@@ -14,7 +14,7 @@ use crate::spelling;
 pub struct Refused {
     /// What is wrong, in one sentence.
     pub message: String,
-    /// How to mend it.
+    /// The help: what to do about it.
     pub help: String,
 }
 

@@ -1,5 +1,5 @@
-//! Do the gears fit together? Coaxial, assembled, one centre distance, one ratio, and room between the planets. Whether
-//! a misfit stops the file or only warns is told by the file's `coherence`.
+//! Do the gears fit together? Coaxial, assembled, one centre distance, one ratio, and room between the planets. The
+//! file's key `coherence` says whether a misfit is an error or a warning.
 
 use model_core::gears::Kinematics;
 use parameters::{Coherence, Geometry};

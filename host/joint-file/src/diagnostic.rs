@@ -25,7 +25,7 @@ struct Place(Problem);
 /// let text = joint_file::preset("q1").unwrap().replace("planets = 3", "planets = 7");
 /// let problems = joint_file::read(&text).unwrap_err();
 /// let shown = format!("{:?}", joint_file::diagnostic::report("my_joint.toml", &text, &problems));
-/// // The place with its line, what is wrong and how to mend it.
+/// // The place with its line, what is wrong and what to do about it.
 /// assert!(shown.contains("my_joint.toml") && shown.contains("planets = 7"), "{shown}");
 /// assert!(shown.contains("3, 4 or 5") || shown.contains("3 to 5"), "{shown}");
 /// ```

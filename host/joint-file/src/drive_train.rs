@@ -1,5 +1,5 @@
-//! Reads `[drive_train]`: what surrounds the gears in a real joint, as plain data in SI. The model of it is the
-//! reference's and the virtual joint's; the fixed step never sees any of this.
+//! Reads `[drive_train]`: what surrounds the gears in a real joint, as plain data in SI. The reference and the virtual
+//! joint model it; the fixed step does not use it.
 
 use parameters::{AbsoluteEncoder, Friction, Surroundings};
 

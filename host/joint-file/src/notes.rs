@@ -1,5 +1,5 @@
-//! What is found while a file that users write is read: problems, where each value stands, and what the file says about the
-//! source of each number. It knows nothing of joints.
+//! What is collected while a user's TOML file is read: problems, the place of each value, and what the file says about
+//! the source of each number. Nothing here is specific to joints.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -16,7 +16,7 @@ pub struct Source {
     pub remark: Option<String>,
 }
 
-/// Collects while the sections of one file are read.
+/// Problems and remarks, collected while the sections of one file are read.
 pub struct Notes<'t> {
     text: &'t str,
     problems: RefCell<Vec<Problem>>,

@@ -1,4 +1,4 @@
-//! What is wrong with a joint file: where, what, and how to mend it.
+//! One problem in a joint file: where, what, and the help.
 
 use std::ops::Range;
 
@@ -9,7 +9,7 @@ pub struct Problem {
     pub span: Range<usize>,
     /// What is wrong, in one sentence.
     pub message: String,
-    /// How to mend it.
+    /// The help: what to do about it.
     pub help: String,
     /// Whether the file can be used all the same.
     pub severity: Severity,

@@ -11,7 +11,7 @@ use crate::problem::Problem;
 use crate::section::Section;
 use crate::{bodies, coherence, drive_train, geometry, meshes};
 
-/// A joint file that can be used.
+/// A valid joint file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointFile {
     /// The joint, in SI.
@@ -39,7 +39,7 @@ pub struct JointFile {
 ///
 /// let slip = text.replace("half_backlash_um", "half_backlsh_um");
 /// let problems = joint_file::read(&slip).unwrap_err();
-/// // Each problem has its place in the text and a mend; the key is missing as well.
+/// // Each problem has its place in the text and a help; the key is missing as well.
 /// let misspelt = problems.iter().find(|problem| &slip[problem.span.clone()] == "half_backlsh_um").unwrap();
 /// assert!(misspelt.help.contains("half_backlash_um"), "{misspelt}");
 /// assert!(problems.iter().any(|problem| &slip[problem.span.clone()] == "[mesh]"));

@@ -1,4 +1,4 @@
-//! Finds the known word that a misspelt one was probably meant to be. It knows nothing of what the words mean.
+//! Finds the known word that a misspelt one probably stands for.
 
 /// The candidate nearest to `word`, if any is near enough to be worth suggesting.
 pub fn nearest<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {

@@ -68,7 +68,7 @@ pub struct Table<'a, K> {
 }
 
 impl<'a, K: Keys> Table<'a, K> {
-    /// A table; complains about keys that nobody knows.
+    /// A table; reports unknown keys as problems.
     pub fn new(
         path: String,
         schema: &'static str,

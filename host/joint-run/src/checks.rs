@@ -1,5 +1,5 @@
-//! What is held against a run: each figure, its bound and where it comes from. Figures are made elsewhere; a run that
-//! broke off is judged by what there is, and the rest is marked as not made.
+//! The checks of a run: each figure, its bound and where it comes from. A run that broke off is judged by the figures
+//! there are; the other checks are marked as not made.
 
 use link::messages::{Clock, RunMode, Statistics};
 

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
 
-use follow::{DISTURBANCE, Follower, follow};
+use follow::{DISTURBANCE, ReferenceReplay, follow};
 use link::messages::{Command, Sample};
 use parameters::{ContactState, JointParameters};
 use reference::joint::{Observation, ReferenceError};
@@ -21,8 +21,8 @@ use report::failure::{Failure, Outcome};
 
 /// The reference is followed for so long at most [s]: computing it takes longer than the run itself.
 const LONGEST: f64 = 3.0;
-/// References under way, on threads of their own.
-pub struct UnderWay {
+/// References that are being computed, on threads of their own.
+pub struct PendingReferences {
     joint: JointParameters,
     tick_rate: u32,
     ticks: Vec<u32>,
@@ -55,25 +55,25 @@ pub struct QuantityError {
 }
 
 /// Starts two references on the torques of a run, one of them disturbed.
-pub fn start(joint: &JointParameters, tick_rate: u32, decimation: u32, run: (&[Command], u32)) -> UnderWay {
+pub fn start(joint: &JointParameters, tick_rate: u32, decimation: u32, run: (&[Command], u32)) -> PendingReferences {
     let (commands, ticks) = run;
     let last = ticks.min((LONGEST * f64::from(tick_rate)) as u32);
     let ticks: Vec<u32> = (1..=last / decimation).map(|sample| sample * decimation).collect();
     let stop = Arc::new(AtomicBool::new(false));
-    let follower = |disturbance: f64| Follower::new(joint, tick_rate, commands, disturbance);
+    let follower = |disturbance: f64| ReferenceReplay::new(joint, tick_rate, commands, disturbance);
     let (exact, disturbed) = (follower(0.0), follower(DISTURBANCE));
     let followed = {
         let (ticks, stop) = (ticks.clone(), Arc::clone(&stop));
         thread::spawn(move || follow(exact?, disturbed?, &ticks, &stop))
     };
-    UnderWay { joint: joint.clone(), tick_rate, ticks, stop, followed }
+    PendingReferences { joint: joint.clone(), tick_rate, ticks, stop, followed }
 }
 
-impl UnderWay {
+impl PendingReferences {
     /// Ends the references without their result.
     pub fn abandon(self) {
         self.stop.store(true, Ordering::Relaxed);
-        // Nobody waits for a result that nobody wants: the threads end by themselves within a sample.
+        // The result is not needed, so the threads are not joined: they end by themselves within a sample.
     }
 
     /// Waits for the references and compares the samples of the run with them.
@@ -157,7 +157,7 @@ fn motion_sample(tick: u32, observation: &Observation) -> MotionSample {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use board::profile::Profile;
+    use board::profile::TorqueProfile;
     use board::target::board::Board;
     use board::twin;
     use model_core::gears::Kinematics;
@@ -172,7 +172,7 @@ mod tests {
     /// The twin in the board's place, through the head of the built-in profile, spoilt by `spoil`.
     fn comparison(preset: &str, seconds: f64, spoil: impl Fn(&mut Sample)) -> Comparison {
         let joint = joint(preset);
-        let profile = Profile::load("reversals", &joint, TICK_RATE, Some(seconds)).expect("built in");
+        let profile = TorqueProfile::load("reversals", &joint, TICK_RATE, Some(seconds)).expect("built in");
         let under_way = start(&joint, TICK_RATE, DECIMATION, (&profile.commands, profile.ticks));
         let ticks: Vec<u32> = (1..=profile.ticks / DECIMATION).map(|sample| sample * DECIMATION).collect();
         let mut samples =

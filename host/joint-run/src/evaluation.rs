@@ -4,9 +4,9 @@
 use link::messages::Sample;
 
 use super::checks::{self, Evidence};
-use super::comparison::{self, Comparison, UnderWay};
+use super::comparison::{self, Comparison, PendingReferences};
 use super::origin;
-use super::plan::Plan;
+use super::plan::RunPlan;
 use crate::page;
 use crate::record::{CloseUp, Completeness, MotionSample, RunRecord, Samples, TimingFigures, TorqueCommand};
 use board::logs;
@@ -19,11 +19,11 @@ use report::failure::Outcome;
 /// Longest stretch that is shown at every tick [ticks].
 const CLOSE_UP: u32 = 4000;
 
-/// A run that is over, one way or the other.
-pub struct Ran<'a> {
+/// A run that has ended, complete or not.
+pub struct FinishedRun<'a> {
     /// What was to be done.
-    pub plan: &'a Plan,
-    /// What was heard.
+    pub plan: &'a RunPlan,
+    /// What was received from the board.
     pub recording: &'a Recording,
     /// The image, if it was built here.
     pub image: Option<&'a Image>,
@@ -32,14 +32,18 @@ pub struct Ran<'a> {
 }
 
 /// Starts the references of a planned run.
-pub fn start_references(plan: &Plan) -> UnderWay {
+pub fn start_references(plan: &RunPlan) -> PendingReferences {
     let run = (plan.profile.commands.as_slice(), plan.profile.ticks);
     comparison::start(&plan.joint.parameters, plan.expected.tick_rate, plan.settings.decimation.into(), run)
 }
 
 /// Fills the record.
-pub fn evaluate(record: &mut RunRecord, ran: &Ran<'_>, references: Option<UnderWay>) -> Outcome<()> {
-    let Ran { plan, recording, image, outcome } = *ran;
+pub fn evaluate(
+    record: &mut RunRecord,
+    finished: &FinishedRun<'_>,
+    references: Option<PendingReferences>,
+) -> Outcome<()> {
+    let FinishedRun { plan, recording, image, outcome } = *finished;
     let joint = &plan.joint.parameters;
     let tick_rate = plan.expected.tick_rate;
     let timer_rate = recording.hello.as_ref().map_or(1, |hello| hello.timer_rate.max(1));
@@ -69,11 +73,11 @@ pub fn evaluate(record: &mut RunRecord, ran: &Ran<'_>, references: Option<UnderW
         record.log.clone_from(&log.lines);
     }
 
-    let agreement = twin::compare(joint, ran.plan.board, tick_rate, &recording.accepted, &recording.samples)?;
+    let agreement = twin::compare(joint, finished.plan.board, tick_rate, &recording.accepted, &recording.samples)?;
     if agreement.different == 0 && !recording.samples.is_empty() {
-        record.close_up = close_up(record, ran)?;
+        record.close_up = close_up(record, finished)?;
     }
-    let comparison = compare(references, ran, record.joint.ratio);
+    let comparison = compare(references, finished, record.joint.ratio);
     if let Ok(comparison) = &comparison {
         record.reference = Some(comparison.reference.clone());
     }
@@ -101,25 +105,30 @@ fn decode(recording: &Recording, image: Option<&Image>) -> Result<Log, String> {
     logs::decode(&recording.log, &image.elf).map_err(|failure| failure.message().to_owned())
 }
 
-fn compare(references: Option<UnderWay>, ran: &Ran<'_>, ratio: f64) -> Result<Comparison, String> {
+fn compare(
+    references: Option<PendingReferences>,
+    finished: &FinishedRun<'_>,
+    ratio: f64,
+) -> Result<Comparison, String> {
     let references = references.ok_or("not wanted: --no-reference")?;
-    if ran.outcome.is_err() {
+    if finished.outcome.is_err() {
         references.abandon();
         return Err("the run broke off".to_owned());
     }
-    references.finish(&ran.recording.samples, ratio).map_err(|failure| failure.message().to_owned())
+    references.finish(&finished.recording.samples, ratio).map_err(|failure| failure.message().to_owned())
 }
 
 /// The first crossing of the gap at every tick, as the twin has it.
-fn close_up(record: &RunRecord, ran: &Ran<'_>) -> Outcome<Option<CloseUp>> {
+fn close_up(record: &RunRecord, finished: &FinishedRun<'_>) -> Outcome<Option<CloseUp>> {
     let Some((from, to)) = page::crossing(&record.samples, record.joint.gap_band_m) else { return Ok(None) };
-    let tick_rate = ran.plan.expected.tick_rate;
+    let tick_rate = finished.plan.expected.tick_rate;
     let tick = |time: f64| (time * f64::from(tick_rate)).max(0.0) as u32;
-    let last = ran.recording.last_tick();
+    let last = finished.recording.last_tick();
     let first = tick(from).min(last);
     let ticks: Vec<u32> = (first..=tick(to).min(last).min(first + CLOSE_UP)).collect();
-    let parameters = &ran.plan.joint.parameters;
-    let motion: Vec<Sample> = twin::replay(parameters, ran.plan.board, tick_rate, &ran.recording.accepted, &ticks)?;
+    let parameters = &finished.plan.joint.parameters;
+    let motion: Vec<Sample> =
+        twin::replay(parameters, finished.plan.board, tick_rate, &finished.recording.accepted, &ticks)?;
     let mut samples = Samples::new(2 * record.joint.planets);
     for sample in &motion {
         let motion = MotionSample { computation: None, ..MotionSample::from_board(sample, 1) };

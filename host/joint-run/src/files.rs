@@ -1,5 +1,5 @@
-//! What a run leaves on disk: report, record and log in one folder. If the disk is full after a run, what was recorded goes
-//! elsewhere rather than nowhere.
+//! The files of a run: report, record and log in one folder. If the disk is full after a run, the record is written to
+//! the system's temporary folder instead.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -15,15 +15,15 @@ pub mod record;
 
 use std::path::Path;
 
-use board::bench::Bench;
+use board::connection::Connection;
 use board::recording::Recording;
 use board::session::Session;
 use board::target::board::Board;
 use board::target::image::{self, Image};
 use board::target::toolchain::Toolchain;
-use evaluation::Ran;
+use evaluation::FinishedRun;
 use link::messages::Role;
-use plan::{Plan, Request};
+use plan::{RunPlan, RunRequest};
 use record::RunRecord;
 use report::checks::all_hold;
 use report::failure::Outcome;
@@ -32,20 +32,20 @@ use report::output;
 use report::progress::Progress;
 
 /// Runs a joint on a board; succeeds only if every check held.
-pub fn run(request: &Request<'_>, progress: &Progress) -> Outcome<()> {
-    let plan = Plan::new(request)?;
+pub fn run(request: &RunRequest<'_>, progress: &Progress) -> Outcome<()> {
+    let plan = RunPlan::new(request)?;
     let wanted = [("json", request.json), ("picture", request.picture)];
     folder::check_files(&wanted, &[&plan.path, Path::new(request.profile)])?;
     let folder = Folder::prepare(request.out, "hil", &plan.expected.joint)?;
-    let bench = prepare(request, &plan, progress)?;
-    let mut record = origin::record(request, &plan, &bench.transport);
-    let image = bench.image.clone();
+    let connection = prepare(request, &plan, progress)?;
+    let mut record = origin::record(request, &plan, &connection.transport);
+    let image = connection.image.clone();
     record.identity.image = image.as_ref().map(origin::image);
     let references = (!request.no_reference).then(|| evaluation::start_references(&plan));
-    let (outcome, recording) = converse(bench, &plan, progress);
+    let (outcome, recording) = converse(connection, &plan, progress);
     progress.stage("comparing with twin and reference");
-    let ran = Ran { plan: &plan, recording: &recording, image: image.as_ref(), outcome: &outcome };
-    let evaluated = evaluation::evaluate(&mut record, &ran, references);
+    let finished = FinishedRun { plan: &plan, recording: &recording, image: image.as_ref(), outcome: &outcome };
+    let evaluated = evaluation::evaluate(&mut record, &finished, references);
     progress.stage("writing the report");
     let report = files::write(&folder, request.json, &record);
     progress.clear();
@@ -70,12 +70,12 @@ pub fn run(request: &Request<'_>, progress: &Progress) -> Outcome<()> {
     }
 }
 
-/// The whole conversation with the board; what was heard is there whatever became of it.
-fn converse(bench: Bench, plan: &Plan, progress: &Progress) -> (Outcome<()>, Recording) {
-    let Bench { line, surroundings, patience, .. } = bench;
-    let mut session = Session::new(line, surroundings);
+/// The whole session with the board; the recording is returned on failure too.
+fn converse(connection: Connection, plan: &RunPlan, progress: &Progress) -> (Outcome<()>, Recording) {
+    let Connection { line, supervisor, timeout, .. } = connection;
+    let mut session = Session::new(line, supervisor);
     progress.stage("calling the board");
-    let outcome = session.connect(&plan.expected, patience).and_then(|_| session.reset(plan.settings));
+    let outcome = session.connect(&plan.expected, timeout).and_then(|_| session.reset(plan.settings));
     let outcome = outcome.and_then(|()| {
         progress.run("running", plan.profile.ticks);
         session.stream(&plan.profile, &mut |ticks| progress.at(ticks))
@@ -96,17 +96,17 @@ fn show(record: &RunRecord) -> Outcome<()> {
 }
 
 /// Builds the image and finds the board. A port is opened first: what is wrong with it should not wait for a build.
-fn prepare(request: &Request<'_>, plan: &Plan, progress: &Progress) -> Outcome<Bench> {
+fn prepare(request: &RunRequest<'_>, plan: &RunPlan, progress: &Progress) -> Outcome<Connection> {
     match &request.line.port {
-        None => Bench::emulated(progress, |board| build(request, plan, board, progress)),
-        Some(path) => Bench::on_port(path, request.line.baud_rate(), || match request.no_build {
+        None => Connection::emulated(progress, |board| build(request, plan, board, progress)),
+        Some(path) => Connection::on_port(path, request.line.baud_rate(), || match request.no_build {
             true => Ok(None),
             false => build(request, plan, request.line.board, progress).map(Some),
         }),
     }
 }
 
-fn build(request: &Request<'_>, plan: &Plan, board: Board, progress: &Progress) -> Outcome<Image> {
+fn build(request: &RunRequest<'_>, plan: &RunPlan, board: Board, progress: &Progress) -> Outcome<Image> {
     progress.stage("preparing the toolchain");
     let toolchain = Toolchain::prepare(&|line| progress.say(line))?;
     progress.stage("building the firmware");

@@ -1,15 +1,16 @@
-//! Who ran what: the head of a record. Everything here is told, nothing is measured.
+//! Provenance of a run, the head of its record: who ran which joint with which image and settings. All of it is known
+//! before the run.
 
 use link::messages::{Clock, Hello, RunMode};
 use model_core::gears::Kinematics;
 
-use crate::plan::{Plan, Request};
+use crate::plan::{RunPlan, RunRequest};
 use crate::record::{Identity, Image, JointFigures, RunRecord, Settings};
 use board::target::image;
 use report::provenance;
 
 /// A record in which nothing has happened yet.
-pub fn record(request: &Request<'_>, plan: &Plan, transport: &str) -> RunRecord {
+pub fn record(request: &RunRequest<'_>, plan: &RunPlan, transport: &str) -> RunRecord {
     let emulated = request.line.port.is_none();
     let identity = Identity {
         joint: plan.expected.joint.clone(),
@@ -56,7 +57,7 @@ pub fn image(image: &image::Image) -> Image {
     }
 }
 
-fn joint_figures(plan: &Plan) -> JointFigures {
+fn joint_figures(plan: &RunPlan) -> JointFigures {
     let parameters = &plan.joint.parameters;
     let half_backlash_m: Vec<f64> = [&parameters.sun_planet, &parameters.ring_planet]
         .into_iter()
@@ -75,7 +76,7 @@ fn joint_figures(plan: &Plan) -> JointFigures {
     }
 }
 
-fn settings(request: &Request<'_>, plan: &Plan) -> Settings {
+fn settings(request: &RunRequest<'_>, plan: &RunPlan) -> Settings {
     let realtime = plan.settings.mode == RunMode::Realtime;
     Settings {
         mode: if realtime { "realtime" } else { "lockstep" }.to_owned(),

@@ -1,11 +1,11 @@
-//! What a run of a joint on a board was asked to be, with everything that can be wrong with it found before anything is
-//! built or started: joint, profile, rates. Boards and files to be written are looked at later.
+//! A validated request to run a joint on a board: joint, profile and rates are checked before anything is built or
+//! started.
 
 use std::path::{Path, PathBuf};
 
 use board::line_options::{LineOptions, Mode};
-use board::profile::Profile;
-use board::session::{Expected, Mend};
+use board::profile::TorqueProfile;
+use board::session::{BoardHelp, Expected};
 use board::target::board::Board;
 use board::target::image;
 use board::twin;
@@ -17,18 +17,18 @@ use report::failure::{Failure, Outcome};
 
 /// A run as it was asked for.
 #[derive(Debug, Clone)]
-pub struct Request<'a> {
+pub struct RunRequest<'a> {
     /// Joint file, or the name of a preset.
     pub file: &'a Path,
     /// Which board, and how it is reached.
     pub line: &'a LineOptions,
-    /// Who waits for whom; lockstep on the emulated board and real time on a real one unless it is said.
+    /// Lockstep (the board waits for the host) or real time; by default lockstep on the emulated board, real time on a real one.
     pub mode: Option<Mode>,
     /// Steps a second, part of the image [Hz].
     pub rate: u32,
     /// Name of a built-in torque profile, or a CSV file.
     pub profile: &'a str,
-    /// Length of the run; the profile's own unless it is said [s].
+    /// Length of the run; by default that of the profile [s].
     pub duration: Option<f64>,
     /// A sample every so many steps.
     pub decimation: u16,
@@ -44,9 +44,9 @@ pub struct Request<'a> {
     pub picture: Option<&'a Path>,
 }
 
-/// A run that can be made.
+/// A validated run.
 #[derive(Debug, Clone)]
-pub struct Plan {
+pub struct RunPlan {
     /// The joint file as the user named it.
     pub name: String,
     /// The joint file for the firmware's build.
@@ -58,7 +58,7 @@ pub struct Plan {
     /// What the board must be.
     pub expected: Expected,
     /// The torques.
-    pub profile: Profile,
+    pub profile: TorqueProfile,
     /// How the run goes.
     pub settings: RunSettings,
 }
@@ -66,15 +66,15 @@ pub struct Plan {
 /// In real time a board without torques for so long goes to its safe state [s].
 const COMMAND_TIMEOUT: f64 = 0.1;
 
-impl Plan {
+impl RunPlan {
     /// Reads and designs all that a run needs.
-    pub fn new(request: &Request<'_>) -> Outcome<Self> {
+    pub fn new(request: &RunRequest<'_>) -> Outcome<Self> {
         let loaded = named::load(request.file)?;
         let path = image::joint_file(request.file, &loaded.name);
         let Loaded { name, file: joint, .. } = loaded;
         let parameters = &joint.parameters;
         let digest = twin::tables_digest(parameters, request.line.board, request.rate)?;
-        let profile = Profile::load(request.profile, parameters, request.rate, request.duration)?;
+        let profile = TorqueProfile::load(request.profile, parameters, request.rate, request.duration)?;
         let mode = match (request.mode, &request.line.port) {
             (Some(Mode::Lockstep), _) | (None, None) => RunMode::Lockstep,
             (Some(Mode::Realtime), _) | (None, Some(_)) => RunMode::Realtime,
@@ -90,7 +90,7 @@ impl Plan {
             planets: parameters.geometry.planets,
             role: Role::Plant,
             control_digest: None,
-            mend: request.mend(),
+            help: request.help(),
         };
         let command_timeout = (COMMAND_TIMEOUT * f64::from(request.rate)).ceil() as u32;
         let settings = RunSettings { mode, decimation: request.decimation, command_timeout, from_memory: false };
@@ -98,15 +98,15 @@ impl Plan {
     }
 }
 
-impl Request<'_> {
+impl RunRequest<'_> {
     /// What to do about a board that is another one.
-    fn mend(&self) -> Mend {
+    fn help(&self) -> BoardHelp {
         if self.line.port.is_none() {
-            return Mend::Rebuild;
+            return BoardHelp::Rebuild;
         }
         let (file, board) = (self.file.display(), self.line.board.name());
         let command = format!("cargo joint flash {file} --board {board}{}", self.rate_option());
-        if self.no_build { Mend::Flash(command) } else { Mend::FlashBuilt(command) }
+        if self.no_build { BoardHelp::Flash(command) } else { BoardHelp::FlashBuilt(command) }
     }
 
     /// The command that makes this run again.

@@ -1,5 +1,4 @@
-//! All that one run leaves behind, in SI units: who ran, how, what was commanded, what was measured and what the checks
-//! say. Where the figures come from is the session's.
+//! The record of one run, in SI units: who ran what and how, the commands, the measurements and the checks.
 
 mod sample;
 mod samples;

@@ -7,7 +7,7 @@ use board::target::image;
 use joint_file::named;
 use report::failure::{Failure, Outcome};
 use report::output;
-use simulation::budget::{figures, layout, refuse};
+use simulation::budget::{layout, refuse, summary};
 
 /// Arguments of `joint budget`.
 #[derive(Debug, clap::Args)]
@@ -37,7 +37,7 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
     let loaded = named::load(&arguments.file)?;
     let parameters = &loaded.file.parameters;
     refuse(parameters, arguments.board, arguments.rate)?;
-    let figures = figures(parameters, arguments.board, arguments.rate)
+    let summary = summary(parameters, arguments.board, arguments.rate)
         .map_err(|error| Failure::new(format!("no fixed step for {}: {error}", parameters.name)))?;
-    output::deliver(&figures, &layout(&figures), arguments.json.as_deref(), &[&arguments.file])
+    output::deliver(&summary, &layout(&summary), arguments.json.as_deref(), &[&arguments.file])
 }

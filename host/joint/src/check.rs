@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use joint_file::named;
 use report::failure::Outcome;
 use report::output;
-use simulation::check::{figures, layout};
+use simulation::check::{layout, summary};
 
 /// Arguments of `joint check`.
 #[derive(Debug, clap::Args)]
@@ -24,6 +24,6 @@ pub struct Arguments {
 /// Prints what follows from the file.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
     let loaded = named::load(&arguments.file)?;
-    let figures = figures(&loaded, arguments.rate)?;
-    output::deliver(&figures, &layout(&figures), arguments.json.as_deref(), &[&arguments.file])
+    let summary = summary(&loaded, arguments.rate)?;
+    output::deliver(&summary, &layout(&summary), arguments.json.as_deref(), &[&arguments.file])
 }

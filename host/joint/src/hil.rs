@@ -1,5 +1,5 @@
-//! `joint hil`: a joint run on a board, and tests of observer and compensation. Which of both a file asks for is decided
-//! here; the run is `joint-run`'s, the tests are `scenario`'s.
+//! `joint hil`: a joint run on a board (crate `joint-run`), or tests of observer and compensation (crate `scenario`),
+//! depending on the file.
 
 mod arguments;
 mod tests;
@@ -15,7 +15,7 @@ use scenario::suite;
 pub fn run(arguments: &Arguments) -> Outcome<()> {
     Progress::during(|progress| {
         if suite::is_of_tests(arguments.file()) {
-            return scenario::run(&tests::wanted(arguments)?, progress);
+            return scenario::run(&tests::test_request(arguments)?, progress);
         }
         tests::refuse_for_joints(arguments)?;
         let joint = joint_run::run(&arguments.request(), progress);
@@ -39,7 +39,7 @@ fn run_tests(arguments: &Arguments, joint: Outcome<()>, progress: &Progress) -> 
         return joint;
     }
     output::print("\n")?;
-    let tests = scenario::run(&tests::wanted_of_all(arguments), progress);
+    let tests = scenario::run(&tests::test_request_of_all(arguments), progress);
     if !arguments.full {
         let left = tests::left_out()?.len();
         output::print(&format!("left to `joint hil --full`: {left} more tests, all of them with all their seeds\n"))?;

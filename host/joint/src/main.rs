@@ -1,4 +1,4 @@
-//! The host command `joint`: arguments in, calls, exit codes. What a subcommand does is done by the crates beside this one.
+//! The host command `joint`: arguments, calls, exit codes. The work is done in the other host crates.
 
 mod budget;
 mod check;

@@ -1,17 +1,17 @@
 //! `joint memory`: what an observer has learnt of its joint, as a file: read off a board, shown, written to a board,
 //! kept and erased there.
 //!
-//! `arguments` is the command line, `bench` finds the board.
+//! `arguments` is the command line, `answering_board` finds the board.
 
+mod answering_board;
 mod arguments;
-mod bench;
 
 use std::fs;
 use std::path::Path;
 
+use answering_board::AnsweringBoard;
 pub use arguments::Arguments;
-use arguments::{Command, Place};
-use bench::Found;
+use arguments::{BoardArguments, Command};
 use identify::learnt::Content;
 use link::messages::{MemoryOutcome, MemoryState};
 use model_core::observer::{MEMORY_BYTES, Memory, MemoryError};
@@ -26,14 +26,14 @@ use report::write::unwritten;
 /// What a board is asked to do with its flash.
 type Ask = fn(&mut Session<'static>) -> Outcome<MemoryOutcome>;
 
-/// Does what is asked for.
+/// Runs the subcommand.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
     Progress::during(|progress| match &arguments.command {
         Command::Show { file, joint, json } => show(file, joint, json.as_deref()),
         Command::Read { file, place } => read(file, place, progress),
         Command::Write { file, place } => write(file, place, progress),
         Command::Keep { place } => {
-            change(place, progress, Session::keep_memory, "keeps what it has learnt, in its flash")
+            change(place, progress, Session::save_memory, "keeps what it has learnt, in its flash")
         }
         Command::Erase { place } => change(place, progress, Session::erase_memory, "keeps no memory now"),
     })
@@ -46,9 +46,9 @@ fn show(file: &Path, joint: &Path, json: Option<&Path>) -> Outcome<()> {
     output::deliver(&content, &text, json, &[file, joint])
 }
 
-fn read(file: &Path, place: &Place, progress: &Progress) -> Outcome<()> {
+fn read(file: &Path, place: &BoardArguments, progress: &Progress) -> Outcome<()> {
     let loaded = named::load(&place.joint)?;
-    let mut found = Found::call(place, &loaded, progress)?;
+    let mut found = AnsweringBoard::call(place, &loaded, progress)?;
     let memory = found.session.stored_memory()?;
     progress.clear();
     if memory.iter().all(|byte| *byte == 0xff) || memory == [0; MEMORY_BYTES] {
@@ -73,7 +73,7 @@ fn read(file: &Path, place: &Place, progress: &Progress) -> Outcome<()> {
     }
 }
 
-fn write(file: &Path, place: &Place, progress: &Progress) -> Outcome<()> {
+fn write(file: &Path, place: &BoardArguments, progress: &Progress) -> Outcome<()> {
     let (memory, loaded) = (load(file)?, named::load(&place.joint)?);
     let name = file.display().to_string();
     // What is no memory at all is known before a board is asked.
@@ -81,8 +81,8 @@ fn write(file: &Path, place: &Place, progress: &Progress) -> Outcome<()> {
         Err(error) if error != MemoryError::OtherJoint => return Err(refused(&name, error)),
         _ => {}
     }
-    let mut found = Found::call(place, &loaded, progress)?;
-    if let Some(error) = fault(found.session.bring_memory(&memory)?) {
+    let mut found = AnsweringBoard::call(place, &loaded, progress)?;
+    if let Some(error) = fault(found.session.load_memory(&memory)?) {
         progress.clear();
         let joint = found.hello.joint.clone();
         return Err(refused(&name, error).while_doing(format_args!("{}, joint {joint}", found.name)));
@@ -101,10 +101,10 @@ fn write(file: &Path, place: &Place, progress: &Progress) -> Outcome<()> {
     }
 }
 
-/// Has a board do something with its own flash, and says what then is so.
-fn change(place: &Place, progress: &Progress, ask: Ask, done: &str) -> Outcome<()> {
+/// Has a board do something with its own flash, and prints the result.
+fn change(place: &BoardArguments, progress: &Progress, ask: Ask, done: &str) -> Outcome<()> {
     let loaded = named::load(&place.joint)?;
-    let mut found = Found::call(place, &loaded, progress)?;
+    let mut found = AnsweringBoard::call(place, &loaded, progress)?;
     let kept = ask(&mut found.session)?;
     progress.clear();
     match kept {
@@ -135,20 +135,20 @@ fn load(file: &Path) -> Outcome<Memory> {
 
 /// A memory that is not taken.
 fn refused(name: &str, error: MemoryError) -> Failure {
-    let (what, mend) = parts(error);
-    Failure::new(format!("{name}: {what}")).with_help(mend)
+    let (what, help) = parts(error);
+    Failure::new(format!("{name}: {what}")).with_help(help)
 }
 
-/// What is wrong, and how to mend it.
+/// What is wrong, and the help.
 fn parts(error: MemoryError) -> (String, String) {
     let text = error.to_string();
-    let (what, mend) = text.split_once(": ").unwrap_or((&text, ""));
-    let mend = match error {
+    let (what, help) = text.split_once(": ").unwrap_or((&text, ""));
+    let help = match error {
         MemoryError::NotAMemory => READ_ONE.to_owned(),
-        MemoryError::OtherJoint => format!("{mend}; the same joint file, backlash included, and the same encoders"),
-        _ => mend.to_owned(),
+        MemoryError::OtherJoint => format!("{help}; the same joint file, backlash included, and the same encoders"),
+        _ => help.to_owned(),
     };
-    (what.to_owned(), mend)
+    (what.to_owned(), help)
 }
 
 /// A judgement of a board, unless it is good.

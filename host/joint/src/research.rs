@@ -31,7 +31,7 @@ pub fn run(package: &str, rest: &[OsString]) -> Outcome<()> {
         .map_err(|error| Failure::new(format!("cannot start `{package}` through cargo: {error}")))?;
     match status.code() {
         Some(0) => Ok(()),
-        // It has said itself what was wrong.
+        // It has printed its own error.
         Some(code) => std::process::exit(code),
         None => Err(Failure::interrupted(format!("`{package}` was ended by a signal"))),
     }

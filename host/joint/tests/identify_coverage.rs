@@ -1,5 +1,5 @@
-//! How often true values lie in the 95 % intervals that `joint identify` states: over joints, encoders, widths and frictions
-//! that the fit is not told, on fresh seeds. What single logs must say is tested elsewhere.
+//! How often true values lie in the 95 % intervals that `joint identify` states: over joints, encoders, widths and
+//! frictions unknown to the fit, on fresh seeds.
 
 mod command;
 

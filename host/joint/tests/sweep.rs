@@ -1,5 +1,5 @@
 //! `joint sweep` and `joint merge` as a user meets them: the same bytes whatever the threads, shards, kills and order;
-//! nothing of anyone else's touched; every refusal with its culprit and its mend.
+//! no foreign file touched; every error with its cause and its help.
 
 mod command;
 

@@ -4,7 +4,7 @@
 use model_core::gears::design::{Cost, Substeps};
 use parameters::{Excitation, JointParameters};
 
-use super::joints::{TRIAL_JOINTS, write_files};
+use super::joints::{TEST_JOINTS, write_files};
 use super::worst_case::Search;
 use board::target::image::DEFAULT_TICK_RATE;
 use board::target::toolchain::Toolchain;
@@ -46,7 +46,7 @@ fn parse(line: &str) -> Option<Counted> {
 
 /// Holds predictions against counts, and bounds against the search for the worst case; returns a line for each joint.
 pub fn judge(counted: &[Counted], searched: &[Search]) -> Outcome<Vec<String>> {
-    TRIAL_JOINTS
+    TEST_JOINTS
         .iter()
         .map(|joint| {
             let missing = || Failure::check_failed(format!("{}: not counted on the board", joint.name));
@@ -99,7 +99,7 @@ mod tests {
 
     #[test]
     fn counts_off_by_more_than_the_margin_fail_and_so_does_a_worst_case_above_the_bound() {
-        let joint = TRIAL_JOINTS[0].read().unwrap().parameters;
+        let joint = TEST_JOINTS[0].read().unwrap().parameters;
         let cost = Cost::new(&joint);
         let parts = Substeps::Corrected(2);
         let (holding, apart) = (cost.contact_holds(parts) as u32, cost.contact_changes(parts) as u32);

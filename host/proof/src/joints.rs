@@ -1,5 +1,5 @@
-//! The joints that the step is tried on: 3, 4 and 5 planets, both damping laws, with compliance and without, mesh phase
-//! by angle and by time, equal, unequal and no backlash. They are presets with a few values changed.
+//! The test joints of the proofs: 3, 4 and 5 planets, both damping laws, with compliance and without, mesh phase by
+//! angle and by time, equal, unequal and no backlash. They are presets with a few values changed.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use report::failure::{Failure, Outcome};
 
 /// A joint that the step is tried on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct TrialJoint {
+pub struct TestJoint {
     /// Its name in every table.
     pub name: &'static str,
     preset: &'static str,
@@ -19,20 +19,20 @@ pub struct TrialJoint {
 }
 
 /// All of them.
-pub const TRIAL_JOINTS: [TrialJoint; 5] = [
-    TrialJoint { name: "Q1", preset: "q1", changes: &[] },
-    TrialJoint { name: "paper", preset: "paper", changes: &[] },
-    TrialJoint {
+pub const TEST_JOINTS: [TestJoint; 5] = [
+    TestJoint { name: "Q1", preset: "q1", changes: &[] },
+    TestJoint { name: "paper", preset: "paper", changes: &[] },
+    TestJoint {
         name: "L1 with 4 planets",
         preset: "l1",
         changes: &[("planets", "4"), ("mesh.half_backlash_um", "[60.0, 45.0, 30.0, 15.0]")],
     },
-    TrialJoint {
+    TestJoint {
         name: "S1 without backlash",
         preset: "s1",
         changes: &[("planets", "4"), ("mesh.half_backlash_um", "0.0")],
     },
-    TrialJoint {
+    TestJoint {
         name: "Q1 with 5 planets",
         preset: "q1",
         // A larger sun leaves room between five planets.
@@ -46,7 +46,7 @@ pub const TRIAL_JOINTS: [TrialJoint; 5] = [
     },
 ];
 
-impl TrialJoint {
+impl TestJoint {
     /// Its joint file.
     pub fn text(&self) -> Outcome<String> {
         let preset = joint_file::preset(self.preset);
@@ -70,7 +70,7 @@ impl TrialJoint {
 /// Writes the files of all of them below a folder, for the firmware's build.
 pub fn write_files(folder: &Path) -> Outcome<Vec<PathBuf>> {
     let folder = folder.join("trial-joints");
-    let write = |(index, joint): (usize, &TrialJoint)| {
+    let write = |(index, joint): (usize, &TestJoint)| {
         let (path, text) = (folder.join(format!("{index}.toml")), joint.text()?);
         // A file that says the same is left alone, so that nothing is built anew.
         if fs::read_to_string(&path).is_ok_and(|found| found == text) {
@@ -80,7 +80,7 @@ pub fn write_files(folder: &Path) -> Outcome<Vec<PathBuf>> {
         written.map_err(|error| cannot_write(&path, &error))?;
         Ok(path)
     };
-    TRIAL_JOINTS.iter().enumerate().map(write).collect()
+    TEST_JOINTS.iter().enumerate().map(write).collect()
 }
 
 #[cfg(test)]
@@ -91,7 +91,7 @@ mod tests {
 
     #[test]
     fn between_them_they_have_everything_that_a_joint_can_have() {
-        let joints: Vec<_> = TRIAL_JOINTS.iter().map(|joint| joint.read().unwrap().parameters).collect();
+        let joints: Vec<_> = TEST_JOINTS.iter().map(|joint| joint.read().unwrap().parameters).collect();
         let any = |has: &dyn Fn(&parameters::JointParameters) -> bool| joints.iter().any(has);
         for planets in 3..=5 {
             assert!(any(&|joint| joint.geometry.planets == planets));

@@ -1,6 +1,6 @@
 //! Instructions of the roles that control, and of the observer alone, counted tick by tick on the emulated board over a
-//! motion with reversals, pushes and a silent encoder, and held against the time that a control period leaves. Bounds of
-//! the plant's step over all states are `worst_case`'s.
+//! motion with reversals, disturbance torques and a silent encoder, and compared with the time that a control period
+//! leaves. The plant's step is bounded over all states in `worst_case`.
 
 use std::fmt;
 
@@ -13,7 +13,7 @@ use report::failure::{Failure, Outcome};
 
 /// Instructions of a role's tick.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Load {
+pub struct RoleCost {
     /// The role.
     pub role: String,
     /// The joint.
@@ -30,7 +30,7 @@ pub struct Load {
     pub bytes: u32,
 }
 
-impl fmt::Display for Load {
+impl fmt::Display for RoleCost {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { role, joint, periods, mean, most, at, bytes } = self;
         let [usual, worst] = [*mean, f64::from(*most)].map(|instructions| 100.0 * part(instructions));
@@ -43,23 +43,23 @@ impl fmt::Display for Load {
 }
 
 /// Counts on the emulated board.
-pub fn count(toolchain: &Toolchain, say: Say<'_>) -> Outcome<Vec<Load>> {
+pub fn count(toolchain: &Toolchain, say: Say<'_>) -> Outcome<Vec<RoleCost>> {
     let elf = measuring::build_measuring(toolchain, "roles", &[], CONTROL_RATE, say)?;
     measuring::read(&elf, parse)
 }
 
-fn parse(line: &str) -> Option<Load> {
+fn parse(line: &str) -> Option<RoleCost> {
     let mut fields = line.strip_prefix("role;")?.split(';');
     let (role, joint) = (fields.next()?.to_owned(), fields.next()?.to_owned());
     let periods: u32 = fields.next()?.parse().ok()?;
     let sum: f64 = fields.next()?.parse().ok()?;
     let mut number = || fields.next()?.parse().ok();
     let (most, at, bytes) = (number()?, number()?, number()?);
-    Some(Load { role, joint, periods, mean: sum / f64::from(periods.max(1)), most, at, bytes })
+    Some(RoleCost { role, joint, periods, mean: sum / f64::from(periods.max(1)), most, at, bytes })
 }
 
 /// Part of a control period that a role's worst tick may take: an observer leaves a quarter to the motor controller that
-/// it is a guest of, a whole loop has the chip to itself.
+/// it is a guest of, a whole loop has the chip alone.
 fn share(role: &str) -> f64 {
     if role == "loop" { 1.0 } else { 0.75 }
 }
@@ -70,9 +70,9 @@ pub fn part(instructions: f64) -> f64 {
 }
 
 /// Fails if a role's worst tick takes more of a control period than it may.
-pub fn judge(loads: &[Load]) -> Outcome<()> {
-    let over = |load: &&Load| part(load.most.into()) > share(&load.role);
-    let over: Vec<String> = loads.iter().filter(over).map(Load::to_string).collect();
+pub fn judge(costs: &[RoleCost]) -> Outcome<()> {
+    let over = |load: &&RoleCost| part(load.most.into()) > share(&load.role);
+    let over: Vec<String> = costs.iter().filter(over).map(RoleCost::to_string).collect();
     if over.is_empty() {
         return Ok(());
     }
@@ -91,10 +91,10 @@ mod tests {
         assert_eq!((load.mean, load.most, load.at, load.bytes), (2000.0, 12001, 7, 640));
         let failure = judge(std::slice::from_ref(&load)).unwrap_err();
         assert!(failure.message().contains("role loop, Q1"), "{failure}");
-        assert!(judge(&[Load { most: 12_000, ..load.clone() }]).is_ok());
-        let observer = Load { role: "observer".to_owned(), most: 9001, ..load };
+        assert!(judge(&[RoleCost { most: 12_000, ..load.clone() }]).is_ok());
+        let observer = RoleCost { role: "observer".to_owned(), most: 9001, ..load };
         assert!(judge(std::slice::from_ref(&observer)).is_err());
-        assert!(judge(&[Load { most: 9000, ..observer }]).is_ok());
+        assert!(judge(&[RoleCost { most: 9000, ..observer }]).is_ok());
         assert_eq!(parse("panicked at x.rs"), None);
     }
 }

@@ -1,6 +1,6 @@
 //! Is every result the same in every bit, on the emulated board and here? Also when the caller has set the board's
-//! floating-point unit to flush tiny numbers to zero or to give every NaN one form. The motions are the crate
-//! `trials`'s; other builds of the host hold themselves to the same digests in the host's tests.
+//! floating-point unit to flush subnormals to zero or to return default NaNs. The motions are those of the crate
+//! `trials`; host-tests hold other builds of the host to the same digests.
 
 use std::fmt;
 
@@ -8,7 +8,7 @@ use model_core::gears::design::design;
 use parameters::JointParameters;
 use trials::motion;
 
-use super::joints::{TRIAL_JOINTS, TrialJoint, write_files};
+use super::joints::{TEST_JOINTS, TestJoint, write_files};
 use board::target::image::DEFAULT_TICK_RATE;
 use board::target::toolchain::Toolchain;
 use board::target::{Say, measuring};
@@ -48,7 +48,7 @@ pub type InMode<'a> = &'a dyn Fn(&mut dyn FnMut());
 
 /// The digests of a joint, computed here. The step runs in the given floating-point mode; design, which only ever runs
 /// in the usual one, does not.
-pub fn on_host(joint: &TrialJoint, in_mode: InMode<'_>) -> Outcome<Digests> {
+pub fn on_host(joint: &TestJoint, in_mode: InMode<'_>) -> Outcome<Digests> {
     let parameters = joint.read()?.parameters;
     match parameters.geometry.planets {
         3 => with_planets::<3>(joint.name, &parameters, in_mode),
@@ -87,7 +87,7 @@ fn parse(line: &str) -> Option<OnBoard> {
 /// Every joint on the board in every setting against the host: the first difference ends it. Returns how many runs were
 /// compared.
 pub fn compare(board: &[OnBoard]) -> Outcome<usize> {
-    for joint in &TRIAL_JOINTS {
+    for joint in &TEST_JOINTS {
         let host = on_host(joint, &|work| work())?;
         let runs: Vec<_> = board.iter().filter(|run| run.digests.name == joint.name).collect();
         if runs.len() != 4 {

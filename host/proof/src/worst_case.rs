@@ -1,5 +1,6 @@
-//! The worst case of a tick: instructions of one step from a great many states, counted on the emulated board without
-//! serial traffic and held against the time that the joint's tick rate leaves. The states are the crate `trials`'s.
+//! The worst case of a tick: instructions of one step from many randomly drawn states (trials), counted on the emulated
+//! board without serial traffic and compared with the time that the joint's tick rate leaves. The states come from the
+//! crate `trials`.
 
 use std::fmt;
 

@@ -1,4 +1,4 @@
-//! Checks: a figure, its bound and the verdict that follows. What is worth checking is the session's to know.
+//! Checks: a figure, its bound and the resulting verdict.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,5 +1,5 @@
-//! How a program of this project is called: its command line read with clap, its outcome turned into an exit code. Which
-//! options there are is each program's own.
+//! Runs a program of this project: parses its command line with clap and turns its outcome into an exit code. Each
+//! program defines its own options.
 
 use std::process::ExitCode;
 
@@ -30,7 +30,7 @@ pub fn main<T>(
     }
 }
 
-/// Has every option take a number below zero as its value: that it cannot be is then said by who knows why.
+/// Has every option take a number below zero as its value: the option's own check then explains why it is refused.
 fn with_negative_numbers(command: Command) -> Command {
     let names: Vec<String> = command.get_subcommands().map(|command| command.get_name().to_owned()).collect();
     let command = names.into_iter().fold(command, |command, name| command.mut_subcommand(name, with_negative_numbers));

@@ -1,5 +1,5 @@
 //! Contact states over time as rows of coloured strips, one row a mesh. A strip that stands for many samples shows the
-//! share of each state by height; deflections themselves are drawn by `motion`.
+//! share of each state by height.
 
 use serde::{Deserialize, Serialize};
 

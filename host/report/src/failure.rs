@@ -10,7 +10,7 @@ pub const EXIT_BAD_INPUT: u8 = 2;
 /// Exit code after Ctrl-C: 128 + SIGINT.
 pub const EXIT_INTERRUPTED: u8 = 130;
 
-/// Why the command did not succeed.
+/// The error of a command.
 #[derive(Debug)]
 pub struct Failure {
     message: String,
@@ -19,7 +19,7 @@ pub struct Failure {
     exit_code: u8,
 }
 
-/// Result of everything that a user may see fail.
+/// Result of everything whose error is shown to the user.
 pub type Outcome<T> = Result<T, Failure>;
 
 impl Failure {
@@ -45,7 +45,7 @@ impl Failure {
         Self { report: Some(report), ..Self::new(message) }
     }
 
-    /// Says how to mend it.
+    /// Adds the help: what to do about it.
     #[must_use]
     pub fn with_help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
@@ -64,13 +64,13 @@ impl Failure {
         &self.message
     }
 
-    /// How to mend it.
+    /// The help: what to do about it.
     pub fn help(&self) -> Option<&str> {
         self.help.as_deref()
     }
 
-    /// How to mend it, place after place of a diagnostic.
-    pub fn mend(&self) -> Option<String> {
+    /// The help, or that of every place of a diagnostic.
+    pub fn full_help(&self) -> Option<String> {
         let places = self.report.iter().flat_map(|report| report.related().into_iter().flatten());
         let of_places: Vec<String> = places.filter_map(|place| Some(place.help()?.to_string())).collect();
         self.help.clone().or_else(|| (!of_places.is_empty()).then(|| of_places.join("; ")))

@@ -1,5 +1,5 @@
-//! The folder that a command writes its results to, and files that it is asked for by name. What cannot be written is
-//! found before the work begins.
+//! The folder that a command writes its results to, and the files that the user named. Paths that cannot be written are
+//! reported before the work begins.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,5 +1,5 @@
-//! What the command gives out: results on standard output or in a file, remarks on standard error. A reader that has gone away is no
-//! error; progress lines are made elsewhere.
+//! Output of a command: results on standard output or in a file, remarks on standard error. A closed pipe is not an
+//! error.
 
 use std::io::{self, Write};
 use std::path::Path;

@@ -1,5 +1,5 @@
 //! Panels of a joint's motion, the same in every report that shows one: torques, gap, twist, wind-up, and one line for
-//! each planet. Where the points come from is each report's to know; contact strips are in `contacts`.
+//! each planet. Contact strips are in `contacts`.
 
 use crate::document::{Text, indexed};
 use crate::plot::ink::{Ink, LINES};
@@ -7,9 +7,9 @@ use crate::plot::mark::Mark;
 use crate::plot::panel::Panel;
 use crate::plot::unit::{TORQUE, Unit, greatest};
 
-/// What a reader should know of pictures of long series.
+/// Caption about pictures of long series.
 pub const THINNED: &str = "Where a picture has fewer columns than samples, least and greatest of each column are kept.";
-/// What is to be seen in pictures of deflections and contact.
+/// Caption of pictures of deflections and contact.
 pub const DEFLECTIONS: &str = "Deflection of every mesh. Above the shaded band the drive side carries, below it the back \
                                side, inside it the teeth are parted. Strips that stand for many samples show the share \
                                of each state by height.";

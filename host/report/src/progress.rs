@@ -1,5 +1,5 @@
-//! What a user sees while a run is prepared and goes on: one line that says what is being done, and how far. On anything
-//! but a terminal there is no such line, only what changes the machine.
+//! Progress for the user: one line with the current stage and how far it is. When standard error is not a terminal,
+//! only stages that change the machine are printed.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -9,7 +9,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use crate::failure::Outcome;
 use crate::interruption;
 
-/// The line; any thread may move it on.
+/// The progress line; any thread may update it.
 pub struct Progress {
     bar: Mutex<Option<ProgressBar>>,
 }

@@ -1,4 +1,4 @@
-//! Where the figures of a record come from: date, sources, host. Everything here is told, nothing is measured.
+//! Where the figures of a record come from: date, sources, host.
 
 use std::process::Command;
 

@@ -1,5 +1,4 @@
-//! Amplitudes of an evenly sampled signal by frequency. Only what the samples hold is in it: what is faster than half
-//! their rate is folded back. Where the samples come from and which lines mean what is the caller's to know.
+//! Amplitude spectrum of an evenly sampled signal. Frequencies above half the sampling rate are aliased.
 
 use std::f64::consts::TAU;
 
@@ -11,11 +10,11 @@ use rustfft::num_complex::Complex;
 pub enum Window {
     /// All alike: exact for a whole number of cycles.
     Rectangular,
-    /// Hann's: what does not fit the stretch leaks into two neighbouring lines instead of everywhere.
+    /// Hann's: a frequency that does not fit the window leaks into two neighbouring lines only.
     Hann,
 }
 
-/// Which mean is taken off first.
+/// Which mean is subtracted first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mean {
     /// That of the samples as they are.
@@ -57,7 +56,7 @@ pub fn amplitudes(signal: &[f64], window: Window, mean: Mean) -> Vec<f64> {
     lines.collect()
 }
 
-/// The spectrum of a motion that need not fit the stretch: under Hann's window, about its mean.
+/// The spectrum of a motion that need not be periodic in the window: under Hann's window, about its mean.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spectrum {
     /// Distance of neighbouring frequencies [Hz].

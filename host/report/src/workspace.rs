@@ -1,4 +1,4 @@
-//! Where the sources of this program are: the firmware is built from them, and results go beside them.
+//! The folder of this workspace: the firmware is built from it, and results are written below it.
 
 use std::path::{Path, PathBuf};
 

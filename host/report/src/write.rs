@@ -62,7 +62,7 @@ fn temporary_beside(path: &Path) -> PathBuf {
     path.with_file_name(name)
 }
 
-/// Names the file, what the system said and what to do about it.
+/// Names the file, the system's error and the help.
 pub fn unwritten(path: &Path, source: &io::Error) -> Failure {
     let help = match source.kind() {
         ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {

@@ -1,5 +1,5 @@
-//! Runs one test: every seed and every controller, on all cores, and puts together what came of them. Order of
-//! completion never shows in the results.
+//! Runs one test: every seed and every controller, on all cores, and combines the results. The order of completion does
+//! not change them.
 
 use std::path::Path;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 
 use super::controller::ControllerName;
-use super::execution::{Order, execute};
+use super::execution::{RunSpec, execute};
 use super::file::fault_word;
 use super::log_file;
 use super::on_board::Boards;
@@ -17,12 +17,12 @@ use super::record::{TestRecord, TestRun};
 use super::rig::RunError;
 use super::suite::Test;
 use super::trace::Trace;
-use super::values::Values;
+use super::values::MetricValues;
 use super::verdict::{Results, judge};
 use report::failure::{Failure, Outcome};
 
 /// How tests are run.
-pub struct Conduct<'c> {
+pub struct RunOptions<'c> {
     /// What is controlled.
     pub plant: PlantName,
     /// One seed in place of the file's.
@@ -37,8 +37,8 @@ pub struct Conduct<'c> {
     pub done: &'c (dyn Fn(u32) + Sync),
 }
 
-/// A test with what its pictures need.
-pub struct Tested {
+/// A finished test: its record, and the data of its pictures.
+pub struct FinishedTest {
     /// Everything that is written.
     pub record: TestRecord,
     /// The shown seed's runs, in the order of the record's controllers.
@@ -53,7 +53,7 @@ struct Job {
 }
 
 struct Done {
-    values: Option<Values>,
+    values: Option<MetricValues>,
     run: TestRun,
     trace: Trace,
 }
@@ -75,10 +75,10 @@ impl Test {
 }
 
 /// Runs a test.
-pub fn run(test: &Test, conduct: &Conduct<'_>, before: &AtomicU32) -> Outcome<Tested> {
+pub fn run(test: &Test, options: &RunOptions<'_>, before: &AtomicU32) -> Outcome<FinishedTest> {
     let start = Instant::now();
     let deadline = start + Duration::from_secs_f64(test.file.timeout);
-    let seeds = test.seeds(conduct.seed, conduct.full);
+    let seeds = test.seeds(options.seed, options.full);
     let controllers = test.controllers();
     let jobs: Vec<Job> = seeds
         .iter()
@@ -87,8 +87,8 @@ pub fn run(test: &Test, conduct: &Conduct<'_>, before: &AtomicU32) -> Outcome<Te
     let done: Vec<Outcome<Done>> = jobs
         .par_iter()
         .map(|job| {
-            let done = one(test, conduct, job, deadline);
-            (conduct.done)(before.fetch_add(1, Ordering::Relaxed) + 1);
+            let done = one(test, options, job, deadline);
+            (options.done)(before.fetch_add(1, Ordering::Relaxed) + 1);
             done
         })
         .collect();
@@ -121,8 +121,8 @@ pub fn run(test: &Test, conduct: &Conduct<'_>, before: &AtomicU32) -> Outcome<Te
         title: test.file.title.clone(),
         joint: test.joint.file.parameters.name.to_string(),
         joint_sha256: test.joint_sha256(),
-        on: conduct.boards.map_or("host".to_owned(), Boards::label),
-        plant: conduct.plant.word().to_owned(),
+        on: options.boards.map_or("host".to_owned(), Boards::label),
+        plant: options.plant.word().to_owned(),
         profile: test.file.profile.kind.to_owned(),
         controller: test.file.controller.word().to_owned(),
         duration_s: test.file.duration,
@@ -137,54 +137,54 @@ pub fn run(test: &Test, conduct: &Conduct<'_>, before: &AtomicU32) -> Outcome<Te
         replay: format!(
             "cargo joint hil {} {} --plant {} --seed {shown_seed}",
             test.name,
-            conduct.boards.map_or("--host".to_owned(), Boards::arguments),
-            conduct.plant.word()
+            options.boards.map_or("--host".to_owned(), Boards::arguments),
+            options.plant.word()
         ),
         seconds: start.elapsed().as_secs_f64(),
     };
     let faults = test.file.faults.iter().map(|fault| (fault_word(fault), [fault.start, fault.end])).collect();
-    Ok(Tested { record, shown, faults })
+    Ok(FinishedTest { record, shown, faults })
 }
 
-fn one(test: &Test, conduct: &Conduct<'_>, job: &Job, deadline: Instant) -> Outcome<Done> {
+fn one(test: &Test, options: &RunOptions<'_>, job: &Job, deadline: Instant) -> Outcome<Done> {
     let mut case = test.case(job.seed)?;
-    if let Some(boards) = conduct.boards {
-        boards.tell(&mut case)?;
+    if let Some(boards) = options.boards {
+        boards.set_nominal(&mut case)?;
     }
-    let order = Order { controller: job.controller, plant: conduct.plant, without_gap: false };
+    let spec = RunSpec { controller: job.controller, plant: options.plant, without_gap: false };
     let mut run = TestRun { seed: job.seed, controller: job.controller.word().to_owned(), ..TestRun::default() };
-    let ran = match conduct.boards.filter(|_| job.controller == test.file.controller) {
-        None => execute(&test.file, &case, job.seed, order, deadline),
-        Some(boards) => boards.run(test, &case, job.seed, order).map(|(ran, board)| {
+    let history = match options.boards.filter(|_| job.controller == test.file.controller) {
+        None => execute(&test.file, &case, job.seed, spec, deadline),
+        Some(boards) => boards.run(test, &case, job.seed, spec).map(|(history, board)| {
             run.board = Some(board);
-            ran
+            history
         }),
     };
-    let both = ran.and_then(|ran| {
+    let both = history.and_then(|history| {
         let wanted = test.file.gains.is_some() && job.controller.wants_gains();
-        let other = Order { controller: job.controller.without_gap(), without_gap: true, ..order };
+        let other = RunSpec { controller: job.controller.without_gap(), without_gap: true, ..spec };
         let without_gap = wanted.then(|| execute(&test.file, &case, job.seed, other, deadline)).transpose()?;
-        Ok((ran, without_gap))
+        Ok((history, without_gap))
     });
     match both {
-        Ok((ran, without_gap)) => {
-            let values = Values::of(&test.file, &case, &ran, without_gap.as_ref());
-            run.refusal = ran.refusal().map(|refusal| refusal.to_string());
-            run.digest = format!("{:016x}", ran.digest);
-            run.figures = values.named().map(|(figure, value)| (figure.name(), value)).collect();
+        Ok((history, without_gap)) => {
+            let values = MetricValues::of(&test.file, &case, &history, without_gap.as_ref());
+            run.refusal = history.refusal().map(|refusal| refusal.to_string());
+            run.digest = format!("{:016x}", history.digest);
+            run.figures = values.named().map(|(metric, value)| (metric.name(), value)).collect();
             let name = format!("{}-seed{}-{}.mcap", test.stem(), job.seed, run.controller);
             let remarks = [
                 ("test", test.name.clone()),
-                ("joint", case.told.name.to_string()),
+                ("joint", case.nominal.name.to_string()),
                 ("seed", job.seed.to_string()),
                 ("controller", run.controller.clone()),
-                ("plant", conduct.plant.word().to_owned()),
+                ("plant", options.plant.word().to_owned()),
                 ("digest", run.digest.clone()),
             ];
             let remarks = remarks.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
-            log_file::write(&conduct.logs.join(&name), &ran, remarks)?;
+            log_file::write(&options.logs.join(&name), &history, remarks)?;
             run.log = Some(format!("runs/{name}"));
-            Ok(Done { values: Some(values), run, trace: Trace::of(&ran) })
+            Ok(Done { values: Some(values), run, trace: Trace::of(&history) })
         }
         Err(RunError::Refused(failure)) => Err(failure.while_doing(&test.name)),
         Err(RunError::Interrupted) => Err(Failure::interrupted("stopped by the user")),

@@ -1,5 +1,5 @@
-//! A test file made concrete for one seed: the true joint and its surroundings, what controllers are told of them, the
-//! motion, the pushes. Nothing runs here.
+//! One case of a test file, for one seed: the true joint and its surroundings, the nominal joint that controllers are
+//! told, the motion, the disturbance torques.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -14,11 +14,11 @@ use reference::closed_loop::rivals::Knowledge;
 use reference::closed_loop::{Profile as Standard, SharedProfile};
 use reference::drive_train::{Disturbance, DriveTrainParameters};
 
-use super::draw::{Quantity, Stream};
-use super::file::{Change, Course, NewValue, TestFile};
+use super::disturbances::disturbances;
+use super::file::{Change, NewValue, TestFile, Trajectory};
 use super::plant::half_backlash;
-use super::pushes::disturbances;
-use super::recorded::Recorded;
+use super::random::{NumberOrRange, RandomStream};
+use super::recorded::RecordedMotion;
 use super::surroundings::train;
 use report::failure::{Failure, Outcome};
 
@@ -28,21 +28,21 @@ pub struct Case {
     pub truth: JointFile,
     /// What truly surrounds it.
     pub train: DriveTrainParameters,
-    /// What controllers are told of the joint; its backlash is guessed.
-    pub told: JointParameters,
-    /// What they are told of its surroundings.
-    pub told_surroundings: Surroundings,
+    /// The nominal joint, which controllers are designed to; its backlash is guessed.
+    pub nominal: JointParameters,
+    /// Its nominal surroundings.
+    pub nominal_surroundings: Surroundings,
     /// Guessed over true half-backlash.
     pub width_guess: f64,
     /// Where the link shall be.
     pub motion: SharedProfile,
-    /// What pushes it.
+    /// Disturbance torques on the link.
     pub disturbances: Vec<Disturbance>,
     /// Texts of the joint files: as controllers know the joint but for its backlash, and the truth.
     texts: [String; 2],
 }
 
-/// What observer and compensation are designed to for a case.
+/// The designed tables of observer, compensation and width probe for a case.
 pub struct Designed {
     /// Tables of the observer.
     pub observer: ObserverTables<f32>,
@@ -55,13 +55,13 @@ pub struct Designed {
 }
 
 /// Takes one value of a range.
-type Pick<'p> = dyn FnMut(&str, Quantity) -> f64 + 'p;
+type Draw<'p> = dyn FnMut(&str, NumberOrRange) -> f64 + 'p;
 
 impl Case {
     /// The case of a seed. `text` is the joint file's.
-    pub fn new(file: &TestFile, text: &str, seed: u64, motion: Option<&Recorded>) -> Outcome<Self> {
-        let mut pick = |name: &str, quantity: Quantity| quantity.draw(&mut Stream::new(seed, name));
-        let texts = texts(file, text, &mut pick).map_err(|problem| Failure::new(problem.to_string()))?;
+    pub fn new(file: &TestFile, text: &str, seed: u64, motion: Option<&RecordedMotion>) -> Outcome<Self> {
+        let mut draw = |name: &str, quantity: NumberOrRange| quantity.draw(&mut RandomStream::new(seed, name));
+        let texts = texts(file, text, &mut draw).map_err(|problem| Failure::new(problem.to_string()))?;
         let read = |text: &str| {
             joint_file::read(text).map_err(|problems| {
                 let message = problems.first().map_or_else(String::new, ToString::to_string);
@@ -71,22 +71,22 @@ impl Case {
         };
         let [known, truth] = &texts;
         let (known, truth) = (read(known)?, read(truth)?);
-        // What nobody has measured is wrong by half, one way or the other.
-        let usual = Quantity::Exactly(if seed.is_multiple_of(2) { 0.5 } else { 1.5 });
-        let width_guess = pick("width_guess_ratio", file.width_guess.unwrap_or(usual));
-        let mut told = known.parameters.clone();
+        // An unmeasured width is wrong by half, one way or the other.
+        let usual = NumberOrRange::Exactly(if seed.is_multiple_of(2) { 0.5 } else { 1.5 });
+        let width_guess = draw("width_guess_ratio", file.width_guess.unwrap_or(usual));
+        let mut nominal = known.parameters.clone();
         let half_backlash = width_guess * half_backlash(&truth.parameters);
-        for mesh in [&mut told.sun_planet, &mut told.ring_planet] {
+        for mesh in [&mut nominal.sun_planet, &mut nominal.ring_planet] {
             mesh.half_backlash.iter_mut().for_each(|value| *value = half_backlash);
         }
         let rated = known.parameters.rated_output_torque;
         Ok(Self {
-            told,
-            told_surroundings: known.surroundings,
+            nominal,
+            nominal_surroundings: known.surroundings,
             train: train(&truth.surroundings, seed),
             truth,
             width_guess,
-            motion: course(file, motion, seed),
+            motion: trajectory(file, motion, seed),
             disturbances: disturbances(file, motion, rated),
             texts,
         })
@@ -97,18 +97,18 @@ impl Case {
         &self.texts[1]
     }
 
-    /// The joint file that a controller is told.
-    pub fn told_text(&self) -> Outcome<String> {
-        let half_backlash = self.told.sun_planet.half_backlash.first().copied().unwrap_or_default();
+    /// The nominal joint file, which controllers are designed to.
+    pub fn nominal_text(&self) -> Outcome<String> {
+        let half_backlash = self.nominal.sun_planet.half_backlash.first().copied().unwrap_or_default();
         joint_file::change(&self.texts[0], "mesh.half_backlash_um", &format!("{:?}", 1e6 * half_backlash))
             .map_err(|refused| Failure::new(refused.message).with_help(refused.help))
     }
 
-    /// Puts what a joint file says in the place of what controllers are told, so that a board that is built from the file
-    /// is told the same to the last bit.
-    pub fn tell(&mut self, told: &JointFile) {
-        self.told = told.parameters.clone();
-        self.told_surroundings = told.surroundings;
+    /// Replaces the nominal joint by that of a joint file, so that host and a board built from the file have the same numbers
+    /// to the last bit.
+    pub fn set_nominal(&mut self, nominal: &JointFile) {
+        self.nominal = nominal.parameters.clone();
+        self.nominal_surroundings = nominal.surroundings;
     }
 
     /// True half-backlash, mean over the planets [m].
@@ -132,23 +132,23 @@ impl Case {
 
     /// Designs observer and compensation from what they are told.
     pub fn design(&self, file: &TestFile) -> Outcome<Designed> {
-        let mut settings = observer_settings(&self.told_surroundings);
+        let mut settings = observer_settings(&self.nominal_surroundings);
         if !file.output_encoder {
             settings.output_encoder = None;
         }
         let refused = |what: &str, error: &dyn std::fmt::Display| {
-            Failure::new(format!("no {what} can be designed for joint `{}`: {error}", self.told.name))
+            Failure::new(format!("no {what} can be designed for joint `{}`: {error}", self.nominal.name))
         };
-        let observer = design_observer(&self.told, &settings).map_err(|error| refused("observer", &error))?;
-        let compensation = design_compensation(&self.told, &self.settings_of_law(file))
+        let observer = design_observer(&self.nominal, &settings).map_err(|error| refused("observer", &error))?;
+        let compensation = design_compensation(&self.nominal, &self.settings_of_law(file))
             .map_err(|error| refused("compensation", &error))?;
-        let probe = design_usual_probe(&self.told, &settings).map_err(|error| refused("width probe", &error))?;
+        let probe = design_usual_probe(&self.nominal, &settings).map_err(|error| refused("width probe", &error))?;
         Ok(Designed { observer, compensation, probe, ticks: settings.clock_rate / settings.control_rate })
     }
 
     /// What a compensation is designed to, as a file asks for it.
     pub fn settings_of_law(&self, file: &TestFile) -> CompensationSettings {
-        let usual = compensation_settings(&self.told_surroundings, file.bandwidth);
+        let usual = compensation_settings(&self.nominal_surroundings, file.bandwidth);
         CompensationSettings { peak_torque: file.peak_torque, ..usual }
     }
 }
@@ -162,7 +162,7 @@ pub fn check_changes(file: &TestFile, text: &str) -> Result<(), Vec<Problem>> {
 }
 
 /// The joint file as controllers know it, and as it truly is.
-fn texts(file: &TestFile, text: &str, pick: &mut Pick<'_>) -> Result<[String; 2], Problem> {
+fn texts(file: &TestFile, text: &str, draw: &mut Draw<'_>) -> Result<[String; 2], Problem> {
     let rated = joint_file::read(text).map_or(1.0, |joint| joint.parameters.rated_output_torque);
     let mut known = text.to_owned();
     let of_profile =
@@ -173,25 +173,25 @@ fn texts(file: &TestFile, text: &str, pick: &mut Pick<'_>) -> Result<[String; 2]
                 .map_err(|refused| problem(0..0, refused.message, refused.help))?;
         }
     }
-    apply(&mut known, &file.known, "known", pick)?;
+    apply(&mut known, &file.known, "known", draw)?;
     let mut truth = known.clone();
-    apply(&mut truth, &file.plant, "plant", pick)?;
+    apply(&mut truth, &file.plant, "plant", draw)?;
     Ok([known, truth])
 }
 
-fn apply(text: &mut String, changes: &[Change], section: &str, pick: &mut Pick<'_>) -> Result<(), Problem> {
+fn apply(text: &mut String, changes: &[Change], section: &str, draw: &mut Draw<'_>) -> Result<(), Problem> {
     for change in changes {
         let name = format!("{section}.{}", change.key);
         let value = match &change.value {
             NewValue::Text(text) => text.clone(),
-            NewValue::Number(quantity) => typed(pick(&name, *quantity), *quantity),
+            NewValue::Number(quantity) => typed(draw(&name, *quantity), *quantity),
             NewValue::Times(quantity) => {
                 let stated = joint_file::value(text, &change.key).ok().flatten();
                 let was: f64 = stated.and_then(|typed| typed.replace('_', "").parse().ok()).ok_or_else(|| {
                     let message = format!("the joint file does not state `{}` as one number", change.key);
                     problem(change.span.clone(), message, "give the new value itself, in place of { times = ... }")
                 })?;
-                (was * pick(&name, *quantity)).to_string()
+                (was * draw(&name, *quantity)).to_string()
             }
         };
         *text = joint_file::change(text, &change.key, &value)
@@ -206,10 +206,10 @@ fn apply(text: &mut String, changes: &[Change], section: &str, pick: &mut Pick<'
 }
 
 /// A number for a key; whole numbers stay whole, since some keys want them.
-fn typed(value: f64, quantity: Quantity) -> String {
+fn typed(value: f64, quantity: NumberOrRange) -> String {
     let whole = quantity.ends().iter().all(|end| end.fract() == 0.0 && end.abs() < 1e9);
     match quantity {
-        Quantity::Exactly(_) if whole => format!("{value:.0}"),
+        NumberOrRange::Exactly(_) if whole => format!("{value:.0}"),
         _ => value.to_string(),
     }
 }
@@ -219,26 +219,26 @@ fn problem(span: std::ops::Range<usize>, message: impl Into<String>, help: impl 
 }
 
 /// The recorded motion of a file, if it has one.
-pub fn recorded(file: &TestFile, folder: &Path) -> Outcome<Option<Recorded>> {
-    match &file.profile.course {
-        Course::File(name) => Recorded::read(&folder.join(name)).map(Some),
+pub fn recorded(file: &TestFile, folder: &Path) -> Outcome<Option<RecordedMotion>> {
+    match &file.profile.trajectory {
+        Trajectory::File(name) => RecordedMotion::read(&folder.join(name)).map(Some),
         _ => Ok(None),
     }
 }
 
-fn course(file: &TestFile, recorded: Option<&Recorded>, seed: u64) -> SharedProfile {
-    match (&file.profile.course, recorded) {
+fn trajectory(file: &TestFile, recorded: Option<&RecordedMotion>, seed: u64) -> SharedProfile {
+    match (&file.profile.trajectory, recorded) {
         (_, Some(recorded)) => Arc::new(recorded.clone()),
-        (Course::Sine(amplitude, frequency), _) => {
+        (Trajectory::Sine(amplitude, frequency), _) => {
             Arc::new(Standard::Sine { amplitude: *amplitude, frequency: *frequency })
         }
-        (Course::Random(amplitude, highest), _) => {
+        (Trajectory::Random(amplitude, highest), _) => {
             Arc::new(Standard::Random { amplitude: *amplitude, highest: *highest, seed })
         }
-        (Course::Steps(height, duration, rest), _) => {
+        (Trajectory::Steps(height, duration, rest), _) => {
             Arc::new(Standard::Steps { height: *height, duration: *duration, rest: *rest, seed })
         }
-        (Course::Hold(angle), _) => Arc::new(Standard::Hold(*angle)),
-        (Course::File(_), None) => Arc::new(Standard::Hold(0.0)),
+        (Trajectory::Hold(angle), _) => Arc::new(Standard::Hold(*angle)),
+        (Trajectory::File(_), None) => Arc::new(Standard::Hold(0.0)),
     }
 }

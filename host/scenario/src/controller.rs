@@ -1,6 +1,6 @@
-//! Controllers of a run by their names: the compensation, or a rival. At work they are in `rig::driver`.
+//! The controllers of a test by name: the compensation or a rival. While they run they are `rig::ActiveController`s.
 
-/// Who controls.
+/// A controller by name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum ControllerName {
     /// Observer and compensation, told set-points ahead of time.
@@ -28,10 +28,10 @@ pub enum ControllerName {
     /// No torque at all.
     Off,
     /// The compensation on the truth: no file names it.
-    PerfectSight,
+    TrueStateCompensation,
 }
 
-/// An impedance, and how often its point is sent.
+/// An impedance, and the rate of its set-points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gains {
     /// [N m/rad].
@@ -88,7 +88,7 @@ impl ControllerName {
             Self::LinkSpring => ("link_spring", "link spring, motor damper"),
             Self::LinkSide => ("link_side", "link-side impedance"),
             Self::Off => ("off", "no torque"),
-            Self::PerfectSight => ("perfect_sight", "compensation on the truth"),
+            Self::TrueStateCompensation => ("perfect_sight", "compensation on the truth"),
         }
     }
 
@@ -103,7 +103,7 @@ impl ControllerName {
     }
 
     /// Observer and compensation.
-    pub fn is_ours(self) -> bool {
+    pub fn is_compensation(self) -> bool {
         matches!(self, Self::Preview | Self::NoPreview | Self::Impedance | Self::Probe)
     }
 
@@ -122,8 +122,8 @@ impl ControllerName {
         if impedance { Self::LinkSpring } else { Self::OutputIntegral }
     }
 
-    /// Who would do the same on a joint without a gap: what an impedance's deviation is measured from.
+    /// The controller that gives the same impedance on a joint without a gap, from which the deviation is measured.
     pub fn without_gap(self) -> Self {
-        if self.is_ours() { Self::LinkSpring } else { self }
+        if self.is_compensation() { Self::LinkSpring } else { self }
     }
 }

@@ -1,4 +1,4 @@
-//! One run of a test file: a case of it is put on the rig, with a controller by its name, until the test's time is up.
+//! One run of a test file: a case on the rig under a controller, until the test's duration is over.
 
 use std::time::Instant;
 
@@ -10,15 +10,15 @@ use super::controller::ControllerName;
 use super::file::TestFile;
 use super::plant::PlantName;
 use super::port::{ControllerPort, HostPort, Translator};
-use super::ran::Ran;
-use super::rig::{Driver, PerfectSight, Rig, RunError, Setup};
-use super::sender::Sender;
+use super::rig::{ActiveController, Rig, RunError, Setup, TrueStateCompensation};
+use super::run_history::RunHistory;
+use super::set_point_source::SetPointSource;
 use report::failure::{Failure, Outcome};
 use report::interruption;
 
-/// Who shall control what.
+/// Which controller runs on which plant.
 #[derive(Debug, Clone, Copy)]
-pub struct Order {
+pub struct RunSpec {
     /// Who.
     pub controller: ControllerName,
     /// What.
@@ -27,15 +27,21 @@ pub struct Order {
     pub without_gap: bool,
 }
 
-/// Periods between looks at the clock.
-const LOOK: u64 = 500;
+/// Periods between checks of the clock and of Ctrl-C.
+const PERIODS_BETWEEN_CHECKS: u64 = 500;
 
 /// Makes the port to observer and compensation of a run.
 pub type MakePort<'p> = &'p dyn for<'d> Fn(&'d Designed) -> Outcome<Box<dyn ControllerPort + 'd>>;
 
 /// Runs one controller in one case, all of it on the host.
-pub fn execute(file: &TestFile, case: &Case, seed: u64, order: Order, deadline: Instant) -> Result<Ran, RunError> {
-    execute_with(file, case, seed, order, deadline, &|designed| Ok(Box::new(HostPort::new(designed))))
+pub fn execute(
+    file: &TestFile,
+    case: &Case,
+    seed: u64,
+    spec: RunSpec,
+    deadline: Instant,
+) -> Result<RunHistory, RunError> {
+    execute_with(file, case, seed, spec, deadline, &|designed| Ok(Box::new(HostPort::new(designed))))
 }
 
 /// Runs one controller in one case; observer and compensation are where their port leads.
@@ -43,54 +49,58 @@ pub fn execute_with(
     file: &TestFile,
     case: &Case,
     seed: u64,
-    order: Order,
+    spec: RunSpec,
     deadline: Instant,
     port: MakePort<'_>,
-) -> Result<Ran, RunError> {
-    let designed = if order.controller.is_ours() { Some(case.design(file)?) } else { None };
-    let perfect = (order.controller == ControllerName::PerfectSight).then(|| design_perfect(file, case)).transpose()?;
-    let mut driver = match (&designed, &perfect) {
-        (Some(designed), _) => ours(order.controller, case, designed, port)?,
-        (None, Some(tables)) => Driver::Perfect(Box::new(PerfectSight::new(tables, &case.truth.parameters))),
-        (None, None) => Driver::rival(order.controller, case.knowledge(), file.bandwidth),
+) -> Result<RunHistory, RunError> {
+    let designed = if spec.controller.is_compensation() { Some(case.design(file)?) } else { None };
+    let from_truth = (spec.controller == ControllerName::TrueStateCompensation)
+        .then(|| design_from_truth(file, case))
+        .transpose()?;
+    let mut controller = match (&designed, &from_truth) {
+        (Some(designed), _) => compensation_controller(spec.controller, case, designed, port)?,
+        (None, Some(tables)) => {
+            ActiveController::TrueState(Box::new(TrueStateCompensation::new(tables, &case.truth.parameters)))
+        }
+        (None, None) => ActiveController::rival(spec.controller, case.knowledge(), file.bandwidth),
     };
-    let run = Pass { file, case, order, designed: designed.as_ref(), deadline };
-    if file.from_memory && order.controller.is_ours() {
-        // Learning has noise of its own: what is remembered is the joint, not the noise.
-        run.pass(&mut driver, !seed)?;
-        driver.begin_again()?;
+    let run = RunContext { file, case, spec, designed: designed.as_ref(), deadline };
+    if file.from_memory && spec.controller.is_compensation() {
+        // The learning run has other noise, so that the memory holds the joint and not the noise.
+        run.pass(&mut controller, !seed)?;
+        controller.restart_from_memory()?;
     }
-    run.pass(&mut driver, seed)
+    run.pass(&mut controller, seed)
 }
 
 /// What the loop of a case is closed around.
-pub fn setup(file: &TestFile, case: &Case, seed: u64, order: Order) -> Setup {
-    let joint = if order.without_gap { case.joint_without_gap() } else { case.truth.parameters.clone() };
+pub fn setup(file: &TestFile, case: &Case, seed: u64, spec: RunSpec) -> Setup {
+    let joint = if spec.without_gap { case.joint_without_gap() } else { case.truth.parameters.clone() };
     Setup {
-        plant: order.plant,
+        plant: spec.plant,
         disturbances: case.disturbances.clone(),
-        faults: if order.without_gap { Vec::new() } else { file.faults.clone() },
+        faults: if spec.without_gap { Vec::new() } else { file.faults.clone() },
         ..Setup::new(joint, case.train.clone(), case.motion.clone(), file.duration, seed)
     }
 }
 
 /// A run from its first period to its last.
-struct Pass<'r> {
+struct RunContext<'r> {
     file: &'r TestFile,
     case: &'r Case,
-    order: Order,
+    spec: RunSpec,
     designed: Option<&'r Designed>,
     deadline: Instant,
 }
 
-impl Pass<'_> {
-    fn pass(&self, driver: &mut Driver<'_>, seed: u64) -> Result<Ran, RunError> {
-        let Self { file, case, order, designed, deadline } = *self;
-        let rig = Rig::new(&setup(file, case, seed, order))?;
-        let mut sender = Sender::new(file, case, order.controller, designed);
-        let mut ran = Ran::begin(rig.period(), rig.periods());
-        rig.run(driver, &mut sender, &mut |period| {
-            if period.index % LOOK == 0 {
+impl RunContext<'_> {
+    fn pass(&self, controller: &mut ActiveController<'_>, seed: u64) -> Result<RunHistory, RunError> {
+        let Self { file, case, spec, designed, deadline } = *self;
+        let rig = Rig::new(&setup(file, case, seed, spec))?;
+        let mut set_points = SetPointSource::new(file, case, spec.controller, designed);
+        let mut history = RunHistory::begin(rig.period(), rig.periods());
+        rig.run(controller, &mut set_points, &mut |period| {
+            if period.index % PERIODS_BETWEEN_CHECKS == 0 {
                 if Instant::now() > deadline {
                     return Err(RunError::TimedOut);
                 }
@@ -98,25 +108,30 @@ impl Pass<'_> {
                     return Err(RunError::Interrupted);
                 }
             }
-            ran.note(period);
+            history.note(period);
             Ok(())
         })?;
-        Ok(ran)
+        Ok(history)
     }
 }
 
-fn ours<'d>(name: ControllerName, case: &Case, designed: &'d Designed, port: MakePort<'_>) -> Outcome<Driver<'d>> {
-    let around = &case.told_surroundings;
+fn compensation_controller<'d>(
+    name: ControllerName,
+    case: &Case,
+    designed: &'d Designed,
+    port: MakePort<'_>,
+) -> Outcome<ActiveController<'d>> {
+    let around = &case.nominal_surroundings;
     let bits = [around.motor_encoder.bits, around.output_encoder.bits];
     let translator = Translator::new(designed.ticks, bits);
     Ok(match name {
-        ControllerName::Probe => Driver::Probe(port(designed)?, translator),
-        _ => Driver::Ours(port(designed)?, translator),
+        ControllerName::Probe => ActiveController::Probe(port(designed)?, translator),
+        _ => ActiveController::Compensation(port(designed)?, translator),
     })
 }
 
-/// Who sees the truth is designed to it.
-fn design_perfect(file: &TestFile, case: &Case) -> Outcome<CompensationTables<f64>> {
+/// The compensation fed with the true state is designed to the true joint.
+fn design_from_truth(file: &TestFile, case: &Case) -> Outcome<CompensationTables<f64>> {
     let joint = &case.truth.parameters;
     design_compensation(joint, &case.settings_of_law(file))
         .map_err(|error| Failure::new(format!("no compensation can be designed for joint `{}`: {error}", joint.name)))

@@ -1,6 +1,6 @@
-//! Faults at work on the host, between the f64 drive train and its controller: what they do to counts, torques, frames
-//! and teeth while a run goes on. Which faults there are is the file's to say; nothing here knows a controller. One fault
-//! with what it remembers is `active`, what it does to teeth `teeth`. A board applies its own, which `board` holds equal.
+//! Faults applied on the host, between the f64 drive train and its controller: to counts, torques, set-points and teeth
+//! while a run goes on. `active` is one fault with its state, `teeth` its effect on the teeth. A board applies faults
+//! by its own code; the test `on_board::same_faults` holds both equal.
 
 mod active;
 mod teeth;
@@ -16,30 +16,30 @@ use reference::joint::Observation;
 use active::Active;
 use teeth::ToothState;
 
-use super::file::{Fault, OnHost, fault_is_on};
+use super::file::{Fault, HostOnlyFault, fault_is_on};
 use super::plant::Teeth;
 
 /// One encoder reading and when it was taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Frame {
+pub struct TimedReading {
     /// Whole turns included.
     pub counts: i64,
     /// Control period.
     pub period: u64,
 }
 
-/// What reaches a controller in one control period.
+/// The sensor readings that reach a controller in one control period.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Seen {
+pub struct ControllerInputs {
     /// Now.
     pub period: u64,
     /// From the motor's encoder.
-    pub motor: Frame,
+    pub motor: TimedReading,
     /// From the output encoder, if a frame came.
-    pub output: Option<Frame>,
+    pub output: Option<TimedReading>,
 }
 
-/// All faults of a run with what they remember.
+/// All faults of a run with their state.
 #[derive(Debug, Clone)]
 pub struct HostFaults {
     faults: Vec<Active>,
@@ -47,16 +47,16 @@ pub struct HostFaults {
     counts_per_turn: [f64; 2],
     /// What the encoders read at the start, where they are homed: what they say is counted from there.
     home: Option<[i64; 2]>,
-    past: [VecDeque<Frame>; 2],
+    past: [VecDeque<TimedReading>; 2],
     /// Periods of the last readings that came.
     come: [Option<u64>; 2],
-    last: Option<Seen>,
+    last: Option<ControllerInputs>,
     set_points: VecDeque<(u64, SetPoint)>,
     given: Option<(u64, SetPoint)>,
     teeth: ToothState,
 }
 
-/// More than this is never remembered of readings and set-points [periods]: delays are a second at most.
+/// Readings and set-points kept for delayed delivery [periods]: delays are a second at most.
 const MEMORY: usize = 100_000;
 
 impl HostFaults {
@@ -78,13 +78,14 @@ impl HostFaults {
         }
     }
 
-    /// What becomes of a measurement on its way to the controller.
-    pub fn sense(&mut self, measurement: &Measurement) -> Seen {
+    /// Applies faults to a measurement on its way to the controller.
+    pub fn sense(&mut self, measurement: &Measurement) -> ControllerInputs {
         let time = measurement.period as f64 * self.period;
         let shafts = [Shaft::Motor, Shaft::Link];
         let counts = [measurement.motor_counts, measurement.output_counts];
         let home = *self.home.get_or_insert(counts);
-        let frame = |index: usize| Some(Frame { counts: counts[index] - home[index], period: measurement.period });
+        let frame =
+            |index: usize| Some(TimedReading { counts: counts[index] - home[index], period: measurement.period });
         let mut frames = [frame(0), frame(1)];
         for (index, frame) in frames.iter_mut().enumerate() {
             for fault in self.faults.iter_mut() {
@@ -100,7 +101,7 @@ impl HostFaults {
             let mut keep = 0;
             for fault in self.faults.iter_mut() {
                 match fault.fault.kind {
-                    FaultKind::Other(OnHost::LateReadings(of, delay)) if of == shaft => {
+                    FaultKind::Other(HostOnlyFault::LateReadings(of, delay)) if of == shaft => {
                         let late = (delay / self.period).round() as usize;
                         keep = keep.max(late);
                         // What has come before does not come again: while a delay begins, nothing comes.
@@ -123,9 +124,9 @@ impl HostFaults {
             }
             self.come[index] = frame.map(|frame| frame.period).or(self.come[index]);
         }
-        // A motor encoder that says nothing leaves its last word standing, with the time at which it was said.
-        let motor = frames[0].or(self.last.map(|last| last.motor)).unwrap_or(Frame { counts: 0, period: 0 });
-        let seen = Seen { period: measurement.period, motor, output: frames[1] };
+        // A silent motor encoder leaves its last reading in place, with the time of that reading.
+        let motor = frames[0].or(self.last.map(|last| last.motor)).unwrap_or(TimedReading { counts: 0, period: 0 });
+        let seen = ControllerInputs { period: measurement.period, motor, output: frames[1] };
         self.last = Some(seen);
         seen
     }
@@ -139,14 +140,14 @@ impl HostFaults {
         let mut keep = 1;
         for fault in self.faults.iter_mut() {
             match fault.fault.kind {
-                FaultKind::Other(OnHost::LateSetPoints(delay)) => {
+                FaultKind::Other(HostOnlyFault::LateSetPoints(delay)) => {
                     let late = (delay / self.period).round() as usize;
                     keep = keep.max(late + 1);
                     if fault_is_on(&fault.fault, time) {
                         arrived = self.set_points.iter().rev().nth(late).or(self.set_points.front()).copied();
                     }
                 }
-                FaultKind::Other(OnHost::LostSetPoints(share)) if fault_is_on(&fault.fault, time) => {
+                FaultKind::Other(HostOnlyFault::LostSetPoints(share)) if fault_is_on(&fault.fault, time) => {
                     // A frame that is held for several periods is lost once.
                     let lost = match fault.dropped {
                         Some((last, lost)) if last == number => lost,

@@ -1,35 +1,36 @@
-//! `joint hil FILE.toml`: tests of observer and compensation that users write as files, run against the f64 reference or
-//! the core's own plant, and reported. Observer and compensation run on the host or, by `on_board`, on a board.
+//! `joint hil FILE.toml`: tests of observer and compensation that users write as files, run against the f64 reference
+//! or the core's own plant, and reported. Observer and compensation run on the host or, through `on_board`, on a board.
 //!
-//! The order of a test: `file` reads what it says, `suite` finds it and its joint, `case` makes it concrete for a seed;
-//! `execution` gives the case to the `rig`, which closes the loop between `plant` and `controller` through `faults`, with
-//! observer and compensation behind `port`, and `ran` keeps what happened; `figures`, `values` and `sight` say what that was
-//! worth, `verdict` judges, `campaign` puts all seeds together; `page`, `junit`, `log_file` and `record` are what stays.
+//! The order of a test: `file` reads the test file, `suite` finds files and joints, `case` draws the values of one
+//! seed; `execution` runs the case on the `rig`, which closes the loop between `plant` and `controller` through
+//! `faults`, with observer and compensation behind `port`, and `run_history` keeps what happened; `metrics`, `values`
+//! and `observer_metrics` compute the figures, `verdict` judges them, `campaign` combines all seeds; `page`, `junit`,
+//! `log_file` and `record` are the results on disk.
 
 mod campaign;
 pub mod case;
 pub mod controller;
-pub mod draw;
+mod disturbances;
 pub mod execution;
 pub mod faults;
-pub mod figures;
 pub mod file;
 mod junit;
 mod log_file;
+pub mod metrics;
+mod observer_metrics;
 pub mod on_board;
 mod page;
 mod pictures;
 pub mod plant;
 pub mod port;
-mod pushes;
-pub mod ran;
+pub mod random;
 pub mod record;
 pub mod recorded;
 pub mod rig;
+pub mod run_history;
 #[cfg(test)]
 mod schema;
-pub mod sender;
-mod sight;
+pub mod set_point_source;
 pub mod suite;
 pub mod surroundings;
 mod trace;
@@ -41,8 +42,8 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicU32;
 use std::time::Instant;
 
-use campaign::{Conduct, Tested};
-use on_board::{BoardWish, Boards};
+use campaign::{FinishedTest, RunOptions};
+use on_board::{BoardRequest, Boards};
 use plant::PlantName;
 use rayon::prelude::*;
 use record::{NotRun, SCHEMA, TestsRecord};
@@ -57,11 +58,11 @@ use report::progress::Progress;
 use report::provenance;
 use report::write::write_text;
 
-/// What was asked for.
+/// A request to run tests.
 #[derive(Debug, Clone)]
-pub struct Wanted<'w> {
+pub struct TestRequest<'w> {
     /// Which tests, and where they run.
-    pub parts: Vec<Part<'w>>,
+    pub parts: Vec<TestGroup<'w>>,
     /// One seed in place of the files'.
     pub seed: Option<u64>,
     /// The full lists of seeds.
@@ -78,7 +79,7 @@ pub struct Wanted<'w> {
 
 /// Tests that run in one place.
 #[derive(Debug, Clone)]
-pub struct Part<'w> {
+pub struct TestGroup<'w> {
     /// A test file, or a folder of them.
     pub path: PathBuf,
     /// Which of a folder.
@@ -86,35 +87,35 @@ pub struct Part<'w> {
     /// What is controlled.
     pub plant: PlantName,
     /// The boards to run on; without them the host.
-    pub boards: Option<BoardWish<'w>>,
+    pub boards: Option<BoardRequest<'w>>,
 }
 
 /// A part that can be run.
-struct Ready<'w> {
+struct PreparedGroup<'w> {
     suite: Suite,
     plant: PlantName,
     boards: Option<Boards<'w>>,
 }
 
 /// Runs tests; succeeds only if all ran and passed.
-pub fn run(wanted: &Wanted<'_>, progress: &Progress) -> Outcome<()> {
+pub fn run(request: &TestRequest<'_>, progress: &Progress) -> Outcome<()> {
     let start = Instant::now();
     let mut parts = Vec::new();
-    for Part { path, choice, plant, boards } in &wanted.parts {
+    for TestGroup { path, choice, plant, boards } in &request.parts {
         let mut suite = suite::load(path, *choice, *plant)?;
-        let boards = boards.map(|wish| Boards::prepare(wish, &mut suite, *plant, progress)).transpose()?;
-        parts.push(Ready { suite, plant: *plant, boards });
+        let boards = boards.map(|request| Boards::prepare(request, &mut suite, *plant, progress)).transpose()?;
+        parts.push(PreparedGroup { suite, plant: *plant, boards });
     }
     let read: Vec<PathBuf> = parts.iter().flat_map(|part| &part.suite.tests).flat_map(Test::files).collect();
     let read: Vec<&Path> = read.iter().map(PathBuf::as_path).collect();
-    folder::check_files(&[("json", wanted.json), ("junit", wanted.junit)], &read)?;
-    let folder = Folder::prepare(wanted.out.as_deref(), "hil/tests", &wanted.name)?;
+    folder::check_files(&[("json", request.json), ("junit", request.junit)], &read)?;
+    let folder = Folder::prepare(request.out.as_deref(), "hil/tests", &request.name)?;
     let logs = prepare_logs(&folder)?;
-    let (tested, not_run) = run_parts(parts, wanted, &logs, progress)?;
+    let (tested, not_run) = run_parts(parts, request, &logs, progress)?;
     let record = TestsRecord {
         schema: SCHEMA.to_owned(),
         passed: not_run.is_empty() && tested.iter().all(|test| test.record.passed),
-        full: wanted.full,
+        full: request.full,
         host_version: provenance::VERSION.to_owned(),
         host: provenance::host(),
         git_commit: provenance::git_commit(),
@@ -125,38 +126,43 @@ pub fn run(wanted: &Wanted<'_>, progress: &Progress) -> Outcome<()> {
     };
     let document = page::document(&record, &tested);
     output::print(&(terminal(&document) + "\n"))?;
-    write(wanted, &folder, &record, &document)?;
+    write(request, &folder, &record, &document)?;
     output::print(&format!("report: {}\n", folder.file("report.html").display()))?;
     verdict(&record)
 }
 
 /// What ran, and what could not.
-type RunOrNot = (Vec<Tested>, Vec<NotRun>);
+type RunOrNot = (Vec<FinishedTest>, Vec<NotRun>);
 
-fn run_parts(parts: Vec<Ready<'_>>, wanted: &Wanted<'_>, logs: &Path, progress: &Progress) -> Outcome<RunOrNot> {
-    let runs_of = |test: &Test| test.seeds(wanted.seed, wanted.full).len() * test.controllers().len();
+fn run_parts(
+    parts: Vec<PreparedGroup<'_>>,
+    request: &TestRequest<'_>,
+    logs: &Path,
+    progress: &Progress,
+) -> Outcome<RunOrNot> {
+    let runs_of = |test: &Test| test.seeds(request.seed, request.full).len() * test.controllers().len();
     let runs: usize = parts.iter().flat_map(|part| &part.suite.tests).map(runs_of).sum();
     progress.run("testing", runs as u32);
     let before = AtomicU32::new(0);
     let (mut tested, mut not_run) = (Vec::new(), Vec::new());
-    for Ready { suite: Suite { tests, not_run: refused, .. }, plant, boards } in parts {
+    for PreparedGroup { suite: Suite { tests, not_run: refused, .. }, plant, boards } in parts {
         not_run.extend(refused);
-        let conduct = Conduct {
+        let options = RunOptions {
             plant,
-            seed: wanted.seed,
-            full: wanted.full,
+            seed: request.seed,
+            full: request.full,
             boards: boards.as_ref(),
             logs,
             done: &|runs| progress.at(runs),
         };
         let one = |test: &Test| {
-            let one = campaign::run(test, &conduct, &before);
+            let one = campaign::run(test, &options, &before);
             one.iter().for_each(|one| progress.say_above(&page::line(&one.record)));
             one
         };
         // A test on the emulated board keeps one core busy at most; a test on the host keeps all of them busy by itself.
         let emulated = boards.as_ref().is_some_and(Boards::are_emulated);
-        let done: Vec<Outcome<Tested>> =
+        let done: Vec<Outcome<FinishedTest>> =
             if emulated { tests.par_iter().map(one).collect() } else { tests.iter().map(one).collect() };
         for (test, one) in tests.iter().zip(done) {
             match one {
@@ -186,14 +192,14 @@ fn prepare_logs(folder: &Folder) -> Outcome<PathBuf> {
     Ok(logs)
 }
 
-fn write(wanted: &Wanted<'_>, folder: &Folder, record: &TestsRecord, document: &Document) -> Outcome<()> {
+fn write(request: &TestRequest<'_>, folder: &Folder, record: &TestsRecord, document: &Document) -> Outcome<()> {
     let json = output::json("results", record)?;
     let junit = junit::render(record);
     write_text(&folder.file("record.json"), &json)?;
     write_text(&folder.file("junit.xml"), &junit)?;
     write_text(&folder.file("report.html"), &html(document))?;
-    wanted.json.map_or(Ok(()), |path| write_text(path, &json))?;
-    wanted.junit.map_or(Ok(()), |path| write_text(path, &junit))
+    request.json.map_or(Ok(()), |path| write_text(path, &json))?;
+    request.junit.map_or(Ok(()), |path| write_text(path, &junit))
 }
 
 fn verdict(record: &TestsRecord) -> Outcome<()> {

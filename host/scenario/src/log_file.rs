@@ -1,12 +1,12 @@
-//! A run as an MCAP log, which Foxglove and PlotJuggler open: truth, estimates and torque a thousand times a second. Full
-//! rate is left out: the run can be made again bit for bit.
+//! A run as an MCAP log, which Foxglove and PlotJuggler open: truth, estimates and torque a thousand times a second.
+//! For the full rate, run it again: runs repeat bit for bit.
 
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
 
-use super::ran::Ran;
+use super::run_history::RunHistory;
 use report::failure::Outcome;
 use report::write::unwritten;
 use simulation::sim::log_file::Channel;
@@ -40,16 +40,16 @@ const FIELDS: [(&str, &str); 17] = [
 ];
 
 /// Writes a run to a file.
-pub fn write(path: &Path, ran: &Ran, remarks: BTreeMap<String, String>) -> Outcome<()> {
-    fill(path, ran, remarks).map_err(|error| unwritten(path, &error))
+pub fn write(path: &Path, history: &RunHistory, remarks: BTreeMap<String, String>) -> Outcome<()> {
+    fill(path, history, remarks).map_err(|error| unwritten(path, &error))
 }
 
-fn fill(path: &Path, ran: &Ran, remarks: BTreeMap<String, String>) -> std::io::Result<()> {
+fn fill(path: &Path, history: &RunHistory, remarks: BTreeMap<String, String>) -> std::io::Result<()> {
     let schema: String = FIELDS.iter().map(|(name, meaning)| format!("float64 {name}  # {meaning}\n")).collect();
     let out = BufWriter::new(File::create(path)?);
     let mut channel = Channel::begin(out, TOPIC, SCHEMA_NAME, &schema, remarks)?;
-    for (sample, truth, sight, peak) in ran.thinned(RATE) {
-        let sight = sight.copied().unwrap_or_default();
+    for (sample, truth, observed, peak) in history.thinned(RATE) {
+        let observed = observed.copied().unwrap_or_default();
         let numbers: [f64; FIELDS.len()] = [
             sample.time,
             sample.wanted,
@@ -63,11 +63,11 @@ fn fill(path: &Path, ran: &Ran, remarks: BTreeMap<String, String>) -> std::io::R
             peak,
             truth.load_torque,
             sample.command,
-            1e6 * f64::from(sight.gap),
-            sight.side.into(),
-            1e6 * f64::from(sight.half_backlash),
-            sight.load_torque.into(),
-            sight.trust.into(),
+            1e6 * f64::from(observed.gap),
+            observed.side.into(),
+            1e6 * f64::from(observed.half_backlash),
+            observed.load_torque.into(),
+            observed.trust.into(),
         ];
         // CDR: little endian behind a head of four bytes; numbers of eight bytes need no filling.
         let mut message = vec![0, 1, 0, 0];

@@ -1,7 +1,7 @@
 //! The report of tests as a document, what failed first. A terminal shows every assertion and how to run again what
 //! failed. Pictures come from `pictures`.
 
-use super::campaign::Tested;
+use super::campaign::FinishedTest;
 use super::controller::ControllerName;
 use super::pictures;
 use super::record::{AssertionRecord, BoardRun, NotRun, TestRecord, TestsRecord};
@@ -34,8 +34,9 @@ pub fn line(test: &TestRecord) -> String {
 }
 
 /// All tests.
-pub fn document(record: &TestsRecord, tested: &[Tested]) -> Document {
-    let (failed, passed): (Vec<&Tested>, Vec<&Tested>) = tested.iter().partition(|test| !test.record.passed);
+pub fn document(record: &TestsRecord, tested: &[FinishedTest]) -> Document {
+    let (failed, passed): (Vec<&FinishedTest>, Vec<&FinishedTest>) =
+        tested.iter().partition(|test| !test.record.passed);
     let title = match (failed.len(), record.not_run.len()) {
         (0, 0) => "passed".to_owned(),
         (0, not_run) => format!("{not_run} not run"),
@@ -84,7 +85,7 @@ fn verdict_of_all(record: &TestsRecord, failed: usize) -> (Tone, String) {
     }
 }
 
-/// What came of a test: one that asserts nothing has nothing to pass.
+/// The verdict of a test; a test without assertions has none to pass.
 fn verdict(test: &TestRecord) -> (Tone, &'static str) {
     match (test.passed, test.assertions.is_empty()) {
         (false, _) => (Tone::Failed, "FAILED"),
@@ -183,7 +184,7 @@ fn anchor(test: &TestRecord) -> String {
 }
 
 /// Everything about a test.
-fn one(tested: &Tested) -> Block {
+fn one(tested: &FinishedTest) -> Block {
     let test = &tested.record;
     let (tone, word) = verdict(test);
     let title = (!test.title.is_empty()).then(|| strong(&test.title) + " · ");
@@ -229,7 +230,7 @@ fn one(tested: &Tested) -> Block {
     })
 }
 
-/// What runs have said beside their figures: refusals, and what boards were busy with.
+/// What runs report beside their figures: refusals, and the load of boards.
 fn runs(test: &TestRecord) -> Vec<Block> {
     let refused = test.runs.iter().filter_map(|run| {
         let refusal = run.refusal.as_ref()?;
@@ -276,7 +277,7 @@ fn compared(test: &TestRecord) -> Block {
 }
 
 /// The pictures, on demand if the test has passed.
-fn details(tested: &Tested) -> Block {
+fn details(tested: &FinishedTest) -> Block {
     let test = &tested.record;
     let from = || number(test.settle_s);
     let all = pictures::whole(tested).map(|figure| {

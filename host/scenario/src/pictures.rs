@@ -1,9 +1,9 @@
 //! Pictures of a test: what the shown seed did under every controller, over the whole time and closely around one
 //! crossing of the gap. Points come from `trace`, drawing from `report`.
 
-use super::campaign::Tested;
+use super::campaign::FinishedTest;
 use super::controller::ControllerName;
-use super::trace::{Point, Trace};
+use super::trace::{Trace, TracePoint};
 use report::panels::BROAD;
 use report::plot::Figure;
 use report::plot::ink::{Ink, LINES};
@@ -21,7 +21,7 @@ const BINS: usize = 450;
 const CLOSE: f64 = 0.12;
 
 /// Over the whole run.
-pub fn whole(tested: &Tested) -> Option<Figure> {
+pub fn whole(tested: &FinishedTest) -> Option<Figure> {
     let end =
         tested.shown.iter().flat_map(|(_, trace)| trace.points.last()).map(|point| point.time).fold(0.0, f32::max);
     let coarse = |(name, trace): &(ControllerName, Trace)| (*name, trace.coarse(trace.points.len() / BINS));
@@ -31,7 +31,7 @@ pub fn whole(tested: &Tested) -> Option<Figure> {
 }
 
 /// Around a crossing of the gap: the tested controller's longest one, or else one of another.
-pub fn close(tested: &Tested) -> Option<Figure> {
+pub fn close(tested: &FinishedTest) -> Option<Figure> {
     let settle = tested.record.settle_s;
     let longest = |trace: &Trace| {
         let late = trace.crossings.iter().filter(|(time, _)| *time >= settle);
@@ -92,13 +92,13 @@ impl View<'_> {
     }
 
     /// The tested controller is drawn last, above the others.
-    fn lines(&self, value: impl Fn(&Point) -> f32) -> Vec<Mark> {
+    fn lines(&self, value: impl Fn(&TracePoint) -> f32) -> Vec<Mark> {
         let shown = self.shown.iter().enumerate().rev();
         shown.map(|(index, (name, trace))| self.line(index, name.label(), trace, &value)).collect()
     }
 
-    fn line(&self, index: usize, label: &str, trace: &Trace, value: &impl Fn(&Point) -> f32) -> Mark {
-        let inside = |point: &&Point| (self.range.0..=self.range.1).contains(&f64::from(point.time));
+    fn line(&self, index: usize, label: &str, trace: &Trace, value: &impl Fn(&TracePoint) -> f32) -> Mark {
+        let inside = |point: &&TracePoint| (self.range.0..=self.range.1).contains(&f64::from(point.time));
         Mark::Line {
             points: trace.points.iter().filter(inside).map(|p| (p.time.into(), value(p).into())).collect(),
             ink: LINES[index.min(LINES.len() - 1)],
@@ -107,7 +107,7 @@ impl View<'_> {
         }
     }
 
-    fn panel(&self, title: &str, value: impl Fn(&Point) -> f32, scale: Scale) -> Panel {
+    fn panel(&self, title: &str, value: impl Fn(&TracePoint) -> f32, scale: Scale) -> Panel {
         let marks = self.lines(value);
         let most = greatest(marks.iter().flat_map(Mark::values));
         let unit = match scale {
@@ -138,7 +138,7 @@ impl View<'_> {
         for (index, (name, trace)) in self.shown.iter().enumerate().take(2).rev() {
             marks.push(self.line(index, name.label(), trace, &|point| point.gap));
         }
-        if let Some((_, trace)) = self.shown.first().filter(|(name, _)| name.is_ours()) {
+        if let Some((_, trace)) = self.shown.first().filter(|(name, _)| name.is_compensation()) {
             let mut estimate = self.line(0, "as observed", trace, &|point| point.estimated_gap);
             if let Mark::Line { ink, width, .. } = &mut estimate {
                 (*ink, *width) = (Ink::Text, 0.8);

@@ -10,7 +10,7 @@ use reference::joint::{Observation, Reference, ReferenceError, RelativeState, St
 
 use board::target::image::DEFAULT_TICK_RATE;
 use report::failure::{Failure, Outcome};
-use simulation::sim::moment::Reader;
+use simulation::sim::snapshot::Reader;
 
 /// Which model of the joint moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

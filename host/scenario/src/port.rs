@@ -10,10 +10,10 @@ use model_core::observer::{Reading, Samples};
 use reference::closed_loop::{Motion, SetPoint};
 
 use super::case::Designed;
-use super::faults::{Frame, Seen};
+use super::faults::{ControllerInputs, TimedReading};
 use report::failure::{Failure, Outcome};
 
-/// What one control period came to.
+/// The answer of one control period.
 pub type Answer = controller::Answer<f32>;
 
 /// Observer and compensation, wherever they run.
@@ -25,7 +25,7 @@ pub trait ControllerPort {
     fn probe(&mut self, samples: &Samples<f32>) -> Outcome<Answer>;
 
     /// Keeps what has been learnt, and begins anew from it.
-    fn begin_again(&mut self) -> Outcome<()>;
+    fn restart_from_memory(&mut self) -> Outcome<()>;
 }
 
 /// Observer and compensation in this process: the very code that a board runs.
@@ -49,7 +49,7 @@ impl ControllerPort for HostPort<'_> {
         Ok(self.0.probe(samples))
     }
 
-    fn begin_again(&mut self) -> Outcome<()> {
+    fn restart_from_memory(&mut self) -> Outcome<()> {
         remember(&mut self.0)
     }
 }
@@ -63,7 +63,7 @@ pub fn remember(controller: &mut Controller<'_, f32>) -> Outcome<()> {
         .map_err(|error| Failure::check_failed(format!("what was learnt is not taken back: {error}")))
 }
 
-/// From a run's numbers to those of the port.
+/// Converts a run's numbers (f64, radians, counts) to those of the port (f32, turns).
 #[derive(Debug, Clone)]
 pub struct Translator {
     /// Clock ticks in a control period.
@@ -87,17 +87,17 @@ impl Translator {
     }
 
     /// The next reading is the first again.
-    pub fn begin_again(&mut self) {
+    pub fn reset(&mut self) {
         (self.first_turn, self.torque) = (None, 0.0);
     }
 
     /// Readings with their own times; the torque is that of the period before.
-    pub fn samples(&mut self, seen: &Seen) -> Samples<f32> {
+    pub fn samples(&mut self, seen: &ControllerInputs) -> Samples<f32> {
         if let (None, Some(first)) = (self.first_turn, seen.output) {
             self.first_turn = Some(first.counts.div_euclid(self.ranges[1]) as i32);
         }
         let time = |period: u64| (period as u32).wrapping_mul(self.ticks);
-        let reading = |frame: Frame, range: i64| Reading {
+        let reading = |frame: TimedReading, range: i64| Reading {
             counts: frame.counts.rem_euclid(range) as u32,
             time: time(frame.period),
         };

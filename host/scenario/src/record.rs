@@ -1,6 +1,5 @@
-//! What tests leave behind, as JSON: every figure of every run, every assertion with its verdict, and the line that
-//! runs it again. docs/reference/hil-file.md tells the keys, docs/reference/hil-tests.schema.json is their schema;
-//! pictures are the page's.
+//! The record of tests, as JSON: every figure of every run, every assertion with its verdict, and the command that runs
+//! it again. docs/reference/hil-file.md explains the keys, docs/reference/hil-tests.schema.json is their schema.
 
 use std::collections::BTreeMap;
 
@@ -55,7 +54,7 @@ impl NotRun {
     pub fn new(file: String, failure: &Failure) -> Self {
         let message = failure.message();
         let why = message.strip_prefix(&file).map_or(message, |rest| rest.trim_start_matches([':', ' ']));
-        Self { why: why.to_owned(), mend: failure.mend(), file }
+        Self { why: why.to_owned(), mend: failure.full_help(), file }
     }
 }
 

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use reference::closed_loop::{Motion, MotionProfile};
 
-use board::profile::{FASTEST, STRONGEST};
+use board::profile::{MAX_SPEED, MAX_TORQUE};
 use report::failure::{Failure, Outcome};
 
 /// Columns that must be there.
@@ -16,9 +16,9 @@ const LOAD: &str = "load_torque_N_m";
 /// What positions keep to, as loads and speeds keep to theirs: beyond them no joint can be meant [rad].
 const FARTHEST: f64 = 1e4;
 
-/// Rows of the file, in rising time from 0.
+/// A recorded motion: rows of the file, in rising time from 0.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Recorded {
+pub struct RecordedMotion {
     rows: Vec<Row>,
 }
 
@@ -35,7 +35,7 @@ pub struct Row {
     pub load: f64,
 }
 
-impl Recorded {
+impl RecordedMotion {
     /// Reads a file; the first row is time 0 of the run, whatever its time.
     pub fn read(path: &Path) -> Outcome<Self> {
         let text = std::fs::read_to_string(path).map_err(|error| {
@@ -83,14 +83,14 @@ impl Recorded {
                 })
             };
             let row = Row { time: number(time)?, position: within(position, FARTHEST)?, speed: 0.0, load: 0.0 };
-            let row = Row { load: load.map_or(Ok(0.0), |load| within(load, STRONGEST))?, ..row };
+            let row = Row { load: load.map_or(Ok(0.0), |load| within(load, MAX_TORQUE))?, ..row };
             if rows.last().is_some_and(|last| last.time >= row.time) {
                 return Err(Failure::new(format!("line {line}: the time does not rise")).with_help("sort rows by time"));
             }
             if let Some(last) = rows.last().filter(|last| !row.is_reached_from(last)) {
                 let (way, time) = (row.position - last.position, row.time - last.time);
                 return Err(Failure::new(format!("line {line}: a jump of {way} rad in {time:e} s")).with_help(
-                    format!("no link is faster than {FASTEST} rad/s; profile \"steps\" with move_s = 0 jumps"),
+                    format!("no link is faster than {MAX_SPEED} rad/s; profile \"steps\" with move_s = 0 jumps"),
                 ));
             }
             rows.push(row);
@@ -117,7 +117,7 @@ impl Recorded {
 
 impl Row {
     fn is_reached_from(&self, before: &Self) -> bool {
-        (self.position - before.position).abs() <= FASTEST * (self.time - before.time)
+        (self.position - before.position).abs() <= MAX_SPEED * (self.time - before.time)
     }
 }
 
@@ -143,7 +143,7 @@ fn set_speeds(rows: &mut [Row]) {
     }
 }
 
-impl MotionProfile for Recorded {
+impl MotionProfile for RecordedMotion {
     fn at(&self, time: f64) -> Motion {
         let after = self.rows.partition_point(|row| row.time <= time);
         let (Some(from), Some(to)) =
@@ -176,7 +176,7 @@ mod tests {
             let time = 0.01 * f64::from(k);
             text += &format!("{},{}\n", 7.0 + time, (3.0 * time).sin());
         }
-        let motion = Recorded::parse(&text).expect("a good file");
+        let motion = RecordedMotion::parse(&text).expect("a good file");
         assert_eq!(motion.duration(), 2.0);
         for time in [0.333, 1.007, 1.5] {
             let at = motion.at(time);
@@ -194,7 +194,7 @@ mod tests {
             time += if k % 2 == 0 { 0.004 } else { 0.006 };
             text += &format!("{time},{}\n", (9.0 * time).sin());
         }
-        let motion = Recorded::parse(&text).expect("a good file");
+        let motion = RecordedMotion::parse(&text).expect("a good file");
         for k in 0..1000 {
             let time = 0.5 + 0.001 * f64::from(k);
             let [before, after] = [time, time + 1e-3].map(|time| motion.at(time).acceleration);
@@ -206,7 +206,7 @@ mod tests {
     #[test]
     fn a_motion_rests_where_its_rows_do() {
         let text = "time_s,position_rad\n0,0\n1,0\n2,0\n3,0.1\n4,0.3\n5,0.3\n6,0.3\n7,0.3\n8,0\n";
-        let motion = Recorded::parse(text).expect("a good file");
+        let motion = RecordedMotion::parse(text).expect("a good file");
         for time in [0.2, 0.9, 5.5, 5.7] {
             let at = motion.at(time);
             assert_eq!((at.speed, at.acceleration), (0.0, 0.0), "{time}");
@@ -216,7 +216,7 @@ mod tests {
 
     #[test]
     fn what_is_wrong_with_a_motion_is_said_with_its_line() {
-        let refused = |text: &str| Recorded::parse(text).expect_err(text).message().to_owned();
+        let refused = |text: &str| RecordedMotion::parse(text).expect_err(text).message().to_owned();
         assert!(refused("").contains("empty"));
         assert!(refused("time_s,angle\n0,0\n").contains("position_rad"));
         assert!(refused("time_s,position_rad,position_rad\n0,0,0\n1,1,2\n").contains("two columns `position_rad`"));

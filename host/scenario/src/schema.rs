@@ -1,7 +1,7 @@
 //! The published schema of test results is that of their types, and `docs/reference/hil-file.md` tells every key and
 //! every figure. Only tests are here.
 
-use super::figures::FIGURES;
+use super::metrics::METRICS;
 use super::record::TestsRecord;
 use report::schema::{assert_explained, assert_published};
 
@@ -12,5 +12,5 @@ fn the_published_schema_of_tests_is_that_of_the_types() {
 
 #[test]
 fn every_key_of_the_results_and_every_figure_is_explained() {
-    assert_explained::<TestsRecord>("hil-file.md", FIGURES.iter().map(|figure| figure.name()), 60);
+    assert_explained::<TestsRecord>("hil-file.md", METRICS.iter().map(|metric| metric.name()), 60);
 }

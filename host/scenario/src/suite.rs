@@ -1,6 +1,6 @@
-//! Which test files a command is about: one file, or all of a folder, each read and checked against its joint before
-//! anything runs; what cannot run does not keep the rest of a folder from running. Whether a file is one of tests at
-//! all is asked here too.
+//! The test files of a command: one file, or all of a folder, each read and checked against its joint before anything
+//! runs. A file that cannot run does not keep the rest of the folder from running. Also tells test files from joint
+//! files.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,15 +10,15 @@ use model_core::virtual_joint::fault::FaultKind;
 use sha2::{Digest, Sha256};
 
 use super::case::{Case, check_changes, recorded};
-use super::file::{self, Course, OnHost, TestFile};
+use super::file::{self, HostOnlyFault, TestFile, Trajectory};
 use super::plant::PlantName;
 use super::record::NotRun;
-use super::recorded::Recorded;
+use super::recorded::RecordedMotion;
 use joint_file::diagnostic;
 use joint_file::named::{self, Loaded};
 use report::failure::{Failure, Outcome};
 
-/// A test that can run.
+/// A test that has been checked against its joint.
 pub struct Test {
     /// Path as the user named it.
     pub name: String,
@@ -29,7 +29,7 @@ pub struct Test {
     /// Its joint.
     pub joint: Loaded,
     /// Its motion, if it is a recorded one.
-    pub motion: Option<Recorded>,
+    pub motion: Option<RecordedMotion>,
 }
 
 /// Whether a path is one of tests: a folder, or a file that is no joint file.
@@ -70,9 +70,9 @@ pub struct Suite {
 
 impl Suite {
     /// Keeps those that may run.
-    pub fn keep(&mut self, mut may_run: impl FnMut(&Test) -> Outcome<()>) -> Outcome<()> {
+    pub fn keep(&mut self, mut check_test: impl FnMut(&Test) -> Outcome<()>) -> Outcome<()> {
         for test in std::mem::take(&mut self.tests) {
-            match may_run(&test) {
+            match check_test(&test) {
                 Ok(()) => self.tests.push(test),
                 Err(failure) if self.alone => return Err(failure),
                 Err(failure) => self.not_run.push(NotRun::new(test.name, &failure)),
@@ -156,7 +156,8 @@ fn test_of(name: String, text: String, file: TestFile, folder: &Path, plant: Pla
     let joint = joint(&file.joint, folder).map_err(|failure| failure.while_doing(&name))?;
     check_changes(&file, &joint.text)
         .map_err(|problems| Failure::from_report(diagnostic::report(&name, &text, &problems)))?;
-    let broken_tooth = file.faults.iter().any(|fault| matches!(fault.kind, FaultKind::Other(OnHost::BrokenTooth(_))));
+    let broken_tooth =
+        file.faults.iter().any(|fault| matches!(fault.kind, FaultKind::Other(HostOnlyFault::BrokenTooth(_))));
     if broken_tooth && plant == PlantName::Core {
         return Err(Failure::new(format!(
             "{name}: the core's planets share their stiffness, so no tooth of it can break"
@@ -194,7 +195,7 @@ impl Test {
     fn try_design(&self) -> Outcome<()> {
         let seed = self.file.seeds.first().copied().unwrap_or(1);
         let case = self.case(seed)?;
-        if self.file.controller.is_ours() {
+        if self.file.controller.is_compensation() {
             case.design(&self.file).map_err(|failure| failure.while_doing(&self.name))?;
         }
         Ok(())
@@ -203,8 +204,8 @@ impl Test {
     /// The files that it is made of.
     pub fn files(&self) -> Vec<PathBuf> {
         let test = PathBuf::from(&self.name);
-        let motion = match &self.file.profile.course {
-            Course::File(name) => Some(test.with_file_name(name)),
+        let motion = match &self.file.profile.trajectory {
+            Trajectory::File(name) => Some(test.with_file_name(name)),
             _ => None,
         };
         [test.clone(), test.with_file_name(&self.file.joint), PathBuf::from(&self.file.joint)]

@@ -1,14 +1,14 @@
-//! The drive train that the reference runs in, for a seed.
+//! The drive train of a joint file's surroundings, with the encoders' error phases drawn for a seed.
 
 use parameters::Surroundings;
 use reference::drive_train::{DriveTrainParameters, ErrorPhases};
 
-use super::draw::Stream;
+use super::random::RandomStream;
 
-/// The drive train of a joint file's surroundings. Nobody knows how an encoder was mounted: every seed turns its errors.
+/// The drive train of a joint file's surroundings. How an encoder is mounted is unknown: every seed draws the phases of its errors.
 pub fn train(surroundings: &Surroundings, seed: u64) -> DriveTrainParameters {
     let phases = |name: &str| {
-        let mut stream = Stream::new(seed, &format!("encoder {name}"));
+        let mut stream = RandomStream::new(seed, &format!("encoder {name}"));
         let mut phase = || std::f64::consts::TAU * stream.uniform();
         ErrorPhases { once_per_turn: phase(), twice_per_turn: phase() }
     };

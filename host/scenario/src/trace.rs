@@ -1,11 +1,12 @@
-//! A run thinned for pictures: a point each millisecond, and each crossing of the gap. Figures are never made from it.
+//! A run thinned for pictures: a point each millisecond, and each crossing of the gap. Metrics are never computed from
+//! it.
 
-use super::ran::{Ran, Sight, Truth};
+use super::run_history::{ObserverOutput, RunHistory, TrueValues};
 use reference::closed_loop::Sample;
 
-/// One point.
+/// One point of a trace.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Point {
+pub struct TracePoint {
     /// [s].
     pub time: f32,
     /// [rad].
@@ -26,7 +27,7 @@ pub struct Point {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Trace {
     /// A thousand a second.
-    pub points: Vec<Point>,
+    pub points: Vec<TracePoint>,
     /// When a flank was touched and how long the way to it took [s].
     pub crossings: Vec<(f64, f64)>,
     /// Half of the free gap at the end [m].
@@ -42,10 +43,10 @@ const NEAR: f64 = 0.9;
 impl Trace {
     /// The same, with bins of so many points reduced to those of least and greatest error: enough for a whole run.
     pub fn coarse(&self, bin: usize) -> Self {
-        let ends = |points: &[Point]| {
-            let by_error = |a: &&Point, b: &&Point| a.error.total_cmp(&b.error);
+        let ends = |points: &[TracePoint]| {
+            let by_error = |a: &&TracePoint, b: &&TracePoint| a.error.total_cmp(&b.error);
             let force = points.iter().map(|point| point.force).fold(0.0, f32::max);
-            let mut both: Vec<Point> =
+            let mut both: Vec<TracePoint> =
                 points.iter().min_by(by_error).into_iter().chain(points.iter().max_by(by_error)).copied().collect();
             both.sort_by(|a, b| a.time.total_cmp(&b.time));
             both.dedup();
@@ -56,23 +57,24 @@ impl Trace {
     }
 
     /// Of a run.
-    pub fn of(ran: &Ran) -> Self {
-        let point = |(sample, truth, sight, peak): (&Sample, &Truth, Option<&Sight>, f64)| Point {
-            time: sample.time as f32,
-            wanted: sample.wanted as f32,
-            error: (sample.wanted - sample.link) as f32,
-            gap: truth.gap as f32,
-            estimated_gap: sight.map_or(f32::NAN, |sight| sight.gap),
-            torque: sample.command as f32,
-            force: peak as f32,
-        };
+    pub fn of(history: &RunHistory) -> Self {
+        let point =
+            |(sample, truth, observed, peak): (&Sample, &TrueValues, Option<&ObserverOutput>, f64)| TracePoint {
+                time: sample.time as f32,
+                wanted: sample.wanted as f32,
+                error: (sample.wanted - sample.link) as f32,
+                gap: truth.gap as f32,
+                estimated_gap: observed.map_or(f32::NAN, |observed| observed.gap),
+                torque: sample.command as f32,
+                force: peak as f32,
+            };
         let mut trace = Self {
-            points: ran.thinned(RATE).map(point).collect(),
+            points: history.thinned(RATE).map(point).collect(),
             crossings: Vec::new(),
-            half_gap: ran.truths.last().map_or(0.0, |truth| 2.0 * truth.half_backlash),
+            half_gap: history.truths.last().map_or(0.0, |truth| 2.0 * truth.half_backlash),
         };
         let mut touched = None::<(f64, f64)>;
-        for sample in ran.run.samples.iter().filter(|sample| sample.gap.abs() > NEAR) {
+        for sample in history.run.samples.iter().filter(|sample| sample.gap.abs() > NEAR) {
             let side = sample.gap.signum();
             if let Some((_, since)) = touched.filter(|(before, _)| *before != side) {
                 trace.crossings.push((sample.time, sample.time - since));

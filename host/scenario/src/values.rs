@@ -1,48 +1,48 @@
-//! Values of the named figures of one run, from the truth. What each is called and means is in `figures`; what the
-//! observer's estimates are worth is in `sight`.
+//! Values of the metrics of one run, from the true motion. `metrics` defines them; those of the observer are computed
+//! in `observer_metrics`.
 
 use model_core::gears::Kinematics;
 use reference::closed_loop::{Figures as Plain, Sample, deviation};
 
 use super::case::Case;
 use super::controller::ControllerName;
-use super::figures::{FIGURES, Figure, Named, Relation};
 use super::file::TestFile;
-use super::ran::{Ran, Truth};
-use super::sight;
+use super::metrics::{METRICS, Metric, NamedMetric, Relation};
+use super::observer_metrics;
+use super::run_history::{RunHistory, TrueValues};
 
 /// A gain over a controller that is right to the last bit would be infinite; this says enough.
 const MOST_GAIN: f64 = 1e6;
 
-/// Values of all figures, where they could be had.
+/// Values of all metrics that could be computed.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Values(Vec<Option<f64>>);
+pub struct MetricValues(Vec<Option<f64>>);
 
-impl Values {
+impl MetricValues {
     /// Figures of a run; `without_gap` is the run that an impedance is measured from.
-    pub fn of(file: &TestFile, case: &Case, ran: &Ran, without_gap: Option<&Ran>) -> Self {
-        let mut values = Self(vec![None; FIGURES.len()]);
-        values.motion(file, case, ran);
+    pub fn of(file: &TestFile, case: &Case, history: &RunHistory, without_gap: Option<&RunHistory>) -> Self {
+        let mut values = Self(vec![None; METRICS.len()]);
+        values.motion(file, case, history);
         if let Some(other) = without_gap {
-            let (rms, peak, torque) = deviation(&ran.run, &other.run, file.settle);
+            let (rms, peak, torque) = deviation(&history.run, &other.run, file.settle);
             values.set("deviation_rms", 1e3 * rms);
             values.set("deviation_peak", 1e3 * peak);
             values.set("torque_error", torque);
         }
-        if !ran.sights.is_empty() {
-            for (stem, value) in sight::figures(file, case, ran) {
+        if !history.observer_outputs.is_empty() {
+            for (stem, value) in observer_metrics::values(file, case, history) {
                 values.set(stem, value);
             }
         }
         if file.profile.kind == "hysteresis" {
-            values.hysteresis(file, case, ran);
+            values.hysteresis(file, case, history);
         }
         values
     }
 
     /// Names and values of what could be had.
-    pub fn named(&self) -> impl Iterator<Item = (&'static Figure, f64)> {
-        FIGURES.iter().zip(&self.0).filter_map(|(figure, value)| Some((figure, (*value)?)))
+    pub fn named(&self) -> impl Iterator<Item = (&'static Metric, f64)> {
+        METRICS.iter().zip(&self.0).filter_map(|(metric, value)| Some((metric, (*value)?)))
     }
 
     /// A value by its place among the figures.
@@ -51,7 +51,7 @@ impl Values {
     }
 
     /// The value of a named figure of the controller that these are of, beside the values of others.
-    pub fn of_named(&self, named: &Named, of: impl Fn(ControllerName) -> Option<Values>) -> Option<f64> {
+    pub fn of_named(&self, named: &NamedMetric, of: impl Fn(ControllerName) -> Option<MetricValues>) -> Option<f64> {
         let own = self.at(named.place())?;
         let ratio = |above: f64, below: f64| match (above, below) {
             (above, below) if above == below => 1.0,
@@ -66,20 +66,20 @@ impl Values {
     }
 
     fn set(&mut self, stem: &str, value: f64) {
-        if let Some(index) = FIGURES.iter().position(|figure| figure.stem == stem) {
+        if let Some(index) = METRICS.iter().position(|metric| metric.stem == stem) {
             self.0[index] = value.is_finite().then_some(value);
         }
     }
 
-    fn motion(&mut self, file: &TestFile, case: &Case, ran: &Ran) {
-        let plain = Plain::of(&ran.run, file.settle);
+    fn motion(&mut self, file: &TestFile, case: &Case, history: &RunHistory) {
+        let plain = Plain::of(&history.run, file.settle);
         let joint = &case.truth.parameters;
         let rated = joint.rated_output_torque / (2.0 * joint.geometry.carrier_base_radius());
-        let samples = || ran.run.samples.iter().filter(|sample| sample.time >= file.settle);
+        let samples = || history.run.samples.iter().filter(|sample| sample.time >= file.settle);
         let count = samples().count().max(1) as f64;
         let limit = case.truth.surroundings.torque_limit;
         let at_limit = samples().filter(|sample| sample.command.abs() >= 0.9999 * limit).count() as f64;
-        let end = ran.run.samples.last().map_or(0.0, |sample| sample.time);
+        let end = history.run.samples.last().map_or(0.0, |sample| sample.time);
         self.set("rms", 1e3 * plain.rms);
         self.set("peak", 1e3 * plain.peak);
         self.set("peak_to_peak", 1e3 * plain.peak_to_peak);
@@ -93,19 +93,20 @@ impl Values {
         self.set("effort", plain.effort);
         self.set("peak_torque", samples().map(|sample| sample.command.abs()).fold(0.0, f64::max));
         self.set("saturated", 100.0 * at_limit / count);
-        if let Some(error) = reversal_error(file.settle, case, ran) {
+        if let Some(error) = reversal_error(file.settle, case, history) {
             self.set("reversal_error", 1e3 * error);
         }
     }
 
     /// The loop of link angle over load torque, less what the motor gave way by.
-    fn hysteresis(&mut self, file: &TestFile, case: &Case, ran: &Ran) {
-        let ratio = case.told.geometry.ratio_by_teeth();
+    fn hysteresis(&mut self, file: &TestFile, case: &Case, history: &RunHistory) {
+        let ratio = case.nominal.geometry.ratio_by_teeth();
         let points = || {
-            ran.run
+            history
+                .run
                 .samples
                 .iter()
-                .zip(&ran.truths)
+                .zip(&history.truths)
                 .filter(|(sample, _)| sample.time >= file.settle)
                 .map(|(sample, truth)| (transmitted(sample, truth), sample.link - truth.motor / ratio))
         };
@@ -134,9 +135,9 @@ impl Values {
 const AROUND: f64 = 0.06;
 
 /// Mean over reversals of the largest error near each [rad].
-fn reversal_error(settle: f64, case: &Case, ran: &Ran) -> Option<f64> {
-    let samples = &ran.run.samples;
-    let reach = (AROUND / ran.run.period).round() as usize;
+fn reversal_error(settle: f64, case: &Case, history: &RunHistory) -> Option<f64> {
+    let samples = &history.run.samples;
+    let reach = (AROUND / history.run.period).round() as usize;
     let mut before = 0.0;
     let mut largest = Vec::new();
     for (index, sample) in samples.iter().enumerate() {
@@ -153,7 +154,7 @@ fn reversal_error(settle: f64, case: &Case, ran: &Ran) -> Option<f64> {
 }
 
 /// Torque through the teeth, felt at the link.
-fn transmitted(sample: &Sample, truth: &Truth) -> f64 {
+fn transmitted(sample: &Sample, truth: &TrueValues) -> f64 {
     // Without a compliance nothing is measured between carrier and link: the load stands for it.
     if sample.transmitted == 0.0 { truth.load_torque } else { sample.transmitted }
 }

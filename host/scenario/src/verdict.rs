@@ -1,18 +1,18 @@
-//! From the seeds' figures to verdicts: one for each assertion. A figure that could not be had fails.
+//! From the seeds' metrics to verdicts: one for each assertion. An assertion whose metric could not be computed fails.
 
 use super::controller::ControllerName;
 use super::file::{Aggregate, Assertion, TestFile};
 use super::record::AssertionRecord;
-use super::values::Values;
+use super::values::MetricValues;
 use report::checks::{Bound, Verdict};
 use report::number::PAGE;
 
-/// Figures of all runs of a test.
+/// Metrics of all runs of a test.
 pub struct Results<'r> {
     /// Seeds that were to run.
     pub seeds: &'r [u64],
     /// By seed and controller.
-    pub of: &'r dyn Fn(u64, ControllerName) -> Option<Values>,
+    pub of: &'r dyn Fn(u64, ControllerName) -> Option<MetricValues>,
 }
 
 /// Judges every assertion of a file.
@@ -23,7 +23,7 @@ pub fn judge(file: &TestFile, results: &Results<'_>) -> Vec<AssertionRecord> {
 fn one(file: &TestFile, assertion: &Assertion, results: &Results<'_>) -> AssertionRecord {
     let value = |seed: u64| {
         let own = (results.of)(seed, file.controller)?;
-        own.of_named(&assertion.figure, |other| (results.of)(seed, other))
+        own.of_named(&assertion.metric, |other| (results.of)(seed, other))
     };
     let figures: Vec<(u64, Option<f64>)> = results.seeds.iter().map(|seed| (*seed, value(*seed))).collect();
     let missing: Vec<u64> = figures.iter().filter(|(_, figure)| figure.is_none()).map(|(seed, _)| *seed).collect();
@@ -36,7 +36,7 @@ fn one(file: &TestFile, assertion: &Assertion, results: &Results<'_>) -> Asserti
         Aggregate::Mean => (!had.is_empty()).then(|| had.iter().map(|(_, f)| f).sum::<f64>() / had.len() as f64),
     };
     let holds = missing.is_empty() && figure.is_some_and(|figure| assertion.bound.holds(figure));
-    let mut note = assertion.figure.base().meaning.to_owned();
+    let mut note = assertion.metric.base().meaning.to_owned();
     if let Some(other) = assertion.rival() {
         note += &format!("; against {}", other.label());
     }
@@ -46,7 +46,7 @@ fn one(file: &TestFile, assertion: &Assertion, results: &Results<'_>) -> Asserti
         note += &format!("; {} seeds from {} to {}", had.len(), PAGE.write(least), PAGE.write(greatest));
     }
     if let Some(first) = missing.first() {
-        let why = absence(assertion.figure.base().stem);
+        let why = absence(assertion.metric.base().stem);
         note = format!("could not be had with seed {first}: {why}; {note}");
     }
     AssertionRecord {
@@ -54,7 +54,7 @@ fn one(file: &TestFile, assertion: &Assertion, results: &Results<'_>) -> Asserti
         aggregate: assertion.aggregate.word().to_owned(),
         figure,
         unit: match assertion.rival() {
-            None => assertion.figure.base().printed_unit().to_owned(),
+            None => assertion.metric.base().printed_unit().to_owned(),
             Some(_) => String::new(),
         },
         bound: assertion.bound,

@@ -1,5 +1,5 @@
 //! A tick of a joint whose planets are so light that they ring several times within it: one exact exponential while
-//! every mesh stays in contact (`linear_contact`), velocity-Verlet (leapfrog) sub-steps through contacts otherwise. Contact
+//! every mesh stays in contact (`linear_contact`), position-Verlet (leapfrog) sub-steps through contacts otherwise. Contact
 //! events are not located: along a sub-step's straight path the mean force of a sharp dead zone is a closed form.
 //!
 //! The Verlet method does not damp what it cannot resolve, as Runge-Kutta methods do: bouncing planets keep their energy.
@@ -41,7 +41,7 @@ pub fn tick<T: Real, const N: usize>(
     }
 }
 
-/// Velocity-Verlet sub-steps: drift by half a sub-step, forces there, drift by the new rate. Deflections are carried from
+/// Position-Verlet sub-steps: drift by half a sub-step, forces there, drift by the new rate. Deflections are carried from
 /// middle to middle, in a unit of time in which a sub-step lasts one.
 #[inline(never)]
 fn verlet<T: Real, const N: usize, const CONTACT_LAW: bool>(

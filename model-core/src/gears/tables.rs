@@ -50,7 +50,7 @@ pub struct Tables<T: Real, const N: usize> {
     pub verlet: VerletTable<T>,
 }
 
-/// Velocity-Verlet (leapfrog) sub-steps, in a unit of time in which a sub-step lasts one.
+/// Position-Verlet (leapfrog) sub-steps, in a unit of time in which a sub-step lasts one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VerletTable<T: Real> {
     /// Sub-steps of a tick; zero where planets are not light.

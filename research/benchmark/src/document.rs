@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::Path;
 
-use super::{Figures, Origin, page, pictures};
+use super::{BenchmarkRecord, Origin, page, pictures};
 use board::target::compile::PROFILE;
 use board::target::emulator::MACHINE;
 use board::target::toolchain::Toolchain;
@@ -42,7 +42,7 @@ pub fn read(path: &Path) -> Outcome<String> {
 }
 
 /// Puts the comparison into the file, or at its end if it has none yet.
-pub fn update(path: &Path, figures: &Figures, document: &Document) -> Outcome<()> {
+pub fn update(path: &Path, figures: &BenchmarkRecord, document: &Document) -> Outcome<()> {
     let before = read(path)?;
     for case in &figures.cases {
         let Some(figure) = pictures::board(case, &figures.methods) else { continue };

@@ -1,11 +1,11 @@
-//! What a controller of a robot joint gets out of one sample, method by method at the same cost: output angle and peak
-//! mesh force. Only of cases that are judged by the output angle.
+//! What each method achieves within the computing time of one control sample, at equal cost: error of output angle and
+//! peak mesh force. Only for cases that are judged by the output angle.
 
 use serde::Serialize;
 
 use contest::method::Method;
 
-use super::lineup::{CaseFigures, Entry, Mark};
+use super::method_results::{CaseRecord, MethodResult, StepResult};
 use super::verdicts::least_cost_at;
 
 /// Samples in a second [Hz].
@@ -53,13 +53,13 @@ impl Best {
 }
 
 /// All methods on all cases that are judged by the output angle.
-pub fn in_a_sample(cases: &[CaseFigures], entries: &[Entry]) -> Vec<InASample> {
-    let judged = |entry: &&Entry| cases.iter().any(|case| case.key == entry.case && case.by_link_angle);
+pub fn in_a_sample(cases: &[CaseRecord], entries: &[MethodResult]) -> Vec<InASample> {
+    let judged = |entry: &&MethodResult| cases.iter().any(|case| case.key == entry.case && case.by_link_angle);
     let own = |case: &str| {
         let own = entries.iter().find(|entry| entry.case == case && entry.method == Method::Realtime)?;
         best(own)
     };
-    let one = |entry: &Entry| InASample {
+    let one = |entry: &MethodResult| InASample {
         case: entry.case.clone(),
         name: entry.name,
         best: best(entry),
@@ -70,8 +70,8 @@ pub fn in_a_sample(cases: &[CaseFigures], entries: &[Entry]) -> Vec<InASample> {
     entries.iter().filter(judged).map(one).collect()
 }
 
-fn best(entry: &Entry) -> Option<Best> {
-    let of = |mark: &Mark| {
+fn best(entry: &MethodResult) -> Option<Best> {
+    let of = |mark: &StepResult| {
         let steps = mark.rate_Hz / SAMPLE_RATE;
         Some(Best {
             steps: (mark.substeps > 0).then_some(steps * mark.substeps),
@@ -91,8 +91,8 @@ fn best(entry: &Entry) -> Option<Best> {
 mod tests {
     use super::*;
 
-    fn mark(steps: u32, instructions: f64, link_rms: f64) -> Mark {
-        Mark {
+    fn mark(steps: u32, instructions: f64, link_rms: f64) -> StepResult {
+        StepResult {
             rate_Hz: steps * SAMPLE_RATE,
             substeps: 1,
             step: 1.0,
@@ -107,8 +107,8 @@ mod tests {
         }
     }
 
-    fn entry(marks: Vec<Mark>) -> Entry {
-        Entry { case: "R".into(), method: Method::Euler, name: Method::Euler.name(), marks }
+    fn entry(marks: Vec<StepResult>) -> MethodResult {
+        MethodResult { case: "R".into(), method: Method::Euler, name: Method::Euler.name(), marks }
     }
 
     #[test]
@@ -121,7 +121,7 @@ mod tests {
 
     #[test]
     fn a_method_that_gets_lost_at_every_step_that_fits_has_no_best_step() {
-        let lost = Mark { link_rms: None, ..mark(1, 600.0, 1.0) };
+        let lost = StepResult { link_rms: None, ..mark(1, 600.0, 1.0) };
         assert_eq!(best(&entry(vec![lost, mark(4, 600.0, 1e-4)])), None);
     }
 }

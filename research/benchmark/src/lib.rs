@@ -1,19 +1,19 @@
-//! `joint bench`: the core's step against what people use, error by cost, on the emulated core and on the host.
-//! `lineup` runs the fixed-step methods, by `race` on the emulated core, `libraries` times what a host program would
-//! take from a library, `verdicts` and `in_a_sample` draw the conclusions; all are `figures`, and `page` and `document`
-//! show them.
+//! `joint bench`: the core's step against common methods, error by cost, on the emulated core and on the host.
+//! `method_results` runs the fixed-step methods, through `emulated_runs` on the emulated core, `libraries` times what a
+//! host program would take from a library, `verdicts` and `in_a_sample` draw the conclusions; all of it is the
+//! `record`, and `page` and `document` show it.
 
 mod document;
-mod figures;
+mod emulated_runs;
 mod in_a_sample;
 mod libraries;
-mod lineup;
+mod method_results;
 mod page;
 mod pictures;
-mod race;
+mod record;
 mod verdicts;
 
-pub use figures::{Figures, Origin};
+pub use record::{BenchmarkRecord, Origin};
 use std::path::{Path, PathBuf};
 
 use contest::case::Case;
@@ -87,21 +87,21 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
     output::deliver(&figures, &text, arguments.json.as_deref(), &read)
 }
 
-fn gather(arguments: &Arguments, progress: &Progress) -> Outcome<Figures> {
+fn gather(arguments: &Arguments, progress: &Progress) -> Outcome<BenchmarkRecord> {
     let cases = cases(arguments)?;
     let keys: Vec<String> = cases.iter().map(|case| case.key.clone()).collect();
     let say = |line: &str| progress.say(line);
     progress.stage("preparing the toolchain");
     let toolchain = Toolchain::prepare(&say)?;
     let emulator = emulator::ensure(&say)?;
-    let (cases, methods) = lineup::run(cases, &toolchain, progress, &say)?;
+    let (cases, methods) = method_results::run(cases, &toolchain, progress, &say)?;
     progress.stage("host libraries");
     // They take the named cases only: a program of its own knows these.
     let host = match arguments.no_libraries || arguments.file.is_some() {
         true => None,
         false => Some(libraries::run(&keys, &say)?),
     };
-    Ok(Figures {
+    Ok(BenchmarkRecord {
         origin: document::origin(&toolchain, emulator),
         at_equal_error: verdicts::at_equal_error(&methods),
         in_a_sample: in_a_sample::in_a_sample(&cases, &methods),

@@ -27,7 +27,7 @@ pub struct Time {
     pub cost: f64,
 }
 
-/// What came of it.
+/// The result.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Times {
     /// Every contestant at every setting.

@@ -4,9 +4,9 @@
 use contest::method::Method;
 use contest::run::AS_DESIGNED;
 
-use super::Figures;
+use super::BenchmarkRecord;
 use super::in_a_sample::{ASKED, Best, INSTRUCTIONS, InASample, SAMPLE_RATE};
-use super::lineup::{CaseFigures, Entry, Mark};
+use super::method_results::{CaseRecord, MethodResult, StepResult};
 use super::pictures;
 use super::verdicts::{AtError, CLOCK, CYCLES, InBudget, LEVELS, front};
 use report::document::{
@@ -23,7 +23,7 @@ const WITH_STEPS: &[Medium] = &[Medium::Page, Medium::Terminal];
 const LINES: &[Medium] = &[Medium::Terminal, Medium::Markdown];
 
 /// All of it.
-pub fn document(figures: &Figures) -> Document {
+pub fn document(figures: &BenchmarkRecord) -> Document {
     let mut blocks = vec![Block::Only(LINES, vec![Block::Paragraph(provenance(figures))])];
     blocks.extend(figures.cases.iter().map(|case| one(figures, case)));
     blocks.extend([budget(figures), rounding(figures)]);
@@ -42,11 +42,11 @@ pub fn document(figures: &Figures) -> Document {
 }
 
 /// Name of the picture of a case, without its ending.
-pub fn picture_name(case: &CaseFigures) -> String {
+pub fn picture_name(case: &CaseRecord) -> String {
     format!("error-by-cost-{}", case.key.to_lowercase())
 }
 
-fn provenance(figures: &Figures) -> Text {
+fn provenance(figures: &BenchmarkRecord) -> Text {
     let origin = &figures.origin;
     text("Instructions: ")
         + strong("EMULATED")
@@ -74,7 +74,7 @@ fn drawn(figure: Option<Figure>, file: String) -> Option<Block> {
     Some(Block::Picture(Picture { figures: vec![figure?], caption: Text::default(), file }))
 }
 
-fn one(figures: &Figures, case: &CaseFigures) -> Block {
+fn one(figures: &BenchmarkRecord, case: &CaseRecord) -> Block {
     let lead = format!(
         "Error: {}; worst of {} phases, {:.4} s. A start moved by a millionth of b_c moves the reference itself by {}.{}",
         case.measure,
@@ -102,7 +102,7 @@ fn one(figures: &Figures, case: &CaseFigures) -> Block {
 }
 
 /// What windows there are, as a sentence after another.
-fn windows(case: &CaseFigures) -> String {
+fn windows(case: &CaseRecord) -> String {
     if case.windows == 1 {
         return String::new();
     }
@@ -114,7 +114,7 @@ fn windows(case: &CaseFigures) -> String {
 }
 
 /// Every method at every step.
-fn steps(figures: &Figures, case: &CaseFigures) -> Block {
+fn steps(figures: &BenchmarkRecord, case: &CaseRecord) -> Block {
     let heads =
         ["kHz", "h omega_n", "error", "link RMS", "link worst", "peak force", "instr/step", "worst", "M instr/s"];
     let columns = [words("method")].into_iter().chain(heads.map(numbers)).collect();
@@ -123,7 +123,7 @@ fn steps(figures: &Figures, case: &CaseFigures) -> Block {
     table(columns, rows.collect())
 }
 
-fn step(entry: &Entry, mark: &Mark) -> Row {
+fn step(entry: &MethodResult, mark: &StepResult) -> Row {
     row([
         entry.name.to_owned(),
         match mark.substeps {
@@ -144,15 +144,15 @@ fn step(entry: &Entry, mark: &Mark) -> Row {
 
 /// Steps that a table shows: of this step those that no other one undercuts, else every other one of a long list, the
 /// coarsest and the finest always.
-fn shown(entry: &Entry) -> Vec<&Mark> {
+fn shown(entry: &MethodResult) -> Vec<&StepResult> {
     let best = front(entry.series().into_iter().flatten().collect());
     let last = entry.marks.len().saturating_sub(1);
     let every = if entry.marks.len() > 8 { 2 } else { 1 };
-    let wanted = |(index, mark): &(usize, &Mark)| match entry.method {
+    let wanted = |(index, mark): &(usize, &StepResult)| match entry.method {
         Method::Realtime => mark.error.is_some_and(|error| best.contains(&(mark.cost(), error))),
         _ => index % every == 0 || *index == last,
     };
-    let mut marks: Vec<&Mark> = entry.marks.iter().enumerate().filter(wanted).map(|(_, mark)| mark).collect();
+    let mut marks: Vec<&StepResult> = entry.marks.iter().enumerate().filter(wanted).map(|(_, mark)| mark).collect();
     marks.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
     marks
 }
@@ -208,7 +208,7 @@ fn equal(found: &[&AtError], cost: impl Fn(f64) -> String) -> Block {
     table(columns, rows.into_iter().map(row).collect())
 }
 
-fn budget(figures: &Figures) -> Block {
+fn budget(figures: &BenchmarkRecord) -> Block {
     let cells = |found: &InBudget| {
         let none = || "-".to_owned();
         let cycles = |cycles: Option<f64>| cycles.map_or_else(none, |cycles| fixed(0).write(cycles));
@@ -240,7 +240,7 @@ fn budget(figures: &Figures) -> Block {
     )
 }
 
-fn rounding(figures: &Figures) -> Block {
+fn rounding(figures: &BenchmarkRecord) -> Block {
     let rows = figures.rounding.iter().map(|found| {
         let errors = [found.single, found.double, found.rounding].map(|error| SCIENTIFIC.write(error));
         row([found.case.clone(), fixed(4).write(found.step)].into_iter().chain(errors))
@@ -250,7 +250,7 @@ fn rounding(figures: &Figures) -> Block {
     section("f32 beside f64, this step", vec![table(columns, rows.collect())])
 }
 
-fn host(figures: &Figures) -> Option<Block> {
+fn host(figures: &BenchmarkRecord) -> Option<Block> {
     let host = figures.host.as_ref()?;
     let lead = "Milliseconds for a second of the joint, least of several rounds of one process; each library at its best \
                 tolerance, all over the same compiled right-hand side.";
@@ -272,7 +272,7 @@ fn host(figures: &Figures) -> Option<Block> {
     Some(section("Host: processor time at equal error", blocks))
 }
 
-fn origin(figures: &Figures) -> Block {
+fn origin(figures: &BenchmarkRecord) -> Block {
     let origin = &figures.origin;
     let rows = [
         ("Board", &origin.emulator),

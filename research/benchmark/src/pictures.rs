@@ -4,7 +4,7 @@
 use contest::method::Method;
 
 use super::libraries::Time;
-use super::lineup::{CaseFigures, Entry};
+use super::method_results::{CaseRecord, MethodResult};
 use super::verdicts::{CLOCK, CYCLES, curve, front};
 use report::plot::ink::Ink;
 use report::plot::mark::Mark;
@@ -64,8 +64,8 @@ fn short(name: &str) -> &str {
 }
 
 /// Error by instructions.
-pub fn board(case: &CaseFigures, entries: &[Entry]) -> Option<Figure> {
-    let own = |entry: &&Entry| entry.case == case.key && entry.marks.iter().any(|mark| mark.error.is_some());
+pub fn board(case: &CaseRecord, entries: &[MethodResult]) -> Option<Figure> {
+    let own = |entry: &&MethodResult| entry.case == case.key && entry.marks.iter().any(|mark| mark.error.is_some());
     let curves: Vec<Curve<'_>> = entries
         .iter()
         .filter(own)
@@ -83,7 +83,7 @@ pub fn board(case: &CaseFigures, entries: &[Entry]) -> Option<Figure> {
 }
 
 /// Error by processor time.
-pub fn host(case: &CaseFigures, times: &[Time]) -> Option<Figure> {
+pub fn host(case: &CaseRecord, times: &[Time]) -> Option<Figure> {
     let mut names: Vec<&str> = Vec::new();
     for time in times.iter().filter(|time| time.case == case.key && time.error.is_some()) {
         // One line for this step and one for Runge-Kutta: in f64, as libraries compute.

@@ -1,11 +1,10 @@
-//! What follows from the figures: instructions at equal error, error within a board's budget, rounding, host times. No
-//! figure is judged; bounds are the reader's.
+//! Conclusions from the figures: instructions at equal error, error within a board's budget, rounding, host times.
 
 use contest::method::Method;
 use serde::Serialize;
 
 use super::libraries::Time;
-use super::lineup::{Entry, Mark};
+use super::method_results::{MethodResult, StepResult};
 
 /// Cycles for an instruction, where no trace weighs them: a Cortex-M4F without wait states on code like this.
 pub const CYCLES: f64 = 1.4;
@@ -53,17 +52,17 @@ pub struct InBudget {
     pub cycles_most: Option<f64>,
 }
 
-/// Sample rates of `Mark::sample_instructions_most`.
+/// Sample rates of `StepResult::sample_instructions_most`.
 const SAMPLE_RATES: [u32; 3] = [10_000, 20_000, 40_000];
 
 /// Instructions a second of the joint at equal error, method by method.
-pub fn at_equal_error(entries: &[Entry]) -> Vec<AtError> {
-    let cost = |entry: &Entry, level: f64| least_cost_at(entry.series(), level);
+pub fn at_equal_error(entries: &[MethodResult]) -> Vec<AtError> {
+    let cost = |entry: &MethodResult, level: f64| least_cost_at(entry.series(), level);
     let of_step = |case: &str, level: f64| {
         let own = entries.iter().find(|entry| entry.case == case && entry.method == Method::Realtime)?;
         cost(own, level)
     };
-    let levels = |entry: &'_ Entry| {
+    let levels = |entry: &'_ MethodResult| {
         let (case, name) = (entry.case.clone(), entry.name.to_owned());
         LEVELS.map(|level| ratio(case.clone(), name.clone(), level, cost(entry, level), of_step(&case, level)))
     };
@@ -127,13 +126,13 @@ fn cost_at(curve: &[(f64, f64)], error: f64) -> Option<f64> {
 }
 
 /// The least error of every method within half a 168 MHz Cortex-M4F, sample rate by sample rate.
-pub fn in_budget(entries: &[Entry]) -> Vec<InBudget> {
-    let one = |entry: &Entry, index: usize| {
+pub fn in_budget(entries: &[MethodResult]) -> Vec<InBudget> {
+    let one = |entry: &MethodResult, index: usize| {
         let sample_rate = SAMPLE_RATES[index];
         let budget = SHARE * CLOCK / f64::from(sample_rate);
-        let ticks = |mark: &Mark| mark.rate_Hz / sample_rate;
-        let cycles = |mark: &Mark| CYCLES * mark.instructions * f64::from(ticks(mark));
-        let most = |mark: &Mark| CYCLES * f64::from(mark.sample_instructions_most[index]);
+        let ticks = |mark: &StepResult| mark.rate_Hz / sample_rate;
+        let cycles = |mark: &StepResult| CYCLES * mark.instructions * f64::from(ticks(mark));
+        let most = |mark: &StepResult| CYCLES * f64::from(mark.sample_instructions_most[index]);
         let fitting = entry.marks.iter().filter(|mark| {
             mark.rate_Hz.is_multiple_of(sample_rate) && cycles(mark) <= budget && most(mark) <= WORST * budget
         });
@@ -172,14 +171,15 @@ pub struct Rounding {
 const ROUNDED_STEPS: (f64, f64) = (0.04, 0.3);
 
 /// Of this step; steps that come to the same motion as others, since contact held, once.
-pub fn rounding(entries: &[Entry]) -> Vec<Rounding> {
+pub fn rounding(entries: &[MethodResult]) -> Vec<Rounding> {
     let mut all: Vec<Rounding> = Vec::new();
     for entry in entries.iter().filter(|entry| entry.method == Method::Realtime) {
         // The shortest ticks that several sub-steps were tried in will do: rounding is a matter of the sub-step.
         let stated = || entry.marks.iter().filter(|mark| mark.substeps > 1);
         let series = |rate: &u32| stated().filter(|mark| mark.rate_Hz == *rate).count() > 1;
         let ticks = stated().map(|mark| mark.rate_Hz).filter(series).max().unwrap_or_default();
-        let inside = |mark: &&Mark| mark.rate_Hz == ticks && (ROUNDED_STEPS.0..=ROUNDED_STEPS.1).contains(&mark.step);
+        let inside =
+            |mark: &&StepResult| mark.rate_Hz == ticks && (ROUNDED_STEPS.0..=ROUNDED_STEPS.1).contains(&mark.step);
         for mark in entry.marks.iter().filter(inside) {
             let (Some(single), Some(double)) = (mark.error, mark.error_f64) else { continue };
             let like = |other: &Rounding| other.case == entry.case && (other.double / double - 1.0).abs() < 0.01;

@@ -10,13 +10,13 @@ mod contest {
     use cortex_m_rt::entry;
     use firmware::measuring::{self, InstructionCounter};
     use model_core::gears::{Model, State, Tables};
-    use peers::moving::{self, Core, Gap, Moving, Whole};
+    use peers::moving::{self, Core, Gap, GearedJoint, SteppedModel};
     use peers::peer::Start;
     use peers::plant::Plant;
     use peers::scheme::Scheme;
     use peers::two_mass::TwoMass;
 
-    /// Every job, as `run(race)`.
+    /// Every job, as `run(runner)`.
     mod jobs {
         #![allow(clippy::all, clippy::excessive_precision, reason = "generated numbers")]
         include!(env!("CONTEST_JOBS"));
@@ -30,7 +30,7 @@ mod contest {
     }
 
     /// How far, how fast, and under what torques.
-    pub struct Way {
+    pub struct StepSchedule {
         steps: u32,
         /// Steps in a second.
         rate: u32,
@@ -72,14 +72,20 @@ mod contest {
     }
 
     /// Counts and tells.
-    pub struct Race {
+    pub struct JobRunner {
         counter: InstructionCounter,
     }
 
-    impl Race {
+    impl JobRunner {
         /// The core, by the scheme of its tables.
-        pub fn core<const N: usize>(&self, job: u32, tables: &Tables<f32, N>, starts: &[State<f32, N>], way: &Way) {
-            self.run(job, way, &mut Core::new(Model::new(black_box(tables)), black_box(starts)));
+        pub fn core<const N: usize>(
+            &self,
+            job: u32,
+            tables: &Tables<f32, N>,
+            starts: &[State<f32, N>],
+            schedule: &StepSchedule,
+        ) {
+            self.run(job, schedule, &mut Core::new(Model::new(black_box(tables)), black_box(starts)));
         }
 
         /// A peer.
@@ -88,26 +94,28 @@ mod contest {
             job: u32,
             plant: &Plant<f32, N>,
             starts: &[Start<f32, N>],
-            way: &Way,
+            schedule: &StepSchedule,
         ) {
-            if let Some(mut whole) = Whole::<f32, N, S>::new(black_box(plant), black_box(starts)) {
-                self.run(job, way, &mut whole);
+            if let Some(mut whole) = GearedJoint::<f32, N, S>::new(black_box(plant), black_box(starts)) {
+                self.run(job, schedule, &mut whole);
             }
         }
 
         /// The model of two masses, from displacements and their rates.
-        pub fn two_mass(&self, job: u32, model: &TwoMass<f32>, starts: &[[f32; 2]], way: &Way) {
-            self.run(job, way, &mut Gap::new(black_box(model), black_box(starts)));
+        pub fn two_mass(&self, job: u32, model: &TwoMass<f32>, starts: &[[f32; 2]], schedule: &StepSchedule) {
+            self.run(job, schedule, &mut Gap::new(black_box(model), black_box(starts)));
         }
 
-        fn run<M: Moving<f32>>(&self, job: u32, way: &Way, moving: &mut M) {
-            let begins = |tick: u32| (u64::from(tick) * u64::from(way.rate)).div_ceil(way.tick_rate.into());
+        fn run<M: SteppedModel<f32>>(&self, job: u32, schedule: &StepSchedule, moving: &mut M) {
+            let begins = |tick: u32| (u64::from(tick) * u64::from(schedule.rate)).div_ceil(schedule.tick_rate.into());
             let (mut sum, mut most) = (0_u64, 0);
-            let mut samples = SAMPLE_RATES.map(|sample_rate| Sample::new(way.rate, sample_rate));
-            let steps = moving::Way {
-                steps: black_box(way.steps).into(),
-                restarts: black_box(way.restarts).iter().map(|tick| begins(*tick)),
-                changes: black_box(way.torques).iter().map(|change| (begins(change.tick), change.drive, change.load)),
+            let mut samples = SAMPLE_RATES.map(|sample_rate| Sample::new(schedule.rate, sample_rate));
+            let steps = moving::StepSchedule {
+                steps: black_box(schedule.steps).into(),
+                restarts: black_box(schedule.restarts).iter().map(|tick| begins(*tick)),
+                changes: black_box(schedule.torques)
+                    .iter()
+                    .map(|change| (begins(change.tick), change.drive, change.load)),
             };
             let step = |moving: &mut M| {
                 let count = self.counter.count(|| call(moving));
@@ -117,20 +125,20 @@ mod contest {
             };
             let digest = moving::follow(moving, steps, |_| (), step);
             let [slow, middle, fast] = samples.map(|sample| sample.most);
-            measuring::say(format_args!("{job},{},{sum},{most},{slow},{middle},{fast},{digest:016x}", way.steps));
+            measuring::say(format_args!("{job},{},{sum},{most},{slow},{middle},{fast},{digest:016x}", schedule.steps));
         }
     }
 
     /// A call that is not inlined, so that nothing moves out of the count.
     #[inline(never)]
-    fn call<M: Moving<f32>>(moving: &mut M) {
+    fn call<M: SteppedModel<f32>>(moving: &mut M) {
         moving.step();
     }
 
     #[entry]
     fn main() -> ! {
         if let Some(core) = Peripherals::take() {
-            jobs::run(&Race { counter: InstructionCounter::start(core.SYST) });
+            jobs::run(&JobRunner { counter: InstructionCounter::start(core.SYST) });
         }
         measuring::finish()
     }

@@ -1,5 +1,4 @@
-//! A case: a joint, where it starts, what torques act, and what of its motion counts. Which cases there are is said in
-//! `catalogue`.
+//! A case: a joint, its initial state, the torques, and which error counts. The cases are listed in `catalogue`.
 
 use model_core::gears::{Kinematics, MeshPhasing};
 use parameters::{Excitation, JointParameters, MESH_KINDS, MeshKind, MeshPhases};

@@ -1,5 +1,5 @@
 //! Error by step: a method over a case at one rate after another, as the envelope over excitation phases, so that no
-//! lucky step counts. What a step costs is counted elsewhere.
+//! lucky step counts.
 
 use model_core::gears::Scales;
 use model_core::gears::design::DesignError;
@@ -8,18 +8,18 @@ use rayon::prelude::*;
 use reference::joint::ReferenceError;
 
 use crate::case::Case;
-use crate::course::{Course, Errors, Restart};
 use crate::method::Method;
 use crate::run::{self, Run};
+use crate::trajectory::{Errors, ReferenceTrajectory, Restart};
 
 /// Phases in the envelope.
 pub const PHASES: usize = 8;
 
-/// A case at all its phases, with the reference's motion.
-pub struct Field {
+/// A case at all its excitation phases, with the reference's trajectories.
+pub struct PhaseEnvelope {
     /// The case as stated: the first phase.
     pub case: Case,
-    phases: Vec<(Case, Course)>,
+    phases: Vec<(Case, ReferenceTrajectory)>,
 }
 
 /// Which scalar moves.
@@ -46,36 +46,36 @@ pub struct Point {
     pub digest: u64,
 }
 
-impl Field {
+impl PhaseEnvelope {
     /// Follows the reference through a case at so many phases.
     pub fn new(case: Case, phases: usize) -> Result<Self, ReferenceError> {
         let phases: Result<Vec<_>, _> = (0..phases)
             .into_par_iter()
             .map(|index| {
                 let shifted = case.shifted(index as f64 / phases as f64);
-                Course::new(&shifted).map(|course| (shifted, course))
+                ReferenceTrajectory::new(&shifted).map(|trajectory| (shifted, trajectory))
             })
             .collect();
         Ok(Self { case, phases: phases? })
     }
 
     /// The reference's motion at the case's own phase.
-    pub fn course(&self) -> &Course {
+    pub fn trajectory(&self) -> &ReferenceTrajectory {
         &self.phases[0].1
     }
 
     /// The case at each phase, with the reference's motion.
-    pub fn phases(&self) -> &[(Case, Course)] {
+    pub fn phases(&self) -> &[(Case, ReferenceTrajectory)] {
         &self.phases
     }
 
-    /// How far the reference itself goes astray if its start is moved by a millionth of b_c: what no integrator can be
+    /// Error of the reference itself if its start is moved by a millionth of b_c: what no integrator can be
     /// expected to undercut in single precision.
     pub fn sensitivity(&self) -> Result<Errors, ReferenceError> {
-        let (case, course) = &self.phases[0];
-        let moved = Course::from(case, &case.moved_start(1e-6))?;
+        let (case, trajectory) = &self.phases[0];
+        let moved = ReferenceTrajectory::from(case, &case.moved_start(1e-6))?;
         let samples: Vec<_> = moved.samples().iter().cloned().enumerate().collect();
-        Ok(course.errors(&samples))
+        Ok(trajectory.errors(&samples))
     }
 
     /// A method at a rate; the core's step at so many sub-steps, too.
@@ -83,12 +83,12 @@ impl Field {
         let runs: Result<Vec<(Errors, u64)>, DesignError> = self
             .phases
             .par_iter()
-            .map(|(case, course)| {
+            .map(|(case, trajectory)| {
                 let run = match scalar {
-                    Scalar::Single => run_any::<f32>(case, course.restarts(), method, (rate, substeps)),
-                    Scalar::Double => run_any::<f64>(case, course.restarts(), method, (rate, substeps)),
+                    Scalar::Single => run_any::<f32>(case, trajectory.restarts(), method, (rate, substeps)),
+                    Scalar::Double => run_any::<f64>(case, trajectory.restarts(), method, (rate, substeps)),
                 }?;
-                Ok((course.errors(&run.readings), run.digest))
+                Ok((trajectory.errors(&run.readings), run.digest))
             })
             .collect();
         let runs = runs?;

@@ -1,12 +1,12 @@
-//! What is read off a motion, and the gauge that reads it: in f64 from coordinates, rates and phase, by one formula for
-//! every method, so that none is favoured by its own outputs.
+//! Readings of a motion: computed in f64 from coordinates, rates and phase, by one formula for every method, so that
+//! none is favoured by its own outputs.
 
 use model_core::gears::design::dynamics::MovingMasses;
 use model_core::gears::{Kinematics, Scales};
 use parameters::JointParameters;
 use peers::forces::{Always, ForceLaw, PushOnly, Smooth, SmoothPush, Spring};
 use peers::instant::{Instant, Rotor};
-use peers::motion::{Coordinates, Motion};
+use peers::motion::{Coordinates, PeerState};
 use peers::plant::{Law, Plant};
 
 /// A motion at one moment.
@@ -49,9 +49,9 @@ impl<const N: usize> Gauge<N> {
 
     /// Reads a dimensionless motion at sine and cosine of the mesh phase, with the rate of the phase and the rigid
     /// carrier's angle [rad].
-    pub fn read(&self, motion: &Motion<f64, N>, phase: &Rotor<f64>, carrier: f64) -> Reading {
+    pub fn read(&self, motion: &PeerState<f64, N>, phase: &Rotor<f64>, carrier: f64) -> Reading {
         let now = Instant::at(&self.plant, phase);
-        let Motion { position, rate } = motion;
+        let PeerState { position, rate } = motion;
         let mut deflections = Vec::with_capacity(2 * N);
         let mut mesh_force = 0.0_f64;
         for kind in 0..2 {

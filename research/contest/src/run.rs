@@ -11,8 +11,8 @@ use peers::clock::Clock;
 use peers::etd1::Etd1;
 use peers::euler::SemiImplicitEuler;
 use peers::instant::Rotor;
-use peers::motion::{Coordinates, Motion};
-use peers::moving::{self, Core, Gap, Moving, Way, Whole};
+use peers::motion::{Coordinates, PeerState};
+use peers::moving::{self, Core, Gap, GearedJoint, StepSchedule, SteppedModel};
 use peers::peer::Start;
 use peers::plant::Plant;
 use peers::runge_kutta::RungeKutta4;
@@ -21,19 +21,19 @@ use peers::trapezoid::Trapezoid;
 use peers::two_mass::{Contact, TwoMass};
 
 use crate::case::Case;
-use crate::course::Restart;
 use crate::method::{Method, SHARPNESS};
 use crate::reading::{Gauge, Reading};
 use crate::start::Deflected;
+use crate::trajectory::Restart;
 
-/// What came of it.
+/// The result of a run.
 #[derive(Debug, Clone)]
 pub struct Run {
     /// Readings with the number of the reference's sample.
     pub readings: Vec<(usize, Reading)>,
     /// Digest over the last state, and the last before every restart.
     pub digest: u64,
-    /// What the clock said that the steps took.
+    /// Measured time of the steps.
     pub seconds: f64,
 }
 
@@ -119,13 +119,13 @@ fn whole<T: Real, const N: usize, S: PeerScheme<T, N>>(
     let gauge = Gauge::new(&case.joint);
     // Angle of the rigid carrier, whole turns included, and where the clock was at the last reading.
     let (mut carrier, mut last) = (0.0, 0_u64);
-    let read = |(motion, clock): &(Motion<T, N>, Clock<T>)| {
+    let read = |(motion, clock): &(PeerState<T, N>, Clock<T>)| {
         let wide = |values: &Coordinates<T, N>| Coordinates {
             planets: values.planets.map(Real::to_f64),
             gap: values.gap.to_f64(),
             wind_up: values.wind_up.to_f64(),
         };
-        let motion = Motion { position: wide(&motion.position), rate: wide(&motion.rate) };
+        let motion = PeerState { position: wide(&motion.position), rate: wide(&motion.rate) };
         if let Some(place) = clock.carrier() {
             carrier += TAU * place.wrapping_sub(last) as i64 as f64 / TURN;
             last = place;
@@ -134,7 +134,7 @@ fn whole<T: Real, const N: usize, S: PeerScheme<T, N>>(
         let phase = Rotor { sine: now.sine.to_f64(), cosine: now.cosine.to_f64(), rate: now.rate.to_f64() };
         gauge.read(&motion, &phase, carrier)
     };
-    let mut whole = Whole::<T, N, S>::new(&plant, &starts).expect("a case has a start");
+    let mut whole = GearedJoint::<T, N, S>::new(&plant, &starts).expect("a case has a start");
     follow(case, rate, clock, &mut whole, |whole| (*whole.peer.motion(), *whole.peer.clock()), read)
 }
 
@@ -161,7 +161,7 @@ fn two_mass<T: Real, const N: usize>(
 }
 
 /// `moment` takes all that a reading is made of, which `read` makes when the clock has stopped, in the moments' order.
-fn follow<T: Real, M: Moving<T>, X>(
+fn follow<T: Real, M: SteppedModel<T>, X>(
     case: &Case,
     rate: u32,
     clock: &dyn Fn() -> f64,
@@ -169,7 +169,7 @@ fn follow<T: Real, M: Moving<T>, X>(
     moment: impl Fn(&M) -> X,
     mut read: impl FnMut(&X) -> Reading,
 ) -> Run {
-    let way = Way {
+    let schedule = StepSchedule {
         steps: steps(case, rate),
         restarts: restarts_by_step(case, rate),
         changes: torques_by_step(case, rate)
@@ -179,7 +179,7 @@ fn follow<T: Real, M: Moving<T>, X>(
     // Steps at which a sample of the reference falls.
     let divisor = greatest_divisor(rate, case.sample_rate);
     let (every, stride) = (u64::from(rate / divisor), (case.sample_rate / divisor) as usize);
-    let mut moments = Vec::with_capacity((way.steps / every) as usize + 1);
+    let mut moments = Vec::with_capacity((schedule.steps / every) as usize + 1);
     let mut until_sample = 0;
     let look = |moving: &M| {
         if until_sample == 0 {
@@ -189,7 +189,7 @@ fn follow<T: Real, M: Moving<T>, X>(
         until_sample -= 1;
     };
     let start = clock();
-    let digest = moving::follow(moving, way, look, M::step);
+    let digest = moving::follow(moving, schedule, look, M::step);
     let seconds = clock() - start;
     let readings = moments.iter().enumerate().map(|(index, moment)| (index * stride, read(moment))).collect();
     Run { readings, digest, seconds }
@@ -206,7 +206,7 @@ fn read_core<T: Real, const N: usize>(case: &Case, rate: u32, gauge: &Gauge<N>, 
         gap: values.gap.to_f64(),
         wind_up: values.wind_up.to_f64(),
     };
-    let motion = Motion { position: wide(&state.position), rate: wide(&state.rate) };
+    let motion = PeerState { position: wide(&state.position), rate: wide(&state.rate) };
     let turns = |part: u64| TAU * (part as f64 / TURN);
     let carrier = TAU * f64::from(state.rigid.turns) + turns(state.rigid.fraction);
     let speed = TAU * state.rigid.speed as f64 / TURN * f64::from(rate);
@@ -232,7 +232,7 @@ struct Carried<'a, T: Real> {
     carriers: Vec<RigidCarrier>,
 }
 
-impl<T: Real> Moving<f64> for Carried<'_, T> {
+impl<T: Real> SteppedModel<f64> for Carried<'_, T> {
     fn restart(&mut self, count: usize) {
         self.gap.restart(count);
         self.carrier = self.carriers[count].clone();

@@ -11,7 +11,7 @@ use peers::peer;
 use reference::joint::Start;
 
 use crate::case::at_rest;
-use crate::course::Restart;
+use crate::trajectory::Restart;
 
 /// 2^64.
 const TURN: f64 = 18_446_744_073_709_551_616.0;

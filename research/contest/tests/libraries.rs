@@ -3,19 +3,19 @@
 #![cfg(feature = "libraries")]
 
 use contest::catalogue::cases;
-use contest::curve::Field;
+use contest::curve::PhaseEnvelope;
 use contest::libraries::{Equations, Library};
 use model_core::gears::Scales;
 
-fn field(key: &str) -> Field {
+fn envelope(key: &str) -> PhaseEnvelope {
     let case = cases().into_iter().find(|case| case.key == key).expect("a case of the catalogue");
-    Field::new(case, 1).expect("the reference follows")
+    PhaseEnvelope::new(case, 1).expect("the reference follows")
 }
 
 #[test]
 fn the_jacobian_is_the_derivative_of_the_rates() {
-    let field = field("A");
-    let equations: Equations<3, 8> = Equations::new(&field.case).expect("a case that libraries can take");
+    let envelope = envelope("A");
+    let equations: Equations<3, 8> = Equations::new(&envelope.case).expect("a case that libraries can take");
     let state = [6.5, 5.0, 7.5, 13.0, 0.3, -0.2, 0.1, 0.4];
     let (time, small) = (1.7, 1e-6);
     for entry in 0..8 {
@@ -36,17 +36,18 @@ fn the_jacobian_is_the_derivative_of_the_rates() {
 
 #[test]
 fn every_library_comes_to_the_reference_s_motion() {
-    let field = field("A");
-    let case = &field.case;
+    let envelope = envelope("A");
+    let case = &envelope.case;
     let equations: Equations<3, 8> = Equations::new(case).expect("a case that libraries can take");
     let frequency = Scales::new(&case.joint).frequency;
-    let times: Vec<f64> =
-        (0..field.course().samples().len()).map(|k| k as f64 / f64::from(case.sample_rate) * frequency).collect();
+    let times: Vec<f64> = (0..envelope.trajectory().samples().len())
+        .map(|k| k as f64 / f64::from(case.sample_rate) * frequency)
+        .collect();
     for &library in Library::ALL {
         let error = |tolerance: f64| {
             let states = library.solve(&equations, &times, tolerance).expect("a solution");
             let readings = states.iter().zip(&times).map(|(state, time)| equations.read(*time, state));
-            field.course().errors(&readings.enumerate().collect::<Vec<_>>()).deflections
+            envelope.trajectory().errors(&readings.enumerate().collect::<Vec<_>>()).deflections
         };
         let (loose, tight) = (error(1e-3), error(1e-6));
         assert!(tight < 1e-3 && tight < 0.1 * loose, "{}: {loose:.1e}, {tight:.1e}", library.name());

@@ -1,5 +1,5 @@
-//! What a study says in sentences, made from its record: which regimes there are, whether the way to chaos is monotone,
-//! what depends on the start. What the paper's authors may have had in mind is not guessed at.
+//! The conclusions of a study in sentences, made from its record: which regimes there are, whether the route to chaos
+//! is monotone, what depends on the initial state.
 
 use super::pictures::micrometres;
 use super::record::{Class, ClassWindow, Reading, StudyRecord, Sweep};

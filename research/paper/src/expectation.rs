@@ -1,4 +1,4 @@
-//! Classes that a user asks the attractors to have (`--expect 1,1,3,chaos`), and what is said when one has another.
+//! Classes that a user expects of the attractors (`--expect 1,1,3,chaos`), and the error when one has another.
 
 use super::pictures::micrometres;
 use super::record::AttractorRecord;

@@ -1,5 +1,4 @@
-//! What a study leaves on disk: report, record, pictures and tables in one folder. Each file is written whole or not at
-//! all.
+//! The files of a study: report, record, pictures and tables in one folder, each written atomically.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

@@ -1,8 +1,7 @@
-//! What is known of the paper's joint under set P from computations that preceded this code, and how closely a study
-//! must come to it. Joints of users have no such numbers: for them only the two integrators and the two exponents are
-//! held against each other.
+//! Known results for the paper's joint under set P, from independent earlier computations, and how closely a study must
+//! reproduce them. For other joints only the two integrators and the two exponents are compared.
 
-use super::plan::{Plan, SweepStart};
+use super::plan::{StudyPlan, SweepStart};
 use super::record::{AttractorRecord, Class, ClassWindow, DeadZoneFigure, Reading};
 use report::checks::{Bound, Check, Source};
 
@@ -100,7 +99,7 @@ const NARROW_WINDOW: f64 = 45.0;
 const PERIOD_2_UPWARD: f64 = 40.0;
 
 /// Everything that can be checked of a study.
-pub fn checks(plan: &Plan, readings: &[Reading], dead_zone: &DeadZoneFigure) -> Vec<Check> {
+pub fn checks(plan: &StudyPlan, readings: &[Reading], dead_zone: &DeadZoneFigure) -> Vec<Check> {
     let mut checks = Vec::new();
     for (index, reading) in readings.iter().enumerate() {
         if plan.is_set_p {

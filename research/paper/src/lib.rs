@@ -1,8 +1,8 @@
-//! `joint paper`: redoes the study of He, Jia, Chen and Sun (2015), or the same study of another joint: stiffness wave,
-//! dead zone, attractors by backlash, bifurcation diagram. The numerics are in `numerics`.
+//! `joint paper`: repeats the study of He, Jia, Chen and Sun (2015), or the same study of another joint: stiffness
+//! wave, dead zone, attractors by backlash, bifurcation diagram. The numerics are in `numerics`.
 //!
-//! `plan` finds everything that is wrong with the request, `files` that the report can be written; `study` computes,
-//! `witness` asks a second integrator, `known` judges, `pictures` and `page` show.
+//! `plan` validates the request, `files` checks that the report can be written; `study` computes, `oracle` checks with
+//! a second integrator, `known` judges, `pictures` and `page` show.
 
 mod conclusion;
 mod dead_zone;
@@ -11,6 +11,7 @@ mod files;
 mod grid;
 mod known;
 pub mod numerics;
+mod oracle;
 mod page;
 mod pictures;
 mod plan;
@@ -20,11 +21,10 @@ mod schema;
 mod stiffness;
 mod study;
 mod windows;
-mod witness;
 
 use std::path::Path;
 
-pub use plan::{Arguments, Plan, StartChoice, Subject, SweepStart};
+pub use plan::{Arguments, StartChoice, StudyJoint, StudyPlan, SweepStart};
 pub use record::{
     AttractorRecord, Class, ClassWindow, DeadZoneError, DeadZoneFigure, History, Identity, Reading, SCHEMA_VERSION,
     Smoothed, SpectrumRecord, StiffnessFigure, StudyRecord, Sweep, SweepPoint,
@@ -44,7 +44,7 @@ pub const ABOUT: &str = "Redo the paper, or the same study of another joint: att
 /// Redoes the study; succeeds only if every check held.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
     interruption::watch()?;
-    let plan = Plan::new(arguments)?;
+    let plan = StudyPlan::new(arguments)?;
     let read: Vec<&Path> = arguments.file.as_deref().into_iter().collect();
     folder::check_files(&[("json", arguments.json.as_deref())], &read)?;
     let folder = Folder::prepare(arguments.out.as_deref(), "paper", plan.name())?;
@@ -65,7 +65,7 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
 }
 
 /// Computes everything that a plan asks for, and judges it.
-pub fn study(plan: &Plan, progress: &Progress) -> Outcome<StudyRecord> {
+pub fn study(plan: &StudyPlan, progress: &Progress) -> Outcome<StudyRecord> {
     let date = provenance::date();
     let readings = study::run(plan, progress)?;
     let dead_zone = dead_zone::figure();

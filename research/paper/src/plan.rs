@@ -1,5 +1,5 @@
-//! What `joint paper` was asked to do, with everything that can be wrong with it found before anything is computed:
-//! joints, mesh frequency, half-backlashes, expectations. Files to be written are looked at elsewhere.
+//! A validated request for a study: joints, mesh frequency, half-backlashes and expectations are checked before
+//! anything is computed.
 
 use std::path::PathBuf;
 
@@ -85,7 +85,7 @@ pub enum SweepStart {
 
 /// A joint to study.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Subject {
+pub struct StudyJoint {
     /// Its file.
     pub loaded: Loaded,
     /// Its parameters, with the mesh frequency of the study.
@@ -98,9 +98,9 @@ pub struct Subject {
 
 /// Everything that is to be computed.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Plan {
+pub struct StudyPlan {
     /// Joints.
-    pub subjects: Vec<Subject>,
+    pub subjects: Vec<StudyJoint>,
     /// Half-backlashes of the attractors [m].
     pub values: Vec<f64>,
     /// Half-backlashes of the diagrams, rising [m].
@@ -115,15 +115,15 @@ pub struct Plan {
     pub replay: String,
 }
 
-impl Plan {
+impl StudyPlan {
     /// Reads all arguments.
     pub fn new(arguments: &Arguments) -> Outcome<Self> {
         let files = match &arguments.file {
             Some(file) => vec![file.clone()],
             None => vec!["paper".into(), "paper_printed".into()],
         };
-        let subjects: Vec<Subject> =
-            files.iter().map(|file| Subject::new(named::load(file)?, arguments.omega)).collect::<Outcome<_>>()?;
+        let subjects: Vec<StudyJoint> =
+            files.iter().map(|file| StudyJoint::new(named::load(file)?, arguments.omega)).collect::<Outcome<_>>()?;
         let own = subjects[0].half_backlash();
         if own == 0.0 && (arguments.half_backlash.is_none() || arguments.grid.is_none()) {
             return Err(Failure::new(format!("{} has no backlash to scale the study by", subjects[0].loaded.name))
@@ -160,7 +160,7 @@ impl Plan {
     }
 }
 
-impl Subject {
+impl StudyJoint {
     fn new(loaded: Loaded, omega: Option<f64>) -> Outcome<Self> {
         let mut parameters = loaded.file.parameters.clone();
         if let Some(omega) = omega {
@@ -202,7 +202,7 @@ impl Subject {
         System::new(&parameters, self.drive_torque, self.load_torque).map_err(|error| self.failure(error))
     }
 
-    /// What went wrong with this joint, and the mend.
+    /// An error about this joint, with the help.
     pub fn failure(&self, error: StudyError) -> Failure {
         let help = match error {
             StudyError::SmoothDeadZone => "write dead_zone = \"sharp\" in [contact] of a copy of the file",

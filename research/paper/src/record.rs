@@ -1,6 +1,5 @@
-//! What a study leaves behind, as `docs/reference/paper-study.md` describes it and
-//! `docs/reference/paper-study.schema.json` says it for machines. How it is computed and drawn is decided elsewhere;
-//! quantities without a unit in their key are dimensionless: lengths over b_c, times over 1/omega_n.
+//! The record of a study, as described in `docs/reference/paper-study.md` and, for machines, `docs/reference/paper-study.schema.json`.
+//! Quantities without a unit in their key are dimensionless: lengths over b_c, times over 1/omega_n.
 
 use serde::Serialize;
 

@@ -6,11 +6,11 @@ use parameters::DampingLaw;
 use rayon::prelude::*;
 
 use super::pictures::micrometres;
-use super::plan::{Plan, Subject, SweepStart};
+use super::plan::{StudyJoint, StudyPlan, SweepStart};
 use super::record::{AttractorRecord, History, Reading, SpectrumRecord, Sweep, SweepPoint};
-use super::{windows, witness};
+use super::{oracle, windows};
 use crate::numerics::attractor::{self, Class, Effort};
-use crate::numerics::motion::Motion;
+use crate::numerics::integrator::EventIntegrator;
 use crate::numerics::signal::{SAMPLES, Signal};
 use report::failure::{Failure, Outcome};
 use report::interruption;
@@ -18,10 +18,12 @@ use report::progress::Progress;
 use report::spectrum::{Mean, Window, amplitudes};
 
 /// For attractors of the table: exponents of chaos come to about 0.0012 (one standard deviation).
-const TABLE: Effort = Effort { transient: 300, patience: 1000, alignment: 60, points: 1000, chaotic_periods: 12_000 };
+const TABLE: Effort =
+    Effort { transient: 300, longest_transient: 1000, alignment: 60, points: 1000, chaotic_periods: 12_000 };
 
 /// For points of a diagram.
-const DIAGRAM: Effort = Effort { transient: 200, patience: 600, alignment: 40, points: 200, chaotic_periods: 400 };
+const DIAGRAM: Effort =
+    Effort { transient: 200, longest_transient: 600, alignment: 40, points: 200, chaotic_periods: 400 };
 
 /// Poincare points of an attractor without a period that are kept, and among which distinct ones are counted.
 const KEPT_POINTS: usize = 300;
@@ -45,7 +47,7 @@ const HIGHEST_LINE: f64 = 6.0;
 const ATTRACTOR_WORK: u64 = 20;
 
 /// Everything, for every joint of the plan.
-pub fn run(plan: &Plan, progress: &Progress) -> Outcome<Vec<Reading>> {
+pub fn run(plan: &StudyPlan, progress: &Progress) -> Outcome<Vec<Reading>> {
     let points = plan.subjects.len() * plan.grid.len() * plan.starts.len();
     let attractors = (plan.subjects.len() * plan.values.len()) as u64;
     progress.run("computing", points as u64 + ATTRACTOR_WORK * attractors);
@@ -53,7 +55,7 @@ pub fn run(plan: &Plan, progress: &Progress) -> Outcome<Vec<Reading>> {
 }
 
 /// One joint: its diagrams beside its attractors.
-fn reading(subject: &Subject, plan: &Plan, progress: &Progress) -> Outcome<Reading> {
+fn reading(subject: &StudyJoint, plan: &StudyPlan, progress: &Progress) -> Outcome<Reading> {
     let parameters = &subject.parameters;
     let scales = Scales::new(parameters);
     let sweep = |start: &SweepStart| sweep(subject, *start, &plan.grid, progress);
@@ -93,11 +95,11 @@ fn reading(subject: &Subject, plan: &Plan, progress: &Progress) -> Outcome<Readi
 }
 
 /// One diagram. Points from rest are shared out; a chain of points cannot be split.
-fn sweep(subject: &Subject, start: SweepStart, grid: &[f64], progress: &Progress) -> Outcome<Sweep> {
+fn sweep(subject: &StudyJoint, start: SweepStart, grid: &[f64], progress: &Progress) -> Outcome<Sweep> {
     let from_rest = |half_backlash: &f64| {
         stop_if_asked()?;
         let system = subject.system(*half_backlash)?;
-        let point = point(subject, *half_backlash, &mut Motion::from_rest(&system))?;
+        let point = point(subject, *half_backlash, &mut EventIntegrator::from_rest(&system))?;
         progress.done(1);
         Ok(point)
     };
@@ -117,14 +119,14 @@ fn stop_if_asked() -> Outcome<()> {
 }
 
 /// One point of a diagram.
-fn point(subject: &Subject, half_backlash: f64, motion: &mut Motion<'_>) -> Outcome<SweepPoint> {
+fn point(subject: &StudyJoint, half_backlash: f64, motion: &mut EventIntegrator<'_>) -> Outcome<SweepPoint> {
     let found = attractor::find(motion, &DIAGRAM).map_err(|error| at(subject, half_backlash, error))?;
     let x_sp = found.cycle().iter().map(|point| rounded(point[0])).collect();
     Ok(SweepPoint { half_backlash_m: half_backlash, class: found.class, exponent: found.exponent, x_sp })
 }
 
 /// Points one after another, each from where the one before ended.
-fn carried(subject: &Subject, start: SweepStart, grid: &[f64], progress: &Progress) -> Outcome<Vec<SweepPoint>> {
+fn carried(subject: &StudyJoint, start: SweepStart, grid: &[f64], progress: &Progress) -> Outcome<Vec<SweepPoint>> {
     let mut order: Vec<f64> = grid.to_vec();
     if start == SweepStart::Down {
         order.reverse();
@@ -135,8 +137,8 @@ fn carried(subject: &Subject, start: SweepStart, grid: &[f64], progress: &Progre
         stop_if_asked()?;
         let system = subject.system(half_backlash)?;
         let mut motion = match state {
-            None => Motion::from_rest(&system),
-            Some(state) => Motion::new(&system, state),
+            None => EventIntegrator::from_rest(&system),
+            Some(state) => EventIntegrator::new(&system, state),
         };
         points.push(point(subject, half_backlash, &mut motion)?);
         state = Some(motion.state());
@@ -149,15 +151,15 @@ fn carried(subject: &Subject, start: SweepStart, grid: &[f64], progress: &Progre
 }
 
 /// One row of the table, with what Figs 5-8 show of it.
-fn attractor_at(subject: &Subject, half_backlash: f64) -> Outcome<AttractorRecord> {
+fn attractor_at(subject: &StudyJoint, half_backlash: f64) -> Outcome<AttractorRecord> {
     let failed = |error| at(subject, half_backlash, error);
     let system = subject.system(half_backlash)?;
-    let mut motion = Motion::from_rest(&system);
+    let mut motion = EventIntegrator::from_rest(&system);
     let mut found = attractor::find(&mut motion, &TABLE).map_err(failed)?;
     let two = attractor::by_two_trajectories(&system, &found, &TABLE).map_err(failed)?;
     let between = attractor::between_planets(&motion, &TABLE).map_err(failed)?;
     found.points.truncate(KEPT_POINTS);
-    let reference_distance = witness::distance(subject, half_backlash, &motion, found.class);
+    let reference_distance = oracle::distance(subject, half_backlash, &motion, found.class);
     let (periods, window) = match found.class {
         Class::Periodic(period) => (period as u32 * SHORT_SIGNAL.div_ceil(period as u32), Window::Rectangular),
         _ => (LONG_SIGNAL, Window::Hann),
@@ -183,7 +185,7 @@ fn attractor_at(subject: &Subject, half_backlash: f64) -> Outcome<AttractorRecor
     })
 }
 
-fn at(subject: &Subject, half_backlash: f64, error: crate::numerics::system::StudyError) -> Failure {
+fn at(subject: &StudyJoint, half_backlash: f64, error: crate::numerics::system::StudyError) -> Failure {
     subject.failure(error).while_doing(format!("at b = {} um", micrometres(half_backlash)))
 }
 

@@ -1,15 +1,15 @@
-//! Stretches of one class in a sweep. What a class means is `study`'s, how a stretch is drawn the pictures'.
+//! Ranges of half-backlash with one class in a sweep.
 
 use super::record::{Class, ClassWindow, SweepPoint};
 
 /// Neighbouring points of one class, in the order of the points.
 pub fn windows(points: &[SweepPoint]) -> Vec<ClassWindow> {
-    let stretches = points.chunk_by(|one, next| one.class == next.class);
-    stretches
-        .map(|stretch| ClassWindow {
-            from_m: stretch[0].half_backlash_m,
-            to_m: stretch[stretch.len() - 1].half_backlash_m,
-            class: stretch[0].class,
+    let segments = points.chunk_by(|one, next| one.class == next.class);
+    segments
+        .map(|segment| ClassWindow {
+            from_m: segment[0].half_backlash_m,
+            to_m: segment[segment.len() - 1].half_backlash_m,
+            class: segment[0].class,
         })
         .collect()
 }

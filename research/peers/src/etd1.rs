@@ -9,7 +9,7 @@ use model_core::numbers::Real;
 
 use crate::forces::{ForceLaw, Push, Spring};
 use crate::instant::{Instant, Rotor};
-use crate::motion::{Coordinates, Motion};
+use crate::motion::{Coordinates, PeerState};
 use crate::plant::{Flow, Plant};
 use crate::scheme::{Phases, Scheme};
 
@@ -36,9 +36,9 @@ impl<T: Real, const N: usize> Scheme<T, N> for Etd1<T> {
         plant: &Plant<T, N>,
         _: &Push<T>,
         phases: &Phases<'_, T>,
-        motion: &mut Motion<T, N>,
+        motion: &mut PeerState<T, N>,
     ) {
-        let Motion { position, rate } = motion;
+        let PeerState { position, rate } = motion;
         let now = Instant::at(plant, phases.start);
         let flow = &plant.flow;
         // What the closed joint at mean stiffness has too much of.

@@ -5,7 +5,7 @@ use model_core::numbers::Real;
 
 use crate::forces::{ForceLaw, Push, acceleration};
 use crate::instant::{Instant, Rotor};
-use crate::motion::Motion;
+use crate::motion::PeerState;
 use crate::plant::Plant;
 use crate::scheme::{Phases, Scheme};
 
@@ -26,7 +26,7 @@ impl<T: Real, const N: usize> Scheme<T, N> for SemiImplicitEuler {
         plant: &Plant<T, N>,
         push: &Push<T>,
         phases: &Phases<'_, T>,
-        motion: &mut Motion<T, N>,
+        motion: &mut PeerState<T, N>,
     ) {
         let now = Instant::at(plant, phases.start);
         let change = acceleration::<T, N, L, COMPLIANT>(plant, push, &now, &motion.position, &motion.rate);

@@ -32,14 +32,14 @@ impl<T: Real, const N: usize> Coordinates<T, N> {
 
 /// Position and rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Motion<T, const N: usize> {
+pub struct PeerState<T, const N: usize> {
     /// Coordinates.
     pub position: Coordinates<T, N>,
     /// Their rates.
     pub rate: Coordinates<T, N>,
 }
 
-impl<T: Real, const N: usize> Motion<T, N> {
+impl<T: Real, const N: usize> PeerState<T, N> {
     /// Digest over every bit.
     pub fn digest(&self) -> u64 {
         [&self.position, &self.rate].into_iter().fold(digest::START, |running, values| {

@@ -1,5 +1,4 @@
-//! What a comparison of methods runs, on the host as on the board: something that moves in steps, and one run of it
-//! under torques that change and restarts.
+//! A steppable model, and one run of it under changing torques and restarts, the same on the host and on the board.
 
 use model_core::gears::{Model, State, Torques};
 use model_core::numbers::{Real, digest};
@@ -9,8 +8,8 @@ use crate::plant::Plant;
 use crate::scheme::Scheme;
 use crate::two_mass::{TwoMass, TwoMassPeer};
 
-/// Something that moves in steps.
-pub trait Moving<T> {
+/// A model that moves in steps.
+pub trait SteppedModel<T> {
     /// Puts it back to the so-many-th start; nothing if there is none.
     fn restart(&mut self, count: usize);
     /// Torques from now on [N m].
@@ -30,7 +29,7 @@ pub struct Core<'a, T: Real, const N: usize> {
 }
 
 /// A joint by a scheme.
-pub struct Whole<'a, T: Real, const N: usize, S> {
+pub struct GearedJoint<'a, T: Real, const N: usize, S> {
     /// The joint.
     pub peer: Peer<'a, T, N, S>,
     plant: &'a Plant<T, N>,
@@ -54,7 +53,7 @@ impl<'a, T: Real, const N: usize> Core<'a, T, N> {
     }
 }
 
-impl<'a, T: Real, const N: usize, S: Scheme<T, N>> Whole<'a, T, N, S> {
+impl<'a, T: Real, const N: usize, S: Scheme<T, N>> GearedJoint<'a, T, N, S> {
     /// At the first of its starts; none if there is none.
     pub fn new(plant: &'a Plant<T, N>, starts: &'a [Start<T, N>]) -> Option<Self> {
         Some(Self { peer: Peer::new(plant, starts.first()?), plant, starts })
@@ -70,7 +69,7 @@ impl<'a, T: Real> Gap<'a, T> {
     }
 }
 
-impl<T: Real, const N: usize> Moving<T> for Core<'_, T, N> {
+impl<T: Real, const N: usize> SteppedModel<T> for Core<'_, T, N> {
     fn restart(&mut self, count: usize) {
         if let Some(start) = self.starts.get(count) {
             self.model.set_state(*start);
@@ -91,7 +90,7 @@ impl<T: Real, const N: usize> Moving<T> for Core<'_, T, N> {
     }
 }
 
-impl<T: Real, const N: usize, S: Scheme<T, N>> Moving<T> for Whole<'_, T, N, S> {
+impl<T: Real, const N: usize, S: Scheme<T, N>> SteppedModel<T> for GearedJoint<'_, T, N, S> {
     fn restart(&mut self, count: usize) {
         if let Some(start) = self.starts.get(count) {
             self.peer = Peer::new(self.plant, start);
@@ -112,7 +111,7 @@ impl<T: Real, const N: usize, S: Scheme<T, N>> Moving<T> for Whole<'_, T, N, S> 
     }
 }
 
-impl<T: Real> Moving<T> for Gap<'_, T> {
+impl<T: Real> SteppedModel<T> for Gap<'_, T> {
     fn restart(&mut self, count: usize) {
         if let Some([place, rate]) = self.starts.get(count) {
             self.peer = TwoMassPeer::new(self.model, *place, *rate);
@@ -135,7 +134,7 @@ impl<T: Real> Moving<T> for Gap<'_, T> {
 
 /// How far something moves, and when what changes: restarts and torques (drive, load) by the step before which they come,
 /// both in order.
-pub struct Way<R, C> {
+pub struct StepSchedule<R, C> {
     /// Number of steps.
     pub steps: u64,
     /// Steps of the restarts.
@@ -144,18 +143,18 @@ pub struct Way<R, C> {
     pub changes: C,
 }
 
-/// Moves something along a way. `look` is called before each step and after the last, ahead of what changes there; `step`
+/// Moves something along a schedule. `look` is called before each step and after the last, ahead of what changes there; `step`
 /// takes a step. The digest is over the last state, and the last before every restart.
-pub fn follow<T: Real, M: Moving<T>>(
+pub fn follow<T: Real, M: SteppedModel<T>>(
     moving: &mut M,
-    way: Way<impl Iterator<Item = u64>, impl Iterator<Item = (u64, T, T)>>,
+    schedule: StepSchedule<impl Iterator<Item = u64>, impl Iterator<Item = (u64, T, T)>>,
     mut look: impl FnMut(&M),
     mut step: impl FnMut(&mut M),
 ) -> u64 {
-    let (mut restarts, mut changes) = (way.restarts.zip(1..).peekable(), way.changes.peekable());
+    let (mut restarts, mut changes) = (schedule.restarts.zip(1..).peekable(), schedule.changes.peekable());
     let mut torques = (T::ZERO, T::ZERO);
     let mut digest = digest::START;
-    for now in 0..=way.steps {
+    for now in 0..=schedule.steps {
         look(moving);
         while let Some((_, count)) = restarts.next_if(|restart| restart.0 <= now) {
             digest = digest::chain(digest, moving.digest());
@@ -166,7 +165,7 @@ pub fn follow<T: Real, M: Moving<T>>(
             moving.set_torques(drive, load);
             torques = (drive, load);
         }
-        if now < way.steps {
+        if now < schedule.steps {
             step(moving);
         }
     }

@@ -1,5 +1,4 @@
-//! A joint run by a scheme, one fixed step at a time, in the units of the plant. Which step is fine enough is not asked
-//! here.
+//! A joint run by a scheme, one fixed step at a time, in the units of the plant.
 
 use core::array;
 
@@ -8,7 +7,7 @@ use model_core::numbers::Real;
 use crate::clock::{Ahead, Clock};
 use crate::forces::{Always, ForceLaw, Push, PushOnly, Smooth, SmoothPush};
 use crate::instant::{Instant, PerMesh};
-use crate::motion::{Coordinates, Motion};
+use crate::motion::{Coordinates, PeerState};
 use crate::plant::{Law, Plant};
 use crate::scheme::{Phases, Scheme};
 
@@ -19,7 +18,7 @@ pub struct Peer<'a, T: Real, const N: usize, S> {
     scheme: S,
     push: Push<T>,
     clock: Clock<T>,
-    motion: Motion<T, N>,
+    motion: PeerState<T, N>,
 }
 
 /// Where a peer starts.
@@ -40,7 +39,7 @@ impl<'a, T: Real, const N: usize, S: Scheme<T, N>> Peer<'a, T, N, S> {
     pub fn new(plant: &'a Plant<T, N>, start: &Start<T, N>) -> Self {
         let clock = Clock::new(plant, start.rigid_place, start.rigid_speed);
         let instant = Instant::at(plant, clock.now());
-        let mut motion = Motion { position: start.position, rate: start.rate };
+        let mut motion = PeerState { position: start.position, rate: start.rate };
         for i in 0..N {
             motion.position.planets[i] += instant.error[0][i];
             motion.rate.planets[i] += instant.error_rate[0][i];
@@ -83,7 +82,7 @@ impl<'a, T: Real, const N: usize, S: Scheme<T, N>> Peer<'a, T, N, S> {
     }
 
     /// The motion now.
-    pub fn motion(&self) -> &Motion<T, N> {
+    pub fn motion(&self) -> &PeerState<T, N> {
         &self.motion
     }
 

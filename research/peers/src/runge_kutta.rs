@@ -5,7 +5,7 @@ use model_core::numbers::Real;
 
 use crate::forces::{ForceLaw, Push, acceleration};
 use crate::instant::{Instant, Rotor};
-use crate::motion::Motion;
+use crate::motion::PeerState;
 use crate::plant::Plant;
 use crate::scheme::{Phases, Scheme};
 
@@ -28,12 +28,12 @@ impl<T: Real, const N: usize> Scheme<T, N> for RungeKutta4<T, N> {
         plant: &Plant<T, N>,
         push: &Push<T>,
         phases: &Phases<'_, T>,
-        motion: &mut Motion<T, N>,
+        motion: &mut PeerState<T, N>,
     ) {
         let (middle, end) = (Instant::at(plant, phases.middle), Instant::at(plant, phases.end));
         let step = plant.step;
         let half = step * T::HALF;
-        let Motion { position, rate } = motion;
+        let PeerState { position, rate } = motion;
         let first = acceleration::<T, N, L, COMPLIANT>(plant, push, &self.start, position, rate);
         let coasted = position.plus::<COMPLIANT>(half, rate);
         let second =
@@ -57,7 +57,7 @@ impl<T: Real, const N: usize> Scheme<T, N> for RungeKutta4<T, N> {
         let sum = first.plus::<COMPLIANT>(T::ONE, &both);
         let sixth = step * T::SIXTH;
         let all = sum.plus::<COMPLIANT>(T::ONE, &both).plus::<COMPLIANT>(T::ONE, &fourth);
-        *motion = Motion {
+        *motion = PeerState {
             position: coasted.plus::<COMPLIANT>(step * sixth, &sum),
             rate: rate.plus::<COMPLIANT>(sixth, &all),
         };

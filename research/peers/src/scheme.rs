@@ -1,10 +1,10 @@
-//! What a fixed-step method has to offer to be run over the joint. The methods are in files of their own.
+//! The interface of a fixed-step method.
 
 use model_core::numbers::Real;
 
 use crate::forces::{ForceLaw, Push};
 use crate::instant::Rotor;
-use crate::motion::Motion;
+use crate::motion::PeerState;
 use crate::plant::Plant;
 
 /// The mesh phase over a step.
@@ -34,6 +34,6 @@ pub trait Scheme<T: Real, const N: usize>: Sized {
         plant: &Plant<T, N>,
         push: &Push<T>,
         phases: &Phases<'_, T>,
-        motion: &mut Motion<T, N>,
+        motion: &mut PeerState<T, N>,
     );
 }

@@ -1,12 +1,12 @@
 //! The implicit trapezoidal rule with an active set: contacts at the end of the step are guessed, the then linear
-//! equations solved, and the guess mended until it holds. Planets meet only in sun and carrier, so that what is solved
+//! equations solved, and the guess corrected until it holds. Planets meet only in sun and carrier, so that what is solved
 //! is two by two; kinks inside the step are not looked for.
 
 use model_core::numbers::Real;
 
 use crate::forces::{ForceLaw, Push, acceleration};
 use crate::instant::{Instant, PerMesh, Rotor};
-use crate::motion::{Coordinates, Motion};
+use crate::motion::{Coordinates, PeerState};
 use crate::plant::Plant;
 use crate::scheme::{Phases, Scheme};
 
@@ -55,7 +55,7 @@ impl<T: Real, const N: usize> Scheme<T, N> for Trapezoid<T, N> {
         plant: &Plant<T, N>,
         push: &Push<T>,
         phases: &Phases<'_, T>,
-        motion: &mut Motion<T, N>,
+        motion: &mut PeerState<T, N>,
     ) {
         let before = match self.last {
             Some(before) => before,
@@ -69,15 +69,15 @@ impl<T: Real, const N: usize> Scheme<T, N> for Trapezoid<T, N> {
         let rate = motion.rate.plus::<COMPLIANT>(half, &before);
         // x + h (v + v1) / 2 with v1 = v + h (a + a1) / 2, the share of a1 apart.
         let position = motion.position.plus::<COMPLIANT>(half, &motion.rate).plus::<COMPLIANT>(half, &rate);
-        let predicted = Motion { position, rate };
+        let predicted = PeerState { position, rate };
         for _ in 0..GUESSES {
             let after = self.solve::<L, COMPLIANT>(plant, push, &now, &predicted);
-            *motion = Motion {
+            *motion = PeerState {
                 position: position.plus::<COMPLIANT>(half * half, &after),
                 rate: rate.plus::<COMPLIANT>(half, &after),
             };
             self.last = Some(after);
-            if self.mend::<L>(plant, &now, motion) {
+            if self.correct_contacts::<L>(plant, &now, motion) {
                 break;
             }
         }
@@ -92,7 +92,7 @@ impl<T: Real, const N: usize> Trapezoid<T, N> {
         plant: &Plant<T, N>,
         push: &Push<T>,
         now: &Instant<T, N>,
-        predicted: &Motion<T, N>,
+        predicted: &PeerState<T, N>,
     ) -> Coordinates<T, N> {
         let half = plant.step * T::HALF;
         let mesh = |kind: usize, i: usize, position: T, rate: T| {
@@ -105,7 +105,7 @@ impl<T: Real, const N: usize> Trapezoid<T, N> {
                 per_acceleration: half * (half * stiffness + damping),
             }
         };
-        let Motion { position, rate } = predicted;
+        let PeerState { position, rate } = predicted;
         let mut inverse = [T::ZERO; N];
         let mut driven = [T::ZERO; N];
         let mut by_gap = [T::ZERO; N];
@@ -160,7 +160,7 @@ impl<T: Real, const N: usize> Trapezoid<T, N> {
     }
 
     #[inline(always)]
-    fn carrier<const COMPLIANT: bool>(plant: &Plant<T, N>, push: &Push<T>, predicted: &Motion<T, N>) -> Carrier<T> {
+    fn carrier<const COMPLIANT: bool>(plant: &Plant<T, N>, push: &Push<T>, predicted: &PeerState<T, N>) -> Carrier<T> {
         if !COMPLIANT {
             let wind_up = Linear { given: T::ZERO, per_acceleration: T::ZERO };
             return Carrier { given: push.carrier, per_force: plant.carrier, wind_up };
@@ -183,7 +183,12 @@ impl<T: Real, const N: usize> Trapezoid<T, N> {
 
     /// Takes the contacts from the end of the step; whether they were as guessed.
     #[inline(always)]
-    fn mend<L: ForceLaw<T>>(&mut self, plant: &Plant<T, N>, now: &Instant<T, N>, end: &Motion<T, N>) -> bool {
+    fn correct_contacts<L: ForceLaw<T>>(
+        &mut self,
+        plant: &Plant<T, N>,
+        now: &Instant<T, N>,
+        end: &PeerState<T, N>,
+    ) -> bool {
         let mut held = true;
         for kind in 0..2 {
             for i in 0..N {

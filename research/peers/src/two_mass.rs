@@ -1,6 +1,6 @@
-//! The gap model that controls people use: two masses, one gap, and either a spring-damper at its ends or an impact with
-//! restitution. It knows neither planets nor ripple nor errors, so that only the output angle and the force can be read
-//! off it.
+//! The gap model that is common in control: two masses, one gap, and either a spring-damper at its ends or an impact
+//! with restitution. It has no planets, ripple or errors, so that only the output angle and the force can be read from
+//! it.
 
 use model_core::numbers::Real;
 

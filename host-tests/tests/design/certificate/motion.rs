@@ -18,7 +18,7 @@ const FINER: u32 = 16;
 const CHANGE: f64 = 1e-8;
 const GROWTH: f64 = 100.0;
 
-/// What became of a case.
+/// The result of a case.
 #[derive(Debug, Clone, Copy)]
 pub struct Outcome {
     /// RMS error of the mesh deflections over their standard deviations.

@@ -1,5 +1,4 @@
-//! Reads the files of `data/exponential`. Numbers there are nearest f64s, so nothing is lost; what is to be computed
-//! from them is not decided here.
+//! Reads the files of `data/exponential`. Numbers there are nearest f64s, so nothing is lost.
 
 use nalgebra::DMatrix;
 

@@ -1,10 +1,10 @@
-//! A recorded drive: a CSV with time, motor torque and load torque at any sampling rate, even an uneven one. Between
-//! rows torques are taken as straight lines, and a command is their mean over its interval, so that impulses are kept
-//! at any rate; nothing is extrapolated but the last row, which holds.
+//! A recorded torque profile: a CSV file with time, motor torque and load torque at any sampling rate, even or uneven.
+//! Torques are linear between rows; a command is the mean over its interval, which keeps impulses at any rate. After
+//! the last row its torques hold.
 
 use std::path::Path;
 
-use super::torques::{STRONGEST, Torques};
+use super::torques::{MAX_TORQUE, Torques};
 use report::failure::{Failure, Outcome};
 use report::number::TYPED;
 
@@ -13,7 +13,7 @@ pub const COLUMNS: [&str; 3] = ["time_s", "motor_torque_Nm", "load_torque_Nm"];
 
 /// Rows of the file, in rising time from 0.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Recording {
+pub struct RecordedTorques {
     rows: Vec<Row>,
 }
 
@@ -25,7 +25,7 @@ struct Row {
     integral: Torques,
 }
 
-impl Recording {
+impl RecordedTorques {
     /// Reads a file; the first row is time 0 of the run, whatever its time.
     pub fn read(path: &Path) -> Outcome<Self> {
         let text = std::fs::read_to_string(path).map_err(|error| {
@@ -126,9 +126,9 @@ fn number(line: u64, column: &str, text: &str) -> Outcome<f64> {
     match text.parse::<f64>() {
         Ok(value) if !value.is_finite() => Err(Failure::new(format!("line {line}: {column} is {value}"))
             .with_help("every value must be a finite number: remove the row or fill it in")),
-        Ok(value) if column != COLUMNS[0] && value.abs() > STRONGEST => {
+        Ok(value) if column != COLUMNS[0] && value.abs() > MAX_TORQUE => {
             Err(Failure::new(format!("line {line}: {column} is {}", TYPED.write(value)))
-                .with_help(format!("it may be from -{STRONGEST} to {STRONGEST} N m: check the unit")))
+                .with_help(format!("it may be from -{MAX_TORQUE} to {MAX_TORQUE} N m: check the unit")))
         }
         Ok(value) => Ok(value),
         Err(_) => Err(Failure::new(format!("line {line}: {column} is `{text}`, not a number"))
@@ -154,7 +154,7 @@ mod tests {
     use super::*;
 
     fn refused(text: &str) -> String {
-        Recording::parse(text).expect_err("a bad file").message().to_owned()
+        RecordedTorques::parse(text).expect_err("a bad file").message().to_owned()
     }
 
     #[test]
@@ -182,7 +182,7 @@ mod tests {
     fn columns_may_stand_in_any_order_beside_others_and_comments() {
         let text =
             "\u{feff}# a drive's log\r\nload_torque_Nm, \"time_s\", phase, motor_torque_Nm\r\n6,10,x,1\n12,11,y,2\n";
-        let recording = Recording::parse(text).expect("a good file");
+        let recording = RecordedTorques::parse(text).expect("a good file");
         assert_eq!(recording.duration(), 1.0);
         assert_eq!(recording.mean(0.0, 1.0), Torques { drive: 1.5, load: 9.0 });
     }
@@ -194,7 +194,7 @@ mod tests {
         for time in &times {
             text += &format!("{time},{},{}\n", (40.0 * time).sin(), time * time);
         }
-        let recording = Recording::parse(&text).expect("a good file");
+        let recording = RecordedTorques::parse(&text).expect("a good file");
         let rows: f64 =
             times.windows(2).map(|t| 0.5 * (t[1] - t[0]) * ((40.0 * t[0]).sin() + (40.0 * t[1]).sin())).sum();
         let duration = recording.duration();
@@ -210,7 +210,7 @@ mod tests {
     #[test]
     fn after_the_last_row_its_torque_holds() {
         let text = "time_s,motor_torque_Nm,load_torque_Nm\n0,0,0\n1,2,3\n";
-        let recording = Recording::parse(text).expect("a good file");
+        let recording = RecordedTorques::parse(text).expect("a good file");
         assert_eq!(recording.mean(5.0, 6.0), Torques { drive: 2.0, load: 3.0 });
     }
 }

@@ -1,5 +1,5 @@
-//! Runs of the roles that control: one exchange after the other with an observer, or a motion streamed to a whole loop.
-//! Every wait has a deadline.
+//! Runs of the roles that control: one exchange a control period with an observer, or a motion streamed to a board that
+//! runs the whole loop. Every wait has a timeout.
 
 use std::time::{Duration, Instant};
 
@@ -8,14 +8,14 @@ use link::messages::{FromBoard, RunMode, Schedule, ToBoard};
 use link::virtual_joint::{KNOTS_PER_SCHEDULE, Knot, LoopSample};
 use model_core::virtual_joint::fault::{Fault, FixedPoint};
 
-use super::{SILENCE, Session};
+use super::{ANSWER_TIMEOUT, Session};
 use crate::trip;
 use report::failure::{Failure, Outcome};
 
 /// Schedules under way at once: the board's receive buffer holds two frames at least.
-const UNDER_WAY: usize = 2;
+const SCHEDULES_IN_FLIGHT: usize = 2;
 /// In real time the host says this often that it is alive.
-const ALIVE: Duration = Duration::from_millis(30);
+const KEEP_ALIVE_INTERVAL: Duration = Duration::from_millis(30);
 
 impl Session<'_> {
     /// Sends the samples and set-point of a control period and waits for the answer.
@@ -23,7 +23,7 @@ impl Session<'_> {
         let tick = exchange.tick;
         let (horizon, commands) = (tick.wrapping_add(1), [exchange].into_iter().collect());
         let exchanges = ToBoard::Exchanges(Schedule { sequence: tick as u16, horizon, commands });
-        self.ask(&exchanges, &format!("answer to control period {tick}"), SILENCE, |message| match message {
+        self.ask(&exchanges, &format!("answer to control period {tick}"), ANSWER_TIMEOUT, |message| match message {
             FromBoard::Answer(answered) if answered.tick == horizon => Some(Ok(answered)),
             FromBoard::Hello(_) => Some(Err(started_anew())),
             _ => None,
@@ -33,9 +33,10 @@ impl Session<'_> {
     /// Gives the board faults between joint and controller, before the motion begins.
     pub fn add_faults(&mut self, faults: &[Fault<FixedPoint<f32>>]) -> Outcome<()> {
         for fault in faults {
-            let taken = self.ask(&ToBoard::Fault(*fault), "answer to a fault of the test", SILENCE, |message| {
-                if let FromBoard::FaultTaken { taken } = message { Some(taken) } else { None }
-            })?;
+            let taken =
+                self.ask(&ToBoard::Fault(*fault), "answer to a fault of the test", ANSWER_TIMEOUT, |message| {
+                    if let FromBoard::FaultTaken { taken } = message { Some(taken) } else { None }
+                })?;
             if !taken {
                 return Err(Failure::check_failed("the board does not take a fault of the test")
                     .with_help("in real time it may have begun already: run with --mode lockstep"));
@@ -54,22 +55,22 @@ impl Session<'_> {
         let (mut next, mut sequence, mut board_tick) = (0, 0_u16, 0);
         let (mut heard, mut said) = (Instant::now(), Instant::now());
         while samples.last().map_or(0, |sample| sample.tick) < last {
-            while self.unanswered.count() < UNDER_WAY {
+            while self.unacknowledged.count() < SCHEDULES_IN_FLIGHT {
                 let waiting = knots[..next].iter().rev().take_while(|knot| knot.tick >= board_tick).count();
                 let count = capacity.saturating_sub(waiting).min(KNOTS_PER_SCHEDULE).min(knots.len() - next);
                 let whole = count == KNOTS_PER_SCHEDULE || (count > 0 && count == knots.len() - next);
-                if !whole && (said.elapsed() < ALIVE || settings.mode == RunMode::Lockstep) {
+                if !whole && (said.elapsed() < KEEP_ALIVE_INTERVAL || settings.mode == RunMode::Lockstep) {
                     break;
                 }
                 let commands = knots[next..next + count].iter().copied().collect();
                 next += count;
                 let horizon = knots.get(next).map_or(periods + beyond, |knot| knot.tick);
-                self.unanswered.sent(sequence, &[]);
+                self.unacknowledged.sent(sequence, &[]);
                 self.send(&ToBoard::Trajectory(Schedule { sequence, horizon, commands }))?;
                 sequence = sequence.wrapping_add(1);
                 said = Instant::now();
             }
-            for message in self.hear()? {
+            for message in self.receive()? {
                 heard = Instant::now();
                 match message {
                     FromBoard::Accepted(accepted) => board_tick = accepted.tick.max(board_tick),
@@ -87,7 +88,7 @@ impl Session<'_> {
                     _ => {}
                 }
             }
-            if heard.elapsed() > SILENCE {
+            if heard.elapsed() > ANSWER_TIMEOUT {
                 return Err(self.silent("nothing valid came"));
             }
         }

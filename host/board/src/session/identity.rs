@@ -1,5 +1,5 @@
-//! Whether the board is the one that the joint file asks for, and what to do if it is not. A board of another protocol
-//! version or role may say things this host cannot read, so the head of its hello is read on its own.
+//! Whether the board runs the image that the joint file asks for. A board with another protocol version may send
+//! messages that this host cannot decode, so the first fields of its hello are decoded on their own.
 
 use std::fmt;
 
@@ -7,7 +7,7 @@ use link::PROTOCOL_VERSION;
 use link::messages::{Hello, Role};
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 
-use super::Mend;
+use super::BoardHelp;
 use crate::target::image::word;
 use report::failure::{Failure, Outcome};
 
@@ -27,14 +27,14 @@ pub struct Expected {
     /// Digest over its controller's tables, if it has any.
     pub control_digest: Option<u64>,
     /// What to do about a board that is none of this.
-    pub mend: Mend,
+    pub help: BoardHelp,
 }
 
 impl Expected {
     /// Refuses a board that is another one.
     pub fn verify(&self, hello: &Hello) -> Outcome<()> {
-        verify_protocol(hello.protocol, &self.mend)?;
-        let refuse = |what: String| Err(Failure::new(what).with_help(self.mend.of_another_image()));
+        verify_protocol(hello.protocol, &self.help)?;
+        let refuse = |what: String| Err(Failure::new(what).with_help(self.help.of_another_image()));
         if hello.role != self.role {
             let (board, host) = (word(hello.role), word(self.role));
             return refuse(format!("the board's image has the role `{board}`, this run asks for `{host}`"));
@@ -62,8 +62,8 @@ impl Expected {
     }
 }
 
-fn verify_protocol(protocol: u16, mend: &Mend) -> Outcome<()> {
-    if protocol == PROTOCOL_VERSION { Ok(()) } else { Err(mend.of_protocol(protocol)) }
+fn verify_protocol(protocol: u16, help: &BoardHelp) -> Outcome<()> {
+    if protocol == PROTOCOL_VERSION { Ok(()) } else { Err(help.of_protocol(protocol)) }
 }
 
 /// The first fields of a hello, which keep their places in every version.
@@ -75,10 +75,10 @@ pub struct HelloHead {
 
 impl HelloHead {
     /// Why a board with this head cannot be worked with, if its hello as a whole could not be read.
-    pub fn refusal(self, mend: &Mend) -> Failure {
-        let Err(failure) = verify_protocol(self.protocol, mend) else {
+    pub fn refusal(self, help: &BoardHelp) -> Failure {
+        let Err(failure) = verify_protocol(self.protocol, help) else {
             let message = format!("the board's image has a role that this host does not know (number {})", self.role);
-            return Failure::new(message).with_help(mend.of_another_image());
+            return Failure::new(message).with_help(help.of_another_image());
         };
         failure
     }
@@ -148,7 +148,7 @@ mod tests {
     }
 
     fn expected() -> Expected {
-        let mend = Mend::Flash("cargo joint flash joints/q1.toml".to_owned());
+        let help = BoardHelp::Flash("cargo joint flash joints/q1.toml".to_owned());
         Expected {
             joint: "q1".into(),
             digest: 0x1234,
@@ -156,7 +156,7 @@ mod tests {
             planets: 3,
             role: Role::Plant,
             control_digest: None,
-            mend,
+            help,
         }
     }
 
@@ -197,10 +197,10 @@ mod tests {
         assert!(!own.is_foreign());
         let other_role = head_of(&(0u32, PROTOCOL_VERSION, [1u8, 2, 3], 7u32, "with fields", 1.5f64)).expect("a head");
         assert!(other_role.is_foreign());
-        assert!(other_role.refusal(&Mend::Rebuild).message().contains("(number 7)"));
+        assert!(other_role.refusal(&BoardHelp::Rebuild).message().contains("(number 7)"));
         let other_version = head_of(&(0u32, 9u16, [1u8, 2, 3], 0u32)).expect("a head");
         assert!(other_version.is_foreign());
-        assert!(other_version.refusal(&Mend::Rebuild).message().contains("version 9"));
+        assert!(other_version.refusal(&BoardHelp::Rebuild).message().contains("version 9"));
     }
 
     #[test]

@@ -1,5 +1,5 @@
-//! What a board has learnt, between runs: read off its flash, brought to it, written and erased there. What is in a memory
-//! does not matter here.
+//! The observer's memory on a board (what it has learnt between runs): read from its flash, loaded into its controller,
+//! written and erased. Its content is passed on as bytes.
 
 use std::time::Duration;
 
@@ -8,18 +8,18 @@ use link::messages::{
 };
 use model_core::observer::{MEMORY_BYTES, Memory};
 
-use super::{SILENCE, Session};
+use super::{ANSWER_TIMEOUT, Session};
 use report::failure::{Failure, Outcome};
 
 /// A large sector of flash takes up to four seconds to be erased; meanwhile its board says nothing.
-const WRITING: Duration = Duration::from_secs(10);
+const FLASH_WRITE_TIMEOUT: Duration = Duration::from_secs(10);
 
 impl Session<'_> {
     /// What the page of its flash holds.
     pub fn stored_memory(&mut self) -> Outcome<Memory> {
         let mut memory = [0; MEMORY_BYTES];
         for (part, place) in (0..MEMORY_PARTS).zip(memory.as_chunks_mut::<PART_BYTES>().0) {
-            let told = self.ask_about(MemoryRequest::Read { part }, SILENCE, |message| match message {
+            let told = self.ask_about(MemoryRequest::Read { part }, ANSWER_TIMEOUT, |message| match message {
                 FromBoard::Memory(told) if told.part == part && told.bytes.len() == PART_BYTES => Some(told.bytes),
                 _ => None,
             })?;
@@ -29,7 +29,7 @@ impl Session<'_> {
     }
 
     /// Brings it a memory that runs may begin from; what its controller makes of it.
-    pub fn bring_memory(&mut self, memory: &Memory) -> Outcome<MemoryState> {
+    pub fn load_memory(&mut self, memory: &Memory) -> Outcome<MemoryState> {
         let mut parts = (0..MEMORY_PARTS)
             .zip(memory.as_chunks::<PART_BYTES>().0)
             .map(|(part, bytes)| MemoryRequest::Load(MemoryPart { part, bytes: bytes.iter().copied().collect() }));
@@ -38,11 +38,9 @@ impl Session<'_> {
             self.send(&ToBoard::Memory(part))?;
         }
         let last = last.ok_or_else(|| Failure::new("a memory has no part"))?;
-        self.ask_about(
-            last,
-            SILENCE,
-            |message| if let FromBoard::MemoryChecked(judged) = message { Some(judged) } else { None },
-        )
+        self.ask_about(last, ANSWER_TIMEOUT, |message| {
+            if let FromBoard::MemoryChecked(judged) = message { Some(judged) } else { None }
+        })
     }
 
     /// Has it write the memory that was brought to its flash.
@@ -51,17 +49,17 @@ impl Session<'_> {
     }
 
     /// Has it write what it has learnt to its flash.
-    pub fn keep_memory(&mut self) -> Outcome<MemoryOutcome> {
+    pub fn save_memory(&mut self) -> Outcome<MemoryOutcome> {
         self.write(MemoryRequest::Save)
     }
 
     /// Ends a run, has what was learnt in it kept, and begins anew from that. Where there is no flash it is at hand until the
     /// power is off.
-    pub fn begin_again(&mut self) -> Outcome<()> {
+    pub fn restart_from_memory(&mut self) -> Outcome<()> {
         let settings = self.recording.settings.ok_or_else(|| Failure::new("nothing has run yet"))?;
         self.send(&ToBoard::Stop)?;
         self.drain()?;
-        self.keep_memory()?;
+        self.save_memory()?;
         self.reset(RunSettings { from_memory: true, ..settings })
     }
 
@@ -70,19 +68,20 @@ impl Session<'_> {
         self.write(MemoryRequest::Erase)
     }
 
-    fn write(&mut self, wish: MemoryRequest) -> Outcome<MemoryOutcome> {
-        self.ask(&ToBoard::Memory(wish), "answer about the memory", WRITING, kept).and_then(unless_running)
+    fn write(&mut self, request: MemoryRequest) -> Outcome<MemoryOutcome> {
+        self.ask(&ToBoard::Memory(request), "answer about the memory", FLASH_WRITE_TIMEOUT, kept)
+            .and_then(unless_running)
     }
 
     /// Asks for something that flash need not be written for.
     fn ask_about<T>(
         &mut self,
-        wish: MemoryRequest,
-        patience: Duration,
+        request: MemoryRequest,
+        timeout: Duration,
         answer: impl Fn(FromBoard) -> Option<T>,
     ) -> Outcome<T> {
         let answered =
-            self.ask(&ToBoard::Memory(wish), "answer about the memory", patience, |message| match message {
+            self.ask(&ToBoard::Memory(request), "answer about the memory", timeout, |message| match message {
                 FromBoard::MemoryOutcome(why) => Some(Err(why)),
                 other => answer(other).map(Ok),
             })?;

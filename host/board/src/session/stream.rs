@@ -1,26 +1,26 @@
-//! Streaming a profile: schedules go out as far as the board's queue and buffers have room, samples come in. The window
-//! follows from the ticks that the board is known to have done, so nothing is ever sent on hope.
+//! Streaming a torque profile: schedules are sent as far ahead as the board's queue and buffers have room, samples are
+//! received. The window is computed from the ticks that the board has reported as done.
 
 use std::time::{Duration, Instant};
 
 use link::messages::{COMMANDS_PER_SCHEDULE, Command, FromBoard, RunMode, Schedule, ToBoard};
 
-use super::{SILENCE, Session};
-use crate::profile::Profile;
+use super::{ANSWER_TIMEOUT, Session};
+use crate::profile::TorqueProfile;
 use crate::trip;
 use report::failure::{Failure, Outcome};
 
 /// Schedules under way at once: the board's receive buffer holds two frames at least.
-const UNDER_WAY: usize = 2;
+const SCHEDULES_IN_FLIGHT: usize = 2;
 /// An empty schedule asks how far the board is, if that is all that holds the stream up; in real time it also says
 /// that the host is alive.
 const POLL: Duration = Duration::from_millis(100);
 /// A board that answers, but whose ticks do not go on for so long, has lost a schedule.
-const STANDSTILL: Duration = Duration::from_secs(4);
+const STALL_TIMEOUT: Duration = Duration::from_secs(4);
 
-/// Where a stream stands.
-struct Progress<'p> {
-    profile: &'p Profile,
+/// Progress of a stream.
+struct StreamProgress<'p> {
+    profile: &'p TorqueProfile,
     horizon_after_last: u32,
     next_command: usize,
     next_sequence: u16,
@@ -33,7 +33,7 @@ struct Progress<'p> {
 
 impl Session<'_> {
     /// Runs a profile to its last sample. `progress` is told the ticks done.
-    pub fn stream(&mut self, profile: &Profile, progress: &mut dyn FnMut(u32)) -> Outcome<()> {
+    pub fn stream(&mut self, profile: &TorqueProfile, progress: &mut dyn FnMut(u32)) -> Outcome<()> {
         let settings = self.recording.settings.ok_or_else(|| Failure::new("a stream needs a reset before it"))?;
         let capacity = self.recording.hello.as_ref().map_or(0, |hello| usize::from(hello.queue_capacity));
         let tick_rate = self.recording.hello.as_ref().map_or(1, |hello| hello.tick_rate);
@@ -41,15 +41,15 @@ impl Session<'_> {
             return Err(Failure::new("the board states a command queue without places"));
         }
         let last_sample = profile.ticks - profile.ticks % u32::from(settings.decimation);
-        let mut stream = Progress::new(profile, settings.mode, tick_rate);
+        let mut stream = StreamProgress::new(profile, settings.mode, tick_rate);
         while self.recording.last_tick() < last_sample || stream.board_tick < last_sample {
-            while self.unanswered.count() < UNDER_WAY
+            while self.unacknowledged.count() < SCHEDULES_IN_FLIGHT
                 && let Some(schedule) = stream.next_schedule(capacity)
             {
-                self.unanswered.sent(schedule.sequence, &schedule.commands);
+                self.unacknowledged.sent(schedule.sequence, &schedule.commands);
                 self.send(&ToBoard::Schedule(schedule))?;
             }
-            for message in self.hear()? {
+            for message in self.receive()? {
                 stream.last_message = Instant::now();
                 match message {
                     FromBoard::Accepted(accepted) => stream.advance(accepted.tick),
@@ -72,30 +72,30 @@ impl Session<'_> {
                 }
             }
             progress(stream.board_tick.min(profile.ticks));
-            if stream.last_message.elapsed() > SILENCE {
+            if stream.last_message.elapsed() > ANSWER_TIMEOUT {
                 return Err(self.silent("nothing valid came"));
             }
-            if stream.last_advance.elapsed() > STANDSTILL {
+            if stream.last_advance.elapsed() > STALL_TIMEOUT {
                 return Err(self.stands_still(&stream));
             }
         }
         Ok(())
     }
 
-    fn stands_still(&self, stream: &Progress<'_>) -> Failure {
+    fn stands_still(&self, stream: &StreamProgress<'_>) -> Failure {
         let message = format!(
             "the board on {} answers, but stays at tick {} of {} ({} schedules unanswered)",
             self.line.name(),
             stream.board_tick,
             stream.profile.ticks,
-            self.unanswered.count()
+            self.unacknowledged.count()
         );
         Failure::check_failed(message).with_help("a schedule or a sample was lost on the line: check it and run again")
     }
 }
 
-impl<'p> Progress<'p> {
-    fn new(profile: &'p Profile, mode: RunMode, tick_rate: u32) -> Self {
+impl<'p> StreamProgress<'p> {
+    fn new(profile: &'p TorqueProfile, mode: RunMode, tick_rate: u32) -> Self {
         let now = Instant::now();
         // In real time the board goes on until it is told to stop: the last torque is known to hold until then.
         let beyond = match mode {

@@ -1,4 +1,4 @@
-//! The boards that images are built for, as the host needs to know them. Pins and clocks are in the firmware.
+//! The boards that images can be built for: name, chip, clock, baud rate. Pins and clock trees are in the firmware.
 
 use clap::ValueEnum;
 use model_core::gears::design::Processor;

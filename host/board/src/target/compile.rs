@@ -1,4 +1,4 @@
-//! Compiles the firmware's binaries, one at a time in a folder, and puts what came of it in place whole.
+//! Compiles the firmware's binaries, one at a time in each build folder, and moves each result into place atomically.
 
 use std::ffi::OsStr;
 use std::fs::{self, File};

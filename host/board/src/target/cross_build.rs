@@ -1,5 +1,5 @@
-//! What building for a board shares, whatever is built and by whichever compiler: the target's name, a cargo that does not
-//! inherit the host's settings, and the complaint where a result cannot be written.
+//! What every cross build shares, with either compiler: the target's name, a cargo command without the host's build
+//! settings, and the error when a result cannot be written.
 
 use std::io;
 use std::path::Path;
@@ -20,7 +20,7 @@ pub(super) fn clean(command: &mut Command) -> &mut Command {
     command
 }
 
-/// A file of a build that cannot be written, with the mend.
+/// A file of a build that cannot be written, with the help.
 pub fn cannot_write(path: &Path, error: &io::Error) -> Failure {
     Failure::new(format!("cannot write {}: {error}", path.display()))
         .with_help("make room, or set CARGO_TARGET_DIR to a folder that can be written")

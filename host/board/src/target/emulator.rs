@@ -84,7 +84,7 @@ impl Emulator {
         Ok((emulator, line))
     }
 
-    /// Fails if the emulator has ended; says what it said. Call it whenever the line is silent or gone: this is how a
+    /// Fails if the emulator has ended; the error has its output. Call it whenever the line is silent or gone: this is how a
     /// death in mid-run is noticed at once.
     pub fn check(&mut self) -> Outcome<()> {
         if self.ended.is_none() {
@@ -116,7 +116,7 @@ impl Emulator {
         }
     }
 
-    /// What the emulator said on standard error, apart from its waiting for us.
+    /// The emulator's standard error, apart from its message that it waits for a connection.
     fn last_words(&self) -> String {
         let said = fs::read_to_string(self.folder.path().join("log")).unwrap_or_default();
         said.lines().filter(|line| !line.contains("info: QEMU waiting")).map(|line| format!("\n{line}")).collect()
@@ -150,7 +150,7 @@ pub(super) fn mortal(program: &Path) -> Command {
     }
 }
 
-/// A new folder that nobody else can enter, with a short name.
+/// A new folder that only this user can enter, with a short name.
 fn private_folder() -> Outcome<TempDir> {
     let usual = std::env::temp_dir();
     let place = if usual.as_os_str().len() > LONGEST_FOLDER { PathBuf::from("/tmp") } else { usual };

@@ -1,5 +1,4 @@
-//! Writing an image to a real board: probe-rs does it. Building the image, and talking to the board afterwards, is done
-//! elsewhere.
+//! Writes an image to a real board with probe-rs.
 
 use std::path::Path;
 use std::process::{Command, Stdio};

@@ -1,5 +1,5 @@
-//! Firmware images: built for a joint, a board and a role, then copied to a name of their own, so that several joints
-//! lie side by side. What goes into an image is decided by the firmware's build script.
+//! Firmware images: built for a joint, a board and a role, then copied to a name of their own, so that images of
+//! several joints can lie side by side. The tables in an image are made by the firmware's build script.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -73,7 +73,7 @@ pub struct Control {
 }
 
 impl Control {
-    /// At a rate, as the firmware's build takes it if nothing else is said.
+    /// At a rate, with the defaults of the firmware's build.
     pub fn usual(rate: u32) -> Self {
         Self { rate, bandwidth: 60.0, output_encoder: true }
     }

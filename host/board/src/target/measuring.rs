@@ -1,5 +1,5 @@
-//! Binaries that measure in the emulator: built for any joints, run to their end without any serial line, their words
-//! taken by semihosting.
+//! Measuring binaries for the emulator: built for any joints, run to their end without a serial line; their output is
+//! read through semihosting.
 
 use std::env;
 use std::ffi::OsStr;
@@ -24,7 +24,7 @@ const CLOCK: &str = "shift=6,sleep=off";
 /// Last line of a run that came to its end; a panic or a reset leaves it out.
 const END: &str = "end of measurement";
 /// Longest run; a healthy one takes a minute or two.
-const PATIENCE: Duration = Duration::from_secs(1200);
+const TIMEOUT: Duration = Duration::from_secs(1200);
 const POLL: Duration = Duration::from_millis(100);
 
 /// Builds a binary that measures in the emulator, with the tables of these joints; returns the ELF file.
@@ -113,8 +113,8 @@ impl Running {
                 Err(RecvTimeoutError::Timeout) if interruption::requested() => {
                     return Err(Failure::interrupted("stopped by the user"));
                 }
-                Err(RecvTimeoutError::Timeout) if start.elapsed() > PATIENCE => {
-                    let minutes = PATIENCE.as_secs() / 60;
+                Err(RecvTimeoutError::Timeout) if start.elapsed() > TIMEOUT => {
+                    let minutes = TIMEOUT.as_secs() / 60;
                     return Err(Failure::new(format!("no end in the emulator after {minutes} minutes")));
                 }
                 Err(RecvTimeoutError::Timeout) => {}

@@ -18,5 +18,5 @@ pub mod sysroot;
 pub mod tool;
 pub mod toolchain;
 
-/// Where a part says what it is about to do: a line for the user.
+/// Prints a line for the user about what is done next.
 pub type Say<'a> = &'a dyn Fn(&str);

@@ -1,5 +1,5 @@
-//! Packages of a Debian-like system: installed if the user is root, else the exact line to run is shown. What a package
-//! is for is known to who asks for it; other systems are told what is missing.
+//! Installs missing packages on Debian-like systems if the user is root; otherwise shows the command to run. On other
+//! systems the missing packages are named.
 
 use std::fs;
 use std::os::unix::fs::MetadataExt;
@@ -10,7 +10,7 @@ use report::failure::{Failure, Outcome};
 
 /// How packages can be got here.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Way {
+enum PackageSource {
     /// apt-get, as root.
     Install,
     /// apt-get, but somebody else must be root.
@@ -21,17 +21,17 @@ enum Way {
 
 /// Makes sure that packages are installed. `purpose` completes "... needed ...", such as "to build for the board".
 pub fn ensure(packages: &[&str], purpose: &str, say: Say<'_>) -> Outcome<()> {
-    let way = way();
-    let missing: Vec<&str> = match way {
-        Way::Unknown => packages.to_vec(),
+    let package_source = package_source();
+    let missing: Vec<&str> = match package_source {
+        PackageSource::Unknown => packages.to_vec(),
         _ => packages.iter().copied().filter(|package| !is_installed(package)).collect(),
     };
     if missing.is_empty() {
         return Ok(());
     }
     let list = missing.join(" ");
-    if way != Way::Install {
-        return Err(absent(way, &list, purpose));
+    if package_source != PackageSource::Install {
+        return Err(absent(package_source, &list, purpose));
     }
     say(&format!("installing {list} with apt-get, needed {purpose}"));
     tool::follow(apt_get().arg("update"), "apt-get update", say).map_err(|failure| with_line(failure, &list))?;
@@ -44,19 +44,21 @@ fn with_line(failure: Failure, list: &str) -> Failure {
     failure.with_help(format!("mend what apt-get complains about, then run: apt-get install {list}"))
 }
 
-fn absent(way: Way, list: &str, purpose: &str) -> Failure {
+fn absent(package_source: PackageSource, list: &str, purpose: &str) -> Failure {
     let failure = Failure::new(format!("not installed, but needed {purpose}: {list}"));
-    match way {
-        Way::Unknown => failure.with_help("install what these Debian packages hold, by your system's own means"),
+    match package_source {
+        PackageSource::Unknown => {
+            failure.with_help("install what these Debian packages hold, by your system's own means")
+        }
         _ => failure.with_help(format!("run: sudo apt-get update && sudo apt-get install {list}")),
     }
 }
 
-fn way() -> Way {
+fn package_source() -> PackageSource {
     match (tool::find("apt-get"), is_root()) {
-        (None, _) => Way::Unknown,
-        (Some(_), true) => Way::Install,
-        (Some(_), false) => Way::Ask,
+        (None, _) => PackageSource::Unknown,
+        (Some(_), true) => PackageSource::Install,
+        (Some(_), false) => PackageSource::Ask,
     }
 }
 
@@ -83,7 +85,7 @@ mod tests {
 
     #[test]
     fn who_is_not_root_gets_the_exact_line_and_exit_code_2() {
-        let failure = absent(Way::Ask, "lld qemu-system-arm", "to run the emulated board");
+        let failure = absent(PackageSource::Ask, "lld qemu-system-arm", "to run the emulated board");
         assert_eq!(failure.help(), Some("run: sudo apt-get update && sudo apt-get install lld qemu-system-arm"));
         assert!(failure.message().contains("to run the emulated board"));
         assert_eq!(failure.exit_code(), 2);
@@ -91,7 +93,7 @@ mod tests {
 
     #[test]
     fn without_apt_get_the_packages_are_named() {
-        let failure = absent(Way::Unknown, "lld", "to build for the board");
+        let failure = absent(PackageSource::Unknown, "lld", "to build for the board");
         assert!(failure.message().contains("lld"), "{failure}");
         assert!(!failure.help().unwrap_or_default().contains("apt-get"));
     }

@@ -1,5 +1,5 @@
-//! What an image was made from, as one digest: every file that goes into a build, the compiler and its flags. An image whose
-//! digest is still that of now need not be built again; cargo would build it anew whenever another joint came between.
+//! Decides whether an image is up to date, by one digest over every source file, the compiler and its flags. Cargo
+//! alone would rebuild whenever another joint was built in between.
 
 use std::fs;
 use std::io;

@@ -1,5 +1,5 @@
 //! A private sysroot: `core` for the target, built from a distribution's library source by its own compiler where no
-//! ready one can be had. Built once for each compiler, in a folder that only then gets its name.
+//! ready one is installed. Built once a compiler and renamed into place when complete.
 
 use std::fs;
 use std::io;

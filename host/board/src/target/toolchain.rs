@@ -1,5 +1,5 @@
-//! How to build for the board here: by the compiler in use if it has the target, else by a distribution's compiler and
-//! its library source with a private sysroot. Nothing is ever downloaded through rustup from here.
+//! Selects the toolchain for the board: the compiler in use if it has the target, else a distribution's compiler with
+//! its library source and a private sysroot. Nothing is downloaded through rustup.
 
 use std::env;
 use std::ffi::OsString;

@@ -3,7 +3,7 @@
 use super::finding::{Finding, finding};
 use crate::estimate::Estimate;
 use crate::log::Log;
-use crate::plan::Plan;
+use crate::prior::PriorModel;
 use crate::twist;
 use crate::twist::Twist;
 
@@ -25,10 +25,10 @@ pub(crate) fn names(encoder: &str, word: &str) -> (String, String) {
 }
 
 /// Errors that come once and twice a turn of either encoder.
-pub(super) fn maps(twist: &Twist, plan: &Plan) -> Vec<Finding> {
+pub(super) fn maps(twist: &Twist, prior: &PriorModel) -> Vec<Finding> {
     let solution = &twist.solution;
     let mut findings = Vec::new();
-    let encoders = [("motor", twist::MOTOR_MAP, plan.motor_bits), ("output", twist::OUTPUT_MAP, plan.output_bits)];
+    let encoders = [("motor", twist::MOTOR_MAP, prior.motor_bits), ("output", twist::OUTPUT_MAP, prior.output_bits)];
     for (encoder, first, bits) in encoders {
         for (order, word) in [(0, "once"), (1, "twice")] {
             let [sine, cosine] = [first + 2 * order, first + 2 * order + 1];
@@ -59,9 +59,9 @@ pub(super) fn maps(twist: &Twist, plan: &Plan) -> Vec<Finding> {
 
 /// How old the output's reading is. What counts and teeth feign of an angle looks like an age the more, the slower the output
 /// turns.
-pub(super) fn skew(log: &Log, twist: &Twist, plan: &Plan) -> Finding {
+pub(super) fn skew(log: &Log, twist: &Twist, prior: &PriorModel) -> Finding {
     let count = |bits: u32| std::f64::consts::TAU / f64::from(1_u32 << bits);
-    let feigned = FEIGNED_COUNTS * (count(plan.motor_bits) / plan.ratio() + count(plan.output_bits));
+    let feigned = FEIGNED_COUNTS * (count(prior.motor_bits) / prior.ratio() + count(prior.output_bits));
     let skew = Estimate::of(&twist.solution, twist::SKEW).wider_by(feigned / usual_speed(log).max(f64::MIN_POSITIVE));
     let why = "the joint must turn at different speeds";
     let narrow = skew.half < 2.0 * NARROWED * twist::width(twist::SKEW);

@@ -1,10 +1,10 @@
-//! What a log shows of the frictions of motor and link, and of the scale of the torque, which they rest on. The balances
-//! themselves are fitted elsewhere.
+//! What a log shows of motor and link friction, and of the error in the torque scale, on which both depend. The torque
+//! balances are fitted in `friction`.
 
 use super::finding::{Finding, INERTIA_SHARE, SHARE, finding};
 use crate::estimate::Estimate;
 use crate::friction;
-use crate::plan::Plan;
+use crate::prior::PriorModel;
 use crate::regression::Solution;
 use crate::rows::{Row, Rows};
 use crate::twist;
@@ -16,12 +16,12 @@ const SMALL: f64 = 0.02;
 const BALANCE_SHARE: f64 = 0.0015;
 
 /// Frictions of motor and link.
-pub(super) fn frictions(quick: &Rows, slow: &Rows, twist: &Twist, plan: &Plan) -> Vec<Finding> {
+pub(super) fn frictions(quick: &Rows, slow: &Rows, twist: &Twist, prior: &PriorModel) -> Vec<Finding> {
     let solution = &twist.solution;
     let measured = quick.all.iter().any(|row| row.measured.is_some());
     let small = SMALL * quick.greatest;
     let found = |estimate: Estimate, least: f64| estimate.half < (SHARE * estimate.value.abs()).max(least);
-    let motor = if measured { friction::of_the_motor(quick, plan) } else { None };
+    let motor = if measured { friction::of_the_motor(quick, prior) } else { None };
     let compliance = solution.values[twist::COMPLIANCE];
     let motor_dry = match &motor {
         Some(balance) => Estimate::of(balance, friction::MOTOR_DRY),
@@ -39,12 +39,12 @@ pub(super) fn frictions(quick: &Rows, slow: &Rows, twist: &Twist, plan: &Plan) -
             Estimate::from(solution, value, &slopes).wider_by(INERTIA_SHARE)
         }
     };
-    let motor_known = found(motor_dry, small / plan.ratio());
+    let motor_known = found(motor_dry, small / prior.ratio());
     let why_motor = "the motor must turn both ways on each flank, and bend the joint by several counts as it does";
     let key = "drive_train.motor_coulomb_friction_N_m";
     let mut findings =
         vec![finding("dry friction of the motor", "N m", key, motor_dry).if_so(motor_known, why_motor).not_negative()];
-    let narrower = excess.half < plan.torque_error;
+    let narrower = excess.half < prior.torque_error;
     let key = "drive_train.torque_constant_error_ratio";
     let why = "flanks must land so hard that the motor's inertia shows";
     let share = finding("true torque over the logged one, less 1", "-", key, excess).if_so(narrower, why);
@@ -53,7 +53,7 @@ pub(super) fn frictions(quick: &Rows, slow: &Rows, twist: &Twist, plan: &Plan) -
         let viscous = Estimate::of(balance, friction::MOTOR_VISCOUS);
         let fastest = fastest(quick, |row| row.motor_speed);
         let key = "drive_train.motor_viscous_friction_N_m_s_per_rad";
-        let known = found(viscous, small / plan.ratio() / fastest);
+        let known = found(viscous, small / prior.ratio() / fastest);
         findings.push(
             finding("viscous friction of the motor", "N m s/rad", key, viscous).if_so(known, why_motor).not_negative(),
         );
@@ -67,9 +67,9 @@ pub(super) fn frictions(quick: &Rows, slow: &Rows, twist: &Twist, plan: &Plan) -
     let (dry, note) = if measured || motor_known {
         (motor_dry, "")
     } else {
-        (Estimate { value: plan.surroundings.motor_friction.coulomb, half: 0.0 }, "if the motor's is as stated")
+        (Estimate { value: prior.surroundings.motor_friction.coulomb, half: 0.0 }, "if the motor's is as stated")
     };
-    let balance = |excess: f64, dry: f64| friction::of_the_link(slow, plan, excess, dry);
+    let balance = |excess: f64, dry: f64| friction::of_the_link(slow, prior, excess, dry);
     let Some(link) = balance(excess.value, dry.value) else {
         let nothing = Estimate { value: f64::NAN, half: f64::NAN };
         findings.extend(

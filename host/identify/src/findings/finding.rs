@@ -1,4 +1,5 @@
-//! One parameter that a log shows, with its interval and its key in the joint file, or why it is not shown.
+//! One identified parameter with its interval and its key in the joint file, or the reason why it could not be
+//! identified.
 
 use serde::Serialize;
 
@@ -6,7 +7,7 @@ use crate::estimate::Estimate;
 
 /// A value counts as found if half of its interval is at most this share of it.
 pub(super) const SHARE: f64 = 0.5;
-/// How well the motor's inertia in a joint file is usually known: what the scale of the torque rests on.
+/// Relative error of the motor's inertia in a joint file, from which the scale of the torque is found.
 pub(super) const INERTIA_SHARE: f64 = 0.015;
 /// What two inertias on a spring leave out of a joint, as a share of a value: widens every interval. Found on simulated
 /// logs of the presets, where the scatter alone promised more than the reference keeps.

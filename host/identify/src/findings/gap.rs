@@ -1,9 +1,9 @@
-//! What a log shows of gap, compliance and damping. Frictions and errors by angle are the neighbours'.
+//! What a log shows of gap, compliance and damping.
 
 use super::finding::{Finding, INERTIA_SHARE, SHARE, finding};
 use crate::estimate::Estimate;
 use crate::log::Log;
-use crate::plan::Plan;
+use crate::prior::PriorModel;
 use crate::regression::Solution;
 use crate::sampling::SWING_SAMPLES;
 use crate::twist;
@@ -13,7 +13,7 @@ use crate::twist::Twist;
 const SAME_TIME: f64 = 2e-6;
 
 /// The gap, what bends, and how it rings.
-pub(super) fn gap_and_compliance(log: &Log, twist: &Twist, plan: &Plan) -> Vec<Finding> {
+pub(super) fn gap_and_compliance(log: &Log, twist: &Twist, prior: &PriorModel) -> Vec<Finding> {
     let solution = &twist.solution;
     let half_gap = Estimate::of(solution, twist::HALF_GAP);
     let compliance = Estimate::of(solution, twist::COMPLIANCE);
@@ -25,39 +25,39 @@ pub(super) fn gap_and_compliance(log: &Log, twist: &Twist, plan: &Plan) -> Vec<F
         "both flanks must carry torques well above the friction, and the gap must be wider than what the encoders tell";
     let why_bends = "the torque on one flank must change by much, so that it bends the joint by several counts";
     let mut findings = vec![
-        finding("half-backlash b", "um", "mesh.half_backlash_um", half_gap.times(1e6 * plan.lever))
+        finding("half-backlash b", "um", "mesh.half_backlash_um", half_gap.times(1e6 * prior.lever))
             .if_so(has_gap, why_gap),
         finding("lost motion at the output", "mrad", "", half_gap.times(2e3)).if_so(has_gap, why_gap),
         finding("compliance at the output", "urad/(N m)", "", compliance.times(1e6)).if_so(bends, why_bends),
     ];
     // What the teeth give is known better from the joint file than from the small part that they have in it.
-    let own = compliance.value - plan.mesh_compliance;
-    let stiffness = if plan.compliant {
+    let own = compliance.value - prior.mesh_compliance;
+    let stiffness = if prior.compliant {
         let stiffness = Estimate { value: 1.0 / own, half: compliance.half / (own * own) };
         let bends = bends && own > 0.0 && compliance.half < SHARE * own;
         finding("stiffness behind the carrier", "N m/rad", "compliance.stiffness_N_m_per_rad", stiffness)
             .if_so(bends, why_bends)
     } else {
-        let stiffness = plan.mesh_stiffness * plan.mesh_compliance / compliance.value;
+        let stiffness = prior.mesh_stiffness * prior.mesh_compliance / compliance.value;
         let estimate = Estimate { value: stiffness, half: stiffness * compliance.half / compliance.value };
         finding("mean stiffness of a mesh", "N/m", "mesh.mean_stiffness_N_per_m", estimate).if_so(bends, why_bends)
     };
     findings.push(stiffness);
-    findings.push(damping(solution, plan, compliance, bends && plan.swing() > SWING_SAMPLES * log.period));
+    findings.push(damping(solution, prior, compliance, bends && prior.swing() > SWING_SAMPLES * log.period));
     findings
 }
 
 /// From the time by which the torque runs ahead of the twist to the ratio that the joint file states.
-fn damping(solution: &Solution, plan: &Plan, compliance: Estimate, bends: bool) -> Finding {
+fn damping(solution: &Solution, prior: &PriorModel, compliance: Estimate, bends: bool) -> Finding {
     let relaxation = Estimate::of(solution, twist::RELAXATION).times(-1.0).wider_by(SAME_TIME);
-    let own = compliance.value - plan.mesh_compliance;
-    let (name, key, per_ratio) = if plan.compliant {
+    let own = compliance.value - prior.mesh_compliance;
+    let (name, key, per_ratio) = if prior.compliant {
         // D = 2 zeta sqrt(J / c), on the part of the twist that is not the teeth's.
         let per_ratio =
-            2.0 * (plan.swinging_inertia() / own.max(f64::MIN_POSITIVE)).sqrt() * own * own / compliance.value;
+            2.0 * (prior.swinging_inertia() / own.max(f64::MIN_POSITIVE)).sqrt() * own * own / compliance.value;
         ("damping ratio of the compliance", "compliance.damping_ratio", per_ratio)
     } else {
-        ("damping ratio of the meshes", "mesh.damping_ratio", plan.mesh_relaxation_per_ratio)
+        ("damping ratio of the meshes", "mesh.damping_ratio", prior.mesh_relaxation_per_ratio)
     };
     let ratio = relaxation.times(1.0 / per_ratio);
     let known = bends && per_ratio > 0.0 && ratio.value > 0.0 && ratio.half < SHARE * ratio.value;

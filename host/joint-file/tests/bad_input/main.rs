@@ -1,4 +1,4 @@
-//! What is wrong with a joint file: each case asserts the message, the text that it underlines and the way to mend it.
+//! What is wrong with a joint file: each case asserts the message, the text that it underlines and the help.
 //! Every case is Q1's file with one thing spoilt, so that nothing else can be the cause.
 
 mod gears;
@@ -28,10 +28,10 @@ fn only(text: &str) -> (String, String, String) {
     (message, text[span].to_owned(), help)
 }
 
-/// Asserts message and underlined text of the only problem, and that its help says `mend`.
+/// Asserts message and underlined text of the only problem, and that its help says `wanted`.
 #[track_caller]
-fn refused(text: &str, message: &str, underlined: &str, mend: &str) {
+fn refused(text: &str, message: &str, underlined: &str, wanted: &str) {
     let (found, place, help) = only(text);
     assert_eq!((found.as_str(), place.as_str()), (message, underlined));
-    assert!(help.contains(mend), "`{mend}` is not in `{help}`");
+    assert!(help.contains(wanted), "`{wanted}` is not in `{help}`");
 }

@@ -1,5 +1,5 @@
-//! The reference along a run, as far as the motion can be predicted: a second reference with torques that are a trace
-//! wrong goes beside it, and where the two part the motion is chaotic. What a board did is not known here.
+//! The reference along a run, as far as the motion can be predicted: a second reference runs beside it with slightly
+//! disturbed torques, and where the two diverge the motion is chaotic.
 
 use model_core::gears::Kinematics;
 use std::collections::VecDeque;
@@ -23,8 +23,8 @@ const BLOCK: usize = 100;
 
 /// The reference at the ends of the given ticks, as far as the disturbed one stays with it.
 pub fn follow(
-    mut exact: Follower,
-    mut disturbed: Follower,
+    mut exact: ReferenceReplay,
+    mut disturbed: ReferenceReplay,
     ticks: &[u32],
     stop: &AtomicBool,
 ) -> Result<Vec<Observation>, ReferenceError> {
@@ -52,7 +52,7 @@ pub fn follow(
 }
 
 /// A reference that is given a run's torques.
-pub struct Follower {
+pub struct ReferenceReplay {
     reference: Reference,
     commands: VecDeque<Command>,
     torques: (f64, f64),
@@ -61,7 +61,7 @@ pub struct Follower {
     ratio: f64,
 }
 
-impl Follower {
+impl ReferenceReplay {
     /// At rest before the first torque; all torques are wrong by `disturbance`, up and down in turn.
     pub fn new(
         joint: &JointParameters,

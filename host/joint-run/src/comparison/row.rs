@@ -1,4 +1,4 @@
-//! What of a motion is compared: the quantities, with their bounds, at one moment.
+//! The compared quantities of a motion, with their bounds, at one moment.
 
 use link::messages::Sample;
 use reference::joint::Observation;
@@ -6,19 +6,19 @@ use reference::joint::Observation;
 use crate::record::MotionSample;
 
 /// What is compared.
-pub const QUANTITIES: [Quantity; 4] = [
+pub const QUANTITIES: [ComparedQuantity; 4] = [
     // Measured on joint Q1: 7.2e-6. The rigid body is exact but for the rounding of torque gains to f32.
-    Quantity { name: "link angle", limit: 1e-4 },
+    ComparedQuantity { name: "link angle", limit: 1e-4 },
     // Measured: 5.7e-3. Planets bounce for milliseconds after every crossing of the gap, which amplifies the step's error.
-    Quantity { name: "twist of motor against link", limit: 1e-2 },
+    ComparedQuantity { name: "twist of motor against link", limit: 1e-2 },
     // Measured: 2.5e-3. As for the twist; 1 % is the most that is asked of 20 kHz anywhere.
-    Quantity { name: "gap", limit: 1e-2 },
+    ComparedQuantity { name: "gap", limit: 1e-2 },
     // Measured: 6.5e-3. As for the twist; the planets' own motion is the fastest of all.
-    Quantity { name: "mesh deflections", limit: 1e-2 },
+    ComparedQuantity { name: "mesh deflections", limit: 1e-2 },
 ];
 
 /// One of them.
-pub struct Quantity {
+pub struct ComparedQuantity {
     /// Its name.
     pub name: &'static str,
     /// Most that a board's root mean square error against the reference may be, over the standard deviation [-].

@@ -1,5 +1,5 @@
-//! The first reversal through the gap, looked at closely: where the teeth leave one flank and land on the other. It is
-//! drawn at every tick where the record holds such a stretch, else from the samples.
+//! A close-up of the first reversal through the gap: where the teeth leave one flank and land on the other. Drawn at
+//! every tick where the record holds them, else from the samples.
 
 use super::motion::View;
 use crate::record::{RunRecord, Samples};

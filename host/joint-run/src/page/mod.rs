@@ -1,6 +1,5 @@
-//! What all reports are made of, and the report of a recorded run: `document` is what a report says and turns it into a
-//! page, lines or Markdown, `plot` draws, `number` writes figures, `panels` and `contacts` show a joint's motion. Nothing is
-//! measured or judged here.
+//! The report of a recorded run, as HTML page, terminal lines or a picture for a document. Blocks and plots come from
+//! the crate `report`; nothing is measured or judged here.
 
 mod close_up;
 mod motion;

@@ -11,7 +11,7 @@ use report::plot::mark::Mark;
 use report::plot::panel::Panel;
 use report::plot::unit::{PERCENT, SECONDS, Unit, greatest};
 
-/// A stretch of motion and the time over which it is shown.
+/// A range of samples and the time over which it is shown.
 pub struct View<'a> {
     /// Whose run.
     pub record: &'a RunRecord,

@@ -55,7 +55,7 @@ pub fn in_one_line(record: &RunRecord) -> String {
     parts.join(" · ")
 }
 
-/// What the board said.
+/// The board's log.
 pub fn log(record: &RunRecord) -> Option<Block> {
     let rows = record.log.iter().take(MOST_LOG_LINES).map(|line| Row {
         tone: match line.level.as_str() {

@@ -1,5 +1,5 @@
-//! The sections of figures: key figures, motion and timing. Pictures come from `motion`, `close_up` and `timing`; nothing
-//! is computed here beyond what a reader would do in the head.
+//! The report's sections of figures: key figures, motion and timing. Pictures come from `motion`, `close_up` and
+//! `timing`.
 
 use super::{close_up, motion, timing};
 use crate::record::{Completeness, RunRecord, TimingFigures};

@@ -9,7 +9,7 @@ use report::document::{
 };
 use report::number::PAGE;
 
-/// Everything that is to be said of a run.
+/// The whole report of a run.
 pub fn document(record: &RunRecord) -> Document {
     let identity = &record.identity;
     let checks = Checks { checks: record.checks.clone(), emulated: identity.emulated, keys: false };

@@ -1,5 +1,5 @@
 //! One sample on its way from the line, or from a simulation, into the columns of `samples`. Raw counts of turns and of
-//! the timer become SI here.
+//! the timer are converted to SI here.
 
 use link::messages::Sample;
 

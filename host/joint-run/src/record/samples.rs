@@ -1,5 +1,5 @@
-//! Sampled motion by columns: of the board, of the reference, and the error between them. Columns load straight into a
-//! data frame; what the columns mean mechanically is told in `docs/reference/report-schema.md`.
+//! Sampled motion in columns: of the board, of the reference, and the error between them. Columns load straight into a
+//! data frame; `docs/reference/report-schema.md` explains them.
 
 use report::contacts::Contact;
 use serde::{Deserialize, Deserializer, Serialize};

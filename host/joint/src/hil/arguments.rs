@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use board::line_options::{LineOptions, Mode, RoleName};
 use board::profile::BUILTIN;
 use board::target::image;
-use joint_run::plan::Request;
+use joint_run::plan::RunRequest;
 use scenario::plant::PlantName;
 
 /// Arguments of `joint hil`.
@@ -93,8 +93,8 @@ impl Arguments {
     }
 
     /// What is asked of a joint on a board.
-    pub fn request(&self) -> Request<'_> {
-        Request {
+    pub fn request(&self) -> RunRequest<'_> {
+        RunRequest {
             file: self.file(),
             line: &self.line,
             mode: self.mode,

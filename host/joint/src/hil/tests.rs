@@ -11,14 +11,14 @@ use board::line_options::RoleName;
 use board::profile::BUILTIN;
 use report::failure::{Failure, Outcome};
 use report::workspace::workspace;
-use scenario::on_board::BoardWish;
+use scenario::on_board::BoardRequest;
 use scenario::plant::PlantName;
 use scenario::suite;
 use scenario::suite::Choice;
-use scenario::{Part, Wanted};
+use scenario::{TestGroup, TestRequest};
 
 /// What is asked of the tests in a file or folder.
-pub fn wanted(arguments: &Arguments) -> Outcome<Wanted<'_>> {
+pub fn test_request(arguments: &Arguments) -> Outcome<TestRequest<'_>> {
     let of_joints = [
         ("mode", arguments.mode.is_some() && (arguments.host || arguments.role == Some(RoleName::Observer))),
         ("duration", arguments.duration.is_some()),
@@ -39,26 +39,26 @@ pub fn wanted(arguments: &Arguments) -> Outcome<Wanted<'_>> {
     }
     let role = arguments.role.map_or(Role::Loop, Role::from);
     let path = arguments.file().to_owned();
-    let part = Part {
+    let part = TestGroup {
         choice: if arguments.full { Choice::Full } else { Choice::Short },
         plant: arguments.plant.unwrap_or(PlantName::Core),
         boards: (!arguments.host).then(|| boards(arguments, role)),
         path,
     };
     let name = part.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    Ok(of_parts(arguments, vec![part], name, arguments.out.clone()))
+    Ok(of_groups(arguments, vec![part], name, arguments.out.clone()))
 }
 
 /// What is asked of the tests that come with the program where no file is named: on the board those that say so, and with
 /// `--full` all of them around the f64 reference, which is where their bounds are stated.
-pub fn wanted_of_all(arguments: &Arguments) -> Wanted<'_> {
-    let part = |choice, plant, boards| Part { path: folder(), choice, plant, boards };
+pub fn test_request_of_all(arguments: &Arguments) -> TestRequest<'_> {
+    let part = |choice, plant, boards| TestGroup { path: folder(), choice, plant, boards };
     let on_board = |role, plant| part(Choice::OnBoard(role), plant, Some(boards(arguments, role)));
     let mut parts = vec![on_board(Role::Loop, PlantName::Core), on_board(Role::Observer, PlantName::Reference)];
     if arguments.full {
         parts.push(part(Choice::Full, PlantName::Reference, None));
     }
-    of_parts(arguments, parts, "all".to_owned(), arguments.out.as_ref().map(|out| out.join("tests")))
+    of_groups(arguments, parts, "all".to_owned(), arguments.out.as_ref().map(|out| out.join("tests")))
 }
 
 /// Files that a run without `--full` leaves out.
@@ -74,8 +74,13 @@ fn folder() -> PathBuf {
     if same { short.to_owned() } else { whole }
 }
 
-fn of_parts<'a>(arguments: &'a Arguments, parts: Vec<Part<'a>>, name: String, out: Option<PathBuf>) -> Wanted<'a> {
-    Wanted {
+fn of_groups<'a>(
+    arguments: &'a Arguments,
+    parts: Vec<TestGroup<'a>>,
+    name: String,
+    out: Option<PathBuf>,
+) -> TestRequest<'a> {
+    TestRequest {
         parts,
         seed: arguments.seed,
         full: arguments.full,
@@ -86,8 +91,8 @@ fn of_parts<'a>(arguments: &'a Arguments, parts: Vec<Part<'a>>, name: String, ou
     }
 }
 
-fn boards(arguments: &Arguments, role: Role) -> BoardWish<'_> {
-    BoardWish {
+fn boards(arguments: &Arguments, role: Role) -> BoardRequest<'_> {
+    BoardRequest {
         role,
         port: arguments.line.port.as_deref(),
         baud: arguments.line.baud,

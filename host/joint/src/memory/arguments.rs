@@ -48,7 +48,7 @@ pub(super) enum Command {
         #[arg(value_name = "MEMORY")]
         file: PathBuf,
         #[command(flatten)]
-        place: Place,
+        place: BoardArguments,
     },
     /// Bring a memory to a board, which judges it and writes it to its flash
     Write {
@@ -56,23 +56,23 @@ pub(super) enum Command {
         #[arg(value_name = "MEMORY")]
         file: PathBuf,
         #[command(flatten)]
-        place: Place,
+        place: BoardArguments,
     },
     /// Have a board write what it has learnt in its last run to its flash
     Keep {
         #[command(flatten)]
-        place: Place,
+        place: BoardArguments,
     },
     /// Have a board forget what it has learnt, in its flash too
     Erase {
         #[command(flatten)]
-        place: Place,
+        place: BoardArguments,
     },
 }
 
 /// Which board.
 #[derive(Debug, clap::Args)]
-pub(super) struct Place {
+pub(super) struct BoardArguments {
     /// Which board, and how it is reached.
     #[command(flatten)]
     pub line: LineOptions,

@@ -20,7 +20,7 @@ pub struct Ended {
 }
 
 /// A machine under load is slow, but not for ever.
-const PATIENCE: Duration = Duration::from_secs(120);
+const TIMEOUT: Duration = Duration::from_secs(120);
 
 fn command(arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_joint"));
@@ -60,7 +60,7 @@ pub fn interrupt(child: &Child) {
 
 /// Waits until something is so.
 pub fn until(what: &str, mut so: impl FnMut() -> bool) {
-    within(PATIENCE, what, || so().then_some(()));
+    within(TIMEOUT, what, || so().then_some(()));
 }
 
 /// Waits for something that is due.

@@ -1,5 +1,5 @@
-//! A board in a thread: the firmware's own test board behind any byte stream, which misbehaves on demand. Its clock is the
-//! thread's own.
+//! A board in a thread: the firmware's test board behind any byte stream, with faults of the line on demand. Its clock
+//! is the thread's own.
 
 #[path = "../../../../firmware/tests/test_board/mod.rs"]
 mod test_board;

@@ -1,5 +1,5 @@
-//! What one function does on its own: how deep its stack gets, what it calls at which depth, and everything in it that
-//! cannot be followed. Found by following every path through its instructions.
+//! One function of the image on its own: its greatest stack depth, its calls with the depth at each, and every
+//! instruction that the analysis cannot follow. Found by following every path through its instructions.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -20,7 +20,7 @@ pub struct Call {
     pub depth: u32,
 }
 
-/// Something that cannot be followed, or must not be met.
+/// An instruction that cannot be followed, or must not be reached.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Obstacle {
     /// A call or jump through a pointer.
@@ -42,7 +42,7 @@ impl Obstacle {
     }
 }
 
-/// What a function does.
+/// The analysis of one function.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Frame {
     /// Deepest stack of its own [byte].

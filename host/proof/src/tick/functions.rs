@@ -1,5 +1,5 @@
-//! The functions of a linked image, each with its instructions, and which of them handles the tick. The compiler's
-//! mapping symbols tell code from the constants in between; what the code does is read elsewhere.
+//! The functions of a linked image with their instructions, and the handler of the tick among them. The compiler's
+//! mapping symbols separate code from literal pools.
 
 use std::collections::BTreeMap;
 

@@ -1,8 +1,8 @@
-//! Can the tick panic, and how much stack does it take at most? Answered from the linked image, whatever its sources
-//! and its compiler: the walk through all calls from the handler of SysTick.
+//! Can the tick panic, and how much stack does it take at most? Answered from the linked image by following all calls
+//! from the SysTick handler, so that the answer holds for any sources and compiler.
 //!
-//! `functions` takes the image apart, `thumb` reads instructions, `frame` follows one function, `walk` all of them; this
-//! file holds the result against what is promised. What it cannot follow it refuses: an answer is an answer.
+//! `functions` disassembles the image, `thumb` decodes instructions, `frame` analyses one function, `walk` the call
+//! graph; this file compares the result with the promised bounds. What cannot be followed is an error.
 
 mod frame;
 mod functions;
@@ -13,7 +13,7 @@ use std::fs;
 use std::path::Path;
 
 use functions::Functions;
-pub use walk::{Reach, Way};
+pub use walk::{CallPath, Reach};
 
 use report::failure::{Failure, Outcome};
 
@@ -39,14 +39,14 @@ pub fn stack(reach: &Reach) -> u32 {
     reach.stack + INTERRUPT_FRAME
 }
 
-/// Fails with all that is wrong, each with its way from the tick and what to do.
+/// Fails with all that is wrong, each with its call path from the tick and the help.
 pub fn judge(reach: &Reach) -> Outcome<()> {
     let mut wrong = Vec::new();
-    let mut help: Vec<&str> = Vec::new();
-    let mut note = |what: String, mend: &'static str| {
+    let mut helps: Vec<&str> = Vec::new();
+    let mut note = |what: String, help: &'static str| {
         wrong.push(what);
-        if !help.contains(&mend) {
-            help.push(mend);
+        if !helps.contains(&help) {
+            helps.push(help);
         }
     };
     let found = [
@@ -62,17 +62,17 @@ pub fn judge(reach: &Reach) -> Outcome<()> {
             "call by a generic in place of `dyn` or a function pointer, so that what runs is known",
         ),
     ];
-    for (ways, what, mend) in found {
-        for way in ways {
-            note(format!("{what} at {:#010x}: {}", way.at, arrow(&way.names)), mend);
+    for (paths, what, help) in found {
+        for path in paths {
+            note(format!("{what} at {:#010x}: {}", path.at, arrow(&path.names)), help);
         }
     }
     for ring in &reach.rings {
         note(format!("the tick can call in a ring: {}", arrow(ring)), "make a bounded loop of the recursion");
     }
-    for way in &reach.unknown {
+    for path in &reach.unknown {
         note(
-            format!("what happens at {:#010x} cannot be told: {}", way.at, arrow(&way.names)),
+            format!("what happens at {:#010x} cannot be told: {}", path.at, arrow(&path.names)),
             "keep hand-written assembly and memory of unknown size out of the tick",
         );
     }
@@ -86,12 +86,12 @@ pub fn judge(reach: &Reach) -> Outcome<()> {
     }
     match wrong.is_empty() {
         true => Ok(()),
-        false => Err(Failure::check_failed(wrong.join("\n")).with_help(help.join("\n"))),
+        false => Err(Failure::check_failed(wrong.join("\n")).with_help(helps.join("\n"))),
     }
 }
 
-fn arrow(way: &[String]) -> String {
-    way.join(" -> ")
+fn arrow(path: &[String]) -> String {
+    path.join(" -> ")
 }
 
 #[cfg(test)]
@@ -103,12 +103,12 @@ mod tests {
         let sound = Reach { functions: 3, stack: 900, deepest: vec![("SysTick".into(), 900)], ..Reach::default() };
         assert!(judge(&sound).is_ok());
         let names = vec!["SysTick".to_owned(), "control::tick".to_owned(), "core::panicking::panic".to_owned()];
-        let way = Way { names: names.clone(), at: 0x0800_1000 };
+        let path = CallPath { names: names.clone(), at: 0x0800_1000 };
         let faults = [
-            Reach { panics: vec![way.clone()], ..sound.clone() },
-            Reach { pointers: vec![way.clone()], ..sound.clone() },
-            Reach { traps: vec![way.clone()], ..sound.clone() },
-            Reach { unknown: vec![way], ..sound.clone() },
+            Reach { panics: vec![path.clone()], ..sound.clone() },
+            Reach { pointers: vec![path.clone()], ..sound.clone() },
+            Reach { traps: vec![path.clone()], ..sound.clone() },
+            Reach { unknown: vec![path], ..sound.clone() },
             Reach { rings: vec![names], ..sound.clone() },
             Reach { stack: STACK_BOUND, ..sound },
         ];

@@ -30,7 +30,7 @@ pub enum Flow {
     Trap,
 }
 
-/// What becomes of the stack pointer.
+/// Effect on the stack pointer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stack {
     /// Nothing.
@@ -50,7 +50,7 @@ pub struct Instruction {
     pub size: u32,
     /// Where control goes.
     pub flow: Flow,
-    /// What becomes of the stack pointer.
+    /// Effect on the stack pointer.
     pub stack: Stack,
     /// The register that it loads with the address of something near by, and that address.
     pub address_of: Option<(u16, u32)>,

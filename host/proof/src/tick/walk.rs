@@ -1,5 +1,5 @@
-//! All that the tick can reach: the shortest way to every panic, everything that cannot be followed, rings of calls, and
-//! the deepest stack. What of it is allowed is judged elsewhere.
+//! The call graph of the tick: the shortest call path to every panic, everything that cannot be followed, recursion,
+//! and the deepest stack. `tick::judge` says what is allowed.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -19,9 +19,9 @@ const PANICS: [&str; 8] = [
     "_defmt_panic",
 ];
 
-/// The calls that lead from the handler to a place.
+/// The call path from the handler to a place.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Way {
+pub struct CallPath {
     /// The functions, the handler first.
     pub names: Vec<String>,
     /// The place: an instruction of the last but one, if the last must not be called; otherwise of the last.
@@ -33,14 +33,14 @@ pub struct Way {
 pub struct Reach {
     /// Functions that can be reached, the handler included.
     pub functions: usize,
-    /// The way to each panic, from the handler on.
-    pub panics: Vec<Way>,
-    /// The way to each function that calls through a pointer, and where it does.
-    pub pointers: Vec<Way>,
-    /// The way to each instruction that stops the processor.
-    pub traps: Vec<Way>,
-    /// The way to each place where the stack or the next instruction is unknown.
-    pub unknown: Vec<Way>,
+    /// The call path to each panic, from the handler on.
+    pub panics: Vec<CallPath>,
+    /// The call path to each function that calls through a pointer, and where it does.
+    pub pointers: Vec<CallPath>,
+    /// The call path to each instruction that stops the processor.
+    pub traps: Vec<CallPath>,
+    /// The call path to each place where the stack or the next instruction is unknown.
+    pub unknown: Vec<CallPath>,
     /// Functions that come to call themselves, in order.
     pub rings: Vec<Vec<String>>,
     /// Most stack that the handler and what it calls can take, without what the processor itself pushes [byte]. Says
@@ -63,25 +63,25 @@ pub fn walk(functions: &Functions, handler: &Function) -> Reach {
     let mut came_from: BTreeMap<u32, (u32, u32)> = BTreeMap::new();
     let mut open = VecDeque::from([handler.address]);
     let mut reach = Reach::default();
-    let way = |to: u32, at: u32, came_from: &BTreeMap<u32, (u32, u32)>| {
-        let mut way = vec![to];
-        while let Some((caller, _)) = way.last().and_then(|last| came_from.get(last)) {
-            way.push(*caller);
+    let path = |to: u32, at: u32, came_from: &BTreeMap<u32, (u32, u32)>| {
+        let mut path = vec![to];
+        while let Some((caller, _)) = path.last().and_then(|last| came_from.get(last)) {
+            path.push(*caller);
         }
-        Way { names: way.iter().rev().map(|address| name_of(functions, *address)).collect(), at }
+        CallPath { names: path.iter().rev().map(|address| name_of(functions, *address)).collect(), at }
     };
     while let Some(address) = open.pop_front() {
         if frames.contains_key(&address) {
             continue;
         }
         let Some(function) = functions.at(address) else {
-            reach.unknown.push(way(address, address, &came_from));
+            reach.unknown.push(path(address, address, &came_from));
             frames.insert(address, Frame::default());
             continue;
         };
         if is_panic(&function.name) {
             let at = came_from.get(&address).map_or(address, |(_, at)| *at);
-            reach.panics.push(way(address, at, &came_from));
+            reach.panics.push(path(address, at, &came_from));
             frames.insert(address, Frame::default());
             continue;
         }
@@ -92,7 +92,7 @@ pub fn walk(functions: &Functions, handler: &Function) -> Reach {
                 Obstacle::Trap(_) => &mut reach.traps,
                 Obstacle::Stack(_) | Obstacle::Astray(_) => &mut reach.unknown,
             };
-            list.push(way(address, obstacle.at(), &came_from));
+            list.push(path(address, obstacle.at(), &came_from));
         }
         for call in &own.calls {
             let callee = call.to & !1;
@@ -104,7 +104,7 @@ pub fn walk(functions: &Functions, handler: &Function) -> Reach {
         frames.insert(address, own);
     }
     reach.functions = frames.len();
-    let mut depths = Depths { functions, frames: &frames, known: BTreeMap::new(), way: Vec::new(), rings: Vec::new() };
+    let mut depths = Depths { functions, frames: &frames, known: BTreeMap::new(), path: Vec::new(), rings: Vec::new() };
     reach.stack = depths.of(handler.address).0;
     reach.deepest = depths.deepest(handler.address);
     reach.rings = depths.rings;
@@ -121,7 +121,7 @@ struct Depths<'a> {
     frames: &'a BTreeMap<u32, Frame>,
     /// Depth, and the callee that makes it with what is held when it is called.
     known: BTreeMap<u32, (u32, Option<(u32, u32)>)>,
-    way: Vec<u32>,
+    path: Vec<u32>,
     rings: Vec<Vec<String>>,
 }
 
@@ -130,12 +130,12 @@ impl Depths<'_> {
         if let Some(known) = self.known.get(&address) {
             return *known;
         }
-        if let Some(start) = self.way.iter().position(|earlier| *earlier == address) {
-            let ring = self.way[start..].iter().chain([&address]);
+        if let Some(start) = self.path.iter().position(|earlier| *earlier == address) {
+            let ring = self.path[start..].iter().chain([&address]);
             self.rings.push(ring.map(|address| name_of(self.functions, *address)).collect());
             return (0, None);
         }
-        self.way.push(address);
+        self.path.push(address);
         let frame = &self.frames[&address];
         let mut deepest = (frame.depth, None);
         for call in &frame.calls {
@@ -145,7 +145,7 @@ impl Depths<'_> {
                 deepest = (depth, Some((callee, call.depth)));
             }
         }
-        self.way.pop();
+        self.path.pop();
         self.known.insert(address, deepest);
         deepest
     }

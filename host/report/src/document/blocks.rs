@@ -1,4 +1,4 @@
-//! A document as plain data: what a report says, in the order in which it says it. Nothing here knows how it is shown.
+//! A document as plain data: its blocks in reading order, independent of the output format.
 
 use super::text::{Text, Tone};
 use crate::checks::Check;
@@ -72,7 +72,7 @@ pub enum Block {
     Lead(Text),
     /// Sentences that explain what stands above them.
     Note(Text),
-    /// What must not be overlooked.
+    /// A notice at the top of a section.
     Notice(Notice),
     /// Key figures.
     Tiles(Vec<Tile>),
@@ -88,7 +88,7 @@ pub enum Block {
     Again(String),
     /// Sentences one below the other.
     List(Vec<Text>),
-    /// What is shown on demand.
+    /// A part that unfolds on a click.
     Details(Details),
     /// Beside each other where there is room.
     Columns(Vec<Block>),
@@ -113,7 +113,7 @@ pub struct Section {
     pub blocks: Vec<Block>,
 }
 
-/// What must not be overlooked. Text that begins with a strong word shows what kind it is.
+/// A notice at the top of a section. Text that begins with a strong word shows what kind it is.
 pub struct Notice {
     /// How bad it is.
     pub tone: Tone,
@@ -156,7 +156,7 @@ pub struct Column {
     pub shown: &'static [Medium],
 }
 
-/// Where cells stand.
+/// Alignment of cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Align {
     /// Words.
@@ -200,7 +200,7 @@ pub struct Picture {
     pub file: String,
 }
 
-/// What is shown on demand.
+/// A part that unfolds on a click.
 pub struct Details {
     /// What it is.
     pub summary: Text,

@@ -5,7 +5,7 @@ use std::fmt::Display;
 use super::blocks::{Block, Document, Section, section_everywhere};
 use super::text::Text;
 
-/// Such a document as far as it has come.
+/// Such a document under construction.
 pub struct Sheet(Document);
 
 impl Sheet {

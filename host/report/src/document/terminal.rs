@@ -1,5 +1,5 @@
-//! A document as lines for a terminal: no colours, so that a terminal, a file and a log show the same, and none of the
-//! signs that a terminal may not have.
+//! A document as lines for a terminal: no colours, so that a terminal, a file and a log show the same, and only
+//! characters that every terminal has.
 
 use std::fmt::Write as _;
 

@@ -1,5 +1,5 @@
-//! Inline text of a document: what stands in a heading, a sentence or a cell. How it looks is the renderers' to say;
-//! pieces are put together by `+`.
+//! Inline text of a document: the content of a heading, a sentence or a cell, joined by `+`. Renderers decide how it
+//! looks.
 
 use std::ops::{Add, AddAssign};
 
@@ -46,7 +46,7 @@ pub enum Span {
     Break,
 }
 
-/// How something is judged.
+/// The colour of a verdict.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Tone {
     /// Good.
@@ -65,7 +65,7 @@ pub enum Tone {
 pub struct Text(pub Vec<Span>);
 
 impl Text {
-    /// Whether nothing is said.
+    /// Whether it is empty.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }

@@ -21,7 +21,7 @@ pub const NOTE: i32 = 28;
 
 /// Where a panel is drawn.
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-/// What drawing into a string may say; it never does.
+/// Result of drawing into a string, which does not fail.
 pub type Drawn = Result<(), Box<dyn std::error::Error>>;
 
 /// How wide a picture is.
@@ -40,7 +40,7 @@ impl Default for Shape {
     }
 }
 
-/// How the common axis runs.
+/// Linear or logarithmic common axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum HorizontalAxis {
     /// Evenly.

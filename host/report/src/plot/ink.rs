@@ -1,5 +1,5 @@
-//! The palette: every colour has a name, a value on light and one on dark ground. Drawn pictures carry the names as CSS
-//! variables, so that one picture serves screen, dark screen and print; who uses which colour is not decided here.
+//! The palette: every colour has a name and a value for light and for dark ground. Pictures refer to the names as CSS
+//! variables, so that one picture serves light screen, dark screen and print.
 
 use std::fmt::Write as _;
 

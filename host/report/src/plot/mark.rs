@@ -1,5 +1,5 @@
-//! What can be drawn in a panel: lines, points, bands, limits and boxes, with their legend entries. Values are SI; scaling and
-//! drawing are the panel's.
+//! What can be drawn in a panel: lines, points, bands, limits and boxes, with their legend entries. Values are in SI;
+//! `panel` scales and draws them.
 
 use super::ink::Ink;
 

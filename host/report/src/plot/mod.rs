@@ -1,5 +1,4 @@
-//! Pictures as SVG text: panels one above the other over a common horizontal axis, drawn by `plotters`. Which lines go
-//! into which panel is decided by those who have something to show.
+//! Pictures as SVG text: panels one above the other over a common horizontal axis, drawn by `plotters`.
 
 mod canvas;
 mod compact;

@@ -1,5 +1,5 @@
 //! One panel: a title with its legend above the plot, so that nothing covers data, axes with units, and marks. Ranges
-//! are found from the marks; what the marks mean is the caller's.
+//! are computed from the marks.
 
 use plotters::coord::ranged1d::ValueFormatter;
 use plotters::coord::types::RangedCoordf64;
@@ -32,7 +32,7 @@ pub struct Panel {
     pub axis: VerticalAxis,
 }
 
-/// How a vertical axis runs.
+/// Linear or logarithmic vertical axis.
 #[derive(Debug, Clone, PartialEq)]
 pub enum VerticalAxis {
     /// Evenly over what the marks need.

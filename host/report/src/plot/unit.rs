@@ -1,5 +1,4 @@
-//! Units that a reader likes: the prefix follows from the greatest value. Ranges of axes are made here too; ticks are
-//! the plotting library's.
+//! Units with an SI prefix that fits the greatest value, and the ranges of axes.
 
 use crate::number::trimmed;
 

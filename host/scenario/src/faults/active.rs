@@ -1,18 +1,18 @@
-//! One fault of a run with what it remembers: whether it is on, and what it does to an encoder's counts. Frames and torques
-//! are the parent's.
+//! One fault of a run with its state: whether it acts now, and its effect on an encoder's counts. Its effects on
+//! set-points and torques are in `faults`.
 
 use std::f64::consts::TAU;
 
 use model_core::virtual_joint::fault::{FaultKind, Shaft};
 
-use crate::draw::Stream;
 use crate::file::{Fault, Offset, fault_is_on, fault_stream};
+use crate::random::RandomStream;
 
-/// A fault at work.
+/// A fault with its state.
 #[derive(Debug, Clone)]
 pub(super) struct Active {
     pub fault: Fault,
-    pub stream: Stream,
+    pub stream: RandomStream,
     /// Counts when the encoder froze, or counts that were lost.
     held: Option<i64>,
     lost: f64,

@@ -1,5 +1,4 @@
-//! What faults do to teeth: backlash that has grown, and a tooth that is soft where it meets. Counts and torques are the
-//! parent's.
+//! Faults of the teeth: grown backlash, and a tooth whose mesh is softer.
 
 use std::f64::consts::TAU;
 
@@ -8,10 +7,10 @@ use parameters::JointParameters;
 use reference::joint::Observation;
 
 use super::active::Active;
-use crate::file::{OnHost, fault_is_on};
+use crate::file::{HostOnlyFault, fault_is_on};
 use crate::plant::{Teeth, half_backlash};
 
-/// What the teeth were made to be.
+/// The original teeth, and how they are now.
 #[derive(Debug, Clone)]
 pub(super) struct ToothState {
     half_backlash: f64,
@@ -41,8 +40,8 @@ impl ToothState {
         let (mut half_backlash, mut soft) = (self.half_backlash, 1.0);
         for active in faults.iter().filter(|active| fault_is_on(&active.fault, time)) {
             match active.fault.kind {
-                FaultKind::Other(OnHost::GrownBacklash(grown)) => half_backlash = grown,
-                FaultKind::Other(OnHost::BrokenTooth(ratio)) => soft = ratio,
+                FaultKind::Other(HostOnlyFault::GrownBacklash(grown)) => half_backlash = grown,
+                FaultKind::Other(HostOnlyFault::BrokenTooth(ratio)) => soft = ratio,
                 _ => {}
             }
         }

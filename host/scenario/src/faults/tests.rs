@@ -1,4 +1,4 @@
-//! Faults do what they say, each by itself against figures that follow by hand. Closed loops are left out.
+//! Each fault by itself, against values that follow by hand.
 
 use std::f64::consts::TAU;
 
@@ -16,7 +16,7 @@ fn at_work(faults: &str) -> (HostFaults, Case) {
 }
 
 /// What the output encoder says in each of so many periods while it truly goes on by `step` counts in each.
-fn counts(faults: &str, periods: u64, step: i64) -> Vec<Option<Frame>> {
+fn counts(faults: &str, periods: u64, step: i64) -> Vec<Option<TimedReading>> {
     let (mut faults, _) = at_work(faults);
     (0..periods)
         .map(|period| {
@@ -60,10 +60,10 @@ fn frames_are_lost_as_often_as_stated_and_late_ones_keep_their_time() {
     let share = lost.iter().filter(|frame| frame.is_none()).count() as f64 / 20_000.0;
     assert!((share - 0.2).abs() < 0.01, "{share}");
     let late = counts("[[fault]]\nkind = \"late_frames\"\ndelay_ms = 0.5\nstart_s = 0.001", 30, 3);
-    assert_eq!(late[9], Some(Frame { counts: 27, period: 9 }));
-    assert_eq!(late[20], Some(Frame { counts: 45, period: 15 }));
+    assert_eq!(late[9], Some(TimedReading { counts: 27, period: 9 }));
+    assert_eq!(late[20], Some(TimedReading { counts: 45, period: 15 }));
     assert_eq!(late[10..15], [None; 5], "a reading that came does not come again");
-    assert_eq!(late[15], Some(Frame { counts: 30, period: 10 }));
+    assert_eq!(late[15], Some(TimedReading { counts: 30, period: 10 }));
 }
 
 #[test]

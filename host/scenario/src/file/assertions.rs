@@ -6,26 +6,26 @@ use joint_file::Notes;
 use toml::Spanned;
 use toml::de::DeValue;
 
-use super::motion::Profile;
+use super::motion::MotionProfile;
 use super::section::Section;
 use crate::controller::ControllerName;
-use crate::figures::{About as Scope, Named, Relation, names, others};
+use crate::metrics::{NamedMetric, Relation, Requirement as Scope, names, others};
 use report::checks::Bound;
 
 /// One bound on one figure.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Assertion {
     /// The figure.
-    pub figure: Named,
+    pub metric: NamedMetric,
     /// Its name as typed.
     pub name: String,
-    /// What is made of the seeds' figures.
+    /// How the seeds' figures are aggregated.
     pub aggregate: Aggregate,
     /// What it must keep to.
     pub bound: Bound,
 }
 
-/// What is made of the seeds' figures.
+/// How the seeds' figures are aggregated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Aggregate {
     /// The one farthest on the wrong side of the bound.
@@ -36,11 +36,11 @@ pub enum Aggregate {
     Mean,
 }
 
-/// What the test is about, as far as figures depend on it.
-pub(super) struct About<'a> {
+/// The properties of a test that decide which figures it has.
+pub(super) struct TestTraits<'a> {
     pub controller: Option<ControllerName>,
     pub gains: bool,
-    pub profile: Option<&'a Profile>,
+    pub profile: Option<&'a MotionProfile>,
 }
 
 impl Aggregate {
@@ -57,7 +57,7 @@ impl Aggregate {
 impl Assertion {
     /// The controller that must run beside for this.
     pub fn rival(&self) -> Option<ControllerName> {
-        match self.figure.relation {
+        match self.metric.relation {
             Relation::Own => None,
             Relation::GainOver(rival) | Relation::RatioTo(rival) => Some(rival),
         }
@@ -65,23 +65,23 @@ impl Assertion {
 }
 
 /// Reads the section.
-pub(super) fn read(top: &Section<'_>, about: &About<'_>) -> Vec<Assertion> {
+pub(super) fn read(top: &Section<'_>, test: &TestTraits<'_>) -> Vec<Assertion> {
     let mut assertions = Vec::new();
     let Some((_, table)) = top.table("assert") else { return assertions };
     for (name, value) in table {
         let word = name.get_ref().as_ref();
-        let Some(figure) = Named::find(word, about.gains) else {
-            let help = likely(word, about.gains);
+        let Some(metric) = NamedMetric::find(word, test.gains) else {
+            let help = likely(word, test.gains);
             top.notes.error(name.span(), format!("there is no figure `{word}` in this test"), help);
             continue;
         };
-        if let Some((message, help)) = out_of_place(&figure, about) {
+        if let Some((message, help)) = out_of_place(&metric, test) {
             top.notes.error(name.span(), format!("`{word}` {message}"), help);
             continue;
         }
         let mut add = |aggregate, value: &Spanned<DeValue<'_>>| {
             if let Some(bound) = bound(value, top.notes) {
-                assertions.push(Assertion { figure, name: word.to_owned(), aggregate, bound });
+                assertions.push(Assertion { metric, name: word.to_owned(), aggregate, bound });
             }
         };
         match value.get_ref() {
@@ -123,21 +123,21 @@ fn likely(word: &str, impedance: bool) -> String {
 }
 
 /// Why a figure cannot be had in a test.
-fn out_of_place(figure: &Named, about: &About<'_>) -> Option<(&'static str, &'static str)> {
-    match figure.base().about {
+fn out_of_place(metric: &NamedMetric, test: &TestTraits<'_>) -> Option<(&'static str, &'static str)> {
+    match metric.base().requires {
         Scope::Motion => None,
         Scope::Impedance => {
-            (!about.gains).then_some(("is for impedances", "write mode = \"impedance\" in [controller]"))
+            (!test.gains).then_some(("is for impedances", "write mode = \"impedance\" in [controller]"))
         }
-        Scope::Sight => about.controller.is_some_and(|controller| !controller.is_ours()).then_some((
+        Scope::Observer => test.controller.is_some_and(|controller| !controller.is_compensation()).then_some((
             "is about the observer, and this controller has none",
             "write mode = \"preview\", \"no_preview\" or \"impedance\" in [controller]",
         )),
-        Scope::Probe => about
+        Scope::Probe => test
             .controller
             .is_some_and(|controller| controller != ControllerName::Probe)
             .then_some(("is about the width probe", "write mode = \"probe\" in [controller], or profile = \"held\"")),
-        Scope::Loop => about
+        Scope::Loop => test
             .profile
             .is_some_and(|profile| profile.kind != "hysteresis")
             .then_some(("is read off a loop of a slow torque", "write profile = \"hysteresis\"")),

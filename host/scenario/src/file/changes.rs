@@ -1,5 +1,5 @@
-//! Reads `[known]` and `[plant]`: keys of the joint file with new values, in nested sections or with dots. Whether a value
-//! is one that a joint may have is asked of the joint-file reader, once the joint is known.
+//! Reads `[known]` and `[plant]`: keys of the joint file with new values, in nested sections or with dots. Values are
+//! checked by the joint-file reader once the joint is known.
 
 use std::ops::Range;
 
@@ -8,7 +8,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::section::{Section, number};
-use crate::draw::Quantity;
+use crate::random::NumberOrRange;
 
 /// One value of the joint that is changed.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,13 +21,13 @@ pub struct Change {
     pub span: Range<usize>,
 }
 
-/// What a key becomes.
+/// The new value of a key.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NewValue {
     /// A number in the key's unit.
-    Number(Quantity),
+    Number(NumberOrRange),
     /// What it was, times a number.
-    Times(Quantity),
+    Times(NumberOrRange),
     /// As typed: a word, or a list for the planets.
     Text(String),
 }
@@ -96,14 +96,14 @@ fn push(path: &str, value: NewValue, span: Range<usize>, section: &str, notes: &
 }
 
 /// A number, or [least, greatest].
-fn quantity(value: &Spanned<DeValue<'_>>, notes: &Notes<'_>) -> Option<Quantity> {
+fn quantity(value: &Spanned<DeValue<'_>>, notes: &Notes<'_>) -> Option<NumberOrRange> {
     const HELP: &str = "write a number, [least, greatest] for one drawn by every seed, or { times = 1.3 }";
     let found = match value.get_ref() {
         DeValue::Array(list) => match list.iter().map(number).collect::<Option<Vec<f64>>>().as_deref() {
-            Some([low, high]) if low <= high => Some(Quantity::Between(*low, *high)),
+            Some([low, high]) if low <= high => Some(NumberOrRange::Between(*low, *high)),
             _ => None,
         },
-        _ => number(value).map(Quantity::Exactly),
+        _ => number(value).map(NumberOrRange::Exactly),
     };
     if found.is_none() {
         notes.error(value.span(), "this is neither a number nor a range", HELP);

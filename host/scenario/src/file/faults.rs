@@ -4,12 +4,12 @@ use model_core::virtual_joint::fault::{self, FaultKind, Shaft, Units};
 
 use super::motion::refuse_others;
 use super::section::Section;
-use crate::draw::Stream;
+use crate::random::RandomStream;
 
 /// One fault of a test.
 pub type Fault = fault::Fault<Si>;
 
-/// What test files say and the host counts in: seconds, radians, counts of the encoder, shares of one, N m. A fault has no
+/// The units of faults in test files and on the host: seconds, radians, counts of the encoder, shares of one, N m. A fault has no
 /// seed yet: every run gives it one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Si;
@@ -21,7 +21,7 @@ impl Units for Si {
     type Deviation = f64;
     type Share = f64;
     type Real = f64;
-    type Other = OnHost;
+    type Other = HostOnlyFault;
 }
 
 /// How far an encoder is off: the sum of both.
@@ -33,9 +33,10 @@ pub struct Offset {
     pub angle: f64,
 }
 
-/// What only the host can apply: a board keeps no past, hears of no set-points, and has its teeth in flash.
+/// Faults that only the host can apply: a board stores no past readings, receives no set-points over a line, and has its
+/// teeth as tables in flash.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum OnHost {
+pub enum HostOnlyFault {
     /// Readings of an encoder come late [s].
     LateReadings(Shaft, f64),
     /// A part of the set-points never comes.
@@ -73,16 +74,16 @@ pub fn fault_word(fault: &Fault) -> &'static str {
         FaultKind::Eccentric(..) => "encoder_eccentric",
         FaultKind::TorqueBias(..) => "torque_bias",
         FaultKind::Saturation(_) => "torque_saturation",
-        FaultKind::LostReadings(..) | FaultKind::Other(OnHost::LostSetPoints(_)) => "lost_frames",
-        FaultKind::Other(OnHost::LateReadings(..) | OnHost::LateSetPoints(_)) => "late_frames",
-        FaultKind::Other(OnHost::GrownBacklash(_)) => "grown_backlash",
-        FaultKind::Other(OnHost::BrokenTooth(_)) => "broken_tooth",
+        FaultKind::LostReadings(..) | FaultKind::Other(HostOnlyFault::LostSetPoints(_)) => "lost_frames",
+        FaultKind::Other(HostOnlyFault::LateReadings(..) | HostOnlyFault::LateSetPoints(_)) => "late_frames",
+        FaultKind::Other(HostOnlyFault::GrownBacklash(_)) => "grown_backlash",
+        FaultKind::Other(HostOnlyFault::BrokenTooth(_)) => "broken_tooth",
     }
 }
 
 /// The random numbers of a fault at a place in the file, for a seed.
-pub fn fault_stream(fault: &Fault, place: usize, seed: u64) -> Stream {
-    Stream::new(seed, &format!("fault {place} {}", fault_word(fault)))
+pub fn fault_stream(fault: &Fault, place: usize, seed: u64) -> RandomStream {
+    RandomStream::new(seed, &format!("fault {place} {}", fault_word(fault)))
 }
 
 /// Reads one `[[fault]]`.
@@ -144,18 +145,18 @@ pub(super) fn read(section: &Section<'_>) -> Option<Fault> {
             let share = needed("share")?;
             match frames {
                 Frames::Readings(of) => FaultKind::LostReadings(of, share),
-                Frames::SetPoints => FaultKind::Other(OnHost::LostSetPoints(share)),
+                Frames::SetPoints => FaultKind::Other(HostOnlyFault::LostSetPoints(share)),
             }
         }
         "late_frames" => {
             let delay = needed("delay_ms")? / 1e3;
             FaultKind::Other(match frames {
-                Frames::Readings(of) => OnHost::LateReadings(of, delay),
-                Frames::SetPoints => OnHost::LateSetPoints(delay),
+                Frames::Readings(of) => HostOnlyFault::LateReadings(of, delay),
+                Frames::SetPoints => HostOnlyFault::LateSetPoints(delay),
             })
         }
-        "grown_backlash" => FaultKind::Other(OnHost::GrownBacklash(needed("half_backlash_um")? / 1e6)),
-        _ => FaultKind::Other(OnHost::BrokenTooth(needed("stiffness_ratio")?)),
+        "grown_backlash" => FaultKind::Other(HostOnlyFault::GrownBacklash(needed("half_backlash_um")? / 1e6)),
+        _ => FaultKind::Other(HostOnlyFault::BrokenTooth(needed("stiffness_ratio")?)),
     };
     let start = section.number("start_s").unwrap_or(0.0);
     let end = section.number("end_s").unwrap_or(f64::INFINITY);

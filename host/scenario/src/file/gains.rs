@@ -1,4 +1,4 @@
-//! The impedance in `[controller]`: who is sent one, and what it is if the file does not say.
+//! Reads the impedance in `[controller]`, with the defaults of what the file leaves out.
 
 use super::section::Section;
 use crate::controller::Gains;

@@ -87,7 +87,7 @@ pub(super) const PROFILES: &[&str] = &[
     "csv",
 ];
 
-/// What may go wrong.
+/// Kinds of faults.
 pub(super) const FAULTS: &[&str] = &[
     "encoder_frozen",
     "encoder_offset",

@@ -14,15 +14,15 @@ mod section;
 
 pub use assertions::{Aggregate, Assertion};
 pub use changes::{Change, NewValue};
-pub use faults::{Fault, Offset, OnHost, Si, fault_is_on, fault_stream, fault_word};
-pub use motion::{Course, Load, Profile, Push, Wave};
+pub use faults::{Fault, HostOnlyFault, Offset, Si, fault_is_on, fault_stream, fault_word};
+pub use motion::{DisturbanceSpec, MotionProfile, ProfileLoad, Trajectory, Wave};
 
 use joint_file::{Keys, Notes, Problem};
 use link::messages::Role;
 use toml::de::{DeTable, DeValue};
 
 use super::controller::{ControllerName, Gains};
-use super::draw::Quantity;
+use super::random::NumberOrRange;
 
 use keys::Kind;
 use section::Section;
@@ -55,7 +55,7 @@ pub struct TestFile {
     /// Changes that they do not know of.
     pub plant: Vec<Change>,
     /// What the link is asked to do.
-    pub profile: Profile,
+    pub profile: MotionProfile,
     /// Who controls.
     pub controller: ControllerName,
     /// Who runs beside.
@@ -65,7 +65,7 @@ pub struct TestFile {
     /// Most that the teeth shall pass on [N m]; `None` is what the motor gives.
     pub peak_torque: Option<f64>,
     /// Guessed over true half-backlash; `None` is wrong by half, one way or the other by the seed.
-    pub width_guess: Option<Quantity>,
+    pub width_guess: Option<NumberOrRange>,
     /// Whether the observer has the output encoder.
     pub output_encoder: bool,
     /// The run is made twice, the second time from what was learnt in the first.
@@ -73,7 +73,7 @@ pub struct TestFile {
     /// Impedance set-points in place of positions.
     pub gains: Option<Gains>,
     /// Torques on the link beside the profile's.
-    pub pushes: Vec<Push>,
+    pub disturbances: Vec<DisturbanceSpec>,
     /// What goes wrong.
     pub faults: Vec<Fault>,
     /// What must hold.
@@ -113,7 +113,7 @@ fn read_table(table: &DeTable<'_>, notes: &Notes<'_>) -> Option<TestFile> {
     let profile = match table.get("profile") {
         Some(value) if matches!(value.get_ref(), DeValue::String(_)) => {
             let kind = Kind::find("profile", "kind").and_then(|key| top.word_of(value, key));
-            kind.map(Profile::of_kind)
+            kind.map(MotionProfile::of_kind)
         }
         _ => match top.table("profile") {
             Some((span, table)) => motion::read(&Section::new("profile", span, table, notes)),
@@ -162,7 +162,7 @@ fn read_table(table: &DeTable<'_>, notes: &Notes<'_>) -> Option<TestFile> {
             notes.error(controller.place("rivals"), format!("{} cannot run beside this", rival.word()), help);
         }
     }
-    let about = assertions::About { controller: name, gains: gains.is_some(), profile: profile.as_ref() };
+    let about = assertions::TestTraits { controller: name, gains: gains.is_some(), profile: profile.as_ref() };
     let assertions = assertions::read(&top, &about);
     for rival in assertions.iter().filter_map(Assertion::rival) {
         if !rivals.contains(&rival) && Some(rival) != name {
@@ -170,8 +170,8 @@ fn read_table(table: &DeTable<'_>, notes: &Notes<'_>) -> Option<TestFile> {
         }
     }
     rivals.retain(|rival| Some(*rival) != name);
-    let [push_sections, fault_sections] = ["disturbance", "fault"].map(|name| top.tables(name));
-    let pushes = push_sections.iter().filter_map(motion::read_push).collect();
+    let [disturbance_sections, fault_sections] = ["disturbance", "fault"].map(|name| top.tables(name));
+    let disturbances = disturbance_sections.iter().filter_map(motion::read_disturbance).collect();
     let faults = fault_sections.iter().filter_map(faults::read).collect();
     let seeds = top.or("seeds", Section::seeds, vec![1])?;
     let full_seeds = top.or("full_seeds", Section::seeds, seeds.clone())?;
@@ -185,11 +185,11 @@ fn read_table(table: &DeTable<'_>, notes: &Notes<'_>) -> Option<TestFile> {
         notes.error(top.place("settle_s"), format!("nothing is left of {duration} s after {settle} s"), help);
     }
     // How long a recorded motion is says its file, unless this one does.
-    if top.has("duration_s") || !matches!(profile.course, Course::File(_)) {
-        refuse_late(push_sections.iter().chain(&fault_sections), duration);
+    if top.has("duration_s") || !matches!(profile.trajectory, Trajectory::File(_)) {
+        refuse_late(disturbance_sections.iter().chain(&fault_sections), duration);
     }
     let from_memory = controller.or("from_memory", Section::flag, false)?;
-    if let (true, Some(name)) = (from_memory, name.filter(|name| !name.is_ours())) {
+    if let (true, Some(name)) = (from_memory, name.filter(|name| !name.is_compensation())) {
         let help = "write mode = \"preview\", \"no_preview\" or \"impedance\", or leave it out";
         notes.error(controller.place("from_memory"), format!("{} learns nothing", name.word()), help);
     }
@@ -219,7 +219,7 @@ fn read_table(table: &DeTable<'_>, notes: &Notes<'_>) -> Option<TestFile> {
         profile,
         rivals,
         gains,
-        pushes,
+        disturbances,
         faults,
         assertions,
     })

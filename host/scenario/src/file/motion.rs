@@ -5,15 +5,15 @@ use toml::Spanned;
 
 use super::section::Section;
 
-/// A motion with what belongs to it.
+/// A reference motion with its load.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Profile {
+pub struct MotionProfile {
     /// Its word.
     pub kind: &'static str,
-    /// Where the link shall be.
-    pub course: Course,
-    /// What pushes the link.
-    pub load: Load,
+    /// The desired position of the link over time.
+    pub trajectory: Trajectory,
+    /// The load on the link.
+    pub load: ProfileLoad,
     /// Dry friction of the link over the rated output torque, in place of the joint's.
     pub friction: Option<f64>,
     /// Weight of the link over the rated output torque, in place of the joint's.
@@ -24,9 +24,9 @@ pub struct Profile {
     pub settle: f64,
 }
 
-/// Where the link shall be.
+/// The desired position of the link over time.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Course {
+pub enum Trajectory {
     /// Amplitude [rad] times a sine [Hz].
     Sine(f64, f64),
     /// Standard deviation [rad] and highest frequency [Hz].
@@ -39,9 +39,9 @@ pub enum Course {
     File(String),
 }
 
-/// What pushes the link as part of the profile; a torque that is not given scales with the rated one.
+/// The load on the link as part of the profile; a torque that is not given scales with the rated one.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Load {
+pub enum ProfileLoad {
     /// Nothing.
     None,
     /// To and fro: torque [N m], frequency [Hz].
@@ -54,7 +54,7 @@ pub enum Load {
     Slow(Option<f64>, f64),
 }
 
-/// How a load goes to and fro.
+/// Waveform of a periodic load.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Wave {
     /// Smoothly.
@@ -63,9 +63,9 @@ pub enum Wave {
     Square,
 }
 
-/// A torque on the link by the file.
+/// A disturbance torque on the link, as given in the file.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Push {
+pub struct DisturbanceSpec {
     /// `step`, `pulse` or `sine`.
     pub kind: &'static str,
     /// [s].
@@ -85,29 +85,29 @@ const WEIGHT: f64 = 0.5;
 /// A brake that holds the link does so with this part of the rated torque: no probe comes near it.
 const BRAKE: f64 = 4.0;
 
-impl Profile {
+impl MotionProfile {
     /// A motion as it is without further keys.
     pub fn of_kind(kind: &'static str) -> Self {
         let usual = Self {
             kind,
-            course: Course::Hold(0.0),
-            load: Load::None,
+            trajectory: Trajectory::Hold(0.0),
+            load: ProfileLoad::None,
             friction: None,
             gravity: Some(0.0),
             duration: 8.0,
             settle: 2.0,
         };
         match kind {
-            "T1" => Self { course: Course::Sine(0.5, 0.2), friction: Some(FRICTION), duration: 12.0, ..usual },
-            "T2" | "impedance" => Self { course: Course::Sine(0.5, 1.0), ..usual }.timed(1.0),
-            "T2b" => Self { course: Course::Sine(0.3, 1.5), gravity: Some(WEIGHT), ..usual }.timed(1.5),
-            "sine" => Self { course: Course::Sine(0.5, 1.0), gravity: None, ..usual }.timed(1.0),
-            "random" => Self { course: Course::Random(0.2, 2.0), ..usual },
-            "steps" => Self { course: Course::Steps(0.05, 0.06, 0.3), ..usual },
-            "disturbed_hold" => Self { load: Load::Wave(Wave::Sine, None, 1.0), ..usual },
-            "free_hold" => Self { load: Load::Kick(None, 0.02), duration: 14.0, settle: 2.1, ..usual },
-            "impact" => Self { load: Load::Impacts(None, 0.01), ..usual },
-            "hysteresis" => Self { load: Load::Slow(None, 0.25), duration: 9.0, settle: 1.0, ..usual },
+            "T1" => Self { trajectory: Trajectory::Sine(0.5, 0.2), friction: Some(FRICTION), duration: 12.0, ..usual },
+            "T2" | "impedance" => Self { trajectory: Trajectory::Sine(0.5, 1.0), ..usual }.timed(1.0),
+            "T2b" => Self { trajectory: Trajectory::Sine(0.3, 1.5), gravity: Some(WEIGHT), ..usual }.timed(1.5),
+            "sine" => Self { trajectory: Trajectory::Sine(0.5, 1.0), gravity: None, ..usual }.timed(1.0),
+            "random" => Self { trajectory: Trajectory::Random(0.2, 2.0), ..usual },
+            "steps" => Self { trajectory: Trajectory::Steps(0.05, 0.06, 0.3), ..usual },
+            "disturbed_hold" => Self { load: ProfileLoad::Wave(Wave::Sine, None, 1.0), ..usual },
+            "free_hold" => Self { load: ProfileLoad::Kick(None, 0.02), duration: 14.0, settle: 2.1, ..usual },
+            "impact" => Self { load: ProfileLoad::Impacts(None, 0.01), ..usual },
+            "hysteresis" => Self { load: ProfileLoad::Slow(None, 0.25), duration: 9.0, settle: 1.0, ..usual },
             "held" => Self { friction: Some(BRAKE), duration: 1.0, settle: 0.0, ..usual },
             // A recording brings its own load, or none.
             _ => Self { gravity: None, ..usual },
@@ -121,66 +121,68 @@ impl Profile {
 }
 
 /// Reads `[profile]`.
-pub(super) fn read(section: &Section<'_>) -> Option<Profile> {
+pub(super) fn read(section: &Section<'_>) -> Option<MotionProfile> {
     let kind = section.required("kind", Section::word)?;
-    let mut profile = Profile::of_kind(kind);
+    let mut profile = MotionProfile::of_kind(kind);
     let mut taken = vec!["kind"];
     {
         let mut set = |name: &'static str, value: &mut f64| {
             taken.push(name);
             *value = section.number(name).unwrap_or(*value);
         };
-        match &mut profile.course {
-            Course::Hold(_) if kind == "csv" => {}
-            Course::Sine(amplitude, frequency) => {
+        match &mut profile.trajectory {
+            Trajectory::Hold(_) if kind == "csv" => {}
+            Trajectory::Sine(amplitude, frequency) => {
                 set("amplitude_rad", amplitude);
                 set("frequency_Hz", frequency);
             }
-            Course::Random(amplitude, highest) => {
+            Trajectory::Random(amplitude, highest) => {
                 set("amplitude_rad", amplitude);
                 set("highest_Hz", highest);
             }
-            Course::Steps(height, duration, rest) => {
+            Trajectory::Steps(height, duration, rest) => {
                 set("height_rad", height);
                 set("move_s", duration);
                 set("rest_s", rest);
             }
-            Course::Hold(angle) => set("angle_rad", angle),
-            Course::File(_) => {}
+            Trajectory::Hold(angle) => set("angle_rad", angle),
+            Trajectory::File(_) => {}
         }
         match &mut profile.load {
-            Load::None => {}
-            Load::Wave(_, _, frequency) | Load::Slow(_, frequency) => set("frequency_Hz", frequency),
-            Load::Kick(_, length) | Load::Impacts(_, length) => set("pulse_s", length),
+            ProfileLoad::None => {}
+            ProfileLoad::Wave(_, _, frequency) | ProfileLoad::Slow(_, frequency) => set("frequency_Hz", frequency),
+            ProfileLoad::Kick(_, length) | ProfileLoad::Impacts(_, length) => set("pulse_s", length),
         }
     }
-    if let Load::Wave(_, torque, _) | Load::Slow(torque, _) | Load::Kick(torque, _) | Load::Impacts(torque, _) =
-        &mut profile.load
+    if let ProfileLoad::Wave(_, torque, _)
+    | ProfileLoad::Slow(torque, _)
+    | ProfileLoad::Kick(torque, _)
+    | ProfileLoad::Impacts(torque, _) = &mut profile.load
     {
         taken.push("torque_N_m");
         *torque = section.number("torque_N_m");
     }
-    if let Load::Wave(wave, ..) = &mut profile.load {
+    if let ProfileLoad::Wave(wave, ..) = &mut profile.load {
         taken.push("wave");
         if section.word("wave") == Some("square") {
             *wave = Wave::Square;
         }
     }
-    if let Course::Sine(_, frequency) = profile.course
+    if let Trajectory::Sine(_, frequency) = profile.trajectory
         && section.has("frequency_Hz")
     {
         profile = profile.timed(frequency);
     }
     if kind == "csv" {
         taken.push("file");
-        profile.course = Course::File(section.required("file", Section::text)?);
+        profile.trajectory = Trajectory::File(section.required("file", Section::text)?);
     }
     refuse_others(section, &taken, kind);
     Some(profile)
 }
 
 /// Reads one `[[disturbance]]`.
-pub(super) fn read_push(section: &Section<'_>) -> Option<Push> {
+pub(super) fn read_disturbance(section: &Section<'_>) -> Option<DisturbanceSpec> {
     let kind = section.required("kind", Section::word)?;
     let taken: &[&str] = match kind {
         "step" => &["kind", "start_s", "torque_N_m"],
@@ -190,7 +192,7 @@ pub(super) fn read_push(section: &Section<'_>) -> Option<Push> {
     taken.iter().filter(|name| !section.has(name)).for_each(|name| section.missing(name));
     refuse_others(section, taken, kind);
     let number = |name: &str| if taken.contains(&name) { section.number(name) } else { Some(0.0) };
-    Some(Push {
+    Some(DisturbanceSpec {
         kind,
         start: number("start_s")?,
         length: number("length_s")?,

@@ -7,7 +7,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::keys::{Key, Kind};
-use crate::draw::Quantity;
+use crate::random::NumberOrRange;
 use report::number::TYPED;
 
 /// One table of the file.
@@ -22,7 +22,7 @@ impl<'a> Deref for Section<'a> {
 }
 
 impl<'a> Section<'a> {
-    /// A table; complains about keys that nobody knows.
+    /// A table; reports unknown keys as problems.
     pub fn new(schema: &'static str, header: Range<usize>, table: &'a DeTable<'a>, notes: &'a Notes<'a>) -> Self {
         Self(Table::new(schema.to_owned(), schema, header, table, notes))
     }
@@ -119,17 +119,17 @@ impl<'a> Section<'a> {
     }
 
     /// A number, or a range of which every seed draws one.
-    pub fn range(&self, name: &str) -> Option<Quantity> {
+    pub fn range(&self, name: &str) -> Option<NumberOrRange> {
         let (value, key) = self.value(name)?;
-        let DeValue::Array(list) = value.get_ref() else { return self.bounded(value, key).map(Quantity::Exactly) };
+        let DeValue::Array(list) = value.get_ref() else { return self.bounded(value, key).map(NumberOrRange::Exactly) };
         let numbers: Vec<f64> = list.iter().filter_map(|item| self.bounded(item, key)).collect();
         self.pair(value, &numbers)
     }
 
     /// Two numbers as a range, the lower one first.
-    pub fn pair(&self, value: &Spanned<DeValue<'_>>, numbers: &[f64]) -> Option<Quantity> {
+    pub fn pair(&self, value: &Spanned<DeValue<'_>>, numbers: &[f64]) -> Option<NumberOrRange> {
         match numbers {
-            [low, high] if low <= high => Some(Quantity::Between(*low, *high)),
+            [low, high] if low <= high => Some(NumberOrRange::Between(*low, *high)),
             _ => {
                 let help = "write [least, greatest]: every seed draws one value between them";
                 self.notes.error(value.span(), "this is no range", help);

@@ -1,5 +1,5 @@
-//! Faults of a test as a board that runs the whole loop takes them: between its virtual joint and its controller, in control
-//! periods and parts of a turn. What no board can do is refused by name.
+//! The faults of a test file as a board that runs the whole loop receives them: applied between its virtual joint and
+//! its controller, in control periods and fractions of a turn. Faults that no board can apply are refused by name.
 
 use std::f64::consts::TAU;
 
@@ -7,7 +7,7 @@ use model_core::virtual_joint::fault::{Fault, FaultKind, FixedPoint, Shaft};
 use model_core::virtual_joint::faults::MOST_FAULTS;
 
 use crate::file;
-use crate::file::{Offset, OnHost, fault_stream, fault_word};
+use crate::file::{HostOnlyFault, Offset, fault_stream, fault_word};
 use report::failure::{Failure, Outcome};
 
 /// Whole turns, and whole shares.
@@ -49,12 +49,12 @@ fn kind(fault: &file::Fault, bits: [u32; 2]) -> Outcome<FaultKind<FixedPoint<f32
         FaultKind::Saturation(torque) => FaultKind::Saturation(torque as f32),
         FaultKind::Other(other) => {
             let (why, plant) = match other {
-                OnHost::LostSetPoints(_) | OnHost::LateSetPoints(_) => {
+                HostOnlyFault::LostSetPoints(_) | HostOnlyFault::LateSetPoints(_) => {
                     ("its motion comes in polynomials of some milliseconds, not in set-points", "")
                 }
-                OnHost::LateReadings(..) => ("it keeps no readings of the past", ""),
-                OnHost::GrownBacklash(_) => ("its teeth are tables in flash", " --plant reference"),
-                OnHost::BrokenTooth(_) => ("its planets share their stiffness", " --plant reference"),
+                HostOnlyFault::LateReadings(..) => ("it keeps no readings of the past", ""),
+                HostOnlyFault::GrownBacklash(_) => ("its teeth are tables in flash", " --plant reference"),
+                HostOnlyFault::BrokenTooth(_) => ("its planets share their stiffness", " --plant reference"),
             };
             let message = format!("the fault `{}` cannot be in a whole loop on a board: {why}", fault_word(fault));
             return Err(Failure::new(message).with_help(format!("run it with --role observer{plant}, or with --host")));
@@ -149,11 +149,11 @@ mod tests {
     #[test]
     fn what_no_board_can_do_is_refused_with_the_mend() {
         for kind in [
-            OnHost::LateReadings(Shaft::Link, 0.001),
-            OnHost::LostSetPoints(0.1),
-            OnHost::LateSetPoints(0.001),
-            OnHost::GrownBacklash(6e-5),
-            OnHost::BrokenTooth(0.3),
+            HostOnlyFault::LateReadings(Shaft::Link, 0.001),
+            HostOnlyFault::LostSetPoints(0.1),
+            HostOnlyFault::LateSetPoints(0.001),
+            HostOnlyFault::GrownBacklash(6e-5),
+            HostOnlyFault::BrokenTooth(0.3),
         ] {
             let fault = Fault { start: 0.0, end: 1.0, seed: (), kind: FaultKind::Other(kind) };
             let name = format!("`{}` cannot be in a whole loop", fault_word(&fault));

@@ -1,5 +1,5 @@
-//! Observer and compensation on a board, a control period at a time over its line: lockstep, so that every period has
-//! its answer however slow the line is.
+//! Observer and compensation on a board, one control period at a time over its line, in lockstep: every period gets its
+//! answer however slow the line is.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -42,10 +42,10 @@ impl ControllerPort for BoardPort<'_> {
         self.ask(Exchange::probing(self.tick, samples), own)
     }
 
-    fn begin_again(&mut self) -> Outcome<()> {
+    fn restart_from_memory(&mut self) -> Outcome<()> {
         (self.tick, self.digest) = (0, digest::START);
-        self.session.borrow_mut().begin_again()?;
-        self.twin.begin_again()
+        self.session.borrow_mut().restart_from_memory()?;
+        self.twin.restart_from_memory()
     }
 }
 

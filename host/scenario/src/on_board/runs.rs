@@ -7,19 +7,19 @@ use std::time::{Duration, Instant};
 
 use super::faults::quantised;
 use super::port::BoardPort;
-use super::twin::{Twin, Twinned};
+use super::twin::{Twin, TwinResult};
 use super::{Boards, Pair};
 use crate::case::Case;
-use crate::execution::{Order, execute_with};
-use crate::ran::Ran;
+use crate::execution::{RunSpec, execute_with};
 use crate::record::BoardRun;
 use crate::rig::RunError;
+use crate::run_history::RunHistory;
 use crate::suite::Test;
 use board::session::Session;
 use report::failure::Failure;
 
 /// A run on a board in lockstep may take this long, whatever the test's time on the clock.
-const LONGEST: Duration = Duration::from_secs(4 * 3600);
+const RUN_TIMEOUT: Duration = Duration::from_secs(4 * 3600);
 
 impl Boards<'_> {
     pub(super) fn run_observer(
@@ -27,25 +27,25 @@ impl Boards<'_> {
         test: &Test,
         case: &Case,
         seed: u64,
-        order: Order,
+        spec: RunSpec,
         pair: &Pair,
-    ) -> Result<(Ran, BoardRun), RunError> {
+    ) -> Result<(RunHistory, BoardRun), RunError> {
         let (session, image) = self.session(pair)?;
         let session = Rc::new(RefCell::new(session));
-        let ran = execute_with(&test.file, case, seed, order, Instant::now() + LONGEST, &|designed| {
+        let history = execute_with(&test.file, case, seed, spec, Instant::now() + RUN_TIMEOUT, &|designed| {
             Ok(Box::new(BoardPort::new(session.clone(), designed)))
         });
         let mut session = session.borrow_mut();
-        let ran = match ran {
-            Ok(ran) => ran,
+        let history = match history {
+            Ok(history) => history,
             Err(error) => {
                 session.abandon();
                 return Err(broken(error));
             }
         };
         session.finish(u32::MAX)?;
-        let run = self.board_run(image, ran.run.samples.len() as u32, session.recording.statistics.as_ref());
-        Ok((ran, run))
+        let run = self.board_run(image, history.run.samples.len() as u32, session.recording.statistics.as_ref());
+        Ok((history, run))
     }
 
     pub(super) fn run_loop(
@@ -54,21 +54,23 @@ impl Boards<'_> {
         case: &Case,
         seed: u64,
         pair: &Pair,
-    ) -> Result<(Ran, BoardRun), RunError> {
+    ) -> Result<(RunHistory, BoardRun), RunError> {
         let designed = case.design(&test.file)?;
         let around = &case.truth.surroundings;
         let bits = [around.motor_encoder.bits, around.output_encoder.bits];
-        let faults = quantised(&test.file.faults, f64::from(case.told_surroundings.control_rate), bits, seed)?;
-        let (truth, board) = (&pair.truth, self.wish.board);
+        let faults = quantised(&test.file.faults, f64::from(case.nominal_surroundings.control_rate), bits, seed)?;
+        let (truth, board) = (&pair.truth, self.request.board);
         let twin = Twin { file: &test.file, case, designed: &designed, truth, board, faults: &faults };
-        let Twinned { knots, ran, digests } = twin.run()?;
+        let TwinResult { knots, history, digests } = twin.run()?;
         let (mut session, image) = self.session(pair)?;
         let follow = |session: &mut Session<'_>| {
             session.add_faults(&faults)?;
             session.follow(&knots, digests.len() as u32)
         };
         let followed = match test.file.from_memory {
-            true => follow(&mut session).and_then(|_| session.begin_again()).and_then(|()| follow(&mut session)),
+            true => {
+                follow(&mut session).and_then(|_| session.restart_from_memory()).and_then(|()| follow(&mut session))
+            }
             false => follow(&mut session),
         };
         let samples = match followed {
@@ -91,7 +93,7 @@ impl Boards<'_> {
             )));
         }
         let periods = samples.last().map_or(0, |sample| sample.tick);
-        Ok((ran, self.board_run(image, periods, session.recording.statistics.as_ref())))
+        Ok((history, self.board_run(image, periods, session.recording.statistics.as_ref())))
     }
 }
 

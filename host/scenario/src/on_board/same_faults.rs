@@ -32,7 +32,7 @@ const END: f64 = 0.4;
 /// In control periods.
 const ON: std::ops::Range<usize> = 1001..4000;
 
-/// What becomes of a control period.
+/// The data of one control period.
 #[derive(Debug, Clone, Copy)]
 struct Period {
     /// Counts of motor and link as they are, whole turns included.

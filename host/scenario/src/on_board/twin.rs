@@ -1,5 +1,6 @@
-//! The host's twin of a board that runs the whole loop: the same joint, observer and compensation over the same knots, in
-//! the same order of operations. What they were worth is read off here, where every period can be seen.
+//! The host's twin of a board that runs the whole loop: the same joint, observer and compensation over the same knots,
+//! in the same order of operations. The metrics of the board's run are computed from it, since every period can be seen
+//! here.
 
 use joint_file::JointFile;
 use link::virtual_joint::Knot;
@@ -14,16 +15,16 @@ use model_core::virtual_joint::faults::Faults;
 use model_core::virtual_joint::{SurroundingsTable, VirtualJoint};
 use reference::closed_loop::Sample;
 
-use super::course;
+use super::trajectory;
 use crate::case::{Case, Designed};
 use crate::file::TestFile;
 use crate::port::remember;
-use crate::ran::{Ran, Truth};
+use crate::run_history::{RunHistory, TrueValues};
 use board::target::board::Board;
 use report::failure::{Failure, Outcome};
-use simulation::sim::moment::Reader;
+use simulation::sim::snapshot::Reader;
 
-/// What is run: the test, what was drawn for it, and the truth at the board's rate.
+/// A twin run: the test, its drawn case, and the true joint at the board's rate.
 pub struct Twin<'t> {
     /// The test.
     pub file: &'t TestFile,
@@ -39,19 +40,19 @@ pub struct Twin<'t> {
     pub faults: &'t [Fault<FixedPoint<f32>>],
 }
 
-/// What a twin did.
-pub struct Twinned {
+/// The result of a twin run.
+pub struct TwinResult {
     /// The motion in knots.
     pub knots: Vec<Knot>,
     /// Everything that happened.
-    pub ran: Ran,
+    pub history: RunHistory,
     /// Running digest after every period.
     pub digests: Vec<u64>,
 }
 
 impl Twin<'_> {
     /// Runs it.
-    pub fn run(&self) -> Outcome<Twinned> {
+    pub fn run(&self) -> Outcome<TwinResult> {
         match self.truth.parameters.geometry.planets {
             3 => self.run_with::<3>(),
             4 => self.run_with::<4>(),
@@ -59,7 +60,7 @@ impl Twin<'_> {
         }
     }
 
-    fn run_with<const N: usize>(&self) -> Outcome<Twinned> {
+    fn run_with<const N: usize>(&self) -> Outcome<TwinResult> {
         let joint = &self.truth.parameters;
         let around = self.truth.surroundings;
         let refused = |error: &dyn std::fmt::Display| {
@@ -84,19 +85,19 @@ impl Twin<'_> {
         tables: &Tables<f32, N>,
         table: &SurroundingsTable<f32>,
         controller: &mut Controller<'_, f32>,
-    ) -> Twinned {
+    ) -> TwinResult {
         let mut virtual_joint = VirtualJoint::new(tables, table);
         let mut faults = Faults::default();
         let all_taken = self.faults.iter().all(|fault| faults.add(*fault));
         debug_assert!(all_taken, "more than fit were refused before");
-        let knots = course::knots(self.file, self.case, self.designed, virtual_joint.output_turn());
+        let knots = trajectory::knots(self.file, self.case, self.designed, virtual_joint.output_turn());
         let joint = &self.truth.parameters;
         let reader = Reader::new(joint, tables);
 
         let rate = f64::from(tables.tick_rate);
         let periods = (self.file.duration * rate).round() as u32;
         let half = self.case.half_backlash();
-        let mut ran = Ran::begin(1.0 / rate, periods.into());
+        let mut history = RunHistory::begin(1.0 / rate, periods.into());
         let (mut digests, mut running) = (Vec::with_capacity(periods as usize), digest::START);
         let (mut coming, mut demand, mut load, mut since) = (knots.iter().peekable(), Trajectory::HOLD, 0.0, 0);
         for period in 0..periods {
@@ -127,14 +128,14 @@ impl Twin<'_> {
                 transmitted: f64::from(stiffness) * moment.wind_up + f64::from(damping) * f64::from(state.rate.wind_up),
                 command: f64::from(answer.shaped.torque),
             };
-            let truth = Truth {
+            let truth = TrueValues {
                 gap: moment.gap,
                 half_backlash: half,
                 load_torque: f64::from(virtual_joint.acting().load),
                 motor: moment.motor_angle(joint),
             };
-            ran.add(sample, truth, Some(&answer));
+            history.add(sample, truth, Some(&answer));
         }
-        Twinned { knots, ran, digests }
+        TwinResult { knots, history, digests }
     }
 }

@@ -1,35 +1,33 @@
-//! The one closed loop of a joint on the host: a plant with what surrounds it, a motion that is asked for, faults
-//! between plant and controller, and whoever controls.
+//! The one closed loop of a joint on the host: a plant in its drive train, a reference motion, faults between plant and
+//! controller, and a controller.
 //!
-//! A control period: faults of the teeth; the set-point is sent, and reaches the controller through its faults; the encoders
-//! are read, and reach it through theirs; the controller gives a torque; the motor makes of it what its faults let it, and
-//! the plant moves on. Encoders are homed where a run begins.
-//!
-//! Which case it is, who controls, and what a run was worth are left to others.
+//! A control period: faults of the teeth; the set-point passes through its faults to the controller; the encoders are
+//! read and pass through theirs; the controller gives a torque; the motor applies what its faults let through, and the
+//! plant moves on. Encoders are homed at the start of a run.
 
-mod driver;
+mod active_controller;
 mod error;
-mod perfect_sight;
 mod period;
 mod recording;
 mod setup;
+mod true_state;
 
-pub use driver::Driver;
+pub use active_controller::ActiveController;
 pub use error::RunError;
-pub use perfect_sight::PerfectSight;
 pub use period::Period;
-pub use recording::Moment;
+pub use recording::PeriodSample;
 pub use setup::Setup;
+pub use true_state::TrueStateCompensation;
 
 use reference::closed_loop::SharedProfile;
 use reference::drive_train::Measurement;
 
 use super::faults::HostFaults;
 use super::plant::{Plant, plant_from};
-use super::sender::Sender;
+use super::set_point_source::SetPointSource;
 use report::failure::Outcome;
 
-/// A joint that waits for a controller, or has been controlled for a while.
+/// A joint in its drive train, with reference motion and faults, ready for a controller.
 pub struct Rig {
     plant: Plant,
     faults: HostFaults,
@@ -74,17 +72,22 @@ impl Rig {
     }
 
     /// Closes the loop, from the first period to the last.
-    pub fn run(mut self, driver: &mut Driver<'_>, sender: &mut Sender, watch: Watch<'_>) -> Result<(), RunError> {
+    pub fn run(
+        mut self,
+        controller: &mut ActiveController<'_>,
+        set_points: &mut SetPointSource,
+        watch: Watch<'_>,
+    ) -> Result<(), RunError> {
         let Self { plant, faults, motion, period, periods } = &mut self;
         for index in 0..*periods {
             let time = index as f64 * *period;
             let joint = plant.joint().clone();
             faults.wear(time, &joint, plant.joint_model().as_mut());
-            let (number, set_point) = sender.at(time, index);
+            let (number, set_point) = set_points.at(time, index);
             let set_point = faults.receive(time, number, set_point);
             let seen = faults.sense(&plant.measure());
-            driver.show(&joint, &plant.torques());
-            let (command, answer) = driver.period(&seen, &set_point)?;
+            controller.show(&joint, &plant.torques());
+            let (command, answer) = controller.period(&seen, &set_point)?;
             if !command.is_finite() {
                 return Err(RunError::Broke(format!("the controller's torque is not finite at t = {time:.4} s")));
             }
@@ -109,10 +112,14 @@ impl Rig {
     }
 
     /// Closes the loop and keeps what was measured, with the truth.
-    pub fn record(self, driver: &mut Driver<'_>, sender: &mut Sender) -> Result<Vec<Moment>, RunError> {
+    pub fn record(
+        self,
+        controller: &mut ActiveController<'_>,
+        set_points: &mut SetPointSource,
+    ) -> Result<Vec<PeriodSample>, RunError> {
         let mut moments = Vec::with_capacity(self.periods as usize);
-        self.run(driver, sender, &mut |period| {
-            moments.push(Moment::of(period));
+        self.run(controller, set_points, &mut |period| {
+            moments.push(PeriodSample::of(period));
             Ok(())
         })?;
         Ok(moments)

@@ -1,9 +1,9 @@
-//! What one control period of a run came to, as it is shown to whoever keeps something of it.
+//! The result of one control period, as shown to those who record a run.
 
 use crate::plant::Plant;
 use crate::port::Answer;
 
-/// What one control period came to.
+/// The result of one control period.
 pub struct Period<'r> {
     /// Place in the run, from 0.
     pub index: u64,
@@ -17,7 +17,7 @@ pub struct Period<'r> {
     pub half_backlash: f64,
     /// Torque asked of the motor [N m].
     pub command: f64,
-    /// What observer and compensation said, if they control.
+    /// The answer of observer and compensation, if they control.
     pub answer: Option<&'r Answer>,
 }
 

@@ -1,10 +1,10 @@
-//! What was measured in a run, with the truth beside it: what an observer can be run over afterwards, as often as one likes.
+//! What was measured in a run, with the truth beside it: an observer can be run over it afterwards.
 
 use super::period::Period;
 
 /// One control period: what was measured at its end, and the truth then.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Moment {
+pub struct PeriodSample {
     /// Command that was in force during the period [N m].
     pub command: f64,
     /// Motor encoder at the end, from its own zero and with whole turns.
@@ -23,7 +23,7 @@ pub struct Moment {
     pub motor: [f64; 2],
 }
 
-impl Moment {
+impl PeriodSample {
     /// The end of a period.
     pub fn of(period: &Period<'_>) -> Self {
         let (measurement, joint) = (period.plant.measure(), period.plant.joint());

@@ -1,5 +1,5 @@
-//! What a loop is closed around: the true joint with everything that surrounds it, what is asked of its link, and what
-//! goes wrong. Plain data.
+//! Everything that a loop is closed around, as plain data: the true joint with its drive train, the reference motion,
+//! disturbances and faults.
 
 use parameters::JointParameters;
 use reference::closed_loop::SharedProfile;

@@ -1,63 +1,64 @@
 //! The certificate as text for a person: one line each, in the units that data sheets use.
 
-use super::figures::{Error, Figures, Work};
+use super::summary::{BudgetSummary, PredictedError, TickWork};
 use report::document::{Sheet, terminal};
 
 /// All of it, as a terminal shows it.
-pub fn layout(figures: &Figures) -> String {
-    let mut page = Sheet::new(format!("{} on {} at {} Hz", figures.joint, figures.board, figures.rate_Hz));
-    step(&mut page, figures);
-    error(&mut page, figures);
-    work(&mut page, figures);
-    memory(&mut page, figures);
-    limits(&mut page, figures);
+pub fn layout(summary: &BudgetSummary) -> String {
+    let mut page = Sheet::new(format!("{} on {} at {} Hz", summary.joint, summary.board, summary.rate_Hz));
+    step(&mut page, summary);
+    error(&mut page, summary);
+    work(&mut page, summary);
+    memory(&mut page, summary);
+    limits(&mut page, summary);
     page.heading("Verdict");
-    page.row("", verdict(figures));
+    page.row("", verdict(summary));
     terminal(&page.document())
 }
 
-fn step(page: &mut Sheet, figures: &Figures) {
+fn step(page: &mut Sheet, summary: &BudgetSummary) {
     page.heading("Step");
-    page.row("period", format!("{:.2} us", 1e6 / f64::from(figures.rate_Hz)));
-    let method = if figures.method == "leaps" { "leapfrog sub-steps" } else { "corrected sub-steps" };
-    page.row("at contact changes", format!("{} {method}", figures.parts));
-    let phase = figures.fastest_mode_phase_rad;
-    page.row("fastest mode in one", format!("{phase:.2} rad, unstable from {:.2} on", figures.largest_phase_rad));
+    page.row("period", format!("{:.2} us", 1e6 / f64::from(summary.rate_Hz)));
+    let method = if summary.method == "leaps" { "leapfrog sub-steps" } else { "corrected sub-steps" };
+    page.row("at contact changes", format!("{} {method}", summary.parts));
+    let phase = summary.fastest_mode_phase_rad;
+    page.row("fastest mode in one", format!("{phase:.2} rad, unstable from {:.2} on", summary.largest_phase_rad));
 }
 
-fn error(page: &mut Sheet, figures: &Figures) {
+fn error(page: &mut Sheet, summary: &BudgetSummary) {
     page.heading("Error of mesh deflections, RMS over the motion's standard deviation");
-    let promise =
-        |error: Error| format!("{:.1e} typical, {:.1e} in nine motions of ten", error.typical, error.nine_in_ten);
-    page.row("while contact holds", promise(figures.error_holding));
-    page.row("while meshes part and hit", promise(figures.error_losing));
+    let promise = |error: PredictedError| {
+        format!("{:.1e} typical, {:.1e} in nine motions of ten", error.typical, error.nine_in_ten)
+    };
+    page.row("while contact holds", promise(summary.error_holding));
+    page.row("while meshes part and hit", promise(summary.error_losing));
 }
 
-fn work(page: &mut Sheet, figures: &Figures) {
+fn work(page: &mut Sheet, summary: &BudgetSummary) {
     page.heading("Work of a tick (instructions of a Cortex-M4F; cycles reckoned, not measured)");
-    let of = |work: Work| {
-        let Work { instructions, time_s, part } = work;
+    let of = |work: TickWork| {
+        let TickWork { instructions, time_s, part } = work;
         format!("{instructions} instructions, {:.1} us, {:.0} % of the period", 1e6 * time_s, 100.0 * part)
     };
-    page.row("contact holds", of(figures.holding));
-    page.row("parts, no crossing", of(figures.losing));
-    page.row("every mesh crosses twice", of(figures.all_crossing));
-    page.row("every mesh in every part", of(figures.bound));
-    let megahertz = f64::from(figures.clock_Hz) / 1e6;
-    page.row("processor", format!("{megahertz:.0} MHz, {:.1} cycles an instruction", figures.cycles_per_instruction));
+    page.row("contact holds", of(summary.holding));
+    page.row("parts, no crossing", of(summary.losing));
+    page.row("every mesh crosses twice", of(summary.all_crossing));
+    page.row("every mesh in every part", of(summary.bound));
+    let megahertz = f64::from(summary.clock_Hz) / 1e6;
+    page.row("processor", format!("{megahertz:.0} MHz, {:.1} cycles an instruction", summary.cycles_per_instruction));
 }
 
-fn memory(page: &mut Sheet, figures: &Figures) {
+fn memory(page: &mut Sheet, summary: &BudgetSummary) {
     page.heading("Memory");
-    page.row("tables", format!("{} bytes of flash", figures.table_bytes));
-    page.row("model", format!("{} bytes of RAM", figures.model_bytes));
+    page.row("tables", format!("{} bytes of flash", summary.table_bytes));
+    page.row("model", format!("{} bytes of RAM", summary.model_bytes));
 }
 
-fn limits(page: &mut Sheet, figures: &Figures) {
+fn limits(page: &mut Sheet, summary: &BudgetSummary) {
     page.heading("Limits");
-    page.row("rates", format!("{} to {} Hz", figures.lowest_rate_Hz, figures.highest_rate_Hz));
-    let duration = 1e6 * figures.unseen_for_s;
-    let unseen = match figures.unseen_departure {
+    page.row("rates", format!("{} to {} Hz", summary.lowest_rate_Hz, summary.highest_rate_Hz));
+    let duration = 1e6 * summary.unseen_for_s;
+    let unseen = match summary.unseen_departure {
         Some(0.0) => "no mesh".to_owned(),
         Some(departure) => {
             format!("for {duration:.1} us and {:.2} of the deflection by its load", departure)
@@ -67,11 +68,11 @@ fn limits(page: &mut Sheet, figures: &Figures) {
     page.row("may leave and return unseen", unseen);
 }
 
-fn verdict(figures: &Figures) -> String {
+fn verdict(summary: &BudgetSummary) -> String {
     let fits = "fits: a tick in which every mesh crosses twice leaves time";
-    if figures.bound.part <= figures.share {
+    if summary.bound.part <= summary.share {
         return format!("{fits}, and so does one in which every mesh crosses in every part");
     }
-    let part = 100.0 * figures.bound.part;
+    let part = 100.0 * summary.bound.part;
     format!("{fits}; if every mesh crossed in every part, {part:.0} % of the period would be needed")
 }

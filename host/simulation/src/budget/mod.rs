@@ -1,14 +1,14 @@
-//! What is promised of a joint's fixed step on a board at a rate, before anything is built or run, and whether the board has
-//! time for it. Nothing is measured here.
+//! The certificate of a joint's fixed step on a board at a rate: predicted error, instructions and memory, and whether
+//! the board has time for it. Nothing is measured here.
 //!
-//! `verdict` judges, `figures` is the result as data, `layout` puts it in order.
+//! `verdict` judges, `summary` is the result as data, `layout` prints it.
 
-mod figures;
 mod layout;
+mod summary;
 #[cfg(test)]
 mod tests;
 mod verdict;
 
-pub use figures::{Figures, figures};
 pub use layout::layout;
+pub use summary::{BudgetSummary, summary};
 pub use verdict::refuse;

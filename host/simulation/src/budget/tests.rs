@@ -6,8 +6,8 @@ use joint_file::{PRESETS, named};
 use model_core::gears::design::{Effort, StepSize, certificate};
 use parameters::JointParameters;
 
-use super::figures;
 use super::layout::layout;
+use super::summary;
 use super::verdict::{nearest, refuse};
 use board::target::board::Board;
 use report::output;
@@ -33,7 +33,7 @@ fn a_rate_that_takes_too_long_is_refused_with_the_nearest_that_fits() {
     assert!(failure.message().contains("of the period"), "{failure}");
     assert_eq!(failure.exit_code(), 2);
     let offered = nearest(&StepSize::new(&q1), &Board::Stm32f405.processor(), 80_000).expect("there is one");
-    assert!(failure.help().expect("a mend").contains(&format!("--rate {offered}")), "{failure}");
+    assert!(failure.help().expect("a help").contains(&format!("--rate {offered}")), "{failure}");
     assert!(refuse(&q1, Board::Stm32f405, offered).is_ok(), "{offered}");
 }
 
@@ -42,7 +42,7 @@ fn a_rate_that_is_unstable_or_cannot_be_made_is_refused_with_one_that_can() {
     for (rate, why) in [(100, "no step is stable"), (20_001, "no multiple")] {
         let failure = refuse(&preset("q1"), Board::Stm32f405, rate).expect_err("not possible");
         assert!(failure.message().contains(why), "{failure}");
-        assert!(failure.help().expect("a mend").contains("--rate "), "{failure}");
+        assert!(failure.help().expect("a help").contains("--rate "), "{failure}");
     }
 }
 
@@ -62,7 +62,7 @@ fn what_is_offered_is_nearest() {
 fn a_faster_board_takes_no_more_of_the_period_and_no_fewer_sub_steps() {
     for name in PRESETS {
         let joint = preset(name);
-        let on = |board| figures(&joint, board, 20_000).expect("figures");
+        let on = |board| summary(&joint, board, 20_000).expect("figures");
         let (slow, fast) = (on(Board::Stm32f405), on(Board::Stm32h743));
         assert!(fast.parts >= slow.parts && fast.holding.part < slow.holding.part, "{name}");
     }
@@ -71,9 +71,9 @@ fn a_faster_board_takes_no_more_of_the_period_and_no_fewer_sub_steps() {
 #[test]
 fn work_rises_from_holding_to_the_bound() {
     for name in PRESETS {
-        let figures = figures(&preset(name), Board::Stm32h743, 20_000).expect("figures");
-        let work = [figures.losing, figures.all_crossing, figures.bound].map(|work| work.instructions);
-        assert!(work.is_sorted() && figures.holding.instructions < figures.all_crossing.instructions, "{name}");
+        let summary = summary(&preset(name), Board::Stm32h743, 20_000).expect("figures");
+        let work = [summary.losing, summary.all_crossing, summary.bound].map(|work| work.instructions);
+        assert!(work.is_sorted() && summary.holding.instructions < summary.all_crossing.instructions, "{name}");
     }
 }
 
@@ -95,9 +95,9 @@ fn errors_fall_with_the_rate_and_the_typical_one_is_the_smaller() {
 
 #[test]
 fn text_and_json_say_the_same() {
-    let figures = figures(&preset("q1"), Board::Stm32f405, 20_000).expect("figures");
-    let (text, json) = (layout(&figures), output::json("figures", &figures).expect("finite numbers"));
-    let instructions = figures.all_crossing.instructions.to_string();
+    let summary = summary(&preset("q1"), Board::Stm32f405, 20_000).expect("figures");
+    let (text, json) = (layout(&summary), output::json("figures", &summary).expect("finite numbers"));
+    let instructions = summary.all_crossing.instructions.to_string();
     assert!(text.contains(&instructions) && json.contains(&instructions), "{text}{json}");
     assert!(json.contains("\"schema\": \"joint-budget/1\""), "{json}");
     assert!(text.contains("fits"), "{text}");

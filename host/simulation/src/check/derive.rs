@@ -8,10 +8,10 @@ use model_core::gears::design::{Effort, StepSize};
 use model_core::gears::{Kinematics, Mechanics, MeshPhasing, Scales};
 use parameters::{DampingLaw, JointParameters, MESH_KINDS, MeshKind, PerPlanet};
 
-use super::figures::{
-    Figures, FixedStep, Frequencies, GeometryFigures, Masses, MeshFigures, Numbers, Output, SCHEMA, Warning,
-};
 use super::step::step;
+use super::summary::{
+    CheckSummary, FixedStep, Frequencies, GeometryFigures, Masses, MeshFigures, Numbers, Output, SCHEMA, Warning,
+};
 use joint_file::named::Loaded;
 use report::failure::{Failure, Outcome};
 
@@ -21,9 +21,9 @@ pub(super) fn arcmin(angle: f64) -> f64 {
 }
 
 /// The figures of a joint at a step rate [Hz].
-pub fn figures(loaded: &Loaded, rate: u32) -> Outcome<Figures> {
+pub fn summary(loaded: &Loaded, rate: u32) -> Outcome<CheckSummary> {
     let parameters = &loaded.file.parameters;
-    let figures = Figures {
+    let summary = CheckSummary {
         schema: SCHEMA.to_owned(),
         file: loaded.name.clone(),
         name: parameters.name.to_string(),
@@ -42,11 +42,11 @@ pub fn figures(loaded: &Loaded, rate: u32) -> Outcome<Figures> {
         warnings: warnings(loaded),
     };
     // Bounds of the reader keep every figure finite; if one is not, it must not be printed.
-    let json = serde_json::to_value(&figures).map_err(|error| Failure::new(error.to_string()))?;
+    let json = serde_json::to_value(&summary).map_err(|error| Failure::new(error.to_string()))?;
     match first_null(&json, "") {
         Some(path) => Err(Failure::new(format!("{} cannot be used: {path} is not a finite number", loaded.name))
             .with_help("look for a value that is orders of magnitude off")),
-        None => Ok(figures),
+        None => Ok(summary),
     }
 }
 

@@ -1,30 +1,30 @@
-//! The figures of a joint as text for a person: one line each, in the units that data sheets use. Colours are left out,
-//! so that a terminal, a file and a log show the same.
+//! The result of `joint check` as text: one line a figure, in the units of data sheets, without colours, so that a
+//! terminal, a file and a log show the same.
 
 use std::fmt::Write;
 
-use super::figures::{Figures, MeshFigures};
+use super::summary::{CheckSummary, MeshFigures};
 use report::document::{Sheet, terminal};
 use report::number::DATA_SHEET;
 
 /// All of it, as a terminal shows it.
-pub fn layout(figures: &Figures) -> String {
-    let mut page = Sheet::new(match figures.description.as_str() {
-        "" => figures.name.clone(),
-        description => format!("{}: {description}", figures.name),
+pub fn layout(summary: &CheckSummary) -> String {
+    let mut page = Sheet::new(match summary.description.as_str() {
+        "" => summary.name.clone(),
+        description => format!("{}: {description}", summary.name),
     });
-    gears(&mut page, figures);
-    masses(&mut page, figures);
-    frequencies(&mut page, figures);
-    meshes(&mut page, figures);
-    output(&mut page, figures);
-    step(&mut page, figures);
-    file(&mut page, figures);
+    gears(&mut page, summary);
+    masses(&mut page, summary);
+    frequencies(&mut page, summary);
+    meshes(&mut page, summary);
+    output(&mut page, summary);
+    step(&mut page, summary);
+    file(&mut page, summary);
     terminal(&page.document())
 }
 
-fn gears(page: &mut Sheet, figures: &Figures) {
-    let geometry = &figures.geometry;
+fn gears(page: &mut Sheet, summary: &CheckSummary) {
+    let geometry = &summary.geometry;
     page.heading("Gears");
     page.row("planets", geometry.planets);
     let teeth = [geometry.sun_teeth, geometry.planet_teeth, geometry.ring_teeth];
@@ -38,8 +38,8 @@ fn gears(page: &mut Sheet, figures: &Figures) {
     page.row("ratio by radii", format!("{:.6}", geometry.ratio_by_radii));
 }
 
-fn masses(page: &mut Sheet, figures: &Figures) {
-    let masses = &figures.equivalent_masses;
+fn masses(page: &mut Sheet, summary: &CheckSummary) {
+    let masses = &summary.equivalent_masses;
     page.heading("Equivalent masses, I / r^2 on the line of action");
     page.row("sun", format!("{} kg", digits(masses.sun_kg)));
     page.row("sun with rotor", format!("{} kg", digits(masses.sun_with_rotor_kg)));
@@ -48,8 +48,8 @@ fn masses(page: &mut Sheet, figures: &Figures) {
     page.row("link", if masses.link_kg > 0.0 { format!("{} kg", digits(masses.link_kg)) } else { "none".to_owned() });
 }
 
-fn frequencies(page: &mut Sheet, figures: &Figures) {
-    let frequencies = &figures.frequencies;
+fn frequencies(page: &mut Sheet, summary: &CheckSummary) {
+    let frequencies = &summary.frequencies;
     page.heading("Frequencies, in contact at mean stiffness");
     let omega_n = (frequencies.omega_n_rad_per_s, frequencies.omega_n_Hz);
     page.row("omega_n (eq. 18)", format!("{:.1} rad/s = {:.2} Hz", omega_n.0, omega_n.1));
@@ -57,8 +57,8 @@ fn frequencies(page: &mut Sheet, figures: &Figures) {
     page.row("with rotor and link", hertz(&frequencies.whole_joint_Hz));
 }
 
-fn meshes(page: &mut Sheet, figures: &Figures) {
-    for mesh in &figures.meshes {
+fn meshes(page: &mut Sheet, summary: &CheckSummary) {
+    for mesh in &summary.meshes {
         page.heading(if mesh.kind == "sun_planet" { "Sun-planet meshes" } else { "Ring-planet meshes" });
         page.row("half-backlash b (gap is 2b)", format!("{} um", per_planet(&mesh.half_backlash_m, 1e6, 3)));
         page.row("mean stiffness", format!("{:.4e} N/m", mesh.mean_stiffness_N_per_m));
@@ -69,7 +69,7 @@ fn meshes(page: &mut Sheet, figures: &Figures) {
         );
         phases(page, mesh);
     }
-    page.row("damping law", figures.damping_law);
+    page.row("damping law", summary.damping_law);
 }
 
 fn phases(page: &mut Sheet, mesh: &MeshFigures) {
@@ -83,8 +83,8 @@ fn phases(page: &mut Sheet, mesh: &MeshFigures) {
     }
 }
 
-fn output(page: &mut Sheet, figures: &Figures) {
-    let output = &figures.output;
+fn output(page: &mut Sheet, summary: &CheckSummary) {
+    let output = &summary.output;
     page.heading("At the output");
     let torques = (output.rated_torque_N_m, output.balancing_drive_torque_N_m);
     page.row("rated torque", format!("{} N m, {} N m at the sun", digits(torques.0), digits(torques.1)));
@@ -97,8 +97,8 @@ fn output(page: &mut Sheet, figures: &Figures) {
     page.row("  teeth, compliance", format!("{:.4}, {:.4} mrad", parts[0], parts[1]));
 }
 
-fn step(page: &mut Sheet, figures: &Figures) {
-    let step = &figures.fixed_step;
+fn step(page: &mut Sheet, summary: &CheckSummary) {
+    let step = &summary.fixed_step;
     page.heading("Fixed step");
     let longest = 1e6 * step.longest_step_s;
     page.row("longest stable step", format!("{longest:.1} us ({} Hz)", step.lowest_rate_Hz));
@@ -110,18 +110,18 @@ fn step(page: &mut Sheet, figures: &Figures) {
     page.row("tables", format!("{} bytes of flash, digest {}", step.table_bytes, step.digest));
 }
 
-fn file(page: &mut Sheet, figures: &Figures) {
-    let numbers = &figures.numbers;
+fn file(page: &mut Sheet, summary: &CheckSummary) {
+    let numbers = &summary.numbers;
     page.heading("Joint file");
     let mut text = format!("{}, {} of them assumed", numbers.stated, numbers.assumed);
     if numbers.without_source > 0 {
         let _ = write!(text, ", {} without a source", numbers.without_source);
     }
     page.row("numbers", text);
-    if figures.warnings.is_empty() {
+    if summary.warnings.is_empty() {
         page.row("warnings", "none");
     }
-    for warning in &figures.warnings {
+    for warning in &summary.warnings {
         page.row(&format!("warning, line {}", warning.line), &warning.message);
         page.row("", format!("mend: {}", warning.help));
     }

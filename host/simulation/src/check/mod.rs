@@ -1,14 +1,15 @@
-//! What follows from a joint file: masses, natural frequencies, lost motion, wind-up, the fixed step. Nothing is run here.
+//! What follows from a joint file: masses, natural frequencies, lost motion, wind-up, the fixed step. Nothing is
+//! simulated here.
 //!
-//! `derive` computes the `figures`, `step` asks the design for the fixed step, `layout` puts them in order.
+//! `derive` computes the `summary`, `step` asks the design for the fixed step, `layout` prints it.
 
 mod derive;
-mod figures;
 mod layout;
 mod step;
+mod summary;
 #[cfg(test)]
 mod tests;
 
-pub use derive::figures;
-pub use figures::Figures;
+pub use derive::summary;
 pub use layout::layout;
+pub use summary::CheckSummary;

@@ -1,5 +1,4 @@
-//! What the tables take of a board's flash and in how many sub-steps a tick is taken. The tables themselves are made
-//! by `model_core::gears::design`.
+//! What the tables take of a board's flash, and the number of sub-steps in a tick, from `model_core::gears::design`.
 
 use model_core::gears::Tables;
 use model_core::gears::design::{DesignError, design};

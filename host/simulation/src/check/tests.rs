@@ -9,15 +9,15 @@ use model_core::gears::design::{Effort, StepSize};
 use parameters::JointParameters;
 
 use super::derive::arcmin;
-use super::{Figures, figures, layout, step};
+use super::{CheckSummary, layout, step, summary};
 use joint_file::diagnostic;
 use joint_file::named::{Loaded, load};
 use report::output;
 
 const RATE: u32 = 20_000;
 
-fn preset(name: &str) -> Figures {
-    figures(&load(Path::new(name)).expect("a preset"), RATE).expect("figures")
+fn preset(name: &str) -> CheckSummary {
+    summary(&load(Path::new(name)).expect("a preset"), RATE).expect("figures")
 }
 
 /// Q1's text with pieces exchanged, read.
@@ -68,7 +68,7 @@ fn the_paper_has_its_known_frequencies_and_masses() {
 fn gears_alone_have_the_frequencies_of_the_closed_form() {
     for name in PRESETS {
         let loaded = load(Path::new(name)).expect("a preset");
-        let frequencies = figures(&loaded, RATE).expect("figures").frequencies.gears_alone_Hz;
+        let frequencies = summary(&loaded, RATE).expect("figures").frequencies.gears_alone_Hz;
         let expected = closed_form(&loaded.file.parameters);
         let mut expected = vec![expected[0], expected[1], expected[1], expected[2]];
         expected.sort_by(f64::total_cmp);
@@ -92,27 +92,27 @@ fn q1_has_the_lost_motion_and_the_wind_up_of_its_data_sheet() {
 #[test]
 fn static_deflections_carry_the_rated_torque() {
     for name in PRESETS {
-        let figures = preset(name);
-        let [sun, ring] = &figures.meshes;
-        let planets = figures.geometry.planets as f64;
+        let summary = preset(name);
+        let [sun, ring] = &summary.meshes;
+        let planets = summary.geometry.planets as f64;
         let at_sun = planets
             * sun.mean_stiffness_N_per_m
             * sun.deflection_at_rated_torque_m
-            * figures.geometry.sun_base_radius_m;
-        assert!((at_sun / figures.output.balancing_drive_torque_N_m - 1.0).abs() < 1e-12, "{name}");
+            * summary.geometry.sun_base_radius_m;
+        assert!((at_sun / summary.output.balancing_drive_torque_N_m - 1.0).abs() < 1e-12, "{name}");
         // X = u_s - 2 u_c is the sum of both deflections; the sun stands still.
         let turned = (sun.deflection_at_rated_torque_m + ring.deflection_at_rated_torque_m)
-            / (2.0 * figures.geometry.carrier_base_radius_m);
-        assert!((turned / figures.output.wind_up_of_teeth_rad - 1.0).abs() < 1e-12, "{name}");
+            / (2.0 * summary.geometry.carrier_base_radius_m);
+        assert!((turned / summary.output.wind_up_of_teeth_rad - 1.0).abs() < 1e-12, "{name}");
     }
 }
 
 #[test]
 fn the_tightest_planet_sets_the_gap() {
     let ring = "[mesh.ring_planet]\nhalf_backlash_um = [40.0, 10.0, 50.0]\n\n[contact]";
-    let figures = figures(&changed(&[("[contact]", ring)]), RATE).expect("figures");
-    assert_printed(1e6 * figures.output.gap_m, 2.0 * (40.0 + 10.0), 9);
-    assert!(layout(&figures).contains("40.000, 10.000, 50.000 um"));
+    let summary = summary(&changed(&[("[contact]", ring)]), RATE).expect("figures");
+    assert_printed(1e6 * summary.output.gap_m, 2.0 * (40.0 + 10.0), 9);
+    assert!(layout(&summary).contains("40.000, 10.000, 50.000 um"));
 }
 
 #[test]
@@ -124,14 +124,14 @@ fn mesh_phases_of_unequal_planets_are_shown_for_each() {
         ("ring_teeth = 75", "ring_teeth = 84"),
         ("drive_torque_N_m = 2.0", "drive_torque_N_m = 2.4"),
     ];
-    let figures = figures(&changed(&five), RATE).expect("figures");
-    for (mesh, teeth) in figures.meshes.iter().zip([26.0, -84.0]) {
+    let summary = summary(&changed(&five), RATE).expect("figures");
+    for (mesh, teeth) in summary.meshes.iter().zip([26.0, -84.0]) {
         for (i, phase) in mesh.stiffness_phase_periods.iter().enumerate() {
             assert_printed(*phase, (teeth * i as f64 / 5.0).rem_euclid(1.0), 9);
         }
     }
-    assert!(layout(&figures).contains("0.0000, 0.2000, 0.4000, 0.6000, 0.8000 of a period"));
-    assert_eq!(figures.frequencies.gears_alone_Hz.len(), 6);
+    assert!(layout(&summary).contains("0.0000, 0.2000, 0.4000, 0.6000, 0.8000 of a period"));
+    assert_eq!(summary.frequencies.gears_alone_Hz.len(), 6);
 }
 
 #[test]
@@ -146,7 +146,7 @@ fn the_lowest_rate_can_be_stepped_and_the_one_below_cannot() {
 
 #[test]
 fn a_rate_that_is_too_low_is_refused_with_the_one_that_works() {
-    let failure = figures(&load(Path::new("q1")).expect("a preset"), 100).expect_err("unstable");
+    let failure = summary(&load(Path::new("q1")).expect("a preset"), 100).expect_err("unstable");
     assert!(failure.message().contains("a tick rate of 100 Hz is too low"), "{failure}");
     assert_eq!(failure.exit_code(), 2);
 }
@@ -159,7 +159,7 @@ fn nothing_that_is_no_number_is_printed_even_at_the_ends_of_the_bounds() {
         &[("half_backlash_um = 40.0", "half_backlash_um = 0"), ("damping_ratio = 0.05", "damping_ratio = 0")],
         &[("mean_stiffness_N_per_m = 1e8", "mean_stiffness_N_per_m = 1e4"), ("gravity_torque_N_m = 6.0", "")],
     ];
-    let pages = ends.iter().map(|changes| layout(&figures(&changed(changes), RATE).expect("figures")));
+    let pages = ends.iter().map(|changes| layout(&summary(&changed(changes), RATE).expect("figures")));
     for page in pages.chain(PRESETS.map(|name| layout(&preset(name)))) {
         assert!(!page.contains("NaN") && !page.contains("inf"), "{page}");
         assert!(page.lines().all(|line| line.trim_end() == line), "{page}");
@@ -170,7 +170,7 @@ fn nothing_that_is_no_number_is_printed_even_at_the_ends_of_the_bounds() {
 fn figures_that_are_no_numbers_are_refused_by_name() {
     let mut loaded = load(Path::new("q1")).expect("a preset");
     loaded.file.parameters.rated_output_torque = f64::NAN;
-    let failure = figures(&loaded, RATE).expect_err("not a number");
+    let failure = summary(&loaded, RATE).expect_err("not a number");
     assert!(failure.message().contains("_at_rated_torque_m is not a finite number"), "{failure}");
 }
 
@@ -188,14 +188,14 @@ fn warnings_name_their_line() {
 fn json_holds_the_same_figures() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("q1.json");
-    let figures = preset("q1");
-    output::deliver(&figures, "", Some(&out), &[]).expect("a folder that can be written to");
+    let summary = preset("q1");
+    output::deliver(&summary, "", Some(&out), &[]).expect("a folder that can be written to");
     let text = std::fs::read_to_string(out).expect("the file");
     let json: serde_json::Value = serde_json::from_str(&text).expect("JSON");
     assert_eq!(json["schema"], "joint-check/1");
-    assert_eq!(json["output"]["lost_motion_rad"], figures.output.lost_motion_rad);
+    assert_eq!(json["output"]["lost_motion_rad"], summary.output.lost_motion_rad);
     assert_eq!(json["frequencies"]["whole_joint_Hz"].as_array().map(Vec::len), Some(5));
-    assert_eq!(json, serde_json::to_value(&figures).expect("JSON"));
+    assert_eq!(json, serde_json::to_value(&summary).expect("JSON"));
 }
 
 #[test]

@@ -23,7 +23,7 @@ pub struct Arguments {
     pub scheme: Choice,
     /// What every choice of motion has in common with a sweep
     #[command(flatten)]
-    pub motion: Motion,
+    pub motion: MotionArguments,
     /// Keeps every n-th tick in files and pictures [default: so that at most 200 000 are kept]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub every: Option<u32>,
@@ -40,7 +40,7 @@ pub struct Arguments {
 
 /// What moves the joint, for `joint sim` and `joint sweep` alike.
 #[derive(Debug, Clone, clap::Args)]
-pub struct Motion {
+pub struct MotionArguments {
     /// Changes a value of the joint file for this run, such as sun_planet.half_backlash_um=60; may be repeated
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub set: Vec<String>,
@@ -79,7 +79,7 @@ pub struct Motion {
     pub accurate: bool,
 }
 
-impl Motion {
+impl MotionArguments {
     /// The options that ask for the same motion again, each with a space in front.
     pub fn replay(&self) -> String {
         let mut options = String::new();

@@ -1,13 +1,13 @@
-//! All schemes over one run: the error of each against the reference as far as the motion can be predicted at all, and
-//! what each costs. Which scheme is good enough for what is the reader's to judge.
+//! All schemes over one run: the error of each against the reference for as long as the motion can be predicted, and
+//! the cost of each.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use serde::Serialize;
 
-use super::follow::{self, Cost, End, Run};
-use super::moment::Moment;
 use super::scheme::SchemeName;
+use super::snapshot::Snapshot;
+use super::stepping::{self, Cost, RunEnd, SimulationSpec};
 use report::failure::{Failure, Outcome};
 use report::interruption;
 
@@ -24,13 +24,13 @@ const COST_ROUNDS: usize = 5;
 /// Stretches of which the picture shows the error.
 const STRETCHES: usize = 240;
 
-/// One scheme's samples of what is compared.
+/// One scheme's samples of the compared quantities.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Track {
     /// Which scheme.
     pub scheme: SchemeName,
     /// How it ended.
-    pub end: End,
+    pub end: RunEnd,
     /// Times of the samples [s].
     pub times: Vec<f64>,
     /// Deflections of every mesh, then gap, then link offset; one list a quantity [m, m, rad].
@@ -66,7 +66,7 @@ pub struct Row {
 }
 
 /// Runs all schemes, every `every`-th tick compared; `progress` is told the ticks done by all together.
-pub fn compare(run: &Run, every: u32, progress: &(dyn Fn(u32) + Sync)) -> Outcome<Comparison> {
+pub fn compare(run: &SimulationSpec, every: u32, progress: &(dyn Fn(u32) + Sync)) -> Outcome<Comparison> {
     let done = AtomicU32::new(0);
     let tick = || progress(done.fetch_add(1, Ordering::Relaxed));
     let jobs: [(SchemeName, f64); 6] = std::array::from_fn(|job| {
@@ -133,31 +133,38 @@ impl Comparison {
 }
 
 /// Follows a scheme.
-fn record(run: &Run, every: u32, scheme: SchemeName, disturbance: f64, tick: &(dyn Fn() + Sync)) -> Outcome<Track> {
+fn record(
+    run: &SimulationSpec,
+    every: u32,
+    scheme: SchemeName,
+    disturbance: f64,
+    tick: &(dyn Fn() + Sync),
+) -> Outcome<Track> {
     let mut times = Vec::new();
     let mut columns = vec![Vec::new(); 2 * run.joint.geometry.planets + 2];
-    let mut observer = |moment: &Moment| {
-        if moment.tick.is_multiple_of(every) {
-            times.push(moment.time);
-            let values = moment.teeth.iter().map(|teeth| teeth.deflection).chain([moment.gap, moment.link_offset]);
+    let mut hook = |snapshot: &Snapshot| {
+        if snapshot.tick.is_multiple_of(every) {
+            times.push(snapshot.time);
+            let values =
+                snapshot.teeth.iter().map(|teeth| teeth.deflection).chain([snapshot.gap, snapshot.link_offset]);
             columns.iter_mut().zip(values).for_each(|(column, value)| column.push(value));
         }
         tick();
         Ok(())
     };
-    let end = follow::follow(run, scheme, disturbance, &mut observer)?;
-    if end == End::Stopped {
+    let end = stepping::simulate(run, scheme, disturbance, &mut hook)?;
+    if end == RunEnd::Stopped {
         return Err(Failure::interrupted("stopped by the user"));
     }
     Ok(Track { scheme, end, times, columns })
 }
 
 /// Least of several measurements of each scheme, in the order of [`SchemeName::ALL`].
-fn costs(run: &Run) -> Outcome<Vec<Cost>> {
+fn costs(run: &SimulationSpec) -> Outcome<Vec<Cost>> {
     let mut least: Vec<Cost> = Vec::new();
     for round in 0..COST_ROUNDS {
         for (place, scheme) in SchemeName::ALL.into_iter().enumerate() {
-            let cost = follow::cost(run, scheme, COST_TICKS)?;
+            let cost = stepping::cost(run, scheme, COST_TICKS)?;
             match least.get_mut(place) {
                 Some(best) if round > 0 => best.per_second = best.per_second.min(cost.per_second),
                 _ => least.push(cost),

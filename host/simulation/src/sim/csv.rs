@@ -1,12 +1,12 @@
 //! The history of a run as CSV: one row a sample, units in the names of the columns, numbers that read back to the same
-//! bits. Figures derived from the history are not in it.
+//! bits.
 
 use std::io::{self, Write};
 
 use parameters::JointParameters;
 
-use super::moment::Moment;
 use super::quantities::{QUANTITIES, code};
+use super::snapshot::Snapshot;
 
 /// The names of the columns, for so many planets.
 pub fn write_head(out: &mut impl Write, planets: usize) -> io::Result<()> {
@@ -22,12 +22,12 @@ pub fn write_head(out: &mut impl Write, planets: usize) -> io::Result<()> {
 }
 
 /// One row.
-pub fn write_row(out: &mut impl Write, joint: &JointParameters, moment: &Moment) -> io::Result<()> {
-    write!(out, "{:?}", moment.time)?;
+pub fn write_row(out: &mut impl Write, joint: &JointParameters, snapshot: &Snapshot) -> io::Result<()> {
+    write!(out, "{:?}", snapshot.time)?;
     for quantity in &QUANTITIES {
-        write!(out, ",{:?}", (quantity.value)(moment, joint))?;
+        write!(out, ",{:?}", (quantity.value)(snapshot, joint))?;
     }
-    for teeth in &moment.teeth {
+    for teeth in &snapshot.teeth {
         write!(out, ",{:?},{:?},{:?},{}", teeth.deflection, teeth.rate, teeth.force, code(teeth.contact))?;
     }
     writeln!(out)

@@ -1,6 +1,6 @@
-//! The energy balance of a run (kinetic and elastic energy against what torques, damping, errors and changing stiffness
-//! do), tick by tick. The work of a tick is that of the reference started at the tick's own state, so that the residual
-//! is what the scheme itself makes or loses; the tanh dead zone has no such balance here.
+//! The energy balance of a run (kinetic and elastic energy against the work of torques, damping, errors and changing
+//! stiffness), tick by tick. The work of a tick is that of the reference started at the tick's own state, so that the
+//! residual is the scheme's own gain or loss of energy. There is none for the tanh dead zone.
 
 use model_core::gears::MeshPhasing;
 use std::f64::consts::TAU;
@@ -8,12 +8,12 @@ use std::f64::consts::TAU;
 use parameters::{DeadZone, JointParameters, MESH_KINDS, MeshPhases};
 use reference::joint::{Reference, RelativeState, Start, Work};
 
-use super::moment::Moment;
+use super::snapshot::Snapshot;
 
 /// Points of the series for the picture, at most.
 const MOST_POINTS: usize = 20_000;
 
-/// Where the energy of a run came from and went to, in J.
+/// Energy balance of a run [J].
 #[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize)]
 #[allow(missing_docs, non_snake_case, reason = "names and units say it")]
 pub struct Balance {
@@ -47,9 +47,9 @@ pub struct Entry {
     pub residual: f64,
 }
 
-/// Keeps the books while a run goes on.
+/// Accumulates the energy balance while a run goes on.
 #[derive(Debug, Clone)]
-pub struct EnergyBook<'a> {
+pub struct EnergyAccount<'a> {
     joint: &'a JointParameters,
     tick_rate: f64,
     /// Every so many ticks an entry is kept.
@@ -64,7 +64,7 @@ pub struct EnergyBook<'a> {
     last: Option<Entry>,
 }
 
-impl<'a> EnergyBook<'a> {
+impl<'a> EnergyAccount<'a> {
     /// Books for a run of so many ticks; none for the tanh dead zone.
     pub fn open(joint: &'a JointParameters, tick_rate: u32, ticks: u32) -> Option<Self> {
         let every = ticks.div_ceil(MOST_POINTS as u32).max(1);
@@ -82,8 +82,8 @@ impl<'a> EnergyBook<'a> {
     }
 
     /// Takes one more tick. A state that the reference cannot follow leaves the work as it is: the residual shows it.
-    pub fn take(&mut self, moment: &Moment) {
-        let stored = match &moment.energy {
+    pub fn take(&mut self, snapshot: &Snapshot) {
+        let stored = match &snapshot.energy {
             Some(energy) => {
                 self.work = energy.work;
                 energy.stored
@@ -94,7 +94,7 @@ impl<'a> EnergyBook<'a> {
                 {
                     self.work = sum(&self.work, &tick.observe().work);
                 }
-                let Ok(tick) = Reference::start(&shifted(self.joint, moment.mesh_periods), &start(moment)) else {
+                let Ok(tick) = Reference::start(&shifted(self.joint, snapshot.mesh_periods), &start(snapshot)) else {
                     return;
                 };
                 let observation = tick.observe();
@@ -102,11 +102,11 @@ impl<'a> EnergyBook<'a> {
                 observation.kinetic_energy + observation.elastic_energy
             }
         };
-        self.torques = (moment.drive, moment.load);
+        self.torques = (snapshot.drive, snapshot.load);
         let started = *self.started.get_or_insert(stored);
         let residual = stored - started - self.work.net();
-        let entry = Entry { time: moment.time, stored, work: self.work, residual };
-        if moment.tick.is_multiple_of(self.every) {
+        let entry = Entry { time: snapshot.time, stored, work: self.work, residual };
+        if snapshot.tick.is_multiple_of(self.every) {
             self.entries.push(entry);
         }
         self.last = Some(entry);
@@ -156,17 +156,17 @@ fn shifted(joint: &JointParameters, mesh_periods: f64) -> JointParameters {
     now
 }
 
-fn start(moment: &Moment) -> Start {
-    let planets = moment.teeth.len() / 2;
-    let sun_planet = || moment.teeth.iter().take(planets);
+fn start(snapshot: &Snapshot) -> Start {
+    let planets = snapshot.teeth.len() / 2;
+    let sun_planet = || snapshot.teeth.iter().take(planets);
     Start::Relative(RelativeState {
         sun_planet: sun_planet().map(|teeth| teeth.deflection).collect(),
         sun_planet_rate: sun_planet().map(|teeth| teeth.rate).collect(),
-        gap: moment.gap,
-        gap_rate: moment.gap_rate,
-        wind_up: moment.wind_up,
-        wind_up_rate: moment.wind_up_rate,
-        rigid_speed: moment.carrier_speed,
+        gap: snapshot.gap,
+        gap_rate: snapshot.gap_rate,
+        wind_up: snapshot.wind_up,
+        wind_up_rate: snapshot.wind_up_rate,
+        rigid_speed: snapshot.carrier_speed,
     })
 }
 
@@ -180,15 +180,15 @@ mod tests {
     use parameters::StiffnessWave;
 
     use super::*;
-    use crate::sim::follow::{Run, follow};
     use crate::sim::scheme::SchemeName;
+    use crate::sim::stepping::{SimulationSpec, simulate};
 
     fn joint(name: &str) -> JointParameters {
         joint_file::read(joint_file::preset(name).expect("a preset")).expect("a good preset").parameters
     }
 
     /// A run of a joint that starts in the middle of its gap, turning, so that every contact state comes.
-    fn run_through(joint: &JointParameters, tick_rate: u32, scheme: SchemeName, each: &mut dyn FnMut(&Moment)) {
+    fn run_through(joint: &JointParameters, tick_rate: u32, scheme: SchemeName, each: &mut dyn FnMut(&Snapshot)) {
         let planets = joint.geometry.planets;
         let start =
             Start::Relative(RelativeState { rigid_speed: 3.0, gap_rate: 0.05, ..RelativeState::centred(planets) });
@@ -198,7 +198,7 @@ mod tests {
             Command { tick: 0, drive_torque: drive as f32, load_torque: load as f32 },
             Command { tick: 600, drive_torque: -drive as f32, load_torque: -load as f32 },
         ];
-        let run = Run {
+        let run = SimulationSpec {
             joint: joint.clone(),
             tick_rate,
             ticks: 1500,
@@ -207,8 +207,8 @@ mod tests {
             double: true,
             effort: Effort::Accurate,
         };
-        follow(&run, scheme, 0.0, &mut |moment| {
-            each(moment);
+        simulate(&run, scheme, 0.0, &mut |snapshot| {
+            each(snapshot);
             Ok(())
         })
         .expect("a good joint");
@@ -224,15 +224,15 @@ mod tests {
         for joint in [joint("q1"), joint("paper"), joint("l1"), rectangular] {
             let force_scale = joint.sun_planet.mean_stiffness * joint.characteristic_length;
             let mut worst = [0.0f64; 3];
-            run_through(&joint, 200_000, SchemeName::Realtime, &mut |moment| {
-                let read = Reference::start(&shifted(&joint, moment.mesh_periods), &start(moment));
-                let read = Moment::of_reference(0, &joint, &read.expect("a good state").observe());
-                for (one, other) in moment.teeth.iter().zip(&read.teeth) {
+            run_through(&joint, 200_000, SchemeName::Realtime, &mut |snapshot| {
+                let read = Reference::start(&shifted(&joint, snapshot.mesh_periods), &start(snapshot));
+                let read = Snapshot::of_reference(0, &joint, &read.expect("a good state").observe());
+                for (one, other) in snapshot.teeth.iter().zip(&read.teeth) {
                     worst[0] = worst[0].max((one.deflection - other.deflection).abs() / joint.characteristic_length);
                     worst[1] = worst[1].max((one.force - other.force).abs() / force_scale);
                 }
-                worst[2] = worst[2].max((moment.motor_offset - read.motor_offset).abs());
-                worst[2] = worst[2].max((moment.link_offset - read.link_offset).abs());
+                worst[2] = worst[2].max((snapshot.motor_offset - read.motor_offset).abs());
+                worst[2] = worst[2].max((snapshot.link_offset - read.link_offset).abs());
             });
             println!("{}: {worst:?}", joint.name);
             worst.into_iter().for_each(|error| tolerance::core::READ_OFF.check(error));
@@ -242,9 +242,9 @@ mod tests {
     #[test]
     fn the_reference_s_books_balance_whatever_the_teeth_do() {
         for joint in [joint("q1"), joint("paper"), joint("l1")] {
-            let mut book = EnergyBook::open(&joint, 200_000, 1500).expect("a sharp dead zone");
-            run_through(&joint, 200_000, SchemeName::Reference, &mut |moment| book.take(moment));
-            let balance = book.balance().expect("it has run");
+            let mut account = EnergyAccount::open(&joint, 200_000, 1500).expect("a sharp dead zone");
+            run_through(&joint, 200_000, SchemeName::Reference, &mut |snapshot| account.take(snapshot));
+            let balance = account.balance().expect("it has run");
             println!("{}: {balance:?}", joint.name);
             tolerance::BOOKS_OF_THE_REFERENCE.check(balance.residual_over_dissipated);
         }
@@ -255,9 +255,9 @@ mod tests {
     fn a_scheme_s_residual_is_small_for_the_board_s_scheme_and_larger_for_the_usual_ones() {
         let joint = joint("paper");
         let residual = |scheme| {
-            let mut book = EnergyBook::open(&joint, 200_000, 1500).expect("a sharp dead zone");
-            run_through(&joint, 200_000, scheme, &mut |moment| book.take(moment));
-            book.balance().expect("it has run").residual_over_dissipated.abs()
+            let mut account = EnergyAccount::open(&joint, 200_000, 1500).expect("a sharp dead zone");
+            run_through(&joint, 200_000, scheme, &mut |snapshot| account.take(snapshot));
+            account.balance().expect("it has run").residual_over_dissipated.abs()
         };
         let [realtime, runge_kutta, euler] =
             [SchemeName::Realtime, SchemeName::RungeKutta4, SchemeName::Euler].map(residual);
@@ -270,6 +270,6 @@ mod tests {
     fn the_tanh_dead_zone_has_no_books() {
         let mut joint = joint("q1");
         joint.dead_zone = DeadZone::Tanh { sharpness: 10.0 };
-        assert!(EnergyBook::open(&joint, 20_000, 100).is_none());
+        assert!(EnergyAccount::open(&joint, 20_000, 100).is_none());
     }
 }

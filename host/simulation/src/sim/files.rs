@@ -10,7 +10,7 @@ use parameters::JointParameters;
 
 use super::csv;
 use super::log_file::{self, Channel, SCHEMA_NAME, TOPIC, encoded};
-use super::moment::Moment;
+use super::snapshot::Snapshot;
 use report::failure::Outcome;
 use report::folder::Folder;
 use report::write::unwritten;
@@ -42,11 +42,11 @@ impl<'a> HistoryFiles<'a> {
     }
 
     /// One sample.
-    pub fn write(&mut self, moment: &Moment) -> Outcome<()> {
-        csv::write_row(&mut self.csv, self.joint, moment)
+    pub fn write(&mut self, snapshot: &Snapshot) -> Outcome<()> {
+        csv::write_row(&mut self.csv, self.joint, snapshot)
             .map_err(|error| unwritten(&self.folder.file(CSV[0]), &error))?;
         self.log
-            .write(moment.time, &encoded(self.joint, moment))
+            .write(snapshot.time, &encoded(self.joint, snapshot))
             .map_err(|error| unwritten(&self.folder.file(LOG[0]), &error))
     }
 

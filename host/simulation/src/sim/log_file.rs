@@ -9,8 +9,8 @@ use mcap::write::NoSeek;
 use mcap::{Compression, McapError, WriteOptions, Writer};
 use parameters::JointParameters;
 
-use super::moment::Moment;
 use super::quantities::{QUANTITIES, code};
+use super::snapshot::Snapshot;
 
 /// Topic of the motion.
 pub const TOPIC: &str = "/joint/motion";
@@ -82,7 +82,7 @@ impl<W: Write> Channel<W> {
     }
 }
 
-/// What the system said, where it was the system.
+/// The system's error, if it was one.
 fn cause(error: McapError) -> io::Error {
     match error {
         McapError::Io(error) => error,
@@ -91,15 +91,15 @@ fn cause(error: McapError) -> io::Error {
 }
 
 /// A moment as a message in CDR: little endian, numbers on multiples of their size behind a head of four bytes.
-pub fn encoded(joint: &JointParameters, moment: &Moment) -> Vec<u8> {
+pub fn encoded(joint: &JointParameters, snapshot: &Snapshot) -> Vec<u8> {
     let mut bytes = vec![0, 1, 0, 0];
     let number = |bytes: &mut Vec<u8>, value: f64| bytes.extend(value.to_le_bytes());
     let micro = |value: f64| 1e6 * value;
     for quantity in &QUANTITIES {
-        number(&mut bytes, quantity.scale * (quantity.value)(moment, joint));
+        number(&mut bytes, quantity.scale * (quantity.value)(snapshot, joint));
     }
-    number(&mut bytes, moment.time);
-    let (sun, ring) = moment.teeth.split_at(moment.teeth.len() / 2);
+    number(&mut bytes, snapshot.time);
+    let (sun, ring) = snapshot.teeth.split_at(snapshot.teeth.len() / 2);
     let lists: [Vec<f64>; LISTS.len()] = [
         sun.iter().map(|teeth| micro(teeth.deflection)).collect(),
         ring.iter().map(|teeth| micro(teeth.deflection)).collect(),

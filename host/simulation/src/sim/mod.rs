@@ -1,40 +1,40 @@
 //! Any joint moved by a named scheme, on the host.
 //!
-//! `plan` finds everything that is wrong with the request, `follow` moves the joint by a `scheme` from a `start`, and
-//! shows a `moment` every tick to `statistics`, `energy` and the files (`csv`, `log_file`, both with the `quantities`);
-//! `ran` has all of it; `comparison` runs all schemes; `figures` is what comes of it, `page` and its pictures show it.
+//! `plan` validates the request, `stepping` moves the joint by a `scheme` from a `start`, and passes a `snapshot` of
+//! every tick to `statistics`, `energy` and the files (`csv`, `log_file`, both with the `quantities`); `result` holds
+//! all of it; `comparison` runs all schemes; `summary` is the result as data, `page` and its pictures show it.
 
 pub mod arguments;
 pub mod comparison;
 pub mod csv;
 pub mod energy;
-pub mod figures;
 pub mod files;
-pub mod follow;
-mod judgement;
 pub mod log_file;
-pub mod moment;
 mod page;
 mod pictures;
 pub mod plan;
 mod portraits;
 mod quantities;
-mod ran;
+mod result;
 pub mod scheme;
+mod scheme_pictures;
+pub mod snapshot;
 pub mod start;
 pub mod statistics;
+pub mod stepping;
+pub mod summary;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 pub use arguments::Arguments;
 use comparison::Comparison;
-use figures::Figures;
 use files::HistoryFiles;
-use follow::End;
-use plan::Plan;
-use ran::{PROGRESS, Ran};
+use plan::SimulationPlan;
+use result::{PROGRESS, SimulationResult};
 use scheme::{Choice, SchemeName};
+use stepping::RunEnd;
+use summary::SimulationSummary;
 
 use joint_file::named;
 use report::document::{html, terminal};
@@ -51,7 +51,7 @@ const USUAL_SAMPLES: u32 = 200_000;
 /// Samples that can be kept: each takes half a kilobyte.
 const MOST_SAMPLES: u32 = 2_000_000;
 
-/// What a simulation leaves.
+/// Texts and paths of a finished simulation.
 pub struct Simulated {
     /// The figures for a terminal.
     pub summary: String,
@@ -66,7 +66,7 @@ pub struct Simulated {
 /// Simulates a joint; report, figures and history are in its folder then.
 pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<Simulated> {
     let loaded = named::load_with(&arguments.file, &arguments.motion.set)?;
-    let plan = Plan::new(loaded, &arguments.motion)?;
+    let plan = SimulationPlan::new(loaded, &arguments.motion)?;
     let every = every(&plan, arguments.every)?;
     let scheme = arguments.scheme.shown();
     let profile = arguments.motion.profile.as_deref().unwrap_or_default();
@@ -74,22 +74,22 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<Simulated> {
     let folder = Folder::prepare(arguments.out.as_deref(), "sim", &plan.parameters().name)?;
     let mut files = HistoryFiles::begin(&folder, plan.parameters(), remarks(arguments, &plan, scheme))?;
     progress.run("simulating", plan.run.ticks);
-    let ran = Ran::of(&plan, scheme, every, !arguments.no_energy, &mut files, progress);
-    let stopped = matches!(&ran, Ok(Ran { end: End::Stopped, .. }));
-    let history = files.finish(ran.is_ok() && !stopped);
-    let mut ran = ran?;
+    let result = SimulationResult::of(&plan, scheme, every, !arguments.no_energy, &mut files, progress);
+    let stopped = matches!(&result, Ok(SimulationResult { end: RunEnd::Stopped, .. }));
+    let history = files.finish(result.is_ok() && !stopped);
+    let mut result = result?;
     let [csv, log] = history?;
     if stopped {
-        let time = f64::from(ran.ticks) / f64::from(plan.run.tick_rate);
+        let time = f64::from(result.ticks) / f64::from(plan.run.tick_rate);
         return Err(Failure::interrupted(format!("stopped by the user at {time:.4} s of {:.4} s", plan.duration()))
             .with_help(format!("the history so far is in {} and {}", csv.display(), log.display())));
     }
     if arguments.scheme == Choice::All {
-        ran.comparison = Some(compare(&plan, every, progress)?);
+        result.comparison = Some(compare(&plan, every, progress)?);
     }
     progress.stage("drawing");
-    let figures = Figures::of(&ran, &arguments.motion.set);
-    let document = page::document(&ran, &figures, &replay(arguments));
+    let figures = SimulationSummary::of(&result, &arguments.motion.set);
+    let document = page::document(&result, &figures, &replay(arguments));
     let report = folder.file("report.html");
     write_text(&report, &html(&document))?;
     let json = output::json("figures", &figures)?;
@@ -98,7 +98,7 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<Simulated> {
 }
 
 /// Ticks between two kept samples.
-fn every(plan: &Plan, wanted: Option<u32>) -> Outcome<u32> {
+fn every(plan: &SimulationPlan, wanted: Option<u32>) -> Outcome<u32> {
     let every = wanted.unwrap_or_else(|| plan.run.ticks.div_ceil(USUAL_SAMPLES)).max(1);
     let samples = plan.run.ticks / every + 1;
     if samples > MOST_SAMPLES {
@@ -109,7 +109,7 @@ fn every(plan: &Plan, wanted: Option<u32>) -> Outcome<u32> {
     Ok(every)
 }
 
-fn compare(plan: &Plan, every: u32, progress: &Progress) -> Outcome<Comparison> {
+fn compare(plan: &SimulationPlan, every: u32, progress: &Progress) -> Outcome<Comparison> {
     // Every scheme and the disturbed reference go through all ticks.
     const RUNS: u32 = 1 + SchemeName::ALL.len() as u32;
     progress.run("comparing schemes", plan.run.ticks);
@@ -121,7 +121,7 @@ fn compare(plan: &Plan, every: u32, progress: &Progress) -> Outcome<Comparison> 
 }
 
 /// What the log says of itself.
-fn remarks(arguments: &Arguments, plan: &Plan, scheme: SchemeName) -> BTreeMap<String, String> {
+fn remarks(arguments: &Arguments, plan: &SimulationPlan, scheme: SchemeName) -> BTreeMap<String, String> {
     [
         ("joint", plan.parameters().name.to_string()),
         ("joint_file", plan.name.clone()),

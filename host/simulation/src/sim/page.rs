@@ -1,13 +1,13 @@
-//! The report of a simulation as a document. Pictures come from `pictures`, `portraits` and `judgement`, figures from
-//! `figures`; a terminal shows what the figures hold.
+//! The report of a simulation as a document. Pictures come from `pictures`, `portraits` and `scheme_pictures`, figures
+//! from `summary`.
 
 use super::comparison::Row as SchemeRow;
-use super::figures::Figures;
-use super::judgement;
 use super::pictures::View;
 use super::portraits::{self, Portrait};
-use super::ran::Ran;
+use super::result::SimulationResult;
 use super::scheme::SchemeName;
+use super::scheme_pictures;
+use super::summary::SimulationSummary;
 use report::document::{
     Block, Document, PAGES, Section, TERMINALS, alert, code, facts, indexed, notes, notice, number, number_as, numbers,
     picture, quiet, row, section, section_bare, strong, table, text, tile, words,
@@ -17,15 +17,15 @@ use report::panels::{DEFLECTIONS, THINNED, gap_coordinate};
 use report::provenance::VERSION;
 
 /// All of it.
-pub fn document(ran: &Ran<'_>, figures: &Figures, replay: &str) -> Document {
+pub fn document(result: &SimulationResult<'_>, figures: &SimulationSummary, replay: &str) -> Document {
     let rate = f64::from(figures.tick_rate_Hz);
-    let mut blocks = notices(ran, figures);
-    blocks.extend([tiles(ran, figures), motion(ran)]);
-    blocks.extend(portraits(ran, figures));
+    let mut blocks = notices(result, figures);
+    blocks.extend([tiles(result, figures), motion(result)]);
+    blocks.extend(portraits(result, figures));
     blocks.push(contacts(figures));
-    blocks.extend(energy(ran, figures));
-    blocks.extend(schemes(ran, figures));
-    blocks.push(origin(ran, figures, replay));
+    blocks.extend(energy(result, figures));
+    blocks.extend(schemes(result, figures));
+    blocks.push(origin(result, figures, replay));
     Document {
         title: format!("Joint {}, simulated", figures.joint),
         heading: text("Joint ") + &figures.joint,
@@ -33,7 +33,7 @@ pub fn document(ran: &Ran<'_>, figures: &Figures, replay: &str) -> Document {
             + strong(figures.scheme)
             + format!(
                 " ({}, {}) · {} · from {} · {} kHz",
-                ran.scheme.description(),
+                result.scheme.description(),
                 figures.scalar,
                 figures.torques,
                 figures.start,
@@ -57,7 +57,7 @@ pub fn document(ran: &Ran<'_>, figures: &Figures, replay: &str) -> Document {
     }
 }
 
-fn notices(ran: &Ran<'_>, figures: &Figures) -> Vec<Block> {
+fn notices(result: &SimulationResult<'_>, figures: &SimulationSummary) -> Vec<Block> {
     let mut notices = Vec::new();
     if let Some(time) = figures.diverged_at_s {
         notices.push(alert(
@@ -68,13 +68,13 @@ fn notices(ran: &Ran<'_>, figures: &Figures) -> Vec<Block> {
         ));
     }
     let changed = figures.set.iter().map(|change| notice(strong("Changed for this run: ") + code(change)));
-    let warned = ran.plan.warnings.iter();
+    let warned = result.plan.warnings.iter();
     let warned = warned.map(|warning| notice(strong("The joint file: ") + &warning.message));
     notices.push(Block::Only(PAGES, changed.chain(warned).collect()));
     notices
 }
 
-fn tiles(ran: &Ran<'_>, figures: &Figures) -> Block {
+fn tiles(result: &SimulationResult<'_>, figures: &SimulationSummary) -> Block {
     let done = f64::from(figures.ticks) / f64::from(figures.tick_rate_Hz);
     let (length, unit) = if done < 0.5 { (1e3 * done, " ms") } else { (done, " s") };
     let mut tiles = vec![
@@ -83,7 +83,7 @@ fn tiles(ran: &Ran<'_>, figures: &Figures) -> Block {
         tile("Impacts", number(figures.impacts_per_s) + quiet(" /s, all meshes")),
         tile("Peak mesh force", number(figures.peak_force()) + quiet(" N")),
     ];
-    if ran.plan.constant {
+    if result.plan.constant {
         let period = match figures.period {
             Some(period) => text(period) + quiet(if period == 1 { " mesh period" } else { " mesh periods" }),
             None => text("–") + quiet(" not within 32 periods"),
@@ -93,13 +93,13 @@ fn tiles(ran: &Ran<'_>, figures: &Figures) -> Block {
     Block::Tiles(tiles)
 }
 
-fn motion(ran: &Ran<'_>) -> Block {
-    let whole = View::whole(ran.plan, &ran.samples);
-    if ran.samples.len() < 2 {
+fn motion(result: &SimulationResult<'_>) -> Block {
+    let whole = View::whole(result.plan, &result.samples);
+    if result.samples.len() < 2 {
         return section("Motion", vec![Block::Paragraph("Nothing moved.".into())]);
     }
-    let mut blocks = vec![Block::Lead(number(ran.samples.len() as f64) + " samples. " + THINNED)];
-    if !ran.plan.constant {
+    let mut blocks = vec![Block::Lead(number(result.samples.len() as f64) + " samples. " + THINNED)];
+    if !result.plan.constant {
         blocks.push(picture(whole.figure("Torques", whole.torques()), "Torques as asked for.".into()));
     }
     let gap = gap_coordinate()
@@ -121,12 +121,12 @@ fn motion(ran: &Ran<'_>) -> Block {
     section("Motion", blocks)
 }
 
-fn portraits(ran: &Ran<'_>, figures: &Figures) -> Option<Block> {
-    let (plan, samples) = (ran.plan, ran.settled());
+fn portraits(result: &SimulationResult<'_>, figures: &SimulationSummary) -> Option<Block> {
+    let (plan, samples) = (result.plan, result.settled());
     if samples.len() < 16 {
         return None;
     }
-    let points = (ran.statistics.points(), figures.period);
+    let points = (result.statistics.points(), figures.period);
     let repeats = match figures.period {
         _ if !plan.constant => String::new(),
         Some(1) => "The motion repeats with every mesh period.".to_owned(),
@@ -144,13 +144,13 @@ fn portraits(ran: &Ran<'_>, figures: &Figures) -> Option<Block> {
             format!(
                 "Deflection rate over deflection. Marked: the points at which the mesh phase comes round (Poincaré \
                  points), {} of them.",
-                ran.statistics.points().len()
+                result.statistics.points().len()
             )
             .into(),
         ),
         picture(portraits::portrait(plan, samples, points, Portrait::Gap), "The same of the gap coordinate.".into()),
     ];
-    if let Some(spectrum) = &ran.spectrum {
+    if let Some(spectrum) = &result.spectrum {
         let beside = figures.non_fundamental_over_fundamental.map(|ratio| {
             format!("Beside the mesh frequency there is {} of what is at it (root of the powers).", PAGE.write(ratio))
         });
@@ -160,7 +160,7 @@ fn portraits(ran: &Ran<'_>, figures: &Figures) -> Option<Block> {
     Some(section("Phase portraits and spectrum", blocks))
 }
 
-fn contacts(figures: &Figures) -> Block {
+fn contacts(figures: &SimulationSummary) -> Block {
     let columns = ["drive side", "parted", "back side", "impacts", "mean", "RMS", "peak to peak", "peak force"];
     let columns = [words("Mesh")].into_iter().chain(columns.map(numbers)).collect();
     let rows = figures.meshes.iter().map(|mesh| {
@@ -193,7 +193,7 @@ fn contacts(figures: &Figures) -> Block {
 }
 
 /// What a terminal says of the motion as a whole; a page says it beside the pictures.
-fn motion_facts(figures: &Figures) -> Vec<(&'static str, String)> {
+fn motion_facts(figures: &SimulationSummary) -> Vec<(&'static str, String)> {
     let period = match figures.period {
         Some(1) => "1 mesh period".to_owned(),
         Some(period) => format!("{period} mesh periods"),
@@ -211,8 +211,8 @@ fn motion_facts(figures: &Figures) -> Vec<(&'static str, String)> {
     facts
 }
 
-fn energy(ran: &Ran<'_>, figures: &Figures) -> Option<Block> {
-    let (balance, book) = (figures.energy.as_ref()?, ran.energy.as_ref()?);
+fn energy(result: &SimulationResult<'_>, figures: &SimulationSummary) -> Option<Block> {
+    let (balance, account) = (figures.energy.as_ref()?, result.energy.as_ref()?);
     let rows = [
         ("Stored energy has grown by", balance.stored_at_end_J - balance.stored_at_start_J),
         ("Drive torque less load has supplied", balance.supplied_J),
@@ -232,20 +232,20 @@ fn energy(ran: &Ran<'_>, figures: &Figures) -> Option<Block> {
         "Balance of energy",
         vec![
             Block::Lead(indexed(&lead)),
-            picture(judgement::energy(ran.plan, &book.entries), "The books over the run.".into()),
+            picture(scheme_pictures::energy(result.plan, &account.entries), "The books over the run.".into()),
             table(vec![words(""), numbers("")], rows.into()),
         ],
     ))
 }
 
-fn schemes(ran: &Ran<'_>, figures: &Figures) -> Option<Block> {
-    let (comparison, until) = (ran.comparison.as_ref()?, figures.compared_until_s?);
+fn schemes(result: &SimulationResult<'_>, figures: &SimulationSummary) -> Option<Block> {
+    let (comparison, until) = (result.comparison.as_ref()?, figures.compared_until_s?);
     let percent = |row: &SchemeRow, error: Option<f64>| match error {
         _ if row.scheme == SchemeName::Reference.name() => text("–"),
         Some(error) => number(1e2 * error) + " %",
         None => text("diverged"),
     };
-    let whole = ran.plan.duration();
+    let whole = result.plan.duration();
     let predictable = if until < 0.99 * whole {
         ": a millionth of the torque moves the reference itself visibly from then on"
     } else {
@@ -270,16 +270,16 @@ fn schemes(ran: &Ran<'_>, figures: &Figures) -> Option<Block> {
     });
     let mut blocks = vec![Block::Lead(lead.into()), table(columns, rows.collect())];
     let caption = "The reference is the broad line; 0 dB is an error as large as the motion, −40 dB is 1 %.";
-    let pictures = judgement::schemes(ran.plan, comparison);
+    let pictures = scheme_pictures::schemes(result.plan, comparison);
     blocks.extend(pictures.into_iter().map(|figure| picture(figure, caption.into())));
     Some(section_bare("Schemes", blocks))
 }
 
-fn origin(ran: &Ran<'_>, figures: &Figures, replay: &str) -> Block {
-    let plan = ran.plan;
+fn origin(result: &SimulationResult<'_>, figures: &SimulationSummary, replay: &str) -> Block {
+    let plan = result.plan;
     let rows = [
         ("Joint", format!("{} ({})", figures.joint, figures.file)),
-        ("Scheme", format!("{}: {}", figures.scheme, ran.scheme.description())),
+        ("Scheme", format!("{}: {}", figures.scheme, result.scheme.description())),
         ("Scalar", figures.scalar.to_owned()),
         ("Rate", format!("{} Hz", figures.tick_rate_Hz)),
         ("Torques", figures.torques.clone()),

@@ -1,11 +1,11 @@
 //! Pictures of a run over time: torques, gap, deflections with contact, forces. Phase portraits and spectra are in
-//! `portraits`, what judges a scheme is in `judgement`.
+//! `portraits`, pictures about schemes in `scheme_pictures`.
 
 use model_core::gears::Kinematics;
 use parameters::{ContactState, JointParameters};
 
-use super::moment::{Moment, Teeth};
-use super::plan::Plan;
+use super::plan::SimulationPlan;
+use super::snapshot::{MeshSnapshot, Snapshot};
 use report::contacts;
 use report::contacts::Contact;
 use report::panels::{self, Points, line};
@@ -17,19 +17,19 @@ use report::plot::unit::{FORCE, Unit, greatest};
 /// Mesh periods shown where every one of them is to be seen.
 const CLOSE_PERIODS: f64 = 12.0;
 
-/// A stretch of a run.
+/// A time range of a run.
 pub struct View<'a> {
     /// Whose.
-    pub plan: &'a Plan,
+    pub plan: &'a SimulationPlan,
     /// Its samples.
-    pub samples: &'a [Moment],
+    pub samples: &'a [Snapshot],
     /// From and to [s].
     pub range: (f64, f64),
 }
 
 impl<'a> View<'a> {
     /// The whole run.
-    pub fn whole(plan: &'a Plan, samples: &'a [Moment]) -> Self {
+    pub fn whole(plan: &'a SimulationPlan, samples: &'a [Snapshot]) -> Self {
         let end = samples.last().map_or(0.0, |last| last.time);
         Self { plan, samples, range: (0.0, if end > 0.0 { end } else { 1.0 }) }
     }
@@ -38,7 +38,7 @@ impl<'a> View<'a> {
     pub fn close(&self) -> Option<Self> {
         let length = CLOSE_PERIODS / self.plan.mesh_frequency();
         let from = self.range.1 - length;
-        let first = self.samples.partition_point(|moment| moment.time < from);
+        let first = self.samples.partition_point(|snapshot| snapshot.time < from);
         let samples = &self.samples[first..];
         (from > 0.5 * self.range.1 && samples.len() > 24).then_some(Self {
             plan: self.plan,
@@ -57,13 +57,13 @@ impl<'a> View<'a> {
         Figure::over_time(title, Unit::of_time(self.range.1), self.range, panels)
     }
 
-    fn points(&self, value: impl Fn(&Moment) -> f64) -> Points {
-        self.samples.iter().map(|moment| (moment.time, value(moment))).collect()
+    fn points(&self, value: impl Fn(&Snapshot) -> f64) -> Points {
+        self.samples.iter().map(|snapshot| (snapshot.time, value(snapshot))).collect()
     }
 
     /// Drive and load torque; steps where they change.
     pub fn torques(&self) -> Vec<Panel> {
-        panels::torques(self.points(|moment| moment.drive), self.points(|moment| moment.load))
+        panels::torques(self.points(|snapshot| snapshot.drive), self.points(|snapshot| snapshot.load))
     }
 
     /// The gap coordinate over its band, the twist that it leaves at the link, and the wind-up if there is any.
@@ -73,11 +73,11 @@ impl<'a> View<'a> {
             |planet: usize| joint.sun_planet.half_backlash[planet] + joint.ring_planet.half_backlash[planet];
         let reach = (0..joint.geometry.planets).map(half_backlash).fold(f64::INFINITY, f64::min);
         let half = reach / joint.geometry.carrier_base_radius() / 2.0;
-        let gap = line(self.points(|moment| moment.gap), Ink::First, "");
-        let twist = line(self.points(|moment| moment.twist(joint)), Ink::Third, "");
+        let gap = line(self.points(|snapshot| snapshot.gap), Ink::First, "");
+        let twist = line(self.points(|snapshot| snapshot.twist(joint)), Ink::Third, "");
         let mut all = vec![panels::gap((-reach, reach), vec![gap]), panels::twist(half, vec![twist])];
         if joint.compliance.is_some() {
-            all.extend(panels::wind_up(self.points(|moment| moment.wind_up)));
+            all.extend(panels::wind_up(self.points(|snapshot| snapshot.wind_up)));
         }
         all
     }
@@ -88,7 +88,7 @@ impl<'a> View<'a> {
         let half_backlash: [&[f64]; 2] = [&joint.sun_planet.half_backlash, &joint.ring_planet.half_backlash];
         let [sun, ring] = self.of_planets(|teeth| teeth.deflection);
         let mut panels = panels::deflections([(sun, half_backlash[0]), (ring, half_backlash[1])]);
-        let times: Vec<f64> = self.samples.iter().map(|moment| moment.time).collect();
+        let times: Vec<f64> = self.samples.iter().map(|snapshot| snapshot.time).collect();
         panels.push(contacts::panel(&times, &contact_columns(self.samples), self.range));
         panels
     }
@@ -104,18 +104,18 @@ impl<'a> View<'a> {
     }
 
     /// A line of each planet, sun-planet and ring-planet.
-    fn of_planets(&self, value: fn(&Teeth) -> f64) -> [Vec<Points>; 2] {
+    fn of_planets(&self, value: fn(&MeshSnapshot) -> f64) -> [Vec<Points>; 2] {
         let planets = self.joint().geometry.planets;
-        let line = |mesh: usize| self.points(|moment| value(&moment.teeth[mesh]));
+        let line = |mesh: usize| self.points(|snapshot| value(&snapshot.teeth[mesh]));
         [(0..planets).map(line).collect(), (planets..2 * planets).map(line).collect()]
     }
 }
 
 /// Contact columns as the strips take them.
-fn contact_columns(samples: &[Moment]) -> Vec<Vec<Contact>> {
-    let meshes = samples.first().map_or(0, |moment| moment.teeth.len());
+fn contact_columns(samples: &[Snapshot]) -> Vec<Vec<Contact>> {
+    let meshes = samples.first().map_or(0, |snapshot| snapshot.teeth.len());
     let column = |mesh: usize| {
-        let state = |moment: &Moment| match moment.teeth[mesh].contact {
+        let state = |snapshot: &Snapshot| match snapshot.teeth[mesh].contact {
             ContactState::Separated => Contact::Separated,
             ContactState::DriveSide => Contact::DriveSide,
             ContactState::BackSide => Contact::BackSide,

@@ -1,5 +1,4 @@
-//! What a simulation was asked to do, with everything that can be wrong with it found before it starts: joint, rate,
-//! length, torques, start.
+//! A validated request to simulate: joint, rate, length, torques and start are checked before it begins.
 
 use model_core::gears::{Kinematics, Mechanics};
 use std::f64::consts::TAU;
@@ -9,10 +8,10 @@ use link::messages::Command;
 use model_core::gears::design::Effort;
 use parameters::{Excitation, JointParameters};
 
-use super::arguments::Motion;
-use super::follow::Run;
+use super::arguments::MotionArguments;
 use super::start::StartName;
-use board::profile::{FASTEST, Profile, STRONGEST};
+use super::stepping::SimulationSpec;
+use board::profile::{MAX_SPEED, MAX_TORQUE, TorqueProfile};
 use joint_file::named::Loaded;
 use report::failure::{Failure, Outcome};
 use report::number::TYPED;
@@ -29,15 +28,15 @@ const SPEED: f64 = TAU;
 /// More ticks than this are a slip of the keyboard: at a microsecond each they take days.
 const MOST_TICKS: f64 = 2e10;
 
-/// A run that can be made.
+/// A validated simulation.
 #[derive(Debug, Clone)]
-pub struct Plan {
+pub struct SimulationPlan {
     /// The joint file as the user named it.
     pub name: String,
     /// What is odd in it but can be used.
     pub warnings: Vec<Problem>,
     /// What to run.
-    pub run: Run,
+    pub run: SimulationSpec,
     /// Ticks that do not count.
     pub settle: u32,
     /// What the torques are, for reports.
@@ -50,9 +49,9 @@ pub struct Plan {
     pub speed: f64,
 }
 
-impl Plan {
+impl SimulationPlan {
     /// Puts a motion to a joint.
-    pub fn new(loaded: Loaded, motion: &Motion) -> Outcome<Self> {
+    pub fn new(loaded: Loaded, motion: &MotionArguments) -> Outcome<Self> {
         let Loaded { name, file: joint, .. } = loaded;
         let parameters = &joint.parameters;
         let frequency = match parameters.excitation {
@@ -73,14 +72,14 @@ impl Plan {
         let duration = given("duration", motion.duration)?;
         let (torques, ticks, torques_name) = match &motion.profile {
             Some(profile) => {
-                let profile = Profile::load(profile, parameters, tick_rate, duration)?;
+                let profile = TorqueProfile::load(profile, parameters, tick_rate, duration)?;
                 (profile.commands, profile.ticks, format!("profile {}", profile.name))
             }
             None => {
                 let usual = frequency.map_or(DURATION, |frequency| MESH_PERIODS / frequency);
                 let ticks = count(duration.unwrap_or(usual), tick_rate)?;
-                let drive = within("drive", motion.drive, STRONGEST, "N m")?;
-                let load = within("load", motion.load, STRONGEST, "N m")?;
+                let drive = within("drive", motion.drive, MAX_TORQUE, "N m")?;
+                let load = within("load", motion.load, MAX_TORQUE, "N m")?;
                 let command = constant(&joint, drive, load);
                 let (drive, load) = (command.drive_torque, command.load_torque);
                 (vec![command], ticks, format!("constant torques of {drive} N m against {load} N m"))
@@ -105,12 +104,12 @@ impl Plan {
             (true, None) => StartName::Seated,
         });
         let turning = if constant && frequency.is_none() { SPEED } else { 0.0 };
-        let speed = within("speed", motion.speed, FASTEST, "rad/s")?.unwrap_or(turning);
+        let speed = within("speed", motion.speed, MAX_SPEED, "rad/s")?.unwrap_or(turning);
         let first = torques.first().map_or((0.0, 0.0), |first| (first.drive_torque.into(), first.load_torque.into()));
         let start = start_name.of(parameters, speed, first);
         let effort = if motion.accurate { Effort::Accurate } else { Effort::Board };
         let JointFile { parameters: joint, warnings, .. } = joint;
-        let run = Run { joint, tick_rate, ticks, torques, start, double: motion.f64, effort };
+        let run = SimulationSpec { joint, tick_rate, ticks, torques, start, double: motion.f64, effort };
         Ok(Self { name, warnings, run, settle, torques_name, constant, start_name, speed })
     }
 
@@ -153,7 +152,7 @@ fn count(seconds: f64, tick_rate: u32) -> Outcome<u32> {
     Ok(ticks.round() as u32)
 }
 
-/// The file's operating point, or what was asked for; what is not said balances what is.
+/// The file's operating point, or what was asked for; a torque that is not given balances the other.
 fn constant(joint: &JointFile, drive: Option<f64>, load: Option<f64>) -> Command {
     let parameters = &joint.parameters;
     let ratio = parameters.geometry.ratio_by_radii();

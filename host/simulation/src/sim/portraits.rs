@@ -1,9 +1,9 @@
-//! Phase portraits with their Poincare points, and the spectrum: what a motion looks like without time. What the points
-//! and amplitudes are is found by `statistics` and `spectrum`.
+//! Phase portraits with their Poincare points, and the spectrum. Points and amplitudes are computed in `statistics` and
+//! `spectrum`.
 
-use super::moment::Moment;
-use super::plan::Plan;
-use super::statistics::Point;
+use super::plan::SimulationPlan;
+use super::snapshot::Snapshot;
+use super::statistics::PoincarePoint;
 use report::panels::line;
 use report::plot::Figure;
 use report::plot::ink::Ink;
@@ -35,17 +35,17 @@ pub enum Portrait {
 
 /// Rate over position of the last samples, with the Poincare points on it.
 pub fn portrait(
-    plan: &Plan,
-    samples: &[Moment],
-    (points, period): (&[Point], Option<usize>),
+    plan: &SimulationPlan,
+    samples: &[Snapshot],
+    (points, period): (&[PoincarePoint], Option<usize>),
     which: Portrait,
 ) -> Figure {
     let samples = if plan.constant { &samples[samples.len().saturating_sub(PORTRAIT)..] } else { samples };
-    let of = |moment: &Moment| match which {
-        Portrait::Deflection => (moment.teeth[0].deflection, moment.teeth[0].rate),
-        Portrait::Gap => (moment.gap, moment.gap_rate),
+    let of = |snapshot: &Snapshot| match which {
+        Portrait::Deflection => (snapshot.teeth[0].deflection, snapshot.teeth[0].rate),
+        Portrait::Gap => (snapshot.gap, snapshot.gap_rate),
     };
-    let of_point = |point: &Point| match which {
+    let of_point = |point: &PoincarePoint| match which {
         Portrait::Deflection => (point.deflection, point.rate),
         Portrait::Gap => (point.gap, point.gap_rate),
     };
@@ -57,11 +57,11 @@ pub fn portrait(
     }
     let size = if period.is_some_and(|period| period <= FEW) { DOT } else { SMALL_DOT };
     let (half_width, half_height) = (0.5 * size[0] * (range.1 - range.0), 0.5 * size[1] * (up.1 - up.0));
-    let dot = |point: &Point| {
+    let dot = |point: &PoincarePoint| {
         let (x, y) = of_point(point);
         [x - half_width, x + half_width, y - half_height, y + half_height]
     };
-    let inside = |point: &&Point| {
+    let inside = |point: &&PoincarePoint| {
         let (x, y) = of_point(point);
         (range.0..=range.1).contains(&x) && (up.0..=up.1).contains(&y)
     };
@@ -108,7 +108,7 @@ fn thinned(curve: Vec<(f64, f64)>, (width, height): (f64, f64)) -> Vec<(f64, f64
 }
 
 /// Amplitudes in decibels over a micrometre, up to what the mesh frequency and its harmonics need.
-pub fn spectrum(plan: &Plan, spectrum: &Spectrum) -> Figure {
+pub fn spectrum(plan: &SimulationPlan, spectrum: &Spectrum) -> Figure {
     let mesh = plan.mesh_frequency();
     let top = spectrum.step * spectrum.amplitudes.len() as f64;
     let end = if mesh > 0.0 { top.min(8.5 * mesh) } else { top };

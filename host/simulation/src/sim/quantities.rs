@@ -1,11 +1,11 @@
-//! What a history holds of every moment beside its meshes: one list for CSV and log. CSV is in SI; the log has the units
-//! that a viewer likes, and letters that ROS 2 takes.
+//! The quantities of a snapshot beside its meshes that a history holds: one list for CSV and log. CSV is in SI; the log
+//! has the units that a viewer likes, and names that ROS 2 accepts.
 
 use parameters::{ContactState, JointParameters};
 
-use super::moment::Moment;
+use super::snapshot::Snapshot;
 
-/// A number of a moment.
+/// A quantity of a snapshot.
 pub struct Quantity {
     /// Name of its CSV column.
     pub column: &'static str,
@@ -19,26 +19,26 @@ pub struct Quantity {
     pub value: Value,
 }
 
-/// How a number is had of a moment.
-type Value = fn(&Moment, &JointParameters) -> f64;
+/// How a quantity is read from a snapshot.
+type Value = fn(&Snapshot, &JointParameters) -> f64;
 
 /// All but the time.
 pub const QUANTITIES: [Quantity; 11] = [
-    quantity("drive_torque_Nm", "drive_torque_nm", "torque on the sun shaft [N m]", 1.0, |moment, _| moment.drive),
-    quantity("load_torque_Nm", "load_torque_nm", "torque that brakes the link [N m]", 1.0, |moment, _| moment.load),
-    quantity("motor_angle_rad", "motor_angle_rad", "[rad]", 1.0, Moment::motor_angle),
-    quantity("link_angle_rad", "link_angle_rad", "[rad]", 1.0, |moment, _| moment.link_angle()),
-    quantity("twist_rad", "twist_rad", "motor angle over ratio, less link angle [rad]", 1.0, Moment::twist),
-    quantity("carrier_speed_rad_per_s", "carrier_speed_rad_per_s", "of the rigid body [rad/s]", 1.0, |moment, _| {
-        moment.carrier_speed
+    quantity("drive_torque_Nm", "drive_torque_nm", "torque on the sun shaft [N m]", 1.0, |snapshot, _| snapshot.drive),
+    quantity("load_torque_Nm", "load_torque_nm", "torque that brakes the link [N m]", 1.0, |snapshot, _| snapshot.load),
+    quantity("motor_angle_rad", "motor_angle_rad", "[rad]", 1.0, Snapshot::motor_angle),
+    quantity("link_angle_rad", "link_angle_rad", "[rad]", 1.0, |snapshot, _| snapshot.link_angle()),
+    quantity("twist_rad", "twist_rad", "motor angle over ratio, less link angle [rad]", 1.0, Snapshot::twist),
+    quantity("carrier_speed_rad_per_s", "carrier_speed_rad_per_s", "of the rigid body [rad/s]", 1.0, |snapshot, _| {
+        snapshot.carrier_speed
     }),
-    quantity("mesh_periods", "mesh_periods", "mesh phase [periods]", 1.0, |moment, _| moment.mesh_periods),
-    quantity("gap_m", "gap_um", "gap coordinate u_s - 2 u_c [um]", 1e6, |moment, _| moment.gap),
-    quantity("gap_rate_m_per_s", "gap_rate_mm_per_s", "[mm/s]", 1e3, |moment, _| moment.gap_rate),
-    quantity("wind_up_m", "wind_up_um", "carrier less link along the line of action [um]", 1e6, |moment, _| {
-        moment.wind_up
+    quantity("mesh_periods", "mesh_periods", "mesh phase [periods]", 1.0, |snapshot, _| snapshot.mesh_periods),
+    quantity("gap_m", "gap_um", "gap coordinate u_s - 2 u_c [um]", 1e6, |snapshot, _| snapshot.gap),
+    quantity("gap_rate_m_per_s", "gap_rate_mm_per_s", "[mm/s]", 1e3, |snapshot, _| snapshot.gap_rate),
+    quantity("wind_up_m", "wind_up_um", "carrier less link along the line of action [um]", 1e6, |snapshot, _| {
+        snapshot.wind_up
     }),
-    quantity("wind_up_rate_m_per_s", "wind_up_rate_mm_per_s", "[mm/s]", 1e3, |moment, _| moment.wind_up_rate),
+    quantity("wind_up_rate_m_per_s", "wind_up_rate_mm_per_s", "[mm/s]", 1e3, |snapshot, _| snapshot.wind_up_rate),
 ];
 
 const fn quantity(

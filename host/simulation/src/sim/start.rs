@@ -1,5 +1,5 @@
-//! Where a run starts, the same for every scheme: at rest as a reset board, in the middle of the gap as the paper has
-//! it, or seated under the first torques. Torques are not part of a start.
+//! The initial state of a run, the same for every scheme: at rest as a reset board, in the middle of the gap as in the
+//! paper, or seated under the first torques.
 
 use std::array;
 

@@ -3,7 +3,7 @@
 
 use parameters::ContactState;
 
-use super::moment::{Moment, Teeth};
+use super::snapshot::{MeshSnapshot, Snapshot};
 
 /// Points kept at most; a longer run keeps the last ones.
 const MOST_POINTS: usize = 2000;
@@ -29,7 +29,7 @@ pub struct MeshSums {
 /// Figures of one mesh.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 #[allow(non_snake_case, reason = "N is written N")]
-pub struct MeshFigures {
+pub struct MeshStatistics {
     /// Share of time on the drive side [-].
     pub drive_side_share: f64,
     /// Share of time with teeth parted [-].
@@ -50,7 +50,7 @@ pub struct MeshFigures {
 
 /// A Poincare point: the motion when the mesh phase comes round.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Point {
+pub struct PoincarePoint {
     /// Sun-planet deflection of planet 1 [m].
     pub deflection: f64,
     /// [m/s].
@@ -61,33 +61,33 @@ pub struct Point {
     pub gap_rate: f64,
 }
 
-/// Gathers while a run goes on.
+/// Statistics, accumulated while a run goes on.
 #[derive(Debug, Clone, Default)]
 pub struct Statistics {
     ticks: u64,
     first: f64,
-    last: Option<Moment>,
+    last: Option<Snapshot>,
     meshes: Vec<MeshSums>,
-    points: Vec<Point>,
+    points: Vec<PoincarePoint>,
 }
 
 impl Statistics {
     /// Takes one more tick.
-    pub fn take(&mut self, moment: &Moment) {
+    pub fn take(&mut self, snapshot: &Snapshot) {
         if self.meshes.is_empty() {
-            self.meshes = vec![MeshSums::default(); moment.teeth.len()];
-            self.first = moment.time;
+            self.meshes = vec![MeshSums::default(); snapshot.teeth.len()];
+            self.first = snapshot.time;
         }
-        for (sums, teeth) in self.meshes.iter_mut().zip(&moment.teeth) {
+        for (sums, teeth) in self.meshes.iter_mut().zip(&snapshot.teeth) {
             sums.take(self.ticks, teeth);
         }
         if let Some(last) = &self.last {
-            self.points.extend(crossing(last, moment));
+            self.points.extend(crossing(last, snapshot));
             if self.points.len() >= 2 * MOST_POINTS {
                 self.points.drain(..MOST_POINTS);
             }
         }
-        self.last = Some(moment.clone());
+        self.last = Some(snapshot.clone());
         self.ticks += 1;
     }
 
@@ -97,25 +97,25 @@ impl Statistics {
     }
 
     /// Figures of every mesh.
-    pub fn meshes(&self) -> Vec<MeshFigures> {
+    pub fn meshes(&self) -> Vec<MeshStatistics> {
         self.meshes.iter().map(|sums| sums.figures(self.ticks, self.span())).collect()
     }
 
     /// The last Poincare points.
-    pub fn points(&self) -> &[Point] {
+    pub fn points(&self) -> &[PoincarePoint] {
         &self.points[self.points.len().saturating_sub(MOST_POINTS)..]
     }
 
     /// After how many mesh periods the motion repeats; none if it does not within 32, or if too few were seen.
     pub fn period(&self) -> Option<usize> {
         let points = self.points();
-        let swing = |value: fn(&Point) -> f64, whole: f64| {
+        let swing = |value: fn(&PoincarePoint) -> f64, whole: f64| {
             let (low, high) = points.iter().map(value).fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(v), h.max(v)));
             (high - low).max(whole)
         };
         let whole = self.meshes.first().map_or(0.0, |mesh| mesh.greatest - mesh.least);
         let size = [swing(|p| p.deflection, whole), swing(|p| p.gap, whole)];
-        let same = |a: &Point, b: &Point| {
+        let same = |a: &PoincarePoint, b: &PoincarePoint| {
             (a.deflection - b.deflection).abs() <= SAME_POINT * size[0] && (a.gap - b.gap).abs() <= SAME_POINT * size[1]
         };
         (1..=LONGEST_PERIOD).find(|&period| {
@@ -128,7 +128,7 @@ impl Statistics {
 }
 
 impl MeshSums {
-    fn take(&mut self, ticks: u64, &Teeth { deflection, force, contact, .. }: &Teeth) {
+    fn take(&mut self, ticks: u64, &MeshSnapshot { deflection, force, contact, .. }: &MeshSnapshot) {
         if ticks == 0 {
             (self.least, self.greatest) = (deflection, deflection);
         }
@@ -144,11 +144,11 @@ impl MeshSums {
         self.touched = Some(contact);
     }
 
-    fn figures(&self, ticks: u64, span: f64) -> MeshFigures {
+    fn figures(&self, ticks: u64, span: f64) -> MeshStatistics {
         let count = ticks.max(1) as f64;
         let mean = self.sum / count;
         let share = |ticks: u64| ticks as f64 / count;
-        MeshFigures {
+        MeshStatistics {
             drive_side_share: share(self.drive_side),
             separated_share: share(ticks - self.drive_side - self.back_side),
             back_side_share: share(self.back_side),
@@ -162,7 +162,7 @@ impl MeshSums {
 }
 
 /// The motion when the mesh phase passed a whole number between two ticks, by the cubic through both.
-fn crossing(before: &Moment, after: &Moment) -> Option<Point> {
+fn crossing(before: &Snapshot, after: &Snapshot) -> Option<PoincarePoint> {
     let (from, to) = (before.mesh_periods, after.mesh_periods);
     let whole = if to > from { (from.floor() + 1.0).min(to.floor()) } else { from.ceil() - 1.0 };
     let inside = if to > from { from < whole && whole <= to } else { to <= whole && whole < from };
@@ -174,7 +174,7 @@ fn crossing(before: &Moment, after: &Moment) -> Option<Point> {
     let (one, other) = (before.teeth.first()?, after.teeth.first()?);
     let (deflection, rate) = hermite([one.deflection, other.deflection], [one.rate, other.rate], width, part);
     let (gap, gap_rate) = hermite([before.gap, after.gap], [before.gap_rate, after.gap_rate], width, part);
-    Some(Point { deflection, rate, gap, gap_rate })
+    Some(PoincarePoint { deflection, rate, gap, gap_rate })
 }
 
 /// Value and slope of the cubic through two values with their slopes.
@@ -198,8 +198,8 @@ mod tests {
             let periods = f64::from(tick) / 50.0;
             let (deflection, rate) = wave(periods);
             let contact = if deflection > 0.0 { ContactState::DriveSide } else { ContactState::Separated };
-            let teeth = Teeth { deflection, rate, force: 2.0 * deflection.max(0.0), contact };
-            let moment = Moment {
+            let teeth = MeshSnapshot { deflection, rate, force: 2.0 * deflection.max(0.0), contact };
+            let snapshot = Snapshot {
                 tick,
                 time: periods,
                 drive: 0.0,
@@ -216,7 +216,7 @@ mod tests {
                 teeth: [teeth].into_iter().collect(),
                 energy: None,
             };
-            statistics.take(&moment);
+            statistics.take(&snapshot);
         }
         statistics
     }

@@ -1,5 +1,5 @@
-//! The folder of a sweep: `sweep.json`, journals, and `points.csv` once all points are there. What does not belong is
-//! refused before anything is written, and nothing of anyone else's is ever touched.
+//! The folder of a sweep: `sweep.json`, journals, and `points.csv` once all points are there. A folder with foreign
+//! files is refused before anything is written.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use report::failure::{Failure, Outcome};
 use report::folder;
 use report::write::write_text;
 
-/// What says which sweep it is.
+/// The manifest.
 pub const MANIFEST: &str = "sweep.json";
 /// The result.
 pub const RESULT: &str = "points.csv";
@@ -20,16 +20,16 @@ const NAMED: usize = 3;
 
 /// A sweep's folder.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Folder {
+pub struct SweepFolder {
     path: PathBuf,
 }
 
-impl Folder {
+impl SweepFolder {
     /// Makes the folder of a sweep, or finds that it is there; refuses any other sweep's and any other folder.
     pub fn prepare(path: &Path, manifest: &Manifest) -> Outcome<Self> {
         folder::make(path)?;
         let foreign = foreign(path)?;
-        // Asked after the listing: whoever makes a journal has made this file before.
+        // Checked after the listing: this file is always made before a journal.
         let there = path.join(MANIFEST).exists();
         if !foreign.is_empty() {
             return Err(refused(path, &foreign, there));

@@ -10,7 +10,7 @@ use report::failure::{Failure, Outcome};
 /// Points that can be swept at once: at a tenth of a second each that is more than a day.
 pub const MOST_POINTS: u64 = 1_000_000;
 /// Values of an axis that are all tried before the sweep; of a longer axis only the ends are.
-const TRIED: usize = 1000;
+const VALUES_TRIED: usize = 1000;
 
 /// All points.
 #[derive(Debug, Clone, PartialEq)]
@@ -87,7 +87,7 @@ impl Grid {
             stride /= count as u64;
             let first = at(0)?;
             let mut moved = count == 1;
-            for place in (1..count).filter(|place| count <= TRIED || *place == count - 1) {
+            for place in (1..count).filter(|place| count <= VALUES_TRIED || *place == count - 1) {
                 let joint = at(place as u64 * stride)?.file;
                 moved |= joint.parameters != first.file.parameters || joint.profile != first.file.profile;
             }

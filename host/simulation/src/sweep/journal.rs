@@ -20,7 +20,7 @@ pub type Points = BTreeMap<u64, String>;
 const HEAD: &str = "joint-sweep";
 
 /// A journal that another process holds is asked for so many times, so far apart.
-const LOCK_TRIALS: u32 = 20;
+const LOCK_ATTEMPTS: u32 = 20;
 const LOCK_PAUSE: Duration = Duration::from_millis(50);
 
 /// A journal that is being written.
@@ -73,9 +73,9 @@ impl Journal {
     }
 }
 
-/// Takes the file for this process alone. A process that was just ended may need a moment to let go of it.
+/// Takes the file for this process alone. A process that has just ended may hold it for a moment longer.
 fn locked(file: &File) -> bool {
-    for _ in 0..LOCK_TRIALS {
+    for _ in 0..LOCK_ATTEMPTS {
         match file.try_lock() {
             Err(TryLockError::WouldBlock) => std::thread::sleep(LOCK_PAUSE),
             // A file system without locks is no reason not to work on it.
@@ -99,7 +99,7 @@ pub fn read(path: &Path, digest: &str) -> Outcome<Points> {
     Ok(String::from_utf8_lossy(whole).lines().skip(1).filter_map(point_of).collect())
 }
 
-/// A file of a sweep that cannot be read, with the mend.
+/// A file of a sweep that cannot be read, with the help.
 pub fn unread(path: &Path, error: &io::Error) -> Failure {
     Failure::new(format!("cannot read {}: {error}", path.display()))
         .with_help("see that the folder and its files may be read")

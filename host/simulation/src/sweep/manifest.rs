@@ -1,5 +1,5 @@
-//! What a sweep is: `sweep.json` in its folder. Two sweeps with the same digest compute the same points; where its
-//! files are, how many threads and shards there are and when it ran has no part in it.
+//! The manifest of a sweep, `sweep.json` in its folder. Two sweeps with the same digest compute the same points; paths,
+//! threads, shards and dates are not part of the digest.
 
 use std::path::Path;
 

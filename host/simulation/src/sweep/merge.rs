@@ -1,9 +1,9 @@
-//! Puts the shards of a sweep together into one result, once none is missing. Nothing is computed here.
+//! Puts the shards of a sweep together into one result, once none is missing.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use super::folder::Folder;
+use super::folder::SweepFolder;
 use super::grid::{Grid, Shard};
 use super::journal::{self, Points};
 use super::manifest::Manifest;
@@ -12,14 +12,14 @@ use report::failure::{Failure, Outcome};
 /// Missing points named in a message at most.
 const NAMED: usize = 8;
 
-/// Merges the shards in these folders into `out`, or into the first of them, and says what came of it; fails if any point is
+/// Merges the shards in these folders into `out`, or into the first of them, and returns the result as text; fails if any point is
 /// missing.
 pub fn merge(folders: &[PathBuf], out: Option<&Path>) -> Outcome<String> {
     let mut points = Points::new();
     let mut shards = BTreeSet::new();
     let mut sweep: Option<(PathBuf, Manifest)> = None;
     for path in folders {
-        let (folder, manifest) = Folder::existing(path)?;
+        let (folder, manifest) = SweepFolder::existing(path)?;
         if let Some((first, known)) = &sweep
             && let Some(difference) = known.difference(&manifest)
         {
@@ -38,7 +38,7 @@ pub fn merge(folders: &[PathBuf], out: Option<&Path>) -> Outcome<String> {
     };
     let grid = manifest.grid()?;
     complete(&grid, &points, &shards)?;
-    Folder::prepare(out.unwrap_or(&first), &manifest)?.write_result(&manifest, &grid, &points)
+    SweepFolder::prepare(out.unwrap_or(&first), &manifest)?.write_result(&manifest, &grid, &points)
 }
 
 /// Every point must be there, and no other.

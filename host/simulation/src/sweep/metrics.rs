@@ -1,14 +1,14 @@
-//! What is measured at a point of the grid, and how it is written: always the same bytes for the same joint. The motion
-//! comes from the scheme, its figures from `sim::statistics`.
+//! The metrics of a point of the grid, and how they are written: always the same bytes for the same joint. They come
+//! from `sim::statistics`.
 
 use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 
-use crate::sim::arguments::Motion;
-use crate::sim::follow::{self, End};
-use crate::sim::plan::Plan;
+use crate::sim::arguments::MotionArguments;
+use crate::sim::plan::SimulationPlan;
 use crate::sim::scheme::SchemeName;
-use crate::sim::statistics::{MeshFigures, Statistics};
+use crate::sim::statistics::{MeshStatistics, Statistics};
+use crate::sim::stepping::{self, RunEnd};
 use joint_file::named::Loaded;
 use report::failure::Outcome;
 
@@ -46,9 +46,9 @@ impl Metric {
     }
 }
 
-/// What came of a point.
+/// The result of a point.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Result {
+pub struct PointResult {
     /// `ok`, `diverged` or `refused`.
     pub status: &'static str,
     /// Values of the metrics as text; empty unless `ok`.
@@ -58,33 +58,39 @@ pub struct Result {
 }
 
 /// Computes a point; none if the user wants to stop.
-pub fn compute(loaded: Outcome<Loaded>, motion: &Motion, scheme: SchemeName, metrics: &[Metric]) -> Option<Result> {
-    let without = |status, remark| Result { status, values: vec![String::new(); metrics.len()], remark };
+pub fn compute(
+    loaded: Outcome<Loaded>,
+    motion: &MotionArguments,
+    scheme: SchemeName,
+    metrics: &[Metric],
+) -> Option<PointResult> {
+    let without = |status, remark| PointResult { status, values: vec![String::new(); metrics.len()], remark };
     let mut statistics = Statistics::default();
-    let followed = loaded.and_then(|loaded| Plan::new(loaded, motion)).and_then(|plan| {
-        follow::follow(&plan.run, scheme, 0.0, &mut |moment| {
-            if moment.tick >= plan.settle {
-                statistics.take(moment);
+    let followed = loaded.and_then(|loaded| SimulationPlan::new(loaded, motion)).and_then(|plan| {
+        stepping::simulate(&plan.run, scheme, 0.0, &mut |snapshot| {
+            if snapshot.tick >= plan.settle {
+                statistics.take(snapshot);
             }
             Ok(())
         })
     });
     match followed {
         Err(failure) => Some(without("refused", Some(failure.to_string()))),
-        Ok(End::Stopped) => None,
-        Ok(End::Diverged(_)) => Some(without("diverged", None)),
-        Ok(End::Whole) => {
+        Ok(RunEnd::Stopped) => None,
+        Ok(RunEnd::Diverged(_)) => Some(without("diverged", None)),
+        Ok(RunEnd::Whole) => {
             let meshes = statistics.meshes();
             let values = metrics.iter().map(|metric| value(*metric, &meshes, &statistics)).collect();
-            Some(Result { status: "ok", values, remark: None })
+            Some(PointResult { status: "ok", values, remark: None })
         }
     }
 }
 
-fn value(metric: Metric, meshes: &[MeshFigures], statistics: &Statistics) -> String {
+fn value(metric: Metric, meshes: &[MeshStatistics], statistics: &Statistics) -> String {
     let (sun, ring) = meshes.split_at(meshes.len() / 2);
-    let greatest = |meshes: &[MeshFigures], of: fn(&MeshFigures) -> f64| meshes.iter().map(of).fold(0.0, f64::max);
-    let mean = |of: fn(&MeshFigures) -> f64| meshes.iter().map(of).sum::<f64>() / meshes.len() as f64;
+    let greatest =
+        |meshes: &[MeshStatistics], of: fn(&MeshStatistics) -> f64| meshes.iter().map(of).fold(0.0, f64::max);
+    let mean = |of: fn(&MeshStatistics) -> f64| meshes.iter().map(of).sum::<f64>() / meshes.len() as f64;
     let number = match metric {
         Metric::SunDeflectionPeakToPeakUm => 1e6 * greatest(sun, |mesh| mesh.deflection_peak_to_peak_m),
         Metric::SunDeflectionRmsUm => 1e6 * greatest(sun, |mesh| mesh.deflection_rms_m),

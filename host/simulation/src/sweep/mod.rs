@@ -14,7 +14,7 @@ mod work;
 
 use std::path::PathBuf;
 
-use folder::Folder;
+use folder::SweepFolder;
 use grid::{Grid, Shard};
 use journal::{Journal, Points};
 use manifest::{Manifest, sha256};
@@ -22,7 +22,7 @@ pub use merge::merge;
 use metrics::Metric;
 use work::Work;
 
-use crate::sim::arguments::{Motion, quoted};
+use crate::sim::arguments::{MotionArguments, quoted};
 use crate::sim::scheme::{Choice, SchemeName};
 use board::profile::BUILTIN;
 use joint_file::named::{self, Loaded};
@@ -59,7 +59,7 @@ pub struct Arguments {
     pub scheme: Choice,
     /// What moves the joint at every point
     #[command(flatten)]
-    pub motion: Motion,
+    pub motion: MotionArguments,
     /// Folder of the sweep [default: target/sweep/<joint>-<digest>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -71,7 +71,7 @@ pub struct Arguments {
     pub threads: Option<u16>,
 }
 
-/// Sweeps a grid, or goes on with it, and says what came of it.
+/// Sweeps a grid, or goes on with it, and returns the result as text.
 pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
     let scheme = scheme(arguments.scheme)?;
     let grid = Grid::parse(&arguments.vary)?;
@@ -79,10 +79,10 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
     grid.try_out(&base)?;
     let metrics = if arguments.metric.is_empty() { all_metrics() } else { arguments.metric.clone() };
     // The changes of the command line are in the joint file already.
-    let motion = Motion { set: Vec::new(), ..arguments.motion.clone() };
+    let motion = MotionArguments { set: Vec::new(), ..arguments.motion.clone() };
     let manifest = manifest(&base, &grid, &metrics, scheme, &motion)?;
     let path = arguments.out.clone().unwrap_or_else(|| usual_folder(&manifest));
-    let folder = Folder::prepare(&path, &manifest)?;
+    let folder = SweepFolder::prepare(&path, &manifest)?;
     let mut journal = Journal::open(folder.path(), arguments.shard, &manifest.digest)?;
     let mut done = Points::new();
     folder.points(&manifest.digest, &mut done)?;
@@ -113,7 +113,7 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
 }
 
 /// Writes the result if all shards are done, else tells what is left.
-fn conclude(arguments: &Arguments, folder: &Folder, manifest: &Manifest, grid: &Grid) -> Outcome<String> {
+fn conclude(arguments: &Arguments, folder: &SweepFolder, manifest: &Manifest, grid: &Grid) -> Outcome<String> {
     let mut points = Points::new();
     folder.points(&manifest.digest, &mut points)?;
     if points.len() as u64 == grid.points {
@@ -142,7 +142,13 @@ fn all_metrics() -> Vec<Metric> {
     Metric::value_variants().to_vec()
 }
 
-fn manifest(base: &Loaded, grid: &Grid, metrics: &[Metric], scheme: SchemeName, motion: &Motion) -> Outcome<Manifest> {
+fn manifest(
+    base: &Loaded,
+    grid: &Grid,
+    metrics: &[Metric],
+    scheme: SchemeName,
+    motion: &MotionArguments,
+) -> Outcome<Manifest> {
     let profile = motion.profile.as_ref().filter(|name| !BUILTIN.contains(&name.as_str()));
     let profile_sha256 = profile.map(|path| {
         let read = std::fs::read(path).map_err(|error| {
@@ -153,7 +159,7 @@ fn manifest(base: &Loaded, grid: &Grid, metrics: &[Metric], scheme: SchemeName, 
     });
     // A profile is what is in the file, not where it is.
     let motion = match profile {
-        Some(_) => Motion { profile: Some("file".into()), ..motion.clone() },
+        Some(_) => MotionArguments { profile: Some("file".into()), ..motion.clone() },
         None => motion.clone(),
     };
     let manifest = Manifest {

@@ -1,5 +1,5 @@
-//! Computes the points of a shard in parallel and writes each down as soon as it is there. Which points, and into which
-//! journal, is told from outside; the order in which they come has no part in the result.
+//! Computes the points of a shard in parallel and writes each to the journal as soon as it is done. The order of
+//! completion does not change the result.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
@@ -9,21 +9,21 @@ use rayon::prelude::*;
 use super::grid::Grid;
 use super::journal::{self, Journal};
 use super::metrics::{self, Metric};
-use crate::sim::arguments::Motion;
+use crate::sim::arguments::MotionArguments;
 use crate::sim::scheme::SchemeName;
 use joint_file::named::{self, Loaded};
 use report::failure::{Failure, Outcome};
 use report::interruption;
 use report::progress::Progress;
 
-/// What is to be done at every point.
+/// The computation at every point.
 pub struct Work<'a> {
     /// The joint file that the grid changes.
     pub base: &'a Loaded,
     /// The grid.
     pub grid: &'a Grid,
     /// What moves the joint.
-    pub motion: &'a Motion,
+    pub motion: &'a MotionArguments,
     /// How.
     pub scheme: SchemeName,
     /// What is measured.
@@ -32,9 +32,9 @@ pub struct Work<'a> {
     pub threads: Option<u16>,
 }
 
-/// How it went.
+/// How the work ended.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Went {
+pub struct WorkOutcome {
     /// Points computed and kept.
     pub finished: usize,
     /// Points whose joint cannot be.
@@ -45,12 +45,12 @@ pub struct Went {
 
 impl Work<'_> {
     /// Computes points until all are done or the user wants to stop.
-    pub fn run(&self, todo: &[u64], journal: &mut Journal, progress: &Progress) -> Outcome<Went> {
+    pub fn run(&self, todo: &[u64], journal: &mut Journal, progress: &Progress) -> Outcome<WorkOutcome> {
         let threads = self.threads.map_or(0, usize::from);
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| {
             Failure::new(format!("cannot start {threads} threads: {error}")).with_help("give fewer --threads")
         })?;
-        let (sender, receiver) = mpsc::channel::<(u64, metrics::Result)>();
+        let (sender, receiver) = mpsc::channel::<(u64, metrics::PointResult)>();
         let stop = AtomicBool::new(false);
         std::thread::scope(|scope| {
             let stop = &stop;
@@ -77,7 +77,7 @@ impl Work<'_> {
         })
     }
 
-    fn point(&self, point: u64) -> Option<metrics::Result> {
+    fn point(&self, point: u64) -> Option<metrics::PointResult> {
         let joint = named::read_changed(self.base.name.clone(), self.base.text.clone(), &self.grid.changes(point));
         metrics::compute(joint, self.motion, self.scheme, self.metrics)
     }
@@ -85,11 +85,11 @@ impl Work<'_> {
 
 /// Writes what comes, as many points at a time as have come meanwhile.
 fn keep(
-    receiver: &mpsc::Receiver<(u64, metrics::Result)>,
+    receiver: &mpsc::Receiver<(u64, metrics::PointResult)>,
     journal: &mut Journal,
     progress: &Progress,
-) -> Outcome<Went> {
-    let mut went = Went::default();
+) -> Outcome<WorkOutcome> {
+    let mut went = WorkOutcome::default();
     while let Ok(first) = receiver.recv() {
         let mut lines = String::new();
         let mut count = 0;

@@ -1,4 +1,4 @@
-//! Tables of the velocity-Verlet (leapfrog) sub-steps that light planets need: mobilities and dampings in the unit of time of a sub-step.
+//! Tables of the position-Verlet (leapfrog) sub-steps that light planets need: mobilities and dampings in the unit of time of a sub-step.
 
 use crate::gears::mechanics::Mechanics;
 use crate::gears::scales::Scales;

@@ -1,10 +1,10 @@
-//! Times libraries and fixed-step methods on the cases named as arguments and prints JSON on standard output. What the
-//! figures mean is said by the host command, which runs this.
+//! Times libraries and fixed-step methods on the cases named as arguments and prints JSON on standard output, for
+//! `joint bench`.
 
 use std::process::ExitCode;
 
 use contest::catalogue;
-use contest::curve::{Field, PHASES};
+use contest::curve::{PHASES, PhaseEnvelope};
 use contest::libraries::timing::{Time, times};
 
 /// Tolerances from loose to tight.
@@ -36,17 +36,17 @@ fn main() -> ExitCode {
         let unit = case.sample_rate / 4;
         let planets = case.joint.geometry.planets;
         let rates = RATES.map(|(multiple, substeps)| (unit * multiple, substeps));
-        let field = match Field::new(case, PHASES) {
-            Ok(field) => field,
+        let envelope = match PhaseEnvelope::new(case, PHASES) {
+            Ok(envelope) => envelope,
             Err(error) => {
                 eprintln!("error: the reference cannot follow: {error}");
                 return ExitCode::from(2);
             }
         };
         let found = match planets {
-            3 => times::<3, 8>(field.phases(), &TOLERANCES, &rates),
-            4 => times::<4, 10>(field.phases(), &TOLERANCES, &rates),
-            _ => times::<5, 12>(field.phases(), &TOLERANCES, &rates),
+            3 => times::<3, 8>(envelope.phases(), &TOLERANCES, &rates),
+            4 => times::<4, 10>(envelope.phases(), &TOLERANCES, &rates),
+            _ => times::<5, 12>(envelope.phases(), &TOLERANCES, &rates),
         };
         all.extend(found.unwrap_or_default());
     }

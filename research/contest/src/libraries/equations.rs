@@ -7,7 +7,7 @@ use model_core::gears::Scales;
 use parameters::Excitation;
 use peers::forces::{Always, ForceLaw, Push, PushOnly, acceleration};
 use peers::instant::{Instant, Rotor};
-use peers::motion::{Coordinates, Motion};
+use peers::motion::{Coordinates, PeerState};
 use peers::plant::{Law, Plant};
 
 use crate::case::Case;
@@ -129,7 +129,7 @@ impl<const N: usize, const D: usize> Equations<N, D> {
     /// What is read off a state.
     pub fn read(&self, time: f64, state: &[f64]) -> Reading {
         let (position, rate) = split::<N>(state);
-        self.gauge.read(&Motion { position, rate }, &rotor(self.omega, time), 0.0)
+        self.gauge.read(&PeerState { position, rate }, &rotor(self.omega, time), 0.0)
     }
 }
 

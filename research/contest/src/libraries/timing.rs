@@ -7,10 +7,10 @@ use serde::Serialize;
 
 use super::{Equations, Library};
 use crate::case::Case;
-use crate::course::{Course, Errors};
 use crate::curve::Scalar;
 use crate::method::Method;
 use crate::run;
+use crate::trajectory::{Errors, ReferenceTrajectory};
 
 /// Rounds; the least time of each contestant counts.
 const ROUNDS: usize = 3;
@@ -32,7 +32,7 @@ pub struct Time {
 
 /// Times everything on a case at its phases; none if libraries cannot take the case.
 pub fn times<const N: usize, const D: usize>(
-    phases: &[(Case, Course)],
+    phases: &[(Case, ReferenceTrajectory)],
     tolerances: &[f64],
     rates: &[(u32, u32)],
 ) -> Option<Vec<Time>> {
@@ -66,13 +66,13 @@ pub fn times<const N: usize, const D: usize>(
             let rate = if method == Method::Realtime { (rate, substeps) } else { (rate * substeps, 1) };
             let step = frequency / f64::from(rate.0 * rate.1);
             all.push(timed(first, name, step, phases.len(), |phase| {
-                let (case, course) = &phases[phase];
+                let (case, trajectory) = &phases[phase];
                 let done = match scalar {
-                    Scalar::Single => run::run::<f32, N>(case, course.restarts(), method, rate, &now),
-                    Scalar::Double => run::run::<f64, N>(case, course.restarts(), method, rate, &now),
+                    Scalar::Single => run::run::<f32, N>(case, trajectory.restarts(), method, rate, &now),
+                    Scalar::Double => run::run::<f64, N>(case, trajectory.restarts(), method, rate, &now),
                 };
                 let done = done.ok()?;
-                Some((done.seconds, course.errors(&done.readings)))
+                Some((done.seconds, trajectory.errors(&done.readings)))
             }));
         }
     }

@@ -1,10 +1,10 @@
 //! The motion of case R in windows: how far the board's step, as designed for 10 kHz and in f32, is from the reference.
 
 use contest::case::Case;
-use contest::course::Errors;
-use contest::curve::{Field, Scalar};
+use contest::curve::{PhaseEnvelope, Scalar};
 use contest::method::Method;
 use contest::run::AS_DESIGNED;
+use contest::trajectory::Errors;
 use host_tests::tolerance::light_planets::{ROBOT_LINK_RMS, ROBOT_LINK_WORST, ROBOT_PEAK_FORCE};
 use reference::scenarios::case_r;
 use reference::scenarios::case_r::{CaseR, TICK_RATE};
@@ -14,8 +14,8 @@ use crate::variants::joint;
 /// Errors over a motion with all mesh phases further on by so many periods.
 pub fn errors(motion: CaseR, shift: f64) -> Errors {
     let case = Case::of_robot_joint("R", "what a robot joint does", motion).shifted(shift);
-    let field = Field::new(case, 1).expect("the reference follows");
-    let point = field.point(Method::Realtime, Scalar::Single, TICK_RATE, AS_DESIGNED).expect("a sound joint");
+    let envelope = PhaseEnvelope::new(case, 1).expect("the reference follows");
+    let point = envelope.point(Method::Realtime, Scalar::Single, TICK_RATE, AS_DESIGNED).expect("a sound joint");
     println!("{:?}", point.errors);
     point.errors
 }

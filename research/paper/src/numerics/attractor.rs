@@ -1,11 +1,12 @@
-//! What a motion settles on: of which period, or chaotic, by its Poincare points and its largest Lyapunov exponent.
+//! The attractor of a motion: periodic with which period, or chaotic, by its Poincare points and its largest Lyapunov
+//! exponent.
 
 use std::fmt;
 
 use serde::Serialize;
 
+use super::integrator::{EventIntegrator, State};
 use super::lyapunov::{Growth, generic, measured_period, normalise, two_trajectories};
-use super::motion::{Motion, State};
 use super::shooting::periodic_state;
 use super::system::{StudyError, System};
 
@@ -47,13 +48,13 @@ impl fmt::Display for Class {
     }
 }
 
-/// How long to look.
+/// How many periods are spent on each part of the search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Effort {
     /// Periods before anything is looked at.
     pub transient: u32,
     /// Periods after which a motion that has not become periodic is taken as it is.
-    pub patience: u32,
+    pub longest_transient: u32,
     /// Periods in which a tangent vector finds its direction.
     pub alignment: u32,
     /// Periods measured, one Poincare point each.
@@ -106,11 +107,11 @@ impl Attractor {
 }
 
 /// Follows a motion until it has settled, and measures it. The motion is left at the end of that.
-pub fn find(motion: &mut Motion<'_>, effort: &Effort) -> Result<Attractor, StudyError> {
+pub fn find(motion: &mut EventIntegrator<'_>, effort: &Effort) -> Result<Attractor, StudyError> {
     let mut recent: Vec<State> = Vec::new();
     let mut settled_after = 0;
     let settled = |recent: &[State]| period(recent, SETTLED).is_some();
-    while settled_after < effort.transient || (settled_after < effort.patience && !settled(&recent)) {
+    while settled_after < effort.transient || (settled_after < effort.longest_transient && !settled(&recent)) {
         motion.period()?;
         settled_after += 1;
         if recent.len() == 2 * LONGEST_PERIOD {
@@ -124,7 +125,7 @@ pub fn find(motion: &mut Motion<'_>, effort: &Effort) -> Result<Attractor, Study
     }
     // Neighbours come together, but too slowly to wait for.
     let Some(state) = periodic_state(motion)? else { return Ok(found) };
-    let mut shorter = Motion::new(motion.system(), state);
+    let mut shorter = EventIntegrator::new(motion.system(), state);
     let polished = measure(&mut shorter, effort, settled_after + effort.alignment + effort.points)?;
     if matches!(polished.class, Class::Periodic(_)) {
         *motion = shorter;
@@ -134,7 +135,7 @@ pub fn find(motion: &mut Motion<'_>, effort: &Effort) -> Result<Attractor, Study
 }
 
 /// Poincare points and exponent from where a motion is.
-fn measure(motion: &mut Motion<'_>, effort: &Effort, settled_after: u32) -> Result<Attractor, StudyError> {
+fn measure(motion: &mut EventIntegrator<'_>, effort: &Effort, settled_after: u32) -> Result<Attractor, StudyError> {
     let start = motion.state();
     *motion.tangents() = vec![generic(motion.system().coordinates())];
     let mut growth = Growth::default();
@@ -188,7 +189,7 @@ fn distance(one: &[f64; 4], other: &[f64; 4]) -> f64 {
 /// The exponent of an attractor once more, by two trajectories. The first of them is the very motion along which the
 /// tangent vector was carried, so that what differs is the method and not the stretch of chaos.
 pub fn by_two_trajectories(system: &System, found: &Attractor, effort: &Effort) -> Result<f64, StudyError> {
-    let motion = Motion::new(system, found.start);
+    let motion = EventIntegrator::new(system, found.start);
     let growth = two_trajectories(&motion, effort.alignment, effort.periods(found.class))?;
     Ok(match found.class {
         Class::Chaotic => growth.mean(system.period()),
@@ -198,7 +199,7 @@ pub fn by_two_trajectories(system: &System, found: &Attractor, effort: &Effort) 
 
 /// The largest exponent of disturbances that drive planets apart, for planets that all mesh in phase; otherwise there is
 /// no such motion to begin with. Below zero, planets in phase stay in phase.
-pub fn between_planets(motion: &Motion<'_>, effort: &Effort) -> Result<Option<f64>, StudyError> {
+pub fn between_planets(motion: &EventIntegrator<'_>, effort: &Effort) -> Result<Option<f64>, StudyError> {
     let system = motion.system();
     if !system.in_phase() {
         return Ok(None);
@@ -206,7 +207,7 @@ pub fn between_planets(motion: &Motion<'_>, effort: &Effort) -> Result<Option<f6
     let mut apart = State::default();
     // What one planet gains the next loses: sun and carrier do not notice, so the vector stays of this kind for good.
     [apart.position[0], apart.position[1]] = [1.0, -1.0];
-    let mut motion = Motion::new(system, motion.state());
+    let mut motion = EventIntegrator::new(system, motion.state());
     *motion.tangents() = vec![apart];
     let mut growth = Growth::default();
     for _ in 0..effort.alignment {

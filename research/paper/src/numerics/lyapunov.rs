@@ -1,7 +1,7 @@
 //! The largest Lyapunov exponent, by a tangent vector and by two trajectories: the mean rate at which neighbours part,
 //! per unit of dimensionless time.
 
-use super::motion::{Motion, State};
+use super::integrator::{EventIntegrator, State};
 use super::system::StudyError;
 
 /// Distance of the second trajectory, over b_c: far above what the steps neglect, far below what the motion does.
@@ -67,7 +67,7 @@ fn length(vector: &State) -> f64 {
 }
 
 /// One period of a motion whose first tangent vector is being measured.
-pub fn measured_period(motion: &mut Motion<'_>, growth: &mut Growth) -> Result<(), StudyError> {
+pub fn measured_period(motion: &mut EventIntegrator<'_>, growth: &mut Growth) -> Result<(), StudyError> {
     motion.period()?;
     growth.add(motion.tangents().first_mut().map_or(1.0, normalise));
     Ok(())
@@ -75,13 +75,13 @@ pub fn measured_period(motion: &mut Motion<'_>, growth: &mut Growth) -> Result<(
 
 /// Growth of the distance of two trajectories, over `periods` after `skipped` ones in which their difference finds its
 /// direction.
-pub fn two_trajectories(motion: &Motion<'_>, skipped: u32, periods: u32) -> Result<Growth, StudyError> {
+pub fn two_trajectories(motion: &EventIntegrator<'_>, skipped: u32, periods: u32) -> Result<Growth, StudyError> {
     let system = motion.system();
-    let mut first = Motion::new(system, motion.state());
+    let mut first = EventIntegrator::new(system, motion.state());
     let mut difference = generic(system.coordinates());
     let mut growth = Growth::default();
     for period in 0..skipped + periods {
-        let mut second = Motion::new(system, moved(&first.state(), &difference, DISTANCE));
+        let mut second = EventIntegrator::new(system, moved(&first.state(), &difference, DISTANCE));
         first.period()?;
         second.period()?;
         difference = moved(&second.state(), &first.state(), -1.0);

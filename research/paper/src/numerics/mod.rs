@@ -1,15 +1,15 @@
 //! Numerics for studies of periodically driven joints: motion by Taylor series from contact event to contact event,
 //! Poincare sections, Lyapunov exponents, attractors.
 //!
-//! `system` makes the equations dimensionless, `zone` says which branch of the force law each mesh is on, `series`
-//! expands motion and tangent vectors, `fall` finds the moment at which a branch ends, `motion` strings the pieces
-//! together; `lyapunov`, `attractor` and `signal` look at what comes out, and `shooting` shortens the way to
-//! motions that are reached slowly.
+//! `system` makes the equations dimensionless, `zone` is the branch of the force law that each mesh is on, `series`
+//! expands motion and tangent vectors, `first_root` finds the time at which a branch ends, `integrator` strings the
+//! pieces together; `lyapunov`, `attractor` and `signal` analyse the motion, and `shooting` finds periodic motions that
+//! are reached slowly.
 
 pub mod attractor;
-mod fall;
+mod first_root;
+pub mod integrator;
 pub mod lyapunov;
-pub mod motion;
 mod series;
 mod shooting;
 pub mod signal;

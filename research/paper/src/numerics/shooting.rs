@@ -1,7 +1,7 @@
 //! Newton's method on the Poincare map: finds the periodic motion that a slowly decaying one is on its way to, where
 //! waiting would take ten thousands of periods. Whether it is stable is found afterwards, by following it.
 
-use super::motion::{Motion, State};
+use super::integrator::{EventIntegrator, State};
 use super::system::StudyError;
 
 /// Rounds of Newton's method; it doubles the digits in each.
@@ -14,7 +14,7 @@ const CLOSED: f64 = 1e-9;
 const LONGEST: usize = 6;
 
 /// A state on a periodic motion near to where `motion` is, if there is one.
-pub fn periodic_state(motion: &Motion<'_>) -> Result<Option<State>, StudyError> {
+pub fn periodic_state(motion: &EventIntegrator<'_>) -> Result<Option<State>, StudyError> {
     for periods in candidates(motion)? {
         if let Some(state) = newton(motion, periods)? {
             return Ok(Some(state));
@@ -24,8 +24,8 @@ pub fn periodic_state(motion: &Motion<'_>) -> Result<Option<State>, StudyError> 
 }
 
 /// Cycle lengths, the one whose ends are nearest first; of equally good ones the shortest.
-fn candidates(motion: &Motion<'_>) -> Result<Vec<usize>, StudyError> {
-    let mut follower = Motion::new(motion.system(), motion.state());
+fn candidates(motion: &EventIntegrator<'_>) -> Result<Vec<usize>, StudyError> {
+    let mut follower = EventIntegrator::new(motion.system(), motion.state());
     let start = entries(motion, &motion.state());
     let mut distances = Vec::new();
     for periods in 1..=LONGEST {
@@ -38,13 +38,13 @@ fn candidates(motion: &Motion<'_>) -> Result<Vec<usize>, StudyError> {
     Ok(distances.into_iter().map(|(periods, _)| periods).collect())
 }
 
-fn newton(motion: &Motion<'_>, periods: usize) -> Result<Option<State>, StudyError> {
+fn newton(motion: &EventIntegrator<'_>, periods: usize) -> Result<Option<State>, StudyError> {
     let system = motion.system();
     let coordinates = system.coordinates();
     let size = 2 * coordinates;
     let mut state = motion.state();
     for _ in 0..ROUNDS {
-        let mut follower = Motion::new(system, state);
+        let mut follower = EventIntegrator::new(system, state);
         *follower.tangents() = (0..size).map(|index| with_entry(State::default(), coordinates, index, 1.0)).collect();
         for _ in 0..periods {
             match follower.period() {
@@ -78,7 +78,7 @@ fn newton(motion: &Motion<'_>, periods: usize) -> Result<Option<State>, StudyErr
 }
 
 /// Positions, then rates.
-fn entries(motion: &Motion<'_>, state: &State) -> Vec<f64> {
+fn entries(motion: &EventIntegrator<'_>, state: &State) -> Vec<f64> {
     let coordinates = motion.system().coordinates();
     state.position[..coordinates].iter().chain(&state.rate[..coordinates]).copied().collect()
 }

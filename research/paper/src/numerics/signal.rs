@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use parameters::ContactState;
 
-use super::motion::{Motion, Stretch, contact, deflection};
+use super::integrator::{EventIntegrator, Segment, contact, deflection};
 use super::system::StudyError;
 
 /// Samples of one period: extremes between them are missed by less than 1e-4 of the amplitude.
@@ -37,17 +37,17 @@ pub struct Signal {
 
 impl Signal {
     /// The next `periods` of a motion.
-    pub fn record(motion: &mut Motion<'_>, periods: u32) -> Result<Self, StudyError> {
+    pub fn record(motion: &mut EventIntegrator<'_>, periods: u32) -> Result<Self, StudyError> {
         let system = motion.system();
         let interval = system.period() / SAMPLES as f64;
         let mut signal = Self { interval, position: Vec::new(), rate: Vec::new(), contact: ContactShares::default() };
         let mut counts = [0_u64; 3];
         for _ in 0..periods {
             let mut next = 0;
-            motion.period_with(|stretch: &Stretch<'_>| {
-                while next < SAMPLES && next as f64 * interval < stretch.to {
+            motion.period_with(|segment: &Segment<'_>| {
+                while next < SAMPLES && next as f64 * interval < segment.to {
                     let time = next as f64 * interval;
-                    let state = stretch.at(time);
+                    let state = segment.at(time);
                     let (position, rate) = deflection(system, &state, 0, time);
                     signal.position.push(position);
                     signal.rate.push(rate);

@@ -1,6 +1,6 @@
 //! A joint under constant torques and a prescribed mesh frequency, in the dimensionless relative coordinates of eqs
-//! 15-19: masses, springs and excitation as plain numbers. Zones of contact and the motion itself are elsewhere; the
-//! tanh dead zone and the phase mode `angle` are refused, since no Poincare section belongs to them.
+//! 15-19: masses, springs and excitation as plain numbers. The tanh dead zone and the phase mode `angle` are refused,
+//! since no Poincare section belongs to them.
 
 use std::f64::consts::TAU;
 use std::fmt;

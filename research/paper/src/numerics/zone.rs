@@ -1,5 +1,5 @@
 //! Which branch of the force law a mesh is on, and what comes after it. The branches are those of the two damping laws
-//! with the sharp dead zone; when a branch ends is found from its guards by `fall`.
+//! with the sharp dead zone; when a branch ends is found from its guards by `first_root`.
 
 use parameters::DampingLaw;
 

@@ -6,11 +6,12 @@ mod regimes;
 mod windows;
 
 use paper::numerics::attractor::{Attractor, Effort, find};
-use paper::numerics::motion::Motion;
-use paper::{Arguments, Plan, Subject};
+use paper::numerics::integrator::EventIntegrator;
+use paper::{Arguments, StudyJoint, StudyPlan};
 
 /// Long enough for classes and points; exponents of periodic motion come to 1e-3.
-const SHORT: Effort = Effort { transient: 200, patience: 500, alignment: 40, points: 150, chaotic_periods: 150 };
+const SHORT: Effort =
+    Effort { transient: 200, longest_transient: 500, alignment: 40, points: 150, chaotic_periods: 150 };
 
 #[derive(clap::Parser)]
 struct Line {
@@ -19,20 +20,20 @@ struct Line {
 }
 
 /// What a command line asks for.
-fn plan(words: &[&str]) -> report::failure::Outcome<Plan> {
+fn plan(words: &[&str]) -> report::failure::Outcome<StudyPlan> {
     let line = <Line as clap::Parser>::try_parse_from(["paper"].iter().chain(words)).expect("a command line");
-    Plan::new(&line.arguments)
+    StudyPlan::new(&line.arguments)
 }
 
 /// A preset or a file, as the study has it.
-fn subject(file: &str, omega: Option<&str>) -> Subject {
+fn subject(file: &str, omega: Option<&str>) -> StudyJoint {
     let mut words = vec![file];
     words.extend(omega.iter().flat_map(|omega| ["--omega", omega]));
     plan(&words).expect("a good plan").subjects.remove(0)
 }
 
 /// What the motion from rest settles on at a half-backlash [um].
-fn from_rest(subject: &Subject, half_backlash: f64, effort: &Effort) -> Attractor {
+fn from_rest(subject: &StudyJoint, half_backlash: f64, effort: &Effort) -> Attractor {
     let system = subject.system(half_backlash / 1e6).expect("it can be studied");
-    find(&mut Motion::from_rest(&system), effort).expect("it runs")
+    find(&mut EventIntegrator::from_rest(&system), effort).expect("it runs")
 }

@@ -2,7 +2,7 @@
 
 use paper::numerics::attractor;
 use paper::numerics::attractor::{Class, Effort, by_two_trajectories, find};
-use paper::numerics::motion::Motion;
+use paper::numerics::integrator::EventIntegrator;
 use paper::numerics::signal::Signal;
 use paper::numerics::system::System;
 use parameters::StiffnessWave;
@@ -88,7 +88,7 @@ fn without_backlash_and_ripple_the_motion_is_the_exact_ellipse() {
         mesh.stiffness_wave = StiffnessWave::Harmonic { stiffness_ratio: 0.0 };
     }
     let system = linear.system(0.0).expect("it can be studied");
-    let mut motion = Motion::from_rest(&system);
+    let mut motion = EventIntegrator::from_rest(&system);
     find(&mut motion, &SHORT).expect("it runs");
     let signal = Signal::record(&mut motion, 1).expect("it runs");
     // Twice |X_sp| of the complex solve; samples miss the crests by a little.
@@ -101,7 +101,7 @@ fn the_period_of_three_hides_from_whole_harmonics_but_not_from_the_rest() {
     let paper = subject("paper", None);
     for (half_backlash, periods, ratio, peak_to_peak) in [(10.0, 3, 0.005, 8.961), (60.0, 3, 2.66, 20.021)] {
         let system = paper.system(half_backlash / 1e6).expect("it can be studied");
-        let mut motion = Motion::from_rest(&system);
+        let mut motion = EventIntegrator::from_rest(&system);
         find(&mut motion, &SHORT).expect("it runs");
         let signal = Signal::record(&mut motion, periods).expect("it runs");
         assert!((signal.non_fundamental_ratio() - ratio).abs() < 0.005, "{}", signal.non_fundamental_ratio());
@@ -111,7 +111,7 @@ fn the_period_of_three_hides_from_whole_harmonics_but_not_from_the_rest() {
 
 /// Exponent by a tangent vector and by two trajectories, from rest.
 fn both(system: &System, effort: &Effort) -> (f64, f64) {
-    let found = find(&mut Motion::from_rest(system), effort).expect("it runs");
+    let found = find(&mut EventIntegrator::from_rest(system), effort).expect("it runs");
     (found.exponent, by_two_trajectories(system, &found, effort).expect("it runs"))
 }
 
@@ -141,14 +141,14 @@ fn tangent_vectors_jump_with_the_force_where_teeth_only_push() {
 fn planets_in_phase_stay_in_phase_in_chaos_too() {
     let paper = subject("paper", None);
     let system = paper.system(120e-6).expect("it can be studied");
-    let mut motion = Motion::from_rest(&system);
+    let mut motion = EventIntegrator::from_rest(&system);
     find(&mut motion, &SHORT).expect("it runs");
     let exponent = attractor::between_planets(&motion, &SHORT).expect("it runs").expect("planets in phase");
     assert!((-0.055..-0.03).contains(&exponent), "{exponent}");
     let mut unequal = paper.clone();
     unequal.parameters.sun_planet.transmission_error[1] *= 0.9;
     let system = unequal.system(120e-6).expect("it can be studied");
-    assert_eq!(attractor::between_planets(&Motion::from_rest(&system), &SHORT), Ok(None));
+    assert_eq!(attractor::between_planets(&EventIntegrator::from_rest(&system), &SHORT), Ok(None));
 }
 
 #[test]

@@ -1,0 +1,90 @@
+//! Help for errors about a board that runs another image, or about a host command of another version. The check itself
+//! is in `identity`.
+
+use link::PROTOCOL_VERSION;
+
+use report::failure::Failure;
+
+/// How to get the right image onto a board, or the right host command.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum BoardHelp {
+    /// By the command that puts the right image onto it.
+    Flash(String),
+    /// By the same command; the image was built just now, so a board that has it already is not what is wrong.
+    FlashBuilt(String),
+    /// Its image was built just now and nothing else can be on it: then this program is not of the sources that it builds.
+    Rebuild,
+}
+
+/// Help for a host command built from other sources than those that it builds images from.
+const REBUILD: &str = "the image was built just now from the sources in this checkout, and this `joint` was built from others: \
+                       build it anew, as `cargo joint` does by itself (else: cargo build --release --package joint)";
+
+impl BoardHelp {
+    /// For a board with an image that is not the right one.
+    pub fn of_another_image(&self) -> String {
+        match self {
+            Self::Flash(command) => format!("flash the right image: {command}"),
+            Self::FlashBuilt(command) => {
+                format!("flash the right image: {command}\nif the board has that one already: {REBUILD}")
+            }
+            Self::Rebuild => REBUILD.to_owned(),
+        }
+    }
+
+    /// For a line without a valid frame; `first` is what to check first.
+    pub fn of_silence(&self, first: &str) -> String {
+        match self {
+            Self::Flash(command) | Self::FlashBuilt(command) => {
+                format!("{first}; flash the image if need be: {command}")
+            }
+            Self::Rebuild => {
+                "run again; if it stays silent its firmware does not start: `joint hil --check` tests that".to_owned()
+            }
+        }
+    }
+
+    /// For a board that speaks another version of the protocol.
+    pub fn of_protocol(&self, board: u16) -> Failure {
+        let host = PROTOCOL_VERSION;
+        let message = format!("the board speaks version {board} of the link protocol, this host version {host}");
+        let help = match self {
+            Self::Rebuild => REBUILD.to_owned(),
+            Self::Flash(command) | Self::FlashBuilt(command) if board > host => format!(
+                "this `joint` is older than the board's image: build it anew from the sources of that image, as `cargo joint` \
+                 does by itself, or go back to this one's image: {command}"
+            ),
+            Self::Flash(command) | Self::FlashBuilt(command) => {
+                format!("the board's image is older than this `joint`: flash one of these sources: {command}")
+            }
+        };
+        Failure::new(message).with_help(help)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_older_of_image_and_program_is_the_one_to_be_renewed() {
+        let flash = BoardHelp::Flash("cargo joint flash q1".to_owned());
+        let help = |help: &BoardHelp, board| help.of_protocol(board).help().expect("a help").to_owned();
+        let newer = help(&flash, PROTOCOL_VERSION + 1);
+        assert!(newer.contains("this `joint` is older") && newer.contains("cargo joint flash q1"), "{newer}");
+        let older = help(&flash, PROTOCOL_VERSION - 1);
+        assert!(older.contains("image is older") && older.contains("cargo joint flash q1"), "{older}");
+    }
+
+    #[test]
+    fn an_image_that_was_built_just_now_is_not_to_be_flashed_again() {
+        for help in [
+            BoardHelp::Rebuild.of_another_image(),
+            BoardHelp::Rebuild.of_protocol(1).help().expect("a help").to_owned(),
+        ] {
+            assert!(help.contains("build it anew") && !help.contains("flash"), "{help}");
+        }
+        let built = BoardHelp::FlashBuilt("probe-rs download x".to_owned()).of_another_image();
+        assert!(built.contains("probe-rs download x") && built.contains("build it anew"), "{built}");
+    }
+}

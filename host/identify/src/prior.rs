@@ -1,0 +1,134 @@
+//! What is known of the joint before a log is read, from its joint file: ratio in whole teeth, lever arms, inertias on
+//! either side of the gap, the expected compliance.
+
+use joint_file::JointFile;
+use model_core::gears::{Kinematics, Mechanics};
+use parameters::{Mesh, MeshKind, StiffnessWave, Surroundings};
+
+use super::arguments::Arguments;
+use joint_file::named::Loaded;
+
+/// The joint as known from its file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PriorModel {
+    /// Name of the joint.
+    pub name: String,
+    /// Sun's teeth, and sun's and ring's together: the ratio is the second over the first.
+    pub teeth: [u32; 2],
+    /// Ring's teeth: mesh periods in a turn of the output.
+    pub ring_teeth: u32,
+    /// 2^bits counts of the motor encoder a turn.
+    pub motor_bits: u32,
+    /// 2^bits counts of the output encoder a turn.
+    pub output_bits: u32,
+    /// r_c cos(alpha) [m].
+    pub lever: f64,
+    /// Rotor and sun [kg m^2].
+    pub sun_inertia: f64,
+    /// Planets and carrier, at the motor, as far as they bend the joint: their torque passes the teeth's compliance only
+    /// [kg m^2].
+    pub carrier_inertia: f64,
+    /// All that turns with the motor, at the motor [kg m^2].
+    pub motor_inertia: f64,
+    /// What turns with the link [kg m^2].
+    pub link_inertia: f64,
+    /// Compliance of the teeth alone, at the output [rad/(N m)].
+    pub mesh_compliance: f64,
+    /// Mean stiffness of a mesh [N/m].
+    pub mesh_stiffness: f64,
+    /// How far the torque of the teeth runs ahead of their twist, for a damping ratio of 1 [s].
+    pub mesh_relaxation_per_ratio: f64,
+    /// Compliance from motor to link that the joint file states [rad/(N m)].
+    pub compliance: f64,
+    /// The link hangs on a compliance of its own behind the carrier.
+    pub compliant: bool,
+    /// What surrounds the gears.
+    pub surroundings: Surroundings,
+    /// How wrong the motor's torque may be, as a ratio.
+    pub torque_error: f64,
+}
+
+impl PriorModel {
+    /// Of a joint file and the command line.
+    pub fn new(loaded: &Loaded, arguments: &Arguments) -> Self {
+        let mut prior = Self::of(&loaded.file);
+        prior.motor_bits = arguments.motor_bits.unwrap_or(prior.motor_bits);
+        prior.output_bits = arguments.output_bits.unwrap_or(prior.output_bits);
+        prior.torque_error = arguments.torque_error.map_or(prior.torque_error, |percent| percent / 100.0);
+        prior
+    }
+
+    /// Of a joint file alone.
+    pub fn of(file: &JointFile) -> Self {
+        let joint = &file.parameters;
+        let around = &file.surroundings;
+        let geometry = &joint.geometry;
+        let lever = geometry.carrier_base_radius();
+        let planets = geometry.planets as f64;
+        let ratio = geometry.ratio_by_teeth();
+        // One planet after the other carries 1/n; softening by the ripple is that of a mean over 1/k.
+        let softness = |mesh: &Mesh| {
+            let (StiffnessWave::Harmonic { stiffness_ratio: ripple }
+            | StiffnessWave::Rectangular { stiffness_ratio: ripple, .. }) = mesh.stiffness_wave;
+            1.0 / (mesh.mean_stiffness * (1.0 - ripple * ripple).sqrt())
+        };
+        let soft = [softness(&joint.sun_planet), softness(&joint.ring_planet)];
+        let mesh_compliance = (soft[0] + soft[1]) / (4.0 * planets * lever * lever);
+        // In series each kind takes its part of the twist, and of its rate.
+        let relaxation = |kind: MeshKind| joint.damping_coefficient(kind) / joint.mesh(kind).damping_ratio;
+        let relaxations = [MeshKind::SunPlanet, MeshKind::RingPlanet].map(relaxation);
+        let mesh_relaxation_per_ratio =
+            soft.iter().zip(relaxations).map(|(soft, time)| soft * soft * time).sum::<f64>() / (soft[0] + soft[1]);
+        let own = joint.compliance.map_or(0.0, |compliance| 1.0 / compliance.stiffness);
+        // Along the line of action of the carrier the sun moves twice as far.
+        let sun = 4.0 * (joint.bodies.sun_equivalent_mass + joint.rotor_equivalent_mass());
+        let gears = planets * joint.bodies.planet_equivalent_mass;
+        let carrier = joint.carrier_equivalent_mass();
+        let compliant = joint.compliance.is_some();
+        // Without a compliance the teeth are the spring: planets stand in its middle, the carrier behind it.
+        let [before, behind] =
+            if compliant { [sun + gears + carrier, 0.0] } else { [sun + 0.5 * gears, 0.5 * gears + carrier] };
+        Self {
+            name: joint.name.as_str().to_owned(),
+            teeth: [geometry.sun_teeth, geometry.sun_teeth + geometry.ring_teeth],
+            ring_teeth: geometry.ring_teeth,
+            motor_bits: around.motor_encoder.bits,
+            output_bits: around.output_encoder.bits,
+            lever,
+            sun_inertia: sun * lever * lever / (ratio * ratio),
+            carrier_inertia: (before - sun) * lever * lever / (ratio * ratio)
+                * if compliant { own / (own + mesh_compliance) } else { 1.0 },
+            motor_inertia: before * lever * lever / (ratio * ratio),
+            link_inertia: joint.link_inertia + behind * lever * lever,
+            mesh_compliance,
+            mesh_stiffness: joint.sun_planet.mean_stiffness,
+            mesh_relaxation_per_ratio,
+            compliance: mesh_compliance + own,
+            compliant,
+            torque_error: around.torque_constant_error_ratio.abs(),
+            surroundings: *around,
+        }
+    }
+
+    /// Motor over output angle.
+    pub fn ratio(&self) -> f64 {
+        f64::from(self.teeth[1]) / f64::from(self.teeth[0])
+    }
+
+    /// Part of the joint's inertia that turns with the motor.
+    pub fn motor_share(&self) -> f64 {
+        let motor = self.motor_inertia * self.ratio() * self.ratio();
+        motor / (motor + self.link_inertia)
+    }
+
+    /// Inertia that swings against the compliance: motor and link in series, at the output [kg m^2].
+    pub fn swinging_inertia(&self) -> f64 {
+        let motor = self.motor_inertia * self.ratio() * self.ratio();
+        motor * self.link_inertia / (motor + self.link_inertia)
+    }
+
+    /// Period of the swing that the joint file promises [s].
+    pub fn swing(&self) -> f64 {
+        std::f64::consts::TAU * (self.swinging_inertia() * self.compliance).sqrt()
+    }
+}

@@ -1,0 +1,196 @@
+//! The command itself, in normal operation and in its failure modes, on a board in a thread behind a pseudo-terminal:
+//! exit codes, messages, kept files.
+
+mod command;
+mod pseudo_terminal;
+#[allow(dead_code, reason = "every test binary uses its own part of it")]
+mod thread_board;
+
+use std::fs::{self, File};
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use command::{Ended, folder, interrupt, joint, json, start, text, wait};
+use serde_json::Value;
+use tempfile::TempDir;
+use thread_board::Misbehaviour;
+
+/// A message is due within 2 s by design; a busy machine is given ten times that.
+const LIVENESS: Duration = Duration::from_secs(20);
+
+/// Path of the port that a board is behind; the port stays open as long as the file.
+fn board(misbehaviour: Misbehaviour) -> (String, File) {
+    let (master, slave, path) = pseudo_terminal::pair();
+    // The thread ends with the test's process: a pseudo-terminal does not end while one side is open.
+    drop(thread_board::start(master, misbehaviour));
+    (path, slave)
+}
+
+/// The command line of a run on a port.
+fn line<'l>(duration: &'l str, port: &'l str, out: &'l Path) -> [&'l str; 10] {
+    ["hil", "q1", "--port", port, "--no-build", "--no-reference", "--duration", duration, "--out", text(out)]
+}
+
+/// Runs it to its end, which is due.
+fn finish(arguments: &[&str]) -> Ended {
+    let start = Instant::now();
+    let ended = joint(arguments);
+    assert!(start.elapsed() < LIVENESS, "it took {:?}", start.elapsed());
+    assert!(!ended.err.contains("panicked"), "{ended:?}");
+    ended
+}
+
+fn run(misbehaviour: Misbehaviour) -> (Ended, TempDir) {
+    let (port, _open) = board(misbehaviour);
+    let out = folder();
+    (finish(&line("1", &port, out.path())), out)
+}
+
+fn record(out: &TempDir) -> Value {
+    json(&out.path().join("record.json"))
+}
+
+fn samples(record: &Value) -> usize {
+    record["samples"]["tick"].as_array().map_or(0, Vec::len)
+}
+
+#[test]
+fn a_good_run_passes_and_leaves_report_record_and_log() {
+    let (ended, out) = run(Misbehaviour::None);
+    let ended = ended.well();
+    assert!(ended.out.contains("steps equal to the twin's, bit for bit"), "{ended:?}");
+    let record = record(&out);
+    assert_eq!(record["completeness"]["state"], "complete");
+    assert_eq!(samples(&record), 1000);
+    assert!(out.path().join("report.html").is_file() && out.path().join("log.txt").is_file());
+}
+
+#[test]
+fn a_check_that_does_not_hold_fails_the_run_by_name() {
+    let (ended, out) = run(Misbehaviour::Overruns(3));
+    ended.said(1, &["did not hold: overruns"]);
+    assert_eq!(record(&out)["completeness"]["state"], "complete");
+    run(Misbehaviour::LateTorques).0.said(1, &["twin"]);
+}
+
+#[test]
+fn a_missing_port_is_named_before_anything_is_built() {
+    finish(&["hil", "--port", "/dev/no-such-port", "--out", text(folder().path())])
+        .refused(&["no serial port /dev/no-such-port", "help:"]);
+}
+
+#[test]
+fn a_busy_port_is_named() {
+    let (port, _open) = board(Misbehaviour::None);
+    let _holder = serialport::new(&port, 115_200).open_native().expect("the port is free");
+    finish(&line("1", &port, folder().path())).refused(&[&port, "busy"]);
+}
+
+#[test]
+fn a_board_that_goes_away_leaves_an_incomplete_record() {
+    let (ended, out) = run(Misbehaviour::HangsUpAt(10_000));
+    ended.refused(&["/dev/", "was lost at tick"]);
+    let record = record(&out);
+    assert_eq!(record["completeness"]["state"], "interrupted");
+    assert!(samples(&record) > 100, "{}", samples(&record));
+    let page = fs::read_to_string(out.path().join("report.html")).expect("the report was kept");
+    assert!(page.contains("INCOMPLETE"), "the report must say so");
+}
+
+#[test]
+fn a_silent_board_a_deaf_line_and_garbage_are_told_apart() {
+    let (ended, out) = run(Misbehaviour::FallsSilentAt(10_000));
+    ended.refused(&["fallen silent"]);
+    assert!(samples(&record(&out)) > 100);
+    run(Misbehaviour::Mute).0.refused(&["nothing came"]);
+    run(Misbehaviour::OnlyGarbage).0.refused(&["no valid frame"]);
+}
+
+#[test]
+fn another_board_is_refused_with_the_command_that_mends_it() {
+    for misbehaviour in [Misbehaviour::AnotherDigest, Misbehaviour::AnotherRole, Misbehaviour::Protocol(7)] {
+        run(misbehaviour).0.refused(&["cargo joint flash q1 --board stm32f405"]);
+    }
+}
+
+#[test]
+fn a_half_frame_fails_the_run_but_does_not_end_it() {
+    let (ended, out) = run(Misbehaviour::HalfFrameAt(10_000));
+    ended.said(1, &["bad frames at the host"]);
+    assert_eq!(samples(&record(&out)), 1000);
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_is_found_before_the_run() {
+    for bad in ["/proc/joint-report", "/dev/full"] {
+        finish(&line("1", "/dev/no-such-port", Path::new(bad))).refused(&[bad, "--out"]);
+    }
+}
+
+#[test]
+fn a_full_disk_at_the_end_does_not_cost_the_record() {
+    let (port, _open) = board(Misbehaviour::None);
+    let out = folder();
+    // Where the record is, is said too.
+    finish(&[&line("1", &port, out.path())[..], &["--json", "/dev/full"]].concat())
+        .refused(&["cannot write /dev/full", text(out.path())]);
+    assert_eq!(samples(&record(&out)), 1000);
+}
+
+#[test]
+fn ctrl_c_stops_the_run_and_keeps_the_record() {
+    let (port, _open) = board(Misbehaviour::None);
+    let out = folder();
+    let child = start(&line("3600", &port, out.path()));
+    std::thread::sleep(Duration::from_secs(2));
+    interrupt(&child);
+    let start = Instant::now();
+    let ended = wait(child);
+    assert!(start.elapsed() < LIVENESS);
+    ended.said(130, &["stopped by the user", "what was recorded"]);
+    assert_eq!(record(&out)["completeness"]["state"], "interrupted");
+}
+
+#[test]
+fn a_bad_profile_is_refused_by_file_and_line() {
+    let folder = folder();
+    let file = folder.path().join("drive.csv");
+    fs::write(&file, "time_s,motor_torque_Nm,load_torque_Nm\n0,0,0\n1,NaN,0\n").expect("a file");
+    let profile = |name: &str| finish(&["hil", "--profile", name, "--out", text(folder.path())]);
+    profile(text(&file)).refused(&["drive.csv: line 3: motor_torque_Nm is NaN"]);
+    profile("no-such").refused(&["built in: reversals"]);
+}
+
+#[test]
+fn bad_arguments_and_bad_joint_files_exit_with_two() {
+    let folder = folder();
+    let bad = folder.path().join("bad.toml");
+    fs::write(&bad, "name = \"bad\"\nunknown_key = 1\n").expect("a file");
+    let lines: [&[&str]; 6] = [
+        &["hil", text(&bad)],
+        &["hil", "no-such.toml"],
+        &["hil", "--decimation", "0"],
+        &["hil", "--duration", "nonsense"],
+        &["hil", "--duration", "-1"],
+        &["sail"],
+    ];
+    for line in lines {
+        let ended = finish(line);
+        ended.refused(&[]);
+        assert!(!ended.err.is_empty(), "{line:?}");
+    }
+}
+
+#[test]
+fn without_a_subcommand_help_is_printed() {
+    let Ended { out: help, .. } = finish(&[]).well();
+    assert!(["hil", "check", "image", "flash"].iter().all(|name| help.contains(name)), "{help}");
+    assert!(help.contains("real-time") || help.contains("microcontroller"), "{help}");
+}
+
+#[test]
+fn a_reader_that_goes_away_is_no_error() {
+    let mut child = start(&["check", "q1"]);
+    drop(child.stdout.take());
+    wait(child).said(0, &[]);
+}

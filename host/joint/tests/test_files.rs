@@ -1,0 +1,301 @@
+//! Test files of observer and compensation as a user meets them: messages for bad input, results on disk,
+//! repeatability, and that a controller that does nothing fails.
+
+mod command;
+#[allow(dead_code, reason = "every test binary uses its own part of it")]
+mod tutorial;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use command::{Ended, folder, joint, json, text};
+use link::messages::Role;
+use scenario::plant::PlantName;
+use scenario::suite;
+use scenario::suite::Choice;
+use serde_json::Value;
+
+/// A short test, with more lines at its end.
+fn test_file(folder: &Path, more: &str) -> PathBuf {
+    let path = folder.join("short.toml");
+    let head = "title = \"short\"\nduration_s = 1.2\nsettle_s = 0.6\n";
+    fs::write(&path, format!("{head}{more}\n")).expect("a file");
+    path
+}
+
+fn run(folder: &Path, more: &str, options: &[&str]) -> Ended {
+    let file = test_file(folder, more);
+    let out = folder.join("out");
+    joint(&[&["hil", text(&file), "--host", "--out", text(&out)], options].concat())
+}
+
+fn results(folder: &Path) -> Value {
+    json(&folder.join("out/record.json"))
+}
+
+#[test]
+fn every_shipped_test_can_be_read_and_designed() {
+    let hil = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../hil");
+    let [all, short] = [Choice::Full, Choice::Short].map(|choice| {
+        let suite = suite::load(&hil, choice, PlantName::Reference).expect("a folder of tests");
+        assert!(suite.not_run.is_empty(), "{:?}", suite.not_run);
+        suite.tests.len()
+    });
+    assert!(all > short && short > 10, "{all} tests, {short} of them short");
+}
+
+#[test]
+fn the_run_without_a_file_has_tests_of_both_roles_and_none_that_its_board_would_refuse() {
+    let hil = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../hil");
+    for (role, plant) in [(Role::Loop, PlantName::Core), (Role::Observer, PlantName::Reference)] {
+        let suite = suite::load(&hil, Choice::OnBoard(role), plant).expect("a folder of tests");
+        assert!(!suite.tests.is_empty() && suite.not_run.is_empty(), "{:?}", suite.not_run);
+        for test in suite.tests {
+            assert!(test.file.controller.is_compensation() && !test.file.only_with_full, "{}", test.name);
+            assert!(role == Role::Observer || test.file.faults.is_empty(), "{}", test.name);
+        }
+    }
+}
+
+#[test]
+fn the_same_seed_gives_the_same_bits_and_another_seed_others() {
+    let digests = |seed: &str, plant: &str| {
+        let folder = folder();
+        run(folder.path(), "profile = \"T2\"", &["--seed", seed, "--plant", plant]).well();
+        let results = results(folder.path());
+        let runs = results["tests"][0]["runs"].as_array().expect("runs").clone();
+        assert_eq!(runs.len(), 3);
+        runs.iter().map(|run| (run["digest"].clone(), run["figures"].clone())).collect::<Vec<_>>()
+    };
+    for plant in ["reference", "core"] {
+        let first = digests("3", plant);
+        assert_eq!(first, digests("3", plant));
+        assert!(first.iter().zip(digests("4", plant)).all(|(one, other)| one.0 != other.0));
+    }
+}
+
+#[test]
+fn both_plants_move_the_same_joint() {
+    let peak = |plant: &str| {
+        let folder = folder();
+        let more = "profile = \"T2\"\n[controller]\nmode = \"motor_pid\"\nrivals = []";
+        run(folder.path(), more, &["--plant", plant]).well();
+        let figures = results(folder.path())["tests"][0]["runs"][0]["figures"].clone();
+        ["rms_mrad", "peak_mrad", "effort_N_m"].map(|name| figures[name].as_f64().expect("a number"))
+    };
+    for (reference, core) in peak("reference").into_iter().zip(peak("core")) {
+        assert!((core / reference - 1.0).abs() < 0.1, "{core} against {reference}");
+    }
+}
+
+#[test]
+fn a_controller_that_does_nothing_fails_and_the_report_leads_with_it() {
+    let folder = folder();
+    let more =
+        "profile = \"T2\"\n[controller]\nmode = \"off\"\n[assert]\nrms_gain_over_pid = \">= 1\"\nrms_mrad = \"<= 1e9\"";
+    let ended = run(folder.path(), more, &[]);
+    assert_eq!(ended.code, Some(1), "{ended:?}");
+    assert!(ended.out.contains("FAILED   rms_gain_over_pid"), "{ended:?}");
+    assert!(ended.out.contains("again:   cargo joint hil"), "{ended:?}");
+    let results = results(folder.path());
+    assert_eq!(results["schema"], "joint-hil-tests/2");
+    assert_eq!(results["passed"], false);
+    assert_eq!(results["tests"][0]["assertions"][1]["verdict"], "passed");
+    let page = fs::read_to_string(folder.path().join("out/report.html")).expect("written");
+    assert!(page.contains("What failed") && page.contains("<svg"), "no picture of the failure");
+    let junit = fs::read_to_string(folder.path().join("out/junit.xml")).expect("written");
+    assert!(junit.contains("tests=\"2\" failures=\"1\""), "{junit}");
+    let log = folder.path().join("out").join(results["tests"][0]["runs"][0]["log"].as_str().expect("a log"));
+    let messages = mcap::MessageStream::new(&fs::read(log).expect("a log")).expect("MCAP").count();
+    assert_eq!(messages, 1200);
+}
+
+#[test]
+fn what_cannot_run_in_a_folder_is_named_and_the_rest_runs() {
+    let folder = folder();
+    let tests = folder.path().join("tests");
+    fs::create_dir(&tests).expect("a folder");
+    let head = "duration_s = 0.3\nsettle_s = 0.1\nprofile = \"T2\"\n";
+    let alone = "[controller]\nrivals = []\n";
+    let tooth = "[[fault]]\nkind = \"broken_tooth\"\nstiffness_ratio = 0.3\n";
+    let files = [
+        ("a-broken.toml", "title = \n".to_owned()),
+        ("b-misspelt.toml", head.replace("profile", "profil")),
+        ("c-no-joint.toml", format!("joint = \"q2\"\n{head}")),
+        ("d-tooth.toml", format!("{head}{tooth}")),
+        ("e-good.toml", format!("{head}{alone}[assert]\nrms_mrad = \"<= 1e9\"\n")),
+        ("f-motion.toml", "profile = { kind = \"csv\", file = \"none.csv\" }\n".to_owned()),
+        ("g-joint.toml", joint_file::preset("s1").expect("a preset").to_owned()),
+    ];
+    for (name, content) in files {
+        fs::write(tests.join(name), content).expect("a file");
+    }
+    let out = folder.path().join("out");
+    let ended = joint(&["hil", text(&tests), "--host", "--out", text(&out)]);
+    assert_eq!(ended.code, Some(2), "{ended:?}");
+    let words = ["a-broken.toml", "b-misspelt.toml", "c-no-joint.toml", "d-tooth.toml", "f-motion.toml"];
+    for word in words.into_iter().chain(["not TOML", "did you mean `profile`?", "presets", "--plant reference"]) {
+        assert!(ended.out.contains(word), "{word}: {ended:?}");
+    }
+    assert!(ended.out.contains("ok       rms_mrad") && !ended.out.contains("g-joint.toml"), "{ended:?}");
+    assert!(ended.err.contains("5 of 6 tests were not run"), "{ended:?}");
+    let record = json(&out.join("record.json"));
+    assert_eq!((record["passed"].clone(), record["tests"][0]["passed"].clone()), (false.into(), true.into()));
+    let not_run = record["not_run"].as_array().expect("a list");
+    assert!(
+        not_run.len() == 5 && not_run.iter().all(|one| one["why"].is_string() && one["mend"].is_string()),
+        "{not_run:?}"
+    );
+    let junit = fs::read_to_string(out.join("junit.xml")).expect("written");
+    let all = junit.lines().find(|line| line.contains("<testsuites")).expect("all suites");
+    assert!(
+        all.contains("tests=\"6\" failures=\"0\" errors=\"0\" time="),
+        "{all}: what was skipped is told of each suite"
+    );
+    assert_eq!(junit.matches("skipped=\"1\"").count(), 5, "{junit}");
+    assert_eq!(junit.matches("<skipped type=\"not run\" message=").count(), 5, "{junit}");
+    let page = fs::read_to_string(out.join("report.html")).expect("written");
+    assert!(page.contains("What was not run") && page.contains("5 TESTS NOT RUN"), "the report tells");
+}
+
+#[test]
+fn a_failure_counts_more_than_what_was_not_run() {
+    let folder = folder();
+    let tests = folder.path().join("tests");
+    fs::create_dir(&tests).expect("a folder");
+    let head = "duration_s = 0.3\nsettle_s = 0.1\nprofile = \"T2\"\n[controller]\nrivals = []\n";
+    fs::write(tests.join("a.toml"), "profile = \"T3\"\n").expect("a file");
+    fs::write(tests.join("b.toml"), format!("{head}[assert]\nrms_mrad = \"<= 0\"\n")).expect("a file");
+    let ended = joint(&["hil", text(&tests), "--host", "--out", text(&folder.path().join("out"))]);
+    assert_eq!(ended.code, Some(1), "{ended:?}");
+    assert!(ended.err.contains("1 of 2 tests failed") && ended.err.contains("a.toml was not run"), "{ended:?}");
+}
+
+#[test]
+fn a_test_whose_time_is_up_fails() {
+    let folder = folder();
+    let more = "timeout_s = 0.1\nprofile = \"T2\"\n[plant]\nhalf_backlash_um = 41";
+    let file = test_file(folder.path(), more);
+    let long = fs::read_to_string(&file).expect("a file").replace("1.2", "3000");
+    fs::write(&file, long).expect("a file");
+    let ended = joint(&["hil", text(&file), "--host", "--out", text(&folder.path().join("out"))]);
+    assert_eq!(ended.code, Some(1), "{ended:?}");
+    assert!(ended.out.contains("time on the clock"), "{ended:?}");
+}
+
+#[test]
+fn what_is_wrong_with_a_test_file_is_named_with_the_mend() {
+    let refused = |more: &str, words: &[&str]| run(folder().path(), more, &[]).refused(words);
+    refused("profile = \"T3\"", &["\"T3\" is no kind", "did you mean"]);
+    refused("profil = \"T2\"", &["unknown key `profil`", "did you mean `profile`?", "`profile` is missing"]);
+    refused("half_backlash_um = 60\nprofile = \"T2\"", &["[known] or in [plant]"]);
+    refused("profile = \"T2\"\n[plant]\nhalf_backlsh_um = 60", &["did you mean `half_backlash_um`?"]);
+    refused("profile = \"T2\"\n[plant]\nhalf_backlash_um = [20, 6000]", &["half_backlash_um", "between 0.5 and 1000"]);
+    refused("profile = \"T2\"\n[plant]\noutput_encoder.bits = 14", &["write it in [known]"]);
+    refused("profile = \"T2\"\n[assert]\nrms_gian_over_pid = \">= 8\"", &["did you mean `rms_gain_over_pid`?"]);
+    refused(
+        "profile = \"T2\"\n[assert]\nrms_gain_over_pdi = \">= 8\"",
+        &["`pdi` does not run in this test", "motor_pid"],
+    );
+    refused("profile = \"T2\"\n[assert]\nrms_mrad = \"8\"", &["this is no bound"]);
+    refused("profile = \"T2\"\n[assert]\ndeviation_rms_mrad = \"<= 8\"", &["is for impedances"]);
+    refused("profile = \"T2\"\n[[fault]]\nkind = \"encoder_frozen\"\nshare = 0.1", &["`share` means nothing"]);
+    refused("profile = \"T2\"\n[[fault]]\nkind = \"lost_frames\"\nstart_s = 2", &["`share` is missing"]);
+    refused("joint = \"q2\"\nprofile = \"T2\"", &["q2", "presets"]);
+    refused("profile = \"T2\"\n[controller]\nrivals = [\"motor_side\"]", &["motor_side cannot run beside this"]);
+    refused("profile = { kind = \"csv\", file = \"none.csv\" }", &["cannot read the motion", "none.csv"]);
+    refused("profile = \"T2\"\n[assert]\nrms_mrad = \"<= 8\"\n[controller]\nshort_run = \"loop\"", &["short_run"]);
+    refused("short_run = \"plant\"\nprofile = \"T2\"", &["observer", "loop"]);
+    refused("settle_s = 1", &["not TOML"]);
+    refused("profile = \"T2\"\nseeds = -1", &["`seeds` names no seeds", "as in 5"]);
+    refused(
+        "profile = \"T2\"\n[[fault]]\nkind = \"torque_bias\"\ntorque_N_m = nan",
+        &["`torque_N_m` must be a number"],
+    );
+    refused("profile = \"T2\"\n[controller]\nmode = \"motor_pid\"\nfrom_memory = true", &["motor_pid learns nothing"]);
+    let late = "profile = \"T2\"\n[[fault]]\nkind = \"encoder_frozen\"\nstart_s = 1.2";
+    refused(late, &["this begins when the run is over, at 1.2 s", "duration_s"]);
+    refused("profile = \"T2\"\nseeds = [3, 4, 3]", &["3 is named twice"]);
+    refused("profile = \"T2\"\n[controller]\nrivals = [\"motor_pid\", \"motor_pid\"]", &["motor_pid is named twice"]);
+    refused("profile = \"T2\"\n[plant]\nhalf_backlash_um = \"60\"", &["\"60\" is a text", "without quotes"]);
+    refused("profile = \"T2\"\n[assert]\nrms_mrad = {}", &["nothing is asked of `rms_mrad`"]);
+    let saturated = "profile = \"T2\"\n[[fault]]\nkind = \"torque_saturation\"\ntorque_N_m = -1";
+    refused(saturated, &["a limit of -1 N m is none"]);
+    refused("profile = \"T2\"\ntitle = \"once more\"", &["duplicate key", "leave one of the two out"]);
+    for seed in ["-1", "1.5", "18446744073709551616"] {
+        run(folder().path(), "profile = \"T2\"", &["--seed", seed]).refused(&["a seed is a whole number from 0 to"]);
+    }
+}
+
+#[test]
+fn arguments_of_joints_and_of_tests_are_not_mixed_up() {
+    let folder = folder();
+    let file = test_file(folder.path(), "profile = \"T2\"");
+    joint(&["hil", text(&file), "--host", "--role", "loop"]).refused(&["--host", "--role"]);
+    joint(&["hil", text(&file), "--role", "loop", "--plant", "reference"]).refused(&["does not run on a board"]);
+    joint(&["hil", "q1", "--role", "loop"]).refused(&["--role is for test files"]);
+    joint(&["hil", text(&file), "--host", "--duration", "3"]).refused(&["--duration is for joints"]);
+    joint(&["hil", "q1", "--host"]).refused(&["--host is for test files, and q1 is a joint"]);
+    joint(&["hil", "none.toml", "--host"]).refused(&["cannot read the test file none.toml"]);
+    joint(&["hil", text(folder.path()), "--host", "--json", "/none/x.json"]).refused(&["no folder /none"]);
+}
+
+#[test]
+fn a_recorded_motion_and_any_preset_can_be_tested() {
+    let folder = folder();
+    let rows: String =
+        (0..=150).map(|k| format!("{},{}\n", 0.01 * f64::from(k), 0.1 * (0.05 * f64::from(k)).sin())).collect();
+    fs::write(folder.path().join("motion.csv"), format!("time_s,position_rad\n{rows}")).expect("a file");
+    for preset in ["s1", "l1", "d2"] {
+        let more = format!("joint = \"{preset}\"\nprofile = {{ kind = \"csv\", file = \"motion.csv\" }}");
+        run(folder.path(), &more, &["--plant", "reference"]).well();
+    }
+}
+
+#[test]
+fn a_run_from_memory_knows_the_width_at_once_and_its_rivals_are_the_same() {
+    let of = |from_memory: bool| {
+        let folder = folder();
+        let more = format!("profile = \"T2\"\n[controller]\nfrom_memory = {from_memory}");
+        run(folder.path(), &more, &["--seed", "4"]).well();
+        let runs = results(folder.path())["tests"][0]["runs"].clone();
+        let figure = |name: &str| runs[0]["figures"][name].as_f64().expect("a figure");
+        (figure("width_right_after_s"), runs[1]["digest"].clone())
+    };
+    let ((fresh, rival), (remembered, same)) = (of(false), of(true));
+    assert!(fresh > 0.1 && remembered < 0.01, "{fresh} s, then {remembered} s");
+    assert_eq!(rival, same, "a rival learns nothing");
+}
+
+#[test]
+fn the_example_of_the_documentation_passes() {
+    let document = include_str!("../../../docs/reference/hil-file.md");
+    let (_, rest) = document.split_once("```toml\n").expect("an example");
+    let (example, _) = rest.split_once("```").expect("its end");
+    let folder = folder();
+    let file = folder.path().join("example.toml");
+    fs::write(&file, example).expect("a file");
+    joint(&["hil", text(&file), "--host", "--plant", "reference", "--out", text(folder.path())]).well();
+}
+
+#[test]
+fn the_tutorial_prints_what_it_says() {
+    tutorial::follow_the_tutorial(tutorial::Tier::Host);
+}
+
+#[test]
+fn a_page_that_says_a_wrong_figure_is_refused_by_its_line_and_can_be_mended() {
+    let right = "`a/b.toml`:\n\n```toml\nmass_kg = 3\nlength_m = 1\n```\n\n```console\n$ cat a/b.toml; echo took 7 s\n...\nlength_m = 1\n\
+                 took [...] s\n$ false\n$ echo $?\n1\n```\n";
+    let followed = |page: &str| tutorial::follow(page, tutorial::Tier::Host);
+    assert!(followed(right).differences.is_empty(), "{:?}", followed(right));
+    let wrong = right.replace("...\nlength_m = 1", "...\nlength_m = 2");
+    let found = followed(&wrong);
+    let [difference] = &found.differences[..] else { panic!("{found:?}") };
+    assert!(difference.contains("    11 - length_m = 2\n       + length_m = 1\n"), "{difference}");
+    assert_eq!((found.commands, found.page), (3, right.to_owned()));
+    let silent = right.replace("$ echo $?\n1\n", "");
+    assert!(followed(&silent).differences[0].contains("line 13: `false` ends with 1"), "{:?}", followed(&silent));
+    let missing = right.replace("took [...] s\n", "");
+    assert!(followed(&missing).page.contains("length_m = 1\ntook 7 s\n"), "{:?}", followed(&missing));
+}

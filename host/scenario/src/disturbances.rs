@@ -1,0 +1,66 @@
+//! Disturbance torques on the link: of the profile, of the file, and of a recorded motion. Torques that are not given
+//! scale with the rated torque.
+
+use reference::drive_train::Disturbance;
+
+use super::file::{ProfileLoad, TestFile, Wave};
+use super::recorded::RecordedMotion;
+
+/// A hold is disturbed by this part of the rated torque: 1.5 N m for Q1.
+const DISTURBED: f64 = 0.125;
+/// An impact is this many times the rated torque.
+const IMPACT: f64 = 3.0;
+
+/// In a free hold the disturbing pulse comes so long before the figures begin [s].
+const BEFORE: f64 = 0.1;
+
+/// All torques on the link in a run.
+pub fn disturbances(file: &TestFile, recorded: Option<&RecordedMotion>, rated: f64) -> Vec<Disturbance> {
+    let mut list = Vec::new();
+    match file.profile.load {
+        ProfileLoad::None => {}
+        ProfileLoad::Wave(Wave::Sine, torque, frequency) => {
+            list.push(Disturbance::Sine { amplitude: torque.unwrap_or(DISTURBED * rated), frequency });
+        }
+        ProfileLoad::Wave(Wave::Square, torque, frequency) => {
+            let torque = torque.unwrap_or(DISTURBED * rated);
+            list.push(Disturbance::Step { start: 0.0, torque });
+            let half = 0.5 / frequency;
+            let turns = (file.duration / half) as usize;
+            list.extend((1..=turns).map(|turn| {
+                let sign = if turn % 2 == 1 { -2.0 } else { 2.0 };
+                Disturbance::Step { start: turn as f64 * half, torque: sign * torque }
+            }));
+        }
+        ProfileLoad::Kick(torque, length) => {
+            let torque = torque.unwrap_or(DISTURBED * rated);
+            list.push(Disturbance::Pulse { start: (file.settle - BEFORE).max(0.0), duration: length, torque });
+        }
+        ProfileLoad::Impacts(torque, length) => {
+            let torque = torque.unwrap_or(IMPACT * rated);
+            let disturbances = (file.duration - file.settle).ceil() as usize;
+            list.extend((0..disturbances).map(|push| {
+                let sign = if push % 2 == 0 { 1.0 } else { -1.0 };
+                Disturbance::Pulse { start: file.settle + push as f64 + 0.2, duration: length, torque: sign * torque }
+            }));
+        }
+        ProfileLoad::Slow(torque, frequency) => {
+            list.push(Disturbance::Sine { amplitude: torque.unwrap_or(rated), frequency });
+        }
+    }
+    list.extend(file.disturbances.iter().map(|push| match push.kind {
+        "step" => Disturbance::Step { start: push.start, torque: push.torque },
+        "pulse" => Disturbance::Pulse { start: push.start, duration: push.length, torque: push.torque },
+        _ => Disturbance::Sine { amplitude: push.torque, frequency: push.frequency },
+    }));
+    if let Some(recorded) = recorded {
+        let mut before = 0.0;
+        for row in recorded.rows() {
+            if row.load != before {
+                list.push(Disturbance::Step { start: row.time, torque: row.load - before });
+                before = row.load;
+            }
+        }
+    }
+    list
+}

@@ -1,0 +1,208 @@
+//! Metrics of the observer: its estimates against the truth. Metrics of the motion are in `values`.
+
+use model_core::gears::Kinematics;
+use model_core::observer::Progress;
+use model_core::virtual_joint::fault::{FaultKind, Shaft};
+
+use super::case::Case;
+use super::file::{Fault, TestFile, fault_is_on};
+use super::run_history::RunHistory;
+
+/// A width counts as right within this part.
+const WIDTH_RIGHT: f64 = 0.05;
+/// No side is judged within this part of the gap from an edge, or with less than this part of the rated force.
+const BAND: f64 = 0.05;
+/// Slower links do not count as moving [rad/s].
+const MOVING: f64 = 1e-3;
+
+/// Stems and values of all figures that could be had.
+pub fn values(file: &TestFile, case: &Case, history: &RunHistory) -> Vec<(&'static str, f64)> {
+    let joint = &case.truth.parameters;
+    let lever = joint.geometry.carrier_base_radius();
+    let rated = joint.rated_output_torque;
+    let mut sums = Sums::default();
+    let mut landings = Landings::default();
+    let (mut width_wrong_at, mut contact_then, mut contact) = (0.0, 0.0, 0.0);
+    // A sample is taken at its period's end, which is where the next period's estimates are made.
+    for ((sample, truth), observed) in
+        history.run.samples.iter().zip(&history.truths).zip(history.observer_outputs.iter().skip(1))
+    {
+        let width = f64::from(observed.half_backlash) / truth.half_backlash - 1.0;
+        let touching = sample.gap.abs() > 1.0 - BAND;
+        if touching && sample.link_speed.abs() > MOVING {
+            contact += history.run.period;
+        }
+        if width.is_nan() || width.abs() > WIDTH_RIGHT {
+            (width_wrong_at, contact_then) = (sample.time, contact);
+        }
+        if sample.time < file.settle {
+            continue;
+        }
+        let gap = 4.0 * truth.half_backlash;
+        let error = f64::from(observed.gap) - truth.gap;
+        sums.count += 1.0;
+        sums.gap += (error / gap).powi(2);
+        sums.worst = sums.worst.max((error / gap).abs());
+        sums.load += ((f64::from(observed.load_torque) - truth.load_torque) / rated).powi(2);
+        sums.mesh += ((f64::from(observed.mesh_torque) - 2.0 * lever * sample.mesh_force) / rated).powi(2);
+        sums.trust += f64::from(observed.trust);
+        if observed.valid {
+            sums.valid += 1.0;
+            sums.gap_valid += (error / gap).powi(2);
+            sums.nees += error * error / f64::from(observed.gap_variance).max(1e-30);
+        }
+        // Rated force at the sun: the torque over both levers of the carrier.
+        let force = sample.mesh_force * 2.0 * lever / rated;
+        let side = if force > 0.0 {
+            1
+        } else if force < 0.0 {
+            -1
+        } else {
+            0
+        };
+        let clear = if side == 0 { sample.gap.abs() < 1.0 - 2.0 * BAND } else { force.abs() > BAND };
+        if clear {
+            sums.judged += 1.0;
+            sums.right += f64::from(u8::from(side == observed.side));
+        }
+        landings.note(sample.time, if sample.gap.abs() > 1.0 { side } else { 0 }, observed.side);
+    }
+    let percent = |sum: f64, count: f64| 100.0 * (sum / count).sqrt();
+    let mut list = vec![
+        ("gap_error_rms", percent(sums.gap, sums.count)),
+        ("gap_error_max", 100.0 * sums.worst),
+        ("gap_valid", 100.0 * sums.valid / sums.count),
+        ("gap_error_valid", percent(sums.gap_valid, sums.valid)),
+        ("gap_surprise", sums.nees / sums.valid),
+        ("side_right", 100.0 * sums.right / sums.judged),
+        ("missed_landings", landings.missed as f64),
+        ("load_torque_error", percent(sums.load, sums.count)),
+        ("mesh_torque_error", percent(sums.mesh, sums.count)),
+        ("width_right_after", width_wrong_at),
+        ("width_right_after_contact", contact_then),
+        ("compensated", 100.0 * sums.trust / sums.count),
+    ];
+    list.extend(landings.delays());
+    list.extend(at_the_end(case, history));
+    list.extend(alarms(file, history));
+    list.extend(probed(history));
+    list
+}
+
+/// The width probe's result, if there was a probe and it ended.
+fn probed(history: &RunHistory) -> Vec<(&'static str, f64)> {
+    let times = || history.run.samples.iter().zip(&history.observer_outputs);
+    let ended = times().find(|(_, observed)| !matches!(observed.probed, None | Some(Progress::Running)));
+    let (Some((sample, observed)), Some(truth)) = (ended, history.truths.last()) else { return Vec::new() };
+    let first = times().find(|(sample, _)| sample.command != 0.0).map_or(sample.time, |(sample, _)| sample.time);
+    let mut list = vec![("probe_time", 1e3 * (sample.time - first)), ("probe_refused", 1.0)];
+    if let Some(Progress::Done(width)) = observed.probed {
+        list[1].1 = 0.0;
+        list.push(("probe_error", 100.0 * (f64::from(width.value) / truth.half_backlash - 1.0).abs()));
+    }
+    list
+}
+
+#[derive(Default)]
+struct Sums {
+    count: f64,
+    gap: f64,
+    worst: f64,
+    load: f64,
+    mesh: f64,
+    trust: f64,
+    valid: f64,
+    gap_valid: f64,
+    nees: f64,
+    judged: f64,
+    right: f64,
+}
+
+/// Landings on the flank opposite to the last one, and when they were reported.
+#[derive(Default)]
+struct Landings {
+    before: i8,
+    open: Option<(f64, i8)>,
+    delays: Vec<f64>,
+    missed: usize,
+}
+
+impl Landings {
+    fn note(&mut self, time: f64, side: i8, reported: i8) {
+        if side != 0 && side != self.before {
+            if self.before != 0 {
+                self.missed += usize::from(self.open.is_some());
+                self.open = Some((time, side));
+            }
+            self.before = side;
+        }
+        if let Some((since, side)) = self.open
+            && reported == side
+        {
+            self.delays.push(time - since);
+            self.open = None;
+        }
+    }
+
+    fn delays(mut self) -> Vec<(&'static str, f64)> {
+        self.delays.sort_by(f64::total_cmp);
+        let part = |part: f64| self.delays.get((part * self.delays.len() as f64) as usize).copied();
+        let (median, late) = (part(0.5), part(0.95));
+        [("landing_delay_median", median), ("landing_delay_p95", late)]
+            .into_iter()
+            .filter_map(|(stem, delay)| Some((stem, 1e3 * delay?)))
+            .collect()
+    }
+}
+
+/// What was learnt.
+fn at_the_end(case: &Case, history: &RunHistory) -> Vec<(&'static str, f64)> {
+    let (Some(observed), Some(truth)) = (history.observer_outputs.last(), history.truths.last()) else {
+        return Vec::new();
+    };
+    let joint = &case.truth.parameters;
+    let lever = joint.geometry.carrier_base_radius();
+    // Every mesh carries its share of the force; both in a row give way, felt over twice the carrier's lever.
+    let meshes = (1.0 / joint.sun_planet.mean_stiffness + 1.0 / joint.ring_planet.mean_stiffness)
+        / (joint.geometry.planets as f64 * (2.0 * lever).powi(2));
+    let compliance = meshes + joint.compliance.map_or(0.0, |compliance| 1.0 / compliance.stiffness);
+    let around = &case.truth.surroundings;
+    let skew = around.output_encoder.skew - around.motor_encoder.skew;
+    vec![
+        ("width_error", 100.0 * (f64::from(observed.half_backlash) / truth.half_backlash - 1.0).abs()),
+        ("compliance_error", 100.0 * (f64::from(observed.compliance) / compliance - 1.0).abs()),
+        ("skew_error", 1e6 * (f64::from(observed.skew) - skew).abs()),
+    ]
+}
+
+/// When the observer gave up the output encoder, and whether it had to.
+fn alarms(file: &TestFile, history: &RunHistory) -> Vec<(&'static str, f64)> {
+    let of_output = |fault: &&Fault| {
+        matches!(
+            fault.kind,
+            FaultKind::Frozen(Shaft::Link)
+                | FaultKind::Offset(Shaft::Link, _)
+                | FaultKind::MissingCounts(Shaft::Link, _)
+                | FaultKind::LostReadings(Shaft::Link, _)
+        )
+    };
+    let first = file.faults.iter().filter(of_output).map(|fault| fault.start).fold(f64::INFINITY, f64::min);
+    let (mut found, mut false_alarms, mut before) = (None, 0, false);
+    for (sample, observed) in history.run.samples.iter().zip(&history.observer_outputs) {
+        if before && !observed.both {
+            if sample.time >= first {
+                found = found.or(Some(sample.time - first));
+            }
+            let on = file.faults.iter().any(|fault| fault_is_on(fault, sample.time));
+            false_alarms += usize::from(!on);
+        }
+        before = observed.both;
+    }
+    let mut list = vec![("false_alarms", false_alarms as f64)];
+    if first.is_finite() {
+        // Never found is later than any bound.
+        let end = history.run.samples.last().map_or(0.0, |sample| sample.time);
+        list.push(("fault_found", 1e3 * found.unwrap_or((end - first).max(0.0) + 1e3)));
+    }
+    list
+}

@@ -1,0 +1,80 @@
+//! What varies from seed to seed: values drawn from ranges, each from a random stream of its own, so that another
+//! variation in a file leaves the others as they were. Noise of motor and encoders is drawn in the drive train.
+
+use model_core::numbers::random::splitmix64;
+
+/// A number, or a range to draw from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum NumberOrRange {
+    /// The same for every seed.
+    Exactly(f64),
+    /// Evenly between two ends.
+    Between(f64, f64),
+}
+
+impl NumberOrRange {
+    /// The value for a stream.
+    pub fn draw(self, stream: &mut RandomStream) -> f64 {
+        match self {
+            Self::Exactly(value) => value,
+            Self::Between(low, high) => low + (high - low) * stream.uniform(),
+        }
+    }
+
+    /// Its ends.
+    pub fn ends(self) -> [f64; 2] {
+        match self {
+            Self::Exactly(value) => [value, value],
+            Self::Between(low, high) => [low, high],
+        }
+    }
+}
+
+/// A random stream that depends on a seed and a name only (splitmix64 after Steele, Lea and Flood, 2014).
+#[derive(Debug, Clone)]
+pub struct RandomStream(u64);
+
+impl RandomStream {
+    /// The stream of a name for a seed.
+    pub fn new(seed: u64, name: &str) -> Self {
+        // FNV-1a keeps the streams of different names apart.
+        let hash = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+        let mut stream =
+            Self(name.bytes().fold(0xcbf2_9ce4_8422_2325, hash) ^ seed.wrapping_mul(0x9e37_79b9_7f4a_7c15));
+        stream.word();
+        stream
+    }
+
+    /// 64 random bits.
+    pub fn word(&mut self) -> u64 {
+        splitmix64(&mut self.0)
+    }
+
+    /// From 0 to below 1.
+    pub fn uniform(&mut self) -> f64 {
+        (self.word() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// A standard normal deviate, by Box and Muller.
+    pub fn normal(&mut self) -> f64 {
+        let radius = (-2.0 * (1.0 - self.uniform()).ln()).sqrt();
+        radius * (std::f64::consts::TAU * self.uniform()).cos()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stream_depends_on_seed_and_name_and_keeps_within_its_range() {
+        let draw = |seed, name| NumberOrRange::Between(-2.0, 3.0).draw(&mut RandomStream::new(seed, name));
+        assert_eq!(draw(1, "a"), draw(1, "a"));
+        assert_ne!(draw(1, "a"), draw(2, "a"));
+        assert_ne!(draw(1, "a"), draw(1, "b"));
+        let all: Vec<f64> = (0..1000).map(|seed| draw(seed, "x")).collect();
+        assert!(all.iter().all(|value| (-2.0..3.0).contains(value)));
+        let mean = all.iter().sum::<f64>() / 1000.0;
+        assert!((mean - 0.5).abs() < 0.2, "{mean}");
+    }
+}

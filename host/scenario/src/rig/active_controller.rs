@@ -1,0 +1,93 @@
+//! A controller in the loop: the compensation behind its port, a rival, the compensation fed with the true state, or
+//! the width probe, or none.
+
+use reference::closed_loop::rivals::Knowledge;
+use reference::closed_loop::{
+    Controller, Impedance, ImpedanceLaw, LoadCascade, MotorPid, OutputIntegral, SetPoint, VelocitySign,
+};
+use reference::drive_train::{Measurement, TrueTorques};
+use reference::joint::Observation;
+
+use super::true_state::TrueStateCompensation;
+use crate::controller::ControllerName;
+use crate::faults::ControllerInputs;
+use crate::port::{Answer, ControllerPort, Translator};
+use report::failure::Outcome;
+
+/// A controller in the loop.
+pub enum ActiveController<'p> {
+    /// Observer and compensation.
+    Compensation(Box<dyn ControllerPort + 'p>, Translator),
+    /// The observer and its width probe.
+    Probe(Box<dyn ControllerPort + 'p>, Translator),
+    /// A controller of the reference's kind, and the last reading of the output encoder, which it holds while none comes.
+    Rival(Box<dyn Controller + 'p>, i64),
+    /// The compensation on the truth.
+    TrueState(Box<TrueStateCompensation<'p>>),
+    /// No controller: the motor gives no torque.
+    Off,
+}
+
+impl<'p> ActiveController<'p> {
+    /// A rival by its name.
+    pub fn rival(name: ControllerName, knowledge: Knowledge, bandwidth: f64) -> Self {
+        let law = |law| Box::new(Impedance::new(knowledge.clone(), law, bandwidth)) as Box<dyn Controller>;
+        let controller: Box<dyn Controller> = match name {
+            ControllerName::VelocitySign => Box::new(VelocitySign::new(knowledge, bandwidth)),
+            ControllerName::LoadCascade => Box::new(LoadCascade::new(knowledge, bandwidth)),
+            ControllerName::OutputIntegral => Box::new(OutputIntegral::new(knowledge, bandwidth)),
+            ControllerName::MotorSide => law(ImpedanceLaw::MotorSide),
+            ControllerName::LinkSpring => law(ImpedanceLaw::LinkSpring),
+            ControllerName::LinkSide => law(ImpedanceLaw::LinkSide),
+            ControllerName::Off => return Self::Off,
+            _ => Box::new(MotorPid::new(knowledge, bandwidth)),
+        };
+        Self::of(controller)
+    }
+
+    /// Any controller that uses counts and set-points alone, as rivals do.
+    pub fn of(controller: Box<dyn Controller + 'p>) -> Self {
+        Self::Rival(controller, 0)
+    }
+
+    /// Restarts with what was learnt so far, as after a power cycle; a controller that learns nothing goes on.
+    pub fn restart_from_memory(&mut self) -> Outcome<()> {
+        if let Self::Compensation(port, translator) | Self::Probe(port, translator) = self {
+            port.restart_from_memory()?;
+            translator.reset();
+        }
+        Ok(())
+    }
+
+    /// Passes the true state, before a period, to the compensation that is fed with it.
+    pub fn show(&mut self, joint: &Observation, torques: &TrueTorques) {
+        if let Self::TrueState(from_truth) = self {
+            from_truth.show(joint, torques);
+        }
+    }
+
+    /// Torque for the period that begins now [N m], and what a port answered.
+    pub fn period(&mut self, seen: &ControllerInputs, set_point: &SetPoint) -> Outcome<(f64, Option<Answer>)> {
+        match self {
+            Self::Off => Ok((0.0, None)),
+            Self::TrueState(from_truth) => Ok((from_truth.period(set_point), None)),
+            Self::Rival(controller, output) => {
+                *output = seen.output.map_or(*output, |frame| frame.counts);
+                let measurement =
+                    Measurement { period: seen.period, motor_counts: seen.motor.counts, output_counts: *output };
+                Ok((controller.period(&measurement, set_point), None))
+            }
+            Self::Compensation(port, translator) => {
+                let samples = translator.samples(seen);
+                let answer = port.exchange(&samples, &translator.command(set_point))?;
+                translator.note(&answer);
+                Ok((f64::from(answer.shaped.torque), Some(answer)))
+            }
+            Self::Probe(port, translator) => {
+                let answer = port.probe(&translator.samples(seen))?;
+                translator.note(&answer);
+                Ok((f64::from(answer.shaped.torque), Some(answer)))
+            }
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! The history of a run: the true values in every control period, and the observer's outputs.
+
+use model_core::gears::{Flank, sign};
+use model_core::numbers::digest;
+use model_core::observer::{Progress, Refusal, Source};
+use reference::closed_loop::{Run, Sample};
+
+use super::port::Answer;
+use super::rig::Period;
+
+/// The history of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunHistory {
+    /// The truth, one sample for each control period.
+    pub run: Run,
+    /// What the observer made of it, in the same order; empty for controllers without one.
+    pub observer_outputs: Vec<ObserverOutput>,
+    /// Half of the true gap at every period [m]: teeth may wear.
+    pub truths: Vec<TrueValues>,
+    /// Digest over every bit of all of it.
+    pub digest: u64,
+}
+
+/// True values beside the sample.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct TrueValues {
+    /// Gap coordinate [m].
+    pub gap: f64,
+    /// Half-backlash now [m].
+    pub half_backlash: f64,
+    /// What brakes the link [N m].
+    pub load_torque: f64,
+    /// Motor angle [rad].
+    pub motor: f64,
+}
+
+/// The observer's estimates in one period.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct ObserverOutput {
+    /// Gap coordinate [m].
+    pub gap: f32,
+    /// Its variance [m^2].
+    pub gap_variance: f32,
+    /// Whether it may be used.
+    pub valid: bool,
+    /// -1, 0, 1.
+    pub side: i8,
+    /// Between carrier and link [N m].
+    pub mesh_torque: f32,
+    /// What brakes the link [N m].
+    pub load_torque: f32,
+    /// [m].
+    pub half_backlash: f32,
+    /// [rad/(N m)].
+    pub compliance: f32,
+    /// [s].
+    pub skew: f32,
+    /// Both encoders are trusted.
+    pub both: bool,
+    /// Share of the compensation in the torque.
+    pub trust: f32,
+    /// Where the width probe stands, if there is one.
+    pub probed: Option<Progress<f32>>,
+}
+
+impl RunHistory {
+    /// Nothing has happened yet.
+    pub fn begin(period: f64, periods: u64) -> Self {
+        Self {
+            run: Run { samples: Vec::with_capacity(periods as usize), period },
+            observer_outputs: Vec::new(),
+            truths: Vec::with_capacity(periods as usize),
+            digest: digest::START,
+        }
+    }
+
+    /// Why the width probe refused, if it did.
+    pub fn refusal(&self) -> Option<Refusal> {
+        match self.observer_outputs.last()?.probed {
+            Some(Progress::Refused(refusal)) => Some(refusal),
+            _ => None,
+        }
+    }
+
+    /// Samples at a rate [Hz], each with what is true beside it, what the observer made of it, and the largest net force of
+    /// the sun's meshes since the one before [N].
+    pub fn thinned(&self, rate: f64) -> impl Iterator<Item = (&Sample, &TrueValues, Option<&ObserverOutput>, f64)> {
+        let every = (1.0 / (rate * self.run.period)).round().max(1.0) as usize;
+        self.run.samples.chunks_exact(every).zip(1..).map(move |(chunk, number)| {
+            let last = number * every - 1;
+            let peak = chunk.iter().map(|sample| sample.mesh_force.abs()).fold(0.0, f64::max);
+            (&self.run.samples[last], &self.truths[last], self.observer_outputs.get(last), peak)
+        })
+    }
+
+    /// Adds a period of a rig.
+    pub fn note(&mut self, period: &Period<'_>) {
+        let joint = period.plant.joint();
+        let sample = Sample::of(joint, period.wanted, period.half_backlash, period.command);
+        let truth = TrueValues {
+            gap: joint.gap,
+            half_backlash: period.half_backlash,
+            load_torque: period.load_torque(),
+            motor: joint.motor_angle,
+        };
+        self.add(sample, truth, period.answer);
+    }
+
+    /// Adds a period.
+    pub fn add(&mut self, sample: Sample, truth: TrueValues, answer: Option<&Answer>) {
+        for value in [sample.link, sample.mesh_force, sample.command, truth.gap, truth.motor] {
+            self.digest = digest::chain(self.digest, value.to_bits());
+        }
+        if let Some(answer) = answer {
+            let observed = ObserverOutput::of(answer);
+            for value in [observed.gap, observed.half_backlash, observed.load_torque, observed.trust] {
+                self.digest = digest::chain(self.digest, value.to_bits().into());
+            }
+            self.observer_outputs.push(observed);
+        }
+        self.run.samples.push(sample);
+        self.truths.push(truth);
+    }
+}
+
+impl ObserverOutput {
+    fn of(answer: &Answer) -> Self {
+        let Answer { estimates, shaped, probed } = *answer;
+        Self {
+            gap: estimates.gap.value,
+            gap_variance: estimates.gap.variance,
+            valid: estimates.gap.valid,
+            side: sign::<f32>(Flank::touched(estimates.reported_contact)) as i8,
+            mesh_torque: estimates.mesh_torque.value,
+            load_torque: estimates.load_torque.value,
+            half_backlash: estimates.half_backlash.value,
+            compliance: estimates.compliance.value,
+            skew: estimates.skew.value,
+            both: estimates.source == Source::Both,
+            trust: shaped.trust,
+            probed,
+        }
+    }
+}

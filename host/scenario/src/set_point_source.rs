@@ -1,0 +1,67 @@
+//! Makes the set-points of a run: every control period, or at an impedance's own rate and held in between.
+
+use model_core::gears::{Kinematics, Mechanics};
+use parameters::JointParameters;
+use reference::closed_loop::{Motion, SetPoint, SharedProfile};
+
+use super::case::{Case, Designed};
+use super::controller::{ControllerName, Gains};
+use super::file::TestFile;
+
+/// Makes the set-points of a run.
+pub struct SetPointSource {
+    motion: SharedProfile,
+    /// How far ahead the motion is told [s].
+    lead: Option<f64>,
+    /// An impedance, and the torque that is sent along for each unit of acceleration [kg m^2].
+    impedance: Option<(Gains, f64)>,
+    held: Option<(u64, Motion)>,
+}
+
+impl SetPointSource {
+    /// For one controller of a case.
+    pub fn new(file: &TestFile, case: &Case, controller: ControllerName, designed: Option<&Designed>) -> Self {
+        let preview = controller == ControllerName::Preview;
+        let lead = designed.filter(|_| preview).map(|designed| f64::from(designed.compensation.crossing.lead));
+        let gains = file.gains.filter(|_| controller.wants_gains() || controller == ControllerName::Off);
+        let inertia = |gains: &Gains| gains.inertia.unwrap_or_else(|| inertia_at_link(&case.nominal));
+        let impedance = gains.map(|gains| (gains, inertia(&gains)));
+        Self { motion: case.motion.clone(), lead, impedance, held: None }
+    }
+
+    /// The positions of a motion, none of them told ahead.
+    pub fn of_positions(motion: SharedProfile) -> Self {
+        Self { motion, lead: None, impedance: None, held: None }
+    }
+
+    /// Set-point of a period and the number of the frame that brings it.
+    pub fn at(&mut self, time: f64, index: u64) -> (u64, SetPoint) {
+        let motion = &self.motion;
+        let Some((gains, inertia)) = self.impedance else {
+            let ahead = self.lead.map(|lead| motion.at(time + lead));
+            return (index, SetPoint::Position { now: motion.at(time), ahead });
+        };
+        let number = (time * gains.rate + 1e-9) as u64;
+        let about = match self.held {
+            Some((sent, about)) if sent == number => about,
+            _ => motion.at(time),
+        };
+        self.held = Some((number, about));
+        let set_point = SetPoint::Impedance {
+            about: Motion { acceleration: 0.0, ..about },
+            torque: inertia * about.acceleration,
+            stiffness: gains.stiffness,
+            damping: gains.damping,
+        };
+        (number, set_point)
+    }
+}
+
+/// Inertia of the whole joint, felt at the link [kg m^2].
+fn inertia_at_link(joint: &JointParameters) -> f64 {
+    let geometry = &joint.geometry;
+    let sun = joint.bodies.sun_equivalent_mass * geometry.sun_base_radius.powi(2) + joint.rotor_inertia;
+    let planets = geometry.planets as f64 * joint.bodies.planet_equivalent_mass;
+    let carrier = (joint.carrier_equivalent_mass() + planets) * geometry.carrier_base_radius().powi(2);
+    sun * geometry.ratio_by_teeth().powi(2) + carrier + joint.link_inertia
+}

@@ -1,0 +1,181 @@
+//! The result of `joint check` as data: figures in SI with their units in their names, as JSON in the schema
+//! `joint-check/1`. They are computed in `derive`.
+
+use serde::Serialize;
+
+/// Says which fields there are; rises when one changes its meaning or goes.
+pub(super) const SCHEMA: &str = "joint-check/1";
+
+/// Everything that `joint check` says of a joint.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CheckSummary {
+    /// `joint-check/1`.
+    pub schema: String,
+    /// Path or preset.
+    pub file: String,
+    /// The joint's own name.
+    pub name: String,
+    /// From the file; may be empty.
+    pub description: String,
+    /// Teeth, radii, ratio.
+    pub geometry: GeometryFigures,
+    /// Masses along the line of action.
+    pub equivalent_masses: Masses,
+    /// omega_n and natural frequencies.
+    pub frequencies: Frequencies,
+    /// Sun-planet, then ring-planet.
+    pub meshes: [MeshFigures; 2],
+    /// `contact` or `paper`.
+    pub damping_law: &'static str,
+    /// What the output does under load and when it is turned by hand.
+    pub output: Output,
+    /// The fixed step at the wanted rate.
+    pub fixed_step: FixedStep,
+    /// How many numbers the file states, and how many of them it calls assumed.
+    pub numbers: Numbers,
+    /// What is odd but can be used.
+    pub warnings: Vec<Warning>,
+}
+
+/// Teeth, radii, ratio.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[allow(missing_docs, reason = "names and units say it")]
+pub struct GeometryFigures {
+    pub planets: usize,
+    pub sun_teeth: u32,
+    pub planet_teeth: u32,
+    pub ring_teeth: u32,
+    pub working_pressure_angle_deg: f64,
+    pub sun_base_radius_m: f64,
+    pub planet_base_radius_m: f64,
+    pub carrier_radius_m: f64,
+    /// r_c cos(alpha).
+    pub carrier_base_radius_m: f64,
+    /// 2 r_c cos(alpha) / r_bs.
+    pub ratio_by_radii: f64,
+    /// 1 + Zr/Zs.
+    pub ratio_by_teeth: f64,
+}
+
+/// Masses along the line of action, I / r^2.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Masses {
+    /// The sun's own.
+    pub sun_kg: f64,
+    /// With the motor rotor.
+    pub sun_with_rotor_kg: f64,
+    /// Of one planet.
+    pub planet_kg: f64,
+    /// M_c: the carrier with its planets.
+    pub carrier_with_planets_kg: f64,
+    /// The link, over (r_c cos(alpha))^2; 0 without a link.
+    pub link_kg: f64,
+}
+
+/// omega_n and natural frequencies, undamped, all meshes in contact at mean stiffness.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[allow(non_snake_case, reason = "Hz is written Hz")]
+pub struct Frequencies {
+    /// Eq. 18.
+    pub omega_n_rad_per_s: f64,
+    /// omega_n / 2 pi.
+    pub omega_n_Hz: f64,
+    /// Gears alone, as the paper has them; the rigid body's zero left out.
+    pub gears_alone_Hz: Vec<f64>,
+    /// With rotor, link and compliance; the rigid body's zero left out.
+    pub whole_joint_Hz: Vec<f64>,
+}
+
+/// One family of meshes. Lists hold one value for each planet.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[allow(non_snake_case, reason = "N is written N")]
+pub struct MeshFigures {
+    /// `sun_planet` or `ring_planet`.
+    pub kind: &'static str,
+    /// b.
+    pub half_backlash_m: Vec<f64>,
+    /// Phase of the stiffness ripple, in mesh periods from 0 to 1.
+    pub stiffness_phase_periods: Vec<f64>,
+    /// Phase of the transmission error, likewise.
+    pub error_phase_periods: Vec<f64>,
+    /// K_m.
+    pub mean_stiffness_N_per_m: f64,
+    /// C of eqs 9 and 10.
+    pub damping_N_s_per_m: f64,
+    /// How far the teeth give under the rated torque, beyond b.
+    pub deflection_at_rated_torque_m: f64,
+}
+
+/// Seen from the link.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[allow(non_snake_case, reason = "N is written N")]
+pub struct Output {
+    /// From the file.
+    pub rated_torque_N_m: f64,
+    /// At the sun, in balance with the rated torque by the ratio of radii.
+    pub balancing_drive_torque_N_m: f64,
+    /// Force of one mesh at rated torque, shared alike.
+    pub mesh_force_N: f64,
+    /// Span of the gap coordinate u_s - 2 u_c while every mesh is free: 4 b.
+    pub gap_m: f64,
+    /// With the sun held, the link turns this far without resistance.
+    pub lost_motion_rad: f64,
+    /// The same in minutes of arc.
+    pub lost_motion_arcmin: f64,
+    /// With the link held, the sun turns this far.
+    pub lost_motion_at_sun_rad: f64,
+    /// Wind-up of the teeth at rated torque, beyond the lost motion.
+    pub wind_up_of_teeth_rad: f64,
+    /// Wind-up between carrier and link at rated torque.
+    pub wind_up_of_compliance_rad: f64,
+    /// Both together.
+    pub wind_up_rad: f64,
+    /// Both together in minutes of arc.
+    pub wind_up_arcmin: f64,
+}
+
+/// The fixed step at the wanted rate.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[allow(non_snake_case, reason = "Hz is written Hz")]
+pub struct FixedStep {
+    /// Asked for.
+    pub rate_Hz: u32,
+    /// Below it no step is stable.
+    pub lowest_rate_Hz: u32,
+    /// 1 / lowest rate.
+    pub longest_step_s: f64,
+    /// From it on the usual number of sub-steps resolves the fastest mode and the mesh frequency.
+    pub recommended_rate_Hz: u32,
+    /// 1 / recommended rate.
+    pub recommended_step_s: f64,
+    /// Parts of a tick while contacts change.
+    pub substeps: u32,
+    /// Phase of the fastest mode in one part.
+    pub fastest_mode_phase_rad: f64,
+    /// Flash that the f32 tables take.
+    pub table_bytes: usize,
+    /// The board's digest of them, in hexadecimal.
+    pub digest: String,
+}
+
+/// The sources of the file's numbers.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Numbers {
+    /// Numbers in the file.
+    pub stated: usize,
+    /// Those whose comment begins with "assumed".
+    pub assumed: usize,
+    /// Those without a comment.
+    pub without_source: usize,
+}
+
+/// What is odd but can be used.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Warning {
+    /// Line of the file, from 1.
+    pub line: usize,
+    /// What is odd.
+    pub message: String,
+    /// How to mend it.
+    pub help: String,
+}

@@ -1,0 +1,252 @@
+//! Steps a joint by a named scheme and calls a hook after every tick.
+
+use cpu_time::ThreadTime;
+use link::messages::Command;
+use model_core::gears::design::{DesignError, Effort, design_scheme};
+use model_core::gears::{Model, Scheme, Tables, Torques};
+use model_core::numbers::Real;
+use parameters::{DeadZone, JointParameters};
+use reference::joint::{Reference, ReferenceError, Start};
+
+use super::scheme::SchemeName;
+use super::snapshot::{MeshSnapshot, Reader, Snapshot};
+use super::start::core_state;
+use report::failure::{Failure, Outcome};
+use report::interruption;
+
+/// What is simulated, independent of the scheme.
+#[derive(Debug, Clone)]
+pub struct SimulationSpec {
+    /// The joint.
+    pub joint: JointParameters,
+    /// Steps a second [Hz].
+    pub tick_rate: u32,
+    /// Length in ticks.
+    pub ticks: u32,
+    /// Torques by tick, in rising order from tick 0; each holds until the next.
+    pub torques: Vec<Command>,
+    /// State at tick 0.
+    pub start: Start,
+    /// The core in f64 in place of the board's f32.
+    pub double: bool,
+    /// How many sub-steps a tick may have.
+    pub effort: Effort,
+}
+
+/// A mesh that is deflected by more than this has left all teeth behind: the scheme has failed, finite or not [m].
+const ABSURD: f64 = 0.1;
+
+/// How a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RunEnd {
+    /// All its ticks are done.
+    Whole,
+    /// The user stopped it.
+    Stopped,
+    /// The state is infinite, not a number or absurd after so many ticks.
+    Diverged(u32),
+}
+
+impl RunEnd {
+    /// Time at which the state was not finite any more, at a tick rate [Hz]; none if it always was [s].
+    pub fn diverged_at(self, tick_rate: u32) -> Option<f64> {
+        match self {
+            Self::Diverged(tick) => Some(f64::from(tick) / f64::from(tick_rate)),
+            Self::Whole | Self::Stopped => None,
+        }
+    }
+}
+
+/// Called with the start, then with the joint after each tick.
+pub type TickHook<'o> = dyn FnMut(&Snapshot) -> Outcome<()> + 'o;
+
+/// Runs a scheme to its end, or until the user stops it, with a hook after every tick. Torques are wrong by a part of
+/// themselves, the disturbance, up and down in turn from tick to tick.
+pub fn simulate(
+    run: &SimulationSpec,
+    scheme: SchemeName,
+    disturbance: f64,
+    hook: &mut TickHook<'_>,
+) -> Outcome<RunEnd> {
+    with_scheme(run, scheme, |joint| {
+        let mut torques = TorqueSchedule::new(&run.torques);
+        let mut factor = 1.0 + disturbance;
+        for tick in 0..=run.ticks {
+            let command = torques.at(tick);
+            let Some(mut snapshot) = joint.read(tick) else { return Ok(RunEnd::Diverged(tick)) };
+            (snapshot.drive, snapshot.load) = (command.drive_torque.into(), command.load_torque.into());
+            hook(&snapshot)?;
+            if interruption::requested() {
+                return Ok(RunEnd::Stopped);
+            }
+            if tick < run.ticks && !joint.step(tick, factor * snapshot.drive, factor * snapshot.load)? {
+                return Ok(RunEnd::Diverged(tick + 1));
+            }
+            factor = 2.0 - factor;
+        }
+        Ok(RunEnd::Whole)
+    })
+}
+
+/// What a scheme costs: processor time of its ticks alone, and sub-steps a tick (none stand for the reference's own).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cost {
+    /// Processor seconds for a simulated second.
+    pub per_second: f64,
+    /// Sub-steps a tick.
+    pub substeps: Option<u32>,
+}
+
+/// Measures a scheme over some ticks of a run.
+pub fn cost(run: &SimulationSpec, scheme: SchemeName, ticks: u32) -> Outcome<Cost> {
+    let ticks = ticks.clamp(1, run.ticks.max(1));
+    with_scheme(run, scheme, |joint| {
+        let mut torques = TorqueSchedule::new(&run.torques);
+        let clock = ThreadTime::now();
+        for tick in 0..ticks {
+            let command = torques.at(tick);
+            // A run that breaks off has its cost too.
+            if !joint.step(tick, command.drive_torque.into(), command.load_torque.into())? {
+                break;
+            }
+        }
+        let per_second = clock.elapsed().as_secs_f64() * f64::from(run.tick_rate) / f64::from(ticks);
+        // The result must be wanted, or nothing is computed.
+        std::hint::black_box(&joint);
+        Ok(Cost { per_second, substeps: joint.substeps() })
+    })
+}
+
+/// The error of a joint that the reference refuses, with the help where an option can help.
+fn not_referable(joint: &JointParameters, error: &ReferenceError) -> Failure {
+    let failure = Failure::new(format!("the reference does not take joint `{}`: {error}", joint.name));
+    match joint.dead_zone {
+        DeadZone::Tanh { .. } => {
+            failure.with_help("add --set sharpness= --set dead_zone=sharp, or choose another scheme")
+        }
+        DeadZone::Sharp => failure,
+    }
+}
+
+/// Torques as they come due.
+struct TorqueSchedule<'a> {
+    next: std::iter::Peekable<std::slice::Iter<'a, Command>>,
+    now: Command,
+}
+
+impl<'a> TorqueSchedule<'a> {
+    fn new(commands: &'a [Command]) -> Self {
+        Self { next: commands.iter().peekable(), now: Command { tick: 0, drive_torque: 0.0, load_torque: 0.0 } }
+    }
+
+    /// Torques during a tick; ticks are asked for in rising order.
+    fn at(&mut self, tick: u32) -> Command {
+        while let Some(command) = self.next.next_if(|command| command.tick <= tick) {
+            self.now = *command;
+        }
+        self.now
+    }
+}
+
+/// A joint that a scheme moves.
+trait SteppedJoint {
+    /// The joint after so many ticks; none if the state is infinite, not a number or absurd.
+    fn read(&self, tick: u32) -> Option<Snapshot>;
+    /// The tick after so many, under these torques [N m]; false if the scheme breaks off.
+    fn step(&mut self, tick: u32, drive: f64, load: f64) -> Outcome<bool>;
+    /// Sub-steps a tick, if they are of one number.
+    fn substeps(&self) -> Option<u32>;
+}
+
+/// Does some work on a joint that a scheme moves, from the start of a run.
+fn with_scheme<R>(
+    run: &SimulationSpec,
+    scheme: SchemeName,
+    work: impl FnOnce(&mut dyn SteppedJoint) -> Outcome<R>,
+) -> Outcome<R> {
+    let Some(scheme) = scheme.of_core() else {
+        let reference = Reference::start(&run.joint, &run.start).map_err(|error| not_referable(&run.joint, &error))?;
+        return work(&mut ByReference { run, reference });
+    };
+    match (run.joint.geometry.planets, run.double) {
+        (3, false) => with_core::<f32, 3, R>(run, scheme, work),
+        (4, false) => with_core::<f32, 4, R>(run, scheme, work),
+        (5, false) => with_core::<f32, 5, R>(run, scheme, work),
+        (3, true) => with_core::<f64, 3, R>(run, scheme, work),
+        (4, true) => with_core::<f64, 4, R>(run, scheme, work),
+        (5, true) => with_core::<f64, 5, R>(run, scheme, work),
+        (other, _) => Err(Failure::new(format!("joint `{}` has {other} planets", run.joint.name))
+            .with_help("a joint may have 3, 4 or 5 planets")),
+    }
+}
+
+fn with_core<T: Real, const N: usize, R>(
+    run: &SimulationSpec,
+    scheme: Scheme,
+    work: impl FnOnce(&mut dyn SteppedJoint) -> Outcome<R>,
+) -> Outcome<R> {
+    let tables = tables::<T, N>(run, scheme)?;
+    let mut model = Model::new(&tables);
+    model.set_state(core_state(&run.joint, &tables, &run.start));
+    work(&mut ByCore { reader: Reader::new(&run.joint, &tables), model, substeps: tables.substeps })
+}
+
+fn tables<T: Real, const N: usize>(run: &SimulationSpec, scheme: Scheme) -> Outcome<Tables<T, N>> {
+    design_scheme(&run.joint, run.tick_rate, scheme, run.effort).map_err(|error| {
+        let name = &run.joint.name;
+        let failure = Failure::new(format!("joint `{name}` cannot be designed for {} Hz: {error}", run.tick_rate));
+        match error {
+            DesignError::RateTooLow { lowest, .. } => failure.with_help(format!("add --rate {lowest} or more")),
+            _ => failure,
+        }
+    })
+}
+
+/// By the core.
+struct ByCore<'a, T: Real, const N: usize> {
+    reader: Reader<'a, T, N>,
+    model: Model<'a, T, N>,
+    substeps: u32,
+}
+
+impl<T: Real, const N: usize> SteppedJoint for ByCore<'_, T, N> {
+    fn read(&self, tick: u32) -> Option<Snapshot> {
+        let snapshot = self.reader.read(tick, &self.model);
+        let sound = |teeth: &MeshSnapshot| teeth.deflection.abs() < ABSURD;
+        (self.model.is_finite() && snapshot.teeth.iter().all(sound)).then_some(snapshot)
+    }
+
+    fn step(&mut self, _: u32, drive: f64, load: f64) -> Outcome<bool> {
+        self.model.step(Torques { drive: T::from_f64(drive), load: T::from_f64(load) });
+        Ok(true)
+    }
+
+    fn substeps(&self) -> Option<u32> {
+        Some(self.substeps)
+    }
+}
+
+/// By the reference.
+struct ByReference<'a> {
+    run: &'a SimulationSpec,
+    reference: Reference,
+}
+
+impl SteppedJoint for ByReference<'_> {
+    fn read(&self, tick: u32) -> Option<Snapshot> {
+        Some(Snapshot::of_reference(tick, &self.run.joint, &self.reference.observe()))
+    }
+
+    fn step(&mut self, tick: u32, drive: f64, load: f64) -> Outcome<bool> {
+        let end = f64::from(tick + 1) / f64::from(self.run.tick_rate);
+        match self.reference.advance(end, drive, load) {
+            Ok(()) => Ok(true),
+            Err(ReferenceError::Integration(_)) => Ok(false),
+            Err(error) => Err(not_referable(&self.run.joint, &error)),
+        }
+    }
+
+    fn substeps(&self) -> Option<u32> {
+        None
+    }
+}

@@ -1,0 +1,118 @@
+//! The result of `joint sim` as data, as JSON in the schema `joint-sim/1`.
+
+use serde::Serialize;
+
+use super::comparison::{Comparison, Row};
+use super::energy::Balance;
+use super::result::SimulationResult;
+use super::scheme::SchemeName;
+use super::statistics::MeshStatistics;
+use report::contacts::mesh_name;
+
+/// Says which fields there are; rises when one changes its meaning or goes.
+const SCHEMA: &str = "joint-sim/1";
+
+/// All figures of a run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[allow(non_snake_case, reason = "units are written as they are")]
+pub struct SimulationSummary {
+    /// `joint-sim/1`.
+    pub schema: &'static str,
+    /// Path or preset.
+    pub file: String,
+    /// The joint's own name.
+    pub joint: String,
+    /// Values changed on the command line.
+    pub set: Vec<String>,
+    /// Name of the scheme.
+    pub scheme: &'static str,
+    /// `f32` or `f64`.
+    pub scalar: &'static str,
+    /// [Hz].
+    pub tick_rate_Hz: u32,
+    /// Ticks done.
+    pub ticks: u32,
+    /// Ticks that were wanted.
+    pub of_ticks: u32,
+    /// What is not counted [s].
+    pub settle_s: f64,
+    /// Torques in words.
+    pub torques: String,
+    /// `rest`, `centred` or `seated`.
+    pub start: &'static str,
+    /// Time at which the state was not finite any more [s].
+    pub diverged_at_s: Option<f64>,
+    /// Every mesh, sun-planet first.
+    pub meshes: Vec<Mesh>,
+    /// Landings of all meshes in a second.
+    pub impacts_per_s: f64,
+    /// Mesh periods after which the motion repeats; none if it does not within 32.
+    pub period: Option<usize>,
+    /// Root of the power beside the mesh frequency over the root of its own, sun-planet deflection of planet 1.
+    pub non_fundamental_over_fundamental: Option<f64>,
+    /// Strongest line of the same spectrum [Hz].
+    pub strongest_frequency_Hz: Option<f64>,
+    /// The balance of energy.
+    pub energy: Option<Balance>,
+    /// All schemes, if they were asked for.
+    pub schemes: Option<Vec<Row>>,
+    /// Until when they were compared [s].
+    pub compared_until_s: Option<f64>,
+}
+
+/// One mesh.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Mesh {
+    /// Such as `sun–planet 1`.
+    pub name: String,
+    /// Its figures.
+    #[serde(flatten)]
+    pub figures: MeshStatistics,
+}
+
+impl SimulationSummary {
+    /// Puts them together; `set` are the values changed on the command line.
+    pub fn of(result: &SimulationResult<'_>, set: &[String]) -> Self {
+        let (plan, spectrum) = (result.plan, result.spectrum.as_ref());
+        let meshes = result.statistics.meshes();
+        let count = meshes.len();
+        Self {
+            schema: SCHEMA,
+            file: plan.name.clone(),
+            joint: plan.parameters().name.to_string(),
+            set: set.to_vec(),
+            scheme: result.scheme.name(),
+            scalar: if plan.run.double || result.scheme == SchemeName::Reference { "f64" } else { "f32" },
+            tick_rate_Hz: plan.run.tick_rate,
+            ticks: result.ticks,
+            of_ticks: plan.run.ticks,
+            settle_s: f64::from(plan.settle) / f64::from(plan.run.tick_rate),
+            torques: plan.torques_name.clone(),
+            start: plan.start_name.name(),
+            diverged_at_s: result.end.diverged_at(plan.run.tick_rate),
+            impacts_per_s: meshes.iter().map(|mesh| mesh.impacts_per_s).sum(),
+            meshes: meshes
+                .into_iter()
+                .enumerate()
+                .map(|(mesh, figures)| Mesh { name: mesh_name(mesh, count), figures })
+                .collect(),
+            period: result.statistics.period(),
+            non_fundamental_over_fundamental: spectrum.and_then(|spectrum| spectrum.beside(plan.mesh_frequency())),
+            strongest_frequency_Hz: spectrum.map(|spectrum| spectrum.greatest().0),
+            energy: result.balance(),
+            schemes: result.comparison.as_ref().map(|comparison| comparison.rows.clone()),
+            compared_until_s: result.comparison.as_ref().map(Comparison::predictable_until),
+        }
+    }
+
+    /// Mean over meshes of the share of time with teeth parted.
+    pub fn separated_share(&self) -> f64 {
+        let count = self.meshes.len().max(1) as f64;
+        self.meshes.iter().map(|mesh| mesh.figures.separated_share).sum::<f64>() / count
+    }
+
+    /// Greatest mesh force [N].
+    pub fn peak_force(&self) -> f64 {
+        self.meshes.iter().map(|mesh| mesh.figures.peak_force_N).fold(0.0, f64::max)
+    }
+}

@@ -1,0 +1,226 @@
+//! Every method on every case over a range of step sizes: error from the host, instructions from the emulated core.
+
+use contest::case::{Case, Measure};
+use contest::curve::{PHASES, PhaseEnvelope, Point, Scalar};
+use contest::method::Method;
+use contest::run::AS_DESIGNED;
+use contest::trajectory::Errors;
+use serde::Serialize;
+
+use super::emulated_runs::{self, Count, Job};
+use board::target::Say;
+use board::target::toolchain::Toolchain;
+use report::failure::{Failure, Outcome};
+use report::progress::Progress;
+
+/// Steps a second over a quarter of the case's sample rate, where the phase is prescribed.
+const MULTIPLES: [u32; 15] = [1, 2, 3, 4, 6, 8, 10, 12, 16, 20, 24, 32, 40, 48, 64];
+/// Steps a tick where torques change tick by tick.
+const STEPS_A_TICK: [u32; 11] = [1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 32];
+/// Sub-steps that the core's step takes in a tick, and ticks a second over a quarter of the case's sample rate: a tick
+/// costs something of its own, and while contact holds it is all there is.
+const SUBSTEPS: [u32; 10] = [1, 2, 3, 4, 5, 6, 8, 10, 12, 16];
+const SUBSTEPS_OF_LONG_RUNS: [u32; 6] = [1, 2, 3, 4, 6, 8];
+const TICKS: [u32; 3] = [1, 2, 4];
+
+/// One method on one case.
+#[derive(Debug, Clone, Serialize)]
+pub struct MethodResult {
+    /// Case.
+    pub case: String,
+    /// Method.
+    pub method: Method,
+    /// In tables and pictures.
+    pub name: &'static str,
+    /// From coarse to fine.
+    pub marks: Vec<StepResult>,
+}
+
+/// One step size.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[allow(non_snake_case, reason = "units are spelled as in every file that this command writes")]
+pub struct StepResult {
+    /// Steps a second; of the core's step ticks a second.
+    pub rate_Hz: u32,
+    /// Sub-steps of each; 0 for what the design chooses for a board.
+    pub substeps: u32,
+    /// h omega_n, of a sub-step; of the whole tick where the design chooses.
+    pub step: f64,
+    /// The case's measure, worst over the phases; none if the motion got lost.
+    pub error: Option<f64>,
+    /// The same in double precision, where it was asked.
+    pub error_f64: Option<f64>,
+    /// Link angle over the lost motion, RMS.
+    pub link_rms: Option<f64>,
+    /// Likewise, worst.
+    pub link_worst: Option<f64>,
+    /// Largest mesh force.
+    pub peak_force: Option<f64>,
+    /// Instructions a step, mean.
+    pub instructions: f64,
+    /// Greatest.
+    pub instructions_most: u32,
+    /// Greatest in a sample of 10, 20 and 40 kHz; 0 where steps do not fit.
+    pub sample_instructions_most: [u32; 3],
+}
+
+impl MethodResult {
+    /// Cost and error, from coarse to fine, in series that differ in the step alone.
+    pub fn series(&self) -> Vec<Vec<(f64, f64)>> {
+        // Ticks matter to the core's step alone; what the design chooses is a series of its own.
+        let ticks = |mark: &StepResult| match self.method {
+            Method::Realtime if mark.substeps != AS_DESIGNED => mark.rate_Hz,
+            _ => 0,
+        };
+        let mut found: Vec<u32> = self.marks.iter().map(ticks).collect();
+        found.sort_unstable();
+        found.dedup();
+        let one = |of: u32| {
+            let marks = self.marks.iter().filter(move |mark| ticks(mark) == of);
+            marks.filter_map(|mark| Some((mark.cost(), mark.error?))).collect()
+        };
+        found.into_iter().map(one).collect()
+    }
+}
+
+impl StepResult {
+    /// Instructions for a second of the joint.
+    pub fn cost(&self) -> f64 {
+        self.instructions * f64::from(self.rate_Hz)
+    }
+}
+
+/// A case as it was run.
+#[derive(Debug, Clone, Serialize)]
+#[allow(non_snake_case, reason = "units are spelled as in every file that this command writes")]
+pub struct CaseRecord {
+    /// Short name.
+    pub key: String,
+    /// What happens.
+    pub title: String,
+    /// What the error is of.
+    pub measure: &'static str,
+    /// Whether that is the output angle.
+    pub by_link_angle: bool,
+    /// Length [s].
+    pub duration_s: f64,
+    /// Phases in the envelope.
+    pub phases: usize,
+    /// Windows that the motion is judged in, each begun in the reference's state.
+    pub windows: usize,
+    /// The measure of the reference itself once its start is moved by a millionth of b_c, without windows.
+    pub sensitivity: f64,
+}
+
+/// Runs the cases.
+pub fn run(
+    cases: Vec<Case>,
+    toolchain: &Toolchain,
+    progress: &Progress,
+    say: Say<'_>,
+) -> Outcome<(Vec<CaseRecord>, Vec<MethodResult>)> {
+    let (mut figures, mut entries) = (Vec::new(), Vec::new());
+    for case in cases {
+        progress.stage(&format!("case {}: reference", case.key));
+        let failed = |error: &dyn std::fmt::Display| Failure::new(format!("case {}: {error}", case.key));
+        // Where the motion is unpredictable a few phases say as much as many.
+        let phases = if case.measure == Measure::LinkAngle { 2 } else { PHASES };
+        let envelope = PhaseEnvelope::new(case.clone(), phases).map_err(|error| failed(&error))?;
+        let sensitivity = envelope.sensitivity().map_err(|error| failed(&error))?;
+        figures.push(CaseRecord {
+            key: case.key.clone(),
+            title: case.title.clone(),
+            measure: measure(&case),
+            by_link_angle: case.measure == Measure::LinkAngle,
+            duration_s: case.duration(),
+            phases,
+            windows: 1 + case.restarts.len(),
+            sensitivity: of_measure(&case, &sensitivity),
+        });
+        progress.stage(&format!("case {}: methods on the host", case.key));
+        let found = points(&envelope);
+        let jobs: Vec<Job<'_>> = found
+            .iter()
+            .map(|(method, point, _)| {
+                let lost = finite(point.errors.link_rms).is_none();
+                let digest = (!lost).then_some(point.digest);
+                let restarts = envelope.trajectory().restarts();
+                let (rate, substeps) = (point.rate, point.substeps);
+                Job { case: &envelope.case, restarts, method: *method, rate, substeps, digest }
+            })
+            .collect();
+        progress.stage(&format!("case {}: methods on the emulated core", case.key));
+        let counts = emulated_runs::run(&jobs, toolchain, say)?;
+        for method in Method::ALL {
+            let of_method = found.iter().zip(&counts).filter(|((which, ..), _)| *which == method);
+            let marks =
+                of_method.map(|((_, point, double), count)| mark(&case, point, double.as_ref(), count)).collect();
+            entries.push(MethodResult { case: case.key.clone(), method, name: method.name(), marks });
+        }
+    }
+    Ok((figures, entries))
+}
+
+/// All methods at all rates that they can run at; this step in double precision too.
+fn points(envelope: &PhaseEnvelope) -> Vec<(Method, Point, Option<Point>)> {
+    let case = &envelope.case;
+    let constant = case.torques.len() <= 1;
+    let unit = if constant { case.sample_rate / 4 } else { case.tick_rate };
+    let multiples: &[u32] = if constant { &MULTIPLES } else { &STEPS_A_TICK };
+    let substeps = if constant { &SUBSTEPS[..] } else { &SUBSTEPS_OF_LONG_RUNS };
+    let designed = TICKS.map(|ticks| (ticks * unit, AS_DESIGNED));
+    let stated = TICKS.iter().flat_map(|ticks| substeps.iter().map(move |substeps| (ticks * unit, *substeps)));
+    let fine: &[(u32, u32)] = if constant { &[(8 * unit, 16), (16 * unit, 16)] } else { &[] };
+    let own: Vec<(u32, u32)> = designed.into_iter().chain(stated).chain(fine.iter().copied()).collect();
+    let mut found = Vec::new();
+    for method in Method::ALL {
+        let steps: Vec<(u32, u32)> = match method {
+            Method::Realtime => own.clone(),
+            _ => multiples.iter().map(|multiple| (multiple * unit, 1)).collect(),
+        };
+        for (rate, substeps) in steps {
+            // The design refuses what it cannot make tables of.
+            let Ok(point) = envelope.point(method, Scalar::Single, rate, substeps) else { continue };
+            let double = (method == Method::Realtime)
+                .then(|| envelope.point(method, Scalar::Double, rate, substeps).ok())
+                .flatten();
+            found.push((method, point, double));
+        }
+    }
+    found
+}
+
+fn measure(case: &Case) -> &'static str {
+    match case.measure {
+        Measure::Deflections => "mesh deflections, RMS over their standard deviation",
+        Measure::LinkAngle => "link angle, RMS over the lost motion",
+    }
+}
+
+fn of_measure(case: &Case, errors: &Errors) -> f64 {
+    match case.measure {
+        Measure::Deflections => errors.deflections,
+        Measure::LinkAngle => errors.link_rms,
+    }
+}
+
+/// None of an error that says that the motion got lost.
+fn finite(error: f64) -> Option<f64> {
+    (error.is_finite() && error < 1e6).then_some(error)
+}
+
+fn mark(case: &Case, point: &Point, double: Option<&Point>, count: &Count) -> StepResult {
+    StepResult {
+        rate_Hz: point.rate,
+        substeps: point.substeps,
+        step: point.step,
+        error: finite(of_measure(case, &point.errors)),
+        error_f64: double.and_then(|double| finite(of_measure(case, &double.errors))),
+        link_rms: finite(point.errors.link_rms),
+        link_worst: finite(point.errors.link_worst),
+        peak_force: finite(point.errors.peak_force),
+        instructions: count.mean,
+        instructions_most: count.most,
+        sample_instructions_most: count.samples,
+    }
+}

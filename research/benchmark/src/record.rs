@@ -1,0 +1,45 @@
+//! The record of a comparison, with its provenance, as it is written as JSON.
+
+use serde::Serialize;
+
+use crate::{in_a_sample, libraries, method_results, verdicts};
+
+/// Everything found.
+#[derive(Debug, Clone, Serialize)]
+pub struct BenchmarkRecord {
+    /// Where the figures come from.
+    pub origin: Origin,
+    /// Cases.
+    pub cases: Vec<method_results::CaseRecord>,
+    /// Fixed-step methods: error and instructions.
+    pub methods: Vec<method_results::MethodResult>,
+    /// Instructions at equal error.
+    pub at_equal_error: Vec<verdicts::AtError>,
+    /// Robot joints: every method at the same cost.
+    pub in_a_sample: Vec<in_a_sample::InASample>,
+    /// Least error in half a board.
+    pub in_budget: Vec<verdicts::InBudget>,
+    /// f32 beside f64.
+    pub rounding: Vec<verdicts::Rounding>,
+    /// Host times, unless left out.
+    pub host: Option<libraries::Times>,
+    /// Host times at equal error.
+    pub host_at_equal_error: Vec<verdicts::AtError>,
+}
+
+/// Where figures come from.
+#[derive(Debug, Clone, Serialize)]
+pub struct Origin {
+    /// Commit of the sources.
+    pub commit: String,
+    /// Date.
+    pub date: String,
+    /// Compiler of the image.
+    pub compiler: String,
+    /// Flags of the image.
+    pub flags: String,
+    /// Emulator and machine.
+    pub emulator: String,
+    /// The host's processor.
+    pub host: String,
+}

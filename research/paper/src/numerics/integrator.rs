@@ -1,0 +1,265 @@
+//! Integrates a joint mesh period by mesh period: Taylor steps that end at every contact event, with any number of
+//! tangent vectors carried along. No history is kept.
+
+use parameters::{ContactState, DampingLaw};
+
+use super::first_root::first_fall;
+pub use super::series::{Coordinates, State};
+use super::series::{Moment, Series};
+use super::system::{MAX_COORDINATES, MAX_MESHES, StudyError, System};
+use super::zone::{Guard, Side, Zone};
+
+/// Size of the last terms kept, over b_c: what a step neglects is smaller still.
+const TOLERANCE: f64 = 1e-12;
+
+/// Longest step in dimensionless time: what `first_root` asks for.
+const LONGEST_STEP: f64 = 0.6;
+
+/// Shortest step that counts as progress, in periods.
+const SLIVER: f64 = 1e-12;
+
+/// So many events without progress are one graze; it is left behind by a short step without a look at the guards.
+const EVENTS_IN_A_GRAZE: u32 = 32;
+
+/// Length of that step over the longest.
+const GRAZE: f64 = 1e-5;
+
+/// More steps than any motion of gears takes in one period.
+const MOST_STEPS: u32 = 1_000_000;
+
+/// Positions beyond this, over b_c, are no motion of gears any more.
+const FARTHEST: f64 = 1e9;
+
+/// A joint with its present state, integrated forwards.
+#[derive(Debug, Clone)]
+pub struct EventIntegrator<'a> {
+    system: &'a System,
+    state: State,
+    /// Time since the beginning of the present period.
+    time: f64,
+    zones: [Zone; MAX_MESHES],
+    tangents: Vec<State>,
+    events: u64,
+    steps: u64,
+}
+
+/// The motion within one step, evaluated at any time in it.
+pub struct Segment<'a> {
+    system: &'a System,
+    series: &'a Series,
+    /// Its beginning, since the beginning of the period.
+    pub from: f64,
+    /// Its end.
+    pub to: f64,
+}
+
+impl Segment<'_> {
+    /// State at a time within.
+    pub fn at(&self, time: f64) -> State {
+        self.series.at(self.system.coordinates(), time - self.from)
+    }
+}
+
+impl<'a> EventIntegrator<'a> {
+    /// A joint at the beginning of a period.
+    pub fn new(system: &'a System, state: State) -> Self {
+        let mut motion = Self {
+            system,
+            state,
+            time: 0.0,
+            zones: [Zone::Free; MAX_MESHES],
+            tangents: Vec::new(),
+            events: 0,
+            steps: 0,
+        };
+        motion.find_zones();
+        motion
+    }
+
+    /// From X = X' = 0: every tooth in the middle of its gap, as far as the transmission errors allow.
+    pub fn from_rest(system: &'a System) -> Self {
+        let mut state = State::default();
+        for planet in 0..system.planets {
+            (state.position[planet], state.rate[planet]) = system.transmission_error(planet, 0.0);
+        }
+        Self::new(system, state)
+    }
+
+    /// The joint.
+    pub fn system(&self) -> &'a System {
+        self.system
+    }
+
+    /// Present state.
+    pub fn state(&self) -> State {
+        self.state
+    }
+
+    /// Contact events so far.
+    pub fn events(&self) -> u64 {
+        self.events
+    }
+
+    /// Steps so far.
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// Tangent vectors that are carried along.
+    pub fn tangents(&mut self) -> &mut Vec<State> {
+        &mut self.tangents
+    }
+
+    /// X_sp of planet 0, X_sc, X_sp' and X_sc' at the beginning of a period.
+    pub fn poincare_point(&self) -> [f64; 4] {
+        let (error, error_rate) = self.system.transmission_error(0, self.time);
+        let gap = self.system.planets;
+        let State { position, rate } = &self.state;
+        [position[0] - error, position[gap], rate[0] - error_rate, rate[gap]]
+    }
+
+    /// Goes on to the beginning of the next period.
+    pub fn period(&mut self) -> Result<(), StudyError> {
+        self.period_with(|_| ())
+    }
+
+    /// The same, with a callback for every segment.
+    pub fn period_with(&mut self, mut look: impl FnMut(&Segment<'_>)) -> Result<(), StudyError> {
+        let end = self.system.period();
+        let coordinates = self.system.coordinates();
+        let (mut steps, mut idle) = (0, 0);
+        while self.time < end {
+            steps += 1;
+            if steps > MOST_STEPS {
+                return Err(StudyError::TooStiff);
+            }
+            let moment = Moment::new(self.system, &self.zones, self.time);
+            let series = Series::motion(self.system, &moment, &self.state);
+            let remaining = end - self.time;
+            let wanted = series.step(coordinates, TOLERANCE).min(LONGEST_STEP);
+            let blind = idle >= EVENTS_IN_A_GRAZE;
+            let wanted = if blind { wanted.min(GRAZE * LONGEST_STEP) } else { wanted };
+            // Two equal parts instead of a full step and a crumb.
+            let whole = if wanted >= remaining { remaining } else { wanted.min(0.5 * remaining) };
+            let event = if blind { None } else { self.first_event(&series, whole) };
+            let step = event.as_ref().map_or(whole, |event| event.step);
+            if step > 0.0 {
+                let to = if step == remaining { end } else { self.time + step };
+                look(&Segment { system: self.system, series: &series, from: self.time, to });
+                for tangent in &mut self.tangents {
+                    *tangent = Series::tangent(self.system, &moment, tangent).at(coordinates, step);
+                }
+                self.state = series.at(coordinates, step);
+                self.time = to;
+            }
+            let size = self.state.position[..coordinates].iter().fold(0.0, farther);
+            if size.is_nan() || size > FARTHEST {
+                return Err(StudyError::NotFinite);
+            }
+            idle = if step > SLIVER * end { 0 } else { idle + 1 };
+            if let Some(event) = event {
+                self.events += 1;
+                self.change(&event);
+            } else if blind {
+                self.find_zones();
+                idle = 0;
+            }
+        }
+        self.steps += u64::from(steps);
+        self.time = 0.0;
+        Ok(())
+    }
+
+    fn first_event(&self, series: &Series, step: f64) -> Option<Event> {
+        let law = self.system.law;
+        let mut first: Option<Event> = None;
+        for (mesh, constants) in self.system.meshes.iter().enumerate() {
+            for (guard, sign) in self.zones[mesh].guards(law) {
+                let polynomial = series.guard(mesh, constants.half_backlash, *guard, *sign);
+                match first_fall(&polynomial, step) {
+                    Some(at) if first.as_ref().is_none_or(|event| at < event.step) => {
+                        first = Some(Event { step: at, falls: vec![(mesh, *guard)] });
+                    }
+                    // Planets in phase meet together: apart, they would leave each other by rounding alone.
+                    Some(at) => first.iter_mut().filter(|e| e.step == at).for_each(|e| e.falls.push((mesh, *guard))),
+                    None => {}
+                }
+            }
+        }
+        first
+    }
+
+    fn change(&mut self, event: &Event) {
+        for &(mesh, guard) in &event.falls {
+            let before = self.zones[mesh];
+            self.zones[mesh] = before.after(guard);
+            let meets = before == Zone::Free && self.system.law == DampingLaw::Contact;
+            if meets {
+                self.jump(mesh);
+            }
+        }
+    }
+
+    /// Tangent vectors across a moment at which a mesh force jumps by C d' (law `contact`): neighbours meet at another
+    /// time, by -dd / d', and have felt the jump so much longer or shorter.
+    fn jump(&mut self, mesh: usize) {
+        let planets = self.system.planets;
+        let damping = self.system.meshes[mesh].damping;
+        let gain = Series::gain(self.system, mesh);
+        for tangent in &mut self.tangents {
+            let planet = mesh % planets;
+            let of_planet = tangent.position[planet];
+            let deflection = if mesh < planets { of_planet } else { tangent.position[planets] - of_planet };
+            for (rate, gain) in tangent.rate.iter_mut().zip(gain) {
+                *rate -= gain * damping * deflection;
+            }
+        }
+    }
+
+    fn find_zones(&mut self) {
+        let moment = Moment::new(self.system, &[Zone::Push(Side::Drive); MAX_MESHES], self.time);
+        for (mesh, constants) in self.system.meshes.iter().enumerate() {
+            let (deflection, rate) = self.deflection(mesh);
+            self.zones[mesh] = Zone::of(constants, self.system.law, deflection, rate, moment.stiffness_now(mesh));
+        }
+    }
+
+    /// Deflection of a mesh over b_c, and its rate.
+    pub fn deflection(&self, mesh: usize) -> (f64, f64) {
+        deflection(self.system, &self.state, mesh, self.time)
+    }
+}
+
+/// Deflection of a mesh over b_c and its rate, in a state at a time since the beginning of a period.
+pub fn deflection(system: &System, state: &State, mesh: usize, time: f64) -> (f64, f64) {
+    let planets = system.planets;
+    let (error, error_rate) = system.transmission_error(mesh, time);
+    let across = |values: &[f64; MAX_COORDINATES]| {
+        if mesh < planets { values[mesh] } else { values[planets] - values[mesh - planets] }
+    };
+    (across(&state.position) - error, across(&state.rate) - error_rate)
+}
+
+/// Which flank touches at a deflection over b_c, by geometry alone.
+pub fn contact(system: &System, mesh: usize, deflection: f64) -> ContactState {
+    let half = system.meshes[mesh].half_backlash;
+    if deflection > half {
+        ContactState::DriveSide
+    } else if deflection < -half {
+        ContactState::BackSide
+    } else {
+        ContactState::Separated
+    }
+}
+
+/// The greater magnitude; unlike `max`, NaN once met stays.
+fn farther(most: f64, value: &f64) -> f64 {
+    if most.is_nan() || value.abs() <= most { most } else { value.abs() }
+}
+
+/// Guards that fall, and when.
+#[derive(Debug, Clone)]
+struct Event {
+    step: f64,
+    falls: Vec<(usize, Guard)>,
+}

@@ -92,16 +92,34 @@ pub enum DeadZone {
     },
 }
 
-/// Which flank carries the force.
+/// Which flank carries the force; its number stands for it in telemetry, on the wire and in files.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[repr(u8)]
 pub enum ContactState {
-    /// d > b.
-    DriveSide,
     /// -b <= d <= b.
     #[default]
-    Separated,
+    Separated = 0,
+    /// d > b.
+    DriveSide = 1,
     /// d < -b.
-    BackSide,
+    BackSide = 2,
+}
+
+impl ContactState {
+    /// Its number: 0 parted, 1 drive side, 2 back side.
+    pub const fn code(self) -> u8 {
+        self as u8
+    }
+
+    /// The state of a number; none has a number above 2.
+    pub const fn of_code(code: u8) -> Option<Self> {
+        match code {
+            0 => Some(Self::Separated),
+            1 => Some(Self::DriveSide),
+            2 => Some(Self::BackSide),
+            _ => None,
+        }
+    }
 }
 
 /// The most Fourier harmonics that a stiffness wave may keep.

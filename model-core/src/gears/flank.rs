@@ -4,13 +4,14 @@ use parameters::ContactState;
 
 use crate::numbers::Real;
 
-/// A flank of the teeth. Where none touches, or where it is not known which, there is no `Flank`: `None`.
+/// A flank of the teeth. Where none touches, or where it is not known which, there is no `Flank`: `None`. Numbered as
+/// [`ContactState`] is, so that one becomes the other without a branch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Flank {
     /// The motor drives the load forwards: deflection, force and torque are positive.
-    Drive,
+    Drive = 1,
     /// The other one: they are negative.
-    Back,
+    Back = 2,
 }
 
 impl Flank {

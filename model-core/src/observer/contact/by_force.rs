@@ -20,11 +20,13 @@ impl ByForce {
     /// `deviation` is the standard deviation of the force [N]; it takes two of it to make contact and one to keep it.
     pub fn step<T: Real>(&mut self, force: T, deviation: T) -> Option<Flank> {
         let wanted = with_hysteresis(self.flank, force, T::TWO * deviation, deviation);
-        self.held = if wanted == self.wanted { self.held.saturating_add(1) } else { 1 };
-        self.wanted = wanted;
-        if self.held >= PERSISTENCE {
-            self.flank = wanted;
+        if wanted != self.flank {
+            self.held = if wanted == self.wanted { self.held + 1 } else { 1 };
+            if self.held >= PERSISTENCE {
+                self.flank = wanted;
+            }
         }
+        self.wanted = wanted;
         self.flank
     }
 }

@@ -173,6 +173,10 @@ impl<T: Real> OutputFaultDetector<T> {
         if self.unmoved_for == 0 {
             self.stood_at = unwound;
         }
+        let by = deflection - core::mem::replace(&mut self.deflection, deflection);
+        if !both_encoders {
+            return None;
+        }
         let went_on = (unwound - self.stood_at).abs();
         let range = if went_on > half_gap && outruns(tables, learnt, went_on, fused.force) {
             Range::Impossible
@@ -181,20 +185,22 @@ impl<T: Real> OutputFaultDetector<T> {
         } else {
             far_range(learnt, deflection, fused.force)
         };
-        let by = deflection - core::mem::replace(&mut self.deflection, deflection);
-        if !both_encoders {
-            return None;
-        }
-        if range == Range::Possible {
+        let beyond = if range == Range::Possible {
             self.leapt = false;
             self.outside_for = 0;
+            None
         } else {
-            self.leapt |= by.abs() > table.margin;
-            self.outside_for = self.outside_for.saturating_add(1);
-        }
-        if self.silent_for > table.silent_after {
-            Some(OutputFault::Silent)
-        } else if self.outside_for < table.failed_after || range == Range::Worn && !self.leapt {
+            self.beyond(table, range, by)
+        };
+        if self.silent_for > table.silent_after { Some(OutputFault::Silent) } else { beyond }
+    }
+
+    /// One more period in which the deflection is beyond its range, by some more than in the last one [m].
+    #[cold]
+    fn beyond(&mut self, table: &SupervisorTable<T>, range: Range, by: T) -> Option<OutputFault> {
+        self.leapt |= by.abs() > table.margin;
+        self.outside_for = self.outside_for.saturating_add(1);
+        if self.outside_for < table.failed_after || range == Range::Worn && !self.leapt {
             None
         } else if self.unmoved_for >= table.failed_after {
             Some(OutputFault::Frozen)

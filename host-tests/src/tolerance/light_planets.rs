@@ -1,28 +1,28 @@
-//! Bounds on joints with light planets: leaps, exponential ticks beside them, and a robot joint's motion in windows.
+//! Bounds on joints with light planets: Verlet sub-steps, exponential ticks beside them, and a robot joint's motion in windows.
 
 bounds! {
-    /// Order of convergence of leaps.
-    ORDER_OF_LEAPS: "what the observed order of leaps falls short of their own, where light planets bounce",
+    /// Order of convergence of Verlet sub-steps.
+    ORDER_OF_VERLET: "what the observed order of Verlet sub-steps falls short of their own, where light planets bounce",
         below 0.15, was 0.048,
-        since "Where in a leap a contact changes goes with its length, so single errors scatter.";
+        since "Where in a sub-step a contact changes goes with its length, so single errors scatter.";
 
-    /// Leaps as a board takes them.
-    LEAPS: "mesh deflections over b_c in 60 ticks of 8 leaps at 10 kHz in which light planets bounce, RMS",
+    /// Verlet sub-steps as a board takes them.
+    SUBSTEPS: "mesh deflections over b_c in 60 ticks of 8 Verlet sub-steps at 10 kHz in which light planets bounce, RMS",
         below 5e-3, was 2.0e-3,
-        since "A leap is 0.9 rad of the fastest mode; five planets bounce most.";
+        since "A sub-step is 0.9 rad of the fastest mode; five planets bounce most.";
 
     /// A contact that is lost and found again within a tick.
     PARTED_WITHIN_A_TICK: "deflections at the end of a tick in which a tooth parted and returned, over that tooth's swing",
         below 0.1, was 0.071,
-        since "A period of the fastest mode in eight leaps; a tooth that was held closed would be off by 0.5.";
+        since "A period of the fastest mode in eight sub-steps; a tooth that was held closed would be off by 0.5.";
 
-    /// A gap crossed within a leap.
-    LEAP_ACROSS_THE_GAP: "deflections after two ticks in which a leap crossed the whole gap, over the largest; tenfold in quarter leaps",
+    /// A gap crossed within a sub-step.
+    SUBSTEP_ACROSS_THE_GAP: "deflections after two ticks in which a sub-step crossed the whole gap, over the largest; tenfold in quarter sub-steps",
         below 0.2, was 0.101,
-        since "Two contacts in one leap; second order shows in quarter leaps, at 0.044.";
+        since "Two contacts in one sub-step; second order shows in quarter sub-steps, at 0.044.";
 
-    /// A leap as deep into one flank as into the other.
-    LEAP_THROUGH_THE_MIDDLE: "change of a planet's speed over a leap through the middle of its gap and into both flanks, relative",
+    /// A sub-step as deep into one flank as into the other.
+    SUBSTEP_THROUGH_THE_MIDDLE: "change of a planet's speed over a sub-step through the middle of its gap and into both flanks, relative",
         below 1e-9, was 0.0,
         since "The flanks' pushes cancel by symmetry; one flank alone would change it by 4e-3.";
 

@@ -55,7 +55,7 @@ fn an_encoder_that_freezes_or_jumps_at_speed_is_given_up_within_a_millisecond() 
     for (name, seed) in [("q1", 22), ("d2", 23)] {
         let experiment = Experiment::new(name, "gravity", Encoders::Preset, None, seed).lasting(2.6);
         let healthy = experiment.record();
-        for (speed, jump) in [(0.45, 0), (1.0, 0), (1.0, 40), (0.1, -400)] {
+        for (speed, jump) in [(0.45, 0), (1.0, 0), (1.0, 40), (0.1, -400), (0.1, 30_000)] {
             let mut log = healthy.clone();
             let at = turns_by(&log, 1.9, speed);
             let frozen = log[at].output_counts;

@@ -11,6 +11,7 @@ mod memory;
 mod monte_carlo;
 mod motion;
 mod motor_only;
+mod page;
 mod precision;
 mod presets;
 mod probe;

@@ -11,9 +11,9 @@ pub mod worst_case;
 
 use model_core::gears::certificate::Substeps;
 
-/// How a joint's tick goes through contacts that change, as the measuring images say it: sub-steps, leaps or none.
+/// How a joint's tick goes through contacts that change, as the measuring images say it: sub-steps, Verlet sub-steps or none.
 fn parts<'a>(fields: &mut impl Iterator<Item = &'a str>) -> Option<Substeps> {
     let mut number = || fields.next()?.parse().ok();
-    let (substeps, leaps) = (number()?, number()?);
-    Some(if leaps > 0 { Substeps::Verlet(leaps) } else { Substeps::Corrected(substeps) })
+    let (corrected, verlet) = (number()?, number()?);
+    Some(if verlet > 0 { Substeps::Verlet(verlet) } else { Substeps::Corrected(corrected) })
 }

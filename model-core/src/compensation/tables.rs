@@ -164,15 +164,15 @@ pub struct LandingTable<T: Real> {
 pub struct SwitchingTable<T: Real> {
     /// Demand beyond which a change of its sign counts [N m].
     pub planned: T,
-    /// Measured torque below which no flank is changed for it soon after a change, for each unit of patience [N m].
+    /// Measured torque below which no flank is changed for it soon after a change, for each unit of switching hysteresis [N m].
     pub measured: T,
     /// How much of it is left when nothing has changed for long.
     pub least: T,
     /// The most that the doubt grows by, for each radian of half the lost motion [N m/rad].
     pub most_growth: T,
-    /// What is left of a grown patience after one period.
+    /// What is left of a grown hysteresis after one period.
     pub growth_left: T,
-    /// The most patience: how many times the feedback torque above.
+    /// The most hysteresis: how many times the feedback torque above.
     pub most_factor: T,
     /// Share of news that the measured torque takes up in one period.
     pub smoothing: T,

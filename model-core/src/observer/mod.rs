@@ -258,7 +258,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
             let count = tables.counts.output.angle;
             load.ahead = count * last.ahead;
             load.speed = count * last.speed.over(tables.period);
-            self.health.motor_only.anchor();
+            self.health.motor_only.keep_place();
         }
     }
 

@@ -79,7 +79,7 @@ fn nine_in_ten_unseen_motions_stay_below_the_promised_error() {
 }
 
 #[test]
-fn so_do_those_of_light_planets_in_leaps() {
+fn so_do_those_of_light_planets_in_verlet_sub_steps() {
     let mut chance = Chance::new(UNSEEN_SEED);
     let tallies = tally(|| chance.light_case());
     assert!(tallies[0].cases > 40 && tallies[1].cases > 50, "the cases have become one-sided");

@@ -49,7 +49,7 @@ fn tables<T: Real, const N: usize>(case: &Case, rate: u32, effort: Effort) -> &'
 /// Follows a case at a tick rate; `None` if it cannot be predicted by anyone.
 pub fn follow<const N: usize>(case: &Case, rate: u32) -> Option<Outcome> {
     let coarse_tables = tables::<f32, N>(case, rate, case.effort());
-    // Of corrected sub-steps in either case: leaps have nothing in common with them.
+    // Of corrected sub-steps in either case: Verlet sub-steps have nothing in common with them.
     let fine_tables = tables::<f64, N>(case, FINER * rate, Effort::Substeps(case.parts.count()));
     let mut coarse = model(case, coarse_tables, 0.0);
     let (mut fine, mut changed) = (model(case, fine_tables, 0.0), model(case, fine_tables, CHANGE));

@@ -33,7 +33,7 @@ impl Case {
     pub fn effort(&self) -> Effort {
         match self.parts {
             Substeps::Corrected(substeps) => Effort::Substeps(substeps),
-            Substeps::Verlet(leaps) => Effort::Verlet(leaps),
+            Substeps::Verlet(substeps) => Effort::Verlet(substeps),
         }
     }
 }
@@ -139,7 +139,7 @@ impl Chance {
         }
     }
 
-    /// The next case with planets so light that leaps are taken.
+    /// The next case with planets so light that Verlet sub-steps are taken.
     pub fn light_case(&mut self) -> Case {
         let mut case = self.case();
         case.joint.bodies.planet_equivalent_mass = self.scaled(0.005, 0.05);

@@ -41,7 +41,7 @@ pub struct BudgetSummary {
     pub holding: TickWork,
     /// In parts, none of which sees a crossing.
     pub losing: TickWork,
-    /// Every mesh crosses in two sub-steps, or touches in every leap.
+    /// Every mesh crosses in two sub-steps, or touches in every Verlet sub-step.
     pub all_crossing: TickWork,
     /// Every mesh crosses in every part.
     pub bound: TickWork,

@@ -25,7 +25,7 @@ pub(super) struct System {
 pub(super) struct Filter {
     /// Response to an input held over the step.
     pub response: DMatrix<f64>,
-    /// Correction of each state for a unit of surprise, after the step.
+    /// Correction of each state for a unit of innovation, after the step.
     pub gain: DVector<f64>,
     /// Variance of each state after the correction.
     pub variance: DVector<f64>,

@@ -45,8 +45,8 @@ pub(super) fn table<T: Real>(
             let net = given - taken;
             let ahead =
                 [angle + step * speed + load.response[(0, 0)] * net, speed + load.response[(1, 0)] * net, taken];
-            let surprise = -ahead[0];
-            [0, 1, 2].map(|state| ahead[state] + load.gain[state] * surprise)
+            let innovation = -ahead[0];
+            [0, 1, 2].map(|state| ahead[state] + load.gain[state] * innovation)
         })
     };
     let columns =

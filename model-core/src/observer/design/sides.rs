@@ -56,7 +56,7 @@ fn late_gain(body: &Body, step: f64) -> [f64; 3] {
     [1.0 - left.powi(3), 1.5 * gone * gone * (1.0 + left) / step, -body.motor_inertia * gone.powi(3) / (step * step)]
 }
 
-/// By how much the taken torque lags behind one that rises steadily [s]: the surprise in the angle is then such that it
+/// By how much the taken torque lags behind one that rises steadily [s]: the innovation in the angle is then such that it
 /// makes good the rise of a period, and what it adds to the speed makes good the torque that is lacking on the mean of it.
 pub(super) fn drive_lag(body: &Body, filter: &Filter, step: f64) -> f64 {
     -body.motor_inertia * filter.gain[1] / filter.gain[2] - 0.5 * step
@@ -176,10 +176,10 @@ mod tests {
             time += step;
             angle += step * speed - 0.5 * step * step / inertia * taken;
             speed -= step / inertia * taken;
-            let surprise = -time.powi(3) / (6.0 * inertia) - angle;
-            angle += gain[0] * surprise;
-            speed += gain[1] * surprise;
-            taken += gain[2] * surprise;
+            let innovation = -time.powi(3) / (6.0 * inertia) - angle;
+            angle += gain[0] * innovation;
+            speed += gain[1] * innovation;
+            taken += gain[2] * innovation;
         }
         let lag = time - taken;
         assert!(lag > step && (drive_lag(&body, &filter, step) / lag - 1.0).abs() < 1e-6, "it lags by {lag} s");

@@ -29,7 +29,7 @@ pub struct MotorOnly<T: Real> {
     /// Periods since contact was last felt for sure, as far as they count.
     open_for: u16,
     /// Contact has been felt since the output encoder was given up, or the link's speed was known then.
-    anchored: bool,
+    place_known: bool,
     /// Mesh force, smoothed [N].
     force: T,
     /// Speed at which the teeth landed last, dying away as bounces do [m/s].
@@ -41,8 +41,8 @@ impl<T: Real> MotorOnly<T> {
     const BOUNCE_DECAY: T = T::EIGHTH;
 
     /// The link's place and speed were known when its encoder was given up.
-    pub fn anchor(&mut self) {
-        self.anchored = true;
+    pub fn keep_place(&mut self) {
+        self.place_known = true;
     }
 
     /// The flank that touches: by force where there is enough of it; otherwise the one before, until the link has left it
@@ -97,14 +97,14 @@ impl<T: Real> MotorOnly<T> {
         }
         // A landing says where the link is, and that it goes with the motor; of its torque it says nothing.
         self.bounce += fused.rate.abs();
-        self.anchored = true;
+        self.place_known = true;
         LoadCorrection::TurnsWithMotor(innovation)
     }
 
     /// Variance of the gap coordinate [m^2]; `None` where nothing is known of it.
     pub fn gap_variance<const P: usize>(&self, tables: &ObserverTables<T>, learnt: &Learnt<T, P>) -> Option<T> {
         let edge = learnt.uncertainty.edge_deviation;
-        self.anchored.then(|| edge * edge + tables.contact.deflection_variance + self.drift_variance(tables))
+        self.place_known.then(|| edge * edge + tables.contact.deflection_variance + self.drift_variance(tables))
     }
 
     /// What has been added since contact was last felt [m^2].

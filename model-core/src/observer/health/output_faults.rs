@@ -1,15 +1,15 @@
 //! How a fault of the output encoder is found. In the order in which they are looked for; the first that is found gives the
 //! encoder up:
 //!
-//! | # | found by | what it takes | why it is there |
-//! |---|---|---|---|
-//! | 1 | counts that leapt for good ([`Advance::Jumped`]) | readings further apart than any motor turns | a lost reference, a wrong absolute word |
-//! | 2 | [`Plausibility`]: counts that leap | a few readings that say the same | a slipped coupling, an offset; before the deflection is spoilt |
-//! | 3 | [`Plausibility`]: counts that stand still at once | fewer counts than any stop explains | a frozen encoder in motion, in a few periods |
-//! | 4 | silence ([`OutputFault::Silent`]) | no fresh reading for as long as the settings allow | a broken line |
-//! | 5 | the motor outruns counts that stand still | more than gap and wind-up | a frozen encoder that was slow, or at rest, when it froze |
-//! | 6 | a deflection that no teeth allow | outside for longer than impacts ring | everything else: slow slip, missing counts |
-//! | 7 | teeth that seem to have grown ([`learnt::Outcome::EncoderFails`]) | a half-gap trusted on both flanks | missing counts that stay within the gap |
+//! | # | found by | what it takes | why it is there | needed by |
+//! |---|---|---|---|---|
+//! | 1 | counts that jumped for good ([`Advance::Jumped`]) | readings further apart than any motor turns | a lost reference, a wrong absolute word | `observer faults::an_encoder_that_freezes_or_jumps_at_speed_is_given_up_within_a_millisecond` |
+//! | 2 | [`Plausibility`]: counts that jump | a few readings that say the same | a slipped coupling, an offset; before the deflection is spoilt | `observer faults::an_encoder_that_freezes_or_jumps_at_speed_is_given_up_within_a_millisecond` |
+//! | 3 | [`Plausibility`]: counts that stand still at once | fewer counts than any stop explains | a frozen encoder in motion, in a few periods | `observer faults::an_encoder_that_freezes_or_jumps_at_speed_is_given_up_within_a_millisecond` |
+//! | 4 | silence ([`OutputFault::Silent`]) | no fresh reading for as long as the settings allow | a broken line | `observer faults::a_silent_output_encoder_is_said_and_waited_for` |
+//! | 5 | the motor outruns counts that stand still | more than gap and wind-up | a frozen encoder that was slow, or at rest, when it froze | `observer faults::an_encoder_that_freezes_before_the_gap_is_known_is_found_by_how_far_the_motor_goes` |
+//! | 6 | a deflection that no teeth allow | outside for longer than impacts ring | everything else: slow slip, missing counts | `observer faults::an_output_encoder_that_loses_counts_never_makes_a_width_less_than_none` |
+//! | 7 | teeth that seem to have grown ([`learnt::Outcome::EncoderFails`]) | a half-gap trusted on both flanks | missing counts that stay within the gap | `observer faults::an_output_encoder_that_makes_the_gap_narrower_is_given_up_for_teeth_do_not_grow` |
 //!
 //! [`learnt::Outcome::EncoderFails`]: crate::observer::learnt::Outcome::EncoderFails
 
@@ -32,9 +32,9 @@ pub struct OutputFaultDetector<T: Real> {
     silent_for: u16,
     unmoved_for: u16,
     outside_for: u16,
-    /// The deflection of the teeth at the last period, and whether it leapt to where it is [m].
+    /// The deflection of the teeth at the last period, and whether it jumped to where it is [m].
     deflection: T,
-    leapt: bool,
+    jumped: bool,
     /// The deflection less wind-up when the counts moved last [m].
     stood_at: T,
 }
@@ -80,7 +80,7 @@ impl<T: Real> OutputFaultDetector<T> {
             unmoved_for: 0,
             outside_for: 0,
             deflection: T::ZERO,
-            leapt: false,
+            jumped: false,
             stood_at: T::ZERO,
         }
     }
@@ -157,7 +157,7 @@ impl<T: Real> OutputFaultDetector<T> {
     }
 
     /// Whether the deflection is one that teeth allow. Teeth that have worn let it go on beyond where it could be, step by
-    /// step; an encoder that slips leaps there. A link that sticks beyond a half-gap that is too small looks like a frozen
+    /// step; an encoder that slips jumps there. A link that sticks beyond a half-gap that is too small looks like a frozen
     /// encoder, until the deflection goes further than teeth can be worn.
     pub fn judge<const P: usize>(
         &mut self,
@@ -186,7 +186,7 @@ impl<T: Real> OutputFaultDetector<T> {
             far_range(learnt, deflection, fused.force)
         };
         let beyond = if range == Range::Possible {
-            self.leapt = false;
+            self.jumped = false;
             self.outside_for = 0;
             None
         } else {
@@ -198,9 +198,9 @@ impl<T: Real> OutputFaultDetector<T> {
     /// One more period in which the deflection is beyond its range, by some more than in the last one [m].
     #[cold]
     fn beyond(&mut self, table: &SupervisorTable<T>, range: Range, by: T) -> Option<OutputFault> {
-        self.leapt |= by.abs() > table.margin;
+        self.jumped |= by.abs() > table.margin;
         self.outside_for = self.outside_for.saturating_add(1);
-        if self.outside_for < table.failed_after || range == Range::Worn && !self.leapt {
+        if self.outside_for < table.failed_after || range == Range::Worn && !self.jumped {
             None
         } else if self.unmoved_for >= table.failed_after {
             Some(OutputFault::Frozen)

@@ -1,5 +1,5 @@
 //! Whether a link could follow the output encoder's readings from one to the next: counts that stand still at once, or
-//! leap, are no link's.
+//! jump, are no link's.
 //!
 //! A link is stopped by its teeth, its load, and by what it runs into: the first two brake it by no more than a torque,
 //! the last takes a time that does not depend on the speed, as a spring does. So a link that has gone on by so many counts
@@ -16,14 +16,14 @@ const COUNT: i32 = 1 << PART;
 /// reading given twice.
 const FEWEST: i32 = 3;
 
-/// Readings that must say what one that leapt said: a wrong bit in one or two of them goes by.
+/// Readings that must say what one that jumped said: a wrong bit in one or two of them goes by.
 const CONFIRMED: u8 = 3;
 
 /// Counts that must be missing, noise aside, before an encoder counts as frozen: rounding, and one more.
 const MISSING: i32 = 2 * COUNT;
 
-/// Counts by which a reading must leap, noise aside, before it is suspect.
-const LEAP: i32 = 8 * COUNT;
+/// Counts by which a reading must jump, noise aside, before it is suspect.
+const JUMP: i32 = 8 * COUNT;
 
 /// Mean deviations of the readings by which those grow: five standard deviations of normal noise.
 const NOISY: i32 = 4;
@@ -31,7 +31,7 @@ const NOISY: i32 = 4;
 /// Readings over which the noise is taken, as a power of two.
 const AVERAGED: u32 = 5;
 
-/// Stands for readings since one that leapt while the speed is not known.
+/// Stands for readings since one that jumped while the speed is not known.
 const UNKNOWN: u8 = u8::MAX;
 
 /// Whether a link could have gone as a reading says.
@@ -52,17 +52,17 @@ pub struct Plausibility {
     rate: i32,
     /// Mean deviation from that, times the readings that it is taken over.
     noise: u16,
-    /// Parts of a count by which readings are away since one leapt, as far as they fit.
+    /// Parts of a count by which readings are away since one jumped, as far as they fit.
     away: i16,
-    /// Readings since then; 0 if none has leapt.
-    leapt_for: u8,
+    /// Readings since then; 0 if none has jumped.
+    jumped_for: u8,
     /// Readings in a row that said the same.
     still: u8,
 }
 
 impl Plausibility {
     pub fn new() -> Self {
-        Self { rate: 0, noise: 0, away: 0, leapt_for: UNKNOWN, still: 0 }
+        Self { rate: 0, noise: 0, away: 0, jumped_for: UNKNOWN, still: 0 }
     }
 
     /// A reading that is not a period after the one before says nothing of the speed but that the link turns.
@@ -82,12 +82,12 @@ impl Plausibility {
 
     /// Counts in a period before the readings broke off, if they were known.
     pub fn speed<T: Real>(&self) -> Option<T> {
-        (self.leapt_for != UNKNOWN).then(|| counts(self.rate))
+        (self.jumped_for != UNKNOWN).then(|| counts(self.rate))
     }
 
     /// Counts by which the link is ahead of readings that broke off.
     pub fn ahead<T: Real>(&self) -> T {
-        if self.leapt_for == 0 {
+        if self.jumped_for == 0 {
             counts::<T>(self.rate) * T::from_i32(self.still.into())
         } else {
             -counts::<T>(self.away.into())
@@ -96,7 +96,7 @@ impl Plausibility {
 
     /// Whether readings stand still, rather than being away.
     pub fn stands_still(&self) -> bool {
-        self.leapt_for == 0
+        self.jumped_for == 0
     }
 
     /// Takes in by how many counts the output went on in a period.
@@ -105,7 +105,7 @@ impl Plausibility {
         let by = by.wrapping_shl(PART);
         let beyond = by.wrapping_sub(self.rate);
         let noise = i32::from(self.noise) >> AVERAGED;
-        if self.leapt_for != 0 || beyond.wrapping_abs() > LEAP + 2 * NOISY * noise {
+        if self.jumped_for != 0 || beyond.wrapping_abs() > JUMP + 2 * NOISY * noise {
             return self.take_odd(by, beyond);
         }
         if by == 0 {
@@ -118,22 +118,22 @@ impl Plausibility {
         Verdict::Plausible
     }
 
-    /// The first reading, one that leaps, or those after it.
+    /// The first reading, one that jumps, or those after it.
     #[cold]
     fn take_odd(&mut self, by: i32, beyond: i32) -> Verdict {
-        if self.leapt_for == UNKNOWN {
+        if self.jumped_for == UNKNOWN {
             // One reading is rounded by up to a count: no faster than it must be.
             let rate = by - by.clamp(-COUNT, COUNT);
-            *self = Self { rate, noise: self.noise, leapt_for: 0, ..Self::new() };
+            *self = Self { rate, noise: self.noise, jumped_for: 0, ..Self::new() };
             return Verdict::Plausible;
         }
         self.away = i32::from(self.away).saturating_add(beyond).clamp(i16::MIN.into(), i16::MAX.into()) as i16;
-        self.leapt_for += 1;
+        self.jumped_for += 1;
         self.still = 0;
-        if i32::from(self.away).abs() < LEAP / 2 {
-            (self.away, self.leapt_for) = (0, 0);
+        if i32::from(self.away).abs() < JUMP / 2 {
+            (self.away, self.jumped_for) = (0, 0);
             Verdict::Plausible
-        } else if self.leapt_for > CONFIRMED {
+        } else if self.jumped_for > CONFIRMED {
             Verdict::Implausible
         } else {
             Verdict::Suspect

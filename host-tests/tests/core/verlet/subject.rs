@@ -1,4 +1,4 @@
-//! Joint Q1 with light planets, ripple and errors, its tables in stated leaps, and one run of core and reference side by
+//! Joint Q1 with light planets, ripple and errors, its tables in stated Verlet sub-steps, and one run of core and reference side by
 //! side. No bound is stated here.
 
 use model_core::gears::design::dynamics::Dynamics;
@@ -20,8 +20,8 @@ pub fn joint(planets: usize, law: DampingLaw) -> JointParameters {
     JointParameters { damping_law: law, ..with_teeth(case_r::case_r().joint, planets, teeth) }
 }
 
-/// Tables in so many leaps a tick.
-pub fn tables<const N: usize>(joint: &JointParameters, rate: u32, leaps: u32) -> Tables<f64, N> {
+/// Tables in so many Verlet sub-steps a tick.
+pub fn tables<const N: usize>(joint: &JointParameters, rate: u32, substeps: u32) -> Tables<f64, N> {
     let mut tables: Tables<f64, N> =
         design_scheme(joint, rate, Scheme::Realtime, Effort::Substeps(16)).expect("a sound joint");
     let scales = Scales::new(joint);
@@ -36,13 +36,13 @@ pub fn tables<const N: usize>(joint: &JointParameters, rate: u32, leaps: u32) ->
         wind_up_stiffness,
         wind_up_damping,
     };
-    tables.verlet = verlet_tables::verlet(joint, &unit, scales.frequency / f64::from(rate), leaps);
+    tables.verlet = verlet_tables::verlet(joint, &unit, scales.frequency / f64::from(rate), substeps);
     tables
 }
 
 /// The same without exponential ticks.
-pub fn leaping<const N: usize>(joint: &JointParameters, rate: u32, leaps: u32) -> Tables<f64, N> {
-    let mut tables = tables(joint, rate, leaps);
+pub fn verlet_only<const N: usize>(joint: &JointParameters, rate: u32, substeps: u32) -> Tables<f64, N> {
+    let mut tables = tables(joint, rate, substeps);
     tables.flow.longest_advance = -1.0;
     tables
 }

@@ -1,23 +1,23 @@
-//! What can happen between two ticks: a tooth parts and returns, or crosses its whole gap within one leap.
+//! What can happen between two ticks: a tooth parts and returns, or crosses its whole gap within one sub-step.
 
-use host_tests::tolerance::light_planets::{LEAP_ACROSS_THE_GAP, LEAP_THROUGH_THE_MIDDLE, PARTED_WITHIN_A_TICK};
+use host_tests::tolerance::light_planets::{PARTED_WITHIN_A_TICK, SUBSTEP_ACROSS_THE_GAP, SUBSTEP_THROUGH_THE_MIDDLE};
 use model_core::gears::{Model, Torques};
 use parameters::{ContactState, DampingLaw, JointParameters};
 use reference::joint::{Observation, RelativeState};
 use reference::scenarios::same;
 
-use super::subject::{joint, leaping, pressed, reference, state};
+use super::subject::{joint, pressed, reference, state, verlet_only};
 
 const RATE: u32 = 10_000;
-const LEAPS: u32 = 8;
+const SUBSTEPS: u32 = 8;
 /// A torque on the sun and what balances it at the link [N m].
 const TORQUES: (f64, f64) = (0.2, 1.2);
 /// Moments of the reference within a tick.
 const MOMENTS: u32 = 200;
 
 /// Largest error of a deflection at the ends of the first ticks [m].
-fn error<const N: usize>(joint: &JointParameters, start: &RelativeState, seen: &[Observation], leaps: u32) -> f64 {
-    let tables = leaping::<N>(joint, RATE, leaps);
+fn error<const N: usize>(joint: &JointParameters, start: &RelativeState, seen: &[Observation], substeps: u32) -> f64 {
+    let tables = verlet_only::<N>(joint, RATE, substeps);
     let mut model = Model::new(&tables);
     model.set_state(state(joint, &tables, start));
     let mut worst = 0.0_f64;
@@ -47,7 +47,7 @@ fn parts_and_returns<const N: usize>(law: DampingLaw) {
     assert_eq!(contacts(&seen), [closed, ContactState::Separated, closed], "{N} planets, {law:?}");
     let deflections = || seen.iter().map(|seen| seen.deflections[0][0]);
     let swing = deflections().fold(f64::NEG_INFINITY, f64::max) - deflections().fold(f64::INFINITY, f64::min);
-    PARTED_WITHIN_A_TICK.check(error::<N>(&joint, &start, &seen, LEAPS) / swing);
+    PARTED_WITHIN_A_TICK.check(error::<N>(&joint, &start, &seen, SUBSTEPS) / swing);
 }
 
 fn crosses_the_gap<const N: usize>(law: DampingLaw) {
@@ -60,20 +60,20 @@ fn crosses_the_gap<const N: usize>(law: DampingLaw) {
     start.gap = 0.0;
     start.sun_planet_rate[0] = -0.2;
     let seen = reference(&joint, &start, TORQUES, MOMENTS * RATE, 2 * MOMENTS);
-    // From flank to flank in less than the time of a leap.
-    let leap = (MOMENTS / LEAPS) as usize;
+    // From flank to flank in less than the time of a sub-step.
+    let substep = (MOMENTS / SUBSTEPS) as usize;
     let state = |moment: usize| seen[moment].contacts[0][0];
     let opposite = |from: usize| {
         let far = |to: usize| state(to) != state(from) && state(to) != ContactState::Separated;
-        state(from) != ContactState::Separated && (from..=from + leap).any(far)
+        state(from) != ContactState::Separated && (from..=from + substep).any(far)
     };
-    assert!((0..seen.len() - leap).any(opposite), "{N} planets, {law:?}");
+    assert!((0..seen.len() - substep).any(opposite), "{N} planets, {law:?}");
     let largest = seen.iter().map(|seen| seen.deflections[0][0].abs()).fold(0.0, f64::max);
-    LEAP_ACROSS_THE_GAP.check(error::<N>(&joint, &start, &seen, LEAPS) / largest);
-    LEAP_ACROSS_THE_GAP.check(10.0 * error::<N>(&joint, &start, &seen, 4 * LEAPS) / largest);
+    SUBSTEP_ACROSS_THE_GAP.check(error::<N>(&joint, &start, &seen, SUBSTEPS) / largest);
+    SUBSTEP_ACROSS_THE_GAP.check(10.0 * error::<N>(&joint, &start, &seen, 4 * SUBSTEPS) / largest);
 }
 
-/// Relative change of a planet's speed over one leap that takes it from flank to flank, as deep into one as into the other.
+/// Relative change of a planet's speed over one sub-step that takes it from flank to flank, as deep into one as into the other.
 fn change_through_the_middle<const N: usize>(law: DampingLaw) -> f64 {
     const SPEED: f64 = 0.2;
     let mut joint = joint(N, law);
@@ -82,13 +82,13 @@ fn change_through_the_middle<const N: usize>(law: DampingLaw) -> f64 {
         mesh.half_backlash = same(N, 0.5e-6);
         mesh.transmission_error = same(N, 0.0);
     }
-    let rate = RATE * LEAPS;
+    let rate = RATE * SUBSTEPS;
     let half_way = 0.5 * SPEED / f64::from(rate);
-    assert!(half_way > joint.sun_planet.half_backlash[0], "a leap crosses the whole gap");
+    assert!(half_way > joint.sun_planet.half_backlash[0], "a sub-step crosses the whole gap");
     let mut start = RelativeState::centred(N);
     start.sun_planet[0] = half_way;
     start.sun_planet_rate[0] = -SPEED;
-    let tables = leaping::<N>(&joint, rate, 1);
+    let tables = verlet_only::<N>(&joint, rate, 1);
     let mut model = Model::new(&tables);
     let before = state(&joint, &tables, &start);
     model.set_state(before);
@@ -99,9 +99,9 @@ fn change_through_the_middle<const N: usize>(law: DampingLaw) -> f64 {
 #[test]
 fn both_flanks_push_alike_in_a_leap_through_the_middle_of_the_gap() {
     for law in [DampingLaw::Contact, DampingLaw::Paper] {
-        LEAP_THROUGH_THE_MIDDLE.check(change_through_the_middle::<3>(law));
-        LEAP_THROUGH_THE_MIDDLE.check(change_through_the_middle::<4>(law));
-        LEAP_THROUGH_THE_MIDDLE.check(change_through_the_middle::<5>(law));
+        SUBSTEP_THROUGH_THE_MIDDLE.check(change_through_the_middle::<3>(law));
+        SUBSTEP_THROUGH_THE_MIDDLE.check(change_through_the_middle::<4>(law));
+        SUBSTEP_THROUGH_THE_MIDDLE.check(change_through_the_middle::<5>(law));
     }
 }
 
@@ -115,7 +115,7 @@ fn a_tooth_that_parts_and_returns_within_a_tick_is_seen() {
 }
 
 #[test]
-fn leaps_across_the_whole_gap_stay_with_the_reference() {
+fn verlet_sub_steps_across_the_whole_gap_stay_with_the_reference() {
     for law in [DampingLaw::Contact, DampingLaw::Paper] {
         crosses_the_gap::<3>(law);
         crosses_the_gap::<4>(law);

@@ -1,22 +1,22 @@
 //! Exponential ticks of light planets: taken where every tooth keeps pressing, and refused where one opens within the
-//! tick. A refused tick is one in leaps, in every bit.
+//! tick. A refused tick is one in Verlet sub-steps, in every bit.
 
 use host_tests::tolerance::light_planets::{HELD_OVER_AN_OPENING, PRESSED};
 use model_core::gears::{Model, Tables, Torques};
 use parameters::{ContactState, DampingLaw, JointParameters};
 use reference::joint::RelativeState;
 
-use super::subject::{joint, leaping, reference, resting, state, tables};
+use super::subject::{joint, reference, resting, state, tables, verlet_only};
 
 const RATE: u32 = 10_000;
-const LEAPS: u32 = 8;
+const SUBSTEPS: u32 = 8;
 /// Moments at which the reference is looked at within the tick.
 const MOMENTS: u32 = 100;
 
 /// Ticks by what happened in them.
 #[derive(Debug, Default)]
 struct Found {
-    /// Every tooth kept pressing: taken by the exponential, left to leaps.
+    /// Every tooth kept pressing: taken by the exponential, left to Verlet sub-steps.
     closed: [u32; 2],
     /// A tooth opened: the same.
     opened: [u32; 2],
@@ -64,7 +64,7 @@ impl Found {
 /// A joint that turns under balanced torques of either sign, one planet moving away from the sun at one speed after another.
 fn found<const N: usize>(law: DampingLaw) -> Found {
     let joint = joint(N, law);
-    let both = [tables::<N>(&joint, RATE, LEAPS), leaping::<N>(&joint, RATE, LEAPS)];
+    let both = [tables::<N>(&joint, RATE, SUBSTEPS), verlet_only::<N>(&joint, RATE, SUBSTEPS)];
     let mut found = Found::default();
     for drive in [-3.0_f64, -1.0, 0.1, 0.5, 2.0, 3.0] {
         let (start, load) = resting(&joint, drive);
@@ -88,7 +88,7 @@ fn check<const N: usize>() {
 }
 
 #[test]
-fn a_tick_in_which_a_tooth_opens_is_left_to_leaps() {
+fn a_tick_in_which_a_tooth_opens_takes_verlet_sub_steps() {
     check::<3>();
     check::<4>();
     check::<5>();

@@ -1,17 +1,17 @@
-//! How fast the error of leaps falls with their length on motions in which light planets lose contact and find it again,
-//! for 3, 4 and 5 planets and both damping laws. Ticks shrink with the leaps, as in a tick ripple and errors are taken
+//! How fast the error of Verlet sub-steps falls with their length on motions in which light planets lose contact and find it again,
+//! for 3, 4 and 5 planets and both damping laws. Ticks shrink with the Verlet sub-steps, as in a tick ripple and errors are taken
 //! from its middle.
 
-use host_tests::tolerance::light_planets::{LEAPS, ORDER_OF_LEAPS};
+use host_tests::tolerance::light_planets::{ORDER_OF_VERLET, SUBSTEPS};
 use parameters::{ContactState, DampingLaw, JointParameters};
 use reference::joint::{RelativeState, Start};
 
-use super::subject::{joint, leaping, pressed, reference};
+use super::subject::{joint, pressed, reference, verlet_only};
 use crate::comparison::rms_error;
 
-/// Ticks a second of the coarsest run, where samples are taken; leaps a tick.
+/// Ticks a second of the coarsest run, where samples are taken; Verlet sub-steps a tick.
 const COARSEST: u32 = 10_000;
-const LEAPS_A_TICK: u32 = 8;
+const SUBSTEPS_A_TICK: u32 = 8;
 /// Length in ticks of the coarsest run.
 const LENGTH: u32 = 60;
 
@@ -30,7 +30,7 @@ fn errors<const N: usize>(joint: &JointParameters, doublings: &[u32]) -> Vec<f64
     let is = |state| expected.iter().any(|seen| seen.contacts.iter().flatten().any(|contact| *contact == state));
     assert!(is(ContactState::Separated) && is(ContactState::DriveSide), "contact is lost and found again");
     let one = |doublings: &u32| {
-        let tables = leaping::<N>(joint, COARSEST << doublings, LEAPS_A_TICK);
+        let tables = verlet_only::<N>(joint, COARSEST << doublings, SUBSTEPS_A_TICK);
         rms_error(joint, &tables, &Start::Relative(start.clone()), (0.0, 0.0), &expected)
     };
     doublings.iter().map(one).collect()
@@ -47,7 +47,7 @@ fn undamped<const N: usize>() {
     joint.ring_planet.damping_ratio = 0.0;
     let order = order(&errors::<N>(&joint, &[3, 4, 5, 6]));
     println!("{N} planets, no mesh damping: order {order:.2}");
-    ORDER_OF_LEAPS.check((2.0 - order).max(0.0));
+    ORDER_OF_VERLET.check((2.0 - order).max(0.0));
 }
 
 fn damped<const N: usize>() {
@@ -55,13 +55,13 @@ fn damped<const N: usize>() {
         let errors = errors::<N>(&joint(N, law), &[0, 3, 4, 5, 6]);
         let order = order(&errors[1..]);
         println!("{N} planets, law {law:?}: order {order:.2}, {:.1e} at the coarsest", errors[0]);
-        ORDER_OF_LEAPS.check((1.0 - order).max(0.0));
-        LEAPS.check(errors[0]);
+        ORDER_OF_VERLET.check((1.0 - order).max(0.0));
+        SUBSTEPS.check(errors[0]);
     }
 }
 
 #[test]
-fn leaps_are_of_second_order_through_parting_and_hitting() {
+fn verlet_sub_steps_are_of_second_order_through_parting_and_hitting() {
     undamped::<3>();
     undamped::<4>();
     undamped::<5>();

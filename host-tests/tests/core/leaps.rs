@@ -1,7 +1,0 @@
-//! Leaps, in which the core takes joints whose planets ring several times within a tick, against the reference: tick by
-//! tick, in f64. What the design makes of them on a whole motion is asked in `robot_joint`.
-
-mod crossing;
-mod order;
-mod pressed;
-mod subject;

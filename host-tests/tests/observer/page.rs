@@ -1,0 +1,55 @@
+//! The two ordered lists of docs/theory/observer.md, how a flank is told and how a fault of the output encoder is found,
+//! held against the same lists in the sources; and that each of their ways names a test that there is.
+
+use std::fs;
+use std::path::Path;
+
+const PAGE: &str = include_str!("../../../docs/theory/observer.md");
+const FLANK: &str = include_str!("../../../model-core/src/observer/learnt/flank.rs");
+const OUTPUT_FAULTS: &str = include_str!("../../../model-core/src/observer/health/output_faults.rs");
+
+/// The rows of a numbered table in the page, between two marks.
+fn in_the_page(mark: &str) -> Vec<Vec<String>> {
+    let (from, to) = (format!("<!-- {mark} -->"), format!("<!-- /{mark} -->"));
+    let (_, rest) = PAGE.split_once(&from).expect("a beginning of the table");
+    let (table, _) = rest.split_once(&to).expect("an end of the table");
+    rows(table.lines())
+}
+
+/// The rows of the numbered table at the head of a source.
+fn in_the_source(source: &str) -> Vec<Vec<String>> {
+    rows(source.lines().filter_map(|line| line.strip_prefix("//! ")))
+}
+
+/// The cells of each row that begins with a number.
+fn rows<'a>(lines: impl Iterator<Item = &'a str>) -> Vec<Vec<String>> {
+    lines
+        .filter_map(|line| line.strip_prefix("| "))
+        .map(|line| line.trim_end_matches('|').split(" | ").map(|cell| cell.trim().to_owned()).collect())
+        .filter(|cells: &Vec<String>| cells.first().is_some_and(|cell| cell.parse::<u32>().is_ok()))
+        .collect()
+}
+
+/// The test that a row ends with, as its file and its function: "`program module::function`".
+fn test_of(row: &[String]) -> (String, String) {
+    let name = row.last().expect("a row has cells").trim_matches('`');
+    let (program, path) = name.split_once(' ').expect("a program and a path");
+    let (module, function) = path.split_once("::").expect("a module and a function");
+    (format!("tests/{program}/{module}.rs"), function.to_owned())
+}
+
+#[test]
+fn each_way_to_tell_a_flank_or_a_fault_is_in_page_and_source_and_names_the_test_that_needs_it() {
+    for (mark, source) in [("flank", FLANK), ("output faults", OUTPUT_FAULTS)] {
+        let (page, source) = (in_the_page(mark), in_the_source(source));
+        assert!(page.len() >= 5, "the list of {mark} is read");
+        assert_eq!(page.len(), source.len(), "docs/theory/observer.md and the source list other ways under {mark}");
+        for (shown, written) in page.iter().zip(&source) {
+            assert_eq!(shown.first(), written.first(), "the order under {mark}");
+            assert_eq!(shown.last(), written.last(), "the test of number {} under {mark}", written[0]);
+            let (file, function) = test_of(written);
+            let tests = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(&file)).expect(&file);
+            assert!(tests.contains(&format!("#[test]\nfn {function}()")), "{file} has no test {function}");
+        }
+    }
+}

@@ -177,12 +177,15 @@ impl<T: Real> MeshTable<T> {
     }
 }
 
-/// Evaluates every mesh.
+/// Evaluates every mesh at a phase with this rate [rad a unit of dimensionless time]; without overtones only the imposed
+/// errors are right.
 #[inline]
 pub fn mesh_excitations<T: Real, const N: usize, const OVERTONES: usize>(
     tables: &Tables<T, N>,
-    harmonics_now: &PhaseHarmonics<T, OVERTONES>,
+    phasor: Phasor<T>,
+    rate: T,
 ) -> MeshExcitations<T, N> {
+    let harmonics_now = &PhaseHarmonics::<T, OVERTONES>::new(phasor, rate, tables.excitation.harmonics);
     let mut mesh_excitations =
         MeshExcitations { stiffness: [[T::ZERO; N]; 2], error: [[T::ZERO; N]; 2], error_rate: [[T::ZERO; N]; 2] };
     for kind in 0..2 {

@@ -4,7 +4,7 @@
 
 use crate::gears::contact::{AppliedAcceleration, Law, acceleration, mesh_coordinates, wind_up_force};
 use crate::gears::dead_zone;
-use crate::gears::excitation::{MAX_OVERTONES, MeshExcitations, MeshPhase, PerMesh, PhaseHarmonics, mesh_excitations};
+use crate::gears::excitation::{MAX_OVERTONES, MeshExcitations, MeshPhase, PerMesh, mesh_excitations};
 use crate::gears::runge_kutta::{self, Motion};
 use crate::gears::state::Relative;
 use crate::gears::tables::Tables;
@@ -20,21 +20,12 @@ pub fn runge_kutta<T: Real, const N: usize>(
 ) -> Motion<T, N> {
     let half = phase.over(tables.half_substep_share);
     let (mut motion, mut phasor) = (*motion, phase.start);
-    let mut start = mesh_excitations(
-        tables,
-        &PhaseHarmonics::<T, MAX_OVERTONES>::new(phasor, phase.rate, tables.excitation.harmonics),
-    );
+    let mut start = mesh_excitations::<T, N, MAX_OVERTONES>(tables, phasor, phase.rate);
     for _ in 0..tables.substeps {
         phasor = phasor.turned(&half);
-        let middle = mesh_excitations(
-            tables,
-            &PhaseHarmonics::<T, MAX_OVERTONES>::new(phasor, phase.rate, tables.excitation.harmonics),
-        );
+        let middle = mesh_excitations::<T, N, MAX_OVERTONES>(tables, phasor, phase.rate);
         phasor = phasor.turned(&half);
-        let end = mesh_excitations(
-            tables,
-            &PhaseHarmonics::<T, MAX_OVERTONES>::new(phasor, phase.rate, tables.excitation.harmonics),
-        );
+        let end = mesh_excitations::<T, N, MAX_OVERTONES>(tables, phasor, phase.rate);
         let nodes = [&start, &middle, &end];
         motion = runge_kutta::step(tables.substep, &motion, |node, position, rate| {
             forced(tables, applied, position, rate, nodes[node])
@@ -54,19 +45,13 @@ pub fn semi_implicit_euler<T: Real, const N: usize>(
 ) -> Motion<T, N> {
     let half = phase.over(tables.half_substep_share);
     let (mut motion, mut phasor) = (*motion, phase.start);
-    let mut now = mesh_excitations(
-        tables,
-        &PhaseHarmonics::<T, MAX_OVERTONES>::new(phasor, phase.rate, tables.excitation.harmonics),
-    );
+    let mut now = mesh_excitations::<T, N, MAX_OVERTONES>(tables, phasor, phase.rate);
     for _ in 0..tables.substeps {
         let acceleration = forced(tables, applied, &motion.position, &motion.rate, &now);
         let rate = motion.rate.plus(tables.substep, &acceleration);
         motion = Motion { position: motion.position.plus(tables.substep, &rate), rate };
         phasor = phasor.turned(&half).turned(&half);
-        now = mesh_excitations(
-            tables,
-            &PhaseHarmonics::<T, MAX_OVERTONES>::new(phasor, phase.rate, tables.excitation.harmonics),
-        );
+        now = mesh_excitations::<T, N, MAX_OVERTONES>(tables, phasor, phase.rate);
     }
     motion
 }

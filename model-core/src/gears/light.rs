@@ -9,7 +9,7 @@
 //! `paper`: mesh damping is therefore of first order, with a small factor.
 
 use crate::gears::contact::AppliedAcceleration;
-use crate::gears::excitation::{MAX_OVERTONES, MeshExcitations, MeshPhase, PhaseHarmonics, mesh_excitations};
+use crate::gears::excitation::{MAX_OVERTONES, MeshExcitations, MeshPhase, mesh_excitations};
 use crate::gears::linear_contact;
 use crate::gears::runge_kutta::Motion;
 use crate::gears::tables::Tables;
@@ -24,14 +24,7 @@ pub fn tick<T: Real, const N: usize>(
     phase: &MeshPhase<T>,
     motion: &Motion<T, N>,
 ) -> Motion<T, N> {
-    let middle = mesh_excitations(
-        tables,
-        &PhaseHarmonics::<T, MAX_OVERTONES>::new(
-            phase.start.turned(&phase.over(T::HALF)),
-            phase.rate,
-            tables.excitation.harmonics,
-        ),
-    );
+    let middle = mesh_excitations::<T, N, MAX_OVERTONES>(tables, phase.start.turned(&phase.over(T::HALF)), phase.rate);
     if let Some(end) = linear_contact::tick(tables, applied, phase, &middle, motion) {
         return end;
     }

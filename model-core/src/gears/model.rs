@@ -4,9 +4,7 @@
 use core::array;
 
 use crate::gears::contact::{AppliedAcceleration, contact, mesh_coordinates};
-use crate::gears::excitation::{
-    MAX_OVERTONES, MeshPhase, PerMesh, PhaseHarmonics, Phasor, mesh_excitations, mesh_phase_advance,
-};
+use crate::gears::excitation::{MAX_OVERTONES, MeshPhase, PerMesh, Phasor, mesh_excitations, mesh_phase_advance};
 use crate::gears::runge_kutta::Motion;
 use crate::gears::state::State;
 use crate::gears::tables::{Scheme, Tables};
@@ -151,8 +149,7 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
         let units = &self.tables.units;
         let planets = position.planets.iter().fold(T::ZERO, |sum, planet| sum + *planet);
         let offset = |gains: &[T; 3]| gains[0] * planets + gains[1] * position.gap + gains[2] * position.wind_up;
-        let errors =
-            mesh_excitations(self.tables, &PhaseHarmonics::<T, 0>::new(Phasor::at(self.phase()), T::ZERO, 1)).error;
+        let errors = mesh_excitations::<T, N, 0>(self.tables, Phasor::at(self.phase()), T::ZERO).error;
         let meshes = mesh_coordinates(position);
         let deflections: PerMesh<T, N> = array::from_fn(|kind| array::from_fn(|i| meshes[kind][i] - errors[kind][i]));
         Outputs {

@@ -8,7 +8,7 @@ use core::array;
 use nalgebra::SVector;
 
 use crate::gears::contact::{AppliedAcceleration, mesh_coordinates};
-use crate::gears::excitation::{MAX_OVERTONES, MeshPhase, PerMesh, PhaseHarmonics, mesh_excitations};
+use crate::gears::excitation::{MAX_OVERTONES, MeshPhase, PerMesh, mesh_excitations};
 use crate::gears::full_forces::forces;
 use crate::gears::runge_kutta::Motion;
 use crate::gears::state::Relative;
@@ -26,10 +26,7 @@ pub fn step<T: Real, const N: usize>(
 ) -> Motion<T, N> {
     let half = phase.over(tables.half_substep_share);
     let (mut motion, mut phasor) = (*motion, phase.start);
-    let mut now = mesh_excitations(
-        tables,
-        &PhaseHarmonics::<T, MAX_OVERTONES>::new(phasor, phase.rate, tables.excitation.harmonics),
-    );
+    let mut now = mesh_excitations::<T, N, MAX_OVERTONES>(tables, phasor, phase.rate);
     for _ in 0..tables.substeps {
         let (positions, rates) = (mesh_coordinates(&motion.position), mesh_coordinates(&motion.rate));
         let mut force = forces(tables, &positions, &rates, &now);
@@ -44,10 +41,7 @@ pub fn step<T: Real, const N: usize>(
         let free = Modes::of(tables.planet_share, &motion).free(&tables.flow.whole, applied);
         motion = free.with([(&tables.flow.whole_constant, &force)]).motion();
         phasor = phasor.turned(&half).turned(&half);
-        now = mesh_excitations(
-            tables,
-            &PhaseHarmonics::<T, MAX_OVERTONES>::new(phasor, phase.rate, tables.excitation.harmonics),
-        );
+        now = mesh_excitations::<T, N, MAX_OVERTONES>(tables, phasor, phase.rate);
     }
     motion
 }

@@ -15,11 +15,7 @@ const TOO_MANY: u8 = 12;
 /// Learning intervals with force between the flanks after which the half-gap counts as wrong: three blocks.
 const CONTRADICTED: u8 = 24;
 
-/// Times that the half-gap may be doubted before everything else is too.
-const DOUBTS: u8 = 3;
-
-/// Rests without an outlier on each flank after which a half-gap counts as learnt, and doubts of it are forgotten: a quarter
-/// of a second of contact.
+/// Rests without an outlier on each flank after which a half-gap counts as learnt: a quarter of a second of contact.
 const TRUSTED: u8 = 32;
 
 /// What speaks against what was learnt.
@@ -31,8 +27,6 @@ pub struct Consistency {
     outliers: u8,
     /// Rests without an outlier on the back flank and on the drive flank since the half-gap was doubted.
     trusted: [u8; 2],
-    /// How often it was.
-    doubted: u8,
 }
 
 /// What is to be done about what was learnt.
@@ -82,9 +76,6 @@ impl Consistency {
         let [back, drive] = &mut self.trusted;
         let trusted = if flank == Some(Flank::Drive) { &mut *drive } else { &mut *back };
         *trusted = trusted.saturating_add(1);
-        if (*back).min(*drive) > TRUSTED {
-            self.doubted = 0;
-        }
     }
 
     /// The gap seems narrower than was learnt.
@@ -92,17 +83,11 @@ impl Consistency {
         if self.is_trusted() { Verdict::EncoderFails } else { self.other_half_gap() }
     }
 
-    /// The half-gap is not what was learnt. If it had not been seen on both flanks for long, or that has happened too often,
-    /// nothing else is sure either.
+    /// The half-gap is not what was learnt. If it had not been seen on both flanks for long, nothing else is sure either.
     fn other_half_gap(&mut self) -> Verdict {
         let trusted = self.is_trusted();
         self.trusted = [0; 2];
-        self.doubted += 1;
-        if trusted && self.doubted <= DOUBTS {
-            return Verdict::RelearnHalfGap;
-        }
-        self.doubted = 0;
-        Verdict::RelearnAll
+        if trusted { Verdict::RelearnHalfGap } else { Verdict::RelearnAll }
     }
 
     /// Whether the half-gap has been seen on both flanks for long.

@@ -91,7 +91,7 @@ impl<T: Real> FlankControl<T> {
         let opened = self.opened_to(situation);
         let signs = self.signs(tables, situation, intent, opened);
         // Of a joint that idles nothing but a flank puts the error right.
-        let left = tables.switching.growth_left;
+        let left = tables.switching.transient_left;
         let left = if intent.idles { left * left } else { left };
         self.hysteresis = T::ONE + left * (self.hysteresis - T::ONE);
         if let Some(action) = signs.events.action(self.stage) {
@@ -105,7 +105,7 @@ impl<T: Real> FlankControl<T> {
             let torque = self.rise * intent.law + repaid;
             self.asked |= intent.rests || side * intent.demand_now > T::ZERO;
             // What only the flank that was left could give takes an early motor nowhere but off the one that will be needed.
-            let along = along(tables, situation, intent, situation.error_speed);
+            let along = along(tables, situation, intent, situation.transmission_error_speed);
             let stays = self.waits() && !signs.against || side * intent.expects > T::ZERO;
             return if stays && side * (torque - along) < T::ZERO { along } else { torque };
         }

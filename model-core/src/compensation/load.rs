@@ -125,7 +125,7 @@ impl<T: Real> LoadModel<T> {
         let known = torque.valid && torque.value.is_finite() && situation.feels;
         // More than the motor can hold is no load that it carries.
         let held = clamp(torque.value, -tables.limits.motor, tables.limits.motor);
-        self.hardest *= tables.switching.growth_left;
+        self.hardest *= tables.switching.transient_left;
         let push = clamp(torque.value.abs(), T::ZERO, tables.limits.motor + tables.limits.motor);
         if known && push > self.hardest {
             self.hardest = push;

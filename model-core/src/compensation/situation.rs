@@ -27,7 +27,7 @@ pub(super) struct Situation<T: Real> {
     /// Position of the set-point.
     pub origin: Position<T>,
     /// Speed that the motor has by the gears' transmission error alone, felt at the link [rad/s].
-    pub error_speed: T,
+    pub transmission_error_speed: T,
     /// Torque that the motor loses whatever its direction, and its dry friction [N m]: as the observer has it, sure or
     /// not, for it leaves out of the load torque what it puts down to them.
     pub losses: [T; 2],
@@ -88,7 +88,7 @@ impl<T: Real> Situation<T> {
             stiffness,
             losses: [estimates.torque_bias, estimates.motor_friction]
                 .map(|loss| tables.gear.motor_per_link * loss.value),
-            error_speed: at_link * estimates.flank_shift_slope * estimates.link.speed,
+            transmission_error_speed: at_link * estimates.flank_shift_slope * estimates.link.speed,
             shift: at_link * estimates.flank_shift,
             shift_slope: at_link * estimates.flank_shift_slope,
             gap: at_link * estimates.gap.value,
@@ -98,7 +98,8 @@ impl<T: Real> Situation<T> {
             sees: false,
         };
         let sum = situation.error + situation.error_rate + situation.motor + situation.motor_speed + situation.gap;
-        let sum = sum + situation.shift + situation.error_speed + situation.losses[0] + situation.losses[1];
+        let sum =
+            sum + situation.shift + situation.transmission_error_speed + situation.losses[0] + situation.losses[1];
         let sum = sum + situation.mesh_torque + situation.stiffness;
         let feels = estimates.source == Source::Both && sum.is_finite();
         let knows = estimates.contact_valid && estimates.gap.valid && estimates.half_backlash.value.is_finite();
@@ -122,7 +123,7 @@ impl<T: Real> Situation<T> {
     /// Torque of the damper on the motor against the link; it leaves alone what the transmission error makes the motor do
     /// [N m].
     pub fn damping_torque(&self, tables: &CompensationTables<T>) -> T {
-        tables.law.motor_damping * (self.link_speed + self.error_speed - self.motor_speed)
+        tables.law.motor_damping * (self.link_speed + self.transmission_error_speed - self.motor_speed)
     }
 }
 

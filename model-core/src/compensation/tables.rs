@@ -168,10 +168,10 @@ pub struct SwitchingTable<T: Real> {
     pub measured: T,
     /// How much of it is left when nothing has changed for long.
     pub least: T,
-    /// The most that the doubt grows by, for each radian of half the lost motion [N m/rad].
+    /// The most that the hysteresis grows by, for each radian of half the lost motion [N m/rad].
     pub most_growth: T,
-    /// What is left of a grown hysteresis after one period.
-    pub growth_left: T,
+    /// What is left after one period of what a transient of the loop leaves behind: grown hysteresis, the hardest push.
+    pub transient_left: T,
     /// The most hysteresis: how many times the feedback torque above.
     pub most_factor: T,
     /// Share of news that the measured torque takes up in one period.

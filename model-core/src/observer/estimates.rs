@@ -42,7 +42,7 @@ pub enum Source {
 pub enum OutputFault {
     /// There is none by design.
     Absent,
-    /// It has given no fresh reading for longer than the settings allow.
+    /// It has given no fresh reading for 10 ms.
     Silent,
     /// Its counts stand still while the motor turns.
     Frozen,

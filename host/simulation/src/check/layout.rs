@@ -60,7 +60,7 @@ fn frequencies(page: &mut Sheet, summary: &CheckSummary) {
 fn meshes(page: &mut Sheet, summary: &CheckSummary) {
     for mesh in &summary.meshes {
         page.heading(if mesh.kind == "sun_planet" { "Sun-planet meshes" } else { "Ring-planet meshes" });
-        page.row("half-backlash b (gap is 2b)", format!("{} um", per_planet(&mesh.half_backlash_m, 1e6, 3)));
+        page.row("half-backlash b (backlash is 2b)", format!("{} um", per_planet(&mesh.half_backlash_m, 1e6, 3)));
         page.row("mean stiffness", format!("{:.4e} N/m", mesh.mean_stiffness_N_per_m));
         page.row("damping", format!("{} N s/m", digits(mesh.damping_N_s_per_m)));
         page.row(

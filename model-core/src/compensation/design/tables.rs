@@ -93,9 +93,10 @@ const MOST_FACTOR: f64 = 6.0;
 /// longer costs more than one changed in vain.
 const MOST_GROWTH: f64 = 0.3;
 
-/// Time over which that growth is lost again, times the bandwidth: a transient of the loop is over by then, and an error that
-/// a crossing too early has left was put right by the flank that it led to.
-const GROWTH_KEPT: f64 = 6.0;
+/// Time in which a transient of the loop is over, times the bandwidth. Grown hysteresis is lost again over it, for by then an
+/// error that a crossing too early has left was put right by the flank that it led to; and so long a push is remembered for
+/// which the teeth are not spared.
+const TRANSIENT: f64 = 6.0;
 
 /// Changes of the wanted flank within this time, times the bandwidth, are hunting.
 const HUNTING: f64 = 15.0;
@@ -232,7 +233,7 @@ pub fn design_compensation<T: Real>(
             measured: real(MEASURED * limit),
             least: real(LEAST_MEASURED),
             most_growth: real(MOST_GROWTH * 3.0 * inertia * pole * pole),
-            growth_left: real(libm::exp(-period * pole / GROWTH_KEPT)),
+            transient_left: real(libm::exp(-period * pole / TRANSIENT)),
             most_factor: real(MOST_FACTOR),
             smoothing: real(1.0 - libm::exp(-period / (SETTLING * reaction))),
             inverse_step: real(1.0 / (LARGE_STEP * limit)),

@@ -2,7 +2,7 @@
 //!
 //! No gain is typed in. Both filters are steady-state Kalman filters from the encoders' quantisation and from how fast
 //! torques may change; the learner starts from the stated uncertainties; thresholds are multiples of the noise that
-//! these leave.
+//! these leave, or the times and parts that stand here by name.
 
 use core::f64::consts::TAU;
 
@@ -43,6 +43,44 @@ const BRAKE: f64 = 2.0;
 /// Counts by which an output encoder has turned for sure: noise flickers by less.
 const MOVED_COUNTS: f64 = 4.0;
 
+/// Time without a fresh reading after which the output encoder counts as silent [s]. Chosen, between readings that are
+/// lost by chance and a line that is broken.
+const SILENT_AFTER: f64 = 10e-3;
+
+/// Time for which an output encoder that was given up must agree with the motor before it is used again [s]. Chosen,
+/// longer than what a link swings about after a fault.
+const TRUSTED_AFTER: f64 = 0.3;
+
+/// How far beyond its range a deflection may be before that is a fault: this part of the half-gap, and of the wind-up under
+/// the largest torque, for what neither the maps nor the compliance have learnt [-]. Chosen.
+const MARGIN: f64 = 0.1;
+
+/// Largest standard deviation of a gap coordinate that is valid, over the gap [-]. Chosen.
+const WIDEST_PART: f64 = 0.1;
+
+/// Largest standard deviation of a flank's place, over the half-gap, from which on places decide on contact [-]: six of
+/// them are half of it.
+const KNOWN_PART: f64 = 0.08;
+
+/// What error maps leave of the motor encoder's errors, over those [-].
+const UNMODELLED: f64 = 0.1;
+
+/// Learning intervals over which cogging and noise are alike, so that as many readings of the bias count as one [-]. Chosen.
+const ALIKE: f64 = 5.0;
+
+/// Time in which bias and friction may become something else altogether [s]. Chosen: a motor warms up more slowly.
+const BIAS_KEPT: f64 = 10.0;
+
+/// Standard deviations beyond which what noise makes is left out of account: of bias and friction, of a deflection at rest,
+/// of a speed [-].
+const BEYOND_NOISE: f64 = 3.0;
+
+/// Time constant of a mean over a few learning intervals [learning intervals]. Chosen.
+const FEW_INTERVALS: f64 = 1.5;
+
+/// Slope of a motor encoder's once- and twice-per-turn errors of one size together, over that size: sqrt(1 + 2^2).
+const HARMONIC_SLOPE: f64 = 2.2;
+
 /// Tables of the observer.
 pub fn design_observer<T: Real>(
     joint: &JointParameters,
@@ -59,7 +97,7 @@ pub fn design_observer<T: Real>(
     let drive = drive_filter(&body, settings, motor_count, step);
     let load = load_filter(&body, settings, output_count * output_count / 12.0, step);
 
-    let rated_force = settings.torque_limit / body.sun_lever;
+    let largest_force = settings.torque_limit / body.sun_lever;
     let force_variance = drive.quiet[2] / (body.sun_lever * body.sun_lever);
     let periods = libm::round(LEARNING_INTERVAL / step).max(1.0);
     let deflection_variance = drive.quiet[0] * body.sun_lever.powi(2) + load.quiet[0] * body.output_lever.powi(2);
@@ -72,7 +110,7 @@ pub fn design_observer<T: Real>(
             / body.output_lever.powi(2),
         step,
     );
-    let unmodelled = 0.1 * settings.motor_encoder.harmonic_error * body.sun_lever;
+    let unmodelled = UNMODELLED * settings.motor_encoder.harmonic_error * body.sun_lever;
     let noise = libm::sqrt(deflection_variance + wind_up_variance + unmodelled * unmodelled);
     let block = libm::round(BLOCK / LEARNING_INTERVAL).max(1.0);
 
@@ -85,7 +123,7 @@ pub fn design_observer<T: Real>(
     let output_harmonic = harmonics(settings.output_encoder, body.output_lever);
     let mut deviation = [0.0; MOST_PARAMETERS];
     deviation[0] = half_gap * settings.backlash_uncertainty;
-    deviation[1] = 2.0 * half_gap + body.compliance * rated_force;
+    deviation[1] = 2.0 * half_gap + body.compliance * largest_force;
     deviation[2] = body.compliance * settings.compliance_uncertainty;
     deviation[3] = body.output_lever * settings.skew_uncertainty;
     deviation[4..6].fill(body.transmission_error / core::f64::consts::SQRT_2);
@@ -130,21 +168,22 @@ pub fn design_observer<T: Real>(
             force_variance: real(force_variance),
             ripple_variance: real(ripple * ripple),
             deflection_variance: real(deflection_variance),
-            bias_noise: real((force_variance + ripple * ripple) * 5.0),
+            bias_noise: real((force_variance + ripple * ripple) * ALIKE),
             bias_prior: real((settings.torque_uncertainty / body.sun_lever).powi(2)),
-            bias_drift: real((settings.torque_uncertainty / body.sun_lever).powi(2) * LEARNING_INTERVAL / 10.0),
-            bias_limit: real(3.0 * settings.torque_uncertainty / body.sun_lever),
-            still: real(3.0 * libm::sqrt(2.0 * (deflection_variance + wind_up_variance)) / WINDOW),
+            bias_drift: real((settings.torque_uncertainty / body.sun_lever).powi(2) * LEARNING_INTERVAL / BIAS_KEPT),
+            bias_limit: real(BEYOND_NOISE * settings.torque_uncertainty / body.sun_lever),
+            still: real(BEYOND_NOISE * libm::sqrt(2.0 * (deflection_variance + wind_up_variance)) / WINDOW),
             still_per_speed: real(
-                2.0 * (2.2 * motor_harmonic + (output_harmonic + meshes * body.transmission_error) / body.ratio),
+                2.0 * (HARMONIC_SLOPE * motor_harmonic
+                    + (output_harmonic + meshes * body.transmission_error) / body.ratio),
             ),
-            per_turning: real(1.0 / (3.0 * libm::sqrt(drive.quiet[1]))),
+            per_turning: real(1.0 / (BEYOND_NOISE * libm::sqrt(drive.quiet[1]))),
             rate_deviation: real(libm::sqrt(
                 drive.quiet[1] * body.sun_lever.powi(2) + load.quiet[1] * body.output_lever.powi(2),
             )),
             lag: real(LAG * step),
-            smoothing: real(-libm::expm1(-step / (1.5 * LEARNING_INTERVAL))),
-            known_part: real(0.08),
+            smoothing: real(-libm::expm1(-step / (FEW_INTERVALS * LEARNING_INTERVAL))),
+            known_part: real(KNOWN_PART),
             loss_driving: real(settings.efficiency - 1.0),
             loss_driven: real(1.0 / settings.efficiency - 1.0),
         },
@@ -165,17 +204,17 @@ pub fn design_observer<T: Real>(
             mesh_compliance: real(body.mesh_compliance),
         },
         supervisor: SupervisorTable {
-            silent_after: (10e-3 / step) as u16,
+            silent_after: (SILENT_AFTER / step) as u16,
             failed_after: (FAILED_AFTER / step) as u16,
             stop: stop as u8,
             per_stops: real(0.5 / stop),
             brake: real(
                 0.5 * BRAKE * settings.torque_limit * body.ratio / body.load_inertia * step * step / output_count,
             ),
-            trusted_after: (0.3 / LEARNING_INTERVAL) as u16,
+            trusted_after: (TRUSTED_AFTER / LEARNING_INTERVAL) as u16,
             moved: libm::ldexp(MOVED_COUNTS * output_count / TAU, 32) as u32,
-            margin: real(0.1 * half_gap + 0.1 * body.compliance * rated_force),
-            widest_part: real(0.1),
+            margin: real(MARGIN * half_gap + MARGIN * body.compliance * largest_force),
+            widest_part: real(WIDEST_PART),
         },
     };
     Ok(tables)

@@ -49,7 +49,7 @@ impl<T: Real> Filters<T> {
                 }
             }
             Advance::Began | Advance::Jumped(_) => self.drive.ahead = T::ZERO,
-            Advance::Doubted => {}
+            Advance::Implausible => {}
         }
         self.load.predict(&tables.load, self.mesh_torque, sensed.output_turned);
     }

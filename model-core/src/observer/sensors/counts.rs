@@ -26,7 +26,7 @@ pub enum Advance {
     /// Counts since the last one.
     By(i32),
     /// Too far away: not believed, the shaft is taken to have gone on as it went.
-    Doubted,
+    Implausible,
     /// Too far away time after time: the encoder has jumped by this much.
     Jumped(i32),
 }
@@ -56,7 +56,7 @@ impl Counter {
         let within = by.unsigned_abs() <= table.fastest.saturating_mul(u32::from(self.doubted) + 1);
         if !within && self.doubted < BELIEVED_AFTER {
             self.doubted += 1;
-            return Advance::Doubted;
+            return Advance::Implausible;
         }
         self.move_to(table, raw, by);
         if within { Advance::By(by) } else { Advance::Jumped(by) }

@@ -99,7 +99,7 @@ impl<T: Real> Sensed<T> {
         Notices {
             torque_unknown: !self.torque_known,
             out_of_time: self.out_of_time,
-            motor_implausible: self.motor == Advance::Doubted,
+            motor_implausible: self.motor == Advance::Implausible,
             motor_jumped: matches!(self.motor, Advance::Jumped(_)),
         }
     }

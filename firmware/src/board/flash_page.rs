@@ -18,7 +18,7 @@ const WORD: usize = 4;
 pub trait Flash {
     /// First byte of the page, outside of what an image may take.
     const ADDRESS: usize;
-    /// Protocol that are written at a time.
+    /// Words that are written at a time.
     const TOGETHER: usize;
     /// Lets its registers be changed, and forgets errors.
     fn unlock(&mut self);

@@ -93,8 +93,9 @@ const MOST_FACTOR: f64 = 6.0;
 /// longer costs more than one changed in vain.
 const MOST_GROWTH: f64 = 0.3;
 
-/// Time over which that growth is lost again, times the bandwidth: a transient of the loop is over by then, and an error that
-/// a crossing too early has left was put right by the flank that it led to.
+/// Time over which that growth is lost again, times the bandwidth: a transient of the loop is over by then, and an
+/// error that a crossing too early has left was put right by the flank that it led to. The hardest push that
+/// `LoadModel` remembers, which sets the limit of the teeth aside, fades in the same time.
 const GROWTH_KEPT: f64 = 6.0;
 
 /// Changes of the wanted flank within this time, times the bandwidth, are hunting.
@@ -134,7 +135,8 @@ const REPAYMENT: f64 = 1.15;
 /// Impedance set-points come 200 times a second at least, or are at rest [s].
 const LONGEST_HOLD: f64 = 5e-3;
 
-/// Time in which control goes over from plain to compensated, times the bandwidth.
+/// Time in which control is blended from plain to compensated, times the bandwidth; the other way it goes in one
+/// period.
 const TRUST: f64 = 1.2;
 
 /// Half the lost motion is never taken for more than so many times the guess.

@@ -28,7 +28,7 @@ pub const COMMAND_CAPACITY: u16 = COMMANDS as u16 - 1;
 pub enum Order {
     /// Back to rest at tick 0 with these settings; answered by [`Event::ResetDone`] or [`Event::Refused`].
     Reset(RunSettings),
-    /// Torque zero, enable off; answered by [`Event::Stopped`].
+    /// Enable off, no further torque sent; answered by [`Event::Stopped`].
     Stop,
     /// Safe state for a reason that idle has found; answered by [`Event::Stopped`].
     Trip(Trip),

@@ -1,5 +1,5 @@
-//! The safe state: enable output off and no torque, latched until a reset. One way in, one way out; the conditions that trip it
-//! are checked by the callers.
+//! The safe state: enable output off and no further step, so no further torque, latched until a `Reset` message; a chip
+//! reset ends in [`State::Stopped`] and loses the cause. The conditions that trip it are checked by the callers.
 
 use core::convert::Infallible;
 
@@ -9,11 +9,11 @@ use link::messages::Trip;
 /// State of the board.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum State {
-    /// Nothing runs; a reset starts a run.
+    /// Nothing runs; a `Reset` message starts a run.
     Stopped,
     /// A run goes on; the enable output is on.
     Running,
-    /// Safe state; only a reset leads out, and none does if the tables are bad.
+    /// Safe state; only a `Reset` message leads to a run, and none does if the tables are bad.
     Tripped(Trip),
 }
 

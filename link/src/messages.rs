@@ -41,7 +41,7 @@ pub enum ToBoard {
         /// Clear minima, maxima, histogram and counters after reporting them.
         reset: bool,
     },
-    /// End of the run: torque zero, enable off.
+    /// End of the run: enable off, no further torque sent.
     Stop,
     /// Samples and set-points, for the role that observes.
     Exchanges(Schedule<Exchange, EXCHANGES_PER_SCHEDULE>),
@@ -61,7 +61,8 @@ pub struct RunSettings {
     pub mode: RunMode,
     /// A sample every so many ticks; at least 1.
     pub decimation: u16,
-    /// Safe state after so many ticks without a schedule (realtime only); 0 is refused.
+    /// Safe state after so many ticks without a schedule, in realtime, and in lockstep for the role that observes; 0 is
+    /// refused.
     pub command_timeout: u32,
     /// The controller begins from the memory that the board keeps of earlier runs, if that is valid; else as it was designed.
     pub from_memory: bool,
@@ -142,7 +143,7 @@ pub struct Accepted {
     pub tick: u32,
 }
 
-/// Why the safe state was entered: torque zero, enable off.
+/// Why a run ended in the safe state, or why a message was refused.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Trip {
     /// No schedule for the stated number of ticks.

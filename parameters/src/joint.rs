@@ -122,7 +122,7 @@ pub enum Coherence {
     Warned,
 }
 
-/// Masses. Equivalent masses are I / r_b^2, felt along the line of action.
+/// Masses. Equivalent masses are I / r_b^2, referred to the line of action.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bodies {
     /// Sun: I_s / r_bs^2, without the rotor [kg].

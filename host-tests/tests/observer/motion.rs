@@ -105,7 +105,7 @@ pub fn uniform(seed: u64) -> impl FnMut() -> f64 {
     }
 }
 
-/// Inertia of the joint felt at its motor while it moves as one [kg m^2].
+/// Inertia of the joint referred to its motor while it moves as one [kg m^2].
 pub fn inertia_at_motor(joint: &JointParameters) -> f64 {
     let geometry = &joint.geometry;
     let planets = geometry.planets as f64 * joint.bodies.planet_equivalent_mass;

@@ -11,7 +11,7 @@ use reference::scenarios::{l1, q1};
 
 const RATIO: f64 = 6.0;
 
-/// Inertia of all of Q1 felt at its link while it moves as one.
+/// Inertia of all of Q1 referred to its link while it moves as one.
 fn q1_inertia() -> f64 {
     let joint = q1();
     let sun = joint.rotor_inertia + 0.02 * joint.geometry.sun_base_radius.powi(2);

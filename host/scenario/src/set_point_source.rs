@@ -57,7 +57,7 @@ impl SetPointSource {
     }
 }
 
-/// Inertia of the whole joint, felt at the link [kg m^2].
+/// Inertia of the whole joint, referred to the link [kg m^2].
 fn inertia_at_link(joint: &JointParameters) -> f64 {
     let geometry = &joint.geometry;
     let sun = joint.bodies.sun_equivalent_mass * geometry.sun_base_radius.powi(2) + joint.rotor_inertia;

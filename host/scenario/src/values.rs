@@ -153,7 +153,7 @@ fn reversal_error(settle: f64, case: &Case, history: &RunHistory) -> Option<f64>
     (!largest.is_empty()).then(|| largest.iter().sum::<f64>() / largest.len() as f64)
 }
 
-/// Torque through the teeth, felt at the link.
+/// Torque through the teeth, referred to the link.
 fn transmitted(sample: &Sample, truth: &TrueValues) -> f64 {
     // Without a compliance nothing is measured between carrier and link: the load stands for it.
     if sample.transmitted == 0.0 { truth.load_torque } else { sample.transmitted }

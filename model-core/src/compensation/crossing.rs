@@ -14,9 +14,9 @@ pub(crate) struct Crossing<T: Real> {
 }
 
 impl<T: Real> Crossing<T> {
-    /// The crossing of a gap of twice `half`. Planets that are struck on the way are struck no harder than a set share of
-    /// the rated force or, up to the rated force, than what will be passed on anyway (`demand`); ramps are as steep as the
-    /// motor's torque and the loop's delays allow.
+    /// The crossing of a gap of twice `half`. Planets that are struck on the way are struck no harder than a set share
+    /// of the rated force or than what will be passed on anyway (`demand`), up to a set share of the peak torque; ramps
+    /// are as steep as the motor's torque and the loop's delays allow.
     pub fn new(tables: &CompensationTables<T>, half: T, demand: T) -> Self {
         let force = clamp(demand.abs(), tables.crossing.strike_torque, tables.crossing.hardest_strike);
         let speed = force * tables.crossing.strike_speed_per_torque;

@@ -211,7 +211,7 @@ impl<T: Real> FlankControl<T> {
         }
     }
 
-    /// How far the flank in use is from the teeth, felt at the link [rad].
+    /// How far the flank in use is from the teeth, referred to the link [rad].
     fn opened_to(&self, situation: &Situation<T>) -> T {
         situation.half - self.flank.sign::<T>() * (situation.gap - situation.shift)
     }

@@ -1,4 +1,4 @@
-//! What the control law wants, felt at the link. It is made anew every control period and carries no state.
+//! What the control law wants, referred to the link. It is made anew every control period and carries no state.
 
 use super::crossing::Crossing;
 use super::load::LoadModel;

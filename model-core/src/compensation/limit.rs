@@ -2,9 +2,10 @@
 //! against each other counted in.
 //!
 //! While torque stays as it is, the torque in the teeth swings about what they will pass on at rest, T, and motor and link
-//! close at a speed v: with K between them and their reduced inertia I it comes to T + sqrt((T - F)^2 + K I v^2), F being
-//! what is passed on now. That is no more than P if T <= (P + F)/2 - K I v^2 / (2 (P - F)). So teeth that have just met get
-//! half of it at once and all of it a quarter of a swing later, without overshoot and without waiting.
+//! close at a speed v: with the stiffness S between them and their reduced inertia I it comes to
+//! T + sqrt((T - F)^2 + S I v^2), F being what is passed on now. That is no more than P if
+//! T <= (P + F)/2 - S I v^2 / (2 (P - F)). So teeth that have just met get half of it at once and all of it a quarter of a
+//! swing later, without overshoot and without waiting.
 
 use super::load::LoadModel;
 use super::situation::Situation;

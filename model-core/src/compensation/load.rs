@@ -87,8 +87,8 @@ impl<T: Real> LoadModel<T> {
         self.alone.unwrap_or(self.even + self.drag())
     }
 
-    /// What the start of a link at rest will ask for at least, if friction can hold it: what it can needs no flank before,
-    /// and is to be overcome then. 0 for a link that has to be held [N m].
+    /// What the start of a link at rest will ask for at least [N m]; 0 for a link that a flank has to hold. Under a
+    /// load within its friction the link stays where it is without a flank, but a start must overcome that friction.
     pub fn start(&self, tables: &CompensationTables<T>) -> T {
         let held = beyond(self.even, tables.switching.measured + self.friction) == T::ZERO;
         if held { T::TWO * tables.switching.measured + self.friction } else { T::ZERO }

@@ -8,8 +8,9 @@
 //! 4. `limit` keeps what the teeth pass on within bounds.
 //! 5. `load` knows what brakes the link and how that changes when the motion turns round, `start_prediction` how
 //!    motions start.
-//! 6. `plain` is the same control law on the motor alone, without compensation; it takes over, blended, where the
-//!    estimates are not valid.
+//! 6. `plain` is control without compensation: a PID on the motor's place with part of the feed-forward and no limit of
+//!    the teeth, or the impedance law on the motor. Where the estimates are not valid it takes over in one control
+//!    period; only the way back is blended.
 //!
 //! `docs/theory/compensation.md` derives all of it and says where its limits are.
 

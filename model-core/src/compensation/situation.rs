@@ -1,5 +1,5 @@
-//! Where everything is, felt at the link, as the estimates have it: what the rest of the compensation works on. It is made
-//! anew every control period and carries no state.
+//! Where everything is, referred to the link, as the estimates have it: what the rest of the compensation works on. It
+//! is made anew every control period and carries no state.
 
 use super::set_point::{Command, Position};
 use crate::compensation::tables::CompensationTables;
@@ -16,7 +16,7 @@ pub(super) struct Situation<T: Real> {
     pub error: T,
     /// Set-point's speed less the link's [rad/s].
     pub error_rate: T,
-    /// Motor, felt at the link with every tooth centred, less set-point [rad].
+    /// Motor, referred to the link with every tooth centred, less set-point [rad].
     pub motor: T,
     /// The same as far as the link's place bears it out: what is more than the guess of the gap allows is wind-up [rad].
     pub confirmed_motor: T,
@@ -26,7 +26,7 @@ pub(super) struct Situation<T: Real> {
     pub link_speed: T,
     /// Position of the set-point.
     pub origin: Position<T>,
-    /// Speed that the motor has by the gears' transmission error alone, felt at the link [rad/s].
+    /// Speed that the motor has by the gears' transmission error alone, referred to the link [rad/s].
     pub transmission_error_speed: T,
     /// Torque that the motor loses whatever its direction, and its dry friction [N m]: as the observer has it, sure or
     /// not, for it leaves out of the load torque what it puts down to them.
@@ -37,11 +37,11 @@ pub(super) struct Situation<T: Real> {
     pub mesh_torque: T,
     /// Between motor and link [N m/rad].
     pub stiffness: T,
-    /// By how much the transmission error shifts both flanks, felt at the link [rad].
+    /// By how much the transmission error shifts both flanks, referred to the link [rad].
     pub shift: T,
     /// By how much that grows for each radian of the link.
     pub shift_slope: T,
-    /// Gap coordinate, felt at the link: from -half to half about the shift while every mesh is free [rad].
+    /// Gap coordinate, referred to the link: from -half to half about the shift while every mesh is free [rad].
     pub gap: T,
     /// The flank that touches.
     pub contact: Option<Flank>,

@@ -1,5 +1,5 @@
 //! What the compensation needs as plain numbers, made by `compensation::design`, a struct for each of its subjects. Angles,
-//! torques and inertias are felt at the link.
+//! torques and inertias are referred to the link.
 
 use crate::numbers::Real;
 
@@ -168,11 +168,11 @@ pub struct SwitchingTable<T: Real> {
     pub measured: T,
     /// How much of it is left when nothing has changed for long.
     pub least: T,
-    /// The most that the hysteresis grows by, for each radian of half the lost motion [N m/rad].
+    /// The most that switching hysteresis grows by, for each radian of half the lost motion [N m/rad].
     pub most_growth: T,
     /// What is left after one period of what a transient of the loop leaves behind: grown hysteresis, the hardest push.
     pub transient_left: T,
-    /// The most hysteresis: how many times the feedback torque above.
+    /// The most switching hysteresis, in units of `measured` [-].
     pub most_factor: T,
     /// Share of news that the measured torque takes up in one period.
     pub smoothing: T,

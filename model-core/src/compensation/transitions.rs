@@ -10,9 +10,9 @@ pub enum Event {
     DemandTurned = 1,
     /// An impedance's own spring asks for the other flank, by less than that.
     SpringUndecided = 2,
-    /// The flank has gone further than half of the half-gap.
+    /// Nothing shows contact, and the flank is open by more than half of the half-gap.
     FlankLost = 4,
-    /// The flank has gone by more than the estimates' errors.
+    /// Nothing shows contact, and the flank is open by more than the estimates' errors.
     FlankOpening = 8,
     /// The flank touches and, on a path, the motor has been braked.
     FlankMet = 16,

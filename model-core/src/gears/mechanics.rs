@@ -10,10 +10,10 @@ pub trait Mechanics {
     /// Carrier equivalent mass M_c = (I_c/r_c^2 + n m_p) / cos^2(alpha), without the link (below eq. 19) [kg].
     fn carrier_equivalent_mass(&self) -> f64;
 
-    /// Rotor inertia felt along the sun's line of action, J / r_bs^2 [kg].
+    /// Rotor inertia referred to the sun's line of action, J / r_bs^2 [kg].
     fn rotor_equivalent_mass(&self) -> f64;
 
-    /// Link inertia felt along the carrier's line of action, J / (r_c cos(alpha))^2 [kg].
+    /// Link inertia referred to the carrier's line of action, J / (r_c cos(alpha))^2 [kg].
     fn link_equivalent_mass(&self) -> f64;
 
     /// Damping coefficient of one mesh (eq. 9 for sun-planet, eq. 10 for ring-planet), from the gears' own masses

@@ -89,7 +89,7 @@ pub struct Estimates<T: Real> {
     pub contact_valid: bool,
     /// Contact has held for long enough, with enough force, that the observer learns from it.
     pub settled: bool,
-    /// Torque that the meshes pass on, felt at the carrier [N m].
+    /// Torque that the meshes pass on, referred to the carrier [N m].
     pub mesh_torque: Estimate<T>,
     /// Everything that brakes the link: friction, weight, what it touches [N m].
     pub load_torque: Estimate<T>,
@@ -98,7 +98,7 @@ pub struct Estimates<T: Real> {
     /// By how much the motor encoder leads the output encoder with every tooth centred, beyond where they were at the
     /// start; at the output [rad].
     pub encoder_offset: Estimate<T>,
-    /// Torsional compliance from sun to link, meshes included, felt at the output [rad/(N m)].
+    /// Torsional compliance from sun to link, meshes included, referred to the output [rad/(N m)].
     pub compliance: Estimate<T>,
     /// How old output readings are beyond what their time says, less the same of the motor's [s].
     pub skew: Estimate<T>,

@@ -58,7 +58,7 @@ fn level(time: f64) -> f64 {
     from + way.clamp(-SLEW * (time_in_period - start), SLEW * (time_in_period - start))
 }
 
-/// Inertia of the whole joint, felt at the link [kg m^2].
+/// Inertia of the whole joint, referred to the link [kg m^2].
 fn inertia_at_link(joint: &JointParameters) -> f64 {
     let geometry = &joint.geometry;
     let lever = geometry.carrier_base_radius();

@@ -22,9 +22,9 @@ use crate::drive_train::DriveTrainParameters;
 pub struct Knowledge {
     /// Motor turns for one of the link.
     pub ratio: f64,
-    /// Everything that turns with the motor while the gap is open, felt there [kg m^2].
+    /// Everything that turns with the motor while the gap is open, referred to it [kg m^2].
     pub motor_inertia: f64,
-    /// All inertia, felt at the motor [kg m^2].
+    /// All inertia, referred to the motor [kg m^2].
     pub total_inertia: f64,
     /// [N m].
     pub torque_limit: f64,

@@ -128,7 +128,7 @@ impl CaseR {
         self.joint.geometry.carrier_radius * self.joint.geometry.working_pressure_angle.cos()
     }
 
-    /// Of everything that turns, felt at the link [kg m^2].
+    /// Of everything that turns, referred to the link [kg m^2].
     fn inertia(&self) -> f64 {
         let joint = &self.joint;
         let (bodies, planets) = (&joint.bodies, joint.geometry.planets as f64);

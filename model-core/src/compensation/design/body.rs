@@ -3,7 +3,7 @@
 use crate::gears::{Kinematics, Mechanics};
 use parameters::{JointParameters, MeshKind};
 
-/// The joint, felt at the link.
+/// The joint, referred to the link.
 pub(super) struct Body {
     pub gear: f64,
     pub lever: f64,

@@ -13,8 +13,8 @@ pub struct CompensationSettings {
     pub bandwidth: f64,
     /// Largest torque of the motor [N m].
     pub torque_limit: f64,
-    /// Most that the teeth shall pass on in position mode, felt at the link [N m]; if left out, what the motor gives at its
-    /// limit, but no more than twice the rated torque.
+    /// Most that the teeth shall pass on in position mode, referred to the link [N m]; if left out, what the motor
+    /// gives at its limit, but no more than twice the rated torque.
     pub peak_torque: Option<f64>,
     /// Efficiency of the gears as far as losses grow with the torque passed on: output over input power while the motor
     /// drives.

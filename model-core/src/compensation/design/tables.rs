@@ -135,7 +135,8 @@ const REPAYMENT: f64 = 1.15;
 /// Impedance set-points come 200 times a second at least, or are at rest [s].
 const LONGEST_HOLD: f64 = 5e-3;
 
-/// Time in which control goes over from plain to compensated, times the bandwidth.
+/// Time in which control is blended from plain to compensated, times the bandwidth; the other way it goes in one
+/// period.
 const TRUST: f64 = 1.2;
 
 /// Half the lost motion is never taken for more than so many times the guess.

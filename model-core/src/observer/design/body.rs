@@ -1,9 +1,9 @@
-//! What the observer needs of a joint, felt along the line of action.
+//! What the observer needs of a joint, referred to the line of action.
 
 use crate::gears::{Kinematics, Mechanics};
 use parameters::{JointParameters, MeshKind};
 
-/// What the observer needs of the joint, felt along the line of action.
+/// What the observer needs of the joint, referred to the line of action.
 pub(super) struct Body {
     pub sun_lever: f64,
     /// Ratio by teeth times the sun's base radius.

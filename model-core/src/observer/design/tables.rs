@@ -33,8 +33,9 @@ const LAG: f64 = 3.0;
 /// Time outside the possible range after which the output encoder has failed [s]: longer than impacts ring.
 const FAILED_AFTER: f64 = 4e-3;
 
-/// Shortest time in which a link is stopped by what it runs into, whatever its speed [s]: a quarter of a swing of 250 Hz,
-/// stiffer than an arm against a wall.
+/// Shortest time in which a link is stopped by what it runs into, whatever its speed [s]: a quarter of a swing of 250
+/// Hz. One that is stopped harder, as by steel on steel, is taken for a frozen encoder: counts alone cannot tell the
+/// two (`docs/theory/observer.md`, limits of the output encoder).
 const STOP: f64 = 1e-3;
 
 /// Largest torque of teeth and load against the link beside that, over the motor's largest at the output.

@@ -7,8 +7,8 @@
 //! | 2 | [`Plausibility`]: counts that jump | a few readings that say the same | a slipped coupling, an offset; before the deflection is spoilt | `observer faults::an_encoder_that_freezes_or_jumps_at_speed_is_given_up_within_a_millisecond` |
 //! | 3 | [`Plausibility`]: counts that stand still at once | fewer counts than any stop explains | a frozen encoder in motion, in a few periods | `observer faults::an_encoder_that_freezes_or_jumps_at_speed_is_given_up_within_a_millisecond` |
 //! | 4 | silence ([`OutputFault::Silent`]) | no fresh reading for 10 ms | a broken line | `observer faults::a_silent_output_encoder_is_said_and_waited_for` |
-//! | 5 | the motor outruns counts that stand still | more than gap and wind-up | a frozen encoder that was slow, or at rest, when it froze | `observer faults::an_encoder_that_freezes_before_the_gap_is_known_is_found_by_how_far_the_motor_goes` |
-//! | 6 | a deflection that no teeth allow | outside for longer than impacts ring | everything else: slow slip, missing counts | `observer faults::an_output_encoder_that_loses_counts_never_makes_a_width_less_than_none` |
+//! | 5 | the motor outruns counts that stand still | more than gap and wind-up, for 4 ms | a frozen encoder that was slow, or at rest, when it froze | `observer faults::an_encoder_that_freezes_before_the_gap_is_known_is_found_by_how_far_the_motor_goes` |
+//! | 6 | a deflection that no teeth allow | outside for 4 ms, longer than impacts ring | everything else: slow slip, missing counts | `observer faults::an_output_encoder_that_loses_counts_never_makes_a_width_less_than_none` |
 //! | 7 | teeth that seem to have grown ([`learnt::Outcome::EncoderFails`]) | a half-gap trusted on both flanks | missing counts that stay within the gap | `observer faults::an_output_encoder_that_makes_the_gap_narrower_is_given_up_for_teeth_do_not_grow` |
 //!
 //! [`learnt::Outcome::EncoderFails`]: crate::observer::learnt::Outcome::EncoderFails
@@ -90,7 +90,7 @@ impl<T: Real> OutputFaultDetector<T> {
         self.outside_for = 0;
     }
 
-    /// Whether the deflection has been outside for longer than impacts ring.
+    /// Whether the deflection has been beyond its range for 4 ms, longer than impacts ring.
     pub fn is_at_odds(&self, table: &SupervisorTable<T>) -> bool {
         self.outside_for >= table.failed_after
     }

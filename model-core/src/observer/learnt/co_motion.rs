@@ -5,8 +5,9 @@
 use crate::gears::Flank;
 use crate::numbers::Real;
 
-/// Gaps by which a link must have gone astray for its teeth to be on a flank: with open teeth the load would have moved it
-/// as the motor goes to within one part in 64, for in all that time the deflection may change by an eighth of the gap.
+/// Spans by which a link must have left its course for its teeth to be on a flank: with open teeth the load would have
+/// moved it as the motor goes to within one part in 64, for in all that time the deflection may change by an eighth of
+/// the gap.
 const ASTRAY: i32 = 8;
 
 /// One rest in which motor and link move together.
@@ -39,8 +40,8 @@ pub enum Change {
 impl<T: Real> CoMotion<T> {
     pub const NONE: Self = Self { span: T::ZERO, drifted: T::ZERO, began: T::ZERO, strayed: T::ZERO };
 
-    /// A crossing of the whole gap, as part of it that is certain [of two half-gaps]: a quarter of it may be wrong at four
-    /// standard deviations, and what is left are two half-gaps.
+    /// Smallest half-gap that a crossing proves, over the span that was seen [-]: a crossing is told by four standard
+    /// deviations, so one of them is a quarter of the span at most. What is left is two half-gaps: 3/8 each.
     const CERTAIN: T = T::THREE_EIGHTHS;
 
     /// Part of the gap by which the deflection may change in a rest on one flank [-].

@@ -6,7 +6,7 @@
 //! | 2 | [`settled`] contact, by the steady force | force above bias and ripple | all there is before the half-gap is known | `compensation holding::without_any_friction_a_gap_that_is_not_known_yet_is_learnt_from_the_first_soft_touches` |
 //! | 3 | [`loaded`] contact that has not settled | force above noise, twice | a link thrown to and fro never settles; one flank next to the other tells the half-gap | `compensation width::steps_between_two_places_show_the_width` |
 //! | 4 | the change of the deflection since the last rest ([`LastRest::flank`]) | a crossing beyond noise, a force on that side | where bias hides the sign of a light force | `observer learning::teeth_that_touch_a_flank_for_some_milliseconds_on_their_way_show_the_width` |
-//! | 5 | motor and link moving together ([`CoMotion::flank`]) | a crossing and a link that has gone astray since | where there is no force at all | `observer learning::a_joint_that_hardly_feels_its_load_shows_the_width_by_where_its_link_goes` |
+//! | 5 | motor and link moving together ([`CoMotion::flank`]) | a crossing, and a link that has left its course since | where there is no force at all | `observer learning::a_joint_that_hardly_feels_its_load_shows_the_width_by_where_its_link_goes` |
 //!
 //! Where none tells it, a rest teaches only what does not depend on the flank.
 //!

@@ -107,8 +107,8 @@ impl<T: Real, const P: usize> Learnt<T, P> {
     /// noise is that of seven of them.
     const STEADY: T = T::QUARTER;
 
-    /// Part of the half-gap that the transmission error must be able to hide for any rest to be learnt from before the
-    /// half-gap is known [-]; see [`TravelDetector::tells_rest`].
+    /// Beyond this, a transmission error that is not learnt yet is learnt first, from rests whose flank nobody knows,
+    /// as a part of the half-gap [-]: it could hide a crossing; see [`TravelDetector::tells_rest`].
     const HIDDEN: T = T::QUARTER;
 
     /// Part that is left of the error maps' blur once they and the half-gap are known [-].

@@ -142,7 +142,7 @@ pub struct Taken {
 }
 
 impl Counts {
-    // A call and what it hands over cost 32 of some 950 instructions of a period.
+    // A call and what it hands over cost some hundredths of the instructions of a period.
     #[inline(always)]
     pub fn take<T: Real>(&mut self, table: &CountTable<T>, motor: Reading, output: Option<Reading>) -> Taken {
         let begins = !self.output.began;

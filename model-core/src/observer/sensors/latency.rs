@@ -5,7 +5,8 @@
 /// meanwhile is a guess, and after two periods a landing could have gone by unseen.
 const EXTRAPOLATED: u32 = 2;
 
-/// Late readings in a row after which the line counts as late for good: one lost frame or two must not stop learning.
+/// By how many late periods may outnumber those on time before the line counts as late for good: one lost frame or two
+/// must not stop learning.
 const LATE_FOR_GOOD: u8 = 4;
 
 /// Control periods in which readings must be on time again until that is over: the motor side's estimates of what was
@@ -40,7 +41,7 @@ pub enum Freshness {
 pub struct Latency {
     /// Age of the last reading, in [`PARTS`] of a period.
     age: u8,
-    /// Late readings in a row; beyond [`LATE_FOR_GOOD`], periods until they are forgotten.
+    /// By how many late periods outnumber those on time; beyond [`LATE_FOR_GOOD`], periods on time until that is over.
     late: u8,
 }
 

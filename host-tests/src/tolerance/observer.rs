@@ -117,6 +117,11 @@ bounds! {
         below 1e-3, was 0.4e-3,
         since "A link goes on for that long whatever it runs into; until then the law is driven by what is not.";
 
+    /// One wrong bit in a reading of the output.
+    ONE_WRONG_BIT: "change of the load torque by one reading in 777 that is 64 counts off, over the rated torque",
+        below 0.04, was 0.0206,
+        since "A reading that no link could follow is not used until the next ones confirm it.";
+
     /// Finding an output encoder that loses few counts.
     LOST_COUNTS_FOUND: "time until an output encoder that loses 0.3 % of its counts to and fro is given up [s]",
         below 0.4, was 0.25,

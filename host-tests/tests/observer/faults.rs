@@ -1,6 +1,8 @@
 //! Encoders that fail and implausible samples: detected, reported, errors bounded, recovery.
 
-use host_tests::tolerance::observer::{FAILURE_FOUND, FAILURE_FOUND_AT_SPEED, GAP_COARSE, LOST_COUNTS_FOUND};
+use host_tests::tolerance::observer::{
+    FAILURE_FOUND, FAILURE_FOUND_AT_SPEED, GAP_COARSE, LOST_COUNTS_FOUND, ONE_WRONG_BIT,
+};
 use model_core::observer::{Estimates, MAPPED, OutputFault, Samples, Source};
 use reference::drive_train::Disturbance;
 use scenario::rig::PeriodSample;
@@ -138,6 +140,41 @@ fn an_output_encoder_that_slips_is_given_up() {
     let found = sources[at..].iter().position(|source| *source != Source::Both).expect("it is found");
     FAILURE_FOUND.check(found as f64 * 1e-4);
     assert_eq!(sources[at + found], Source::MotorOnly(OutputFault::OutOfRange));
+}
+
+/// Twenty seeds of encoder errors, on a motion that turns round often. The guess of the width is too small: under one that is
+/// too large, a slip that no single reading shows passes for wear.
+#[test]
+fn one_wrong_bit_moves_no_estimate_and_a_slip_that_no_single_reading_shows_is_told_from_wear() {
+    let experiment = |seed| Experiment::new("q1", "gravity", Encoders::Preset, Some(40e-6), seed).lasting(2.4);
+    let guessed = |of: &Experiment| of.nominal.sun_planet.half_backlash[0] < 40e-6;
+    for (seed, experiment) in (24..).map(|seed| (seed, experiment(seed))).filter(|(_, of)| guessed(of)).take(20) {
+        let log = experiment.record();
+        let healthy = experiment.said::<f64>(&log, |_, _| {});
+        let spoilt =
+            experiment.said::<f64>(&log, |k, samples| shift(samples, if k % 777 == 5 { 64 } else { 0 }, 1 << 17));
+        let moved = healthy.iter().zip(&spoilt).skip(18_000);
+        let worst = moved.map(|(a, b)| (a.load_torque.value - b.load_torque.value).abs()).fold(0.0, f64::max);
+        ONE_WRONG_BIT.check(worst / experiment.setup.joint.rated_output_torque);
+
+        // Readings are missing while it slips, away from the flank that carries: beyond the flank by what teeth can wear.
+        let carries = |from: usize| log[from].gap.abs() > 80e-6 && log[from].gap * log[from + 60].gap > 0.0;
+        let at = (20_000..23_000).find(|from| carries(*from)).expect("a flank carries for some milliseconds");
+        let slip = if log[at].gap > 0.0 { 30 } else { -30 };
+        let slipping = experiment.said::<f64>(&log, |k, samples| {
+            if k >= at {
+                shift(samples, -slip, 1 << 17);
+            }
+            if at.abs_diff(k) < 2 {
+                samples.output = None;
+            }
+        });
+        let found = slipping[at..].iter().position(|estimates| estimates.source != Source::Both).expect("it is found");
+        println!(
+            "seed {seed}: {worst:.3} N m after one wrong bit; a slip of {slip} counts found after {found} periods"
+        );
+        FAILURE_FOUND.check(found as f64 * 1e-4);
+    }
 }
 
 #[test]

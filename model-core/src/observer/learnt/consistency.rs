@@ -51,20 +51,18 @@ impl Consistency {
             return Verdict::Keep;
         }
         self.contradicted = 0;
-        self.narrower()
+        // The gap is narrower than was learnt.
+        if self.is_trusted() { Verdict::EncoderFails } else { self.other_half_gap() }
     }
 
-    /// A rest that does not belong to the model: its deflection is beyond the flank or short of it, by more than a half-gap
-    /// is worth or not.
-    pub fn outlier(&mut self, short: bool, large: bool) -> Verdict {
+    /// A rest that does not belong to the model, by more than a known half-gap may be wrong or not.
+    pub fn outlier(&mut self, large: bool) -> Verdict {
         self.outliers += 1;
         if self.outliers >= TOO_MANY {
             self.outliers = 0;
             Verdict::RelearnAll
         } else if self.outliers != FEW || !large {
             Verdict::Keep
-        } else if short {
-            self.narrower()
         } else {
             self.other_half_gap()
         }
@@ -76,11 +74,6 @@ impl Consistency {
         let [back, drive] = &mut self.trusted;
         let trusted = if flank == Some(Flank::Drive) { &mut *drive } else { &mut *back };
         *trusted = trusted.saturating_add(1);
-    }
-
-    /// The gap seems narrower than was learnt.
-    fn narrower(&mut self) -> Verdict {
-        if self.is_trusted() { Verdict::EncoderFails } else { self.other_half_gap() }
     }
 
     /// The half-gap is not what was learnt. If it had not been seen on both flanks for long, nothing else is sure either.

@@ -28,9 +28,6 @@ const SHORTEST_TOUCH: u8 = 2;
 /// lags behind.
 const LAGGING: i32 = 4;
 
-/// The same by which the wind-up changes in an interval where teeth may part.
-const PARTING: i32 = 2;
-
 /// Standard deviations of the steady force above which contact is loaded that no deflection confirms yet.
 const UNCONFIRMED: i32 = 4;
 
@@ -100,22 +97,6 @@ fn loaded_by_force<T: Real>(signs: &Signs<'_, T>, interval: &Interval<T>) -> Opt
     let steadily = told(interval.steady, T::from_i32(UNCONFIRMED) * uncertainty.steady_force_deviation);
     let now = told(signs.force, T::TWO * uncertainty.mean_force_deviation);
     if steadily == now { now } else { None }
-}
-
-/// Whether teeth that are felt on a flank stay there until the interval is over: what is measured of the force lags, so
-/// teeth that part seem to be pressed still. Once the half-gap is known, the deflection says so sooner. The steady force
-/// rises by `rise` in an interval [N].
-pub fn stays<T: Real>(
-    signs: &Signs<'_, T>,
-    interval: &Interval<T>,
-    table: &LearnerTable<T>,
-    flank: Flank,
-    rise: T,
-) -> bool {
-    let side: T = flank.sign();
-    let falls = -side * rise * signs.compliance > T::from_i32(PARTING) * table.noise;
-    let ahead = interval.steady + (T::ONE + table.force_lag) * rise;
-    signs.uncertainty.half_gap_is_known || !falls || side * ahead > signs.uncertainty.force_deviation
 }
 
 /// Intervals of a touch that ended early from which it is learnt. Until the half-gap is known, half a block of rest counts

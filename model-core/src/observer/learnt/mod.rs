@@ -78,8 +78,6 @@ pub struct Reading<T: Real> {
     travel: Travel<T>,
     /// The flank on which contact has settled.
     pub flank: Option<Flank>,
-    /// Rise of the steady force in it [N].
-    steady_rise: T,
     /// Transmission error that is not learnt yet, while the half-gap is not known [m].
     unlearnt: T,
 }
@@ -293,14 +291,13 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         let less_wind_up = deflection - compliance * mean.force - known_shift;
         let read = (mean.lost, mean.direction);
         let travel = self.travel.step(&tables.contact, less_wind_up, read, blur * turned, self.uncertainty.softness);
-        let steady_rise = (mean.force - self.interval.steady) * Self::STEADY;
-        self.interval.steady += steady_rise;
+        self.interval.steady += (mean.force - self.interval.steady) * Self::STEADY;
         let rested = if let Travel::AtRest(intervals) = travel { i32::from(intervals.min(LONG_REST)) } else { 1 };
         self.interval.rested += (mean.force - self.interval.rested).over(T::from_i32(rested));
         let flank_shift = self.transmission_error(&mesh);
         let signs = self.signs(deflection - flank_shift, mean.force);
         let flank = if rests(travel) { flank::settled(&signs, &self.interval, both_encoders) } else { None };
-        Reading { mean, mesh, deflection, flank_shift, travel, flank, steady_rise, unlearnt }
+        Reading { mean, mesh, deflection, flank_shift, travel, flank, unlearnt }
     }
 
     /// What an interval has to tell the flank by: a deflection of the teeth [m] and a force [N].
@@ -354,10 +351,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         let loaded = flank::loaded(&signs, &self.interval, &tables.learner, rise);
         // The first millisecond of a landing is not learnt from.
         let twice = loaded.filter(|_| loaded == self.interval.loaded);
-        let told = reading
-            .flank
-            .or(twice)
-            .filter(|flank| flank::stays(&signs, &self.interval, &tables.learner, *flank, reading.steady_rise));
+        let told = reading.flank.or(twice);
         self.interval.loaded = loaded;
         let new = turns || told.is_some() && told != self.interval.learnt_on;
         if both_encoders && new && (told.is_some() || rests_somewhere) { Rest::On(told) } else { Rest::No }
@@ -477,9 +471,8 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         let weight = table.weight * self.block.worth(table, self.uncertainty.half_gap_is_known);
         let innovation = self.learner.innovation(table, &regressors, deflection, weight);
         if !innovation.is_within(GATE) {
-            let short = sign::<T>(self.block.flank()) * innovation.value < T::ZERO;
             let large = innovation.value.abs() * table.noise > half_gap * tables.contact.known_part;
-            let verdict = self.consistency.outlier(short, large);
+            let verdict = self.consistency.outlier(large);
             self.obey(verdict);
             return verdict;
         }

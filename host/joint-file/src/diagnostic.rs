@@ -114,6 +114,8 @@ fn shortened(message: &str) -> Cow<'_, str> {
 
 #[cfg(test)]
 mod tests {
+    use std::time::Duration;
+
     use super::*;
 
     fn shown(text: &str) -> String {
@@ -126,14 +128,21 @@ mod tests {
         let preset = crate::preset("q1").expect("a preset");
         let shown = shown(&format!("{preset}\n# {}\nnonsense_{} = 1\n", "x".repeat(70_000), "y".repeat(70_000)));
         let line = preset.lines().count() + 3;
-        assert!(shown.contains(&format!("line {line}: unknown key `nonsense_yyy")), "{shown}");
+        let plain = shown.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(plain.contains(&format!("line {line}: unknown key")), "{plain}");
         assert!(shown.len() < 5000, "{} letters", shown.len());
     }
 
     #[test]
     fn a_file_full_of_problems_is_told_the_first_of_them() {
-        let text: String = (0..50_000).map(|number| format!("nonsense_{number} = 1\n")).collect();
-        let shown = shown(&text);
-        assert!(shown.contains("100 problems, and there may be more"), "{shown}");
+        let unknown: String = (0..50_000).map(|number| format!("nonsense_{number} = 1\n")).collect();
+        let broken = "a=\n".repeat(200_000);
+        let (sender, receiver) = std::sync::mpsc::channel();
+        std::thread::spawn(move || [unknown, broken].iter().try_for_each(|text| sender.send(shown(text))));
+        for what in ["unknown", "broken"] {
+            // Less than a second: what took minutes grew with the square of the file.
+            let shown = receiver.recv_timeout(Duration::from_secs(30)).expect(what);
+            assert!(shown.contains("100 problems, and there may be more"), "{what}: {shown}");
+        }
     }
 }

@@ -3,6 +3,7 @@
 
 use crc::{CRC_32_ISO_HDLC, Crc, Table};
 use heapless::Vec;
+use postcard::ser_flavors::Flavor;
 use serde::{Serialize, de::DeserializeOwned};
 
 /// Longest message before stuffing, CRC included.
@@ -76,6 +77,33 @@ pub fn sealed<M: Serialize>(message: &M, frame: &mut [u8]) -> Result<(), TooLong
     Ok(())
 }
 
+/// Whether a message stands in the shortest form that there is: a number filled up with zero bits is a second way to say the
+/// same, which no sender of ours takes. Compares byte by byte with what a sender would have written, without a buffer.
+fn is_shortest<M: Serialize>(message: &M, received: &[u8]) -> bool {
+    matches!(postcard::serialize_with_flavor(message, Comparison(received)), Ok([]))
+}
+
+/// Takes what a sender would write as long as it is what was received; what was received beyond that is left.
+struct Comparison<'r>(&'r [u8]);
+
+impl<'r> Flavor for Comparison<'r> {
+    type Output = &'r [u8];
+
+    fn try_push(&mut self, byte: u8) -> postcard::Result<()> {
+        match self.0.split_first() {
+            Some((received, rest)) if *received == byte => {
+                self.0 = rest;
+                Ok(())
+            }
+            _ => Err(postcard::Error::SerializeBufferFull),
+        }
+    }
+
+    fn finalize(self) -> postcard::Result<Self::Output> {
+        Ok(self.0)
+    }
+}
+
 /// The message in a frame of fixed length, if it came through unchanged.
 pub fn unsealed<M: DeserializeOwned>(frame: &[u8]) -> Option<M> {
     let (content, seal) = frame.split_last_chunk::<CRC_BYTES>()?;
@@ -86,7 +114,7 @@ pub fn unsealed<M: DeserializeOwned>(frame: &[u8]) -> Option<M> {
 /// What a [`Receiver`] has thrown away.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Dropped {
-    /// Frames with a bad CRC, a bad length or an unknown content.
+    /// Frames with a bad CRC, a bad length, an unknown content or one that is not in its shortest form.
     pub frames: u32,
 }
 
@@ -111,13 +139,23 @@ impl Receiver {
     }
 
     /// Takes one byte; returns a message if the byte ended a good frame. Empty frames are fill, not errors.
-    pub fn push<M: DeserializeOwned>(&mut self, byte: u8) -> Option<M> {
+    pub fn push<M: Serialize + DeserializeOwned>(&mut self, byte: u8) -> Option<M> {
+        self.take(byte, is_shortest)
+    }
+
+    /// The same for a message of which only the beginning is known, and which therefore cannot be held against what a sender
+    /// would have written.
+    pub fn push_beginning<M: DeserializeOwned>(&mut self, byte: u8) -> Option<M> {
+        self.take(byte, |_, _| true)
+    }
+
+    fn take<M: DeserializeOwned>(&mut self, byte: u8, good: impl Fn(&M, &[u8]) -> bool) -> Option<M> {
         if byte != 0 {
             self.overflowed |= self.buffer.push(byte).is_err();
             return None;
         }
         let empty = self.buffer.is_empty();
-        let message = if self.overflowed { None } else { decode(&mut self.buffer) };
+        let message = if self.overflowed { None } else { decode(&mut self.buffer, good) };
         if message.is_none() && !empty {
             self.dropped.frames = self.dropped.frames.saturating_add(1);
         }
@@ -137,14 +175,14 @@ impl Receiver {
     }
 }
 
-fn decode<M: DeserializeOwned>(stuffed: &mut [u8]) -> Option<M> {
+fn decode<M: DeserializeOwned>(stuffed: &mut [u8], good: impl Fn(&M, &[u8]) -> bool) -> Option<M> {
     let length = cobs::decode_in_place(stuffed).ok()?;
     let (plain, checksum) = stuffed.get(..length)?.split_at_checked(length.checked_sub(CRC_BYTES)?)?;
     if checksum != CRC.checksum(plain).to_le_bytes() {
         return None;
     }
     match postcard::take_from_bytes(plain) {
-        Ok((message, [])) => Some(message),
+        Ok((message, [])) if good(&message, plain) => Some(message),
         _ => None,
     }
 }

@@ -116,6 +116,30 @@ fn zero_bytes_between_frames_are_no_errors() {
 }
 
 #[test]
+fn a_number_that_is_filled_up_makes_a_bad_frame() {
+    // A hello is the number of its kind, 0, and the protocol's: 7, as one byte or with zero bits behind it.
+    for (short, long) in [(&[0, 7][..], &[0, 0x87, 0][..]), (&[0, 7], &[0x80, 0, 7]), (&[0, 7], &[0, 0x87, 0x80, 0])] {
+        let mut receiver = Receiver::new();
+        let message = ToBoard::Hello { protocol: 7 };
+        assert_eq!(receive(&mut receiver, &encode(&Raw(short)).unwrap()), [message], "{short:?}");
+        assert!(receive(&mut receiver, &encode(&Raw(long)).unwrap()).is_empty(), "{long:?}");
+        assert_eq!(receiver.dropped().frames, 1);
+    }
+}
+
+/// Bytes that are a message already.
+struct Raw<'b>(&'b [u8]);
+
+impl serde::Serialize for Raw<'_> {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        use serde::ser::SerializeTuple;
+        let mut tuple = serializer.serialize_tuple(self.0.len())?;
+        self.0.iter().try_for_each(|byte| tuple.serialize_element(byte))?;
+        tuple.end()
+    }
+}
+
+#[test]
 fn more_behind_a_message_makes_it_a_bad_frame() {
     let stop_and_more = encode(&(ToBoard::Stop, 7_u32)).unwrap();
     let mut receiver = Receiver::new();

@@ -14,11 +14,14 @@ use report::failure::{Failure, Outcome};
 use report::number::TYPED;
 
 pub use builtin::BUILTIN;
+pub use recorded::check_time;
 pub use torques::MAX_TORQUE;
 use torques::Torques;
 
 /// No link or carrier turns faster [rad/s].
 pub const MAX_SPEED: f64 = 1e4;
+/// A run along a recording is no longer, unless it is asked for [s].
+pub const LONGEST_RUN: f64 = 3600.0;
 /// Commands a second; torques hold in between [Hz].
 pub const COMMAND_RATE: u32 = 1000;
 
@@ -51,6 +54,9 @@ impl TorqueProfile {
             return Err(Failure::new(message).with_help(help));
         }
         let recording = recorded::RecordedTorques::read(path)?;
+        if duration.is_none() {
+            check_length(recording.duration(), "--duration").map_err(|failure| failure.while_doing(path.display()))?;
+        }
         let seconds = duration.unwrap_or(recording.duration());
         Self::sampled(name, tick_rate, seconds, |from, to| recording.mean(from, to))
     }
@@ -87,6 +93,15 @@ impl TorqueProfile {
         }
         Ok(Self { name: name.to_owned(), commands, ticks })
     }
+}
+
+/// Refuses to run a recording to its end if that is hours away; `option` says how much of it is wanted.
+pub fn check_length(seconds: f64, option: &str) -> Outcome<()> {
+    if seconds <= LONGEST_RUN {
+        return Ok(());
+    }
+    Err(Failure::new(format!("the recording lasts {} s, a run at most {LONGEST_RUN} s", TYPED.write(seconds)))
+        .with_help(format!("check the unit of time_s, cut the recording, or say how much of it to run by {option}")))
 }
 
 /// First tick at or after the start of a command interval.

@@ -20,6 +20,7 @@ use link::messages::{Hello, RunSettings, ToBoard};
 use super::recording::{Recording, UnacknowledgedSchedules};
 use super::transport::Line;
 use report::failure::{Failure, Outcome};
+use report::interruption::InOrder;
 
 pub use help::BoardHelp;
 pub use identity::Expected;
@@ -53,6 +54,8 @@ pub struct Session<'a> {
     unacknowledged: UnacknowledgedSchedules,
     /// All that was received.
     pub recording: Recording,
+    /// A board that runs is stopped before the process ends.
+    _in_order: InOrder,
 }
 
 impl<'a> Session<'a> {
@@ -67,6 +70,7 @@ impl<'a> Session<'a> {
             dropped_before: 0,
             unacknowledged: UnacknowledgedSchedules::default(),
             recording: Recording::default(),
+            _in_order: InOrder::begin(),
         }
     }
 

@@ -49,6 +49,14 @@ impl Columns {
         }
         let mut columns = Self { values: vec![Vec::new(); names.len()], names, ..Self::of("line") };
         for (line, text) in lines {
+            // A row that is filled up would take far more room here than in the file.
+            let count = text.split(',').count();
+            if count < columns.values.len() {
+                let message = format!("line {line} has {count} values, the header has {}", columns.values.len());
+                return Err(
+                    Failure::new(message).with_help("give every row a value for every column, or cut the log there")
+                );
+            }
             let mut cells = text.split(',');
             for values in &mut columns.values {
                 // A cell that is no number matters only in a column that is used.
@@ -57,6 +65,17 @@ impl Columns {
             columns.places.push(line);
         }
         Ok(columns)
+    }
+
+    /// The same columns without their values.
+    pub fn heads(&self) -> Self {
+        Self { names: self.names.clone(), ..Self::of(self.row) }
+    }
+
+    /// Memory that its names and values take [bytes].
+    pub fn size(&self) -> u64 {
+        let names: usize = self.names.iter().map(|name| name.len() + size_of::<String>() + size_of::<Vec<f64>>()).sum();
+        (names + size_of::<f64>() * (1 + self.names.len()) * self.places.len()) as u64
     }
 
     /// One more row, the first of which gives the names; `false` if it has other ones.
@@ -147,5 +166,21 @@ impl Columns {
                 .with_help("write a number with a point in every row, or cut the log there")),
             None => Ok(Some(values.clone())),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_row_is_not_filled_up_to_a_header_that_is_much_longer() {
+        // 40,000 rows of two bytes under 40,000 names would take 13 GB.
+        let text = format!("time_s{}\n{}", ",x".repeat(40_000), "1\n".repeat(40_000));
+        let refused = Columns::parse(&text).expect_err("short rows");
+        assert_eq!(refused.message(), "line 2 has 1 values, the header has 40001");
+        let more = Columns::parse("time_s,motor_counts\n0,1,\n1,,\n").expect("a comma at the end is no harm");
+        assert_eq!(more.maybe("time_s").expect("numbers"), Some(vec![0.0, 1.0]));
+        assert!(more.maybe("motor_counts").is_err(), "an empty cell matters in a column that is used");
     }
 }

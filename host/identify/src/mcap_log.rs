@@ -2,12 +2,14 @@
 //! told, or is the one that has what is wanted; topics are not put together.
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
+use std::rc::Rc;
 
-use mcap::{Channel, Message, MessageStream};
+use mcap::Channel;
 use serde_json::Value;
 
 use super::columns::Columns;
+use super::mcap_file::{self, Broken, Message};
+use super::numbers::{self, Numbers};
 use super::ros_message::Form;
 use report::failure::{Failure, Outcome};
 
@@ -15,6 +17,9 @@ use report::failure::{Failure, Outcome};
 const MAGIC: &[u8] = b"\x89MCAP";
 /// Topics and fields that a message names at most.
 const NAMED: usize = 12;
+/// Columns may take so many times the file's size and some more: other topics than those of a joint may pack much better.
+const MOST_MEMORY: u64 = 256;
+const SOME: u64 = 64 << 20;
 
 /// Whether a file is one.
 pub fn is_mcap(bytes: &[u8]) -> bool {
@@ -23,36 +28,41 @@ pub fn is_mcap(bytes: &[u8]) -> bool {
 
 /// How messages of a channel are read.
 enum Reader {
-    Ros(Form),
+    Ros(Rc<Form>),
     Json,
     /// Not at all, for a reason.
     Unknown(String),
 }
 
+/// Forms by the number of their schema.
+type Forms = BTreeMap<u16, Result<Rc<Form>, String>>;
+
 impl Reader {
-    fn of(channel: &Channel<'_>) -> Self {
+    /// Channels of one schema share the form that is read from it.
+    fn of(channel: &Channel<'_>, forms: &mut Forms) -> Self {
         let schema = channel.schema.as_ref();
         let form = schema.map_or("", |schema| schema.encoding.as_str());
         match (channel.message_encoding.as_str(), form) {
             ("json", _) => Self::Json,
             ("cdr", "ros2msg") => {
-                let text = schema.map(|schema| String::from_utf8_lossy(&schema.data).into_owned());
-                match Form::read(&text.unwrap_or_default()) {
-                    Ok(form) => Self::Ros(form),
-                    Err(why) => Self::Unknown(why),
+                let (id, text) = schema.map_or((0, &[][..]), |schema| (schema.id, &schema.data));
+                let read = || Form::read(&String::from_utf8_lossy(text)).map(Rc::new);
+                match forms.entry(id).or_insert_with(read) {
+                    Ok(form) => Self::Ros(Rc::clone(form)),
+                    Err(why) => Self::Unknown(why.clone()),
                 }
             }
             (encoding, form) => Self::Unknown(format!("its messages are `{encoding}` by `{form}`")),
         }
     }
 
-    fn numbers(&self, message: &[u8]) -> Result<Vec<(String, f64)>, String> {
+    fn numbers(&self, message: &[u8]) -> Result<Numbers, String> {
         match self {
             Self::Ros(form) => form.numbers(message),
             Self::Json => {
                 let value: Value = serde_json::from_slice(message).map_err(|error| error.to_string())?;
-                let mut numbers = Vec::new();
-                flatten(&value, String::new(), &mut numbers);
+                let mut numbers = Numbers::default();
+                flatten(&value, String::new(), &mut numbers)?;
                 Ok(numbers)
             }
             Self::Unknown(why) => Err(why.clone()),
@@ -60,32 +70,50 @@ impl Reader {
     }
 }
 
-fn flatten(value: &Value, path: String, numbers: &mut Vec<(String, f64)>) {
+fn flatten(value: &Value, path: String, numbers: &mut Numbers) -> Result<(), String> {
     match value {
-        Value::Number(number) => numbers.extend(number.as_f64().map(|number| (path, number))),
-        Value::Bool(set) => numbers.push((path, f64::from(u8::from(*set)))),
+        Value::Number(number) => number.as_f64().map_or(Ok(()), |number| numbers.push(path, number)),
+        Value::Bool(set) => numbers.push(path, f64::from(u8::from(*set))),
         Value::Array(list) => {
-            list.iter().enumerate().for_each(|(place, value)| flatten(value, format!("{path}[{place}]"), numbers));
+            let mut places = list.iter().enumerate();
+            places.try_for_each(|(place, value)| flatten(value, numbers::place(&path, place)?, numbers))
         }
-        Value::Object(map) => map.iter().for_each(|(name, value)| {
-            let path = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
-            flatten(value, path, numbers);
-        }),
-        Value::Null | Value::String(_) => {}
+        Value::Object(map) => {
+            map.iter().try_for_each(|(name, value)| flatten(value, numbers::field(&path, name)?, numbers))
+        }
+        Value::Null | Value::String(_) => Ok(()),
     }
 }
 
 /// Reads the topic that is named, or else the only one whose columns will do.
 pub fn read(bytes: &[u8], topic: Option<&str>, will_do: impl Fn(&Columns) -> bool) -> Outcome<Columns> {
     let mut topics: BTreeMap<String, Topic> = BTreeMap::new();
-    for (index, message) in stream(bytes)?.enumerate() {
-        let message = message.map_err(|error| cut_off(index, &error))?;
+    let (mut forms, mut messages) = (Forms::new(), 0);
+    let mut room = MOST_MEMORY.saturating_mul(bytes.len() as u64).saturating_add(SOME);
+    let mut take = |message: &Message<'_>| {
+        messages += 1;
         let name = &message.channel.topic;
-        if topic.is_some_and(|topic| topic != name) && topics.contains_key(name) {
-            continue;
+        if !topics.contains_key(name) {
+            topics.insert(name.clone(), Topic::new(&message.channel, &mut forms));
+        } else if topic.is_some_and(|topic| topic != name) {
+            return Ok(());
         }
-        topics.entry(name.clone()).or_insert_with(|| Topic::new(message.channel.clone())).take(&message);
-    }
+        let Some(known) = topics.get_mut(name) else { return Ok(()) };
+        let before = known.columns.size();
+        known.take(message);
+        room = room.checked_sub(known.columns.size() - before).ok_or_else(|| {
+            Failure::new(format!("the numbers of its topics take more than {MOST_MEMORY} times the log's own size"))
+                .with_help("name the topic with --topic, or write a log of that topic alone")
+        })?;
+        Ok(())
+    };
+    mcap_file::read(bytes, &mut take).map_err(|broken| match broken {
+        Broken::Damaged(why) => {
+            Failure::new(format!("the MCAP log is damaged or cut off after {messages} messages: {why}"))
+                .with_help("`mcap recover` keeps what can be read of it")
+        }
+        Broken::Refused(failure) => failure,
+    })?;
     let chosen = match topic {
         Some(name) => topics.remove(name).ok_or_else(|| {
             let near = joint_file::nearest(name, topics.keys().map(String::as_str));
@@ -123,15 +151,6 @@ pub fn read(bytes: &[u8], topic: Option<&str>, will_do: impl Fn(&Columns) -> boo
     chosen.finish()
 }
 
-fn stream(bytes: &[u8]) -> Outcome<MessageStream<'_>> {
-    MessageStream::new(bytes).map_err(|error| cut_off(0, &error))
-}
-
-fn cut_off(messages: usize, error: &mcap::McapError) -> Failure {
-    Failure::new(format!("the MCAP log is damaged or cut off after {messages} messages: {error}"))
-        .with_help("`mcap recover` keeps what can be read of it")
-}
-
 /// Topics with their numbers, as far as there is room.
 fn list(topics: &BTreeMap<String, Topic>) -> String {
     if topics.is_empty() {
@@ -155,9 +174,9 @@ struct Topic {
 }
 
 impl Topic {
-    fn new(channel: Arc<Channel<'_>>) -> Self {
+    fn new(channel: &Channel<'_>, forms: &mut Forms) -> Self {
         let name = channel.topic.clone();
-        Self { reader: Reader::of(&channel), name, columns: Columns::of("message"), trouble: None, messages: 0 }
+        Self { reader: Reader::of(channel, forms), name, columns: Columns::of("message"), trouble: None, messages: 0 }
     }
 
     fn take(&mut self, message: &Message<'_>) {
@@ -165,13 +184,13 @@ impl Topic {
         if self.trouble.is_some() {
             return;
         }
-        match self.reader.numbers(&message.data) {
-            Ok(mut numbers) => {
-                stamp(&mut numbers, message.log_time);
-                if !self.columns.push(self.messages, &numbers) {
-                    self.trouble = Some(format!("message {} has other fields than those before it", self.messages));
-                }
-            }
+        let stamped = self.reader.numbers(message.data).and_then(|mut numbers| {
+            stamp(&mut numbers, message.log_time)?;
+            Ok(numbers)
+        });
+        match stamped {
+            Ok(numbers) if self.columns.push(self.messages, numbers.as_slice()) => {}
+            Ok(_) => self.trouble = Some(format!("message {} has other fields than those before it", self.messages)),
             Err(why) => self.trouble = Some(format!("message {}: {why}", self.messages)),
         }
     }
@@ -186,12 +205,11 @@ impl Topic {
 }
 
 /// A message without a time of its own has that of its header, or at last the recorder's.
-fn stamp(numbers: &mut Vec<(String, f64)>, log_time: u64) {
-    let value = |wanted: &str| numbers.iter().find(|(name, _)| name == wanted).map(|(_, value)| *value);
-    if ["time_s", "time_ms", "time_us"].into_iter().any(|name| value(name).is_some()) {
-        return;
+fn stamp(numbers: &mut Numbers, log_time: u64) -> Result<(), String> {
+    if ["time_s", "time_ms", "time_us"].into_iter().any(|name| numbers.value(name).is_some()) {
+        return Ok(());
     }
-    let own = value("header.stamp.sec").zip(value("header.stamp.nanosec"));
+    let own = numbers.value("header.stamp.sec").zip(numbers.value("header.stamp.nanosec"));
     let time = own.map_or(1e-9 * log_time as f64, |(seconds, nano)| seconds + 1e-9 * nano);
-    numbers.push(("time_s".to_owned(), time));
+    numbers.push("time_s".to_owned(), time)
 }

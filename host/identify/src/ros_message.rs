@@ -2,10 +2,13 @@
 //! `header.stamp.sec` or `position[0]`. Text is passed over.
 
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
+
+use super::numbers::{self, Numbers};
 
 /// Messages within messages: deeper ones are taken for a mistake.
 const DEEPEST: usize = 16;
+/// Letters of a line that a message shows at most.
+const SHOWN: usize = 80;
 
 /// The form of a message.
 #[derive(Debug, Clone, PartialEq)]
@@ -91,7 +94,7 @@ impl Form {
             if let Some(next) = line.strip_prefix("MSG:") {
                 name = last_part(next.trim());
                 types.insert(name.clone(), Vec::new());
-            } else if let Some(field) = field(line).ok_or_else(|| format!("`{line}` is no field of a message"))? {
+            } else if let Some(field) = field(line).ok_or_else(|| no_field(line))? {
                 types.entry(name.clone()).or_insert_with(Vec::new).push(field);
             }
         }
@@ -105,11 +108,11 @@ impl Form {
     }
 
     /// Paths and values of all numbers in a message, in its order.
-    pub fn numbers(&self, message: &[u8]) -> Result<Vec<(String, f64)>, String> {
+    pub fn numbers(&self, message: &[u8]) -> Result<Numbers, String> {
         let [0, kind @ (0 | 1), _, _, body @ ..] = message else {
             return Err("it is not in plain CDR".to_owned());
         };
-        let mut reading = Reading { form: self, body, at: 0, big: *kind == 0, numbers: Vec::new() };
+        let mut reading = Reading { form: self, body, at: 0, big: *kind == 0, numbers: Numbers::default() };
         reading.message("", "", 0)?;
         Ok(reading.numbers)
     }
@@ -118,6 +121,10 @@ impl Form {
 /// The name of a type without its package.
 fn last_part(name: &str) -> String {
     name.rsplit('/').next().unwrap_or_default().to_owned()
+}
+
+fn no_field(line: &str) -> String {
+    format!("`{}` is no field of a message", line.chars().take(SHOWN).collect::<String>())
 }
 
 /// A line's field; none for a constant.
@@ -131,7 +138,11 @@ fn field(line: &str) -> Option<Option<Field>> {
         None => (kind, Count::One),
         Some((kind, "]")) => (kind, Count::List),
         Some((kind, most)) if most.starts_with("<=") => (kind, Count::List),
-        Some((kind, number)) => (kind, Count::Fixed(number.strip_suffix(']')?.parse().ok()?)),
+        // As in ROS, no array has no place: whatever is read of a message then takes a byte of it at least.
+        Some((kind, number)) => {
+            let many = number.strip_suffix(']')?.parse().ok()?;
+            (kind, Count::Fixed(Some(many).filter(|many| *many > 0)?))
+        }
     };
     let kind = match kind.split("<=").next()? {
         "string" => Kind::Text,
@@ -148,7 +159,7 @@ struct Reading<'r> {
     at: usize,
     /// The most significant byte comes first.
     big: bool,
-    numbers: Vec<(String, f64)>,
+    numbers: Numbers,
 }
 
 impl Reading<'_> {
@@ -159,7 +170,7 @@ impl Reading<'_> {
             return Err(format!("`{kind}` has itself in it"));
         }
         for field in fields {
-            let name = if path.is_empty() { field.name.clone() } else { format!("{path}.{}", field.name) };
+            let name = numbers::field(path, &field.name)?;
             let many = match field.count {
                 Count::One => {
                     self.one(&field.kind, name, depth)?;
@@ -168,15 +179,11 @@ impl Reading<'_> {
                 Count::Fixed(many) => many,
                 Count::List => self.bits(4)? as u32,
             };
-            // Everything takes a byte at least.
             if many as usize > self.body.len() {
                 return Err("it is cut off".to_owned());
             }
-            for place in 0..many {
-                let mut one = name.clone();
-                // Writing to a string cannot fail.
-                let _ = write!(one, "[{place}]");
-                self.one(&field.kind, one, depth)?;
+            for place in 0..many as usize {
+                self.one(&field.kind, numbers::place(&name, place)?, depth)?;
             }
         }
         if fields.is_empty() {
@@ -189,8 +196,7 @@ impl Reading<'_> {
         match kind {
             Kind::Number(number) => {
                 let bits = self.bits(number.size())?;
-                self.numbers.push((name, number.value(bits)));
-                Ok(())
+                self.numbers.push(name, number.value(bits))
             }
             Kind::Text => {
                 let length = self.bits(4)? as usize;

@@ -10,6 +10,8 @@ const LEAST_TIME: f64 = 0.5;
 const LEAST_RATE: f64 = 2000.0;
 /// ... nor do less than so many of them in a swing of the joint on its compliance.
 const LEAST_IN_A_SWING: f64 = 3.0;
+/// No encoder is read so often: the time is in another unit [Hz].
+const MOST_RATE: f64 = 1e6;
 /// Samples of a swing from which its damping can be told.
 pub const SWING_SAMPLES: f64 = 16.0;
 /// A step of time may differ by this ratio from the usual one.
@@ -60,6 +62,12 @@ fn check_time(period: f64, samples: usize, prior: &PriorModel) -> Outcome<()> {
             "record every control period; {:.0} Hz also show the damping",
             (SWING_SAMPLES * swing).max(needed)
         )));
+    }
+    if rate > MOST_RATE {
+        return Err(Failure::new(format!(
+            "the log is sampled at {rate:.3e} Hz, which no encoder is: at most {MOST_RATE:.0e} Hz"
+        ))
+        .with_help("check the unit of the time: time_s, time_ms and time_us are understood"));
     }
     if time < LEAST_TIME {
         return Err(Failure::new(format!("the log is too short: {time:.3} s, at least {LEAST_TIME} s are needed"))

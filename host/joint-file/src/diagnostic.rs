@@ -1,9 +1,11 @@
 //! Draws what is wrong with a file that users write: every problem at once, each with its place underlined. Colours and line
 //! drawing follow the terminal, as miette decides.
 
+use std::borrow::Cow;
 use std::error::Error;
 use std::fmt;
 
+use crate::notes::MOST_PROBLEMS;
 use crate::{Problem, Severity};
 use miette::{Diagnostic, LabeledSpan, NamedSource, Report};
 
@@ -11,13 +13,19 @@ use miette::{Diagnostic, LabeledSpan, NamedSource, Report};
 #[derive(Debug)]
 struct Rejected {
     name: String,
-    source: NamedSource<String>,
+    /// The text, if it can be drawn.
+    source: Option<NamedSource<String>>,
     places: Vec<Place>,
 }
 
-/// One problem.
+/// One problem, with its line if the text is not drawn.
 #[derive(Debug)]
-struct Place(Problem);
+struct Place(Problem, Option<usize>);
+
+/// Letters of a message beside a text that is not drawn.
+const LONGEST_MESSAGE: usize = 300;
+/// Bytes of the longest line that is drawn: no terminal shows more, and what draws fails at 65,536 columns.
+const LONGEST_DRAWN: usize = 4096;
 
 /// One report over all problems of the file called `name`.
 ///
@@ -30,17 +38,27 @@ struct Place(Problem);
 /// assert!(shown.contains("3, 4 or 5") || shown.contains("3 to 5"), "{shown}");
 /// ```
 pub fn report(name: &str, text: &str, problems: &[Problem]) -> Report {
+    let drawn = text.split('\n').all(|line| line.len() <= LONGEST_DRAWN);
+    let line = |problem: &Problem| {
+        let before = text.as_bytes().iter().take(problem.span.start);
+        1 + before.filter(|byte| **byte == b'\n').count()
+    };
+    let place = |problem: &Problem| Place(problem.clone(), (!drawn).then(|| line(problem)));
     Report::new(Rejected {
         name: name.to_owned(),
-        source: NamedSource::new(name, text.to_owned()),
-        places: problems.iter().cloned().map(Place).collect(),
+        source: drawn.then(|| NamedSource::new(name, text.to_owned())),
+        places: problems.iter().map(place).collect(),
     })
 }
 
 impl fmt::Display for Rejected {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let errors = self.places.iter().filter(|place| place.0.severity == Severity::Error).count();
-        let count = if errors == 1 { "one problem".to_owned() } else { format!("{errors} problems") };
+        let count = match errors {
+            1 => "one problem".to_owned(),
+            _ if self.places.len() >= MOST_PROBLEMS => format!("{errors} problems, and there may be more"),
+            _ => format!("{errors} problems"),
+        };
         write!(formatter, "{} cannot be used: {count}", self.name)
     }
 }
@@ -49,7 +67,7 @@ impl Error for Rejected {}
 
 impl Diagnostic for Rejected {
     fn source_code(&self) -> Option<&dyn miette::SourceCode> {
-        Some(&self.source)
+        self.source.as_ref().map(|source| source as &dyn miette::SourceCode)
     }
 
     fn related<'a>(&'a self) -> Option<Box<dyn Iterator<Item = &'a dyn Diagnostic> + 'a>> {
@@ -59,7 +77,10 @@ impl Diagnostic for Rejected {
 
 impl fmt::Display for Place {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(&self.0.message)
+        match self.1 {
+            Some(line) => write!(formatter, "line {line}: {}", shortened(&self.0.message)),
+            None => formatter.write_str(&self.0.message),
+        }
     }
 }
 
@@ -78,6 +99,50 @@ impl Diagnostic for Place {
     }
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        Some(Box::new(std::iter::once(LabeledSpan::underline(self.0.span.clone()))))
+        let drawn = self.1.is_none();
+        Some(Box::new(drawn.then(|| LabeledSpan::underline(self.0.span.clone())).into_iter()))
+    }
+}
+
+/// A message that quotes a very long word, without most of it.
+fn shortened(message: &str) -> Cow<'_, str> {
+    match message.char_indices().nth(LONGEST_MESSAGE) {
+        Some((end, _)) => format!("{} ...", &message[..end]).into(),
+        None => message.into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+
+    fn shown(text: &str) -> String {
+        let problems = crate::read(text).expect_err("not a joint file");
+        format!("{:?}", report("my_joint.toml", text, &problems))
+    }
+
+    #[test]
+    fn a_line_too_long_to_be_drawn_is_told_by_its_number() {
+        let preset = crate::preset("q1").expect("a preset");
+        let shown = shown(&format!("{preset}\n# {}\nnonsense_{} = 1\n", "x".repeat(70_000), "y".repeat(70_000)));
+        let line = preset.lines().count() + 3;
+        let plain = shown.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(plain.contains(&format!("line {line}: unknown key")), "{plain}");
+        assert!(shown.len() < 5000, "{} letters", shown.len());
+    }
+
+    #[test]
+    fn a_file_full_of_problems_is_told_the_first_of_them() {
+        let unknown: String = (0..50_000).map(|number| format!("nonsense_{number} = 1\n")).collect();
+        let broken = "a=\n".repeat(200_000);
+        let (sender, receiver) = std::sync::mpsc::channel();
+        std::thread::spawn(move || [unknown, broken].iter().try_for_each(|text| sender.send(shown(text))));
+        for what in ["unknown", "broken"] {
+            // Less than a second: what took minutes grew with the square of the file.
+            let shown = receiver.recv_timeout(Duration::from_secs(30)).expect(what);
+            assert!(shown.contains("100 problems, and there may be more"), "{what}: {shown}");
+        }
     }
 }

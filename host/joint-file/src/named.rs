@@ -1,15 +1,12 @@
 //! Finds a joint file, by path or as a preset, and reads it. What is wrong with it is drawn by `diagnostic`.
 
-use std::fs;
 use std::path::Path;
 
 use crate::{JointFile, PRESETS};
 
 use super::diagnostic;
 use report::failure::{Failure, Outcome};
-
-/// No joint file comes near this; what does was named by mistake.
-const LARGEST_FILE: u64 = 1 << 20;
+use report::input;
 
 /// A joint file and where it was found.
 #[derive(Debug, Clone, PartialEq)]
@@ -65,17 +62,8 @@ fn text(file: &Path) -> Outcome<(String, String)> {
 }
 
 fn read(file: &Path) -> Outcome<String> {
-    let failed = |what: &str| {
+    input::text(file, input::LARGEST_TYPED).map_err(|why| {
         let help = format!("give the path of a joint file, or one of the presets {}", PRESETS.join(", "));
-        Failure::new(format!("cannot read the joint file {}: {what}", file.display())).with_help(help)
-    };
-    let data = fs::metadata(file).map_err(|error| failed(&error.to_string()))?;
-    if data.is_dir() {
-        return Err(failed("it is a folder"));
-    }
-    if data.len() > LARGEST_FILE {
-        return Err(failed("it is larger than 1 MB"));
-    }
-    let bytes = fs::read(file).map_err(|error| failed(&error.to_string()))?;
-    String::from_utf8(bytes).map_err(|_| failed("it is not text (UTF-8)"))
+        Failure::new(format!("cannot read the joint file {}: {why}", file.display())).with_help(help)
+    })
 }

@@ -16,6 +16,9 @@ pub struct Source {
     pub remark: Option<String>,
 }
 
+/// Problems of a file that are told: whoever mends so many runs the command again.
+pub(crate) const MOST_PROBLEMS: usize = 100;
+
 /// Problems and remarks, collected while the sections of one file are read.
 pub struct Notes<'t> {
     text: &'t str,
@@ -40,7 +43,7 @@ impl<'t> Notes<'t> {
         let problem = Problem { span, message: message.into(), help: help.into(), severity };
         let mut problems = self.problems.borrow_mut();
         // What stands in [mesh] is read once for each mesh family and would be reported twice.
-        if !problems.contains(&problem) {
+        if problems.len() < MOST_PROBLEMS && !problems.contains(&problem) {
             problems.push(problem);
         }
     }
@@ -52,6 +55,11 @@ impl<'t> Notes<'t> {
             _ => "write lines of the form key = value",
         };
         self.error(error.span().unwrap_or(self.top()), format!("not TOML: {}", error.message()), help);
+    }
+
+    /// No more problems are taken: there is no need to look for them.
+    pub(crate) fn is_full(&self) -> bool {
+        self.problems.borrow().len() == MOST_PROBLEMS
     }
 
     pub(crate) fn has_errors(&self) -> bool {

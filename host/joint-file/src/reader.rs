@@ -1,6 +1,8 @@
 //! Reads a whole joint file: parses, hands each section to its reader, checks that the gears fit, and gives either the
 //! joint with its warnings or everything that is wrong at once.
 
+use std::ops::Range;
+
 use model_core::gears::Scales;
 use parameters::{Coherence, Excitation, JointParameters, Surroundings};
 use toml::de::DeTable;
@@ -47,13 +49,15 @@ pub struct JointFile {
 pub fn read(text: &str) -> Result<JointFile, Vec<Problem>> {
     let notes = Notes::new(text);
     let (table, syntax) = DeTable::parse_recoverable(text);
-    let mut blamed_lines = Vec::new();
+    let mut blamed_lines: Vec<Range<usize>> = Vec::new();
     for error in &syntax {
-        let span = error.span().unwrap_or(notes.top());
-        let line = text[..span.start].matches('\n').count();
+        if notes.is_full() {
+            break;
+        }
+        let at = error.span().unwrap_or(notes.top()).start;
         // One slip makes the parser stumble on for the rest of its line.
-        if !blamed_lines.contains(&line) {
-            blamed_lines.push(line);
+        if !blamed_lines.iter().any(|line| line.contains(&at)) {
+            blamed_lines.push(line_around(text, at));
             notes.syntax(error);
         }
     }
@@ -65,6 +69,14 @@ pub fn read(text: &str) -> Result<JointFile, Vec<Problem>> {
         Some(joint) if !failed => Ok(JointFile { warnings: problems, sources, ..joint }),
         _ => Err(problems),
     }
+}
+
+/// The line of a place, its end included: an error may stand there, too.
+fn line_around(text: &str, at: usize) -> Range<usize> {
+    let (before, after) = text.as_bytes().split_at(at.min(text.len()));
+    let start = before.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
+    let end = after.iter().position(|byte| *byte == b'\n').map_or(text.len(), |end| at + end);
+    start..end + 1
 }
 
 fn read_table(top: &Section<'_>) -> Option<JointFile> {

@@ -16,12 +16,22 @@ fn cost(word: &str, candidate: &str) -> Option<usize> {
     let stem = |text: &str| text.rsplit_once('_').map_or(text.to_owned(), |(stem, _)| stem.to_owned());
     let pairs =
         [(word.clone(), candidate.clone(), 0), (word.clone(), stem(&candidate), 1), (stem(&word), stem(&candidate), 1)];
+    // Words whose lengths alone are too far apart are not compared letter by letter: one of them may be very long.
+    let may_be_near = |(from, to, more): &&(String, String, usize)| {
+        is_near(from.chars().count().abs_diff(to.chars().count()) + more, from.len().max(to.len()))
+    };
     pairs
         .iter()
+        .filter(may_be_near)
         .map(|(from, to, more)| (edits(from, to) + more, from.len().max(to.len())))
-        .filter(|(cost, length)| 3 * cost <= length + 2)
+        .filter(|(cost, length)| is_near(*cost, *length))
         .map(|(cost, _)| cost)
         .min()
+}
+
+/// Whether so many edits are few for a length.
+fn is_near(cost: usize, length: usize) -> bool {
+    3 * cost <= length + 2
 }
 
 /// Insertions, deletions and exchanges of one letter.

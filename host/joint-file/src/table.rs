@@ -79,6 +79,9 @@ impl<'a, K: Keys> Table<'a, K> {
         let section = Self { path, schema, header, table, notes, kinds: std::marker::PhantomData };
         for name in table.keys() {
             let word = name.get_ref().as_ref();
+            if notes.is_full() {
+                break;
+            }
             if K::find(schema, word).is_none() {
                 let help = match spelling::nearest(word, K::of(schema).map(|key| key.name)) {
                     Some(near) => {

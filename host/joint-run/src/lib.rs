@@ -28,6 +28,7 @@ use record::RunRecord;
 use report::checks::all_hold;
 use report::failure::Outcome;
 use report::folder::{self, Folder};
+use report::interruption::InOrder;
 use report::output;
 use report::progress::Progress;
 
@@ -38,6 +39,8 @@ pub fn run(request: &RunRequest<'_>, progress: &Progress) -> Outcome<()> {
     folder::check_files(&wanted, &[&plan.path, Path::new(request.profile)])?;
     let folder = Folder::prepare(request.out, "hil", &plan.expected.joint)?;
     let connection = prepare(request, &plan, progress)?;
+    // What the board has done until the user stops is kept and reported.
+    let _in_order = InOrder::begin();
     let mut record = origin::record(request, &plan, &connection.transport);
     let image = connection.image.clone();
     record.identity.image = image.as_ref().map(origin::image);

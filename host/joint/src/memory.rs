@@ -6,7 +6,6 @@
 mod answering_board;
 mod arguments;
 
-use std::fs;
 use std::path::Path;
 
 use answering_board::AnsweringBoard;
@@ -19,9 +18,10 @@ use model_core::observer::{MEMORY_BYTES, Memory, MemoryError};
 use board::session::Session;
 use joint_file::named;
 use report::failure::{Failure, Outcome};
+use report::input;
 use report::output;
 use report::progress::Progress;
-use report::write::unwritten;
+use report::write::write_bytes;
 
 /// What a board is asked to do with its flash.
 type Ask = fn(&mut Session<'static>) -> Outcome<MemoryOutcome>;
@@ -62,7 +62,7 @@ fn read(file: &Path, place: &BoardArguments, progress: &Progress) -> Outcome<()>
         return Err(Failure::new(format!("{what}: {}", parts(*error).0))
             .with_help(format!("erase it: joint memory erase{}", found.options)));
     }
-    fs::write(file, memory).map_err(|error| unwritten(file, &error))?;
+    write_bytes(file, &memory)?;
     let name = file.display().to_string();
     match content {
         Ok(content) => output::print(&content.text(&name, &loaded)),
@@ -120,10 +120,7 @@ const READ_ONE: &str = "read one off a board: joint memory read FILE --port PATH
 fn load(file: &Path) -> Outcome<Memory> {
     let name = file.display();
     let failed = |why: String| Failure::new(format!("cannot read the memory {name}: {why}")).with_help(READ_ONE);
-    if file.is_dir() {
-        return Err(failed("it is a folder".to_owned()));
-    }
-    let bytes = fs::read(file).map_err(|error| failed(error.to_string()))?;
+    let bytes = input::bytes(file, input::LARGEST_TYPED).map_err(failed)?;
     let count = bytes.len();
     bytes.try_into().map_err(|_| {
         Failure::new(format!(

@@ -21,6 +21,7 @@ pub struct Arguments {
 pub fn run(package: &str, rest: &[OsString]) -> Outcome<()> {
     // Ctrl-C reaches the program as well, which ends in order; this one waits for it.
     interruption::watch()?;
+    let _in_order = interruption::InOrder::begin();
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let status = Command::new(cargo)
         .args(["run", "--quiet", "--release", "--package", package, "--manifest-path"])

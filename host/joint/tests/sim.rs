@@ -196,6 +196,28 @@ fn a_full_disk_is_named_and_nothing_older_is_lost() {
 }
 
 #[test]
+fn a_disk_without_any_room_keeps_no_empty_history() {
+    let folder = folder();
+    let ended =
+        joint_on_a_full_disk(0, &["sim", "l1", "--duration", "0.05", "--no-energy", "--out", text(folder.path())]);
+    ended.refused(&["cannot write", "free some space"]);
+    assert_eq!(contents(folder.path()), []);
+}
+
+#[test]
+fn a_report_of_the_user_s_own_is_not_written_over() {
+    let folder = folder();
+    let report = folder.path().join("report.html");
+    fs::write(&report, "my thesis").expect("room");
+    let run = || joint(&["sim", "l1", "--duration", "0.01", "--no-energy", "--out", text(folder.path())]);
+    run().refused(&["report.html was not written by this command", "name another folder by --out DIR"]);
+    assert_eq!(contents(folder.path()), [("report.html".to_owned(), b"my thesis".to_vec())]);
+    fs::remove_file(&report).expect("there");
+    run().well();
+    run().well();
+}
+
+#[test]
 fn a_run_that_diverges_says_so_and_shows_what_came_before() {
     let folder = folder();
     let fast = ["sim", "q1", "--scheme", "euler", "--rate", "6000", "--duration", "0.1"];

@@ -204,6 +204,13 @@ fn what_is_wrong_with_a_test_file_is_named_with_the_mend() {
     refused("joint = \"q2\"\nprofile = \"T2\"", &["q2", "presets"]);
     refused("profile = \"T2\"\n[controller]\nrivals = [\"motor_side\"]", &["motor_side cannot run beside this"]);
     refused("profile = { kind = \"csv\", file = \"none.csv\" }", &["cannot read the motion", "none.csv"]);
+    for (seconds, words) in [("1e7", "the recording lasts 1"), ("1e300", "line 3: time_s is 1")] {
+        let folder = folder();
+        let [motion, test] = ["long.csv", "long.toml"].map(|name| folder.path().join(name));
+        fs::write(motion, format!("time_s,position_rad\n0,0\n{seconds},1\n")).expect("a file");
+        fs::write(&test, "profile = { kind = \"csv\", file = \"long.csv\" }\n").expect("a file");
+        joint(&["hil", text(&test), "--host", "--out", text(folder.path())]).refused(&[words, "check the unit"]);
+    }
     refused("profile = \"T2\"\n[assert]\nrms_mrad = \"<= 8\"\n[controller]\nshort_run = \"loop\"", &["short_run"]);
     refused("short_run = \"plant\"\nprofile = \"T2\"", &["observer", "loop"]);
     refused("settle_s = 1", &["not TOML"]);

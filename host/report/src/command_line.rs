@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use clap::{ArgMatches, Command};
 
 use crate::failure::{EXIT_BAD_INPUT, Outcome};
+use crate::interruption::InOrder;
 
 /// Reads the command line by `command`, runs it and turns the outcome into an exit code; a failure is shown.
 pub fn main<T>(
@@ -21,7 +22,9 @@ pub fn main<T>(
             return ExitCode::from(if error.use_stderr() { EXIT_BAD_INPUT } else { 0 });
         }
     };
-    match run(&asked) {
+    let outcome = run(&asked);
+    let _in_order = InOrder::begin();
+    match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             failure.show();

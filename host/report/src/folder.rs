@@ -2,11 +2,16 @@
 //! reported before the work begins.
 
 use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 
+use crate::document::is_own_page;
 use crate::failure::{Failure, Outcome};
 use crate::workspace::workspace;
 use crate::write::write_text;
+
+/// What every such folder gets.
+const REPORT: &str = "report.html";
 
 /// Where the files of a run go.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -20,6 +25,9 @@ impl Folder {
         let usual = || workspace().join("target").join(kind).join(file_part(joint));
         let path = wanted.map_or_else(usual, Path::to_owned);
         make(&path)?;
+        if wanted.is_some() {
+            refuse_foreign(&path)?;
+        }
         let probe = path.join(".can-be-written");
         write_text(&probe, "")?;
         // It was ours, and it was empty: nothing is lost if it stays.
@@ -35,6 +43,17 @@ impl Folder {
     /// The folder itself.
     pub fn path(&self) -> &Path {
         &self.path
+    }
+}
+
+/// Refuses a folder whose report somebody else has written: a second one would be the loss of that.
+fn refuse_foreign(folder: &Path) -> Outcome<()> {
+    let report = folder.join(REPORT);
+    match is_own_page(&report) {
+        Ok(true) => Ok(()),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
+        _ => Err(Failure::new(format!("{} was not written by this command and would be lost", report.display()))
+            .with_help("name another folder by --out DIR, or move this file elsewhere; it is left as it is")),
     }
 }
 
@@ -97,6 +116,19 @@ mod tests {
             assert!(failure.help().is_some(), "{failure}");
             assert_eq!(failure.exit_code(), 2);
         }
+    }
+
+    #[test]
+    fn a_report_that_somebody_else_has_written_is_not_written_over() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let prepare = || Folder::prepare(Some(folder.path()), "sim", "Q1");
+        let report = prepare().expect("an empty folder").file(REPORT);
+        fs::write(&report, "<!DOCTYPE html><title>my thesis</title>").expect("room");
+        let failure = prepare().expect_err("a foreign report");
+        assert!(failure.message().contains("report.html was not written by this command"), "{failure}");
+        assert!(failure.help().is_some_and(|help| help.contains("--out DIR")), "{failure}");
+        fs::write(&report, crate::document::html(&crate::document::Document::default())).expect("room");
+        assert!(prepare().is_ok(), "a report of ours is replaced by the next one");
     }
 
     #[test]

@@ -7,6 +7,7 @@ pub mod contacts;
 pub mod document;
 pub mod failure;
 pub mod folder;
+pub mod input;
 pub mod interruption;
 pub mod number;
 pub mod output;

@@ -8,10 +8,16 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use crate::failure::{Failure, Outcome};
+use crate::interruption::InOrder;
 
 /// Writes a whole file, or leaves the old one as it was.
 pub fn write_text(path: &Path, text: &str) -> Outcome<()> {
-    write_with(path, |file| file.write_all(text.as_bytes()))
+    write_bytes(path, text.as_bytes())
+}
+
+/// The same for what is no text.
+pub fn write_bytes(path: &Path, bytes: &[u8]) -> Outcome<()> {
+    write_with(path, |file| file.write_all(bytes))
 }
 
 /// Writes a record as JSON in one line, whole or not at all.
@@ -23,6 +29,7 @@ pub fn write_record(path: &Path, record: &impl Serialize) -> Outcome<()> {
 }
 
 fn write_with(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Outcome<()> {
+    let _in_order = InOrder::begin();
     // A link stays a link: what it points to is replaced.
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     let written = match fs::metadata(&target) {

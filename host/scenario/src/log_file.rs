@@ -8,6 +8,7 @@ use std::path::Path;
 
 use super::run_history::RunHistory;
 use report::failure::Outcome;
+use report::interruption::InOrder;
 use report::write::unwritten;
 use simulation::sim::log_file::Channel;
 
@@ -41,6 +42,7 @@ const FIELDS: [(&str, &str); 17] = [
 
 /// Writes a run to a file.
 pub fn write(path: &Path, history: &RunHistory, remarks: BTreeMap<String, String>) -> Outcome<()> {
+    let _in_order = InOrder::begin();
     fill(path, history, remarks).map_err(|error| unwritten(path, &error))
 }
 

@@ -14,9 +14,11 @@ use super::file::{self, HostOnlyFault, TestFile, Trajectory};
 use super::plant::PlantName;
 use super::record::NotRun;
 use super::recorded::RecordedMotion;
+use board::profile::check_length;
 use joint_file::diagnostic;
 use joint_file::named::{self, Loaded};
 use report::failure::{Failure, Outcome};
+use report::input;
 
 /// A test that has been checked against its joint.
 pub struct Test {
@@ -34,7 +36,7 @@ pub struct Test {
 
 /// Whether a path is one of tests: a folder, or a file that is no joint file.
 pub fn is_of_tests(path: &Path) -> bool {
-    path.is_dir() || fs::read_to_string(path).is_ok_and(|text| file::is_test_file(&text))
+    path.is_dir() || input::text(path, input::LARGEST_TYPED).is_ok_and(|text| file::is_test_file(&text))
 }
 
 /// Which files of a folder a run is for.
@@ -119,7 +121,7 @@ fn paths(path: &Path) -> Outcome<Vec<PathBuf>> {
     let mut paths: Vec<PathBuf> = Vec::new();
     for entry in fs::read_dir(path).map_err(unreadable)? {
         let path = entry.map_err(unreadable)?.path();
-        let is_joint = || fs::read_to_string(&path).is_ok_and(|text| !file::is_test_file(&text));
+        let is_joint = || input::text(&path, input::LARGEST_TYPED).is_ok_and(|text| !file::is_test_file(&text));
         if path.extension().is_some_and(|extension| extension == "toml") && !is_joint() {
             paths.push(path);
         }
@@ -131,7 +133,8 @@ fn paths(path: &Path) -> Outcome<Vec<PathBuf>> {
 /// A file's text and what it says.
 fn read(path: &Path) -> Outcome<(String, TestFile)> {
     let name = path.display().to_string();
-    let text = fs::read_to_string(path).map_err(|error| Failure::new(format!("cannot read {name}: {error}")))?;
+    let text =
+        input::text(path, input::LARGEST_TYPED).map_err(|why| Failure::new(format!("cannot read {name}: {why}")))?;
     read_text(&name, &text).map(|file| (text, file))
 }
 
@@ -165,6 +168,9 @@ fn test_of(name: String, text: String, file: TestFile, folder: &Path, plant: Pla
         .with_help("run it with --plant reference, with --host or --role observer"));
     }
     let motion = recorded(&file, folder).map_err(|failure| failure.while_doing(&name))?;
+    if let Some(motion) = motion.as_ref().filter(|_| !file.states_duration) {
+        check_length(motion.duration(), "duration_s").map_err(|failure| failure.while_doing(&name))?;
+    }
     let file = match (&motion, file.states_duration) {
         // A recorded motion is as long as it is, unless the file says otherwise.
         (Some(motion), false) => TestFile { duration: motion.duration().max(file.settle + 0.1), ..file },

@@ -6,7 +6,13 @@ use std::path::Path;
 
 use super::torques::{MAX_TORQUE, Torques};
 use report::failure::{Failure, Outcome};
+use report::input;
 use report::number::TYPED;
+
+/// Seconds since any epoch are less, and steps of a control period can still be told in them [s].
+const MOST_TIME: f64 = 1e10;
+/// Rows that are nearer to each other are no two moments [s].
+const LEAST_STEP: f64 = 1e-9;
 
 /// Columns of the file, in any order; others are ignored.
 pub const COLUMNS: [&str; 3] = ["time_s", "motor_torque_Nm", "load_torque_Nm"];
@@ -28,8 +34,8 @@ struct Row {
 impl RecordedTorques {
     /// Reads a file; the first row is time 0 of the run, whatever its time.
     pub fn read(path: &Path) -> Outcome<Self> {
-        let text = std::fs::read_to_string(path).map_err(|error| {
-            Failure::new(format!("cannot read the profile {}: {error}", path.display()))
+        let text = input::text(path, input::LARGEST_RECORDED).map_err(|why| {
+            Failure::new(format!("cannot read the profile {}: {why}", path.display()))
                 .with_help(format!("name a CSV file, as text in UTF-8; {}", wanted_header()))
         })?;
         Self::parse(&text).map_err(|failure| failure.while_doing(path.display()))
@@ -102,24 +108,39 @@ impl RecordedTorques {
 /// Takes one line of the file; refuses what cannot be a recording.
 fn push(rows: &mut Vec<Row>, start: f64, line: u64, [time, drive, load]: [f64; 3]) -> Outcome<()> {
     let torques = Torques { drive, load };
+    check_time(line, rows.last().map(|last| last.time + start), time)?;
     let time = time - start;
     let integral = match rows.last() {
         None => Torques { drive: 0.0, load: 0.0 },
-        Some(last) if time > last.time => {
+        Some(last) => {
             let half = 0.5 * (time - last.time);
             Torques {
                 drive: last.integral.drive + half * (last.torques.drive + drive),
                 load: last.integral.load + half * (last.torques.load + load),
             }
         }
-        Some(last) => {
-            let (before, now) = (last.time + start, time + start);
-            return Err(Failure::new(format!("line {line}: time_s does not rise: {now} s follows {before} s"))
-                .with_help("sort the rows by time and remove repeated ones"));
-        }
     };
     rows.push(Row { time, torques, integral });
     Ok(())
+}
+
+/// Refuses a time of a recording that is in another unit or does not rise; `before` is that of the row before.
+pub fn check_time(line: u64, before: Option<f64>, now: f64) -> Outcome<()> {
+    if now.is_nan() || now.abs() > MOST_TIME {
+        return Err(Failure::new(format!("line {line}: time_s is {}", TYPED.write(now)))
+            .with_help(format!("it may be from -{MOST_TIME:e} to {MOST_TIME:e} s: check the unit")));
+    }
+    match before {
+        Some(before) if now <= before => {
+            Err(Failure::new(format!("line {line}: time_s does not rise: {now} s follows {before} s"))
+                .with_help("sort the rows by time and remove repeated ones"))
+        }
+        Some(before) if now - before < LEAST_STEP => {
+            Err(Failure::new(format!("line {line}: time_s rises by {} s only", TYPED.write(now - before)))
+                .with_help(format!("rows must be {LEAST_STEP:e} s apart at least: check the unit, or leave rows out")))
+        }
+        _ => Ok(()),
+    }
 }
 
 fn number(line: u64, column: &str, text: &str) -> Outcome<f64> {
@@ -165,6 +186,8 @@ mod tests {
         assert!(refused(&format!("{header}0.1,1e60,6\n")).starts_with("line 3: motor_torque_Nm is 1"));
         assert!(refused(&format!("{header}0.1,1,6\n0.1,1,6\n")).starts_with("line 4: time_s does not rise"));
         assert!(refused(&format!("{header}-0.1,1,6\n")).starts_with("line 3: time_s does not rise"));
+        assert!(refused(&format!("{header}1e300,1,6\n")).starts_with("line 3: time_s is 1"));
+        assert!(refused(&format!("{header}1e-300,1,6\n")).starts_with("line 3: time_s rises by"));
         assert!(refused(&format!("{header}0.1,1\n")).starts_with("line 3 has 2 values"));
         assert!(refused(&format!("{header}\n\n0.1,,6\n")).starts_with("line 5: motor_torque_Nm is ``"));
         assert!(refused(&format!("{header}0.1,1.5x,6\n")).starts_with("line 3: motor_torque_Nm is `1.5x`"));

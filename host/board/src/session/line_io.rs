@@ -56,7 +56,9 @@ impl Session<'_> {
                 self.recording.take(message.clone());
                 messages.push(message);
             }
-            if let Some(head) = self.head_receiver.as_mut().and_then(|receiver| receiver.push::<HelloHead>(byte)) {
+            if let Some(head) =
+                self.head_receiver.as_mut().and_then(|receiver| receiver.push_beginning::<HelloHead>(byte))
+            {
                 self.foreign = Some(head).filter(|head| head.is_foreign());
             }
         }

@@ -36,7 +36,7 @@ fn every_number_of_a_message_has_its_path() {
         ("on", 1.0),
         ("current", 0.5),
     ];
-    assert_eq!(numbers, wanted.map(|(path, value)| (path.to_owned(), value)));
+    assert_eq!(numbers.as_slice(), wanted.map(|(path, value)| (path.to_owned(), value)));
 }
 
 #[test]
@@ -57,4 +57,28 @@ fn forms_that_cannot_be_are_refused() {
     let own = Form::read("Own next\n===\nMSG: a/Own\nOwn next\n").expect("a form");
     assert!(own.numbers(&[0, 1, 0, 0]).is_err());
     assert!(Form::read("a/Other other\n").expect("a form").numbers(&[0, 1, 0, 0]).is_err());
+}
+
+#[test]
+fn a_message_takes_no_longer_than_its_bytes_say() {
+    // Each form has ten of the next one: 10^16 fields, none of which would take a byte.
+    let mut text = "M1[10] next\n".to_owned();
+    for depth in 1..16 {
+        text += &format!("===\nMSG: a/M{depth}\nM{}[10] next\n", depth + 1);
+    }
+    let read = |last: &str| {
+        let form = Form::read(&format!("{text}===\nMSG: a/M16\n{last}\n"))?;
+        form.numbers(&[[0, 1, 0, 0].as_slice(), &[0; 10_000]].concat())
+    };
+    assert_eq!(read("uint8[0] none"), Err("`uint8[0] none` is no field of a message".to_owned()));
+    assert_eq!(read("uint8 one"), Err("it has more than 4096 numbers".to_owned()));
+    assert_eq!(read("string text"), Err("it is cut off".to_owned()));
+    assert_eq!(read("uint8 ONLY=1"), Err("it is cut off".to_owned()), "a message without fields takes a byte");
+}
+
+#[test]
+fn paths_do_not_grow_beyond_what_a_joint_has() {
+    let form = Form::read(&format!("uint8[] {}\n", "n".repeat(100_000))).expect("a form");
+    let message = [[0, 1, 0, 0].as_slice(), &100_000_u32.to_le_bytes(), &[0; 100_000]].concat();
+    assert_eq!(form.numbers(&message), Err("the path of a number in it has more than 256 letters".to_owned()));
 }

@@ -1,7 +1,6 @@
 //! Which arguments of `joint hil` belong to test files and which to joints; the wrong ones are named rather than
 //! ignored.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use link::messages::Role;
@@ -10,6 +9,7 @@ use super::arguments::Arguments;
 use board::line_options::RoleName;
 use board::profile::BUILTIN;
 use report::failure::{Failure, Outcome};
+use report::input;
 use report::workspace::workspace;
 use scenario::on_board::BoardRequest;
 use scenario::plant::PlantName;
@@ -114,9 +114,9 @@ pub fn refuse_for_joints(arguments: &Arguments) -> Outcome<()> {
     ];
     let Some((name, _)) = of_tests.iter().find(|(_, given)| *given) else { return Ok(()) };
     let file = arguments.file().display();
-    let message = match (joint_file::preset(&file.to_string()), fs::read_to_string(arguments.file())) {
+    let message = match (joint_file::preset(&file.to_string()), input::text(arguments.file(), input::LARGEST_TYPED)) {
         (Some(_), _) | (_, Ok(_)) => format!("--{name} is for test files, and {file} is a joint"),
-        (None, Err(error)) => format!("cannot read the test file {file}: {error}"),
+        (None, Err(why)) => format!("cannot read the test file {file}: {why}"),
     };
     Err(Failure::new(message)
         .with_help("name a test file such as hil/t2.toml; docs/reference/hil-file.md tells how to write one"))

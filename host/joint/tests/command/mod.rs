@@ -54,7 +54,12 @@ pub fn wait(child: Child) -> Ended {
 
 /// Presses Ctrl-C.
 pub fn interrupt(child: &Child) {
-    let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("`kill` is there");
+    send("-INT", child);
+}
+
+/// Sends a process a signal.
+pub fn send(signal: &str, child: &Child) {
+    let sent = Command::new("kill").args([signal, &child.id().to_string()]).status().expect("`kill` is there");
     assert!(sent.success());
 }
 

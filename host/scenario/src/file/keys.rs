@@ -1,6 +1,7 @@
 //! Every key of a test file: its section, what it holds, its bound, and a hint for who got it wrong. The page
 //! docs/reference/hil-file.md says the same in more words.
 
+use board::profile::LONGEST_RUN;
 use joint_file::Keys;
 
 /// What a key holds.
@@ -119,8 +120,13 @@ pub(super) const KEYS: &[Key] = &[
         "the role in which a plain `joint hil` runs this file on the board",
     ),
     key("", "only_with_full", Flag, "true keeps the file out of a folder's run without --full"),
-    key("", "duration_s", Number(0.01, 3600.0), "length of a run in s"),
-    key("", "settle_s", Number(0.0, 3600.0), "figures are taken from this time on; what comes before is for learning"),
+    key("", "duration_s", Number(0.01, LONGEST_RUN), "length of a run in s"),
+    key(
+        "",
+        "settle_s",
+        Number(0.0, LONGEST_RUN),
+        "figures are taken from this time on; what comes before is for learning",
+    ),
     key("", "timeout_s", Number(0.1, 1e5), "the test fails when it has taken so many seconds on the clock"),
     key("", "known", Section, "keys of the joint file that are changed for plant and controllers alike"),
     key("", "plant", Section, "keys of the joint file that are changed for the plant, behind the observer's back"),

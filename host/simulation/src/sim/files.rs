@@ -34,11 +34,15 @@ impl<'a> HistoryFiles<'a> {
             let path = folder.file(name);
             File::create(&path).map(BufWriter::new).map_err(|error| unwritten(&path, &error))
         };
-        let mut csv = create(CSV[0])?;
-        csv::write_head(&mut csv, joint.geometry.planets).map_err(|error| unwritten(&folder.file(CSV[0]), &error))?;
-        let log = Channel::begin(create(LOG[0])?, TOPIC, SCHEMA_NAME, &log_file::schema(), remarks)
-            .map_err(|error| unwritten(&folder.file(LOG[0]), &error))?;
-        Ok(Self { folder, joint, csv, log })
+        let both = || {
+            let mut csv = create(CSV[0])?;
+            csv::write_head(&mut csv, joint.geometry.planets)
+                .map_err(|error| unwritten(&folder.file(CSV[0]), &error))?;
+            let log = Channel::begin(create(LOG[0])?, TOPIC, SCHEMA_NAME, &log_file::schema(), remarks)
+                .map_err(|error| unwritten(&folder.file(LOG[0]), &error))?;
+            Ok(Self { folder, joint, csv, log })
+        };
+        both().inspect_err(|_| remove_empty(folder))
     }
 
     /// One sample.
@@ -53,9 +57,7 @@ impl<'a> HistoryFiles<'a> {
     /// Ends both properly. A whole history takes its final name; one that was cut short keeps the growing one.
     pub fn finish(self, whole: bool) -> Outcome<[PathBuf; 2]> {
         let Self { folder, csv, log, .. } = self;
-        let ended = [Ok(csv), log.finish()];
-        let mut paths = [PathBuf::new(), PathBuf::new()];
-        for (place, (file, [growing, whole_name])) in ended.into_iter().zip([CSV, LOG]).enumerate() {
+        let keep = |file: io::Result<BufWriter<File>>, [growing, whole_name]: [&str; 2]| {
             let path = folder.file(growing);
             let kept = file.and_then(|file| {
                 // A full disk may only be noticed when the data leave the cache.
@@ -63,8 +65,20 @@ impl<'a> HistoryFiles<'a> {
                 let name = folder.file(if whole { whole_name } else { growing });
                 fs::rename(&path, &name).map(|()| name)
             });
-            paths[place] = kept.map_err(|error| unwritten(&path, &error))?;
+            kept.map_err(|error| unwritten(&path, &error))
+        };
+        // Both are ended, whatever becomes of the first.
+        let (csv, log) = (keep(Ok(csv), CSV), keep(log.finish(), LOG));
+        csv.and_then(|csv| Ok([csv, log?])).inspect_err(|_| remove_empty(folder))
+    }
+}
+
+/// Where nothing could be written no file is left behind either.
+fn remove_empty(folder: &Folder) {
+    for path in [CSV, LOG].map(|[growing, _]| folder.file(growing)) {
+        if fs::metadata(&path).is_ok_and(|data| data.len() == 0) {
+            // It was ours, and it was empty: nothing is lost if it stays.
+            let _ = fs::remove_file(&path);
         }
-        Ok(paths)
     }
 }

@@ -41,6 +41,7 @@ use report::document::{html, terminal};
 use report::failure::{Failure, Outcome};
 use report::folder;
 use report::folder::Folder;
+use report::interruption::InOrder;
 use report::output;
 use report::progress::Progress;
 use report::provenance::VERSION;
@@ -72,6 +73,8 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<Simulated> {
     let profile = arguments.motion.profile.as_deref().unwrap_or_default();
     folder::check_files(&[("json", arguments.json.as_deref())], &[&arguments.file, Path::new(profile)])?;
     let folder = Folder::prepare(arguments.out.as_deref(), "sim", &plan.parameters().name)?;
+    // A history that was begun is finished properly.
+    let in_order = InOrder::begin();
     let mut files = HistoryFiles::begin(&folder, plan.parameters(), remarks(arguments, &plan, scheme))?;
     progress.run("simulating", plan.run.ticks);
     let result = SimulationResult::of(&plan, scheme, every, !arguments.no_energy, &mut files, progress);
@@ -84,6 +87,7 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<Simulated> {
         return Err(Failure::interrupted(format!("stopped by the user at {time:.4} s of {:.4} s", plan.duration()))
             .with_help(format!("the history so far is in {} and {}", csv.display(), log.display())));
     }
+    drop(in_order);
     if arguments.scheme == Choice::All {
         result.comparison = Some(compare(&plan, every, progress)?);
     }

@@ -11,6 +11,7 @@ use model_core::numbers::digest;
 
 use super::grid::Shard;
 use report::failure::{Failure, Outcome};
+use report::input;
 use report::write::unwritten;
 
 /// Finished points by number: status and values, as they stand in the result.
@@ -93,15 +94,15 @@ pub fn line(point: u64, result: &str) -> String {
 
 /// What a journal holds: good lines count, others are as if they had never been.
 pub fn read(path: &Path, digest: &str) -> Outcome<Points> {
-    let bytes = std::fs::read(path).map_err(|error| unread(path, &error))?;
+    let bytes = input::bytes(path, input::LARGEST_RECORDED).map_err(|why| unread(path, &why))?;
     let whole = &bytes[..whole_lines(&bytes)];
     check_head(path, whole, digest)?;
     Ok(String::from_utf8_lossy(whole).lines().skip(1).filter_map(point_of).collect())
 }
 
 /// A file of a sweep that cannot be read, with the help.
-pub fn unread(path: &Path, error: &io::Error) -> Failure {
-    Failure::new(format!("cannot read {}: {error}", path.display()))
+pub fn unread(path: &Path, why: &dyn std::fmt::Display) -> Failure {
+    Failure::new(format!("cannot read {}: {why}", path.display()))
         .with_help("see that the folder and its files may be read")
 }
 

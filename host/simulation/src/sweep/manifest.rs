@@ -10,6 +10,7 @@ use super::grid::Grid;
 use super::journal::unread;
 use super::metrics::Metric;
 use report::failure::{Failure, Outcome};
+use report::input;
 use report::output;
 
 /// Says which fields there are; rises when one changes its meaning or goes.
@@ -69,7 +70,7 @@ impl Manifest {
             Failure::new(format!("{} is not what a sweep wrote: {why}", path.display()))
                 .with_help("name another folder by --out DIR; this one is left as it is")
         };
-        let text = std::fs::read_to_string(path).map_err(|error| unread(path, &error))?;
+        let text = input::text(path, input::LARGEST_RECORDED).map_err(|why| unread(path, &why))?;
         let manifest: Self = serde_json::from_str(&text).map_err(|error| spoilt(error.to_string()))?;
         if manifest.schema != SCHEMA {
             return Err(spoilt(format!("its schema is `{}`, not `{SCHEMA}`", manifest.schema)));

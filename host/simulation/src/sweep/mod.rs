@@ -12,7 +12,7 @@ mod merge;
 mod metrics;
 mod work;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use folder::SweepFolder;
 use grid::{Grid, Shard};
@@ -28,6 +28,8 @@ use board::profile::BUILTIN;
 use joint_file::named::{self, Loaded};
 use report::failure::{Failure, Outcome};
 use report::folder::file_part;
+use report::input;
+use report::interruption::InOrder;
 use report::output;
 use report::progress::Progress;
 use report::workspace::workspace;
@@ -83,6 +85,8 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
     let manifest = manifest(&base, &grid, &metrics, scheme, &motion)?;
     let path = arguments.out.clone().unwrap_or_else(|| usual_folder(&manifest));
     let folder = SweepFolder::prepare(&path, &manifest)?;
+    // Points that are under way when the user stops are still kept.
+    let _in_order = InOrder::begin();
     let mut journal = Journal::open(folder.path(), arguments.shard, &manifest.digest)?;
     let mut done = Points::new();
     folder.points(&manifest.digest, &mut done)?;
@@ -151,8 +155,8 @@ fn manifest(
 ) -> Outcome<Manifest> {
     let profile = motion.profile.as_ref().filter(|name| !BUILTIN.contains(&name.as_str()));
     let profile_sha256 = profile.map(|path| {
-        let read = std::fs::read(path).map_err(|error| {
-            Failure::new(format!("cannot read the profile {path}: {error}"))
+        let read = input::bytes(Path::new(path), input::LARGEST_RECORDED).map_err(|why| {
+            Failure::new(format!("cannot read the profile {path}: {why}"))
                 .with_help(format!("built in: {}; or name a CSV file", BUILTIN.join(", ")))
         });
         read.map(|bytes| sha256(&bytes))
@@ -183,7 +187,7 @@ fn usual_folder(manifest: &Manifest) -> PathBuf {
 }
 
 /// The command that goes on with this sweep.
-fn replay(arguments: &Arguments, path: &std::path::Path) -> String {
+fn replay(arguments: &Arguments, path: &Path) -> String {
     let mut command = format!("cargo joint sweep {}", quoted(&arguments.file.display().to_string()));
     for vary in &arguments.vary {
         command += &format!(" --vary {}", quoted(vary));

@@ -1,0 +1,129 @@
+//! Files by hand from the rules of the format: each with one record that says of itself what is not so.
+
+use super::*;
+
+const MOST: u64 = u64::MAX;
+
+fn record(opcode: u8, content: &[u8]) -> Vec<u8> {
+    [&[opcode], &(content.len() as u64).to_le_bytes()[..], content].concat()
+}
+
+fn text(text: &str) -> Vec<u8> {
+    [&(text.len() as u32).to_le_bytes(), text.as_bytes()].concat()
+}
+
+fn schema() -> Vec<u8> {
+    record(op::SCHEMA, &[vec![1, 0], text("a/B"), text("ros2msg"), text("float64 a")].concat())
+}
+
+fn channel(topic: &str) -> Vec<u8> {
+    record(op::CHANNEL, &[vec![1, 0, 1, 0], text(topic), text("cdr"), vec![0; 4]].concat())
+}
+
+fn message(data: &[u8]) -> Vec<u8> {
+    record(op::MESSAGE, &[&[1, 0], &[0; 20][..], data].concat())
+}
+
+fn chunk(compression: &str, unpacked: u64, data: &[u8]) -> Vec<u8> {
+    let head = [&[0; 16][..], &unpacked.to_le_bytes(), &[0; 4], &text(compression)].concat();
+    record(op::CHUNK, &[&head, &(data.len() as u64).to_le_bytes()[..], data].concat())
+}
+
+/// A file with these records, between what every file has.
+fn file(records: &[&[u8]]) -> Vec<u8> {
+    let head = record(op::HEADER, &[text(""), text("by hand")].concat());
+    let end = [record(op::DATA_END, &[0; 4]), record(op::FOOTER, &[0; 20])].concat();
+    [MAGIC, &head, &records.concat(), &end, MAGIC].concat()
+}
+
+/// How many messages a file has, or why it cannot be read.
+fn messages(file: &[u8]) -> Result<usize, String> {
+    let mut count = 0;
+    let read = read(file, &mut |_: &Message<'_>| {
+        count += 1;
+        Ok::<(), ()>(())
+    });
+    match read {
+        Ok(()) => Ok(count),
+        Err(Broken::Damaged(why)) => Err(why),
+        Err(Broken::Refused(())) => Err("nobody has refused".to_owned()),
+    }
+}
+
+#[track_caller]
+fn damaged(file: &[u8], words: &str) {
+    let why = messages(file).expect_err("damaged");
+    assert!(why.contains(words), "`{words}` is not in: {why}");
+}
+
+#[test]
+fn whole_files_are_read_with_and_without_chunks() {
+    let records = [schema(), channel("/a"), message(b"1"), message(b"2")];
+    let plain: Vec<&[u8]> = records.iter().map(Vec::as_slice).collect();
+    assert_eq!(messages(&file(&plain)), Ok(2));
+    let content = records.concat();
+    assert_eq!(messages(&file(&[&chunk("", content.len() as u64, &content)])), Ok(2));
+    // What nobody here looks into may be anything, as long as it is as long as it says.
+    assert_eq!(messages(&file(&[plain.concat().as_slice(), &record(op::ATTACHMENT, &[1; 7])])), Ok(2));
+}
+
+#[test]
+fn a_text_longer_than_its_record_is_not_reserved_room_for() {
+    let endless = [&[1, 0, 1, 0], &u32::MAX.to_le_bytes()[..], b"/a"].concat();
+    for opcode in [op::CHANNEL, op::SCHEMA] {
+        damaged(&file(&[&schema(), &record(opcode, &endless)]), "a text in it goes beyond its end");
+    }
+    let mut pairs = channel("/a");
+    let end = pairs.len();
+    pairs[end - 4..].copy_from_slice(&u32::MAX.to_le_bytes());
+    damaged(&file(&[&schema(), &pairs]), "channel at byte");
+    let mut compression = chunk("", 0, &[]);
+    compression[HEAD + 28..HEAD + 32].copy_from_slice(&u32::MAX.to_le_bytes());
+    damaged(&file(&[&compression]), "chunk at byte");
+    damaged(&file(&[&schema(), &channel(&"a".repeat(2000))]), "the name of a topic has 2000 letters");
+}
+
+#[test]
+fn a_record_longer_than_the_file_is_named_by_its_place() {
+    for length in [MOST, MOST - 5, 1 << 45, 1000] {
+        damaged(&file(&[&[op::MESSAGE], &length.to_le_bytes()]), "record at byte");
+    }
+}
+
+#[test]
+fn a_chunk_that_is_not_compressed_ends_where_its_last_record_does() {
+    let content = [schema(), channel("/a"), message(b"1")].concat();
+    let size = content.len() as u64;
+    damaged(&file(&[&chunk("", size + 1, &content)]), "and it has");
+    // Its last record would end in what follows the chunk.
+    let short = &content[..content.len() - 1];
+    damaged(&file(&[&chunk("", size - 1, short), &[0; 40]]), "a record in it goes beyond its end");
+}
+
+#[test]
+fn a_chunk_unpacks_to_no_more_than_a_multiple_of_the_file() {
+    for compression in ["lz4", "zstd"] {
+        damaged(&file(&[&chunk(compression, MOST, b"few bytes")]), "far more than such a file holds");
+        damaged(&file(&[&chunk(compression, 1 << 19, b"few bytes")]), "chunk at byte");
+    }
+    // Two chunks share what there is.
+    let half = chunk("", 0, &[]);
+    let third = chunk("lz4", 2 * LITTLE, b"");
+    damaged(&file(&[&half, &third]), "far more");
+}
+
+#[test]
+fn a_file_cut_off_anywhere_or_with_any_byte_changed_ends_in_words() {
+    let content = [schema(), channel("/a"), message(b"1")].concat();
+    let whole = file(&[&schema(), &channel("/a"), &message(b"0"), &chunk("", content.len() as u64, &content)]);
+    assert_eq!(messages(&whole), Ok(2));
+    for place in 0..whole.len() {
+        assert!(messages(&whole[..place]).is_err(), "{place}");
+        for bits in [0x01, 0x80, 0xff] {
+            let mut changed = whole.clone();
+            changed[place] ^= bits;
+            // Not every change does harm; none may end the process.
+            let _ = messages(&changed);
+        }
+    }
+}

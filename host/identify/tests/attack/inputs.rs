@@ -1,0 +1,249 @@
+//! Valid files of every kind, and what reads them.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+
+use board::profile::{LONGEST_RUN, TorqueProfile};
+use identify::Arguments;
+use mcap::records::MessageHeader;
+use mcap::{Compression, WriteOptions};
+use reference::closed_loop::MotionProfile;
+use report::failure::{EXIT_BAD_INPUT, Failure};
+use report::progress::Progress;
+use scenario::plant::PlantName;
+use scenario::suite;
+
+/// Ways in which a log may be packed.
+pub const PACKINGS: usize = 5;
+/// Rows of a log: few enough to be refused for that, once they have been read.
+const ROWS: usize = 40;
+/// Why that is.
+const TOO_SHORT: &str = "the log is too short";
+
+/// What a file is.
+#[derive(Debug, Clone, Copy)]
+pub enum Kind {
+    /// A joint file.
+    Joint,
+    /// A test file.
+    Test,
+    /// A motion beside a test file.
+    Motion,
+    /// A torque profile.
+    Torques,
+    /// A log for `joint identify`.
+    CsvLog,
+    /// The same as MCAP, packed in one of the ways.
+    McapLog(usize),
+    /// The form of such a log's messages alone.
+    Form,
+}
+
+/// Whether bytes have something that a reader with a fault would stumble over.
+pub type Fault = fn(&[u8]) -> bool;
+
+/// Every kind of file.
+pub fn all() -> impl Iterator<Item = Kind> {
+    let packed = (0..PACKINGS).map(Kind::McapLog);
+    [Kind::Joint, Kind::Test, Kind::Motion, Kind::Torques, Kind::CsvLog, Kind::Form].into_iter().chain(packed)
+}
+
+const MOTION: &str = "time_s,position_rad,load_torque_N_m\n0,0,0\n0.5,0.1,1\n1,0.3,2\n2.5,0.2,-1\n4,0,0\n";
+const TORQUES: &str = "time_s,motor_torque_Nm,load_torque_Nm\n0,0,0\n0.5,1,6\n1,2,3\n2,-2,-3\n";
+const TEST: &str = "title = \"attack\"\njoint = \"q1\"\nseeds = [1, 2]\nduration_s = 4\nsettle_s = 1.5\ntimeout_s = 60\n\
+                    [known]\nmotor_coulomb_friction_N_m = 0.02\n[plant]\nhalf_backlash_um = [30, 50]\n\
+                    [profile]\nkind = \"sine\"\namplitude_rad = 0.3\nfrequency_Hz = 1.5\n\
+                    [controller]\nmode = \"preview\"\nbandwidth_rad_per_s = 60\nwidth_guess_ratio = [0.5, 1.5]\n\
+                    rivals = [\"motor_pid\"]\n\
+                    [[disturbance]]\nkind = \"pulse\"\nstart_s = 2\nlength_s = 0.1\ntorque_N_m = 3\n\
+                    [[fault]]\nkind = \"encoder_offset\"\nstart_s = 2\ncounts = 40\n\
+                    [assert]\nrms_mrad = \"<= 100\"\n";
+const WITH_MOTION: &str = "[profile]\nkind = \"csv\"\nfile = \"motion.csv\"\n";
+const FORM: &str = "std_msgs/Header header\nfloat64[] position\nint64[2] raw\nfloat64 torque\nPart[<=3] parts\n===\n\
+                    MSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n===\nMSG: a/Part\nuint8 one\n";
+
+impl Kind {
+    /// A valid one.
+    pub fn valid(self) -> Vec<u8> {
+        match self {
+            Self::Joint => joint_file::preset("q1").unwrap_or_default().into(),
+            Self::Test => TEST.into(),
+            Self::Motion => MOTION.into(),
+            Self::Torques => TORQUES.into(),
+            Self::CsvLog => csv().into(),
+            Self::McapLog(packing) => mcap(packing, FORM.as_bytes()),
+            Self::Form => FORM.into(),
+        }
+    }
+
+    /// Reads a file as a command does. A failure must be one of bad input, with words for it; what is read must keep what
+    /// everything behind it takes for granted.
+    pub fn read(self, bytes: &[u8]) -> Result<(), String> {
+        let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
+        let file = |name: &str, bytes: &[u8]| -> Result<PathBuf, String> {
+            let path = folder.path().join(name);
+            fs::write(&path, bytes).map_err(|error| error.to_string())?;
+            Ok(path)
+        };
+        match self {
+            Self::Joint => refused(joint_file::named::load(&file("joint.toml", bytes)?)).map(drop),
+            Self::Test => {
+                refused(suite::load(&file("test.toml", bytes)?, suite::Choice::Full, PlantName::Core)).map(drop)
+            }
+            Self::Motion => {
+                file("motion.csv", bytes)?;
+                match refused(suite::from_text("test.toml", WITH_MOTION, folder.path(), PlantName::Core))? {
+                    Some(test) => followed(&test),
+                    None => Ok(()),
+                }
+            }
+            Self::Torques => {
+                let joint = joint_file::read(joint_file::preset("q1").unwrap_or_default());
+                let joint = joint.map_err(|_| "the preset cannot be read")?.parameters;
+                let path = file("torques.csv", bytes)?;
+                let profile = refused(TorqueProfile::load(&path.display().to_string(), &joint, 20_000, None))?;
+                let finite = |profile: &TorqueProfile| {
+                    profile.commands.iter().all(|one| one.drive_torque.is_finite() && one.load_torque.is_finite())
+                };
+                if profile.as_ref().is_none_or(finite) { Ok(()) } else { Err("a torque is not finite".to_owned()) }
+            }
+            Self::CsvLog => identified(&file("log.csv", bytes)?, folder.path()),
+            Self::McapLog(_) => identified(&file("log.mcap", bytes)?, folder.path()),
+            Self::Form => identified(&file("log.mcap", &mcap(0, bytes))?, folder.path()),
+        }
+    }
+
+    /// Why a file is refused, but for the shortness that all logs have here.
+    pub fn refusal(self, bytes: &[u8]) -> Option<String> {
+        let folder = tempfile::tempdir().ok()?;
+        let path = folder.path().join("log");
+        match self {
+            Self::CsvLog | Self::McapLog(_) => fs::write(&path, bytes).ok()?,
+            Self::Form => fs::write(&path, mcap(0, bytes)).ok()?,
+            _ => return None,
+        }
+        let why = identify::run(&arguments(&path, folder.path()), &Progress::new()).err()?.message().to_owned();
+        (!why.contains(TOO_SHORT)).then_some(why)
+    }
+
+    /// Faults that a reader of such files may have, by what brings them to light.
+    pub fn planted_faults(self) -> Vec<(&'static str, Fault)> {
+        match self {
+            Self::McapLog(_) => vec![
+                ("a length beyond the file", |bytes| bytes.windows(8).any(|eight| eight == u64::MAX.to_le_bytes())),
+                ("no end", |bytes| !bytes.ends_with(b"\x89MCAP0\r\n")),
+            ],
+            _ => vec![
+                ("a number beyond all bounds", |bytes| bytes.windows(5).any(|five| five == b"1e300")),
+                ("nothing but a beginning", |bytes| bytes.len() < 20),
+                ("a depth beyond all bounds", |bytes| {
+                    bytes.windows(500).any(|many| many.iter().all(|byte| *byte == b'['))
+                }),
+                ("no text", |bytes| std::str::from_utf8(bytes).is_err()),
+            ],
+        }
+    }
+}
+
+/// What was read, or nothing if it was refused as it should be.
+fn refused<T>(outcome: Result<T, Failure>) -> Result<Option<T>, String> {
+    match outcome {
+        Ok(read) => Ok(Some(read)),
+        Err(failure) if failure.exit_code() == EXIT_BAD_INPUT && !failure.to_string().is_empty() => Ok(None),
+        Err(failure) => Err(format!("not a refusal of bad input: {failure}")),
+    }
+}
+
+fn followed(test: &suite::Test) -> Result<(), String> {
+    let motion = test.motion.as_ref().ok_or("there is no motion")?;
+    if !(0.0..=LONGEST_RUN).contains(&test.file.duration) {
+        return Err(format!("a run of {} s", test.file.duration));
+    }
+    for row in motion.rows() {
+        let at = motion.at(row.time);
+        if !(at.position.is_finite() && at.speed.is_finite() && at.acceleration.is_finite()) {
+            return Err(format!("{at:?} at {} s", row.time));
+        }
+    }
+    Ok(())
+}
+
+fn identified(log: &Path, folder: &Path) -> Result<(), String> {
+    refused(identify::run(&arguments(log, folder), &Progress::new())).map(drop)
+}
+
+fn arguments(log: &Path, folder: &Path) -> Arguments {
+    let column = [("motor_counts", "raw[0]"), ("output_counts", "raw[1]"), ("motor_torque_N_m", "torque")];
+    let is_mcap = fs::read(log).is_ok_and(|bytes| bytes.starts_with(b"\x89MCAP"));
+    let column =
+        column.into_iter().filter(|_| is_mcap).map(|(own, theirs)| (own.to_owned(), theirs.to_owned())).collect();
+    Arguments {
+        log: log.to_owned(),
+        topic: None,
+        column,
+        joint: "q1".into(),
+        set: Vec::new(),
+        motor_bits: None,
+        output_bits: None,
+        torque_error: None,
+        simulate: false,
+        seed: 1,
+        with_output_torque: false,
+        out: Some(folder.join("out")),
+        json: None,
+    }
+}
+
+fn csv() -> String {
+    let mut text = "time_s,motor_counts,output_counts,motor_torque_N_m\n".to_owned();
+    for row in 0..ROWS {
+        let _ = writeln!(text, "{:.4},{},{},{}", row as f64 * 1e-4, row * 12, row * 16, 1.5);
+    }
+    text
+}
+
+/// A log whose messages have the form `FORM`, as another form may say.
+fn mcap(packing: usize, form: &[u8]) -> Vec<u8> {
+    let plain = WriteOptions::new().compression(None);
+    // Without checksums a change reaches the reader of messages.
+    let unchecked = |options: WriteOptions| options.calculate_chunk_crcs(false).calculate_data_section_crc(false);
+    let options = match packing {
+        0 => unchecked(plain),
+        1 => plain,
+        2 => unchecked(plain.use_chunks(false)),
+        3 => unchecked(WriteOptions::new().compression(Some(Compression::Lz4))),
+        _ => unchecked(WriteOptions::new().compression(Some(Compression::Zstd))),
+    };
+    let mut out = Cursor::new(Vec::new());
+    let written = options.create(&mut out).and_then(|mut writer| {
+        let schema = writer.add_schema("lab/Drive", "ros2msg", form)?;
+        let channel = writer.add_channel(schema, "/drive", "cdr", &Default::default())?;
+        for row in 0..ROWS {
+            let time = 100_000 * row as u64;
+            let header =
+                MessageHeader { channel_id: channel, sequence: row as u32, log_time: time, publish_time: time };
+            writer.write_to_known_channel(&header, &message(row))?;
+        }
+        writer.finish()
+    });
+    written.map(|_| out.into_inner()).unwrap_or_default()
+}
+
+/// By hand from the rules: every number on a multiple of its size behind the head.
+fn message(row: usize) -> Vec<u8> {
+    let mut bytes = vec![0, 1, 0, 0];
+    bytes.extend(0_i32.to_le_bytes());
+    bytes.extend((100_000 * row as u32).to_le_bytes());
+    // A frame of four letters; one position on a multiple of eight.
+    bytes.extend([4, 0, 0, 0, b'b', b'a', b's', 0, 1, 0, 0, 0]);
+    bytes.extend([0; 4]);
+    bytes.extend(0.25_f64.to_le_bytes());
+    for count in [row * 12, row * 16] {
+        bytes.extend((count as i64).to_le_bytes());
+    }
+    bytes.extend(1.5_f64.to_le_bytes());
+    bytes.extend([1, 0, 0, 0, 7]);
+    bytes
+}

@@ -1,0 +1,133 @@
+//! Changes of a file, for text and for bytes alike. A change is data, so that the smallest one that fails can be told.
+
+use proptest::collection::vec;
+use proptest::prelude::*;
+use proptest::sample::{Index, select};
+
+/// Numbers at which something happens, as a user may type them.
+pub const TYPED: [&str; 14] = [
+    "1e300",
+    "-1e300",
+    "1e7",
+    "1e-300",
+    "-1",
+    "0",
+    "NaN",
+    "inf",
+    "1e999",
+    "9223372036854775807",
+    "4294967295",
+    "65536",
+    "",
+    "x",
+];
+/// The same as they stand in bytes.
+const WHOLE: [u64; 8] = [0, 1, 0x7f, 0xffff, u32::MAX as u64, 1 << 40, u64::MAX, u64::MAX / 2];
+/// What opens something in a text, or is none.
+const PIECES: [&str; 12] =
+    ["[", "]", "[[fault]]\n", "\"", "#", "\n", ",", "=", "uint8[0] n\n", "\u{feff}", "[4294967295]", "\0"];
+/// So often a piece may stand behind itself.
+const REPEATED: std::ops::Range<usize> = 1..20_000;
+
+/// One change.
+#[derive(Debug, Clone)]
+pub enum Mutation {
+    /// Another number in place of one that is typed.
+    Number(Index, &'static str),
+    /// Other bits of a byte.
+    Bits(Index, u8),
+    /// A whole number of some bytes in place of what is there.
+    Whole(Index, u64, usize),
+    /// A part is left out.
+    Without(Index, Index),
+    /// Everything from here on is left out.
+    CutOff(Index),
+    /// A part comes so many times more.
+    Again(Index, Index, usize),
+    /// A piece comes so many times.
+    Piece(Index, &'static str, usize),
+}
+
+/// A few changes, one after the other.
+pub fn mutations() -> impl Strategy<Value = Vec<Mutation>> {
+    let place = any::<Index>;
+    let one = prop_oneof![
+        6 => (place(), select(&TYPED[..])).prop_map(|(place, typed)| Mutation::Number(place, typed)),
+        3 => (place(), 1_u8..).prop_map(|(place, bits)| Mutation::Bits(place, bits)),
+        6 => (place(), select(&WHOLE[..]), select(&[2_usize, 4, 8][..]))
+            .prop_map(|(place, number, size)| Mutation::Whole(place, number, size)),
+        1 => (place(), place()).prop_map(|(from, to)| Mutation::Without(from, to)),
+        1 => place().prop_map(Mutation::CutOff),
+        2 => (place(), place(), 1..40_usize).prop_map(|(from, to, times)| Mutation::Again(from, to, times)),
+        3 => (place(), select(&PIECES[..]), REPEATED)
+            .prop_map(|(place, piece, times)| Mutation::Piece(place, piece, times)),
+    ];
+    vec(one, 1..4)
+}
+
+/// A file with changes.
+pub fn mutated(valid: &[u8], changes: &[Mutation]) -> Vec<u8> {
+    changes.iter().fold(valid.to_vec(), |bytes, change| change.made(bytes))
+}
+
+impl Mutation {
+    fn made(&self, mut bytes: Vec<u8>) -> Vec<u8> {
+        if bytes.is_empty() {
+            return bytes;
+        }
+        let at = |place: &Index, bytes: &[u8]| place.index(bytes.len());
+        let range = |from: &Index, to: &Index, bytes: &[u8]| {
+            let (from, to) = (at(from, bytes), at(to, bytes));
+            from.min(to)..from.max(to)
+        };
+        match self {
+            Self::Number(place, typed) => {
+                let places = numbers(&bytes);
+                if !places.is_empty() {
+                    bytes.splice(places[place.index(places.len())].clone(), typed.bytes());
+                }
+            }
+            Self::Bits(place, bits) => {
+                let place = at(place, &bytes);
+                bytes[place] ^= bits;
+            }
+            Self::Whole(place, number, size) => {
+                let from = at(place, &bytes);
+                let to = (from + size).min(bytes.len());
+                bytes.splice(from..to, number.to_le_bytes()[..*size].iter().copied());
+            }
+            Self::Without(from, to) => {
+                let range = range(from, to, &bytes);
+                bytes.drain(range);
+            }
+            Self::CutOff(place) => {
+                let place = at(place, &bytes);
+                bytes.truncate(place);
+            }
+            Self::Again(from, to, times) => {
+                let range = range(from, to, &bytes);
+                let (end, part) = (range.end, bytes[range].repeat(*times));
+                bytes.splice(end..end, part);
+            }
+            Self::Piece(place, piece, times) => {
+                let place = at(place, &bytes);
+                bytes.splice(place..place, piece.repeat(*times).into_bytes());
+            }
+        }
+        bytes
+    }
+}
+
+/// Where numbers are typed in a text.
+fn numbers(bytes: &[u8]) -> Vec<std::ops::Range<usize>> {
+    let part = |byte: &u8| byte.is_ascii_digit() || b".-+eE".contains(byte);
+    let mut places = Vec::new();
+    let mut from = 0;
+    for word in bytes.split(|byte| !part(byte)) {
+        if word.iter().any(u8::is_ascii_digit) {
+            places.push(from..from + word.len());
+        }
+        from += word.len() + 1;
+    }
+    places
+}

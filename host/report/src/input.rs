@@ -1,0 +1,66 @@
+//! Files that users name, read whole into memory, but no more of them than a stated size: a device or a pipe may have no end.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+/// A file of this size was not typed by anybody, and named by mistake [bytes].
+pub const LARGEST_TYPED: u64 = 1 << 20;
+/// A recording may be this large; a larger one is taken for a mistake [bytes].
+pub const LARGEST_RECORDED: u64 = 2 << 30;
+
+/// The bytes of a file, or why they cannot be had.
+pub fn bytes(path: &Path, largest: u64) -> Result<Vec<u8>, String> {
+    let read = || {
+        let file = File::open(path)?;
+        let known = file.metadata()?;
+        if known.is_dir() {
+            return Ok(Err("it is a folder".to_owned()));
+        }
+        // What the system says beforehand may be nothing, as of a pipe, or may have grown meanwhile.
+        let mut bytes = Vec::new();
+        if known.len() <= largest {
+            file.take(largest + 1).read_to_end(&mut bytes)?;
+        }
+        let fits = known.len() <= largest && bytes.len() as u64 <= largest;
+        Ok(if fits { Ok(bytes) } else { Err(format!("it is larger than {}", in_words(largest))) })
+    };
+    read().unwrap_or_else(|error: std::io::Error| Err(error.to_string()))
+}
+
+/// The text of a file, or why it cannot be had.
+pub fn text(path: &Path, largest: u64) -> Result<String, String> {
+    String::from_utf8(bytes(path, largest)?).map_err(|_| "it is not text (UTF-8)".to_owned())
+}
+
+fn in_words(bytes: u64) -> String {
+    match (bytes >> 30, bytes >> 20) {
+        (0, 0) => format!("{bytes} bytes"),
+        (0, mega) => format!("{mega} MB"),
+        (giga, _) => format!("{giga} GB"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_more_is_read_than_the_stated_size() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("file");
+        std::fs::write(&path, "12345678").expect("room");
+        assert_eq!(text(&path, 8).as_deref(), Ok("12345678"));
+        assert_eq!(text(&path, 7), Err("it is larger than 7 bytes".to_owned()));
+        assert_eq!(text(folder.path(), 7), Err("it is a folder".to_owned()));
+        std::fs::write(&path, [0xff]).expect("room");
+        assert_eq!(text(&path, 7), Err("it is not text (UTF-8)".to_owned()));
+        assert!(bytes(&folder.path().join("none"), 7).is_err());
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn a_file_without_an_end_is_refused() {
+        assert_eq!(bytes(Path::new("/dev/zero"), LARGEST_TYPED), Err("it is larger than 1 MB".to_owned()));
+    }
+}

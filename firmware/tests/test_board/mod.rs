@@ -28,6 +28,9 @@ use model_core::observer::{MEMORY_BYTES, Memory};
 /// Timer counts between two ticks.
 pub const PERIOD: u32 = 8400;
 
+/// As many ticks as there are: for tests in which the host says nothing for long.
+pub const NO_TIMEOUT: u32 = u32::MAX;
+
 /// Both directions of the line.
 #[derive(Default)]
 pub struct Wire {
@@ -52,7 +55,6 @@ impl Uart for WireEnd {
     fn write(&mut self, byte: u8) {
         self.0.borrow_mut().from_board.push_back(byte);
     }
-    fn interrupt_on_read(&mut self, _: bool) {}
     fn interrupt_on_write(&mut self, _: bool) {}
     fn interrupt_again(&mut self) {}
 }
@@ -166,9 +168,9 @@ where
             watchdog_reset: false,
             memory: MemoryState::Nothing,
         };
-        let progress = idle_end.progress;
+        let (progress, heard) = (idle_end.progress, line.heard());
         Self {
-            control: TickHandler::new(work, Enable(enable.clone()), PERIOD, tick_end),
+            control: TickHandler::new(work, Enable(enable.clone()), PERIOD, tick_end, heard),
             conversation: Conversation::new(
                 hello::<W::Protocol>(start_up, None),
                 PERIOD,
@@ -201,8 +203,18 @@ where
         while nothing_to_do < 200 {
             self.serial.service();
             let busy = self.conversation.attend(&mut |_| Resources::default());
-            self.conversation.serve_page(&mut self.flash, |write| write());
+            self.conversation.serve_page(&mut self.flash, |write| {
+                assert!(!self.enable.get(), "flash is written with the output on");
+                write()
+            });
             nothing_to_do = if busy { 0 } else { nothing_to_do + 1 };
+        }
+    }
+
+    /// The serial line's interrupt until nothing is left in the UART, without idle.
+    pub fn hear(&mut self) {
+        while !self.wire.borrow().to_board.is_empty() {
+            self.serial.service();
         }
     }
 

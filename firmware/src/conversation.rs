@@ -197,7 +197,7 @@ impl<'a, W: Protocol> Conversation<'a, W> {
         LineCounts {
             lost_schedules: self.intake.lost(),
             bad_frames: self.receiver.dropped().frames,
-            lost_bytes: self.line.lost(),
+            lost_bytes: self.heard.lost(),
             lost_log_bytes: (self.log.lost)(),
         }
     }

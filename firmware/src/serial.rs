@@ -57,6 +57,11 @@ impl Heard {
         self.stops.load(Acquire)
     }
 
+    /// Received bytes that found no room, and times that the UART lost some.
+    pub fn lost(&self) -> u32 {
+        self.lost.load(Relaxed)
+    }
+
     /// Called by the one interrupt that counts.
     fn hear(&self, stop: bool) {
         if stop {
@@ -196,11 +201,6 @@ impl<'a> LineEnd<'a> {
         }
         (self.wake)();
     }
-
-    /// Received bytes that found no room, and times that the UART lost some.
-    pub fn lost(&self) -> u32 {
-        self.heard.lost.load(Relaxed)
-    }
 }
 
 #[cfg(test)]
@@ -256,7 +256,7 @@ mod tests {
             received.extend(std::iter::from_fn(|| end.read()));
         }
         assert_eq!(received, (0..3 * INBOX).map(|i| i as u8).collect::<Vec<_>>());
-        assert_eq!(end.lost(), 0);
+        assert_eq!(end.heard().lost(), 0);
     }
 
     #[test]
@@ -271,7 +271,7 @@ mod tests {
         serial.uart.incoming.extend(&stop);
         serial.service();
         assert_eq!((end.heard().frames(), end.heard().stops()), (1, 1));
-        assert_eq!(end.lost() as usize, 2 * INBOX + 2 * stop.len() - (INBOX - 1));
+        assert_eq!(end.heard().lost() as usize, 2 * INBOX + 2 * stop.len() - (INBOX - 1));
         while end.read().is_some() {}
         serial.uart.incoming.extend(&stop);
         serial.service();
@@ -301,6 +301,6 @@ mod tests {
         let mut line = Line::new();
         let (mut serial, end) = line.split(&mut wire, nothing);
         (0..5).for_each(|_| serial.service());
-        assert_eq!(end.lost(), 1);
+        assert_eq!(end.heard().lost(), 1);
     }
 }

@@ -12,31 +12,41 @@ pub enum Host {
     IsSilent,
 }
 
-/// Counts the ticks without a frame.
+/// Counts the ticks without a frame, in a run or not.
 #[derive(Debug, Clone)]
 pub struct Silence {
     timeout: u32,
-    /// Ticks left until the timeout is over.
-    left: u32,
+    /// Ticks in a row without a frame.
+    quiet: u32,
     /// Frames heard so far.
     frames: u32,
 }
 
 impl Silence {
-    /// From now on, so many frames having been heard; silent in the `timeout`'th tick in a row without another.
-    pub fn new(timeout: u32, frames: u32) -> Self {
-        Self { timeout, left: timeout, frames }
+    /// From power-up on; silent in the `timeout`'th tick in a row without a frame.
+    pub const fn new(timeout: u32) -> Self {
+        Self { timeout, quiet: 0, frames: 0 }
+    }
+
+    /// A run with a timeout of its own is about to begin; `false` if that is over already, so many frames having been heard:
+    /// idle has been long about the reset.
+    pub fn allows(&mut self, timeout: u32, frames: u32) -> bool {
+        let in_time = frames != self.frames || self.quiet < timeout;
+        if in_time {
+            self.timeout = timeout;
+        }
+        in_time
     }
 
     /// A tick that finds so many frames heard; the count wraps.
     #[inline]
     pub fn after(&mut self, frames: u32) -> Host {
         if frames != self.frames {
-            (self.frames, self.left) = (frames, self.timeout);
+            (self.frames, self.quiet) = (frames, 0);
             return Host::HasSpoken;
         }
-        self.left = self.left.saturating_sub(1);
-        if self.left == 0 { Host::IsSilent } else { Host::IsThere }
+        self.quiet = self.quiet.saturating_add(1);
+        if self.quiet >= self.timeout { Host::IsSilent } else { Host::IsThere }
     }
 }
 
@@ -46,8 +56,8 @@ mod tests {
 
     #[test]
     fn silence_begins_anew_with_every_frame_and_the_count_may_wrap() {
-        let mut silence = Silence::new(3, u32::MAX);
-        for frames in [0, 1, 2] {
+        let mut silence = Silence::new(3);
+        for frames in [u32::MAX, 0, 1, 2] {
             assert_eq!(silence.after(frames), Host::HasSpoken);
             assert_eq!([silence.after(frames), silence.after(frames)], [Host::IsThere; 2]);
         }
@@ -56,11 +66,12 @@ mod tests {
     }
 
     #[test]
-    fn a_run_in_which_nothing_is_heard_is_silent_in_time() {
-        let mut silence = Silence::new(3, 7);
-        assert_eq!(
-            [silence.after(7), silence.after(7), silence.after(7)],
-            [Host::IsThere, Host::IsThere, Host::IsSilent]
-        );
+    fn a_run_begins_by_a_frame_of_late_only() {
+        let mut silence = Silence::new(3);
+        assert!(silence.allows(2, 1), "the reset has just been heard");
+        assert_eq!([silence.after(1), silence.after(1)], [Host::HasSpoken, Host::IsThere]);
+        assert!(silence.allows(2, 1));
+        assert_eq!(silence.after(1), Host::IsSilent);
+        assert!(!silence.allows(2, 1) && silence.allows(3, 1));
     }
 }

@@ -58,7 +58,7 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> TickHandler<'a, E, W> {
             period,
             end,
             heard,
-            silence: Silence::new(BEFORE_ANY_RUN.command_timeout, 0),
+            silence: Silence::new(BEFORE_ANY_RUN.command_timeout),
             stops: 0,
         };
         control.show_state();
@@ -76,7 +76,8 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> TickHandler<'a, E, W> {
         self.end.progress.ticks.store(self.end.progress.ticks.load(Relaxed).wrapping_add(1), Relaxed);
         self.monitor.lateness.record(lateness);
         self.obey();
-        let stepped = matches!(self.state(), State::Running) && self.may_go_on() && self.advance(timer, lateness);
+        let host = self.silence.after(self.heard.frames());
+        let stepped = matches!(self.state(), State::Running) && self.may_go_on(host) && self.advance(timer, lateness);
         let end = timer.since_expiry();
         if stepped {
             self.monitor.step_took(end.saturating_sub(lateness));
@@ -167,7 +168,7 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> TickHandler<'a, E, W> {
         if settings.mode == RunMode::Realtime && !W::FREE_RUNNING {
             return Event::Refused(Trip::BadSettings);
         }
-        if stops != self.heard.stops() {
+        if stops != self.heard.stops() || !self.silence.allows(settings.command_timeout, self.heard.frames()) {
             return Event::Refused(Trip::Overtaken);
         }
         if let Err(trip) = self.safe_state.run() {
@@ -184,14 +185,13 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> TickHandler<'a, E, W> {
         self.monitor = Monitor::new(self.period);
         self.end.progress.horizon.store(0, Release);
         self.end.progress.steps.store(0, Release);
-        self.silence = Silence::new(settings.command_timeout, self.heard.frames());
         self.stops = stops;
         Event::ResetDone
     }
 
     /// Whether the host has been heard of in time and has not said stop: whatever idle has still to read or to send.
-    fn may_go_on(&mut self) -> bool {
-        match self.silence.after(self.heard.frames()) {
+    fn may_go_on(&mut self, host: Host) -> bool {
+        match host {
             Host::IsThere => true,
             Host::HasSpoken => {
                 let goes_on = self.heard.stops() == self.stops;

@@ -201,7 +201,8 @@ pub enum Trip {
         /// Its horizon.
         tick: u32,
     },
-    /// A reset that was not carried out: a stop came after it, or it came while flash was written. Reset again.
+    /// A reset that was not carried out: a stop came after it, it came while flash was written, or it waited for longer than
+    /// its command timeout and nothing came after it. Reset again.
     Overtaken,
 }
 

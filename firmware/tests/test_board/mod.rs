@@ -13,7 +13,7 @@ use firmware::page::Page;
 use firmware::plant::Plant;
 use firmware::protocol::Protocol;
 use firmware::queues::{Progress, Queues};
-use firmware::serial::{Line, Serial, Uart};
+use firmware::serial::{Heard, Line, Serial, Uart};
 use firmware::tables::{PLANETS, TABLES};
 use firmware::tick_handler::TickHandler;
 use firmware::timing_monitor::TickTimer;
@@ -129,6 +129,8 @@ where
     pub flash: Flash,
     /// How far the run is, as tick and idle tell one another.
     pub progress: &'static Progress,
+    /// What the line's interrupt has heard of the host.
+    pub heard: &'static Heard,
     /// First look at the timer in a tick, and what each look adds.
     pub timing: (u32, u32),
 }
@@ -184,6 +186,7 @@ where
             enable,
             flash: Flash { memory: [0xff; MEMORY_BYTES], works: true, erased: 0 },
             progress,
+            heard,
             timing: (20, 100),
         }
     }

@@ -74,7 +74,7 @@ fn words(trip: &Trip) -> (&'static str, Option<u32>, &'static str, &'static str)
         Trip::Overtaken => (
             "overtaken",
             None,
-            "a reset was not carried out: a stop came after it, or it came while flash was written",
+            "a reset came to its turn too late: after a stop, work on flash, or a silence",
             "wait for the answer to what was sent before, then reset again",
         ),
     }

@@ -122,10 +122,11 @@ impl<W: TestRole> Case<W> {
     }
 
     fn tick(&mut self) -> TestCaseResult {
-        let was_on = self.board.enable.get();
+        let (was_on, switched_on) = (self.board.enable.get(), self.board.switched_on.get());
         self.board.tick();
         let (on, progress) = (self.board.enable.get(), self.board.progress);
         let (tripped, steps) = (progress.tripped.load(Relaxed), progress.steps.load(Relaxed));
+        prop_assert!(on || self.board.switched_on.get() == switched_on, "the output was on for a part of a tick");
         prop_assert_eq!(on, progress.running.load(Relaxed), "the output is on in a run only");
         prop_assert!(self.may_run || !on, "a stop was not heard, or a run began without a reset");
         self.quiet += 1;

@@ -224,6 +224,23 @@ fn no_run_begins_by_a_reset_that_a_stop_has_overtaken() {
     a_stop_overtakes_a_reset::<LoopWork>();
 }
 
+fn a_run_begins_afresh<W: TestRole>() {
+    let mut board = started::<W>(RunMode::Lockstep).expect("a run");
+    board.send(&W::schedule(0, 100, 0..2));
+    board.run(5);
+    board.send(&reset(RunMode::Lockstep));
+    board.run(10);
+    let steps = board.progress.steps.load(std::sync::atomic::Ordering::Relaxed);
+    assert!(steps == 0 && board.enable.get(), "{steps} steps on what was asked of the run before");
+}
+
+#[test]
+fn a_run_makes_no_step_on_the_schedules_of_the_run_before() {
+    a_run_begins_afresh::<PlantWork>();
+    a_run_begins_afresh::<ObserverWork>();
+    a_run_begins_afresh::<LoopWork>();
+}
+
 #[test]
 fn a_refused_reset_leaves_the_run_as_it_was() {
     let mut board = started::<ObserverWork>(RunMode::Lockstep).expect("a run");

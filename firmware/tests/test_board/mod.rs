@@ -59,7 +59,8 @@ impl Uart for WireEnd {
     fn interrupt_again(&mut self) {}
 }
 
-struct Enable(Rc<Cell<bool>>);
+/// The output, and how often it was switched on.
+struct Enable(Rc<Cell<bool>>, Rc<Cell<u32>>);
 
 impl ErrorType for Enable {
     type Error = Infallible;
@@ -72,6 +73,7 @@ impl OutputPin for Enable {
     }
     fn set_high(&mut self) -> Result<(), Infallible> {
         self.0.set(true);
+        self.1.set(self.1.get() + 1);
         Ok(())
     }
 }
@@ -126,6 +128,8 @@ where
     receiver: Receiver,
     pub wire: Rc<RefCell<Wire>>,
     pub enable: Rc<Cell<bool>>,
+    /// How often the output was switched on.
+    pub switched_on: Rc<Cell<u32>>,
     pub flash: Flash,
     /// How far the run is, as tick and idle tell one another.
     pub progress: &'static Progress,
@@ -158,7 +162,7 @@ where
     /// With a role's work.
     pub fn with(work: W) -> Self {
         let wire = Rc::new(RefCell::new(Wire::default()));
-        let enable = Rc::new(Cell::new(true));
+        let (enable, switched_on) = (Rc::new(Cell::new(true)), Rc::new(Cell::new(0)));
         let (tick_end, idle_end) = Box::leak(Box::new(Queues::new())).split();
         let (serial, line) = Box::leak(Box::new(Line::new())).split(WireEnd(wire.clone()), || {});
         let (_, bytes) = Box::leak(Box::new(Queue::<u8, 16>::new())).split();
@@ -172,7 +176,7 @@ where
         };
         let (progress, heard) = (idle_end.progress, line.heard());
         Self {
-            control: TickHandler::new(work, Enable(enable.clone()), PERIOD, tick_end, heard),
+            control: TickHandler::new(work, Enable(enable.clone(), switched_on.clone()), PERIOD, tick_end, heard),
             conversation: Conversation::new(
                 hello::<W::Protocol>(start_up, None),
                 PERIOD,
@@ -184,6 +188,7 @@ where
             receiver: Receiver::new(),
             wire,
             enable,
+            switched_on,
             flash: Flash { memory: [0xff; MEMORY_BYTES], works: true, erased: 0 },
             progress,
             heard,

@@ -28,10 +28,10 @@ impl Silence {
         Self { timeout, quiet: 0, frames: 0 }
     }
 
-    /// A run with a timeout of its own is about to begin; `false` if that is over already, so many frames having been heard:
-    /// idle has been long about the reset.
+    /// A run with a timeout of its own is about to begin in this tick; `false` if that is over with it, so many frames having
+    /// been heard: idle has been long about the reset.
     pub fn allows(&mut self, timeout: u32, frames: u32) -> bool {
-        let in_time = frames != self.frames || self.quiet < timeout;
+        let in_time = frames != self.frames || self.quiet.saturating_add(1) < timeout;
         if in_time {
             self.timeout = timeout;
         }
@@ -69,9 +69,11 @@ mod tests {
     fn a_run_begins_by_a_frame_of_late_only() {
         let mut silence = Silence::new(3);
         assert!(silence.allows(2, 1), "the reset has just been heard");
-        assert_eq!([silence.after(1), silence.after(1)], [Host::HasSpoken, Host::IsThere]);
+        assert_eq!(silence.after(1), Host::HasSpoken);
         assert!(silence.allows(2, 1));
-        assert_eq!(silence.after(1), Host::IsSilent);
+        assert_eq!(silence.after(1), Host::IsThere);
         assert!(!silence.allows(2, 1) && silence.allows(3, 1));
+        assert_eq!(silence.after(1), Host::IsThere);
+        assert!(!silence.allows(3, 1));
     }
 }

@@ -67,7 +67,7 @@ pub fn unforbidden(page: &str, manifests: &[(PathBuf, String)]) -> Vec<String> {
     let excused: Vec<_> = listed.iter().filter_map(|(file, ..)| folder_of(file)).collect();
     let judge = |(folder, manifest): &(PathBuf, String)| {
         let forbids = manifest.contains("[lints]\nworkspace = true");
-        let name = folder.display();
+        let name = folder.components().as_path().display();
         match (excused.contains(&folder), forbids) {
             (false, false) => {
                 Some(format!("{name}/Cargo.toml: `unsafe` is not forbidden\n  mend: [lints] workspace = true"))

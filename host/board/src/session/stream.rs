@@ -144,3 +144,38 @@ impl<'p> StreamProgress<'p> {
         Some(Schedule { sequence, horizon, commands: heapless::Vec::from_slice(chosen).unwrap_or_default() })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A profile with seconds between its torques, on a board that is as far as it has been told: every schedule is within
+    /// reach, and none goes back.
+    #[test]
+    fn no_schedule_reaches_farther_than_the_board_accepts_and_the_stream_comes_to_its_end() {
+        for mode in [RunMode::Lockstep, RunMode::Realtime] {
+            let settings = RunSettings { mode, decimation: 1, command_timeout: 2000, from_memory: false };
+            let commands =
+                [0, 50_000, 50_001, 99_000].map(|tick| Command { tick, drive_torque: 0.1, load_torque: 0.0 });
+            let profile = TorqueProfile { name: "sparse".into(), commands: commands.into(), ticks: 100_000 };
+            let mut stream = StreamProgress::new(&profile, settings, 20_000);
+            let (mut horizon, mut sent) = (0, Vec::new());
+            let now = Instant::now();
+            while stream.board_tick < profile.ticks {
+                assert!(now.elapsed() < ANSWER_TIMEOUT, "it stays at tick {}", stream.board_tick);
+                // Time passes without waiting for it.
+                stream.last_sent -= KEEP_ALIVE_INTERVAL;
+                assert!(stream.next_schedule(127, SCHEDULES_IN_FLIGHT + KEEP_ALIVES_IN_FLIGHT).is_none());
+                let schedule = stream.next_schedule(127, 0).expect("the host says that it is there");
+                assert!(
+                    schedule.horizon >= horizon && schedule.horizon <= settings.farthest_horizon(stream.board_tick)
+                );
+                assert!(schedule.commands.iter().all(|command| (horizon..schedule.horizon).contains(&command.tick)));
+                horizon = schedule.horizon;
+                sent.extend(schedule.commands);
+                stream.advance(horizon);
+            }
+            assert_eq!(sent, commands);
+        }
+    }
+}

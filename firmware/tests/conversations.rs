@@ -21,6 +21,7 @@ const TIMEOUT: u32 = 30;
 
 /// What a host does, or does not.
 #[derive(Debug, Clone)]
+#[allow(clippy::large_enum_variant, reason = "a few dozen of them at a time")]
 enum Action {
     Hello,
     Reset {

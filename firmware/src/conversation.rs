@@ -13,8 +13,8 @@ use crate::intake::{Intake, Taken};
 use crate::memory_requests::{MemoryRequests, Reaction};
 use crate::page::Page;
 use crate::protocol::{Batch, Protocol};
-use crate::queues::{Event, IdleEnd, Order, Progress};
-use crate::serial::LineEnd;
+use crate::queues::{BEFORE_ANY_RUN, Event, IdleEnd, Order, Progress};
+use crate::serial::{Heard, LineEnd};
 use crate::timing_report::{LineCounts, Resources, statistics};
 
 /// The encoded log, as far as it waits to be sent.
@@ -36,11 +36,18 @@ pub struct Conversation<'a, W: Protocol> {
     events: Consumer<'a, Event>,
     progress: &'a Progress,
     line: LineEnd<'a>,
+    heard: &'a Heard,
     log: LogEnd<'a>,
     receiver: Receiver,
     batch: W::Batch,
     log_sequence: u16,
     awaiting: bool,
+    /// Of the run that was asked for last.
+    settings: RunSettings,
+    /// Stops among the frames that were read.
+    stops: u32,
+    /// Bytes to be read that were received while flash was written.
+    stale: usize,
     cause: Option<Trip>,
     clear_with_report: bool,
     cleared: LineCounts,
@@ -59,12 +66,16 @@ impl<'a, W: Protocol> Conversation<'a, W> {
             samples,
             events,
             progress,
+            heard: line.heard(),
             line,
             log,
             receiver: Receiver::new(),
             batch: W::Batch::default(),
             log_sequence: 0,
             awaiting: false,
+            settings: BEFORE_ANY_RUN,
+            stops: 0,
+            stale: 0,
             cause: None,
             clear_with_report: false,
             cleared: LineCounts::default(),
@@ -72,22 +83,27 @@ impl<'a, W: Protocol> Conversation<'a, W> {
     }
 
     /// Does the flash page's work, if there is any: nothing runs until then. `writing` wraps what may take a second or two.
+    /// The line may have lost anything meanwhile, a stop too: no run begins by a reset that was received before the end of it.
     pub fn serve_page(&mut self, page: &mut impl Page, writing: impl FnOnce(&mut dyn FnMut() -> bool) -> bool) {
         if !self.has_room() {
             return;
         }
         if let Some(outcome) = self.memory_requests.serve(page, writing) {
             self.hello.memory = outcome.remembered.unwrap_or(self.hello.memory);
+            if matches!(outcome.answer, FromBoard::MemoryOutcome(_)) {
+                self.stale = self.line.waiting();
+            }
             self.say(&outcome.answer);
         }
     }
 
     /// Does one thing of each kind if there is one; returns whether there was any. `resources` is asked when a report is
-    /// due, with `true` if it should start afresh.
+    /// due, with `true` if it should start afresh. The host comes first: samples enough to fill the line would let it wait
+    /// for its answers.
     pub fn attend(&mut self, resources: &mut dyn FnMut(bool) -> Resources) -> bool {
+        let heard = !self.awaiting && !self.memory_requests.is_busy() && self.has_room() && self.take_held_or_listen();
         let sampled = self.has_room() && self.report_samples();
         let happened = self.has_room() && self.report_event(resources);
-        let heard = !self.awaiting && !self.memory_requests.is_busy() && self.has_room() && self.take_held_or_listen();
         let logged = self.has_room() && self.report_log();
         sampled || happened || heard || logged
     }
@@ -136,6 +152,7 @@ impl<'a, W: Protocol> Conversation<'a, W> {
         self.awaiting &= matches!(event, Event::Tripped(_));
         match event {
             Event::ResetDone => {
+                self.intake.begin(self.settings);
                 self.forget_run();
                 self.say(&FromBoard::Hello(self.hello.clone()));
             }
@@ -180,7 +197,7 @@ impl<'a, W: Protocol> Conversation<'a, W> {
         LineCounts {
             lost_schedules: self.intake.lost(),
             bad_frames: self.receiver.dropped().frames,
-            lost_bytes: self.line.lost(),
+            lost_bytes: self.heard.lost(),
             lost_log_bytes: (self.log.lost)(),
         }
     }
@@ -211,26 +228,34 @@ impl<'a, W: Protocol> Conversation<'a, W> {
 
     /// Reads up to the end of a frame.
     fn listen(&mut self) -> bool {
-        let mut heard = false;
+        let (mut heard, stops) = (false, self.heard.stops());
         while let Some(byte) = self.line.read() {
             heard = true;
+            let is_stale = self.stale > 0;
+            self.stale = self.stale.saturating_sub(1);
             if let Some(message) = self.receiver.push(byte) {
-                self.answer(message);
-                break;
+                self.answer(message, is_stale);
+                return heard;
             }
         }
+        // All that had come has been read: a stop that was not among it found no room.
+        self.stops = stops;
         heard
     }
 
-    fn answer(&mut self, message: ToBoard) {
+    fn answer(&mut self, message: ToBoard, is_stale: bool) {
         match message {
             ToBoard::Hello { .. } => self.say(&FromBoard::Hello(self.hello.clone())),
+            ToBoard::Reset(_) if is_stale => self.say(&FromBoard::Tripped(Trip::Overtaken)),
             ToBoard::Reset(settings) => self.reset(settings),
             ToBoard::Statistics { reset } => {
                 self.clear_with_report = reset;
                 self.order(Order::Report { reset });
             }
-            ToBoard::Stop => self.order(Order::Stop),
+            ToBoard::Stop => {
+                self.stops = self.stops.wrapping_add(1);
+                self.order(Order::Stop);
+            }
             ToBoard::Memory(request) => self.begin(request),
             ToBoard::Fault(fault) => self.order(Order::Fault(fault)),
             commands => match W::timetable(commands) {
@@ -258,8 +283,8 @@ impl<'a, W: Protocol> Conversation<'a, W> {
         if settings.decimation == 0 || settings.command_timeout == 0 {
             return self.trip(Trip::BadSettings);
         }
-        self.intake.begin(settings.mode);
-        self.order(Order::Reset(settings));
+        self.settings = settings;
+        self.order(Order::Reset { settings, stops: self.stops });
     }
 
     /// Sends the outcome of a schedule.

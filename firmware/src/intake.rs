@@ -4,10 +4,10 @@
 use core::sync::atomic::Ordering::{Acquire, Release};
 
 use heapless::spsc::Producer;
-use link::messages::{Accepted, RunMode, Trip};
+use link::messages::{Accepted, RunMode, RunSettings, Trip};
 
 use crate::protocol::{Protocol, Timed, Timetable};
-use crate::queues::Progress;
+use crate::queues::{BEFORE_ANY_RUN, Progress};
 
 /// Outcome of a schedule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,7 +26,7 @@ pub enum Taken {
 pub struct Intake<'a, W: Protocol> {
     commands: Producer<'a, W::Command>,
     progress: &'a Progress,
-    mode: RunMode,
+    settings: RunSettings,
     held: Option<W::Timetable>,
     next_sequence: u16,
     lost: u32,
@@ -35,14 +35,13 @@ pub struct Intake<'a, W: Protocol> {
 impl<'a, W: Protocol> Intake<'a, W> {
     /// Before the first run.
     pub fn new(commands: Producer<'a, W::Command>, progress: &'a Progress) -> Self {
-        Self { commands, progress, mode: RunMode::Lockstep, held: None, next_sequence: 0, lost: 0 }
+        Self { commands, progress, settings: BEFORE_ANY_RUN, held: None, next_sequence: 0, lost: 0 }
     }
 
-    /// A run is about to begin.
-    pub fn begin(&mut self, mode: RunMode) {
-        self.mode = mode;
+    /// A run has begun.
+    pub fn begin(&mut self, settings: RunSettings) {
+        self.settings = settings;
         self.next_sequence = 0;
-        self.progress.horizon.store(0, Release);
     }
 
     /// A schedule waits for room: until it is taken nothing more should be read.
@@ -72,7 +71,7 @@ impl<'a, W: Protocol> Intake<'a, W> {
         if !self.progress.running.load(Acquire) {
             return Taken::NotRunning;
         }
-        let lockstep = self.mode == RunMode::Lockstep;
+        let lockstep = self.settings.mode == RunMode::Lockstep;
         let sequence = timetable.sequence();
         let gap = sequence.wrapping_sub(self.next_sequence);
         let is_repeated = gap > u16::MAX / 2;
@@ -112,12 +111,15 @@ impl<'a, W: Protocol> Intake<'a, W> {
         self.commands.capacity() - self.commands.len()
     }
 
-    /// Commands lie between the old horizon and the new one, in rising order: those before the old one would be late,
+    /// The horizon is within reach. Commands lie between the old horizon and the new one, in rising order: those before the old one would be late,
     /// those past the new one would block the queue.
     fn check(&self, timetable: &W::Timetable) -> Result<(), Trip> {
         let mut earliest = self.progress.horizon.load(Acquire);
         if timetable.horizon() < earliest {
             return Err(Trip::LateCommand { tick: timetable.horizon() });
+        }
+        if timetable.horizon() > self.settings.farthest_horizon(self.progress.steps.load(Acquire)) {
+            return Err(Trip::FarHorizon { tick: timetable.horizon() });
         }
         for command in timetable.commands() {
             let tick = command.tick();

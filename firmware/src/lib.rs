@@ -2,7 +2,7 @@
 //! A joint simulated in the tick of a microcontroller, driven and watched over a serial line.
 //!
 //! `tick_handler` is one tick of any role: it takes commands from `schedule`, steps the role's `work`, records times in
-//! `timing_monitor`, and enters `safe_state` on a fault. The roles are `plant`, `observer` and `whole_loop`; `protocol` is
+//! `timing_monitor`, listens for the host's `silence`, and enters `safe_state` on a fault. The roles are `plant`, `observer` and `whole_loop`; `protocol` is
 //! what they differ in on the line. `queues` connects the tick to the rest, by a `sized_queue` that cannot panic.
 //! `conversation`, run in idle, answers the host with the help of `identity`, `intake`, `memory_requests`, `batcher`, `telemetry`
 //! and `timing_report`; `serial` moves its bytes. `port` is the seam between a motor controller and observer with compensation, `encoder`
@@ -26,6 +26,7 @@ pub mod queues;
 pub mod safe_state;
 pub mod schedule;
 pub mod serial;
+pub mod silence;
 pub mod sized_queue;
 pub mod status_light;
 pub mod telemetry;

@@ -3,7 +3,7 @@
 use core::sync::atomic::{AtomicBool, AtomicU32};
 
 use heapless::spsc::{Consumer, Producer, Queue};
-use link::messages::{MemoryOutcome, MemoryState, RunSettings, Trip};
+use link::messages::{MemoryOutcome, MemoryState, RunMode, RunSettings, Trip};
 use model_core::virtual_joint::fault::{Fault, FixedPoint};
 
 use crate::protocol::Protocol;
@@ -23,11 +23,20 @@ const LEARNT: usize = 2;
 /// Most commands that can wait for their tick.
 pub const COMMAND_CAPACITY: u16 = COMMANDS as u16 - 1;
 
+/// Settings before the first reset.
+pub const BEFORE_ANY_RUN: RunSettings =
+    RunSettings { mode: RunMode::Lockstep, decimation: 1, command_timeout: 1, from_memory: false };
+
 /// From idle to the tick, handled at the start of the next one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Order {
-    /// Back to rest at tick 0 with these settings; answered by [`Event::ResetDone`] or [`Event::Refused`].
-    Reset(RunSettings),
+    /// Back to rest at tick 0; answered by [`Event::ResetDone`] or [`Event::Refused`].
+    Reset {
+        /// How the run goes.
+        settings: RunSettings,
+        /// Stops that came before it: one that has come since overtakes it.
+        stops: u32,
+    },
     /// Enable off, no further torque sent; answered by [`Event::Stopped`].
     Stop,
     /// Safe state for a reason that idle has found; answered by [`Event::Stopped`].
@@ -77,7 +86,8 @@ pub enum Event {
 /// Counters that both sides see.
 #[derive(Debug, Default)]
 pub struct Progress {
-    /// Everything before this tick is known; written by idle after the commands are in the queue.
+    /// Everything before this tick is known; written by idle after the commands are in the queue, and put back to 0 by the
+    /// tick with a reset, while idle waits for that.
     pub horizon: AtomicU32,
     /// Steps done since the reset; written by the tick.
     pub steps: AtomicU32,

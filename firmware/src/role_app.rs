@@ -56,7 +56,7 @@ mod app {
         let hello = identity::hello::<RoleProtocol>(start_up, DIGEST);
         defmt::info!("{=str} on {=str}, {=u32} Hz", hello.joint.as_str(), board, TABLES.tick_rate);
 
-        let control = TickHandler::new(work, enable, PERIOD, tick_end);
+        let control = TickHandler::new(work, enable, PERIOD, tick_end, line_end.heard());
         let conversation = Conversation::new(hello, PERIOD, idle_end, line_end, log_end);
         clock::start(&mut core.SYST);
         let light = StatusLight::new(light);

@@ -1,9 +1,12 @@
-//! Bytes between a UART and idle: the interrupt's side and idle's side of two byte queues.
+//! Bytes between a UART and idle: the interrupt's side and idle's side of two byte queues. The interrupt also says at once
+//! what the tick must know whatever idle is doing: that a good frame has come, and that it was a stop.
 
+use core::sync::atomic::AtomicU32;
 use core::sync::atomic::Ordering::{Acquire, Relaxed, Release};
-use core::sync::atomic::{AtomicBool, AtomicU32};
 
 use heapless::spsc::{Consumer, Producer, Queue};
+use link::messages::ToBoard;
+use link::scanner::Scanner;
 
 /// Bytes received and not yet looked at: more than the schedules that a host may have under way.
 const INBOX: usize = 1024;
@@ -22,41 +25,78 @@ pub trait Uart {
     fn can_write(&self) -> bool;
     /// Sends a byte.
     fn write(&mut self, byte: u8);
-    /// Whether a received byte interrupts.
-    fn interrupt_on_read(&mut self, on: bool);
     /// Whether room for a byte to send interrupts.
     fn interrupt_on_write(&mut self, on: bool);
     /// Interrupts once more, although nothing has happened.
     fn interrupt_again(&mut self);
 }
 
-/// What both sides see.
+/// What has come over the line, counted by its interrupt. The counts wrap.
 #[derive(Debug, Default)]
-struct Signals {
+pub struct Heard {
+    stops: AtomicU32,
+    frames: AtomicU32,
     lost: AtomicU32,
-    paused: AtomicBool,
+}
+
+impl Heard {
+    /// Nothing yet.
+    pub const fn new() -> Self {
+        Self { stops: AtomicU32::new(0), frames: AtomicU32::new(0), lost: AtomicU32::new(0) }
+    }
+
+    /// Good frames so far. Whoever sees one that was a stop sees it in [`Heard::stops`] afterwards.
+    #[inline]
+    pub fn frames(&self) -> u32 {
+        self.frames.load(Acquire)
+    }
+
+    /// Those among them that were a stop.
+    #[inline]
+    pub fn stops(&self) -> u32 {
+        self.stops.load(Acquire)
+    }
+
+    /// Received bytes that found no room, and times that the UART lost some.
+    pub fn lost(&self) -> u32 {
+        self.lost.load(Relaxed)
+    }
+
+    /// Called by the one interrupt that counts.
+    fn hear(&self, stop: bool) {
+        if stop {
+            self.stops.store(self.stops.load(Relaxed).wrapping_add(1), Release);
+        }
+        self.frames.store(self.frames.load(Relaxed).wrapping_add(1), Release);
+    }
+
+    fn lose(&self) {
+        self.lost.store(self.lost.load(Relaxed).saturating_add(1), Relaxed);
+    }
 }
 
 /// The two queues.
 pub struct Line {
     inbox: Queue<u8, INBOX>,
     outbox: Queue<u8, OUTBOX>,
-    signals: Signals,
+    heard: Heard,
 }
 
 impl Line {
     /// Empty.
     pub const fn new() -> Self {
-        let signals = Signals { lost: AtomicU32::new(0), paused: AtomicBool::new(false) };
-        Self { inbox: Queue::new(), outbox: Queue::new(), signals }
+        Self { inbox: Queue::new(), outbox: Queue::new(), heard: Heard::new() }
     }
 
     /// Hands out the two sides. `wake` makes the UART's interrupt run.
     pub fn split<U: Uart>(&mut self, uart: U, wake: fn()) -> (Serial<'_, U>, LineEnd<'_>) {
         let (inbox, inbox_out) = self.inbox.split();
         let (outbox_in, outbox) = self.outbox.split();
-        let signals = &self.signals;
-        (Serial { uart, inbox, outbox, signals }, LineEnd { inbox: inbox_out, outbox: outbox_in, signals, wake })
+        let heard = &self.heard;
+        (
+            Serial { uart, inbox, outbox, heard, scanner: Scanner::new(), gap: false },
+            LineEnd { inbox: inbox_out, outbox: outbox_in, heard, wake },
+        )
     }
 }
 
@@ -71,11 +111,14 @@ pub struct Serial<'a, U> {
     uart: U,
     inbox: Producer<'a, u8>,
     outbox: Consumer<'a, u8>,
-    signals: &'a Signals,
+    heard: &'a Heard,
+    scanner: Scanner,
+    /// The byte before found no room.
+    gap: bool,
 }
 
 impl<U: Uart> Serial<'_, U> {
-    /// Moves what can be moved. A full inbox leaves the bytes in the UART, which counts what it then loses.
+    /// Moves what can be moved.
     pub fn service(&mut self) {
         self.receive();
         self.transmit();
@@ -83,18 +126,24 @@ impl<U: Uart> Serial<'_, U> {
 
     fn receive(&mut self) {
         for _ in 0..BURST {
-            let room = self.inbox.ready();
-            self.signals.paused.store(!room, Release);
-            self.uart.interrupt_on_read(room);
-            if !room {
-                break;
-            }
             let Some(byte) = self.uart.read() else { break };
-            let _ = self.inbox.enqueue(byte);
+            if let Some(frame) = self.scanner.push(byte) {
+                self.heard.hear(ToBoard::is_stop(frame));
+            }
+            self.keep(byte);
         }
         if self.uart.overran() {
-            let lost = self.signals.lost.load(Relaxed);
-            self.signals.lost.store(lost.saturating_add(1), Relaxed);
+            self.heard.lose();
+        }
+    }
+
+    /// A full inbox costs bytes, not the interrupt: what comes next may be a stop. A zero keeps half a frame apart from the
+    /// frames after it.
+    fn keep(&mut self, byte: u8) {
+        let kept = (!self.gap || self.inbox.enqueue(0).is_ok()) && self.inbox.enqueue(byte).is_ok();
+        self.gap = !kept;
+        if !kept {
+            self.heard.lose();
         }
     }
 
@@ -120,18 +169,24 @@ impl<U: Uart> Serial<'_, U> {
 pub struct LineEnd<'a> {
     inbox: Consumer<'a, u8>,
     outbox: Producer<'a, u8>,
-    signals: &'a Signals,
+    heard: &'a Heard,
     wake: fn(),
 }
 
-impl LineEnd<'_> {
+impl<'a> LineEnd<'a> {
     /// The next received byte.
     pub fn read(&mut self) -> Option<u8> {
-        let byte = self.inbox.dequeue();
-        if self.signals.paused.load(Acquire) {
-            (self.wake)();
-        }
-        byte
+        self.inbox.dequeue()
+    }
+
+    /// Received bytes that were not read yet.
+    pub fn waiting(&self) -> usize {
+        self.inbox.len()
+    }
+
+    /// What the line's interrupt counts.
+    pub fn heard(&self) -> &'a Heard {
+        self.heard
     }
 
     /// Places free for bytes to send.
@@ -146,16 +201,13 @@ impl LineEnd<'_> {
         }
         (self.wake)();
     }
-
-    /// Times that the UART lost received bytes.
-    pub fn lost(&self) -> u32 {
-        self.signals.lost.load(Relaxed)
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use std::collections::VecDeque;
+
+    use link::framing::encode;
 
     use super::*;
 
@@ -164,7 +216,6 @@ mod tests {
         incoming: VecDeque<u8>,
         outgoing: Vec<u8>,
         room: usize,
-        reading: bool,
         writing: bool,
         again: bool,
         overran: bool,
@@ -184,9 +235,6 @@ mod tests {
             self.room -= 1;
             self.outgoing.push(byte);
         }
-        fn interrupt_on_read(&mut self, on: bool) {
-            self.reading = on;
-        }
         fn interrupt_on_write(&mut self, on: bool) {
             self.writing = on;
         }
@@ -198,19 +246,37 @@ mod tests {
     fn nothing() {}
 
     #[test]
-    fn bytes_arrive_in_order_and_none_is_lost_when_the_inbox_is_full() {
+    fn bytes_arrive_in_order_and_none_is_lost_while_there_is_room() {
         let mut wire = Wire { incoming: (0..3 * INBOX).map(|i| i as u8).collect(), ..Wire::default() };
         let mut line = Line::new();
         let (mut serial, mut end) = line.split(&mut wire, nothing);
-        (0..INBOX).for_each(|_| serial.service());
-        assert!(!serial.uart.reading, "a full inbox stops the interrupt");
         let mut received = Vec::new();
-        while let Some(byte) = end.read() {
-            received.push(byte);
+        for _ in 0..INBOX {
             serial.service();
+            received.extend(std::iter::from_fn(|| end.read()));
         }
         assert_eq!(received, (0..3 * INBOX).map(|i| i as u8).collect::<Vec<_>>());
-        assert!(serial.uart.reading);
+        assert_eq!(end.heard().lost(), 0);
+    }
+
+    #[test]
+    fn a_full_inbox_costs_counted_bytes_and_no_stop_and_the_frames_after_it_arrive() {
+        let stop = encode(&ToBoard::Stop).unwrap();
+        let flood = [7; 2 * INBOX].iter().chain(&stop);
+        let mut wire = Wire { incoming: flood.copied().collect(), ..Wire::default() };
+        let mut line = Line::new();
+        let (mut serial, mut end) = line.split(&mut wire, nothing);
+        (0..INBOX).for_each(|_| serial.service());
+        assert_eq!((end.heard().frames(), end.heard().stops()), (0, 0), "the stop ends no frame of its own");
+        serial.uart.incoming.extend(&stop);
+        serial.service();
+        assert_eq!((end.heard().frames(), end.heard().stops()), (1, 1));
+        assert_eq!(end.heard().lost() as usize, 2 * INBOX + 2 * stop.len() - (INBOX - 1));
+        while end.read().is_some() {}
+        serial.uart.incoming.extend(&stop);
+        serial.service();
+        let kept: Vec<u8> = std::iter::from_fn(|| end.read()).collect();
+        assert_eq!(kept, [&[0], &stop[..]].concat(), "half a frame is kept apart from what follows");
     }
 
     #[test]
@@ -235,6 +301,6 @@ mod tests {
         let mut line = Line::new();
         let (mut serial, end) = line.split(&mut wire, nothing);
         (0..5).for_each(|_| serial.service());
-        assert_eq!(end.lost(), 1);
+        assert_eq!(end.heard().lost(), 1);
     }
 }

@@ -11,15 +11,13 @@ use link::messages::{MemoryOutcome, RunMode, RunSettings, Trip};
 
 use crate::page::{Learnt, memory_state};
 use crate::protocol::Protocol;
-use crate::queues::{COMMAND_CAPACITY, Event, Order, TickEnd};
+use crate::queues::{BEFORE_ANY_RUN, COMMAND_CAPACITY, Event, Order, TickEnd};
 use crate::safe_state::{SafeState, State};
 use crate::schedule::{Schedule, TickAction};
+use crate::serial::Heard;
+use crate::silence::{Host, Silence};
 use crate::timing_monitor::{Monitor, TickTimer};
 use crate::work::Work;
-
-/// Settings before the first reset.
-const BEFORE_ANY_RUN: RunSettings =
-    RunSettings { mode: RunMode::Lockstep, decimation: 1, command_timeout: 1, from_memory: false };
 
 /// A role's work with its command schedule, safe state and timing monitor.
 pub struct TickHandler<'a, E, W: Work> {
@@ -34,12 +32,16 @@ pub struct TickHandler<'a, E, W: Work> {
     monitor: Monitor,
     period: u32,
     end: TickEnd<'a, W::Protocol>,
+    heard: &'a Heard,
+    silence: Silence,
+    /// Stops that came before this run.
+    stops: u32,
 }
 
 impl<'a, E: OutputPin<Error = Infallible>, W: Work> TickHandler<'a, E, W> {
     /// Work at rest with the enable output off; `period` is the tick's, in timer counts. Tables that do not match their
-    /// digest trip it, and no reset clears that.
-    pub fn new(work: W, enable: E, period: u32, end: TickEnd<'a, W::Protocol>) -> Self {
+    /// digest trip it, and no reset clears that. `heard` is what the line's interrupt hears of the host.
+    pub fn new(work: W, enable: E, period: u32, end: TickEnd<'a, W::Protocol>, heard: &'a Heard) -> Self {
         let mut safe_state = SafeState::new(enable);
         if !work.is_sound() {
             safe_state.trip(Trip::BadDigest);
@@ -55,6 +57,9 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> TickHandler<'a, E, W> {
             monitor: Monitor::new(period),
             period,
             end,
+            heard,
+            silence: Silence::new(BEFORE_ANY_RUN.command_timeout),
+            stops: 0,
         };
         control.show_state();
         control
@@ -71,7 +76,8 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> TickHandler<'a, E, W> {
         self.end.progress.ticks.store(self.end.progress.ticks.load(Relaxed).wrapping_add(1), Relaxed);
         self.monitor.lateness.record(lateness);
         self.obey();
-        let stepped = matches!(self.state(), State::Running) && self.advance(timer, lateness);
+        let host = self.silence.after(self.heard.frames());
+        let stepped = matches!(self.state(), State::Running) && self.may_go_on(host) && self.advance(timer, lateness);
         let end = timer.since_expiry();
         if stepped {
             self.monitor.step_took(end.saturating_sub(lateness));
@@ -93,7 +99,7 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> TickHandler<'a, E, W> {
             Some(Order::LoadMemory) => self.take_memory(),
             Some(order) => {
                 self.answer(order);
-                if let (Order::Reset(settings), true) = (order, self.is_fresh) {
+                if let (Order::Reset { settings, .. }, true) = (order, self.is_fresh) {
                     self.is_fresh = false;
                     self.work.reset(settings.from_memory);
                 }
@@ -104,7 +110,7 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> TickHandler<'a, E, W> {
     #[inline(never)]
     fn answer(&mut self, order: Order) {
         let event = match order {
-            Order::Reset(settings) => self.reset(settings),
+            Order::Reset { settings, stops } => self.reset(settings, stops),
             Order::Stop => {
                 self.safe_state.stop();
                 Event::Stopped
@@ -158,9 +164,12 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> TickHandler<'a, E, W> {
         let _ = self.end.events.give(Event::MemoryChecked(memory_state(Some(judged))));
     }
 
-    fn reset(&mut self, settings: RunSettings) -> Event {
+    fn reset(&mut self, settings: RunSettings, stops: u32) -> Event {
         if settings.mode == RunMode::Realtime && !W::FREE_RUNNING {
             return Event::Refused(Trip::BadSettings);
+        }
+        if stops != self.heard.stops() || !self.silence.allows(settings.command_timeout, self.heard.frames()) {
+            return Event::Refused(Trip::Overtaken);
         }
         if let Err(trip) = self.safe_state.run() {
             return Event::Refused(trip);
@@ -174,8 +183,29 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> TickHandler<'a, E, W> {
         self.until_sample = self.decimation;
         self.schedule = Schedule::new(settings);
         self.monitor = Monitor::new(self.period);
+        self.end.progress.horizon.store(0, Release);
         self.end.progress.steps.store(0, Release);
+        self.stops = stops;
         Event::ResetDone
+    }
+
+    /// Whether the host has been heard of in time and has not said stop: whatever idle has still to read or to send.
+    fn may_go_on(&mut self, host: Host) -> bool {
+        match host {
+            Host::IsThere => true,
+            Host::HasSpoken => {
+                let goes_on = self.heard.stops() == self.stops;
+                if !goes_on {
+                    self.safe_state.stop();
+                    self.show_state();
+                }
+                goes_on
+            }
+            Host::IsSilent => {
+                self.trip(Trip::CommandLoss { tick: self.steps });
+                false
+            }
+        }
     }
 
     /// Steps if there is a step to do; returns whether there was.

@@ -275,7 +275,6 @@ impl Uart for End {
     fn write(&mut self, byte: u8) {
         self.0.borrow_mut().out.push_back(byte);
     }
-    fn interrupt_on_read(&mut self, _: bool) {}
     fn interrupt_on_write(&mut self, _: bool) {}
     fn interrupt_again(&mut self) {}
 }

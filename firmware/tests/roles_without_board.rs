@@ -3,44 +3,28 @@
 
 #[allow(dead_code, reason = "shared with the tests of the plant")]
 mod test_board;
+#[allow(dead_code, reason = "shared with the tests of the enable output")]
+mod test_roles;
 
-use firmware::observer::Observing;
-use firmware::port::Direct;
 use firmware::tables::TABLES;
-use firmware::whole_loop::WholeLoop;
 use link::controller::{Answered, Exchange};
 use link::messages::{FromBoard, RunMode, RunSettings, Schedule, ToBoard, Trip};
-use link::virtual_joint::{Knot, LoopSample, WireTrajectory};
+use link::virtual_joint::{Knot, LoopSample};
 use model_core::compensation::Command;
-use model_core::controller::Controller;
 use model_core::controller::trajectory::Trajectory;
 use model_core::numbers::digest;
 use model_core::virtual_joint::VirtualJoint;
 use model_core::virtual_joint::fault::{Fault, FaultKind, Shaft};
 use model_core::virtual_joint::faults::MOST_FAULTS;
 use test_board::TestBoard;
+use test_roles::{LoopWork, ObserverWork, TestRole, control, controller, knot};
 
-mod control {
-    #![allow(missing_docs, dead_code, clippy::all, clippy::excessive_precision, reason = "generated numbers")]
-    include!(concat!(env!("OUT_DIR"), "/control.rs"));
+fn observer() -> TestBoard<ObserverWork> {
+    TestBoard::with(ObserverWork::work())
 }
 
-fn controller() -> Controller<'static, f32> {
-    Controller::new(&control::OBSERVER, &control::COMPENSATION)
-}
-
-fn observer() -> TestBoard<Observing<Direct<'static>>> {
-    TestBoard::with(Observing::new(Direct(controller()), true))
-}
-
-fn whole_loop() -> TestBoard<WholeLoop<'static, Direct<'static>, { firmware::tables::PLANETS }>> {
-    TestBoard::with(WholeLoop::new(&TABLES, &control::SURROUNDINGS, Direct(controller())))
-}
-
-/// A turn of the link by and by, from a tick on.
-fn knot(tick: u32) -> Knot {
-    let trajectory = WireTrajectory::Position((0, [1e-4 * tick as f32, 0.5, 0.0, 0.0, 0.0, 0.0]), None);
-    Knot { tick, load_torque: 0.5, trajectory }
+fn whole_loop() -> TestBoard<LoopWork> {
+    TestBoard::with(LoopWork::work())
 }
 
 fn exchange(
@@ -106,8 +90,8 @@ fn an_observer_whose_controller_falls_silent_goes_to_the_safe_state() {
     let mut board = observer();
     board.start(RunMode::Lockstep, 1, 50);
     let joint = VirtualJoint::new(&TABLES, &control::SURROUNDINGS);
-    board.run(100);
-    assert!(board.enable.get(), "a run begins with its first samples");
+    board.run(40);
+    assert!(board.enable.get());
     board.send(&exchange(0, &joint, &Trajectory::HOLD.at(0.0, 1.0)));
     board.run(40);
     assert!(board.enable.get());

@@ -89,8 +89,10 @@ fn schedule(sequence: u16) -> ToBoard {
 
 /// The whole run: samples in order.
 fn run(line: &mut Line) -> Vec<Sample> {
+    // The emulated clock runs as fast as it can while this host is thinking.
+    let command_timeout = u32::MAX;
     let settings =
-        RunSettings { mode: RunMode::Lockstep, decimation: HOLD as u16, command_timeout: 1, from_memory: false };
+        RunSettings { mode: RunMode::Lockstep, decimation: HOLD as u16, command_timeout, from_memory: false };
     line.ask(&ToBoard::Reset(settings), hello);
     let (mut samples, mut next) = (Vec::new(), 0);
     let start = Instant::now();

@@ -11,8 +11,10 @@ pub const MAX_MESSAGE: usize = 512;
 /// Longest frame on the wire: COBS adds a byte in 254 and one more, then the closing zero.
 pub const MAX_FRAME: usize = MAX_MESSAGE + MAX_MESSAGE / 254 + 3;
 
-const CRC_BYTES: usize = 4;
-static CRC: Crc<u32, Table<1>> = Crc::<u32, Table<1>>::new(&CRC_32_ISO_HDLC);
+pub(crate) const CRC_BYTES: usize = 4;
+pub(crate) static CRC: Crc<u32, Table<1>> = Crc::<u32, Table<1>>::new(&CRC_32_ISO_HDLC);
+/// The CRC over a message and its own CRC, if neither has changed on the way.
+pub(crate) const UNCHANGED: u32 = CRC_32_ISO_HDLC.residue ^ CRC_32_ISO_HDLC.xorout;
 
 /// A message that does not fit into [`MAX_MESSAGE`] bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -16,10 +16,13 @@ use serde::{Deserialize, Serialize};
 pub use statistics::{HISTOGRAM_BINS, Statistics, Timing};
 
 use crate::controller::{Answered, EXCHANGES_PER_SCHEDULE, Exchange};
+use crate::scanner::Scanned;
 use crate::virtual_joint::{KNOTS_PER_SCHEDULE, Knot, LoopBatch};
 
 /// Most commands in one [`Schedule`].
 pub const COMMANDS_PER_SCHEDULE: usize = 24;
+/// A schedule reaches so many command timeouts ahead of the ticks done, and no farther.
+pub const TIMEOUTS_AHEAD: u32 = 10;
 /// Bytes of log in one frame.
 pub const LOG_BYTES: usize = 96;
 
@@ -41,7 +44,8 @@ pub enum ToBoard {
         /// Clear minima, maxima, histogram and counters after reporting them.
         reset: bool,
     },
-    /// End of the run: enable off, no further torque sent.
+    /// End of the run: enable off, no further torque sent. Heard with the next tick whatever else the board has to do, and before
+    /// whatever was sent before it and has not been looked at: a reset among that is answered by [`Trip::Overtaken`].
     Stop,
     /// Samples and set-points, for the role that observes.
     Exchanges(Schedule<Exchange, EXCHANGES_PER_SCHEDULE>),
@@ -54,6 +58,13 @@ pub enum ToBoard {
     Fault(Fault<FixedPoint<f32>>),
 }
 
+impl ToBoard {
+    /// Whether a frame that went by carries [`ToBoard::Stop`]: the one message of a single byte that says so.
+    pub fn is_stop(frame: Scanned) -> bool {
+        frame == Scanned { length: 1, first: 4 }
+    }
+}
+
 /// Settings of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct RunSettings {
@@ -61,11 +72,20 @@ pub struct RunSettings {
     pub mode: RunMode,
     /// A sample every so many ticks; at least 1.
     pub decimation: u16,
-    /// Safe state after so many ticks without a schedule, in realtime, and in lockstep for the role that observes; 0 is
+    /// Safe state in the so many'th tick in a row of the board's own clock without a good frame of the host, whatever it was,
+    /// in either mode. The same for ticks without a schedule: in real time, and for a role that answers a controller. 0 is
     /// refused.
     pub command_timeout: u32,
     /// The controller begins from the memory that the board keeps of earlier runs, if that is valid; else as it was designed.
     pub from_memory: bool,
+}
+
+impl RunSettings {
+    /// The farthest horizon of a schedule that is accepted when so many ticks are done: what is asked of the far future
+    /// is asked in time by a host that must be heard of anyway.
+    pub fn farthest_horizon(&self, ticks: u32) -> u32 {
+        ticks.saturating_add(self.command_timeout.saturating_mul(TIMEOUTS_AHEAD))
+    }
 }
 
 /// Who waits for whom.
@@ -82,7 +102,7 @@ pub enum RunMode {
 pub struct Schedule<C = Command, const MOST: usize = COMMANDS_PER_SCHEDULE> {
     /// Rises by one with every schedule of a run, from 0 after a reset.
     pub sequence: u16,
-    /// Everything before this tick is now known.
+    /// Everything before this tick is now known. At most [`RunSettings::farthest_horizon`].
     pub horizon: u32,
     /// What changes before the horizon.
     pub commands: Vec<C, MOST>,
@@ -146,7 +166,7 @@ pub struct Accepted {
 /// Why a run ended in the safe state, or why a message was refused.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Trip {
-    /// No schedule for the stated number of ticks.
+    /// No frame, or no schedule, for the stated number of ticks.
     CommandLoss {
         /// When.
         tick: u32,
@@ -176,6 +196,14 @@ pub enum Trip {
     NotRunning,
     /// A schedule for another role than the board's.
     WrongRole,
+    /// A schedule that reaches farther than [`RunSettings::farthest_horizon`].
+    FarHorizon {
+        /// Its horizon.
+        tick: u32,
+    },
+    /// A reset that was not carried out: a stop came after it, it came while flash was written, or it waited for longer than
+    /// its command timeout and nothing came after it. Reset again.
+    Overtaken,
 }
 
 /// Encoded defmt bytes, in order.

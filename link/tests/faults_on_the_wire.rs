@@ -52,7 +52,7 @@ fn a_fault_that_no_board_knows_is_no_message() {
 #[test]
 fn every_trip_has_the_bytes_that_it_always_had() {
     let tick = 300;
-    let trips: [(Trip, &[u8]); 9] = [
+    let trips: [(Trip, &[u8]); 11] = [
         (Trip::CommandLoss { tick }, &[0x04, 0x00, 0xac, 0x02]),
         (Trip::NotFinite { tick }, &[0x04, 0x01, 0xac, 0x02]),
         (Trip::BadCommand { tick }, &[0x04, 0x02, 0xac, 0x02]),
@@ -62,6 +62,8 @@ fn every_trip_has_the_bytes_that_it_always_had() {
         (Trip::BadSettings, &[0x04, 0x06]),
         (Trip::NotRunning, &[0x04, 0x07]),
         (Trip::WrongRole, &[0x04, 0x08]),
+        (Trip::FarHorizon { tick }, &[0x04, 0x09, 0xac, 0x02]),
+        (Trip::Overtaken, &[0x04, 0x0a]),
     ];
     for (trip, expected) in trips {
         assert_eq!(bytes(&FromBoard::Tripped(trip)), expected, "{trip:?}");

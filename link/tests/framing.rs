@@ -3,6 +3,7 @@
 
 use link::framing::{MAX_FRAME, Receiver, encode};
 use link::messages::{COMMANDS_PER_SCHEDULE, Command, RunMode, RunSettings, Schedule, ToBoard};
+use link::scanner::{Scanned, Scanner};
 use proptest::collection::vec;
 use proptest::prelude::*;
 
@@ -87,6 +88,26 @@ proptest! {
     }
 
     #[test]
+    fn the_scanner_tells_the_same_frames_as_the_receiver_takes_and_every_stop(
+        pieces in vec((message(), vec(any::<u8>(), 0..4), any::<prop::sample::Index>(), any::<Option<u8>>()), 1..12)
+    ) {
+        let (mut receiver, mut scanner) = (Receiver::new(), Scanner::new());
+        for (message, garbage, place, change) in pieces {
+            let mut bytes = garbage;
+            bytes.extend(encode(&message).unwrap());
+            if let Some(change) = change {
+                let place = place.index(bytes.len());
+                bytes[place] ^= change;
+            }
+            for byte in bytes {
+                let (taken, scanned) = (receiver.push::<ToBoard>(byte), scanner.push(byte));
+                prop_assert_eq!(taken.is_some(), scanned.is_some());
+                prop_assert_eq!(taken == Some(ToBoard::Stop), scanned.is_some_and(ToBoard::is_stop));
+            }
+        }
+    }
+
+    #[test]
     fn a_lost_end_costs_two_frames_and_no_more(first in message(), second in message(), third in message()) {
         let frame = encode(&first).unwrap();
         let mut bytes = frame[..frame.len() - 1].to_vec();
@@ -106,6 +127,15 @@ fn a_frame_that_is_too_long_is_counted_once() {
     assert!(receive(&mut receiver, &bytes).is_empty());
     assert_eq!(receiver.dropped().frames, 1);
     assert_eq!(receive(&mut receiver, &encode(&ToBoard::Stop).unwrap()), [ToBoard::Stop]);
+}
+
+#[test]
+fn the_scanner_passes_over_a_frame_that_is_too_long_and_one_with_runs_of_254_bytes_is_good() {
+    let mut scanner = Scanner::new();
+    assert!((0..10 * MAX_FRAME).all(|_| scanner.push(7).is_none()) && scanner.push(0).is_none());
+    let long = encode(&([[1_u8; 20]; 20])).unwrap();
+    let scanned: Vec<_> = long.iter().filter_map(|&byte| scanner.push(byte)).collect();
+    assert_eq!(scanned, [Scanned { length: 400, first: 1 }]);
 }
 
 #[test]

@@ -44,10 +44,6 @@ impl Uart for FifoUart {
         self.registers.tdr().write(|w| unsafe { w.bits(byte.into()) });
     }
 
-    fn interrupt_on_read(&mut self, on: bool) {
-        self.registers.cr1().modify(|_, w| w.rxneie().bit(on));
-    }
-
     fn interrupt_on_write(&mut self, on: bool) {
         self.registers.cr1().modify(|_, w| w.txeie().bit(on));
     }

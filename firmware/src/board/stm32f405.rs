@@ -164,10 +164,6 @@ impl Uart for Usart {
         self.registers.dr().write(|w| unsafe { w.dr().bits(byte.into()) });
     }
 
-    fn interrupt_on_read(&mut self, on: bool) {
-        self.registers.cr1().modify(|_, w| w.rxneie().bit(on));
-    }
-
     fn interrupt_on_write(&mut self, on: bool) {
         self.registers.cr1().modify(|_, w| w.txeie().bit(on));
     }

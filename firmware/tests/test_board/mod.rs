@@ -13,7 +13,7 @@ use firmware::page::Page;
 use firmware::plant::Plant;
 use firmware::protocol::Protocol;
 use firmware::queues::{Progress, Queues};
-use firmware::serial::{Line, Serial, Uart};
+use firmware::serial::{Heard, Line, Serial, Uart};
 use firmware::tables::{PLANETS, TABLES};
 use firmware::tick_handler::TickHandler;
 use firmware::timing_monitor::TickTimer;
@@ -27,6 +27,9 @@ use model_core::observer::{MEMORY_BYTES, Memory};
 
 /// Timer counts between two ticks.
 pub const PERIOD: u32 = 8400;
+
+/// As many ticks as there are: for tests in which the host says nothing for long.
+pub const NO_TIMEOUT: u32 = u32::MAX;
 
 /// Both directions of the line.
 #[derive(Default)]
@@ -52,12 +55,12 @@ impl Uart for WireEnd {
     fn write(&mut self, byte: u8) {
         self.0.borrow_mut().from_board.push_back(byte);
     }
-    fn interrupt_on_read(&mut self, _: bool) {}
     fn interrupt_on_write(&mut self, _: bool) {}
     fn interrupt_again(&mut self) {}
 }
 
-struct Enable(Rc<Cell<bool>>);
+/// The output, and how often it was switched on.
+struct Enable(Rc<Cell<bool>>, Rc<Cell<u32>>);
 
 impl ErrorType for Enable {
     type Error = Infallible;
@@ -70,6 +73,7 @@ impl OutputPin for Enable {
     }
     fn set_high(&mut self) -> Result<(), Infallible> {
         self.0.set(true);
+        self.1.set(self.1.get() + 1);
         Ok(())
     }
 }
@@ -124,9 +128,13 @@ where
     receiver: Receiver,
     pub wire: Rc<RefCell<Wire>>,
     pub enable: Rc<Cell<bool>>,
+    /// How often the output was switched on.
+    pub switched_on: Rc<Cell<u32>>,
     pub flash: Flash,
     /// How far the run is, as tick and idle tell one another.
     pub progress: &'static Progress,
+    /// What the line's interrupt has heard of the host.
+    pub heard: &'static Heard,
     /// First look at the timer in a tick, and what each look adds.
     pub timing: (u32, u32),
 }
@@ -154,7 +162,7 @@ where
     /// With a role's work.
     pub fn with(work: W) -> Self {
         let wire = Rc::new(RefCell::new(Wire::default()));
-        let enable = Rc::new(Cell::new(true));
+        let (enable, switched_on) = (Rc::new(Cell::new(true)), Rc::new(Cell::new(0)));
         let (tick_end, idle_end) = Box::leak(Box::new(Queues::new())).split();
         let (serial, line) = Box::leak(Box::new(Line::new())).split(WireEnd(wire.clone()), || {});
         let (_, bytes) = Box::leak(Box::new(Queue::<u8, 16>::new())).split();
@@ -166,9 +174,9 @@ where
             watchdog_reset: false,
             memory: MemoryState::Nothing,
         };
-        let progress = idle_end.progress;
+        let (progress, heard) = (idle_end.progress, line.heard());
         Self {
-            control: TickHandler::new(work, Enable(enable.clone()), PERIOD, tick_end),
+            control: TickHandler::new(work, Enable(enable.clone(), switched_on.clone()), PERIOD, tick_end, heard),
             conversation: Conversation::new(
                 hello::<W::Protocol>(start_up, None),
                 PERIOD,
@@ -180,8 +188,10 @@ where
             receiver: Receiver::new(),
             wire,
             enable,
+            switched_on,
             flash: Flash { memory: [0xff; MEMORY_BYTES], works: true, erased: 0 },
             progress,
+            heard,
             timing: (20, 100),
         }
     }
@@ -201,8 +211,18 @@ where
         while nothing_to_do < 200 {
             self.serial.service();
             let busy = self.conversation.attend(&mut |_| Resources::default());
-            self.conversation.serve_page(&mut self.flash, |write| write());
+            self.conversation.serve_page(&mut self.flash, |write| {
+                assert!(!self.enable.get(), "flash is written with the output on");
+                write()
+            });
             nothing_to_do = if busy { 0 } else { nothing_to_do + 1 };
+        }
+    }
+
+    /// The serial line's interrupt until nothing is left in the UART, without idle.
+    pub fn hear(&mut self) {
+        while !self.wire.borrow().to_board.is_empty() {
+            self.serial.service();
         }
     }
 

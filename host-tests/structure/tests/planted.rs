@@ -8,7 +8,7 @@ use structure::links::{Pages, broken, headings, named, unlisted};
 use structure::members::{Kind, Member, Workspace};
 use structure::rules::{file_circles, folder_circles, runtime_imports_design};
 use structure::sources::Sources;
-use structure::{page, size};
+use structure::{dependencies, page, size, unsafe_code};
 
 fn graph(files: &[(&str, &str)]) -> Graph {
     let files: BTreeMap<&str, &str> = files.iter().copied().collect();
@@ -412,4 +412,46 @@ fn a_page_that_a_source_names_is_found_with_its_line() {
                   // docs/ holds pages; https://far.example/docs/e.md is none of them";
     let found: Vec<String> = named(source).iter().map(|(line, page)| format!("{line} {}", page.display())).collect();
     assert_eq!(found, ["1 docs/a-b.md", "2 docs/deep/c.md", "2 docs/d.json"]);
+}
+
+#[test]
+fn an_unsafe_that_is_not_listed_is_found_and_one_in_a_comment_is_none() {
+    let source = "// unsafe\nfn f() { let text = \"unsafe\"; unsafe { g() } }\n#[unsafe(no_mangle)]\nunsafe fn h() {}";
+    assert_eq!(unsafe_code::count(source), Ok(3));
+    let list = "| `a/src/x.rs` | 3 | Hardware demands it. |\n";
+    let found = |file: &str, count| unsafe_code::differences(list, &BTreeMap::from([(PathBuf::from(file), count)]));
+    assert_eq!(found("a/src/x.rs", 3), [""; 0]);
+    assert!(found("a/src/x.rs", 4)[0].contains("4 times, docs/reference/unsafe.md says 3"));
+    let other = found("b/src/y.rs", 1);
+    assert!(other[0].starts_with("b/src/y.rs: `unsafe` 1 times") && other[1].contains("a/src/x.rs has no `unsafe`"));
+    assert!(
+        unsafe_code::differences("| `a.rs` | 1 |  |", &BTreeMap::from([(PathBuf::from("a.rs"), 1)]))[0]
+            .contains("no reason")
+    );
+    let crates = |a: &str, b: &str| {
+        let manifests = [("a", a), ("b", b)].map(|(folder, text)| (PathBuf::from(folder), text.to_string()));
+        unsafe_code::unforbidden(list, &manifests)
+    };
+    let forbids = "[lints]\nworkspace = true\n";
+    assert_eq!(crates("", forbids), [""; 0]);
+    assert!(crates("", "")[0].starts_with("b/Cargo.toml: `unsafe` is not forbidden"));
+    assert!(crates(forbids, forbids)[0].starts_with("a/Cargo.toml forbids what"));
+}
+
+#[test]
+fn a_dependency_from_elsewhere_or_under_another_licence_is_found() {
+    let lock =
+        "[[package]]\nname = \"a\"\n[[package]]\nsource = \"registry+https://github.com/rust-lang/crates.io-index\"\n";
+    assert_eq!(dependencies::foreign(lock), [""; 0]);
+    let git = format!("{lock}source = \"git+https://example.com/x?rev=1#1\"\n");
+    assert!(dependencies::foreign(&git)[0].contains("git+https://example.com/x"));
+    for good in ["MIT", "MIT/GPL-3.0", "GPL-3.0-only OR (MIT AND Zlib)", "Apache-2.0 WITH LLVM-exception OR MIT"] {
+        assert!(dependencies::is_allowed(good), "{good}");
+    }
+    for bad in ["GPL-3.0-only", "MIT AND GPL-3.0-only", "(MIT", "", "MIT GPL-3.0", "Apache-2.0 WITH Other-exception"] {
+        assert!(!dependencies::is_allowed(bad), "{bad}");
+    }
+    let packages =
+        serde_json::json!({ "packages": [{ "name": "a", "license": "MIT" }, { "name": "b", "license": null }] });
+    assert_eq!(dependencies::unlicensed(&packages).len(), 1);
 }

@@ -1,14 +1,14 @@
 //! What holds of this workspace: who imports whom, among files, folders and crates, how large they are, and that its
 //! pages link to what is there.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 use structure::graph::Graph;
 use structure::members::{Member, Workspace};
 use structure::sources::Sources;
-use structure::{links, page, rules, size};
+use structure::{dependencies, links, page, rules, size, unsafe_code};
 
 /// A crate and its targets with their kinds.
 type Crate = (&'static Member, Vec<(String, Graph)>);
@@ -165,4 +165,50 @@ fn a_crate_is_of_a_size_that_can_be_read() {
         found.extend(size::too_large(&sizes));
     }
     none(found);
+}
+
+/// Every Rust file of the members, whatever target it belongs to.
+fn rust_files() -> Vec<PathBuf> {
+    let mut folders: Vec<PathBuf> = WORKSPACE.members.iter().map(|member| member.folder.clone()).collect();
+    let mut files = BTreeSet::new();
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(root().join(&folder)).expect("a folder").map(|entry| entry.expect("an entry")) {
+            let path = folder.join(entry.file_name());
+            if entry.path().is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|kind| kind == "rs") {
+                files.insert(path);
+            }
+        }
+    }
+    files.into_iter().collect()
+}
+
+#[test]
+fn every_unsafe_is_listed_with_its_reason_and_forbidden_elsewhere() {
+    let page = std::fs::read_to_string(root().join(unsafe_code::PAGE)).expect("the list");
+    let mut found = BTreeMap::new();
+    for path in rust_files() {
+        let source = std::fs::read_to_string(root().join(&path)).expect("a source");
+        let count = unsafe_code::count(&source).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        if count > 0 {
+            found.insert(path, count);
+        }
+    }
+    none(unsafe_code::differences(&page, &found));
+    let manifest = |member: &Member| {
+        let text = std::fs::read_to_string(root().join(&member.folder).join("Cargo.toml")).expect("a manifest");
+        (member.folder.clone(), text)
+    };
+    none(unsafe_code::unforbidden(&page, &WORKSPACE.members.iter().map(manifest).collect::<Vec<_>>()));
+    let workspace = std::fs::read_to_string(root().join("Cargo.toml")).expect("a manifest");
+    assert!(workspace.contains("unsafe_code = \"forbid\""));
+}
+
+#[test]
+fn what_is_not_ours_comes_from_one_registry_under_licences_that_are_allowed() {
+    let lock = std::fs::read_to_string(root().join("Cargo.lock")).expect("a lock file");
+    assert!(lock.matches("[[package]]").count() > 100);
+    none(dependencies::foreign(&lock));
+    none(dependencies::unlicensed(&dependencies::metadata(&root())));
 }

@@ -28,6 +28,14 @@ use identity::HelloHead;
 
 /// Longest wait for an answer of a connected board.
 pub const ANSWER_TIMEOUT: Duration = Duration::from_secs(2);
+/// A real board that has not heard of its host for so long goes to its safe state [s].
+const COMMAND_TIMEOUT: f64 = 0.1;
+/// In a run a host that has nothing else to say says this often that it is there: three times in a timeout.
+const KEEP_ALIVE_INTERVAL: Duration = Duration::from_millis(30);
+/// Schedules with commands under way at once: the board's receive buffer holds two of the longest.
+const SCHEDULES_IN_FLIGHT: usize = 2;
+/// Empty ones beside them, of 16 bytes at most: while a slow line brings samples the answers are late.
+const KEEP_ALIVES_IN_FLIGHT: usize = 8;
 /// Time between two hello messages to a board that has not answered yet.
 const HELLO_INTERVAL: Duration = Duration::from_millis(100);
 /// Longest wait for the line to become idle.
@@ -41,6 +49,12 @@ pub trait Supervisor {
     fn gone(&mut self) -> Option<String> {
         None
     }
+}
+
+/// Command timeout of a board's runs, in ticks. There is none to speak of on the emulated board: its clock runs as fast as it can
+/// while the host is thinking.
+pub fn command_timeout(tick_rate: u32, emulated: bool) -> u32 {
+    if emulated { u32::MAX } else { (COMMAND_TIMEOUT * f64::from(tick_rate)).ceil() as u32 }
 }
 
 /// A session with a board.

@@ -23,8 +23,8 @@ fn words(trip: &Trip) -> (&'static str, Option<u32>, &'static str, &'static str)
         Trip::CommandLoss { tick } => (
             "command_loss",
             Some(tick),
-            "no torques came for longer than the command timeout",
-            "check the line, or run with --mode lockstep",
+            "nothing came for longer than the command timeout, or nothing of what is to be done",
+            "check the line and the load of this machine, or run on the emulated board",
         ),
         Trip::NotFinite { tick } => (
             "not_finite",
@@ -64,6 +64,18 @@ fn words(trip: &Trip) -> (&'static str, Option<u32>, &'static str, &'static str)
             None,
             "commands came that are for another role than the board's",
             "flash the image of the role that this run asks for",
+        ),
+        Trip::FarHorizon { tick } => (
+            "far_horizon",
+            Some(tick),
+            "a schedule reaches farther ahead than ten command timeouts",
+            "send what is to be done in shorter pieces, or state a longer command timeout",
+        ),
+        Trip::Overtaken => (
+            "overtaken",
+            None,
+            "a reset came to its turn too late: after a stop, work on flash, or a silence",
+            "wait for the answer to what was sent before, then reset again",
         ),
     }
 }

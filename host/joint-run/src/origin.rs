@@ -83,7 +83,7 @@ fn settings(request: &RunRequest<'_>, plan: &RunPlan) -> Settings {
         tick_rate_hz: request.rate,
         decimation: plan.settings.decimation.into(),
         ticks: plan.profile.ticks,
-        command_timeout_ticks: realtime.then_some(plan.settings.command_timeout),
+        command_timeout_ticks: request.line.port.is_some().then_some(plan.settings.command_timeout),
         profile: plan.profile.name.clone(),
         seed: 0,
         replay: request.replay_command(),

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use board::line_options::{LineOptions, Mode};
 use board::profile::TorqueProfile;
-use board::session::{BoardHelp, Expected};
+use board::session::{BoardHelp, Expected, command_timeout};
 use board::target::board::Board;
 use board::target::image;
 use board::twin;
@@ -63,9 +63,6 @@ pub struct RunPlan {
     pub settings: RunSettings,
 }
 
-/// In real time a board without torques for so long goes to its safe state [s].
-const COMMAND_TIMEOUT: f64 = 0.1;
-
 impl RunPlan {
     /// Reads and designs all that a run needs.
     pub fn new(request: &RunRequest<'_>) -> Outcome<Self> {
@@ -92,7 +89,7 @@ impl RunPlan {
             control_digest: None,
             help: request.help(),
         };
-        let command_timeout = (COMMAND_TIMEOUT * f64::from(request.rate)).ceil() as u32;
+        let command_timeout = command_timeout(request.rate, request.line.port.is_none());
         let settings = RunSettings { mode, decimation: request.decimation, command_timeout, from_memory: false };
         Ok(Self { name, path, board: request.line.board, expected, profile, settings, joint })
     }

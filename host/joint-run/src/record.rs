@@ -135,7 +135,7 @@ pub struct Settings {
     pub decimation: u32,
     /// Ticks that the run was meant to last.
     pub ticks: u32,
-    /// Ticks without a schedule before the safe state; absent in lockstep.
+    /// Ticks without a word of the host before the safe state; absent on the emulated board, which has no timeout to speak of.
     pub command_timeout_ticks: Option<u32>,
     /// Name of the built-in profile or path of the CSV.
     pub profile: String,

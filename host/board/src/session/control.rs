@@ -1,21 +1,16 @@
 //! Runs of the roles that control: one exchange a control period with an observer, or a motion streamed to a board that
 //! runs the whole loop. Every wait has a timeout.
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use link::controller::{Answered, Exchange};
 use link::messages::{FromBoard, RunMode, Schedule, ToBoard};
 use link::virtual_joint::{KNOTS_PER_SCHEDULE, Knot, LoopSample};
 use model_core::virtual_joint::fault::{Fault, FixedPoint};
 
-use super::{ANSWER_TIMEOUT, Session};
+use super::{ANSWER_TIMEOUT, KEEP_ALIVE_INTERVAL, KEEP_ALIVES_IN_FLIGHT, SCHEDULES_IN_FLIGHT, Session};
 use crate::trip;
 use report::failure::{Failure, Outcome};
-
-/// Schedules under way at once: the board's receive buffer holds two frames at least.
-const SCHEDULES_IN_FLIGHT: usize = 2;
-/// In real time the host says this often that it is alive.
-const KEEP_ALIVE_INTERVAL: Duration = Duration::from_millis(30);
 
 impl Session<'_> {
     /// Sends the samples and set-point of a control period and waits for the answer.
@@ -55,16 +50,21 @@ impl Session<'_> {
         let (mut next, mut sequence, mut board_tick) = (0, 0_u16, 0);
         let (mut heard, mut said) = (Instant::now(), Instant::now());
         while samples.last().map_or(0, |sample| sample.tick) < last {
-            while self.unacknowledged.count() < SCHEDULES_IN_FLIGHT {
+            loop {
+                let in_flight = self.unacknowledged.count();
+                let reach = settings.farthest_horizon(board_tick);
                 let waiting = knots[..next].iter().rev().take_while(|knot| knot.tick >= board_tick).count();
-                let count = capacity.saturating_sub(waiting).min(KNOTS_PER_SCHEDULE).min(knots.len() - next);
+                let most = capacity.saturating_sub(waiting).min(KNOTS_PER_SCHEDULE);
+                let room = if in_flight < SCHEDULES_IN_FLIGHT { most } else { 0 };
+                let count = knots[next..].iter().take(room).take_while(|knot| knot.tick < reach).count();
                 let whole = count == KNOTS_PER_SCHEDULE || (count > 0 && count == knots.len() - next);
-                if !whole && (said.elapsed() < KEEP_ALIVE_INTERVAL || settings.mode == RunMode::Lockstep) {
+                let may_keep_alive = in_flight < SCHEDULES_IN_FLIGHT + KEEP_ALIVES_IN_FLIGHT;
+                if !whole && (said.elapsed() < KEEP_ALIVE_INTERVAL || !may_keep_alive) {
                     break;
                 }
                 let commands = knots[next..next + count].iter().copied().collect();
                 next += count;
-                let horizon = knots.get(next).map_or(periods + beyond, |knot| knot.tick);
+                let horizon = knots.get(next).map_or(periods + beyond, |knot| knot.tick).min(reach);
                 self.unacknowledged.sent(sequence, &[]);
                 self.send(&ToBoard::Trajectory(Schedule { sequence, horizon, commands }))?;
                 sequence = sequence.wrapping_add(1);

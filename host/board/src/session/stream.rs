@@ -3,24 +3,20 @@
 
 use std::time::{Duration, Instant};
 
-use link::messages::{COMMANDS_PER_SCHEDULE, Command, FromBoard, RunMode, Schedule, ToBoard};
+use link::messages::{COMMANDS_PER_SCHEDULE, Command, FromBoard, RunMode, RunSettings, Schedule, ToBoard};
 
-use super::{ANSWER_TIMEOUT, Session};
+use super::{ANSWER_TIMEOUT, KEEP_ALIVE_INTERVAL, KEEP_ALIVES_IN_FLIGHT, SCHEDULES_IN_FLIGHT, Session};
 use crate::profile::TorqueProfile;
 use crate::trip;
 use report::failure::{Failure, Outcome};
 
-/// Schedules under way at once: the board's receive buffer holds two frames at least.
-const SCHEDULES_IN_FLIGHT: usize = 2;
-/// An empty schedule asks how far the board is, if that is all that holds the stream up; in real time it also says
-/// that the host is alive.
-const POLL: Duration = Duration::from_millis(100);
 /// A board that answers, but whose ticks do not go on for so long, has lost a schedule.
 const STALL_TIMEOUT: Duration = Duration::from_secs(4);
 
 /// Progress of a stream.
 struct StreamProgress<'p> {
     profile: &'p TorqueProfile,
+    settings: RunSettings,
     horizon_after_last: u32,
     next_command: usize,
     next_sequence: u16,
@@ -41,11 +37,9 @@ impl Session<'_> {
             return Err(Failure::new("the board states a command queue without places"));
         }
         let last_sample = profile.ticks - profile.ticks % u32::from(settings.decimation);
-        let mut stream = StreamProgress::new(profile, settings.mode, tick_rate);
+        let mut stream = StreamProgress::new(profile, settings, tick_rate);
         while self.recording.last_tick() < last_sample || stream.board_tick < last_sample {
-            while self.unacknowledged.count() < SCHEDULES_IN_FLIGHT
-                && let Some(schedule) = stream.next_schedule(capacity)
-            {
+            while let Some(schedule) = stream.next_schedule(capacity, self.unacknowledged.count()) {
                 self.unacknowledged.sent(schedule.sequence, &schedule.commands);
                 self.send(&ToBoard::Schedule(schedule))?;
             }
@@ -95,15 +89,16 @@ impl Session<'_> {
 }
 
 impl<'p> StreamProgress<'p> {
-    fn new(profile: &'p TorqueProfile, mode: RunMode, tick_rate: u32) -> Self {
+    fn new(profile: &'p TorqueProfile, settings: RunSettings, tick_rate: u32) -> Self {
         let now = Instant::now();
         // In real time the board goes on until it is told to stop: the last torque is known to hold until then.
-        let beyond = match mode {
+        let beyond = match settings.mode {
             RunMode::Lockstep => 0,
             RunMode::Realtime => 4 * tick_rate,
         };
         Self {
             profile,
+            settings,
             horizon_after_last: profile.ticks.saturating_add(beyond),
             next_command: 0,
             next_sequence: 0,
@@ -122,25 +117,65 @@ impl<'p> StreamProgress<'p> {
         }
     }
 
-    /// The next schedule, if the board is known to have room for it.
-    fn next_schedule(&mut self, capacity: usize) -> Option<Schedule> {
+    /// The next schedule, if the board is known to have room for it beside those in flight. An empty one asks how far the
+    /// board is, if that is all that holds the stream up, and says that the host is there.
+    fn next_schedule(&mut self, capacity: usize, in_flight: usize) -> Option<Schedule> {
         let commands = &self.profile.commands;
         // A command leaves the queue with the step that it is for.
         let queued = commands[..self.next_command].iter().rev().take_while(|sent| sent.tick >= self.board_tick).count();
         let room = capacity.saturating_sub(queued).min(COMMANDS_PER_SCHEDULE);
         let left = commands.len() - self.next_command;
         let worth_a_frame = left.min(COMMANDS_PER_SCHEDULE).min(capacity.div_ceil(2));
-        let count = if left > 0 && room >= worth_a_frame { room.min(left) } else { 0 };
-        if count == 0 && self.sent_any && self.last_sent.elapsed() < POLL {
+        let reach = self.settings.farthest_horizon(self.board_tick);
+        let within = commands[self.next_command..].iter().take(room).take_while(|next| next.tick < reach).count();
+        let is_due = !self.sent_any || self.last_sent.elapsed() >= KEEP_ALIVE_INTERVAL;
+        let is_worth_it = left > 0 && room >= worth_a_frame && (within >= worth_a_frame || is_due);
+        let count = if is_worth_it && in_flight < SCHEDULES_IN_FLIGHT { within } else { 0 };
+        if count == 0 && (!is_due || in_flight >= SCHEDULES_IN_FLIGHT + KEEP_ALIVES_IN_FLIGHT) {
             return None;
         }
         let chosen: &[Command] = &commands[self.next_command..self.next_command + count];
         self.next_command += count;
-        let horizon = commands.get(self.next_command).map_or(self.horizon_after_last, |next| next.tick);
+        let horizon = commands.get(self.next_command).map_or(self.horizon_after_last, |next| next.tick).min(reach);
         let sequence = self.next_sequence;
         self.next_sequence = sequence.wrapping_add(1);
         self.sent_any = true;
         self.last_sent = Instant::now();
         Some(Schedule { sequence, horizon, commands: heapless::Vec::from_slice(chosen).unwrap_or_default() })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A profile with seconds between its torques, on a board that is as far as it has been told: every schedule is within
+    /// reach, and none goes back.
+    #[test]
+    fn no_schedule_reaches_farther_than_the_board_accepts_and_the_stream_comes_to_its_end() {
+        for mode in [RunMode::Lockstep, RunMode::Realtime] {
+            let settings = RunSettings { mode, decimation: 1, command_timeout: 2000, from_memory: false };
+            let commands =
+                [0, 50_000, 50_001, 99_000].map(|tick| Command { tick, drive_torque: 0.1, load_torque: 0.0 });
+            let profile = TorqueProfile { name: "sparse".into(), commands: commands.into(), ticks: 100_000 };
+            let mut stream = StreamProgress::new(&profile, settings, 20_000);
+            let (mut horizon, mut sent) = (0, Vec::new());
+            let now = Instant::now();
+            while stream.board_tick < profile.ticks {
+                assert!(now.elapsed() < ANSWER_TIMEOUT, "it stays at tick {}", stream.board_tick);
+                // Time passes without waiting for it.
+                stream.last_sent -= KEEP_ALIVE_INTERVAL;
+                assert!(stream.next_schedule(127, SCHEDULES_IN_FLIGHT + KEEP_ALIVES_IN_FLIGHT).is_none());
+                let schedule = stream.next_schedule(127, 0).expect("the host says that it is there");
+                assert!(
+                    schedule.horizon >= horizon && schedule.horizon <= settings.farthest_horizon(stream.board_tick)
+                );
+                assert!(schedule.commands.iter().all(|command| (horizon..schedule.horizon).contains(&command.tick)));
+                horizon = schedule.horizon;
+                sent.extend(schedule.commands);
+                stream.advance(horizon);
+            }
+            assert_eq!(sent, commands);
+        }
     }
 }

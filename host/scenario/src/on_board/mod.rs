@@ -28,7 +28,7 @@ use super::rig::RunError;
 use super::run_history::RunHistory;
 use super::suite::{Suite, Test};
 use board::connection::Connection;
-use board::session::{BoardHelp, Expected, Session};
+use board::session::{BoardHelp, Expected, Session, command_timeout};
 use board::target::emulator;
 use board::target::image;
 use board::target::image::{Control, Image, word};
@@ -40,8 +40,6 @@ use report::progress::Progress;
 
 /// A sample of the whole loop every so many periods; the digest covers every period.
 const DECIMATION: u16 = 100;
-/// In real time a board without commands for so long goes to its safe state [s].
-const COMMAND_TIMEOUT: f64 = 0.1;
 
 /// Boards that can be built for and reached.
 pub struct Boards<'w> {
@@ -191,9 +189,7 @@ impl<'w> Boards<'w> {
         let real = self.request.port.is_some();
         let usual = if real && role == Role::Loop { RunMode::Realtime } else { RunMode::Lockstep };
         let mode = self.request.mode.unwrap_or(usual);
-        // The emulated clock runs as fast as it can while the board waits for the host.
-        let timed = real || mode == RunMode::Realtime;
-        let command_timeout = if timed { (COMMAND_TIMEOUT * f64::from(rate)).ceil() as u32 } else { u32::MAX };
+        let command_timeout = command_timeout(rate, !real);
         let decimation = if role == Role::Loop { DECIMATION } else { 1 };
         RunSettings { mode, decimation, command_timeout, from_memory: false }
     }

@@ -1,0 +1,284 @@
+//! What switches the enable output off, in every state in which it is on: the host's silence, and its stop.
+
+#[allow(dead_code, reason = "shared with the host's tests of boards")]
+mod test_board;
+#[allow(dead_code, reason = "shared with the tests of the roles")]
+mod test_roles;
+
+use firmware::queues::COMMAND_CAPACITY;
+use link::messages::{FromBoard, MemoryOutcome, MemoryRequest, RunMode, RunSettings, TIMEOUTS_AHEAD, ToBoard, Trip};
+use test_board::TestBoard;
+use test_roles::{LoopWork, ObserverWork, PlantWork, TestRole};
+
+/// Ticks without a word after which a run of these tests ends.
+const TIMEOUT: u32 = 200;
+const MODES: [RunMode; 2] = [RunMode::Lockstep, RunMode::Realtime];
+
+fn reset(mode: RunMode) -> ToBoard {
+    ToBoard::Reset(RunSettings { mode, decimation: 1, command_timeout: TIMEOUT, from_memory: false })
+}
+
+/// A board in a run, if its role has runs of this mode.
+fn started<W: TestRole>(mode: RunMode) -> Option<TestBoard<W>> {
+    let mut board = TestBoard::with(W::work());
+    board.send(&reset(mode));
+    board.run(2);
+    board.said();
+    board.enable.get().then_some(board)
+}
+
+/// What the host said last before it fell silent.
+fn last_words<W: TestRole>() -> Vec<(&'static str, Vec<ToBoard>)> {
+    let hello = ToBoard::Hello { protocol: link::PROTOCOL_VERSION };
+    let short = W::schedule(0, 1, 0..1);
+    let far = W::schedule(0, TIMEOUTS_AHEAD * TIMEOUT, 0..1);
+    let gap = W::schedule(7, 9, 8..9);
+    vec![
+        ("nothing but a reset", vec![]),
+        ("a hello", vec![hello.clone()]),
+        ("a short schedule", vec![short.clone()]),
+        ("a schedule as far as is accepted", vec![far.clone()]),
+        ("the same and a hello", vec![far.clone(), hello]),
+        ("a schedule after a gap", vec![short, gap]),
+    ]
+}
+
+fn silence_ends_a_run<W: TestRole>() {
+    for mode in MODES {
+        for (what, words) in last_words::<W>() {
+            for reads in [true, false] {
+                let Some(mut board) = started::<W>(mode) else { continue };
+                board.wire.borrow_mut().blocked = !reads;
+                words.iter().for_each(|word| board.send(word));
+                board.settle();
+                board.run(TIMEOUT / 2);
+                assert!(board.enable.get(), "{mode:?}, {what}, reads {reads}: too early");
+                board.run(TIMEOUT / 2 + 1);
+                assert!(!board.enable.get(), "{mode:?}, {what}, reads {reads}: the run goes on");
+                board.wire.borrow_mut().blocked = false;
+                board.run(3);
+                let lost = |said: &FromBoard| matches!(said, FromBoard::Tripped(Trip::CommandLoss { .. }));
+                assert!(board.said().iter().any(lost), "{mode:?}, {what}: the reason is told");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_host_that_falls_silent_ends_the_run_in_time_whatever_it_sent_before() {
+    silence_ends_a_run::<PlantWork>();
+    silence_ends_a_run::<ObserverWork>();
+    silence_ends_a_run::<LoopWork>();
+}
+
+/// What is full when the stop comes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Filling {
+    Nothing,
+    /// The host does not read: the bytes to send, the samples and the events back up.
+    Replies,
+    /// Every place for commands.
+    Commands,
+    /// Bytes that were received and not looked at, because the host does not read.
+    Inbox,
+}
+
+/// What the board has been told about the ticks to come.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Known {
+    Nothing,
+    Schedules,
+    /// A schedule for which there is no room yet.
+    Held,
+    /// A schedule that follows one that was lost.
+    Late,
+}
+
+const FILLINGS: [Filling; 4] = [Filling::Nothing, Filling::Replies, Filling::Commands, Filling::Inbox];
+const KNOWN: [Known; 4] = [Known::Nothing, Known::Schedules, Known::Held, Known::Late];
+
+/// A board in a run with this before it; none where that ends the run, or there is no such run.
+fn brought_to<W: TestRole>(mode: RunMode, filling: Filling, known: Known) -> Option<TestBoard<W>> {
+    let mut board = started::<W>(mode)?;
+    let hello = ToBoard::Hello { protocol: link::PROTOCOL_VERSION };
+    let mut sequence = 0;
+    let mut send_until = |board: &mut TestBoard<W>, last: u32| {
+        while sequence * W::MOST < last {
+            let first = sequence * W::MOST;
+            board.send(&W::schedule(sequence as u16, first + W::MOST, first..first + W::MOST));
+            board.settle();
+            sequence += 1;
+        }
+    };
+    let capacity = u32::from(COMMAND_CAPACITY);
+    match (filling, known) {
+        // Not so many that one would be held.
+        (Filling::Commands, _) => send_until(&mut board, capacity - W::MOST),
+        (_, Known::Nothing) => {}
+        _ => send_until(&mut board, 4 * W::MOST),
+    }
+    match known {
+        Known::Nothing | Known::Schedules => {}
+        // So many that one is still held after the ticks below.
+        Known::Held => send_until(&mut board, capacity + 40 + W::MOST),
+        Known::Late => board.send(&W::schedule(1000, 1900, 1800..1801)),
+    }
+    board.run(2);
+    match filling {
+        Filling::Nothing | Filling::Commands => {}
+        Filling::Replies | Filling::Inbox => {
+            board.wire.borrow_mut().blocked = true;
+            let bytes = if filling == Filling::Inbox { 400 } else { 40 };
+            (0..bytes).for_each(|_| board.send(&hello));
+            board.settle();
+            (0..20).for_each(|_| board.tick());
+            board.settle();
+        }
+    }
+    board.enable.get().then_some(board)
+}
+
+/// How many states there were in which the output was on.
+fn stop_is_heard<W: TestRole>() -> usize {
+    let mut states = 0;
+    for mode in MODES {
+        for filling in FILLINGS {
+            for known in KNOWN {
+                let Some(mut board) = brought_to::<W>(mode, filling, known) else { continue };
+                board.send(&ToBoard::Stop);
+                // The interrupt of the serial line and the tick: idle may have anything else to do.
+                board.hear();
+                board.tick();
+                assert!(!board.enable.get(), "{mode:?}, {filling:?}, {known:?}: the stop was not heard");
+                board.wire.borrow_mut().blocked = false;
+                board.run(50);
+                assert!(!board.enable.get(), "{mode:?}, {filling:?}, {known:?}: the run goes on");
+                board.said();
+                board.send(&reset(RunMode::Lockstep));
+                board.run(3);
+                assert!(board.enable.get(), "{mode:?}, {filling:?}, {known:?}: the next run does not begin");
+                states += 1;
+            }
+        }
+    }
+    states
+}
+
+#[test]
+fn a_stop_is_heard_within_a_tick_in_every_state_in_which_the_output_is_on() {
+    // In real time no schedule is held: one that does not fit ends the run. Role `observer` has no such runs.
+    let (lockstep, realtime) = (FILLINGS.len() * KNOWN.len(), FILLINGS.len() * (KNOWN.len() - 1));
+    assert_eq!(stop_is_heard::<PlantWork>(), lockstep + realtime);
+    assert_eq!(stop_is_heard::<ObserverWork>(), lockstep);
+    assert_eq!(stop_is_heard::<LoopWork>(), lockstep + realtime);
+}
+
+fn a_horizon_too_far_is_refused<W: TestRole>() {
+    for mode in MODES {
+        let reach = TIMEOUTS_AHEAD * TIMEOUT;
+        for (horizon, refused) in [(reach, false), (reach + 1, true), (u32::MAX, true)] {
+            let Some(mut board) = started::<W>(mode) else { continue };
+            board.send(&W::schedule(0, horizon, 0..1));
+            board.run(2);
+            assert_eq!(board.enable.get(), !refused, "{mode:?}, horizon {horizon}");
+            let far = FromBoard::Tripped(Trip::FarHorizon { tick: horizon });
+            assert_eq!(board.said().contains(&far), refused, "{mode:?}, horizon {horizon}");
+        }
+    }
+}
+
+#[test]
+fn a_schedule_with_a_far_horizon_is_refused_by_name() {
+    a_horizon_too_far_is_refused::<PlantWork>();
+    a_horizon_too_far_is_refused::<ObserverWork>();
+    a_horizon_too_far_is_refused::<LoopWork>();
+}
+
+fn a_stop_overtakes_a_reset<W: TestRole>() {
+    // Idle has not looked at the reset when the stop comes, or it has and the tick has not.
+    for idle_is_ahead in [false, true] {
+        let mut board = started::<W>(RunMode::Lockstep).expect("a run");
+        board.send(&reset(RunMode::Lockstep));
+        if idle_is_ahead {
+            board.settle();
+        }
+        board.send(&ToBoard::Stop);
+        board.hear();
+        board.tick();
+        assert!(!board.enable.get());
+        for _ in 0..5 {
+            board.run(1);
+            assert!(!board.enable.get(), "the stop was the last that was said");
+        }
+        assert_eq!(board.said(), [FromBoard::Tripped(Trip::Overtaken)]);
+        board.send(&reset(RunMode::Lockstep));
+        board.run(2);
+        assert!(board.enable.get());
+    }
+}
+
+#[test]
+fn no_run_begins_by_a_reset_that_a_stop_has_overtaken() {
+    a_stop_overtakes_a_reset::<PlantWork>();
+    a_stop_overtakes_a_reset::<ObserverWork>();
+    a_stop_overtakes_a_reset::<LoopWork>();
+}
+
+fn a_run_begins_afresh<W: TestRole>() {
+    let mut board = started::<W>(RunMode::Lockstep).expect("a run");
+    board.send(&W::schedule(0, 100, 0..2));
+    board.run(5);
+    board.send(&reset(RunMode::Lockstep));
+    board.run(10);
+    let steps = board.progress.steps.load(std::sync::atomic::Ordering::Relaxed);
+    assert!(steps == 0 && board.enable.get(), "{steps} steps on what was asked of the run before");
+}
+
+#[test]
+fn a_run_makes_no_step_on_the_schedules_of_the_run_before() {
+    a_run_begins_afresh::<PlantWork>();
+    a_run_begins_afresh::<ObserverWork>();
+    a_run_begins_afresh::<LoopWork>();
+}
+
+#[test]
+fn a_refused_reset_leaves_the_run_as_it_was() {
+    let mut board = started::<ObserverWork>(RunMode::Lockstep).expect("a run");
+    board.send(&ObserverWork::schedule(0, 4, 0..4));
+    board.run(2);
+    board.send(&reset(RunMode::Realtime));
+    board.run(2);
+    assert!(board.said().contains(&FromBoard::Tripped(Trip::BadSettings)) && board.enable.get());
+    board.send(&ObserverWork::schedule(1, 8, 4..8));
+    board.run(10);
+    let answers = board.said().into_iter().filter(|said| matches!(said, FromBoard::Answer(_))).count();
+    assert!(answers >= 4 && board.progress.steps.load(std::sync::atomic::Ordering::Relaxed) == 8, "{answers}");
+}
+
+#[test]
+fn no_run_begins_by_a_reset_that_came_while_flash_was_written() {
+    let mut board = started::<ObserverWork>(RunMode::Lockstep).expect("a run");
+    board.run(1);
+    board.send(&ToBoard::Stop);
+    board.run(2);
+    board.said();
+    board.send(&ToBoard::Memory(MemoryRequest::Save));
+    board.settle();
+    // Written with the next look at the page, which happens after this has arrived; a stop after it was lost.
+    board.tick();
+    board.send(&reset(RunMode::Lockstep));
+    board.send(&ToBoard::Hello { protocol: link::PROTOCOL_VERSION });
+    board.run(3);
+    assert!(!board.enable.get());
+    let said = board.said();
+    assert!(
+        matches!(
+            said[..],
+            [FromBoard::MemoryOutcome(MemoryOutcome::Stored), FromBoard::Tripped(Trip::Overtaken), FromBoard::Hello(_)]
+        ),
+        "{said:?}"
+    );
+    board.send(&reset(RunMode::Lockstep));
+    board.run(2);
+    assert!(board.enable.get(), "what was sent meanwhile is answered");
+}

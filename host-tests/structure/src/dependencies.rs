@@ -1,0 +1,107 @@
+//! What the workspace is built from that is not its own: where it comes from, and under which licence.
+
+use std::path::Path;
+use std::process::Command;
+
+use serde_json::Value;
+
+/// The one place that packages come from.
+const SOURCE: &str = "registry+https://github.com/rust-lang/crates.io-index";
+
+/// Licences under which a dependency may be used here: they ask for a notice at most. MPL-2.0 asks for its own files to stay
+/// open, which they are.
+const LICENCES: [&str; 12] = [
+    "0BSD",
+    "Apache-2.0",
+    "Apache-2.0 WITH LLVM-exception",
+    "BSD-2-Clause",
+    "BSD-3-Clause",
+    "BSL-1.0",
+    "ISC",
+    "MIT",
+    "MPL-2.0",
+    "Unicode-3.0",
+    "Unlicense",
+    "Zlib",
+];
+
+/// Packages of `Cargo.lock`, for every platform, that come from somewhere else; the workspace's own have no source.
+pub fn foreign(lock: &str) -> Vec<String> {
+    let source = |line: &str| line.strip_prefix("source = \"").map(|rest| rest.trim_end_matches('"').to_string());
+    let foreign = lock.lines().filter_map(source).filter(|source| source != SOURCE);
+    foreign.map(|source| format!("Cargo.lock: a package of {source}\n  mend: one of crates.io")).collect()
+}
+
+/// Whether an SPDX expression lets us use one of the licences; a slash is an old form of OR.
+pub fn is_allowed(licence: &str) -> bool {
+    let mut words = Vec::<String>::new();
+    for word in licence.replace('(', " ( ").replace(')', " ) ").replace('/', " OR ").split_whitespace() {
+        match words.last_mut() {
+            // An exception belongs to the licence before it.
+            Some(last) if word == "WITH" || last.ends_with(" WITH") => *last = format!("{last} {word}"),
+            _ => words.push(word.to_string()),
+        }
+    }
+    let (allowed, rest) = any_of(&words);
+    allowed && rest.is_empty()
+}
+
+fn any_of(words: &[String]) -> (bool, &[String]) {
+    let (mut allowed, mut rest) = all_of(words);
+    while let [or, more @ ..] = rest
+        && or == "OR"
+    {
+        let (other, left) = all_of(more);
+        (allowed, rest) = (allowed | other, left);
+    }
+    (allowed, rest)
+}
+
+fn all_of(words: &[String]) -> (bool, &[String]) {
+    let (mut allowed, mut rest) = one(words);
+    while let [and, more @ ..] = rest
+        && and == "AND"
+    {
+        let (other, left) = one(more);
+        (allowed, rest) = (allowed & other, left);
+    }
+    (allowed, rest)
+}
+
+fn one(words: &[String]) -> (bool, &[String]) {
+    match words {
+        [open, rest @ ..] if open == "(" => match any_of(rest) {
+            (allowed, [close, rest @ ..]) if close == ")" => (allowed, rest),
+            (_, rest) => (false, rest),
+        },
+        [name, rest @ ..] => (LICENCES.contains(&name.as_str()), rest),
+        [] => (false, &[]),
+    }
+}
+
+/// Packages whose licence is not among those that are allowed, of Cargo's own account of them.
+pub fn unlicensed(metadata: &Value) -> Vec<String> {
+    let packages = metadata["packages"].as_array().map(Vec::as_slice).unwrap_or_default();
+    let judge = |package: &Value| {
+        let (name, licence) = (package["name"].as_str()?, package["license"].as_str().unwrap_or("none stated"));
+        (!is_allowed(licence))
+            .then(|| format!("{name}: licence {licence}\n  mend: do without it, or allow that licence"))
+    };
+    packages.iter().filter_map(judge).collect()
+}
+
+/// What Cargo knows of all packages that are built on this machine, without the network: those of other platforms need not
+/// be here.
+///
+/// # Panics
+/// If Cargo cannot be run or refuses: there is nothing to check then.
+pub fn metadata(root: &Path) -> Value {
+    let cargo = || Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
+    let version = cargo().arg("-vV").output().expect("cargo runs").stdout;
+    let version = String::from_utf8_lossy(&version);
+    let host = version.lines().find_map(|line| line.strip_prefix("host: ")).expect("cargo names its host");
+    let arguments = ["metadata", "--format-version", "1", "--offline", "--filter-platform", host];
+    let output = cargo().args(arguments).current_dir(root).output().expect("cargo runs");
+    assert!(output.status.success(), "cargo metadata: {}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).expect("cargo metadata is JSON")
+}

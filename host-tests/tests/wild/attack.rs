@@ -1,0 +1,202 @@
+//! A joint under the controller, an attack on what the controller is given, and what has to hold.
+
+use std::f64::consts::TAU;
+
+use model_core::compensation::design::{compensation_settings, design_compensation};
+use model_core::compensation::{Command, CompensationTables, ImpedancePoint, Motion, Position};
+use model_core::controller::{Answer, Controller};
+use model_core::gears::{Tables, design::design};
+use model_core::numbers::random::splitmix64;
+use model_core::observer::design::{design_observer, observer_settings};
+use model_core::observer::{Estimate, Estimates, ObserverTables, Samples};
+use model_core::virtual_joint::{SurroundingsTable, VirtualJoint, design::design_surroundings};
+
+/// Presets whose joints are attacked.
+pub const PRESETS: [&str; 4] = ["q1", "s1", "l1", "d2"];
+
+/// What is thrown at the controller.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Wild {
+    /// Finite, infinite and missing torques of any size.
+    Torque,
+    /// Torques up to a few times the limit.
+    StrongTorque,
+    /// Counts of the output that are anything.
+    OutputCounts,
+    /// Readings of the output that come and go.
+    OutputMissing,
+    /// Times in any order.
+    Times,
+    /// Set-points of any bits.
+    SetPoints,
+    /// All of it, counts of the motor that are anything too.
+    Everything,
+}
+
+/// Tables of a preset.
+pub struct Subject {
+    pub observer: ObserverTables<f32>,
+    compensation: CompensationTables<f32>,
+    gears: Tables<f32, 3>,
+    around: SurroundingsTable<f32>,
+    /// Largest torque of the motor [N m].
+    pub limit: f32,
+    rate: u32,
+}
+
+impl Subject {
+    pub fn preset(name: &str) -> Self {
+        let joint = joint_file::read(joint_file::preset(name).expect("a preset")).expect("a joint");
+        let around = &joint.surroundings;
+        let gears: Tables<f32, 3> = design(&joint.parameters, around.control_rate).expect("tables");
+        Self {
+            observer: design_observer(&joint.parameters, &observer_settings(around)).expect("tables"),
+            compensation: design_compensation(&joint.parameters, &compensation_settings(around, 60.0)).expect("tables"),
+            around: design_surroundings(&joint.parameters, around, &gears).expect("tables"),
+            gears,
+            limit: around.torque_limit as f32,
+            rate: around.control_rate,
+        }
+    }
+
+    pub fn controller(&self) -> Controller<'_, f32> {
+        Controller::new(&self.observer, &self.compensation)
+    }
+
+    pub fn joint(&self) -> VirtualJoint<'_, f32, 3> {
+        VirtualJoint::new(&self.gears, &self.around)
+    }
+
+    /// Periods in so many seconds.
+    pub fn periods(&self, seconds: f64) -> u32 {
+        (seconds * f64::from(self.rate)) as u32
+    }
+
+    /// A swing of an eighteenth of a turn, once in two seconds.
+    pub fn swing(&self, period: u32) -> Command<f32> {
+        let motion = |ahead: f64| {
+            let rate = TAU * 0.5;
+            let (sine, cosine) = (rate * (f64::from(period) / f64::from(self.rate) + ahead)).sin_cos();
+            Motion {
+                position: Position { turns: 0, fraction: (0.03 * sine) as f32 },
+                speed: (TAU * 0.03 * rate * cosine) as f32,
+                acceleration: (-TAU * 0.03 * rate * rate * sine) as f32,
+            }
+        };
+        let lead = f64::from(self.compensation.crossing.lead);
+        Command::Position { now: motion(0.0), ahead: Some(motion(lead)) }
+    }
+}
+
+/// Random bits, and values of all sizes.
+pub struct Chance(pub u64);
+
+impl Chance {
+    pub fn word(&mut self) -> u64 {
+        splitmix64(&mut self.0)
+    }
+
+    pub fn of(&mut self, choices: u64) -> u64 {
+        self.word() % choices
+    }
+
+    /// From -1 to 1.
+    pub fn unit(&mut self) -> f32 {
+        (self.word() >> 40) as f32 / (1 << 23) as f32 - 1.0
+    }
+
+    /// Any f32, or one of those that hurt most.
+    pub fn wild(&mut self) -> f32 {
+        match self.of(8) {
+            0 => f32::NAN,
+            1 => f32::INFINITY.copysign(self.unit()),
+            2 => f32::MAX.copysign(self.unit()),
+            3 => 1e34_f32.copysign(self.unit()),
+            4 => 1e30 * self.unit(),
+            5 => 100.0 * self.unit(),
+            _ => f32::from_bits(self.word() as u32),
+        }
+    }
+}
+
+impl Wild {
+    /// Spoils what the controller is given in one period.
+    pub fn spoil(self, chance: &mut Chance, limit: f32, samples: &mut Samples<f32>, command: &mut Command<f32>) {
+        let all = self == Self::Everything;
+        let mut does = |which| self == which || all && chance.of(3) == 0;
+        let [torque, strong, output, missing, times, points] =
+            [Self::Torque, Self::StrongTorque, Self::OutputCounts, Self::OutputMissing, Self::Times, Self::SetPoints]
+                .map(&mut does);
+        if torque {
+            samples.torque = chance.wild();
+        }
+        if strong {
+            samples.torque = 3.0 * limit * chance.unit();
+        }
+        if output && let Some(reading) = &mut samples.output {
+            reading.counts = chance.word() as u32;
+        }
+        if missing && chance.of(2) == 0 {
+            samples.output = None;
+        }
+        if times {
+            samples.time = samples.time.wrapping_add(chance.word() as u32 >> chance.of(32));
+            samples.motor.time = samples.motor.time.wrapping_sub(chance.word() as u32 >> chance.of(32));
+        }
+        if all && chance.of(2) == 0 {
+            samples.motor.counts = chance.word() as u32;
+        }
+        if points {
+            *command = wild_command(chance);
+        }
+    }
+}
+
+fn wild_command(chance: &mut Chance) -> Command<f32> {
+    let mut motion = || Motion {
+        position: Position { turns: chance.word() as i32 >> chance.of(32), fraction: chance.wild() },
+        speed: chance.wild(),
+        acceleration: chance.wild(),
+    };
+    let (now, ahead) = (motion(), motion());
+    match chance.of(3) {
+        0 => Command::Position { now, ahead: None },
+        1 => Command::Position { now, ahead: Some(ahead) },
+        _ => Command::Impedance(ImpedancePoint {
+            position: now.position,
+            speed: now.speed,
+            torque: chance.wild(),
+            stiffness: chance.wild(),
+            damping: chance.wild(),
+        }),
+    }
+}
+
+/// Whatever was put in: torque within the limit, every estimate finite.
+pub fn hold(answer: &Answer<f32>, limit: f32, when: &dyn Fn() -> String) {
+    let torque = answer.shaped.torque;
+    assert!(torque.abs() <= limit * 1.0001, "a torque of {torque} N m, the limit is {limit}: {}", when());
+    assert!(answer.shaped.load.iter().all(|load| load.is_finite()), "{:?}: {}", answer.shaped, when());
+    assert!(finite(&answer.estimates), "{:#?}: {}", answer.estimates, when());
+}
+
+/// Whether every number among the estimates is one.
+pub fn finite(said: &Estimates<f32>) -> bool {
+    let estimates: [&Estimate<f32>; 9] = [
+        &said.gap,
+        &said.mesh_torque,
+        &said.load_torque,
+        &said.half_backlash,
+        &said.encoder_offset,
+        &said.compliance,
+        &said.skew,
+        &said.torque_bias,
+        &said.motor_friction,
+    ];
+    let shafts = [said.motor, said.link];
+    let others = [said.gap_rate, said.flank_shift, said.flank_shift_slope, said.link_inertia_ratio.value];
+    estimates.iter().all(|estimate| estimate.value.is_finite() && estimate.variance.is_finite())
+        && shafts.iter().all(|shaft| shaft.fraction.is_finite() && shaft.speed.is_finite())
+        && others.iter().all(|other| other.is_finite())
+        && said.link_inertia_ratio.variance.is_finite()
+}

@@ -1,0 +1,58 @@
+//! Memories with a good digest whose numbers no joint of the design can have.
+
+use model_core::numbers::digest;
+use model_core::observer::{MAPPED, MEMORY_BYTES, Memory, MemoryError, Observer, memory_numbers};
+
+use super::attack::{Chance, PRESETS, Subject, finite};
+
+/// Bytes before the numbers, and where they end.
+const NUMBERS: std::ops::Range<usize> = 24..24 + 4 * (MAPPED + MAPPED * (MAPPED + 1) / 2 + 5 + 2);
+
+/// A memory with one number exchanged, and a digest that fits.
+fn forged(memory: &Memory, place: usize, number: f32) -> Memory {
+    let mut forged = *memory;
+    forged[place..place + 4].copy_from_slice(&number.to_le_bytes());
+    let sum = forged[..MEMORY_BYTES - 8].iter().fold(digest::START, |sum, byte| digest::chain(sum, (*byte).into()));
+    forged[MEMORY_BYTES - 8..].copy_from_slice(&sum.to_le_bytes());
+    forged
+}
+
+#[test]
+fn a_memory_whose_numbers_no_joint_has_is_refused_and_one_that_is_taken_keeps_estimates_finite() {
+    let mut chance = Chance(7);
+    for name in PRESETS {
+        let subject = Subject::preset(name);
+        let (mut joint, mut controller) = (subject.joint(), subject.controller());
+        for period in 0..subject.periods(2.0) {
+            joint.advance(controller.step(&joint.samples(), &subject.swing(period)).shaped.torque, 0.0);
+        }
+        let memory = controller.save();
+        assert_eq!(Observer::<f32, MAPPED>::new(&subject.observer).load(&memory), Ok(()), "its own");
+        assert_eq!(memory_numbers(&memory).take((NUMBERS.len()) / 4).count(), NUMBERS.len() / 4);
+        let mut refused = 0;
+        let forgeries = 300;
+        for _ in 0..forgeries {
+            let place = NUMBERS.start + 4 * chance.of(NUMBERS.len() as u64 / 4) as usize;
+            let forged = forged(&memory, place, chance.wild());
+            let mut observer = Observer::<f32, MAPPED>::new(&subject.observer);
+            let before = observer.save();
+            match observer.load(&forged) {
+                Ok(()) => {
+                    let mut joint = subject.joint();
+                    for _ in 0..200 {
+                        let said = *observer.step(&joint.samples());
+                        assert!(finite(&said), "{name}: byte {place} of the memory: {said:#?}");
+                        joint.advance(0.1 * subject.limit, 0.0);
+                    }
+                }
+                Err(error) => {
+                    assert_eq!(error, MemoryError::OutOfRange, "{name}: byte {place}");
+                    assert_eq!(observer.save(), before, "a refused memory changes nothing");
+                    refused += 1;
+                }
+            }
+        }
+        println!("{name}: {refused} of {forgeries} refused");
+        assert!(refused > forgeries / 2, "{name}: {refused} of {forgeries} nonsense memories refused");
+    }
+}

@@ -188,7 +188,7 @@ mod tests {
     fn head_of<M: serde::Serialize>(message: &M) -> Option<HelloHead> {
         let frame = encode(message).expect("a short message");
         let mut receiver = Receiver::new();
-        frame.into_iter().find_map(|byte| receiver.push(byte))
+        frame.into_iter().find_map(|byte| receiver.push_beginning(byte))
     }
 
     #[test]

@@ -85,7 +85,7 @@ pub fn memory_state(judged: Option<Result<(), MemoryError>>) -> MemoryState {
         Some(Err(MemoryError::WrongVersion)) => MemoryState::WrongVersion,
         Some(Err(MemoryError::Damaged)) => MemoryState::Damaged,
         Some(Err(MemoryError::OtherJoint)) => MemoryState::OtherJoint,
-        Some(Err(MemoryError::NotFinite)) => MemoryState::NotFinite,
+        Some(Err(MemoryError::OutOfRange)) => MemoryState::OutOfRange,
     }
 }
 

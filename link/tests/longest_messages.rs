@@ -39,7 +39,7 @@ fn the_longest_hello_arrives() {
         last_panic: Some(text()),
         watchdog_reset: true,
         control_digest: Some(u64::MAX),
-        memory: link::messages::MemoryState::NotFinite,
+        memory: link::messages::MemoryState::OutOfRange,
     }));
 }
 
@@ -97,7 +97,7 @@ fn the_longest_log_acceptance_and_fault_arrive() {
 fn a_part_of_a_memory_arrives_both_ways() {
     let part = MemoryPart { part: u8::MAX, bytes: full(u8::MAX) };
     arrives(FromBoard::Memory(part.clone()));
-    arrives(FromBoard::MemoryChecked(MemoryState::NotFinite));
+    arrives(FromBoard::MemoryChecked(MemoryState::OutOfRange));
     let message = ToBoard::Memory(MemoryRequest::Load(part));
     let mut receiver = Receiver::new();
     assert_eq!(encode(&message).unwrap().iter().find_map(|&byte| receiver.push(byte)), Some(message));

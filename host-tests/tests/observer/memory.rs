@@ -77,7 +77,7 @@ fn memories_that_do_not_fit_are_refused_and_change_nothing() {
 
 #[test]
 fn a_mobility_that_no_link_has_is_not_believed() {
-    let (experiment, log, memory) = learnt();
+    let (experiment, _, memory) = learnt();
     let tables = experiment.tables();
     for mobility in [0.0_f32, -1.0, 1e30] {
         let mut odd = memory;
@@ -87,12 +87,6 @@ fn a_mobility_that_no_link_has_is_not_believed() {
         let seal = odd[..at].iter().fold(digest::START, |running, byte| digest::chain(running, (*byte).into()));
         odd[at..].copy_from_slice(&seal.to_le_bytes());
         let mut observer = Observer::<f32, MAPPED>::new(&tables);
-        observer.load(&odd).expect("sealed as it should be");
-        for (period, moment) in log.iter().take(100).enumerate() {
-            observer.step(&samples(&experiment.settings, moment, period));
-        }
-        let estimates = observer.estimates();
-        assert!((0.5..=11.0).contains(&estimates.link_inertia_ratio.value), "{:?}", estimates.link_inertia_ratio);
-        assert!(estimates.load_torque.value.is_finite());
+        assert_eq!(observer.load(&odd), Err(MemoryError::OutOfRange), "{mobility}");
     }
 }

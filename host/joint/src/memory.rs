@@ -156,6 +156,6 @@ fn fault(judged: MemoryState) -> Option<MemoryError> {
         MemoryState::WrongVersion => Some(MemoryError::WrongVersion),
         MemoryState::Damaged => Some(MemoryError::Damaged),
         MemoryState::OtherJoint => Some(MemoryError::OtherJoint),
-        MemoryState::NotFinite => Some(MemoryError::NotFinite),
+        MemoryState::OutOfRange => Some(MemoryError::OutOfRange),
     }
 }

@@ -57,8 +57,8 @@ pub enum MemoryState {
     Damaged,
     /// A memory of another joint or of other encoders.
     OtherJoint,
-    /// A memory with a number that is not finite.
-    NotFinite,
+    /// A memory with a number that is none, or that no joint of its design can have.
+    OutOfRange,
 }
 
 /// Outcome of a request about the memory.

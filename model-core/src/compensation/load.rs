@@ -29,6 +29,8 @@ pub(super) struct LoadModel<T: Real> {
     moved: T,
     /// How it began to creep, while it does.
     creep: Option<Creep<T>>,
+    /// 1 while the motor's limit cuts torque off, fading over the loop's transient [-].
+    cut: T,
 }
 
 /// What was known before the link began to creep.
@@ -56,7 +58,13 @@ impl<T: Real> LoadModel<T> {
             variance: [T::ONE, T::ONE, T::ZERO],
             moved: T::ZERO,
             creep: None,
+            cut: T::ZERO,
         }
+    }
+
+    /// Whether the motor's limit has cut torque off in this period.
+    pub fn take_cut(&mut self, tables: &CompensationTables<T>, is_cut: bool) {
+        self.cut = if is_cut { T::ONE } else { self.cut * tables.switching.transient_left };
     }
 
     /// -1 to 1: what share of the dry friction brakes the link.
@@ -131,7 +139,11 @@ impl<T: Real> LoadModel<T> {
             self.hardest = push;
         }
         let carried = known && !situation.open;
-        if carried {
+        // What brakes a link that is jerked from limit to limit is known with a lag: it is followed as one, for shared out it
+        // would make friction of the lag.
+        if carried && self.cut > T::HALF {
+            self.even += tables.load.gain * (held - self.even - self.drag());
+        } else if carried {
             self.learn(tables, held);
         } else {
             self.rate *= tables.load.rate_left;

@@ -127,6 +127,7 @@ impl<'tables, T: Real> Compensation<'tables, T> {
         let wanted = plain + self.trust * (compensated - plain);
         let torque =
             if wanted.is_finite() { clamp(wanted, -tables.limits.motor, tables.limits.motor) } else { T::ZERO };
+        self.load.take_cut(tables, torque != wanted);
         self.plain.take(tables, &situation, torque - wanted, self.trust);
         let stage = if self.trust > T::ZERO { self.flank.stage() } else { Stage::Plain };
         Shaped {

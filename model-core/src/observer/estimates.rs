@@ -53,7 +53,8 @@ pub enum OutputFault {
 /// What was wrong with the last samples. The observer goes on, with what it had.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Notices {
-    /// The torque was not a number; none was assumed.
+    /// The torque was not a number, or more than twice what the motor can give; none was assumed. Until 20 ms after it nothing
+    /// is learnt, and gap and torques are not valid.
     pub torque_unknown: bool,
     /// The period was too short or too long, or time went backwards.
     pub out_of_time: bool,

@@ -34,8 +34,8 @@ pub enum MemoryError {
     Damaged,
     /// It belongs to another joint, other encoders or an observer with another number of parameters.
     OtherJoint,
-    /// It holds a number that is none.
-    NotFinite,
+    /// It holds a number that is none, or that no joint of this design can have.
+    OutOfRange,
 }
 
 impl fmt::Display for MemoryError {
@@ -45,7 +45,7 @@ impl fmt::Display for MemoryError {
             Self::WrongVersion => "the memory is of another version of the observer: let it learn again and save anew",
             Self::Damaged => "the memory is damaged: load a copy, or let the observer learn again",
             Self::OtherJoint => "the memory belongs to another joint or to other encoders: load this joint's own",
-            Self::NotFinite => "the memory holds a number that is none: let the observer learn again and save anew",
+            Self::OutOfRange => "the memory holds a number that no joint of this design can have: let the observer learn again and save anew",
         })
     }
 }
@@ -95,17 +95,13 @@ pub(super) fn load<T: Real, const P: usize>(
         return Err(MemoryError::OtherJoint);
     }
     let (mut learner, mut bias, mut inertia) = (learnt.learner, learnt.bias, learnt.inertia);
-    let mut finite = true;
-    let mut next = || {
-        let number = f32::from_le_bytes(reader.take().unwrap_or_default());
-        finite &= number.is_finite();
-        T::from_f64(number.into())
-    };
+    let mut next = || T::from_f64(f32::from_le_bytes(reader.take().unwrap_or_default()).into());
     learner.set_numbers(&mut next);
     bias.set_numbers(&mut next);
-    inertia.set_numbers(&tables.inertia, &mut next);
-    if !finite {
-        return Err(MemoryError::NotFinite);
+    inertia.set_numbers(&mut next);
+    // What is not a number is in no range.
+    if !(learner.is_possible(tables) && bias.is_possible(&tables.contact) && inertia.is_possible(&tables.inertia)) {
+        return Err(MemoryError::OutOfRange);
     }
     learnt.learner = learner;
     learnt.bias = bias;

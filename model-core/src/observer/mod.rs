@@ -163,7 +163,8 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         }
         self.say(&fused);
         let late_for_good = self.sensors.latency.is_late_for_good();
-        if matches!(sensed.freshness, Freshness::Fresh | Freshness::Lost) && !late_for_good {
+        let serves = matches!(sensed.freshness, Freshness::Fresh | Freshness::Lost) && !late_for_good;
+        if serves && !self.sensors.is_unsure() {
             self.learn(&fused);
         } else {
             outputs::invalidate(&mut self.estimates);

@@ -134,8 +134,10 @@ pub struct CurrentTable<T: Real> {
     pub part_delay: T,
     /// Part of the lacking torque that the current loop makes good in a period.
     pub rise: T,
-    /// Largest torque [N m].
-    pub limit: T,
+    /// Torque beyond which a sample is none [N m].
+    pub believed: T,
+    /// Periods after a sample that was none for which what it has left in the filters is not learnt from.
+    pub unsure_for: u16,
 }
 
 /// The motor side: state angle, speed, torque taken by the meshes (and friction); air-gap torque known.

@@ -116,6 +116,14 @@ pub(super) fn drive_table<T: Real>(
     }
 }
 
+/// Torque over the motor's largest beyond which a sample is none: a controller that overshoots its limit, and noise, stay
+/// below it [-].
+const BELIEVED: f64 = 2.0;
+
+/// Time after a torque that was none in which the filters may still be wrong for it [s]. Chosen: several times the slowest of
+/// their poles.
+const UNSURE_FOR: f64 = 20e-3;
+
 pub(super) fn current<T: Real>(settings: &ObserverSettings, step: f64) -> CurrentTable<T> {
     let whole = libm::floor(settings.torque_delay);
     let rise = if settings.torque_lag > 0.0 { -libm::expm1(-step / settings.torque_lag) } else { 1.0 };
@@ -123,7 +131,8 @@ pub(super) fn current<T: Real>(settings: &ObserverSettings, step: f64) -> Curren
         whole_delay: whole as u32,
         part_delay: T::from_f64(settings.torque_delay - whole),
         rise: T::from_f64(rise),
-        limit: T::from_f64(settings.torque_limit),
+        believed: T::from_f64(BELIEVED * settings.torque_limit),
+        unsure_for: (UNSURE_FOR / step) as u16,
     }
 }
 

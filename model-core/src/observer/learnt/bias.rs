@@ -22,6 +22,17 @@ impl<T: Real> Bias<T> {
         Self { bias: T::ZERO, friction: T::ZERO, variance: [table.bias_prior, table.bias_prior, T::ZERO] }
     }
 
+    /// Whether both are no larger than they can become, and no less sure than beforehand.
+    pub fn is_possible(&self, table: &ContactTable<T>) -> bool {
+        let [bias, friction, both] = self.variance;
+        let most = table.bias_prior + table.bias_drift;
+        self.bias.abs() <= table.bias_limit
+            && self.friction >= T::ZERO
+            && self.friction <= table.bias_limit
+            && [bias, friction].iter().all(|variance| *variance >= T::ZERO && *variance <= most)
+            && both.abs() <= most
+    }
+
     /// Direction of dry friction at a motor speed: from -1 to 1, in proportion where noise hides the sign.
     pub fn direction(table: &ContactTable<T>, speed: T) -> T {
         clamp(speed * table.per_turning, -T::ONE, T::ONE)

@@ -51,10 +51,17 @@ impl<T: Real> Inertia<T> {
         [self.mobility, self.variance].into_iter()
     }
 
-    /// Takes the same back, as far as it may be: nothing is divided by a mobility of zero.
-    pub fn set_numbers(&mut self, table: &InertiaTable<T>, next: &mut impl FnMut() -> T) {
-        self.mobility = believed(table, next());
+    /// Takes the same back.
+    pub fn set_numbers(&mut self, next: &mut impl FnMut() -> T) {
+        self.mobility = next();
         self.variance = next();
+    }
+
+    /// Whether the mobility is one that is believed of a link, and no less sure than beforehand.
+    pub fn is_possible(&self, table: &InertiaTable<T>) -> bool {
+        self.mobility == believed(table, self.mobility)
+            && self.variance >= T::ZERO
+            && self.variance <= table.prior + table.drift
     }
 
     /// What the meshes pass on, as the load side takes it; once a period.

@@ -13,11 +13,15 @@ use core::array;
 use super::regressors::{COMPLIANCE, ERROR, HALF_GAP, OFFSET, Regressors, SKEW};
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
-use crate::observer::tables::LearnerTable;
+use crate::observer::tables::{LearnerTable, ObserverTables};
 
 /// Standard deviations beforehand beyond which nothing is believed of a parameter, whatever a failing encoder shows: four
 /// times what a joint that fits its file can reach. An offset may be any.
 const FURTHEST: i32 = 16;
+
+/// The most that a factor above the diagonal can be, in which parameters stand in units of their standard deviations
+/// beforehand: by how much more one parameter moves than another that it is told apart from.
+const MOST_FACTOR: i32 = 1000;
 
 /// Parameters with their covariance.
 #[derive(Debug, Clone, Copy)]
@@ -106,10 +110,27 @@ impl<T: Real, const P: usize> Learner<T, P> {
     /// Takes the same back.
     pub fn set_numbers(&mut self, next: &mut impl FnMut() -> T) {
         self.values.iter_mut().for_each(|value| *value = next());
-        self.keep_half_gap();
         for (index, column) in self.factors.iter_mut().enumerate() {
             column.iter_mut().take(index + 1).for_each(|factor| *factor = next());
         }
+    }
+
+    /// Whether all of it is what a joint of this design can show: parameters as far from their mean as learning goes, an offset
+    /// within what whole turns leave open, factors of a covariance that is no larger than beforehand.
+    pub fn is_possible(&self, tables: &ObserverTables<T>) -> bool {
+        let table = &tables.learner;
+        let turns = T::from_i64(tables.counts.modulus) * tables.counts.length;
+        let parameters = self.values.iter().zip(&table.mean).zip(&table.deviation).enumerate();
+        let values = parameters.map(|(index, ((value, mean), deviation))| {
+            let most = if index == OFFSET { turns } else { T::from_i32(FURTHEST) * *deviation };
+            (*value - *mean).abs() <= most
+        });
+        let factors = self.factors.iter().enumerate().map(|(index, column)| {
+            let (above, rest) = column.split_at_checked(index).unwrap_or_default();
+            let on = rest.first().copied().unwrap_or(T::ZERO);
+            on >= T::ZERO && on <= T::ONE && above.iter().all(|factor| factor.abs() <= T::from_i32(MOST_FACTOR))
+        });
+        self.value(HALF_GAP) >= T::ZERO && values.chain(factors).all(|possible| possible)
     }
 
     /// Forgets how sure everything is that depends on where the encoders' zeros are.

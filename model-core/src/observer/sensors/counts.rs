@@ -154,7 +154,11 @@ impl Counts {
             self.fresh_time = reading.time;
             self.output.take(&table.output, reading.counts)
         });
-        let turned = if let Some(Advance::By(by) | Advance::Jumped(by)) = output { by } else { 0 };
+        let turned = match output {
+            Some(Advance::By(by)) => by,
+            Some(Advance::Jumped(by)) => self.jump(table, by),
+            _ => 0,
+        };
         self.difference =
             self.difference.wrapping_add(by).wrapping_sub(i64::from(turned).wrapping_mul(table.output_weight));
         if begins && self.output.began {
@@ -162,6 +166,27 @@ impl Counts {
         }
         let turned = if self.implied.is_some() { self.follow(table, by) } else { turned };
         Taken { motor, output, apart, turned }
+    }
+
+    /// The output has jumped by so many counts, which gives it up: what the motor implies goes on from where it was. Raw
+    /// counts leave whole ranges open; of the places that they can mean it is the one nearest to what is implied. By how many
+    /// counts it has gone on to there.
+    #[cold]
+    fn jump<T: Real>(&mut self, table: &CountTable<T>, by: i32) -> i32 {
+        if self.implied.is_none() {
+            let mut before = self.output;
+            before.advance(&table.output, by.wrapping_neg());
+            self.implied = Some((before, self.difference));
+        }
+        let Some((_, implied)) = self.implied else { return by };
+        let range = i64::from(table.output.wraps_at);
+        let beyond =
+            i64::from(by).wrapping_mul(table.output_weight).wrapping_sub(self.difference).wrapping_add(implied);
+        let of_range = range.wrapping_mul(table.output_weight);
+        let ranges = beyond.wrapping_add(of_range / 2).checked_div_euclid(of_range).unwrap_or(0);
+        let back = ranges.wrapping_mul(range) as i32;
+        self.output.advance(&table.output, back.wrapping_neg());
+        by.wrapping_sub(back)
     }
 
     /// Both encoders are there for the first time.

@@ -19,12 +19,14 @@ pub struct Sensors {
     pub latency: Latency,
     /// When the last samples were taken [ticks].
     time: u32,
+    /// Periods for which a torque that was none may still be felt in the filters.
+    unsure_for: u16,
 }
 
 /// What the samples of one period came to.
 #[derive(Debug, Clone, Copy)]
 pub struct Sensed<T: Real> {
-    /// Torque that was commanded; zero where it was not a number [N m].
+    /// Torque that was commanded; zero where it was none [N m].
     pub command: T,
     /// What the motor's reading came to.
     pub motor: Advance,
@@ -42,7 +44,7 @@ pub struct Sensed<T: Real> {
     pub output_age: u32,
     /// Time between that reading and the fresh one before [ticks].
     pub output_interval: u32,
-    /// The torque was a number.
+    /// The torque was one that the motor can give.
     pub torque_known: bool,
     /// The period was too short or too long, or time went backwards.
     pub out_of_time: bool,
@@ -55,13 +57,20 @@ impl Sensors {
         if !has_output {
             counts.imply();
         }
-        Self { counts, latency: Latency::default(), time: 0 }
+        Self { counts, latency: Latency::default(), time: 0, unsure_for: 0 }
+    }
+
+    /// Whether a torque that was none may still be felt in the filters.
+    pub fn is_unsure(&self) -> bool {
+        self.unsure_for > 0
     }
 
     /// Takes the samples of one period.
     #[inline(always)]
     pub fn step<T: Real>(&mut self, tables: &ObserverTables<T>, samples: &Samples<T>) -> Sensed<T> {
-        let known = samples.torque.is_finite();
+        // False for what is not a number, too.
+        let known = samples.torque.abs() <= tables.current.believed;
+        self.unsure_for = if known { self.unsure_for.saturating_sub(1) } else { tables.current.unsure_for };
         let command = if known { samples.torque } else { T::ZERO };
         let clock = &tables.clock;
         let motor_age = age(samples.time, &samples.motor);

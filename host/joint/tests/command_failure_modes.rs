@@ -11,6 +11,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use command::{Ended, folder, interrupt, joint, json, start, text, wait};
+use link::PROTOCOL_VERSION;
 use serde_json::Value;
 use tempfile::TempDir;
 use thread_board::Misbehaviour;
@@ -108,7 +109,9 @@ fn a_silent_board_a_deaf_line_and_garbage_are_told_apart() {
 
 #[test]
 fn another_board_is_refused_with_the_command_that_mends_it() {
-    for misbehaviour in [Misbehaviour::AnotherDigest, Misbehaviour::AnotherRole, Misbehaviour::Protocol(7)] {
+    for misbehaviour in
+        [Misbehaviour::AnotherDigest, Misbehaviour::AnotherRole, Misbehaviour::Protocol(PROTOCOL_VERSION + 1)]
+    {
         run(misbehaviour).0.refused(&["cargo joint flash q1 --board stm32f405"]);
     }
 }

@@ -5,9 +5,10 @@ use proptest::prelude::*;
 use proptest::sample::{Index, select};
 
 /// Numbers at which something happens, as a user may type them.
-pub const TYPED: [&str; 14] = [
+pub const TYPED: [&str; 15] = [
     "1e300",
     "-1e300",
+    "1e5",
     "1e7",
     "1e-300",
     "-1",
@@ -52,7 +53,7 @@ pub enum Mutation {
 pub fn mutations() -> impl Strategy<Value = Vec<Mutation>> {
     let place = any::<Index>;
     let one = prop_oneof![
-        6 => (place(), select(&TYPED[..])).prop_map(|(place, typed)| Mutation::Number(place, typed)),
+        12 => (place(), select(&TYPED[..])).prop_map(|(place, typed)| Mutation::Number(place, typed)),
         3 => (place(), 1_u8..).prop_map(|(place, bits)| Mutation::Bits(place, bits)),
         6 => (place(), select(&WHOLE[..]), select(&[2_usize, 4, 8][..]))
             .prop_map(|(place, number, size)| Mutation::Whole(place, number, size)),

@@ -27,6 +27,9 @@ pub const TICK_RATE: u32 = 20_000;
 /// Most ticks between two looks at the line.
 const TICKS: u32 = 200;
 
+/// Most ticks after a message of the host until the next: half of what a host on a real line is waited for.
+const TICKS_UNHEARD: u32 = TICK_RATE / 20;
+
 /// What the board does wrong, or its line.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub enum Misbehaviour {
@@ -110,7 +113,7 @@ pub fn start_observer<S: Read + Write + Send + 'static>(
 /// The line is gone, or the board hangs up.
 struct Gone;
 
-/// Plays a board on a stream. While schedules come its clock waits for them: a busy machine starves no run.
+/// Plays a board on a stream. Its clock waits for the host, whose own runs on a machine that may be busy: no run is starved.
 fn serve<W: Work>(
     mut stream: impl Read + Write,
     mut board: TestBoard<W>,
@@ -121,6 +124,7 @@ where
     W::Protocol: Protocol<Command: 'static, Sample: 'static> + 'static,
 {
     let (mut receiver, mut scheduled, mut buffer) = (Receiver::new(), false, [0; 512]);
+    let mut unheard = 0;
     if matches!(misbehaviour, Misbehaviour::HalfFrameAt(_)) {
         stream.write_all(&[0x55, 0xaa, 0x01, 0x00, 0x13, 0x37]).map_err(|_| Gone)?;
     }
@@ -133,11 +137,14 @@ where
         };
         for message in buffer[..count].iter().filter_map(|&byte| receiver.push::<ToBoard>(byte)) {
             scheduled = matches!(message, ToBoard::Schedule(_));
+            unheard = 0;
             misbehaviour.heard(message).iter().for_each(|message| board.send(message));
         }
         board.settle();
         let left = board.progress.horizon.load(Relaxed).saturating_sub(board.progress.steps.load(Relaxed));
-        board.run(if scheduled { left.min(TICKS) } else { TICKS });
+        let ticks = if scheduled { left.min(TICKS) } else { TICKS }.min(TICKS_UNHEARD - unheard);
+        board.run(ticks);
+        unheard += ticks;
         show(&board.flash);
         for message in board.said() {
             stream.write_all(&misbehaviour.said(message)?).map_err(|_| Gone)?;

@@ -12,7 +12,7 @@ use std::sync::atomic::Ordering::Relaxed;
 use link::messages::{FromBoard, MemoryRequest, RunMode, RunSettings, ToBoard, Trip};
 use proptest::collection::vec;
 use proptest::prelude::*;
-use proptest::test_runner::{Config, TestCaseResult, TestRunner};
+use proptest::test_runner::{Config, RngSeed, TestCaseResult, TestRunner};
 use test_board::TestBoard;
 use test_roles::{LoopWork, ObserverWork, PlantWork, TestRole};
 
@@ -247,8 +247,9 @@ impl<W: TestRole> Case<W> {
     }
 }
 
-fn converse<W: TestRole>(cases: u32) {
-    let mut runner = TestRunner::new(Config { cases, failure_persistence: None, ..Config::default() });
+fn converse<W: TestRole>(cases: u32, rng_seed: RngSeed) {
+    let config = Config { cases, rng_seed, failure_persistence: None, ..Config::default() };
+    let mut runner = TestRunner::new(config);
     let seen = std::cell::Cell::new((0, 0));
     let outcome = runner.run(&vec(action(), 1..40), |actions| {
         let mut case = Case::<W>::new();
@@ -266,15 +267,15 @@ fn converse<W: TestRole>(cases: u32) {
 
 #[test]
 fn no_conversation_keeps_the_output_on_or_mixes_up_its_answers() {
-    converse::<PlantWork>(150);
-    converse::<ObserverWork>(100);
-    converse::<LoopWork>(100);
+    converse::<PlantWork>(150, RngSeed::Fixed(1));
+    converse::<ObserverWork>(100, RngSeed::Fixed(1));
+    converse::<LoopWork>(100, RngSeed::Fixed(1));
 }
 
 #[test]
-#[ignore = "long: the same with many more conversations"]
+#[ignore = "long: the same with many more conversations, others every time"]
 fn no_conversation_of_very_many_keeps_the_output_on_or_mixes_up_its_answers() {
-    converse::<PlantWork>(40_000);
-    converse::<ObserverWork>(20_000);
-    converse::<LoopWork>(20_000);
+    converse::<PlantWork>(40_000, RngSeed::Random);
+    converse::<ObserverWork>(20_000, RngSeed::Random);
+    converse::<LoopWork>(20_000, RngSeed::Random);
 }

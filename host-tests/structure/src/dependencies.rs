@@ -5,8 +5,8 @@ use std::process::Command;
 
 use serde_json::Value;
 
-/// The one place that packages come from.
-const SOURCE: &str = "registry+https://github.com/rust-lang/crates.io-index";
+/// How the source of a package begins that comes from a registry, not from a repository of somebody's.
+const REGISTRY: &str = "registry+";
 
 /// Licences under which a dependency may be used here: they ask for a notice at most. MPL-2.0 asks for its own files to stay
 /// open, which they are.
@@ -25,11 +25,14 @@ const LICENCES: [&str; 12] = [
     "Zlib",
 ];
 
-/// Packages of `Cargo.lock`, for every platform, that come from somewhere else; the workspace's own have no source.
+/// Packages of `Cargo.lock`, for every platform, that come from elsewhere than the one registry that the first of them comes
+/// from; the workspace's own have no source.
 pub fn foreign(lock: &str) -> Vec<String> {
     let source = |line: &str| line.strip_prefix("source = \"").map(|rest| rest.trim_end_matches('"').to_string());
-    let foreign = lock.lines().filter_map(source).filter(|source| source != SOURCE);
-    foreign.map(|source| format!("Cargo.lock: a package of {source}\n  mend: one of crates.io")).collect()
+    let mut sources = lock.lines().filter_map(source).peekable();
+    let first = sources.peek().cloned().unwrap_or_default();
+    let foreign = sources.filter(|source| !source.starts_with(REGISTRY) || *source != first);
+    foreign.map(|source| format!("Cargo.lock: a package of {source}\n  mend: one of the registry")).collect()
 }
 
 /// Whether an SPDX expression lets us use one of the licences; a slash is an old form of OR.

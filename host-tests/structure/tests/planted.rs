@@ -440,11 +440,12 @@ fn an_unsafe_that_is_not_listed_is_found_and_one_in_a_comment_is_none() {
 
 #[test]
 fn a_dependency_from_elsewhere_or_under_another_licence_is_found() {
-    let lock =
-        "[[package]]\nname = \"a\"\n[[package]]\nsource = \"registry+https://github.com/rust-lang/crates.io-index\"\n";
+    let lock = "[[package]]\nname = \"a\"\n[[package]]\nsource = \"registry+https://example.org/index\"\n";
     assert_eq!(dependencies::foreign(lock), [""; 0]);
     let git = format!("{lock}source = \"git+https://example.com/x?rev=1#1\"\n");
     assert!(dependencies::foreign(&git)[0].contains("git+https://example.com/x"));
+    let other = format!("{lock}source = \"registry+https://example.com/other\"\n");
+    assert!(dependencies::foreign(&other)[0].contains("example.com/other"));
     for good in ["MIT", "MIT/GPL-3.0", "GPL-3.0-only OR (MIT AND Zlib)", "Apache-2.0 WITH LLVM-exception OR MIT"] {
         assert!(dependencies::is_allowed(good), "{good}");
     }

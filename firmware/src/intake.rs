@@ -111,8 +111,8 @@ impl<'a, W: Protocol> Intake<'a, W> {
         self.commands.capacity() - self.commands.len()
     }
 
-    /// The horizon is within reach. Commands lie between the old horizon and the new one, in rising order: those before the old one would be late,
-    /// those past the new one would block the queue.
+    /// The horizon is within reach. Commands lie between the old horizon and the new one, in rising order: those before the
+    /// old one would be late, those past the new one would block the queue.
     fn check(&self, timetable: &W::Timetable) -> Result<(), Trip> {
         let mut earliest = self.progress.horizon.load(Acquire);
         if timetable.horizon() < earliest {

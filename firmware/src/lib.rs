@@ -2,8 +2,9 @@
 //! A joint simulated in the tick of a microcontroller, driven and watched over a serial line.
 //!
 //! `tick_handler` is one tick of any role: it takes commands from `schedule`, steps the role's `work`, records times in
-//! `timing_monitor`, listens for the host's `silence`, and enters `safe_state` on a fault. The roles are `plant`, `observer` and `whole_loop`; `protocol` is
-//! what they differ in on the line. `queues` connects the tick to the rest, by a `sized_queue` that cannot panic.
+//! `timing_monitor`, listens for the host's `silence`, and enters `safe_state` on a fault. The roles are `plant`, `observer`
+//! and `whole_loop`; `protocol` is what they differ in on the line. `queues` connects the tick to the rest, by a
+//! `sized_queue` that cannot panic.
 //! `conversation`, run in idle, answers the host with the help of `identity`, `intake`, `memory_requests`, `batcher`, `telemetry`
 //! and `timing_report`; `serial` moves its bytes. `port` is the seam between a motor controller and observer with compensation, `encoder`
 //! where counts come from, `page` where what was learnt is kept.

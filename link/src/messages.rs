@@ -44,8 +44,8 @@ pub enum ToBoard {
         /// Clear minima, maxima, histogram and counters after reporting them.
         reset: bool,
     },
-    /// End of the run: enable off, no further torque sent. Heard with the next tick whatever else the board has to do, and before
-    /// whatever was sent before it and has not been looked at: a reset among that is answered by [`Trip::Overtaken`].
+    /// End of the run: enable off, no further torque sent. Heard with the next tick whatever else the board has to do, and
+    /// before whatever was sent before it and has not been looked at: a reset among that is answered by [`Trip::Overtaken`].
     Stop,
     /// Samples and set-points, for the role that observes.
     Exchanges(Schedule<Exchange, EXCHANGES_PER_SCHEDULE>),

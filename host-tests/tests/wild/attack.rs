@@ -6,10 +6,10 @@ use model_core::compensation::design::{compensation_settings, design_compensatio
 use model_core::compensation::{Command, CompensationTables, ImpedancePoint, Motion, Position};
 use model_core::controller::{Answer, Controller};
 use model_core::gears::{Tables, design::design};
-use model_core::numbers::random::splitmix64;
 use model_core::observer::design::{design_observer, observer_settings};
 use model_core::observer::{Estimate, Estimates, ObserverTables, Samples};
 use model_core::virtual_joint::{SurroundingsTable, VirtualJoint, design::design_surroundings};
+use scenario::random::RandomStream;
 
 /// Presets whose joints are attacked.
 pub const PRESETS: [&str; 4] = ["q1", "s1", "l1", "d2"];
@@ -89,11 +89,16 @@ impl Subject {
 }
 
 /// Random bits, and values of all sizes.
-pub struct Chance(pub u64);
+pub struct Chance(RandomStream);
 
 impl Chance {
+    /// The draws of an attack for a seed.
+    pub fn new(seed: u64, attack: &str) -> Self {
+        Self(RandomStream::new(seed, attack))
+    }
+
     pub fn word(&mut self) -> u64 {
-        splitmix64(&mut self.0)
+        self.0.word()
     }
 
     pub fn of(&mut self, choices: u64) -> u64 {
@@ -102,7 +107,7 @@ impl Chance {
 
     /// From -1 to 1.
     pub fn unit(&mut self) -> f32 {
-        (self.word() >> 40) as f32 / (1 << 23) as f32 - 1.0
+        (2.0 * self.0.uniform() - 1.0) as f32
     }
 
     /// Any f32, or one of those that hurt most.

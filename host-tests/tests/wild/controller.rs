@@ -19,7 +19,7 @@ fn seeds() -> std::ops::Range<u64> {
 
 /// RMS error of the link before an attack and a second after it [rad], and the half of the lost motion [rad].
 fn attacked(subject: &Subject, wild: Wild, seed: u64, name: &str) -> [f64; 2] {
-    let mut chance = Chance(seed.wrapping_mul(0x9e37_79b9) ^ wild as u64);
+    let mut chance = Chance::new(seed, &format!("{wild:?}"));
     let (mut joint, mut controller) = (subject.joint(), subject.controller());
     let lasts = if wild == Wild::SetPoints { POINTS_LAST } else { LASTS };
     let [begins, ends] = [BEGINS, BEGINS + lasts].map(|seconds| subject.periods(seconds));

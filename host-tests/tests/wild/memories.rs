@@ -19,7 +19,7 @@ fn forged(memory: &Memory, place: usize, number: f32) -> Memory {
 
 #[test]
 fn a_memory_whose_numbers_no_joint_has_is_refused_and_one_that_is_taken_keeps_estimates_finite() {
-    let mut chance = Chance(7);
+    let mut chance = Chance::new(7, "memories");
     for name in PRESETS {
         let subject = Subject::preset(name);
         let (mut joint, mut controller) = (subject.joint(), subject.controller());
@@ -54,5 +54,18 @@ fn a_memory_whose_numbers_no_joint_has_is_refused_and_one_that_is_taken_keeps_es
         }
         println!("{name}: {refused} of {forgeries} refused");
         assert!(refused > forgeries / 2, "{name}: {refused} of {forgeries} nonsense memories refused");
+    }
+}
+
+#[test]
+fn a_mobility_that_no_link_has_is_not_believed() {
+    let subject = Subject::preset("q1");
+    let memory = subject.controller().save();
+    // The last number but one.
+    let place = NUMBERS.end - 8;
+    for mobility in [0.0, -1.0, 1e30] {
+        let mut observer = Observer::<f32, MAPPED>::new(&subject.observer);
+        assert_eq!(observer.load(&forged(&memory, place, mobility)), Err(MemoryError::OutOfRange), "{mobility}");
+        assert_eq!(observer.load(&forged(&memory, place, 1.25)), Ok(()), "one that a link may have");
     }
 }

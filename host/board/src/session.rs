@@ -51,8 +51,8 @@ pub trait Supervisor {
     }
 }
 
-/// Command timeout of a board's runs, in ticks. There is none to speak of on the emulated board: its clock runs as fast as it can
-/// while the host is thinking.
+/// Command timeout of a board's runs, in ticks. There is none to speak of on the emulated board: its clock runs as fast as
+/// it can while the host is thinking.
 pub fn command_timeout(tick_rate: u32, emulated: bool) -> u32 {
     if emulated { u32::MAX } else { (COMMAND_TIMEOUT * f64::from(tick_rate)).ceil() as u32 }
 }

@@ -1,8 +1,8 @@
 //! `joint identify`: from a recorded reversal test to a joint's backlash, compliance, damping, friction and encoder
 //! errors, each with its interval, and to a patched joint file.
 //!
-//! `log_file` reads a file into `columns`, an MCAP log by `mcap_file`, `mcap_log` and `ros_message`, message by message as `numbers`; `log` turns them into samples,
-//! checked by `sampling`, whose scatter is `noise`; `prior` says what the joint file knows; `rows` are the moments at which a
+//! `log_file` reads a file into `columns`, an MCAP log by `mcap_file`, `mcap_log` and `ros_message`, message by message as
+//! `numbers`; `log` turns them into samples, checked by `sampling`, whose scatter is `noise`; `prior` says what the joint file knows; `rows` are the moments at which a
 //! flank carries, smoothed by `kernel`; `twist` and `friction` are fitted to them by `regression`; `findings` is what comes
 //! of it, with its `estimate`s; `table`, `page`, `pictures` and `patch` show it. `virtual_test` makes a log without hardware.
 

@@ -170,8 +170,8 @@ pub struct SwitchingTable<T: Real> {
     pub least: T,
     /// The most that switching hysteresis grows by, for each radian of half the lost motion [N m/rad].
     pub most_growth: T,
-    /// What is left after one period of what a transient of the loop leaves behind: grown hysteresis, the hardest push, a torque that was
-    /// cut off.
+    /// What is left after one period of what a transient of the loop leaves behind: grown hysteresis, the hardest push,
+    /// a torque that was cut off.
     pub transient_left: T,
     /// The most switching hysteresis, in units of `measured` [-].
     pub most_factor: T,

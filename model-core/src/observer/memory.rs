@@ -45,7 +45,10 @@ impl fmt::Display for MemoryError {
             Self::WrongVersion => "the memory is of another version of the observer: let it learn again and save anew",
             Self::Damaged => "the memory is damaged: load a copy, or let the observer learn again",
             Self::OtherJoint => "the memory belongs to another joint or to other encoders: load this joint's own",
-            Self::OutOfRange => "the memory holds a number that no joint of this design can have: let the observer learn again and save anew",
+            Self::OutOfRange => {
+                "the memory holds a number that no joint of this design can have: let the observer learn again and \
+                 save anew"
+            }
         })
     }
 }

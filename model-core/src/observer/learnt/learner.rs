@@ -21,7 +21,7 @@ const FURTHEST: i32 = 16;
 
 /// The most that a factor above the diagonal can be, in which parameters stand in units of their standard deviations
 /// beforehand: by how much more one parameter moves than another that it is told apart from.
-const MOST_FACTOR: i32 = 1000;
+const LARGEST_FACTOR: i32 = 1000;
 
 /// Parameters with their covariance.
 #[derive(Debug, Clone, Copy)]
@@ -115,8 +115,8 @@ impl<T: Real, const P: usize> Learner<T, P> {
         }
     }
 
-    /// Whether all of it is what a joint of this design can show: parameters as far from their mean as learning goes, an offset
-    /// within what whole turns leave open, factors of a covariance that is no larger than beforehand.
+    /// Whether all of it is what a joint of this design can show: parameters as far from their mean as learning goes, an
+    /// offset within what whole turns leave open, factors of a covariance that is no larger than beforehand.
     pub fn is_possible(&self, tables: &ObserverTables<T>) -> bool {
         let table = &tables.learner;
         let turns = T::from_i64(tables.counts.modulus) * tables.counts.length;
@@ -128,7 +128,7 @@ impl<T: Real, const P: usize> Learner<T, P> {
         let factors = self.factors.iter().enumerate().map(|(index, column)| {
             let (above, rest) = column.split_at_checked(index).unwrap_or_default();
             let on = rest.first().copied().unwrap_or(T::ZERO);
-            on >= T::ZERO && on <= T::ONE && above.iter().all(|factor| factor.abs() <= T::from_i32(MOST_FACTOR))
+            on >= T::ZERO && on <= T::ONE && above.iter().all(|factor| factor.abs() <= T::from_i32(LARGEST_FACTOR))
         });
         self.value(HALF_GAP) >= T::ZERO && values.chain(factors).all(|possible| possible)
     }

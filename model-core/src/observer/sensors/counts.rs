@@ -173,20 +173,16 @@ impl Counts {
     /// counts it has gone on to there.
     #[cold]
     fn jump<T: Real>(&mut self, table: &CountTable<T>, by: i32) -> i32 {
-        if self.implied.is_none() {
-            let mut before = self.output;
-            before.advance(&table.output, by.wrapping_neg());
-            self.implied = Some((before, self.difference));
-        }
-        let Some((_, implied)) = self.implied else { return by };
+        self.output.advance(&table.output, by.wrapping_neg());
+        let (_, implied) = *self.implied.get_or_insert((self.output, self.difference));
         let range = i64::from(table.output.wraps_at);
         let beyond =
             i64::from(by).wrapping_mul(table.output_weight).wrapping_sub(self.difference).wrapping_add(implied);
         let of_range = range.wrapping_mul(table.output_weight);
         let ranges = beyond.wrapping_add(of_range / 2).checked_div_euclid(of_range).unwrap_or(0);
-        let back = ranges.wrapping_mul(range) as i32;
-        self.output.advance(&table.output, back.wrapping_neg());
-        by.wrapping_sub(back)
+        let went = i64::from(by).wrapping_sub(ranges.wrapping_mul(range)) as i32;
+        self.output.advance(&table.output, went);
+        went
     }
 
     /// Both encoders are there for the first time.

@@ -10,7 +10,7 @@ use model_core::controller::Answer;
 use model_core::controller::trajectory::{Segment, Trajectory};
 use model_core::gears::Flank;
 use model_core::observer::{
-    Estimate, Estimates, Notices, OutputFault, Progress, Reading, Refusal, Samples, Shaft, Source,
+    Estimate, Estimates, MotorFault, Notices, OutputFault, Progress, Reading, Refusal, Samples, Shaft, Source,
 };
 use parameters::ContactState;
 
@@ -85,7 +85,7 @@ fn probes() -> Vec<Option<Progress<f32>>> {
 
 #[test]
 fn answers_come_out_as_they_went_in() {
-    for stage in [Stage::Touching, Stage::Crossing, Stage::Landing, Stage::Plain] {
+    for stage in [Stage::Touching, Stage::Crossing, Stage::Landing, Stage::Plain, Stage::Off] {
         let shaped = Shaped { torque: 1.0, stage, flank: Some(Flank::Back), demand: 2.0, load: [3.0, 4.0], trust: 0.5 };
         for probed in probes() {
             let answer = Answer { estimates: estimates(), shaped, probed };
@@ -100,9 +100,10 @@ fn answers_come_out_as_they_went_in() {
             assert_eq!(wire.answer(), Some(answer));
         }
     }
-    use OutputFault::*;
-    let doubts = [Absent, Silent, Frozen, OutOfRange].map(Source::MotorOnly);
-    for source in doubts.into_iter().chain([Source::Both, Source::Nothing]) {
+    use OutputFault::{Absent, OutOfRange};
+    let alone = [Absent, OutputFault::Silent, OutputFault::Frozen, OutOfRange].map(Source::MotorOnly);
+    let none = [MotorFault::Silent, MotorFault::Late, MotorFault::Frozen, MotorFault::Jumped].map(Source::Nothing);
+    for source in alone.into_iter().chain(none).chain([Source::Both]) {
         let one = Estimates { source, ..estimates() };
         assert_eq!(Estimates::from(WireEstimates::from(&one)), one);
     }

@@ -1,5 +1,5 @@
-//! The two ordered lists of docs/theory/observer.md, how a flank is told and how a fault of the output encoder is found,
-//! held against the same lists in the sources; and that each of their ways names a test that there is.
+//! The three ordered lists of docs/theory/observer.md, how a flank is told and how faults of the encoders are found, held
+//! against the same lists in the sources; and that each of their ways names a test that there is.
 
 use std::fs;
 use std::path::Path;
@@ -7,6 +7,8 @@ use std::path::Path;
 const PAGE: &str = include_str!("../../../docs/theory/observer.md");
 const FLANK: &str = include_str!("../../../model-core/src/observer/learnt/flank.rs");
 const OUTPUT_FAULTS: &str = include_str!("../../../model-core/src/observer/health/output_faults.rs");
+
+const MOTOR_FAULTS: &str = include_str!("../../../model-core/src/observer/health/motor_faults.rs");
 
 /// The rows of a numbered table in the page, between two marks.
 fn in_the_page(mark: &str) -> Vec<Vec<String>> {
@@ -40,7 +42,7 @@ fn test_of(row: &[String]) -> (String, String) {
 
 #[test]
 fn each_way_to_tell_a_flank_or_a_fault_is_in_page_and_source_and_names_the_test_that_needs_it() {
-    for (mark, source) in [("flank", FLANK), ("output faults", OUTPUT_FAULTS)] {
+    for (mark, source) in [("flank", FLANK), ("output faults", OUTPUT_FAULTS), ("motor faults", MOTOR_FAULTS)] {
         let (page, source) = (in_the_page(mark), in_the_source(source));
         assert!(page.len() >= 5, "the list of {mark} is read");
         assert_eq!(page.len(), source.len(), "docs/theory/observer.md and the source list other ways under {mark}");

@@ -42,6 +42,9 @@ pub struct Subject {
     /// Largest torque of the motor [N m].
     pub limit: f32,
     rate: u32,
+    parameters: parameters::JointParameters,
+    /// Torque of the link's weight, at most [N m].
+    gravity: f64,
 }
 
 impl Subject {
@@ -56,6 +59,8 @@ impl Subject {
             gears,
             limit: around.torque_limit as f32,
             rate: around.control_rate,
+            parameters: joint.parameters.clone(),
+            gravity: around.gravity_torque,
         }
     }
 
@@ -65,6 +70,42 @@ impl Subject {
 
     pub fn joint(&self) -> VirtualJoint<'_, f32, 3> {
         VirtualJoint::new(&self.gears, &self.around)
+    }
+
+    /// Control periods a second.
+    pub fn rate(&self) -> f64 {
+        f64::from(self.rate)
+    }
+
+    /// Time by which a set-point is asked for ahead [s].
+    pub fn lead(&self) -> f64 {
+        f64::from(self.compensation.crossing.lead)
+    }
+
+    /// Angle of the link between the flanks, and what winds up under the largest torque [rad].
+    pub fn lost_motion(&self) -> f64 {
+        let backlash = |of: &[f64]| of.iter().copied().fold(f64::INFINITY, f64::min);
+        let [sun, ring] = [&self.parameters.sun_planet, &self.parameters.ring_planet];
+        let gap = 2.0 * (backlash(&sun.half_backlash) + backlash(&ring.half_backlash));
+        let wound_up = self.parameters.compliance.map_or(0.0, |compliance| 2.0 / compliance.stiffness);
+        f64::from(self.observer.levers.per_output) * gap + wound_up * self.largest_at_link()
+    }
+
+    /// The same with the widest gap that the observer takes for possible before it knows it [rad].
+    pub fn widest_lost_motion(&self) -> f64 {
+        let [half_gap, uncertain] = [self.observer.learner.mean[0], self.observer.learner.deviation[0]].map(f64::from);
+        let [margin, lever] = [self.observer.supervisor.margin, self.observer.levers.per_output].map(f64::from);
+        self.lost_motion() + lever * 2.0 * (half_gap + 3.0 * uncertain + 2.0 * margin)
+    }
+
+    /// Largest torque of the motor at the link [N m].
+    pub fn largest_at_link(&self) -> f64 {
+        f64::from(self.limit * self.observer.levers.ratio)
+    }
+
+    /// Acceleration of the link by its weight alone, at most [rad/s^2].
+    pub fn fall(&self) -> f64 {
+        self.gravity / self.parameters.link_inertia
     }
 
     /// Periods in so many seconds.

@@ -13,7 +13,7 @@ const JUDGED: f64 = 1.0;
 const POINTS_LAST: f64 = 0.05;
 
 /// Seeds of one attack: one in `cargo test`, as many as the long form asks for.
-fn seeds() -> std::ops::Range<u64> {
+pub fn seeds() -> std::ops::Range<u64> {
     0..std::env::var("WILD_SEEDS").ok().and_then(|seeds| seeds.parse().ok()).unwrap_or(2)
 }
 

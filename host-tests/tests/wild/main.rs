@@ -6,3 +6,4 @@
 mod attack;
 mod controller;
 mod memories;
+mod motor_encoder;

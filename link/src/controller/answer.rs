@@ -4,7 +4,7 @@
 use model_core::compensation::{Shaped, Stage};
 use model_core::controller::Answer;
 use model_core::gears::{Flank, sign};
-use model_core::observer::{Estimate, Estimates, Notices, OutputFault, Progress, Refusal, Shaft, Source};
+use model_core::observer::{Estimate, Estimates, MotorFault, Notices, OutputFault, Progress, Refusal, Shaft, Source};
 use parameters::ContactState;
 use serde::{Deserialize, Serialize};
 
@@ -117,7 +117,8 @@ impl From<WireShaped> for Shaped<f32> {
             0 => Stage::Touching,
             1 => Stage::Crossing,
             2 => Stage::Landing,
-            _ => Stage::Plain,
+            3 => Stage::Plain,
+            _ => Stage::Off,
         };
         Self { torque, stage, flank: Flank::towards(side), demand, load, trust }
     }
@@ -166,7 +167,10 @@ impl From<&Estimates<f32>> for WireEstimates {
                 Source::MotorOnly(OutputFault::Silent) => 2,
                 Source::MotorOnly(OutputFault::Frozen) => 3,
                 Source::MotorOnly(OutputFault::OutOfRange) => 4,
-                Source::Nothing => 5,
+                Source::Nothing(MotorFault::Silent) => 5,
+                Source::Nothing(MotorFault::Late) => 6,
+                Source::Nothing(MotorFault::Frozen) => 7,
+                Source::Nothing(MotorFault::Jumped) => 8,
             },
             flags: flags.iter().rev().fold(0, |bits, flag| bits << 1 | u8::from(*flag)),
             contacts: (contact(of.contact), contact(of.reported_contact)),
@@ -205,7 +209,10 @@ impl From<WireEstimates> for Estimates<f32> {
                 2 => Source::MotorOnly(OutputFault::Silent),
                 3 => Source::MotorOnly(OutputFault::Frozen),
                 4 => Source::MotorOnly(OutputFault::OutOfRange),
-                _ => Source::Nothing,
+                6 => Source::Nothing(MotorFault::Late),
+                7 => Source::Nothing(MotorFault::Frozen),
+                8 => Source::Nothing(MotorFault::Jumped),
+                _ => Source::Nothing(MotorFault::Silent),
             },
             notices: Notices {
                 torque_unknown: flag(0),

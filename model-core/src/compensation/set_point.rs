@@ -101,6 +101,8 @@ pub enum Stage {
     Landing,
     /// Control without compensation: the gap cannot be seen.
     Plain,
+    /// No torque: it is not known where the motor is.
+    Off,
 }
 
 /// What the compensation answers.

@@ -89,9 +89,23 @@ impl<'tables, T: Real> Compensation<'tables, T> {
         self.trust = T::ZERO;
     }
 
+    /// No torque while it is not known where the motor is; what was on its way is forgotten, what was learnt of the load stays.
+    #[cold]
+    fn stay_off(&mut self) -> Shaped<T> {
+        self.flank = FlankControl::new();
+        self.position.forget();
+        self.impedance.forget();
+        self.plain = Plain::new();
+        self.trust = T::ZERO;
+        Shaped { stage: Stage::Off, load: [self.load.even(), self.load.friction()], ..Shaped::default() }
+    }
+
     /// Takes the estimates and the command of one control period. The torque is always finite and within its limit.
     pub fn step(&mut self, estimates: &Estimates<T>, command: &Command<T>) -> Shaped<T> {
         let tables = self.tables;
+        if !estimates.source.has_motor() {
+            return self.stay_off();
+        }
         let known = estimates.encoder_offset.valid || estimates.gap.valid;
         if known && estimates.encoder_offset.value.is_finite() {
             self.offset = estimates.encoder_offset.value;

@@ -26,15 +26,44 @@ pub struct Shaft<T: Real> {
 }
 
 /// Which encoders the estimates rest on.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Source {
     /// Motor and output encoder.
     Both,
     /// The motor encoder alone, and why. The load cannot be seen while the gap is open.
     MotorOnly(OutputFault),
-    /// No motor encoder either, or one that is late time after time: nothing is valid, and what is not heard of is held.
-    #[default]
-    Nothing,
+    /// No motor encoder either, and why: nothing is valid, and what is not heard of is held.
+    Nothing(MotorFault),
+}
+
+impl Default for Source {
+    /// Nothing has been heard yet.
+    fn default() -> Self {
+        Self::Nothing(MotorFault::Silent)
+    }
+}
+
+impl Source {
+    /// Whether it is known where the motor is, so that it may be driven.
+    pub fn has_motor(self) -> bool {
+        match self {
+            Self::Both | Self::MotorOnly(_) | Self::Nothing(MotorFault::Late) => true,
+            Self::Nothing(MotorFault::Silent | MotorFault::Frozen | MotorFault::Jumped) => false,
+        }
+    }
+}
+
+/// Why the motor encoder is not used.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MotorFault {
+    /// Nothing is heard of it, or its last reading is more than ten control periods old.
+    Silent,
+    /// Its readings are late time after time: it is known where the motor was, which serves for control without compensation.
+    Late,
+    /// Its counts stood still at once while it turned, or while the output went on by more than teeth let it.
+    Frozen,
+    /// Its counts are where no motor could go from where they were: jumped, slipped, or anything.
+    Jumped,
 }
 
 /// Why the output encoder is not used.
@@ -60,7 +89,8 @@ pub struct Notices {
     pub out_of_time: bool,
     /// The motor's counts were further away than it can turn, and were not believed.
     pub motor_implausible: bool,
-    /// The motor's counts have jumped for good: the offset is learnt anew.
+    /// The motor's counts are elsewhere time after time: they are not used until they agree with the output's again. Where
+    /// they do not, the encoder has slipped, and the offset is learnt anew.
     pub motor_jumped: bool,
 }
 

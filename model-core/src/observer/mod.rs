@@ -29,7 +29,8 @@ pub mod tables;
 
 use contact::Contact;
 use filters::Filters;
-use health::{Health, LastMotion, Return, Screened};
+use health::motor_faults::{MotorScreened, Outlook};
+use health::{Health, Judged, LastMotion, Return, Screened};
 use learnt::fusion::Fused;
 use learnt::{Learnt, Outcome};
 use sensors::Sensors;
@@ -39,7 +40,7 @@ use sensors::latency::Freshness;
 use crate::gears::sign;
 use crate::numbers::Real;
 
-pub use estimates::{Estimate, Estimates, Notices, OutputFault, Shaft, Source};
+pub use estimates::{Estimate, Estimates, MotorFault, Notices, OutputFault, Shaft, Source};
 pub use learnt::regressors::{MAPPED, PLAIN};
 pub use memory::{MEMORY_BYTES, Memory, MemoryError, memory_numbers};
 pub use probe::{Probe, Progress, Refusal};
@@ -130,10 +131,8 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         let tables = self.tables;
         let sensed = self.sensors.step(tables, samples);
         self.estimates.notices = sensed.notices();
-        self.filters.step(tables, &sensed);
-        if matches!(sensed.motor, Advance::Jumped(_)) {
-            self.learnt.reopen();
-        }
+        let motor = self.health.screen_motor(tables, &sensed, &self.sensors, &self.filters);
+        self.filters.step(tables, &sensed, motor == MotorScreened::Used);
         let screened = self.health.screen(tables, &sensed);
         match screened {
             Screened::First => self.filters.load.ahead = T::ZERO,
@@ -146,16 +145,18 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         if far || matches!(screened, Screened::First) || !matches!(sensed.motor, Advance::By(_)) {
             self.find_errors();
         }
-        if sensed.freshness == Freshness::Unusable {
-            self.filters.drive.hold();
-            outputs::hold(&mut self.estimates);
-            return &self.estimates;
+        match motor {
+            MotorScreened::Used | MotorScreened::NotUsed => {}
+            MotorScreened::GivenUp => return self.lose_motor(sensed.motor),
+            MotorScreened::Doubted(outlook) => return self.look_for_motor(outlook),
         }
 
         let fused = self.fuse();
         self.tell_contact(&fused);
-        if self.health.judge(tables, &fused, &self.learnt) {
-            self.rely_on_motor(None);
+        match self.health.judge(tables, &fused, &self.learnt) {
+            Judged::Sound => {}
+            Judged::OutputFails => self.rely_on_motor(None),
+            Judged::MotorFails => return self.lose_motor(sensed.motor),
         }
         if !self.health.both_encoders() {
             let correction = self.health.motor_only.step(tables, &fused, &self.learnt);
@@ -169,7 +170,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         } else {
             outputs::invalidate(&mut self.estimates);
             if late_for_good {
-                self.estimates.source = Source::Nothing;
+                self.estimates.source = Source::Nothing(MotorFault::Late);
             }
         }
         &self.estimates
@@ -239,6 +240,50 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         let lever = if open { T::ZERO } else { tables.levers.output };
         self.filters.mesh_torque = self.learnt.inertia.pass(lever * fused.force);
         self.estimates.mesh_torque.value = lever * force;
+    }
+
+    /// Nothing can be said without the motor encoder, which was given up in this period.
+    #[cold]
+    fn lose_motor(&mut self, last: Advance) -> &Estimates<T> {
+        self.sensors.counts.doubt_motor(&self.tables.counts, last);
+        self.learnt.interrupt();
+        self.say_nothing()
+    }
+
+    /// The motor encoder that was given up is used again if its readings make sense and agree with the output's.
+    #[cold]
+    fn look_for_motor(&mut self, outlook: Outlook) -> &Estimates<T> {
+        let tables = self.tables;
+        if outlook == Outlook::Bad {
+            return self.say_nothing();
+        }
+        self.filters.drive.hold();
+        self.sensors.counts.find_motor(&tables.counts);
+        self.find_errors();
+        let deflection = self.fuse().of_teeth();
+        if let Some(back) = self.health.finds_motor(outlook, &self.learnt, deflection) {
+            // Where it has slipped nobody knows how far: teeth in the middle of the gap are the best guess.
+            let slipped = back == Return::Otherwise;
+            let by = if slipped { deflection.over(tables.counts.length).to_i64() } else { 0 };
+            self.sensors.counts.trust_motor(&tables.counts, by);
+            self.find_errors();
+            if slipped {
+                self.learnt.doubt_motor(tables);
+                self.say_learnt();
+            }
+            self.filters.find_motor(tables, self.health.motor_counts(), self.health.both_encoders());
+            // What its first period says is the first that is given out.
+            return &self.estimates;
+        }
+        self.say_nothing()
+    }
+
+    /// Holds the estimates while the motor encoder is not used. Without torque the teeth pass on nothing.
+    fn say_nothing(&mut self) -> &Estimates<T> {
+        self.filters.drive.hold();
+        self.filters.mesh_torque = T::ZERO;
+        outputs::hold(&mut self.estimates, self.health.motor_fault().unwrap_or(MotorFault::Silent));
+        &self.estimates
     }
 
     /// Goes on without the output encoder, which was given up: it is where it was going, if that is known.
@@ -311,8 +356,8 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         self.filters.load.ahead = T::ZERO;
         self.find_errors();
         if back == Return::Otherwise {
-            self.learnt.forget_rest();
-            self.learnt.reopen();
+            self.learnt.reopen(self.tables);
+            self.say_learnt();
         }
     }
 

@@ -2,7 +2,7 @@
 //! Nothing is decided or learnt here.
 
 use super::contact::Contact;
-use super::estimates::{Estimate, Estimates, Shaft, Source};
+use super::estimates::{Estimate, Estimates, MotorFault, Shaft, Source};
 use super::filters::Filters;
 use super::health::Health;
 use super::learnt::Learnt;
@@ -135,8 +135,8 @@ impl<T: Real, const P: usize> State<'_, T, P> {
 
 /// Without a usable reading of the motor every estimate is held, and none is valid.
 #[cold]
-pub(super) fn hold<T: Real>(estimates: &mut Estimates<T>) {
-    estimates.source = Source::Nothing;
+pub(super) fn hold<T: Real>(estimates: &mut Estimates<T>, fault: MotorFault) {
+    estimates.source = Source::Nothing(fault);
     invalidate(estimates);
 }
 

@@ -139,7 +139,8 @@ impl<'tables, T: Real> Probe<'tables, T> {
     fn advance(&mut self, estimates: &Estimates<T>) -> Progress<T> {
         let table = self.table;
         let notices = estimates.notices;
-        if notices.torque_unknown || notices.out_of_time || notices.motor_implausible || notices.motor_jumped {
+        let bad = notices.torque_unknown || notices.out_of_time || notices.motor_implausible || notices.motor_jumped;
+        if bad || !estimates.source.has_motor() {
             return Progress::Refused(Refusal::BadSamples);
         }
         let speed = estimates.motor.speed.abs();

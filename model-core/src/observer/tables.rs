@@ -244,20 +244,42 @@ pub struct LearnerTable<T: Real> {
     pub mesh_compliance: T,
 }
 
-/// When the output encoder is given up and taken back.
+/// How soon a shaft can stop.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StopTable<T: Real> {
+    /// Periods in which whatever the shaft runs into may stop it.
+    pub stop: u8,
+    /// Periods after which readings that stay the same are judged by the deflection alone.
+    pub forgotten: u8,
+    /// Half of 1 over the periods in which it may be stopped.
+    pub per_stops: T,
+    /// Half of the counts by which a torque may slow the shaft down in a period, for each period: the largest that acts on a
+    /// link; for each N m of a motor's.
+    pub brake: T,
+}
+
+/// When encoders are given up and taken back.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SupervisorTable<T: Real> {
+    /// How soon the link stops.
+    pub output: StopTable<T>,
+    /// How soon the motor stops.
+    pub motor: StopTable<T>,
+    /// Torque that may brake the motor beside what it gives itself [N m].
+    pub motor_drag: T,
+    /// Motor counts in one of the output.
+    pub motor_counts: T,
+    /// Periods in which the motor's counts stand still before that is more than chance.
+    pub motor_unmoved_after: u16,
+    /// Periods for which readings of the motor must be such as a motor can give, and agree with the output's, before they are
+    /// used again.
+    pub motor_trusted_after: u16,
+    /// The same for readings that stand still, or do not agree.
+    pub motor_slipped_after: u16,
     /// Periods without a fresh reading after which it is silent.
     pub silent_after: u16,
     /// Periods in a row outside the possible range after which it has failed.
     pub failed_after: u16,
-    /// Periods in which whatever the link runs into may stop it; readings that stay the same for longer are judged by the
-    /// deflection alone.
-    pub stop: u8,
-    /// Half of 1 over them.
-    pub per_stops: T,
-    /// Half of the counts by which teeth and load may slow the link down in a period, for each period.
-    pub brake: T,
     /// Learning intervals in a row in settled contact within the range after which it is taken back.
     pub trusted_after: u16,
     /// Angle by which an output has turned for sure [2^-32 turns].

@@ -16,7 +16,7 @@ use crate::gears::design::{DesignError, validate};
 use crate::numbers::{Real, digest};
 use crate::observer::tables::{
     ClockTable, ContactTable, CountTable, EncoderTable, LearnerTable, LeverTable, LoadTable, MOST_PARAMETERS,
-    ObserverTables, SupervisorTable,
+    ObserverTables, StopTable, SupervisorTable,
 };
 use parameters::JointParameters;
 
@@ -40,6 +40,20 @@ const STOP: f64 = 1e-3;
 
 /// Largest torque of teeth and load against the link beside that, over the motor's largest at the output.
 const BRAKE: f64 = 2.0;
+
+/// Time for which a motor that stands still is judged by the speed that it had [s]. Chosen: longer, and noise adds up.
+const MOTOR_REMEMBERED: f64 = 3e-3;
+
+/// Time for which the motor's counts stand still before the deflection may blame them [s]: longer than noise that says the same
+/// by chance, or a motor that turns round.
+const MOTOR_UNMOVED: f64 = 1e-3;
+
+/// Time for which a motor encoder that was given up must make sense, and agree with the output's, before it is used again [s]:
+/// random counts do not for three readings. Chosen.
+const MOTOR_TRUSTED: f64 = 20e-3;
+
+/// Time after which it is used though it stands still, or has slipped [s]. Chosen.
+const MOTOR_SLIPPED: f64 = 100e-3;
 
 /// Counts by which an output encoder has turned for sure: noise flickers by less.
 const MOVED_COUNTS: f64 = 4.0;
@@ -115,7 +129,14 @@ pub fn design_observer<T: Real>(
     let noise = libm::sqrt(deflection_variance + wind_up_variance + unmodelled * unmodelled);
     let block = libm::round(BLOCK / LEARNING_INTERVAL).max(1.0);
 
-    let stop = libm::round(STOP / step).clamp(1.0, 250.0);
+    let stop = |time: f64| libm::round(time / step).clamp(1.0, 250.0);
+    let stops = |stop: f64, forgotten: f64, brake: f64| StopTable {
+        stop: stop as u8,
+        forgotten: forgotten as u8,
+        per_stops: real(0.5 / stop),
+        brake: real(brake),
+    };
+    let brake = |torque: f64, inertia: f64, count: f64| 0.5 * torque / inertia * step * step / count;
     let half_gap = 2.0 * body.half_backlash;
     let harmonics = |encoder: Option<EncoderSettings>, lever: f64| {
         encoder.map_or(0.0, |encoder| encoder.harmonic_error) * lever / core::f64::consts::SQRT_2
@@ -207,11 +228,22 @@ pub fn design_observer<T: Real>(
         supervisor: SupervisorTable {
             silent_after: (SILENT_AFTER / step) as u16,
             failed_after: (FAILED_AFTER / step) as u16,
-            stop: stop as u8,
-            per_stops: real(0.5 / stop),
-            brake: real(
-                0.5 * BRAKE * settings.torque_limit * body.ratio / body.load_inertia * step * step / output_count,
+            output: stops(
+                stop(STOP),
+                stop(STOP),
+                brake(BRAKE * settings.torque_limit * body.ratio, body.load_inertia, output_count),
             ),
+            // Teeth stop it as a spring does, in no less than a quarter of a swing.
+            motor: stops(
+                libm::floor(0.25 * TAU / body.contact_frequency() / step).clamp(1.0, 250.0),
+                stop(MOTOR_REMEMBERED),
+                brake(1.0, body.motor_inertia, motor_count),
+            ),
+            motor_drag: real(BEYOND_NOISE * settings.torque_uncertainty),
+            motor_counts: real(body.ratio * output_count / motor_count),
+            motor_unmoved_after: (MOTOR_UNMOVED / step) as u16,
+            motor_trusted_after: (MOTOR_TRUSTED / step) as u16,
+            motor_slipped_after: (MOTOR_SLIPPED / step) as u16,
             trusted_after: (TRUSTED_AFTER / LEARNING_INTERVAL) as u16,
             moved: libm::ldexp(MOVED_COUNTS * output_count / TAU, 32) as u32,
             margin: real(MARGIN * half_gap + MARGIN * body.compliance * largest_force),

@@ -19,11 +19,16 @@ pub struct DriveSide<T: Real> {
     /// Torque taken from the motor by meshes and friction [N m].
     pub taken: T,
     air_gap: T,
+    /// The strongest torque lately [N m].
+    strongest: T,
     /// Commands on their way to the motor, the newest first.
     commands: [T; MOST_DELAY],
 }
 
 impl<T: Real> DriveSide<T> {
+    /// Part of the strongest torque that is forgotten in a period [-]: a speed by counts lags by a few of them.
+    const FADES: T = T::TWENTIETH;
+
     /// Over one period, under the command in force during it; `turned` is by how much the counts moved [rad].
     pub fn predict(&mut self, table: &DriveTable<T>, current: &CurrentTable<T>, command: T, turned: T) {
         self.commands.rotate_right(1);
@@ -38,6 +43,8 @@ impl<T: Real> DriveSide<T> {
         let [from_taken, from_air_gap, from_wanted] = table.speed;
         self.speed += from_taken * self.taken + from_air_gap * self.air_gap + from_wanted * wanted;
         self.air_gap += current.rise * (wanted - self.air_gap);
+        let torque = self.air_gap.abs();
+        self.strongest = if torque > self.strongest { torque } else { self.strongest - Self::FADES * self.strongest };
     }
 
     /// Corrects by a reading of this period, `age` old [s].
@@ -61,6 +68,16 @@ impl<T: Real> DriveSide<T> {
         self.ahead += angle * innovation;
         self.speed += speed * innovation;
         self.taken += taken * innovation;
+    }
+
+    /// Torque in the air gap [N m].
+    pub fn air_gap(&self) -> T {
+        self.air_gap
+    }
+
+    /// The strongest torque that has acted lately [N m].
+    pub fn strongest(&self) -> T {
+        self.strongest
     }
 
     /// Without any usable reading the motor is taken to stand where its counts were.

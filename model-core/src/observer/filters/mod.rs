@@ -37,10 +37,10 @@ pub enum LoadCorrection<T: Real> {
 impl<T: Real> Filters<T> {
     /// Both sides over one period, and the motor side's correction by its reading.
     #[inline(always)]
-    pub fn step(&mut self, tables: &ObserverTables<T>, sensed: &Sensed<T>) {
+    pub fn step(&mut self, tables: &ObserverTables<T>, sensed: &Sensed<T>, motor_used: bool) {
         self.drive.predict(&tables.drive, &tables.current, sensed.command, sensed.motor_turned);
         match sensed.motor {
-            Advance::By(_) => {
+            Advance::By(_) if motor_used => {
                 let age = seconds(&tables.clock, sensed.motor_age);
                 match sensed.freshness {
                     Freshness::Fresh => self.drive.correct(&tables.drive, age),
@@ -48,10 +48,21 @@ impl<T: Real> Filters<T> {
                     Freshness::Lost | Freshness::LostForLong | Freshness::Unusable => {}
                 }
             }
-            Advance::Began | Advance::Jumped(_) => self.drive.ahead = T::ZERO,
-            Advance::Implausible => {}
+            Advance::Began => self.drive.ahead = T::ZERO,
+            Advance::By(_) | Advance::Implausible | Advance::Jumped(_) => {}
         }
         self.load.predict(&tables.load, self.mesh_torque, sensed.output_turned);
+    }
+
+    /// The motor side after its encoder was not used: it goes on by so many counts in a period. A link that nobody sees goes with
+    /// it.
+    #[cold]
+    pub fn find_motor(&mut self, tables: &ObserverTables<T>, counts: T, both_encoders: bool) {
+        self.drive.speed = (counts * tables.counts.motor.angle).over(tables.period);
+        if !both_encoders {
+            self.load.ahead = T::ZERO;
+            self.load.speed = self.drive.speed * tables.levers.per_ratio;
+        }
     }
 
     /// The load side's correction by the output's reading of this period.

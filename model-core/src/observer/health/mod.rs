@@ -1,16 +1,18 @@
-//! The health of the output encoder: when it is given up, why, when it is taken back, and what is known of the link without
-//! it. The motor encoder's own readings are judged in `sensors`.
+//! The health of both encoders: when each is given up, why, when it is taken back, and what is known of the link without its
+//! own. Without the motor's nothing is.
 
+pub mod motor_faults;
 pub mod motor_only;
 mod output_faults;
 mod plausibility;
 mod recovery;
 
+use motor_faults::{MotorFaultDetector, MotorScreened, MotorSurroundings, Outlook};
 use motor_only::MotorOnly;
 use output_faults::OutputFaultDetector;
 use recovery::Recovery;
 
-use super::estimates::{OutputFault, Source};
+use super::estimates::{MotorFault, OutputFault, Source};
 use super::filters::Filters;
 use super::learnt::fusion::{Fused, small};
 use super::learnt::regressors::{self, Touch};
@@ -31,6 +33,7 @@ const LOOK: u16 = 16;
 #[derive(Debug, Clone, Copy)]
 pub struct Health<T: Real> {
     source: Source,
+    motor: MotorFaultDetector<T>,
     faults: OutputFaultDetector<T>,
     recovery: Recovery<T>,
     /// What is known of the link without its encoder.
@@ -40,11 +43,23 @@ pub struct Health<T: Real> {
     looked: u16,
 }
 
+/// What the deflection says of the encoders.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Judged {
+    /// It is one that teeth allow.
+    Sound,
+    /// The output's is given up.
+    OutputFails,
+    /// The motor's is given up.
+    MotorFails,
+}
+
 impl<T: Real> Health<T> {
     /// Until the output encoder is heard of for the first time there is the motor's only.
     pub fn new(has_output: bool) -> Self {
         Self {
             source: Source::MotorOnly(if has_output { OutputFault::Silent } else { OutputFault::Absent }),
+            motor: MotorFaultDetector::new(),
             faults: OutputFaultDetector::new(),
             recovery: Recovery::new(),
             motor_only: MotorOnly::default(),
@@ -53,9 +68,63 @@ impl<T: Real> Health<T> {
         }
     }
 
-    /// Which encoders are used.
+    /// Which encoders are used, as long as the motor's is.
     pub fn source(&self) -> Source {
         self.source
+    }
+
+    /// Why the motor encoder is not used.
+    pub fn motor_fault(&self) -> Option<MotorFault> {
+        self.motor.fault()
+    }
+
+    /// Counts by which the motor goes on in a period.
+    pub fn motor_counts(&self) -> T {
+        self.motor.counts()
+    }
+
+    /// Judges the motor's reading by itself. Where that gives the encoder up, nothing of it is used until
+    /// [`finds_motor`](Self::finds_motor).
+    #[inline(always)]
+    pub fn screen_motor(
+        &mut self,
+        tables: &ObserverTables<T>,
+        sensed: &Sensed<T>,
+        sensors: &Sensors,
+        filters: &Filters<T>,
+    ) -> MotorScreened {
+        let link_rate = self.both_encoders().then(|| self.faults.rate());
+        // Where the torque was none that is known, it may have been any.
+        let unsure = sensors.is_unsure();
+        let drag = if unsure { tables.current.believed } else { tables.supervisor.motor_drag };
+        let surroundings = MotorSurroundings { table: &tables.supervisor, drive: &filters.drive, drag, link_rate };
+        self.motor.screen(tables, sensed, &surroundings)
+    }
+
+    /// Whether a motor encoder that was given up is used again, by what its readings have come to and a deflection of the teeth
+    /// [m]: that of the place which agrees best with the output's.
+    pub fn finds_motor<const P: usize>(
+        &mut self,
+        outlook: Outlook,
+        learnt: &Learnt<T, P>,
+        deflection: T,
+    ) -> Option<Return> {
+        // Without torque shafts are hardly wound up; what is a little beyond waits.
+        let agrees = if outlook == Outlook::Settled {
+            output_faults::is_near(learnt, deflection)
+        } else {
+            output_faults::is_possible(learnt, deflection, T::ZERO)
+        };
+        let back = if !self.both_encoders() || agrees {
+            Return::AsLearnt
+        } else if outlook == Outlook::Settled && self.motor.has_moved() {
+            Return::Otherwise
+        } else {
+            return None;
+        };
+        self.motor.trust();
+        self.faults.find_deflection();
+        Some(back)
     }
 
     /// Whether both encoders are used.
@@ -81,18 +150,34 @@ impl<T: Real> Health<T> {
         screened
     }
 
-    /// Judges the output encoder by the deflection; true where that gives it up, so that the caller goes on without it.
+    /// Judges both encoders by the deflection. Where that gives one up, the caller goes on without it. Who stands still while the
+    /// other goes on is to blame.
     pub fn judge<const P: usize>(
         &mut self,
         tables: &ObserverTables<T>,
         fused: &Fused<T>,
         learnt: &Learnt<T, P>,
-    ) -> bool {
-        let fault = self.faults.judge(tables, fused, learnt, self.both_encoders());
-        if let Some(fault) = fault {
-            self.give_up(fault);
+    ) -> Judged {
+        let both = self.both_encoders();
+        let [_, compliance] = learnt.shape();
+        let unwound = fused.of_teeth() - compliance * fused.force;
+        let outrun = self.motor.is_outrun(tables, learnt, unwound, fused.force) && both;
+        match self.faults.judge(tables, fused, learnt, unwound, both) {
+            Some(OutputFault::OutOfRange) if self.motor.is_unmoved(&tables.supervisor) => self.blame_motor(),
+            _ if outrun => self.blame_motor(),
+            Some(fault) => {
+                self.give_up(fault);
+                Judged::OutputFails
+            }
+            None => Judged::Sound,
         }
-        fault.is_some()
+    }
+
+    /// The motor's counts stand still while the link goes on.
+    #[cold]
+    fn blame_motor(&mut self) -> Judged {
+        self.motor.give_up(MotorFault::Frozen);
+        Judged::MotorFails
     }
 
     /// The output encoder is not used from now on.

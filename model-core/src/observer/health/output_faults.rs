@@ -13,14 +13,14 @@
 //!
 //! [`learnt::Outcome::EncoderFails`]: crate::observer::learnt::Outcome::EncoderFails
 
-use super::plausibility::{Plausibility, Verdict};
+use super::plausibility::{Plausibility, Surroundings, Verdict, counts};
 use crate::numbers::Real;
 use crate::observer::estimates::OutputFault;
 use crate::observer::learnt::Learnt;
 use crate::observer::learnt::fusion::Fused;
 use crate::observer::sensors::Sensed;
 use crate::observer::sensors::counts::Advance;
-use crate::observer::tables::{ObserverTables, SupervisorTable};
+use crate::observer::tables::{ObserverTables, StopTable, SupervisorTable};
 
 /// Control periods between two readings over which a link is taken to keep its speed.
 const SPEED_KEPT: u32 = 6;
@@ -37,6 +37,31 @@ pub struct OutputFaultDetector<T: Real> {
     jumped: bool,
     /// The deflection less wind-up when the counts moved last [m].
     stood_at: T,
+    /// The deflection was not known in the last period.
+    found: bool,
+}
+
+/// Nothing throws a link: what it runs into stops it.
+impl<T: Real> Surroundings<T> for StopTable<T> {
+    fn stops(&self) -> &StopTable<T> {
+        self
+    }
+
+    fn brake(&self) -> T {
+        self.brake
+    }
+
+    fn throw(&self, _: i32) -> i32 {
+        0
+    }
+
+    fn carried(&self, _: i32) -> i32 {
+        0
+    }
+
+    fn sure(&self, rate: i32) -> T {
+        counts(rate)
+    }
 }
 
 /// What a reading came to.
@@ -82,6 +107,7 @@ impl<T: Real> OutputFaultDetector<T> {
             deflection: T::ZERO,
             jumped: false,
             stood_at: T::ZERO,
+            found: false,
         }
     }
 
@@ -90,9 +116,20 @@ impl<T: Real> OutputFaultDetector<T> {
         self.outside_for = 0;
     }
 
+    /// Nothing was known of the deflection until now: what stood still did so somewhere else.
+    pub fn find_deflection(&mut self) {
+        self.outside_for = 0;
+        self.found = true;
+    }
+
     /// Whether the deflection has been beyond its range for 4 ms, longer than impacts ring.
     pub fn is_at_odds(&self, table: &SupervisorTable<T>) -> bool {
         self.outside_for >= table.failed_after
+    }
+
+    /// Parts of an output count by which the link goes on in a period.
+    pub fn rate(&self) -> i32 {
+        self.plausibility.rate()
     }
 
     /// Whether there was no reading in the last period.
@@ -121,7 +158,7 @@ impl<T: Real> OutputFaultDetector<T> {
             self.plausibility.miss(by, beyond > clock.period.saturating_mul(SPEED_KEPT));
             return used;
         }
-        match self.plausibility.take(&tables.supervisor, by) {
+        match self.plausibility.take(&tables.supervisor.output, by) {
             Verdict::Plausible => used,
             Verdict::Suspect => Screened::NotUsed,
             Verdict::Implausible => self.implausible(both_encoders),
@@ -158,19 +195,19 @@ impl<T: Real> OutputFaultDetector<T> {
 
     /// Whether the deflection is one that teeth allow. Teeth that have worn let it go on beyond where it could be, step by
     /// step; an encoder that slips jumps there. A link that sticks beyond a half-gap that is too small looks like a frozen
-    /// encoder, until the deflection goes further than teeth can be worn.
+    /// encoder, until the deflection goes further than teeth can be worn. `unwound` is the deflection less wind-up [m].
     pub fn judge<const P: usize>(
         &mut self,
         tables: &ObserverTables<T>,
         fused: &Fused<T>,
         learnt: &Learnt<T, P>,
+        unwound: T,
         both_encoders: bool,
     ) -> Option<OutputFault> {
         let table = &tables.supervisor;
         let deflection = fused.of_teeth();
-        let [half_gap, compliance] = learnt.shape();
-        let unwound = deflection - compliance * fused.force;
-        if self.unmoved_for == 0 {
+        let [half_gap, _] = learnt.shape();
+        if self.unmoved_for == 0 || core::mem::take(&mut self.found) {
             self.stood_at = unwound;
         }
         let by = deflection - core::mem::replace(&mut self.deflection, deflection);
@@ -210,21 +247,35 @@ impl<T: Real> OutputFaultDetector<T> {
     }
 }
 
-/// Whether the motor has gone on by more than gap and shafts let it while the output's counts stood still: a link that
-/// sticks does not let it, wherever the teeth are, which may not be known yet.
+/// Whether one shaft has gone on by more than gap and shafts let it while the other's counts stood still: one that sticks does
+/// not let it, wherever the teeth are, which may not be known yet.
 #[cold]
-fn outruns<T: Real, const P: usize>(tables: &ObserverTables<T>, learnt: &Learnt<T, P>, went_on: T, force: T) -> bool {
-    let known = &learnt.uncertainty;
+pub fn outruns<T: Real, const P: usize>(
+    tables: &ObserverTables<T>,
+    learnt: &Learnt<T, P>,
+    went_on: T,
+    force: T,
+) -> bool {
     let [half_gap, _] = learnt.shape();
-    let [half_gap_variance, ..] = known.variances;
-    let count = tables.counts.output.angle * tables.levers.output;
+    let [half_gap_variance, ..] = learnt.uncertainty.variances;
     let gap = T::TWO * (half_gap + T::THREE * half_gap_variance.square_root());
-    went_on > gap + count + T::TWO * (tables.supervisor.margin + known.softness * force.abs())
+    went_on > gap + slack(tables, learnt, force)
+}
+
+/// By what a deflection may differ from itself beside gap and wind-up [m].
+pub fn slack<T: Real, const P: usize>(tables: &ObserverTables<T>, learnt: &Learnt<T, P>, force: T) -> T {
+    let count = tables.counts.output.angle * tables.levers.output;
+    count + T::TWO * (tables.supervisor.margin + learnt.uncertainty.softness * force.abs())
 }
 
 /// Whether a deflection of the teeth [m] is between the flanks, or as far beyond as a force [N] winds up.
 pub fn is_possible<T: Real, const P: usize>(learnt: &Learnt<T, P>, deflection: T, force: T) -> bool {
     far_range(learnt, deflection, force) == Range::Possible
+}
+
+/// Whether a deflection of the teeth [m] is one that they allow, or nearly: what wears or winds up may be beyond.
+pub fn is_near<T: Real, const P: usize>(learnt: &Learnt<T, P>, deflection: T) -> bool {
+    far_range(learnt, deflection, T::ZERO) != Range::Impossible
 }
 
 /// What a deflection beyond the flanks is.

@@ -1,16 +1,18 @@
-//! Whether a link could follow the output encoder's readings from one to the next: counts that stand still at once, or
-//! jump, are no link's.
+//! Whether a shaft could follow its encoder's readings from one to the next: counts that stand still at once, or jump, are no
+//! shaft's.
 //!
 //! A link is stopped by its teeth, its load, and by what it runs into: the first two brake it by no more than a torque,
 //! the last takes a time that does not depend on the speed, as a spring does. So a link that has gone on by so many counts
-//! a period goes on by at least so many in the next few periods.
+//! a period goes on by at least so many in the next few periods. So it is with a motor, which its own torque brakes and its
+//! teeth stop as a spring does; but they throw it back as well, so that it may jump by as much as it was fast, or the link. A
+//! motor that turns with the link is not stopped by teeth at all: those of one flank pull away, those of the other push it on.
 
 use crate::numbers::Real;
-use crate::observer::tables::SupervisorTable;
+use crate::observer::tables::StopTable;
 
 /// Parts of a count, as a power of two.
 const PART: u32 = 6;
-const COUNT: i32 = 1 << PART;
+pub const COUNT: i32 = 1 << PART;
 
 /// Standing still is no fault until so many readings say the same, and one more for each count of noise: two may be a
 /// reading given twice.
@@ -45,7 +47,21 @@ pub enum Verdict {
     Implausible,
 }
 
-/// Speed of the output's counts, and how readings follow it.
+/// What may change a shaft's speed from one reading to the next.
+pub trait Surroundings<T: Real> {
+    /// How soon the shaft stops.
+    fn stops(&self) -> &StopTable<T>;
+    /// Half of the counts by which torques may slow it down in a period, for each period.
+    fn brake(&self) -> T;
+    /// Parts of a count in a period by which it may be thrown at once, while it goes on by so many.
+    fn throw(&self, rate: i32) -> i32;
+    /// Parts of a count in a period by which it is carried on whatever it runs into, while it goes on by so many.
+    fn carried(&self, rate: i32) -> i32;
+    /// Counts in a period that are known for sure where so many parts of them are said.
+    fn sure(&self, rate: i32) -> T;
+}
+
+/// Speed of a shaft's counts, and how readings follow it.
 #[derive(Debug, Clone, Copy)]
 pub struct Plausibility {
     /// Parts of a count in a period.
@@ -80,6 +96,11 @@ impl Plausibility {
         *self = Self { noise: self.noise, ..Self::new() };
     }
 
+    /// Parts of a count by which the shaft goes on in a period.
+    pub fn rate(&self) -> i32 {
+        self.rate
+    }
+
     /// Counts in a period before the readings broke off, if they were known.
     pub fn speed<T: Real>(&self) -> Option<T> {
         (self.jumped_for != UNKNOWN).then(|| counts(self.rate))
@@ -99,17 +120,18 @@ impl Plausibility {
         self.jumped_for == 0
     }
 
-    /// Takes in by how many counts the output went on in a period.
+    /// Takes in by how many counts the shaft went on in a period.
     #[inline]
-    pub fn take<T: Real>(&mut self, table: &SupervisorTable<T>, by: i32) -> Verdict {
+    pub fn take<T: Real>(&mut self, surroundings: &impl Surroundings<T>, by: i32) -> Verdict {
         let by = by.wrapping_shl(PART);
         let beyond = by.wrapping_sub(self.rate);
         let noise = i32::from(self.noise) >> AVERAGED;
-        if self.jumped_for != 0 || beyond.wrapping_abs() > JUMP + 2 * NOISY * noise {
+        let jump = JUMP + 2 * NOISY * noise;
+        if self.jumped_for != 0 || beyond.wrapping_abs() > jump && self.leaps(surroundings, beyond, jump) {
             return self.take_odd(by, beyond);
         }
         if by == 0 {
-            return self.stand_still(table, noise);
+            return self.stand_still(surroundings, noise);
         }
         // What a reading goes on by after others that stood still is spread over all of them.
         let beyond = if self.still == 0 { beyond } else { self.spread(by) };
@@ -147,11 +169,18 @@ impl Plausibility {
         by.checked_div(readings).unwrap_or(by) - self.rate
     }
 
+    /// Whether a reading jumps by more than what may throw the shaft.
+    #[cold]
+    fn leaps<T: Real>(&self, surroundings: &impl Surroundings<T>, beyond: i32, jump: i32) -> bool {
+        beyond.wrapping_abs() > jump.saturating_add(surroundings.throw(self.rate))
+    }
+
     /// One more reading that says the same.
     #[cold]
-    fn stand_still<T: Real>(&mut self, table: &SupervisorTable<T>, noise: i32) -> Verdict {
+    fn stand_still<T: Real>(&mut self, surroundings: &impl Surroundings<T>, noise: i32) -> Verdict {
+        let table = surroundings.stops();
         self.still = self.still.saturating_add(1);
-        if self.still > table.stop {
+        if self.still > table.forgotten {
             self.rate = 0;
         }
         // Noise may say the same by chance, again and again.
@@ -159,13 +188,15 @@ impl Plausibility {
             return Verdict::Plausible;
         }
         let periods = T::from_i32(self.still.into());
-        let rate = counts::<T>(self.rate.wrapping_abs());
-        let least = periods * (rate - periods * (rate * table.per_stops + table.brake));
+        let rate = if self.still > table.stop { T::ZERO } else { surroundings.sure(self.rate.wrapping_abs()) };
+        let stopped = rate - periods * rate * table.per_stops;
+        let carried = surroundings.sure(surroundings.carried(self.rate));
+        let least = periods * (if stopped > carried { stopped } else { carried } - periods * surroundings.brake());
         if least > counts(MISSING + NOISY * noise) { Verdict::Implausible } else { Verdict::Plausible }
     }
 }
 
 /// Parts of a count as counts.
-fn counts<T: Real>(parts: i32) -> T {
+pub fn counts<T: Real>(parts: i32) -> T {
     T::from_i32(parts).over(T::from_i32(COUNT))
 }

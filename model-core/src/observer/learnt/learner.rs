@@ -10,7 +10,7 @@ mod tests;
 
 use core::array;
 
-use super::regressors::{COMPLIANCE, ERROR, HALF_GAP, OFFSET, Regressors, SKEW};
+use super::regressors::{COMPLIANCE, ERROR, HALF_GAP, MAP, OFFSET, PLAIN, Regressors, SKEW};
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
 use crate::observer::tables::{LearnerTable, ObserverTables};
@@ -224,6 +224,26 @@ impl<T: Real, const P: usize> Learner<T, P> {
     pub fn doubt_half_gap(&mut self) {
         if let Some(width) = self.factors.first_mut().and_then(|column| column.first_mut()) {
             *width = T::ONE;
+        }
+    }
+
+    /// Forgets how sure offset and the motor's error map are: its encoder has slipped, teeth and shafts are as they were.
+    pub fn doubt_motor(&mut self) {
+        let [width, offset, rest @ ..] = self.factors.as_mut_slice() else { return };
+        // What the half-gap owes to the offset becomes its own uncertainty; nothing is related to the new offset.
+        let ([half_gap, ..], [owed, known, ..]) = (width.as_mut_slice(), offset.as_mut_slice()) else { return };
+        *half_gap += *known * *owed * *owed;
+        (*owed, *known) = (T::ZERO, T::ONE);
+        for (column, factors) in rest.iter_mut().enumerate() {
+            let index = column + OFFSET + 1;
+            if let Some(of_offset) = factors.get_mut(OFFSET) {
+                *of_offset = T::ZERO;
+            }
+            if (PLAIN..PLAIN + MAP).contains(&index)
+                && let Some(d) = factors.get_mut(index)
+            {
+                *d = T::ONE;
+            }
         }
     }
 

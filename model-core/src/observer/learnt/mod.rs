@@ -209,13 +209,25 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         }
     }
 
-    /// The motor's encoder has jumped, or the output's has come back elsewhere: everything may be wrong.
-    pub fn reopen(&mut self) {
+    /// The output encoder has come back elsewhere: everything may be wrong, the rest that was remembered too.
+    pub fn reopen(&mut self, tables: &ObserverTables<T>) {
         self.learner.reopen();
+        self.last_rest = LastRest::new();
+        self.find_uncertainty(tables, true);
     }
 
-    /// The output encoder has come back elsewhere: so has the rest that was remembered.
-    pub fn forget_rest(&mut self) {
+    /// The motor encoder has come back elsewhere.
+    pub fn doubt_motor(&mut self, tables: &ObserverTables<T>) {
+        self.learner.doubt_motor();
+        self.last_rest = LastRest::new();
+        self.find_uncertainty(tables, true);
+    }
+
+    /// Readings have broken off: what was being learnt from is discarded.
+    pub fn interrupt(&mut self) {
+        self.interval = Interval::new();
+        self.travel = TravelDetector::new();
+        self.block = Block::new();
         self.last_rest = LastRest::new();
     }
 

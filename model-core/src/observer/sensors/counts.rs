@@ -75,15 +75,15 @@ impl Counter {
         if place < table.turn {
             self.place = place;
         } else {
-            self.turn(table, by);
+            self.turn(table, by.into());
         }
     }
 
     /// Goes on by so many counts into another turn.
     #[cold]
-    fn turn<T: Real>(&mut self, table: &EncoderTable<T>, by: i32) {
+    fn turn<T: Real>(&mut self, table: &EncoderTable<T>, by: i64) {
         let turn = i64::from(table.turn);
-        let place = i64::from(self.place) + i64::from(by);
+        let place = i64::from(self.place).wrapping_add(by);
         let turns = place.checked_div_euclid(turn).unwrap_or(0);
         self.place = (place - turns * turn) as u32;
         self.turns = self.turns.wrapping_add(turns as i32);
@@ -127,6 +127,18 @@ pub struct Counts {
     /// As implied: an output that follows the motor by whole counts, and what is left of the difference.
     implied: Option<(Counter, i64)>,
     fresh_time: u32,
+    motor_time: u32,
+    /// The motor encoder is not trusted.
+    doubt: Option<Doubt>,
+}
+
+/// What is remembered of a motor encoder that is not trusted.
+#[derive(Debug, Clone, Copy)]
+struct Doubt {
+    /// The difference before.
+    difference: i64,
+    /// Units of the difference by which the motor's counts have gone on since, as far as raw counts tell.
+    went: i64,
 }
 
 /// What one period's readings came to.
@@ -137,6 +149,8 @@ pub struct Taken {
     pub output: Option<Advance>,
     /// Ticks since the fresh reading before, by their own times.
     pub apart: u32,
+    /// The same of the motor's reading; 0 if it is the one before again.
+    pub motor_apart: u32,
     /// By how many counts the output went on that is in use.
     pub turned: i32,
 }
@@ -146,8 +160,13 @@ impl Counts {
     #[inline(always)]
     pub fn take<T: Real>(&mut self, table: &CountTable<T>, motor: Reading, output: Option<Reading>) -> Taken {
         let begins = !self.output.began;
+        let motor_apart = motor.time.wrapping_sub(core::mem::replace(&mut self.motor_time, motor.time));
         let motor = self.motor.take(&table.motor, motor.counts);
-        let by = if let Advance::By(by) = motor { i64::from(by).wrapping_mul(table.motor_weight) } else { 0 };
+        let by = if let Advance::By(by) | Advance::Jumped(by) = motor {
+            i64::from(by).wrapping_mul(table.motor_weight)
+        } else {
+            0
+        };
         let fresh = output.filter(|reading| table.has_output && (begins || reading.time != self.fresh_time));
         let apart = fresh.map_or(0, |reading| reading.time.wrapping_sub(self.fresh_time));
         let output = fresh.map(|reading| {
@@ -164,8 +183,63 @@ impl Counts {
         if begins && self.output.began {
             self.begin(table);
         }
-        let turned = if self.implied.is_some() { self.follow(table, by) } else { turned };
-        Taken { motor, output, apart, turned }
+        let turned =
+            if self.implied.is_some() || self.doubt.is_some() { self.go_on(table, motor, by, turned) } else { turned };
+        Taken { motor, output, apart, motor_apart, turned }
+    }
+
+    /// The motor went on by units of the difference while one of the encoders is not trusted, the output by counts; by how
+    /// many counts the output went on that is in use.
+    #[cold]
+    fn go_on<T: Real>(&mut self, table: &CountTable<T>, motor: Advance, by: i64, turned: i32) -> i32 {
+        if let Some(doubt) = &mut self.doubt {
+            doubt.went = doubt.went.wrapping_add(by);
+        }
+        let followed = self.doubt.is_none() && matches!(motor, Advance::By(_));
+        match self.implied {
+            Some(_) if followed => self.follow(table, by),
+            Some(_) => 0,
+            None => turned,
+        }
+    }
+
+    /// From now on the motor encoder is not trusted; `last` is by how many counts it went on in this period, before that
+    /// was known.
+    pub fn doubt_motor<T: Real>(&mut self, table: &CountTable<T>, last: Advance) {
+        if self.doubt.is_none() {
+            let by = if let Advance::Jumped(by) = last { i64::from(by).wrapping_mul(table.motor_weight) } else { 0 };
+            self.doubt = Some(Doubt { difference: self.difference.wrapping_sub(by), went: by });
+        }
+    }
+
+    /// Raw counts of a motor encoder that was not trusted leave whole ranges open: of the places that they can mean it takes the
+    /// one nearest to where the output says, or, without one, to where the motor was.
+    pub fn find_motor<T: Real>(&mut self, table: &CountTable<T>) {
+        let Some(Doubt { difference, went }) = self.doubt else { return };
+        let range = i64::from(table.motor.wraps_at.wrapping_sub(1)) + 1;
+        let of_range = range.wrapping_mul(table.motor_weight);
+        let beyond = if self.implied.is_some() { went } else { self.difference.wrapping_sub(difference) };
+        let ranges = beyond.wrapping_add(of_range / 2).checked_div_euclid(of_range).unwrap_or(0);
+        let back = ranges.wrapping_mul(of_range).wrapping_neg();
+        self.motor.turn(&table.motor, ranges.wrapping_mul(range).wrapping_neg());
+        self.difference = self.difference.wrapping_add(back);
+        self.doubt = Some(Doubt { difference, went: went.wrapping_add(back) });
+    }
+
+    /// The motor encoder is trusted again, as it is found; one that has slipped, by so many units of the difference, goes on from
+    /// where the motor is.
+    pub fn trust_motor<T: Real>(&mut self, table: &CountTable<T>, slipped: i64) {
+        let Some(Doubt { went, .. }) = self.doubt.take() else { return };
+        let counts = slipped.checked_div(table.motor_weight).unwrap_or(0);
+        if counts != 0 {
+            let by = counts.wrapping_mul(table.motor_weight);
+            self.motor.turn(&table.motor, counts.wrapping_neg());
+            self.start = self.start.wrapping_add(by).checked_rem_euclid(table.modulus).unwrap_or(0);
+            self.difference = self.difference.wrapping_sub(by);
+        }
+        if self.implied.is_some() {
+            self.follow(table, went);
+        }
     }
 
     /// The output has jumped by so many counts, which gives it up: what the motor implies goes on from where it was. Raw

@@ -32,6 +32,8 @@ pub struct Sensed<T: Real> {
     pub motor: Advance,
     /// Angle by which the motor's counts moved [rad].
     pub motor_turned: T,
+    /// Time between the motor's reading and the one before; 0 if it is the same again [ticks].
+    pub motor_interval: u32,
     /// Age of the motor's reading [ticks].
     pub motor_age: u32,
     /// How fresh it is.
@@ -86,6 +88,7 @@ impl Sensors {
             command,
             motor: taken.motor,
             motor_turned: tables.counts.motor.angle * T::from_i32(motor_by),
+            motor_interval: taken.motor_apart,
             motor_age,
             freshness,
             output: taken.output,

@@ -73,9 +73,10 @@ fn is_installed(package: &str) -> bool {
     status.is_ok_and(|status| status.starts_with("ii"))
 }
 
+/// Another installation that is under way is waited for, up to five minutes: two commands may be started at once.
 fn apt_get() -> Command {
     let mut command = Command::new("apt-get");
-    command.env("DEBIAN_FRONTEND", "noninteractive");
+    command.env("DEBIAN_FRONTEND", "noninteractive").args(["-o", "DPkg::Lock::Timeout=300"]);
     command
 }
 

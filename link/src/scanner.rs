@@ -74,7 +74,8 @@ impl Scanner {
 
     fn ended(self) -> Option<Scanned> {
         let whole = self.left == 0 && self.stuffed <= MAX_FRAME;
-        let length = self.plain.checked_sub(CRC_BYTES)?;
+        // The checksum of nothing is nothing but zeros, which noise may well be: no message is empty.
+        let length = self.plain.checked_sub(CRC_BYTES).filter(|length| *length > 0)?;
         (whole && self.checksum.finalize() == UNCHANGED).then_some(Scanned { length, first: self.first })
     }
 }

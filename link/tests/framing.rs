@@ -139,6 +139,16 @@ fn the_scanner_passes_over_a_frame_that_is_too_long_and_one_with_runs_of_254_byt
 }
 
 #[test]
+fn a_checksum_alone_is_no_frame() {
+    // COBS of four zero bytes: the checksum of an empty message is right.
+    let (mut receiver, mut scanner) = (Receiver::new(), Scanner::new());
+    for byte in [1, 1, 1, 1, 1, 0] {
+        assert_eq!((receiver.push::<ToBoard>(byte), scanner.push(byte)), (None, None));
+    }
+    assert_eq!(receiver.dropped().frames, 1);
+}
+
+#[test]
 fn zero_bytes_between_frames_are_no_errors() {
     let mut receiver = Receiver::new();
     assert!(receive(&mut receiver, &[0; 100]).is_empty());

@@ -5,7 +5,6 @@
 use core::sync::atomic::Ordering::Acquire;
 
 use heapless::Vec;
-use heapless::spsc::{Consumer, Producer};
 use link::framing::{MAX_FRAME, Receiver, encode};
 use link::messages::{FromBoard, Hello, LOG_BYTES, Log, MemoryRequest, RunSettings, ToBoard, Trip};
 
@@ -13,8 +12,9 @@ use crate::intake::{Intake, Taken};
 use crate::memory_requests::{MemoryRequests, Reaction};
 use crate::page::Page;
 use crate::protocol::{Batch, Protocol};
-use crate::queues::{BEFORE_ANY_RUN, Event, IdleEnd, Order, Progress};
+use crate::queues::{BEFORE_ANY_RUN, Event, Events, IdleEnd, Order, Progress};
 use crate::serial::{Heard, LineEnd};
+use crate::shared::{Consumer, Producer};
 use crate::timing_report::{LineCounts, Resources, statistics};
 
 /// The encoded log, as far as it waits to be sent.
@@ -33,7 +33,7 @@ pub struct Conversation<'a, W: Protocol> {
     memory_requests: MemoryRequests<'a, W::Learnt>,
     orders: Producer<'a, Order>,
     samples: Consumer<'a, W::Sample>,
-    events: Consumer<'a, Event>,
+    events: Events<'a>,
     progress: &'a Progress,
     line: LineEnd<'a>,
     heard: &'a Heard,
@@ -140,15 +140,15 @@ impl<'a, W: Protocol> Conversation<'a, W> {
         taken
     }
 
-    /// Sends an event of the tick. The end of a run is sent after its last sample.
+    /// Sends an event of the tick. The end of a run is sent after its last sample: samples are looked for after the event was
+    /// seen, since the tick may come in between with both.
     fn report_event(&mut self, resources: &mut dyn FnMut(bool) -> Resources) -> bool {
-        let samples_left = self.samples.ready() || !self.batch.is_empty();
-        match self.events.peek() {
-            None => return false,
-            Some(Event::Stopped | Event::Tripped(_)) if samples_left => return false,
-            Some(_) => {}
+        let Some(event) = self.events.peek() else { return false };
+        let ends_run = matches!(event, Event::Stopped | Event::Tripped(_));
+        if ends_run && (self.samples.ready() || !self.batch.is_empty()) {
+            return false;
         }
-        let Some(event) = self.events.dequeue() else { return false };
+        let Some(event) = self.events.take() else { return false };
         self.awaiting &= matches!(event, Event::Tripped(_));
         match event {
             Event::ResetDone => {

@@ -3,11 +3,11 @@
 
 use core::sync::atomic::Ordering::{Acquire, Release};
 
-use heapless::spsc::Producer;
 use link::messages::{Accepted, RunMode, RunSettings, Trip};
 
 use crate::protocol::{Protocol, Timed, Timetable};
 use crate::queues::{BEFORE_ANY_RUN, Progress};
+use crate::shared::Producer;
 
 /// Outcome of a schedule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -27,6 +27,7 @@ pub mod queues;
 pub mod safe_state;
 pub mod schedule;
 pub mod serial;
+pub mod shared;
 pub mod silence;
 pub mod sized_queue;
 pub mod status_light;

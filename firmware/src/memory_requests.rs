@@ -2,11 +2,11 @@
 //! one, erase. The flash page is the board's; the role checks a memory in its tick.
 
 use heapless::Vec;
-use heapless::spsc::{Consumer, Producer};
 use link::messages::{FromBoard, MEMORY_PARTS, MemoryOutcome, MemoryPart, MemoryRequest, MemoryState, PART_BYTES};
 
 use crate::page::{self, Learnt, Page};
 use crate::queues::Order;
+use crate::shared::{Consumer, Producer};
 
 /// The immediate reaction to a request.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,12 +1,10 @@
 //! Everything between the tick and idle: single-producer queues and a few counters that either side may read at any time.
 
-use core::sync::atomic::{AtomicBool, AtomicU32};
-
-use heapless::spsc::{Consumer, Producer, Queue};
 use link::messages::{MemoryOutcome, MemoryState, RunMode, RunSettings, Trip};
 use model_core::virtual_joint::fault::{Fault, FixedPoint};
 
 use crate::protocol::Protocol;
+use crate::shared::{AtomicBool, AtomicU32, Consumer, Producer, Queue};
 use crate::sized_queue::{SizedConsumer, SizedProducer};
 use crate::timing_monitor::Monitor;
 
@@ -128,6 +126,9 @@ pub struct TickEnd<'a, W: Protocol> {
     pub progress: &'a Progress,
 }
 
+/// Idle's end of the queue of events.
+pub type Events<'a> = SizedConsumer<'a, Event, NOTES>;
+
 /// Idle's ends.
 pub struct IdleEnd<'a, W: Protocol> {
     /// What is to come.
@@ -137,7 +138,7 @@ pub struct IdleEnd<'a, W: Protocol> {
     /// What is to be reported.
     pub samples: Consumer<'a, W::Sample>,
     /// What has happened.
-    pub events: Consumer<'a, Event>,
+    pub events: Events<'a>,
     /// Memories to be saved.
     pub learnt: Consumer<'a, W::Learnt>,
     /// Memories to be checked.
@@ -185,7 +186,7 @@ impl<W: Protocol> Queues<W> {
                 commands: commands_in,
                 orders: orders_in,
                 samples: samples_out,
-                events: events_out,
+                events: SizedConsumer::new(events_out),
                 learnt: learnt_out,
                 remembered: remembered_in,
                 progress,

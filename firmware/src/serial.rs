@@ -1,12 +1,12 @@
 //! Bytes between a UART and idle: the interrupt's side and idle's side of two byte queues. The interrupt also says at once
 //! what the tick must know whatever idle is doing: that a good frame has come, and that it was a stop.
 
-use core::sync::atomic::AtomicU32;
 use core::sync::atomic::Ordering::{Acquire, Relaxed, Release};
 
-use heapless::spsc::{Consumer, Producer, Queue};
 use link::messages::ToBoard;
 use link::scanner::Scanner;
+
+use crate::shared::{AtomicU32, Consumer, Producer, Queue};
 
 /// Bytes received and not yet looked at: more than the schedules that a host may have under way.
 const INBOX: usize = 1024;

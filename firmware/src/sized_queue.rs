@@ -2,7 +2,9 @@
 //! by a number that it reads from memory: where the compiler cannot tell that it is not zero, the tick could panic, and
 //! would divide where a mask is enough. The queues themselves are in `queues`.
 
-use heapless::spsc::{Consumer, Producer};
+use core::sync::atomic::Ordering::Acquire;
+
+use crate::shared::{Consumer, Producer, fence};
 
 /// Puts entries in.
 pub struct SizedProducer<'a, T, const PLACES: usize>(Producer<'a, T>);
@@ -43,9 +45,13 @@ impl<'a, T, const PLACES: usize> SizedConsumer<'a, T, PLACES> {
         if self.0.capacity() == PLACES - 1 { self.0.dequeue() } else { None }
     }
 
-    /// Looks at the first entry.
+    /// Looks at the first entry. heapless looks whether there is one without keeping the look at it behind: the fence does.
     #[inline]
     pub fn peek(&self) -> Option<&T> {
+        if !self.0.ready() {
+            return None;
+        }
+        fence(Acquire);
         self.0.peek()
     }
 
@@ -58,7 +64,7 @@ impl<'a, T, const PLACES: usize> SizedConsumer<'a, T, PLACES> {
 
 #[cfg(test)]
 mod tests {
-    use heapless::spsc::Queue;
+    use crate::shared::Queue;
 
     use super::*;
 

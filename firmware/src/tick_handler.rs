@@ -233,13 +233,14 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> TickHandler<'a, E, W> {
         self.steps = self.steps.wrapping_add(1);
         self.end.progress.steps.store(self.steps, Release);
         self.monitor.queue_low = self.monitor.queue_low.min(self.end.commands.count() as u16);
-        if !self.work.is_finite() {
-            self.trip(Trip::NotFinite { tick: self.steps });
-        }
         self.until_sample -= 1;
         if self.until_sample == 0 {
             self.until_sample = self.decimation;
             self.hand_out_sample(timer.since_expiry().saturating_sub(lateness));
+        }
+        // After the sample: whoever finds the trip finds the last sample there.
+        if !self.work.is_finite() {
+            self.trip(Trip::NotFinite { tick: self.steps });
         }
         true
     }

@@ -1,0 +1,35 @@
+//! The firmware's tick, serial interrupt and idle as they ship, file by file, on atomics of which every order is tried. Only
+//! `shared` is another file: it has the same names and the same orderings, and loom behind them. The models are in `tests`.
+
+#[path = "../../../firmware/src/conversation.rs"]
+pub mod conversation;
+#[path = "../../../firmware/src/intake.rs"]
+pub mod intake;
+#[path = "../../../firmware/src/memory_requests.rs"]
+pub mod memory_requests;
+#[path = "../../../firmware/src/page.rs"]
+pub mod page;
+pub mod port;
+#[path = "../../../firmware/src/protocol.rs"]
+pub mod protocol;
+#[path = "../../../firmware/src/queues.rs"]
+pub mod queues;
+#[path = "../../../firmware/src/safe_state.rs"]
+pub mod safe_state;
+#[path = "../../../firmware/src/schedule.rs"]
+pub mod schedule;
+#[path = "../../../firmware/src/serial.rs"]
+pub mod serial;
+pub mod shared;
+#[path = "../../../firmware/src/silence.rs"]
+pub mod silence;
+#[path = "../../../firmware/src/sized_queue.rs"]
+pub mod sized_queue;
+#[path = "../../../firmware/src/tick_handler.rs"]
+pub mod tick_handler;
+#[path = "../../../firmware/src/timing_monitor.rs"]
+pub mod timing_monitor;
+#[path = "../../../firmware/src/timing_report.rs"]
+pub mod timing_report;
+#[path = "../../../firmware/src/work.rs"]
+pub mod work;

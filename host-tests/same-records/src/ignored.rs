@@ -21,6 +21,9 @@ pub const ELF_DIGEST: &str = "digest of an ELF file";
 /// tick are compared, so are the RAM of statics, and the deepest stack that `joint hil --check` finds in the image.
 pub const LINE_TIMING: &str = "timing of the line";
 
+/// Lists of the files beside them, with digests of whole files, dates and all: what is in a file is compared there.
+pub const FILES: [&str; 1] = [".written-by-joint"];
+
 /// Where something stands that is left out. In words, `#` is a number that is left out, `@` a digest of hexadecimal digits.
 #[derive(Debug, Clone, Copy)]
 pub enum Place {

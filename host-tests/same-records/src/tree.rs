@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use walkdir::WalkDir;
 
 use crate::findings::Findings;
+use crate::ignored::FILES;
 use crate::listing::{self, Listing, Row};
 use crate::{csv, html, json, log, text, xml};
 
@@ -62,7 +63,7 @@ fn files(folder: &Path) -> Result<BTreeSet<PathBuf>, String> {
     let mut found = BTreeSet::new();
     for entry in WalkDir::new(folder).follow_links(true) {
         let entry = entry.map_err(|error| error.to_string())?;
-        if !entry.file_type().is_dir() {
+        if !entry.file_type().is_dir() && !FILES.iter().any(|name| entry.file_name() == *name) {
             found.insert(entry.path().strip_prefix(folder).unwrap_or(entry.path()).to_owned());
         }
     }

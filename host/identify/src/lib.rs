@@ -41,8 +41,7 @@ use twist::Twist;
 use joint_file::named::{self, Loaded};
 use report::document::{html, terminal};
 use report::failure::{Failure, Outcome};
-use report::folder;
-use report::folder::Folder;
+use report::folder::{self, Folder};
 use report::output;
 use report::progress::Progress;
 use report::write::write_text;
@@ -63,6 +62,11 @@ const LEAST_RELIABLE: f64 = 0.5;
 /// Fits one after the other, each with the errors by angle of the last taken off the accelerations.
 const ROUNDS: usize = 3;
 
+/// The page, the joint file with what was found, and the figures.
+const REPORT: &str = "report.html";
+const JOINT: &str = "joint.toml";
+const FINDINGS: &str = "findings.json";
+
 /// What a log has shown.
 struct Identified {
     log: Log,
@@ -79,9 +83,10 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
     }
     let prior = PriorModel::new(&loaded, arguments);
     folder::check_files(&[("json", arguments.json.as_deref())], &[&arguments.log, &arguments.joint])?;
+    let folder = Folder::choose(arguments.out.as_deref(), "identify", &prior.name, &[REPORT, JOINT, FINDINGS])?;
     progress.stage("fitting");
     let identified = identify(arguments, &prior)?;
-    let folder = Folder::prepare(arguments.out.as_deref(), "identify", &prior.name)?;
+    folder.make()?;
     let name = arguments.log.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let patched = patch::patch(&loaded, &prior, &identified.findings, &name)?;
     let assumptions = assumptions(&prior, &identified.log);
@@ -98,12 +103,12 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
     let figures = vec![pictures::loop_of(log, rows, twist, &prior), pictures::time_history(log, twist)];
     let document = page::document(&record, &loaded.text, figures);
     let json = output::json("findings", &record)?;
-    let [report, joint] = [folder.file("report.html"), folder.file("joint.toml")];
-    write_text(&report, &html(&document))?;
-    write_text(&joint, &patched)?;
-    write_text(&folder.file("findings.json"), &json)?;
+    folder.write_text(REPORT, &html(&document))?;
+    folder.write_text(JOINT, &patched)?;
+    folder.write_text(FINDINGS, &json)?;
     arguments.json.as_ref().map_or(Ok(()), |path| write_text(path, &json))?;
     progress.clear();
+    let [report, joint] = [REPORT, JOINT].map(|name| folder.file(name));
     Ok(format!("{}\nreport: {}\njoint file: {}\n", terminal(&document), report.display(), joint.display()))
 }
 

@@ -7,7 +7,7 @@
 pub mod checks;
 pub mod comparison;
 mod evaluation;
-mod files;
+pub mod files;
 mod origin;
 pub mod page;
 pub mod plan;
@@ -37,7 +37,7 @@ pub fn run(request: &RunRequest<'_>, progress: &Progress) -> Outcome<()> {
     let plan = RunPlan::new(request)?;
     let wanted = [("json", request.json), ("picture", request.picture)];
     folder::check_files(&wanted, &[&plan.path, Path::new(request.profile)])?;
-    let folder = Folder::prepare(request.out, "hil", &plan.expected.joint)?;
+    let folder = Folder::prepare(request.out, "hil", &plan.expected.joint, &files::ALL)?;
     let connection = prepare(request, &plan, progress)?;
     // What the board has done until the user stops is kept and reported.
     let _in_order = InOrder::begin();

@@ -1,38 +1,52 @@
 //! The folder that a command writes its results to, and the files that the user named. Paths that cannot be written are
 //! reported before the work begins.
 
-use std::fs;
-use std::io;
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use crate::document::is_own_page;
-use crate::failure::{Failure, Outcome};
-use crate::workspace::workspace;
-use crate::write::write_text;
+use serde::Serialize;
 
-/// What every such folder gets.
-const REPORT: &str = "report.html";
+use crate::failure::{Failure, Outcome};
+use crate::interruption::InOrder;
+use crate::own_files::{OwnFiles, Owner};
+use crate::workspace::workspace;
+use crate::write::{record_into, unwritten, write_with};
 
 /// Where the files of a run go.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug)]
 pub struct Folder {
     path: PathBuf,
+    files: &'static [&'static str],
+    own: OwnFiles,
+    /// The user has named it: what is in it may be anybody's.
+    named: bool,
 }
 
 impl Folder {
-    /// Makes the folder and tries to write to it. Where none is wanted it is `target/KIND/JOINT`.
-    pub fn prepare(wanted: Option<&Path>, kind: &str, joint: &str) -> Outcome<Self> {
+    /// The folder that a run will write `files` to, of which each may have one `*`. Refuses one in which any of them is not
+    /// what a command has written: it would be lost. Where none is wanted it is `target/KIND/JOINT`. Writes nothing yet.
+    pub fn choose(wanted: Option<&Path>, kind: &str, joint: &str, files: &'static [&'static str]) -> Outcome<Self> {
         let usual = || workspace().join("target").join(kind).join(file_part(joint));
         let path = wanted.map_or_else(usual, Path::to_owned);
-        make(&path)?;
-        if wanted.is_some() {
-            refuse_foreign(&path)?;
+        let folder = Self { own: OwnFiles::read(&path)?, path, files, named: wanted.is_some() };
+        if folder.named {
+            folder.refuse_foreign()?;
         }
-        let probe = path.join(".can-be-written");
-        write_text(&probe, "")?;
-        // It was ours, and it was empty: nothing is lost if it stays.
-        let _ = fs::remove_file(&probe);
-        Ok(Self { path })
+        Ok(folder)
+    }
+
+    /// The same, made and ready to be written to.
+    pub fn prepare(wanted: Option<&Path>, kind: &str, joint: &str, files: &'static [&'static str]) -> Outcome<Self> {
+        let folder = Self::choose(wanted, kind, joint, files)?;
+        folder.make()?;
+        Ok(folder)
+    }
+
+    /// Makes the folder and tries to write to it.
+    pub fn make(&self) -> Outcome<()> {
+        make(&self.path)?;
+        self.own.open()
     }
 
     /// A file in it.
@@ -44,17 +58,104 @@ impl Folder {
     pub fn path(&self) -> &Path {
         &self.path
     }
+
+    /// Writes a file, whole or not at all.
+    pub fn write_text(&self, name: &str, text: &str) -> Outcome<()> {
+        self.write_with(name, |file| file.write_all(text.as_bytes()))
+    }
+
+    /// Writes a record as JSON in one line, whole or not at all.
+    pub fn write_record(&self, name: &str, record: &impl Serialize) -> Outcome<()> {
+        self.write_with(name, |file| record_into(file, record))
+    }
+
+    /// Fills a file, whole or not at all.
+    pub fn write_with(&self, name: &str, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Outcome<()> {
+        debug_assert!(self.is_announced(name), "{name} was not looked for before the run");
+        write_with(&self.file(name), |ready| self.own.claim(name, ready), fill)
+    }
+
+    /// Begins a file that grows while a run goes on. It is ours from here on, whole or not.
+    pub fn grow(&self, name: &str) -> Outcome<File> {
+        debug_assert!(self.is_announced(name), "{name} was not looked for before the run");
+        let path = self.file(name);
+        self.own.claim_growing(name).and_then(|()| File::create(&path)).map_err(|error| unwritten(&path, &error))
+    }
+
+    /// Ends a file that has grown, under a name that it may have had before, and says where it is.
+    pub fn keep(&self, grown: &str, name: &str) -> Outcome<PathBuf> {
+        debug_assert!(self.is_announced(name), "{name} was not looked for before the run");
+        let _in_order = InOrder::begin();
+        let (from, to) = (self.file(grown), self.file(name));
+        let kept = self.own.claim(name, &from).and_then(|()| fs::rename(&from, &to));
+        kept.and_then(|()| self.own.end_growing(grown)).map_err(|error| unwritten(&to, &error))?;
+        Ok(to)
+    }
+
+    /// Removes what earlier runs have left of files of this kind, once this run has written its own.
+    pub fn clear_older(&self, files: &str) -> Outcome<()> {
+        for name in self.present(files)? {
+            let ours = !self.named || self.own.owner(&name) == Owner::Ours;
+            if !ours || self.own.is_of_this_run(&name) {
+                continue;
+            }
+            let path = self.file(&name);
+            fs::remove_file(&path).map_err(|error| unread(&path, &error))?;
+        }
+        Ok(())
+    }
+
+    /// Refuses a folder with a file that would be lost.
+    fn refuse_foreign(&self) -> Outcome<()> {
+        for files in self.files {
+            for name in self.present(files)? {
+                let path = self.file(&name);
+                let what = match self.own.owner(&name) {
+                    Owner::Ours => continue,
+                    Owner::Changed => "has been changed since this command wrote it",
+                    Owner::Foreign => "was not written by this command",
+                };
+                return Err(Failure::new(format!("{} {what} and would be lost", path.display()))
+                    .with_help("name another folder by --out DIR, or move this file elsewhere; it is left as it is"));
+            }
+        }
+        Ok(())
+    }
+
+    /// Names of files of this kind that are there, in their order.
+    fn present(&self, files: &str) -> Outcome<Vec<String>> {
+        let inner = Path::new(files).parent().unwrap_or(Path::new(""));
+        let folder = self.path.join(inner);
+        let entries = match fs::read_dir(&folder) {
+            // What is no folder is told where it is made.
+            Err(error) if matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory) => {
+                return Ok(Vec::new());
+            }
+            entries => entries.map_err(|error| unread(&folder, &error))?,
+        };
+        let mut names = Vec::new();
+        for entry in entries {
+            let name = inner.join(entry.map_err(|error| unread(&folder, &error))?.file_name());
+            names.extend(name.to_str().filter(|name| is_of(files, name)).map(str::to_owned));
+        }
+        names.sort();
+        Ok(names)
+    }
+
+    fn is_announced(&self, name: &str) -> bool {
+        self.files.iter().any(|files| is_of(files, name))
+    }
 }
 
-/// Refuses a folder whose report somebody else has written: a second one would be the loss of that.
-fn refuse_foreign(folder: &Path) -> Outcome<()> {
-    let report = folder.join(REPORT);
-    match is_own_page(&report) {
-        Ok(true) => Ok(()),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
-        _ => Err(Failure::new(format!("{} was not written by this command and would be lost", report.display()))
-            .with_help("name another folder by --out DIR, or move this file elsewhere; it is left as it is")),
-    }
+/// Whether a name is one of these, which may have one `*` for any part of it.
+fn is_of(files: &str, name: &str) -> bool {
+    let Some((before, behind)) = files.split_once('*') else { return files == name };
+    name.len() >= before.len() + behind.len() && name.starts_with(before) && name.ends_with(behind)
+}
+
+fn unread(path: &Path, error: &io::Error) -> Failure {
+    Failure::new(format!("cannot prepare {}: {error}", path.display()))
+        .with_help("see that it may be read and written, or name another folder by --out DIR")
 }
 
 /// Makes a folder that `--out` names.
@@ -108,10 +209,13 @@ pub fn file_part(joint: &str) -> String {
 mod tests {
     use super::*;
 
+    const REPORT: &str = "report.html";
+
     #[test]
     fn a_folder_that_cannot_be_is_found_before_the_run() {
         for folder in ["/dev/full/x", "/proc/x", "/dev/null"] {
-            let failure = Folder::prepare(Some(Path::new(folder)), "hil", "Q1").expect_err("cannot be written");
+            let failure =
+                Folder::prepare(Some(Path::new(folder)), "hil", "Q1", &[REPORT]).expect_err("cannot be written");
             assert!(failure.message().contains(folder), "{failure}");
             assert!(failure.help().is_some(), "{failure}");
             assert_eq!(failure.exit_code(), 2);
@@ -119,16 +223,73 @@ mod tests {
     }
 
     #[test]
-    fn a_report_that_somebody_else_has_written_is_not_written_over() {
+    fn what_somebody_else_has_written_or_changed_is_not_written_over() {
         let folder = tempfile::tempdir().expect("a folder");
-        let prepare = || Folder::prepare(Some(folder.path()), "sim", "Q1");
-        let report = prepare().expect("an empty folder").file(REPORT);
-        fs::write(&report, "<!DOCTYPE html><title>my thesis</title>").expect("room");
-        let failure = prepare().expect_err("a foreign report");
-        assert!(failure.message().contains("report.html was not written by this command"), "{failure}");
-        assert!(failure.help().is_some_and(|help| help.contains("--out DIR")), "{failure}");
-        fs::write(&report, crate::document::html(&crate::document::Document::default())).expect("room");
-        assert!(prepare().is_ok(), "a report of ours is replaced by the next one");
+        let choose = || Folder::choose(Some(folder.path()), "sim", "Q1", &[REPORT, "runs/*.mcap"]);
+        let refused = |name: &str, words: &str| {
+            let failure = choose().expect_err("it would be lost");
+            assert!(failure.message().contains(name) && failure.message().contains(words), "{failure}");
+            assert!(failure.help().is_some_and(|help| help.contains("--out DIR")), "{failure}");
+        };
+        fs::create_dir(folder.path().join("runs")).expect("room");
+        for name in [REPORT, "runs/a.mcap"] {
+            let path = folder.path().join(name);
+            fs::write(&path, "my thesis").expect("room");
+            refused(name, "was not written by this command");
+            fs::remove_file(&path).expect("there");
+            let ours = choose().expect("nothing of anyone");
+            ours.make().and_then(|()| ours.write_text(name, "ours")).expect("room");
+            choose().expect("ours is replaced by the next one");
+            fs::write(&path, "ours, with a note").expect("room");
+            refused(name, "has been changed");
+            fs::remove_file(&path).expect("there");
+        }
+        fs::write(folder.path().join("notes.txt"), "mine").expect("room");
+        choose().expect("no run writes to this one");
+    }
+
+    #[test]
+    fn what_earlier_runs_left_is_removed_and_nothing_else() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let prepare = || Folder::prepare(Some(folder.path()), "hil", "Q1", &["*.mcap"]).expect("of ours");
+        prepare().write_text("old.mcap", "1").and_then(|()| prepare().write_text("both.mcap", "1")).expect("room");
+        let second = prepare();
+        second.write_text("both.mcap", "1").and_then(|()| second.write_text("new.mcap", "1")).expect("room");
+        fs::write(folder.path().join("mine.mcap"), "put there meanwhile").expect("room");
+        second.clear_older("*.mcap").expect("may be written");
+        let left = second.present("*.mcap").expect("a folder");
+        assert_eq!(left, ["both.mcap", "mine.mcap", "new.mcap"]);
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn a_link_or_a_folder_in_place_of_a_file_is_not_written_over() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let report = folder.path().join(REPORT);
+        let choose = || Folder::choose(Some(folder.path()), "sim", "Q1", &[REPORT]);
+        std::os::unix::fs::symlink(folder.path().join("not yet there"), &report).expect("room");
+        assert!(choose().is_err());
+        fs::remove_file(&report).expect("there");
+        fs::create_dir(&report).expect("room");
+        assert!(choose().is_err());
+    }
+
+    #[test]
+    fn a_file_that_has_grown_takes_its_name_and_leaves_none() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let prepare = || Folder::prepare(Some(folder.path()), "sim", "Q1", &["part.csv", "whole.csv"]);
+        for _ in 0..2 {
+            let ours = prepare().expect("a folder of ours");
+            ours.grow("part.csv")
+                .and_then(|mut file| {
+                    file.write_all(b"1").expect("room");
+                    ours.keep("part.csv", "whole.csv")
+                })
+                .expect("room");
+        }
+        assert!(!folder.path().join("part.csv").exists() && folder.path().join("whole.csv").exists());
+        fs::write(folder.path().join("part.csv"), "mine").expect("room");
+        assert!(prepare().is_err(), "it grows no longer");
     }
 
     #[test]

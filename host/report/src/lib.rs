@@ -11,6 +11,7 @@ pub mod input;
 pub mod interruption;
 pub mod number;
 pub mod output;
+mod own_files;
 pub mod panels;
 pub mod plot;
 pub mod progress;

@@ -17,18 +17,26 @@ pub fn write_text(path: &Path, text: &str) -> Outcome<()> {
 
 /// The same for what is no text.
 pub fn write_bytes(path: &Path, bytes: &[u8]) -> Outcome<()> {
-    write_with(path, |file| file.write_all(bytes))
+    write_with(path, |_| Ok(()), |file| file.write_all(bytes))
 }
 
 /// Writes a record as JSON in one line, whole or not at all.
 pub fn write_record(path: &Path, record: &impl Serialize) -> Outcome<()> {
-    write_with(path, |file| {
-        serde_json::to_writer(&mut *file, record)?;
-        file.write_all(b"\n")
-    })
+    write_with(path, |_| Ok(()), |file| record_into(file, record))
 }
 
-fn write_with(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Outcome<()> {
+/// A record as JSON in one line.
+pub(crate) fn record_into(file: &mut impl Write, record: &impl Serialize) -> io::Result<()> {
+    serde_json::to_writer(&mut *file, record)?;
+    file.write_all(b"\n")
+}
+
+/// Fills a file, whole or not at all. `ready` is told where all of it lies, just before it takes its name.
+pub(crate) fn write_with(
+    path: &Path,
+    ready: impl FnOnce(&Path) -> io::Result<()>,
+    fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+) -> Outcome<()> {
     let _in_order = InOrder::begin();
     // A link stays a link: what it points to is replaced.
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
@@ -38,18 +46,28 @@ fn write_with(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result
         Ok(there) if !there.is_file() => {
             File::options().write(true).open(&target).and_then(|file| fill_whole(file, fill).map(drop))
         }
-        _ => replace(&target, fill),
+        _ => replace(&target, ready, fill),
     };
     written.map_err(|source| unwritten(path, &source))
 }
 
-fn replace(target: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> io::Result<()> {
+fn replace(
+    target: &Path,
+    ready: impl FnOnce(&Path) -> io::Result<()>,
+    fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+) -> io::Result<()> {
+    remove_left_behind(target);
     let temporary = temporary_beside(target);
     let written = File::create(&temporary).and_then(|file| {
+        // By this others see that it is in use. A file system without locks is no reason not to write.
+        let _ = file.try_lock();
         // A full disk may only be noticed when the data leave the cache.
-        fill_whole(file, fill)?.sync_all()
+        let file = fill_whole(file, fill)?;
+        file.sync_all()?;
+        ready(&temporary)?;
+        fs::rename(&temporary, target)
     });
-    written.and_then(|()| fs::rename(&temporary, target)).inspect_err(|_| {
+    written.inspect_err(|_| {
         // The half-written file is of no use to anyone; if it cannot be removed the first error says more.
         let _ = fs::remove_file(&temporary);
     })
@@ -61,12 +79,36 @@ fn fill_whole(file: File, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<
     buffered.into_inner().map_err(io::IntoInnerError::into_error)
 }
 
+/// What the name of a temporary file has before and behind the process that writes it.
+const TEMPORARY: [&str; 2] = [".joint-", ".tmp"];
+
 /// A name in the same folder, since a rename cannot cross file systems.
 fn temporary_beside(path: &Path) -> PathBuf {
     let mut name = std::ffi::OsString::from(".");
     name.push(path.file_name().unwrap_or_default());
-    name.push(format!(".{}.tmp", std::process::id()));
+    name.push(format!("{}{}{}", TEMPORARY[0], std::process::id(), TEMPORARY[1]));
     path.with_file_name(name)
+}
+
+/// Removes the temporary files of a target whose processes were killed. One that is still being written is locked.
+fn remove_left_behind(target: &Path) {
+    let (Some(folder), Some(name)) = (target.parent(), target.file_name().and_then(|name| name.to_str())) else {
+        return;
+    };
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let of_target = |found: &str| {
+        let process = found.strip_prefix('.')?.strip_prefix(name)?.strip_prefix(TEMPORARY[0])?;
+        process.strip_suffix(TEMPORARY[1])?.parse::<u32>().ok()
+    };
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        if entry.file_name().to_str().and_then(of_target).is_some()
+            && entry.file_type().is_ok_and(|kind| kind.is_file())
+        {
+            let left = File::open(entry.path()).is_ok_and(|file| file.try_lock().is_ok());
+            // Where it cannot be removed it is no harm.
+            let _ = left.then(|| fs::remove_file(entry.path()));
+        }
+    }
 }
 
 /// Names the file, the system's error and the help.
@@ -86,6 +128,22 @@ pub fn unwritten(path: &Path, source: &io::Error) -> Failure {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_a_killed_process_left_is_removed_and_what_another_is_writing_is_not() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let target = folder.path().join("a.json");
+        let make = |name: &str| File::create(folder.path().join(name)).expect("room");
+        let busy = make(".a.json.joint-2.tmp");
+        busy.lock().expect("nobody else has it");
+        let names = [".a.json.joint-1.tmp", ".a.json.joint-x.tmp", ".b.json.joint-1.tmp", "a.json.joint-1.tmp"];
+        drop(names.map(make));
+        write_text(&target, "{}").expect("room");
+        let mut left: Vec<_> =
+            fs::read_dir(folder.path()).expect("a folder").flatten().map(|e| e.file_name()).collect();
+        left.sort();
+        assert_eq!(left, [".a.json.joint-2.tmp", names[1], names[2], "a.json", names[3]]);
+    }
 
     #[test]
     #[cfg(target_os = "linux")]

@@ -1,7 +1,6 @@
 //! Runs one test: every seed and every controller, on all cores, and combines the results. The order of completion does
 //! not change them.
 
-use std::path::Path;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 
@@ -20,6 +19,7 @@ use super::trace::Trace;
 use super::values::MetricValues;
 use super::verdict::{Results, judge};
 use report::failure::{Failure, Outcome};
+use report::folder::Folder;
 
 /// How tests are run.
 pub struct RunOptions<'c> {
@@ -32,7 +32,7 @@ pub struct RunOptions<'c> {
     /// The boards that the tested controller runs on, if it does not run here.
     pub boards: Option<&'c Boards<'c>>,
     /// Where logs go.
-    pub logs: &'c Path,
+    pub folder: &'c Folder,
     /// Told after every run how many are done.
     pub done: &'c (dyn Fn(u32) + Sync),
 }
@@ -182,8 +182,7 @@ fn one(test: &Test, options: &RunOptions<'_>, job: &Job, deadline: Instant) -> O
                 ("digest", run.digest.clone()),
             ];
             let remarks = remarks.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
-            log_file::write(&options.logs.join(&name), &history, remarks)?;
-            run.log = Some(format!("runs/{name}"));
+            run.log = Some(log_file::write(options.folder, &name, &history, remarks)?);
             Ok(Done { values: Some(values), run, trace: Trace::of(&history) })
         }
         Err(RunError::Refused(failure)) => Err(failure.while_doing(&test.name)),

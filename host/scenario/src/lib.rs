@@ -37,7 +37,6 @@ mod trace;
 pub mod values;
 mod verdict;
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicU32;
 use std::time::Instant;
@@ -51,12 +50,17 @@ use suite::{Choice, Suite, Test};
 
 use report::document::{Document, html, terminal};
 use report::failure::{EXIT_INTERRUPTED, Failure, Outcome};
-use report::folder;
-use report::folder::Folder;
+use report::folder::{self, Folder};
 use report::output;
 use report::progress::Progress;
 use report::provenance;
 use report::write::write_text;
+
+/// The page, the results as JSON and as JUnit XML, and a log of every run.
+const REPORT: &str = "report.html";
+const RECORD: &str = "record.json";
+const JUNIT: &str = "junit.xml";
+const LOGS: &str = "runs/*.mcap";
 
 /// A request to run tests.
 #[derive(Debug, Clone)]
@@ -100,6 +104,7 @@ struct PreparedGroup<'w> {
 /// Runs tests; succeeds only if all ran and passed.
 pub fn run(request: &TestRequest<'_>, progress: &Progress) -> Outcome<()> {
     let start = Instant::now();
+    let folder = Folder::choose(request.out.as_deref(), "hil/tests", &request.name, &[REPORT, RECORD, JUNIT, LOGS])?;
     let mut parts = Vec::new();
     for TestGroup { path, choice, plant, boards } in &request.parts {
         let mut suite = suite::load(path, *choice, *plant)?;
@@ -109,9 +114,9 @@ pub fn run(request: &TestRequest<'_>, progress: &Progress) -> Outcome<()> {
     let read: Vec<PathBuf> = parts.iter().flat_map(|part| &part.suite.tests).flat_map(Test::files).collect();
     let read: Vec<&Path> = read.iter().map(PathBuf::as_path).collect();
     folder::check_files(&[("json", request.json), ("junit", request.junit)], &read)?;
-    let folder = Folder::prepare(request.out.as_deref(), "hil/tests", &request.name)?;
-    let logs = prepare_logs(&folder)?;
-    let (tested, not_run) = run_parts(parts, request, &logs, progress)?;
+    folder.make()?;
+    folder::make(&folder.file(log_file::FOLDER))?;
+    let (tested, not_run) = run_parts(parts, request, &folder, progress)?;
     let record = TestsRecord {
         schema: SCHEMA.to_owned(),
         passed: not_run.is_empty() && tested.iter().all(|test| test.record.passed),
@@ -127,7 +132,11 @@ pub fn run(request: &TestRequest<'_>, progress: &Progress) -> Outcome<()> {
     let document = page::document(&record, &tested);
     output::print(&(terminal(&document) + "\n"))?;
     write(request, &folder, &record, &document)?;
-    output::print(&format!("report: {}\n", folder.file("report.html").display()))?;
+    // Logs of an older run would be taken for this one's. Where a test has not run, its older log is all there is.
+    if record.not_run.is_empty() {
+        folder.clear_older(LOGS)?;
+    }
+    output::print(&format!("report: {}\n", folder.file(REPORT).display()))?;
     verdict(&record)
 }
 
@@ -137,7 +146,7 @@ type RunOrNot = (Vec<FinishedTest>, Vec<NotRun>);
 fn run_parts(
     parts: Vec<PreparedGroup<'_>>,
     request: &TestRequest<'_>,
-    logs: &Path,
+    folder: &Folder,
     progress: &Progress,
 ) -> Outcome<RunOrNot> {
     let runs_of = |test: &Test| test.seeds(request.seed, request.full).len() * test.controllers().len();
@@ -152,7 +161,7 @@ fn run_parts(
             seed: request.seed,
             full: request.full,
             boards: boards.as_ref(),
-            logs,
+            folder,
             done: &|runs| progress.at(runs),
         };
         let one = |test: &Test| {
@@ -176,28 +185,12 @@ fn run_parts(
     Ok((tested, not_run))
 }
 
-/// An empty folder for logs: those of an older run would be taken for this one's.
-fn prepare_logs(folder: &Folder) -> Outcome<PathBuf> {
-    let logs = folder.file("runs");
-    let failed = |error: std::io::Error| Failure::new(format!("cannot prepare {}: {error}", logs.display()));
-    if logs.is_dir() {
-        for entry in fs::read_dir(&logs).map_err(failed)? {
-            let path = entry.map_err(failed)?.path();
-            if path.extension().is_some_and(|extension| extension == "mcap") {
-                fs::remove_file(&path).map_err(failed)?;
-            }
-        }
-    }
-    fs::create_dir_all(&logs).map_err(failed)?;
-    Ok(logs)
-}
-
 fn write(request: &TestRequest<'_>, folder: &Folder, record: &TestsRecord, document: &Document) -> Outcome<()> {
     let json = output::json("results", record)?;
     let junit = junit::render(record);
-    write_text(&folder.file("record.json"), &json)?;
-    write_text(&folder.file("junit.xml"), &junit)?;
-    write_text(&folder.file("report.html"), &html(document))?;
+    folder.write_text(RECORD, &json)?;
+    folder.write_text(JUNIT, &junit)?;
+    folder.write_text(REPORT, &html(document))?;
     request.json.map_or(Ok(()), |path| write_text(path, &json))?;
     request.junit.map_or(Ok(()), |path| write_text(path, &junit))
 }

@@ -2,16 +2,15 @@
 //! For the full rate, run it again: runs repeat bit for bit.
 
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::BufWriter;
-use std::path::Path;
+use std::io::{self, Write};
 
 use super::run_history::RunHistory;
 use report::failure::Outcome;
-use report::interruption::InOrder;
-use report::write::unwritten;
+use report::folder::Folder;
 use simulation::sim::log_file::Channel;
 
+/// Folder of all logs, in that of the results.
+pub const FOLDER: &str = "runs";
 /// Topic of a run.
 pub const TOPIC: &str = "/joint/trial";
 /// Name of its schema.
@@ -40,15 +39,15 @@ const FIELDS: [(&str, &str); 17] = [
     ("trust", "share of the compensation in the torque"),
 ];
 
-/// Writes a run to a file.
-pub fn write(path: &Path, history: &RunHistory, remarks: BTreeMap<String, String>) -> Outcome<()> {
-    let _in_order = InOrder::begin();
-    fill(path, history, remarks).map_err(|error| unwritten(path, &error))
+/// Writes a run to a file of this name, and says where that is in the folder of all.
+pub fn write(folder: &Folder, name: &str, history: &RunHistory, remarks: BTreeMap<String, String>) -> Outcome<String> {
+    let path = format!("{FOLDER}/{name}");
+    folder.write_with(&path, |out| fill(out, history, remarks))?;
+    Ok(path)
 }
 
-fn fill(path: &Path, history: &RunHistory, remarks: BTreeMap<String, String>) -> std::io::Result<()> {
+fn fill(out: &mut impl Write, history: &RunHistory, remarks: BTreeMap<String, String>) -> io::Result<()> {
     let schema: String = FIELDS.iter().map(|(name, meaning)| format!("float64 {name}  # {meaning}\n")).collect();
-    let out = BufWriter::new(File::create(path)?);
     let mut channel = Channel::begin(out, TOPIC, SCHEMA_NAME, &schema, remarks)?;
     for (sample, truth, observed, peak) in history.thinned(RATE) {
         let observed = observed.copied().unwrap_or_default();
@@ -76,5 +75,5 @@ fn fill(path: &Path, history: &RunHistory, remarks: BTreeMap<String, String>) ->
         numbers.into_iter().for_each(|number| message.extend(number.to_le_bytes()));
         channel.write(sample.time, &message)?;
     }
-    channel.finish()?.into_inner().map_err(std::io::IntoInnerError::into_error)?.sync_data()
+    channel.finish().map(drop)
 }

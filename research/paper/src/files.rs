@@ -8,23 +8,37 @@ use super::record::{Class, Reading, StudyRecord};
 use report::document::{Document, html};
 use report::failure::Outcome;
 use report::folder::{Folder, file_part};
-use report::write::{write_record, write_text};
+use report::write::write_record;
+
+const REPORT: &str = "report.html";
+const RECORD: &str = "study.json";
+/// Everything that a study may write; which attractors there are to draw, it shows itself.
+pub const ALL: [&str; 10] = [
+    REPORT,
+    RECORD,
+    "attractors.csv",
+    "dead-zone-error.csv",
+    "stiffness.csv",
+    "poincare-points-*.csv",
+    "bifurcation-*.csv",
+    "bifurcation-*.svg",
+    "attractor-*.svg",
+    "figure-*.svg",
+];
 
 /// Writes everything, the record also to a file that was asked for by name; returns where the report is.
 pub fn write(folder: &Folder, json: Option<&Path>, record: &StudyRecord, document: &Document) -> Outcome<PathBuf> {
     // What was asked for by name comes first: nothing after it can cost it.
-    for path in json.into_iter().chain([folder.file("study.json").as_path()]) {
-        write_record(path, record)?;
-    }
+    json.map_or(Ok(()), |path| write_record(path, record))?;
+    folder.write_record(RECORD, record)?;
     for (name, table) in tables(record) {
-        write_text(&folder.file(&format!("{name}.csv")), &table)?;
+        folder.write_text(&format!("{name}.csv"), &table)?;
     }
     for Picture { name, figure } in all_pictures(record) {
-        write_text(&folder.file(&format!("{name}.svg")), &figure.to_file())?;
+        folder.write_text(&format!("{name}.svg"), &figure.to_file())?;
     }
-    let report = folder.file("report.html");
-    write_text(&report, &html(document))?;
-    Ok(report)
+    folder.write_text(REPORT, &html(document))?;
+    Ok(folder.file(REPORT))
 }
 
 fn all_pictures(record: &StudyRecord) -> Vec<Picture> {

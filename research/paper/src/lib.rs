@@ -47,7 +47,7 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
     let plan = StudyPlan::new(arguments)?;
     let read: Vec<&Path> = arguments.file.as_deref().into_iter().collect();
     folder::check_files(&[("json", arguments.json.as_deref())], &read)?;
-    let folder = Folder::prepare(arguments.out.as_deref(), "paper", plan.name())?;
+    let folder = Folder::prepare(arguments.out.as_deref(), "paper", plan.name(), &files::ALL)?;
     let progress = Progress::new();
     let studied = study(&plan, &progress);
     progress.clear();

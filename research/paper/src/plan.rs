@@ -51,7 +51,8 @@ pub struct Arguments {
     /// Classes that the attractors must have, in the order of --b: a period or `chaos`, such as 1,1,3,chaos
     #[arg(long, value_name = "LIST")]
     pub expect: Option<String>,
-    /// Folder for report.html, study.json, pictures (SVG) and tables (CSV) [default: target/paper/<joint>]
+    /// Folder for report.html, study.json, pictures (SVG) and tables (CSV); a file that this command did not write is refused
+    /// [default: target/paper/<joint>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Writes the study as JSON to this file too

@@ -17,7 +17,7 @@ use report::plot::Figure;
 use crate::record::RunRecord;
 use report::document;
 use report::failure::{Failure, Outcome};
-use report::write::{write_record, write_text};
+use report::write::write_text;
 
 /// The report as one HTML page that needs neither network nor scripts.
 pub fn render(record: &RunRecord) -> String {
@@ -27,14 +27,6 @@ pub fn render(record: &RunRecord) -> String {
 /// The checks as lines for a terminal, below a line that says what ran.
 pub fn render_lines(record: &RunRecord) -> String {
     document::terminal(&whole::document(record))
-}
-
-/// Writes the record as JSON and then the report as HTML; the JSON, which holds everything, is there first.
-pub fn write(record: &RunRecord, json: Option<&Path>, html: Option<&Path>) -> Outcome<()> {
-    let json = json.map_or(Ok(()), |path| write_record(path, record));
-    let html = html.map_or(Ok(()), |path| write_text(path, &render(record)));
-    // A report that cannot be written must not cost the record, nor the other way round.
-    json.and(html)
 }
 
 /// One picture for a document: a reversal through the gap. None if the run has none.

@@ -5,11 +5,13 @@ mod synthetic;
 use std::fs;
 use std::path::Path;
 
-use joint_run::page::{picture, render, write, write_picture};
+use joint_run::files::{self, write_to};
+use joint_run::page::{picture, render, write_picture};
 use joint_run::record::{Completeness, ErrorSeries, RunRecord};
 use report::checks::{Bound, Check, Source, Verdict};
 use report::contacts::Contact;
-use report::write::write_record;
+use report::folder::Folder;
+use report::write::{write_record, write_text};
 
 /// Leaves a report where a person can look at it.
 fn keep_for_looking(name: &str, text: &str) {
@@ -168,12 +170,12 @@ fn a_record_comes_back_from_its_json() {
 fn a_report_that_cannot_be_written_costs_no_record() {
     let record = synthetic::record();
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let json = folder.path().join("run.json");
-    let html = folder.path().join("missing").join("run.html");
-    let failure = write(&record, Some(&json), Some(&html)).expect_err("there is no such folder");
-    assert!(failure.message().contains("missing/run.html"), "{failure}");
+    let prepared = Folder::prepare(Some(folder.path()), "hil", "Q1", &files::ALL).expect("an empty folder");
+    fs::create_dir(prepared.file("report.html")).expect("the folder is writable");
+    let failure = write_to(&prepared, &record).expect_err("a folder stands in the way");
+    assert!(failure.message().contains("report.html"), "{failure}");
     assert!(failure.help().is_some_and(|help| help.contains("folder")));
-    assert!(fs::metadata(&json).is_ok_and(|file| file.len() > 1000));
+    assert!(fs::metadata(prepared.file("record.json")).is_ok_and(|file| file.len() > 1000));
 }
 
 #[test]
@@ -206,11 +208,12 @@ fn a_write_that_fails_leaves_the_old_file() {
     fs::write(&old, "old").expect("the folder is writable");
     symlink(&old, &link).expect("links are supported");
     // The temporary file's name is taken by a folder, so that nothing can be written beside the target.
-    fs::create_dir(folder.path().join(format!(".old.html.{}.tmp", std::process::id()))).expect("the name is free");
-    write(&synthetic::record(), None, Some(&link)).expect_err("the name is taken");
+    fs::create_dir(folder.path().join(format!(".old.html.joint-{}.tmp", std::process::id())))
+        .expect("the name is free");
+    write_text(&link, &render(&synthetic::record())).expect_err("the name is taken");
     assert_eq!(fs::read_to_string(&old).expect("it is there"), "old");
-    fs::remove_dir(folder.path().join(format!(".old.html.{}.tmp", std::process::id()))).expect("it is empty");
-    write(&synthetic::record(), None, Some(&link)).expect("nothing is in the way");
+    fs::remove_dir(folder.path().join(format!(".old.html.joint-{}.tmp", std::process::id()))).expect("it is empty");
+    write_text(&link, &render(&synthetic::record())).expect("nothing is in the way");
     assert!(fs::symlink_metadata(&link).is_ok_and(|link| link.is_symlink()), "a link stays a link");
     assert!(fs::read_to_string(&old).is_ok_and(|page| page.contains("</html>")));
 }

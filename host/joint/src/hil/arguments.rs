@@ -62,7 +62,7 @@ pub struct Arguments {
     /// A sample every so many steps; the digest covers every step
     #[arg(long, value_name = "STEPS", default_value_t = 20, value_parser = clap::value_parser!(u16).range(1..))]
     pub decimation: u16,
-    /// Folder for report.html, record.json and log.txt [default: target/hil/<joint>]
+    /// Folder for report.html, record.json and log.txt; a file that this command did not write is refused [default: target/hil/<joint>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Writes the record as JSON to this file too

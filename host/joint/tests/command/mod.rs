@@ -36,9 +36,15 @@ pub fn joint(arguments: &[&str]) -> Ended {
 
 /// Runs it with a limit on the size of every file, as if the disk were full.
 pub fn joint_on_a_full_disk(blocks: u32, arguments: &[&str]) -> Ended {
+    joint_on_a_full_disk_with(blocks, arguments, &[])
+}
+
+/// The same with variables of the environment. A limit is in units of 1024 bytes.
+pub fn joint_on_a_full_disk_with(blocks: u32, arguments: &[&str], variables: &[(&str, &str)]) -> Ended {
     let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" \"$@\"");
     let mut shell = Command::new("bash");
-    shell.args(["-c", &script, env!("CARGO_BIN_EXE_joint")]).args(arguments).env("NO_COLOR", "1").stdin(Stdio::null());
+    shell.args(["-c", &script, env!("CARGO_BIN_EXE_joint")]).args(arguments).stdin(Stdio::null());
+    shell.env("NO_COLOR", "1").env("COLUMNS", "400").envs(variables.iter().copied());
     ended(shell.output().expect("a shell"))
 }
 

@@ -1,10 +1,6 @@
 //! A document as one HTML page that needs neither network nor scripts, light or dark as its reader likes it: style and
 //! pictures are inside.
 
-use std::fs::File;
-use std::io::{self, Read};
-use std::path::Path;
-
 use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
 
 use super::blocks::{Align, Block, Checks, Document, Medium, Notice, Picture, Section, Table};
@@ -18,17 +14,8 @@ const STYLE: &str = include_str!("../style.css");
 /// More columns than this break their headings.
 const NARROW: usize = 6;
 
-/// How a page says who wrote it, and bytes that hold it.
+/// How a page says who wrote it.
 const GENERATOR: &str = "joint";
-const HEAD: u64 = 256;
-
-/// Whether a file is a page of ours, which may be replaced by the next one.
-pub fn is_own_page(path: &Path) -> io::Result<bool> {
-    let mut head = Vec::new();
-    File::open(path)?.take(HEAD).read_to_end(&mut head)?;
-    let mark = format!("<meta name=\"generator\" content=\"{GENERATOR}\">");
-    Ok(String::from_utf8_lossy(&head).contains(&mark))
-}
 
 /// The whole page.
 pub fn html(document: &Document) -> String {

@@ -11,7 +11,7 @@ mod terminal;
 mod text;
 
 pub use blocks::*;
-pub use html::{html, is_own_page};
+pub use html::html;
 pub use markdown::markdown;
 pub use sheet::Sheet;
 pub use terminal::terminal;

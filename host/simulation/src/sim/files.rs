@@ -11,9 +11,19 @@ use parameters::JointParameters;
 use super::csv;
 use super::log_file::{self, Channel, SCHEMA_NAME, TOPIC, encoded};
 use super::snapshot::Snapshot;
-use report::failure::Outcome;
+use report::failure::{Failure, Outcome};
 use report::folder::Folder;
 use report::write::unwritten;
+
+/// The page.
+pub const REPORT: &str = "report.html";
+/// The figures of the console.
+pub const FIGURES: &str = "figures.json";
+/// Growing and final name.
+const CSV: [&str; 2] = ["history.partial.csv", "history.csv"];
+const LOG: [&str; 2] = ["history.partial.mcap", "history.mcap"];
+/// Everything that a run writes.
+pub const ALL: [&str; 6] = [REPORT, FIGURES, CSV[0], CSV[1], LOG[0], LOG[1]];
 
 /// CSV and log of one run, growing.
 pub struct HistoryFiles<'a> {
@@ -23,26 +33,19 @@ pub struct HistoryFiles<'a> {
     log: Channel<BufWriter<File>>,
 }
 
-/// Growing and final name.
-const CSV: [&str; 2] = ["history.partial.csv", "history.csv"];
-const LOG: [&str; 2] = ["history.partial.mcap", "history.mcap"];
-
 impl<'a> HistoryFiles<'a> {
     /// Begins both.
     pub fn begin(folder: &'a Folder, joint: &'a JointParameters, remarks: BTreeMap<String, String>) -> Outcome<Self> {
-        let create = |name: &str| {
-            let path = folder.file(name);
-            File::create(&path).map(BufWriter::new).map_err(|error| unwritten(&path, &error))
-        };
         let both = || {
-            let mut csv = create(CSV[0])?;
+            let mut csv = BufWriter::new(folder.grow(CSV[0])?);
             csv::write_head(&mut csv, joint.geometry.planets)
                 .map_err(|error| unwritten(&folder.file(CSV[0]), &error))?;
-            let log = Channel::begin(create(LOG[0])?, TOPIC, SCHEMA_NAME, &log_file::schema(), remarks)
+            let log = BufWriter::new(folder.grow(LOG[0])?);
+            let log = Channel::begin(log, TOPIC, SCHEMA_NAME, &log_file::schema(), remarks)
                 .map_err(|error| unwritten(&folder.file(LOG[0]), &error))?;
             Ok(Self { folder, joint, csv, log })
         };
-        both().inspect_err(|_| remove_empty(folder))
+        both().map_err(|failure| left(folder, failure))
     }
 
     /// One sample.
@@ -58,27 +61,42 @@ impl<'a> HistoryFiles<'a> {
     pub fn finish(self, whole: bool) -> Outcome<[PathBuf; 2]> {
         let Self { folder, csv, log, .. } = self;
         let keep = |file: io::Result<BufWriter<File>>, [growing, whole_name]: [&str; 2]| {
-            let path = folder.file(growing);
-            let kept = file.and_then(|file| {
+            let ended = file.and_then(|file| {
                 // A full disk may only be noticed when the data leave the cache.
-                file.into_inner().map_err(io::IntoInnerError::into_error)?.sync_all()?;
-                let name = folder.file(if whole { whole_name } else { growing });
-                fs::rename(&path, &name).map(|()| name)
+                file.into_inner().map_err(io::IntoInnerError::into_error)?.sync_all()
             });
-            kept.map_err(|error| unwritten(&path, &error))
+            ended.map_err(|error| unwritten(&folder.file(growing), &error))?;
+            folder.keep(growing, if whole { whole_name } else { growing })
         };
         // Both are ended, whatever becomes of the first.
         let (csv, log) = (keep(Ok(csv), CSV), keep(log.finish(), LOG));
-        csv.and_then(|csv| Ok([csv, log?])).inspect_err(|_| remove_empty(folder))
+        csv.and_then(|csv| Ok([csv, log?])).map_err(|failure| left(folder, failure))
+    }
+
+    /// A failure of the run, with what is left of its history, which is ended as well as it can be.
+    pub fn told(self, failure: Failure) -> Failure {
+        let folder = self.folder;
+        // The failure of the run says more than one of its files.
+        let _ = self.finish(false);
+        left(folder, failure)
     }
 }
 
-/// Where nothing could be written no file is left behind either.
-fn remove_empty(folder: &Folder) {
+/// A failure with the help of where what was written until then is. Where nothing could be written no file is left behind.
+fn left(folder: &Folder, failure: Failure) -> Failure {
+    let mut kept = Vec::new();
     for path in [CSV, LOG].map(|[growing, _]| folder.file(growing)) {
-        if fs::metadata(&path).is_ok_and(|data| data.len() == 0) {
+        match fs::metadata(&path) {
+            Ok(data) if data.len() > 0 => kept.push(path.display().to_string()),
             // It was ours, and it was empty: nothing is lost if it stays.
-            let _ = fs::remove_file(&path);
+            Ok(_) => drop(fs::remove_file(&path)),
+            Err(_) => {}
         }
     }
+    if kept.is_empty() {
+        return failure;
+    }
+    let kept = format!("what was written until then is in {}", kept.join(" and "));
+    let help = failure.help().map_or_else(|| kept.clone(), |help| format!("{help}\n{kept}"));
+    failure.with_help(help)
 }

@@ -39,13 +39,11 @@ use summary::SimulationSummary;
 use joint_file::named;
 use report::document::{html, terminal};
 use report::failure::{Failure, Outcome};
-use report::folder;
-use report::folder::Folder;
+use report::folder::{self, Folder};
 use report::interruption::InOrder;
 use report::output;
 use report::progress::Progress;
 use report::provenance::VERSION;
-use report::write::write_text;
 
 /// Samples that are kept at most unless `--every` says how many ticks apart they are.
 const USUAL_SAMPLES: u32 = 200_000;
@@ -72,16 +70,18 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<Simulated> {
     let scheme = arguments.scheme.shown();
     let profile = arguments.motion.profile.as_deref().unwrap_or_default();
     folder::check_files(&[("json", arguments.json.as_deref())], &[&arguments.file, Path::new(profile)])?;
-    let folder = Folder::prepare(arguments.out.as_deref(), "sim", &plan.parameters().name)?;
+    let folder = Folder::prepare(arguments.out.as_deref(), "sim", &plan.parameters().name, &files::ALL)?;
     // A history that was begun is finished properly.
     let in_order = InOrder::begin();
     let mut files = HistoryFiles::begin(&folder, plan.parameters(), remarks(arguments, &plan, scheme))?;
     progress.run("simulating", plan.run.ticks);
     let result = SimulationResult::of(&plan, scheme, every, !arguments.no_energy, &mut files, progress);
     let stopped = matches!(&result, Ok(SimulationResult { end: RunEnd::Stopped, .. }));
-    let history = files.finish(result.is_ok() && !stopped);
-    let mut result = result?;
-    let [csv, log] = history?;
+    let mut result = match result {
+        Ok(result) => result,
+        Err(failure) => return Err(files.told(failure)),
+    };
+    let [csv, log] = files.finish(!stopped)?;
     if stopped {
         let time = f64::from(result.ticks) / f64::from(plan.run.tick_rate);
         return Err(Failure::interrupted(format!("stopped by the user at {time:.4} s of {:.4} s", plan.duration()))
@@ -94,11 +94,15 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<Simulated> {
     progress.stage("drawing");
     let figures = SimulationSummary::of(&result, &arguments.motion.set);
     let document = page::document(&result, &figures, &replay(arguments));
-    let report = folder.file("report.html");
-    write_text(&report, &html(&document))?;
+    folder.write_text(files::REPORT, &html(&document))?;
     let json = output::json("figures", &figures)?;
-    write_text(&folder.file("figures.json"), &json)?;
-    Ok(Simulated { summary: terminal(&document), figures: json, report, history: [csv, log] })
+    folder.write_text(files::FIGURES, &json)?;
+    Ok(Simulated {
+        summary: terminal(&document),
+        figures: json,
+        report: folder.file(files::REPORT),
+        history: [csv, log],
+    })
 }
 
 /// Ticks between two kept samples.

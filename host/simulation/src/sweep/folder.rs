@@ -8,7 +8,7 @@ use super::grid::Grid;
 use super::journal::{self, Points};
 use super::manifest::Manifest;
 use report::failure::{Failure, Outcome};
-use report::folder;
+use report::folder::{self, Folder};
 use report::write::write_text;
 
 /// The manifest.
@@ -19,15 +19,16 @@ pub const RESULT: &str = "points.csv";
 const NAMED: usize = 3;
 
 /// A sweep's folder.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug)]
 pub struct SweepFolder {
-    path: PathBuf,
+    folder: Folder,
 }
 
 impl SweepFolder {
     /// Makes the folder of a sweep, or finds that it is there; refuses any other sweep's and any other folder.
     pub fn prepare(path: &Path, manifest: &Manifest) -> Outcome<Self> {
         folder::make(path)?;
+        // What else is in it comes before whose a result is: a sweep has its folder for itself.
         let foreign = foreign(path)?;
         // Checked after the listing: this file is always made before a journal.
         let there = path.join(MANIFEST).exists();
@@ -42,10 +43,12 @@ impl SweepFolder {
                     "name another folder by --out DIR, or repeat the command of that sweep to go on with it",
                 ));
             }
-        } else {
+        }
+        let folder = Folder::prepare(Some(path), "sweep", &manifest.joint, &[RESULT])?;
+        if !there {
             write_text(&path.join(MANIFEST), &manifest.text()?)?;
         }
-        Ok(Self { path: path.to_owned() })
+        Ok(Self { folder })
     }
 
     /// A folder that must hold a sweep.
@@ -59,20 +62,21 @@ impl SweepFolder {
                 .with_help("name the folders that `joint sweep --out DIR` has made"));
         }
         let manifest = Manifest::read(&path.join(MANIFEST))?;
-        Ok((Self { path: path.to_owned() }, manifest))
+        // It is read only.
+        Ok((Self { folder: Folder::choose(Some(path), "sweep", &manifest.joint, &[])? }, manifest))
     }
 
     /// The folder.
     pub fn path(&self) -> &Path {
-        &self.path
+        self.folder.path()
     }
 
     /// Journals in it, in the order of their names.
     pub fn journals(&self) -> Outcome<Vec<PathBuf>> {
-        let mut journals: Vec<PathBuf> = entries(&self.path)?
+        let mut journals: Vec<PathBuf> = entries(self.path())?
             .into_iter()
             .filter(|name| journal::shard_of(name).is_some())
-            .map(|name| self.path.join(name))
+            .map(|name| self.folder.file(&name))
             .collect();
         journals.sort();
         Ok(journals)
@@ -99,9 +103,8 @@ impl SweepFolder {
 
     /// Writes the result, all points in their order, and says where it is.
     pub fn write_result(&self, manifest: &Manifest, grid: &Grid, points: &Points) -> Outcome<String> {
-        let path = self.path.join(RESULT);
-        write_text(&path, &result(manifest, grid, points))?;
-        Ok(format!("{} points: {}\n", grid.points, path.display()))
+        self.folder.write_text(RESULT, &result(manifest, grid, points))?;
+        Ok(format!("{} points: {}\n", grid.points, self.folder.file(RESULT).display()))
     }
 }
 

@@ -52,6 +52,19 @@ fn a_small_study_leaves_report_record_pictures_and_tables() {
 }
 
 #[test]
+fn what_the_user_has_put_into_the_folder_is_not_written_over() {
+    for name in ["report.html", "study.json", "stiffness.csv", "bifurcation-mine.svg", "attractor-mine.svg"] {
+        let folder = tempfile::tempdir().expect("a folder");
+        fs::write(folder.path().join(name), "mine").expect("room");
+        let output = joint_paper(folder.path(), &["paper", "--b", "10", "--out", "."]);
+        assert_eq!(output.status.code(), Some(2), "{name}");
+        assert!(stderr(&output).contains(&format!("{name} was not written by this command")), "{}", stderr(&output));
+        assert_eq!(fs::read_to_string(folder.path().join(name)).expect("still there"), "mine");
+        assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 1, "nothing was written");
+    }
+}
+
+#[test]
 fn chaos_where_a_period_was_asked_for_is_said_and_the_report_kept() {
     let folder = tempfile::tempdir().expect("a folder");
     let words = ["paper", "--b", "120", "--grid", "120:120:1", "--expect", "3", "--out", "out"];

@@ -1,0 +1,86 @@
+//! All files of a folder and of those in it.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use same_records::{Options, compare};
+
+use crate::writers::Writer;
+
+/// The list in which a folder says which files are ours.
+pub const LIST: &str = ".written-by-joint";
+
+/// Contents by path.
+pub type Tree = BTreeMap<String, Vec<u8>>;
+
+/// Everything below a folder, hidden files too.
+pub fn tree(folder: &Path) -> Tree {
+    let mut found = Tree::new();
+    for entry in fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+        if path.is_dir() {
+            found.extend(tree(&path).into_iter().map(|(inner, bytes)| (format!("{name}/{inner}"), bytes)));
+        } else {
+            found.insert(name, fs::read(&path).expect("a file"));
+        }
+    }
+    found
+}
+
+/// The results in a tree, without the list.
+pub fn results(mut tree: Tree) -> Tree {
+    tree.remove(LIST);
+    tree
+}
+
+/// Whether two files of a writer say the same, but for dates and the like.
+pub fn say_the_same(writer: Writer, name: &str, one: &[u8], other: &[u8]) -> bool {
+    if one == other {
+        return true;
+    }
+    if writer == Writer::Board {
+        return say_the_same_of_a_board(name, one, other);
+    }
+    if name.starts_with("journal-") {
+        // Points come in as threads finish them.
+        return sorted(one) == sorted(other);
+    }
+    let place = tempfile::tempdir().expect("a folder");
+    let [old, new] = [("old", one), ("new", other)].map(|(side, bytes)| {
+        let path = place.path().join(side).join(name);
+        fs::create_dir_all(path.parent().expect("a folder")).expect("room");
+        fs::write(&path, bytes).expect("room");
+        path
+    });
+    compare(&old, &new, Options::default()).is_ok_and(|found| found.all_same())
+}
+
+/// A board has a clock of its own, and what came when is told: the motion is the same, and pages and logs are whole.
+fn say_the_same_of_a_board(name: &str, one: &[u8], other: &[u8]) -> bool {
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    let value = |bytes: &[u8], key: &str| Some(serde_json::from_slice::<serde_json::Value>(bytes).ok()?[key].clone());
+    match name {
+        "record.json" => ["samples", "completeness"]
+            .iter()
+            .all(|key| value(one, key).is_some_and(|found| Some(found) == value(other, key))),
+        "report.html" => text(one).trim_end().ends_with("</html>"),
+        _ => text(one).lines().count() == text(other).lines().count(),
+    }
+}
+
+fn sorted(journal: &[u8]) -> Vec<&[u8]> {
+    let mut lines: Vec<&[u8]> = journal.split(|byte| *byte == b'\n').collect();
+    lines.sort_unstable();
+    lines
+}
+
+/// Asserts that two trees have the same files, and that they say the same.
+#[track_caller]
+pub fn assert_same(writer: Writer, found: &Tree, expected: &Tree, when: &str) {
+    assert_eq!(found.keys().collect::<Vec<_>>(), expected.keys().collect::<Vec<_>>(), "{when}");
+    for (name, bytes) in found {
+        assert!(say_the_same(writer, name, bytes, &expected[name]), "{when}: {name} says something else");
+    }
+}

@@ -1,0 +1,123 @@
+//! Every command that writes files, as short as it can be. The file of an image, which takes a compiler, is not among
+//! them.
+
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
+
+use crate::command::{Ended, joint, text};
+use crate::pseudo_terminal;
+use crate::thread_board::{self, Misbehaviour};
+
+/// What is written from: made once, and small.
+static INPUTS: LazyLock<PathBuf> = LazyLock::new(inputs);
+
+/// A test that is over in a moment.
+const TEST: &str = "duration_s = 0.2\nsettle_s = 0.1\nprofile = \"T2\"\n[controller]\nrivals = []\n";
+const SWEEP: [&str; 6] = ["sweep", "paper", "--vary", "half_backlash_um=0:150:5", "--duration", "0.01"];
+
+fn inputs() -> PathBuf {
+    // A folder of the build: what is static does not go away by itself.
+    let inputs = Path::new(env!("CARGO_TARGET_TMPDIR")).join("inputs-of-writers");
+    let path = |name: &str| inputs.join(name);
+    let _ = fs::remove_dir_all(&inputs);
+    fs::create_dir_all(&inputs).expect("room");
+    fs::write(path("test.toml"), TEST).expect("room");
+    joint(&["identify", text(&path("log.csv")), "--simulate"]).well();
+    for shard in ["1/2", "2/2"] {
+        joint(&[&SWEEP[..], &["--shard", shard, "--out", text(&path("shards"))]].concat()).well();
+    }
+    fs::remove_file(path("shards/points.csv")).expect("the last shard has written it");
+    inputs
+}
+
+/// A command that writes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Writer {
+    Sim,
+    Sweep,
+    Merge,
+    Tests,
+    Board,
+    Identify,
+    Simulate,
+    Check,
+    Budget,
+}
+
+/// A command line, and the port of a board that stays open as long as it runs.
+pub struct Line {
+    pub words: Vec<String>,
+    _port: Option<File>,
+}
+
+impl Writer {
+    /// Those that write to the folder of `--out`.
+    pub const TO_FOLDERS: [Self; 6] = [Self::Sim, Self::Sweep, Self::Merge, Self::Tests, Self::Board, Self::Identify];
+
+    /// Those that take a second and more, of which a short run makes fewer.
+    pub fn is_slow(self) -> bool {
+        matches!(self, Self::Identify | Self::Simulate)
+    }
+
+    /// The command that writes to a folder, or to a file in it.
+    pub fn line(self, out: &Path) -> Line {
+        let input = |name: &str| INPUTS.join(name).to_string_lossy().into_owned();
+        let file = |name: &str| out.join(name).to_string_lossy().into_owned();
+        let port = (self == Self::Board).then(|| board(&out.with_extension("port")));
+        let words: Vec<String> = match self {
+            Self::Sim => words(&["sim", "l1", "--duration", "0.02", "--no-energy"]),
+            Self::Sweep => words(&SWEEP),
+            Self::Merge => words(&["merge", &input("shards")]),
+            Self::Tests => words(&["hil", &input("test.toml"), "--host"]),
+            Self::Board => {
+                let path = out.with_extension("port");
+                words(&["hil", "q1", "--port", text(&path), "--no-build", "--no-reference", "--duration", "0.1"])
+            }
+            Self::Identify => words(&["identify", &input("log.csv")]),
+            Self::Simulate => words(&["identify", &file("log.csv"), "--simulate"]),
+            Self::Check => words(&["check", "q1", "--json", &file("check.json")]),
+            Self::Budget => words(&["budget", "q1", "--json", &file("budget.json")]),
+        };
+        let mut line = Line { words, _port: port };
+        if Self::TO_FOLDERS.contains(&self) {
+            line.words.extend(["--out".to_owned(), text(out).to_owned()]);
+        }
+        line
+    }
+
+    /// Runs it to its end.
+    pub fn run(self, out: &Path) -> Ended {
+        joint(&self.line(out).words())
+    }
+}
+
+impl Line {
+    pub fn words(&self) -> Vec<&str> {
+        self.words.iter().map(String::as_str).collect()
+    }
+}
+
+fn words(words: &[&str]) -> Vec<String> {
+    words.iter().map(ToString::to_string).collect()
+}
+
+/// A board of its own for every run, with a port of one name for all of them, since records tell it.
+fn board(port: &Path) -> File {
+    let (master, slave, path) = pseudo_terminal::pair();
+    let _ = fs::remove_file(port);
+    std::os::unix::fs::symlink(path, port).expect("room");
+    // The thread ends with the test's process: a pseudo-terminal does not end while one side is open.
+    drop(thread_board::start(master, Misbehaviour::None));
+    slave
+}
+
+/// An empty folder for results below another.
+pub fn empty(place: &Path) -> PathBuf {
+    let out = place.join("out");
+    if out.exists() {
+        fs::remove_dir_all(&out).expect("it is ours");
+    }
+    fs::create_dir(&out).expect("room");
+    out
+}

@@ -1,0 +1,263 @@
+//! Which files of a folder are ours. A list in the folder has a line for every file that a command has put there, with
+//! its SHA-256: a file is ours if it is still what such a line says, so what a user has put there or changed is not. A
+//! line is in the list before its file has its name, so that a kill between the two leaves nothing that nobody owns.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs::{self, File};
+use std::io::{self, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use sha2::{Digest, Sha256};
+
+use crate::failure::{Failure, Outcome};
+use crate::write::unwritten;
+
+/// The list, hidden since it is no result.
+pub const LIST: &str = ".written-by-joint";
+/// How it begins.
+const HEAD: &str = "# files that joint has written here, each with its SHA-256; it never writes over any other";
+/// In place of a digest: a file that grows while a run goes on is ours until it is whole.
+const GROWING: &str = "growing";
+/// In place of a digest: it grows no longer.
+const GROWN: &str = "grown";
+
+/// The list of a folder.
+#[derive(Debug)]
+pub struct OwnFiles {
+    folder: PathBuf,
+    list: Mutex<List>,
+}
+
+#[derive(Debug, Default)]
+struct List {
+    digests: BTreeMap<String, BTreeSet<String>>,
+    growing: BTreeSet<String>,
+    /// Names that this run has given.
+    given: BTreeSet<String>,
+    /// Where lines are added, once the folder is written to.
+    file: Option<File>,
+}
+
+/// Whose a file is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Owner {
+    /// Written by a command, and still as it was written.
+    Ours,
+    /// Written by a command and changed since.
+    Changed,
+    /// Of somebody else.
+    Foreign,
+}
+
+impl OwnFiles {
+    /// Reads the list of a folder, if there is one; writes nothing.
+    pub fn read(folder: &Path) -> Outcome<Self> {
+        let text = match fs::read(folder.join(LIST)) {
+            Ok(bytes) => String::from_utf8_lossy(&bytes).into_owned(),
+            Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => String::new(),
+            Err(error) => return Err(no_list(folder, &error)),
+        };
+        if !is_begun(&text) && !is_whole(&text) {
+            return Err(no_list(folder, &"it is of somebody else"));
+        }
+        let mut list = List::default();
+        for line in text.lines().skip(1) {
+            list.take(line);
+        }
+        Ok(Self { folder: folder.to_owned(), list: Mutex::new(list) })
+    }
+
+    /// Begins or goes on with the list on disk. Where not even this can be written, nothing else can.
+    pub fn open(&self) -> Outcome<()> {
+        let path = self.folder.join(LIST);
+        let open = || {
+            let mut file = File::options().append(true).create(true).open(&path)?;
+            let text = fs::read_to_string(&path)?;
+            if is_begun(&text) {
+                if !text.is_empty() {
+                    // A disk that was full has cut it short.
+                    file.set_len(0)?;
+                }
+                file.write_all(HEAD.as_bytes())?;
+            }
+            Ok(file)
+        };
+        let file = open().map_err(|error: io::Error| {
+            if fs::metadata(&path).is_ok_and(|data| data.len() == 0) {
+                // It was ours, and it was empty: nothing is lost if it stays.
+                let _ = fs::remove_file(&path);
+            }
+            unwritten(&path, &error)
+        })?;
+        self.list().file = Some(file);
+        Ok(())
+    }
+
+    /// Whose a file of the folder is.
+    pub fn owner(&self, name: &str) -> Owner {
+        let list = self.list();
+        if list.growing.contains(&key(name)) {
+            return Owner::Ours;
+        }
+        let Some(digests) = list.digests.get(&key(name)) else { return Owner::Foreign };
+        let path = self.folder.join(name);
+        // Nothing but a file is read: a pipe would never end.
+        let file = fs::metadata(&path).is_ok_and(|data| data.is_file());
+        match file.then(|| digest(&path)) {
+            Some(Ok(found)) if digests.contains(&found) => Owner::Ours,
+            _ => Owner::Changed,
+        }
+    }
+
+    /// Says that a file, which lies ready under another name, will have this one.
+    pub fn claim(&self, name: &str, ready: &Path) -> io::Result<()> {
+        let digest = digest(ready)?;
+        self.list().given.insert(key(name));
+        self.add(&digest, name)
+    }
+
+    /// Whether this run has written a file.
+    pub fn is_of_this_run(&self, name: &str) -> bool {
+        self.list().given.contains(&key(name))
+    }
+
+    /// Says that a file begins to grow.
+    pub fn claim_growing(&self, name: &str) -> io::Result<()> {
+        self.add(GROWING, name)
+    }
+
+    /// Says that a file grows no longer.
+    pub fn end_growing(&self, name: &str) -> io::Result<()> {
+        self.add(GROWN, name)
+    }
+
+    fn add(&self, what: &str, name: &str) -> io::Result<()> {
+        let mut list = self.list();
+        let line = format!("{what}  {}", key(name));
+        if !list.take(&line) {
+            return Ok(());
+        }
+        // In one piece, behind the end of a line: one that was cut short spoils no other.
+        list.file.as_mut().map_or(Ok(()), |file| file.write_all(format!("\n{line}").as_bytes()))
+    }
+
+    fn list(&self) -> MutexGuard<'_, List> {
+        // What it holds is whole between any two changes.
+        self.list.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl List {
+    /// Takes what a line says; whether it is new.
+    fn take(&mut self, line: &str) -> bool {
+        match line.split_once("  ") {
+            Some((GROWING, name)) => self.growing.insert(name.to_owned()),
+            Some((GROWN, name)) => self.growing.remove(name),
+            Some((digest, name)) => self.digests.entry(name.to_owned()).or_default().insert(digest.to_owned()),
+            None => false,
+        }
+    }
+}
+
+/// A name as it stands in a line.
+fn key(name: &str) -> String {
+    name.replace('\n', "\\n")
+}
+
+fn is_whole(text: &str) -> bool {
+    text.starts_with(HEAD)
+}
+
+/// Whether a list has not got beyond its first line.
+fn is_begun(text: &str) -> bool {
+    text.len() < HEAD.len() && HEAD.starts_with(text)
+}
+
+fn digest(path: &Path) -> io::Result<String> {
+    let mut hash = Sha256::new();
+    io::copy(&mut File::open(path)?, &mut hash)?;
+    Ok(hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect())
+}
+
+fn no_list(folder: &Path, why: &dyn std::fmt::Display) -> Failure {
+    let list = folder.join(LIST);
+    Failure::new(format!("cannot tell whose files these are by {}: {why}", list.display()))
+        .with_help("name another folder by --out DIR, or move this file elsewhere; it is left as it is")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn written(folder: &Path) -> OwnFiles {
+        let own = OwnFiles::read(folder).expect("no list, or one of ours");
+        own.open().expect("room");
+        own
+    }
+
+    fn owner(folder: &Path, name: &str) -> Owner {
+        OwnFiles::read(folder).expect("a list").owner(name)
+    }
+
+    #[test]
+    fn a_file_is_ours_as_long_as_it_is_what_was_written() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a b.csv");
+        let own = written(folder.path());
+        fs::write(&path, "1").expect("room");
+        assert_eq!(own.owner("a b.csv"), Owner::Foreign);
+        own.claim("a b.csv", &path).expect("room");
+        assert_eq!(owner(folder.path(), "a b.csv"), Owner::Ours);
+        fs::write(&path, "2").expect("room");
+        assert_eq!(owner(folder.path(), "a b.csv"), Owner::Changed);
+    }
+
+    #[test]
+    fn a_growing_file_is_ours_until_it_is_whole() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let own = written(folder.path());
+        own.claim_growing("a.csv").expect("room");
+        fs::write(folder.path().join("a.csv"), "1").expect("room");
+        assert_eq!(owner(folder.path(), "a.csv"), Owner::Ours);
+        own.end_growing("a.csv").expect("room");
+        assert_eq!(owner(folder.path(), "a.csv"), Owner::Foreign);
+    }
+
+    #[test]
+    fn a_list_cut_anywhere_keeps_its_whole_lines_and_can_be_gone_on_with() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let names = ["a", "b", "c"];
+        names.iter().for_each(|name| fs::write(folder.path().join(name), name).expect("room"));
+        let claim = |name: &str| written(folder.path()).claim(name, &folder.path().join(name)).expect("room");
+        claim("a");
+        let kept = fs::read(folder.path().join(LIST)).expect("a list").len();
+        claim("b");
+        let whole = fs::read(folder.path().join(LIST)).expect("a list");
+        for cut in 0..=whole.len() {
+            fs::write(folder.path().join(LIST), &whole[..cut]).expect("room");
+            claim("c");
+            let ours = names.map(|name| owner(folder.path(), name) == Owner::Ours);
+            assert_eq!(ours, [cut >= kept, cut == whole.len(), true], "cut at {cut}");
+        }
+    }
+
+    #[test]
+    fn what_is_said_twice_stands_once() {
+        let folder = tempfile::tempdir().expect("a folder");
+        fs::write(folder.path().join("a"), "1").expect("room");
+        let claim = || written(folder.path()).claim("a", &folder.path().join("a")).expect("room");
+        claim();
+        let before = fs::read(folder.path().join(LIST)).expect("a list");
+        claim();
+        assert_eq!(fs::read(folder.path().join(LIST)).expect("a list"), before);
+    }
+
+    #[test]
+    fn a_list_of_somebody_else_is_refused() {
+        let folder = tempfile::tempdir().expect("a folder");
+        fs::write(folder.path().join(LIST), "my thesis").expect("room");
+        assert!(OwnFiles::read(folder.path()).is_err());
+        assert_eq!(fs::read_to_string(folder.path().join(LIST)).expect("still there"), "my thesis");
+    }
+}

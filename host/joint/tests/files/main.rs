@@ -3,6 +3,8 @@
 
 #[path = "../command/mod.rs"]
 mod command;
+mod full_disks;
+mod kills;
 #[path = "../pseudo_terminal/mod.rs"]
 mod pseudo_terminal;
 #[allow(dead_code, reason = "every test binary uses its own part of it")]

@@ -1,0 +1,132 @@
+//! A command that is killed at any moment leaves no half-written file under a final name, and the same command run again
+//! gives what a run that nobody has killed gives, and clears away what was left.
+//!
+//! The short run has fixed seeds; `KILLS=1000` makes as many of each command, from a seed that is printed and that `KILLS_SEED`
+//! brings again.
+
+use std::path::Path;
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+
+use scenario::random::RandomStream;
+
+use crate::command::{folder, start, wait};
+use crate::tree::{LIST, Tree, assert_same, results, say_the_same, tree};
+use crate::writers::{Writer, empty};
+
+/// Kills of each command in the short run, and of those that are slow.
+const KILLS: u32 = 6;
+const SLOW_KILLS: u32 = 1;
+
+fn asked(name: &str) -> Option<u64> {
+    std::env::var(name).ok().map(|value| value.parse().unwrap_or_else(|_| panic!("{name}={value} is no whole number")))
+}
+
+/// Kills of each command, and the seed of their moments.
+fn extent(writer: Writer) -> (u32, u64) {
+    let now = || SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
+    match asked("KILLS") {
+        None => (if writer.is_slow() { SLOW_KILLS } else { KILLS }, asked("KILLS_SEED").unwrap_or(1)),
+        Some(kills) => (kills as u32, asked("KILLS_SEED").unwrap_or_else(now)),
+    }
+}
+
+/// A file that is not yet whole, by its name: it is no result of anybody.
+fn is_unfinished(name: &str) -> bool {
+    let last = name.rsplit('/').next().unwrap_or(name);
+    let temporary = last.starts_with('.') && last.contains(".joint-") && last.ends_with(".tmp");
+    // A journal is whole up to its last line, and is gone on with.
+    temporary || last == LIST || last.starts_with("history.partial.") || last.starts_with("journal-")
+}
+
+fn assert_none_is_half_written(writer: Writer, left: &Tree, whole: &Tree, when: &str) {
+    for (name, bytes) in left.iter().filter(|(name, _)| !is_unfinished(name)) {
+        let expected = whole.get(name).unwrap_or_else(|| panic!("{when}: {name} is no file of a whole run"));
+        assert!(say_the_same(writer, name, bytes, expected), "{when}: {name} is half written");
+    }
+}
+
+/// Runs a command and kills it after a time; says whether it was still running.
+fn killed(writer: Writer, out: &Path, after: Duration) -> bool {
+    let line = writer.line(out);
+    let mut child = start(&line.words());
+    std::thread::sleep(after);
+    child.kill().expect("it was started here");
+    wait(child).code.is_none()
+}
+
+fn is_killed_at_any_moment(writer: Writer) {
+    let (kills, seed) = extent(writer);
+    println!("{writer:?}: {kills} kills, KILLS_SEED={seed}");
+    let mut stream = RandomStream::new(seed, &format!("{writer:?}"));
+    let place = folder();
+    let out = empty(place.path());
+    if !writer.is_slow() {
+        // The first run finds files of the system that the others have at hand.
+        writer.run(&out).well();
+    }
+    let out = empty(place.path());
+    let begin = Instant::now();
+    writer.run(&out).well();
+    let mut long = begin.elapsed();
+    let whole = results(tree(&out));
+    let mut amidst = 0;
+    // A machine that has become faster since must not end them all before.
+    for kill in 0..3 * kills {
+        if amidst == kills {
+            break;
+        }
+        // Half of them have nothing in the folder, and half a whole run.
+        let out = if kill % 2 == 0 || writer == Writer::Simulate { empty(place.path()) } else { out.clone() };
+        let after = long.mul_f64(1.05 * stream.uniform());
+        let when = format!("{writer:?}, kill {kill}, after {after:?}, KILLS_SEED={seed}");
+        match killed(writer, &out, after) {
+            true => amidst += 1,
+            false => long = long.mul_f64(0.8),
+        }
+        assert_none_is_half_written(writer, &tree(&out), &whole, &when);
+        // A log is never written over: there it is whole.
+        if writer != Writer::Simulate || !out.join("log.csv").exists() {
+            let ended = writer.run(&out);
+            assert_eq!(ended.code, Some(0), "{when}: {ended:?}");
+        }
+        assert_same(writer, &results(tree(&out)), &whole, &when);
+    }
+    assert!(amidst > 0, "{writer:?}: none of the kills came before the end");
+}
+
+#[test]
+fn a_killed_simulation_leaves_nothing_half_written() {
+    is_killed_at_any_moment(Writer::Sim);
+}
+
+#[test]
+fn a_killed_sweep_leaves_nothing_half_written() {
+    is_killed_at_any_moment(Writer::Sweep);
+    is_killed_at_any_moment(Writer::Merge);
+}
+
+#[test]
+fn killed_tests_leave_nothing_half_written() {
+    is_killed_at_any_moment(Writer::Tests);
+}
+
+#[test]
+fn a_killed_run_on_a_board_leaves_nothing_half_written() {
+    is_killed_at_any_moment(Writer::Board);
+}
+
+#[test]
+fn a_killed_identification_leaves_nothing_half_written() {
+    is_killed_at_any_moment(Writer::Identify);
+}
+
+#[test]
+fn a_killed_recording_leaves_nothing_half_written() {
+    is_killed_at_any_moment(Writer::Simulate);
+}
+
+#[test]
+fn killed_figures_as_json_are_whole_or_not_there() {
+    is_killed_at_any_moment(Writer::Check);
+    is_killed_at_any_moment(Writer::Budget);
+}

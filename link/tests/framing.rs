@@ -1,7 +1,7 @@
 //! Frames on a bad line: what was sent arrives, or is counted as dropped, and the receiver is in step again at the next
 //! zero byte.
 
-use link::framing::{MAX_FRAME, Receiver, encode};
+use link::framing::{MAX_FRAME, Receiver, encode, sealed, unsealed, unsealed_within_a_tick};
 use link::messages::{COMMANDS_PER_SCHEDULE, Command, RunMode, RunSettings, Schedule, ToBoard};
 use link::scanner::{Scanned, Scanner};
 use proptest::collection::vec;
@@ -164,6 +164,28 @@ fn a_number_that_is_filled_up_makes_a_bad_frame() {
         assert_eq!(receive(&mut receiver, &encode(&Raw(short)).unwrap()), [message], "{short:?}");
         assert!(receive(&mut receiver, &encode(&Raw(long)).unwrap()).is_empty(), "{long:?}");
         assert_eq!(receiver.dropped().frames, 1);
+    }
+}
+
+#[test]
+fn a_number_that_is_filled_up_makes_a_bad_frame_of_fixed_length() {
+    for (bytes, good) in
+        [(&[0, 7][..], true), (&[0, 0x87, 0], false), (&[0x80, 0, 7], false), (&[0, 0x87, 0x80, 0], false)]
+    {
+        let mut frame = [0; 32];
+        sealed(&Raw(bytes), &mut frame).unwrap();
+        let message = ToBoard::Hello { protocol: 7 };
+        assert_eq!(unsealed(&frame), good.then_some(message), "{bytes:?}");
+    }
+}
+
+#[test]
+fn what_is_not_zero_behind_a_message_makes_a_bad_frame_of_fixed_length() {
+    for (bytes, good) in [(&[0, 7, 0][..], true), (&[0, 7, 1], false), (&[0, 7, 0, 0, 1], false)] {
+        let mut frame = [0; 32];
+        sealed(&Raw(bytes), &mut frame).unwrap();
+        assert_eq!(unsealed::<ToBoard>(&frame).is_some(), good, "{bytes:?}");
+        assert!(unsealed_within_a_tick::<ToBoard>(&frame).is_some(), "{bytes:?}");
     }
 }
 

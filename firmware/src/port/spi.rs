@@ -4,7 +4,7 @@
 
 use embedded_hal::spi::SpiDevice;
 use link::controller::{Answered, Exchange};
-use link::framing::{sealed, unsealed};
+use link::framing::{sealed, unsealed, unsealed_within_a_tick};
 use model_core::compensation::Command;
 use model_core::controller::Answer;
 use model_core::observer::Samples;
@@ -76,7 +76,7 @@ impl<P: ControllerPort> SpiGuest<P> {
     /// Works on a frame; the answer is for the next transfer. A damaged frame changes nothing and has no answer.
     pub fn answer(&mut self, frame: &Frame) -> Option<Frame> {
         let mut next = [0; FRAME_BYTES];
-        let exchange = unsealed::<Exchange>(frame)?;
+        let exchange = unsealed_within_a_tick::<Exchange>(frame)?;
         if exchange.tick == 0 {
             self.controller.reset();
             self.digest = model_core::numbers::digest::START;

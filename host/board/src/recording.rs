@@ -91,18 +91,25 @@ impl Recording {
     }
 
     fn take_samples(&mut self, batch: SampleBatch) {
-        self.traffic.lost_batches += u32::from(batch.sequence.wrapping_sub(self.next_batch));
+        let Some(lost) = missing(self.next_batch, batch.sequence) else { return };
+        self.traffic.lost_batches += lost;
         self.next_batch = batch.sequence.wrapping_add(1);
         self.samples.extend(batch.samples);
     }
 
     fn take_log(&mut self, log: &Log) {
-        if let Some(next) = self.next_log {
-            self.traffic.lost_logs += u32::from(log.sequence.wrapping_sub(next));
-        }
+        let Some(lost) = missing(self.next_log.unwrap_or(log.sequence), log.sequence) else { return };
+        self.traffic.lost_logs += lost;
         self.next_log = Some(log.sequence.wrapping_add(1));
         self.log.extend_from_slice(&log.bytes);
     }
+}
+
+/// How many numbers are missing before one that has come; none if that one comes once more, as on a line that says a frame
+/// twice: numbers rise, so that one far ahead is one from behind.
+pub fn missing(next: u16, sequence: u16) -> Option<u32> {
+    let gap = sequence.wrapping_sub(next);
+    (gap <= u16::MAX / 2).then_some(gap.into())
 }
 
 /// Schedules that were sent and not yet answered for.
@@ -137,6 +144,24 @@ mod tests {
         FromBoard::Samples(SampleBatch { sequence, samples: heapless::Vec::new() })
     }
 
+    fn batch_of_one(sequence: u16) -> FromBoard {
+        let sample = Sample {
+            tick: sequence.into(),
+            state_digest: 0,
+            carrier_turns: 0,
+            carrier_fraction: 0,
+            carrier_speed: 0.0,
+            motor_offset: 0.0,
+            link_offset: 0.0,
+            gap: 0.0,
+            wind_up: 0.0,
+            deflections: heapless::Vec::new(),
+            contacts: 0,
+            computation: 0,
+        };
+        FromBoard::Samples(SampleBatch { sequence, samples: [sample].into_iter().collect() })
+    }
+
     fn log(sequence: u16) -> FromBoard {
         FromBoard::Log(Log { sequence, bytes: heapless::Vec::from_slice(&[1, 2]).expect("room") })
     }
@@ -153,6 +178,15 @@ mod tests {
         let mut recording = Recording::default();
         recording.take(batch(2));
         assert_eq!(recording.traffic.lost_batches, 2);
+    }
+
+    #[test]
+    fn a_batch_or_a_log_that_comes_twice_is_kept_once_and_nothing_counts_as_lost() {
+        let mut recording = Recording::default();
+        [0, 1, 1, 0, 2].into_iter().for_each(|sequence| recording.take(batch_of_one(sequence)));
+        [5, 6, 6].into_iter().for_each(|sequence| recording.take(log(sequence)));
+        assert_eq!((recording.traffic.lost_batches, recording.samples.len()), (0, 3));
+        assert_eq!((recording.traffic.lost_logs, recording.log.len()), (0, 4));
     }
 
     #[test]

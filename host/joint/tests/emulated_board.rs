@@ -1,6 +1,7 @@
 //! The command on the emulated board: the real firmware, the real emulator, runs that succeed and runs that are cut
 //! off. These tests build images and take a while, so they are left out of a plain `cargo test`.
 
+mod bad_line;
 mod command;
 #[allow(dead_code, reason = "every test binary uses its own part of it")]
 mod learning;
@@ -12,7 +13,13 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command};
 use std::time::Duration;
 
+use bad_line::trial::{Trial, seeds};
+use board::target::board::Board;
+use board::target::emulator::{self, Emulator};
+use board::target::image::{build_image, preset_file};
+use board::target::toolchain::Toolchain;
 use command::{Ended, folder, interrupt, joint, json, start, text, wait, within};
+use link::messages::Role;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -235,4 +242,20 @@ fn a_memory_is_judged_by_the_firmware_of_the_emulated_board() {
 #[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
 fn the_tutorial_prints_what_it_says_on_the_emulated_board() {
     tutorial::follow_the_tutorial(tutorial::Tier::EmulatedBoard);
+}
+
+/// The long form: `PROXY_SEEDS=200`.
+#[test]
+#[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
+fn a_bad_line_costs_what_is_told_and_the_link_is_back_with_the_first_frame() {
+    let say = |line: &str| println!("{line}");
+    let toolchain = Toolchain::prepare(&say).expect("a toolchain for the board");
+    emulator::ensure(&say).expect("an emulator");
+    let file = preset_file("q1");
+    let image = build_image(&toolchain, &file, Board::Stm32f405, Role::Plant, 20_000, &say).expect("an image");
+    let (mut emulator, line) = Emulator::start(&image.elf).expect("a board");
+    // Its clock runs as fast as it can while the host is thinking: no timeout.
+    let trial = Trial::of(line, u32::MAX);
+    seeds(6).for_each(|seed| trial.seed(seed));
+    emulator.check().expect("the board still runs");
 }

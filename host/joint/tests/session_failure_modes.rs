@@ -4,6 +4,7 @@
 #[allow(dead_code, reason = "every test binary uses its own part of it")]
 mod thread_board;
 
+use std::io::{Read, Write};
 use std::os::unix::net::UnixStream;
 use std::time::{Duration, Instant};
 
@@ -13,7 +14,8 @@ use board::session::{BoardHelp, Expected, Session, Supervisor};
 use board::target::board::Board;
 use board::transport::Socket;
 use board::twin::{self, Agreement};
-use link::messages::{Role, RunMode, RunSettings, Trip};
+use link::framing::{Receiver, encode};
+use link::messages::{Role, RunMode, RunSettings, ToBoard, Trip};
 use report::failure::{Failure, Outcome};
 use thread_board::{Misbehaviour, TICK_RATE, joint};
 
@@ -175,6 +177,18 @@ fn a_fault_ends_the_run_in_words() {
     assert!(failure.message().contains("tick 4000"), "{failure}");
     assert_eq!(recording.trips, [Trip::NotFinite { tick: 4_000 }]);
     assert_eq!(failure.exit_code(), 1);
+}
+
+#[test]
+fn half_a_frame_that_hangs_in_a_board_does_not_swallow_the_stop_after_it() {
+    let (ours, mut theirs) = UnixStream::pair().expect("a pair of sockets");
+    (&ours).write_all(&encode(&ToBoard::Statistics { reset: true }).expect("short")[..3]).expect("the line is there");
+    let line = Socket::new(ours, "half a frame").expect("options");
+    Session::new(Box::new(line), Box::new(User(None))).abandon();
+    let (mut bytes, mut receiver) = (Vec::new(), Receiver::new());
+    theirs.read_to_end(&mut bytes).expect("the line is there");
+    let heard = bytes.into_iter().find_map(|byte| receiver.push::<ToBoard>(byte));
+    assert_eq!(heard, Some(ToBoard::Stop));
 }
 
 #[test]

@@ -9,6 +9,7 @@ use link::virtual_joint::{KNOTS_PER_SCHEDULE, Knot, LoopSample};
 use model_core::virtual_joint::fault::{Fault, FixedPoint};
 
 use super::{ANSWER_TIMEOUT, KEEP_ALIVE_INTERVAL, KEEP_ALIVES_IN_FLIGHT, SCHEDULES_IN_FLIGHT, Session};
+use crate::recording::missing;
 use crate::trip;
 use report::failure::{Failure, Outcome};
 
@@ -75,7 +76,8 @@ impl Session<'_> {
                 match message {
                     FromBoard::Accepted(accepted) => board_tick = accepted.tick.max(board_tick),
                     FromBoard::Loop(batch) => {
-                        if batch.sequence != next_batch {
+                        let Some(lost) = missing(next_batch, batch.sequence) else { continue };
+                        if lost > 0 {
                             return Err(Failure::check_failed("samples of the loop were lost on the line")
                                 .with_help("check the line, or run with a larger --decimation"));
                         }

@@ -14,8 +14,10 @@ use report::failure::{Failure, Outcome};
 const IDLE_TIME: Duration = Duration::from_millis(100);
 
 impl Session<'_> {
+    /// A zero byte goes ahead: half a frame that hangs in the board's receiver costs nothing but itself.
     pub(super) fn send(&mut self, message: &ToBoard) -> Outcome<()> {
         let frame = encode(message).map_err(|_| Failure::new("a message to the board is longer than a frame"))?;
+        let frame = [&[0], &frame[..]].concat();
         match self.line.send(&frame) {
             Ok(()) => {
                 self.recording.traffic.sent_bytes += frame.len() as u64;

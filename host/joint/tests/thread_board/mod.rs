@@ -138,7 +138,12 @@ where
         for message in buffer[..count].iter().filter_map(|&byte| receiver.push::<ToBoard>(byte)) {
             scheduled = matches!(message, ToBoard::Schedule(_));
             unheard = 0;
-            misbehaviour.heard(message).iter().for_each(|message| board.send(message));
+            if misbehaviour.changes_what_is_heard() {
+                misbehaviour.heard(message).iter().for_each(|message| board.send(message));
+            }
+        }
+        if !misbehaviour.changes_what_is_heard() {
+            board.send_bytes(&buffer[..count]);
         }
         board.settle();
         let left = board.progress.horizon.load(Relaxed).saturating_sub(board.progress.steps.load(Relaxed));
@@ -153,6 +158,11 @@ where
 }
 
 impl Misbehaviour {
+    /// Whether messages reach the board in another form; otherwise their bytes do, as they came.
+    fn changes_what_is_heard(&self) -> bool {
+        matches!(self, Self::LosesSchedule(_) | Self::LateTorques)
+    }
+
     /// What the board hears of a message.
     fn heard(&self, message: ToBoard) -> Option<ToBoard> {
         match (self, message) {

@@ -1,0 +1,60 @@
+//! Stands between host and board: a thread a direction, at the rate at which the bytes come.
+
+use std::io::{Read, Write};
+use std::net::Shutdown;
+use std::os::unix::net::UnixStream;
+use std::sync::{Arc, Mutex};
+use std::thread;
+
+use super::disturbance::{Direction, Trouble};
+
+/// Both directions; the line is cut when it is dropped.
+pub struct Proxy {
+    ways: [Arc<Mutex<Trouble>>; 2],
+    board: UnixStream,
+}
+
+impl Proxy {
+    /// A good line to a board, and the host's end of it.
+    pub fn before(board: UnixStream) -> (Self, UnixStream) {
+        let (host, ours) = UnixStream::pair().expect("a pair of sockets");
+        let ways = [Direction::ToBoard, Direction::ToHost].map(|way| Arc::new(Mutex::new(Trouble::none(way))));
+        carry(&ours, &board, ways[0].clone());
+        carry(&board, &ours, ways[1].clone());
+        (Self { ways, board }, host)
+    }
+
+    /// The line is as bad as a seed says from now on; in words.
+    pub fn disturb(&self, seed: u64) -> String {
+        let [to_board, to_host] = [0, 1].map(|way| self.ways[way].lock().expect("no panic").begin(seed));
+        format!("to the board:{to_board}; to the host:{to_host}")
+    }
+
+    /// The line is good.
+    pub fn calm(&self) {
+        self.ways.iter().for_each(|way| way.lock().expect("no panic").end());
+    }
+}
+
+impl Drop for Proxy {
+    fn drop(&mut self) {
+        let _ = self.board.shutdown(Shutdown::Both);
+    }
+}
+
+fn carry(from: &UnixStream, to: &UnixStream, trouble: Arc<Mutex<Trouble>>) {
+    let (mut from, mut to) = (from.try_clone().expect("a socket"), to.try_clone().expect("a socket"));
+    thread::spawn(move || {
+        let mut buffer = [0; 4096];
+        while let Ok(count @ 1..) = from.read(&mut buffer) {
+            let pieces = trouble.lock().expect("no panic").pass(&buffer[..count]);
+            for (held_back, bytes) in pieces {
+                thread::sleep(held_back);
+                if to.write_all(&bytes).is_err() {
+                    break;
+                }
+            }
+        }
+        let _ = to.shutdown(Shutdown::Both);
+    });
+}

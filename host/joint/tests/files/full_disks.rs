@@ -16,7 +16,8 @@ const SLOW_LIMITS: [u32; 1] = [64];
 /// What is left of a run that found no room: files of before, whole ones, and what it tells.
 fn assert_all_is_told(writer: Writer, left: &Tree, whole: &Tree, ended: &Ended, when: &str) {
     for (name, bytes) in left {
-        assert!(!bytes.is_empty(), "{when}: {name} is empty: {ended:?}");
+        // A board may have nothing to log.
+        assert!(!bytes.is_empty() || name == "log.txt", "{when}: {name} is empty: {ended:?}");
         // A journal is whole up to its last line.
         if name == LIST || name.starts_with("journal-") {
             continue;

@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::Path;
 
-use crate::command::{Ended, folder, joint_on_a_full_disk, text};
+use crate::command::{Ended, folder, joint_on_a_full_disk_with, text};
 use crate::tree::{LIST, Tree, assert_same, results, say_the_same, tree};
 use crate::writers::{Writer, empty};
 
@@ -63,13 +63,18 @@ fn finds_no_room(writer: Writer) {
         for limit in if slow { &SLOW_LIMITS[..] } else { &LIMITS } {
             let out = if older { out.clone() } else { empty(place.path()) };
             let when = format!("{writer:?}, {limit} KiB, older run: {older}");
-            let ended = joint_on_a_full_disk(*limit, &writer.line(&out).words());
+            let second = folder();
+            let temporary = [("TMPDIR", text(second.path()))];
+            let ended = joint_on_a_full_disk_with(*limit, &writer.line(&out).words(), &temporary);
             if ended.code == Some(0) {
                 break;
             }
             assert!(*limit < LIMITS[LIMITS.len() - 1], "{when}: {ended:?}");
             refusals += 1;
-            ended.refused(&["cannot write", text(&out), "free some space"]);
+            // What had room for its record, which is of no fixed length, says where that is.
+            let kept = writer == Writer::Board && count(second.path()) > 0;
+            let help = if kept { text(second.path()) } else { "free some space" };
+            ended.refused(&["cannot write", text(&out), help]);
             assert_all_is_told(writer, &tree(&out), &whole, &ended, &when);
             if older {
                 assert!(whole.keys().all(|name| tree(&out).contains_key(name)), "{when}: what was there is there");
@@ -103,7 +108,7 @@ fn a_run_on_a_board_leaves_no_empty_second_place() {
     let (out, second) = (empty(place.path()), place.path().join("second"));
     fs::create_dir(&second).expect("room");
     let line = Writer::Board.line(&out);
-    let ended = crate::command::joint_on_a_full_disk_with(1, &line.words(), &[("TMPDIR", text(&second))]);
+    let ended = joint_on_a_full_disk_with(1, &line.words(), &[("TMPDIR", text(&second))]);
     ended.refused(&["cannot write", text(&out), "free some space"]);
     assert_eq!(count(&second), 0, "{ended:?}");
 }

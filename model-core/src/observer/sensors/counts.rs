@@ -84,7 +84,7 @@ impl Counter {
     fn turn<T: Real>(&mut self, table: &EncoderTable<T>, by: i64) {
         let turn = i64::from(table.turn);
         let place = i64::from(self.place).wrapping_add(by);
-        let turns = place.checked_div_euclid(turn).unwrap_or(0);
+        let turns = whole(place, turn);
         self.place = (place - turns * turn) as u32;
         self.turns = self.turns.wrapping_add(turns as i32);
     }
@@ -103,6 +103,17 @@ impl Counter {
     pub fn turns(&self) -> i32 {
         self.turns
     }
+}
+
+/// How often a part goes into units, and what is left of them: downwards, so that none is left below zero. No part at all goes
+/// into none.
+fn whole(units: i64, part: i64) -> i64 {
+    let towards_zero = units.checked_div(part).unwrap_or(0);
+    if towards_zero.wrapping_mul(part) > units { towards_zero.wrapping_sub(1) } else { towards_zero }
+}
+
+fn rest(units: i64, part: i64) -> i64 {
+    units.wrapping_sub(whole(units, part).wrapping_mul(part))
 }
 
 /// From `before` to `now` the shorter way round; both within their range.
@@ -219,7 +230,7 @@ impl Counts {
         let range = i64::from(table.motor.wraps_at.wrapping_sub(1)) + 1;
         let of_range = range.wrapping_mul(table.motor_weight);
         let beyond = if self.implied.is_some() { went } else { self.difference.wrapping_sub(difference) };
-        let ranges = beyond.wrapping_add(of_range / 2).checked_div_euclid(of_range).unwrap_or(0);
+        let ranges = whole(beyond.wrapping_add(of_range / 2), of_range);
         let back = ranges.wrapping_mul(of_range).wrapping_neg();
         self.motor.turn(&table.motor, ranges.wrapping_mul(range).wrapping_neg());
         self.difference = self.difference.wrapping_add(back);
@@ -234,7 +245,7 @@ impl Counts {
         if counts != 0 {
             let by = counts.wrapping_mul(table.motor_weight);
             self.motor.turn(&table.motor, counts.wrapping_neg());
-            self.start = self.start.wrapping_add(by).checked_rem_euclid(table.modulus).unwrap_or(0);
+            self.start = rest(self.start.wrapping_add(by), table.modulus);
             self.difference = self.difference.wrapping_sub(by);
         }
         if self.implied.is_some() {
@@ -253,7 +264,7 @@ impl Counts {
         let beyond =
             i64::from(by).wrapping_mul(table.output_weight).wrapping_sub(self.difference).wrapping_add(implied);
         let of_range = range.wrapping_mul(table.output_weight);
-        let ranges = beyond.wrapping_add(of_range / 2).checked_div_euclid(of_range).unwrap_or(0);
+        let ranges = whole(beyond.wrapping_add(of_range / 2), of_range);
         let went = i64::from(by).wrapping_sub(ranges.wrapping_mul(range)) as i32;
         self.output.advance(&table.output, went);
         went
@@ -265,7 +276,7 @@ impl Counts {
         let absolute = i64::from(self.motor.place)
             .wrapping_mul(table.motor_weight)
             .wrapping_sub(i64::from(self.output.place).wrapping_mul(table.output_weight));
-        let reference = core::mem::replace(&mut self.start, absolute.checked_rem_euclid(table.modulus).unwrap_or(0));
+        let reference = core::mem::replace(&mut self.start, rest(absolute, table.modulus));
         self.difference = 0;
         if self.referred {
             self.refer_to(reference, table);
@@ -286,7 +297,7 @@ impl Counts {
     pub fn refer_to<T: Real>(&mut self, reference: i64, table: &CountTable<T>) {
         self.referred = true;
         if self.output.began {
-            let beyond = self.start.wrapping_sub(reference).checked_rem_euclid(table.modulus).unwrap_or(0);
+            let beyond = rest(self.start.wrapping_sub(reference), table.modulus);
             let beyond = if beyond > table.modulus / 2 { beyond - table.modulus } else { beyond };
             self.difference = self.difference.wrapping_add(beyond);
         }

@@ -77,11 +77,6 @@ impl Subject {
         f64::from(self.rate)
     }
 
-    /// Time by which a set-point is asked for ahead [s].
-    pub fn lead(&self) -> f64 {
-        f64::from(self.compensation.crossing.lead)
-    }
-
     /// Angle of the link between the flanks, and what winds up under the largest torque [rad].
     pub fn lost_motion(&self) -> f64 {
         let backlash = |of: &[f64]| of.iter().copied().fold(f64::INFINITY, f64::min);
@@ -113,20 +108,32 @@ impl Subject {
         (seconds * f64::from(self.rate)) as u32
     }
 
-    /// A swing of an eighteenth of a turn, once in two seconds.
+    /// A swing of a thirtieth of a turn to either side, once in two seconds.
     pub fn swing(&self, period: u32) -> Command<f32> {
-        let motion = |ahead: f64| {
-            let rate = TAU * 0.5;
-            let (sine, cosine) = (rate * (f64::from(period) / f64::from(self.rate) + ahead)).sin_cos();
+        self.swing_by(period, 0.03, 2.0)
+    }
+
+    /// A swing of so many turns to either side, once in so many seconds.
+    pub fn swing_by(&self, period: u32, turns: f64, seconds: f64) -> Command<f32> {
+        let rate = TAU / seconds;
+        let motion = |time: f64| {
+            let (sine, cosine) = (rate * time).sin_cos();
             Motion {
-                position: Position { turns: 0, fraction: (0.03 * sine) as f32 },
-                speed: (TAU * 0.03 * rate * cosine) as f32,
-                acceleration: (-TAU * 0.03 * rate * rate * sine) as f32,
+                position: Position { turns: 0, fraction: (turns * sine) as f32 },
+                speed: (TAU * turns * rate * cosine) as f32,
+                acceleration: (-TAU * turns * rate * rate * sine) as f32,
             }
         };
+        let time = f64::from(period) / f64::from(self.rate);
         let lead = f64::from(self.compensation.crossing.lead);
-        Command::Position { now: motion(0.0), ahead: Some(motion(lead)) }
+        Command::Position { now: motion(time), ahead: Some(motion(time + lead)) }
     }
+}
+
+/// Where the link is [rad].
+pub fn link_angle(joint: &VirtualJoint<'_, f32, 3>) -> f64 {
+    let outputs = joint.outputs();
+    TAU * (f64::from(outputs.carrier_turns) + f64::from(outputs.carrier_fraction) / 4_294_967_296.0)
 }
 
 /// Random bits, and values of all sizes.

@@ -1,7 +1,7 @@
 //! Attacks on the controller of a joint in motion: nothing that is put in makes a torque beyond the limit or an estimate that
 //! is no number, and a second after the attack the link follows as well as before.
 
-use super::attack::{Chance, PRESETS, Subject, Wild, hold};
+use super::attack::{Chance, PRESETS, Subject, Wild, hold, link_angle};
 
 /// When the attack begins, how long it lasts, and the time after it that is judged [s].
 const BEGINS: f64 = 3.0;
@@ -36,9 +36,7 @@ fn attacked(subject: &Subject, wild: Wild, seed: u64, name: &str) -> [f64; 2] {
         hold(&answer, subject.limit, &|| format!("{name}, {wild:?}, seed {seed}, period {period}"));
         joint.advance(answer.shaped.torque, 0.0);
         if let model_core::compensation::Command::Position { now, .. } = origin {
-            let outputs = joint.outputs();
-            let link = f64::from(outputs.carrier_turns) + f64::from(outputs.carrier_fraction) / 4_294_967_296.0;
-            let error = std::f64::consts::TAU * (link - f64::from(now.position.fraction));
+            let error = link_angle(&joint) - std::f64::consts::TAU * f64::from(now.position.fraction);
             if (before..begins).contains(&period) {
                 sums[0] += error * error;
             } else if period >= after {

@@ -1,10 +1,12 @@
 //! Faults of the motor's own encoder, for 50 ms in a motion or at rest: told in 2 ms in motion, no torque from then on, the link
 //! no farther off than lost motion and its speed take it, and a second after the end all is as before.
 
+use std::f64::consts::TAU;
+
 use model_core::compensation::{Command, Motion, Position};
 use model_core::observer::{MAPPED, MotorFault, Observer, Source};
 
-use super::attack::{Chance, PRESETS, Subject, hold};
+use super::attack::{Chance, PRESETS, Subject, hold, link_angle};
 use super::controller::seeds;
 
 /// When the fault begins at the earliest, how long it lasts, the time after it that is judged [s].
@@ -35,6 +37,8 @@ enum Fault {
 
 /// What a fault came to.
 struct Course {
+    /// Speed of the set-point when it began, over its largest.
+    part_of_speed: f64,
     /// Time from its beginning to its being told [s], and the way of the link until then [rad].
     told: Option<f64>,
     unnoticed: f64,
@@ -51,23 +55,13 @@ struct Course {
     allowed: f64,
 }
 
-/// A swing of an eighteenth of a turn, in so many seconds; at rest without.
+/// A swing of an eighteenth of a turn to either side, in so many seconds; at rest without.
 fn swing(subject: &Subject, period: u32, lasts: Option<f64>) -> Command<f32> {
     let Some(lasts) = lasts else {
         let position = Position { turns: 0, fraction: 0.0 };
         return Command::Position { now: Motion { position, speed: 0.0, acceleration: 0.0 }, ahead: None };
     };
-    let rate = std::f64::consts::TAU / lasts;
-    let motion = |time: f64| {
-        let (sine, cosine) = (rate * time).sin_cos();
-        Motion {
-            position: Position { turns: 0, fraction: (0.055 * sine) as f32 },
-            speed: (std::f64::consts::TAU * 0.055 * rate * cosine) as f32,
-            acceleration: (-std::f64::consts::TAU * 0.055 * rate * rate * sine) as f32,
-        }
-    };
-    let time = f64::from(period) / subject.rate();
-    Command::Position { now: motion(time), ahead: Some(motion(time + subject.lead())) }
+    subject.swing_by(period, 0.055, lasts)
 }
 
 fn course(subject: &Subject, fault: Fault, lasts: Option<f64>, seed: u64, name: &str) -> Course {
@@ -82,6 +76,7 @@ fn course(subject: &Subject, fault: Fault, lasts: Option<f64>, seed: u64, name: 
     let elsewhere = range / 8 + chance.of(range * 3 / 4);
     let nearby = u64::from(subject.observer.counts.motor.fastest) / 2;
     let mut course = Course {
+        part_of_speed: lasts.map_or(0.0, |lasts| (TAU / lasts * f64::from(begins) / subject.rate()).cos().abs()),
         told: None,
         unnoticed: 0.0,
         faults: Vec::new(),
@@ -124,17 +119,16 @@ fn course(subject: &Subject, fault: Fault, lasts: Option<f64>, seed: u64, name: 
                 Source::Both => {}
             }
         }
-        let outputs = joint.outputs();
-        let link = f64::from(outputs.carrier_turns) + f64::from(outputs.carrier_fraction) / 4_294_967_296.0;
+        let link = link_angle(&joint);
         let before_that = std::mem::replace(&mut last_link, link);
         let Command::Position { now, .. } = command else { unreachable!("only positions are commanded") };
-        let error = std::f64::consts::TAU * (link - f64::from(now.position.fraction));
+        let error = link - TAU * f64::from(now.position.fraction);
         if (before..begins).contains(&period) {
             course.rms[0] += error * error;
         } else if (begins..ends).contains(&period) {
             travelled += f64::from(now.speed.abs()) / subject.rate();
             if course.told.is_none_or(|told| told >= since) {
-                let by = (link - before_that).abs() * std::f64::consts::TAU;
+                let by = (link - before_that).abs();
                 course.unnoticed += by;
                 fastest = by * subject.rate();
             }
@@ -156,7 +150,7 @@ fn survives(fault: Fault) {
         let subject = Subject::preset(name);
         for seed in seeds() {
             for lasts in [None, Some(1.2), Some(2.0), Some(5.0)] {
-                let Course { told, unnoticed, faults, output_blamed, torque, rms, largest, allowed } =
+                let Course { told, unnoticed, faults, output_blamed, torque, rms, largest, allowed, .. } =
                     course(&subject, fault, lasts, seed, name);
                 let line = format!(
                     "{name}, {fault:?}, swing of {lasts:?} s, seed {seed}: told after {:.2} ms as {faults:?}, {:.2} mrad of the link, torque then \
@@ -218,6 +212,20 @@ fn counts_of_the_motor_that_jump_a_little_are_told_and_leave_nothing_behind() {
 }
 
 #[test]
+fn a_motor_encoder_that_freezes_at_speed_is_found_in_a_few_periods() {
+    for name in ["q1", "l1", "d2"] {
+        let subject = Subject::preset(name);
+        let fast = (0..12).map(|seed| (seed, course(&subject, Fault::Frozen, Some(1.2), seed, name)));
+        let fast: Vec<_> = fast.filter(|(_, course)| course.part_of_speed > 0.5).collect();
+        assert!(fast.len() >= 3, "{name}: {} courses begin at speed", fast.len());
+        for (seed, Course { told, .. }) in fast {
+            println!("{name}, seed {seed}: told after {told:?} s");
+            assert!(told.is_some_and(|told| told <= 1e-3), "{name}, seed {seed}: told after {told:?} s");
+        }
+    }
+}
+
+#[test]
 fn a_motor_encoder_that_freezes_in_slow_motion_is_found_before_the_link_has_crossed_the_gap() {
     let subject = Subject::preset("q1");
     for seed in 0..6 {
@@ -238,9 +246,7 @@ fn a_motor_encoder_that_freezes_at_rest_is_found_by_how_far_the_link_goes() {
             let mut samples = joint.samples();
             samples.motor.counts = held;
             let source = observer.step(&samples).source;
-            let outputs = joint.outputs();
-            let link = f64::from(outputs.carrier_turns) + f64::from(outputs.carrier_fraction) / 4_294_967_296.0;
-            let link = std::f64::consts::TAU * link;
+            let link = link_angle(&joint);
             if source == Source::Nothing(MotorFault::Frozen) {
                 println!("{name}: told after {period} periods, {:.2} mrad", 1e3 * link);
                 break;

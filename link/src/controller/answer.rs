@@ -86,7 +86,8 @@ pub type WireEstimate = (f32, f32, bool);
 /// The observer's answer.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct WireEstimates {
-    /// 0 both encoders; motor only, because the output's is 1 absent, 2 silent, 3 frozen, 4 out of range; 5 nothing.
+    /// 0 both encoders; motor only, because the output's is 1 absent, 2 silent, 3 frozen, 4 out of range; nothing, because the
+    /// motor's is 5 silent, 6 late, 7 frozen, 8 jumped.
     pub source: u8,
     /// Bits, the first lowest: torque unknown, out of time, motor implausible, motor jumped, contact valid, settled.
     pub flags: u8,

@@ -81,22 +81,23 @@ impl<'tables, T: Real> Compensation<'tables, T> {
     /// Back to what was designed, part by part: a whole new compensation would need as much stack again.
     pub fn restart(&mut self) {
         self.load = LoadModel::new();
+        self.offset = T::ZERO;
+        self.let_go();
+    }
+
+    /// Forgets what was on its way; what was learnt of load and offset stays.
+    fn let_go(&mut self) {
         self.flank = FlankControl::new();
         self.position.forget();
         self.impedance.forget();
         self.plain = Plain::new();
-        self.offset = T::ZERO;
         self.trust = T::ZERO;
     }
 
-    /// No torque while it is not known where the motor is; what was on its way is forgotten, what was learnt of the load stays.
+    /// No torque while it is not known where the motor is.
     #[cold]
     fn stay_off(&mut self) -> Shaped<T> {
-        self.flank = FlankControl::new();
-        self.position.forget();
-        self.impedance.forget();
-        self.plain = Plain::new();
-        self.trust = T::ZERO;
+        self.let_go();
         Shaped { stage: Stage::Off, load: [self.load.even(), self.load.friction()], ..Shaped::default() }
     }
 

@@ -253,9 +253,6 @@ pub struct StopTable<T: Real> {
     pub forgotten: u8,
     /// Half of 1 over the periods in which it may be stopped.
     pub per_stops: T,
-    /// Half of the counts by which a torque may slow the shaft down in a period, for each period: the largest that acts on a
-    /// link; for each N m of a motor's.
-    pub brake: T,
 }
 
 /// When encoders are given up and taken back.
@@ -265,6 +262,10 @@ pub struct SupervisorTable<T: Real> {
     pub output: StopTable<T>,
     /// How soon the motor stops.
     pub motor: StopTable<T>,
+    /// Half of the counts by which the largest torque may slow the link down in a period, for each period.
+    pub output_brake: T,
+    /// Half of the counts by which each N m of its torque slows the motor down in a period, for each period.
+    pub motor_brake: T,
     /// Torque that may brake the motor beside what it gives itself [N m].
     pub motor_drag: T,
     /// Motor counts in one of the output.

@@ -130,11 +130,10 @@ pub fn design_observer<T: Real>(
     let block = libm::round(BLOCK / LEARNING_INTERVAL).max(1.0);
 
     let stop = |time: f64| libm::round(time / step).clamp(1.0, 250.0);
-    let stops = |stop: f64, forgotten: f64, brake: f64| StopTable {
+    let stops = |stop: f64, forgotten: f64| StopTable {
         stop: stop as u8,
         forgotten: forgotten as u8,
         per_stops: real(0.5 / stop),
-        brake: real(brake),
     };
     let brake = |torque: f64, inertia: f64, count: f64| 0.5 * torque / inertia * step * step / count;
     let half_gap = 2.0 * body.half_backlash;
@@ -228,17 +227,14 @@ pub fn design_observer<T: Real>(
         supervisor: SupervisorTable {
             silent_after: (SILENT_AFTER / step) as u16,
             failed_after: (FAILED_AFTER / step) as u16,
-            output: stops(
-                stop(STOP),
-                stop(STOP),
-                brake(BRAKE * settings.torque_limit * body.ratio, body.load_inertia, output_count),
-            ),
+            output: stops(stop(STOP), stop(STOP)),
             // Teeth stop it as a spring does, in no less than a quarter of a swing.
             motor: stops(
                 libm::floor(0.25 * TAU / body.contact_frequency() / step).clamp(1.0, 250.0),
                 stop(MOTOR_REMEMBERED),
-                brake(1.0, body.motor_inertia, motor_count),
             ),
+            output_brake: real(brake(BRAKE * settings.torque_limit * body.ratio, body.load_inertia, output_count)),
+            motor_brake: real(brake(1.0, body.motor_inertia, motor_count)),
             motor_drag: real(BEYOND_NOISE * settings.torque_uncertainty),
             motor_counts: real(body.ratio * output_count / motor_count),
             motor_unmoved_after: (MOTOR_UNMOVED / step) as u16,

@@ -4,7 +4,7 @@
 //! |---|---|---|---|---|
 //! | 1 | counts that jumped ([`Advance::Jumped`]) | four readings further apart than any motor turns | counts that are anything, a slipped coupling | `wild motor_encoder::counts_of_the_motor_that_are_anything_are_told_at_once_and_leave_nothing_behind` |
 //! | 2 | [`Plausibility`]: counts that jump | a few readings further on than motor and link throw it | small jumps | `wild motor_encoder::counts_of_the_motor_that_jump_a_little_are_told_and_leave_nothing_behind` |
-//! | 3 | [`Plausibility`]: counts that stand still at once | fewer counts than torque and teeth explain | a frozen encoder in motion, in a few periods | `wild motor_encoder::counts_of_the_motor_that_stand_still_are_told_and_leave_nothing_behind` |
+//! | 3 | [`Plausibility`]: counts that stand still at once | fewer counts than torque and teeth explain | a frozen encoder in motion, in a few periods | `wild motor_encoder::a_motor_encoder_that_freezes_at_speed_is_found_in_a_few_periods` |
 //! | 4 | the output outruns counts that stand still under a torque | more than wind-up, while a free motor would have moved | a frozen encoder in slow motion | `wild motor_encoder::a_motor_encoder_that_freezes_in_slow_motion_is_found_before_the_link_has_crossed_the_gap` |
 //! | 5 | the output outruns counts that stand still | more than gap and wind-up, while they have not moved for 1 ms | the same without a torque | `wild motor_encoder::a_motor_encoder_that_freezes_at_rest_is_found_by_how_far_the_link_goes` |
 //!
@@ -13,7 +13,7 @@
 //! belong to an encoder that has slipped: after 100 ms they are taken as they are, and the offset is learnt anew.
 
 use super::output_faults::{outruns, slack};
-use super::plausibility::{COUNT, Plausibility, Surroundings, Verdict, counts};
+use super::plausibility::{COUNT, FEWEST, Plausibility, Surroundings, Verdict, counts};
 use crate::numbers::Real;
 use crate::observer::estimates::MotorFault;
 use crate::observer::filters::drive_side::DriveSide;
@@ -27,8 +27,8 @@ use crate::observer::tables::{ObserverTables, StopTable, SupervisorTable};
 /// round under a torque it is within a quarter of the way for as long. Chosen.
 const HELD: i32 = 16;
 
-/// Readings that say the same before that is no chance.
-const FEWEST: u16 = 3;
+/// Periods in which a torque acts before the speed that is judged by follows it.
+const LAG: i32 = 6;
 
 /// What watches the motor encoder.
 #[derive(Debug, Clone, Copy)]
@@ -89,7 +89,7 @@ impl<T: Real> Surroundings<T> for MotorSurroundings<'_, T> {
     }
 
     fn brake(&self) -> T {
-        self.table.motor.brake * (self.drive.strongest() + self.drag)
+        self.table.motor_brake * (self.drive.strongest() + self.drag)
     }
 
     /// Teeth throw it back as fast as it was, or to twice the link's speed; its torque moves it on while the speed that it is
@@ -97,8 +97,7 @@ impl<T: Real> Surroundings<T> for MotorSurroundings<'_, T> {
     fn throw(&self, rate: i32) -> i32 {
         let Some(link) = self.link() else { return i32::MAX };
         let fastest = rate.saturating_abs().max(link.saturating_abs());
-        let followed = whole(T::TWO * T::SIX * T::from_i32(COUNT) * self.brake());
-        fastest.saturating_mul(2).saturating_add(followed)
+        fastest.saturating_mul(2).saturating_add(whole(T::from_i32(COUNT) * self.unfollowed()))
     }
 
     /// Teeth bring it no further from the link's speed than it was.
@@ -109,7 +108,7 @@ impl<T: Real> Surroundings<T> for MotorSurroundings<'_, T> {
 
     /// What is said lags behind by a few periods in which the torque brakes; of less than a count in a period by too many.
     fn sure(&self, rate: i32) -> T {
-        let braked = counts::<T>(rate) - T::TWO * T::SIX * self.brake();
+        let braked = counts::<T>(rate) - self.unfollowed();
         if rate >= COUNT && braked > T::ZERO { braked } else { T::ZERO }
     }
 }
@@ -118,6 +117,11 @@ impl<T: Real> MotorSurroundings<'_, T> {
     /// Parts of a motor count by which a motor that turns with the link goes on in a period.
     fn link(&self) -> Option<i32> {
         self.link_rate.map(|rate| whole(T::from_i32(rate) * self.table.motor_counts))
+    }
+
+    /// Counts in a period by which its torques may have changed the speed that the one that is judged by does not show yet.
+    fn unfollowed(&self) -> T {
+        T::from_i32(2 * LAG) * self.brake()
     }
 }
 
@@ -206,7 +210,7 @@ impl<T: Real> MotorFaultDetector<T> {
         let torque = drive.air_gap();
         let left = torque.abs() - table.motor_drag;
         if left > T::ZERO {
-            let by = T::TWO * table.motor.brake * left;
+            let by = T::TWO * table.motor_brake * left;
             self.free_rate += if torque > T::ZERO { by } else { -by };
         }
         self.free_way += self.free_rate;

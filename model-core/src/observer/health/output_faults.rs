@@ -42,13 +42,13 @@ pub struct OutputFaultDetector<T: Real> {
 }
 
 /// Nothing throws a link: what it runs into stops it.
-impl<T: Real> Surroundings<T> for StopTable<T> {
+impl<T: Real> Surroundings<T> for SupervisorTable<T> {
     fn stops(&self) -> &StopTable<T> {
-        self
+        &self.output
     }
 
     fn brake(&self) -> T {
-        self.brake
+        self.output_brake
     }
 
     fn throw(&self, _: i32) -> i32 {
@@ -158,7 +158,7 @@ impl<T: Real> OutputFaultDetector<T> {
             self.plausibility.miss(by, beyond > clock.period.saturating_mul(SPEED_KEPT));
             return used;
         }
-        match self.plausibility.take(&tables.supervisor.output, by) {
+        match self.plausibility.take(&tables.supervisor, by) {
             Verdict::Plausible => used,
             Verdict::Suspect => Screened::NotUsed,
             Verdict::Implausible => self.implausible(both_encoders),

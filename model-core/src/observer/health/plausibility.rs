@@ -16,7 +16,7 @@ pub const COUNT: i32 = 1 << PART;
 
 /// Standing still is no fault until so many readings say the same, and one more for each count of noise: two may be a
 /// reading given twice.
-const FEWEST: i32 = 3;
+pub const FEWEST: u16 = 3;
 
 /// Readings that must say what one that jumped said: a wrong bit in one or two of them goes by.
 const CONFIRMED: u8 = 3;
@@ -184,7 +184,7 @@ impl Plausibility {
             self.rate = 0;
         }
         // Noise may say the same by chance, again and again.
-        if self.rate == 0 || i32::from(self.still) < FEWEST + (noise >> PART) {
+        if self.rate == 0 || i32::from(self.still) < i32::from(FEWEST) + (noise >> PART) {
             return Verdict::Plausible;
         }
         let periods = T::from_i32(self.still.into());

@@ -219,7 +219,6 @@ impl<T: Real, const P: usize> Learnt<T, P> {
     /// The motor encoder has come back elsewhere.
     pub fn doubt_motor(&mut self, tables: &ObserverTables<T>) {
         self.learner.doubt_motor();
-        self.last_rest = LastRest::new();
         self.find_uncertainty(tables, true);
     }
 

@@ -105,15 +105,22 @@ impl Counter {
     }
 }
 
-/// How often a part goes into units, and what is left of them: downwards, so that none is left below zero. No part at all goes
-/// into none.
+/// How often a part goes into units, downwards, so that what is left of them is not below zero. No part at all goes into none.
 fn whole(units: i64, part: i64) -> i64 {
-    let towards_zero = units.checked_div(part).unwrap_or(0);
+    let Some(towards_zero) = units.checked_div(part) else { return 0 };
     if towards_zero.wrapping_mul(part) > units { towards_zero.wrapping_sub(1) } else { towards_zero }
 }
 
+/// What is left of them.
 fn rest(units: i64, part: i64) -> i64 {
     units.wrapping_sub(whole(units, part).wrapping_mul(part))
+}
+
+/// Counts of the whole ranges of raw counts that come nearest to so many units of the difference, a count being so many.
+fn whole_ranges<T: Real>(units: i64, table: &EncoderTable<T>, weight: i64) -> i64 {
+    let range = i64::from(table.last).wrapping_add(1);
+    let of_range = range.wrapping_mul(weight);
+    whole(units.wrapping_add(of_range / 2), of_range).wrapping_mul(range)
 }
 
 /// From `before` to `now` the shorter way round; both within their range.
@@ -227,12 +234,10 @@ impl Counts {
     /// one nearest to where the output says, or, without one, to where the motor was.
     pub fn find_motor<T: Real>(&mut self, table: &CountTable<T>) {
         let Some(Doubt { difference, went }) = self.doubt else { return };
-        let range = i64::from(table.motor.wraps_at.wrapping_sub(1)) + 1;
-        let of_range = range.wrapping_mul(table.motor_weight);
         let beyond = if self.implied.is_some() { went } else { self.difference.wrapping_sub(difference) };
-        let ranges = whole(beyond.wrapping_add(of_range / 2), of_range);
-        let back = ranges.wrapping_mul(of_range).wrapping_neg();
-        self.motor.turn(&table.motor, ranges.wrapping_mul(range).wrapping_neg());
+        let back = whole_ranges(beyond, &table.motor, table.motor_weight).wrapping_neg();
+        self.motor.turn(&table.motor, back);
+        let back = back.wrapping_mul(table.motor_weight);
         self.difference = self.difference.wrapping_add(back);
         self.doubt = Some(Doubt { difference, went: went.wrapping_add(back) });
     }
@@ -260,12 +265,9 @@ impl Counts {
     fn jump<T: Real>(&mut self, table: &CountTable<T>, by: i32) -> i32 {
         self.output.advance(&table.output, by.wrapping_neg());
         let (_, implied) = *self.implied.get_or_insert((self.output, self.difference));
-        let range = i64::from(table.output.wraps_at);
         let beyond =
             i64::from(by).wrapping_mul(table.output_weight).wrapping_sub(self.difference).wrapping_add(implied);
-        let of_range = range.wrapping_mul(table.output_weight);
-        let ranges = whole(beyond.wrapping_add(of_range / 2), of_range);
-        let went = i64::from(by).wrapping_sub(ranges.wrapping_mul(range)) as i32;
+        let went = i64::from(by).wrapping_sub(whole_ranges(beyond, &table.output, table.output_weight)) as i32;
         self.output.advance(&table.output, went);
         went
     }

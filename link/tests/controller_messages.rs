@@ -86,7 +86,15 @@ fn probes() -> Vec<Option<Progress<f32>>> {
 #[test]
 fn answers_come_out_as_they_went_in() {
     for stage in [Stage::Touching, Stage::Crossing, Stage::Landing, Stage::Plain, Stage::Off] {
-        let shaped = Shaped { torque: 1.0, stage, flank: Some(Flank::Back), demand: 2.0, load: [3.0, 4.0], trust: 0.5 };
+        let shaped = Shaped {
+            torque: 1.0,
+            stage,
+            flank: Some(Flank::Back),
+            demand: 2.0,
+            load: [3.0, 4.0],
+            trust: 0.5,
+            short_of_torque: true,
+        };
         for probed in probes() {
             let answer = Answer { estimates: estimates(), shaped, probed };
             let wire = Answered {

@@ -3,6 +3,7 @@
 //! by itself is tested in `observer`. `page` compares the documentation with the code.
 
 mod bad_input;
+mod braking;
 mod holding;
 mod impedance;
 mod monte_carlo;

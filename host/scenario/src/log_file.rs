@@ -19,7 +19,7 @@ const SCHEMA_NAME: &str = "joint_msgs/msg/Trial";
 const RATE: f64 = 1000.0;
 
 /// Fields, all of them numbers, with what they mean.
-const FIELDS: [(&str, &str); 17] = [
+const FIELDS: [(&str, &str); 18] = [
     ("time_s", "since the start [s]"),
     ("wanted_rad", "where the link was to be [rad]"),
     ("link_rad", "where it is [rad]"),
@@ -37,6 +37,7 @@ const FIELDS: [(&str, &str); 17] = [
     ("estimated_half_backlash_um", "[um]"),
     ("estimated_load_torque_nm", "[N m]"),
     ("trust", "share of the compensation in the torque"),
+    ("short_of_torque", "1: the law asks for more torque than there is, or brakes early because of that"),
 ];
 
 /// Writes a run to a file of this name, and says where that is in the folder of all.
@@ -69,6 +70,7 @@ fn fill(out: &mut impl Write, history: &RunHistory, remarks: BTreeMap<String, St
             1e6 * f64::from(observed.half_backlash),
             observed.load_torque.into(),
             observed.trust.into(),
+            f64::from(u8::from(observed.short_of_torque)),
         ];
         // CDR: little endian behind a head of four bytes; numbers of eight bytes need no filling.
         let mut message = vec![0, 1, 0, 0];

@@ -95,6 +95,12 @@ pub static METRICS: &[Metric] = &[
     ),
     metric("false_alarms", "", Observer, "falls back to the motor encoder while no fault was on"),
     metric("compensated", "percent", Observer, "mean share of the compensation in the torque"),
+    metric(
+        "short_of_torque",
+        "percent",
+        Observer,
+        "time in which the law asks for more torque than there is, or brakes early because of that",
+    ),
     metric("probe_error", "percent", Probe, "half-backlash that the width probe found against the truth"),
     metric("probe_time", "ms", Probe, "from the first torque of the width probe to its result"),
     metric("probe_refused", "", Probe, "1 if the width probe refused to say a width, 0 if it said one"),

@@ -46,6 +46,7 @@ pub fn values(file: &TestFile, case: &Case, history: &RunHistory) -> Vec<(&'stat
         sums.load += ((f64::from(observed.load_torque) - truth.load_torque) / rated).powi(2);
         sums.mesh += ((f64::from(observed.mesh_torque) - 2.0 * lever * sample.mesh_force) / rated).powi(2);
         sums.trust += f64::from(observed.trust);
+        sums.short += f64::from(u8::from(observed.short_of_torque));
         if observed.valid {
             sums.valid += 1.0;
             sums.gap_valid += (error / gap).powi(2);
@@ -81,6 +82,7 @@ pub fn values(file: &TestFile, case: &Case, history: &RunHistory) -> Vec<(&'stat
         ("width_right_after", width_wrong_at),
         ("width_right_after_contact", contact_then),
         ("compensated", 100.0 * sums.trust / sums.count),
+        ("short_of_torque", 100.0 * sums.short / sums.count),
     ];
     list.extend(landings.delays());
     list.extend(at_the_end(case, history));
@@ -111,6 +113,7 @@ struct Sums {
     load: f64,
     mesh: f64,
     trust: f64,
+    short: f64,
     valid: f64,
     gap_valid: f64,
     nees: f64,

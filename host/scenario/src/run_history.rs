@@ -59,6 +59,8 @@ pub struct ObserverOutput {
     pub both: bool,
     /// Share of the compensation in the torque.
     pub trust: f32,
+    /// The law asked for more torque than there is, or brakes early because of that.
+    pub short_of_torque: bool,
     /// Where the width probe stands, if there is one.
     pub probed: Option<Progress<f32>>,
 }
@@ -138,6 +140,7 @@ impl ObserverOutput {
             skew: estimates.skew.value,
             both: estimates.source == Source::Both,
             trust: shaped.trust,
+            short_of_torque: shaped.short_of_torque,
             probed,
         }
     }

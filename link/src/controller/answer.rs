@@ -78,6 +78,8 @@ pub struct WireShaped {
     pub load: [f32; 2],
     /// Share of the compensation.
     pub trust: f32,
+    /// The law asked for more torque than there is, or brakes early because of that.
+    pub short_of_torque: bool,
 }
 
 /// A value, its variance, and whether it may be used.
@@ -106,14 +108,14 @@ pub struct WireEstimates {
 
 impl From<&Shaped<f32>> for WireShaped {
     fn from(shaped: &Shaped<f32>) -> Self {
-        let Shaped { torque, stage, flank, demand, load, trust } = *shaped;
-        Self { torque, stage: stage as u8, side: sign(flank), demand, load, trust }
+        let Shaped { torque, stage, flank, demand, load, trust, short_of_torque } = *shaped;
+        Self { torque, stage: stage as u8, side: sign(flank), demand, load, trust, short_of_torque }
     }
 }
 
 impl From<WireShaped> for Shaped<f32> {
     fn from(wire: WireShaped) -> Self {
-        let WireShaped { torque, stage, side, demand, load, trust } = wire;
+        let WireShaped { torque, stage, side, demand, load, trust, short_of_torque } = wire;
         let stage = match stage {
             0 => Stage::Touching,
             1 => Stage::Crossing,
@@ -121,7 +123,7 @@ impl From<WireShaped> for Shaped<f32> {
             3 => Stage::Plain,
             _ => Stage::Off,
         };
-        Self { torque, stage, flank: Flank::towards(side), demand, load, trust }
+        Self { torque, stage, flank: Flank::towards(side), demand, load, trust, short_of_torque }
     }
 }
 

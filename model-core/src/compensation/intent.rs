@@ -28,6 +28,8 @@ pub(super) struct Intent<T: Real> {
     pub idles: bool,
     /// Whether the joint is asked to rest.
     pub rests: bool,
+    /// Whether the link is braked early, for the motor has no more torque.
+    pub brakes_early: bool,
     /// What a joint that friction holds is likely to be asked for first; it decides on the flank to wait on [N m].
     pub expects: T,
 }
@@ -57,6 +59,7 @@ impl<T: Real> Intent<T> {
             spring,
             idles: false,
             rests: false,
+            brakes_early: false,
             expects: T::ZERO,
         }
     }

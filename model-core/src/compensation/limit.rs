@@ -11,7 +11,7 @@ use super::load::LoadModel;
 use super::situation::Situation;
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
-use crate::numbers::arithmetic::clamp;
+use crate::numbers::arithmetic::{beyond, clamp};
 
 /// What the teeth pass on at rest under a torque that is not lost on the way, with what brakes the link if left to itself:
 /// law and load accelerate motor and load together, and the motor's share stays behind [N m].
@@ -19,27 +19,38 @@ pub(super) fn passed<T: Real>(tables: &CompensationTables<T>, free: T, useful: T
     free + tables.body.load_share * (useful - free)
 }
 
-/// A useful torque without what would carry the teeth beyond their limit [N m].
+/// The most that teeth shall pass on while the law asks for a useful torque [N m]. What is kept back for swings is given to a
+/// link that asks for more than the motor has: it lags anyway, and by more with every bit that is kept from it.
+pub(super) fn spared<T: Real>(tables: &CompensationTables<T>, useful: T) -> T {
+    let limits = &tables.limits;
+    let short = beyond(useful, limits.motor).abs();
+    if short == T::ZERO {
+        return limits.teeth;
+    }
+    limits.teeth + clamp(short.over(limits.motor), T::ZERO, T::ONE) * (limits.teeth_at_most - limits.teeth)
+}
+
+/// A useful torque without what would carry the teeth beyond the most that they shall pass on [N m].
 pub(super) fn limited<T: Real>(
     tables: &CompensationTables<T>,
     load: &LoadModel<T>,
     situation: &Situation<T>,
     useful: T,
+    most: T,
 ) -> T {
     if load.throws(tables) {
         return useful;
     }
     let passed = passed(tables, load.free(), useful);
     let side = if passed < T::ZERO { -T::ONE } else { T::ONE };
-    let allowed = allowed(tables, situation, side);
+    let allowed = allowed(tables, situation, side, most);
     let asked = side * passed;
     if asked > allowed { useful - side * tables.body.inverse_load_share * (asked - allowed) } else { useful }
 }
 
-/// The most that the flank of a side may be asked to pass on at rest: between half of the limit and the limit. Less than
+/// What the flank of a side may be asked to pass on at rest: between half of the most and the most. Less than
 /// half would brake the motor, with delays that are a third of a swing on stiff joints.
-fn allowed<T: Real>(tables: &CompensationTables<T>, situation: &Situation<T>, side: T) -> T {
-    let most = tables.limits.teeth;
+fn allowed<T: Real>(tables: &CompensationTables<T>, situation: &Situation<T>, side: T, most: T) -> T {
     let closing = side * (situation.motor_speed - situation.link_speed);
     let wound = side * (situation.motor + situation.error - situation.shift) - situation.half;
     // Seen by places without delay, but by as much wrong as a stiff joint makes of their errors; taken for too large it

@@ -5,7 +5,7 @@
 //!    gives while a flank carries, and the torque that the teeth will have to pass on, now and one crossing later.
 //! 2. `flank` decides from that which flank shall carry, and when to leave for it, by the table in [`transitions`].
 //! 3. `crossing` and `path` take the motor through the gap to where the load will be, and softly onto the flank.
-//! 4. `limit` keeps what the teeth pass on within bounds.
+//! 4. `limit` keeps what the teeth pass on within bounds, `braking` the link's speed within what the motor can brake.
 //! 5. `load` knows what brakes the link and how that changes when the motion turns round, `start_prediction` how
 //!    motions start.
 //! 6. `plain` is control without compensation: a PID on the motor's place with part of the feed-forward and no limit of
@@ -14,6 +14,7 @@
 //!
 //! `docs/theory/compensation.md` derives all of it and says where its limits are.
 
+mod braking;
 mod crossing;
 #[cfg(feature = "design")]
 pub mod design;

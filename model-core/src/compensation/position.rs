@@ -1,8 +1,9 @@
 //! The control law of position mode: spring on the link, damper on the motor, acceleration and load fed forward. The
 //! load estimate takes the place of an integral.
 
+use super::braking::{Braking, Course, Lag};
 use super::intent::Intent;
-use super::limit::{limited, passed};
+use super::limit::{limited, passed, spared};
 use super::load::LoadModel;
 use super::set_point::Motion;
 use super::situation::Situation;
@@ -69,23 +70,31 @@ impl<T: Real> PositionLaw<T> {
         let rests = now.speed == T::ZERO && now.acceleration == T::ZERO && (ahead.is_none() || asked == [T::ZERO; 2]);
         let let_be = if rests { self.deadband } else { T::ZERO };
 
-        let useful = (tables.body.load_inertia + tables.body.motor_inertia) * now.acceleration
+        let error = beyond(situation.error, let_be);
+        let ahead_of = now.acceleration + tables.crossing.lead.over(known) * asked[1];
+        let course = Course { speed: now.speed, acceleration: now.acceleration, ahead: ahead_of };
+        let braking = Braking::new(tables, load, situation);
+        let approach = braking.approach(error, &course);
+        let spring = approach.map_or(tables.law.position * error, |approach| tables.law.damping * approach.closing);
+        let acceleration = approach.map_or(now.acceleration, |approach| approach.acceleration);
+        let useful = (tables.body.load_inertia + tables.body.motor_inertia) * acceleration
             + load.even()
             + load.planned_drag(tables, now.speed)
-            + tables.law.position * beyond(situation.error, let_be)
+            + spring
             + tables.law.damping * situation.error_rate;
         // What is beyond the limits must not drown the damper.
         let all = passed(tables, load.free(), useful);
-        let most = if load.throws(tables) { all.abs() } else { tables.limits.teeth };
+        let allowed = spared(tables, useful);
+        let most = if load.throws(tables) { all.abs() } else { allowed };
         let passed = clamp(all, -most, most);
         let useful = useful - tables.body.inverse_load_share * (all - passed);
         let asked_for = useful + situation.lost(tables, now.speed, passed);
         let law = clamp(asked_for, -tables.limits.motor, tables.limits.motor) + situation.damping_torque(tables);
         let lost = situation.lost(tables, situation.link_speed, passed);
-        let law = limited(tables, load, situation, law - lost) + lost;
+        let law = limited(tables, load, situation, law - lost, allowed) + lost;
         let level = load.even()
             + (load.drag() - load.planned_drag(tables, now.speed))
-            + tables.law.position * beyond(situation.error, let_be)
+            + spring
             + tables.law.damping * situation.error_rate;
         // Changes that are large against the noise are taken up faster.
         self.level += tables.clock.period * load.rate();
@@ -102,13 +111,23 @@ impl<T: Real> PositionLaw<T> {
         };
         let level = self.level;
         let rate = load.rate();
-        let demand = |time: T| planned(time) + level + time * rate;
+        let lag = approach.map(|_| {
+            let torque = clamp(law - lost, -tables.limits.motor, tables.limits.motor);
+            let acceleration = now.acceleration - braking.acceleration(tables, load, situation, torque);
+            Lag { error, rate: situation.error_rate, acceleration }
+        });
+        let demand = |time: T| match &lag {
+            None => planned(time) + level + time * rate,
+            Some(lag) => braking.demand(tables, load, lag, &course, time),
+        };
         // A load that is felt has its reasons, and a flank that carries it rests.
         let idles = rests && beyond(load.even(), tables.switching.measured) == T::ZERO;
         let direction = if now.speed == T::ZERO { now.acceleration } else { now.speed };
         let likely = self.start.step(tables, situation, direction, rests);
         let expects = if ahead.is_none() { sign::<T>(likely) * load.start(tables) } else { T::ZERO };
-        let intent = Intent { idles, rests, expects, ..Intent::new(tables, load, situation, law, demand, false) };
+        let brakes_early = approach.is_some();
+        let intent =
+            Intent { idles, rests, brakes_early, expects, ..Intent::new(tables, load, situation, law, demand, false) };
         let surely = beyond(intent.demand_ahead, tables.switching.measured * tables.switching.least);
         self.find_deadband(tables, rests, idles, surely, situation.half);
         intent

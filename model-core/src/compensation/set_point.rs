@@ -120,4 +120,7 @@ pub struct Shaped<T: Real> {
     pub load: [T; 2],
     /// Share of the compensation in the torque, the rest being plain control: 0 to 1.
     pub trust: T,
+    /// The law asked for more torque than the motor has, or brakes early because of that: the link does not keep to what it
+    /// is asked for.
+    pub short_of_torque: bool,
 }

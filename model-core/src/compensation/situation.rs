@@ -37,6 +37,8 @@ pub(super) struct Situation<T: Real> {
     pub mesh_torque: T,
     /// Between motor and link [N m/rad].
     pub stiffness: T,
+    /// Inertia of link and motor, the link's as learnt [kg m^2].
+    pub inertia: T,
     /// By how much the transmission error shifts both flanks, referred to the link [rad].
     pub shift: T,
     /// By how much that grows for each radian of the link.
@@ -68,6 +70,8 @@ impl<T: Real> Situation<T> {
         let half = clamp(tables.gear.inverse_lever * estimates.half_backlash.value, T::ZERO, tables.body.widest_half);
         let [softest, stiffest] = tables.body.compliances;
         let stiffness = T::ONE.over(clamp(estimates.compliance.value, stiffest, softest));
+        let learnt = &estimates.link_inertia_ratio;
+        let ratio = if learnt.valid { clamp(learnt.value, T::QUARTER, T::FOUR) } else { T::ONE };
         let at_link = T::HALF * tables.gear.inverse_lever;
         let error = tables.gear.turn * origin.less(estimates.link.turns, estimates.link.fraction);
         let confirmed_motor = if estimates.source == Source::Both && error.is_finite() {
@@ -86,6 +90,7 @@ impl<T: Real> Situation<T> {
             half,
             mesh_torque: estimates.mesh_torque.value,
             stiffness,
+            inertia: tables.body.motor_inertia + ratio * tables.body.load_inertia,
             losses: [estimates.torque_bias, estimates.motor_friction]
                 .map(|loss| tables.gear.motor_per_link * loss.value),
             transmission_error_speed: at_link * estimates.flank_shift_slope * estimates.link.speed,
@@ -100,7 +105,7 @@ impl<T: Real> Situation<T> {
         let sum = situation.error + situation.error_rate + situation.motor + situation.motor_speed + situation.gap;
         let sum =
             sum + situation.shift + situation.transmission_error_speed + situation.losses[0] + situation.losses[1];
-        let sum = sum + situation.mesh_torque + situation.stiffness;
+        let sum = sum + situation.mesh_torque + situation.stiffness + situation.inertia;
         let feels = estimates.source == Source::Both && sum.is_finite();
         let knows = estimates.contact_valid && estimates.gap.valid && estimates.half_backlash.value.is_finite();
         Self { feels, sees: feels && knows, ..situation }

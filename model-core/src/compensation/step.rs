@@ -152,6 +152,7 @@ impl<'tables, T: Real> Compensation<'tables, T> {
             demand: if sees { intent.demand_ahead } else { T::ZERO },
             load: [self.load.even(), self.load.friction()],
             trust: self.trust,
+            short_of_torque: torque != wanted || sees && intent.brakes_early,
         }
     }
 }

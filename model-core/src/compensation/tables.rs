@@ -90,6 +90,10 @@ pub struct LimitTable<T: Real> {
     pub teeth: T,
     /// What is left to that, at least, as far as a swing is divided by it [N m].
     pub least_room: T,
+    /// The most that they may be asked to pass on where the motion asks for twice the motor's torque [N m].
+    pub teeth_at_most: T,
+    /// Part of the torque at hand that braking is planned with [-].
+    pub braking: T,
 }
 
 /// Gains of the control laws.
@@ -99,6 +103,8 @@ pub struct LawTable<T: Real> {
     pub position: T,
     /// Damper of the loop, on the link [N m s/rad].
     pub damping: T,
+    /// Spring over damper [1/s].
+    pub rate: T,
     /// Damper on the motor against the link, and on the way through the gap [N m s/rad].
     pub motor_damping: T,
     /// Share of that damper in impedance mode.

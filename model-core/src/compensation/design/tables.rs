@@ -29,6 +29,10 @@ const HARDEST_STRIKE: f64 = 0.56;
 /// in the loop's delays each take a few hundredths.
 const MOST_PASSED: f64 = 0.88;
 
+/// Part of the torque at hand that braking is planned with: torque constant, inertia and the crossing to the flank that
+/// brakes take a few hundredths each.
+const BRAKING: f64 = 0.9;
+
 /// What is left to that, over itself, as far as a swing is divided by it: less than what the torques are known to.
 const LEAST_ROOM: f64 = 0.1;
 
@@ -195,10 +199,17 @@ pub fn design_compensation<T: Real>(
             compliances: [real(COMPLIANCE / body.stiffness), real(1.0 / (COMPLIANCE * body.stiffness))],
             widest_half: real(WIDEST * half),
         },
-        limits: LimitTable { motor: real(limit), teeth: real(most_passed), least_room: real(LEAST_ROOM * most_passed) },
+        limits: LimitTable {
+            motor: real(limit),
+            teeth: real(most_passed),
+            least_room: real(LEAST_ROOM * most_passed),
+            teeth_at_most: real(if peak < limit { most_passed } else { limit }),
+            braking: real(BRAKING),
+        },
         law: LawTable {
             position: real(3.0 * inertia * pole * pole),
             damping: real(3.0 * inertia * pole),
+            rate: real(pole),
             motor_damping: real(motor_damping),
             impedance_damping: real(IMPEDANCE_DAMPING),
             integral: real(inertia * pole * pole * pole * period),

@@ -34,6 +34,8 @@ pub(super) struct PositionLaw<T: Real> {
     start: StartPrediction<T>,
     /// By how much the acceleration asked for grows in a period, smoothed: planners send it in coarser steps [rad/s^2].
     growth: T,
+    /// The hardest acceleration asked for since the motion rested: few planners brake harder than they accelerate [rad/s^2].
+    hardest: T,
 }
 
 impl<T: Real> PositionLaw<T> {
@@ -46,6 +48,7 @@ impl<T: Real> PositionLaw<T> {
             level: T::ZERO,
             start: StartPrediction::new(),
             growth: T::ZERO,
+            hardest: T::ZERO,
         }
     }
 
@@ -69,10 +72,14 @@ impl<T: Real> PositionLaw<T> {
         let (asked, known) = self.trajectory(tables, now, ahead);
         let rests = now.speed == T::ZERO && now.acceleration == T::ZERO && (ahead.is_none() || asked == [T::ZERO; 2]);
         let let_be = if rests { self.deadband } else { T::ZERO };
+        let hardest = if rests { T::ZERO } else { self.hardest };
+        let asks = now.acceleration.abs();
+        self.hardest = if asks > hardest { asks } else { hardest };
 
         let error = beyond(situation.error, let_be);
-        let ahead_of = now.acceleration + tables.crossing.lead.over(known) * asked[1];
-        let course = Course { speed: now.speed, acceleration: now.acceleration, ahead: ahead_of };
+        let soon = now.acceleration + tables.crossing.lead.over(known) * asked[1];
+        let soon = if ahead.is_some() { soon } else { clamp(soon, -self.hardest, self.hardest) };
+        let course = Course { speed: now.speed, acceleration: now.acceleration, ahead: soon };
         let braking = Braking::new(tables, load, situation);
         let approach = braking.approach(error, &course);
         let spring = approach.map_or(tables.law.position * error, |approach| tables.law.damping * approach.closing);

@@ -1,0 +1,47 @@
+//! Steps against the host's twin, through a session of the host's own over the modelled line.
+
+use std::time::Duration;
+
+use board::profile::TorqueProfile;
+use board::session::{BoardHelp, Session};
+use board::target::board::Board as Kind;
+use board::target::image::DEFAULT_TICK_RATE;
+use board::twin;
+use link::messages::{RunMode, RunSettings};
+
+use super::clean;
+use crate::boards;
+use crate::image::Image;
+use crate::images::JOINT;
+use crate::talk::{Talk, Unattended};
+
+/// Seconds of motion: 20,000 steps.
+const LENGTH: f64 = 1.0;
+/// A sample so often; the digest in it covers every step.
+const DECIMATION: u16 = 20;
+
+/// Drives the joint through its reversals in lockstep, and compares every sample.
+pub fn steps(kind: Kind, image: &Image) -> Result<String, String> {
+    let talk = Talk::new(boards::start(kind, image.clone())?);
+    let joint = joint_file::preset(JOINT).and_then(|text| joint_file::read(text).ok()).ok_or("no preset")?.parameters;
+    let words = |failure: report::failure::Failure| failure.to_string();
+    let profile = TorqueProfile::load("reversals", &joint, DEFAULT_TICK_RATE, Some(LENGTH)).map_err(words)?;
+    let mut session = Session::new(Box::new(talk.line()), Box::new(Unattended));
+    let settings =
+        RunSettings { mode: RunMode::Lockstep, decimation: DECIMATION, command_timeout: u32::MAX, from_memory: false };
+    let run = session
+        .call(&BoardHelp::Rebuild, Duration::from_secs(20))
+        .and_then(|_| session.reset(settings))
+        .and_then(|()| session.stream(&profile, &mut |_| {}))
+        .and_then(|()| session.finish(profile.ticks));
+    clean(&talk.board.borrow())?;
+    run.map_err(words)?;
+    let recording = &session.recording;
+    let agreement =
+        twin::compare(&joint, kind, DEFAULT_TICK_RATE, &recording.accepted, &recording.samples).map_err(words)?;
+    if agreement.steps < profile.ticks || agreement.different > 0 {
+        return Err(format!("{} of {} steps agree: {:?}", agreement.steps, profile.ticks, agreement.first));
+    }
+    let lost = talk.board.borrow().machine().wires.line.overruns;
+    Ok(format!("{} steps, {} samples, {lost} bytes lost on the line", agreement.steps, agreement.samples))
+}

@@ -1,0 +1,3 @@
+//! The chips: which peripherals are where.
+
+pub mod f405;

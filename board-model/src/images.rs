@@ -1,0 +1,70 @@
+//! The images that are checked: built by the host's own code, so that they are those that ship.
+
+use std::collections::BTreeMap;
+
+use board::target::board::Board as Kind;
+use board::target::image::{self, CONTROL_RATE, DEFAULT_TICK_RATE, SPI_RATE};
+use board::target::toolchain::Toolchain;
+use link::messages::Role;
+
+use crate::image::Image;
+
+/// The joint of all of them.
+pub const JOINT: &str = "q1";
+
+/// What an image does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Work {
+    /// Role `plant`.
+    Plant,
+    /// Role `observer`.
+    Observer,
+    /// Role `loop`.
+    Loop,
+    /// The slave on SPI.
+    SpiSlave,
+}
+
+impl Work {
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Plant => "plant",
+            Self::Observer => "observer",
+            Self::Loop => "loop",
+            Self::SpiSlave => "slave on SPI",
+        }
+    }
+}
+
+/// Images by board and work.
+pub struct Images {
+    toolchain: Toolchain,
+    built: BTreeMap<(&'static str, Work), Image>,
+}
+
+impl Images {
+    /// None yet.
+    pub fn prepare() -> Result<Self, String> {
+        let toolchain = Toolchain::prepare(&|line| eprintln!("{line}")).map_err(|failure| failure.to_string())?;
+        Ok(Self { toolchain, built: BTreeMap::new() })
+    }
+
+    /// One of them; built when it is asked for first.
+    pub fn get(&mut self, board: Kind, work: Work) -> Result<Image, String> {
+        if let Some(image) = self.built.get(&(board.name(), work)) {
+            return Ok(image.clone());
+        }
+        let (joint, quiet) = (image::preset_file(JOINT), |_: &str| {});
+        let role = |role, rate| image::build_image(&self.toolchain, &joint, board, role, rate, &quiet);
+        let built = match work {
+            Work::Plant => role(Role::Plant, DEFAULT_TICK_RATE),
+            Work::Observer => role(Role::Observer, CONTROL_RATE),
+            Work::Loop => role(Role::Loop, CONTROL_RATE),
+            Work::SpiSlave => image::build_spi_slave(&self.toolchain, &joint, board, SPI_RATE, &quiet),
+        };
+        let image = Image::read(&built.map_err(|failure| failure.to_string())?.elf)?;
+        self.built.insert((board.name(), work), image.clone());
+        Ok(image)
+    }
+}

@@ -1,0 +1,17 @@
+//! STM32F405, STM32G474 and STM32H743 at the level of registers, written from their reference manuals and not from the
+//! firmware: runs the images that ship, and notes every step over a rule.
+
+pub mod blocks;
+pub mod boards;
+pub mod checks;
+pub mod chips;
+pub mod cpu;
+pub mod image;
+pub mod images;
+pub mod machine;
+pub mod peripherals;
+pub mod register;
+pub mod scs;
+pub mod talk;
+pub mod violation;
+pub mod wires;

@@ -1,0 +1,275 @@
+//! A chip without its core: memory map, peripherals in their places, and the rules of access that hold for all of them.
+
+use crate::peripherals::Peripheral;
+use crate::register::Register;
+use crate::scs::Scs;
+use crate::wires::{Clocks, Gate, Reset, SECOND, Surroundings, Time, Wires};
+
+/// A peripheral in its place.
+pub struct Placed {
+    /// Its name on the chip.
+    pub name: &'static str,
+    /// Its address.
+    pub base: u32,
+    /// Bytes that it takes.
+    pub size: u32,
+    /// What switches its clock on; `None` where the clock is always on.
+    pub clock: Option<Gate>,
+    /// What holds it in reset.
+    pub hold: Option<Gate>,
+    /// Section of the manual with its clock gate.
+    pub section: &'static str,
+    /// It.
+    pub peripheral: Box<dyn Peripheral>,
+}
+
+/// Memory that the core reads and writes without further ado.
+#[derive(Debug, Clone, Copy)]
+pub struct Memory {
+    /// First address.
+    pub base: u32,
+    /// Bytes.
+    pub size: u32,
+    /// The DMA controllers cannot reach it.
+    pub core_only: bool,
+}
+
+/// What a chip is made of.
+pub struct Chip {
+    /// Its name.
+    pub name: &'static str,
+    /// It has caches and a double precision unit: a Cortex-M7.
+    pub is_m7: bool,
+    /// Flash [byte].
+    pub flash: u32,
+    /// Memories.
+    pub memories: &'static [Memory],
+    /// Peripherals; the clock controller comes first.
+    pub peripherals: Vec<Placed>,
+    /// Frequency after a reset [Hz].
+    pub after_reset: u64,
+    /// Register of the flags of resets, and what a reset adds to them.
+    pub reset_flags: fn(Reset) -> (u32, u32),
+}
+
+/// The chip as it runs.
+pub struct Machine {
+    /// Wires between its parts.
+    pub wires: Wires,
+    /// The core's peripherals.
+    pub scs: Scs,
+    /// What it is made of.
+    pub chip: Chip,
+    /// Cycles of the core since power-up.
+    pub cycles: u64,
+    /// Cycles and time from which the present clock runs.
+    since: (u64, Time),
+    rate: u64,
+    /// Something has been written: levels may have changed.
+    pub attention: bool,
+    /// Cycle up to which nothing happens by itself.
+    pub deadline: u64,
+    /// Instructions per block, by address.
+    pub blocks: crate::blocks::Blocks,
+    /// Cycles that an instruction takes, in thousandths.
+    pub cost: u64,
+    fraction: u64,
+    /// Resets so far, with their times.
+    pub resets: Vec<(Reset, Time)>,
+    /// An exception is to be left: the value that was branched to.
+    pub returning: Option<u32>,
+    /// What ended the emulation for good.
+    pub halted: Option<String>,
+    /// The block hook asked for a stop: it was no sleep.
+    pub stopped: bool,
+}
+
+impl Machine {
+    /// A chip at power-up.
+    pub fn new(chip: Chip, surroundings: Surroundings, baud: u64, cost: u64) -> Self {
+        let (scs, rate) = (Scs::new(chip.is_m7), chip.after_reset);
+        let mut machine = Self {
+            wires: Wires::new(surroundings, baud),
+            scs,
+            chip,
+            cycles: 0,
+            since: (0, 0),
+            rate,
+            attention: true,
+            deadline: 0,
+            blocks: crate::blocks::Blocks::default(),
+            cost,
+            fraction: 0,
+            resets: Vec::new(),
+            returning: None,
+            halted: None,
+            stopped: false,
+        };
+        machine.wires.clocks = Clocks { system: rate, core: rate, bus: rate, low: rate, high: rate };
+        machine.note_reset(Reset::Power);
+        machine
+    }
+
+    /// Counts the instructions of a block.
+    pub fn count(&mut self, instructions: u32) {
+        let thousandths = self.fraction + u64::from(instructions) * self.cost;
+        self.cycles += thousandths / 1000;
+        self.fraction = thousandths % 1000;
+    }
+
+    /// Time by the cycles so far.
+    pub fn time(&self) -> Time {
+        let (cycles, time) = self.since;
+        time + crate::wires::cycles(self.cycles - cycles, self.rate)
+    }
+
+    /// The first cycle at or after a time.
+    fn cycle_at(&self, time: Time) -> u64 {
+        let (cycles, start) = self.since;
+        let passed = u128::from(time.saturating_sub(start));
+        cycles + (passed * u128::from(self.rate)).div_ceil(u128::from(SECOND)) as u64
+    }
+
+    /// Lets time pass while the core stands still.
+    pub fn pass(&mut self, duration: Time) {
+        self.cycles = self.cycle_at(self.time() + duration);
+    }
+
+    /// Brings all parts up to the present, and finds when something happens next.
+    pub fn settle(&mut self) {
+        let stall = std::mem::take(&mut self.wires.stall);
+        if stall > 0 {
+            self.pass(stall);
+        }
+        self.wires.now = self.time();
+        for placed in &mut self.chip.peripherals {
+            if placed.hold.is_some_and(|hold| self.wires.is_on(hold)) {
+                placed.peripheral.reset();
+            }
+            placed.peripheral.advance(&mut self.wires);
+        }
+        if self.wires.clocks.core != self.rate {
+            self.since = (self.cycles, self.wires.now);
+            self.rate = self.wires.clocks.core.max(1);
+        }
+        self.scs.advance(self.cycles, &mut self.wires);
+        let events = self.chip.peripherals.iter().filter_map(|placed| placed.peripheral.next_event());
+        let next = events.chain(self.wires.line.arrives).min().map(|time| self.cycle_at(time));
+        let never = self.cycles + self.rate;
+        self.deadline = [next, self.scs.next_event()].into_iter().flatten().min().unwrap_or(never).max(self.cycles + 1);
+        self.attention = false;
+    }
+
+    /// All as after a reset, but for memory and the flags of resets.
+    pub fn reset(&mut self, reset: Reset) {
+        self.wires.now = self.time();
+        for placed in &mut self.chip.peripherals {
+            placed.peripheral.reset();
+        }
+        self.scs = Scs::new(self.chip.is_m7);
+        self.wires.interrupts.fill(false);
+        self.wires.requests.clear();
+        self.wires.pins.clear();
+        (self.wires.bus_fault, self.wires.non_maskable, self.wires.stall) = (None, false, 0);
+        self.note_reset(reset);
+        self.attention = true;
+    }
+
+    fn note_reset(&mut self, reset: Reset) {
+        self.wires.last_reset = reset;
+        self.resets.push((reset, self.wires.now));
+        let (register, flags) = (self.chip.reset_flags)(reset);
+        if let Some(placed) = self.chip.peripherals.first_mut() {
+            placed.peripheral.registers().change(register, flags, 0);
+        }
+    }
+
+    /// A read outside of memory.
+    pub fn read(&mut self, address: u32, size: u32) -> u64 {
+        self.wires.now = self.time();
+        if address >= 0xe000_0000 {
+            return self.scs.read(address, size, self.cycles, &mut self.wires).into();
+        }
+        for placed in &mut self.chip.peripherals {
+            if let Some(value) = placed.peripheral.read_memory(address, size, &mut self.wires) {
+                return value;
+            }
+        }
+        let Some((place, offset)) = self.find(address, "read") else { return 0 };
+        let Some(register) = self.check(place, offset, size, "read") else { return 0 };
+        let placed = &mut self.chip.peripherals[place];
+        let value = placed.peripheral.read(register.offset, &mut self.wires);
+        // A read may take a byte out of a FIFO, which changes levels.
+        self.attention = true;
+        u64::from(value >> (8 * (offset - register.offset))) & (u64::MAX >> (64 - 8 * size))
+    }
+
+    /// A write outside of memory.
+    pub fn write(&mut self, address: u32, size: u32, value: u64) {
+        self.wires.now = self.time();
+        self.attention = true;
+        if address >= 0xe000_0000 {
+            return self.scs.write(address, size, value as u32, self.cycles, &mut self.wires);
+        }
+        for placed in &mut self.chip.peripherals {
+            if placed.peripheral.write_memory(address, size, value, &mut self.wires) {
+                return;
+            }
+        }
+        let Some((place, offset)) = self.find(address, "written") else { return };
+        let Some(register) = self.check(place, offset, size, "written") else { return };
+        let Placed { name, peripheral, .. } = &mut self.chip.peripherals[place];
+        let before = peripheral.registers().get(register.offset);
+        let shift = 8 * (offset - register.offset);
+        let mask = (u64::MAX >> (64 - 8 * size)) as u32;
+        let written = match size {
+            4 => value as u32,
+            // Other bytes of the register stay; bits that act when written see zeros.
+            _ => before & !register.special & !(mask << shift) | (value as u32 & mask) << shift,
+        };
+        let reserved = !register.fields;
+        if !register.any_value && (written ^ register.reset) & reserved != 0 && written & reserved != 0 {
+            let bits = written & reserved & (written ^ register.reset);
+            let what = format!("reserved bits {bits:#010x} are written");
+            self.wires.violation(&format!("{name} {}", register.name), what, "the register's own section");
+        }
+        let kept = register.special | reserved;
+        peripheral.registers().set(register.offset, before & kept | written & !kept);
+        peripheral.written(register.offset, written, before, &mut self.wires);
+    }
+
+    /// The peripheral at an address, and the offset in it.
+    fn find(&mut self, address: u32, done: &str) -> Option<(usize, u32)> {
+        let within = |placed: &Placed| address >= placed.base && address - placed.base < placed.size;
+        let place = self.chip.peripherals.iter().position(within);
+        if place.is_none() {
+            let what = format!("is {done}, and the model has nothing there");
+            self.wires.violation(&format!("{address:#010x}"), what, "the memory map");
+        }
+        place.map(|place| (place, address - self.chip.peripherals[place].base))
+    }
+
+    /// The rules that hold for all registers.
+    fn check(&mut self, place: usize, offset: u32, size: u32, done: &str) -> Option<&'static Register> {
+        let Placed { name, clock, hold, section, peripheral, .. } = &mut self.chip.peripherals[place];
+        let registers = peripheral.registers();
+        let Some(register) = registers.describe(offset).or_else(|| registers.describe(offset & !3)) else {
+            let what = format!("is {done}, and the model has no such register");
+            self.wires.violation(&format!("{name}+{offset:#x}"), what, "the register map");
+            return None;
+        };
+        let named = format!("{name} {}", register.name);
+        if clock.is_some_and(|clock| !self.wires.is_on(clock)) {
+            self.wires.violation(&named, format!("is {done} while the clock of {name} is off"), section);
+            return None;
+        }
+        if hold.is_some_and(|hold| self.wires.is_on(hold)) {
+            self.wires.violation(&named, format!("is {done} while {name} is held in reset"), section);
+            return None;
+        }
+        if register.widths & size == 0 || offset % size != 0 {
+            self.wires.violation(&named, format!("is {done} by {size} bytes"), "the register's own section");
+        }
+        Some(register)
+    }
+}

@@ -1,0 +1,116 @@
+//! What flash controllers share: the array behind the image, with words that a lost power has left damaged.
+
+use std::collections::BTreeSet;
+
+use crate::wires::Wires;
+
+/// First address of flash on all three chips.
+pub const BASE: u32 = 0x0800_0000;
+/// Keys of the control register: RM0090 3.6.1, RM0440 3.3.5, RM0433 4.5.1.
+pub const KEYS: [u32; 2] = [0x4567_0123, 0xcdef_89ab];
+
+/// Flash that no image is in.
+#[derive(Debug, Clone)]
+pub struct Array {
+    start: u32,
+    bytes: Vec<u8>,
+    /// Bytes that are corrected or checked together.
+    word: u32,
+    damaged: BTreeSet<u32>,
+}
+
+impl Array {
+    /// Erased, from an address to the end of a flash of a size.
+    pub fn new(start: u32, size: u32, word: u32) -> Self {
+        Self { start, bytes: vec![0xff; (BASE + size).saturating_sub(start) as usize], word, damaged: BTreeSet::new() }
+    }
+
+    /// Whether an address is in it.
+    pub fn holds(&self, address: u32) -> bool {
+        address >= self.start && ((address - self.start) as usize) < self.bytes.len()
+    }
+
+    /// What is there, little endian.
+    pub fn read(&self, address: u32, size: u32) -> u64 {
+        let place = (address - self.start) as usize;
+        let bytes = self.bytes.iter().skip(place).take(size as usize);
+        bytes.rev().fold(0, |value, byte| value << 8 | u64::from(*byte))
+    }
+
+    /// Whether the word around an address was left damaged.
+    pub fn is_damaged(&self, address: u32) -> bool {
+        self.damaged.contains(&(address / self.word))
+    }
+
+    /// Whether all of the word around an address is as erased.
+    pub fn is_erased(&self, address: u32) -> bool {
+        let first = address / self.word * self.word;
+        (0..self.word).all(|byte| self.read(first + byte, 1) == 0xff) && !self.is_damaged(address)
+    }
+
+    /// Clears bits: a program can do nothing else.
+    pub fn program(&mut self, address: u32, size: u32, value: u64) {
+        for index in 0..size {
+            if let Some(byte) = self.bytes.get_mut((address + index - self.start) as usize) {
+                *byte &= (value >> (8 * index)) as u8;
+            }
+        }
+    }
+
+    /// Erases from an address on; what of it the image holds is a violation.
+    pub fn erase(&mut self, address: u32, size: u32, wires: &mut Wires) {
+        if address < wires.image_end {
+            wires.violation("FLASH", format!("the image is erased at {address:#010x}"), "the image");
+        }
+        for place in (address..address + size).filter(|place| *place >= self.start) {
+            if let Some(byte) = self.bytes.get_mut((place - self.start) as usize) {
+                *byte = 0xff;
+            }
+        }
+        self.damaged.retain(|word| !(address..address + size).contains(&(word * self.word)));
+    }
+
+    /// Power went while the words of a range were erased or programmed.
+    pub fn damage(&mut self, address: u32, size: u32) {
+        self.damaged.extend((address / self.word)..(address + size).div_ceil(self.word));
+    }
+}
+
+/// The sequence of keys.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Lock {
+    /// Nothing, or the first key.
+    Locked {
+        /// Keys taken so far.
+        keys: usize,
+    },
+    /// Open.
+    Open,
+    /// A wrong key was given: locked until the next reset.
+    Shut,
+}
+
+impl Lock {
+    /// A key is written.
+    pub fn key(&mut self, key: u32, register: &str, wires: &mut Wires) {
+        *self = match *self {
+            Self::Locked { keys } if key == KEYS[keys] => {
+                if keys == 1 {
+                    Self::Open
+                } else {
+                    Self::Locked { keys: 1 }
+                }
+            }
+            Self::Open => {
+                wires.violation(register, "is written while unlocked: locks until the next reset", "RM0090 3.6.1");
+                wires.bus_fault = Some(0);
+                Self::Shut
+            }
+            _ => {
+                wires.violation(register, "a wrong key: locked until the next reset", "RM0090 3.6.1, RM0440 3.3.5");
+                wires.bus_fault = Some(0);
+                Self::Shut
+            }
+        };
+    }
+}

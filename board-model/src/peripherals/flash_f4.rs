@@ -1,0 +1,215 @@
+//! The flash controller of STM32F405: RM0090 section 3. One bank: whoever reads while it is at work waits for it.
+
+use super::Peripheral;
+use super::flash::{Array, BASE, Lock};
+use crate::register::{Register, Registers, bit, bits};
+use crate::wires::{MICROSECOND, Time, Wires};
+
+const ACR: u32 = 0x00;
+const KEYR: u32 = 0x04;
+const SR: u32 = 0x0c;
+const CR: u32 = 0x10;
+/// A mebibyte.
+const SIZE: u32 = 0x10_0000;
+const KIB: u32 = 1024;
+
+/// RM0090 3.9.
+static MAP: [Register; 6] = [
+    Register::new("FLASH_ACR", ACR, 0, 0x1f07).special(bits(12, 11)),
+    Register::new("FLASH_KEYR", KEYR, 0, u32::MAX).special(u32::MAX).any_value(),
+    Register::new("FLASH_OPTKEYR", 0x08, 0, u32::MAX).special(u32::MAX).any_value(),
+    Register::new("FLASH_SR", SR, 0, 0x0001_00f3).special(0x0001_00f3),
+    Register::new("FLASH_CR", CR, 0x8000_0000, 0x8301_037f).special(0x8301_037f),
+    Register::new("FLASH_OPTCR", 0x14, 0x0fff_aaed, 0x0fff_ffef).special(u32::MAX),
+];
+
+/// Data sheet of STM32F405, table 40: erase of a 128 KiB sector with words 1 s (2 s at most), of smaller ones less; a word
+/// 16 us.
+const ERASE_PER_KIB: Time = 7800 * MICROSECOND;
+const PROGRAM: Time = 16 * MICROSECOND;
+/// RM0090 table 10, 2.7 to 3.6 V: a wait state for each 30 MHz.
+const PER_WAIT_STATE: u64 = 30_000_000;
+
+/// The controller.
+#[derive(Debug)]
+pub struct Flash {
+    registers: Registers,
+    array: Array,
+    lock: Lock,
+    busy_until: Option<Time>,
+    /// The data cache may hold what was there before.
+    stale: bool,
+}
+
+impl Flash {
+    /// With an image up to an address.
+    pub fn new(image_end: u32) -> Self {
+        Self {
+            registers: Registers::new(&MAP),
+            array: Array::new(image_end, SIZE, 4),
+            lock: Lock::Locked { keys: 0 },
+            busy_until: None,
+            stale: false,
+        }
+    }
+
+    fn is_busy(&self, now: Time) -> bool {
+        self.busy_until.is_some_and(|until| until > now)
+    }
+
+    fn work(&mut self, duration: Time, wires: &mut Wires) {
+        self.busy_until = Some(wires.now + duration);
+        // RM0090 3.6: reads of flash, instructions too, wait until the end.
+        wires.stall += duration;
+        self.stale |= self.registers.is_set(ACR, 10);
+    }
+
+    fn access_written(&mut self, value: u32, wires: &mut Wires) {
+        for (reset, enable, what) in [(11, 9, "instruction"), (12, 10, "data")] {
+            if value & bit(reset) != 0 && value & bit(enable) != 0 {
+                let what = format!("the {what} cache is reset while it is on");
+                wires.violation("FLASH_ACR", what, "RM0090 3.9.1");
+            }
+        }
+        if value & bit(12) != 0 && value & bit(10) == 0 {
+            self.stale = false;
+        }
+        self.registers.change(ACR, value & bits(12, 11), bits(12, 11));
+    }
+
+    fn control_written(&mut self, value: u32, before: u32, wires: &mut Wires) {
+        if value & bit(31) != 0 {
+            self.lock = Lock::Locked { keys: 0 };
+            self.registers.set(CR, bit(31));
+            return;
+        }
+        if self.lock != Lock::Open {
+            wires.violation("FLASH_CR", "is written while locked: the keys first", "RM0090 3.6.1");
+            return;
+        }
+        if self.is_busy(wires.now) {
+            wires.violation("FLASH_CR", "is written while BSY is 1", "RM0090 3.9.5");
+        }
+        if value & bit(16) != 0 && value & 0x7f != before & 0x7f {
+            wires.violation("FLASH_CR", "the kind of erase is chosen with its start, not before", "RM0090 3.6.3");
+        }
+        self.registers.set(CR, value & !bit(16));
+        if value & bit(16) != 0 {
+            self.erase(value, wires);
+        }
+    }
+
+    fn erase(&mut self, control: u32, wires: &mut Wires) {
+        let sector = control >> 3 & 0xf;
+        if control & bit(1) == 0 || sector > 11 {
+            wires.violation("FLASH_CR", "starts an erase of no sector", "RM0090 3.6.3");
+            return;
+        }
+        // RM0090 table 5.
+        let (first, size) = match sector {
+            0..4 => (sector * 16 * KIB, 16 * KIB),
+            4 => (64 * KIB, 64 * KIB),
+            _ => ((sector - 4) * 128 * KIB, 128 * KIB),
+        };
+        let cut = wires.begins_flash_operation();
+        if cut {
+            self.array.damage(BASE + first, size);
+            wires.reset = Some(crate::wires::Reset::Power);
+            return;
+        }
+        self.array.erase(BASE + first, size, wires);
+        self.work(ERASE_PER_KIB * u64::from(size / KIB), wires);
+    }
+}
+
+impl Peripheral for Flash {
+    fn registers(&mut self) -> &mut Registers {
+        &mut self.registers
+    }
+
+    fn read(&mut self, offset: u32, wires: &mut Wires) -> u32 {
+        self.advance(wires);
+        self.registers.get(offset)
+    }
+
+    fn written(&mut self, offset: u32, value: u32, before: u32, wires: &mut Wires) {
+        match offset {
+            ACR => self.access_written(value, wires),
+            KEYR => self.lock.key(value, "FLASH_KEYR", wires),
+            SR => self.registers.change(SR, 0, value & 0xf3),
+            CR => self.control_written(value, before, wires),
+            _ => wires.violation("FLASH", "option bytes are not modelled and not to be touched", "RM0090 3.7"),
+        }
+        if self.lock == Lock::Open {
+            self.registers.change(CR, 0, bit(31));
+        }
+        self.advance(wires);
+    }
+
+    fn advance(&mut self, wires: &mut Wires) {
+        let busy = self.is_busy(wires.now);
+        self.registers.change(SR, u32::from(busy) << 16, bit(16));
+        let waits = u64::from(self.registers.field(ACR, 0, 3));
+        if wires.clocks.bus > (waits + 1) * PER_WAIT_STATE {
+            let what = format!("{waits} wait states are too few for {} Hz", wires.clocks.bus);
+            wires.violation("FLASH_ACR", what, "RM0090 3.5.1, table 10");
+        }
+    }
+
+    fn reset(&mut self) {
+        self.registers.reset();
+        self.lock = Lock::Locked { keys: 0 };
+        self.busy_until = None;
+        self.stale = false;
+    }
+
+    fn read_memory(&mut self, address: u32, size: u32, wires: &mut Wires) -> Option<u64> {
+        if !self.array.holds(address) {
+            return None;
+        }
+        if self.stale {
+            let what = "is read through a data cache that was not reset since flash was changed";
+            wires.violation("flash", what, "RM0090 3.5.2");
+        }
+        Some(self.array.read(address, size))
+    }
+
+    fn write_memory(&mut self, address: u32, size: u32, value: u64, wires: &mut Wires) -> bool {
+        if !self.array.holds(address) {
+            return false;
+        }
+        let parallelism = 1 << self.registers.field(CR, 8, 2);
+        let (error, what, section) = if !self.registers.is_set(CR, 0) || self.lock != Lock::Open {
+            (bit(7), "is written while PG is 0", "RM0090 3.6.4 PGSERR")
+        } else if parallelism != size {
+            (bit(6), "is written with another width than PSIZE says", "RM0090 3.6.4 PGPERR")
+        } else if address / 16 != (address + size - 1) / 16 {
+            (bit(5), "a write crosses 128 bits", "RM0090 3.6.4 PGAERR")
+        } else if self.is_busy(wires.now) {
+            (bit(7), "is written while BSY is 1", "RM0090 3.6.4")
+        } else if self.registers.get(SR) & 0xf2 != 0 {
+            (bit(7), "is written while an error flag is up", "RM0090 3.9.4")
+        } else {
+            (0, "", "")
+        };
+        if error != 0 {
+            self.registers.change(SR, error, 0);
+            wires.violation("flash", what, section);
+            return true;
+        }
+        let held = self.array.read(address, size);
+        if held & value != value {
+            wires.violation("flash", "is programmed over what is not erased", "RM0090 3.6.4");
+        }
+        let cut = wires.begins_flash_operation();
+        if cut {
+            // Some bits have been cleared: F405 has no check of its words.
+            self.array.program(address, size, value | 0x5555_5555);
+            wires.reset = Some(crate::wires::Reset::Power);
+            return true;
+        }
+        self.array.program(address, size, value);
+        self.work(PROGRAM, wires);
+        true
+    }
+}

@@ -1,0 +1,52 @@
+//! The peripherals of the chips, each by its chapter of the reference manual.
+
+pub mod exti;
+pub mod flash;
+pub mod flash_f4;
+pub mod gpio;
+pub mod iwdg;
+pub mod pwr_f4;
+pub mod rcc;
+pub mod rcc_f4;
+pub mod syscfg;
+pub mod usart;
+
+use crate::register::Registers;
+use crate::wires::{Time, Wires};
+
+/// A peripheral with registers. Access rules that hold for all are checked before any of these is called.
+pub trait Peripheral {
+    /// Its registers.
+    fn registers(&mut self) -> &mut Registers;
+
+    /// A read of a register, with what the read itself changes.
+    fn read(&mut self, offset: u32, _wires: &mut Wires) -> u32 {
+        self.registers().get(offset)
+    }
+
+    /// A register was written: the value, and what the register held before.
+    fn written(&mut self, _offset: u32, _value: u32, _before: u32, _wires: &mut Wires) {}
+
+    /// Brings it up to the present, and its wires to their levels.
+    fn advance(&mut self, _wires: &mut Wires) {}
+
+    /// When something happens by itself next.
+    fn next_event(&self) -> Option<Time> {
+        None
+    }
+
+    /// A reset of the peripheral.
+    fn reset(&mut self) {
+        self.registers().reset();
+    }
+
+    /// A read of flash that is not part of the image.
+    fn read_memory(&mut self, _address: u32, _size: u32, _wires: &mut Wires) -> Option<u64> {
+        None
+    }
+
+    /// A write to flash; whether it was this one's.
+    fn write_memory(&mut self, _address: u32, _size: u32, _value: u64, _wires: &mut Wires) -> bool {
+        false
+    }
+}

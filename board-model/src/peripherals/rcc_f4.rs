@@ -1,0 +1,200 @@
+//! Reset and clock control of STM32F405: RM0090 section 7.
+
+use super::Peripheral;
+use super::rcc::{INTERNAL_START, PLL_LOCK, Source, bus_divider, external, peripheral_divider, within};
+use crate::register::{Register, Registers, bit, bits};
+use crate::wires::{Clocks, Reset, Wires};
+
+const CR: u32 = 0x00;
+const PLLCFGR: u32 = 0x04;
+const CFGR: u32 = 0x08;
+const CSR: u32 = 0x74;
+/// Internal oscillator [Hz].
+const INTERNAL: u64 = 16_000_000;
+const READY: u32 = bit(1) | bit(17) | bit(25) | bit(27);
+const FLAGS: u32 = bits(31, 25);
+
+/// RM0090 7.3.
+static MAP: [Register; 18] = [
+    Register::new("RCC_CR", CR, 0x83, bits(15, 3) | bits(1, 0) | bits(19, 16) | bits(27, 24))
+        .special(READY | bits(15, 8)),
+    Register::new("RCC_PLLCFGR", PLLCFGR, 0x2400_3010, 0x0f43_7fff),
+    Register::new("RCC_CFGR", CFGR, 0, 0xffff_fcff).special(0xc),
+    Register::new("RCC_CIR", 0x0c, 0, 0x00ff_7fff).special(0x00ff_00ff),
+    Register::new("RCC_AHB1RSTR", 0x10, 0, 0x2260_11ff),
+    Register::new("RCC_AHB2RSTR", 0x14, 0, 0xf1),
+    Register::new("RCC_AHB3RSTR", 0x18, 0, 1),
+    Register::new("RCC_APB1RSTR", 0x20, 0, 0x36fe_c9ff),
+    Register::new("RCC_APB2RSTR", 0x24, 0, 0x0007_5933),
+    Register::new("RCC_AHB1ENR", 0x30, 0x0010_0000, 0x7e74_11ff),
+    Register::new("RCC_AHB2ENR", 0x34, 0, 0xf1),
+    Register::new("RCC_AHB3ENR", 0x38, 0, 1),
+    Register::new("RCC_APB1ENR", 0x40, 0, 0x36fe_c9ff),
+    Register::new("RCC_APB2ENR", 0x44, 0, 0x0007_5f33),
+    Register::new("RCC_BDCR", 0x70, 0, 0x0001_8307).special(bit(1)),
+    Register::new("RCC_CSR", CSR, 0x0e00_0000, 0xff00_0003).special(FLAGS | bit(1)),
+    Register::new("RCC_SSCGR", 0x80, 0, 0xcfff_ffff),
+    Register::new("RCC_PLLI2SCFGR", 0x84, 0x2000_3000, 0x7000_7fc0),
+];
+
+/// The controller.
+#[derive(Debug)]
+pub struct Rcc {
+    registers: Registers,
+    internal: Source,
+    external: Source,
+    external_rate: u64,
+    pll: Source,
+}
+
+impl Default for Rcc {
+    fn default() -> Self {
+        Self {
+            registers: Registers::new(&MAP),
+            internal: Source::RUNNING,
+            external: Source::default(),
+            external_rate: 0,
+            pll: Source::default(),
+        }
+    }
+}
+
+impl Rcc {
+    /// Input, inner and output frequency of the PLL: RM0090 7.3.2.
+    fn pll_rates(&self) -> [u64; 3] {
+        let source = if self.registers.is_set(PLLCFGR, 22) { self.external_rate } else { INTERNAL };
+        let input = source / u64::from(self.registers.field(PLLCFGR, 0, 6)).max(1);
+        let inner = input * u64::from(self.registers.field(PLLCFGR, 6, 9));
+        [input, inner, inner / u64::from(2 * (self.registers.field(PLLCFGR, 16, 2) + 1))]
+    }
+
+    fn start_pll(&mut self, wires: &mut Wires) {
+        let [input, inner, output] = self.pll_rates();
+        let source = if self.registers.is_set(PLLCFGR, 22) { self.external } else { self.internal };
+        if !source.is_ready(wires.now) {
+            wires.violation("RCC_CR", "the PLL is switched on before its source is ready", "RM0090 7.2.3");
+        }
+        within(wires, "RCC_PLLCFGR", "the input of the PLL", input, [1_000_000, 2_000_000], "RM0090 7.3.2 PLLM");
+        within(wires, "RCC_PLLCFGR", "the PLL inside", inner, [100_000_000, 432_000_000], "RM0090 7.3.2 PLLN");
+        within(wires, "RCC_PLLCFGR", "the output of the PLL", output, [24_000_000, 168_000_000], "RM0090 7.3.2 PLLP");
+        let [m, n, q] = [(0, 6), (6, 9), (24, 4)].map(|(low, width)| self.registers.field(PLLCFGR, low, width));
+        if m < 2 || !(50..=432).contains(&n) || q < 2 {
+            wires.violation("RCC_PLLCFGR", format!("M {m}, N {n} or Q {q} is not allowed"), "RM0090 7.3.2");
+        }
+    }
+
+    fn control_written(&mut self, value: u32, before: u32, wires: &mut Wires) {
+        let system = self.registers.field(CFGR, 2, 2);
+        for (source, on) in [(0, bit(0)), (1, bit(16)), (2, bit(24))] {
+            if system == source && value & on == 0 {
+                wires.violation("RCC_CR", "switches off the source of the system clock", "RM0090 7.3.1");
+            }
+        }
+        if value & bit(16) != 0 && (value ^ before) & bit(18) != 0 && before & bit(16) != 0 {
+            wires.violation("RCC_CR", "HSEBYP is changed while HSEON is 1", "RM0090 7.3.1 HSEBYP");
+        }
+        let outside = external(wires, value & bit(18) != 0);
+        self.external_rate = outside.map_or(0, |(rate, _)| rate);
+        self.internal.switch(value & bit(0) != 0, Some(INTERNAL_START), wires.now);
+        self.external.switch(value & bit(16) != 0, outside.map(|(_, start)| start), wires.now);
+        if value & bit(24) != 0 && before & bit(24) == 0 {
+            self.start_pll(wires);
+        }
+        self.pll.switch(value & bit(24) != 0, Some(PLL_LOCK), wires.now);
+    }
+
+    fn configuration_written(&mut self, value: u32, wires: &mut Wires) {
+        let wanted = value & 3;
+        let ready = match wanted {
+            0 => self.internal.is_ready(wires.now),
+            1 => self.external.is_ready(wires.now),
+            2 => self.pll.is_ready(wires.now),
+            _ => false,
+        };
+        if ready {
+            self.registers.change(CFGR, wanted << 2, 0xc);
+        } else {
+            wires.violation("RCC_CFGR", "selects a source that is not ready", "RM0090 7.2.6");
+        }
+    }
+}
+
+impl Peripheral for Rcc {
+    fn registers(&mut self) -> &mut Registers {
+        &mut self.registers
+    }
+
+    fn read(&mut self, offset: u32, wires: &mut Wires) -> u32 {
+        self.advance(wires);
+        self.registers.get(offset)
+    }
+
+    fn written(&mut self, offset: u32, value: u32, before: u32, wires: &mut Wires) {
+        match offset {
+            CR => self.control_written(value, before, wires),
+            PLLCFGR if self.registers.is_set(CR, 24) => {
+                wires.violation("RCC_PLLCFGR", "is written while the PLL is on", "RM0090 7.3.2");
+            }
+            CFGR => self.configuration_written(value, wires),
+            CSR if value & bit(24) != 0 => self.registers.change(CSR, 0, FLAGS | bit(24)),
+            _ => {}
+        }
+        self.advance(wires);
+    }
+
+    fn advance(&mut self, wires: &mut Wires) {
+        let ready = [(self.internal, 1), (self.external, 17), (self.pll, 25)];
+        let flags = ready.iter().map(|(source, place)| u32::from(source.is_ready(wires.now)) << place).sum();
+        self.registers.change(CR, flags, READY);
+        let system = match self.registers.field(CFGR, 2, 2) {
+            0 => INTERNAL,
+            1 => self.external_rate,
+            _ => self.pll_rates()[2],
+        };
+        let core = system / bus_divider(self.registers.field(CFGR, 4, 4));
+        let low = core / peripheral_divider(self.registers.field(CFGR, 10, 3));
+        let high = core / peripheral_divider(self.registers.field(CFGR, 13, 3));
+        let clocks = Clocks { system, core, bus: core, low, high };
+        if clocks != wires.clocks {
+            wires.clocks = clocks;
+            for (what, rate, most) in [("core", core, 168), ("APB1", low, 42), ("APB2", high, 84)] {
+                let what = format!("the clock of {what}");
+                within(wires, "RCC_CFGR", &what, rate, [1, most * 1_000_000], "RM0090 7.3.3");
+            }
+        }
+        for offset in [0x10, 0x20, 0x24, 0x30, 0x34, 0x38, 0x40, 0x44] {
+            wires.gates.insert(offset, self.registers.get(offset));
+        }
+    }
+
+    /// RM0090 7.1.1: a reset leaves the flags of resets.
+    fn reset(&mut self) {
+        let flags = self.registers.get(CSR) & FLAGS;
+        *self = Self::default();
+        self.registers.set(CSR, flags);
+    }
+}
+
+/// Flags that a reset leaves: RM0090 7.3.21.
+pub fn flags(reset: Reset) -> (u32, u32) {
+    (
+        CSR,
+        match reset {
+            Reset::Power => 0x0e00_0000,
+            Reset::Software => bit(28) | bit(26),
+            Reset::Watchdog => bit(29) | bit(26),
+        },
+    )
+}
+
+/// Its frequency after a reset [Hz].
+pub const AFTER_RESET: u64 = INTERNAL;
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn dividers_are_those_of_the_manual() {
+        assert_eq!([0, 8, 11, 12, 15].map(super::rcc::bus_divider), [1, 2, 16, 64, 512]);
+        assert_eq!([0, 4, 5, 7].map(super::rcc::peripheral_divider), [1, 2, 4, 16]);
+    }
+}

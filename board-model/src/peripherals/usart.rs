@@ -1,0 +1,327 @@
+//! USARTs: RM0090 section 30, which has room for one byte each way, and RM0440 section 37 with RM0433 section 48, which have
+//! FIFOs. Asynchronous, 8 bits, no parity; the line's speed is that of the clock tree and of BRR, and a byte that comes
+//! before the one before has been fetched is lost, as it is on the chip.
+
+use std::collections::VecDeque;
+
+use super::Peripheral;
+use crate::register::{Register, Registers, bit, bits};
+use crate::wires::{Mode, Pin, Time, Wires, cycles};
+
+/// RM0090 30.6.
+static OLD: [Register; 7] = [
+    Register::new("USART_SR", 0x00, 0xc0, 0x3ff).special(0x3ff).half_words(),
+    Register::new("USART_DR", 0x04, 0, 0x1ff).special(0x1ff).half_words(),
+    Register::new("USART_BRR", 0x08, 0, 0xffff).half_words(),
+    Register::new("USART_CR1", 0x0c, 0, 0xbfff).half_words(),
+    Register::new("USART_CR2", 0x10, 0, 0x7f6f).half_words(),
+    Register::new("USART_CR3", 0x14, 0, 0x0fff).half_words(),
+    Register::new("USART_GTPR", 0x18, 0, 0xffff).half_words(),
+];
+/// RM0440 37.8, RM0433 48.7.
+static NEW: [Register; 12] = [
+    Register::new("USART_CR1", 0x00, 0, u32::MAX),
+    Register::new("USART_CR2", 0x04, 0, 0xffff_ff7f & !bits(2, 1)),
+    Register::new("USART_CR3", 0x08, 0, u32::MAX & !bit(16)),
+    Register::new("USART_BRR", 0x0c, 0, 0xffff),
+    Register::new("USART_GTPR", 0x10, 0, 0xffff),
+    Register::new("USART_RTOR", 0x14, 0, u32::MAX),
+    Register::new("USART_RQR", 0x18, 0, 0x1f).special(0x1f),
+    Register::new("USART_ISR", 0x1c, 0x0080_00c0, u32::MAX).special(u32::MAX),
+    Register::new("USART_ICR", 0x20, 0, 0x0012_3bff).special(0x0012_3bff),
+    Register::new("USART_RDR", 0x24, 0, 0x1ff).special(0x1ff),
+    Register::new("USART_TDR", 0x28, 0, 0x1ff).special(0x1ff),
+    Register::new("USART_PRESC", 0x2c, 0, 0xf),
+];
+
+/// Bits of a byte on the line.
+const BITS: u64 = 10;
+/// Most that the board's speed may be off before a receiver fails, in thousandths: RM0090 30.3.5 allows 3.75 percent for both
+/// ends together.
+const TOLERANCE: u64 = 20;
+
+/// What differs between the generations.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    /// One byte each way.
+    Old,
+    /// FIFOs of so many bytes, once they are on.
+    New(usize),
+}
+
+/// Which clock it has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BusClock {
+    /// That of the first peripheral bus.
+    Low,
+    /// That of the second.
+    High,
+}
+
+/// Where it is on the chip.
+#[derive(Debug, Clone, Copy)]
+pub struct Place {
+    /// Its interrupt.
+    pub interrupt: usize,
+    /// Its clock.
+    pub clock: BusClock,
+    /// Pins that can send, with the alternate function.
+    pub send: &'static [(Pin, u32)],
+    /// Pins that can receive.
+    pub receive: &'static [(Pin, u32)],
+}
+
+/// A USART.
+#[derive(Debug)]
+pub struct Usart {
+    registers: Registers,
+    kind: Kind,
+    place: Place,
+    received: VecDeque<u8>,
+    overrun: bool,
+    /// The status was read while it said overrun: reading the data ends that.
+    overrun_seen: bool,
+    waiting: VecDeque<u8>,
+    /// On its way out, and when it is done.
+    sending: Option<(u8, Time)>,
+}
+
+impl Usart {
+    /// One byte each way.
+    pub fn old(place: Place) -> Self {
+        Self::with(&OLD, Kind::Old, place)
+    }
+
+    /// With FIFOs: 8 bytes on G474, 16 on H743.
+    pub fn new(place: Place, depth: usize) -> Self {
+        Self::with(&NEW, Kind::New(depth), place)
+    }
+
+    fn with(table: &'static [Register], kind: Kind, place: Place) -> Self {
+        Self {
+            registers: Registers::new(table),
+            kind,
+            place,
+            received: VecDeque::new(),
+            overrun: false,
+            overrun_seen: false,
+            waiting: VecDeque::new(),
+            sending: None,
+        }
+    }
+
+    fn control(&self) -> u32 {
+        self.registers.get(if self.kind == Kind::Old { 0x0c } else { 0x00 })
+    }
+
+    fn is_enabled(&self) -> bool {
+        self.control() & if self.kind == Kind::Old { bit(13) } else { bit(0) } != 0
+    }
+
+    fn receives(&self, wires: &Wires) -> bool {
+        self.is_enabled() && self.control() & bit(2) != 0 && is_routed(self.place.receive, wires)
+    }
+
+    fn sends(&self) -> bool {
+        self.is_enabled() && self.control() & bit(3) != 0
+    }
+
+    fn depth(&self) -> usize {
+        match self.kind {
+            Kind::New(depth) if self.control() & bit(29) != 0 => depth,
+            _ => 1,
+        }
+    }
+
+    /// Its speed [baud]: RM0090 30.3.4, RM0440 37.5.7.
+    fn baud(&self, wires: &Wires) -> u64 {
+        let clock = match self.place.clock {
+            BusClock::Low => wires.clocks.low,
+            BusClock::High => wires.clocks.high,
+        };
+        let over_8 = self.control() & bit(15) != 0;
+        let divider = u64::from(self.registers.get(if self.kind == Kind::Old { 0x08 } else { 0x0c }));
+        let prescaler = match self.kind {
+            Kind::Old => 1,
+            Kind::New(_) => {
+                [1, 2, 4, 6, 8, 10, 12, 16, 32, 64, 128, 256][self.registers.field(0x2c, 0, 4).min(11) as usize]
+            }
+        };
+        match over_8 {
+            false => clock / prescaler / divider.max(1),
+            true => 2 * clock / prescaler / (divider & 0xfff0 | divider << 1 & 0xe).max(1),
+        }
+    }
+
+    fn is_off_speed(&self, wires: &Wires) -> bool {
+        let (own, host) = (self.baud(wires), wires.line.baud);
+        own.abs_diff(host) * 1000 > TOLERANCE * host
+    }
+
+    fn has_room(&self) -> bool {
+        self.waiting.len() < self.depth()
+    }
+
+    fn status(&self) -> u32 {
+        let mut status = u32::from(self.overrun) << 3;
+        status |= u32::from(!self.received.is_empty()) << 5;
+        status |= u32::from(self.sending.is_none() && self.waiting.is_empty()) << 6;
+        status |= u32::from(self.has_room()) << 7;
+        if let Kind::New(_) = self.kind {
+            // TEACK, REACK, TXFE, RXFF.
+            status |= (self.control() & bit(3)) << 18 & bit(21) | (self.control() & bit(2)) << 20 & bit(22);
+            status |= u32::from(self.waiting.is_empty()) << 23;
+            status |= u32::from(self.received.len() == self.depth()) << 24;
+        }
+        status
+    }
+
+    fn write_data(&mut self, value: u32, wires: &mut Wires) {
+        if !self.sends() {
+            wires.violation("USART data", "is written while nothing is sent: UE and TE first", "RM0440 37.5.5");
+        } else if self.has_room() {
+            self.waiting.push_back(value as u8);
+        } else {
+            wires.violation("USART data", "is written while it is full: the byte is lost", "RM0090 30.3.2");
+        }
+    }
+
+    fn control_changed(&mut self, value: u32, before: u32, wires: &mut Wires) {
+        let enable = if self.kind == Kind::Old { bit(13) } else { bit(0) };
+        if let Kind::New(_) = self.kind {
+            // RM0440 37.8.1: these fields can only be written while the USART is off.
+            let fixed = bit(29) | bit(28) | bit(15) | bit(12) | bits(11, 9);
+            if before & enable != 0 && (value ^ before) & fixed != 0 {
+                wires.violation(
+                    "USART_CR1",
+                    "word length, parity, oversampling or FIFO changed while UE is 1",
+                    "RM0440 37.8.1",
+                );
+            }
+        }
+        if value & enable != 0 && before & enable == 0 {
+            if self.registers.get(if self.kind == Kind::Old { 0x08 } else { 0x0c }) < 16 {
+                wires.violation("USART_BRR", "is below 16 when the USART is enabled", "RM0440 37.5.7");
+            }
+            for (pins, what) in [(self.place.send, "sends"), (self.place.receive, "receives")] {
+                if !is_routed(pins, wires) {
+                    let what = format!("the USART is enabled while no pin that {what} is routed to it");
+                    wires.violation("USART_CR1", what, "RM0090 8.3.2");
+                }
+            }
+            if self.is_off_speed(wires) {
+                let what = format!("gives {} baud where the host has {}", self.baud(wires), wires.line.baud);
+                wires.violation("USART_BRR", what, "RM0090 30.3.4");
+            }
+        }
+    }
+
+    /// A byte has come in full.
+    fn arrive(&mut self, byte: u8, wires: &mut Wires) {
+        // A wrong speed makes other bytes of them.
+        let byte = if self.is_off_speed(wires) { !byte } else { byte };
+        if !self.receives(wires) {
+            return;
+        }
+        if self.received.len() < self.depth() {
+            self.received.push_back(byte);
+        } else {
+            self.overrun = true;
+            wires.line.overruns += 1;
+        }
+    }
+}
+
+fn is_routed(pins: &[(Pin, u32)], wires: &Wires) -> bool {
+    pins.iter().any(|(pin, function)| wires.mode(*pin) == Mode::Alternate(*function))
+}
+
+impl Peripheral for Usart {
+    fn registers(&mut self) -> &mut Registers {
+        &mut self.registers
+    }
+
+    fn read(&mut self, offset: u32, wires: &mut Wires) -> u32 {
+        self.advance(wires);
+        match (self.kind, offset) {
+            (Kind::Old, 0x00) => {
+                self.overrun_seen = self.overrun;
+                self.status()
+            }
+            (Kind::New(_), 0x1c) => self.status(),
+            (Kind::Old, 0x04) | (Kind::New(_), 0x24) => {
+                // RM0090 30.6.1: a read of the status and then of the data clears the overrun.
+                if self.kind == Kind::Old && std::mem::take(&mut self.overrun_seen) {
+                    self.overrun = false;
+                }
+                let byte = self.received.pop_front().unwrap_or_default();
+                self.advance(wires);
+                byte.into()
+            }
+            _ => self.registers.get(offset),
+        }
+    }
+
+    fn written(&mut self, offset: u32, value: u32, before: u32, wires: &mut Wires) {
+        self.advance(wires);
+        match (self.kind, offset) {
+            (Kind::Old, 0x04) | (Kind::New(_), 0x28) => self.write_data(value, wires),
+            (Kind::Old, 0x0c) | (Kind::New(_), 0x00) => self.control_changed(value, before, wires),
+            // RM0440 37.8.5: the divider is written while the USART is off.
+            (Kind::New(_), 0x0c) if self.is_enabled() => {
+                wires.violation("USART_BRR", "is written while UE is 1", "RM0440 37.8.5");
+            }
+            (Kind::New(_), 0x20) if value & bit(3) != 0 => self.overrun = false,
+            (Kind::New(_), 0x18) if value & bit(3) != 0 => self.received.clear(),
+            _ => {}
+        }
+        self.advance(wires);
+    }
+
+    fn advance(&mut self, wires: &mut Wires) {
+        while let Some((byte, done)) = self.sending.filter(|(_, done)| *done <= wires.now) {
+            let byte = if self.is_off_speed(wires) { !byte } else { byte };
+            if is_routed(self.place.send, wires) {
+                wires.line.to_host.push(byte);
+            }
+            self.sending = None;
+            self.start_sending(done, wires);
+        }
+        if self.sending.is_none() {
+            self.start_sending(wires.now, wires);
+        }
+        while let Some(arrives) = wires.line.arrives.filter(|arrives| *arrives <= wires.now) {
+            let byte = wires.line.to_board.pop_front().unwrap_or_default();
+            self.arrive(byte, wires);
+            let next = arrives + cycles(BITS, wires.line.baud);
+            wires.line.arrives = (!wires.line.to_board.is_empty()).then_some(next);
+        }
+        if wires.line.arrives.is_none() && !wires.line.to_board.is_empty() {
+            wires.line.arrives = Some(wires.now + cycles(BITS, wires.line.baud));
+        }
+        let (status, control) = (self.status(), self.control());
+        let receive = control & bit(5) != 0 && status & (bit(5) | bit(3)) != 0;
+        let send = control & bit(7) != 0 && status & bit(7) != 0;
+        let done = control & bit(6) != 0 && status & bit(6) != 0;
+        wires.interrupt(self.place.interrupt, self.is_enabled() && (receive || send || done));
+    }
+
+    fn next_event(&self) -> Option<Time> {
+        self.sending.map(|(_, done)| done)
+    }
+
+    fn reset(&mut self) {
+        let table = if self.kind == Kind::Old { &OLD[..] } else { &NEW[..] };
+        *self = Self::with(table, self.kind, self.place);
+    }
+}
+
+impl Usart {
+    fn start_sending(&mut self, now: Time, wires: &Wires) {
+        if self.sends()
+            && let Some(byte) = self.waiting.pop_front()
+        {
+            self.sending = Some((byte, now + cycles(BITS, self.baud(wires))));
+        }
+    }
+}

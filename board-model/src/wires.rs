@@ -1,0 +1,231 @@
+//! What runs between the parts of a chip: clocks, clock gates, interrupt lines, pins, requests for DMA, the line to the host.
+//! A peripheral sees the others through these only.
+
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
+
+use crate::violation::Violations;
+
+/// Time in femtoseconds: a cycle of every clock is a whole number of them to nine digits.
+pub type Time = u64;
+/// Femtoseconds in a second.
+pub const SECOND: Time = 1_000_000_000_000_000;
+/// Femtoseconds in a microsecond.
+pub const MICROSECOND: Time = SECOND / 1_000_000;
+
+/// Duration of a number of cycles of a clock [fs].
+pub fn cycles(count: u64, rate: u64) -> Time {
+    (u128::from(count) * u128::from(SECOND) / u128::from(rate.max(1))) as Time
+}
+
+/// Frequencies of a chip's clocks [Hz].
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Clocks {
+    /// Before any divider.
+    pub system: u64,
+    /// The core's, which SysTick counts.
+    pub core: u64,
+    /// That of the bus of flash and memory.
+    pub bus: u64,
+    /// That of the first peripheral bus.
+    pub low: u64,
+    /// That of the second peripheral bus.
+    pub high: u64,
+}
+
+/// A bit of a register of the reset and clock controller.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Gate {
+    /// Offset of the register.
+    pub offset: u32,
+    /// The bit.
+    pub bit: u32,
+}
+
+/// A pin: port and number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Pin(pub char, pub u32);
+
+/// What a pin is set up as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mode {
+    /// Input, as most are after a reset.
+    Input,
+    /// Output at a level.
+    Output(bool),
+    /// One of the alternate functions.
+    Alternate(u32),
+    /// Analog.
+    Analog,
+}
+
+/// Who asks for DMA.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Request {
+    /// A serial peripheral interface with a byte to be fetched.
+    SpiReceived(u32),
+    /// One with room for a byte.
+    SpiToSend(u32),
+}
+
+/// Why a chip resets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Reset {
+    /// Power came on.
+    Power,
+    /// The software asked for it.
+    Software,
+    /// The watchdog.
+    Watchdog,
+}
+
+/// The serial line, as the host's end drives it.
+#[derive(Debug, Default)]
+pub struct Line {
+    /// The host's speed [baud].
+    pub baud: u64,
+    /// Sent by the host and not yet on the line.
+    pub to_board: VecDeque<u8>,
+    /// What the host received.
+    pub to_host: Vec<u8>,
+    /// The byte on its way to the board has arrived then.
+    pub arrives: Option<Time>,
+    /// Bytes that the board lost since the one before had not been fetched.
+    pub overruns: u32,
+}
+
+/// What is outside of the chip.
+#[derive(Debug, Clone, Copy)]
+pub struct Surroundings {
+    /// A crystal at the pins of the external oscillator [Hz].
+    pub crystal: Option<u64>,
+    /// A clock at its input, for the bypass [Hz].
+    pub external_clock: Option<u64>,
+}
+
+/// All of it.
+#[derive(Debug)]
+pub struct Wires {
+    /// Time since power-up.
+    pub now: Time,
+    /// Where the core is.
+    pub pc: u32,
+    /// What was done wrong so far.
+    pub violations: Violations,
+    /// Clocks as they are.
+    pub clocks: Clocks,
+    /// Registers of the clock controller by offset, as far as they switch clocks on and hold resets.
+    pub gates: BTreeMap<u32, u32>,
+    /// Levels of interrupt lines.
+    pub interrupts: Vec<bool>,
+    /// Pins that are not as after a reset.
+    pub pins: BTreeMap<Pin, Mode>,
+    /// Levels that somebody outside drives.
+    pub driven: BTreeMap<Pin, bool>,
+    /// The port behind each external interrupt line, by number.
+    pub line_ports: [char; 16],
+    /// Who asks for DMA.
+    pub requests: BTreeSet<Request>,
+    /// Requests that a multiplexer leads to a channel of DMA, by controller and channel.
+    pub routes: BTreeMap<(u32, u32), Option<Request>>,
+    /// The serial line.
+    pub line: Line,
+    /// What is outside.
+    pub surroundings: Surroundings,
+    /// The core stands still so long.
+    pub stall: Time,
+    /// The non-maskable interrupt is asked for.
+    pub non_maskable: bool,
+    /// An access failed, at this address.
+    pub bus_fault: Option<u32>,
+    /// The chip is to be reset.
+    pub reset: Option<Reset>,
+    /// The regulator gives the highest range, with boost where there is one.
+    pub boost: bool,
+    /// Scale or range of the regulator by its number in the manual: 1 is the fastest.
+    pub voltage: u32,
+    /// Registers of supply may be changed: their own clock, or a write protection.
+    pub last_reset: Reset,
+    /// A data synchronisation barrier was executed since the last store to flash.
+    pub barrier: bool,
+    /// An image lies in flash up to here.
+    pub image_end: u32,
+    /// Power goes when flash has begun so many operations.
+    pub cut_after: Option<u32>,
+    /// Operations that flash has begun: erases and programs.
+    pub flash_operations: u32,
+}
+
+impl Wires {
+    /// At power-up.
+    pub fn new(surroundings: Surroundings, baud: u64) -> Self {
+        Self {
+            now: 0,
+            pc: 0,
+            violations: Violations::default(),
+            clocks: Clocks::default(),
+            gates: BTreeMap::new(),
+            interrupts: vec![false; 240],
+            pins: BTreeMap::new(),
+            driven: BTreeMap::new(),
+            line_ports: ['A'; 16],
+            requests: BTreeSet::new(),
+            routes: BTreeMap::new(),
+            line: Line { baud, ..Line::default() },
+            surroundings,
+            stall: 0,
+            non_maskable: false,
+            bus_fault: None,
+            reset: None,
+            boost: false,
+            voltage: 1,
+            last_reset: Reset::Power,
+            barrier: true,
+            image_end: 0,
+            cut_after: None,
+            flash_operations: 0,
+        }
+    }
+
+    /// Notes a violation where the core is.
+    pub fn violation(&mut self, register: &str, what: impl Into<String>, section: &'static str) {
+        self.violations.add(register, self.pc, what, section);
+    }
+
+    /// Whether a bit of the clock controller is set.
+    pub fn is_on(&self, gate: Gate) -> bool {
+        self.gates.get(&gate.offset).is_some_and(|value| value >> gate.bit & 1 == 1)
+    }
+
+    /// What a pin is set up as.
+    pub fn mode(&self, pin: Pin) -> Mode {
+        self.pins.get(&pin).copied().unwrap_or(Mode::Input)
+    }
+
+    /// The level at a pin: its own, or that from outside, or low.
+    pub fn level(&self, pin: Pin) -> bool {
+        match self.mode(pin) {
+            Mode::Output(level) => level,
+            _ => self.driven.get(&pin).copied().unwrap_or(false),
+        }
+    }
+
+    /// Levels an interrupt line.
+    pub fn interrupt(&mut self, line: usize, level: bool) {
+        self.interrupts[line] = level;
+    }
+
+    /// A flash operation begins; whether power goes with it.
+    pub fn begins_flash_operation(&mut self) -> bool {
+        self.flash_operations += 1;
+        self.cut_after == Some(self.flash_operations)
+    }
+
+    /// Asks for DMA, or no more.
+    pub fn request(&mut self, request: Request, level: bool) {
+        if level {
+            self.requests.insert(request);
+        } else {
+            self.requests.remove(&request);
+        }
+    }
+}

@@ -29,7 +29,7 @@ pub fn start_with<'a>(board: Kind, image: Image, surroundings: Surroundings, cos
     let setup = Setup { surroundings, baud: board.baud_rate().into(), cost };
     match board {
         Kind::Stm32f405 => Board::new(chips::f405::chip, image, setup),
-        Kind::Stm32g474 => Err("no chip yet".into()),
-        Kind::Stm32h743 => Err("no chip yet".into()),
+        Kind::Stm32g474 => Board::new(chips::g474::chip, image, setup),
+        Kind::Stm32h743 => Board::new(chips::h743::chip, image, setup),
     }
 }

@@ -1,20 +1,21 @@
 //! STM32F405: RM0090, memory map in its table 1, interrupts in its table 61.
 
-use crate::machine::{Chip, Memory, Placed};
-use crate::peripherals::Peripheral;
+use super::{always, gated};
+use crate::machine::{Chip, Memory};
 use crate::peripherals::exti::Exti;
 use crate::peripherals::gpio::Gpio;
 use crate::peripherals::iwdg::Iwdg;
 use crate::peripherals::syscfg::Syscfg;
 use crate::peripherals::usart::{BusClock, Place, Usart};
 use crate::peripherals::{flash_f4, pwr_f4, rcc_f4};
-use crate::wires::{Gate, Pin};
+use crate::wires::Pin;
 
 const AHB1ENR: u32 = 0x30;
 const APB1ENR: u32 = 0x40;
 const APB2ENR: u32 = 0x44;
 const AHB1RSTR: u32 = 0x10;
 const APB2RSTR: u32 = 0x24;
+const RM: &str = "RM0090 7.3";
 
 /// RM0090 2.3.1: the core-coupled memory is on the core's own bus.
 static MEMORIES: [Memory; 2] = [
@@ -37,15 +38,15 @@ pub fn chip(image_end: u32) -> Chip {
         always("FLASH", 0x4002_3c00, Box::new(flash_f4::Flash::new(image_end))),
         always("IWDG", 0x4000_3000, Box::new(Iwdg::new(false))),
         always("EXTI", 0x4001_3c00, Box::new(Exti::f4())),
-        gated("PWR", 0x4000_7000, APB1ENR, 28, None, Box::new(pwr_f4::Pwr::default())),
-        gated("SYSCFG", 0x4001_3800, APB2ENR, 14, Some((APB2RSTR, 14)), Box::new(Syscfg::default())),
-        gated("USART1", 0x4001_1000, APB2ENR, 4, Some((APB2RSTR, 4)), Box::new(Usart::old(USART1))),
+        gated(RM, "PWR", 0x4000_7000, (APB1ENR, 28), None, Box::new(pwr_f4::Pwr::default())),
+        gated(RM, "SYSCFG", 0x4001_3800, (APB2ENR, 14), Some((APB2RSTR, 14)), Box::new(Syscfg::default())),
+        gated(RM, "USART1", 0x4001_1000, (APB2ENR, 4), Some((APB2RSTR, 4)), Box::new(Usart::old(USART1))),
     ];
     for (index, port) in ('A'..='I').enumerate() {
         let index = index as u32;
         let base = 0x4002_0000 + 0x400 * index;
         let name = ["GPIOA", "GPIOB", "GPIOC", "GPIOD", "GPIOE", "GPIOF", "GPIOG", "GPIOH", "GPIOI"][index as usize];
-        peripherals.push(gated(name, base, AHB1ENR, index, Some((AHB1RSTR, index)), Box::new(Gpio::f4(port))));
+        peripherals.push(gated(RM, name, base, (AHB1ENR, index), Some((AHB1RSTR, index)), Box::new(Gpio::f4(port))));
     }
     Chip {
         name: "stm32f405",
@@ -56,21 +57,4 @@ pub fn chip(image_end: u32) -> Chip {
         after_reset: rcc_f4::AFTER_RESET,
         reset_flags: rcc_f4::flags,
     }
-}
-
-fn always(name: &'static str, base: u32, peripheral: Box<dyn Peripheral>) -> Placed {
-    Placed { name, base, size: 0x400, clock: None, hold: None, section: "RM0090 7.3", peripheral }
-}
-
-fn gated(
-    name: &'static str,
-    base: u32,
-    register: u32,
-    bit: u32,
-    hold: Option<(u32, u32)>,
-    peripheral: Box<dyn Peripheral>,
-) -> Placed {
-    let clock = Some(Gate { offset: register, bit });
-    let hold = hold.map(|(offset, bit)| Gate { offset, bit });
-    Placed { name, base, size: 0x400, clock, hold, section: "RM0090 7.3", peripheral }
 }

@@ -3,11 +3,17 @@
 pub mod exti;
 pub mod flash;
 pub mod flash_f4;
+pub mod flash_g4;
+pub mod flash_h7;
 pub mod gpio;
 pub mod iwdg;
 pub mod pwr_f4;
+pub mod pwr_g4;
+pub mod pwr_h7;
 pub mod rcc;
 pub mod rcc_f4;
+pub mod rcc_g4;
+pub mod rcc_h7;
 pub mod syscfg;
 pub mod usart;
 

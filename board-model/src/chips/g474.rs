@@ -1,0 +1,63 @@
+//! STM32G474: RM0440, memory map in its table 3, interrupts in its table 97.
+
+use super::{always, gated};
+use crate::machine::{Chip, Memory};
+use crate::peripherals::exti::Exti;
+use crate::peripherals::gpio::Gpio;
+use crate::peripherals::iwdg::Iwdg;
+use crate::peripherals::syscfg::Syscfg;
+use crate::peripherals::usart::{BusClock, Place, Usart};
+use crate::peripherals::{flash_g4, pwr_g4, rcc_g4};
+use crate::wires::Pin;
+
+const AHB2ENR: u32 = 0x4c;
+const APB1ENR1: u32 = 0x58;
+const APB2ENR: u32 = 0x60;
+const AHB2RSTR: u32 = 0x2c;
+const APB1RSTR1: u32 = 0x38;
+const APB2RSTR: u32 = 0x40;
+const RM: &str = "RM0440 7.4";
+
+/// RM0440 2.4: 80 KiB, 16 KiB, and the core-coupled memory, which follows them and is at an address of its own too.
+static MEMORIES: [Memory; 2] = [
+    Memory { base: 0x1000_0000, size: 0x8000, core_only: true },
+    Memory { base: 0x2000_0000, size: 0x2_0000, core_only: false },
+];
+
+/// Data sheet of STM32G474, table 13: USART2 is function 7.
+const USART2: Place = Place {
+    interrupt: 38,
+    clock: BusClock::Low,
+    send: &[(Pin('A', 2), 7), (Pin('A', 14), 7), (Pin('B', 3), 7), (Pin('D', 5), 7)],
+    receive: &[(Pin('A', 3), 7), (Pin('A', 15), 7), (Pin('B', 4), 7), (Pin('D', 6), 7)],
+};
+
+/// The chip, with an image up to an address.
+pub fn chip(image_end: u32) -> Chip {
+    let mut peripherals = vec![
+        always("RCC", 0x4002_1000, Box::new(rcc_g4::Rcc::default())),
+        always("FLASH", 0x4002_2000, Box::new(flash_g4::Flash::new(image_end))),
+        always("IWDG", 0x4000_3000, Box::new(Iwdg::new(true))),
+        always("EXTI", 0x4001_0400, Box::new(Exti::g4())),
+        gated(RM, "PWR", 0x4000_7000, (APB1ENR1, 28), Some((APB1RSTR1, 28)), Box::new(pwr_g4::Pwr::default())),
+        gated(RM, "SYSCFG", 0x4001_0000, (APB2ENR, 0), Some((APB2RSTR, 0)), Box::new(Syscfg::default())),
+        gated(RM, "USART2", 0x4000_4400, (APB1ENR1, 17), Some((APB1RSTR1, 17)), Box::new(Usart::new(USART2, 8))),
+    ];
+    for (index, (port, name)) in
+        ('A'..='G').zip(["GPIOA", "GPIOB", "GPIOC", "GPIOD", "GPIOE", "GPIOF", "GPIOG"]).enumerate()
+    {
+        let index = index as u32;
+        let (clock, hold) = ((AHB2ENR, index), Some((AHB2RSTR, index)));
+        let base = 0x4800_0000 + 0x400 * index;
+        peripherals.push(gated(RM, name, base, clock, hold, Box::new(Gpio::newer(port, true))));
+    }
+    Chip {
+        name: "stm32g474",
+        is_m7: false,
+        flash: 0x8_0000,
+        memories: &MEMORIES,
+        peripherals,
+        after_reset: rcc_g4::AFTER_RESET,
+        reset_flags: rcc_g4::flags,
+    }
+}

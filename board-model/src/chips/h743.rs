@@ -1,0 +1,59 @@
+//! STM32H743: RM0433, memory map in its table 8, interrupts in its table 149.
+
+use super::{always, gated};
+use crate::machine::{Chip, Memory};
+use crate::peripherals::gpio::Gpio;
+use crate::peripherals::iwdg::Iwdg;
+use crate::peripherals::usart::{BusClock, Place, Usart};
+use crate::peripherals::{flash_h7, pwr_h7, rcc_h7};
+use crate::wires::Pin;
+
+const AHB4ENR: u32 = 0xe0;
+const APB1LENR: u32 = 0xe8;
+const AHB4RSTR: u32 = 0x88;
+const APB1LRSTR: u32 = 0x90;
+const RM: &str = "RM0433 8.7";
+
+/// RM0433 2.4: instruction and data memory of the core, then that of each domain.
+static MEMORIES: [Memory; 5] = [
+    Memory { base: 0x0000_0000, size: 0x1_0000, core_only: true },
+    Memory { base: 0x2000_0000, size: 0x2_0000, core_only: true },
+    Memory { base: 0x2400_0000, size: 0x8_0000, core_only: false },
+    Memory { base: 0x3000_0000, size: 0x4_8000, core_only: false },
+    Memory { base: 0x3800_0000, size: 0x1_0000, core_only: false },
+];
+
+/// Data sheet of STM32H743, table 9: USART3 is function 7.
+const USART3: Place = Place {
+    interrupt: 39,
+    clock: BusClock::Low,
+    send: &[(Pin('B', 10), 7), (Pin('C', 10), 7), (Pin('D', 8), 7)],
+    receive: &[(Pin('B', 11), 7), (Pin('C', 11), 7), (Pin('D', 9), 7)],
+};
+
+/// The chip, with an image up to an address.
+pub fn chip(image_end: u32) -> Chip {
+    let mut peripherals = vec![
+        always("RCC", 0x5802_4400, Box::new(rcc_h7::Rcc::default())),
+        always("PWR", 0x5802_4800, Box::new(pwr_h7::Pwr::default())),
+        always("FLASH", 0x5200_2000, Box::new(flash_h7::Flash::new(image_end))),
+        always("IWDG1", 0x5800_4800, Box::new(Iwdg::new(true))),
+        gated(RM, "USART3", 0x4000_4800, (APB1LENR, 18), Some((APB1LRSTR, 18)), Box::new(Usart::new(USART3, 16))),
+    ];
+    let names = ["GPIOA", "GPIOB", "GPIOC", "GPIOD", "GPIOE", "GPIOF", "GPIOG", "GPIOH", "GPIOI", "GPIOJ", "GPIOK"];
+    for (index, (port, name)) in ('A'..='K').zip(names).enumerate() {
+        let index = index as u32;
+        let (clock, hold) = ((AHB4ENR, index), Some((AHB4RSTR, index)));
+        let base = 0x5802_0000 + 0x400 * index;
+        peripherals.push(gated(RM, name, base, clock, hold, Box::new(Gpio::newer(port, false))));
+    }
+    Chip {
+        name: "stm32h743",
+        is_m7: true,
+        flash: 0x20_0000,
+        memories: &MEMORIES,
+        peripherals,
+        after_reset: rcc_h7::AFTER_RESET,
+        reset_flags: rcc_h7::flags,
+    }
+}

@@ -1,0 +1,254 @@
+//! The flash controller of STM32G474 (category 3, two banks): RM0440 section 3. Double words with their check bits; code of
+//! one bank runs while the other is at work.
+
+use super::Peripheral;
+use super::flash::{Array, BASE, Lock};
+use crate::register::{Register, Registers, bit, bits};
+use crate::wires::{MICROSECOND, Reset, Time, Wires};
+
+const ACR: u32 = 0x00;
+const KEYR: u32 = 0x08;
+const SR: u32 = 0x10;
+const CR: u32 = 0x14;
+const ECCR: u32 = 0x18;
+const OPTR: u32 = 0x20;
+/// 512 KiB in two banks.
+const SIZE: u32 = 0x8_0000;
+const BANK: u32 = SIZE / 2;
+const PAGE: u32 = 0x800;
+const DOUBLE_WORD: u32 = 8;
+const ERRORS: u32 = 0xc3fa;
+
+/// RM0440 3.7.
+static MAP: [Register; 8] = [
+    Register::new("FLASH_ACR", ACR, 0x0004_0600, 0x0004_7f0f).special(bits(12, 11)),
+    Register::new("FLASH_PDKEYR", 0x04, 0, u32::MAX).special(u32::MAX).any_value(),
+    Register::new("FLASH_KEYR", KEYR, 0, u32::MAX).special(u32::MAX).any_value(),
+    Register::new("FLASH_OPTKEYR", 0x0c, 0, u32::MAX).special(u32::MAX).any_value(),
+    Register::new("FLASH_SR", SR, 0, 0x0001_c3fb).special(u32::MAX),
+    Register::new("FLASH_CR", CR, 0xc000_0000, 0xff07_8fff).special(u32::MAX),
+    Register::new("FLASH_ECCR", ECCR, 0, 0xf17f_ffff).special(u32::MAX),
+    // DBANK (22) is 1 as delivered.
+    Register::new("FLASH_OPTR", OPTR, 0xffef_f8aa, u32::MAX).special(u32::MAX),
+];
+
+/// Data sheet of STM32G474, table 52: a page 22 ms, a double word 82 us.
+const ERASE: Time = 22_000 * MICROSECOND;
+const PROGRAM: Time = 82 * MICROSECOND;
+
+/// The controller.
+#[derive(Debug)]
+pub struct Flash {
+    registers: Registers,
+    array: Array,
+    lock: Lock,
+    busy_until: Option<Time>,
+    /// The first half of a double word, and where it goes.
+    half: Option<(u32, u32)>,
+    stale: bool,
+}
+
+impl Flash {
+    /// With an image up to an address.
+    pub fn new(image_end: u32) -> Self {
+        Self {
+            registers: Registers::new(&MAP),
+            array: Array::new(image_end, SIZE, DOUBLE_WORD),
+            lock: Lock::Locked { keys: 0 },
+            busy_until: None,
+            half: None,
+            stale: false,
+        }
+    }
+
+    fn is_busy(&self, now: Time) -> bool {
+        self.busy_until.is_some_and(|until| until > now)
+    }
+
+    /// An operation on an address begins.
+    fn work(&mut self, address: u32, duration: Time, wires: &mut Wires) {
+        self.busy_until = Some(wires.now + duration);
+        if self.registers.is_set(ACR, 10) {
+            self.stale = true;
+            // ES0430 2.2.2: a read of the one bank while the other is at work may corrupt the data cache.
+            let what = "the data cache is on while a bank is erased or programmed beside running code";
+            wires.violation("FLASH_ACR", what, "ES0430 2.2.2");
+        }
+        // RM0440 3.3.6: reads of the bank at work wait for it, instructions too.
+        if address < BASE + BANK {
+            wires.stall += duration;
+        }
+    }
+
+    fn access_written(&mut self, value: u32, wires: &mut Wires) {
+        for (reset, enable, what) in [(11, 9, "instruction"), (12, 10, "data")] {
+            if value & bit(reset) != 0 && value & bit(enable) != 0 {
+                let what = format!("the {what} cache is reset while it is on");
+                wires.violation("FLASH_ACR", what, "RM0440 3.7.1");
+            }
+        }
+        if value & bit(12) != 0 && value & bit(10) == 0 {
+            self.stale = false;
+        }
+        self.registers.change(ACR, value & bits(12, 11), bits(12, 11));
+    }
+
+    fn control_written(&mut self, value: u32, wires: &mut Wires) {
+        let kept = self.registers.get(CR) & bit(30);
+        if value & bit(31) != 0 {
+            self.lock = Lock::Locked { keys: 0 };
+            self.registers.set(CR, bit(31) | bit(30));
+            return;
+        }
+        if self.lock != Lock::Open {
+            wires.violation("FLASH_CR", "is written while locked: the keys first", "RM0440 3.3.5");
+            return;
+        }
+        if self.is_busy(wires.now) {
+            wires.violation("FLASH_CR", "is written while BSY is 1", "RM0440 3.7.6");
+        }
+        self.registers.set(CR, value & !bit(16) | kept);
+        if value & bit(16) != 0 {
+            self.erase(value, wires);
+        }
+    }
+
+    fn erase(&mut self, control: u32, wires: &mut Wires) {
+        if control & bit(1) == 0 || control & (bit(2) | bit(15) | bit(0)) != 0 {
+            wires.violation("FLASH_CR", "starts an erase of no page, or of more", "RM0440 3.3.6");
+            return;
+        }
+        if self.registers.get(SR) & ERRORS != 0 {
+            wires.violation("FLASH_CR", "an erase starts while an error flag is up", "RM0440 3.3.6");
+        }
+        let first = BASE + BANK * (control >> 11 & 1) + PAGE * (control >> 3 & 0x7f);
+        if wires.begins_flash_operation() {
+            self.array.damage(first, PAGE);
+            wires.reset = Some(Reset::Power);
+            return;
+        }
+        self.array.erase(first, PAGE, wires);
+        self.work(first, ERASE, wires);
+    }
+
+    /// Both halves are there.
+    fn program(&mut self, address: u32, value: u64, wires: &mut Wires) {
+        if !self.array.is_erased(address) && value != 0 {
+            self.registers.change(SR, bit(3), 0);
+            wires.violation("flash", "is programmed over what is not erased", "RM0440 3.3.7 PROGERR");
+            return;
+        }
+        if wires.begins_flash_operation() {
+            self.array.program(address, DOUBLE_WORD, value | 0x5555_5555_5555_5555);
+            self.array.damage(address, DOUBLE_WORD);
+            wires.reset = Some(Reset::Power);
+            return;
+        }
+        self.array.program(address, DOUBLE_WORD, value);
+        self.work(address, PROGRAM, wires);
+    }
+}
+
+impl Peripheral for Flash {
+    fn registers(&mut self) -> &mut Registers {
+        &mut self.registers
+    }
+
+    fn read(&mut self, offset: u32, wires: &mut Wires) -> u32 {
+        self.advance(wires);
+        self.registers.get(offset)
+    }
+
+    fn written(&mut self, offset: u32, value: u32, _before: u32, wires: &mut Wires) {
+        match offset {
+            ACR => self.access_written(value, wires),
+            KEYR => self.lock.key(value, "FLASH_KEYR", wires),
+            SR => self.registers.change(SR, 0, value & 0xc3fb),
+            CR => self.control_written(value, wires),
+            // ECCC (30) and ECCD (31) are cleared by ones.
+            ECCR => self.registers.change(ECCR, 0, value & bits(31, 28)),
+            _ => wires.violation("FLASH", "option bytes are not modelled and not to be touched", "RM0440 3.4"),
+        }
+        if self.lock == Lock::Open {
+            self.registers.change(CR, 0, bit(31));
+        }
+        self.advance(wires);
+    }
+
+    fn advance(&mut self, wires: &mut Wires) {
+        let busy = self.is_busy(wires.now);
+        self.registers.change(SR, u32::from(busy) << 16, bit(16));
+        let waits = u64::from(self.registers.field(ACR, 0, 4));
+        // RM0440 3.3.3, table 9: steps of range 1 boost, range 1 normal, range 2.
+        let step = match (wires.voltage, wires.boost) {
+            (2, _) => 12_000_000,
+            (_, true) => 34_000_000,
+            (_, false) => 30_000_000,
+        };
+        if wires.clocks.bus > (waits + 1) * step {
+            let what = format!("{waits} wait states are too few for {} Hz", wires.clocks.bus);
+            wires.violation("FLASH_ACR", what, "RM0440 3.3.3, table 9");
+        }
+        // RM0440 3.3.8: the flag of an error in two bits holds the non-maskable interrupt.
+        wires.non_maskable |= self.registers.is_set(ECCR, 31);
+    }
+
+    fn reset(&mut self) {
+        self.registers.reset();
+        self.lock = Lock::Locked { keys: 0 };
+        (self.busy_until, self.half, self.stale) = (None, None, false);
+    }
+
+    fn read_memory(&mut self, address: u32, size: u32, wires: &mut Wires) -> Option<u64> {
+        if !self.array.holds(address) {
+            return None;
+        }
+        if self.stale {
+            let what = "is read through a data cache that was not reset since flash was changed";
+            wires.violation("flash", what, "RM0440 3.3.4");
+        }
+        if self.array.is_damaged(address) {
+            let place = (address - BASE) / DOUBLE_WORD;
+            let bank = u32::from(address >= BASE + BANK);
+            self.registers.set(ECCR, bit(31) | bank << 21 | place & 0x7_ffff);
+            wires.non_maskable = true;
+        }
+        if let Some(until) = self.busy_until.filter(|until| *until > wires.now && address >= BASE + BANK) {
+            wires.stall += until - wires.now;
+        }
+        Some(self.array.read(address, size))
+    }
+
+    fn write_memory(&mut self, address: u32, size: u32, value: u64, wires: &mut Wires) -> bool {
+        if !self.array.holds(address) {
+            return false;
+        }
+        let (error, what, section) = if !self.registers.is_set(CR, 0) || self.lock != Lock::Open {
+            (bit(7), "is written while PG is 0", "RM0440 3.3.7 PGSERR")
+        } else if size < 4 {
+            (bit(6), "is written by less than a word", "RM0440 3.3.7 SIZERR")
+        } else if self.is_busy(wires.now) {
+            (bit(7), "is written while BSY is 1", "RM0440 3.3.7")
+        } else if self.registers.get(SR) & ERRORS != 0 {
+            (bit(7), "is written while an error flag is up", "RM0440 3.3.7 PGSERR")
+        } else if size == 4
+            && (self.half.is_none() && address % 8 != 0 || self.half.is_some_and(|(first, _)| address != first + 4))
+        {
+            (bit(5), "the words of a double word do not follow each other", "RM0440 3.3.7 PGAERR")
+        } else {
+            (0, "", "")
+        };
+        if error != 0 {
+            self.registers.change(SR, error, 0);
+            self.half = None;
+            wires.violation("flash", what, section);
+            return true;
+        }
+        match (size, self.half.take()) {
+            (4, None) => self.half = Some((address, value as u32)),
+            (4, Some((first, low))) => self.program(first, value << 32 | u64::from(low), wires),
+            _ => self.program(address, value, wires),
+        }
+        true
+    }
+}

@@ -1,0 +1,233 @@
+//! Reset and clock control of STM32G474: RM0440 section 7.
+
+use super::Peripheral;
+use super::rcc::{INTERNAL_START, PLL_LOCK, Source, bus_divider, external, peripheral_divider, within};
+use crate::register::{Register, Registers, bit, bits};
+use crate::wires::{Clocks, MICROSECOND, Reset, Time, Wires};
+
+const CR: u32 = 0x00;
+const CFGR: u32 = 0x08;
+const PLLCFGR: u32 = 0x0c;
+const CSR: u32 = 0x94;
+/// Internal oscillator [Hz].
+const INTERNAL: u64 = 16_000_000;
+const READY: u32 = bit(10) | bit(17) | bit(25);
+const FLAGS: u32 = bits(31, 25);
+/// RM0440 7.2.7: a step of more than this needs a microsecond at half speed.
+const STEP: u64 = 80_000_000;
+
+/// RM0440 7.4.
+static MAP: [Register; 28] = [
+    Register::new("RCC_CR", CR, 0x0500, bits(10, 8) | bits(19, 16) | bits(25, 24)).special(READY),
+    Register::new("RCC_ICSCR", 0x04, 0x4000_0000, 0x7fff_0000).special(0x00ff_0000),
+    Register::new("RCC_CFGR", CFGR, 0x05, 0x7f00_3fff).special(0xc),
+    Register::new("RCC_PLLCFGR", PLLCFGR, 0x1000, 0xff73_7ff3 | bits(31, 27)),
+    Register::new("RCC_CIER", 0x18, 0, 0x63b),
+    Register::new("RCC_CIFR", 0x1c, 0, 0x73b).special(u32::MAX),
+    Register::new("RCC_CICR", 0x20, 0, 0x73b).special(u32::MAX),
+    Register::new("RCC_AHB1RSTR", 0x28, 0, 0x111f),
+    Register::new("RCC_AHB2RSTR", 0x2c, 0, 0x050f_607f),
+    Register::new("RCC_AHB3RSTR", 0x30, 0, 0x0101),
+    Register::new("RCC_APB1RSTR1", 0x38, 0, 0xd2fe_c13f),
+    Register::new("RCC_APB1RSTR2", 0x3c, 0, 0x0103),
+    Register::new("RCC_APB2RSTR", 0x40, 0, 0x0437_f801),
+    Register::new("RCC_AHB1ENR", 0x48, 0x0100, 0x111f),
+    Register::new("RCC_AHB2ENR", 0x4c, 0, 0x050f_607f),
+    Register::new("RCC_AHB3ENR", 0x50, 0, 0x0101),
+    Register::new("RCC_APB1ENR1", 0x58, 0x0400, 0xd2fe_cd3f),
+    Register::new("RCC_APB1ENR2", 0x5c, 0, 0x0103),
+    Register::new("RCC_APB2ENR", 0x60, 0, 0x0437_f801),
+    Register::new("RCC_AHB1SMENR", 0x68, 0x131f, 0x131f),
+    Register::new("RCC_AHB2SMENR", 0x6c, 0x050f_667f, 0x050f_667f),
+    Register::new("RCC_AHB3SMENR", 0x70, 0x0101, 0x0101),
+    Register::new("RCC_APB1SMENR1", 0x78, 0xd2fe_cd3f, 0xd2fe_cd3f),
+    Register::new("RCC_APB1SMENR2", 0x7c, 0x0103, 0x0103),
+    Register::new("RCC_APB2SMENR", 0x80, 0x0437_f801, 0x0437_f801),
+    Register::new("RCC_CCIPR", 0x88, 0, u32::MAX),
+    Register::new("RCC_BDCR", 0x90, 0, 0x0301_837f).special(bit(1)),
+    Register::new("RCC_CSR", CSR, 0x0c00_0000, 0xfe80_0003).special(FLAGS | bit(1)),
+];
+
+/// The controller.
+#[derive(Debug)]
+pub struct Rcc {
+    registers: Registers,
+    internal: Source,
+    external: Source,
+    external_rate: u64,
+    pll: Source,
+    /// The bus clock has been half the system clock since then.
+    halved_since: Option<Time>,
+}
+
+impl Default for Rcc {
+    fn default() -> Self {
+        Self {
+            registers: Registers::new(&MAP),
+            internal: Source::RUNNING,
+            external: Source::default(),
+            external_rate: 0,
+            pll: Source::default(),
+            halved_since: None,
+        }
+    }
+}
+
+impl Rcc {
+    fn source_rate(&self) -> u64 {
+        match self.registers.field(PLLCFGR, 0, 2) {
+            2 => INTERNAL,
+            3 => self.external_rate,
+            _ => 0,
+        }
+    }
+
+    /// Input, inner and output frequency of the PLL: RM0440 7.4.4.
+    fn pll_rates(&self) -> [u64; 3] {
+        let input = self.source_rate() / u64::from(self.registers.field(PLLCFGR, 4, 4) + 1);
+        let inner = input * u64::from(self.registers.field(PLLCFGR, 8, 7));
+        [input, inner, inner / u64::from(2 * (self.registers.field(PLLCFGR, 25, 2) + 1))]
+    }
+
+    fn start_pll(&mut self, wires: &mut Wires) {
+        let [input, inner, output] = self.pll_rates();
+        let source = if self.registers.field(PLLCFGR, 0, 2) == 3 { self.external } else { self.internal };
+        if !source.is_ready(wires.now) {
+            wires.violation("RCC_CR", "the PLL is switched on before its source is ready", "RM0440 7.2.4");
+        }
+        within(wires, "RCC_PLLCFGR", "the input of the PLL", input, [2_660_000, 16_000_000], "RM0440 7.4.4 PLLM");
+        within(wires, "RCC_PLLCFGR", "the PLL inside", inner, [96_000_000, 344_000_000], "RM0440 7.4.4 PLLN");
+        within(wires, "RCC_PLLCFGR", "the output of the PLL", output, [8_000_000, 170_000_000], "RM0440 7.4.4 PLLR");
+        let factor = self.registers.field(PLLCFGR, 8, 7);
+        if !(8..=127).contains(&factor) {
+            wires.violation("RCC_PLLCFGR", format!("N {factor} is not allowed"), "RM0440 7.4.4 PLLN");
+        }
+    }
+
+    fn control_written(&mut self, value: u32, before: u32, wires: &mut Wires) {
+        let system = self.registers.field(CFGR, 2, 2);
+        for (source, on) in [(1, bit(8)), (2, bit(16)), (3, bit(24))] {
+            if system == source && value & on == 0 {
+                wires.violation("RCC_CR", "switches off the source of the system clock", "RM0440 7.4.1");
+            }
+        }
+        if value & bit(16) != 0 && (value ^ before) & bit(18) != 0 && before & bit(16) != 0 {
+            wires.violation("RCC_CR", "HSEBYP is changed while HSEON is 1", "RM0440 7.4.1 HSEBYP");
+        }
+        let outside = external(wires, value & bit(18) != 0);
+        self.external_rate = outside.map_or(0, |(rate, _)| rate);
+        self.internal.switch(value & bit(8) != 0, Some(INTERNAL_START), wires.now);
+        self.external.switch(value & bit(16) != 0, outside.map(|(_, start)| start), wires.now);
+        if value & bit(24) != 0 && before & bit(24) == 0 {
+            self.start_pll(wires);
+        }
+        self.pll.switch(value & bit(24) != 0, Some(PLL_LOCK), wires.now);
+    }
+
+    fn configuration_written(&mut self, value: u32, before: u32, wires: &mut Wires) {
+        let rate = |rcc: &Self| rcc.system() / bus_divider(rcc.registers.field(CFGR, 4, 4));
+        let slow = wires.clocks.core;
+        let wanted = value & 3;
+        let ready = match wanted {
+            1 => self.internal.is_ready(wires.now),
+            2 => self.external.is_ready(wires.now),
+            3 => self.pll.is_ready(wires.now) && self.registers.is_set(PLLCFGR, 24),
+            _ => false,
+        };
+        if ready {
+            self.registers.change(CFGR, wanted << 2, 0xc);
+        } else {
+            wires.violation(
+                "RCC_CFGR",
+                "selects a source that is not ready, or the PLL without PLLREN",
+                "RM0440 7.2.8",
+            );
+        }
+        let (was, is) = (before >> 4 & 0xf, value >> 4 & 0xf);
+        let fast = rate(self);
+        if is == 8 && was != 8 {
+            self.halved_since = Some(wires.now);
+        }
+        let switches = wanted != before & 3;
+        if switches && is == 8 {
+            self.halved_since = Some(wires.now);
+        }
+        if fast > slow && fast > STEP && slow < STEP && is != 8 {
+            let what = "the bus clock rises over 80 MHz at once, with no microsecond at half speed between";
+            wires.violation("RCC_CFGR", what, "RM0440 7.2.7");
+        }
+        if was == 8 && is < 8 && fast > STEP && self.halved_since.is_none_or(|since| wires.now < since + MICROSECOND) {
+            wires.violation("RCC_CFGR", "the bus clock was at half speed for less than a microsecond", "RM0440 7.2.7");
+        }
+    }
+
+    fn system(&self) -> u64 {
+        match self.registers.field(CFGR, 2, 2) {
+            2 => self.external_rate,
+            3 => self.pll_rates()[2],
+            _ => INTERNAL,
+        }
+    }
+}
+
+impl Peripheral for Rcc {
+    fn registers(&mut self) -> &mut Registers {
+        &mut self.registers
+    }
+
+    fn read(&mut self, offset: u32, wires: &mut Wires) -> u32 {
+        self.advance(wires);
+        self.registers.get(offset)
+    }
+
+    fn written(&mut self, offset: u32, value: u32, before: u32, wires: &mut Wires) {
+        match offset {
+            CR => self.control_written(value, before, wires),
+            PLLCFGR if self.registers.is_set(CR, 24) && (value ^ before) & !(bit(16) | bit(20) | bit(24)) != 0 => {
+                wires.violation("RCC_PLLCFGR", "is written while the PLL is on", "RM0440 7.4.4");
+            }
+            CFGR => self.configuration_written(value, before, wires),
+            CSR if value & bit(23) != 0 => self.registers.change(CSR, 0, FLAGS | bit(23)),
+            _ => {}
+        }
+        self.advance(wires);
+    }
+
+    fn advance(&mut self, wires: &mut Wires) {
+        let ready = [(self.internal, 10), (self.external, 17), (self.pll, 25)];
+        let flags = ready.iter().map(|(source, place)| u32::from(source.is_ready(wires.now)) << place).sum();
+        self.registers.change(CR, flags, READY);
+        let system = self.system();
+        let core = system / bus_divider(self.registers.field(CFGR, 4, 4));
+        let low = core / peripheral_divider(self.registers.field(CFGR, 8, 3));
+        let high = core / peripheral_divider(self.registers.field(CFGR, 11, 3));
+        let clocks = Clocks { system, core, bus: core, low, high };
+        if clocks != wires.clocks {
+            wires.clocks = clocks;
+            within(wires, "RCC_CFGR", "the clock of the core", core, [1, 170_000_000], "RM0440 7.2");
+        }
+        for offset in [0x28, 0x2c, 0x30, 0x38, 0x3c, 0x40, 0x48, 0x4c, 0x50, 0x58, 0x5c, 0x60] {
+            wires.gates.insert(offset, self.registers.get(offset));
+        }
+    }
+
+    /// RM0440 7.1: a reset leaves the flags of resets.
+    fn reset(&mut self) {
+        let flags = self.registers.get(CSR) & FLAGS;
+        *self = Self::default();
+        self.registers.set(CSR, flags);
+    }
+}
+
+/// Flags that a reset leaves: RM0440 7.4.28.
+pub fn flags(reset: Reset) -> (u32, u32) {
+    let flags = match reset {
+        Reset::Power => bit(26) | bit(27),
+        Reset::Software => bit(28) | bit(26),
+        Reset::Watchdog => bit(29) | bit(26),
+    };
+    (CSR, flags)
+}
+
+/// Its frequency after a reset [Hz].
+pub const AFTER_RESET: u64 = INTERNAL;

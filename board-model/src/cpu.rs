@@ -7,6 +7,7 @@ use unicorn_engine::{Arch, ArmCpuModel, HookType, Mode, Prot, RegisterARM, Unico
 
 use crate::image::Image;
 use crate::machine::{Chip, Machine};
+use crate::peripherals::dma::Transfer;
 use crate::peripherals::flash;
 use crate::scs::{FIRST_INTERRUPT, HARD_FAULT, Masks};
 use crate::wires::{Reset, Surroundings, Time};
@@ -27,6 +28,8 @@ const FIRST_SINGLE: i32 = RegisterARM::S0 as i32;
 const TO_HANDLER: u32 = 0xffff_fff1;
 const TO_THREAD: u32 = 0xffff_fff9;
 const BASIC_FRAME: u32 = 1 << 4;
+/// State of an IT instruction in xPSR.
+const IF_THEN: u32 = 0x0600_fc00;
 /// An encoding of `dsb sy`, as it lies in memory.
 const BARRIER: [u8; 4] = [0xbf, 0xf3, 0x4f, 0x8f];
 
@@ -107,6 +110,7 @@ impl Board<'_> {
     /// One turn: everything to the present, exceptions, then code until something happens.
     fn turn(&mut self, end: Time) {
         self.core.get_data_mut().settle();
+        self.transfers();
         if let Some(reset) = self.core.get_data_mut().wires.reset.take() {
             self.core.get_data_mut().reset(reset);
             if reset == Reset::Power {
@@ -137,6 +141,36 @@ impl Board<'_> {
         }
     }
 
+    /// Moves what DMA is asked to move.
+    fn transfers(&mut self) {
+        while let Some(Transfer { from, to, size }) = self.core.get_data_mut().next_transfer() {
+            let mut bytes = [0; 8];
+            let item = &mut bytes[..size as usize];
+            if self.is_reached(from) {
+                let _ = self.core.mem_read(from.into(), item);
+            } else {
+                let value = self.core.get_data_mut().read(from, size);
+                item.copy_from_slice(&value.to_le_bytes()[..size as usize]);
+            }
+            if self.is_reached(to) {
+                let _ = self.core.mem_write(to.into(), item);
+            } else {
+                self.core.get_data_mut().write(to, size, u64::from_le_bytes(bytes));
+            }
+            self.core.get_data_mut().settle();
+        }
+    }
+
+    /// Whether an address is in memory, which DMA must be able to reach.
+    fn is_reached(&mut self, address: u32) -> bool {
+        let memory = self.machine().memory_at(address);
+        if memory.is_some_and(|memory| memory.core_only) {
+            let what = "is out of reach of DMA";
+            self.violation(&format!("{address:#010x}"), what, "RM0090 2.1, RM0440 2.1");
+        }
+        memory.is_some()
+    }
+
     /// Enters what is due.
     fn exceptions(&mut self) {
         if !self.machine().scs.may_be_due() {
@@ -150,9 +184,13 @@ impl Board<'_> {
             self.core.get_data_mut().halted = Some("the core is locked up: a fault in the handler of a fault".into());
             return;
         }
-        if let Some(exception) = self.machine().scs.due(masks) {
-            self.enter(exception);
+        let Some(exception) = self.machine().scs.due(masks) else { return };
+        if self.register(RegisterARM::XPSR) & IF_THEN != 0 {
+            // The library can split the block of an IT instruction; its state cannot be set anew on the way back.
+            self.core.get_data_mut().go_on = true;
+            return;
         }
+        self.enter(exception);
     }
 
     fn masks(&self) -> Masks {
@@ -345,7 +383,8 @@ fn hook(core: &mut Unicorn<'_, Machine>, image: &Image) -> Result<(), uc_error> 
         let (address, machine) = (address as u32, core.get_data_mut());
         machine.wires.pc = address;
         // What is due is done before the block, which is then begun again.
-        if machine.attention || machine.cycles >= machine.deadline {
+        let goes_on = std::mem::take(&mut machine.go_on);
+        if !goes_on && (machine.attention || machine.cycles >= machine.deadline) {
             machine.stopped = true;
             let _ = core.emu_stop();
             return;

@@ -1,9 +1,15 @@
 //! A chip without its core: memory map, peripherals in their places, and the rules of access that hold for all of them.
 
 use crate::peripherals::Peripheral;
+use crate::peripherals::dma::Transfer;
 use crate::register::Register;
 use crate::scs::Scs;
 use crate::wires::{Clocks, Gate, Reset, SECOND, Surroundings, Time, Wires};
+
+/// Place of the clock controller among the peripherals.
+const CLOCK_CONTROLLER: usize = 0;
+/// Cycles that pass between two looks at flash that is at work, instead of some twenty: a sector takes a second.
+const LOOK_AGAIN: u64 = 2000;
 
 /// A peripheral in its place.
 pub struct Placed {
@@ -80,6 +86,8 @@ pub struct Machine {
     pub returning: Option<u32>,
     /// What ended the emulation for good.
     pub halted: Option<String>,
+    /// One more block is run before anything else.
+    pub go_on: bool,
     /// The block hook asked for a stop: it was no sleep.
     pub stopped: bool,
 }
@@ -103,6 +111,7 @@ impl Machine {
             resets: Vec::new(),
             returning: None,
             halted: None,
+            go_on: false,
             stopped: false,
         };
         machine.wires.clocks = Clocks { system: rate, core: rate, bus: rate, low: rate, high: rate };
@@ -143,21 +152,31 @@ impl Machine {
         }
         self.wires.now = self.time();
         for placed in &mut self.chip.peripherals {
-            if placed.hold.is_some_and(|hold| self.wires.is_on(hold)) {
-                placed.peripheral.reset();
-            }
             placed.peripheral.advance(&mut self.wires);
         }
+        self.hold();
         if self.wires.clocks.core != self.rate {
             self.since = (self.cycles, self.wires.now);
             self.rate = self.wires.clocks.core.max(1);
         }
         self.scs.advance(self.cycles, &mut self.wires);
         let events = self.chip.peripherals.iter().filter_map(|placed| placed.peripheral.next_event());
-        let next = events.chain(self.wires.line.arrives).min().map(|time| self.cycle_at(time));
+        let next =
+            events.chain(self.wires.line.arrives).chain(self.wires.master.next).min().map(|time| self.cycle_at(time));
         let never = self.cycles + self.rate;
         self.deadline = [next, self.scs.next_event()].into_iter().flatten().min().unwrap_or(never).max(self.cycles + 1);
         self.attention = false;
+    }
+
+    /// The next item that DMA moves.
+    pub fn next_transfer(&mut self) -> Option<Transfer> {
+        let wires = &mut self.wires;
+        self.chip.peripherals.iter_mut().find_map(|placed| placed.peripheral.next_transfer(wires))
+    }
+
+    /// The memory at an address.
+    pub fn memory_at(&self, address: u32) -> Option<&'static Memory> {
+        self.chip.memories.iter().find(|memory| address >= memory.base && address - memory.base < memory.size)
     }
 
     /// All as after a reset, but for memory and the flags of resets.
@@ -169,6 +188,7 @@ impl Machine {
         self.scs = Scs::new(self.chip.is_m7);
         self.wires.interrupts.fill(false);
         self.wires.requests.clear();
+        self.wires.served.clear();
         self.wires.pins.clear();
         (self.wires.bus_fault, self.wires.non_maskable, self.wires.stall) = (None, false, 0);
         self.note_reset(reset);
@@ -192,6 +212,7 @@ impl Machine {
         }
         for placed in &mut self.chip.peripherals {
             if let Some(value) = placed.peripheral.read_memory(address, size, &mut self.wires) {
+                self.look();
                 return value;
             }
         }
@@ -199,9 +220,28 @@ impl Machine {
         let Some(register) = self.check(place, offset, size, "read") else { return 0 };
         let placed = &mut self.chip.peripherals[place];
         let value = placed.peripheral.read(register.offset, &mut self.wires);
-        // A read may take a byte out of a FIFO, which changes levels.
-        self.attention = true;
+        self.look();
+        if std::mem::take(&mut self.wires.waiting) {
+            // Nothing happens before the deadline but that somebody looks again.
+            self.cycles = (self.cycles + LOOK_AGAIN).min(self.deadline);
+        }
         u64::from(value >> (8 * (offset - register.offset))) & (u64::MAX >> (64 - 8 * size))
+    }
+
+    /// Whether a read has changed what is looked at between blocks: it may take a byte out of a FIFO, or wait for flash.
+    fn look(&mut self) {
+        let wires = &mut self.wires;
+        let stopped = wires.stall > 0 || wires.bus_fault.is_some() || wires.non_maskable;
+        self.attention |= std::mem::take(&mut wires.changed) || stopped;
+    }
+
+    /// Resets what the clock controller holds in reset.
+    fn hold(&mut self) {
+        for placed in &mut self.chip.peripherals {
+            if placed.hold.is_some_and(|hold| self.wires.is_on(hold)) {
+                placed.peripheral.reset();
+            }
+        }
     }
 
     /// A write outside of memory.
@@ -236,6 +276,9 @@ impl Machine {
         let kept = register.special | reserved;
         peripheral.registers().set(register.offset, before & kept | written & !kept);
         peripheral.written(register.offset, written, before, &mut self.wires);
+        if place == CLOCK_CONTROLLER {
+            self.hold();
+        }
     }
 
     /// The peripheral at an address, and the offset in it.

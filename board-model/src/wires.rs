@@ -93,6 +93,31 @@ pub struct Line {
     pub overruns: u32,
 }
 
+/// A master on SPI, and what it has under way.
+#[derive(Debug, Default)]
+pub struct Master {
+    /// Number of the SPI that it is on.
+    pub spi: u32,
+    /// Bytes still to be clocked.
+    pub to_slave: VecDeque<u8>,
+    /// What came back.
+    pub received: Vec<u8>,
+    /// The next byte is complete then.
+    pub next: Option<Time>,
+    /// Time that a byte takes.
+    pub byte: Time,
+}
+
+impl Master {
+    /// The next byte on an SPI, if it is complete.
+    pub fn due(&mut self, spi: u32, now: Time) -> Option<u8> {
+        let next = self.next.filter(|next| *next <= now && spi == self.spi)?;
+        let byte = self.to_slave.pop_front();
+        self.next = (!self.to_slave.is_empty()).then_some(next + self.byte);
+        byte
+    }
+}
+
 /// What is outside of the chip.
 #[derive(Debug, Clone, Copy)]
 pub struct Surroundings {
@@ -125,6 +150,10 @@ pub struct Wires {
     pub line_ports: [char; 16],
     /// Who asks for DMA.
     pub requests: BTreeSet<Request>,
+    /// Requests that a channel which is on serves.
+    pub served: BTreeSet<Request>,
+    /// The master on SPI.
+    pub master: Master,
     /// Requests that a multiplexer leads to a channel of DMA, by controller and channel.
     pub routes: BTreeMap<(u32, u32), Option<Request>>,
     /// The serial line.
@@ -145,6 +174,10 @@ pub struct Wires {
     pub voltage: u32,
     /// Registers of supply may be changed: their own clock, or a write protection.
     pub last_reset: Reset,
+    /// A level has changed, or something else that is looked at between blocks.
+    pub changed: bool,
+    /// Whoever reads a register waits for flash: time may go on faster.
+    pub waiting: bool,
     /// A data synchronisation barrier was executed since the last store to flash.
     pub barrier: bool,
     /// An image lies in flash up to here.
@@ -169,6 +202,8 @@ impl Wires {
             driven: BTreeMap::new(),
             line_ports: ['A'; 16],
             requests: BTreeSet::new(),
+            served: BTreeSet::new(),
+            master: Master::default(),
             routes: BTreeMap::new(),
             line: Line { baud, ..Line::default() },
             surroundings,
@@ -179,6 +214,8 @@ impl Wires {
             boost: false,
             voltage: 1,
             last_reset: Reset::Power,
+            changed: false,
+            waiting: false,
             barrier: true,
             image_end: 0,
             cut_after: None,
@@ -211,6 +248,7 @@ impl Wires {
 
     /// Levels an interrupt line.
     pub fn interrupt(&mut self, line: usize, level: bool) {
+        self.changed |= self.interrupts[line] != level;
         self.interrupts[line] = level;
     }
 
@@ -220,12 +258,20 @@ impl Wires {
         self.cut_after == Some(self.flash_operations)
     }
 
+    /// A channel serves a request, or no more.
+    pub fn serve(&mut self, request: Request, level: bool) {
+        if level {
+            self.served.insert(request);
+        } else {
+            self.served.remove(&request);
+        }
+    }
+
     /// Asks for DMA, or no more.
     pub fn request(&mut self, request: Request, level: bool) {
-        if level {
-            self.requests.insert(request);
-        } else {
-            self.requests.remove(&request);
-        }
+        self.changed |= match level {
+            true => self.requests.insert(request),
+            false => self.requests.remove(&request),
+        };
     }
 }

@@ -3,6 +3,10 @@
 
 pub mod bits;
 pub mod boot;
+pub mod memory;
+pub mod outputs;
+pub mod sources;
+pub mod spi;
 
 use board::target::board::Board as Kind;
 
@@ -16,6 +20,15 @@ pub type Check = fn(Kind, &Image) -> Result<String, String>;
 /// All checks: name, images that it is for, whether it is left to the long form.
 pub const ALL: &[(&str, &[Work], Check)] = &[
     ("boots, ticks and answers", &[Work::Plant, Work::Observer, Work::Loop], boot::answers),
+    ("boots from the internal oscillator", &[Work::Plant], sources::dead_crystal),
+    ("other crystals", &[Work::Plant], sources::other_crystals),
+    ("keeps, writes and erases what was learnt", &[Work::Observer], memory::keeps),
+    ("power cut at every operation of flash", &[Work::Observer], memory::survives_cuts),
+    ("safe state when the host is silent", &[Work::Plant], outputs::silence),
+    ("watchdog when the ticks stop", &[Work::Plant], outputs::watchdog),
+    ("a fault resets and is told", &[Work::Plant], outputs::fault),
+    ("transfers, good and bad", &[Work::SpiSlave], spi::transfers),
+    ("transfers that are too long", &[Work::SpiSlave], spi::too_long),
     ("20,000 steps, the same in every bit as the host's twin", &[Work::Plant], bits::steps),
 ];
 

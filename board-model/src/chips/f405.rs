@@ -2,9 +2,11 @@
 
 use super::{always, gated};
 use crate::machine::{Chip, Memory};
+use crate::peripherals::dma_stream::DmaStreams;
 use crate::peripherals::exti::Exti;
 use crate::peripherals::gpio::Gpio;
 use crate::peripherals::iwdg::Iwdg;
+use crate::peripherals::spi::{self, Spi};
 use crate::peripherals::syscfg::Syscfg;
 use crate::peripherals::usart::{BusClock, Place, Usart};
 use crate::peripherals::{flash_f4, pwr_f4, rcc_f4};
@@ -31,6 +33,10 @@ const USART1: Place = Place {
     receive: &[(Pin('A', 10), 7), (Pin('B', 7), 7)],
 };
 
+/// The same table: SPI1 is function 5.
+const SPI1: spi::Place =
+    spi::Place { number: 1, pins: [(Pin('A', 4), 5), (Pin('A', 5), 5), (Pin('A', 6), 5), (Pin('A', 7), 5)] };
+
 /// The chip, with an image up to an address.
 pub fn chip(image_end: u32) -> Chip {
     let mut peripherals = vec![
@@ -41,6 +47,8 @@ pub fn chip(image_end: u32) -> Chip {
         gated(RM, "PWR", 0x4000_7000, (APB1ENR, 28), None, Box::new(pwr_f4::Pwr::default())),
         gated(RM, "SYSCFG", 0x4001_3800, (APB2ENR, 14), Some((APB2RSTR, 14)), Box::new(Syscfg::default())),
         gated(RM, "USART1", 0x4001_1000, (APB2ENR, 4), Some((APB2RSTR, 4)), Box::new(Usart::old(USART1))),
+        gated(RM, "DMA2", 0x4002_6400, (AHB1ENR, 22), Some((AHB1RSTR, 22)), Box::new(DmaStreams::default())),
+        gated(RM, "SPI1", 0x4001_3000, (APB2ENR, 12), Some((APB2RSTR, 12)), Box::new(Spi::old(SPI1))),
     ];
     for (index, port) in ('A'..='I').enumerate() {
         let index = index as u32;

@@ -2,14 +2,19 @@
 
 use super::{always, gated};
 use crate::machine::{Chip, Memory};
+use crate::peripherals::dma_channel::DmaChannels;
+use crate::peripherals::dmamux::DmaMux;
 use crate::peripherals::exti::Exti;
 use crate::peripherals::gpio::Gpio;
 use crate::peripherals::iwdg::Iwdg;
+use crate::peripherals::spi::{self, Spi};
 use crate::peripherals::syscfg::Syscfg;
 use crate::peripherals::usart::{BusClock, Place, Usart};
 use crate::peripherals::{flash_g4, pwr_g4, rcc_g4};
 use crate::wires::Pin;
 
+const AHB1ENR: u32 = 0x48;
+const AHB1RSTR: u32 = 0x28;
 const AHB2ENR: u32 = 0x4c;
 const APB1ENR1: u32 = 0x58;
 const APB2ENR: u32 = 0x60;
@@ -32,6 +37,10 @@ const USART2: Place = Place {
     receive: &[(Pin('A', 3), 7), (Pin('A', 15), 7), (Pin('B', 4), 7), (Pin('D', 6), 7)],
 };
 
+/// The same table: SPI2 is function 5.
+const SPI2: spi::Place =
+    spi::Place { number: 2, pins: [(Pin('B', 12), 5), (Pin('B', 13), 5), (Pin('B', 14), 5), (Pin('B', 15), 5)] };
+
 /// The chip, with an image up to an address.
 pub fn chip(image_end: u32) -> Chip {
     let mut peripherals = vec![
@@ -42,6 +51,9 @@ pub fn chip(image_end: u32) -> Chip {
         gated(RM, "PWR", 0x4000_7000, (APB1ENR1, 28), Some((APB1RSTR1, 28)), Box::new(pwr_g4::Pwr::default())),
         gated(RM, "SYSCFG", 0x4001_0000, (APB2ENR, 0), Some((APB2RSTR, 0)), Box::new(Syscfg::default())),
         gated(RM, "USART2", 0x4000_4400, (APB1ENR1, 17), Some((APB1RSTR1, 17)), Box::new(Usart::new(USART2, 8))),
+        gated(RM, "DMA1", 0x4002_0000, (AHB1ENR, 0), Some((AHB1RSTR, 0)), Box::new(DmaChannels::new(1))),
+        gated(RM, "DMAMUX", 0x4002_0800, (AHB1ENR, 2), Some((AHB1RSTR, 2)), Box::new(DmaMux::default())),
+        gated(RM, "SPI2", 0x4000_3800, (APB1ENR1, 14), Some((APB1RSTR1, 14)), Box::new(Spi::new(SPI2))),
     ];
     for (index, (port, name)) in
         ('A'..='G').zip(["GPIOA", "GPIOB", "GPIOC", "GPIOD", "GPIOE", "GPIOF", "GPIOG"]).enumerate()

@@ -156,6 +156,7 @@ impl Peripheral for Flash {
 
     fn read(&mut self, offset: u32, wires: &mut Wires) -> u32 {
         self.advance(wires);
+        wires.waiting = offset == SR && self.is_busy(wires.now);
         self.registers.get(offset)
     }
 

@@ -170,6 +170,7 @@ impl Peripheral for Flash {
 
     fn read(&mut self, offset: u32, wires: &mut Wires) -> u32 {
         self.advance(wires);
+        wires.waiting = offset % SECOND == SR && self.is_busy((offset >= SECOND) as usize, wires.now);
         self.registers.get(offset)
     }
 

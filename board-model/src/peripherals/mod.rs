@@ -1,5 +1,9 @@
 //! The peripherals of the chips, each by its chapter of the reference manual.
 
+pub mod dma;
+pub mod dma_channel;
+pub mod dma_stream;
+pub mod dmamux;
 pub mod exti;
 pub mod flash;
 pub mod flash_f4;
@@ -14,9 +18,11 @@ pub mod rcc;
 pub mod rcc_f4;
 pub mod rcc_g4;
 pub mod rcc_h7;
+pub mod spi;
 pub mod syscfg;
 pub mod usart;
 
+use self::dma::Transfer;
 use crate::register::Registers;
 use crate::wires::{Time, Wires};
 
@@ -38,6 +44,11 @@ pub trait Peripheral {
 
     /// When something happens by itself next.
     fn next_event(&self) -> Option<Time> {
+        None
+    }
+
+    /// The next item that a DMA controller moves.
+    fn next_transfer(&mut self, _wires: &mut Wires) -> Option<Transfer> {
         None
     }
 

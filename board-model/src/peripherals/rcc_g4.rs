@@ -152,7 +152,7 @@ impl Rcc {
         if switches && is == 8 {
             self.halved_since = Some(wires.now);
         }
-        if fast > slow && fast > STEP && slow < STEP && is != 8 {
+        if fast > slow && fast > STEP && slow < STEP && was != 8 && is != 8 {
             let what = "the bus clock rises over 80 MHz at once, with no microsecond at half speed between";
             wires.violation("RCC_CFGR", what, "RM0440 7.2.7");
         }

@@ -1,0 +1,132 @@
+//! The motor-enable output and what takes it away: silence of the host, a fault, the watchdog.
+
+use board::target::board::Board as Kind;
+use link::messages::{Command, FromBoard, RunMode, RunSettings, Schedule, ToBoard, Trip};
+
+use super::clean;
+use super::memory::restart;
+use crate::boards;
+use crate::image::Image;
+use crate::talk::Talk;
+use crate::wires::{MICROSECOND, Mode, Pin, Reset, SECOND, Time};
+
+/// Ticks without a word of the host until the safe state.
+const TIMEOUT: u32 = 2000;
+const TICK: Time = SECOND / 20_000;
+
+/// The motor-enable output, as the firmware's page on boards states it.
+fn enable(kind: Kind) -> Pin {
+    match kind {
+        Kind::Stm32f405 | Kind::Stm32g474 => Pin('B', 0),
+        Kind::Stm32h743 => Pin('C', 8),
+    }
+}
+
+fn level(talk: &Talk<'_>, kind: Kind) -> Mode {
+    talk.board.borrow().machine().wires.mode(enable(kind))
+}
+
+/// Starts a run in real time whose last command holds for long.
+fn start_run<'a>(kind: Kind, image: &Image) -> Result<Talk<'a>, String> {
+    let mut talk = Talk::new(boards::start(kind, image.clone())?);
+    talk.call(2 * SECOND).ok_or("no answer")?;
+    if level(&talk, kind) != Mode::Output(false) {
+        return Err(format!("the enable output is {:?} before any run", level(&talk, kind)));
+    }
+    let settings =
+        RunSettings { mode: RunMode::Realtime, decimation: 1000, command_timeout: TIMEOUT, from_memory: false };
+    let reset = talk.ask(&ToBoard::Reset(settings), SECOND, |message| match message {
+        FromBoard::Hello(_) => Some(()),
+        _ => None,
+    });
+    reset.ok_or("a run is not granted")?;
+    let commands = [Command { tick: 0, drive_torque: 0.1, load_torque: 0.0 }].into_iter().collect();
+    talk.say(&ToBoard::Schedule(Schedule { sequence: 0, horizon: 10 * TIMEOUT, commands }));
+    talk.hear(5000 * MICROSECOND);
+    if level(&talk, kind) != Mode::Output(true) {
+        return Err(format!("the enable output is {:?} in a run", level(&talk, kind)));
+    }
+    Ok(talk)
+}
+
+/// The host falls silent: enable goes within the timeout.
+pub fn silence(kind: Kind, image: &Image) -> Result<String, String> {
+    let mut talk = start_run(kind, image)?;
+    let start = talk.board.borrow().now();
+    let (mut gone, mut trip) = (None, None);
+    while trip.is_none() && talk.board.borrow().now() < start + 3 * Time::from(TIMEOUT) * TICK {
+        for message in talk.hear(TICK) {
+            if let FromBoard::Tripped(why) = message {
+                trip = Some(why);
+            }
+        }
+        if gone.is_none() && level(&talk, kind) == Mode::Output(false) {
+            gone = Some(talk.board.borrow().now() - start);
+        }
+    }
+    clean(&talk.board.borrow())?;
+    match (gone, trip) {
+        (Some(gone), Some(Trip::CommandLoss { .. })) if gone <= (Time::from(TIMEOUT) + 2) * TICK => {
+            Ok(format!("off {} ms after the last word", gone / (1000 * MICROSECOND)))
+        }
+        other => Err(format!("enable went after {:?} fs by {:?}", other.0, other.1)),
+    }
+}
+
+/// The ticks stop: the watchdog resets within its time, the output is gone, and the next hello says so.
+pub fn watchdog(kind: Kind, image: &Image) -> Result<String, String> {
+    let mut talk = start_run(kind, image)?;
+    let start = talk.board.borrow().now();
+    let resets = talk.board.borrow().machine().resets.len();
+    {
+        // SysTick's control register, from outside.
+        let mut board = talk.board.borrow_mut();
+        board.machine_mut().write(0xe000_e010, 4, 0);
+    }
+    while talk.board.borrow().machine().resets.len() == resets && talk.board.borrow().now() < start + SECOND {
+        talk.hear(1000 * MICROSECOND);
+    }
+    let Some((Reset::Watchdog, at)) = talk.board.borrow().machine().resets.get(resets).copied() else {
+        return Err("no reset by the watchdog within a second".into());
+    };
+    if level(&talk, kind) == Mode::Output(true) {
+        return Err("the enable output is still on after the reset".into());
+    }
+    let hello = talk.call(2 * SECOND).ok_or("no answer after the reset")?;
+    clean(&talk.board.borrow())?;
+    if !hello.watchdog_reset {
+        return Err("the hello does not say that the watchdog has reset the board".into());
+    }
+    restart(&mut talk, Reset::Software);
+    let hello = talk.call(2 * SECOND).ok_or("no answer after a second reset")?;
+    if hello.watchdog_reset {
+        return Err("the watchdog is blamed for a reset that the software asked for".into());
+    }
+    let late = at.saturating_sub(start);
+    match late {
+        late if late < SECOND * 6 / 10 => Ok(format!("reset after {} ms", late / (1000 * MICROSECOND))),
+        late => Err(format!("the watchdog took {} ms", late / (1000 * MICROSECOND))),
+    }
+}
+
+/// A bus fault in a run: a reset, the output gone, and its message in the next hello.
+pub fn fault(kind: Kind, image: &Image) -> Result<String, String> {
+    let mut talk = start_run(kind, image)?;
+    let resets = talk.board.borrow().machine().resets.len();
+    {
+        let mut board = talk.board.borrow_mut();
+        board.machine_mut().wires.bus_fault = Some(0);
+        board.machine_mut().attention = true;
+    }
+    let start = talk.board.borrow().now();
+    while talk.board.borrow().machine().resets.len() == resets && talk.board.borrow().now() < start + SECOND {
+        talk.hear(100 * MICROSECOND);
+    }
+    let reset = talk.board.borrow().machine().resets.get(resets).copied();
+    if !matches!(reset, Some((Reset::Software, _))) || level(&talk, kind) == Mode::Output(true) {
+        return Err(format!("after a fault: reset {reset:?}, enable {:?}", level(&talk, kind)));
+    }
+    let hello = talk.call(2 * SECOND).ok_or("no answer after a fault")?;
+    clean(&talk.board.borrow())?;
+    hello.last_panic.map(|message| format!("`{message}`")).ok_or_else(|| "the fault has left no message".into())
+}

@@ -1,0 +1,161 @@
+//! The slave on SPI: good transfers are answered in the next one, and after every kind of bad transfer the next good one is
+//! too.
+
+use board::target::board::Board as Kind;
+use link::controller::{Answered, Exchange, Motion, SetPoint};
+use link::framing::{sealed, unsealed};
+
+use super::clean;
+use crate::boards;
+use crate::image::Image;
+use crate::talk::Talk;
+use crate::wires::{MICROSECOND, Pin, SECOND, Time};
+
+/// Bytes of a frame.
+const FRAME: usize = 192;
+/// What the master leaves the slave between two transfers: a control period at 5 kHz, less the transfer.
+const BETWEEN: Time = 120 * MICROSECOND;
+/// A byte at 21 MHz.
+const BYTE: Time = SECOND / 21_000_000 * 8;
+
+/// A master in front of a slave.
+struct Master<'a> {
+    talk: Talk<'a>,
+    select: Pin,
+    spi: u32,
+    tick: u32,
+}
+
+impl Master<'_> {
+    /// A transfer of bytes; what came back.
+    fn transfer(&mut self, bytes: &[u8]) -> Vec<u8> {
+        self.select(false);
+        self.talk.hear(2 * MICROSECOND);
+        let start = self.talk.board.borrow().now();
+        {
+            let mut board = self.talk.board.borrow_mut();
+            let machine = board.machine_mut();
+            let master = &mut machine.wires.master;
+            (master.spi, master.byte) = (self.spi, BYTE);
+            master.to_slave = bytes.iter().copied().collect();
+            master.received.clear();
+            master.next = (!bytes.is_empty()).then_some(start + BYTE);
+            machine.attention = true;
+        }
+        self.talk.hear(BYTE * (bytes.len() as Time + 2));
+        self.select(true);
+        self.talk.hear(BETWEEN);
+        std::mem::take(&mut self.talk.board.borrow_mut().machine_mut().wires.master.received)
+    }
+
+    fn select(&mut self, level: bool) {
+        let mut board = self.talk.board.borrow_mut();
+        board.machine_mut().wires.driven.insert(self.select, level);
+        board.machine_mut().attention = true;
+    }
+
+    /// A good frame with the next tick.
+    fn good(&mut self) -> [u8; FRAME] {
+        let point = Motion { position: (0, 0.0), speed: 0.0, acceleration: 0.0 };
+        let exchange = Exchange {
+            tick: self.tick,
+            time: self.tick.wrapping_mul(200),
+            motor: (100 + self.tick, self.tick.wrapping_mul(200)),
+            output: Some((1000, self.tick.wrapping_mul(200))),
+            torque: 0.0,
+            set_point: SetPoint::Position { now: point, ahead: None },
+            wants_estimates: true,
+        };
+        self.tick += 1;
+        let mut frame = [0; FRAME];
+        // The longest exchange fits: the firmware's tests hold it.
+        let _ = sealed(&exchange, &mut frame);
+        frame
+    }
+
+    /// Two good transfers: the second brings the answer to the first.
+    fn is_answered(&mut self) -> Result<(), String> {
+        let frame = self.good();
+        self.transfer(&frame);
+        let asked = self.tick;
+        let frame = self.good();
+        let back = self.transfer(&frame);
+        let answered: Option<Answered> = unsealed(&back);
+        match answered {
+            Some(answered) if answered.tick == asked => Ok(()),
+            Some(answered) => Err(format!("the answer to tick {asked} is that to {}", answered.tick)),
+            None => Err(format!(
+                "no answer to tick {asked}: {} bytes came, {:02x?}...",
+                back.len(),
+                &back[..back.len().min(8)]
+            )),
+        }
+    }
+}
+
+fn master<'a>(kind: Kind, image: &Image) -> Result<Master<'a>, String> {
+    let talk = Talk::new(boards::start(kind, image.clone())?);
+    let (select, spi) = match kind {
+        Kind::Stm32f405 => (Pin('A', 4), 1),
+        _ => (Pin('B', 12), 2),
+    };
+    let mut master = Master { talk, select, spi, tick: 0 };
+    master.select(true);
+    master.talk.hear(20_000 * MICROSECOND);
+    Ok(master)
+}
+
+/// Good transfers, and all kinds of bad ones between them.
+pub fn transfers(kind: Kind, image: &Image) -> Result<String, String> {
+    let mut master = master(kind, image)?;
+    for _ in 0..20 {
+        let outcome = master.is_answered();
+        clean(&master.talk.board.borrow())?;
+        outcome?;
+    }
+    let mut bad = 0;
+    for length in [0, 1, 2, 3, 4, 5, 100, FRAME - 2, FRAME - 1] {
+        let frame = master.good();
+        master.transfer(&frame[..length]);
+        bad += 1;
+        master.is_answered().map_err(|why| format!("after a transfer of {length} bytes: {why}"))?;
+    }
+    for place in [0, 100, FRAME - 1] {
+        let mut frame = master.good();
+        frame[place] ^= 0x10;
+        master.transfer(&frame);
+        let next = master.good();
+        let back = master.transfer(&next);
+        if unsealed::<Answered>(&back).is_some() {
+            return Err(format!("a frame that is damaged at byte {place} is answered"));
+        }
+        bad += 1;
+        master.is_answered().map_err(|why| format!("after a damaged frame: {why}"))?;
+    }
+    clean(&master.talk.board.borrow())?;
+    Ok(format!("20 good ones and {bad} bad ones, each answered by the next good one"))
+}
+
+/// Transfers that are too long are no frames, by however many bytes.
+pub fn too_long(kind: Kind, image: &Image) -> Result<String, String> {
+    let mut master = master(kind, image)?;
+    master.is_answered()?;
+    let extra = [1, 2, 3, 4, 5, 8, 100, 192, 1000];
+    let mut taken = Vec::new();
+    for more in extra {
+        let frame = master.good();
+        let long: Vec<u8> = frame.iter().copied().chain((0..more).map(|byte| byte as u8)).collect();
+        master.transfer(&long);
+        let next = master.good();
+        let back = master.transfer(&next);
+        if unsealed::<Answered>(&back).is_some() {
+            taken.push(more);
+        }
+        master.is_answered().map_err(|why| format!("after a transfer {more} bytes too long: {why}"))?;
+    }
+    clean(&master.talk.board.borrow())?;
+    match taken.is_empty() {
+        true => Ok(format!("{} lengths", extra.len())),
+        false => Err(format!("transfers that are too long by {taken:?} bytes are taken as good")),
+    }
+}

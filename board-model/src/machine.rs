@@ -4,6 +4,7 @@ use crate::peripherals::Peripheral;
 use crate::peripherals::dma::Transfer;
 use crate::register::Register;
 use crate::scs::Scs;
+use crate::tamper::Tamper;
 use crate::wires::{Clocks, Gate, Reset, SECOND, Surroundings, Time, Wires};
 
 /// Place of the clock controller among the peripherals.
@@ -86,6 +87,8 @@ pub struct Machine {
     pub returning: Option<u32>,
     /// What ended the emulation for good.
     pub halted: Option<String>,
+    /// Mistakes that were planted.
+    pub tampers: &'static [Tamper],
     /// One more block is run before anything else.
     pub go_on: bool,
     /// The block hook asked for a stop: it was no sleep.
@@ -111,6 +114,7 @@ impl Machine {
             resets: Vec::new(),
             returning: None,
             halted: None,
+            tampers: &[],
             go_on: false,
             stopped: false,
         };
@@ -248,6 +252,8 @@ impl Machine {
     pub fn write(&mut self, address: u32, size: u32, value: u64) {
         self.wires.now = self.time();
         self.attention = true;
+        let planted = self.tampers.iter().try_fold(value as u32, |value, tamper| tamper.apply(address, value));
+        let Some(value) = planted.map(|low| value & !u64::from(u32::MAX) | u64::from(low)) else { return };
         if address >= 0xe000_0000 {
             return self.scs.write(address, size, value as u32, self.cycles, &mut self.wires);
         }

@@ -9,7 +9,8 @@ pub const NMI: usize = 2;
 /// What every fault escalates to here: the images enable no other fault.
 pub const HARD_FAULT: usize = 3;
 const PEND_SV: usize = 14;
-const SYSTICK: usize = 15;
+/// The tick.
+pub const SYSTICK: usize = 15;
 /// Number of the first interrupt.
 pub const FIRST_INTERRUPT: usize = 16;
 const EXCEPTIONS: usize = 256;
@@ -86,6 +87,8 @@ pub struct Scs {
     priority: Vec<u8>,
     /// Exceptions under way, the innermost last.
     active: Vec<usize>,
+    /// How often each was entered.
+    taken: Vec<u32>,
     systick: SysTick,
     /// VTOR.
     pub vectors: u32,
@@ -114,6 +117,7 @@ impl Scs {
             enabled,
             priority: vec![0; EXCEPTIONS],
             active: Vec::new(),
+            taken: vec![0; EXCEPTIONS],
             systick: SysTick::default(),
             vectors: 0x0800_0000,
             coprocessors: 0,
@@ -133,6 +137,17 @@ impl Scs {
     /// The exception under way; 0 for none.
     pub fn running(&self) -> usize {
         self.active.last().copied().unwrap_or(0)
+    }
+
+    /// How often an exception was entered since the reset.
+    pub fn taken(&self, exception: usize) -> u32 {
+        self.taken[exception]
+    }
+
+    /// Whether no interrupt that is on has the priority of an exception or a higher one.
+    pub fn is_above_all(&self, exception: usize) -> bool {
+        let own = self.priority_of(exception);
+        (FIRST_INTERRUPT..EXCEPTIONS).all(|other| !self.enabled[other] || self.priority_of(other) > own)
     }
 
     /// Asks for an exception.
@@ -216,6 +231,7 @@ impl Scs {
     pub fn enter(&mut self, exception: usize) -> u32 {
         self.pending[exception] = false;
         self.active.push(exception);
+        self.taken[exception] += 1;
         self.vectors + 4 * exception as u32
     }
 

@@ -4,14 +4,12 @@ use std::time::Duration;
 
 use board::profile::TorqueProfile;
 use board::session::{BoardHelp, Session};
-use board::target::board::Board as Kind;
 use board::target::image::DEFAULT_TICK_RATE;
 use board::twin;
 use link::messages::{RunMode, RunSettings};
 
 use super::clean;
-use crate::boards;
-use crate::image::Image;
+use crate::boards::Subject;
 use crate::images::JOINT;
 use crate::talk::{Talk, Unattended};
 
@@ -21,8 +19,8 @@ const LENGTH: f64 = 1.0;
 const DECIMATION: u16 = 20;
 
 /// Drives the joint through its reversals in lockstep, and compares every sample.
-pub fn steps(kind: Kind, image: &Image) -> Result<String, String> {
-    let talk = Talk::new(boards::start(kind, image.clone())?);
+pub fn steps(subject: &Subject) -> Result<String, String> {
+    let talk = Talk::new(subject.start()?);
     let joint = joint_file::preset(JOINT).and_then(|text| joint_file::read(text).ok()).ok_or("no preset")?.parameters;
     let words = |failure: report::failure::Failure| failure.to_string();
     let profile = TorqueProfile::load("reversals", &joint, DEFAULT_TICK_RATE, Some(LENGTH)).map_err(words)?;
@@ -37,11 +35,14 @@ pub fn steps(kind: Kind, image: &Image) -> Result<String, String> {
     clean(&talk.board.borrow())?;
     run.map_err(words)?;
     let recording = &session.recording;
-    let agreement =
-        twin::compare(&joint, kind, DEFAULT_TICK_RATE, &recording.accepted, &recording.samples).map_err(words)?;
+    let agreement = twin::compare(&joint, subject.kind, DEFAULT_TICK_RATE, &recording.accepted, &recording.samples)
+        .map_err(words)?;
     if agreement.steps < profile.ticks || agreement.different > 0 {
         return Err(format!("{} of {} steps agree: {:?}", agreement.steps, profile.ticks, agreement.first));
     }
     let lost = talk.board.borrow().machine().wires.line.overruns;
-    Ok(format!("{} steps, {} samples, {lost} bytes lost on the line", agreement.steps, agreement.samples))
+    if lost > 0 {
+        return Err(format!("{lost} bytes were lost in the USART"));
+    }
+    Ok(format!("{} steps, {} samples", agreement.steps, agreement.samples))
 }

@@ -1,25 +1,48 @@
 //! From reset to the first answer.
 
-use board::target::board::Board as Kind;
 use link::messages::Clock;
 
 use super::clean;
-use crate::boards;
-use crate::image::Image;
+use crate::boards::Subject;
+use crate::scs::SYSTICK;
 use crate::talk::Talk;
-use crate::wires::{MICROSECOND, SECOND};
+use crate::wires::{MICROSECOND, SECOND, Time};
+
+/// Ticks of a tenth of a second are counted.
+const COUNTED: u32 = 10;
+
+/// The tick comes at its rate, and nothing is above it.
+fn ticks(talk: &mut Talk<'_>, rate: u32) -> Result<(), String> {
+    let count = |talk: &Talk<'_>| talk.board.borrow().machine().scs.taken(SYSTICK);
+    let before = count(talk);
+    talk.hear(SECOND / Time::from(COUNTED));
+    let ticks = count(talk) - before;
+    if ticks.abs_diff(rate / COUNTED) > 1 {
+        return Err(format!("{ticks} ticks in a tenth of a second, not {}", rate / COUNTED));
+    }
+    match talk.board.borrow().machine().scs.is_above_all(SYSTICK) {
+        true => Ok(()),
+        false => Err("an interrupt that is on can hold the tick up: its priority is not below the tick's".into()),
+    }
+}
 
 /// The board boots, ticks at its rate and says who it is.
-pub fn answers(kind: Kind, image: &Image) -> Result<String, String> {
-    let mut talk = Talk::new(boards::start(kind, image.clone())?);
+pub fn answers(subject: &Subject) -> Result<String, String> {
+    let mut talk = Talk::new(subject.start()?);
     let hello = talk.call(2 * SECOND);
     clean(&talk.board.borrow())?;
     let hello = hello.ok_or_else(|| format!("no answer; it was at {}", talk.board.borrow().whereabouts()))?;
     let board = talk.board.borrow();
     let core = board.machine().wires.clocks.core;
-    if hello.board != kind.name() || core != u64::from(kind.core_rate()) || hello.clock != Clock::External {
-        return Err(format!("{} at {core} Hz from {:?} is not {}", hello.board, hello.clock, kind.name()));
+    if hello.board != subject.kind.name()
+        || core != u64::from(subject.kind.core_rate())
+        || hello.clock != Clock::External
+    {
+        return Err(format!("{} at {core} Hz from {:?} is not {}", hello.board, hello.clock, subject.kind.name()));
     }
+    drop(board);
+    ticks(&mut talk, hello.tick_rate)?;
+    let board = talk.board.borrow();
     let milliseconds = board.now() / (1000 * MICROSECOND);
     Ok(format!("{core} Hz, answered {milliseconds} ms after power came on"))
 }

@@ -1,13 +1,11 @@
 //! What was learnt, kept in flash: saved, read, found again after a reset, loaded, written, erased. And with a cut of power at
 //! every single operation of flash: the board must boot, and have the old memory or the new one.
 
-use board::target::board::Board as Kind;
 use link::messages::{FromBoard, MEMORY_PARTS, MemoryOutcome, MemoryPart, MemoryRequest, MemoryState, ToBoard};
 
 use super::clean;
-use crate::boards;
+use crate::boards::Subject;
 use crate::cpu::Board;
-use crate::image::Image;
 use crate::talk::Talk;
 use crate::wires::{Reset, SECOND, Time};
 
@@ -15,8 +13,8 @@ use crate::wires::{Reset, SECOND, Time};
 const PATIENCE: Time = 6 * SECOND;
 
 /// Saves, finds, loads, writes, erases.
-pub fn keeps(kind: Kind, image: &Image) -> Result<String, String> {
-    let mut talk = Talk::new(boards::start(kind, image.clone())?);
+pub fn keeps(subject: &Subject) -> Result<String, String> {
+    let mut talk = Talk::new(subject.start()?);
     expect_state(&mut talk, MemoryState::Nothing, "of a new board")?;
     request(&mut talk, MemoryRequest::Save, "saved")?;
     let saved = read(&mut talk)?;
@@ -48,11 +46,11 @@ pub fn keeps(kind: Kind, image: &Image) -> Result<String, String> {
 }
 
 /// Cuts power at every operation of a save and of an erase.
-pub fn survives_cuts(kind: Kind, image: &Image) -> Result<String, String> {
+pub fn survives_cuts(subject: &Subject) -> Result<String, String> {
     let mut tried = 0;
     for (what, wanted) in [("a save", MemoryRequest::Save), ("an erase", MemoryRequest::Erase)] {
         for cut in 1.. {
-            let mut talk = Talk::new(boards::start(kind, image.clone())?);
+            let mut talk = Talk::new(subject.start()?);
             let name = |what| format!("{what} cut at operation {cut}");
             expect_state(&mut talk, MemoryState::Nothing, "of a new board")?;
             request(&mut talk, MemoryRequest::Save, "saved")?;

@@ -5,8 +5,7 @@ use link::messages::{Command, FromBoard, RunMode, RunSettings, Schedule, ToBoard
 
 use super::clean;
 use super::memory::restart;
-use crate::boards;
-use crate::image::Image;
+use crate::boards::Subject;
 use crate::talk::Talk;
 use crate::wires::{MICROSECOND, Mode, Pin, Reset, SECOND, Time};
 
@@ -27,11 +26,11 @@ fn level(talk: &Talk<'_>, kind: Kind) -> Mode {
 }
 
 /// Starts a run in real time whose last command holds for long.
-fn start_run<'a>(kind: Kind, image: &Image) -> Result<Talk<'a>, String> {
-    let mut talk = Talk::new(boards::start(kind, image.clone())?);
+fn start_run<'a>(subject: &Subject) -> Result<Talk<'a>, String> {
+    let mut talk = Talk::new(subject.start()?);
     talk.call(2 * SECOND).ok_or("no answer")?;
-    if level(&talk, kind) != Mode::Output(false) {
-        return Err(format!("the enable output is {:?} before any run", level(&talk, kind)));
+    if level(&talk, subject.kind) != Mode::Output(false) {
+        return Err(format!("the enable output is {:?} before any run", level(&talk, subject.kind)));
     }
     let settings =
         RunSettings { mode: RunMode::Realtime, decimation: 1000, command_timeout: TIMEOUT, from_memory: false };
@@ -43,15 +42,15 @@ fn start_run<'a>(kind: Kind, image: &Image) -> Result<Talk<'a>, String> {
     let commands = [Command { tick: 0, drive_torque: 0.1, load_torque: 0.0 }].into_iter().collect();
     talk.say(&ToBoard::Schedule(Schedule { sequence: 0, horizon: 10 * TIMEOUT, commands }));
     talk.hear(5000 * MICROSECOND);
-    if level(&talk, kind) != Mode::Output(true) {
-        return Err(format!("the enable output is {:?} in a run", level(&talk, kind)));
+    if level(&talk, subject.kind) != Mode::Output(true) {
+        return Err(format!("the enable output is {:?} in a run", level(&talk, subject.kind)));
     }
     Ok(talk)
 }
 
 /// The host falls silent: enable goes within the timeout.
-pub fn silence(kind: Kind, image: &Image) -> Result<String, String> {
-    let mut talk = start_run(kind, image)?;
+pub fn silence(subject: &Subject) -> Result<String, String> {
+    let mut talk = start_run(subject)?;
     let start = talk.board.borrow().now();
     let (mut gone, mut trip) = (None, None);
     while trip.is_none() && talk.board.borrow().now() < start + 3 * Time::from(TIMEOUT) * TICK {
@@ -60,7 +59,7 @@ pub fn silence(kind: Kind, image: &Image) -> Result<String, String> {
                 trip = Some(why);
             }
         }
-        if gone.is_none() && level(&talk, kind) == Mode::Output(false) {
+        if gone.is_none() && level(&talk, subject.kind) == Mode::Output(false) {
             gone = Some(talk.board.borrow().now() - start);
         }
     }
@@ -74,8 +73,8 @@ pub fn silence(kind: Kind, image: &Image) -> Result<String, String> {
 }
 
 /// The ticks stop: the watchdog resets within its time, the output is gone, and the next hello says so.
-pub fn watchdog(kind: Kind, image: &Image) -> Result<String, String> {
-    let mut talk = start_run(kind, image)?;
+pub fn watchdog(subject: &Subject) -> Result<String, String> {
+    let mut talk = start_run(subject)?;
     let start = talk.board.borrow().now();
     let resets = talk.board.borrow().machine().resets.len();
     {
@@ -89,7 +88,7 @@ pub fn watchdog(kind: Kind, image: &Image) -> Result<String, String> {
     let Some((Reset::Watchdog, at)) = talk.board.borrow().machine().resets.get(resets).copied() else {
         return Err("no reset by the watchdog within a second".into());
     };
-    if level(&talk, kind) == Mode::Output(true) {
+    if level(&talk, subject.kind) == Mode::Output(true) {
         return Err("the enable output is still on after the reset".into());
     }
     let hello = talk.call(2 * SECOND).ok_or("no answer after the reset")?;
@@ -110,8 +109,8 @@ pub fn watchdog(kind: Kind, image: &Image) -> Result<String, String> {
 }
 
 /// A bus fault in a run: a reset, the output gone, and its message in the next hello.
-pub fn fault(kind: Kind, image: &Image) -> Result<String, String> {
-    let mut talk = start_run(kind, image)?;
+pub fn fault(subject: &Subject) -> Result<String, String> {
+    let mut talk = start_run(subject)?;
     let resets = talk.board.borrow().machine().resets.len();
     {
         let mut board = talk.board.borrow_mut();
@@ -123,8 +122,8 @@ pub fn fault(kind: Kind, image: &Image) -> Result<String, String> {
         talk.hear(100 * MICROSECOND);
     }
     let reset = talk.board.borrow().machine().resets.get(resets).copied();
-    if !matches!(reset, Some((Reset::Software, _))) || level(&talk, kind) == Mode::Output(true) {
-        return Err(format!("after a fault: reset {reset:?}, enable {:?}", level(&talk, kind)));
+    if !matches!(reset, Some((Reset::Software, _))) || level(&talk, subject.kind) == Mode::Output(true) {
+        return Err(format!("after a fault: reset {reset:?}, enable {:?}", level(&talk, subject.kind)));
     }
     let hello = talk.call(2 * SECOND).ok_or("no answer after a fault")?;
     clean(&talk.board.borrow())?;

@@ -1,38 +1,36 @@
 //! Other clock sources than the one that the board is sold with.
 
-use board::target::board::Board as Kind;
 use link::messages::Clock;
 
 use super::clean;
-use crate::boards::{self, USUAL_COST};
-use crate::image::Image;
+use crate::boards::{self, Subject};
 use crate::talk::Talk;
 use crate::wires::{SECOND, Surroundings};
 
 /// The external source is dead: the internal oscillator takes over, and the hello says so.
-pub fn dead_crystal(kind: Kind, image: &Image) -> Result<String, String> {
+pub fn dead_crystal(subject: &Subject) -> Result<String, String> {
     let nothing = Surroundings { crystal: None, external_clock: None };
-    let mut talk = Talk::new(boards::start_with(kind, image.clone(), nothing, USUAL_COST)?);
+    let mut talk = Talk::new(subject.start_with(nothing)?);
     let hello = talk.call(4 * SECOND);
     clean(&talk.board.borrow())?;
     let hello = hello.ok_or("no answer")?;
     let core = talk.board.borrow().machine().wires.clocks.core;
-    if hello.clock != Clock::InternalFallback || core != u64::from(kind.core_rate()) {
+    if hello.clock != Clock::InternalFallback || core != u64::from(subject.kind.core_rate()) {
         return Err(format!("{core} Hz from {:?}", hello.clock));
     }
     Ok(format!("{core} Hz from the internal oscillator"))
 }
 
 /// Crystals that other boards with the chip have: none may take a clock out of its range.
-pub fn other_crystals(kind: Kind, image: &Image) -> Result<String, String> {
+pub fn other_crystals(subject: &Subject) -> Result<String, String> {
     let rates = [8_000_000, 12_000_000, 16_000_000, 24_000_000, 25_000_000];
     let mut wrong = Vec::new();
     for rate in rates {
-        let source = match boards::usual_surroundings(kind).crystal {
+        let source = match boards::usual_surroundings(subject.kind).crystal {
             Some(_) => Surroundings { crystal: Some(rate), external_clock: None },
             None => Surroundings { crystal: None, external_clock: Some(rate) },
         };
-        let mut talk = Talk::new(boards::start_with(kind, image.clone(), source, USUAL_COST)?);
+        let mut talk = Talk::new(subject.start_with(source)?);
         let hello = talk.call(SECOND);
         if let Err(why) = clean(&talk.board.borrow()) {
             wrong.push(format!("{rate} Hz:\n{why}"));

@@ -6,8 +6,7 @@ use link::controller::{Answered, Exchange, Motion, SetPoint};
 use link::framing::{sealed, unsealed};
 
 use super::clean;
-use crate::boards;
-use crate::image::Image;
+use crate::boards::Subject;
 use crate::talk::Talk;
 use crate::wires::{MICROSECOND, Pin, SECOND, Time};
 
@@ -93,9 +92,9 @@ impl Master<'_> {
     }
 }
 
-fn master<'a>(kind: Kind, image: &Image) -> Result<Master<'a>, String> {
-    let talk = Talk::new(boards::start(kind, image.clone())?);
-    let (select, spi) = match kind {
+fn master<'a>(subject: &Subject) -> Result<Master<'a>, String> {
+    let talk = Talk::new(subject.start()?);
+    let (select, spi) = match subject.kind {
         Kind::Stm32f405 => (Pin('A', 4), 1),
         _ => (Pin('B', 12), 2),
     };
@@ -106,8 +105,8 @@ fn master<'a>(kind: Kind, image: &Image) -> Result<Master<'a>, String> {
 }
 
 /// Good transfers, and all kinds of bad ones between them.
-pub fn transfers(kind: Kind, image: &Image) -> Result<String, String> {
-    let mut master = master(kind, image)?;
+pub fn transfers(subject: &Subject) -> Result<String, String> {
+    let mut master = master(subject)?;
     for _ in 0..20 {
         let outcome = master.is_answered();
         clean(&master.talk.board.borrow())?;
@@ -137,8 +136,8 @@ pub fn transfers(kind: Kind, image: &Image) -> Result<String, String> {
 }
 
 /// Transfers that are too long are no frames, by however many bytes.
-pub fn too_long(kind: Kind, image: &Image) -> Result<String, String> {
-    let mut master = master(kind, image)?;
+pub fn too_long(subject: &Subject) -> Result<String, String> {
+    let mut master = master(subject)?;
     master.is_answered()?;
     let extra = [1, 2, 3, 4, 5, 8, 100, 192, 1000];
     let mut taken = Vec::new();

@@ -1,0 +1,61 @@
+//! Defects of the images that are known and not mended yet. They do not fail a check; one that is mended must leave this list,
+//! or the check of everything fails.
+
+use std::collections::BTreeSet;
+use std::sync::Mutex;
+
+use crate::violation::Violation;
+
+/// Rules that are broken: board, part of what is said, and what follows from it.
+const VIOLATIONS: &[(&str, &str, &str)] = &[
+    (
+        "stm32g474",
+        "the data cache is on while a bank is erased or programmed",
+        "the data cache may be corrupted (ES0430 2.2.2)",
+    ),
+    ("stm32g474", "RXDMAEN is set after the channel that receives", "the order of RM0440 39.4.9 is not kept"),
+    (
+        "stm32h743",
+        "PG is cleared with no DSB after the stores to flash",
+        "a store may be behind the end of programming",
+    ),
+];
+
+/// Checks that fail: board, part of the check's name, and what follows from it.
+const CHECKS: &[(&str, &str, &str)] = &[
+    ("stm32f405", "other crystals", "another crystal than 8 MHz overclocks, or leaves no line"),
+    ("stm32g474", "other crystals", "another crystal than 24 MHz overclocks, or leaves no line"),
+    ("stm32h743", "other crystals", "another clock than 8 MHz overclocks"),
+    ("stm32f405", "power cut", "a cut while it is written leaves no memory"),
+    ("stm32g474", "power cut", "a cut while it is written leaves a board that does not boot"),
+    ("stm32h743", "power cut", "a cut while it is written leaves a board that does not boot"),
+    ("stm32f405", "too long", "a transfer one byte too long is taken as good"),
+    ("stm32g474", "too long", "a transfer a few bytes too long is taken as good"),
+];
+
+static SEEN: Mutex<BTreeSet<usize>> = Mutex::new(BTreeSet::new());
+
+/// Whether a violation is known; remembers that it was seen.
+pub fn is_known(board: &str, violation: &Violation) -> bool {
+    let place = VIOLATIONS.iter().position(|(name, text, _)| *name == board && violation.what.contains(text));
+    if let (Some(place), Ok(mut seen)) = (place, SEEN.lock()) {
+        seen.insert(place);
+    }
+    place.is_some()
+}
+
+/// What follows from a check that is known to fail.
+pub fn failing(board: &str, check: &str) -> Option<&'static str> {
+    CHECKS.iter().find(|(name, text, _)| *name == board && check.contains(text)).map(|(.., follows)| *follows)
+}
+
+/// Known violations that no check has met, and those that one has.
+pub fn violations() -> (Vec<String>, Vec<String>) {
+    let seen = SEEN.lock().map(|seen| seen.clone()).unwrap_or_default();
+    let line = |(board, what, follows): &(&str, &str, &str)| format!("{board}: {what}: {follows}");
+    let (met, missed): (Vec<_>, Vec<_>) = VIOLATIONS.iter().enumerate().partition(|(place, _)| seen.contains(place));
+    (
+        missed.into_iter().map(|(_, known)| line(known)).collect(),
+        met.into_iter().map(|(_, known)| line(known)).collect(),
+    )
+}

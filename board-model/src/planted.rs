@@ -1,0 +1,256 @@
+//! Thirty and more mistakes that a port to these chips can make, planted one by one into the writes of the images that ship.
+//! Each must make its check fail: this is the model's own test.
+
+use board::target::board::Board as Kind;
+use board::target::board::Board::{Stm32f405, Stm32g474, Stm32h743};
+
+use crate::checks::{Check, boot, memory, outputs, spi};
+use crate::images::Work;
+use crate::images::Work::{Observer, Plant, SpiSlave};
+use crate::tamper::How::{Clear, Field, Omit, OmitValue, Set, Swap};
+use crate::tamper::{How, Tamper};
+
+/// A mistake.
+pub struct Mistake {
+    /// In words.
+    pub what: &'static str,
+    /// On this board.
+    pub board: Kind,
+    /// In this image.
+    pub work: Work,
+    /// What must find it.
+    pub check: Check,
+    /// What is done.
+    pub tampers: &'static [Tamper],
+    /// It stands for its kind in the short form.
+    pub in_short: bool,
+}
+
+impl Mistake {
+    /// One that is left to the long form.
+    const fn new(board: Kind, work: Work, check: Check, tampers: &'static [Tamper], what: &'static str) -> Self {
+        Self { what, board, work, check, tampers, in_short: false }
+    }
+
+    /// It stands for its kind in the short form.
+    const fn short(mut self) -> Self {
+        self.in_short = true;
+        self
+    }
+}
+
+const fn at(address: u32, how: How) -> Tamper {
+    Tamper { address, how }
+}
+
+/// All of them.
+pub const ALL: &[Mistake] = &[
+    // STM32F405: clock.
+    Mistake::new(
+        Stm32f405,
+        Plant,
+        boot::answers,
+        &[at(0x4002_3804, Field(0x7fc0, 180 << 6))],
+        "PLL factor 180 for 168",
+    )
+    .short(),
+    Mistake::new(Stm32f405, Plant, boot::answers, &[at(0x4002_3804, Field(0x3f, 8))], "PLL divider 8 for 4"),
+    Mistake::new(Stm32f405, Plant, boot::answers, &[at(0x4002_3804, Field(0x3f, 2))], "PLL divider 2 for 4"),
+    Mistake::new(Stm32f405, Plant, boot::answers, &[at(0x4002_3804, Field(0x0f00_0000, 0))], "PLL divider Q left at 0"),
+    Mistake::new(
+        Stm32f405,
+        Plant,
+        boot::answers,
+        &[at(0x4002_3800, Clear(1 << 16))],
+        "the crystal is never switched on",
+    ),
+    Mistake::new(Stm32f405, Plant, boot::answers, &[at(0x4002_3c00, Omit)], "no wait states").short(),
+    Mistake::new(
+        Stm32f405,
+        Plant,
+        boot::answers,
+        &[at(0x4002_3808, Swap(0x1c00, 0x1400, 0x1000))],
+        "APB1 at half the core clock",
+    ),
+    Mistake::new(Stm32f405, Plant, boot::answers, &[at(0x4002_3808, Clear(0xe000))], "APB2 at the core clock"),
+    Mistake::new(Stm32f405, Plant, boot::answers, &[at(0x4002_3808, Clear(3))], "the PLL is never selected"),
+    // STM32F405: pins and line.
+    Mistake::new(Stm32f405, Plant, boot::answers, &[at(0x4002_3830, Clear(1))], "the clock of port A is off").short(),
+    Mistake::new(Stm32f405, Plant, boot::answers, &[at(0x4002_3844, Clear(1 << 4))], "the clock of USART1 is off"),
+    Mistake::new(
+        Stm32f405,
+        Plant,
+        boot::answers,
+        &[at(0x4002_0024, Swap(0xf0, 0x70, 0x80))],
+        "PA9 has the wrong function",
+    ),
+    Mistake::new(Stm32f405, Plant, boot::answers, &[at(0x4002_0000, Clear(3 << 20))], "PA10 stays an input"),
+    Mistake::new(Stm32f405, Plant, boot::answers, &[at(0x4002_0000, Clear(3 << 26))], "a debug pin is taken"),
+    Mistake::new(
+        Stm32f405,
+        Plant,
+        boot::answers,
+        &[at(0x4001_1008, Field(0xffff, 182))],
+        "the divider of the line is that of APB1",
+    ),
+    Mistake::new(Stm32f405, Plant, boot::answers, &[at(0x4001_100c, Clear(1 << 5))], "no interrupt for received bytes"),
+    Mistake::new(Stm32f405, Plant, boot::answers, &[at(0x4001_100c, Set(1 << 14))], "a reserved bit of USART_CR1"),
+    // The core.
+    Mistake::new(Stm32f405, Plant, boot::answers, &[at(0xe000_e104, Omit)], "the line's interrupt stays masked"),
+    Mistake::new(
+        Stm32f405,
+        Plant,
+        boot::answers,
+        &[at(0xe000_ed23, Field(0xff, 0xf0))],
+        "the tick has the lowest priority",
+    )
+    .short(),
+    Mistake::new(
+        Stm32f405,
+        Plant,
+        boot::answers,
+        &[at(0xe000_e014, Field(0xff_ffff, 8499))],
+        "the tick is that of another core clock",
+    ),
+    Mistake::new(Stm32f405, Plant, boot::answers, &[at(0xe000_ed88, Omit)], "the floating-point unit stays off"),
+    // STM32F405: watchdog and outputs.
+    Mistake::new(
+        Stm32f405,
+        Plant,
+        outputs::watchdog,
+        &[at(0x4000_3000, OmitValue(0xcccc))],
+        "the watchdog is never started",
+    ),
+    Mistake::new(
+        Stm32f405,
+        Plant,
+        outputs::watchdog,
+        &[at(0x4000_3000, OmitValue(0x5555))],
+        "its settings are not unlocked",
+    )
+    .short(),
+    Mistake::new(
+        Stm32f405,
+        Plant,
+        outputs::watchdog,
+        &[at(0x4000_3008, Field(0xfff, 4000))],
+        "its time is eight times too long",
+    ),
+    Mistake::new(
+        Stm32f405,
+        Plant,
+        outputs::watchdog,
+        &[at(0x4002_3874, Clear(1 << 24))],
+        "flags of resets are never cleared",
+    ),
+    Mistake::new(Stm32f405, Plant, outputs::silence, &[at(0x4002_0400, Clear(3))], "the enable pin stays an input"),
+    // STM32F405: flash.
+    Mistake::new(
+        Stm32f405,
+        Observer,
+        memory::keeps,
+        &[at(0x4002_3c04, OmitValue(0xcdef_89ab))],
+        "flash: half of the keys",
+    )
+    .short(),
+    Mistake::new(Stm32f405, Observer, memory::keeps, &[at(0x4002_3c10, Clear(0xf << 3))], "flash: sector 0 is erased"),
+    Mistake::new(
+        Stm32f405,
+        Observer,
+        memory::keeps,
+        &[at(0x4002_3c10, Clear(3 << 8))],
+        "flash: words, with PSIZE for bytes",
+    ),
+    Mistake::new(
+        Stm32f405,
+        Observer,
+        memory::keeps,
+        &[at(0x4002_3c10, Clear(1 << 16))],
+        "flash: the erase is not started",
+    ),
+    Mistake::new(Stm32f405, Observer, memory::keeps, &[at(0x4002_3c10, Swap(1, 1, 0))], "flash: programs without PG"),
+    Mistake::new(
+        Stm32f405,
+        Observer,
+        memory::keeps,
+        &[at(0x4002_3c00, Clear(1 << 12))],
+        "flash: the data cache is not reset",
+    ),
+    Mistake::new(
+        Stm32f405,
+        Observer,
+        memory::keeps,
+        &[at(0x4002_3c00, Set(1 << 10))],
+        "flash: the data cache is reset while it is on",
+    ),
+    // STM32F405: SPI.
+    Mistake::new(
+        Stm32f405,
+        SpiSlave,
+        spi::transfers,
+        &[at(0x4002_6458, Swap(7 << 25, 3 << 25, 2 << 25))],
+        "DMA: the channel beside",
+    ),
+    Mistake::new(Stm32f405, SpiSlave, spi::transfers, &[at(0x4002_6408, Omit)], "DMA: flags are not cleared"),
+    Mistake::new(
+        Stm32f405,
+        SpiSlave,
+        spi::transfers,
+        &[at(0x4001_3c00, Omit)],
+        "the chip select's interrupt stays masked",
+    ),
+    // STM32G474.
+    Mistake::new(Stm32g474, Plant, boot::answers, &[at(0x4000_7080, Omit)], "no boost above 150 MHz").short(),
+    Mistake::new(Stm32g474, Plant, boot::answers, &[at(0x4002_1058, Clear(1 << 28))], "the clock of PWR is off"),
+    Mistake::new(Stm32g474, Plant, boot::answers, &[at(0x4002_1008, Clear(0xf0))], "full bus clock at once"),
+    Mistake::new(Stm32g474, Plant, boot::answers, &[at(0x4002_2000, Field(0xf, 3))], "three wait states for four"),
+    Mistake::new(Stm32g474, Plant, boot::answers, &[at(0x4002_100c, Clear(1 << 24))], "the output R of the PLL is off"),
+    Mistake::new(Stm32g474, Plant, boot::answers, &[at(0x4000_4400, Set(1))], "the USART is on before it is set up"),
+    Mistake::new(
+        Stm32g474,
+        Observer,
+        memory::keeps,
+        &[at(0x4002_2014, Clear(1 << 11))],
+        "flash: the page of the other bank",
+    ),
+    Mistake::new(Stm32g474, Observer, memory::keeps, &[at(0x4002_2014, Clear(1 << 16))], "flash: programs over data"),
+    Mistake::new(
+        Stm32g474,
+        SpiSlave,
+        spi::transfers,
+        &[at(0x4002_0800, Field(0x7f, 10))],
+        "DMAMUX: the request of SPI1",
+    )
+    .short(),
+    Mistake::new(
+        Stm32g474,
+        SpiSlave,
+        spi::transfers,
+        &[at(0x4000_3804, Clear(1 << 12))],
+        "SPI: every second byte asks for DMA",
+    ),
+    // STM32H743.
+    Mistake::new(Stm32h743, Plant, boot::answers, &[at(0x5802_4818, Omit)], "voltage scale 3 at 400 MHz").short(),
+    Mistake::new(Stm32h743, Plant, boot::answers, &[at(0x5802_480c, Omit)], "the supply is not set up"),
+    Mistake::new(Stm32h743, Plant, boot::answers, &[at(0x5200_2000, Clear(0x30))], "WRHIGHFREQ 0 at 200 MHz"),
+    Mistake::new(Stm32h743, Plant, boot::answers, &[at(0x5802_4418, Clear(0xf))], "the bus at the core clock"),
+    Mistake::new(Stm32h743, Plant, boot::answers, &[at(0x5802_442c, Clear(0xc))], "PLL input range for 1 to 2 MHz"),
+    Mistake::new(Stm32h743, Plant, boot::answers, &[at(0x5802_442c, Set(2))], "the medium range for 800 MHz inside"),
+    Mistake::new(
+        Stm32h743,
+        Plant,
+        boot::answers,
+        &[at(0x5802_4430, Field(0xfe00, 2 << 9))],
+        "PLL 1 divided by an odd number",
+    ),
+    Mistake::new(Stm32h743, Plant, boot::answers, &[at(0x5802_44e0, Clear(1 << 3))], "the clock of port D is off"),
+    Mistake::new(Stm32h743, Observer, memory::keeps, &[at(0x5200_2104, Omit)], "flash: no keys for the second bank")
+        .short(),
+    Mistake::new(
+        Stm32h743,
+        Observer,
+        memory::keeps,
+        &[at(0x5200_210c, Swap(0x84, 0x84, 0x04))],
+        "flash: the erase is not started",
+    ),
+];

@@ -12,6 +12,7 @@ pub mod known;
 pub mod machine;
 pub mod peripherals;
 pub mod planted;
+pub mod port;
 pub mod register;
 pub mod scs;
 pub mod talk;

@@ -190,7 +190,9 @@ impl Machine {
             placed.peripheral.reset();
         }
         self.scs = Scs::new(self.chip.is_m7);
-        self.wires.interrupts.fill(false);
+        self.wires.interrupts.clear();
+        self.wires.gates.clear();
+        self.wires.routes.clear();
         self.wires.requests.clear();
         self.wires.served.clear();
         self.wires.pins.clear();

@@ -1,14 +1,17 @@
 //! `board-model check`: runs the images that ship on models of their boards. `board-model run`: one board with its line on a
 //! pseudo-terminal, for the host's own commands.
 
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
 use board::target::board::Board as Kind;
-use board_model::boards::Subject;
+use board_model::boards::{Subject, USUAL_COST, usual_surroundings};
+use board_model::image::Image;
 use board_model::images::Images;
 use board_model::planted::{self, Mistake};
-use board_model::{checks, known};
+use board_model::wires::Surroundings;
+use board_model::{checks, known, port};
 use clap::{Parser, Subcommand};
 
 #[derive(Parser)]
@@ -20,6 +23,20 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    /// Runs an image on a board whose line is a pseudo-terminal, until it is interrupted
+    Run {
+        /// The ELF file
+        image: PathBuf,
+        /// The board that it is for
+        #[arg(long, value_enum)]
+        board: Kind,
+        /// Frequency of the external source, 0 for none [Hz, default: that of the board as it is sold]
+        #[arg(long, value_name = "HZ")]
+        source: Option<u64>,
+        /// Thousandths of a cycle that an instruction takes
+        #[arg(long, value_name = "N", default_value_t = USUAL_COST)]
+        cost: u64,
+    },
     /// Runs every check on every board
     Check {
         /// This board only
@@ -36,6 +53,7 @@ enum Command {
 
 fn main() -> ExitCode {
     let outcome = match Arguments::parse().command {
+        Command::Run { image, board, source, cost } => run(&image, board, source, cost),
         Command::Check { board, only, full } => check(board, only.as_deref(), full),
     };
     match outcome {
@@ -45,6 +63,30 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+/// A board at a port; what it did against a rule is said as soon as it is noticed.
+fn run(image: &Path, kind: Kind, source: Option<u64>, cost: u64) -> Result<(), String> {
+    let usual = usual_surroundings(kind);
+    let surroundings = match source {
+        None => usual,
+        Some(rate) => {
+            let rate = Some(rate).filter(|rate| *rate > 0);
+            Surroundings { crystal: usual.crystal.and(rate), external_clock: usual.external_clock.and(rate) }
+        }
+    };
+    let subject = Subject { kind, image: Image::read(image)?, tampers: &[] };
+    let mut board = subject.start_at(surroundings, cost)?;
+    let mut told = 0;
+    let opened = |path: &str| {
+        println!("{} at {path}: give the host's commands --port {path} --board {}", kind.name(), kind.name())
+    };
+    port::serve(&mut board, opened, |board| {
+        for violation in &board.machine().wires.violations.all()[told..] {
+            eprintln!("{violation}, in {}", board.image.function(violation.pc));
+        }
+        told = board.machine().wires.violations.all().len();
+    })
 }
 
 /// All of them, whatever fails; then how many did.

@@ -1,6 +1,8 @@
 //! The core's own peripherals: interrupt controller, SysTick, system control block. ARMv7-M Architecture Reference Manual,
 //! chapter B3; four bits of priority, as all three chips have.
 
+use std::collections::BTreeSet;
+
 use crate::register::{bit, bits};
 use crate::wires::Wires;
 
@@ -82,7 +84,7 @@ impl SysTick {
 /// The core's peripherals.
 #[derive(Debug)]
 pub struct Scs {
-    pending: Vec<bool>,
+    pending: BTreeSet<usize>,
     enabled: Vec<bool>,
     priority: Vec<u8>,
     /// Exceptions under way, the innermost last.
@@ -113,7 +115,7 @@ impl Scs {
         let mut enabled = vec![false; EXCEPTIONS];
         enabled[..FIRST_INTERRUPT].fill(true);
         Self {
-            pending: vec![false; EXCEPTIONS],
+            pending: BTreeSet::new(),
             enabled,
             priority: vec![0; EXCEPTIONS],
             active: Vec::new(),
@@ -152,29 +154,29 @@ impl Scs {
 
     /// Asks for an exception.
     pub fn pend(&mut self, exception: usize) {
-        self.pending[exception] = true;
+        self.pending.insert(exception);
     }
 
     /// Takes levels of interrupt lines and expiries of SysTick.
     pub fn advance(&mut self, now: u64, wires: &mut Wires) {
         if self.systick.advance(now) && self.systick.control & 2 != 0 {
-            self.pending[SYSTICK] = true;
+            self.pending.insert(SYSTICK);
         }
-        for (line, level) in wires.interrupts.iter().enumerate() {
+        for exception in wires.interrupts.iter().map(|line| line + FIRST_INTERRUPT) {
             // A level pends again once its handler is through.
-            if *level && !self.active.contains(&(line + FIRST_INTERRUPT)) {
-                self.pending[line + FIRST_INTERRUPT] = true;
+            if !self.active.contains(&exception) {
+                self.pending.insert(exception);
             }
         }
         if std::mem::take(&mut wires.non_maskable) {
-            self.pending[NMI] = true;
+            self.pending.insert(NMI);
         }
         if let Some(address) = wires.bus_fault.take() {
             // CFSR: PRECISERR with BFARVALID; HFSR: FORCED.
             self.fault_status |= bit(9) | bit(15);
             self.hard_fault_status |= bit(30);
             let _ = address;
-            self.pending[HARD_FAULT] = true;
+            self.pending.insert(HARD_FAULT);
         }
     }
 
@@ -197,9 +199,8 @@ impl Scs {
     }
 
     fn candidate(&self) -> Option<usize> {
-        (0..EXCEPTIONS)
-            .filter(|exception| self.pending[*exception] && self.enabled[*exception])
-            .min_by_key(|exception| (self.priority_of(*exception), *exception))
+        let enabled = self.pending.iter().copied().filter(|exception| self.enabled[*exception]);
+        enabled.min_by_key(|exception| (self.priority_of(*exception), *exception))
     }
 
     /// The exception to be entered now: ARMv7-M B1.5.4.
@@ -229,7 +230,7 @@ impl Scs {
 
     /// Enters an exception; returns the address of its vector.
     pub fn enter(&mut self, exception: usize) -> u32 {
-        self.pending[exception] = false;
+        self.pending.remove(&exception);
         self.active.push(exception);
         self.taken[exception] += 1;
         self.vectors + 4 * exception as u32
@@ -242,7 +243,7 @@ impl Scs {
 
     /// Whether a fault cannot be handled any more.
     pub fn is_locked_up(&self) -> bool {
-        self.active_priority() <= -1 && self.pending[HARD_FAULT]
+        self.active_priority() <= -1 && self.pending.contains(&HARD_FAULT)
     }
 
     /// A read of the private peripheral bus.
@@ -263,7 +264,7 @@ impl Scs {
                 self.bitmap(address, |scs, number| scs.enabled[number])
             }
             0xe000_e200..0xe000_e220 | 0xe000_e280..0xe000_e2a0 => {
-                self.bitmap(address, |scs, number| scs.pending[number])
+                self.bitmap(address, |scs, number| scs.pending.contains(&number))
             }
             0xe000_e300..0xe000_e320 => self.bitmap(address, |scs, number| scs.active.contains(&number)),
             0xe000_e400..0xe000_e4f0 => self.priorities(FIRST_INTERRUPT + (address - 0xe000_e400) as usize),
@@ -315,9 +316,9 @@ impl Scs {
 
     /// ICSR.
     fn interrupt_state(&self) -> u32 {
-        let flag = |exception: usize, place: u32| u32::from(self.pending[exception]) << place;
+        let flag = |exception: usize, place: u32| u32::from(self.pending.contains(&exception)) << place;
         let next = self.candidate().unwrap_or(0) as u32;
-        let any = self.pending[FIRST_INTERRUPT..].contains(&true);
+        let any = self.pending.range(FIRST_INTERRUPT..).next().is_some();
         let alone = self.active.len() <= 1;
         flag(NMI, 31)
             | flag(PEND_SV, 28)
@@ -367,8 +368,12 @@ impl Scs {
             }
             0xe000_e100..0xe000_e120 => self.set_bits(address, value, |scs, number| scs.enabled[number] = true),
             0xe000_e180..0xe000_e1a0 => self.set_bits(address, value, |scs, number| scs.enabled[number] = false),
-            0xe000_e200..0xe000_e220 => self.set_bits(address, value, |scs, number| scs.pending[number] = true),
-            0xe000_e280..0xe000_e2a0 => self.set_bits(address, value, |scs, number| scs.pending[number] = false),
+            0xe000_e200..0xe000_e220 => self.set_bits(address, value, |scs, number| {
+                scs.pending.insert(number);
+            }),
+            0xe000_e280..0xe000_e2a0 => self.set_bits(address, value, |scs, number| {
+                scs.pending.remove(&number);
+            }),
             0xe000_ed04 => {
                 for (place, exception, level) in [
                     (31, NMI, true),
@@ -377,8 +382,10 @@ impl Scs {
                     (26, SYSTICK, true),
                     (25, SYSTICK, false),
                 ] {
-                    if value & bit(place) != 0 {
-                        self.pending[exception] = level;
+                    if value & bit(place) != 0 && level {
+                        self.pending.insert(exception);
+                    } else if value & bit(place) != 0 {
+                        self.pending.remove(&exception);
                     }
                 }
             }
@@ -397,7 +404,9 @@ impl Scs {
             0xe000_ed84 if self.has_caches => self.cache_selection = value,
             0xe000_ed88 => self.coprocessors = value,
             0xe000_edfc => self.demcr = value,
-            0xe000_ef00 => self.pending[FIRST_INTERRUPT + (value & 0xff) as usize % 240] = true,
+            0xe000_ef00 => {
+                self.pending.insert(FIRST_INTERRUPT + (value & 0xff) as usize % 240);
+            }
             0xe000_ef34 => self.fp_context = value,
             // ICIALLU, ICIMVAU, branch predictor.
             0xe000_ef50 | 0xe000_ef58 | 0xe000_ef78 if self.has_caches => {}

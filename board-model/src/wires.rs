@@ -140,8 +140,8 @@ pub struct Wires {
     pub clocks: Clocks,
     /// Registers of the clock controller by offset, as far as they switch clocks on and hold resets.
     pub gates: BTreeMap<u32, u32>,
-    /// Levels of interrupt lines.
-    pub interrupts: Vec<bool>,
+    /// Interrupt lines that are high.
+    pub interrupts: BTreeSet<usize>,
     /// Pins that are not as after a reset.
     pub pins: BTreeMap<Pin, Mode>,
     /// Levels that somebody outside drives.
@@ -197,7 +197,7 @@ impl Wires {
             violations: Violations::default(),
             clocks: Clocks::default(),
             gates: BTreeMap::new(),
-            interrupts: vec![false; 240],
+            interrupts: BTreeSet::new(),
             pins: BTreeMap::new(),
             driven: BTreeMap::new(),
             line_ports: ['A'; 16],
@@ -248,8 +248,10 @@ impl Wires {
 
     /// Levels an interrupt line.
     pub fn interrupt(&mut self, line: usize, level: bool) {
-        self.changed |= self.interrupts[line] != level;
-        self.interrupts[line] = level;
+        self.changed |= match level {
+            true => self.interrupts.insert(line),
+            false => self.interrupts.remove(&line),
+        };
     }
 
     /// A flash operation begins; whether power goes with it.

@@ -40,9 +40,8 @@ pub fn answers(subject: &Subject) -> Result<String, String> {
     {
         return Err(format!("{} at {core} Hz from {:?} is not {}", hello.board, hello.clock, subject.kind.name()));
     }
+    let milliseconds = board.now() / (1000 * MICROSECOND);
     drop(board);
     ticks(&mut talk, hello.tick_rate)?;
-    let board = talk.board.borrow();
-    let milliseconds = board.now() / (1000 * MICROSECOND);
     Ok(format!("{core} Hz, answered {milliseconds} ms after power came on"))
 }

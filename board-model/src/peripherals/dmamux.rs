@@ -51,7 +51,7 @@ impl Peripheral for DmaMux {
         &mut self.registers
     }
 
-    fn advance(&mut self, wires: &mut Wires) {
+    fn written(&mut self, _offset: u32, _value: u32, _before: u32, wires: &mut Wires) {
         for output in 0..OUTPUTS {
             let route = request(self.registers.field(4 * output, 0, 7));
             wires.routes.insert((1 + output / 8, output % 8), route);

@@ -64,7 +64,8 @@ impl Peripheral for Exti {
     }
 
     fn advance(&mut self, wires: &mut Wires) {
-        for line in 0..16 {
+        let watched = self.registers.get(RTSR) | self.registers.get(FTSR);
+        for line in (0..16).filter(|line| watched >> line & 1 == 1) {
             let level = wires.level(Pin(wires.line_ports[line as usize], line));
             let before = std::mem::replace(&mut self.levels[line as usize], level);
             let rose = level && !before && self.registers.is_set(RTSR, line);

@@ -45,6 +45,8 @@ pub struct Gpio {
     port: char,
     has_brr: bool,
     registers: Registers,
+    /// Its pins are not yet on the wires as they are.
+    is_new: bool,
 }
 
 impl Gpio {
@@ -56,7 +58,7 @@ impl Gpio {
             _ => &F4_OTHER,
         };
         // RM0090 8.4.11: its map ends with AFRH.
-        Self { port, has_brr: false, registers: Registers::new(&table[..10]) }
+        Self { port, has_brr: false, registers: Registers::new(&table[..10]), is_new: true }
     }
 
     /// Of G474, and of H743, which has no BRR either (RM0433 11.4).
@@ -66,7 +68,7 @@ impl Gpio {
             'B' => &NEWER_B,
             _ => &NEWER_OTHER,
         };
-        Self { port, has_brr, registers: Registers::new(&table[..if has_brr { 11 } else { 10 }]) }
+        Self { port, has_brr, registers: Registers::new(&table[..if has_brr { 11 } else { 10 }]), is_new: true }
     }
 
     fn mode(&self, pin: u32) -> Mode {
@@ -104,12 +106,21 @@ impl Peripheral for Gpio {
         if self.port == 'A' && offset == MODER && self.registers.field(MODER, 26, 4) != 0b1010 {
             wires.violation("GPIOA_MODER", "takes the debug port's pins PA13 and PA14", "RM0090 8.3.1");
         }
+        self.is_new = true;
         self.advance(wires);
     }
 
     fn advance(&mut self, wires: &mut Wires) {
+        if !std::mem::take(&mut self.is_new) {
+            return;
+        }
         for pin in 0..16 {
             wires.pins.insert(Pin(self.port, pin), self.mode(pin));
         }
+    }
+
+    fn reset(&mut self) {
+        self.registers.reset();
+        self.is_new = true;
     }
 }

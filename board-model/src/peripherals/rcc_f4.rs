@@ -139,6 +139,9 @@ impl Peripheral for Rcc {
             CSR if value & bit(24) != 0 => self.registers.change(CSR, 0, FLAGS | bit(24)),
             _ => {}
         }
+        for offset in [0x10, 0x20, 0x24, 0x30, 0x34, 0x38, 0x40, 0x44] {
+            wires.gates.insert(offset, self.registers.get(offset));
+        }
         self.advance(wires);
     }
 
@@ -161,9 +164,6 @@ impl Peripheral for Rcc {
                 let what = format!("the clock of {what}");
                 within(wires, "RCC_CFGR", &what, rate, [1, most * 1_000_000], "RM0090 7.3.3");
             }
-        }
-        for offset in [0x10, 0x20, 0x24, 0x30, 0x34, 0x38, 0x40, 0x44] {
-            wires.gates.insert(offset, self.registers.get(offset));
         }
     }
 

@@ -190,6 +190,9 @@ impl Peripheral for Rcc {
             CSR if value & bit(23) != 0 => self.registers.change(CSR, 0, FLAGS | bit(23)),
             _ => {}
         }
+        for offset in [0x28, 0x2c, 0x30, 0x38, 0x3c, 0x40, 0x48, 0x4c, 0x50, 0x58, 0x5c, 0x60] {
+            wires.gates.insert(offset, self.registers.get(offset));
+        }
         self.advance(wires);
     }
 
@@ -205,9 +208,6 @@ impl Peripheral for Rcc {
         if clocks != wires.clocks {
             wires.clocks = clocks;
             within(wires, "RCC_CFGR", "the clock of the core", core, [1, 170_000_000], "RM0440 7.2");
-        }
-        for offset in [0x28, 0x2c, 0x30, 0x38, 0x3c, 0x40, 0x48, 0x4c, 0x50, 0x58, 0x5c, 0x60] {
-            wires.gates.insert(offset, self.registers.get(offset));
         }
     }
 

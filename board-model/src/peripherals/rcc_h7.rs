@@ -197,6 +197,11 @@ impl Peripheral for Rcc {
             RSR if value & bit(16) != 0 => self.registers.change(RSR, 0, FLAGS | bit(16)),
             _ => {}
         }
+        for register in &MAP {
+            if (0x7c..0xa0).contains(&register.offset) || register.offset > RSR {
+                wires.gates.insert(register.offset, self.registers.get(register.offset));
+            }
+        }
         self.advance(wires);
     }
 
@@ -231,11 +236,6 @@ impl Peripheral for Rcc {
             ] {
                 let what = format!("the clock of {what} at this voltage scale");
                 within(wires, "RCC_D1CFGR", &what, rate, [1, most * 1_000_000], "RM0433 6.6.2, 8.7.7");
-            }
-        }
-        for register in &MAP {
-            if (0x7c..0xa0).contains(&register.offset) || register.offset > RSR {
-                wires.gates.insert(register.offset, self.registers.get(register.offset));
             }
         }
     }

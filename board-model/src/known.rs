@@ -26,11 +26,13 @@ const CHECKS: &[(&str, &str, &str)] = &[
     ("stm32f405", "other crystals", "another crystal than 8 MHz overclocks, or leaves no line"),
     ("stm32g474", "other crystals", "another crystal than 24 MHz overclocks, or leaves no line"),
     ("stm32h743", "other crystals", "another clock than 8 MHz overclocks"),
+    ("stm32f405", "loop with ticks", "a tick outlasts a byte of the line, and the USART has room for one"),
+    ("stm32g474", "loop with ticks", "a tick outlasts its period"),
     ("stm32f405", "power cut", "a cut while it is written leaves no memory"),
     ("stm32g474", "power cut", "a cut while it is written leaves a board that does not boot"),
     ("stm32h743", "power cut", "a cut while it is written leaves a board that does not boot"),
-    ("stm32f405", "too long", "a transfer one byte too long is taken as good"),
-    ("stm32g474", "too long", "a transfer a few bytes too long is taken as good"),
+    ("stm32f405", "transfers that are too long", "a transfer one byte too long is taken as good"),
+    ("stm32g474", "transfers that are too long", "a transfer a few bytes too long is taken as good"),
 ];
 
 static SEEN: Mutex<BTreeSet<usize>> = Mutex::new(BTreeSet::new());

@@ -318,9 +318,73 @@ impl Machine {
             self.wires.violation(&named, format!("is {done} while {name} is held in reset"), section);
             return None;
         }
-        if register.widths & size == 0 || offset % size != 0 {
+        if register.widths & size == 0 || !offset.is_multiple_of(size) {
             self.wires.violation(&named, format!("is {done} by {size} bytes"), "the register's own section");
         }
         Some(register)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::chips;
+    use crate::peripherals::flash::BASE;
+
+    fn machine() -> Machine {
+        let surroundings = Surroundings { crystal: Some(8_000_000), external_clock: None };
+        let mut machine = Machine::new(chips::f405::chip(BASE + 0x1000), surroundings, 230_400, 1000);
+        machine.settle();
+        machine
+    }
+
+    fn said(machine: &Machine) -> Vec<String> {
+        machine.wires.violations.all().iter().map(|violation| violation.what.clone()).collect()
+    }
+
+    #[test]
+    fn a_register_whose_clock_is_off_is_not_written() {
+        let mut machine = machine();
+        machine.write(0x4002_0000, 4, 0xa800_0001);
+        assert_eq!(said(&machine), ["is written while the clock of GPIOA is off"]);
+        machine.write(0x4002_3830, 4, 0x0010_0001);
+        machine.write(0x4002_0000, 4, 0xa800_0001);
+        assert_eq!((machine.read(0x4002_0000, 4), said(&machine).len()), (0xa800_0001, 1));
+    }
+
+    #[test]
+    fn reserved_bits_and_widths_are_watched() {
+        let mut machine = machine();
+        machine.write(0x4002_3830, 4, 0x0010_0200);
+        assert_eq!(said(&machine), ["reserved bits 0x00000200 are written"]);
+        machine.write(0x4002_3808, 1, 0);
+        assert_eq!(said(&machine)[1], "is written by 1 bytes");
+    }
+
+    #[test]
+    fn what_the_model_lacks_is_said() {
+        let mut machine = machine();
+        machine.read(0x4000_0000, 4);
+        machine.read(0x4002_3888, 4);
+        assert!(said(&machine).iter().all(|what| what.contains("the model has")), "{:?}", said(&machine));
+    }
+
+    #[test]
+    fn a_peripheral_that_was_held_in_reset_is_as_after_power_up() {
+        let mut machine = machine();
+        machine.write(0x4002_3844, 4, 1 << 4);
+        machine.write(0x4001_1008, 4, 364);
+        machine.write(0x4002_3824, 4, 1 << 4);
+        machine.write(0x4002_3824, 4, 0);
+        assert_eq!((machine.read(0x4001_1008, 4), said(&machine).len()), (0, 0));
+    }
+
+    #[test]
+    fn time_goes_on_by_cycles_of_the_present_clock() {
+        let mut machine = machine();
+        machine.count(16_000);
+        assert_eq!(machine.time(), 1_000_000_000_000);
+        machine.pass(500_000_000);
+        assert_eq!(machine.cycles, 16_008);
     }
 }

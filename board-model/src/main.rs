@@ -106,7 +106,10 @@ fn check(board: Option<Kind>, only: Option<&str>, full: bool) -> Result<(), Stri
                 let seconds = start.elapsed().as_secs_f64();
                 match (outcome, known::failing(kind.name(), check.name)) {
                     (Ok(found), None) => println!("ok       {what} ({found}; {seconds:.1} s)"),
-                    (Err(_), Some(follows)) => println!("known    {what}: {follows} ({seconds:.1} s)"),
+                    (Err(message), Some(follows)) => {
+                        let first = message.lines().next().unwrap_or_default();
+                        println!("known    {what}: {follows} ({first}; {seconds:.1} s)");
+                    }
                     (Ok(_), Some(_)) => {
                         failed += 1;
                         println!("FAILED   {what}: passes, and is known to fail: take it off the list in known.rs");

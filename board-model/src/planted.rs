@@ -4,7 +4,7 @@
 use board::target::board::Board as Kind;
 use board::target::board::Board::{Stm32f405, Stm32g474, Stm32h743};
 
-use crate::checks::{Check, boot, memory, outputs, spi};
+use crate::checks::{Check, boot, load, memory, outputs, spi};
 use crate::images::Work;
 use crate::images::Work::{Observer, Plant, SpiSlave};
 use crate::tamper::How::{Clear, Field, Omit, OmitValue, Set, Swap};
@@ -205,7 +205,7 @@ pub const ALL: &[Mistake] = &[
     Mistake::new(Stm32g474, Plant, boot::answers, &[at(0x4002_1008, Clear(0xf0))], "full bus clock at once"),
     Mistake::new(Stm32g474, Plant, boot::answers, &[at(0x4002_2000, Field(0xf, 3))], "three wait states for four"),
     Mistake::new(Stm32g474, Plant, boot::answers, &[at(0x4002_100c, Clear(1 << 24))], "the output R of the PLL is off"),
-    Mistake::new(Stm32g474, Plant, boot::answers, &[at(0x4000_4400, Set(1))], "the USART is on before it is set up"),
+    Mistake::new(Stm32g474, Plant, load::plant, &[at(0x4000_4400, Clear(1 << 29))], "the FIFO of the USART is off"),
     Mistake::new(
         Stm32g474,
         Observer,

@@ -337,7 +337,7 @@ impl Scs {
                 self.set_priorities(FIRST_INTERRUPT + (address - 0xe000_e400) as usize, size, value)
             }
             0xe000_ed18..0xe000_ed24 => self.set_priorities(4 + (address - 0xe000_ed18) as usize, size, value),
-            _ if size != 4 || address % 4 != 0 => {
+            _ if size != 4 || !address.is_multiple_of(4) => {
                 wires.violation(&format!("{address:#010x}"), format!("is written by {size} bytes: words only"), MANUAL);
             }
             _ => self.write_word(address, value, now, wires),

@@ -3,6 +3,7 @@
 
 pub mod bits;
 pub mod boot;
+pub mod load;
 pub mod memory;
 pub mod outputs;
 pub mod sources;
@@ -41,6 +42,8 @@ pub const ALL: &[Named] = &[
     short("other crystals", &[Work::Plant], sources::other_crystals),
     short("20,000 steps, the same in every bit as the host's twin", &[Work::Plant], bits::steps),
     short("keeps, writes and erases what was learnt", &[Work::Observer], memory::keeps),
+    short("plant with ticks as long as counted: no tick too long, no byte lost", &[Work::Plant], load::plant),
+    short("loop with ticks as long as counted: no tick too long, no byte lost", &[Work::Loop], load::whole_loop),
     short("safe state when the host is silent", &[Work::Plant], outputs::silence),
     short("watchdog when the ticks stop", &[Work::Plant], outputs::watchdog),
     short("a fault resets and is told", &[Work::Plant], outputs::fault),

@@ -98,7 +98,7 @@ impl Peripheral for DmaChannels {
             }
             _ => {
                 let channel = (offset - FIRST) / STEP;
-                let control = (offset - FIRST) % STEP == 0;
+                let control = (offset - FIRST).is_multiple_of(STEP);
                 let was_on = if control { before & 1 == 1 } else { self.is_on(channel) };
                 // RM0440 12.6.3: all but EN itself can be written while the channel is off only.
                 if was_on && (!control || value & 1 == 1 && (value ^ before) & !bits(3, 0) != 0) {

@@ -122,7 +122,7 @@ impl Peripheral for DmaStreams {
             0x08 | 0x0c => self.registers.change(offset - 8, 0, value),
             _ => {
                 let stream = (offset - FIRST) / STEP;
-                let control = (offset - FIRST) % STEP == 0;
+                let control = (offset - FIRST).is_multiple_of(STEP);
                 let was_on = if control { before & 1 == 1 } else { self.is_on(stream) };
                 // RM0090 10.5.5 to 10.5.10: all but EN itself can be written while the stream is off only.
                 if was_on && (!control || value & 1 == 1 && value != before) {

@@ -114,3 +114,35 @@ impl Lock {
         };
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::wires::Surroundings;
+
+    fn wires() -> Wires {
+        Wires::new(Surroundings { crystal: None, external_clock: None }, 9600)
+    }
+
+    #[test]
+    fn a_program_clears_bits_and_an_erase_sets_them() {
+        let mut array = Array::new(BASE + 0x1000, 0x4000, 8);
+        array.program(BASE + 0x2000, 4, 0x1234_5678);
+        array.program(BASE + 0x2000, 4, 0xffff_0000);
+        assert_eq!(array.read(BASE + 0x2000, 8), 0xffff_ffff_1234_0000);
+        array.damage(BASE + 0x2000, 1);
+        assert!(array.is_damaged(BASE + 0x2007) && !array.is_erased(BASE + 0x2000));
+        array.erase(BASE + 0x2000, 0x1000, &mut wires());
+        assert!(array.is_erased(BASE + 0x2000));
+    }
+
+    #[test]
+    fn one_wrong_key_shuts_the_lock() {
+        let mut wires = wires();
+        let mut lock = Lock::Locked { keys: 0 };
+        KEYS.into_iter().for_each(|key| lock.key(key, "KEYR", &mut wires));
+        assert_eq!((lock, wires.violations.all().len()), (Lock::Open, 0));
+        lock.key(KEYS[0], "KEYR", &mut wires);
+        assert_eq!((lock, wires.violations.all().len()), (Lock::Shut, 1));
+    }
+}

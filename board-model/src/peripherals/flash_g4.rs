@@ -233,7 +233,8 @@ impl Peripheral for Flash {
         } else if self.registers.get(SR) & ERRORS != 0 {
             (bit(7), "is written while an error flag is up", "RM0440 3.3.7 PGSERR")
         } else if size == 4
-            && (self.half.is_none() && address % 8 != 0 || self.half.is_some_and(|(first, _)| address != first + 4))
+            && (self.half.is_none() && !address.is_multiple_of(8)
+                || self.half.is_some_and(|(first, _)| address != first + 4))
         {
             (bit(5), "the words of a double word do not follow each other", "RM0440 3.3.7 PGAERR")
         } else {

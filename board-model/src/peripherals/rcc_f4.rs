@@ -189,12 +189,3 @@ pub fn flags(reset: Reset) -> (u32, u32) {
 
 /// Its frequency after a reset [Hz].
 pub const AFTER_RESET: u64 = INTERNAL;
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn dividers_are_those_of_the_manual() {
-        assert_eq!([0, 8, 11, 12, 15].map(super::rcc::bus_divider), [1, 2, 16, 64, 512]);
-        assert_eq!([0, 4, 5, 7].map(super::rcc::peripheral_divider), [1, 2, 4, 16]);
-    }
-}

@@ -22,7 +22,7 @@ static OLD: [Register; 7] = [
 static NEW: [Register; 12] = [
     Register::new("USART_CR1", 0x00, 0, u32::MAX),
     Register::new("USART_CR2", 0x04, 0, 0xffff_ff7f & !bits(2, 1)),
-    Register::new("USART_CR3", 0x08, 0, u32::MAX & !bit(16)),
+    Register::new("USART_CR3", 0x08, 0, !bit(16)),
     Register::new("USART_BRR", 0x0c, 0, 0xffff),
     Register::new("USART_GTPR", 0x10, 0, 0xffff),
     Register::new("USART_RTOR", 0x14, 0, u32::MAX),

@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 use link::messages::Role;
 
 use crate::roles;
-use crate::{costs, same_bits, tick, worst_case};
+use crate::{board_model, costs, same_bits, tick, worst_case};
 use board::target::board::Board;
 use board::target::image;
 use board::target::image::CONTROL_RATE;
@@ -50,7 +50,8 @@ pub fn check(tick_rate: u32, progress: &Progress) -> Outcome<()> {
         output::print(&format!("ok       clippy for {}\n", board.name()))?;
     }
     proofs(&toolchain, progress)?;
-    emulator_tests()
+    emulator_tests()?;
+    board_model::check(progress)
 }
 
 /// Same bits, instructions and worst case, of a release build against the emulated board.

@@ -1,0 +1,31 @@
+//! The images on models of their boards, at the level of registers: the package `board-model`, which is under another licence
+//! than the workspace and therefore a program of its own, started through cargo.
+
+use std::process::{Command, Stdio};
+
+use board::target::packages;
+use report::failure::{Failure, Outcome};
+use report::output;
+use report::progress::Progress;
+use report::workspace::workspace;
+
+/// What its emulator library is built with.
+const PACKAGES: [&str; 3] = ["cmake", "libclang-dev", "build-essential"];
+
+/// Runs its short form; it prints a line for each of its checks.
+pub fn check(progress: &Progress) -> Outcome<()> {
+    packages::ensure(&PACKAGES, "to build the model of the boards", &|line| progress.say(line))?;
+    progress.clear();
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let status = Command::new(cargo)
+        .args(["run", "--quiet", "--release", "--manifest-path", "board-model/Cargo.toml", "--", "check"])
+        .current_dir(workspace())
+        .stdin(Stdio::null())
+        .status()
+        .map_err(|error| Failure::new(format!("cannot run cargo for the model of the boards: {error}")))?;
+    match status.success() {
+        true => output::print("ok       images on the models of their boards\n"),
+        false => Err(Failure::check_failed(format!("an image failed on the model of its board ({status})"))
+            .with_help("board-model/README.md says what is checked, and how one check is run alone")),
+    }
+}

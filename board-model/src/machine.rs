@@ -202,7 +202,6 @@ impl Machine {
     }
 
     fn note_reset(&mut self, reset: Reset) {
-        self.wires.last_reset = reset;
         self.resets.push((reset, self.wires.now));
         let (register, flags) = (self.chip.reset_flags)(reset);
         if let Some(placed) = self.chip.peripherals.first_mut() {

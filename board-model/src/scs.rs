@@ -101,6 +101,7 @@ pub struct Scs {
     shcsr: u32,
     fault_status: u32,
     hard_fault_status: u32,
+    fault_address: u32,
     demcr: u32,
     cache_selection: u32,
     fp_context: u32,
@@ -128,6 +129,7 @@ impl Scs {
             shcsr: 0,
             fault_status: 0,
             hard_fault_status: 0,
+            fault_address: 0,
             demcr: 0,
             cache_selection: 0,
             fp_context: 0xc000_0000,
@@ -175,7 +177,7 @@ impl Scs {
             // CFSR: PRECISERR with BFARVALID; HFSR: FORCED.
             self.fault_status |= bit(9) | bit(15);
             self.hard_fault_status |= bit(30);
-            let _ = address;
+            self.fault_address = address;
             self.pending.insert(HARD_FAULT);
         }
     }
@@ -284,7 +286,8 @@ impl Scs {
             0xe000_ed24 => self.shcsr,
             0xe000_ed28 => self.fault_status,
             0xe000_ed2c => self.hard_fault_status,
-            0xe000_ed34 | 0xe000_ed38 => 0,
+            0xe000_ed34 => 0,
+            0xe000_ed38 => self.fault_address,
             // 16 KiB each: instructions 2 ways of 256 sets, data 4 ways of 128 sets, lines of 32 bytes (RM0433 2.3).
             0xe000_ed80 if self.has_caches => {
                 if self.cache_selection & 1 == 1 {

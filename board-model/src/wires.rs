@@ -172,8 +172,6 @@ pub struct Wires {
     pub boost: bool,
     /// Scale or range of the regulator by its number in the manual: 1 is the fastest.
     pub voltage: u32,
-    /// Registers of supply may be changed: their own clock, or a write protection.
-    pub last_reset: Reset,
     /// A level has changed, or something else that is looked at between blocks.
     pub changed: bool,
     /// Whoever reads a register waits for flash: time may go on faster.
@@ -213,7 +211,6 @@ impl Wires {
             reset: None,
             boost: false,
             voltage: 1,
-            last_reset: Reset::Power,
             changed: false,
             waiting: false,
             barrier: true,

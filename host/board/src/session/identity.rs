@@ -198,9 +198,11 @@ mod tests {
         let other_role = head_of(&(0u32, PROTOCOL_VERSION, [1u8, 2, 3], 7u32, "with fields", 1.5f64)).expect("a head");
         assert!(other_role.is_foreign());
         assert!(other_role.refusal(&BoardHelp::Rebuild).message().contains("(number 7)"));
-        let other_version = head_of(&(0u32, 9u16, [1u8, 2, 3], 0u32)).expect("a head");
+        let other_version = head_of(&(0u32, PROTOCOL_VERSION + 1, [1u8, 2, 3], 0u32)).expect("a head");
         assert!(other_version.is_foreign());
-        assert!(other_version.refusal(&BoardHelp::Rebuild).message().contains("version 9"));
+        assert!(
+            other_version.refusal(&BoardHelp::Rebuild).message().contains(&format!("version {}", PROTOCOL_VERSION + 1))
+        );
     }
 
     #[test]

@@ -213,6 +213,13 @@ pub const ALL: &[Mistake] = &[
         &[at(0x4002_2014, Clear(1 << 11))],
         "flash: the page of the other bank",
     ),
+    Mistake::new(
+        Stm32g474,
+        Observer,
+        memory::keeps,
+        &[at(0x4002_2000, Set(1 << 10))],
+        "flash: the data cache is left on",
+    ),
     Mistake::new(Stm32g474, Observer, memory::keeps, &[at(0x4002_2014, Clear(1 << 16))], "flash: programs over data"),
     Mistake::new(
         Stm32g474,

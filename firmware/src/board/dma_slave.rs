@@ -1,8 +1,8 @@
 //! A slave on SPI whose bytes are moved by DMA: what a transfer received, and what the next one takes.
 //!
-//! The emulated board has neither DMA nor EXTI: this is compiled and linted, and only a board can show that it works. What
-//! is to be shown there: a frame of 192 bytes each way, a transfer cut short and one too long, each answered by the next
-//! good one, and the least time between transfers.
+//! The emulated board has neither DMA nor EXTI. On a model of the boards' registers (`board-model`) good transfers, transfers cut
+//! short and those that are too long are tried, each answered by the next good one. What only a board can show is the least
+//! time between transfers.
 
 use super::pac;
 use crate::port::spi::Frame;
@@ -16,7 +16,7 @@ pub trait Unit {
     fn acknowledge(&mut self);
     /// Bytes that the transfer did not bring.
     fn missing(&self) -> u16;
-    /// Bytes came that nobody took.
+    /// Bytes came that nobody took: more than fit, or one more after the last that was waited for.
     fn overran(&self) -> bool;
     /// Ends both directions. What is left in the SPI would come first in the next transfer, and only a reset empties it.
     fn stop(&mut self);

@@ -4,6 +4,7 @@
 
 use core::ptr::{read_volatile, write_volatile};
 
+use cortex_m::asm::{dsb, isb};
 use model_core::observer::{MEMORY_BYTES, Memory};
 
 use super::bounded_wait::wait_longer;
@@ -53,12 +54,19 @@ impl<F: Flash> Page for FlashPage<F> {
         flash.erase();
         if done(flash) {
             flash.take_writes(true);
+            // It takes them before the first one comes.
+            dsb();
+            isb();
             for (index, bytes) in memory.chunks_exact(WORD).enumerate() {
                 let word = bytes.iter().rev().fold(0, |word, byte| word << 8 | u32::from(*byte));
                 // SAFETY: within the page, which nothing else uses; the controller has been told to take it.
                 unsafe { write_volatile((F::ADDRESS as *mut u32).add(index), word) };
-                if (index + 1).is_multiple_of(F::TOGETHER) && !done(flash) {
-                    break;
+                if (index + 1).is_multiple_of(F::TOGETHER) {
+                    // A store that is still on its way has not made it busy yet.
+                    dsb();
+                    if !done(flash) {
+                        break;
+                    }
                 }
             }
             flash.take_writes(false);

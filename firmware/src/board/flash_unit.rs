@@ -44,9 +44,14 @@ impl<const ADDRESS: usize, const TOGETHER: usize> Flash for FlashUnit<ADDRESS, T
     const TOGETHER: usize = TOGETHER;
 
     fn unlock(&mut self) {
-        for key in KEYS {
-            // SAFETY: the key register takes every word.
-            self.registers.keyr().write(|w| unsafe { w.bits(key) });
+        // What is read beside a bank at work would spoil the data cache of STM32G4 (errata sheet ES0430, 2.2.2).
+        self.registers.acr().modify(|_, w| w.dcen().clear_bit());
+        // Keys that come while it is open would close it until the next reset.
+        if self.registers.cr().read().bits() & LOCK != 0 {
+            for key in KEYS {
+                // SAFETY: the key register takes every word.
+                self.registers.keyr().write(|w| unsafe { w.bits(key) });
+            }
         }
         // SAFETY: ones clear the flags of errors.
         self.registers.sr().write(|w| unsafe { w.bits(self.bits.errors) });
@@ -67,7 +72,6 @@ impl<const ADDRESS: usize, const TOGETHER: usize> Flash for FlashUnit<ADDRESS, T
 
     fn lock(&mut self) {
         self.control(LOCK);
-        self.registers.acr().modify(|_, w| w.dcen().clear_bit());
         self.registers.acr().modify(|_, w| w.dcrst().set_bit());
         self.registers.acr().modify(|_, w| w.dcrst().clear_bit().dcen().set_bit());
     }

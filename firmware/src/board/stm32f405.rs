@@ -51,6 +51,7 @@ impl Board for Stm32F405 {
         device.RCC.ahb1enr().modify(|_, w| w.gpioaen().set_bit().gpioben().set_bit().gpiocen().set_bit());
         device.RCC.apb2enr().modify(|_, w| w.usart1en().set_bit());
         device.GPIOA.afrh().modify(|_, w| w.afrh9().af7().afrh10().af7());
+        device.GPIOA.pupdr().modify(|_, w| w.pupdr10().pull_up());
         device.GPIOA.moder().modify(|_, w| w.moder9().alternate().moder10().alternate());
         device.GPIOB.moder().modify(|_, w| w.moder0().output());
         device.GPIOC.moder().modify(|_, w| w.moder12().output());

@@ -8,7 +8,7 @@
 //!
 //! What the observer has learnt is kept in the last page of 2 KB, in its second bank.
 //!
-//! The image is built and linted; it has been run neither on silicon nor in an emulator.
+//! The image runs on a model of the board's registers (`board-model`); it has not been run on silicon.
 
 pub use stm32g4::stm32g474 as pac;
 
@@ -45,6 +45,7 @@ impl Board for Stm32G474 {
         device.RCC.ahb2enr().modify(|_, w| w.gpioaen().set_bit().gpioben().set_bit());
         device.RCC.apb1enr1().modify(|_, w| w.usart2en().set_bit());
         device.GPIOA.afrl().modify(|_, w| w.afrl2().af7().afrl3().af7());
+        device.GPIOA.pupdr().modify(|_, w| w.pupdr3().pull_up());
         device.GPIOA.moder().modify(|_, w| w.moder2().alternate().moder3().alternate().moder5().output());
         device.GPIOB.moder().modify(|_, w| w.moder0().output());
         let usart_clock = if clock == Clock::Failed { INTERNAL_CLOCK } else { USART_CLOCK };

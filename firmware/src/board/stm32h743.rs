@@ -8,7 +8,7 @@
 //!
 //! What the observer has learnt is kept in the first sector of the second bank.
 //!
-//! The image is built and linted; it has been run neither on silicon nor in an emulator.
+//! The image runs on a model of the board's registers (`board-model`); it has not been run on silicon.
 
 pub use stm32h7::stm32h743 as pac;
 
@@ -46,6 +46,7 @@ impl Board for Stm32H743 {
         device.RCC.ahb4enr().modify(|_, w| w.gpioben().set_bit().gpiocen().set_bit().gpioden().set_bit());
         device.RCC.apb1lenr().modify(|_, w| w.usart3en().set_bit());
         device.GPIOD.afrh().modify(|_, w| w.afr8().af7().afr9().af7());
+        device.GPIOD.pupdr().modify(|_, w| w.pupdr9().pull_up());
         device.GPIOD.moder().modify(|_, w| w.moder8().alternate().moder9().alternate());
         device.GPIOC.moder().modify(|_, w| w.moder8().output());
         device.GPIOB.moder().modify(|_, w| w.moder0().output());
@@ -74,9 +75,12 @@ impl Flash for SecondBank {
     const TOGETHER: usize = 8;
 
     fn unlock(&mut self) {
-        for key in KEYS {
-            // SAFETY: the key register takes every word.
-            self.0.bank2().keyr().write(|w| unsafe { w.bits(key) });
+        // Keys that come while it is open would close it until the next reset.
+        if self.0.bank2().cr().read().lock().bit_is_set() {
+            for key in KEYS {
+                // SAFETY: the key register takes every word.
+                self.0.bank2().keyr().write(|w| unsafe { w.bits(key) });
+            }
         }
         // SAFETY: ones clear the flags of errors and of an end.
         self.0.bank2().ccr().write(|w| unsafe { w.bits(0x0fef_0000) });

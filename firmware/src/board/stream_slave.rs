@@ -87,7 +87,8 @@ impl Unit for Spi1 {
     }
 
     fn overran(&self) -> bool {
-        self.spi.sr().read().ovr().bit_is_set()
+        let status = self.spi.sr().read();
+        status.ovr().bit_is_set() || self.missing() == 0 && status.rxne().bit_is_set()
     }
 
     fn stop(&mut self) {

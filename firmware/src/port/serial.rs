@@ -14,7 +14,7 @@ use crate::serial::LineEnd;
 
 /// Bytes of the longest frames of one exchange: samples with a set-point ahead; acceptance and an answer with all
 /// estimates and a probed width. Tests hold both.
-pub const FRAME_BYTES: [u32; 2] = [88, 212];
+pub const FRAME_BYTES: [u32; 2] = [88, 213];
 /// Bits of a byte on the line, start and stop among them.
 const BITS: u32 = 10;
 

@@ -6,11 +6,11 @@ use core::sync::atomic::Ordering::Acquire;
 
 use heapless::Vec;
 use link::framing::{MAX_FRAME, Receiver, encode};
-use link::messages::{FromBoard, Hello, LOG_BYTES, Log, MemoryRequest, RunSettings, ToBoard, Trip};
+use link::messages::{FromBoard, Hello, LOG_BYTES, Log, MemoryOutcome, MemoryRequest, RunSettings, ToBoard, Trip};
 
 use crate::intake::{Intake, Taken};
+use crate::kept_memory::{KeptMemory, Slots};
 use crate::memory_requests::{MemoryRequests, Reaction};
-use crate::page::Page;
 use crate::protocol::{Batch, Protocol};
 use crate::queues::{BEFORE_ANY_RUN, Event, Events, IdleEnd, Order, Progress};
 use crate::serial::{Heard, LineEnd};
@@ -82,13 +82,17 @@ impl<'a, W: Protocol> Conversation<'a, W> {
         }
     }
 
-    /// Does the flash page's work, if there is any: nothing runs until then. `writing` wraps what may take a second or two.
+    /// Does the work with flash, if there is any: nothing runs until then. `writing` wraps what may take a second or two.
     /// The line may have lost anything meanwhile, a stop too: no run begins by a reset that was received before the end of it.
-    pub fn serve_page(&mut self, page: &mut impl Page, writing: impl FnOnce(&mut dyn FnMut() -> bool) -> bool) {
+    pub fn serve_flash(
+        &mut self,
+        kept: &mut KeptMemory<impl Slots>,
+        writing: impl FnOnce(&mut dyn FnMut() -> MemoryOutcome) -> MemoryOutcome,
+    ) {
         if !self.has_room() {
             return;
         }
-        if let Some(outcome) = self.memory_requests.serve(page, writing) {
+        if let Some(outcome) = self.memory_requests.serve(kept, writing) {
             self.hello.memory = outcome.remembered.unwrap_or(self.hello.memory);
             if matches!(outcome.answer, FromBoard::MemoryOutcome(_)) {
                 self.stale = self.line.waiting();
@@ -163,7 +167,7 @@ impl<'a, W: Protocol> Conversation<'a, W> {
                 self.memory_requests.checked(state);
                 self.say(&FromBoard::MemoryChecked(state));
             }
-            // Answered once the page is erased.
+            // Answered once flash has forgotten it, too.
             Event::MemoryDiscarded => self.memory_requests.discarded(),
             Event::FaultTaken { taken } => self.say(&FromBoard::FaultTaken { taken }),
             Event::Refused(trip) | Event::Tripped(trip) => self.say(&FromBoard::Tripped(trip)),

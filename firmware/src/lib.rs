@@ -7,7 +7,7 @@
 //! `sized_queue` that cannot panic.
 //! `conversation`, run in idle, answers the host with the help of `identity`, `intake`, `memory_requests`, `batcher`, `telemetry`
 //! and `timing_report`; `serial` moves its bytes. `port` is the seam between a motor controller and observer with compensation, `encoder`
-//! where counts come from, `page` where what was learnt is kept.
+//! where counts come from, `learnt` what an observer has learnt, `kept_memory` where that outlives a power cut.
 //! All of these are free of hardware and are tested on the host; `board`, `clock`, `logger`, `panic_message` and
 //! `stack` exist on a board only; `measuring` in the emulator only. Physics is in `model-core`, the
 //! messages are in `link`.
@@ -17,9 +17,10 @@ pub mod conversation;
 pub mod encoder;
 pub mod identity;
 pub mod intake;
+pub mod kept_memory;
+pub mod learnt;
 pub mod memory_requests;
 pub mod observer;
-pub mod page;
 pub mod plant;
 pub mod port;
 pub mod protocol;

@@ -1,10 +1,11 @@
 //! The host's requests about the memory of what was learnt, between runs: save it, read what is saved, load one, write that
-//! one, erase. The flash page is the board's; the role checks a memory in its tick.
+//! one, erase. Flash is the board's; the role checks a memory in its tick.
 
 use heapless::Vec;
 use link::messages::{FromBoard, MEMORY_PARTS, MemoryOutcome, MemoryPart, MemoryRequest, MemoryState, PART_BYTES};
 
-use crate::page::{self, Learnt, Page};
+use crate::kept_memory::{KeptMemory, NOTHING, Slots};
+use crate::learnt::Learnt;
 use crate::queues::Order;
 use crate::shared::{Consumer, Producer};
 
@@ -16,27 +17,27 @@ pub enum Reaction {
     Order(Order),
     /// This is the answer.
     Say(FromBoard),
-    /// More parts are to come, or the flash page has work to do.
+    /// More parts are to come, or flash has work to do.
     Wait,
 }
 
-/// Work for the flash page.
+/// Work for flash.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum PageTask {
+enum FlashTask {
     Tell(u8),
     Write,
     Erase,
 }
 
-/// Outcome of work with the flash page.
-pub struct PageOutcome {
+/// Outcome of work with flash.
+pub struct FlashOutcome {
     /// The answer to the host.
     pub answer: FromBoard,
     /// Validity of the saved memory, if that has changed.
     pub remembered: Option<MemoryState>,
 }
 
-/// Memories on their way between flash page, tick and host.
+/// Memories on their way between flash, tick and host.
 pub struct MemoryRequests<'a, L> {
     learnt: Consumer<'a, L>,
     remembered: Producer<'a, L>,
@@ -45,7 +46,7 @@ pub struct MemoryRequests<'a, L> {
     next_part: u8,
     /// The role has found it valid.
     is_good: bool,
-    task: Option<PageTask>,
+    task: Option<FlashTask>,
 }
 
 impl<'a, L: Learnt> MemoryRequests<'a, L> {
@@ -54,7 +55,7 @@ impl<'a, L: Learnt> MemoryRequests<'a, L> {
         Self { learnt, remembered, received: L::EMPTY, next_part: 0, is_good: false, task: None }
     }
 
-    /// The flash page has work to do before another frame is read.
+    /// Flash has work to do before another frame is read.
     pub fn is_busy(&self) -> bool {
         self.task.is_some() || self.learnt.ready()
     }
@@ -71,8 +72,8 @@ impl<'a, L: Learnt> MemoryRequests<'a, L> {
             MemoryRequest::Write if !self.is_good => {
                 return Reaction::Say(FromBoard::MemoryOutcome(MemoryOutcome::Nothing));
             }
-            MemoryRequest::Write => PageTask::Write,
-            MemoryRequest::Read { part } => PageTask::Tell(part),
+            MemoryRequest::Write => FlashTask::Write,
+            MemoryRequest::Read { part } => FlashTask::Tell(part),
         };
         self.task = Some(task);
         Reaction::Wait
@@ -108,45 +109,43 @@ impl<'a, L: Learnt> MemoryRequests<'a, L> {
         self.is_good = state == MemoryState::Good;
     }
 
-    /// The role has discarded its memory; the page is to be erased next.
+    /// The role has discarded its memory; flash is to forget it next.
     pub fn discarded(&mut self) {
-        self.task = Some(PageTask::Erase);
+        self.task = Some(FlashTask::Erase);
     }
 
-    /// Does the page's work, if there is any; `writing` wraps what may take a second or two.
+    /// Does the work with flash, if there is any; `writing` wraps what may take a second or two.
     pub fn serve(
         &mut self,
-        page: &mut impl Page,
-        writing: impl FnOnce(&mut dyn FnMut() -> bool) -> bool,
-    ) -> Option<PageOutcome> {
+        kept: &mut KeptMemory<impl Slots>,
+        writing: impl FnOnce(&mut dyn FnMut() -> MemoryOutcome) -> MemoryOutcome,
+    ) -> Option<FlashOutcome> {
         if let Some(learnt) = self.learnt.dequeue() {
-            return Some(PageOutcome::written(writing(&mut || page::keep(page, learnt.memory()))));
+            return Some(FlashOutcome::written(writing(&mut || kept.keep(learnt.memory()))));
         }
         match self.task.take()? {
-            PageTask::Tell(part) => {
-                let memory = page.read();
+            FlashTask::Tell(part) => {
+                let memory = kept.recall().unwrap_or(NOTHING);
                 let (parts, _) = memory.as_chunks::<PART_BYTES>();
                 let bytes = parts.get(usize::from(part)).map(|bytes| bytes.iter().copied().collect());
                 let bytes: Vec<u8, PART_BYTES> = bytes.unwrap_or_default();
-                Some(PageOutcome { answer: FromBoard::Memory(MemoryPart { part, bytes }), remembered: None })
+                Some(FlashOutcome { answer: FromBoard::Memory(MemoryPart { part, bytes }), remembered: None })
             }
-            PageTask::Write => {
+            FlashTask::Write => {
                 let received = self.received.as_ref()?;
-                Some(PageOutcome::written(writing(&mut || page::keep(page, received.memory()))))
+                Some(FlashOutcome::written(writing(&mut || kept.keep(received.memory()))))
             }
-            PageTask::Erase => {
-                let erased = writing(&mut || page::erase(page));
-                Some(PageOutcome { remembered: erased.then_some(MemoryState::Nothing), ..PageOutcome::written(erased) })
+            FlashTask::Erase => {
+                let erased = FlashOutcome::written(writing(&mut || kept.erase()));
+                Some(FlashOutcome { remembered: erased.remembered.map(|_| MemoryState::Nothing), ..erased })
             }
         }
     }
 }
 
-impl PageOutcome {
-    fn written(stored: bool) -> Self {
-        Self {
-            answer: FromBoard::MemoryOutcome(if stored { MemoryOutcome::Stored } else { MemoryOutcome::NotWritten }),
-            remembered: stored.then_some(MemoryState::Good),
-        }
+impl FlashOutcome {
+    fn written(outcome: MemoryOutcome) -> Self {
+        let remembered = (outcome == MemoryOutcome::Stored).then_some(MemoryState::Good);
+        Self { answer: FromBoard::MemoryOutcome(outcome), remembered }
     }
 }

@@ -7,7 +7,7 @@ use model_core::controller::Answer;
 use model_core::numbers::digest;
 use model_core::observer::{Memory, MemoryError};
 
-use crate::page::RunMemory;
+use crate::learnt::RunMemory;
 use crate::port::{ControllerPort, asked};
 use crate::protocol::{Batch, Protocol, Timed};
 use crate::work::Work;

@@ -4,7 +4,7 @@
 use heapless::Vec;
 use link::messages::{FromBoard, Role, Schedule, ToBoard};
 
-use crate::page::Learnt;
+use crate::learnt::Learnt;
 
 /// The messages of a role.
 pub trait Protocol {

@@ -8,7 +8,8 @@ mod app {
     use firmware::tick_handler::TickHandler;
     use firmware::conversation::{Conversation, LogEnd};
     use firmware::identity::{self, StartUp};
-    use firmware::page;
+    use firmware::kept_memory::KeptMemory;
+    use firmware::learnt;
     use firmware::logger::{self, LogQueue};
     use firmware::queues::{Progress, Queues};
     use firmware::serial::{Line, Serial};
@@ -34,7 +35,7 @@ mod app {
         progress: &'static Progress,
         light: StatusLight<<ThisBoard as Board>::Light>,
         watchdog: Watchdog,
-        page: <ThisBoard as Board>::Page,
+        kept: KeptMemory<<ThisBoard as Board>::Slots>,
     }
 
     #[init(local = [queues: Queues<RoleProtocol> = Queues::new(), line: Line = Line::new(), log: LogQueue = LogQueue::new()])]
@@ -42,7 +43,7 @@ mod app {
         let last_panic = panic_message::take();
         let mut core = cx.core;
         let started = ThisBoard::start(cx.device, &mut core);
-        let Started { clock, enable, light, port, page, watchdog, watchdog_reset } = started;
+        let Started { clock, enable, light, port, slots, watchdog, watchdog_reset } = started;
         let (tick_end, idle_end) = cx.local.queues.split();
         let progress = idle_end.progress;
         let (serial, line_end) = cx.local.line.split(port, ThisBoard::wake_serial);
@@ -50,7 +51,8 @@ mod app {
 
         let board = ThisBoard::NAME;
         let mut work = work();
-        let remembered = remember(&mut work, &page);
+        let mut kept = KeptMemory::open(slots);
+        let remembered = remember(&mut work, &mut kept);
         let timer_rate = ThisBoard::CORE_RATE;
         let start_up = StartUp { board, timer_rate, clock, last_panic, watchdog_reset, memory: remembered };
         let hello = identity::hello::<RoleProtocol>(start_up, DIGEST);
@@ -60,19 +62,23 @@ mod app {
         let conversation = Conversation::new(hello, PERIOD, idle_end, line_end, log_end);
         clock::start(&mut core.SYST);
         let light = StatusLight::new(light);
-        (Shared { serial }, Local { control, conversation, progress, light, watchdog, page })
+        (Shared { serial }, Local { control, conversation, progress, light, watchdog, kept })
     }
 
     /// Looks for what was learnt before. Not inlined, so that its stack is free afterwards.
     #[inline(never)]
-    fn remember(work: &mut RoleWork, page: &<ThisBoard as Board>::Page) -> MemoryState {
-        let judged = page::recall(page).map(|memory| work.remember(&memory));
+    fn remember(work: &mut RoleWork, kept: &mut KeptMemory<<ThisBoard as Board>::Slots>) -> MemoryState {
+        let judged = kept.recall().map(|memory| work.remember(&memory));
         match judged {
             Some(Err(error)) => defmt::warn!("what was kept is not used: {}", defmt::Display2Format(&error)),
             Some(Ok(())) => defmt::info!("what was learnt in earlier runs is at hand"),
+            None if kept.is_damaged() => {
+                defmt::warn!("what was kept cannot be read");
+                return MemoryState::Damaged;
+            }
             None => {}
         }
-        page::memory_state(judged)
+        learnt::memory_state(judged)
     }
 
     /// The role's work, above everything else.
@@ -103,10 +109,10 @@ mod app {
     }
 
     /// The conversation with the host, the light, and the watchdog, which is fed only while the ticks go on.
-    #[idle(local = [conversation, progress, light, watchdog, page])]
+    #[idle(local = [conversation, progress, light, watchdog, kept])]
     fn idle(cx: idle::Context) -> ! {
         use core::sync::atomic::Ordering::Relaxed;
-        let idle::LocalResources { conversation, progress, light, watchdog, page, .. } = cx.local;
+        let idle::LocalResources { conversation, progress, light, watchdog, kept, .. } = cx.local;
         let mut meter = IdleMeter::start();
         let mut last_tick = progress.ticks.load(Relaxed);
         loop {
@@ -115,7 +121,7 @@ mod app {
                 static_ram: stack::static_ram(),
                 stack_used: stack::deepest(),
             });
-            conversation.serve_page(page, |write| watchdog.while_writing(write));
+            conversation.serve_flash(kept, |write| watchdog.while_writing(write));
             light.show(Pattern::of(progress), clock::milliseconds());
             let tick = progress.ticks.load(Relaxed);
             if tick != last_tick {

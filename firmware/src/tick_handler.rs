@@ -9,7 +9,7 @@ use core::sync::atomic::Ordering::{Acquire, Relaxed, Release};
 use embedded_hal::digital::OutputPin;
 use link::messages::{MemoryOutcome, RunMode, RunSettings, Trip};
 
-use crate::page::{Learnt, memory_state};
+use crate::learnt::{Learnt, memory_state};
 use crate::protocol::Protocol;
 use crate::queues::{BEFORE_ANY_RUN, COMMAND_CAPACITY, Event, Order, TickEnd};
 use crate::safe_state::{SafeState, State};

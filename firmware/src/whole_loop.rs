@@ -14,7 +14,7 @@ use model_core::virtual_joint::faults::Faults;
 use model_core::virtual_joint::{SurroundingsTable, VirtualJoint};
 
 use crate::batcher::Batcher;
-use crate::page::RunMemory;
+use crate::learnt::RunMemory;
 use crate::port::ControllerPort;
 use crate::protocol::{Protocol, Timed, WireForm};
 use crate::work::Work;

@@ -1,11 +1,12 @@
-//! What an observer has learnt outlives a reset of its board: kept in a page of flash between runs, judged when the board
-//! starts, gone on from where a run asks for it. What the memory is worth is tested elsewhere.
+//! What an observer has learnt outlives a reset of its board, and a power cut at any moment: kept in flash between runs, judged
+//! when the board starts, gone on from where a run asks for it. What the memory is worth is tested elsewhere.
 
 #[allow(dead_code, reason = "shared with the tests of the roles")]
 mod test_board;
 
+use firmware::kept_memory::{KeptMemory, NOTHING, RECORD_BYTES};
+use firmware::learnt::memory_state;
 use firmware::observer::Observing;
-use firmware::page::{memory_state, recall};
 use firmware::port::Direct;
 use firmware::tables::{PLANETS, TABLES};
 use firmware::work::Work;
@@ -75,26 +76,29 @@ fn stop(board: &mut TestBoard<Observing<Direct<'static>>>) {
     board.run(3);
 }
 
-/// A board that starts with this in its flash, and what it says of it.
-fn started(memory: Memory) -> (TestBoard<Observing<Direct<'static>>>, MemoryState) {
+/// A board that starts with this flash, and what it says of it.
+fn started_with(flash: Flash) -> (TestBoard<Observing<Direct<'static>>>, MemoryState) {
     let mut work = Observing::new(controller(), true);
-    let flash = Flash { memory, works: true, erased: 0 };
-    let judged = recall(&flash).map(|memory| work.remember(&memory));
-    let mut board = TestBoard::with(work);
-    board.flash = flash;
-    (board, memory_state(judged))
+    let mut kept = KeptMemory::open(flash.clone());
+    let judged = kept.recall().map(|memory| work.remember(&memory));
+    (TestBoard::with_flash(work, flash), memory_state(judged))
+}
+
+/// A board that starts with this kept in its flash, and what it says of it.
+fn started(memory: Memory) -> (TestBoard<Observing<Direct<'static>>>, MemoryState) {
+    started_with(Flash::holding(&memory))
 }
 
 #[test]
 fn what_was_learnt_is_kept_and_gone_on_from_after_the_next_start() {
-    let (mut board, nothing) = started([0xff; MEMORY_BYTES]);
+    let (mut board, nothing) = started(NOTHING);
     assert_eq!(nothing, MemoryState::Nothing);
     let learnt = run(&mut board, false, 12_000).estimates;
     assert_eq!(saved(&mut board), MemoryOutcome::Running, "flash is not written while a motor runs");
     stop(&mut board);
     assert_eq!((saved(&mut board), saved(&mut board)), (MemoryOutcome::Stored, MemoryOutcome::Stored));
-    assert_eq!(board.flash.erased, 1, "the same is not written twice");
-    let (mut again, found) = started(board.flash.memory);
+    assert_eq!(board.flash.cells().erased, 1, "the same is not written twice");
+    let (mut again, found) = started_with(board.flash.clone());
     assert_eq!(found, MemoryState::Good);
     // Long enough to say what is known, too short to learn.
     let [fresh, remembered] = [false, true].map(|from_memory| run(&mut again, from_memory, 50).estimates);
@@ -105,18 +109,17 @@ fn what_was_learnt_is_kept_and_gone_on_from_after_the_next_start() {
 
 #[test]
 fn what_is_no_good_memory_is_told_and_not_used() {
-    let (mut board, _) = started([0xff; MEMORY_BYTES]);
+    let (mut board, _) = started(NOTHING);
     run(&mut board, false, 100);
     stop(&mut board);
     assert_eq!(saved(&mut board), MemoryOutcome::Stored);
-    let good = board.flash.memory;
+    let good = board.flash.kept().expect("it was stored");
     let changed = |at: usize| {
         let mut memory = good;
         memory[at] ^= 1;
         memory
     };
     let cases = [
-        ([0; MEMORY_BYTES], MemoryState::Nothing),
         (changed(0), MemoryState::NotAMemory),
         (changed(4), MemoryState::WrongVersion),
         (changed(200), MemoryState::Damaged),
@@ -126,7 +129,7 @@ fn what_is_no_good_memory_is_told_and_not_used() {
         let (mut board, found) = started(memory);
         assert_eq!(found, expected);
         let asked_for = run(&mut board, true, 50);
-        let (mut other, _) = started([0xff; MEMORY_BYTES]);
+        let (mut other, _) = started(NOTHING);
         assert_eq!(asked_for, run(&mut other, false, 50), "{found:?}: it begins as it was designed");
     }
 }
@@ -141,10 +144,87 @@ fn of_another_joint(mut memory: Memory) -> Memory {
     memory
 }
 
+/// Memories that differ in every byte.
+fn memories() -> [Memory; 3] {
+    [1_usize, 2, 3].map(|salt| std::array::from_fn(|at| (at * 7 + salt * 31 + 1) as u8))
+}
+
+#[test]
+fn a_power_cut_at_any_operation_leaves_the_old_memory_or_the_new_one() {
+    let [first, second, third] = memories();
+    for has_check_bits in [true, false] {
+        // What was kept before, in this order; `None` at its end is an erase.
+        let histories: [&[Option<Memory>]; 5] = [
+            &[],
+            &[Some(first)],
+            &[Some(first), Some(second)],
+            &[Some(first), None],
+            &[Some(first), Some(second), None],
+        ];
+        for (history, asked) in histories.into_iter().flat_map(|history| [(history, Some(third)), (history, None)]) {
+            let mut whole = 0;
+            for cut in 0.. {
+                let flash = Flash::empty();
+                let mut board = KeptMemory::open(flash.clone());
+                let mut put = |memory: &Option<Memory>| match memory {
+                    Some(memory) => board.keep(memory),
+                    None => board.erase(),
+                };
+                history.iter().for_each(|memory| assert_eq!(put(memory), MemoryOutcome::Stored));
+                let old = history.last().copied().flatten();
+                {
+                    let mut cells = flash.cells();
+                    (cells.until_cut, cells.has_check_bits) = (Some(cut), has_check_bits);
+                }
+                put(&asked);
+                let was_cut = flash.cells().until_cut == Some(0);
+                flash.cells().until_cut = None;
+                let mut again = KeptMemory::open(flash.clone());
+                let found = again.recall();
+                assert!(found == old || found == asked, "cut {cut}: neither the old memory nor the new one is left");
+                assert!(found.is_none() || !again.is_damaged());
+                // Whatever was left: the next memory is kept.
+                assert_eq!(again.keep(&first), MemoryOutcome::Stored);
+                assert_eq!(flash.kept(), Some(first));
+                if !was_cut {
+                    break;
+                }
+                whole += 1;
+            }
+            let nothing_to_do = asked.is_none() && history.last().copied().flatten().is_none();
+            assert!(nothing_to_do || whole > MEMORY_BYTES / 8, "{whole} cuts");
+        }
+    }
+}
+
+#[test]
+fn what_cannot_be_read_is_told_and_mended_by_the_next_memory() {
+    let [first, second, _] = memories();
+    let flash = Flash::with([None, None]);
+    let mut board = KeptMemory::open(flash.clone());
+    assert_eq!((board.recall(), board.is_damaged()), (None, true));
+    assert_eq!((board.keep(&first), board.is_damaged()), (MemoryOutcome::Stored, false));
+    assert_eq!(flash.kept(), Some(first));
+    flash.cells().is_starved = true;
+    assert_eq!(board.keep(&second), MemoryOutcome::LowSupply);
+    assert_eq!(flash.kept(), Some(first), "it was not touched");
+}
+
+#[test]
+fn the_newest_is_found_in_whichever_slot_it_is() {
+    let [first, second, third] = memories();
+    let flash = Flash::empty();
+    let mut board = KeptMemory::open(flash.clone());
+    for memory in [first, second, third].iter().cycle().take(7) {
+        assert_eq!(board.keep(memory), MemoryOutcome::Stored);
+        assert_eq!(flash.kept(), Some(*memory));
+    }
+}
+
 #[test]
 fn flash_that_takes_nothing_is_found_out() {
-    let (mut board, _) = started([0xff; MEMORY_BYTES]);
-    board.flash.works = false;
+    let (mut board, _) = started(NOTHING);
+    board.flash.cells().works = false;
     run(&mut board, false, 10);
     stop(&mut board);
     assert_eq!(saved(&mut board), MemoryOutcome::NotWritten);
@@ -175,18 +255,19 @@ fn brought(board: &mut TestBoard<Observing<Direct<'static>>>, memory: &Memory) -
 
 /// A memory that a board has learnt.
 fn learnt() -> Memory {
-    let (mut board, _) = started([0xff; MEMORY_BYTES]);
+    let (mut board, _) = started(NOTHING);
     run(&mut board, false, 3000);
     stop(&mut board);
     assert_eq!(saved(&mut board), MemoryOutcome::Stored);
-    assert_eq!(told(&mut board), board.flash.memory, "it is told as it lies there");
-    board.flash.memory
+    let memory = board.flash.kept().expect("it was stored");
+    assert_eq!(told(&mut board), memory, "it is told as it lies there");
+    memory
 }
 
 #[test]
 fn a_memory_moves_from_board_to_board_and_is_erased() {
     let memory = learnt();
-    let (mut board, _) = started([0; MEMORY_BYTES]);
+    let (mut board, _) = started_with(Flash::with([Some([0; RECORD_BYTES]); 2]));
     assert_eq!(
         asked(&mut board, MemoryRequest::Write),
         [FromBoard::MemoryOutcome(MemoryOutcome::Nothing)],
@@ -197,21 +278,25 @@ fn a_memory_moves_from_board_to_board_and_is_erased() {
     assert_eq!(asked(&mut board, MemoryRequest::Write), [FromBoard::MemoryOutcome(MemoryOutcome::Running)]);
     stop(&mut board);
     assert_eq!(asked(&mut board, MemoryRequest::Write), [FromBoard::MemoryOutcome(MemoryOutcome::Stored)]);
-    assert_eq!(board.flash.memory, memory);
+    assert_eq!(board.flash.kept(), Some(memory));
     let (mut other, found) = started(memory);
     assert_eq!((found, run(&mut other, true, 50)), (MemoryState::Good, from_memory), "as if it had learnt it itself");
     stop(&mut board);
     assert_eq!(asked(&mut board, MemoryRequest::Erase), [FromBoard::MemoryOutcome(MemoryOutcome::Stored)]);
-    assert_eq!((board.flash.memory, board.flash.erased), ([0xff; MEMORY_BYTES], 2));
+    assert_eq!(
+        (board.flash.kept(), board.flash.cells().erased),
+        (None, 3),
+        "a record of nothing, and the old one is gone"
+    );
     assert_eq!(asked(&mut board, MemoryRequest::Erase), [FromBoard::MemoryOutcome(MemoryOutcome::Stored)]);
-    assert_eq!(board.flash.erased, 2, "what is empty is not worn out");
+    assert_eq!(board.flash.cells().erased, 3, "what is empty is not worn out");
     assert_ne!(run(&mut board, true, 50), from_memory, "nothing is left to begin from");
 }
 
 #[test]
 fn a_memory_that_is_no_good_is_judged_and_never_written() {
     let memory = learnt();
-    let (mut board, _) = started([0xff; MEMORY_BYTES]);
+    let (mut board, _) = started(NOTHING);
     let mut damaged = memory;
     damaged[200] ^= 1;
     let cases = [(damaged, MemoryState::Damaged), (of_another_joint(memory), MemoryState::OtherJoint)];
@@ -225,7 +310,7 @@ fn a_memory_that_is_no_good_is_judged_and_never_written() {
         [FromBoard::MemoryChecked(MemoryState::NotAMemory)],
         "its first part never came"
     );
-    assert_eq!(board.flash.erased, 0);
+    assert_eq!(board.flash.cells().erased, 0);
 }
 
 #[test]

@@ -1,17 +1,26 @@
 //! The flash controller that STM32F4 and STM32G4 share but for numbers: one control and one status register, caches in front.
-//! Which page is erased, and how much is written at a time, each board says.
+//! Where the slots are, how they are erased, and how much is written at a time, each board says.
 
-use super::flash_page::{Flash, KEYS};
+use super::flash_slots::Flash;
 use super::pac::FLASH;
+use crate::kept_memory::Slot;
 
-/// Bits that differ.
-pub struct Bits {
+/// What differs between chips.
+pub trait Kind {
+    /// First bytes of the slots.
+    const SLOTS: [usize; 2];
+    /// Words that are written at a time.
+    const TOGETHER: usize;
     /// Flags of errors, cleared by ones.
-    pub errors: u32,
-    /// Erases the page.
-    pub erase: u32,
+    const ERRORS: u32;
     /// How much is written at a time, beside the bit that takes writes.
-    pub size: u32,
+    const SIZE: u32;
+    /// What erases a slot, beside the bit that begins.
+    fn erase(&self, slot: Slot) -> u32;
+    /// Reads words that may be damaged; returns whether all could be read.
+    fn read(&self, words: &mut dyn FnMut()) -> bool;
+    /// The supply is high enough to write.
+    fn has_supply(&self) -> bool;
 }
 
 /// Begins to erase, in the control register; still at it, in the status register.
@@ -21,49 +30,52 @@ const PROGRAM: u32 = 1;
 /// No more changes.
 const LOCK: u32 = 1 << 31;
 
-/// The controller, for a page at an address and so many words at a time.
-pub struct FlashUnit<const ADDRESS: usize, const TOGETHER: usize> {
+/// The controller of a kind of chip.
+pub struct FlashUnit<K> {
     registers: FLASH,
-    bits: Bits,
+    kind: K,
 }
 
-impl<const ADDRESS: usize, const TOGETHER: usize> FlashUnit<ADDRESS, TOGETHER> {
+impl<K: Kind> FlashUnit<K> {
     /// Of a board.
-    pub fn new(registers: FLASH, bits: Bits) -> Self {
-        Self { registers, bits }
+    pub fn new(registers: FLASH, kind: K) -> Self {
+        Self { registers, kind }
     }
 
     fn control(&mut self, bits: u32) {
-        // SAFETY: what it erases is the page that is nobody else's; all other bits do nothing without it.
+        // SAFETY: what it erases are the slots, which are nobody else's; all other bits do nothing without it.
         self.registers.cr().write(|w| unsafe { w.bits(bits) });
     }
 }
 
-impl<const ADDRESS: usize, const TOGETHER: usize> Flash for FlashUnit<ADDRESS, TOGETHER> {
-    const ADDRESS: usize = ADDRESS;
-    const TOGETHER: usize = TOGETHER;
+impl<K: Kind> Flash for FlashUnit<K> {
+    const SLOTS: [usize; 2] = K::SLOTS;
+    const TOGETHER: usize = K::TOGETHER;
 
-    fn unlock(&mut self) {
-        // What is read beside a bank at work would spoil the data cache of STM32G4 (errata sheet ES0430, 2.2.2).
-        self.registers.acr().modify(|_, w| w.dcen().clear_bit());
-        // Keys that come while it is open would close it until the next reset.
-        if self.registers.cr().read().bits() & LOCK != 0 {
-            for key in KEYS {
-                // SAFETY: the key register takes every word.
-                self.registers.keyr().write(|w| unsafe { w.bits(key) });
-            }
-        }
-        // SAFETY: ones clear the flags of errors.
-        self.registers.sr().write(|w| unsafe { w.bits(self.bits.errors) });
+    fn is_locked(&self) -> bool {
+        self.registers.cr().read().bits() & LOCK != 0
     }
 
-    fn erase(&mut self) {
-        self.control(self.bits.erase | self.bits.size);
-        self.control(self.bits.erase | self.bits.size | AT_IT);
+    fn take_key(&mut self, key: u32) {
+        // SAFETY: the key register takes every word.
+        self.registers.keyr().write(|w| unsafe { w.bits(key) });
+    }
+
+    fn prepare(&mut self) {
+        // What is read beside a bank at work would spoil the data cache of STM32G4 (errata sheet ES0430, 2.2.2).
+        self.registers.acr().modify(|_, w| w.dcen().clear_bit());
+        // SAFETY: ones clear the flags of errors.
+        self.registers.sr().write(|w| unsafe { w.bits(K::ERRORS) });
+    }
+
+    fn erase(&mut self, slot: Slot) {
+        let erase = self.kind.erase(slot) | K::SIZE;
+        self.control(erase);
+        self.control(erase | AT_IT);
     }
 
     fn take_writes(&mut self, on: bool) {
-        self.control(self.bits.size | if on { PROGRAM } else { 0 });
+        self.control(K::SIZE | if on { PROGRAM } else { 0 });
     }
 
     fn is_busy(&self) -> bool {
@@ -74,5 +86,13 @@ impl<const ADDRESS: usize, const TOGETHER: usize> Flash for FlashUnit<ADDRESS, T
         self.control(LOCK);
         self.registers.acr().modify(|_, w| w.dcrst().set_bit());
         self.registers.acr().modify(|_, w| w.dcrst().clear_bit().dcen().set_bit());
+    }
+
+    fn read(&mut self, words: &mut dyn FnMut()) -> bool {
+        self.kind.read(words)
+    }
+
+    fn has_supply(&mut self) -> bool {
+        self.kind.has_supply()
     }
 }

@@ -6,7 +6,7 @@ use core::convert::Infallible;
 use embedded_hal::digital::OutputPin;
 use link::messages::Clock;
 
-use crate::page::Page;
+use crate::kept_memory::Slots;
 use crate::serial::Uart;
 
 #[cfg(not(any(feature = "stm32f405", feature = "stm32g474", feature = "stm32h743")))]
@@ -21,7 +21,7 @@ compile_error!("one board at a time: build with --no-default-features --features
 mod bounded_wait;
 #[cfg(feature = "spi_slave")]
 pub mod dma_slave;
-pub mod flash_page;
+pub mod flash_slots;
 #[cfg(any(feature = "stm32f405", feature = "stm32g474"))]
 pub mod flash_unit;
 mod output;
@@ -73,7 +73,7 @@ pub trait Board {
     /// The line to the host.
     type Port: Uart;
     /// Where what was learnt is kept.
-    type Page: Page;
+    type Slots: Slots;
 
     /// Sets up clock, pins, serial line and watchdog. Every wait is bounded.
     fn start(device: pac::Peripherals, core: &mut cortex_m::Peripherals) -> Started<Self>;
@@ -93,7 +93,7 @@ pub struct Started<B: Board + ?Sized> {
     /// The line to the host, open.
     pub port: B::Port,
     /// Where what was learnt is kept.
-    pub page: B::Page,
+    pub slots: B::Slots,
     /// Running.
     pub watchdog: Watchdog,
     /// The last reset came from the watchdog.

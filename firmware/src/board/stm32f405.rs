@@ -6,8 +6,8 @@
 //! | motor enable | PB0 | high: on |
 //! | status light | PC12 | the light of Olimex STM32-H405, which is on when low |
 //!
-//! What the observer has learnt is kept in the first sector behind what an image may take, the ninth; while it is erased the
-//! core stands still for a second or two.
+//! What the observer has learnt is kept in the last two sectors of 128 KiB; while one is erased the core stands still for a
+//! second or two.
 //!
 //! This USART has room for one byte only, and the tick may hold its interrupt off for most of a period (50 us): at
 //! 230400 baud a byte takes 43 us. The emulated board heeds no baud rate. Nothing here has been run on silicon yet.
@@ -21,10 +21,11 @@ use embedded_hal::digital::{ErrorType, OutputPin};
 use link::messages::Clock;
 
 use super::bounded_wait::wait_until;
-use super::flash_page::FlashPage;
-use super::flash_unit::{Bits, FlashUnit};
+use super::flash_slots::FlashSlots;
+use super::flash_unit::{FlashUnit, Kind};
 use super::output::{Output, ports};
 use super::{Board, Started, Watchdog};
+use crate::kept_memory::Slot;
 use crate::serial::Uart;
 
 const BAUD_RATE: u32 = 230_400;
@@ -42,13 +43,14 @@ impl Board for Stm32F405 {
     type Enable = Output<pac::GPIOB, 0>;
     type Light = LowLight;
     type Port = Usart;
-    type Page = FlashPage<SectorEight>;
+    type Slots = FlashSlots<FlashUnit<Sectors>>;
 
     fn start(device: pac::Peripherals, _core: &mut cortex_m::Peripherals) -> Started<Self> {
         let clock = start_clock(&device.RCC, &device.FLASH);
         let watchdog_reset = device.RCC.csr().read().wdgrstf().bit_is_set();
         device.RCC.csr().modify(|_, w| w.rmvf().set_bit());
         device.RCC.ahb1enr().modify(|_, w| w.gpioaen().set_bit().gpioben().set_bit().gpiocen().set_bit());
+        device.RCC.apb1enr().modify(|_, w| w.pwren().set_bit());
         device.RCC.apb2enr().modify(|_, w| w.usart1en().set_bit());
         device.GPIOA.afrh().modify(|_, w| w.afrh9().af7().afrh10().af7());
         device.GPIOA.pupdr().modify(|_, w| w.pupdr10().pull_up());
@@ -61,7 +63,7 @@ impl Board for Stm32F405 {
             enable: Output::new(device.GPIOB),
             light: LowLight(Output::new(device.GPIOC)),
             port: Usart::open(device.USART1, usart_clock),
-            page: FlashPage(FlashUnit::new(device.FLASH, SECTOR_EIGHT)),
+            slots: FlashSlots::new(FlashUnit::new(device.FLASH, Sectors::watch_supply(device.PWR))),
             watchdog: Watchdog::start(device.IWDG),
             watchdog_reset,
         }
@@ -124,10 +126,40 @@ impl OutputPin for LowLight {
     }
 }
 
-/// The sector of 128 KB at 512 KB, by words.
-pub type SectorEight = FlashUnit<0x0808_0000, 1>;
-/// Sector erase (1) of sector 8 (3), words (8).
-const SECTOR_EIGHT: Bits = Bits { errors: 0xf3, erase: 1 << 1 | 8 << 3, size: 2 << 8 };
+/// The last two sectors, written by words: that takes 2.7 V.
+pub struct Sectors(pac::PWR);
+
+impl Sectors {
+    /// Has the supply watched at the highest level, 2.9 V.
+    fn watch_supply(power: pac::PWR) -> Self {
+        // SAFETY: every level is allowed.
+        power.cr().modify(|_, w| unsafe { w.pls().bits(7) }.pvde().set_bit());
+        Self(power)
+    }
+}
+
+impl Kind for Sectors {
+    const SLOTS: [usize; 2] = [0x080c_0000, 0x080e_0000];
+    const TOGETHER: usize = 1;
+    const ERRORS: u32 = 0xf3;
+    /// Words.
+    const SIZE: u32 = 2 << 8;
+
+    fn erase(&self, slot: Slot) -> u32 {
+        // Sector erase (1) of sector 10 or 11 (3).
+        1 << 1 | (10 + slot.index() as u32) << 3
+    }
+
+    /// This flash has no check bits: what was half written reads as something.
+    fn read(&self, words: &mut dyn FnMut()) -> bool {
+        words();
+        true
+    }
+
+    fn has_supply(&self) -> bool {
+        self.0.csr().read().pvdo().bit_is_clear()
+    }
+}
 
 /// USART1.
 pub struct Usart {

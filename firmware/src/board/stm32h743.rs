@@ -6,19 +6,24 @@
 //! | motor enable | PC8 | high: on |
 //! | status light | PB0 | the board's green light, on when high |
 //!
-//! What the observer has learnt is kept in the first sector of the second bank.
+//! What the observer has learnt is kept in the first two sectors of the second bank.
 //!
 //! The image runs on a model of the board's registers (`board-model`); it has not been run on silicon.
 
 pub use stm32h7::stm32h743 as pac;
 
+use core::arch::asm;
+
+use cortex_m::asm::{dsb, isb};
+use cortex_m::peripheral::SCB;
 use link::messages::Clock;
 
 use super::bounded_wait::wait_until;
 use super::fifo_uart::FifoUart;
-use super::flash_page::{Flash, FlashPage, KEYS};
+use super::flash_slots::{Flash, FlashSlots};
 use super::output::{Output, ports};
 use super::{Board, Started, Watchdog, serial_usart};
+use crate::kept_memory::Slot;
 
 const BAUD_RATE: u32 = 921_600;
 /// Clock of USART3 once the PLL runs: a quarter of the core clock.
@@ -35,7 +40,7 @@ impl Board for Stm32H743 {
     type Enable = Output<pac::GPIOC, 8>;
     type Light = Output<pac::GPIOB, 0>;
     type Port = FifoUart;
-    type Page = FlashPage<SecondBank>;
+    type Slots = FlashSlots<SecondBank>;
 
     fn start(device: pac::Peripherals, core: &mut cortex_m::Peripherals) -> Started<Self> {
         core.SCB.enable_icache();
@@ -56,7 +61,7 @@ impl Board for Stm32H743 {
             enable: Output::new(device.GPIOC),
             light: Output::new(device.GPIOB),
             port: FifoUart::open(device.USART3, usart_clock, BAUD_RATE),
-            page: FlashPage(SecondBank(device.FLASH)),
+            slots: FlashSlots::new(SecondBank::watch_supply(device.FLASH, device.PWR)),
             watchdog: Watchdog::start(device.IWDG),
             watchdog_reset,
         }
@@ -67,43 +72,89 @@ impl Board for Stm32H743 {
     }
 }
 
-/// The first sector of the second bank.
-pub struct SecondBank(pac::FLASH);
+/// The second bank, of which nothing else is used.
+pub struct SecondBank {
+    flash: pac::FLASH,
+    power: pac::PWR,
+}
+
+impl SecondBank {
+    /// Has the supply watched at 2.85 V.
+    fn watch_supply(flash: pac::FLASH, power: pac::PWR) -> Self {
+        // SAFETY: 6 is a level of the supply itself.
+        power.cr1().modify(|_, w| unsafe { w.pls().bits(6) }.pvde().set_bit());
+        Self { flash, power }
+    }
+}
+
+/// Faults of the data bus in the core's status: imprecise, precise, and with an address.
+const BUS_FAULTS: u32 = 1 << 10 | 1 << 9 | 1 << 15;
+/// In the core's configuration: loads that fail while faults are masked go on with anything.
+const GO_ON: u32 = 1 << 8;
+/// Two or more wrong bits in a word, in the bank's status.
+const DOUBLE_ERROR: u32 = 1 << 26;
 
 impl Flash for SecondBank {
-    const ADDRESS: usize = 0x0810_0000;
+    const SLOTS: [usize; 2] = [0x0810_0000, 0x0812_0000];
     const TOGETHER: usize = 8;
 
-    fn unlock(&mut self) {
-        // Keys that come while it is open would close it until the next reset.
-        if self.0.bank2().cr().read().lock().bit_is_set() {
-            for key in KEYS {
-                // SAFETY: the key register takes every word.
-                self.0.bank2().keyr().write(|w| unsafe { w.bits(key) });
-            }
-        }
-        // SAFETY: ones clear the flags of errors and of an end.
-        self.0.bank2().ccr().write(|w| unsafe { w.bits(0x0fef_0000) });
+    fn is_locked(&self) -> bool {
+        self.flash.bank2().cr().read().lock().bit_is_set()
     }
 
-    fn erase(&mut self) {
-        // SAFETY: sector erase (2), sector 0, by double words (4), start (7).
-        self.0.bank2().cr().write(|w| unsafe { w.bits(1 << 2 | 3 << 4 | 1 << 7) });
+    fn take_key(&mut self, key: u32) {
+        // SAFETY: the key register takes every word.
+        self.flash.bank2().keyr().write(|w| unsafe { w.bits(key) });
+    }
+
+    fn prepare(&mut self) {
+        // SAFETY: ones clear the flags of errors and of an end.
+        self.flash.bank2().ccr().write(|w| unsafe { w.bits(0x0fef_0000) });
+    }
+
+    fn erase(&mut self, slot: Slot) {
+        // SAFETY: sector erase (2), the slot's sector (8), by double words (4), start (7).
+        let bits = 1 << 2 | (slot.index() as u32) << 8 | 3 << 4 | 1 << 7;
+        self.flash.bank2().cr().write(|w| unsafe { w.bits(bits) });
+    }
+
+    fn read(&mut self, words: &mut dyn FnMut()) -> bool {
+        // SAFETY: for as long as faults are masked, these loads alone can fail; interrupts wait for the few that a flash
+        // word has.
+        unsafe {
+            let scb = &*SCB::PTR;
+            scb.ccr.modify(|bits| bits | GO_ON);
+            asm!("cpsid f");
+            words();
+            dsb();
+            isb();
+            let faults = scb.cfsr.read() & BUS_FAULTS;
+            scb.cfsr.write(faults);
+            asm!("cpsie f");
+            scb.ccr.modify(|bits| bits & !GO_ON);
+            let failed = faults != 0 || self.flash.bank2().sr().read().bits() & DOUBLE_ERROR != 0;
+            self.flash.bank2().ccr().write(|w| w.bits(DOUBLE_ERROR));
+            !failed
+        }
+    }
+
+    fn has_supply(&mut self) -> bool {
+        self.power.csr1().read().pvdo().bit_is_clear()
     }
 
     fn take_writes(&mut self, on: bool) {
         // SAFETY: programming (1), by double words (4).
-        self.0.bank2().cr().write(|w| unsafe { w.bits(u32::from(on) << 1 | 3 << 4) });
+        self.flash.bank2().cr().write(|w| unsafe { w.bits(u32::from(on) << 1 | 3 << 4) });
     }
 
     fn is_busy(&self) -> bool {
         // Busy (0), or with something in its queue (2).
-        self.0.bank2().sr().read().bits() & 0b101 != 0
+        self.flash.bank2().sr().read().bits() & 0b101 != 0
     }
 
     fn lock(&mut self) {
         // SAFETY: the lock (0).
-        self.0.bank2().cr().write(|w| unsafe { w.bits(1) });
+        self.flash.bank2().cr().write(|w| unsafe { w.bits(1) });
         // SAFETY: the cache is the core's alone, and nobody else has it in hand: idle runs below everything.
         let mut core = unsafe { cortex_m::Peripherals::steal() };
         core.SCB.clean_invalidate_dcache(&mut core.CPUID);

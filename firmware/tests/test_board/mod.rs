@@ -5,11 +5,12 @@ use std::cell::{Cell, RefCell};
 use std::collections::VecDeque;
 use std::convert::Infallible;
 use std::rc::Rc;
+use std::sync::{Arc, Mutex, MutexGuard};
 
 use embedded_hal::digital::{ErrorType, OutputPin};
 use firmware::conversation::{Conversation, LogEnd};
 use firmware::identity::{StartUp, hello};
-use firmware::page::Page;
+use firmware::kept_memory::{KeptMemory, RECORD_BYTES, Record, Slot, Slots};
 use firmware::plant::Plant;
 use firmware::protocol::Protocol;
 use firmware::queues::{Progress, Queues};
@@ -23,7 +24,7 @@ use heapless::spsc::Queue;
 use link::framing::{Receiver, encode};
 use link::messages::{Clock, Command, FromBoard, MemoryState, RunMode, RunSettings, Schedule, ToBoard};
 use model_core::gears::Tables;
-use model_core::observer::{MEMORY_BYTES, Memory};
+use model_core::observer::Memory;
 
 /// Timer counts between two ticks.
 pub const PERIOD: u32 = 8400;
@@ -96,24 +97,107 @@ impl TickTimer for Timer {
     }
 }
 
-/// A page of flash that takes what is written, or does not.
-pub struct Flash {
-    pub memory: Memory,
+/// Flash that takes what is written, or does not; its clones are the same flash. Power can be cut at any operation of it: an
+/// erase, or a word that is written.
+#[derive(Clone)]
+pub struct Flash(Arc<Mutex<Cells>>);
+
+pub struct Cells {
+    pub slots: [Option<Record>; 2],
     pub works: bool,
-    /// How often it was erased.
+    /// The supply is too low to write.
+    pub is_starved: bool,
+    /// How often a slot was erased.
     pub erased: u32,
+    /// Operations that are left until power is cut.
+    pub until_cut: Option<u32>,
+    /// A word that power was cut in cannot be read; otherwise it is half of what was to be written.
+    pub has_check_bits: bool,
 }
 
-impl Page for Flash {
-    fn read(&self) -> Memory {
-        self.memory
+impl Flash {
+    /// Bytes that flash takes at a time.
+    const WORD: usize = 8;
+
+    pub fn with(slots: [Option<Record>; 2]) -> Self {
+        let cells = Cells { slots, works: true, is_starved: false, erased: 0, until_cut: None, has_check_bits: true };
+        Self(Arc::new(Mutex::new(cells)))
     }
 
-    fn write(&mut self, memory: &Memory) {
-        self.erased += 1;
-        if self.works {
-            self.memory = *memory;
+    pub fn empty() -> Self {
+        Self::with([Some([0xff; RECORD_BYTES]); 2])
+    }
+
+    /// With a memory that is kept.
+    pub fn holding(memory: &Memory) -> Self {
+        let flash = Self::empty();
+        KeptMemory::open(flash.clone()).keep(memory);
+        flash.cells().erased = 0;
+        flash
+    }
+
+    pub fn cells(&self) -> MutexGuard<'_, Cells> {
+        self.0.lock().expect("no test panics in between")
+    }
+
+    /// What a board would find there.
+    pub fn kept(&self) -> Option<Memory> {
+        KeptMemory::open(self.clone()).recall()
+    }
+}
+
+impl Cells {
+    /// Whether an operation is whole (`Some(true)`), cut in its midst, or not begun.
+    fn begin(&mut self) -> Option<bool> {
+        let Some(left) = &mut self.until_cut else { return Some(true) };
+        let now = *left;
+        *left = left.saturating_sub(1);
+        match now {
+            0 => None,
+            left => Some(left > 1),
         }
+    }
+}
+
+impl Slots for Flash {
+    fn read(&mut self, slot: Slot) -> Option<Record> {
+        self.cells().slots[slot.index()]
+    }
+
+    fn erase(&mut self, slot: Slot) {
+        let mut cells = self.cells();
+        cells.erased += 1;
+        let (whole, place) = (cells.begin(), slot.index());
+        let empty = [0xff; RECORD_BYTES];
+        match whole.filter(|_| cells.works) {
+            Some(true) => cells.slots[place] = Some(empty),
+            Some(false) => {
+                let half =
+                    cells.slots[place].map(|old| std::array::from_fn(|at| if at % 3 == 0 { old[at] } else { 0xff }));
+                cells.slots[place] = half.filter(|_| !cells.has_check_bits);
+            }
+            None => {}
+        }
+    }
+
+    fn write(&mut self, slot: Slot, record: &Record) {
+        let mut cells = self.cells();
+        for (at, bytes) in (0..).step_by(Self::WORD).zip(record.chunks(Self::WORD)) {
+            let whole = cells.begin().filter(|_| cells.works);
+            let has_check_bits = cells.has_check_bits;
+            let place = &mut cells.slots[slot.index()];
+            let Some(cell) = place else { continue };
+            match whole {
+                Some(true) => cell[at..at + bytes.len()].copy_from_slice(bytes),
+                Some(false) if has_check_bits => *place = None,
+                Some(false) => cell[at..at + 3].copy_from_slice(&bytes[..3]),
+                None => {}
+            }
+        }
+    }
+
+    fn has_supply(&mut self) -> bool {
+        !self.cells().is_starved
     }
 }
 
@@ -131,6 +215,7 @@ where
     /// How often the output was switched on.
     pub switched_on: Rc<Cell<u32>>,
     pub flash: Flash,
+    pub kept: KeptMemory<Flash>,
     /// How far the run is, as tick and idle tell one another.
     pub progress: &'static Progress,
     /// What the line's interrupt has heard of the host.
@@ -161,18 +246,24 @@ where
 {
     /// With a role's work.
     pub fn with(work: W) -> Self {
+        Self::with_flash(work, Flash::empty())
+    }
+
+    /// With a role's work, and what is in flash.
+    pub fn with_flash(work: W, flash: Flash) -> Self {
         let wire = Rc::new(RefCell::new(Wire::default()));
         let (enable, switched_on) = (Rc::new(Cell::new(true)), Rc::new(Cell::new(0)));
         let (tick_end, idle_end) = Box::leak(Box::new(Queues::new())).split();
         let (serial, line) = Box::leak(Box::new(Line::new())).split(WireEnd(wire.clone()), || {});
         let (_, bytes) = Box::leak(Box::new(Queue::<u8, 16>::new())).split();
+        let mut kept = KeptMemory::open(flash.clone());
         let start_up = StartUp {
             board: "bench",
             timer_rate: 168_000_000,
             clock: Clock::NotModelled,
             last_panic: None,
             watchdog_reset: false,
-            memory: MemoryState::Nothing,
+            memory: if kept.is_damaged() { MemoryState::Damaged } else { MemoryState::Nothing },
         };
         let (progress, heard) = (idle_end.progress, line.heard());
         Self {
@@ -189,7 +280,8 @@ where
             wire,
             enable,
             switched_on,
-            flash: Flash { memory: [0xff; MEMORY_BYTES], works: true, erased: 0 },
+            kept,
+            flash,
             progress,
             heard,
             timing: (20, 100),
@@ -211,7 +303,7 @@ where
         while nothing_to_do < 200 {
             self.serial.service();
             let busy = self.conversation.attend(&mut |_| Resources::default());
-            self.conversation.serve_page(&mut self.flash, |write| {
+            self.conversation.serve_flash(&mut self.kept, |write| {
                 assert!(!self.enable.get(), "flash is written with the output on");
                 write()
             });

@@ -5,10 +5,12 @@
 pub mod conversation;
 #[path = "../../../firmware/src/intake.rs"]
 pub mod intake;
+#[path = "../../../firmware/src/kept_memory.rs"]
+pub mod kept_memory;
+#[path = "../../../firmware/src/learnt.rs"]
+pub mod learnt;
 #[path = "../../../firmware/src/memory_requests.rs"]
 pub mod memory_requests;
-#[path = "../../../firmware/src/page.rs"]
-pub mod page;
 pub mod port;
 #[path = "../../../firmware/src/protocol.rs"]
 pub mod protocol;

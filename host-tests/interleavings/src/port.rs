@@ -1,4 +1,4 @@
-//! What `page` asks of a port to a controller. No model has a role that learns: nobody implements it.
+//! What `learnt` asks of a port to a controller. No model has a role that learns: nobody implements it.
 
 use model_core::observer::{Memory, MemoryError};
 

@@ -51,7 +51,7 @@ fn read(file: &Path, place: &BoardArguments, progress: &Progress) -> Outcome<()>
     let mut found = AnsweringBoard::call(place, &loaded, progress)?;
     let memory = found.session.stored_memory()?;
     progress.clear();
-    if memory.iter().all(|byte| *byte == 0xff) || memory == [0; MEMORY_BYTES] {
+    if memory.iter().all(|byte| *byte == 0xff) {
         return Err(found.keeps_nothing());
     }
     let content = Content::of(&memory, &loaded);
@@ -97,7 +97,7 @@ fn write(file: &Path, place: &BoardArguments, progress: &Progress) -> Outcome<()
             "{name} is good: the firmware of {} takes it; nothing of it stays, since that board has no flash\n",
             found.name
         )),
-        _ => Err(found.not_written()),
+        outcome => Err(found.not_written(outcome)),
     }
 }
 
@@ -109,7 +109,7 @@ fn change(place: &BoardArguments, progress: &Progress, ask: Ask, done: &str) -> 
     progress.clear();
     match kept {
         MemoryOutcome::Stored => output::print(&format!("{} {done}\n", found.name)),
-        _ => Err(found.not_written()),
+        outcome => Err(found.not_written(outcome)),
     }
 }
 

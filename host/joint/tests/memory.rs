@@ -17,7 +17,6 @@ use model_core::observer::{MEMORY_BYTES, Memory};
 use tempfile::TempDir;
 use thread_board::Flash;
 
-const EMPTY: Memory = [0xff; MEMORY_BYTES];
 /// Long enough to learn the width: one second.
 const PERIODS: u32 = 10_000;
 
@@ -86,30 +85,30 @@ fn what_is_shown_is_what_the_observer_says() {
 fn a_memory_moves_over_the_line_and_back() {
     let folder = folder();
     let (path, bytes) = stored(&folder);
-    let flash = Flash::new(EMPTY, true);
+    let flash = Flash::empty();
     let (port, _open) = board(&[], &flash);
     memory(&["read", text(&folder.path().join("none"))], &port)
         .refused(&["keeps no memory", "joint memory keep --port"]);
     memory(&["write", text(&path)], &port).well();
-    assert_eq!(*flash.memory.lock().expect("whole"), bytes);
+    assert_eq!(flash.kept(), Some(bytes));
     let copy = folder.path().join("copy");
     let read = memory(&["read", text(&copy)], &port).well();
     assert!(read.out.contains("half-backlash b"), "{}", read.out);
     assert_eq!(fs::read(&copy).expect("read"), bytes);
     memory(&["erase"], &port).well();
-    assert_eq!(*flash.memory.lock().expect("whole"), EMPTY);
+    assert_eq!(flash.kept(), None);
     memory(&["keep"], &port).well();
-    assert_ne!(*flash.memory.lock().expect("whole"), EMPTY, "what it has learnt so far");
+    assert!(flash.kept().is_some(), "what it has learnt so far");
 }
 
 #[test]
 fn a_memory_of_another_joint_is_refused_by_the_board_and_by_show() {
     let folder = folder();
     let (path, _) = stored(&folder);
-    let flash = Flash::new(EMPTY, true);
+    let flash = Flash::empty();
     let (port, _open) = board(&[("mesh.half_backlash_um", "30")], &flash);
     memory(&["write", text(&path)], &port).refused(&["q1.memory", "another joint", "load this joint's own"]);
-    assert_eq!(*flash.memory.lock().expect("whole"), EMPTY, "nothing was written");
+    assert_eq!(flash.kept(), None, "nothing was written");
     joint(&["memory", "show", text(&path), "--joint", "l1"]).refused(&["q1.memory", "another joint"]);
 }
 
@@ -143,15 +142,23 @@ fn damaged_flash_and_flash_that_takes_nothing_are_named_with_what_to_do() {
     let (path, bytes) = stored(&folder);
     let mut changed = bytes;
     changed[300] ^= 4;
-    let flash = Flash::new(changed, true);
+    let flash = Flash::holding(&changed);
     let (port, _open) = board(&[], &flash);
     let out = folder.path().join("out");
     memory(&["read", text(&out)], &port).refused(&["the memory is damaged", "joint memory erase --port"]);
     assert!(!out.exists());
-    let worn = Flash::new(EMPTY, false);
+    // Power was cut while it was written.
+    let (port, _cut) = board(&[], &Flash::with([None; 2]));
+    memory(&["read", text(&out)], &port).refused(&["cannot be read", "joint memory erase --port"]);
+    let worn = Flash::empty();
+    worn.cells().works = false;
     let (port, _worn) = board(&[], &worn);
     memory(&["write", text(&path)], &port).refused(&["does not read as it was written"]);
     memory(&["keep"], &port).refused(&["does not read as it was written"]);
+    let starved = Flash::empty();
+    starved.cells().is_starved = true;
+    let (port, _starved) = board(&[], &starved);
+    memory(&["keep"], &port).refused(&["supply", "nothing was changed"]);
 }
 
 #[test]

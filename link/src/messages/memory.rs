@@ -1,4 +1,4 @@
-//! The memory of what a controller has learnt, on its way between a board and its host: saved in a page of the board's
+//! The memory of what a controller has learnt, on its way between a board and its host: saved in the board's
 //! flash, read, loaded and erased between runs.
 
 use heapless::Vec;
@@ -72,4 +72,6 @@ pub enum MemoryOutcome {
     Running,
     /// It does not read as it was written: there is no such flash, or it is worn.
     NotWritten,
+    /// The supply is too low to write flash: nothing was changed.
+    LowSupply,
 }

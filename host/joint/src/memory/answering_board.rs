@@ -1,6 +1,6 @@
 //! Connects to the board whose memory is asked for, and refuses a board whose image learns nothing.
 
-use link::messages::{Hello, Role};
+use link::messages::{Hello, MemoryOutcome, MemoryState, Role};
 
 use super::arguments::BoardArguments;
 use board::connection::Connection;
@@ -62,17 +62,28 @@ impl AnsweringBoard {
             return Failure::new("the emulated board has no flash, so it keeps no memory")
                 .with_help("name a real board by --port");
         }
+        if self.hello.memory == MemoryState::Damaged {
+            return Failure::new(format!("what {} keeps cannot be read", self.name))
+                .with_help(format!("erase it: joint memory erase{}", self.options));
+        }
         Failure::new(format!("{} keeps no memory", self.name))
             .with_help(format!("let it learn in a run, then have it kept: joint memory keep{}", self.options))
     }
 
     /// Its flash takes nothing.
-    pub fn not_written(&self) -> Failure {
+    pub fn not_written(&self, outcome: MemoryOutcome) -> Failure {
         if self.emulated {
             return self.keeps_nothing();
         }
+        if outcome == MemoryOutcome::LowSupply {
+            return Failure::new(format!(
+                "the supply of {} is too low to write its flash: nothing was changed",
+                self.name
+            ))
+            .with_help("feed it with 3.3 V, 3.1 V at least, and try again");
+        }
         Failure::new(format!("the flash of {} does not read as it was written", self.name))
-            .with_help("try again; if it stays so the page is worn out or write-protected (option bytes)")
+            .with_help("try again; if it stays so it is worn out or write-protected (option bytes)")
     }
 }
 

@@ -6,19 +6,17 @@ mod test_board;
 
 use std::io::{ErrorKind, Read, Write};
 use std::sync::atomic::Ordering::Relaxed;
-use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 
 use firmware::observer::Observing;
-use firmware::page::recall;
 use firmware::port::Direct;
 use firmware::protocol::Protocol;
 use firmware::work::Work;
 use link::framing::{Receiver, encode};
 use link::messages::{FromBoard, ToBoard, Trip};
 use model_core::controller::Controller;
-use model_core::observer::Memory;
 use parameters::JointParameters;
+pub use test_board::Flash;
 use test_board::TestBoard;
 
 /// Fixed steps a second [Hz].
@@ -74,39 +72,21 @@ pub fn joint() -> JointParameters {
 pub fn start<S: Read + Write + Send + 'static>(stream: S, misbehaviour: Misbehaviour) -> JoinHandle<()> {
     std::thread::spawn(move || {
         // It is over when the line is.
-        let _ = serve(stream, TestBoard::new(), misbehaviour, &|_| {});
+        let _ = serve(stream, TestBoard::new(), misbehaviour);
     })
 }
 
-/// A page of flash that a test can look at.
-#[derive(Clone)]
-pub struct Flash {
-    pub memory: Arc<Mutex<Memory>>,
-    works: bool,
-}
-
-impl Flash {
-    pub fn new(memory: Memory, works: bool) -> Self {
-        Self { memory: Arc::new(Mutex::new(memory)), works }
-    }
-}
-
-/// Starts a board that observes on a stream, with a page of flash that takes what is written or does not.
+/// Starts a board that observes on a stream, with flash that takes what is written or does not.
 pub fn start_observer<S: Read + Write + Send + 'static>(
     stream: S,
     controller: impl FnOnce() -> Controller<'static, f32> + Send + 'static,
     flash: Flash,
 ) {
     std::thread::spawn(move || {
-        let memory = *flash.memory.lock().expect("no test panics in between");
-        let page = test_board::Flash { memory, works: flash.works, erased: 0 };
         let mut work = Observing::new(Direct(controller()), true);
         // What is not good is not used.
-        let _ = recall(&page).map(|memory| work.remember(&memory));
-        let mut board = TestBoard::with(work);
-        board.flash = page;
-        let show = |page: &test_board::Flash| *flash.memory.lock().expect("no test panics in between") = page.memory;
-        let _ = serve(stream, board, Misbehaviour::None, &show);
+        let _ = flash.kept().map(|memory| work.remember(&memory));
+        let _ = serve(stream, TestBoard::with_flash(work, flash), Misbehaviour::None);
     });
 }
 
@@ -118,7 +98,6 @@ fn serve<W: Work>(
     mut stream: impl Read + Write,
     mut board: TestBoard<W>,
     mut misbehaviour: Misbehaviour,
-    show: &dyn Fn(&test_board::Flash),
 ) -> Result<(), Gone>
 where
     W::Protocol: Protocol<Command: 'static, Sample: 'static> + 'static,
@@ -150,7 +129,6 @@ where
         let ticks = if scheduled { left.min(TICKS) } else { TICKS }.min(TICKS_UNHEARD - unheard);
         board.run(ticks);
         unheard += ticks;
-        show(&board.flash);
         for message in board.said() {
             stream.write_all(&misbehaviour.said(message)?).map_err(|_| Gone)?;
         }

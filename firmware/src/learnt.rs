@@ -1,5 +1,5 @@
-//! Where what an observer has learnt outlives a reset: one page of flash, read at start, written and erased between
-//! runs. What is read there is checked before it is used.
+//! What an observer has learnt, between runs of a role: none where nothing is learnt, at hand where a run may begin from it.
+//! Where it outlives a reset is in `kept_memory`.
 
 use core::convert::Infallible;
 
@@ -40,40 +40,6 @@ impl Learnt for Infallible {
     fn memory_mut(&mut self) -> &mut Memory {
         match *self {}
     }
-}
-
-/// A place for one memory.
-pub trait Page {
-    /// What is there.
-    fn read(&self) -> Memory;
-
-    /// Erases and writes it. May hold everything up for a second or two.
-    fn write(&mut self, memory: &Memory);
-}
-
-/// What a page holds; nothing if it is empty, as after an erase, or where there is no flash at all.
-pub fn recall(page: &impl Page) -> Option<Memory> {
-    let memory = page.read();
-    let empty = [0xff, 0].into_iter().any(|level| memory.iter().all(|byte| *byte == level));
-    (!empty).then_some(memory)
-}
-
-/// Writes a memory; returns whether it reads back as written.
-pub fn keep(page: &mut impl Page, memory: &Memory) -> bool {
-    // What is there already is not worn out by writing it again.
-    if page.read() != *memory {
-        page.write(memory);
-    }
-    page.read() == *memory
-}
-
-/// Erases it; returns whether it reads back as empty.
-pub fn erase(page: &mut impl Page) -> bool {
-    // One that is empty is not worn out by erasing it again.
-    if recall(page).is_some() {
-        page.write(&[0xff; MEMORY_BYTES]);
-    }
-    recall(page).is_none()
 }
 
 /// The wire's form of the result of a check.
@@ -138,6 +104,3 @@ impl RunMemory {
         }
     }
 }
-
-// Whole words of every board's flash, of up to 32 bytes.
-const _: () = assert!(MEMORY_BYTES.is_multiple_of(32));

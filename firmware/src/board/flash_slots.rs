@@ -1,0 +1,182 @@
+//! Two slots of a board's flash: unlocked, erased, written word by word and locked again, every wait bounded. Where they are,
+//! and the controller's registers, each board's file says. The result is verified by reading back, which also detects a
+//! board without flash, such as the emulated one.
+//!
+//! A slot that power was cut in may hold words that cannot be read: the core is told of them by a fault. Each board's file
+//! says how it reads nevertheless. Should a fault end the program all the same, a mark in memory that a reset does not clear
+//! names the slot, and the next start leaves that slot alone: a board always starts.
+
+use core::ptr::{read_volatile, write_volatile};
+
+use cortex_m::asm::{dsb, isb};
+
+use super::bounded_wait::wait_longer;
+use crate::kept_memory::{RECORD_BYTES, Record, Slot, Slots};
+
+/// Keys of every family.
+const KEYS: [u32; 2] = [0x4567_0123, 0xcdef_89ab];
+/// Bytes of a word.
+const WORD: usize = 4;
+
+/// The flash controller of a board.
+pub trait Flash {
+    /// First bytes of the slots, outside of what an image may take.
+    const SLOTS: [usize; 2];
+    /// Words that are written at a time.
+    const TOGETHER: usize;
+    /// Its registers cannot be changed.
+    fn is_locked(&self) -> bool;
+    /// Takes one of the keys that let its registers be changed.
+    fn take_key(&mut self, key: u32);
+    /// Forgets errors, and makes ready for what is erased and written next.
+    fn prepare(&mut self);
+    /// Begins to erase a slot.
+    fn erase(&mut self, slot: Slot);
+    /// Takes writes from now on, or no more.
+    fn take_writes(&mut self, on: bool);
+    /// Still at it.
+    fn is_busy(&self) -> bool;
+    /// No more changes, and no cache with what was there before.
+    fn lock(&mut self);
+    /// Reads words that may be damaged; returns whether all could be read.
+    fn read(&mut self, words: &mut dyn FnMut()) -> bool;
+    /// The supply is high enough to write.
+    fn has_supply(&mut self) -> bool;
+}
+
+/// The slots.
+pub struct FlashSlots<F> {
+    flash: F,
+    /// Ended the program before this start.
+    left_alone: Option<Slot>,
+}
+
+impl<F: Flash> FlashSlots<F> {
+    /// Of a controller.
+    pub fn new(flash: F) -> Self {
+        Self { flash, left_alone: mark::take() }
+    }
+
+    fn is_done(&self) -> bool {
+        wait_longer(|| !self.flash.is_busy())
+    }
+
+    /// Does something with the registers open.
+    fn open(&mut self, change: impl FnOnce(&mut Self)) {
+        // Keys that come while it is open would close it until the next reset.
+        if self.flash.is_locked() {
+            KEYS.into_iter().for_each(|key| self.flash.take_key(key));
+        }
+        self.flash.prepare();
+        change(self);
+        self.flash.lock();
+    }
+}
+
+impl<F: Flash> Slots for FlashSlots<F> {
+    fn read(&mut self, slot: Slot) -> Option<Record> {
+        if self.left_alone == Some(slot) {
+            return None;
+        }
+        let mut record = [0; RECORD_BYTES];
+        let first = F::SLOTS[slot.index()] as *const u32;
+        mark::set(slot);
+        let mut is_whole = true;
+        for (index, bytes) in record.chunks_exact_mut(F::TOGETHER * WORD).enumerate() {
+            is_whole &= self.flash.read(&mut || {
+                for (word, bytes) in bytes.chunks_exact_mut(WORD).enumerate() {
+                    // SAFETY: the slot is flash, aligned, and longer than a record.
+                    let word = unsafe { read_volatile(first.add(index * F::TOGETHER + word)) };
+                    bytes.copy_from_slice(&word.to_le_bytes());
+                }
+            });
+        }
+        mark::take();
+        is_whole.then_some(record)
+    }
+
+    fn erase(&mut self, slot: Slot) {
+        self.open(|slots| {
+            slots.flash.erase(slot);
+            // What has no end is found when it is read back.
+            let _ = slots.is_done();
+        });
+        if self.left_alone == Some(slot) {
+            self.left_alone = None;
+        }
+    }
+
+    fn write(&mut self, slot: Slot, record: &Record) {
+        self.open(|slots| {
+            slots.flash.take_writes(true);
+            // It takes them before the first one comes.
+            dsb();
+            isb();
+            let first = F::SLOTS[slot.index()] as *mut u32;
+            for (index, bytes) in record.chunks_exact(WORD).enumerate() {
+                let word = bytes.iter().rev().fold(0, |word, byte| word << 8 | u32::from(*byte));
+                // SAFETY: within the slot, which nothing else uses; the controller has been told to take it.
+                unsafe { write_volatile(first.add(index), word) };
+                if (index + 1).is_multiple_of(F::TOGETHER) {
+                    // A store that is still on its way has not made it busy yet.
+                    dsb();
+                    if !slots.is_done() {
+                        break;
+                    }
+                }
+            }
+            slots.flash.take_writes(false);
+        });
+    }
+
+    fn has_supply(&mut self) -> bool {
+        self.flash.has_supply()
+    }
+}
+
+// A record is whole writes of every board's flash, of up to eight words.
+const _: () = assert!(RECORD_BYTES.is_multiple_of(8 * WORD));
+
+/// Which slot is being read, in memory that a reset does not clear.
+pub mod mark {
+    use core::cell::UnsafeCell;
+    use core::mem::MaybeUninit;
+
+    use crate::kept_memory::Slot;
+
+    /// "slot", little-endian, and its complement beside the slot's number: memory after power-up is neither.
+    const MAGIC: u32 = 0x746f_6c73;
+
+    struct Mark(UnsafeCell<MaybeUninit<[u32; 2]>>);
+
+    // SAFETY: changed in init and idle only, which never run at the same time; an exception only looks.
+    unsafe impl Sync for Mark {}
+
+    #[unsafe(link_section = ".uninit.slot_mark")]
+    static MARK: Mark = Mark(UnsafeCell::new(MaybeUninit::uninit()));
+
+    fn word(slot: Slot) -> u32 {
+        MAGIC ^ slot.index() as u32
+    }
+
+    /// The slot that is being read, or was when the program ended.
+    pub fn slot() -> Option<Slot> {
+        // SAFETY: every bit pattern is words; volatile, since they are what the memory held at reset.
+        let [mark, complement] = unsafe { MARK.0.get().cast::<[u32; 2]>().read_volatile() };
+        [Slot::A, Slot::B].into_iter().find(|slot| mark == word(*slot) && complement == !mark)
+    }
+
+    /// This slot is being read from now on.
+    pub(super) fn set(slot: Slot) {
+        // SAFETY: nobody else has it in hand.
+        unsafe { MARK.0.get().cast::<[u32; 2]>().write_volatile([word(slot), !word(slot)]) };
+    }
+
+    /// The same as [`slot`], and none from now on.
+    pub(super) fn take() -> Option<Slot> {
+        let slot = slot();
+        // SAFETY: nobody else has it in hand.
+        unsafe { MARK.0.get().cast::<[u32; 2]>().write_volatile([0; 2]) };
+        slot
+    }
+}

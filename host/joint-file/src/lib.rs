@@ -26,7 +26,7 @@ mod reader;
 mod section;
 mod spelling;
 mod table;
-mod wording;
+pub mod wording;
 
 pub use change::{Refused, change, change_noting, full_key, value};
 pub use motion::Profile;

@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use crate::problem::{Problem, Severity};
 
-/// Where a number of a joint file comes from: the comment behind it, on its line.
+/// Where a number of a file comes from: the comment behind it, on its line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Source {
     /// The key with its section, as in `geometry.sun_teeth`.
@@ -62,7 +62,8 @@ impl<'t> Notes<'t> {
         self.problems.borrow().len() == MOST_PROBLEMS
     }
 
-    pub(crate) fn has_errors(&self) -> bool {
+    /// Whether anything keeps the file from being used.
+    pub fn has_errors(&self) -> bool {
         self.problems.borrow().iter().any(|problem| problem.severity == Severity::Error)
     }
 
@@ -78,7 +79,7 @@ impl<'t> Notes<'t> {
     }
 
     /// Remembers the comment behind a number.
-    pub(crate) fn source(&self, key: String, value: &Range<usize>) {
+    pub fn source(&self, key: String, value: &Range<usize>) {
         let mut sources = self.sources.borrow_mut();
         if sources.iter().any(|source| source.key == key) {
             return;
@@ -89,7 +90,7 @@ impl<'t> Notes<'t> {
     }
 
     /// The first line that says anything: the place of what is missing from the file as a whole.
-    pub(crate) fn top(&self) -> Range<usize> {
+    pub fn top(&self) -> Range<usize> {
         let mut start = 0;
         for line in self.text.split_inclusive('\n') {
             let content = line.trim();

@@ -1,10 +1,10 @@
-//! How messages put what stands in a joint file: the type of a value, a number as it was typed, names in a row.
+//! How messages put what stands in a file: the type of a value, a number as it was typed, names in a row.
 
 use toml::Spanned;
 use toml::de::DeValue;
 
 /// The type of a value, for "must be a number, not ...".
-pub(crate) fn kind(value: &Spanned<DeValue<'_>>) -> &'static str {
+pub fn kind(value: &Spanned<DeValue<'_>>) -> &'static str {
     match value.get_ref() {
         DeValue::String(_) => "a string",
         DeValue::Integer(_) => "a whole number",
@@ -17,7 +17,7 @@ pub(crate) fn kind(value: &Spanned<DeValue<'_>>) -> &'static str {
 }
 
 /// A number as it was typed.
-pub(crate) fn shown(value: &Spanned<DeValue<'_>>) -> String {
+pub fn shown(value: &Spanned<DeValue<'_>>) -> String {
     match value.get_ref() {
         DeValue::Integer(integer) => integer.to_string(),
         DeValue::Float(float) => float.to_string(),
@@ -26,12 +26,12 @@ pub(crate) fn shown(value: &Spanned<DeValue<'_>>) -> String {
 }
 
 /// Names in a row: "`a`, `b` and `c`".
-pub(crate) fn listed(names: &[&str]) -> String {
+pub fn listed(names: &[&str]) -> String {
     listed_as(names, '`', "and")
 }
 
 /// Words in a row, quoted as stated, with `last` before the last one.
-pub(crate) fn listed_as(names: &[&str], quote: char, last: &str) -> String {
+pub fn listed_as(names: &[&str], quote: char, last: &str) -> String {
     let quoted: Vec<String> = names.iter().map(|name| format!("{quote}{name}{quote}")).collect();
     match quoted.split_last() {
         Some((end, rest)) if !rest.is_empty() => format!("{} {last} {end}", rest.join(", ")),

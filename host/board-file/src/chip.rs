@@ -1,0 +1,298 @@
+//! The chips that images can be built for, and what each of them is.
+
+mod f405;
+mod facts;
+mod g431;
+mod g474;
+mod h743;
+
+pub use facts::Slot;
+
+use model_core::gears::design::Processor;
+
+use crate::pin::Pin;
+use crate::pll::Pll;
+use facts::{Facts, Package, Variant};
+
+pub(crate) use facts::{SerialUnit, SpiUnit};
+
+/// A chip.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Chip {
+    /// STM32F405: Cortex-M4F at 168 MHz.
+    Stm32f405,
+    /// STM32G474: Cortex-M4F at 170 MHz.
+    Stm32g474,
+    /// STM32G431: the same with less memory.
+    Stm32g431,
+    /// STM32H743: Cortex-M7 at 400 MHz.
+    Stm32h743,
+}
+
+impl Chip {
+    /// Every chip.
+    pub const ALL: [Self; 4] = [Self::Stm32f405, Self::Stm32g474, Self::Stm32g431, Self::Stm32h743];
+
+    pub(crate) fn facts(self) -> &'static Facts {
+        match self {
+            Self::Stm32f405 => &f405::FACTS,
+            Self::Stm32g474 => &g474::FACTS,
+            Self::Stm32g431 => &g431::FACTS,
+            Self::Stm32h743 => &h743::FACTS,
+        }
+    }
+
+    /// Its name: the firmware's feature.
+    pub fn name(self) -> &'static str {
+        self.facts().name
+    }
+
+    /// The chip of a name.
+    pub fn of_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|chip| chip.name() == name)
+    }
+
+    /// Its core clock [Hz]; the tick rate must divide it.
+    pub fn core_rate(self) -> u32 {
+        self.facts().core_rate
+    }
+
+    /// What it gives the step.
+    pub fn processor(self) -> Processor {
+        self.facts().processor
+    }
+
+    /// Its internal oscillator [Hz], which drives it from a reset on.
+    pub fn internal_oscillator(self) -> u32 {
+        self.facts().internal_oscillator
+    }
+
+    /// Whether it can be the slave of a motor controller on SPI.
+    pub fn has_spi_slave(self) -> bool {
+        self.facts().spi.is_ok()
+    }
+
+    /// Frequencies of a crystal, or of a clock from elsewhere, that it takes, least and greatest [Hz].
+    pub fn oscillator_limits(self, crystal: bool) -> (u32, u32) {
+        if crystal { self.facts().crystal } else { self.facts().signal }
+    }
+
+    /// The setting of its PLL that makes the core clock from a frequency [Hz]; `None` if that cannot be done exactly.
+    ///
+    /// ```
+    /// use board_file::{Chip, Pll};
+    /// // 8 MHz / 4 x 168 / 2 = 168 MHz.
+    /// assert_eq!(Chip::Stm32f405.pll(8_000_000), Some(Pll { divider: 4, factor: 168, range: 0 }));
+    /// assert_eq!(Chip::Stm32f405.pll(14_745_600), None);
+    /// ```
+    pub fn pll(self, frequency: u32) -> Option<Pll> {
+        self.facts().pll.settings(frequency)
+    }
+
+    /// The setting of its PLL for its internal oscillator.
+    pub fn internal_pll(self) -> Pll {
+        // Of every chip's own oscillator a test asks whether it can be done.
+        self.pll(self.internal_oscillator()).unwrap_or(Pll { divider: 0, factor: 0, range: 0 })
+    }
+}
+
+/// A chip as it is ordered: with its memory and, if the name goes so far, its package.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Part {
+    pub chip: Chip,
+    variant: &'static Variant,
+    package: &'static Package,
+}
+
+impl Part {
+    /// By the order name up to the letter of the flash, or with the letter of the package, or with the digit of the
+    /// temperature range too: STM32G431CB, STM32G431CBU, STM32G431CBU6.
+    pub fn of(order_name: &str) -> Option<Self> {
+        let mut all =
+            Chip::ALL.into_iter().flat_map(|chip| chip.facts().variants.iter().map(move |variant| (chip, variant)));
+        let (chip, variant) = all.find(|(_, variant)| order_name.starts_with(variant.name))?;
+        let mut rest = order_name[variant.name.len()..].chars();
+        let package = match rest.next() {
+            None => variant.packages.first(),
+            Some(letter) => variant.packages.iter().find(|package| package.letter == letter),
+        }?;
+        let temperature_range = rest.next().is_none_or(|digit| "367".contains(digit));
+        (temperature_range && rest.next().is_none()).then_some(Self { chip, variant, package })
+    }
+
+    /// Every order name that is known, without a package.
+    pub fn names() -> Vec<&'static str> {
+        Chip::ALL.into_iter().flat_map(|chip| chip.facts().variants).map(|variant| variant.name).collect()
+    }
+
+    /// As debug probes know it: the order name with its package and an x for the temperature range.
+    pub fn probe_name(&self) -> String {
+        format!("{}{}x", self.variant.name, self.package.letter)
+    }
+
+    /// The sizes of flash that a board with it may state, the whole of it last [KiB].
+    pub fn flash_kib(&self) -> &'static [u32] {
+        self.variant.flash_kib
+    }
+
+    /// Whether its package brings a pin out.
+    pub fn has(&self, pin: Pin) -> bool {
+        self.package.has(pin)
+    }
+
+    /// The pins that its package brings out, in words.
+    pub fn pins(&self) -> String {
+        let ports = self.package.pins.iter().map(|(letter, pins)| {
+            let mut spans: Vec<(u32, u32)> = Vec::new();
+            for number in (0..16).filter(|number| pins >> number & 1 == 1) {
+                match spans.last_mut() {
+                    Some((_, last)) if *last + 1 == number => *last = number,
+                    _ => spans.push((number, number)),
+                }
+            }
+            let words = spans.iter().map(|(first, last)| match last - first {
+                0 => format!("P{letter}{first}"),
+                _ => format!("P{letter}{first} to P{letter}{last}"),
+            });
+            words.collect::<Vec<_>>().join(", ")
+        });
+        ports.collect::<Vec<_>>().join(", ")
+    }
+
+    /// Its own name, with its package if that is known.
+    pub fn name(&self) -> String {
+        format!("{}{}", self.variant.name, self.package.letter)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pin::Alternate;
+
+    const MHZ: u32 = 1_000_000;
+
+    #[test]
+    fn every_chip_makes_its_core_clock_exactly_from_common_crystals_and_from_its_own_oscillator() {
+        for chip in Chip::ALL {
+            let (mut refused, internal) = (Vec::new(), chip.internal_oscillator());
+            for frequency in [8, 12, 16, 24, 25, 26].map(|mega| mega * MHZ).into_iter().chain([internal]) {
+                let Some(Pll { divider, factor, .. }) = chip.pll(frequency) else {
+                    refused.push(frequency / MHZ);
+                    continue;
+                };
+                let limits = &chip.facts().pll;
+                let core = u64::from(frequency) * u64::from(factor);
+                assert_eq!(core % u64::from(2 * divider), 0, "{chip:?} from {frequency}");
+                assert_eq!(core / u64::from(2 * divider), u64::from(chip.core_rate()), "{chip:?} from {frequency}");
+                let input = f64::from(frequency) / f64::from(divider);
+                assert!((f64::from(limits.input.0)..=f64::from(limits.input.1)).contains(&input), "{chip:?}: {input}");
+                assert!((limits.divider.0..=limits.divider.1).contains(&divider));
+                assert!((limits.factor.0..=limits.factor.1).contains(&factor));
+            }
+            // 340 MHz are 170 x 26 / 13 MHz, and 2 MHz are too little for the PLL of the G4.
+            let wanted: &[u32] = if chip.core_rate() == 170 * MHZ { &[26] } else { &[] };
+            assert_eq!(refused, wanted, "{chip:?}");
+            assert_ne!(chip.internal_pll().divider, 0, "{chip:?}");
+        }
+    }
+
+    #[test]
+    fn plls_get_the_preferred_input_or_the_fastest_that_works() {
+        let of = |chip: Chip, mega: u32| {
+            let Pll { divider, factor, range } = chip.pll(mega * MHZ).expect("it can be made");
+            (divider, factor, range)
+        };
+        assert_eq!(
+            [8, 12, 16, 24, 25, 26].map(|mega| of(Chip::Stm32f405, mega)),
+            [(4, 168, 0), (6, 168, 0), (8, 168, 0), (12, 168, 0), (25, 336, 0), (13, 168, 0)]
+        );
+        assert_eq!(
+            [8, 12, 16, 24, 25].map(|mega| of(Chip::Stm32g474, mega)),
+            [(2, 85, 0), (3, 85, 0), (4, 85, 0), (6, 85, 0), (5, 68, 0)]
+        );
+        assert_eq!(
+            [8, 12, 16, 24, 25, 26, 64].map(|mega| of(Chip::Stm32h743, mega)),
+            [(2, 200, 2), (3, 200, 2), (4, 200, 2), (6, 200, 2), (2, 64, 3), (13, 400, 1), (16, 200, 2)]
+        );
+    }
+
+    #[test]
+    fn a_frequency_that_would_give_another_clock_is_none() {
+        for frequency in [0, 1, 11_059_200, 14_745_600, 32_768, u32::MAX] {
+            for chip in Chip::ALL {
+                assert_eq!(chip.pll(frequency), None, "{chip:?} from {frequency}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_pin_of_a_unit_is_brought_out_by_some_package() {
+        for chip in Chip::ALL {
+            let facts = chip.facts();
+            let serial = facts.serial.iter().flat_map(|unit| [unit.send, unit.receive]);
+            let spi = facts.spi.unwrap_or_default().iter();
+            let spi = spi.flat_map(|unit| [unit.select, unit.clock, unit.out, unit.input]);
+            let packages = || facts.variants.iter().flat_map(|variant| variant.packages);
+            for Alternate { pin, function } in serial.chain(spi).flatten() {
+                // The STM32G431 has no package with port G beside PG10, and its table is the STM32G474's.
+                let missing = !packages().any(|package| package.has(*pin));
+                assert!(!missing || (chip == Chip::Stm32g431 && pin.letter() == 'G'), "{chip:?} {pin}");
+                assert!(*function < 16);
+            }
+            for pin in facts.oscillator_pins.iter().chain(&facts.boot_pin) {
+                assert!(packages().all(|package| package.has(*pin)), "{chip:?} {pin}");
+            }
+        }
+    }
+
+    #[test]
+    fn no_pin_stands_in_a_list_twice() {
+        for chip in Chip::ALL {
+            let facts = chip.facts();
+            let serial = facts.serial.iter().flat_map(|unit| [unit.send, unit.receive]);
+            let spi = facts.spi.unwrap_or_default().iter();
+            for list in serial.chain(spi.flat_map(|unit| [unit.select, unit.clock, unit.out, unit.input])) {
+                for (at, one) in list.iter().enumerate() {
+                    assert!(list[..at].iter().all(|other| other.pin != one.pin), "{chip:?} {}", one.pin);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn order_names_are_known_with_and_without_package() {
+        let probe = |name: &str| Part::of(name).map(|part| part.probe_name());
+        assert_eq!(probe("STM32F405RG").as_deref(), Some("STM32F405RGTx"));
+        assert_eq!(probe("STM32F405RGT6").as_deref(), Some("STM32F405RGTx"));
+        assert_eq!(probe("STM32G431CB").as_deref(), Some("STM32G431CBTx"));
+        assert_eq!(probe("STM32G431CBU6").as_deref(), Some("STM32G431CBUx"));
+        assert_eq!(probe("STM32H743ZI").as_deref(), Some("STM32H743ZITx"));
+        for name in ["", "STM32F405", "STM32F405RGU6", "STM32F407VG", "stm32f405rg", "STM32F405RGT6TR", "STM32G474RC"] {
+            assert_eq!(probe(name), None, "{name}");
+        }
+    }
+
+    #[test]
+    fn packages_bring_out_what_their_data_sheets_say() {
+        let part = |name: &str| Part::of(name).expect("a known name");
+        assert_eq!(part("STM32F405RG").pins(), "PA0 to PA15, PB0 to PB15, PC0 to PC15, PD2, PH0 to PH1");
+        assert_eq!(
+            part("STM32G431CBU").pins(),
+            "PA0 to PA15, PB0 to PB15, PC4, PC6, PC10 to PC11, PC13 to PC15, PF0 to PF1"
+        );
+        let pin = |name: &str| name.parse().expect("a pin");
+        assert!(!part("STM32G431CBT").has(pin("PC4")) && part("STM32G474CEU").has(pin("PC4")));
+        assert!(!part("STM32F405OG").has(pin("PC1")) && !part("STM32F405OG").has(pin("PD13")));
+    }
+
+    #[test]
+    fn slots_lie_at_the_end_of_the_flash() {
+        let slots = |chip: Chip, kib: u32| (chip.facts().slots)(kib << 10).map(|slot| (slot.address, slot.bytes));
+        assert_eq!(slots(Chip::Stm32f405, 1024), [(0x080c_0000, 0x2_0000), (0x080e_0000, 0x2_0000)]);
+        assert_eq!(slots(Chip::Stm32f405, 512), [(0x0804_0000, 0x2_0000), (0x0806_0000, 0x2_0000)]);
+        assert_eq!(slots(Chip::Stm32g474, 512), [(0x0807_e000, 0x800), (0x0807_f000, 0x800)]);
+        assert_eq!(slots(Chip::Stm32g431, 128), [(0x0801_f000, 0x800), (0x0801_f800, 0x800)]);
+        assert_eq!(slots(Chip::Stm32h743, 2048), [(0x0810_0000, 0x2_0000), (0x0812_0000, 0x2_0000)]);
+    }
+}

@@ -1,0 +1,113 @@
+//! STM32F405: data sheet DS8626 (pins and their functions, oscillators, PLL), reference manual RM0090 (sectors of the flash, clock tree).
+
+use model_core::gears::design::Processor;
+
+use super::facts::{ALL, Facts, Package, SerialUnit, Slot, SpiUnit, Variant, at, pin};
+use crate::pll::PllLimits;
+
+const APB1: u32 = 42_000_000;
+const APB2: u32 = 84_000_000;
+
+pub(super) const FACTS: Facts = Facts {
+    name: "stm32f405",
+    core_rate: 168_000_000,
+    processor: Processor::STM32F405,
+    internal_oscillator: 16_000_000,
+    crystal: (4_000_000, 26_000_000),
+    signal: (1_000_000, 50_000_000),
+    oscillator_pins: [pin("PH0"), pin("PH1")],
+    pll: PllLimits {
+        input: (1_000_000, 2_000_000),
+        preferred_input: 2_000_000,
+        oscillator: 336_000_000,
+        divider: (2, 63),
+        factor: (50, 432),
+        ranges: &[],
+    },
+    boot_pin: None,
+    serial: SERIAL,
+    refused: &[],
+    spi: Ok(SPI),
+    // SRAM1 and SRAM2; the 64 KiB of CCM lie elsewhere.
+    ram_kib: 128,
+    slots,
+    variants: &[
+        Variant { name: "STM32F405RG", flash_kib: &[512, 1024], packages: &[Package { letter: 'T', pins: LQFP64 }] },
+        Variant { name: "STM32F405VG", flash_kib: &[512, 1024], packages: &[Package { letter: 'T', pins: LQFP100 }] },
+        Variant { name: "STM32F405ZG", flash_kib: &[512, 1024], packages: &[Package { letter: 'T', pins: LQFP144 }] },
+        Variant { name: "STM32F405OG", flash_kib: &[512, 1024], packages: &[Package { letter: 'Y', pins: WLCSP90 }] },
+        Variant { name: "STM32F405OE", flash_kib: &[512], packages: &[Package { letter: 'Y', pins: WLCSP90 }] },
+    ],
+};
+
+/// The last two sectors of 128 KiB.
+fn slots(flash: u32) -> [Slot; 2] {
+    const SECTOR: u32 = 128 << 10;
+    [2, 1].map(|from_end| Slot { address: 0x0800_0000 + flash - from_end * SECTOR, bytes: SECTOR })
+}
+
+const SERIAL: &[SerialUnit] = &[
+    SerialUnit {
+        name: "USART1",
+        clock: APB2,
+        send: &[at("PA9", 7), at("PB6", 7)],
+        receive: &[at("PA10", 7), at("PB7", 7)],
+    },
+    SerialUnit {
+        name: "USART2",
+        clock: APB1,
+        send: &[at("PA2", 7), at("PD5", 7)],
+        receive: &[at("PA3", 7), at("PD6", 7)],
+    },
+    SerialUnit {
+        name: "USART3",
+        clock: APB1,
+        send: &[at("PB10", 7), at("PC10", 7), at("PD8", 7)],
+        receive: &[at("PB11", 7), at("PC11", 7), at("PD9", 7)],
+    },
+    SerialUnit {
+        name: "UART4",
+        clock: APB1,
+        send: &[at("PA0", 8), at("PC10", 8)],
+        receive: &[at("PA1", 8), at("PC11", 8)],
+    },
+    SerialUnit { name: "UART5", clock: APB1, send: &[at("PC12", 8)], receive: &[at("PD2", 8)] },
+    SerialUnit {
+        name: "USART6",
+        clock: APB2,
+        send: &[at("PC6", 8), at("PG14", 8)],
+        receive: &[at("PC7", 8), at("PG9", 8)],
+    },
+];
+
+const SPI: &[SpiUnit] = &[
+    SpiUnit {
+        name: "SPI1",
+        select: &[at("PA4", 5), at("PA15", 5)],
+        clock: &[at("PA5", 5), at("PB3", 5)],
+        out: &[at("PA6", 5), at("PB4", 5)],
+        input: &[at("PA7", 5), at("PB5", 5)],
+    },
+    SpiUnit {
+        name: "SPI2",
+        select: &[at("PB12", 5), at("PB9", 5), at("PI0", 5)],
+        clock: &[at("PB13", 5), at("PB10", 5), at("PI1", 5)],
+        out: &[at("PB14", 5), at("PC2", 5)],
+        input: &[at("PB15", 5), at("PC3", 5)],
+    },
+    SpiUnit {
+        name: "SPI3",
+        select: &[at("PA4", 6), at("PA15", 6)],
+        clock: &[at("PB3", 6), at("PC10", 6)],
+        out: &[at("PB4", 6), at("PC11", 6)],
+        input: &[at("PB5", 6), at("PC12", 6)],
+    },
+];
+
+const LQFP64: &[(char, u16)] = &[('A', ALL), ('B', ALL), ('C', ALL), ('D', 1 << 2), ('H', 0b11)];
+const LQFP100: &[(char, u16)] = &[('A', ALL), ('B', ALL), ('C', ALL), ('D', ALL), ('E', ALL), ('H', 0b11)];
+const LQFP144: &[(char, u16)] =
+    &[('A', ALL), ('B', ALL), ('C', ALL), ('D', ALL), ('E', ALL), ('F', ALL), ('G', ALL), ('H', 0b11)];
+/// Without PC1, PC4, PC5, PD3, PD13 and PE0 to PE6.
+const WLCSP90: &[(char, u16)] =
+    &[('A', ALL), ('B', ALL), ('C', !0x0032), ('D', !0x2008), ('E', 0xff80), ('H', 0b11), ('I', 0b11)];

@@ -1,0 +1,140 @@
+//! STM32H743 with 2 MiB of flash: data sheet DS12110 (pins and their functions, oscillators, PLL), reference manual RM0433
+//! (sectors of the flash, clock tree at voltage scale 1).
+
+use model_core::gears::design::Processor;
+
+use super::facts::{ALL, Facts, Package, SerialUnit, Slot, Variant, at, pin};
+use crate::pll::PllLimits;
+
+/// Of both buses that have USARTs: a quarter of the core's rate.
+const APB: u32 = 100_000_000;
+
+pub(super) const FACTS: Facts = Facts {
+    name: "stm32h743",
+    core_rate: 400_000_000,
+    processor: Processor::STM32H743,
+    internal_oscillator: 64_000_000,
+    crystal: (4_000_000, 48_000_000),
+    signal: (4_000_000, 50_000_000),
+    oscillator_pins: [pin("PH0"), pin("PH1")],
+    pll: PllLimits {
+        // The wide oscillator, 192 to 836 MHz.
+        input: (2_000_000, 16_000_000),
+        preferred_input: 4_000_000,
+        oscillator: 800_000_000,
+        divider: (1, 63),
+        factor: (4, 512),
+        ranges: &[2_000_000, 4_000_000, 8_000_000],
+    },
+    boot_pin: None,
+    serial: SERIAL,
+    refused: &[("LPUART1", "it divides its clock in another way and has other registers")],
+    spi: Err("the SPI of STM32H743 is of another kind, which the firmware has no slave for"),
+    // DTCM.
+    ram_kib: 128,
+    slots,
+    variants: &[
+        Variant { name: "STM32H743ZI", flash_kib: &[2048], packages: &[Package { letter: 'T', pins: LQFP144 }] },
+        Variant {
+            name: "STM32H743VI",
+            flash_kib: &[2048],
+            packages: &[Package { letter: 'T', pins: PINS_100 }, Package { letter: 'H', pins: PINS_100 }],
+        },
+        Variant { name: "STM32H743AI", flash_kib: &[2048], packages: &[Package { letter: 'I', pins: UFBGA169 }] },
+        Variant {
+            name: "STM32H743II",
+            flash_kib: &[2048],
+            packages: &[Package { letter: 'T', pins: PINS_176 }, Package { letter: 'K', pins: PINS_176 }],
+        },
+        Variant { name: "STM32H743BI", flash_kib: &[2048], packages: &[Package { letter: 'T', pins: EVERY }] },
+        Variant { name: "STM32H743XI", flash_kib: &[2048], packages: &[Package { letter: 'H', pins: EVERY }] },
+    ],
+};
+
+/// The first two sectors of the second bank: an image lies in the first bank, which runs on while they are erased.
+fn slots(_: u32) -> [Slot; 2] {
+    const SECTOR: u32 = 128 << 10;
+    [0, 1].map(|sector| Slot { address: 0x0810_0000 + sector * SECTOR, bytes: SECTOR })
+}
+
+const SERIAL: &[SerialUnit] = &[
+    SerialUnit {
+        name: "USART1",
+        clock: APB,
+        send: &[at("PA9", 7), at("PB6", 7), at("PB14", 4)],
+        receive: &[at("PA10", 7), at("PB7", 7), at("PB15", 4)],
+    },
+    SerialUnit {
+        name: "USART2",
+        clock: APB,
+        send: &[at("PA2", 7), at("PD5", 7)],
+        receive: &[at("PA3", 7), at("PD6", 7)],
+    },
+    SerialUnit {
+        name: "USART3",
+        clock: APB,
+        send: &[at("PB10", 7), at("PC10", 7), at("PD8", 7)],
+        receive: &[at("PB11", 7), at("PC11", 7), at("PD9", 7)],
+    },
+    SerialUnit {
+        name: "UART4",
+        clock: APB,
+        send: &[at("PA0", 8), at("PA12", 6), at("PB9", 8), at("PC10", 8), at("PD1", 8), at("PH13", 8)],
+        receive: &[at("PA1", 8), at("PA11", 6), at("PB8", 8), at("PC11", 8), at("PD0", 8), at("PH14", 8), at("PI9", 8)],
+    },
+    SerialUnit {
+        name: "UART5",
+        clock: APB,
+        send: &[at("PC12", 8), at("PB6", 14), at("PB13", 14)],
+        receive: &[at("PD2", 8), at("PB5", 14), at("PB12", 14)],
+    },
+    SerialUnit {
+        name: "USART6",
+        clock: APB,
+        send: &[at("PC6", 7), at("PG14", 7)],
+        receive: &[at("PC7", 7), at("PG9", 7)],
+    },
+    SerialUnit {
+        name: "UART7",
+        clock: APB,
+        send: &[at("PE8", 7), at("PF7", 7), at("PA15", 11), at("PB4", 11)],
+        receive: &[at("PE7", 7), at("PF6", 7), at("PA8", 11), at("PB3", 11)],
+    },
+    SerialUnit {
+        name: "UART8",
+        clock: APB,
+        send: &[at("PE1", 8), at("PJ8", 8)],
+        receive: &[at("PE0", 8), at("PJ9", 8)],
+    },
+];
+
+const PINS_100: &[(char, u16)] = &[('A', ALL), ('B', ALL), ('C', ALL), ('D', ALL), ('E', ALL), ('H', 0b11)];
+const LQFP144: &[(char, u16)] =
+    &[('A', ALL), ('B', ALL), ('C', ALL), ('D', ALL), ('E', ALL), ('F', ALL), ('G', ALL), ('H', 0b11)];
+const UFBGA169: &[(char, u16)] = &[
+    ('A', ALL),
+    ('B', ALL),
+    ('C', ALL),
+    ('D', ALL),
+    ('E', ALL),
+    ('F', ALL),
+    ('G', ALL),
+    ('H', 0x1c3f),
+    ('I', 0x38cf),
+    ('J', 0b11),
+];
+const PINS_176: &[(char, u16)] =
+    &[('A', ALL), ('B', ALL), ('C', ALL), ('D', ALL), ('E', ALL), ('F', ALL), ('G', ALL), ('H', ALL), ('I', 0x0fff)];
+const EVERY: &[(char, u16)] = &[
+    ('A', ALL),
+    ('B', ALL),
+    ('C', ALL),
+    ('D', ALL),
+    ('E', ALL),
+    ('F', ALL),
+    ('G', ALL),
+    ('H', ALL),
+    ('I', ALL),
+    ('J', ALL),
+    ('K', 0x00ff),
+];

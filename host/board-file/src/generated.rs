@@ -1,0 +1,144 @@
+//! What a build of the firmware is told of its board: constants as Rust, memory as a linker script, and what is compiled at all.
+
+use std::fmt::Write;
+
+use crate::board::{Board, ExternalClock, Level, Output, RAM_START};
+use crate::chip::Chip;
+use crate::pin::Alternate;
+use crate::pll::Pll;
+
+/// What is left of the RAM for the stack at least.
+const STACK: u32 = 8 << 10;
+
+/// The board as a module of constants, to be included in one.
+///
+/// ```
+/// let board = board_file::read(board_file::preset("olimex-h405").unwrap()).unwrap();
+/// let source = board_file::rust_source(&board);
+/// assert!(source.contains("pub const SERIAL_SEND: (u8, u8, u8) = (0, 9, 7);"), "{source}");
+/// ```
+pub fn rust_source(board: &Board) -> String {
+    let mut source = String::new();
+    let mut constant = |what: &str, name: &str, kind: &str, value: String| {
+        // A string takes what is written to it.
+        let _ = writeln!(source, "/// {what}\npub const {name}: {kind} = {value};");
+    };
+    const PIN: &str = "(u8, u8, u8)";
+    let hertz = |clock: ExternalClock| match clock {
+        ExternalClock::None => "None".to_owned(),
+        ExternalClock::Crystal(frequency) => format!("Some(({frequency}, false))"),
+        ExternalClock::Signal(frequency) => format!("Some(({frequency}, true))"),
+    };
+    let pll = |Pll { divider, factor, range }: Pll| format!("({divider}, {factor}, {range})");
+    let pin = |Alternate { pin, function }: Alternate| format!("({}, {}, {function})", pin.port, pin.number);
+    let output = |output: Option<Output>| {
+        some(output.map(|Output { pin, on }| format!("({}, {}, {})", pin.port, pin.number, on == Level::High)))
+    };
+    constant("What the board calls itself.", "NAME", "&str", format!("{:?}", board.name.as_str()));
+    constant("Core clock [Hz].", "CORE_RATE", "u32", board.core_rate().to_string());
+    constant(
+        "What drives the clock from outside: frequency [Hz], and whether it is a signal rather than a crystal.",
+        "EXTERNAL",
+        "Option<(u32, bool)>",
+        hertz(board.clock),
+    );
+    constant(
+        "Of the PLL for that: divider, factor, code of the input's range.",
+        "EXTERNAL_PLL",
+        "Option<(u32, u32, u32)>",
+        some(board.pll.external.map(pll)),
+    );
+    constant("Of the PLL for the chip's own oscillator.", "INTERNAL_PLL", "(u32, u32, u32)", pll(board.pll.internal));
+    constant("The chip's own oscillator [Hz].", "INTERNAL", "u32", board.chip.internal_oscillator().to_string());
+    constant("Where the line to the host sends: port, number, function.", "SERIAL_SEND", PIN, pin(board.serial.send));
+    constant("Where it receives.", "SERIAL_RECEIVE", PIN, pin(board.serial.receive));
+    constant("Clock of its unit while the PLL runs [Hz].", "SERIAL_CLOCK", "u32", board.serial.clock.to_string());
+    constant("Its speed [baud].", "BAUD", "u32", board.serial.baud.to_string());
+    constant(
+        "Pins of the slave on SPI: select, clock, out, in.",
+        "SPI_SLAVE",
+        "Option<[(u8, u8, u8); 4]>",
+        some(
+            board
+                .spi_slave
+                .as_ref()
+                .map(|slave| format!("[{}]", [slave.select, slave.clock, slave.out, slave.input].map(pin).join(", "))),
+        ),
+    );
+    constant(
+        "What switches the motor on: port, number, whether high is on.",
+        "ENABLE",
+        "Option<(u8, u8, bool)>",
+        output(board.enable),
+    );
+    constant("The status light: the same.", "LIGHT", "Option<(u8, u8, bool)>", output(board.light));
+    let [first, second] = board.slots();
+    constant(
+        "Where what the observer has learnt is kept.",
+        "SLOTS",
+        "[u32; 2]",
+        format!("[{:#010x}, {:#010x}]", first.address, second.address),
+    );
+    constant("So much of each is erased at once.", "SLOT_BYTES", "u32", first.bytes.min(second.bytes).to_string());
+    constant("Flash, that of the slots included.", "FLASH_BYTES", "u32", board.flash_bytes.to_string());
+    constant("What an image may take of it.", "IMAGE_BYTES", "u32", board.image_bytes().to_string());
+    constant("RAM.", "RAM_BYTES", "u32", board.ram_bytes.to_string());
+    source
+}
+
+fn some(value: Option<String>) -> String {
+    value.map_or("None".to_owned(), |value| format!("Some({value})"))
+}
+
+/// A linker script to be read before that of the start-up code: where the stack begins, and that an image fits.
+pub fn linker_script(board: &Board) -> String {
+    let name = &board.name;
+    let end = RAM_START + board.ram_bytes;
+    let [first, _] = board.slots();
+    let (flash, image, ram) = (board.flash_bytes >> 10, board.image_bytes() >> 10, board.ram_bytes >> 10);
+    let (stack, least) = (STACK >> 10, end - STACK);
+    format!(
+        "/* Memory of the board {name}, {chip}. */
+_stack_start = {end:#010x};
+
+ASSERT(__sidata + (__edata - __sdata) <= {slot:#010x},
+\"the image is too large for the board {name}: of {flash} KiB of flash it may take the first {image} KiB\");
+ASSERT(__ebss <= {least:#010x} && __euninit <= {least:#010x},
+\"statics are too large for the board {name}: of {ram} KiB of RAM they must leave {stack} KiB to the stack\");
+",
+        chip = board.chip_name,
+        slot = first.address,
+    )
+}
+
+/// What is compiled for a board: names with values, each for a `cfg`. Units are named in lower case.
+///
+/// ```
+/// let board = board_file::read(board_file::preset("olimex-h405").unwrap()).unwrap();
+/// let cfgs = board_file::cfgs(&board);
+/// assert_eq!(cfgs[0], ("serial", "usart1".to_owned()));
+/// ```
+pub fn cfgs(board: &Board) -> Vec<(&'static str, String)> {
+    let mut cfgs = vec![("serial", board.serial.unit.to_lowercase())];
+    if let Some(slave) = &board.spi_slave {
+        cfgs.push(("spi_slave", slave.unit.to_lowercase()));
+        // The interrupt lines of pins are numbered as the pins are, whatever their port.
+        cfgs.push(("select_line", slave.select.pin.number.to_string()));
+    }
+    cfgs
+}
+
+/// Every name of [`cfgs`] with every value that it can have.
+pub fn all_cfgs() -> Vec<(&'static str, Vec<String>)> {
+    let names = |of: fn(Chip) -> Vec<&'static str>| {
+        let mut names: Vec<String> = Chip::ALL.into_iter().flat_map(of).map(str::to_lowercase).collect();
+        names.sort();
+        names.dedup();
+        names
+    };
+    vec![
+        ("serial", names(|chip| chip.facts().serial.iter().map(|unit| unit.name).collect())),
+        ("spi_slave", names(|chip| chip.facts().spi.unwrap_or_default().iter().map(|unit| unit.name).collect())),
+        ("select_line", (0..16).map(|line| line.to_string()).collect()),
+    ]
+}

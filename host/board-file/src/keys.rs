@@ -1,0 +1,125 @@
+//! Every key of a board file: its section, what it holds, and a hint for who got it wrong. The page
+//! docs/reference/board-files.md says the same in more words.
+
+use joint_file::Keys;
+
+/// What a key holds.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Kind {
+    /// A string.
+    Text,
+    /// One of these words.
+    Choice(&'static [&'static str]),
+    /// A whole number with both ends allowed.
+    Whole(u32, u32),
+    /// The name of a pin.
+    Pin,
+    /// A table of its own.
+    Section,
+}
+
+/// One key.
+pub(crate) type Key = joint_file::Key<Kind>;
+
+impl Keys for Kind {
+    const FILE: &'static str = "a board file";
+    const ALL: &'static [Key] = KEYS;
+
+    fn stray(section: &str, word: &str) -> String {
+        let known: Vec<String> = Self::of(section).map(|key| format!("`{}`", key.name)).collect();
+        Self::belongs(word).unwrap_or_else(|| format!("known here: {}", known.join(", ")))
+    }
+}
+
+const fn key(section: &'static str, name: &'static str, kind: Kind, hint: &'static str) -> Key {
+    Key { section, name, kind, hint }
+}
+
+use Kind::{Choice, Pin, Section, Text, Whole};
+
+/// Kinds of clock, in the order of the documentation.
+pub(crate) const CLOCKS: &[&str] = &["crystal", "signal", "internal"];
+/// Levels of a pin.
+pub(crate) const LEVELS: &[&str] = &["high", "low"];
+
+/// All keys, in the order of the documentation.
+pub(crate) const KEYS: &[Key] = &[
+    key("", "name", Text, "at most 16 lower case letters, digits, dots and hyphens: name = \"my-board\""),
+    key("", "description", Text, "a sentence that tells the board from others"),
+    key("", "chip", Text, "the order name that is printed on the chip, such as \"STM32F405RG\""),
+    key("", "memory", Section, "how much flash and RAM there is: flash_KiB and ram_KiB"),
+    key("", "clock", Section, "what drives the chip: source and frequency_Hz"),
+    key("", "serial", Section, "the line to the host: unit, send, receive and baud"),
+    key(
+        "",
+        "spi_slave",
+        Section,
+        "the line to a motor controller whose slave the board is; leave it out if there is none",
+    ),
+    key("", "enable", Section, "the output that switches the motor on; leave it out if there is none"),
+    key("", "light", Section, "the status light; leave it out if there is none"),
+    key("", "never_driven", Section, "pins that are left alone, each with what it is there: PA8 = \"gate of phase A\""),
+    // Memory
+    key("memory", "flash_KiB", Whole(1, 4096), "the flash that the chip's order name promises"),
+    key("memory", "ram_KiB", Whole(16, 4096), "the RAM from 0x2000_0000 on without a gap, that for code only left out"),
+    // Clock
+    key("clock", "source", Choice(CLOCKS), "a crystal, a clock signal from elsewhere, or the chip's own oscillator"),
+    key(
+        "clock",
+        "frequency_Hz",
+        Whole(1_000_000, 50_000_000),
+        "of crystal or signal, as printed on the part: 8_000_000",
+    ),
+    // Serial
+    key("serial", "unit", Text, "the unit that the pins belong to, such as \"USART1\""),
+    key("serial", "send", Pin, "the pin on which the board sends"),
+    key("serial", "receive", Pin, "the pin on which the board receives"),
+    key("serial", "baud", Whole(9_600, 10_000_000), "the speed that the host opens its port with: 230_400, 921_600"),
+    // Slave on SPI
+    key("spi_slave", "unit", Text, "the unit that the pins belong to, such as \"SPI1\""),
+    key("spi_slave", "select", Pin, "low while the master speaks to this board (NSS)"),
+    key("spi_slave", "clock", Pin, "the master's clock (SCK)"),
+    key("spi_slave", "out", Pin, "to the master (MISO)"),
+    key("spi_slave", "in", Pin, "from the master (MOSI)"),
+    // Outputs
+    key("enable", "pin", Pin, "the pin that switches the motor on"),
+    key("enable", "on", Choice(LEVELS), "its level while the motor is on"),
+    key("light", "pin", Pin, "the pin of the light"),
+    key("light", "on", Choice(LEVELS), "its level while the light shines"),
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PAGE: &str = include_str!("../../../docs/reference/board-files.md");
+
+    #[test]
+    fn every_key_is_documented_with_what_it_holds() {
+        for key in KEYS {
+            let value = match key.kind {
+                Kind::Text => "text".to_owned(),
+                Kind::Choice(words) => {
+                    words.iter().map(|word| format!("`\"{word}\"`")).collect::<Vec<_>>().join(" or ")
+                }
+                Kind::Whole(low, high) => format!("between {low} and {high}"),
+                Kind::Pin => "pin".to_owned(),
+                Kind::Section => continue,
+            };
+            let section = format!("## `[{}]`", key.section);
+            let start = if key.section.is_empty() { "## Top of the file" } else { &section };
+            let table = PAGE.split_once(start).map(|(_, rest)| rest.split("\n## ").next().unwrap_or_default());
+            let name = format!("| `{}` |", key.name);
+            let row = table.unwrap_or_default().lines().find(|line| line.starts_with(&name));
+            let row = row.unwrap_or_else(|| panic!("no row `{name}` under `{start}`"));
+            assert!(row.contains(&value) && row.contains(key.hint), "{row}: want `{value}` and `{}`", key.hint);
+        }
+    }
+
+    #[test]
+    fn every_section_is_documented() {
+        for key in KEYS.iter().filter(|key| matches!(key.kind, Kind::Section)) {
+            assert!(PAGE.contains(&format!("## `[{}]`", key.name)), "{}", key.name);
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! A pin of a chip by its name, and a pin in one of its alternate functions.
+
+use std::fmt;
+use std::str::FromStr;
+
+/// A pin, such as PA9.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Pin {
+    /// Its port: 0 for A, 1 for B, up to 10 for K.
+    pub port: u8,
+    /// Its number in the port, up to 15.
+    pub number: u8,
+}
+
+/// A pin that a unit of the chip drives or reads, by the number of the function that connects the two.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Alternate {
+    /// The pin.
+    pub pin: Pin,
+    /// The number of the alternate function, 0 to 15.
+    pub function: u8,
+}
+
+/// The last port's letter.
+const LAST: u8 = b'K';
+
+impl Pin {
+    /// The letter of its port.
+    pub const fn letter(self) -> char {
+        (b'A' + self.port) as char
+    }
+
+    /// By its name, if it is one: `P`, a port's letter, a number without zeros in front.
+    pub const fn named(name: &[u8]) -> Option<Self> {
+        let (letter, number) = match name {
+            [b'P', letter, ones @ b'0'..=b'9'] => (*letter, *ones - b'0'),
+            [b'P', letter, b'1', ones @ b'0'..=b'5'] => (*letter, 10 + *ones - b'0'),
+            _ => return None,
+        };
+        match letter {
+            b'A'..=LAST => Some(Self { port: letter - b'A', number }),
+            _ => None,
+        }
+    }
+}
+
+impl fmt::Display for Pin {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "P{}{}", self.letter(), self.number)
+    }
+}
+
+/// A text that names no pin.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct NoPin;
+
+impl fmt::Display for NoPin {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("no pin: want a name such as PA9")
+    }
+}
+
+impl std::error::Error for NoPin {}
+
+impl FromStr for Pin {
+    type Err = NoPin;
+
+    fn from_str(text: &str) -> Result<Self, NoPin> {
+        Self::named(text.as_bytes()).ok_or(NoPin)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pins_are_written_as_they_are_read() {
+        for name in ["PA0", "PA9", "PB10", "PC15", "PK7"] {
+            assert_eq!(name.parse::<Pin>().expect(name).to_string(), name);
+        }
+        assert_eq!("PD2".parse(), Ok(Pin { port: 3, number: 2 }));
+    }
+
+    #[test]
+    fn what_names_no_pin_is_none() {
+        for text in ["", "P", "PA", "A9", "pa9", "PA16", "PA09", "PA-1", "PL0", "PA9 ", "P\u{e4}1", "GPIOA9"] {
+            assert_eq!(text.parse::<Pin>(), Err(NoPin), "{text}");
+        }
+    }
+}

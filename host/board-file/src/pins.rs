@@ -1,0 +1,155 @@
+//! Which pins a board file may use for what: those that the chip's package brings out, that nothing else needs, each once.
+
+use std::cell::RefCell;
+use std::ops::Range;
+
+use joint_file::{Notes, Severity};
+
+use crate::board::ExternalClock;
+use crate::chip::Part;
+use crate::pin::{Alternate, Pin};
+use crate::section::Section;
+
+/// The pins of a debug probe. Reset is a pin of its own.
+const PROBE: [(Pin, &str); 2] = [
+    (Pin { port: 0, number: 13 }, "the debug probe's data (SWDIO)"),
+    (Pin { port: 0, number: 14 }, "the debug probe's clock (SWCLK)"),
+];
+
+/// One use of a pin.
+struct Use {
+    /// The key that says so, with its section.
+    key: String,
+    pin: Pin,
+    span: Range<usize>,
+}
+
+/// Reads pins, and keeps what they are used for.
+pub(crate) struct Pins {
+    /// `None` if the file does not say.
+    part: Option<Part>,
+    /// `None` if the file does not say.
+    clock: Option<ExternalClock>,
+    uses: RefCell<Vec<Use>>,
+}
+
+impl Pins {
+    pub fn new(part: Option<Part>, clock: Option<ExternalClock>) -> Self {
+        Self { part, clock, uses: RefCell::default() }
+    }
+
+    /// A pin that the firmware may use.
+    pub fn free(&self, section: &Section<'_>, name: &str) -> Option<Pin> {
+        let pin = section.required(name, Section::pin)?;
+        let (key, span) = (section.full(name), section.place(name));
+        self.uses.borrow_mut().push(Use { key, pin, span: span.clone() });
+        if let Some((message, help)) = self.reserved(pin) {
+            section.notes.error(span, message, help);
+            return None;
+        }
+        let boot = self.part.and_then(|part| part.chip.facts().boot_pin).filter(|boot| *boot == pin);
+        if let Some(boot) = boot {
+            let message =
+                format!("{boot} is read as BOOT0 at a reset: while it is high the chip starts its boot loader");
+            let help = "use another pin, or clear the option bit nSWBOOT0 of the chip";
+            section.notes.problem(span, message, help, Severity::Warning);
+        }
+        Some(pin)
+    }
+
+    /// A pin that a unit has for this; in `of` a unit's name and its pins for it.
+    pub fn of_unit(&self, section: &Section<'_>, name: &str, of: Option<(&str, &[Alternate])>) -> Option<Alternate> {
+        let pin = self.free(section, name);
+        let (unit, list) = of?;
+        let pin = pin?;
+        if let Some(found) = list.iter().find(|alternate| alternate.pin == pin) {
+            return Some(*found);
+        }
+        let has = |alternate: &&Alternate| self.part.is_none_or(|part| part.has(alternate.pin));
+        let there: Vec<String> = list.iter().filter(has).map(|alternate| alternate.pin.to_string()).collect();
+        let help = match there.as_slice() {
+            [] => format!("no pin of this package is `{name}` of {unit}: use another unit"),
+            _ => format!("{unit} has {} for `{name}`", there.join(" or ")),
+        };
+        section.notes.error(section.place(name), format!("{pin} cannot be `{name}` of {unit}"), help);
+        None
+    }
+
+    /// Why nobody may use a pin, and what to do.
+    fn reserved(&self, pin: Pin) -> Option<(String, String)> {
+        let part = self.part?;
+        if !part.has(pin) {
+            return Some((format!("{} has no {pin}", part.name()), format!("its package brings out {}", part.pins())));
+        }
+        if let Some((_, what)) = PROBE.iter().find(|(probe, _)| *probe == pin) {
+            return Some((
+                format!("{pin} is {what}"),
+                "use another pin: without the probe no image gets in".to_owned(),
+            ));
+        }
+        let what = match self.clock? {
+            ExternalClock::None => return None,
+            ExternalClock::Crystal(_) => "the crystal",
+            ExternalClock::Signal(_) => "the clock signal",
+        };
+        let taken = part.chip.facts().oscillator_pins.contains(&pin);
+        taken.then(|| {
+            let help = "use another pin; with source = \"internal\" in [clock] it would be free".to_owned();
+            (format!("{pin} is where {what} is connected"), help)
+        })
+    }
+
+    /// Reads `[never_driven]`.
+    pub fn never_driven(&self, top: &Section<'_>) -> Option<Vec<(Pin, String)>> {
+        use toml::de::DeValue;
+        const NAME: &str = "never_driven";
+        if !top.has(NAME) {
+            return Some(Vec::new());
+        }
+        let DeValue::Table(table) = top.table(NAME)?.get_ref() else { return None };
+        let mut list = Some(Vec::new());
+        for (key, value) in table {
+            let word = key.get_ref().as_ref();
+            let pin = word.parse::<Pin>().ok();
+            let (message, help) = match (pin, value.get_ref()) {
+                (None, _) => (format!("`{word}` in [{NAME}] is no pin"), "write PA8 = \"what it is there\"".to_owned()),
+                (Some(pin), _) if self.part.is_some_and(|part| !part.has(pin)) => {
+                    let pins = self.part.map_or(String::new(), |part| part.pins());
+                    (format!("the chip has no {pin}"), format!("its package brings out {pins}"))
+                }
+                (Some(pin), DeValue::String(what)) if !what.trim().is_empty() => {
+                    top.notes.source(format!("{NAME}.{pin}"), &value.span());
+                    list.iter_mut().for_each(|list: &mut Vec<_>| list.push((pin, what.to_string())));
+                    continue;
+                }
+                (Some(pin), _) => (
+                    format!("`{pin}` in [{NAME}] must say what the pin is there"),
+                    "write it as a string: \"gate of phase A\"".to_owned(),
+                ),
+            };
+            let place = if pin.is_some() { value.span() } else { key.span() };
+            top.notes.error(place, message, help);
+            list = None;
+        }
+        list
+    }
+
+    /// Complains about pins that are used twice, or although they are never driven.
+    pub fn check(&self, never_driven: &[(Pin, String)], notes: &Notes<'_>) {
+        let uses = self.uses.borrow();
+        for (at, Use { key, pin, span }) in uses.iter().enumerate() {
+            if let Some(first) = uses[..at].iter().find(|other| other.pin == *pin) {
+                let message = format!("{pin} is used twice, for `{}` and for `{key}`", first.key);
+                notes.error(span.clone(), message, "give one of them another pin");
+            }
+            if let Some((_, what)) = never_driven.iter().find(|(left, _)| left == pin) {
+                let message = format!("{pin} of `{key}` is never driven: {what}");
+                notes.error(
+                    span.clone(),
+                    message,
+                    "use another pin, or take it out of [never_driven] if that is wrong",
+                );
+            }
+        }
+    }
+}

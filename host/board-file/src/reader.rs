@@ -1,0 +1,281 @@
+//! Reads a whole board file: parses, takes the sections' values, holds them against the chip, and gives either the board with
+//! its warnings or everything that is wrong at once.
+
+use joint_file::wording::listed_as;
+use joint_file::{Notes, Problem};
+use toml::de::DeTable;
+
+use crate::board::{Board, ExternalClock, Level, Output, Serial, SpiSlave};
+use crate::chip::{Chip, Part, SerialUnit, SpiUnit};
+use crate::pins::Pins;
+use crate::pll::Plls;
+use crate::section::Section;
+
+/// How far a line's speed may be from what it is called: a tenth of what a receiver bears over ten bits.
+const BAUD_TOLERANCE_PERCENT: u64 = 1;
+/// A USART samples every bit so often, and divides its clock by so much at least.
+const LEAST_BAUD_DIVIDER: u32 = 16;
+/// The widest divider of a USART.
+const GREATEST_BAUD_DIVIDER: u32 = 0xffff;
+
+/// Reads the text of a board file. On failure gives every problem, warnings among them, in the order of the text.
+///
+/// ```
+/// let text = board_file::preset("olimex-h405").unwrap();
+/// let board = board_file::read(text).unwrap();
+/// assert_eq!((board.chip, board.serial.unit), (board_file::Chip::Stm32f405, "USART1"));
+///
+/// let slip = text.replace("\"PA9\"", "\"PA8\"");
+/// let problems = board_file::read(&slip).unwrap_err();
+/// // Each problem has its place in the text and a help.
+/// assert_eq!(&slip[problems[0].span.clone()], "\"PA8\"");
+/// assert!(problems[0].help.contains("PA9 or PB6"), "{}", problems[0]);
+/// ```
+pub fn read(text: &str) -> Result<Board, Vec<Problem>> {
+    let notes = Notes::new(text);
+    let (table, syntax) = DeTable::parse_recoverable(text);
+    syntax.iter().take(1).for_each(|error| notes.syntax(error));
+    // What was recovered from broken syntax would be blamed for what the parser dropped.
+    let board = if syntax.is_empty() { read_table(&Section::top(table.get_ref(), &notes)) } else { None };
+    let failed = notes.has_errors();
+    let (problems, sources) = notes.into_parts();
+    match board {
+        Some(board) if !failed => Ok(Board { warnings: problems, sources, ..board }),
+        _ => Err(problems),
+    }
+}
+
+fn read_table(top: &Section<'_>) -> Option<Board> {
+    let name = read_name(top);
+    let description = if top.has("description") { top.text("description") } else { Some(String::new()) };
+    let chip_name = top.required("chip", Section::stated);
+    let part = chip_name.as_deref().and_then(|name| read_part(top, name));
+    let memory = top.required_section("memory").map(|section| read_memory(&section, part));
+    let clock = top.required_section("clock").and_then(|section| read_clock(&section, part.map(|part| part.chip)));
+    let pins = Pins::new(part, clock);
+    let serial = top.required_section("serial").and_then(|section| read_serial(&section, part, &pins));
+    let spi_slave = optional(top, "spi_slave", |section| read_spi_slave(section, part, &pins));
+    let enable = optional(top, "enable", |section| read_output(section, &pins));
+    let light = optional(top, "light", |section| read_output(section, &pins));
+    let never_driven = pins.never_driven(top);
+    pins.check(never_driven.as_deref().unwrap_or_default(), top.notes);
+
+    let (part, clock, (flash, ram)) = (part?, clock?, memory?);
+    let external = match clock.frequency() {
+        Some(frequency) => Some(part.chip.pll(frequency)?),
+        None => None,
+    };
+    Some(Board {
+        name: name?,
+        description: description?,
+        chip: part.chip,
+        chip_name: chip_name?,
+        probe_name: part.probe_name(),
+        flash_bytes: flash? << 10,
+        ram_bytes: ram? << 10,
+        clock,
+        pll: Plls { external, internal: part.chip.internal_pll() },
+        serial: serial?,
+        spi_slave: spi_slave?,
+        enable: enable?,
+        light: light?,
+        never_driven: never_driven?,
+        warnings: Vec::new(),
+        sources: Vec::new(),
+    })
+}
+
+/// A section that may be left out; the outer `None` if it is there and wrong.
+fn optional<'a, T>(
+    top: &Section<'a>,
+    name: &'static str,
+    read: impl FnOnce(&Section<'a>) -> Option<T>,
+) -> Option<Option<T>> {
+    if top.has(name) { read(&top.section(name)?).map(Some) } else { Some(None) }
+}
+
+/// The name, short and plain enough for the board's hello and for an option of a command.
+fn read_name(top: &Section<'_>) -> Option<heapless::String<16>> {
+    let text = top.required("name", Section::text)?;
+    let plain = |letter: char| letter.is_ascii_lowercase() || letter.is_ascii_digit() || ".-".contains(letter);
+    let hint = top.value("name")?.1.hint;
+    let (message, help) = match heapless::String::try_from(text.as_str()) {
+        Ok(_) if Chip::of_name(&text).is_some() => {
+            (format!("`name` is a chip's: {text}"), "a board with this chip needs a name of its own")
+        }
+        Ok(name) if text.contains(|letter: char| letter.is_ascii_alphanumeric()) && text.chars().all(plain) => {
+            return Some(name);
+        }
+        Ok(_) => (format!("`name` cannot be \"{text}\""), hint),
+        Err(_) => (format!("`name` has {} letters", text.chars().count()), hint),
+    };
+    top.notes.error(top.place("name"), message, help);
+    None
+}
+
+fn read_part(top: &Section<'_>, name: &str) -> Option<Part> {
+    let part = Part::of(name);
+    if part.is_none() {
+        let known = Part::names();
+        let help = match joint_file::nearest(name, known.iter().copied()) {
+            Some(near) => format!("did you mean \"{near}\"? known: {}", known.join(", ")),
+            None => format!("known: {}", known.join(", ")),
+        };
+        top.notes.error(top.place("chip"), format!("there is no firmware for the chip \"{name}\""), help);
+    }
+    part
+}
+
+/// Flash and RAM [KiB].
+fn read_memory(section: &Section<'_>, part: Option<Part>) -> (Option<u32>, Option<u32>) {
+    let flash = section.required("flash_KiB", Section::whole);
+    let ram = section.required("ram_KiB", Section::whole);
+    let Some(part) = part else { return (None, None) };
+    let sizes = part.flash_kib();
+    let most = sizes.last().copied().unwrap_or_default();
+    let flash = flash.filter(|flash| {
+        let message = match flash {
+            _ if sizes.contains(flash) => return true,
+            _ if *flash > most => format!("{} has {most} KiB of flash, not {flash}", part.name()),
+            _ => format!("{flash} KiB of flash leave no place for what the observer has learnt"),
+        };
+        let sizes: Vec<String> = sizes.iter().map(u32::to_string).collect();
+        let help = format!("write flash_KiB = {}", sizes.join(" or "));
+        section.notes.error(section.place("flash_KiB"), message, help);
+        false
+    });
+    let most = part.chip.facts().ram_kib;
+    let ram = ram.filter(|ram| {
+        if *ram > most {
+            let message = format!("{} has {most} KiB of RAM in one piece for data, not {ram}", part.name());
+            section.notes.error(section.place("ram_KiB"), message, format!("write ram_KiB = {most}, or less"));
+        }
+        *ram <= most
+    });
+    (flash, ram)
+}
+
+fn read_clock(section: &Section<'_>, chip: Option<Chip>) -> Option<ExternalClock> {
+    let source = section.required("source", Section::choice);
+    if source == Some("internal") {
+        if section.has("frequency_Hz") {
+            let message = "`frequency_Hz` is that of a crystal or signal, and there is none";
+            section.notes.error(
+                section.place("frequency_Hz"),
+                message,
+                "leave it out, or say what `source` it belongs to",
+            );
+        }
+        return Some(ExternalClock::None);
+    }
+    let frequency = section.required("frequency_Hz", Section::whole);
+    let (source, frequency, chip) = (source?, frequency?, chip?);
+    let crystal = source == "crystal";
+    let (least, greatest) = chip.oscillator_limits(crystal);
+    let chip_name = chip.name().to_uppercase();
+    let common: Vec<String> =
+        chip.facts().pll.common((least, greatest)).iter().map(|frequency| mega(*frequency)).collect();
+    let common = format!("common frequencies that can: {}", common.join(", "));
+    let message = if !(least..=greatest).contains(&frequency) {
+        let limits = format!("between {} and {}", mega(least), mega(greatest));
+        format!("{chip_name} takes a {source} {limits}, not of {}", mega(frequency))
+    } else if chip.pll(frequency).is_none() {
+        format!("{chip_name} cannot make its {} of {}", mega(chip.core_rate()), mega(frequency))
+    } else {
+        return Some(if crystal { ExternalClock::Crystal(frequency) } else { ExternalClock::Signal(frequency) });
+    };
+    section.notes.error(section.place("frequency_Hz"), message, common);
+    None
+}
+
+/// A frequency [Hz] in words.
+fn mega(frequency: u32) -> String {
+    format!("{} MHz", f64::from(frequency) / 1e6)
+}
+
+fn read_serial(section: &Section<'_>, part: Option<Part>, pins: &Pins) -> Option<Serial> {
+    let name = section.required("unit", Section::stated);
+    let unit = name.zip(part).and_then(|(name, part)| {
+        let facts = part.chip.facts();
+        let units: Vec<&str> = facts.serial.iter().map(|unit| unit.name).collect();
+        let why = facts.refused.iter().find(|(refused, _)| *refused == name).map(|(_, why)| *why);
+        let found = facts.serial.iter().find(|unit| unit.name == name);
+        found.or_else(|| no_unit(section, &name, part, &units, why))
+    });
+    let of = |list: fn(&SerialUnit) -> &'static [_]| unit.map(|unit| (unit.name, list(unit)));
+    let send = pins.of_unit(section, "send", of(|unit| unit.send));
+    let receive = pins.of_unit(section, "receive", of(|unit| unit.receive));
+    let baud = section.required("baud", Section::whole);
+    let (unit, baud) = (unit?, baud?);
+    check_baud(section, unit, baud);
+    Some(Serial { unit: unit.name, clock: unit.clock, send: send?, receive: receive?, baud })
+}
+
+/// Complains about a unit that the chip does not have, or not for this.
+fn no_unit<T>(section: &Section<'_>, name: &str, part: Part, units: &[&str], why: Option<&str>) -> Option<T> {
+    let chip = part.chip.name().to_uppercase();
+    let message = match why {
+        Some(why) => format!("{name} of {chip} cannot be used: {why}"),
+        None => format!("{chip} has no {name} for [{}]", section.schema),
+    };
+    section.notes.error(section.place("unit"), message, format!("use {}", listed_as(units, '"', "or")));
+    None
+}
+
+/// Complains about a speed that the unit cannot make.
+fn check_baud(section: &Section<'_>, unit: &SerialUnit, baud: u32) {
+    let exact = |divider: u32| f64::from(unit.clock) / f64::from(divider);
+    let divider = baud_divider(unit.clock, baud);
+    let (fastest, slowest) = (unit.clock / LEAST_BAUD_DIVIDER, unit.clock / GREATEST_BAUD_DIVIDER);
+    let message = if !(LEAST_BAUD_DIVIDER..=GREATEST_BAUD_DIVIDER).contains(&divider) {
+        format!("{} makes {slowest} to {fastest} baud, not {baud}", unit.name)
+    } else {
+        // |clock / divider - baud| > 1 % of baud, in whole numbers.
+        let made = u64::from(baud) * u64::from(divider);
+        if u64::from(unit.clock).abs_diff(made) * 100 <= BAUD_TOLERANCE_PERCENT * made {
+            return;
+        }
+        format!("{} would make {:.0} baud, more than 1 % from {baud}", unit.name, exact(divider))
+    };
+    let near = divider.clamp(LEAST_BAUD_DIVIDER, GREATEST_BAUD_DIVIDER);
+    let help = format!("it divides {} by a whole number: {:.0} baud are near", mega(unit.clock), exact(near));
+    section.notes.error(section.place("baud"), message, help);
+}
+
+/// What a USART divides its clock by for a speed: the nearest whole number.
+pub fn baud_divider(clock: u32, baud: u32) -> u32 {
+    let divider = (2 * u64::from(clock) + u64::from(baud)) / (2 * u64::from(baud.max(1)));
+    u32::try_from(divider).unwrap_or(u32::MAX)
+}
+
+fn read_spi_slave(section: &Section<'_>, part: Option<Part>, pins: &Pins) -> Option<SpiSlave> {
+    if let Some(Err(why)) = part.map(|part| part.chip.facts().spi) {
+        section.notes.error(
+            section.header.clone(),
+            format!("no board with this chip is a slave: {why}"),
+            "leave [spi_slave] out",
+        );
+        return None;
+    }
+    let name = section.required("unit", Section::stated);
+    let unit = name.zip(part).and_then(|(name, part)| {
+        let all = part.chip.facts().spi.unwrap_or_default();
+        let units: Vec<&str> = all.iter().map(|unit| unit.name).collect();
+        all.iter().find(|unit| unit.name == name).or_else(|| no_unit(section, &name, part, &units, None))
+    });
+    let of = |list: fn(&SpiUnit) -> &'static [_]| unit.map(|unit| (unit.name, list(unit)));
+    let select = pins.of_unit(section, "select", of(|unit| unit.select));
+    let clock = pins.of_unit(section, "clock", of(|unit| unit.clock));
+    let out = pins.of_unit(section, "out", of(|unit| unit.out));
+    let input = pins.of_unit(section, "in", of(|unit| unit.input));
+    Some(SpiSlave { unit: unit?.name, select: select?, clock: clock?, out: out?, input: input? })
+}
+
+fn read_output(section: &Section<'_>, pins: &Pins) -> Option<Output> {
+    let pin = pins.free(section, "pin");
+    let on = match section.required("on", Section::choice)? {
+        "high" => Level::High,
+        _ => Level::Low,
+    };
+    Some(Output { pin: pin?, on })
+}

@@ -3,7 +3,17 @@
 use crate::chip::Chip;
 
 /// Names of the presets, the default first.
-pub const PRESETS: [&str; 3] = ["olimex-h405", "nucleo-g474re", "nucleo-h743zi"];
+pub const PRESETS: [&str; 9] = [
+    "olimex-h405",
+    "nucleo-g474re",
+    "nucleo-h743zi",
+    "odrive-3.6",
+    "feather-f405",
+    "weact-f405",
+    "b-g431b-esc1",
+    "moteus-r4",
+    "vesc-6",
+];
 
 /// The board that is meant where none is named.
 pub const DEFAULT: &str = PRESETS[0];
@@ -14,6 +24,12 @@ pub fn preset(name: &str) -> Option<&'static str> {
         "olimex-h405" => include_str!("../../../boards/olimex-h405.toml"),
         "nucleo-g474re" => include_str!("../../../boards/nucleo-g474re.toml"),
         "nucleo-h743zi" => include_str!("../../../boards/nucleo-h743zi.toml"),
+        "odrive-3.6" => include_str!("../../../boards/odrive-3.6.toml"),
+        "feather-f405" => include_str!("../../../boards/feather-f405.toml"),
+        "weact-f405" => include_str!("../../../boards/weact-f405.toml"),
+        "b-g431b-esc1" => include_str!("../../../boards/b-g431b-esc1.toml"),
+        "moteus-r4" => include_str!("../../../boards/moteus-r4.toml"),
+        "vesc-6" => include_str!("../../../boards/vesc-6.toml"),
         _ => return None,
     })
 }

@@ -1,0 +1,431 @@
+//! What is wrong with a board file: each case asserts the message, the text that it underlines and the help. Every case is one
+//! good file with one thing spoilt, so that nothing else can be the cause.
+
+use board_file::{Board, Problem, Severity, preset, read};
+
+/// A file with every section.
+const GOOD: &str = r#"
+name = "bench.2-a"
+description = "on the bench"
+chip = "STM32F405RG" # printed on it
+
+[memory]
+flash_KiB = 1024 # order name
+ram_KiB = 128 # data sheet
+
+[clock]
+source = "crystal" # printed on it
+frequency_Hz = 8_000_000 # printed on it
+
+[serial]
+unit = "USART1" # wired so
+send = "PA9" # wired so
+receive = "PA10" # wired so
+baud = 230_400 # chosen
+
+[spi_slave]
+unit = "SPI1" # wired so
+select = "PA4" # wired so
+clock = "PA5" # wired so
+out = "PA6" # wired so
+in = "PA7" # wired so
+
+[enable]
+pin = "PB0" # wired so
+on = "high" # wired so
+
+[light]
+pin = "PC12" # wired so
+on = "low"
+
+[never_driven]
+PA8 = "gate of motor 0, phase A, high side" # schematic
+PB12 = "brake resistor"
+"#;
+
+/// The good file with one piece of text exchanged.
+#[track_caller]
+fn spoilt(from: &str, to: &str) -> String {
+    assert_eq!(GOOD.matches(from).count(), 1, "`{from}` is not in the file exactly once");
+    GOOD.replace(from, to)
+}
+
+/// The good file for another chip, without what its kind of chip does not have.
+fn with_chip(name: &str, flash: u32, ram: u32) -> String {
+    let (start, rest) = GOOD.split_once("\n[spi_slave]").expect("it is there");
+    let rest = rest.split_once("\n[enable]").expect("it is there").1;
+    format!("{start}\n[enable]{rest}")
+        .replace("STM32F405RG", name)
+        .replace("1024", &flash.to_string())
+        .replace("ram_KiB = 128", &format!("ram_KiB = {ram}"))
+}
+
+#[track_caller]
+fn good(text: &str) -> Board {
+    read(text).unwrap_or_else(|problems| panic!("{problems:#?}"))
+}
+
+/// The only problem, by its message, the text that it underlines, and its help.
+#[track_caller]
+fn only(text: &str) -> (String, String, String) {
+    let problems = read(text).expect_err("the file is spoilt");
+    assert_eq!(problems.len(), 1, "{problems:#?}");
+    let Problem { span, message, help, severity } = problems[0].clone();
+    assert_eq!(severity, Severity::Error);
+    (message, text[span].to_owned(), help)
+}
+
+/// Asserts message and underlined text of the only problem, and that its help says `wanted`.
+#[track_caller]
+fn refused(text: &str, message: &str, underlined: &str, wanted: &str) {
+    let (found, place, help) = only(text);
+    assert_eq!((found.as_str(), place.as_str()), (message, underlined));
+    assert!(help.contains(wanted), "`{wanted}` is not in `{help}`");
+}
+
+#[test]
+fn the_good_file_is_good() {
+    let board = good(GOOD);
+    assert_eq!((board.warnings.len(), board.never_driven.len()), (0, 2));
+    assert_eq!(board.used_pins().len(), 8);
+    let remark = |key: &str| board.sources.iter().find(|source| source.key == key).expect(key).remark.clone();
+    assert_eq!(remark("serial.send").as_deref(), Some("wired so"));
+    assert_eq!(remark("never_driven.PA8").as_deref(), Some("schematic"));
+    assert_eq!((remark("light.on"), remark("never_driven.PB12")), (None, None));
+    good(&with_chip("STM32G474RE", 512, 96));
+    good(&with_chip("STM32G431RB", 128, 22));
+    good(&with_chip("STM32H743ZI", 2048, 128));
+}
+
+#[test]
+fn what_is_left_out_may_be() {
+    let text = "name = \"a\"\nchip = \"STM32F405RG\"\n[memory]\nflash_KiB = 512\nram_KiB = 64\n[clock]\nsource = \"internal\"\n\
+         [serial]\nunit = \"UART5\"\nsend = \"PC12\"\nreceive = \"PD2\"\nbaud = 1_000_000\n";
+    let board = good(text);
+    assert_eq!((&board.spi_slave, board.enable, board.light, board.never_driven.len()), (&None, None, None, 0));
+    assert_eq!(board.pll.external, None);
+    // Half of the flash, as the file says.
+    assert_eq!((board.flash_bytes, board.slots()[0].address), (512 << 10, 0x0804_0000));
+}
+
+#[test]
+fn a_name_that_no_board_can_have_is_refused() {
+    for name in ["", "My-Board", "two words", "\u{e9}", "..", "under_score"] {
+        refused(
+            &spoilt("\"bench.2-a\"", &format!("\"{name}\"")),
+            &format!("`name` cannot be \"{name}\""),
+            &format!("\"{name}\""),
+            "at most 16 lower case letters",
+        );
+    }
+    let long = "seventeen-letters";
+    let message = "`name` has 17 letters";
+    refused(&spoilt("bench.2-a", long), message, &format!("\"{long}\""), "at most 16");
+    refused(
+        &spoilt("bench.2-a", "stm32f405"),
+        "`name` is a chip's: stm32f405",
+        "\"stm32f405\"",
+        "needs a name of its own",
+    );
+}
+
+#[test]
+fn a_chip_that_is_not_known_is_refused() {
+    for name in ["STM32F407VG", "STM32F405", "stm32f405rg", "STM32F405RGU6"] {
+        let text = spoilt("\"STM32F405RG\"", &format!("\"{name}\""));
+        let message = format!("there is no firmware for the chip \"{name}\"");
+        refused(&text, &message, &format!("\"{name}\""), "STM32F405RG");
+    }
+}
+
+#[test]
+fn more_memory_than_the_chip_has_is_refused() {
+    let text = spoilt("flash_KiB = 1024", "flash_KiB = 2048");
+    refused(&text, "STM32F405RGT has 1024 KiB of flash, not 2048", "2048", "flash_KiB = 512 or 1024");
+    let text = spoilt("ram_KiB = 128", "ram_KiB = 192");
+    let message = "STM32F405RGT has 128 KiB of RAM in one piece for data, not 192";
+    refused(&text, message, "192", "ram_KiB = 128, or less");
+    let text = with_chip("STM32G474RE", 512, 128);
+    refused(&text, "STM32G474RET has 96 KiB of RAM in one piece for data, not 128", "128", "ram_KiB = 96");
+    let text = with_chip("STM32F405OE", 1024, 128);
+    refused(&text, "STM32F405OEY has 512 KiB of flash, not 1024", "1024", "flash_KiB = 512");
+}
+
+#[test]
+fn flash_without_a_place_for_what_is_learnt_is_refused() {
+    let text = spoilt("flash_KiB = 1024", "flash_KiB = 700");
+    let message = "700 KiB of flash leave no place for what the observer has learnt";
+    refused(&text, message, "700", "flash_KiB = 512 or 1024");
+    let text = spoilt("ram_KiB = 128", "ram_KiB = 8");
+    refused(&text, "`ram_KiB` must be between 16 and 4096, not 8", "8", "without a gap");
+}
+
+#[test]
+fn a_clock_that_the_chip_cannot_use_is_refused() {
+    let text = spoilt("8_000_000", "14_745_600");
+    let message = "STM32F405 cannot make its 168 MHz of 14.7456 MHz";
+    refused(&text, message, "14_745_600", "4 MHz, 5 MHz, 6 MHz, 8 MHz, 10 MHz, 12 MHz, 16 MHz");
+    let text = spoilt("8_000_000", "48_000_000");
+    let message = "STM32F405 takes a crystal between 4 MHz and 26 MHz, not of 48 MHz";
+    refused(&text, message, "48_000_000", "25 MHz, 26 MHz");
+    assert!(!only(&text).2.contains("48 MHz"));
+    // The same as a signal.
+    good(&text.replace("crystal", "signal"));
+    let text = with_chip("STM32G474RE", 512, 96).replace("8_000_000", "26_000_000");
+    refused(&text, "STM32G474 cannot make its 170 MHz of 26 MHz", "26_000_000", "24 MHz, 25 MHz, 48 MHz");
+    let text = with_chip("STM32H743ZI", 2048, 128).replace("8_000_000", "49_000_000");
+    let message = "STM32H743 takes a crystal between 4 MHz and 48 MHz, not of 49 MHz";
+    refused(&text, message, "49_000_000", "26 MHz, 48 MHz");
+    let text = spoilt("8_000_000", "8");
+    let message = "`frequency_Hz` must be between 1000000 and 50000000, not 8";
+    refused(&text, message, "8", "8_000_000");
+}
+
+#[test]
+fn a_clock_that_contradicts_itself_is_refused() {
+    let text = spoilt("\"crystal\"", "\"internal\"");
+    let message = "`frequency_Hz` is that of a crystal or signal, and there is none";
+    refused(&text, message, "8_000_000", "leave it out");
+    let text = spoilt("frequency_Hz = 8_000_000 # printed on it\n", "");
+    refused(&text, "`frequency_Hz` is missing from [clock]", "[clock]", "of crystal or signal");
+    let text = spoilt("\"crystal\"", "\"quartz\"");
+    let message = "`source` must be \"crystal\", \"signal\" or \"internal\", not \"quartz\"";
+    refused(&text, message, "\"quartz\"", "the chip's own oscillator");
+}
+
+#[test]
+fn what_is_no_pin_is_refused() {
+    for name in ["A9", "PA16", "pa9", "PA09", "GPIOA9"] {
+        let text = spoilt("send = \"PA9\"", &format!("send = \"{name}\""));
+        let message = format!("`send` must be a pin such as \"PA9\", not \"{name}\"");
+        refused(&text, &message, &format!("\"{name}\""), "the pin on which the board sends");
+    }
+    let text = spoilt("send = \"PA9\"", "send = 9");
+    refused(&text, "`send` must be a pin as a string, not a whole number", "9", "sends");
+}
+
+#[test]
+fn a_pin_that_the_unit_does_not_have_is_refused() {
+    let text = spoilt("send = \"PA9\"", "send = \"PA2\"");
+    refused(&text, "PA2 cannot be `send` of USART1", "\"PA2\"", "USART1 has PA9 or PB6 for `send`");
+    let text = spoilt("out = \"PA6\"", "out = \"PB5\"");
+    refused(&text, "PB5 cannot be `out` of SPI1", "\"PB5\"", "SPI1 has PA6 or PB4 for `out`");
+    let text = spoilt("in = \"PA7\"", "in = \"PB4\"");
+    refused(&text, "PB4 cannot be `in` of SPI1", "\"PB4\"", "SPI1 has PA7 or PB5 for `in`");
+    // Only pins that the package brings out are offered: PD8 of USART3 is not.
+    let text = spoilt("\"USART1\"", "\"USART3\"").replace("\"PA9\"", "\"PB11\"").replace("\"PA10\"", "\"PC11\"");
+    refused(&text, "PB11 cannot be `send` of USART3", "\"PB11\"", "USART3 has PB10 or PC10 for `send`");
+}
+
+#[test]
+fn a_unit_without_a_pin_in_the_package_is_told_so() {
+    let text = with_chip("STM32G474CET", 512, 96).replace("PC12", "PB1");
+    let text = text.replace("USART1", "UART4");
+    let problems = read(&text).expect_err("the 48 pins have no UART4");
+    assert!(problems[0].help.contains("no pin of this package is `send` of UART4"), "{problems:#?}");
+}
+
+#[test]
+fn a_pin_that_the_package_does_not_bring_out_is_refused() {
+    let text = spoilt("pin = \"PB0\"", "pin = \"PE3\"");
+    refused(&text, "STM32F405RGT has no PE3", "\"PE3\"", "PC0 to PC15, PD2, PH0 to PH1");
+    let text = spoilt("send = \"PA9\"", "send = \"PD8\"").replace("USART1", "USART3").replace("PA10", "PB11");
+    refused(&text, "STM32F405RGT has no PD8", "\"PD8\"", "its package brings out");
+    let text = spoilt("PB12 = \"brake resistor\"", "PE3 = \"brake resistor\"");
+    refused(&text, "the chip has no PE3", "\"brake resistor\"", "its package brings out");
+    // The reset input of the G4 is no pin.
+    let text = with_chip("STM32G474RE", 512, 96).replace("\"PB0\"", "\"PG10\"");
+    refused(&text, "STM32G474RET has no PG10", "\"PG10\"", "PF0 to PF1");
+}
+
+#[test]
+fn a_pin_used_twice_is_refused() {
+    let text = spoilt("pin = \"PB0\"", "pin = \"PA9\"");
+    let message = "PA9 is used twice, for `serial.send` and for `enable.pin`";
+    let problems = read(&text).expect_err("the file is spoilt");
+    assert_eq!(problems.len(), 1, "{problems:#?}");
+    assert_eq!(problems[0].message, message);
+    assert_eq!(problems[0].span.start, text.rfind("\"PA9\"").expect("it is there"));
+    assert!(problems[0].help.contains("another pin"));
+    let text = spoilt("pin = \"PC12\"", "pin = \"PA4\"");
+    assert_eq!(only(&text).0, "PA4 is used twice, for `spi_slave.select` and for `light.pin`");
+}
+
+#[test]
+fn a_pin_that_is_never_driven_is_refused_wherever_it_is_used() {
+    let what = "gate of motor 0, phase A, high side";
+    for (from, key) in [
+        ("send = \"PA9\"", "serial.send"),
+        ("receive = \"PA10\"", "serial.receive"),
+        ("select = \"PA4\"", "spi_slave.select"),
+        ("clock = \"PA5\"", "spi_slave.clock"),
+        ("out = \"PA6\"", "spi_slave.out"),
+        ("in = \"PA7\"", "spi_slave.in"),
+        ("pin = \"PB0\"", "enable.pin"),
+        ("pin = \"PC12\"", "light.pin"),
+    ] {
+        let pin = from.split('"').nth(1).expect("a pin");
+        let text = spoilt("\nPA8 =", &format!("\n{pin} ="));
+        refused(&text, &format!("{pin} of `{key}` is never driven: {what}"), &format!("\"{pin}\""), "another pin");
+    }
+}
+
+#[test]
+fn pins_of_the_debug_probe_are_refused() {
+    let text = spoilt("pin = \"PC12\"", "pin = \"PA13\"");
+    refused(&text, "PA13 is the debug probe's data (SWDIO)", "\"PA13\"", "use another pin");
+    // USART2 of the G4 could send there.
+    let text = with_chip("STM32G474RE", 512, 96).replace("USART1", "USART2").replace("PA9", "PA14");
+    let text = text.replace("PA10", "PA3");
+    refused(&text, "PA14 is the debug probe's clock (SWCLK)", "\"PA14\"", "use another pin");
+}
+
+#[test]
+fn pins_of_the_oscillator_are_refused_unless_nothing_is_connected() {
+    let text = spoilt("pin = \"PC12\"", "pin = \"PH0\"");
+    refused(&text, "PH0 is where the crystal is connected", "\"PH0\"", "source = \"internal\"");
+    let signal = text.replace("\"crystal\"", "\"signal\"").replace("PH0", "PH1");
+    refused(&signal, "PH1 is where the clock signal is connected", "\"PH1\"", "use another pin");
+    good(&text.replace("\"crystal\"", "\"internal\"").replace("frequency_Hz = 8_000_000 # printed on it\n", ""));
+    let text = with_chip("STM32G474RE", 512, 96).replace("PC12", "PF1");
+    refused(&text, "PF1 is where the crystal is connected", "\"PF1\"", "use another pin");
+    let text = with_chip("STM32H743ZI", 2048, 128).replace("PC12", "PH1");
+    refused(&text, "PH1 is where the crystal is connected", "\"PH1\"", "use another pin");
+}
+
+#[test]
+fn a_unit_that_the_chip_does_not_have_is_refused() {
+    let text = spoilt("\"USART1\"", "\"UART7\"");
+    let wanted = "\"USART1\", \"USART2\", \"USART3\", \"UART4\", \"UART5\" or \"USART6\"";
+    refused(&text, "STM32F405 has no UART7 for [serial]", "\"UART7\"", wanted);
+    let text = spoilt("\"SPI1\"", "\"SPI4\"");
+    refused(&text, "STM32F405 has no SPI4 for [spi_slave]", "\"SPI4\"", "\"SPI1\", \"SPI2\" or \"SPI3\"");
+    // The G431 has no UART5.
+    let text = with_chip("STM32G431RB", 128, 22).replace("USART1", "UART5");
+    refused(&text, "STM32G431 has no UART5 for [serial]", "\"UART5\"", "\"USART3\" or \"UART4\"");
+    let text = with_chip("STM32G474RE", 512, 96).replace("USART1", "LPUART1");
+    let message = "LPUART1 of STM32G474 cannot be used: it divides its clock in another way and has other registers";
+    refused(&text, message, "\"LPUART1\"", "USART2");
+}
+
+#[test]
+fn a_slave_on_spi_is_refused_where_the_unit_is_of_another_kind() {
+    let text = GOOD.replace("STM32F405RG", "STM32H743ZI").replace("1024", "2048");
+    let message = "no board with this chip is a slave: the SPI of STM32H743 is of another kind, which the firmware has no \
+                   slave for";
+    refused(&text, message, "[spi_slave]", "leave [spi_slave] out");
+}
+
+#[test]
+fn a_speed_that_the_unit_cannot_make_is_refused() {
+    let text = spoilt("230_400", "9_500");
+    refused(&text, "`baud` must be between 9600 and 10000000, not 9500", "9_500", "230_400, 921_600");
+    let text = spoilt("230_400", "10_000_000");
+    let message = "USART1 makes 1281 to 5250000 baud, not 10000000";
+    refused(&text, message, "10_000_000", "84 MHz by a whole number: 5250000 baud are near");
+    let text = spoilt("230_400", "4_500_000");
+    let message = "USART1 would make 4421053 baud, more than 1 % from 4500000";
+    refused(&text, message, "4_500_000", "4421053 baud are near");
+    // Half as fast a clock: 42 MHz / 46 is 0.93 % from 921600, 42 MHz / 17 is 1.2 % from 2500000.
+    for (baud, makes) in [("921_600", true), ("1_843_200", true), ("2_625_000", true), ("2_500_000", false)] {
+        let text = spoilt("230_400", baud).replace("USART1", "USART2").replace("PA9", "PA2").replace("PA10", "PA3");
+        assert_eq!(read(&text).is_ok(), makes, "{baud}");
+    }
+}
+
+#[test]
+fn never_driven_pins_that_make_no_sense_are_refused() {
+    let text = spoilt("PB12 = \"brake resistor\"", "brake = \"PB12\"");
+    refused(&text, "`brake` in [never_driven] is no pin", "brake", "PA8 = \"what it is there\"");
+    let text = spoilt("PB12 = \"brake resistor\"", "PB12 = true");
+    refused(&text, "`PB12` in [never_driven] must say what the pin is there", "true", "as a string");
+    let text = spoilt("PB12 = \"brake resistor\"", "PB12 = \" \"");
+    refused(&text, "`PB12` in [never_driven] must say what the pin is there", "\" \"", "as a string");
+    let text = spoilt("PB12 = \"brake resistor\"", "PA8 = \"brake resistor\"");
+    refused(&text, "not TOML: duplicate key", "PA8", "leave one of the two out");
+}
+
+#[test]
+fn sections_and_keys_that_are_missing_are_named() {
+    for (section, hint) in [("memory", "flash_KiB"), ("clock", "source"), ("serial", "baud")] {
+        let text = GOOD.replace(&format!("[{section}]"), &format!("[other_{section}]"));
+        let problems = read(&text).expect_err("a section is missing");
+        let missing = problems.iter().find(|it| it.message == format!("the section [{section}] is missing"));
+        assert!(missing.expect("it is told").help.contains(hint));
+        assert!(problems.iter().any(|it| it.message == format!("unknown key `other_{section}` in a board file")));
+    }
+    let text = spoilt("baud = 230_400 # chosen\n", "");
+    refused(&text, "`baud` is missing from [serial]", "[serial]", "the speed that the host opens its port with");
+    let text = spoilt("on = \"low\"\n", "");
+    refused(&text, "`on` is missing from [light]", "[light]", "while the light shines");
+    let text = spoilt("name = \"bench.2-a\"\n", "");
+    refused(&text, "`name` is missing from the top of the file", "description = \"on the bench\"", "16");
+}
+
+#[test]
+fn keys_that_nobody_knows_are_told_what_was_meant() {
+    let text = spoilt("receive =", "recieve =");
+    let problems = read(&text).expect_err("the file is spoilt");
+    assert_eq!(problems.len(), 2, "{problems:#?}");
+    assert!(problems.iter().any(|it| it.help.contains("did you mean `receive`?")));
+    let text = spoilt("on = \"low\"\n", "on = \"low\"\nbaud = 1\n");
+    refused(&text, "unknown key `baud` in [light]", "baud", "it belongs in [serial]");
+    let text = spoilt("[never_driven]\n", "[never_driven]\n[gates]\n");
+    assert!(read(&text).expect_err("unknown")[0].message.contains("unknown key `gates`"));
+}
+
+#[test]
+fn values_of_another_type_are_refused() {
+    let text = spoilt("baud = 230_400", "baud = \"fast\"");
+    refused(&text, "`baud` must be a whole number, not a string", "\"fast\"", "230_400");
+    let text = spoilt("on = \"high\"", "on = true");
+    refused(&text, "`on` must be a string, not true or false", "true", "while the motor is on");
+    let text = spoilt("on = \"high\"", "on = \"up\"");
+    refused(&text, "`on` must be \"high\" or \"low\", not \"up\"", "\"up\"", "while the motor is on");
+    let text = spoilt("chip = \"STM32F405RG\"", "chip = 405");
+    refused(&text, "`chip` must be a string, not a whole number", "405", "order name");
+    let text = format!("light = \"PC12\"\n{}", GOOD.split_once("\n[light]").expect("it is there").0);
+    refused(&text, "`light` must be a section, not a string", "\"PC12\"", "[light]");
+}
+
+#[test]
+fn everything_that_is_wrong_is_told_at_once() {
+    let text =
+        spoilt("\"PA9\"", "\"PA2\"").replace("8_000_000", "14_745_600").replace("ram_KiB = 128", "ram_KiB = 192");
+    let text = text.replace("bench.2-a", "Bench");
+    let problems = read(&text).expect_err("the file is spoilt");
+    assert_eq!(problems.len(), 4, "{problems:#?}");
+    assert!(problems.is_sorted_by_key(|problem| problem.span.start));
+}
+
+#[test]
+fn a_file_without_a_known_chip_is_told_that_alone() {
+    let text = spoilt("\"STM32F405RG\"", "\"STM32F407VG\"").replace("\"USART1\"", "\"UART9\"");
+    assert!(only(&text).0.contains("STM32F407VG"));
+}
+
+#[test]
+fn text_that_is_no_board_file_is_refused_in_words() {
+    for text in ["", "\u{0}", "= 1", "[[serial]]", "name = ", "serial = [1]", "never_driven = 3"] {
+        assert!(!read(text).expect_err("no board").is_empty(), "{text:?}");
+    }
+}
+
+#[test]
+fn a_preset_cut_anywhere_is_read_or_refused_without_a_panic() {
+    let text = preset("odrive-3.6").expect("a preset");
+    for end in (0..text.len()).filter(|end| text.is_char_boundary(*end)).step_by(7) {
+        let _ = read(&text[..end]);
+    }
+}
+
+#[test]
+fn the_pin_that_is_read_as_boot0_is_warned_of() {
+    let text = with_chip("STM32G474RE", 512, 96).replace("PC12", "PB8");
+    let warnings = good(&text).warnings;
+    assert_eq!(warnings.len(), 1, "{warnings:#?}");
+    assert_eq!((warnings[0].severity, &text[warnings[0].span.clone()]), (Severity::Warning, "\"PB8\""));
+    assert!(warnings[0].help.contains("nSWBOOT0"));
+    // On the F405 that pin is a pin as any other.
+    assert_eq!(good(&spoilt("pin = \"PC12\"", "pin = \"PB8\"")).warnings, []);
+}

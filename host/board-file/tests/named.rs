@@ -1,0 +1,44 @@
+//! Boards that are named on a command line: file before preset, and errors that underline the place.
+#![cfg(feature = "diagnostics")]
+
+use std::path::Path;
+
+use board_file::named::load;
+use board_file::preset;
+
+#[test]
+fn a_preset_is_found_by_its_name() {
+    let loaded = load(Path::new("olimex-h405")).expect("a preset");
+    assert_eq!((loaded.name.as_str(), loaded.board.name.as_str()), ("olimex-h405", "olimex-h405"));
+    assert_eq!(Some(loaded.text.as_str()), preset("olimex-h405"));
+}
+
+#[test]
+fn a_file_is_read_and_its_problems_are_underlined() {
+    let folder = std::env::temp_dir().join(format!("board-file-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let path = folder.join("mine.toml");
+    let text = preset("olimex-h405").expect("a preset");
+    std::fs::write(&path, text.replace("olimex-h405\"", "mine\"")).expect("written");
+    assert_eq!(load(&path).expect("a board").board.name, "mine");
+    std::fs::write(&path, text.replace("\"PA9\"", "\"PA8\"")).expect("written");
+    let failure = load(&path).expect_err("PA8 does not send");
+    std::fs::remove_dir_all(&folder).expect("removed");
+    assert!(failure.message().contains("PA8 cannot be `send` of USART1"), "{failure:?}");
+    assert!(failure.full_help().is_some_and(|help| help.contains("PA9 or PB6")));
+    assert_eq!(failure.exit_code(), 2);
+}
+
+#[test]
+fn a_chip_is_told_the_boards_that_have_it() {
+    let failure = load(Path::new("stm32g431")).expect_err("a chip");
+    assert_eq!(failure.message(), "stm32g431 is a chip, not a board: pins differ from board to board");
+    assert!(failure.help().is_some_and(|help| help.contains("b-g431b-esc1")));
+}
+
+#[test]
+fn what_is_neither_is_told_the_presets() {
+    let failure = load(Path::new("no-such-board")).expect_err("nothing");
+    assert!(failure.message().contains("cannot read the board file no-such-board"), "{failure:?}");
+    assert!(failure.help().is_some_and(|help| help.contains("olimex-h405, nucleo-g474re")));
+}

@@ -1,6 +1,6 @@
 //! The board files that come with the program. Each carries the source of what it says.
 
-use crate::chip::Chip;
+use crate::chip::{Chip, Part};
 
 /// Names of the presets, the default first.
 pub const PRESETS: [&str; 9] = [
@@ -40,9 +40,10 @@ pub fn boards_with(chip: Chip) -> Vec<&'static str> {
     PRESETS.into_iter().filter(of).collect()
 }
 
-/// What is wrong with a chip's name where a board is wanted, and the help; `None` if it is no chip's name.
+/// What is wrong with a chip's name, or its order name, where a board is wanted, and the help; `None` if it is none.
 pub fn chip_in_place_of_board(name: &str) -> Option<(String, String)> {
-    let chip = Chip::of_name(name)?;
+    let part = || Part::of(&name.to_uppercase()).map(|part| part.chip);
+    let chip = Chip::of_name(&name.to_lowercase()).or_else(part)?;
     let boards = boards_with(chip);
     Some((
         format!("{name} is a chip, not a board: pins differ from board to board"),

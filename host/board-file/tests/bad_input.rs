@@ -420,6 +420,26 @@ fn a_preset_cut_anywhere_is_read_or_refused_without_a_panic() {
 }
 
 #[test]
+fn a_preset_with_lines_exchanged_is_read_or_refused_without_a_panic() {
+    // A linear congruential generator (Knuth's MMIX): any seed will do.
+    let mut state: u64 = 1;
+    let mut below = |count: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % count
+    };
+    let mut read_well = 0;
+    for _ in 0..2000 {
+        let [one, other] = [0, 1].map(|_| preset(board_file::PRESETS[below(9)]).expect("a preset"));
+        let mut lines: Vec<&str> = one.lines().collect();
+        let others: Vec<&str> = other.lines().collect();
+        lines[below(one.lines().count())] = others[below(others.len())];
+        read_well += usize::from(read(&lines.join("\n")).is_ok());
+    }
+    // Comments and lists of pins do no harm.
+    assert!((100..1900).contains(&read_well), "{read_well}");
+}
+
+#[test]
 fn the_pin_that_is_read_as_boot0_is_warned_of() {
     let text = with_chip("STM32G474RE", 512, 96).replace("PC12", "PB8");
     let warnings = good(&text).warnings;

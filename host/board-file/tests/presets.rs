@@ -205,7 +205,13 @@ fn a_chip_in_place_of_a_board_is_told_its_boards() {
     let (message, help) = chip_in_place_of_board("stm32f405").expect("a chip");
     assert_eq!(message, "stm32f405 is a chip, not a board: pins differ from board to board");
     assert!(help.contains("boards with it: olimex-h405, odrive-3.6, feather-f405, weact-f405, vesc-6"), "{help}");
-    assert_eq!(chip_in_place_of_board("olimex-h405"), None);
+    for name in ["STM32G431", "STM32G431CBU6", "stm32g431cb"] {
+        let (message, help) = chip_in_place_of_board(name).expect("a chip");
+        assert!(message.starts_with(name) && help.contains("boards with it: b-g431b-esc1;"), "{message}: {help}");
+    }
+    for name in ["olimex-h405", "stm32f405.toml", "boards/stm32f405", "stm32"] {
+        assert_eq!(chip_in_place_of_board(name), None, "{name}");
+    }
     for chip in Chip::ALL {
         assert!(!boards_with(chip).is_empty(), "{chip:?}");
         assert_eq!(model_core::gears::design::Processor::of_chip(chip.name()), Some(chip.processor()));

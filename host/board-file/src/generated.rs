@@ -79,7 +79,12 @@ pub fn rust_source(board: &Board) -> String {
         "[u32; 2]",
         format!("[{:#010x}, {:#010x}]", first.address, second.address),
     );
-    constant("So much of each is erased at once.", "SLOT_BYTES", "u32", first.bytes.min(second.bytes).to_string());
+    constant(
+        "So much of each may be used: no more than is erased at once.",
+        "SLOT_BYTES",
+        "u32",
+        first.bytes.min(second.bytes).to_string(),
+    );
     constant("Flash, that of the slots included.", "FLASH_BYTES", "u32", board.flash_bytes.to_string());
     constant("What an image may take of it.", "IMAGE_BYTES", "u32", board.image_bytes().to_string());
     constant("RAM.", "RAM_BYTES", "u32", board.ram_bytes.to_string());

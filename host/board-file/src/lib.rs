@@ -6,6 +6,8 @@
 //! firmware takes from it. A board that is read can be built for: pins, clock, speed of the line and memory have been held
 //! against its chip.
 
+#![allow(rustdoc::broken_intra_doc_links, reason = "units stand in brackets")]
+
 mod board;
 mod chip;
 mod generated;

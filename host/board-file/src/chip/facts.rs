@@ -46,7 +46,7 @@ pub(crate) struct Facts {
 pub struct Slot {
     /// Its first byte.
     pub address: u32,
-    /// So many bytes are erased at once.
+    /// What may be used of it: no more than is erased at once.
     pub bytes: u32,
 }
 

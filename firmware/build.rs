@@ -1,5 +1,6 @@
-//! Turns a joint file into the tables that the image carries, and tells the linker about the board's memory. The joint
-//! file is named by `JOINT_FILE` (default: `joints/q1.toml` of the workspace), the tick rate by `JOINT_TICK_RATE` in Hz
+//! Turns a board file into the constants that the image is built with and the memory that the linker knows, and a joint file into
+//! the tables that the image carries. The board file is named by `BOARD_FILE` (default: the preset of the chip whose feature is
+//! chosen), the joint file by `JOINT_FILE` (default: `joints/q1.toml` of the workspace), the tick rate by `JOINT_TICK_RATE` in Hz
 //! (default: 20000); what can be wrong with either is said as a build error. Roles that control are made for one control
 //! period a tick, for the bandwidth `JOINT_BANDWIDTH` in rad/s (default: 60), without an output encoder where
 //! `JOINT_MOTOR_ONLY` is 1, and from the joint file `JOINT_TOLD` if a controller is to be told another joint than the true
@@ -9,36 +10,79 @@
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
+use board_file::{Board, Chip};
 use model_core::controller::design::{ControlRequest, NominalPlant, control_source};
-use model_core::gears::design::Processor;
 
 const DEFAULT_TICK_RATE: u32 = 20_000;
 const DEFAULT_BANDWIDTH: f64 = 60.0;
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
-    link();
-    if let Err(message) = write_tables().and_then(|()| write_measured()) {
+    if let Err(message) = board().and_then(|board| {
+        link(&board)?;
+        write_tables(board.chip)?;
+        write_measured(board.chip)
+    }) {
         message.lines().for_each(|line| println!("cargo::error={line}"));
     }
 }
 
-/// Linker scripts, for a board only.
-fn link() {
+/// The board of this build; writes its constants.
+fn board() -> Result<Board, String> {
+    println!("cargo::rerun-if-env-changed=BOARD_FILE");
+    let chip = chip()?;
+    let file = match variable("BOARD_FILE") {
+        Some(file) => workspace().join(file),
+        None => {
+            let preset = board_file::boards_with(chip).first().copied().ok_or("no board file has this chip")?;
+            workspace().join("boards").join(preset).with_added_extension("toml")
+        }
+    };
+    println!("cargo::rerun-if-changed={}", file.display());
+    let text = fs::read_to_string(&file).map_err(|error| format!("board file {}: {error}", file.display()))?;
+    let board = board_file::read(&text).map_err(|problems| {
+        let list: Vec<_> = problems.iter().map(|problem| format!("{}: {problem}", file.display())).collect();
+        format!("{}\nrun `cargo joint board check {}` to see the places", list.join("\n"), file.display())
+    })?;
+    if board.chip != chip {
+        let (name, its) = (chip.name(), board.chip.name());
+        return Err(format!("{}: the board's chip is {its}, and the build is for {name}", file.display()));
+    }
+    write("board.rs", &board_file::rust_source(&board))?;
+    for (name, values) in board_file::all_cfgs() {
+        let values: Vec<String> = values.iter().map(|value| format!("{value:?}")).collect();
+        println!("cargo::rustc-check-cfg=cfg({name}, values({}))", values.join(", "));
+    }
+    println!("cargo::rustc-check-cfg=cfg(has_spi_slave)");
+    for (name, value) in board_file::cfgs(&board) {
+        println!("cargo::rustc-cfg={name}={value:?}");
+    }
+    if board.spi_slave.is_some() {
+        println!("cargo::rustc-cfg=has_spi_slave");
+    }
+    Ok(board)
+}
+
+/// Linker scripts, for a board only: its own memory first, under a name of its own, then that of the start-up code, which reads
+/// the workspace's `memory.x`.
+fn link(board: &Board) -> Result<(), String> {
     if variable("CARGO_CFG_TARGET_OS") != Some("none".into()) {
-        return;
+        return Ok(());
     }
     let root = workspace();
     println!("cargo::rerun-if-changed={}", root.join("memory.x").display());
     println!("cargo::rustc-link-search={}", root.display());
-    for argument in ["--nmagic", "-Tlink.x"] {
+    write("board.x", &board_file::linker_script(board))?;
+    let own = PathBuf::from(variable("OUT_DIR").ok_or("no OUT_DIR")?).join("board.x");
+    for argument in ["--nmagic".to_owned(), format!("-T{}", own.display()), "-Tlink.x".to_owned()] {
         println!("cargo::rustc-link-arg-bins={argument}");
         println!("cargo::rustc-link-arg-examples={argument}");
     }
     println!("cargo::rustc-link-arg-bins=-Tdefmt.x");
+    Ok(())
 }
 
-fn write_tables() -> Result<(), String> {
+fn write_tables(chip: Chip) -> Result<(), String> {
     println!("cargo::rerun-if-env-changed=JOINT_FILE");
     println!("cargo::rerun-if-env-changed=JOINT_TICK_RATE");
     let file = match variable("JOINT_FILE") {
@@ -46,15 +90,15 @@ fn write_tables() -> Result<(), String> {
         None => workspace().join("joints/q1.toml"),
     };
     println!("cargo::rerun-if-changed={}", file.display());
-    write("tables.rs", &source(&file, tick_rate()?)?)?;
+    write("tables.rs", &source(&file, tick_rate()?, chip)?)?;
     println!("cargo::rerun-if-env-changed=JOINT_TOLD");
     let told = variable("JOINT_TOLD").map_or(file.clone(), |told| workspace().join(told));
     println!("cargo::rerun-if-changed={}", told.display());
-    write("control.rs", &control(&file, &told)?)
+    write("control.rs", &control(&file, &told, chip)?)
 }
 
 /// Tables of the roles that control. A joint that cannot be controlled can still be simulated: only their binaries fail.
-fn control(file: &Path, told: &Path) -> Result<String, String> {
+fn control(file: &Path, told: &Path, chip: Chip) -> Result<String, String> {
     println!("cargo::rerun-if-env-changed=JOINT_BANDWIDTH");
     println!("cargo::rerun-if-env-changed=JOINT_MOTOR_ONLY");
     let bandwidth = match variable("JOINT_BANDWIDTH") {
@@ -66,14 +110,14 @@ fn control(file: &Path, told: &Path) -> Result<String, String> {
     let (mut joint, mut nominal_joint) = (read(file)?, read(told)?);
     [&mut joint, &mut nominal_joint].into_iter().for_each(|joint| joint.surroundings.control_rate = tick_rate);
     let nominal = NominalPlant { joint: &nominal_joint.parameters, surroundings: &nominal_joint.surroundings, request };
-    match control_source(&joint.parameters, &joint.surroundings, &nominal, &processor()?) {
+    match control_source(&joint.parameters, &joint.surroundings, &nominal, &chip.processor()) {
         Ok(source) => Ok(source.text),
         Err(error) => Ok(format!("compile_error!({:?});\n", format!("{}: {error}", told.display()))),
     }
 }
 
 /// Modules `joint_0`, `joint_1`, ... and `visit`, which shows their tables in this order.
-fn write_measured() -> Result<(), String> {
+fn write_measured(chip: Chip) -> Result<(), String> {
     if variable("CARGO_FEATURE_MEASURING").is_none() {
         return Ok(());
     }
@@ -83,7 +127,7 @@ fn write_measured() -> Result<(), String> {
     let files = env::var_os("MEASURED_JOINTS").unwrap_or_default();
     for (index, file) in env::split_paths(&files).filter(|file| !file.as_os_str().is_empty()).enumerate() {
         println!("cargo::rerun-if-changed={}", file.display());
-        let source = source(&file, tick_rate()?)?;
+        let source = source(&file, tick_rate()?, chip)?;
         modules += &format!("mod joint_{index} {{\n{source}}}\n");
         visits += &format!("    visitor.joint(joint_{index}::JOINT_NAME, black_box(&joint_{index}::TABLES));\n");
     }
@@ -93,9 +137,9 @@ fn write_measured() -> Result<(), String> {
 }
 
 /// The tables of a joint file, as a module's text.
-fn source(file: &Path, tick_rate: u32) -> Result<String, String> {
+fn source(file: &Path, tick_rate: u32, chip: Chip) -> Result<String, String> {
     let joint = read(file)?;
-    model_core::gears::design::rust_source_for(&joint.parameters, tick_rate, &processor()?)
+    model_core::gears::design::rust_source_for(&joint.parameters, tick_rate, &chip.processor())
         .map_err(|error| format!("{}: {error}", file.display()))
 }
 
@@ -107,12 +151,11 @@ fn read(file: &Path) -> Result<joint_file::JointFile, String> {
     })
 }
 
-/// What the board of this build has time for.
-fn processor() -> Result<Processor, String> {
-    let boards = ["stm32f405", "stm32g474", "stm32h743"];
-    let chosen = |board: &&str| variable(&format!("CARGO_FEATURE_{}", board.to_uppercase())).is_some();
-    let board = boards.into_iter().find(chosen).ok_or_else(|| format!("no board: want a feature of {boards:?}"))?;
-    Processor::of_board(board).ok_or_else(|| format!("{board} is not known to the design"))
+/// The chip of this build.
+fn chip() -> Result<Chip, String> {
+    let chosen = |chip: &Chip| variable(&format!("CARGO_FEATURE_{}", chip.name().to_uppercase())).is_some();
+    let names = Chip::ALL.map(Chip::name);
+    Chip::ALL.into_iter().find(chosen).ok_or_else(|| format!("no chip: want a feature of {names:?}"))
 }
 
 fn tick_rate() -> Result<u32, String> {

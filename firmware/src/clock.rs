@@ -7,14 +7,14 @@ use core::sync::atomic::Ordering::Relaxed;
 use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m::peripheral::{SCB, SYST};
 
-use crate::board::{Board, ThisBoard};
+use crate::board::CORE_RATE;
 use crate::tables::TABLES;
 use crate::timing_monitor::TickTimer;
 
 /// Timer counts between two ticks.
-pub const PERIOD: u32 = ThisBoard::CORE_RATE / TABLES.tick_rate;
+pub const PERIOD: u32 = CORE_RATE / TABLES.tick_rate;
 
-const _: () = assert!(PERIOD * TABLES.tick_rate == ThisBoard::CORE_RATE, "the tick rate must divide the core clock");
+const _: () = assert!(PERIOD * TABLES.tick_rate == CORE_RATE, "the tick rate must divide the core clock");
 const _: () = assert!(PERIOD <= 1 << 24, "SysTick has 24 bits");
 
 /// Ticks since power-up.

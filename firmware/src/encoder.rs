@@ -28,6 +28,12 @@ pub enum EncoderFault {
     Parity,
     /// The encoder reports an error; its error register as far as it is known.
     Reported(u16),
+    /// The magnet's field is too weak: too far away, or the wrong magnet.
+    MagnetTooWeak,
+    /// The magnet's field is too strong: too near.
+    MagnetTooStrong,
+    /// There is no magnet, or nothing that turns before the encoder.
+    MagnetLost,
     /// No angle was asked for in the tick before: the next one brings it.
     Pending,
 }
@@ -39,6 +45,11 @@ impl fmt::Display for EncoderFault {
             Self::Missing => formatter.write_str("no encoder answers: look at its supply, chip select and data line"),
             Self::Parity => formatter.write_str("the encoder's answer has a wrong parity: shorten the line or slow it"),
             Self::Reported(flags) => write!(formatter, "the encoder reports an error (register {flags:#06x})"),
+            Self::MagnetTooWeak => formatter.write_str("the encoder's magnet is too weak: bring it nearer"),
+            Self::MagnetTooStrong => formatter.write_str("the encoder's magnet is too strong: move it away"),
+            Self::MagnetLost => {
+                formatter.write_str("the encoder sees no magnet: look whether it is still in its place")
+            }
             Self::Pending => formatter.write_str("the encoder has not been asked for an angle yet"),
         }
     }

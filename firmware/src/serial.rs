@@ -125,8 +125,12 @@ impl<U: Uart> Serial<'_, U> {
     }
 
     fn receive(&mut self) {
+        let mut more = true;
         for _ in 0..BURST {
-            let Some(byte) = self.uart.read() else { break };
+            let Some(byte) = self.uart.read() else {
+                more = false;
+                break;
+            };
             if let Some(frame) = self.scanner.push(byte) {
                 self.heard.hear(ToBoard::is_stop(frame));
             }
@@ -134,6 +138,10 @@ impl<U: Uart> Serial<'_, U> {
         }
         if self.uart.overran() {
             self.heard.lose();
+        }
+        if more {
+            // Where bytes wait elsewhere than in the UART, none of them interrupts.
+            self.uart.interrupt_again();
         }
     }
 

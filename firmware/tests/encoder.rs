@@ -29,8 +29,24 @@ fn encoder(frames: &[(u16, u16)]) -> As5047p<Mock<u8>> {
     As5047p::new(Mock::new(&transactions.collect::<Vec<_>>()))
 }
 
-/// What a read in every tick gives; the clock goes on by ten in a tick.
+/// Diagnostics of a good magnet: ready, the gain in its middle.
+const WELL: u16 = 0x0180;
+
+/// What a read in every tick gives, once the encoder was found well; the clock goes on by ten in a tick.
 fn reads(frames: &[(u16, u16)], ticks: u32) -> Vec<Result<Reading, EncoderFault>> {
+    let first = [(ANGLE, 0), (ANGLE, answer(1)), (DIAGNOSTICS, answer(1)), (ANGLE, answer(WELL))];
+    // What the first of these frames answers was asked for before.
+    let mut encoder = encoder(&[&first[..], &frames[1..]].concat());
+    assert_eq!(encoder.read(0), Err(EncoderFault::Pending));
+    assert_eq!(encoder.read(0), Ok(Reading { counts: 1, time: 0 }));
+    let mut list = vec![Err(EncoderFault::Pending)];
+    list.extend((1..ticks).map(|tick| encoder.read(10 * tick)));
+    encoder.release().done();
+    list
+}
+
+/// The same from the first read on.
+fn first_reads(frames: &[(u16, u16)], ticks: u32) -> Vec<Result<Reading, EncoderFault>> {
     let mut encoder = encoder(frames);
     let list = (0..ticks).map(|tick| encoder.read(10 * tick)).collect();
     encoder.release().done();
@@ -97,4 +113,24 @@ fn a_reading_is_given_the_time_of_its_own_asking_after_a_fault_too() {
     let frames = [(ANGLE, 0), (ANGLE, answer(5) ^ 1), (ANGLE, answer(6))];
     let expected = [Err(EncoderFault::Pending), Err(EncoderFault::Parity), Ok(Reading { counts: 6, time: 10 })];
     assert_eq!(reads(&frames, 3), expected);
+}
+
+#[test]
+fn a_magnet_that_is_too_weak_too_strong_or_gone_is_told_by_name_until_it_is_well() {
+    let cases = [
+        (0x0980 | 0x7f, EncoderFault::MagnetTooWeak),
+        (0x0500, EncoderFault::MagnetTooStrong),
+        (0x0aff, EncoderFault::MagnetLost),
+        (0x08ff, EncoderFault::MagnetLost),
+        (0x0380, EncoderFault::MagnetLost),
+    ];
+    for (diagnostics, fault) in cases {
+        let angle = (ANGLE, answer(7));
+        let look = |found: u16| vec![angle, (DIAGNOSTICS, answer(7)), (ANGLE, answer(found))];
+        // Found at the first look, gone at the next, which comes 256 readings later.
+        let frames = [vec![(ANGLE, 0)], look(diagnostics), vec![angle; 255], look(WELL), vec![angle]].concat();
+        let list = first_reads(&frames, 1 + 256 + 2);
+        assert!(list[1..257].iter().all(|read| *read == Err(fault)), "{diagnostics:#x}");
+        assert!(list[257..].iter().all(|read| matches!(read, Ok(Reading { counts: 7, .. }))), "{diagnostics:#x}");
+    }
 }

@@ -8,7 +8,7 @@ mod motion;
 mod statistics;
 
 use heapless::Vec;
-pub use identity::{Clock, Hello, Role};
+pub use identity::{Clock, ClockSource, Hello, Role};
 pub use memory::{MEMORY_PARTS, MemoryOutcome, MemoryPart, MemoryRequest, MemoryState, PART_BYTES};
 use model_core::virtual_joint::fault::{Fault, FixedPoint};
 pub use motion::{MAX_MESHES, SAMPLES_PER_BATCH, Sample, SampleBatch};

@@ -1,4 +1,5 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
+#![allow(unsafe_op_in_unsafe_fn, reason = "the framework writes its tasks so")]
 //! Role `plant`: the board simulates the joint; torques in, motion out. The application is that of every role, the work is
 //! in the library.
 

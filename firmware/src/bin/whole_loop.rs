@@ -1,4 +1,5 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
+#![allow(unsafe_op_in_unsafe_fn, reason = "the framework writes its tasks so")]
 //! Role `loop`: joint, motor, observer and compensation on one chip; a trajectory in, samples of the motion out. The application
 //! is that of every role, the work is in the library.
 

@@ -1,25 +1,51 @@
-//! SPI2 of STM32G474 as a slave whose bytes are moved by DMA: mode 0, 8 bits, chip select by the master's hand. SPI1 would
-//! have its clock where the NUCLEO board has its light.
+//! The SPI of STM32G4 as a slave whose bytes are moved by DMA: mode 0, 8 bits, chip select by the master's hand. Times of the
+//! port are stated for a clock of 21 MHz; which unit it is, and its pins, the board's file says.
 //!
-//! | use | pin | |
-//! |---|---|---|
-//! | chip select | PB12 | low during a transfer; its rising edge is the interrupt EXTI15_10 |
-//! | clock | PB13 | 21 MHz, as the times of the port are stated for |
-//! | to the master | PB14 | DMA1 channel 2 |
-//! | from the master | PB15 | DMA1 channel 1 |
-//!
-//! It runs on a model of the board's registers (`board-model`); it has not been run on silicon.
+//! It runs on a model of the chip's registers (`board-model`); it has not been run on silicon.
 
 use super::bounded_wait::wait_until;
 use super::dma_slave::Unit;
+use super::gpio::Pin;
 use super::pac;
 use crate::port::spi::FRAME_BYTES;
+
+/// Registers, requests and clock of each unit.
+macro_rules! units {
+    ($($name:literal => $spi:ident, $gates:ident, $gate:ident, $resets:ident, $reset:ident, $receives:literal, $sends:literal;)+) => {$(
+        #[cfg(spi_slave = $name)]
+        mod unit {
+            use super::pac;
+
+            pub type Spi = pac::$spi;
+            /// What the multiplexer calls its requests.
+            pub const RECEIVES: u32 = $receives;
+            pub const SENDS: u32 = $sends;
+
+            /// The unit with its clock on.
+            pub fn take(clocks: &pac::RCC) -> Spi {
+                clocks.$gates().modify(|_, w| w.$gate().set_bit());
+                // SAFETY: asked for once, at the start; nobody else has the unit in hand.
+                unsafe { Spi::steal() }
+            }
+
+            pub fn reset(clocks: &pac::RCC) {
+                clocks.$resets().modify(|_, w| w.$reset().set_bit());
+                clocks.$resets().modify(|_, w| w.$reset().clear_bit());
+            }
+        }
+    )+};
+}
+
+units! {
+    "spi1" => SPI1, apb2enr, spi1en, apb2rstr, spi1rst, 10, 11;
+    "spi2" => SPI2, apb1enr1, spi2en, apb1rstr1, spi2rst, 12, 13;
+    "spi3" => SPI3, apb1enr1, spi3en, apb1rstr1, spi3rst, 14, 15;
+}
+use unit::Spi;
 
 /// Channels of DMA1, counted from 0.
 const RECEIVING: usize = 0;
 const SENDING: usize = 1;
-/// What the multiplexer calls the requests of SPI2.
-const REQUESTS: [(usize, u32); 2] = [(RECEIVING, 12), (SENDING, 13)];
 /// Addresses in memory rise.
 const MEMORY_RISES: u32 = 1 << 7;
 /// From memory to the peripheral.
@@ -27,18 +53,18 @@ const OUTWARDS: u32 = 1 << 4;
 const ENABLE: u32 = 1;
 /// All flags of channels 1 and 2.
 const FLAGS: u32 = 0xff;
-/// The line of the chip select.
-const LINE: u32 = 1 << 12;
 
-/// SPI2 and two channels of DMA1.
-pub struct Spi2 {
-    spi: pac::SPI2,
+/// The unit and two channels of DMA1.
+pub struct ChannelSpi {
+    spi: Spi,
     dma: pac::DMA1,
     exti: pac::EXTI,
-    rcc: pac::RCC,
+    clocks: pac::RCC,
+    /// The line of the chip select.
+    line: u32,
 }
 
-impl Spi2 {
+impl ChannelSpi {
     /// Stops a channel; what it has begun it ends.
     fn end(&self, channel: usize) {
         let control = self.dma.ch(channel).cr();
@@ -61,42 +87,38 @@ impl Spi2 {
     }
 }
 
-impl Unit for Spi2 {
-    fn start(device: pac::Peripherals) -> Self {
-        let pac::Peripherals {
-            SPI2: spi,
-            DMA1: dma,
-            DMAMUX: requests,
-            EXTI: exti,
-            RCC: rcc,
-            GPIOB: gpio,
-            SYSCFG: syscfg,
-            ..
-        } = device;
-        rcc.ahb1enr().modify(|_, w| w.dma1en().set_bit().dmamux1en().set_bit());
-        rcc.apb1enr1().modify(|_, w| w.spi2en().set_bit());
-        rcc.apb2enr().modify(|_, w| w.syscfgen().set_bit());
-        gpio.afrh().modify(|_, w| w.afrh12().af5().afrh13().af5().afrh14().af5().afrh15().af5());
-        // At the speed after a reset the answer's edges would take longer than a bit.
-        gpio.ospeedr().modify(|_, w| w.ospeedr14().very_high_speed());
-        gpio.moder()
-            .modify(|_, w| w.moder12().alternate().moder13().alternate().moder14().alternate().moder15().alternate());
-        for (channel, request) in REQUESTS {
+impl Unit for ChannelSpi {
+    fn start(device: pac::Peripherals, select: Pin) -> Self {
+        let pac::Peripherals { DMA1: dma, DMAMUX: requests, EXTI: exti, RCC: clocks, SYSCFG: syscfg, .. } = device;
+        clocks.ahb1enr().modify(|_, w| w.dma1en().set_bit().dmamux1en().set_bit());
+        clocks.apb2enr().modify(|_, w| w.syscfgen().set_bit());
+        let spi = unit::take(&clocks);
+        for (channel, request) in [(RECEIVING, unit::RECEIVES), (SENDING, unit::SENDS)] {
             // SAFETY: a channel that is off may have any request.
             requests.ccr(channel).write(|w| unsafe { w.bits(request) });
         }
-        // SAFETY: line 12 is that of port B (1); lines 13 to 15 are not used.
-        syscfg.exticr4().write(|w| unsafe { w.bits(1) });
+        let line = 1 << select.number;
+        let (port, shift) = (u32::from(select.port), 4 * u32::from(select.number % 4));
+        let to_port = |bits: u32| bits & !(0xf << shift) | port << shift;
+        // SAFETY: of the register only the field of this line changes, to the port of the chip select.
+        unsafe {
+            match select.number / 4 {
+                0 => syscfg.exticr1().modify(|r, w| w.bits(to_port(r.bits()))),
+                1 => syscfg.exticr2().modify(|r, w| w.bits(to_port(r.bits()))),
+                2 => syscfg.exticr3().modify(|r, w| w.bits(to_port(r.bits()))),
+                _ => syscfg.exticr4().modify(|r, w| w.bits(to_port(r.bits()))),
+            };
+        }
         // SAFETY: every line may have an edge and an interrupt.
-        exti.rtsr1().modify(|r, w| unsafe { w.bits(r.bits() | LINE) });
+        exti.rtsr1().modify(|r, w| unsafe { w.bits(r.bits() | line) });
         // SAFETY: likewise.
-        exti.imr1().modify(|r, w| unsafe { w.bits(r.bits() | LINE) });
-        Self { spi, dma, exti, rcc }
+        exti.imr1().modify(|r, w| unsafe { w.bits(r.bits() | line) });
+        Self { spi, dma, exti, clocks, line }
     }
 
     fn acknowledge(&mut self) {
         // SAFETY: a one takes back this line's request.
-        self.exti.pr1().write(|w| unsafe { w.bits(LINE) });
+        self.exti.pr1().write(|w| unsafe { w.bits(self.line) });
     }
 
     fn missing(&self) -> u16 {
@@ -104,15 +126,17 @@ impl Unit for Spi2 {
     }
 
     fn overran(&self) -> bool {
-        let status = self.spi.sr().read();
-        status.ovr().bit_is_set() || self.missing() == 0 && status.rxne().bit_is_set()
+        self.spi.sr().read().ovr().bit_is_set()
+    }
+
+    fn has_byte(&self) -> bool {
+        self.spi.sr().read().rxne().bit_is_set()
     }
 
     fn stop(&mut self) {
         self.end(RECEIVING);
         self.end(SENDING);
-        self.rcc.apb1rstr1().modify(|_, w| w.spi2rst().set_bit());
-        self.rcc.apb1rstr1().modify(|_, w| w.spi2rst().clear_bit());
+        unit::reset(&self.clocks);
     }
 
     fn begin(&mut self, received: u32, sent: u32) {

@@ -1,20 +1,23 @@
 //! The newer USART of the STM32 families, with FIFOs (G4: 8 bytes, H7: 16) that outlast the tick at full speed. Pins
 //! and clock are set up by the board.
 
-use super::serial_usart::{UsartRegisters, wake};
+use super::serial_unit::{Registers, wake};
 use crate::serial::Uart;
+
+/// Nothing to look for: what is received raises its interrupt.
+pub fn look() {}
 
 /// A USART with its FIFOs on.
 pub struct FifoUart {
-    registers: UsartRegisters,
+    registers: Registers,
     overran: bool,
 }
 
 impl FifoUart {
     /// Opens it: 8 data bits, no parity, one stop bit.
-    pub fn open(registers: UsartRegisters, clock: u32, baud_rate: u32) -> Self {
+    pub fn open(registers: Registers, clock: u32, baud_rate: u32) -> Self {
         // SAFETY: the quotient is a valid divider for 16-fold oversampling.
-        registers.brr().write(|w| unsafe { w.bits(clock / baud_rate) });
+        registers.brr().write(|w| unsafe { w.bits((clock + baud_rate / 2) / baud_rate) });
         registers.cr1().write(|w| w.fifoen().set_bit().te().set_bit().re().set_bit().rxneie().set_bit());
         registers.cr1().modify(|_, w| w.ue().set_bit());
         Self { registers, overran: false }

@@ -1,14 +1,8 @@
-//! STM32H743 at 400 MHz from the 8 MHz that the ST-LINK supplies: the board NUCLEO-H743ZI.
-//!
-//! | use | pin | |
-//! |---|---|---|
-//! | serial to the host | PD8 out, PD9 in | USART3, the board's ST-LINK port, 921600 8N1 |
-//! | motor enable | PC8 | high: on |
-//! | status light | PB0 | the board's green light, on when high |
+//! STM32H743 at 400 MHz.
 //!
 //! What the observer has learnt is kept in the first two sectors of the second bank.
 //!
-//! The image runs on a model of the board's registers (`board-model`); it has not been run on silicon.
+//! The images run on a model of the chip's registers (`board-model`); they have not been run on silicon.
 
 pub use stm32h7::stm32h743 as pac;
 
@@ -16,59 +10,45 @@ use core::arch::asm;
 
 use cortex_m::asm::{dsb, isb};
 use cortex_m::peripheral::SCB;
-use link::messages::Clock;
+use link::messages::{Clock, ClockSource};
 
 use super::bounded_wait::wait_until;
+use super::chip::{Chip, Parts};
+use super::description::{EXTERNAL, EXTERNAL_PLL, INTERNAL_PLL, SLOTS};
+use super::external_clock::{CaptureTimer, External, Internal, judged, measure};
 use super::fifo_uart::FifoUart;
 use super::flash_slots::{Flash, FlashSlots};
-use super::output::{Output, ports};
-use super::{Board, Started, Watchdog, serial_usart};
+use super::serial_unit;
 use crate::kept_memory::Slot;
 
-const BAUD_RATE: u32 = 921_600;
-/// Clock of USART3 once the PLL runs: a quarter of the core clock.
-const USART_CLOCK: u32 = 100_000_000;
-/// Core and USART clock while no PLL runs.
-const INTERNAL_CLOCK: u32 = 64_000_000;
-
-/// This board.
+/// This chip.
 pub struct Stm32H743;
 
-impl Board for Stm32H743 {
-    const NAME: &'static str = "stm32h743";
-    const CORE_RATE: u32 = 400_000_000;
-    type Enable = Output<pac::GPIOC, 8>;
-    type Light = Output<pac::GPIOB, 0>;
+impl Chip for Stm32H743 {
+    /// Exact to that from -40 to 105 degrees.
+    const INTERNAL: Internal = Internal { rate: 64_000_000, tolerance: 20_000 };
     type Port = FifoUart;
     type Slots = FlashSlots<SecondBank>;
 
-    fn start(device: pac::Peripherals, core: &mut cortex_m::Peripherals) -> Started<Self> {
+    fn start(device: pac::Peripherals, core: &mut cortex_m::Peripherals) -> Parts<Self> {
         core.SCB.enable_icache();
         core.SCB.enable_dcache(&mut core.CPUID);
-        let clock = start_clock(&device.RCC, &device.PWR, &device.FLASH);
+        let clock = start_clock(&device.RCC, &device.PWR, &device.FLASH, &device.TIM17);
         let watchdog_reset = device.RCC.rsr().read().iwdg1rstf().bit_is_set();
         device.RCC.rsr().modify(|_, w| w.rmvf().set_bit());
-        device.RCC.ahb4enr().modify(|_, w| w.gpioben().set_bit().gpiocen().set_bit().gpioden().set_bit());
-        device.RCC.apb1lenr().modify(|_, w| w.usart3en().set_bit());
-        device.GPIOD.afrh().modify(|_, w| w.afr8().af7().afr9().af7());
-        device.GPIOD.pupdr().modify(|_, w| w.pupdr9().pull_up());
-        device.GPIOD.moder().modify(|_, w| w.moder8().alternate().moder9().alternate());
-        device.GPIOC.moder().modify(|_, w| w.moder8().output());
-        device.GPIOB.moder().modify(|_, w| w.moder0().output());
-        let usart_clock = if clock == Clock::Failed { INTERNAL_CLOCK } else { USART_CLOCK };
-        Started {
-            clock,
-            enable: Output::new(device.GPIOC),
-            light: Output::new(device.GPIOB),
-            port: FifoUart::open(device.USART3, usart_clock, BAUD_RATE),
-            slots: FlashSlots::new(SecondBank::watch_supply(device.FLASH, device.PWR)),
-            watchdog: Watchdog::start(device.IWDG),
-            watchdog_reset,
-        }
+        // The watchdog waits while a debugger halts the core.
+        device.DBGMCU.apb4fz1().modify(|_, w| w.dbg_iwdg1().set_bit());
+        let slots = FlashSlots::new(SecondBank::watch_supply(device.FLASH, device.PWR));
+        Parts { clock, slots, watchdog: device.IWDG, watchdog_reset, clocks: device.RCC }
     }
 
-    fn wake_serial() {
-        serial_usart::wake();
+    fn power_port(clocks: &pac::RCC, port: u8) {
+        // SAFETY: the chip has this port.
+        clocks.ahb4enr().modify(|r, w| unsafe { w.bits(r.bits() | 1 << port) });
+    }
+
+    fn open_port(clocks: &pac::RCC, clock: u32, baud_rate: u32) -> FifoUart {
+        FifoUart::open(serial_unit::take(clocks), clock, baud_rate)
     }
 }
 
@@ -95,7 +75,7 @@ const GO_ON: u32 = 1 << 8;
 const DOUBLE_ERROR: u32 = 1 << 26;
 
 impl Flash for SecondBank {
-    const SLOTS: [usize; 2] = [0x0810_0000, 0x0812_0000];
+    const SLOTS: [usize; 2] = [SLOTS[0] as usize, SLOTS[1] as usize];
     const TOGETHER: usize = 8;
 
     fn is_locked(&self) -> bool {
@@ -161,52 +141,68 @@ impl Flash for SecondBank {
     }
 }
 
-/// 400 MHz by PLL 1 at voltage scale 1: from the ST-LINK's clock, else from the internal oscillator. Buses run at
-/// 200 MHz, peripherals at 100 MHz.
-fn start_clock(rcc: &pac::RCC, power: &pac::PWR, flash: &pac::FLASH) -> Clock {
-    if rcc.cr().read().hsirdy().bit_is_clear() {
-        return Clock::NotModelled;
+/// 400 MHz by PLL 1 at voltage scale 1: from what drives the clock from outside, if that is what the board's file says, else from
+/// the internal oscillator. Buses run at 200 MHz, peripherals at 100 MHz.
+fn start_clock(clocks: &pac::RCC, power: &pac::PWR, flash: &pac::FLASH, timer: &CaptureTimer) -> Clock {
+    if clocks.cr().read().hsirdy().bit_is_clear() {
+        return Clock::of(ClockSource::NotModelled);
     }
     power.cr3().modify(|_, w| w.scuen().set_bit().ldoen().set_bit().bypass().clear_bit());
     if !wait_until(|| power.csr1().read().actvosrdy().bit_is_set()) {
-        return Clock::Failed;
+        return Clock::of(ClockSource::Failed);
     }
     // SAFETY: 3 stands for scale 1.
     power.d3cr().modify(|_, w| unsafe { w.vos().bits(3) });
     if !wait_until(|| power.d3cr().read().vosrdy().bit_is_set()) {
-        return Clock::Failed;
+        return Clock::of(ClockSource::Failed);
     }
-    rcc.cr().modify(|_, w| w.hsebyp().set_bit());
-    rcc.cr().modify(|_, w| w.hseon().set_bit());
-    let external = wait_until(|| rcc.cr().read().hserdy().bit_is_set());
-    if !external {
-        rcc.cr().modify(|_, w| w.hseon().clear_bit());
-    }
-    // Both give the PLL 4 MHz, 800 MHz inside, 400 MHz out.
-    rcc.pllckselr().modify(|_, w| match external {
-        true => w.pllsrc().hse().divm1().set(2),
-        false => w.pllsrc().hsi().divm1().set(16),
+    let external = EXTERNAL.map(|(frequency, is_signal)| {
+        clocks.cr().modify(|_, w| w.hsebyp().bit(is_signal));
+        clocks.cr().modify(|_, w| w.hseon().set_bit());
+        let started = wait_until(|| clocks.cr().read().hserdy().bit_is_set());
+        External { frequency, is_signal, measured: started.then(|| measured(clocks, timer, frequency)) }
     });
-    rcc.pllcfgr().modify(|_, w| w.pll1vcosel().wide_vco().pll1rge().range4().divp1en().enabled());
-    // SAFETY: the register holds factor - 1, within the range of the reference manual.
-    rcc.pll1divr().modify(|_, w| unsafe { w.divn1().bits(200 - 1) }.divp1().div2());
-    rcc.cr().modify(|_, w| w.pll1on().set_bit());
-    if !wait_until(|| rcc.cr().read().pll1rdy().bit_is_set()) {
-        return Clock::Failed;
+    let clock = judged(external, &Stm32H743::INTERNAL);
+    let is_external = clock.source.is_external();
+    if !is_external {
+        clocks.cr().modify(|_, w| w.hseon().clear_bit());
+    }
+    let (divider, factor, range) = EXTERNAL_PLL.filter(|_| is_external).unwrap_or(INTERNAL_PLL);
+    clocks.pllckselr().modify(|_, w| {
+        let w = if is_external { w.pllsrc().hse() } else { w.pllsrc().hsi() };
+        w.divm1().set(divider as u8)
+    });
+    clocks.pllcfgr().modify(|_, w| w.pll1vcosel().wide_vco().pll1rge().set(range as u8).divp1en().enabled());
+    // SAFETY: the register holds factor - 1; the build has held the factor against the range of the reference manual.
+    clocks.pll1divr().modify(|_, w| unsafe { w.divn1().bits(factor as u16 - 1) }.divp1().div2());
+    clocks.cr().modify(|_, w| w.pll1on().set_bit());
+    if !wait_until(|| clocks.cr().read().pll1rdy().bit_is_set()) {
+        return Clock::of(ClockSource::Failed);
     }
     // SAFETY: two wait states, as the reference manual asks for 200 MHz at scale 1.
     flash.acr().modify(|_, w| unsafe { w.latency().bits(2).wrhighfreq().bits(2) });
     if !wait_until(|| flash.acr().read().latency().bits() == 2) {
-        return Clock::Failed;
+        return Clock::of(ClockSource::Failed);
     }
-    rcc.d1cfgr().modify(|_, w| w.d1cpre().div1().hpre().div2().d1ppre().div2());
-    rcc.d2cfgr().modify(|_, w| w.d2ppre1().div2().d2ppre2().div2());
-    rcc.d3cfgr().modify(|_, w| w.d3ppre().div2());
-    rcc.cfgr().modify(|_, w| w.sw().pll1());
-    if !wait_until(|| rcc.cfgr().read().sws().is_pll1()) {
-        return Clock::Failed;
+    clocks.d1cfgr().modify(|_, w| w.d1cpre().div1().hpre().div2().d1ppre().div2());
+    clocks.d2cfgr().modify(|_, w| w.d2ppre1().div2().d2ppre2().div2());
+    clocks.d3cfgr().modify(|_, w| w.d3ppre().div2());
+    clocks.cfgr().modify(|_, w| w.sw().pll1());
+    if !wait_until(|| clocks.cfgr().read().sws().is_pll1()) {
+        return Clock::of(ClockSource::Failed);
     }
-    if external { Clock::External } else { Clock::InternalFallback }
+    clock
 }
 
-ports!(pac::GPIOB, pac::GPIOC);
+/// The external clock [Hz]: timer 17 sees it divided to 1 MHz, if it is what the board's file says.
+fn measured(clocks: &pac::RCC, timer: &CaptureTimer, frequency: u32) -> u32 {
+    let divider = frequency / 1_000_000;
+    // SAFETY: the division for the clock of the time of day, 63 at most, which nothing else uses.
+    clocks.cfgr().modify(|_, w| unsafe { w.rtcpre().bits(divider as u8) });
+    clocks.apb2enr().modify(|_, w| w.tim17en().set_bit());
+    // SAFETY: the timer's input is the divided external clock (2).
+    timer.tim17_tisel().write(|w| unsafe { w.bits(2) });
+    let measured = measure(timer, divider, &Stm32H743::INTERNAL);
+    clocks.apb2enr().modify(|_, w| w.tim17en().clear_bit());
+    measured
+}

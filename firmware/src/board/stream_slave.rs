@@ -1,41 +1,71 @@
-//! SPI1 of STM32F405 as a slave whose bytes are moved by DMA: mode 0, 8 bits, chip select by the master's hand.
-//!
-//! | use | pin | |
-//! |---|---|---|
-//! | chip select | PA4 | low during a transfer; its rising edge is the interrupt EXTI4 |
-//! | clock | PA5 | at most 42 MHz by the chip, 21 MHz where wires are long |
-//! | to the master | PA6 | DMA2 stream 3, channel 3 |
-//! | from the master | PA7 | DMA2 stream 0, channel 3 |
+//! The SPI of STM32F405 as a slave whose bytes are moved by DMA: mode 0, 8 bits, chip select by the master's hand. The chip
+//! takes a clock of 42 MHz at most, 21 MHz where wires are long; which unit it is, and its pins, the board's file says.
 
 use super::bounded_wait::wait_until;
 use super::dma_slave::Unit;
+use super::gpio::Pin;
 use super::pac;
 use crate::port::spi::FRAME_BYTES;
 
-/// Streams of DMA2.
-const RECEIVING: usize = 0;
-const SENDING: usize = 3;
-/// Channel of SPI1 in both, in the stream's register.
-const CHANNEL: u32 = 3 << 25;
+/// Registers, DMA and clock of each unit.
+macro_rules! units {
+    ($($name:literal => $spi:ident, $gates:ident, $gate:ident, $resets:ident, $reset:ident, $dma:ident, $dma_gate:ident,
+        $receiving:literal, $sending:literal, $channel:literal;)+) => {$(
+        #[cfg(spi_slave = $name)]
+        mod unit {
+            use super::pac;
+
+            pub type Spi = pac::$spi;
+            pub type Dma = pac::$dma;
+            /// Streams.
+            pub const RECEIVING: usize = $receiving;
+            pub const SENDING: usize = $sending;
+            /// Channel of the unit in both, in the stream's register.
+            pub const CHANNEL: u32 = $channel << 25;
+
+            /// The unit and the DMA with their clocks on.
+            pub fn take(device: pac::Peripherals) -> (Spi, Dma, pac::RCC, pac::EXTI, pac::SYSCFG) {
+                let pac::Peripherals { $spi: spi, $dma: dma, RCC: clocks, EXTI: exti, SYSCFG: syscfg, .. } = device;
+                clocks.ahb1enr().modify(|_, w| w.$dma_gate().set_bit());
+                clocks.$gates().modify(|_, w| w.$gate().set_bit());
+                clocks.apb2enr().modify(|_, w| w.syscfgen().set_bit());
+                (spi, dma, clocks, exti, syscfg)
+            }
+
+            pub fn reset(clocks: &pac::RCC) {
+                clocks.$resets().modify(|_, w| w.$reset().set_bit());
+                clocks.$resets().modify(|_, w| w.$reset().clear_bit());
+            }
+        }
+    )+};
+}
+
+units! {
+    "spi1" => SPI1, apb2enr, spi1en, apb2rstr, spi1rst, DMA2, dma2en, 0, 3, 3;
+    "spi2" => SPI2, apb1enr, spi2en, apb1rstr, spi2rst, DMA1, dma1en, 3, 4, 0;
+    "spi3" => SPI3, apb1enr, spi3en, apb1rstr, spi3rst, DMA1, dma1en, 0, 5, 0;
+}
+use unit::{CHANNEL, Dma, RECEIVING, SENDING, Spi};
+
 /// Addresses in memory rise.
 const MEMORY_RISES: u32 = 1 << 10;
 /// From memory to the peripheral.
 const OUTWARDS: u32 = 1 << 6;
 const ENABLE: u32 = 1;
-/// All flags of streams 0 and 3.
-const FLAGS: u32 = 0x3d | 0x3d << 22;
-/// The line of the chip select.
-const LINE: u32 = 1 << 4;
+/// All flags of a stream, from its first bit on.
+const FLAGS: u32 = 0x3d;
 
-/// SPI1 and two streams of DMA2.
-pub struct Spi1 {
-    spi: pac::SPI1,
-    dma: pac::DMA2,
+/// The unit and two streams.
+pub struct StreamSpi {
+    spi: Spi,
+    dma: Dma,
     exti: pac::EXTI,
-    rcc: pac::RCC,
+    clocks: pac::RCC,
+    /// The line of the chip select.
+    line: u32,
 }
 
-impl Spi1 {
+impl StreamSpi {
     /// Stops a stream; what it has begun it ends.
     fn end(&self, stream: usize) {
         let control = self.dma.st(stream).cr();
@@ -58,28 +88,31 @@ impl Spi1 {
     }
 }
 
-impl Unit for Spi1 {
-    fn start(device: pac::Peripherals) -> Self {
-        let pac::Peripherals { SPI1: spi, DMA2: dma, EXTI: exti, RCC: rcc, GPIOA: gpio, SYSCFG: syscfg, .. } = device;
-        rcc.ahb1enr().modify(|_, w| w.gpioaen().set_bit().dma2en().set_bit());
-        rcc.apb2enr().modify(|_, w| w.spi1en().set_bit().syscfgen().set_bit());
-        gpio.afrl().modify(|_, w| w.afrl4().af5().afrl5().af5().afrl6().af5().afrl7().af5());
-        // At the speed after a reset the answer's edges would take longer than a bit.
-        gpio.ospeedr().modify(|_, w| w.ospeedr6().very_high_speed());
-        gpio.moder()
-            .modify(|_, w| w.moder4().alternate().moder5().alternate().moder6().alternate().moder7().alternate());
-        // SAFETY: line 4 is that of port A (0); lines 5 to 7 are not used.
-        syscfg.exticr2().write(|w| unsafe { w.bits(0) });
+impl Unit for StreamSpi {
+    fn start(device: pac::Peripherals, select: Pin) -> Self {
+        let (spi, dma, clocks, exti, syscfg) = unit::take(device);
+        let line = 1 << select.number;
+        let (port, shift) = (u32::from(select.port), 4 * u32::from(select.number % 4));
+        // SAFETY: of the register only the field of this line changes, to the port of the chip select.
+        let to_port = |bits: u32| bits & !(0xf << shift) | port << shift;
+        unsafe {
+            match select.number / 4 {
+                0 => syscfg.exticr1().modify(|r, w| w.bits(to_port(r.bits()))),
+                1 => syscfg.exticr2().modify(|r, w| w.bits(to_port(r.bits()))),
+                2 => syscfg.exticr3().modify(|r, w| w.bits(to_port(r.bits()))),
+                _ => syscfg.exticr4().modify(|r, w| w.bits(to_port(r.bits()))),
+            };
+        }
         // SAFETY: every line may have an edge and an interrupt.
-        exti.rtsr().modify(|r, w| unsafe { w.bits(r.bits() | LINE) });
+        exti.rtsr().modify(|r, w| unsafe { w.bits(r.bits() | line) });
         // SAFETY: likewise.
-        exti.imr().modify(|r, w| unsafe { w.bits(r.bits() | LINE) });
-        Self { spi, dma, exti, rcc }
+        exti.imr().modify(|r, w| unsafe { w.bits(r.bits() | line) });
+        Self { spi, dma, exti, clocks, line }
     }
 
     fn acknowledge(&mut self) {
         // SAFETY: a one takes back this line's request.
-        self.exti.pr().write(|w| unsafe { w.bits(LINE) });
+        self.exti.pr().write(|w| unsafe { w.bits(self.line) });
     }
 
     fn missing(&self) -> u16 {
@@ -87,20 +120,30 @@ impl Unit for Spi1 {
     }
 
     fn overran(&self) -> bool {
-        let status = self.spi.sr().read();
-        status.ovr().bit_is_set() || self.missing() == 0 && status.rxne().bit_is_set()
+        self.spi.sr().read().ovr().bit_is_set()
+    }
+
+    fn has_byte(&self) -> bool {
+        self.spi.sr().read().rxne().bit_is_set()
     }
 
     fn stop(&mut self) {
         self.end(RECEIVING);
         self.end(SENDING);
-        self.rcc.apb2rstr().modify(|_, w| w.spi1rst().set_bit());
-        self.rcc.apb2rstr().modify(|_, w| w.spi1rst().clear_bit());
+        unit::reset(&self.clocks);
     }
 
     fn begin(&mut self, received: u32, sent: u32) {
-        // SAFETY: ones clear flags.
-        self.dma.lifcr().write(|w| unsafe { w.bits(FLAGS) });
+        for stream in [RECEIVING, SENDING] {
+            let flags = FLAGS << [0, 6, 16, 22][stream % 4];
+            // SAFETY: ones clear flags.
+            unsafe {
+                match stream / 4 {
+                    0 => self.dma.lifcr().write(|w| w.bits(flags)),
+                    _ => self.dma.hifcr().write(|w| w.bits(flags)),
+                };
+            }
+        }
         self.set(RECEIVING, received, 0);
         self.spi.cr2().write(|w| w.rxdmaen().enabled().txdmaen().enabled());
         self.set(SENDING, sent, OUTWARDS);

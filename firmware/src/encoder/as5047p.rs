@@ -4,6 +4,9 @@
 //! A frame: bit 15 makes the parity even; bit 14 of a command says "read", of an answer that the command before was
 //! faulty; 14 bits of address or content. An idle line gives all ones or all zeros, both with a good parity: all ones is
 //! no angle since it reports an error, all zeros may be one, so the diagnostics are asked for, which are never zero.
+//!
+//! Now and then the diagnostics are asked for in two frames more: a magnet that is too weak, too strong or gone gives angles that
+//! are none, without an error flag. While that is so there is no reading.
 
 use embedded_hal::spi::SpiDevice;
 use model_core::observer::Reading;
@@ -15,6 +18,13 @@ const READ: u16 = 1 << 14;
 /// Bit 14 of an answer: the command before was faulty.
 const ERROR: u16 = 1 << 14;
 const CONTENT: u16 = (1 << 14) - 1;
+/// Readings from one look at the diagnostics to the next: 26 ms at 10 kHz.
+const BETWEEN_LOOKS: u16 = 256;
+/// Of the diagnostics: ready, angle overflowed, field too strong, field too weak.
+const READY: u16 = 1 << 8;
+const OVERFLOW: u16 = 1 << 9;
+const STRONG: u16 = 1 << 10;
+const WEAK: u16 = 1 << 11;
 /// What a line gives that is pulled up and nobody drives.
 const NOBODY_HIGH: u16 = u16::MAX;
 /// The same, pulled down.
@@ -25,7 +35,7 @@ const NOBODY_LOW: u16 = 0;
 enum Register {
     /// ERRFL; reading clears it.
     Errors = 0x0001,
-    /// DIAAGC: gain and alarms. Bit 8 is set once the encoder is ready.
+    /// DIAAGC: gain and alarms.
     Diagnostics = 0x3ffc,
     /// ANGLECOM: angle, the delay of the chip's own filters taken out.
     Angle = 0x3fff,
@@ -44,12 +54,29 @@ pub struct As5047p<S> {
     spi: S,
     /// When the angle was asked for that the next frame answers.
     asked: Option<u32>,
+    /// Readings until the next look at the diagnostics.
+    until_look: u16,
+    /// What the last look found wrong with the magnet.
+    magnet: Option<EncoderFault>,
+}
+
+/// What the diagnostics say of the magnet. Without one, the field is too weak and the rest of them is of nothing.
+fn judged(diagnostics: u16) -> Option<EncoderFault> {
+    let has = |flag: u16| diagnostics & flag != 0;
+    match (has(WEAK), has(STRONG)) {
+        (true, false) if has(OVERFLOW) || !has(READY) => Some(EncoderFault::MagnetLost),
+        (true, false) => Some(EncoderFault::MagnetTooWeak),
+        (false, true) => Some(EncoderFault::MagnetTooStrong),
+        // Both at once, or an angle that overflowed in a good field: nothing that a magnet does.
+        (true, true) => Some(EncoderFault::MagnetLost),
+        (false, false) => has(OVERFLOW).then_some(EncoderFault::MagnetLost),
+    }
 }
 
 impl<S: SpiDevice> As5047p<S> {
     /// An encoder that has not been asked anything yet.
     pub fn new(spi: S) -> Self {
-        Self { spi, asked: None }
+        Self { spi, asked: None, until_look: 0, magnet: None }
     }
 
     /// Gives the bus back.
@@ -90,8 +117,17 @@ impl<S: SpiDevice> CountSource for As5047p<S> {
             // Reading the reason also clears the flag.
             return Err(EncoderFault::Reported(self.aside(Register::Errors)?));
         }
-        if frame == NOBODY_LOW && self.aside(Register::Diagnostics)? == 0 {
-            return Err(EncoderFault::Missing);
+        if frame == NOBODY_LOW || self.until_look == 0 {
+            let diagnostics = self.aside(Register::Diagnostics)?;
+            if diagnostics == 0 {
+                return Err(EncoderFault::Missing);
+            }
+            self.magnet = judged(diagnostics);
+            self.until_look = BETWEEN_LOOKS;
+        }
+        self.until_look -= 1;
+        if let Some(fault) = self.magnet {
+            return Err(fault);
         }
         Ok(Reading { counts: (frame & CONTENT).into(), time })
     }

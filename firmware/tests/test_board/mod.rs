@@ -22,7 +22,7 @@ use firmware::timing_report::Resources;
 use firmware::work::Work;
 use heapless::spsc::Queue;
 use link::framing::{Receiver, encode};
-use link::messages::{Clock, Command, FromBoard, MemoryState, RunMode, RunSettings, Schedule, ToBoard};
+use link::messages::{Clock, ClockSource, Command, FromBoard, MemoryState, RunMode, RunSettings, Schedule, ToBoard};
 use model_core::gears::Tables;
 use model_core::observer::Memory;
 
@@ -260,7 +260,7 @@ where
         let start_up = StartUp {
             board: "bench",
             timer_rate: 168_000_000,
-            clock: Clock::NotModelled,
+            clock: Clock::of(ClockSource::NotModelled),
             last_panic: None,
             watchdog_reset: false,
             memory: if kept.is_damaged() { MemoryState::Damaged } else { MemoryState::Nothing },

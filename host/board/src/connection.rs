@@ -59,10 +59,10 @@ impl Connection {
     }
 
     /// The emulated board with an image that is built for it once the emulator is there.
-    pub fn emulated(progress: &Progress, build: impl FnOnce(Board) -> Outcome<Image>) -> Outcome<Self> {
+    pub fn emulated(progress: &Progress, build: impl FnOnce(&Board) -> Outcome<Image>) -> Outcome<Self> {
         progress.stage("finding the emulator");
         let version = emulator::ensure(&|line| progress.say(line))?;
-        let image = build(Board::Stm32f405)?;
+        let image = build(&Board::emulated())?;
         progress.stage("booting the emulated board");
         Self::in_emulator(&version, image)
     }

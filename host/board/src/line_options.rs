@@ -14,8 +14,8 @@ pub struct LineOptions {
     /// Speed of the serial port in baud [default: that of the board's image]
     #[arg(long, value_name = "BAUD", requires = "port", value_parser = clap::value_parser!(u32).range(1..))]
     pub baud: Option<u32>,
-    /// Board behind the port
-    #[arg(long, value_enum, default_value = "stm32f405", requires = "port")]
+    /// Board behind the port: a name of boards/, or the path of a board file
+    #[arg(long, value_name = "NAME|FILE", value_parser = Board::parse, default_value = board_file::DEFAULT, requires = "port")]
     pub board: Board,
 }
 

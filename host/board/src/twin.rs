@@ -9,7 +9,7 @@ use model_core::numbers::digest;
 use model_core::gears::{Model, Scheme, Tables, Torques};
 use parameters::{ContactState, JointParameters};
 
-use crate::target::board::Board;
+use crate::target::board::Chip;
 use report::failure::{Failure, Outcome};
 
 /// What the comparison found.
@@ -39,11 +39,11 @@ pub struct Difference {
 }
 
 /// Digest of the tables that a board with this joint must state.
-pub fn tables_digest(joint: &JointParameters, board: Board, tick_rate: u32) -> Outcome<u64> {
+pub fn tables_digest(joint: &JointParameters, chip: Chip, tick_rate: u32) -> Outcome<u64> {
     match joint.geometry.planets {
-        3 => Ok(tables::<3>(joint, board, tick_rate)?.digest),
-        4 => Ok(tables::<4>(joint, board, tick_rate)?.digest),
-        5 => Ok(tables::<5>(joint, board, tick_rate)?.digest),
+        3 => Ok(tables::<3>(joint, chip, tick_rate)?.digest),
+        4 => Ok(tables::<4>(joint, chip, tick_rate)?.digest),
+        5 => Ok(tables::<5>(joint, chip, tick_rate)?.digest),
         other => Err(so_many_planets(joint, other)),
     }
 }
@@ -51,7 +51,7 @@ pub fn tables_digest(joint: &JointParameters, board: Board, tick_rate: u32) -> O
 /// Replays the commands and compares every sample. Samples are in rising order of ticks.
 pub fn compare(
     joint: &JointParameters,
-    image: Board,
+    image: Chip,
     tick_rate: u32,
     commands: &[Command],
     samples: &[Sample],
@@ -75,15 +75,15 @@ pub fn compare(
 /// The twin's samples after the given numbers of steps, which rise.
 pub fn replay(
     joint: &JointParameters,
-    board: Board,
+    chip: Chip,
     tick_rate: u32,
     commands: &[Command],
     ticks: &[u32],
 ) -> Outcome<Vec<Sample>> {
     match joint.geometry.planets {
-        3 => Ok(replayed(&tables::<3>(joint, board, tick_rate)?, commands, ticks)),
-        4 => Ok(replayed(&tables::<4>(joint, board, tick_rate)?, commands, ticks)),
-        5 => Ok(replayed(&tables::<5>(joint, board, tick_rate)?, commands, ticks)),
+        3 => Ok(replayed(&tables::<3>(joint, chip, tick_rate)?, commands, ticks)),
+        4 => Ok(replayed(&tables::<4>(joint, chip, tick_rate)?, commands, ticks)),
+        5 => Ok(replayed(&tables::<5>(joint, chip, tick_rate)?, commands, ticks)),
         other => Err(so_many_planets(joint, other)),
     }
 }
@@ -93,8 +93,8 @@ fn so_many_planets(joint: &JointParameters, planets: usize) -> Failure {
         .with_help("a joint may have 3, 4 or 5 planets")
 }
 
-fn tables<const N: usize>(joint: &JointParameters, board: Board, tick_rate: u32) -> Outcome<Tables<f32, N>> {
-    design_scheme(joint, tick_rate, Scheme::Realtime, Effort::Within(board.processor())).map_err(|error| {
+fn tables<const N: usize>(joint: &JointParameters, chip: Chip, tick_rate: u32) -> Outcome<Tables<f32, N>> {
+    design_scheme(joint, tick_rate, Scheme::Realtime, Effort::Within(chip.processor())).map_err(|error| {
         let failure = Failure::new(format!("joint `{}` cannot be designed for {tick_rate} Hz: {error}", joint.name));
         match error {
             DesignError::RateTooLow { lowest, .. } => {
@@ -197,7 +197,7 @@ mod tests {
 
     /// A board that does as it should, written down on its own: torques looked up instead of queued.
     fn board(joint: &JointParameters, commands: &[Command], ticks: u32, decimation: u32) -> Vec<Sample> {
-        let tables: Tables<f32, 3> = tables(joint, Board::Stm32f405, TICK_RATE).expect("a good joint");
+        let tables: Tables<f32, 3> = tables(joint, Chip::Stm32f405, TICK_RATE).expect("a good joint");
         let mut model = Model::new(&tables);
         let mut running = digest::START;
         let mut samples = Vec::new();
@@ -216,7 +216,7 @@ mod tests {
     #[test]
     fn a_board_that_does_as_it_should_agrees_in_every_bit() {
         let samples = board(&joint(), &commands(), 200, 20);
-        let agreement = compare(&joint(), Board::Stm32f405, TICK_RATE, &commands(), &samples).expect("a good joint");
+        let agreement = compare(&joint(), Chip::Stm32f405, TICK_RATE, &commands(), &samples).expect("a good joint");
         assert_eq!(agreement, Agreement { steps: 200, samples: 10, different: 0, first: None });
     }
 
@@ -233,8 +233,7 @@ mod tests {
         for (place, flip) in flips.iter().enumerate() {
             let mut samples = board(&joint(), &commands(), 200, 20);
             flip(&mut samples[4]);
-            let agreement =
-                compare(&joint(), Board::Stm32f405, TICK_RATE, &commands(), &samples).expect("a good joint");
+            let agreement = compare(&joint(), Chip::Stm32f405, TICK_RATE, &commands(), &samples).expect("a good joint");
             assert_eq!((agreement.steps, agreement.different), (80, 1), "{place}: {agreement:?}");
         }
     }
@@ -244,7 +243,7 @@ mod tests {
         let mut late = commands();
         late[1].tick += 1;
         let samples = board(&joint(), &late, 200, 20);
-        let agreement = compare(&joint(), Board::Stm32f405, TICK_RATE, &commands(), &samples).expect("a good joint");
+        let agreement = compare(&joint(), Chip::Stm32f405, TICK_RATE, &commands(), &samples).expect("a good joint");
         assert_eq!((agreement.steps, agreement.different), (40, 8), "{agreement:?}");
         assert!(agreement.first.is_some_and(|first| first.tick == 60));
     }

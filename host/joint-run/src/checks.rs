@@ -1,7 +1,8 @@
 //! The checks of a run: each figure, its bound and where it comes from. A run that broke off is judged by the figures
 //! there are; the other checks are marked as not made.
 
-use link::messages::{Clock, RunMode, Statistics};
+use crate::origin::clock_in_words;
+use link::messages::{ClockSource, RunMode, Statistics};
 
 use super::comparison::Comparison;
 use board::logs::Log;
@@ -137,14 +138,9 @@ fn timing(evidence: &Evidence<'_>) -> Vec<Check> {
         Check::judge("idle time", f64::from(statistics.idle_permille) / 10.0, "%", Bound::None, Source::Board),
     ];
     checks.extend(queue(recording.settings.map(|settings| settings.mode), statistics));
-    let clock_runs = u32::from(hello.clock != Clock::Failed);
+    let clock_runs = u32::from(hello.clock.source != ClockSource::Failed);
     let clock = count("core clock as stated", clock_runs, Bound::Exactly(1.0), Source::Board);
-    checks.push(match hello.clock {
-        Clock::External => clock.note("external crystal and PLL"),
-        Clock::InternalFallback => clock.note("the crystal did not start: internal oscillator and PLL"),
-        Clock::Failed => clock.note("no PLL came up: the tick rate is not the stated one"),
-        Clock::NotModelled => clock.note("the emulated board has no clock controller"),
-    });
+    checks.push(clock.note(clock_in_words(hello.clock)));
     checks
 }
 

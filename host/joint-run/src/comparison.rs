@@ -158,7 +158,7 @@ fn motion_sample(tick: u32, observation: &Observation) -> MotionSample {
 mod tests {
     use super::*;
     use board::profile::TorqueProfile;
-    use board::target::board::Board;
+    use board::target::board::Chip;
     use board::twin;
     use model_core::gears::Kinematics;
 
@@ -176,7 +176,7 @@ mod tests {
         let under_way = start(&joint, TICK_RATE, DECIMATION, (&profile.commands, profile.ticks));
         let ticks: Vec<u32> = (1..=profile.ticks / DECIMATION).map(|sample| sample * DECIMATION).collect();
         let mut samples =
-            twin::replay(&joint, Board::Stm32f405, TICK_RATE, &profile.commands, &ticks).expect("a good joint");
+            twin::replay(&joint, Chip::Stm32f405, TICK_RATE, &profile.commands, &ticks).expect("a good joint");
         samples.iter_mut().for_each(spoil);
         under_way.finish(&samples, joint.geometry.ratio_by_radii()).expect("a joint for the reference")
     }

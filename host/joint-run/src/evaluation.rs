@@ -73,7 +73,8 @@ pub fn evaluate(
         record.log.clone_from(&log.lines);
     }
 
-    let agreement = twin::compare(joint, finished.plan.board, tick_rate, &recording.accepted, &recording.samples)?;
+    let agreement =
+        twin::compare(joint, finished.plan.board.chip(), tick_rate, &recording.accepted, &recording.samples)?;
     if agreement.different == 0 && !recording.samples.is_empty() {
         record.close_up = close_up(record, finished)?;
     }
@@ -128,7 +129,7 @@ fn close_up(record: &RunRecord, finished: &FinishedRun<'_>) -> Outcome<Option<Cl
     let ticks: Vec<u32> = (first..=tick(to).min(last).min(first + CLOSE_UP)).collect();
     let parameters = &finished.plan.joint.parameters;
     let motion: Vec<Sample> =
-        twin::replay(parameters, finished.plan.board, tick_rate, &finished.recording.accepted, &ticks)?;
+        twin::replay(parameters, finished.plan.board.chip(), tick_rate, &finished.recording.accepted, &ticks)?;
     let mut samples = Samples::new(2 * record.joint.planets);
     for sample in &motion {
         let motion = MotionSample { computation: None, ..MotionSample::from_board(sample, 1) };

@@ -104,12 +104,12 @@ fn prepare(request: &RunRequest<'_>, plan: &RunPlan, progress: &Progress) -> Out
         None => Connection::emulated(progress, |board| build(request, plan, board, progress)),
         Some(path) => Connection::on_port(path, request.line.baud_rate(), || match request.no_build {
             true => Ok(None),
-            false => build(request, plan, request.line.board, progress).map(Some),
+            false => build(request, plan, &request.line.board, progress).map(Some),
         }),
     }
 }
 
-fn build(request: &RunRequest<'_>, plan: &RunPlan, board: Board, progress: &Progress) -> Outcome<Image> {
+fn build(request: &RunRequest<'_>, plan: &RunPlan, board: &Board, progress: &Progress) -> Outcome<Image> {
     progress.stage("preparing the toolchain");
     let toolchain = Toolchain::prepare(&|line| progress.say(line))?;
     progress.stage("building the firmware");

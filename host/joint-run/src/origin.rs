@@ -1,7 +1,7 @@
 //! Provenance of a run, the head of its record: who ran which joint with which image and settings. All of it is known
 //! before the run.
 
-use link::messages::{Clock, Hello, RunMode};
+use link::messages::{Clock, ClockSource, Hello, RunMode};
 use model_core::gears::Kinematics;
 
 use crate::plan::{RunPlan, RunRequest};
@@ -33,16 +33,30 @@ pub fn note_board(identity: &mut Identity, hello: &Hello) {
     identity.role = image::word(hello.role).to_owned();
     identity.board = hello.board.to_string();
     identity.firmware_version = format!("{major}.{minor}.{patch}");
-    identity.clock = match hello.clock {
-        Clock::External => "external crystal and PLL",
-        Clock::InternalFallback => "internal oscillator and PLL: the crystal did not start",
-        Clock::Failed => "failed: the tick rate is not the stated one",
-        Clock::NotModelled => "not modelled: emulated board",
-    }
-    .to_owned();
-    identity.emulated |= hello.clock == Clock::NotModelled;
+    identity.clock = clock_in_words(hello.clock);
+    identity.emulated |= hello.clock.source == ClockSource::NotModelled;
     identity.last_panic = hello.last_panic.as_ref().map(ToString::to_string);
     identity.watchdog_reset = hello.watchdog_reset;
+}
+
+/// What the board says of its core clock.
+pub fn clock_in_words(clock: Clock) -> String {
+    let source = match clock.source {
+        ClockSource::Crystal => "crystal and PLL, measured before use".to_owned(),
+        ClockSource::Signal => "clock from elsewhere and PLL, measured before use".to_owned(),
+        ClockSource::Internal => "internal oscillator and PLL".to_owned(),
+        ClockSource::DidNotStart => "internal oscillator and PLL: what the board file names did not start".to_owned(),
+        ClockSource::OtherFrequency { measured } => format!(
+            "internal oscillator and PLL: what came from outside was measured as {:.2} MHz, which is not what the board file says",
+            f64::from(measured) / 1e6
+        ),
+        ClockSource::Failed => "failed: the tick rate is not the stated one".to_owned(),
+        ClockSource::NotModelled => "not modelled: emulated board".to_owned(),
+    };
+    match clock.tolerance {
+        0 => source,
+        ppm => format!("{source}; exact to {} %", f64::from(ppm) / 1e4),
+    }
 }
 
 /// The image as the record keeps it.

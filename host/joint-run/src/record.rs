@@ -62,7 +62,7 @@ pub struct Identity {
     pub joint_digest: String,
     /// What the image is for, such as `plant`.
     pub role: String,
-    /// Board that the image was built for, such as `stm32f405`.
+    /// Board that the image was built for, by the name in its board file, such as `olimex-h405`.
     pub board: String,
     /// The board was an emulator: no timing figure says anything about silicon.
     pub emulated: bool,

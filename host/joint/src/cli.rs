@@ -7,7 +7,7 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use report::failure::Outcome;
 use report::{command_line, output};
 
-use crate::{budget, check, flash, hil, identify, image, memory, merge, research, sim, sweep};
+use crate::{board, budget, check, flash, hil, identify, image, memory, merge, research, sim, sweep};
 
 /// Simulates a planetary robot joint with backlash on a microcontroller, drives it and checks it
 #[derive(Debug, Parser)]
@@ -39,9 +39,11 @@ enum Command {
     Identify(identify::Arguments),
     /// Read what a board has learnt, show it, write it to a board, erase it
     Memory(memory::Arguments),
+    /// Check a board file: pins, clock, memory; or list the boards that come with the program
+    Board(board::Arguments),
     /// Build the firmware image of a joint and say where it is
     Image(image::Arguments),
-    /// Build the firmware image of a joint and write it to a real board by probe-rs
+    /// Build the firmware image of a joint and write it to a real board by probe-rs or over USB
     Flash(flash::Arguments),
 }
 
@@ -63,6 +65,7 @@ fn run(cli: &Cli) -> Outcome<()> {
         Some(Command::Merge(arguments)) => merge::run(arguments),
         Some(Command::Identify(arguments)) => identify::run(arguments),
         Some(Command::Memory(arguments)) => memory::run(arguments),
+        Some(Command::Board(arguments)) => board::run(arguments),
         Some(Command::Image(arguments)) => image::run(arguments),
         Some(Command::Flash(arguments)) => flash::run(arguments),
     }

@@ -1,7 +1,8 @@
-//! `joint flash`: builds the firmware of a joint and writes it to a real board by probe-rs.
+//! `joint flash`: builds the firmware of a joint and writes it to a real board by probe-rs, or over USB by the chip's own loader.
 
+use board::target::board::Board;
 use board::target::flash;
-use report::failure::Outcome;
+use report::failure::{Failure, Outcome};
 
 use crate::image;
 
@@ -9,15 +10,32 @@ use crate::image;
 #[derive(Debug, clap::Args)]
 #[group(id = "flash")]
 #[command(after_help = "Examples:
-  joint flash                                 joint q1 onto the stm32f405 behind the debug probe
-  joint flash joints/l1.toml --board stm32g474")]
+  joint flash --board nucleo-g474re                     joint q1 onto the board behind the debug probe
+  joint flash joints/l1.toml --board weact-f405 --dfu   onto the board on USB, which was started with BOOT0 high
+  joint flash --board my_board.toml --role observer
+
+The board must be named: the pins of one board are gate inputs of another.")]
 pub struct Arguments {
     #[command(flatten)]
-    image: image::Arguments,
+    image: image::Image,
+    /// Board to be written: a name of boards/, or the path of a board file
+    #[arg(long, value_name = "NAME|FILE", value_parser = Board::parse)]
+    board: Option<Board>,
+    /// Writes over USB by dfu-util to the chip's own loader, which a board starts with BOOT0 high
+    #[arg(long)]
+    dfu: bool,
 }
 
 /// Builds an image and writes it to a board.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
-    let built = image::build(&arguments.image)?;
-    flash::flash(&built.elf, arguments.image.board)
+    let Some(board) = &arguments.board else {
+        return Err(Failure::new("no board is named: the pins of one board are gate inputs of another").with_help(
+            format!("name it by --board: one of {}, or the path of a board file", board_file::PRESETS.join(", ")),
+        ));
+    };
+    let built = image::build(&arguments.image, board)?;
+    match arguments.dfu {
+        true => flash::by_dfu(&built.elf, board),
+        false => flash::by_probe(&built.elf, board),
+    }
 }

@@ -24,7 +24,7 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
         }
         match (&arguments.file, &arguments.line.port) {
             (Some(_), _) => joint,
-            (None, Some(port)) => joint.and_then(|()| say_how_to_go_on(port, arguments.line.board.name())),
+            (None, Some(port)) => joint.and_then(|()| say_how_to_go_on(port, &arguments.line.board.named)),
             (None, None) => run_tests(arguments, joint, progress),
         }
     })

@@ -8,7 +8,6 @@ use link::messages::Role;
 use board::target::board::Board;
 use board::target::image;
 use board::target::image::CONTROL_RATE;
-use board::target::image::Image;
 use board::target::toolchain::Toolchain;
 use joint_file::named;
 use report::failure::Outcome;
@@ -17,19 +16,27 @@ use report::{interruption, output};
 
 /// Arguments of `joint image`.
 #[derive(Debug, clap::Args)]
-#[group(id = "image")]
 #[command(after_help = "Examples:
-  joint image                                 joint q1 for the stm32f405
+  joint image                                 joint q1 for the olimex-h405, which the emulator stands for
   joint image --role observer                 observer and compensation for it, beside a motor controller
-  joint image --role spi-observer --board stm32g474    the same as a slave on that controller's SPI
-  joint image joints/l1.toml --board stm32h743")]
+  joint image --role spi-observer --board nucleo-g474re    the same as a slave on that controller's SPI
+  joint image joints/l1.toml --board nucleo-h743zi
+  joint image --board my_board.toml           for a board of your own")]
 pub struct Arguments {
+    #[command(flatten)]
+    image: Image,
+    /// Board that the image is for: a name of boards/, or the path of a board file
+    #[arg(long, value_name = "NAME|FILE", value_parser = Board::parse, default_value = board_file::DEFAULT)]
+    board: Board,
+}
+
+/// What an image is made of, besides its board.
+#[derive(Debug, clap::Args)]
+#[group(id = "image")]
+pub struct Image {
     /// Joint file (TOML), or the name of a preset: q1, s1, d2, l1, paper, paper_printed
     #[arg(value_name = "FILE", default_value = "q1")]
     file: PathBuf,
-    /// Board that the image is for
-    #[arg(long, value_enum, default_value = "stm32f405")]
-    pub board: Board,
     /// What the board does
     #[arg(long, value_enum, default_value = "plant")]
     role: ImageRole,
@@ -48,19 +55,19 @@ enum ImageRole {
     Observer,
     /// Joint, motor, observer and compensation
     Loop,
-    /// Observer and compensation as a slave on SPI beside a motor controller on another chip; not for stm32h743
+    /// Observer and compensation as a slave on SPI beside a motor controller on another chip; for boards whose file has [spi_slave]
     SpiObserver,
 }
 
 /// Builds an image.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
-    let built = build(arguments)?;
-    let Image { elf, flash_bytes, ram_bytes, .. } = &built;
+    let built = build(&arguments.image, &arguments.board)?;
+    let image::Image { elf, flash_bytes, ram_bytes, .. } = &built;
     output::print(&format!("{}\nflash {flash_bytes} B, RAM {ram_bytes} B\n", elf.display()))
 }
 
 /// Builds an image, with a line that tells how far it is.
-pub fn build(arguments: &Arguments) -> Outcome<Image> {
+pub fn build(arguments: &Image, board: &Board) -> Outcome<image::Image> {
     let file = image::joint_file(&arguments.file, &named::load(&arguments.file)?.name);
     let (role, usual) = match arguments.role {
         ImageRole::Plant => (Some(Role::Plant), image::DEFAULT_TICK_RATE),
@@ -75,8 +82,8 @@ pub fn build(arguments: &Arguments) -> Outcome<Image> {
     let built = Toolchain::prepare(&say).and_then(|toolchain| {
         progress.stage("building the firmware");
         match role {
-            Some(role) => image::build_image(&toolchain, &file, arguments.board, role, rate, &say),
-            None => image::build_spi_slave(&toolchain, &file, arguments.board, rate, &say),
+            Some(role) => image::build_image(&toolchain, &file, board, role, rate, &say),
+            None => image::build_spi_slave(&toolchain, &file, board, rate, &say),
         }
     });
     progress.clear();

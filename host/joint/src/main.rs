@@ -1,5 +1,6 @@
 //! The host command `joint`: arguments, calls, exit codes. The work is done in the other host crates.
 
+mod board;
 mod budget;
 mod check;
 mod cli;

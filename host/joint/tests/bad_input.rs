@@ -120,8 +120,33 @@ fn a_result_that_cannot_be_written_is_known_before_the_work() {
 
 #[test]
 fn a_role_that_a_board_does_not_have_is_refused_with_those_that_do() {
-    let spi = ["image", "q1", "--role", "spi-observer", "--board", "stm32h743"];
-    joint(&spi).refused(&["stm32h743 is no slave on SPI", "stm32f405 or stm32g474", "--role observer"]);
+    let spi = ["image", "q1", "--role", "spi-observer", "--board", "nucleo-h743zi"];
+    joint(&spi).refused(&["nucleo-h743zi is no slave on SPI", "olimex-h405, nucleo-g474re", "--role observer"]);
+}
+
+#[test]
+fn boards_are_named_and_not_taken_for_their_chips() {
+    joint(&["flash", "q1"]).refused(&["no board is named", "--board", "odrive-3.6"]);
+    let chip = ["is a chip, not a board", "olimex-h405, odrive-3.6, feather-f405"];
+    joint(&["image", "q1", "--board", "stm32f405"]).refused(&chip);
+    joint(&["board", "check", "stm32f405"]).refused(&chip);
+    joint(&["image", "q1", "--board", "no_such"]).refused(&["no_such", "nucleo-g474re"]);
+    let place = folder();
+    let file = place.path().join("mine.toml");
+    let text = fs::read_to_string(workspace().join("boards/odrive-3.6.toml")).expect("a preset");
+    fs::write(&file, text.replace("PA0\"", "PB10\"")).expect("written");
+    let mine = file.to_str().expect("a path");
+    joint(&["board", "check", mine]).refused(&["PB10", "brake"]);
+    joint(&["image", "q1", "--board", mine]).refused(&["PB10", "brake"]);
+}
+
+#[test]
+fn a_board_that_is_well_is_shown_with_its_pins() {
+    let shown = joint(&["board", "check", "nucleo-g474re"]).well().out;
+    for words in ["STM32G474RE", "crystal of 24 MHz", "USART2: PA2 out, PA3 in, 921600 baud", "PA13"] {
+        assert!(shown.contains(words), "{shown}");
+    }
+    assert!(joint(&["board", "list"]).well().out.contains("moteus-r4"));
 }
 
 #[test]

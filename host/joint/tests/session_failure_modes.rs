@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use board::profile::TorqueProfile;
 use board::recording::Recording;
 use board::session::{BoardHelp, Expected, Session, Supervisor};
-use board::target::board::Board;
+use board::target::board::Chip;
 use board::transport::Socket;
 use board::twin::{self, Agreement};
 use link::framing::{Receiver, encode};
@@ -35,7 +35,7 @@ impl Supervisor for User {
 fn expected() -> Expected {
     Expected {
         joint: "Q1".into(),
-        digest: twin::tables_digest(&joint(), Board::Stm32f405, TICK_RATE).expect("a good joint"),
+        digest: twin::tables_digest(&joint(), Chip::Stm32f405, TICK_RATE).expect("a good joint"),
         tick_rate: TICK_RATE,
         planets: 3,
         role: Role::Plant,
@@ -85,7 +85,7 @@ fn failure(misbehaviour: Misbehaviour) -> (Failure, Recording) {
 /// The recorded run against the same run computed here.
 fn agreement(recording: &Recording) -> Agreement {
     let Recording { accepted, samples, .. } = recording;
-    twin::compare(&joint(), Board::Stm32f405, TICK_RATE, accepted, samples).expect("designed")
+    twin::compare(&joint(), Chip::Stm32f405, TICK_RATE, accepted, samples).expect("designed")
 }
 
 #[test]

@@ -5,7 +5,7 @@
 use std::fmt;
 
 use super::worst_case::CYCLES_AN_INSTRUCTION;
-use board::target::board::Board;
+use board::target::board::Chip;
 use board::target::image::CONTROL_RATE;
 use board::target::toolchain::Toolchain;
 use board::target::{Say, measuring};
@@ -66,7 +66,7 @@ fn share(role: &str) -> f64 {
 
 /// Part of a control period of the emulated board that a tick of so many instructions takes.
 pub fn part(instructions: f64) -> f64 {
-    instructions * CYCLES_AN_INSTRUCTION * f64::from(CONTROL_RATE) / f64::from(Board::Stm32f405.core_rate())
+    instructions * CYCLES_AN_INSTRUCTION * f64::from(CONTROL_RATE) / f64::from(Chip::Stm32f405.core_rate())
 }
 
 /// Fails if a role's worst tick takes more of a control period than it may.

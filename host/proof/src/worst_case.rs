@@ -7,7 +7,7 @@ use std::fmt;
 use super::joints::write_files;
 use model_core::gears::certificate::Substeps;
 
-use board::target::board::Board;
+use board::target::board::Chip;
 use board::target::image::DEFAULT_TICK_RATE;
 use board::target::toolchain::Toolchain;
 use board::target::{Say, measuring};
@@ -71,8 +71,8 @@ impl Search {
 }
 
 /// Most instructions that a step may take at a tick rate on a board.
-pub fn budget(board: Board, tick_rate: u32) -> u32 {
-    let period = f64::from(board.core_rate()) / f64::from(tick_rate);
+pub fn budget(chip: Chip, tick_rate: u32) -> u32 {
+    let period = f64::from(chip.core_rate()) / f64::from(tick_rate);
     (WORST_SHARE * period / CYCLES_AN_INSTRUCTION) as u32
 }
 
@@ -121,8 +121,8 @@ const FITTED: [&str; 2] = ["Q1", "L1 with 4 planets"];
 
 /// Fails if a step of a joint that is fitted to the emulated board may take too long there.
 pub fn judge(found: &[Search]) -> Outcome<()> {
-    let board = Board::Stm32f405;
-    let budget = budget(board, DEFAULT_TICK_RATE);
+    let chip = Chip::Stm32f405;
+    let budget = budget(chip, DEFAULT_TICK_RATE);
     let over: Vec<_> = found
         .iter()
         .filter(|search| FITTED.contains(&search.name.as_str()) && search.most() > budget)
@@ -134,7 +134,7 @@ pub fn judge(found: &[Search]) -> Outcome<()> {
             "{budget} instructions are {} % of the period at {DEFAULT_TICK_RATE} Hz on {}, at {CYCLES_AN_INSTRUCTION} \
              cycles each:\nmake the step cheaper on that path, or let `design` choose fewer sub-steps",
             100.0 * WORST_SHARE,
-            board.name(),
+            chip.name(),
         ))),
     }
 }
@@ -187,8 +187,8 @@ mod tests {
     #[test]
     fn the_budget_follows_board_and_rate() {
         // 75 % of 8400 cycles at 1.4 cycles an instruction.
-        assert_eq!(budget(Board::Stm32f405, 20_000), 4500);
-        assert_eq!(budget(Board::Stm32f405, 10_000), 9000);
+        assert_eq!(budget(Chip::Stm32f405, 20_000), 4500);
+        assert_eq!(budget(Chip::Stm32f405, 10_000), 9000);
     }
 
     #[test]

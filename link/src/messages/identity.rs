@@ -14,7 +14,7 @@ pub struct Hello {
     pub firmware_version: [u8; 3],
     /// What the image is for.
     pub role: Role,
-    /// Board that the image was built for, such as `stm32f405`.
+    /// Board that the image was built for: the name in its board file, such as `olimex-h405`.
     pub board: String<16>,
     /// Name of the joint that the image was built from.
     pub joint: String<32>,
@@ -26,7 +26,7 @@ pub struct Hello {
     pub tick_rate: u32,
     /// Timer counts a second, the unit of every time in [`Statistics`] [Hz].
     pub timer_rate: u32,
-    /// Where the core clock comes from.
+    /// What the core clock is made of.
     pub clock: Clock,
     /// Number of planets.
     pub planets: u8,
@@ -53,15 +53,47 @@ pub enum Role {
     Loop,
 }
 
+/// What the core clock is made of, and how exact it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Clock {
+    /// Where it comes from.
+    pub source: ClockSource,
+    /// The core clock, and with it every tick and time of the board, is exact to this [ppm]; 0 where it is not known.
+    pub tolerance: u32,
+}
+
+impl Clock {
+    /// A clock of which nothing is known.
+    pub const fn of(source: ClockSource) -> Self {
+        Self { source, tolerance: 0 }
+    }
+}
+
 /// Where the core clock comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Clock {
-    /// External crystal and PLL, as wanted.
-    External,
-    /// The crystal did not start in time; internal oscillator and PLL.
-    InternalFallback,
+pub enum ClockSource {
+    /// The board's crystal and the PLL, as its board file says.
+    Crystal,
+    /// A signal from elsewhere and the PLL, as its board file says.
+    Signal,
+    /// Internal oscillator and PLL: the board file names nothing else.
+    Internal,
+    /// Internal oscillator and PLL: the crystal or signal of the board file did not start.
+    DidNotStart,
+    /// Internal oscillator and PLL: what came has another frequency than the board file says.
+    OtherFrequency {
+        /// As measured by the internal oscillator, 0 if too slow to be measured [Hz].
+        measured: u32,
+    },
     /// No PLL came up: the tick rate is not the stated one.
     Failed,
     /// No clock controller is there: an emulated board.
     NotModelled,
+}
+
+impl ClockSource {
+    /// It is what the board file says of the world outside of the chip.
+    pub const fn is_external(self) -> bool {
+        matches!(self, Self::Crystal | Self::Signal)
+    }
 }

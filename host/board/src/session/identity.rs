@@ -122,7 +122,7 @@ impl<'de> Visitor<'de> for HeadVisitor {
 #[cfg(test)]
 mod tests {
     use link::framing::{Receiver, encode};
-    use link::messages::{Clock, FromBoard};
+    use link::messages::{Clock, ClockSource, FromBoard};
 
     use super::*;
 
@@ -131,13 +131,13 @@ mod tests {
             protocol: PROTOCOL_VERSION,
             firmware_version: [0, 1, 0],
             role: Role::Plant,
-            board: heapless::String::try_from("stm32f405").expect("room"),
+            board: heapless::String::try_from("olimex-h405").expect("room"),
             joint: heapless::String::try_from("q1").expect("room"),
             joint_digest: 0x1234,
             digest_good: true,
             tick_rate: 20_000,
             timer_rate: 168_000_000,
-            clock: Clock::External,
+            clock: Clock { source: ClockSource::Crystal, tolerance: 100 },
             planets: 3,
             queue_capacity: 64,
             last_panic: None,

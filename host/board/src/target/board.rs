@@ -1,69 +1,84 @@
-//! The boards that images can be built for: name, chip, clock, baud rate. Pins and clock trees are in the firmware.
+//! The board that an image is built for: what its board file says, and where that is.
 
-use clap::ValueEnum;
+use std::path::{Path, PathBuf};
+
+pub use board_file::Chip;
+use board_file::{DEFAULT, PRESETS, named};
 use model_core::gears::design::Processor;
+use report::failure::{Failure, Outcome};
+use report::workspace::workspace;
 
-/// A board that an image can be built for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Board {
-    /// STM32F405 at 168 MHz; also what the emulator runs.
-    Stm32f405,
-    /// STM32G474 at 170 MHz: NUCLEO-G474RE.
-    Stm32g474,
-    /// STM32H743 at 400 MHz: NUCLEO-H743ZI.
-    Stm32h743,
+/// A board with its file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Board {
+    /// As it was named: a preset, or a path.
+    pub named: String,
+    /// Its file, for the firmware's build.
+    pub file: PathBuf,
+    /// What that says.
+    pub described: board_file::Board,
 }
 
 impl Board {
-    /// Every board.
-    pub const ALL: [Self; 3] = [Self::Stm32f405, Self::Stm32g474, Self::Stm32h743];
-
-    /// Its name: the firmware's feature, and what the board calls itself in its hello.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Stm32f405 => "stm32f405",
-            Self::Stm32g474 => "stm32g474",
-            Self::Stm32h743 => "stm32h743",
-        }
+    /// Reads a board file, or finds a preset.
+    pub fn load(named: &str) -> Outcome<Self> {
+        let typed = Path::new(named);
+        let loaded = named::load(typed)?;
+        let file = match typed.is_file() {
+            true => typed.canonicalize().map_err(|error| Failure::new(format!("{named}: {error}")))?,
+            false => workspace().join("boards").join(named).with_added_extension("toml"),
+        };
+        Ok(Self { named: named.to_owned(), file, described: loaded.board })
     }
 
-    /// Its chip, as probe-rs knows it.
-    pub fn chip(self) -> &'static str {
-        match self {
-            Self::Stm32f405 => "STM32F405RGTx",
-            Self::Stm32g474 => "STM32G474RETx",
-            Self::Stm32h743 => "STM32H743ZITx",
-        }
+    /// For a command's arguments: the whole complaint, should there be one, as a text.
+    pub fn parse(named: &str) -> Result<Self, String> {
+        Self::load(named).map_err(|failure| match failure.help() {
+            Some(help) => format!("{}\n{help}", failure.message()),
+            None => failure.message().to_owned(),
+        })
     }
 
-    /// Its core clock [Hz]; the tick rate must divide it.
-    pub fn core_rate(self) -> u32 {
-        match self {
-            Self::Stm32f405 => 168_000_000,
-            Self::Stm32g474 => 170_000_000,
-            Self::Stm32h743 => 400_000_000,
-        }
+    /// What the emulator stands for.
+    ///
+    /// # Panics
+    /// If the preset cannot be read, which its own test finds.
+    pub fn emulated() -> Self {
+        Self::load(DEFAULT).expect("a good preset")
+    }
+
+    /// Every preset.
+    pub fn presets() -> Outcome<Vec<Self>> {
+        PRESETS.into_iter().map(Self::load).collect()
+    }
+
+    /// What it calls itself in its hello.
+    pub fn name(&self) -> &str {
+        &self.described.name
+    }
+
+    /// Its chip.
+    pub fn chip(&self) -> Chip {
+        self.described.chip
     }
 
     /// What it gives the step.
-    pub fn processor(self) -> Processor {
-        match self {
-            Self::Stm32f405 => Processor::STM32F405,
-            Self::Stm32g474 => Processor::STM32G474,
-            Self::Stm32h743 => Processor::STM32H743,
-        }
+    pub fn processor(&self) -> Processor {
+        self.chip().processor()
+    }
+
+    /// Its core clock [Hz]; the tick rate must divide it.
+    pub fn core_rate(&self) -> u32 {
+        self.chip().core_rate()
+    }
+
+    /// Speed of its serial line [baud].
+    pub fn baud_rate(&self) -> u32 {
+        self.described.serial.baud
     }
 
     /// Whether its firmware can be the slave of a motor controller on SPI.
-    pub fn has_spi_slave(self) -> bool {
-        matches!(self, Self::Stm32f405 | Self::Stm32g474)
-    }
-
-    /// Speed of its serial line [baud]: where the UART has no FIFO, the tick must not outlast a byte.
-    pub fn baud_rate(self) -> u32 {
-        match self {
-            Self::Stm32f405 => 230_400,
-            Self::Stm32g474 | Self::Stm32h743 => 921_600,
-        }
+    pub fn has_spi_slave(&self) -> bool {
+        self.described.spi_slave.is_some()
     }
 }

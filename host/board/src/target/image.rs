@@ -24,6 +24,8 @@ pub const CONTROL_RATE: u32 = 10_000;
 pub const SPI_RATE: u32 = 5000;
 /// The binary of that slave.
 const SPI_BINARY: &str = "spi_observer";
+/// No image is larger [byte].
+const LARGEST_IMAGE: u32 = 256 << 10;
 /// Where the flash of every board begins; RAM is at and beyond [`RAM`].
 const FLASH: u64 = 0x0800_0000;
 const RAM: u64 = 0x2000_0000;
@@ -50,7 +52,7 @@ pub struct Image {
 pub fn build_image(
     toolchain: &Toolchain,
     joint_file: &Path,
-    board: Board,
+    board: &Board,
     role: Role,
     tick_rate: u32,
     say: Say<'_>,
@@ -84,7 +86,7 @@ impl Control {
 pub fn build_control_image(
     toolchain: &Toolchain,
     [truth, told]: [&str; 2],
-    board: Board,
+    board: &Board,
     role: Role,
     control: &Control,
     say: Say<'_>,
@@ -104,17 +106,17 @@ pub fn build_control_image(
 pub fn build_spi_slave(
     toolchain: &Toolchain,
     joint_file: &Path,
-    board: Board,
+    board: &Board,
     rate: u32,
     say: Say<'_>,
 ) -> Outcome<Image> {
     if !board.has_spi_slave() {
-        let message =
-            format!("{} is no slave on SPI: its SPI is of another kind, and nobody has written that", board.name());
-        let able: Vec<&str> = Board::ALL.into_iter().filter(|board| board.has_spi_slave()).map(Board::name).collect();
+        let message = format!("{} is no slave on SPI: its board file has no [spi_slave]", board.name());
+        let presets = Board::presets()?;
+        let able: Vec<&str> = presets.iter().filter(|board| board.has_spi_slave()).map(Board::name).collect();
         return Err(Failure::new(message).with_help(format!(
-            "take {}; beside a motor controller on the same chip or on a serial line, --role observer is for every board",
-            able.join(" or ")
+            "take one of {}; beside a motor controller on the same chip or on a serial line, --role observer is for every board",
+            able.join(", ")
         )));
     }
     let joint_file = readable(joint_file)?;
@@ -132,7 +134,7 @@ fn readable(joint_file: &Path) -> Outcome<PathBuf> {
 fn finish(
     toolchain: &Toolchain,
     [truth, told]: [&Path; 2],
-    board: Board,
+    board: &Board,
     binary: &str,
     control: &Control,
     name: &str,
@@ -140,7 +142,10 @@ fn finish(
 ) -> Outcome<Image> {
     let (rate, bandwidth) = (control.rate.to_string(), control.bandwidth.to_string());
     let motor_only = if control.output_encoder { "0" } else { "1" };
-    let environment: [(&str, &OsStr); 5] = [
+    let optimisation = if has_room_for_all(board) { "3" } else { "2" };
+    let environment: [(&str, &OsStr); 7] = [
+        ("CARGO_PROFILE_FIRMWARE_OPT_LEVEL", optimisation.as_ref()),
+        ("BOARD_FILE", board.file.as_os_str()),
         ("JOINT_FILE", truth.as_os_str()),
         ("JOINT_TOLD", told.as_os_str()),
         ("JOINT_TICK_RATE", rate.as_ref()),
@@ -153,9 +158,12 @@ fn finish(
         toolchain,
         &images,
         &place,
-        [truth, told],
-        &format!("{binary}{board:?}{control:?}"),
-        || compile(toolchain, FIRMWARE, binary, board.name(), &environment, say),
+        [truth, told, &board.file],
+        &format!("{binary}{}{control:?}", board.file.display()),
+        || {
+            compile(toolchain, FIRMWARE, binary, board.chip().name(), &environment, say)
+                .map_err(|failure| too_large(&failure, board).unwrap_or(failure))
+        },
     )?;
     let (flash_bytes, ram_bytes) =
         sizes(&elf).map_err(|error| Failure::new(format!("{}: {error}", place.display())))?;
@@ -165,11 +173,26 @@ fn finish(
         flash_bytes,
         ram_bytes,
         compiler: toolchain.compiler().to_owned(),
-        flags: format!("profile {PROFILE} (opt-level 3, fat LTO), {}, board {}", toolchain.flags(), board.name()),
+        flags: format!(
+            "profile {PROFILE} (opt-level {optimisation}, fat LTO), {}, board {}",
+            toolchain.flags(),
+            board.name()
+        ),
     })
 }
 
-fn check_rate(board: Board, tick_rate: u32) -> Outcome<()> {
+/// What the linker says of an image that a board has no room for, in its own words and no others.
+fn too_large(failure: &Failure, board: &Board) -> Option<Failure> {
+    let line = failure.message().lines().find(|line| line.contains("too large for the board"))?;
+    let what = line.rsplit("error: ").next().unwrap_or(line).trim();
+    Some(Failure::new(what).with_help(format!(
+        "take a role that needs less (`--role plant` is the smallest), or a board with more: `joint board check {}` says what \
+         this one has",
+        board.named
+    )))
+}
+
+fn check_rate(board: &Board, tick_rate: u32) -> Outcome<()> {
     if tick_rate == 0 || !board.core_rate().is_multiple_of(tick_rate) {
         let (rate, name) = (board.core_rate(), board.name());
         return Err(Failure::new(format!("a tick rate of {tick_rate} Hz cannot be made of {name}'s {rate} Hz"))
@@ -206,22 +229,29 @@ fn binary(role: Role) -> &'static str {
     }
 }
 
+/// Whether a board has flash enough for the images of all roles.
+pub fn has_room_for_all(board: &Board) -> bool {
+    board.described.image_bytes() > LARGEST_IMAGE
+}
+
 /// Joint, board, role, and the tick rate if it is not the usual one. Files of the same name in different folders are
 /// told apart by a digest of the path.
-fn file_name(joint_file: &Path, board: Board, role: &str, tick_rate: u32) -> String {
+fn file_name(joint_file: &Path, board: &Board, role: &str, tick_rate: u32) -> String {
     let joint = joint_file.file_stem().unwrap_or_default().to_string_lossy();
-    let presets = workspace().join("joints");
-    let presets = presets.canonicalize().unwrap_or(presets);
-    let is_preset = joint_file.parent() == Some(&presets);
-    let origin = match is_preset {
-        true => String::new(),
-        false => {
-            let digest = Sha256::digest(joint_file.as_os_str().as_encoded_bytes());
-            format!("-{:02x}{:02x}", digest[0], digest[1])
-        }
-    };
+    let [joint_origin, board_origin] = [(joint_file, "joints"), (&board.file, "boards")].map(origin);
     let rate = if tick_rate == DEFAULT_TICK_RATE { String::new() } else { format!("-{tick_rate}hz") };
-    format!("{joint}{origin}-{}-{role}{rate}.elf", board.name())
+    format!("{joint}{joint_origin}-{}{board_origin}-{role}{rate}.elf", board.name())
+}
+
+/// What tells a file from others of its name; nothing for those in a folder of the workspace.
+fn origin((file, presets): (&Path, &str)) -> String {
+    let presets = workspace().join(presets);
+    let presets = presets.canonicalize().unwrap_or(presets);
+    if file.parent() == Some(&presets) {
+        return String::new();
+    }
+    let digest = Sha256::digest(file.as_os_str().as_encoded_bytes());
+    format!("-{:02x}{:02x}", digest[0], digest[1])
 }
 
 /// Bytes in flash (loaded segments) and in RAM (everything at RAM addresses).
@@ -243,24 +273,38 @@ fn sizes(elf: &[u8]) -> Result<(u64, u64), object::Error> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::board::Chip;
     use super::*;
 
     fn name(path: &Path) -> String {
-        file_name(path, Board::Stm32f405, "plant", DEFAULT_TICK_RATE)
+        file_name(path, &Board::emulated(), "plant", DEFAULT_TICK_RATE)
     }
 
     #[test]
     fn joints_boards_and_rates_have_files_of_their_own() {
         let preset = preset_file("q1");
-        assert_eq!(name(&preset), "q1-stm32f405-plant.elf");
+        assert_eq!(name(&preset), "q1-olimex-h405-plant.elf");
         assert_ne!(name(&preset), name(&preset_file("s1")));
         assert_ne!(name(Path::new("/a/q1.toml")), name(Path::new("/b/q1.toml")));
-        assert_eq!(file_name(&preset, Board::Stm32h743, "plant", 10_000), "q1-stm32h743-plant-10000hz.elf");
+        let nucleo = Board::load("nucleo-h743zi").unwrap();
+        assert_eq!(file_name(&preset, &nucleo, "plant", 10_000), "q1-nucleo-h743zi-plant-10000hz.elf");
+        let own = Board { file: "/mine/nucleo-h743zi.toml".into(), ..nucleo };
+        assert_ne!(file_name(&preset, &own, "plant", 10_000), "q1-nucleo-h743zi-plant-10000hz.elf");
     }
 
     #[test]
-    fn the_usual_tick_rate_can_be_made_on_every_board() {
-        assert!(Board::ALL.iter().all(|board| board.core_rate().is_multiple_of(DEFAULT_TICK_RATE)));
+    fn the_usual_tick_rate_can_be_made_on_every_chip() {
+        assert!(Chip::ALL.iter().all(|chip| chip.core_rate().is_multiple_of(DEFAULT_TICK_RATE)));
+    }
+
+    #[test]
+    fn an_image_that_has_no_room_is_told_in_one_sentence() {
+        let board = Board::load("b-g431b-esc1").unwrap();
+        let said = "building the firmware failed\n  = note: ld.lld: error: statics are too large for the board b-g431b-esc1: why\n";
+        let failure = too_large(&Failure::new(said), &board).unwrap();
+        assert_eq!(failure.message(), "statics are too large for the board b-g431b-esc1: why");
+        assert!(failure.help().unwrap().contains("--role plant"), "{failure}");
+        assert!(too_large(&Failure::new("no such crate"), &board).is_none());
     }
 
     #[test]

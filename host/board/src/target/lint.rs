@@ -1,6 +1,6 @@
 //! Clippy over the firmware as it is built for a board, warnings denied.
 
-use super::board::Board;
+use super::board::{Board, Chip};
 use super::compile::PROFILE;
 use super::measuring::measuring_features;
 use super::toolchain::Toolchain;
@@ -10,19 +10,26 @@ use report::failure::{Failure, Outcome};
 /// Debian's clippy: it must match the compiler that built the core library.
 const PACKAGE: &str = "rust-web-clippy";
 
-/// Lints library, binaries and examples of the firmware for a board; on the board that is emulated, the measuring
+/// Lints library, binaries and examples of the firmware for a board; for the chip that is emulated, the measuring
 /// binaries too.
-pub fn clippy(toolchain: &Toolchain, board: Board, say: Say<'_>) -> Outcome<()> {
+pub fn clippy(toolchain: &Toolchain, board: &Board, say: Say<'_>) -> Outcome<()> {
     if toolchain.is_distribution() {
         packages::ensure(&[PACKAGE], "to lint the firmware", say)?;
     }
-    let features = match board {
-        Board::Stm32f405 => measuring_features(),
-        Board::Stm32g474 | Board::Stm32h743 => board.name().to_owned(),
+    let features = match board.chip() {
+        Chip::Stm32f405 => measuring_features(),
+        other => other.name().to_owned(),
     };
+    let mut targets = vec!["--package", "firmware", "--profile", PROFILE, "--lib", "--examples"];
+    // The binary of a slave on SPI is for boards that can be one.
+    targets.extend(match board.has_spi_slave() {
+        true => vec!["--bins"],
+        false => vec!["--bin", "plant", "--bin", "observer", "--bin", "whole_loop"],
+    });
     let mut command = toolchain.cargo("clippy");
     command
-        .args(["--package", "firmware", "--profile", PROFILE, "--lib", "--bins", "--examples"])
+        .args(targets)
+        .env("BOARD_FILE", &board.file)
         .args(["--no-default-features", "--features", &features])
         .args(["--", "-D", "warnings"]);
     tool::follow(&mut command, &format!("linting the firmware for {}", board.name()), say)

@@ -12,7 +12,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use super::Say;
-use super::board::Board;
+use super::board::Chip;
 use super::compile::{FIRMWARE, compile, store};
 use super::emulator::{self, MACHINE};
 use super::toolchain::Toolchain;
@@ -49,9 +49,9 @@ fn stored(toolchain: &Toolchain, binary: &str, elf: &[u8]) -> Outcome<PathBuf> {
     Ok(place)
 }
 
-/// The firmware's features for binaries that measure: the board that is emulated, and what they need.
+/// The firmware's features for binaries that measure: the chip that is emulated, and what they need.
 pub(super) fn measuring_features() -> String {
-    format!("{},measuring", Board::Stm32f405.name())
+    format!("{},measuring", Chip::Stm32f405.name())
 }
 
 /// Builds a measuring binary of another package of the workspace, with variables for its build; returns the ELF file.

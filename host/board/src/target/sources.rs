@@ -13,14 +13,16 @@ use report::failure::{Failure, Outcome};
 use report::workspace::workspace;
 
 /// Folders and files of the workspace that the firmware is built from.
-const PARTS: [&str; 12] = [
+const PARTS: [&str; 14] = [
     "Cargo.lock",
     "Cargo.toml",
     "memory.x",
     ".cargo",
+    "boards",
     "firmware/Cargo.toml",
     "firmware/build.rs",
     "firmware/src",
+    "host/board-file",
     "host/joint-file",
     "joints",
     "link",
@@ -33,13 +35,13 @@ pub(super) fn up_to_date(
     toolchain: &Toolchain,
     images: &Path,
     place: &Path,
-    joints: [&Path; 2],
+    files: [&Path; 3],
     settings: &str,
     build: impl FnOnce() -> Outcome<Vec<u8>>,
 ) -> Outcome<Vec<u8>> {
-    let texts = joints.map(|path| fs::read(path).map_err(|error| Failure::new(format!("{}: {error}", path.display()))));
-    let [truth, told] = texts;
-    let from = digest(toolchain, &[&truth?, &told?, settings.as_bytes()])?;
+    let texts = files.map(|path| fs::read(path).map_err(|error| Failure::new(format!("{}: {error}", path.display()))));
+    let [truth, told, board] = texts;
+    let from = digest(toolchain, &[&truth?, &told?, &board?, settings.as_bytes()])?;
     let note = place.with_extension("from");
     let noted = |elf: &[u8]| format!("{from} {}\n", hexadecimal(&Sha256::digest(elf)));
     if let Ok(elf) = fs::read(place)

@@ -47,7 +47,7 @@ fn identity() -> Identity {
         joint_file: "joints/q1.toml".into(),
         joint_digest: "8f3a41c07d925be6".into(),
         role: "plant".into(),
-        board: "stm32f405".into(),
+        board: "olimex-h405".into(),
         emulated: true,
         transport: "QEMU emulator version 7.2.22, machine netduinoplus2".into(),
         firmware_version: "0.1.0".into(),

@@ -163,10 +163,10 @@ impl<'w> Boards<'w> {
         let nominal = NominalPlant { joint: &nominal.parameters, surroundings: &nominal.surroundings, request };
         let source = control_source(&truth.parameters, &truth.surroundings, &nominal, &board.processor())
             .map_err(|error| Failure::new(format!("joint `{}`: {error}", truth.parameters.name)))?;
-        let chip = board.chip();
+        let probe = &board.described.probe_name;
         Ok(Expected {
             joint: truth.parameters.name.to_string(),
-            digest: tables_digest(&truth.parameters, board, control.rate)?,
+            digest: tables_digest(&truth.parameters, board.chip(), control.rate)?,
             tick_rate: control.rate,
             planets: truth.parameters.geometry.planets,
             role: self.request.role,
@@ -176,7 +176,7 @@ impl<'w> Boards<'w> {
                 (Some(Image { elf, .. }), Some(_)) => {
                     let elf = elf.display();
                     BoardHelp::FlashBuilt(format!(
-                        "probe-rs download --chip {chip} {elf} && probe-rs reset --chip {chip}"
+                        "probe-rs download --chip {probe} {elf} && probe-rs reset --chip {probe}"
                     ))
                 }
                 (None, Some(_)) => BoardHelp::Flash("run without --no-build, which builds and names it".to_owned()),

@@ -19,7 +19,7 @@ pub struct BoardRequest<'w> {
     /// Its speed [baud].
     pub baud: Option<u32>,
     /// What is behind it.
-    pub board: Board,
+    pub board: &'w Board,
     /// Its image is there already.
     pub no_build: bool,
     /// Lockstep or real time, of a whole loop.

@@ -35,7 +35,7 @@ pub struct Twin<'t> {
     /// The true joint.
     pub truth: &'t JointFile,
     /// The board whose image it is.
-    pub board: Board,
+    pub board: &'t Board,
     /// What goes wrong between joint and controller.
     pub faults: &'t [Fault<FixedPoint<f32>>],
 }

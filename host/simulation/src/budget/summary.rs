@@ -20,7 +20,7 @@ pub struct BudgetSummary {
     /// The joint.
     pub joint: String,
     /// The board.
-    pub board: &'static str,
+    pub board: String,
     /// Its core clock.
     pub clock_Hz: u32,
     /// Cycles an instruction, waiting for flash included; reckoned, not measured.
@@ -84,13 +84,13 @@ pub struct TickWork {
 }
 
 /// The figures of a joint on a board at a rate [Hz].
-pub fn summary(parameters: &JointParameters, board: Board, rate: u32) -> Result<BudgetSummary, DesignError> {
+pub fn summary(parameters: &JointParameters, board: &Board, rate: u32) -> Result<BudgetSummary, DesignError> {
     let processor = board.processor();
     let certificate = certificate(parameters, rate, Effort::Within(processor), &processor)?;
     Ok(of(parameters, board, &processor, &certificate))
 }
 
-fn of(parameters: &JointParameters, board: Board, processor: &Processor, certificate: &Certificate) -> BudgetSummary {
+fn of(parameters: &JointParameters, board: &Board, processor: &Processor, certificate: &Certificate) -> BudgetSummary {
     let rate = certificate.tick_rate;
     let work = |instructions: u32| TickWork {
         instructions,
@@ -102,7 +102,7 @@ fn of(parameters: &JointParameters, board: Board, processor: &Processor, certifi
     BudgetSummary {
         schema: SCHEMA,
         joint: parameters.name.to_string(),
-        board: board.name(),
+        board: board.name().to_owned(),
         clock_Hz: processor.clock,
         cycles_per_instruction: processor.cycles_per_instruction + processor.flash_wait,
         share: processor.share,

@@ -11,7 +11,7 @@ use report::failure::{Failure, Outcome};
 const HIGHEST: u32 = 500_000;
 
 /// Refuses a rate that cannot be met; names the nearest that can.
-pub fn refuse(parameters: &JointParameters, board: Board, rate: u32) -> Outcome<()> {
+pub fn refuse(parameters: &JointParameters, board: &Board, rate: u32) -> Outcome<()> {
     let (step_size, processor) = (StepSize::new(parameters), board.processor());
     let Some(why) = obstacle(&step_size, &processor, rate) else { return Ok(()) };
     let message = format!("{} cannot be stepped at {rate} Hz on {}: {why}", parameters.name, board.name());

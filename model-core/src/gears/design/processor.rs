@@ -39,11 +39,6 @@ impl Processor {
         }
     }
 
-    /// The same.
-    pub fn of_board(name: &str) -> Option<Self> {
-        Self::of_chip(name)
-    }
-
     /// Instructions a second.
     pub fn instructions_per_second(&self) -> f64 {
         f64::from(self.clock) / (self.cycles_per_instruction + self.flash_wait)

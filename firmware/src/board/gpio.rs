@@ -1,0 +1,118 @@
+//! Pins by port and number, the same registers on all chips. Which pin is for what the board's file says; the build has held
+//! them against the chip.
+
+use core::convert::Infallible;
+
+use embedded_hal::digital::{ErrorType, OutputPin};
+
+use super::pac;
+
+/// Bytes from the registers of one port to those of the next.
+const PORT: usize = 0x400;
+
+/// A pin.
+#[derive(Debug, Clone, Copy)]
+pub struct Pin {
+    /// Its port, counted from A.
+    pub port: u8,
+    /// Its number there.
+    pub number: u8,
+}
+
+impl Pin {
+    /// Of a port, counted from A, whose clock is on before anything is asked of the pin.
+    pub const fn new(port: u8, number: u8) -> Self {
+        Self { port, number }
+    }
+
+    fn registers(self) -> &'static pac::gpioa::RegisterBlock {
+        // SAFETY: ports follow one another at this distance with the same registers; the chip has this one.
+        unsafe { &*pac::GPIOA::ptr().byte_add(PORT * usize::from(self.port)) }
+    }
+
+    /// A field of so many bits a pin, in a register that has one for each pin.
+    fn field(self, bits: u32, width: u8, value: u32) -> u32 {
+        let shift = u32::from(width) * u32::from(self.number) % 32;
+        let mask = (1 << width) - 1;
+        bits & !(mask << shift) | (value & mask) << shift
+    }
+
+    /// Gives it to a peripheral.
+    pub fn give_to(self, function: u8) {
+        let registers = self.registers();
+        // SAFETY: of the register only this pin's field changes, and every value of that is allowed.
+        unsafe {
+            if self.number < 8 {
+                registers.afrl().modify(|r, w| w.bits(self.field(r.bits(), 4, function.into())));
+            } else {
+                registers.afrh().modify(|r, w| w.bits(self.field(r.bits(), 4, function.into())));
+            }
+        }
+        self.set_mode(2);
+    }
+
+    /// Edges as steep as the chip makes them: at the speed after a reset a fast line's take longer than a bit.
+    pub fn make_fast(self) {
+        // SAFETY: of the register only this pin's field changes.
+        self.registers().ospeedr().modify(|r, w| unsafe { w.bits(self.field(r.bits(), 2, 3)) });
+    }
+
+    /// High where nothing drives it.
+    pub fn pull_up(self) {
+        // SAFETY: of the register only this pin's field changes.
+        self.registers().pupdr().modify(|r, w| unsafe { w.bits(self.field(r.bits(), 2, 1)) });
+    }
+
+    fn set_mode(self, mode: u32) {
+        // SAFETY: of the register only this pin's field changes.
+        self.registers().moder().modify(|r, w| unsafe { w.bits(self.field(r.bits(), 2, mode)) });
+    }
+
+    /// Sets its level, if it is an output: one write, which leaves the port's other pins alone.
+    fn set_level(self, high: bool) {
+        let bits = 1 << (u32::from(self.number) + if high { 0 } else { 16 });
+        // SAFETY: every word is allowed; pins that are no outputs do not care.
+        self.registers().bsrr().write(|w| unsafe { w.bits(bits) });
+    }
+}
+
+/// A pin that switches something, on when set high for embedded-hal, whatever its level then is; or none at all.
+#[derive(Debug)]
+pub struct Output {
+    pin: Option<Pin>,
+    on_is_high: bool,
+}
+
+impl Output {
+    /// Makes the pin an output that is off from the first moment on.
+    pub fn open(pin: Option<(Pin, bool)>) -> Self {
+        let mut output = Self { pin: pin.map(|(pin, _)| pin), on_is_high: pin.is_some_and(|(_, high)| high) };
+        let Ok(()) = output.set_low();
+        if let Some(pin) = output.pin {
+            pin.set_mode(1);
+        }
+        output
+    }
+
+    fn switch(&self, on: bool) {
+        if let Some(pin) = self.pin {
+            pin.set_level(on == self.on_is_high);
+        }
+    }
+}
+
+impl ErrorType for Output {
+    type Error = Infallible;
+}
+
+impl OutputPin for Output {
+    fn set_low(&mut self) -> Result<(), Infallible> {
+        self.switch(false);
+        Ok(())
+    }
+
+    fn set_high(&mut self) -> Result<(), Infallible> {
+        self.switch(true);
+        Ok(())
+    }
+}

@@ -1,0 +1,62 @@
+//! The USART that the serial line is on, as the board's file says: its registers, its interrupt, the switch of its clock.
+
+use cortex_m::peripheral::NVIC;
+
+use super::pac;
+
+/// Registers, interrupt and clock of each unit of a chip.
+macro_rules! units {
+    ($($name:literal => $unit:ident, $gates:ident, $gate:ident;)+) => {$(
+        /// The unit's registers.
+        #[cfg(serial = $name)]
+        pub type Registers = pac::$unit;
+
+        /// Its interrupt.
+        #[cfg(serial = $name)]
+        const INTERRUPT: pac::Interrupt = pac::Interrupt::$unit;
+
+        /// The unit with its clock on.
+        #[cfg(serial = $name)]
+        pub fn take(clocks: &pac::RCC) -> Registers {
+            clocks.$gates().modify(|_, w| w.$gate().set_bit());
+            // SAFETY: asked for once, at the start; nobody else has the unit in hand.
+            unsafe { Registers::steal() }
+        }
+    )+};
+}
+
+#[cfg(feature = "stm32f405")]
+units! {
+    "usart1" => USART1, apb2enr, usart1en;
+    "usart2" => USART2, apb1enr, usart2en;
+    "usart3" => USART3, apb1enr, usart3en;
+    "uart4" => UART4, apb1enr, uart4en;
+    "uart5" => UART5, apb1enr, uart5en;
+    "usart6" => USART6, apb2enr, usart6en;
+}
+
+#[cfg(any(feature = "stm32g474", feature = "stm32g431"))]
+units! {
+    "usart1" => USART1, apb2enr, usart1en;
+    "usart2" => USART2, apb1enr1, usart2en;
+    "usart3" => USART3, apb1enr1, usart3en;
+    "uart4" => UART4, apb1enr1, uart4en;
+    "uart5" => UART5, apb1enr1, uart5en;
+}
+
+#[cfg(feature = "stm32h743")]
+units! {
+    "usart1" => USART1, apb2enr, usart1en;
+    "usart2" => USART2, apb1lenr, usart2en;
+    "usart3" => USART3, apb1lenr, usart3en;
+    "uart4" => UART4, apb1lenr, uart4en;
+    "uart5" => UART5, apb1lenr, uart5en;
+    "usart6" => USART6, apb2enr, usart6en;
+    "uart7" => UART7, apb1lenr, uart7en;
+    "uart8" => UART8, apb1lenr, uart8en;
+}
+
+/// Makes the interrupt run.
+pub fn wake() {
+    NVIC::pend(INTERRUPT);
+}

@@ -1,0 +1,110 @@
+//! `joint board`: what a board file says, or everything that is wrong with it; and the boards that come with the program.
+
+use std::path::PathBuf;
+
+use board_file::{Board, ExternalClock, Level, Output, PRESETS, Pin, SpiSlave, named};
+use report::document::{Sheet, terminal};
+use report::failure::Outcome;
+use report::output;
+
+/// Arguments of `joint board`.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    #[command(subcommand)]
+    action: Action,
+}
+
+#[derive(Debug, clap::Subcommand)]
+enum Action {
+    /// Read a board file and print what the firmware makes of it, or everything that is wrong with it
+    Check(CheckArguments),
+    /// List the boards that come with the program
+    List,
+}
+
+/// Arguments of `joint board check`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  joint board check my_board.toml
+  joint board check odrive-3.6
+
+Exit code 2 if an image cannot be built for the board; what is wrong is shown at its place.")]
+struct CheckArguments {
+    /// Board file (TOML), or the name of one in boards/
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+}
+
+/// Checks a board file, or lists those that there are.
+pub fn run(arguments: &Arguments) -> Outcome<()> {
+    match &arguments.action {
+        Action::Check(check) => {
+            let loaded = named::load(&check.file)?;
+            let shown = terminal(&layout(&loaded.board).document());
+            let warnings = loaded.board.warnings.iter().map(|warning| format!("warning: {warning}\n"));
+            output::print(&(shown + &warnings.collect::<String>()))
+        }
+        Action::List => {
+            let mut page = Sheet::new("Boards".to_owned());
+            for name in PRESETS {
+                let board = named::load(name.as_ref())?.board;
+                page.row(name, format!("{}: {}", board.chip_name, board.description));
+            }
+            output::print(&terminal(&page.document()))
+        }
+    }
+}
+
+fn layout(board: &Board) -> Sheet {
+    let mut page = Sheet::new(match board.description.as_str() {
+        "" => board.name.to_string(),
+        description => format!("{}: {description}", board.name),
+    });
+    page.heading("Chip");
+    page.row("order name", &board.chip_name);
+    page.row("core clock", megahertz(board.core_rate()));
+    let [first, second] = board.slots();
+    page.row("flash", format!("{} KiB, {} KiB for an image", board.flash_bytes >> 10, board.image_bytes() >> 10));
+    page.row("what was learnt", format!("at {:#010x} and {:#010x}", first.address, second.address));
+    page.row("RAM", format!("{} KiB", board.ram_bytes >> 10));
+    page.heading("Clock");
+    page.row(
+        "source",
+        match board.clock {
+            ExternalClock::None => "the chip's own oscillator".to_owned(),
+            ExternalClock::Crystal(frequency) => format!("crystal of {}, measured before use", megahertz(frequency)),
+            ExternalClock::Signal(frequency) => format!("signal of {}, measured before use", megahertz(frequency)),
+        },
+    );
+    page.heading("Pins");
+    let serial = &board.serial;
+    let line = format!("{}: {} out, {} in, {} baud", serial.unit, serial.send.pin, serial.receive.pin, serial.baud);
+    page.row("line to the host", line);
+    page.row("enable", output(board.enable));
+    page.row("status light", output(board.light));
+    page.row(
+        "slave on SPI",
+        match &board.spi_slave {
+            None => "none".to_owned(),
+            Some(SpiSlave { unit, select, clock, out, input }) => {
+                format!("{unit}: {} select, {} clock, {} out, {} in", select.pin, clock.pin, out.pin, input.pin)
+            }
+        },
+    );
+    page.heading("Never driven");
+    for (pin, what) in &board.never_driven {
+        page.row(&Pin::to_string(pin), what);
+    }
+    page
+}
+
+fn output(output: Option<Output>) -> String {
+    match output {
+        None => "none".to_owned(),
+        Some(Output { pin, on }) => format!("{pin}, on when {}", if on == Level::High { "high" } else { "low" }),
+    }
+}
+
+fn megahertz(frequency: u32) -> String {
+    format!("{} MHz", f64::from(frequency) / 1e6)
+}

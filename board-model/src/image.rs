@@ -4,7 +4,7 @@ use std::path::Path;
 
 use object::{Object, ObjectSegment, ObjectSymbol, SymbolKind};
 
-/// First address of RAM: initial values of what is there lie in flash.
+/// Where an image may lie; initial values of what is in RAM lie there too.
 const FLASH: std::ops::Range<u64> = 0x0800_0000..0x0840_0000;
 
 /// An image.

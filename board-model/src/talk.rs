@@ -9,7 +9,7 @@ use board::session::Supervisor;
 use board::transport::Line;
 use link::PROTOCOL_VERSION;
 use link::framing::{Receiver, encode};
-use link::messages::{FromBoard, Hello, ToBoard};
+use link::messages::{FromBoard, Hello, RunSettings, ToBoard};
 
 use crate::cpu::Board;
 use crate::wires::{MICROSECOND, SECOND, Time};
@@ -84,6 +84,15 @@ impl<'a> Talk<'a> {
                 _ => None,
             })
         })
+    }
+
+    /// Asks for a run.
+    pub fn start_run(&mut self, settings: RunSettings) -> Result<(), String> {
+        let granted = self.ask(&ToBoard::Reset(settings), SECOND, |message| match message {
+            FromBoard::Hello(_) => Some(()),
+            _ => None,
+        });
+        granted.ok_or_else(|| "a run is not granted".into())
     }
 
     /// A line for a session of the host's own.

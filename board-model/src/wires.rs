@@ -235,6 +235,11 @@ impl Wires {
         self.pins.get(&pin).copied().unwrap_or(Mode::Input)
     }
 
+    /// Whether one of some pins has its alternate function.
+    pub fn leads_to(&self, pins: &[(Pin, u32)]) -> bool {
+        pins.iter().any(|(pin, function)| self.mode(*pin) == Mode::Alternate(*function))
+    }
+
     /// The level at a pin: its own, or that from outside, or low.
     pub fn level(&self, pin: Pin) -> bool {
         match self.mode(pin) {

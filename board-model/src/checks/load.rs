@@ -46,11 +46,7 @@ fn loaded(subject: &Subject, schedule: &ToBoard) -> Result<String, String> {
     talk.call(2 * SECOND).ok_or("no answer")?;
     let settings =
         RunSettings { mode: RunMode::Realtime, decimation: 1000, command_timeout: TIMEOUT, from_memory: false };
-    let granted = talk.ask(&ToBoard::Reset(settings), SECOND, |message| match message {
-        FromBoard::Hello(_) => Some(()),
-        _ => None,
-    });
-    granted.ok_or("a run is not granted")?;
+    talk.start_run(settings)?;
     let (mut answered, before) = (0, talk.board.borrow().machine().wires.line.overruns);
     for _ in 0..FRAMES {
         talk.say(schedule);

@@ -34,11 +34,7 @@ fn start_run<'a>(subject: &Subject) -> Result<Talk<'a>, String> {
     }
     let settings =
         RunSettings { mode: RunMode::Realtime, decimation: 1000, command_timeout: TIMEOUT, from_memory: false };
-    let reset = talk.ask(&ToBoard::Reset(settings), SECOND, |message| match message {
-        FromBoard::Hello(_) => Some(()),
-        _ => None,
-    });
-    reset.ok_or("a run is not granted")?;
+    talk.start_run(settings)?;
     let commands = [Command { tick: 0, drive_torque: 0.1, load_torque: 0.0 }].into_iter().collect();
     talk.say(&ToBoard::Schedule(Schedule { sequence: 0, horizon: 10 * TIMEOUT, commands }));
     talk.hear(5000 * MICROSECOND);

@@ -1,6 +1,6 @@
 //! STM32F405: RM0090, memory map in its table 1, interrupts in its table 61.
 
-use super::{always, gated};
+use super::{always, gated, ports};
 use crate::machine::{Chip, Memory};
 use crate::peripherals::dma_stream::DmaStreams;
 use crate::peripherals::exti::Exti;
@@ -50,12 +50,8 @@ pub fn chip(image_end: u32) -> Chip {
         gated(RM, "DMA2", 0x4002_6400, (AHB1ENR, 22), Some((AHB1RSTR, 22)), Box::new(DmaStreams::default())),
         gated(RM, "SPI1", 0x4001_3000, (APB2ENR, 12), Some((APB2RSTR, 12)), Box::new(Spi::old(SPI1))),
     ];
-    for (index, port) in ('A'..='I').enumerate() {
-        let index = index as u32;
-        let base = 0x4002_0000 + 0x400 * index;
-        let name = ["GPIOA", "GPIOB", "GPIOC", "GPIOD", "GPIOE", "GPIOF", "GPIOG", "GPIOH", "GPIOI"][index as usize];
-        peripherals.push(gated(RM, name, base, (AHB1ENR, index), Some((AHB1RSTR, index)), Box::new(Gpio::f4(port))));
-    }
+    let names = ["GPIOA", "GPIOB", "GPIOC", "GPIOD", "GPIOE", "GPIOF", "GPIOG", "GPIOH", "GPIOI"];
+    peripherals.extend(ports(RM, 0x4002_0000, [AHB1ENR, AHB1RSTR], &names, Gpio::f4));
     Chip {
         name: "stm32f405",
         is_m7: false,

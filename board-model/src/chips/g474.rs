@@ -1,6 +1,6 @@
 //! STM32G474: RM0440, memory map in its table 3, interrupts in its table 97.
 
-use super::{always, gated};
+use super::{always, gated, ports};
 use crate::machine::{Chip, Memory};
 use crate::peripherals::dma_channel::DmaChannels;
 use crate::peripherals::dmamux::DmaMux;
@@ -55,14 +55,8 @@ pub fn chip(image_end: u32) -> Chip {
         gated(RM, "DMAMUX", 0x4002_0800, (AHB1ENR, 2), Some((AHB1RSTR, 2)), Box::new(DmaMux::default())),
         gated(RM, "SPI2", 0x4000_3800, (APB1ENR1, 14), Some((APB1RSTR1, 14)), Box::new(Spi::new(SPI2))),
     ];
-    for (index, (port, name)) in
-        ('A'..='G').zip(["GPIOA", "GPIOB", "GPIOC", "GPIOD", "GPIOE", "GPIOF", "GPIOG"]).enumerate()
-    {
-        let index = index as u32;
-        let (clock, hold) = ((AHB2ENR, index), Some((AHB2RSTR, index)));
-        let base = 0x4800_0000 + 0x400 * index;
-        peripherals.push(gated(RM, name, base, clock, hold, Box::new(Gpio::newer(port, true))));
-    }
+    let names = ["GPIOA", "GPIOB", "GPIOC", "GPIOD", "GPIOE", "GPIOF", "GPIOG"];
+    peripherals.extend(ports(RM, 0x4800_0000, [AHB2ENR, AHB2RSTR], &names, |port| Gpio::newer(port, true)));
     Chip {
         name: "stm32g474",
         is_m7: false,

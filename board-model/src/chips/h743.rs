@@ -1,6 +1,6 @@
 //! STM32H743: RM0433, memory map in its table 8, interrupts in its table 149.
 
-use super::{always, gated};
+use super::{always, gated, ports};
 use crate::machine::{Chip, Memory};
 use crate::peripherals::gpio::Gpio;
 use crate::peripherals::iwdg::Iwdg;
@@ -41,12 +41,7 @@ pub fn chip(image_end: u32) -> Chip {
         gated(RM, "USART3", 0x4000_4800, (APB1LENR, 18), Some((APB1LRSTR, 18)), Box::new(Usart::new(USART3, 16))),
     ];
     let names = ["GPIOA", "GPIOB", "GPIOC", "GPIOD", "GPIOE", "GPIOF", "GPIOG", "GPIOH", "GPIOI", "GPIOJ", "GPIOK"];
-    for (index, (port, name)) in ('A'..='K').zip(names).enumerate() {
-        let index = index as u32;
-        let (clock, hold) = ((AHB4ENR, index), Some((AHB4RSTR, index)));
-        let base = 0x5802_0000 + 0x400 * index;
-        peripherals.push(gated(RM, name, base, clock, hold, Box::new(Gpio::newer(port, false))));
-    }
+    peripherals.extend(ports(RM, 0x5802_0000, [AHB4ENR, AHB4RSTR], &names, |port| Gpio::newer(port, false)));
     Chip {
         name: "stm32h743",
         is_m7: true,

@@ -6,11 +6,25 @@ pub mod h743;
 
 use crate::machine::Placed;
 use crate::peripherals::Peripheral;
+use crate::peripherals::gpio::Gpio;
 use crate::wires::Gate;
 
 /// A peripheral whose clock is always on.
 fn always(name: &'static str, base: u32, peripheral: Box<dyn Peripheral>) -> Placed {
     Placed { name, base, size: 0x400, clock: None, hold: None, section: "", peripheral }
+}
+
+/// General-purpose ports from A on by their names, a bit of the registers at two offsets each.
+fn ports<'a>(
+    section: &'static str,
+    base: u32,
+    [clock, hold]: [u32; 2],
+    names: &'a [&'static str],
+    make: impl Fn(char) -> Gpio + 'a,
+) -> impl Iterator<Item = Placed> + 'a {
+    names.iter().zip('A'..).zip(0..).map(move |((name, port), index)| {
+        gated(section, name, base + 0x400 * index, (clock, index), Some((hold, index)), Box::new(make(port)))
+    })
 }
 
 /// One with a clock gate and a reset: offsets and bits in the clock controller, whose section is named.

@@ -2,8 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use crate::wires::Wires;
+use crate::register::{Registers, bit, bits};
+use crate::wires::{Time, Wires};
 
+/// The access control register of all three chips.
+pub const ACR: u32 = 0x00;
 /// First address of flash on all three chips.
 pub const BASE: u32 = 0x0800_0000;
 /// Keys of the control register: RM0090 3.6.1, RM0440 3.3.5, RM0433 4.5.1.
@@ -76,6 +79,90 @@ impl Array {
     }
 }
 
+/// The caches in front of the flash of F405 and G474, by their access control register: RM0090 3.9.1, RM0440 3.7.1.
+#[derive(Debug, Clone)]
+pub struct Caches {
+    /// Sections of the register, and of what a cache returns.
+    sections: [&'static str; 2],
+    /// That of data may hold what was there before.
+    stale: bool,
+}
+
+impl Caches {
+    /// ICEN, DCEN, ICRST and DCRST.
+    const ENABLES: [u32; 2] = [9, 10];
+    const RESETS: [u32; 2] = [11, 12];
+    /// Bits that writes change by way of [`Caches::written`].
+    pub const SPECIAL: u32 = bits(12, 11);
+
+    /// Empty, with the sections of the access control register and of what a cache returns.
+    pub fn new(sections: [&'static str; 2]) -> Self {
+        Self { sections, stale: false }
+    }
+
+    /// Whether that of data is on.
+    fn keeps_data(registers: &Registers) -> bool {
+        registers.is_set(ACR, Self::ENABLES[1])
+    }
+
+    /// The access control register was written.
+    pub fn written(&mut self, value: u32, registers: &mut Registers, wires: &mut Wires) {
+        for ((reset, enable), what) in Self::RESETS.into_iter().zip(Self::ENABLES).zip(["instruction", "data"]) {
+            if value & bit(reset) != 0 && value & bit(enable) != 0 {
+                let what = format!("the {what} cache is reset while it is on");
+                wires.violation("FLASH_ACR", what, self.sections[0]);
+            }
+        }
+        if value & bit(Self::RESETS[1]) != 0 && value & bit(Self::ENABLES[1]) == 0 {
+            self.stale = false;
+        }
+        registers.change(ACR, value & Self::SPECIAL, Self::SPECIAL);
+    }
+
+    /// Flash changes; whether the cache of data is on while it does.
+    pub fn flash_changes(&mut self, registers: &Registers) -> bool {
+        let is_on = Self::keeps_data(registers);
+        self.stale |= is_on;
+        is_on
+    }
+
+    /// Flash is read.
+    pub fn flash_is_read(&self, wires: &mut Wires) {
+        if self.stale {
+            let what = "is read through a data cache that was not reset since flash was changed";
+            wires.violation("flash", what, self.sections[1]);
+        }
+    }
+
+    /// As after a reset.
+    pub fn reset(&mut self) {
+        self.stale = false;
+    }
+}
+
+/// An erase or a program under way.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Work {
+    until: Time,
+}
+
+impl Work {
+    /// One that takes a time begins.
+    pub fn begin(&mut self, duration: Time, wires: &Wires) {
+        self.until = wires.now + duration;
+    }
+
+    /// Whether it goes on.
+    pub fn goes_on(self, wires: &Wires) -> bool {
+        self.left(wires) > 0
+    }
+
+    /// Time to its end, which whoever reads or writes there meanwhile waits.
+    pub fn left(self, wires: &Wires) -> Time {
+        self.until.saturating_sub(wires.now)
+    }
+}
+
 /// The sequence of keys.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Lock {
@@ -88,6 +175,12 @@ pub enum Lock {
     Open,
     /// A wrong key was given: locked until the next reset.
     Shut,
+}
+
+impl Default for Lock {
+    fn default() -> Self {
+        Self::Locked { keys: 0 }
+    }
 }
 
 impl Lock {
@@ -139,7 +232,7 @@ mod tests {
     #[test]
     fn one_wrong_key_shuts_the_lock() {
         let mut wires = wires();
-        let mut lock = Lock::Locked { keys: 0 };
+        let mut lock = Lock::default();
         KEYS.into_iter().for_each(|key| lock.key(key, "KEYR", &mut wires));
         assert_eq!((lock, wires.violations.all().len()), (Lock::Open, 0));
         lock.key(KEYS[0], "KEYR", &mut wires);

@@ -1,11 +1,10 @@
 //! The flash controller of STM32F405: RM0090 section 3. One bank: whoever reads while it is at work waits for it.
 
 use super::Peripheral;
-use super::flash::{Array, BASE, Lock};
-use crate::register::{Register, Registers, bit, bits};
-use crate::wires::{MICROSECOND, Time, Wires};
+use super::flash::{ACR, Array, BASE, Caches, Lock, Work};
+use crate::register::{Register, Registers, bit};
+use crate::wires::{MICROSECOND, Reset, Time, Wires};
 
-const ACR: u32 = 0x00;
 const KEYR: u32 = 0x04;
 const SR: u32 = 0x0c;
 const CR: u32 = 0x10;
@@ -15,7 +14,7 @@ const KIB: u32 = 1024;
 
 /// RM0090 3.9.
 static MAP: [Register; 6] = [
-    Register::new("FLASH_ACR", ACR, 0, 0x1f07).special(bits(12, 11)),
+    Register::new("FLASH_ACR", ACR, 0, 0x1f07).special(Caches::SPECIAL),
     Register::new("FLASH_KEYR", KEYR, 0, u32::MAX).special(u32::MAX).any_value(),
     Register::new("FLASH_OPTKEYR", 0x08, 0, u32::MAX).special(u32::MAX).any_value(),
     Register::new("FLASH_SR", SR, 0, 0x0001_00f3).special(0x0001_00f3),
@@ -36,9 +35,8 @@ pub struct Flash {
     registers: Registers,
     array: Array,
     lock: Lock,
-    busy_until: Option<Time>,
-    /// The data cache may hold what was there before.
-    stale: bool,
+    work: Work,
+    caches: Caches,
 }
 
 impl Flash {
@@ -47,39 +45,22 @@ impl Flash {
         Self {
             registers: Registers::new(&MAP),
             array: Array::new(image_end, SIZE, 4),
-            lock: Lock::Locked { keys: 0 },
-            busy_until: None,
-            stale: false,
+            lock: Lock::default(),
+            work: Work::default(),
+            caches: Caches::new(["RM0090 3.9.1", "RM0090 3.5.2"]),
         }
-    }
-
-    fn is_busy(&self, now: Time) -> bool {
-        self.busy_until.is_some_and(|until| until > now)
     }
 
     fn work(&mut self, duration: Time, wires: &mut Wires) {
-        self.busy_until = Some(wires.now + duration);
+        self.work.begin(duration, wires);
         // RM0090 3.6: reads of flash, instructions too, wait until the end.
         wires.stall += duration;
-        self.stale |= self.registers.is_set(ACR, 10);
-    }
-
-    fn access_written(&mut self, value: u32, wires: &mut Wires) {
-        for (reset, enable, what) in [(11, 9, "instruction"), (12, 10, "data")] {
-            if value & bit(reset) != 0 && value & bit(enable) != 0 {
-                let what = format!("the {what} cache is reset while it is on");
-                wires.violation("FLASH_ACR", what, "RM0090 3.9.1");
-            }
-        }
-        if value & bit(12) != 0 && value & bit(10) == 0 {
-            self.stale = false;
-        }
-        self.registers.change(ACR, value & bits(12, 11), bits(12, 11));
+        self.caches.flash_changes(&self.registers);
     }
 
     fn control_written(&mut self, value: u32, before: u32, wires: &mut Wires) {
         if value & bit(31) != 0 {
-            self.lock = Lock::Locked { keys: 0 };
+            self.lock = Lock::default();
             self.registers.set(CR, bit(31));
             return;
         }
@@ -87,7 +68,7 @@ impl Flash {
             wires.violation("FLASH_CR", "is written while locked: the keys first", "RM0090 3.6.1");
             return;
         }
-        if self.is_busy(wires.now) {
+        if self.work.goes_on(wires) {
             wires.violation("FLASH_CR", "is written while BSY is 1", "RM0090 3.9.5");
         }
         if value & bit(16) != 0 && value & 0x7f != before & 0x7f {
@@ -114,7 +95,7 @@ impl Flash {
         let cut = wires.begins_flash_operation();
         if cut {
             self.array.damage(BASE + first, size);
-            wires.reset = Some(crate::wires::Reset::Power);
+            wires.reset = Some(Reset::Power);
             return;
         }
         self.array.erase(BASE + first, size, wires);
@@ -127,14 +108,9 @@ impl Peripheral for Flash {
         &mut self.registers
     }
 
-    fn read(&mut self, offset: u32, wires: &mut Wires) -> u32 {
-        self.advance(wires);
-        self.registers.get(offset)
-    }
-
     fn written(&mut self, offset: u32, value: u32, before: u32, wires: &mut Wires) {
         match offset {
-            ACR => self.access_written(value, wires),
+            ACR => self.caches.written(value, &mut self.registers, wires),
             KEYR => self.lock.key(value, "FLASH_KEYR", wires),
             SR => self.registers.change(SR, 0, value & 0xf3),
             CR => self.control_written(value, before, wires),
@@ -147,7 +123,7 @@ impl Peripheral for Flash {
     }
 
     fn advance(&mut self, wires: &mut Wires) {
-        let busy = self.is_busy(wires.now);
+        let busy = self.work.goes_on(wires);
         self.registers.change(SR, u32::from(busy) << 16, bit(16));
         let waits = u64::from(self.registers.field(ACR, 0, 3));
         if wires.clocks.bus > (waits + 1) * PER_WAIT_STATE {
@@ -158,19 +134,16 @@ impl Peripheral for Flash {
 
     fn reset(&mut self) {
         self.registers.reset();
-        self.lock = Lock::Locked { keys: 0 };
-        self.busy_until = None;
-        self.stale = false;
+        self.lock = Lock::default();
+        self.work = Work::default();
+        self.caches.reset();
     }
 
     fn read_memory(&mut self, address: u32, size: u32, wires: &mut Wires) -> Option<u64> {
         if !self.array.holds(address) {
             return None;
         }
-        if self.stale {
-            let what = "is read through a data cache that was not reset since flash was changed";
-            wires.violation("flash", what, "RM0090 3.5.2");
-        }
+        self.caches.flash_is_read(wires);
         Some(self.array.read(address, size))
     }
 
@@ -185,7 +158,7 @@ impl Peripheral for Flash {
             (bit(6), "is written with another width than PSIZE says", "RM0090 3.6.4 PGPERR")
         } else if address / 16 != (address + size - 1) / 16 {
             (bit(5), "a write crosses 128 bits", "RM0090 3.6.4 PGAERR")
-        } else if self.is_busy(wires.now) {
+        } else if self.work.goes_on(wires) {
             (bit(7), "is written while BSY is 1", "RM0090 3.6.4")
         } else if self.registers.get(SR) & 0xf2 != 0 {
             (bit(7), "is written while an error flag is up", "RM0090 3.9.4")
@@ -205,7 +178,7 @@ impl Peripheral for Flash {
         if cut {
             // Some bits have been cleared: F405 has no check of its words.
             self.array.program(address, size, value | 0x5555_5555);
-            wires.reset = Some(crate::wires::Reset::Power);
+            wires.reset = Some(Reset::Power);
             return true;
         }
         self.array.program(address, size, value);

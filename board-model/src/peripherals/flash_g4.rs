@@ -2,11 +2,10 @@
 //! one bank runs while the other is at work.
 
 use super::Peripheral;
-use super::flash::{Array, BASE, Lock};
+use super::flash::{ACR, Array, BASE, Caches, Lock, Work};
 use crate::register::{Register, Registers, bit, bits};
 use crate::wires::{MICROSECOND, Reset, Time, Wires};
 
-const ACR: u32 = 0x00;
 const KEYR: u32 = 0x08;
 const SR: u32 = 0x10;
 const CR: u32 = 0x14;
@@ -21,7 +20,7 @@ const ERRORS: u32 = 0xc3fa;
 
 /// RM0440 3.7.
 static MAP: [Register; 8] = [
-    Register::new("FLASH_ACR", ACR, 0x0004_0600, 0x0004_7f0f).special(bits(12, 11)),
+    Register::new("FLASH_ACR", ACR, 0x0004_0600, 0x0004_7f0f).special(Caches::SPECIAL),
     Register::new("FLASH_PDKEYR", 0x04, 0, u32::MAX).special(u32::MAX).any_value(),
     Register::new("FLASH_KEYR", KEYR, 0, u32::MAX).special(u32::MAX).any_value(),
     Register::new("FLASH_OPTKEYR", 0x0c, 0, u32::MAX).special(u32::MAX).any_value(),
@@ -42,10 +41,10 @@ pub struct Flash {
     registers: Registers,
     array: Array,
     lock: Lock,
-    busy_until: Option<Time>,
+    work: Work,
     /// The first half of a double word, and where it goes.
     half: Option<(u32, u32)>,
-    stale: bool,
+    caches: Caches,
 }
 
 impl Flash {
@@ -54,22 +53,17 @@ impl Flash {
         Self {
             registers: Registers::new(&MAP),
             array: Array::new(image_end, SIZE, DOUBLE_WORD),
-            lock: Lock::Locked { keys: 0 },
-            busy_until: None,
+            lock: Lock::default(),
+            work: Work::default(),
             half: None,
-            stale: false,
+            caches: Caches::new(["RM0440 3.7.1", "RM0440 3.3.4"]),
         }
-    }
-
-    fn is_busy(&self, now: Time) -> bool {
-        self.busy_until.is_some_and(|until| until > now)
     }
 
     /// An operation on an address begins.
     fn work(&mut self, address: u32, duration: Time, wires: &mut Wires) {
-        self.busy_until = Some(wires.now + duration);
-        if self.registers.is_set(ACR, 10) {
-            self.stale = true;
+        self.work.begin(duration, wires);
+        if self.caches.flash_changes(&self.registers) {
             // ES0430 2.2.2: a read of the one bank while the other is at work may corrupt the data cache.
             let what = "the data cache is on while a bank is erased or programmed beside running code";
             wires.violation("FLASH_ACR", what, "ES0430 2.2.2");
@@ -80,23 +74,10 @@ impl Flash {
         }
     }
 
-    fn access_written(&mut self, value: u32, wires: &mut Wires) {
-        for (reset, enable, what) in [(11, 9, "instruction"), (12, 10, "data")] {
-            if value & bit(reset) != 0 && value & bit(enable) != 0 {
-                let what = format!("the {what} cache is reset while it is on");
-                wires.violation("FLASH_ACR", what, "RM0440 3.7.1");
-            }
-        }
-        if value & bit(12) != 0 && value & bit(10) == 0 {
-            self.stale = false;
-        }
-        self.registers.change(ACR, value & bits(12, 11), bits(12, 11));
-    }
-
     fn control_written(&mut self, value: u32, wires: &mut Wires) {
         let kept = self.registers.get(CR) & bit(30);
         if value & bit(31) != 0 {
-            self.lock = Lock::Locked { keys: 0 };
+            self.lock = Lock::default();
             self.registers.set(CR, bit(31) | bit(30));
             return;
         }
@@ -104,7 +85,7 @@ impl Flash {
             wires.violation("FLASH_CR", "is written while locked: the keys first", "RM0440 3.3.5");
             return;
         }
-        if self.is_busy(wires.now) {
+        if self.work.goes_on(wires) {
             wires.violation("FLASH_CR", "is written while BSY is 1", "RM0440 3.7.6");
         }
         self.registers.set(CR, value & !bit(16) | kept);
@@ -156,13 +137,13 @@ impl Peripheral for Flash {
 
     fn read(&mut self, offset: u32, wires: &mut Wires) -> u32 {
         self.advance(wires);
-        wires.waiting = offset == SR && self.is_busy(wires.now);
+        wires.waiting = offset == SR && self.work.goes_on(wires);
         self.registers.get(offset)
     }
 
     fn written(&mut self, offset: u32, value: u32, _before: u32, wires: &mut Wires) {
         match offset {
-            ACR => self.access_written(value, wires),
+            ACR => self.caches.written(value, &mut self.registers, wires),
             KEYR => self.lock.key(value, "FLASH_KEYR", wires),
             SR => self.registers.change(SR, 0, value & 0xc3fb),
             CR => self.control_written(value, wires),
@@ -177,7 +158,7 @@ impl Peripheral for Flash {
     }
 
     fn advance(&mut self, wires: &mut Wires) {
-        let busy = self.is_busy(wires.now);
+        let busy = self.work.goes_on(wires);
         self.registers.change(SR, u32::from(busy) << 16, bit(16));
         let waits = u64::from(self.registers.field(ACR, 0, 4));
         // RM0440 3.3.3, table 9: steps of range 1 boost, range 1 normal, range 2.
@@ -196,26 +177,24 @@ impl Peripheral for Flash {
 
     fn reset(&mut self) {
         self.registers.reset();
-        self.lock = Lock::Locked { keys: 0 };
-        (self.busy_until, self.half, self.stale) = (None, None, false);
+        self.lock = Lock::default();
+        (self.work, self.half) = (Work::default(), None);
+        self.caches.reset();
     }
 
     fn read_memory(&mut self, address: u32, size: u32, wires: &mut Wires) -> Option<u64> {
         if !self.array.holds(address) {
             return None;
         }
-        if self.stale {
-            let what = "is read through a data cache that was not reset since flash was changed";
-            wires.violation("flash", what, "RM0440 3.3.4");
-        }
+        self.caches.flash_is_read(wires);
         if self.array.is_damaged(address) {
             let place = (address - BASE) / DOUBLE_WORD;
             let bank = u32::from(address >= BASE + BANK);
             self.registers.set(ECCR, bit(31) | bank << 21 | place & 0x7_ffff);
             wires.non_maskable = true;
         }
-        if let Some(until) = self.busy_until.filter(|until| *until > wires.now && address >= BASE + BANK) {
-            wires.stall += until - wires.now;
+        if address >= BASE + BANK {
+            wires.stall += self.work.left(wires);
         }
         Some(self.array.read(address, size))
     }
@@ -228,7 +207,7 @@ impl Peripheral for Flash {
             (bit(7), "is written while PG is 0", "RM0440 3.3.7 PGSERR")
         } else if size < 4 {
             (bit(6), "is written by less than a word", "RM0440 3.3.7 SIZERR")
-        } else if self.is_busy(wires.now) {
+        } else if self.work.goes_on(wires) {
             (bit(7), "is written while BSY is 1", "RM0440 3.3.7")
         } else if self.registers.get(SR) & ERRORS != 0 {
             (bit(7), "is written while an error flag is up", "RM0440 3.3.7 PGSERR")

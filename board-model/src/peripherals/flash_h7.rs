@@ -2,11 +2,10 @@
 //! check bits, gathered in a buffer before they are programmed.
 
 use super::Peripheral;
-use super::flash::{Array, BASE, Lock};
+use super::flash::{ACR, Array, BASE, Lock, Work};
 use crate::register::{Register, Registers, bit};
 use crate::wires::{MICROSECOND, Reset, Time, Wires};
 
-const ACR: u32 = 0x00;
 const KEYR: u32 = 0x04;
 const CR: u32 = 0x0c;
 const SR: u32 = 0x10;
@@ -51,15 +50,13 @@ const SPEEDS: [&[(u64, u32, u32)]; 3] = [
 ];
 
 /// A bank's state.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 struct Bank {
     lock: Lock,
-    busy_until: Option<Time>,
+    work: Work,
     /// Where the word being gathered begins, and the half-bytes of it that are there.
     gathered: Option<(u32, [Option<u32>; 8])>,
 }
-
-const IDLE: Bank = Bank { lock: Lock::Locked { keys: 0 }, busy_until: None, gathered: None };
 
 /// The controller.
 #[derive(Debug)]
@@ -72,11 +69,7 @@ pub struct Flash {
 impl Flash {
     /// With an image up to an address.
     pub fn new(image_end: u32) -> Self {
-        Self { registers: Registers::new(&MAP), array: Array::new(image_end, SIZE, WORD), banks: [IDLE, IDLE] }
-    }
-
-    fn is_busy(&self, bank: usize, now: Time) -> bool {
-        self.banks[bank].busy_until.is_some_and(|until| until > now)
+        Self { registers: Registers::new(&MAP), array: Array::new(image_end, SIZE, WORD), banks: Default::default() }
     }
 
     fn control_written(&mut self, bank: usize, value: u32, before: u32, wires: &mut Wires) {
@@ -91,7 +84,7 @@ impl Flash {
             wires.violation("FLASH_CR", "PG is cleared while a word is incomplete", "RM0433 4.3.9 INCERR");
         }
         if value & 1 == 1 {
-            self.banks[bank].lock = Lock::Locked { keys: 0 };
+            self.banks[bank].lock = Lock::default();
             self.registers.change(control, 1, 0);
             return;
         }
@@ -99,7 +92,7 @@ impl Flash {
             wires.violation("FLASH_CR", "is written while locked: the keys first", "RM0433 4.5.1");
             return;
         }
-        if self.is_busy(bank, wires.now) {
+        if self.banks[bank].work.goes_on(wires) {
             wires.violation("FLASH_CR", "is written while the bank is at work", "RM0433 4.9.4");
         }
         self.registers.set(control, value & !bit(7));
@@ -124,7 +117,7 @@ impl Flash {
     }
 
     fn work(&mut self, bank: usize, duration: Time, wires: &mut Wires) {
-        self.banks[bank].busy_until = Some(wires.now + duration);
+        self.banks[bank].work.begin(duration, wires);
         if bank == 0 {
             wires.stall += duration;
         }
@@ -170,7 +163,7 @@ impl Peripheral for Flash {
 
     fn read(&mut self, offset: u32, wires: &mut Wires) -> u32 {
         self.advance(wires);
-        wires.waiting = offset % SECOND == SR && self.is_busy((offset >= SECOND) as usize, wires.now);
+        wires.waiting = offset % SECOND == SR && self.banks[(offset >= SECOND) as usize].work.goes_on(wires);
         self.registers.get(offset)
     }
 
@@ -191,7 +184,7 @@ impl Peripheral for Flash {
 
     fn advance(&mut self, wires: &mut Wires) {
         for bank in 0..2 {
-            let busy = u32::from(self.is_busy(bank, wires.now));
+            let busy = u32::from(self.banks[bank].work.goes_on(wires));
             let waits = u32::from(self.banks[bank].gathered.is_some());
             // BSY, WBNE, QW.
             self.registers.change(bank as u32 * SECOND + SR, busy | waits << 1 | busy << 2, 7);
@@ -212,7 +205,7 @@ impl Peripheral for Flash {
 
     fn reset(&mut self) {
         self.registers.reset();
-        self.banks = [IDLE, IDLE];
+        self.banks = Default::default();
     }
 
     fn read_memory(&mut self, address: u32, size: u32, wires: &mut Wires) -> Option<u64> {
@@ -225,9 +218,7 @@ impl Peripheral for Flash {
             self.registers.change(bank as u32 * SECOND + SR, bit(26), 0);
             wires.bus_fault = Some(address);
         }
-        if let Some(until) = self.banks[bank].busy_until.filter(|until| *until > wires.now) {
-            wires.stall += until - wires.now;
-        }
+        wires.stall += self.banks[bank].work.left(wires);
         Some(self.array.read(address, size))
     }
 
@@ -253,9 +244,7 @@ impl Peripheral for Flash {
             return true;
         }
         // A write while the bank is at work waits in the bus.
-        if let Some(until) = self.banks[bank].busy_until.filter(|until| *until > wires.now) {
-            wires.stall += until - wires.now;
-        }
+        wires.stall += self.banks[bank].work.left(wires);
         self.gather(bank, address, value as u32, wires);
         true
     }

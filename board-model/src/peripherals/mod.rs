@@ -31,8 +31,9 @@ pub trait Peripheral {
     /// Its registers.
     fn registers(&mut self) -> &mut Registers;
 
-    /// A read of a register, with what the read itself changes.
-    fn read(&mut self, offset: u32, _wires: &mut Wires) -> u32 {
+    /// A read of a register as it is at present, with what the read itself changes.
+    fn read(&mut self, offset: u32, wires: &mut Wires) -> u32 {
+        self.advance(wires);
         self.registers().get(offset)
     }
 

@@ -44,11 +44,6 @@ impl Peripheral for Pwr {
         &mut self.registers
     }
 
-    fn read(&mut self, offset: u32, wires: &mut Wires) -> u32 {
-        self.advance(wires);
-        self.registers.get(offset)
-    }
-
     fn written(&mut self, offset: u32, value: u32, before: u32, wires: &mut Wires) {
         match offset {
             CR3 => {

@@ -1,28 +1,29 @@
 //! What reset and clock controllers of the three chips share: oscillators that need their time, dividers, reset flags.
 
+use crate::register::{Registers, bit};
 use crate::wires::{MICROSECOND, Time, Wires};
 
 /// Times to the ready flags. A crystal takes the longest: 2 ms in all three data sheets.
-pub const CRYSTAL_START: Time = 2000 * MICROSECOND;
+const CRYSTAL_START: Time = 2000 * MICROSECOND;
 /// A clock that is fed in is there at once, but for the input stage.
-pub const BYPASS_START: Time = 2 * MICROSECOND;
+const BYPASS_START: Time = 2 * MICROSECOND;
 /// The internal oscillator, 4 us at most.
-pub const INTERNAL_START: Time = 4 * MICROSECOND;
+const INTERNAL_START: Time = 4 * MICROSECOND;
 /// A PLL's lock time: 200 us (F405), less on the others.
-pub const PLL_LOCK: Time = 200 * MICROSECOND;
+const PLL_LOCK: Time = 200 * MICROSECOND;
 
 /// Something that is switched on and ready a while later.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Source {
+struct Source {
     ready_at: Option<Time>,
 }
 
 impl Source {
     /// Running since long ago.
-    pub const RUNNING: Self = Self { ready_at: Some(0) };
+    const RUNNING: Self = Self { ready_at: Some(0) };
 
     /// On or off; `None` for a start that never comes to its end.
-    pub fn switch(&mut self, on: bool, start: Option<Time>, now: Time) {
+    fn switch(&mut self, on: bool, start: Option<Time>, now: Time) {
         self.ready_at = match (on, self.ready_at) {
             (false, _) => None,
             (true, Some(ready)) => Some(ready),
@@ -31,17 +32,140 @@ impl Source {
     }
 
     /// Whether it can be used.
-    pub fn is_ready(self, now: Time) -> bool {
+    fn is_ready(self, now: Time) -> bool {
         self.ready_at.is_some_and(|ready| ready <= now)
     }
 }
 
 /// Frequency of the external oscillator and the time to its ready flag, if it comes.
-pub fn external(wires: &Wires, bypass: bool) -> Option<(u64, Time)> {
+fn external(wires: &Wires, bypass: bool) -> Option<(u64, Time)> {
     match bypass {
         true => wires.surroundings.external_clock.map(|rate| (rate, BYPASS_START)),
         false => wires.surroundings.crystal.map(|rate| (rate, CRYSTAL_START)),
     }
+}
+
+/// Control register of all three chips, and what they have at the same place in it: RM0090 7.3.1, RM0440 7.4.1, RM0433 8.7.2.
+pub const CR: u32 = 0x00;
+const HSEON: u32 = bit(16);
+const HSERDY: u32 = 17;
+const HSEBYP: u32 = bit(18);
+const PLLON: u32 = 24;
+const PLLRDY: u32 = 25;
+
+/// What the system clock can come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Origin {
+    /// The internal oscillator.
+    Internal,
+    /// The external one.
+    External,
+    /// The PLL.
+    Pll,
+}
+
+/// Where a chip has what differs.
+#[derive(Debug)]
+pub struct Layout {
+    /// Places of HSION and HSIRDY in the control register.
+    pub internal: [u32; 2],
+    /// Codes of internal oscillator, external one and PLL in SW and SWS.
+    pub codes: [u32; 3],
+    /// The register of SW, which begins at its bit 0, and the width of SW; SWS follows it.
+    pub selection: (u32, u32),
+    /// Why a selection is refused.
+    pub refusal: &'static str,
+    /// Sections of the control register, of its HSEBYP, and of the selection.
+    pub sections: [&'static str; 3],
+}
+
+/// Internal and external oscillator and the PLL behind them.
+#[derive(Debug)]
+pub struct Oscillators {
+    layout: &'static Layout,
+    internal: Source,
+    external: Source,
+    pll: Source,
+    /// Frequency of the external one, as it is switched on or would be [Hz].
+    pub external_rate: u64,
+}
+
+impl Oscillators {
+    /// As after a reset: the internal one runs.
+    pub fn new(layout: &'static Layout) -> Self {
+        let (external, pll) = (Source::default(), Source::default());
+        Self { layout, internal: Source::RUNNING, external, pll, external_rate: 0 }
+    }
+
+    /// Whether one of them can be used.
+    pub fn is_ready(&self, origin: Origin, wires: &Wires) -> bool {
+        let source = match origin {
+            Origin::Internal => self.internal,
+            Origin::External => self.external,
+            Origin::Pll => self.pll,
+        };
+        source.is_ready(wires.now)
+    }
+
+    /// Ready flags in the control register.
+    pub fn ready_flags(&self, wires: &Wires) -> u32 {
+        let ready = [(self.internal, self.layout.internal[1]), (self.external, HSERDY), (self.pll, PLLRDY)];
+        ready.iter().map(|(source, place)| u32::from(source.is_ready(wires.now)) << place).sum()
+    }
+
+    /// What drives the system clock, by SWS.
+    pub fn selected(&self, registers: &Registers) -> Origin {
+        let (register, width) = self.layout.selection;
+        self.origin(registers.field(register, width, width)).unwrap_or(Origin::Internal)
+    }
+
+    /// What a code stands for.
+    pub fn origin(&self, code: u32) -> Option<Origin> {
+        let place = self.layout.codes.iter().position(|known| *known == code)?;
+        Some([Origin::Internal, Origin::External, Origin::Pll][place])
+    }
+
+    /// The control register was written; whether the PLL is switched on by that.
+    pub fn control_written(&mut self, value: u32, before: u32, registers: &Registers, wires: &mut Wires) -> bool {
+        let [control, bypass, _] = self.layout.sections;
+        let internal = bit(self.layout.internal[0]);
+        let source = match self.selected(registers) {
+            Origin::Internal => internal,
+            Origin::External => HSEON,
+            Origin::Pll => bit(PLLON),
+        };
+        if value & source == 0 {
+            wires.violation("RCC_CR", "switches off the source of the system clock", control);
+        }
+        if value & HSEON != 0 && (value ^ before) & HSEBYP != 0 && before & HSEON != 0 {
+            wires.violation("RCC_CR", "HSEBYP is changed while HSEON is 1", bypass);
+        }
+        let outside = external(wires, value & HSEBYP != 0);
+        self.external_rate = outside.map_or(0, |(rate, _)| rate);
+        self.internal.switch(value & internal != 0, Some(INTERNAL_START), wires.now);
+        self.external.switch(value & HSEON != 0, outside.map(|(_, start)| start), wires.now);
+        self.pll.switch(value & bit(PLLON) != 0, Some(PLL_LOCK), wires.now);
+        value & !before & bit(PLLON) != 0
+    }
+
+    /// SW was written: it is taken over if what it selects is ready. `led_out` says whether the output of the PLL that the
+    /// system clock takes is on, where it has a switch.
+    pub fn select(&self, value: u32, led_out: bool, registers: &mut Registers, wires: &mut Wires) {
+        let (register, width) = self.layout.selection;
+        let code = value & (bit(width) - 1);
+        let ready =
+            self.origin(code).is_some_and(|origin| self.is_ready(origin, wires) && (led_out || origin != Origin::Pll));
+        if ready {
+            registers.change(register, code << width, (bit(width) - 1) << width);
+        } else {
+            wires.violation("RCC_CFGR", self.layout.refusal, self.layout.sections[2]);
+        }
+    }
+}
+
+/// Whether the PLL is on, while which it is not to be set up.
+pub fn pll_is_on(registers: &Registers) -> bool {
+    registers.is_set(CR, PLLON)
 }
 
 /// Divider of the bus of the core: RM0090 7.3.3, RM0440 7.4.3, RM0433 8.7.6.

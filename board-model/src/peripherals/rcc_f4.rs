@@ -1,11 +1,10 @@
 //! Reset and clock control of STM32F405: RM0090 section 7.
 
 use super::Peripheral;
-use super::rcc::{INTERNAL_START, PLL_LOCK, Source, bus_divider, external, peripheral_divider, within};
+use super::rcc::{CR, Layout, Origin, Oscillators, bus_divider, peripheral_divider, pll_is_on, within};
 use crate::register::{Register, Registers, bit, bits};
 use crate::wires::{Clocks, Reset, Wires};
 
-const CR: u32 = 0x00;
 const PLLCFGR: u32 = 0x04;
 const CFGR: u32 = 0x08;
 const CSR: u32 = 0x74;
@@ -37,32 +36,38 @@ static MAP: [Register; 18] = [
     Register::new("RCC_PLLI2SCFGR", 0x84, 0x2000_3000, 0x7000_7fc0),
 ];
 
+static LAYOUT: Layout = Layout {
+    internal: [0, 1],
+    codes: [0, 1, 2],
+    selection: (CFGR, 2),
+    refusal: "selects a source that is not ready",
+    sections: ["RM0090 7.3.1", "RM0090 7.3.1 HSEBYP", "RM0090 7.2.6"],
+};
+
 /// The controller.
 #[derive(Debug)]
 pub struct Rcc {
     registers: Registers,
-    internal: Source,
-    external: Source,
-    external_rate: u64,
-    pll: Source,
+    oscillators: Oscillators,
 }
 
 impl Default for Rcc {
     fn default() -> Self {
-        Self {
-            registers: Registers::new(&MAP),
-            internal: Source::RUNNING,
-            external: Source::default(),
-            external_rate: 0,
-            pll: Source::default(),
-        }
+        Self { registers: Registers::new(&MAP), oscillators: Oscillators::new(&LAYOUT) }
     }
 }
 
 impl Rcc {
+    fn pll_source(&self) -> Origin {
+        if self.registers.is_set(PLLCFGR, 22) { Origin::External } else { Origin::Internal }
+    }
+
     /// Input, inner and output frequency of the PLL: RM0090 7.3.2.
     fn pll_rates(&self) -> [u64; 3] {
-        let source = if self.registers.is_set(PLLCFGR, 22) { self.external_rate } else { INTERNAL };
+        let source = match self.pll_source() {
+            Origin::External => self.oscillators.external_rate,
+            _ => INTERNAL,
+        };
         let input = source / u64::from(self.registers.field(PLLCFGR, 0, 6)).max(1);
         let inner = input * u64::from(self.registers.field(PLLCFGR, 6, 9));
         [input, inner, inner / u64::from(2 * (self.registers.field(PLLCFGR, 16, 2) + 1))]
@@ -70,8 +75,7 @@ impl Rcc {
 
     fn start_pll(&mut self, wires: &mut Wires) {
         let [input, inner, output] = self.pll_rates();
-        let source = if self.registers.is_set(PLLCFGR, 22) { self.external } else { self.internal };
-        if !source.is_ready(wires.now) {
+        if !self.oscillators.is_ready(self.pll_source(), wires) {
             wires.violation("RCC_CR", "the PLL is switched on before its source is ready", "RM0090 7.2.3");
         }
         within(wires, "RCC_PLLCFGR", "the input of the PLL", input, [1_000_000, 2_000_000], "RM0090 7.3.2 PLLM");
@@ -84,37 +88,8 @@ impl Rcc {
     }
 
     fn control_written(&mut self, value: u32, before: u32, wires: &mut Wires) {
-        let system = self.registers.field(CFGR, 2, 2);
-        for (source, on) in [(0, bit(0)), (1, bit(16)), (2, bit(24))] {
-            if system == source && value & on == 0 {
-                wires.violation("RCC_CR", "switches off the source of the system clock", "RM0090 7.3.1");
-            }
-        }
-        if value & bit(16) != 0 && (value ^ before) & bit(18) != 0 && before & bit(16) != 0 {
-            wires.violation("RCC_CR", "HSEBYP is changed while HSEON is 1", "RM0090 7.3.1 HSEBYP");
-        }
-        let outside = external(wires, value & bit(18) != 0);
-        self.external_rate = outside.map_or(0, |(rate, _)| rate);
-        self.internal.switch(value & bit(0) != 0, Some(INTERNAL_START), wires.now);
-        self.external.switch(value & bit(16) != 0, outside.map(|(_, start)| start), wires.now);
-        if value & bit(24) != 0 && before & bit(24) == 0 {
+        if self.oscillators.control_written(value, before, &self.registers, wires) {
             self.start_pll(wires);
-        }
-        self.pll.switch(value & bit(24) != 0, Some(PLL_LOCK), wires.now);
-    }
-
-    fn configuration_written(&mut self, value: u32, wires: &mut Wires) {
-        let wanted = value & 3;
-        let ready = match wanted {
-            0 => self.internal.is_ready(wires.now),
-            1 => self.external.is_ready(wires.now),
-            2 => self.pll.is_ready(wires.now),
-            _ => false,
-        };
-        if ready {
-            self.registers.change(CFGR, wanted << 2, 0xc);
-        } else {
-            wires.violation("RCC_CFGR", "selects a source that is not ready", "RM0090 7.2.6");
         }
     }
 }
@@ -124,18 +99,13 @@ impl Peripheral for Rcc {
         &mut self.registers
     }
 
-    fn read(&mut self, offset: u32, wires: &mut Wires) -> u32 {
-        self.advance(wires);
-        self.registers.get(offset)
-    }
-
     fn written(&mut self, offset: u32, value: u32, before: u32, wires: &mut Wires) {
         match offset {
             CR => self.control_written(value, before, wires),
-            PLLCFGR if self.registers.is_set(CR, 24) => {
+            PLLCFGR if pll_is_on(&self.registers) => {
                 wires.violation("RCC_PLLCFGR", "is written while the PLL is on", "RM0090 7.3.2");
             }
-            CFGR => self.configuration_written(value, wires),
+            CFGR => self.oscillators.select(value, true, &mut self.registers, wires),
             CSR if value & bit(24) != 0 => self.registers.change(CSR, 0, FLAGS | bit(24)),
             _ => {}
         }
@@ -146,13 +116,11 @@ impl Peripheral for Rcc {
     }
 
     fn advance(&mut self, wires: &mut Wires) {
-        let ready = [(self.internal, 1), (self.external, 17), (self.pll, 25)];
-        let flags = ready.iter().map(|(source, place)| u32::from(source.is_ready(wires.now)) << place).sum();
-        self.registers.change(CR, flags, READY);
-        let system = match self.registers.field(CFGR, 2, 2) {
-            0 => INTERNAL,
-            1 => self.external_rate,
-            _ => self.pll_rates()[2],
+        self.registers.change(CR, self.oscillators.ready_flags(wires), READY);
+        let system = match self.oscillators.selected(&self.registers) {
+            Origin::Internal => INTERNAL,
+            Origin::External => self.oscillators.external_rate,
+            Origin::Pll => self.pll_rates()[2],
         };
         let core = system / bus_divider(self.registers.field(CFGR, 4, 4));
         let low = core / peripheral_divider(self.registers.field(CFGR, 10, 3));

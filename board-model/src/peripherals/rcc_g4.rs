@@ -1,11 +1,10 @@
 //! Reset and clock control of STM32G474: RM0440 section 7.
 
 use super::Peripheral;
-use super::rcc::{INTERNAL_START, PLL_LOCK, Source, bus_divider, external, peripheral_divider, within};
+use super::rcc::{CR, Layout, Origin, Oscillators, bus_divider, peripheral_divider, pll_is_on, within};
 use crate::register::{Register, Registers, bit, bits};
 use crate::wires::{Clocks, MICROSECOND, Reset, Time, Wires};
 
-const CR: u32 = 0x00;
 const CFGR: u32 = 0x08;
 const PLLCFGR: u32 = 0x0c;
 const CSR: u32 = 0x94;
@@ -48,28 +47,26 @@ static MAP: [Register; 28] = [
     Register::new("RCC_CSR", CSR, 0x0c00_0000, 0xfe80_0003).special(FLAGS | bit(1)),
 ];
 
+static LAYOUT: Layout = Layout {
+    internal: [8, 10],
+    codes: [1, 2, 3],
+    selection: (CFGR, 2),
+    refusal: "selects a source that is not ready, or the PLL without PLLREN",
+    sections: ["RM0440 7.4.1", "RM0440 7.4.1 HSEBYP", "RM0440 7.2.8"],
+};
+
 /// The controller.
 #[derive(Debug)]
 pub struct Rcc {
     registers: Registers,
-    internal: Source,
-    external: Source,
-    external_rate: u64,
-    pll: Source,
+    oscillators: Oscillators,
     /// The bus clock has been half the system clock since then.
     halved_since: Option<Time>,
 }
 
 impl Default for Rcc {
     fn default() -> Self {
-        Self {
-            registers: Registers::new(&MAP),
-            internal: Source::RUNNING,
-            external: Source::default(),
-            external_rate: 0,
-            pll: Source::default(),
-            halved_since: None,
-        }
+        Self { registers: Registers::new(&MAP), oscillators: Oscillators::new(&LAYOUT), halved_since: None }
     }
 }
 
@@ -77,7 +74,7 @@ impl Rcc {
     fn source_rate(&self) -> u64 {
         match self.registers.field(PLLCFGR, 0, 2) {
             2 => INTERNAL,
-            3 => self.external_rate,
+            3 => self.oscillators.external_rate,
             _ => 0,
         }
     }
@@ -91,8 +88,8 @@ impl Rcc {
 
     fn start_pll(&mut self, wires: &mut Wires) {
         let [input, inner, output] = self.pll_rates();
-        let source = if self.registers.field(PLLCFGR, 0, 2) == 3 { self.external } else { self.internal };
-        if !source.is_ready(wires.now) {
+        let source = if self.registers.field(PLLCFGR, 0, 2) == 3 { Origin::External } else { Origin::Internal };
+        if !self.oscillators.is_ready(source, wires) {
             wires.violation("RCC_CR", "the PLL is switched on before its source is ready", "RM0440 7.2.4");
         }
         within(wires, "RCC_PLLCFGR", "the input of the PLL", input, [2_660_000, 16_000_000], "RM0440 7.4.4 PLLM");
@@ -105,50 +102,22 @@ impl Rcc {
     }
 
     fn control_written(&mut self, value: u32, before: u32, wires: &mut Wires) {
-        let system = self.registers.field(CFGR, 2, 2);
-        for (source, on) in [(1, bit(8)), (2, bit(16)), (3, bit(24))] {
-            if system == source && value & on == 0 {
-                wires.violation("RCC_CR", "switches off the source of the system clock", "RM0440 7.4.1");
-            }
-        }
-        if value & bit(16) != 0 && (value ^ before) & bit(18) != 0 && before & bit(16) != 0 {
-            wires.violation("RCC_CR", "HSEBYP is changed while HSEON is 1", "RM0440 7.4.1 HSEBYP");
-        }
-        let outside = external(wires, value & bit(18) != 0);
-        self.external_rate = outside.map_or(0, |(rate, _)| rate);
-        self.internal.switch(value & bit(8) != 0, Some(INTERNAL_START), wires.now);
-        self.external.switch(value & bit(16) != 0, outside.map(|(_, start)| start), wires.now);
-        if value & bit(24) != 0 && before & bit(24) == 0 {
+        if self.oscillators.control_written(value, before, &self.registers, wires) {
             self.start_pll(wires);
         }
-        self.pll.switch(value & bit(24) != 0, Some(PLL_LOCK), wires.now);
     }
 
     fn configuration_written(&mut self, value: u32, before: u32, wires: &mut Wires) {
         let rate = |rcc: &Self| rcc.system() / bus_divider(rcc.registers.field(CFGR, 4, 4));
         let slow = wires.clocks.core;
-        let wanted = value & 3;
-        let ready = match wanted {
-            1 => self.internal.is_ready(wires.now),
-            2 => self.external.is_ready(wires.now),
-            3 => self.pll.is_ready(wires.now) && self.registers.is_set(PLLCFGR, 24),
-            _ => false,
-        };
-        if ready {
-            self.registers.change(CFGR, wanted << 2, 0xc);
-        } else {
-            wires.violation(
-                "RCC_CFGR",
-                "selects a source that is not ready, or the PLL without PLLREN",
-                "RM0440 7.2.8",
-            );
-        }
+        let led_out = self.registers.is_set(PLLCFGR, 24);
+        self.oscillators.select(value, led_out, &mut self.registers, wires);
         let (was, is) = (before >> 4 & 0xf, value >> 4 & 0xf);
         let fast = rate(self);
         if is == 8 && was != 8 {
             self.halved_since = Some(wires.now);
         }
-        let switches = wanted != before & 3;
+        let switches = (value ^ before) & 3 != 0;
         if switches && is == 8 {
             self.halved_since = Some(wires.now);
         }
@@ -162,10 +131,10 @@ impl Rcc {
     }
 
     fn system(&self) -> u64 {
-        match self.registers.field(CFGR, 2, 2) {
-            2 => self.external_rate,
-            3 => self.pll_rates()[2],
-            _ => INTERNAL,
+        match self.oscillators.selected(&self.registers) {
+            Origin::Internal => INTERNAL,
+            Origin::External => self.oscillators.external_rate,
+            Origin::Pll => self.pll_rates()[2],
         }
     }
 }
@@ -175,15 +144,10 @@ impl Peripheral for Rcc {
         &mut self.registers
     }
 
-    fn read(&mut self, offset: u32, wires: &mut Wires) -> u32 {
-        self.advance(wires);
-        self.registers.get(offset)
-    }
-
     fn written(&mut self, offset: u32, value: u32, before: u32, wires: &mut Wires) {
         match offset {
             CR => self.control_written(value, before, wires),
-            PLLCFGR if self.registers.is_set(CR, 24) && (value ^ before) & !(bit(16) | bit(20) | bit(24)) != 0 => {
+            PLLCFGR if pll_is_on(&self.registers) && (value ^ before) & !(bit(16) | bit(20) | bit(24)) != 0 => {
                 wires.violation("RCC_PLLCFGR", "is written while the PLL is on", "RM0440 7.4.4");
             }
             CFGR => self.configuration_written(value, before, wires),
@@ -197,9 +161,7 @@ impl Peripheral for Rcc {
     }
 
     fn advance(&mut self, wires: &mut Wires) {
-        let ready = [(self.internal, 10), (self.external, 17), (self.pll, 25)];
-        let flags = ready.iter().map(|(source, place)| u32::from(source.is_ready(wires.now)) << place).sum();
-        self.registers.change(CR, flags, READY);
+        self.registers.change(CR, self.oscillators.ready_flags(wires), READY);
         let system = self.system();
         let core = system / bus_divider(self.registers.field(CFGR, 4, 4));
         let low = core / peripheral_divider(self.registers.field(CFGR, 8, 3));

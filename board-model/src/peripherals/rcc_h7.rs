@@ -1,11 +1,10 @@
 //! Reset and clock control of STM32H743: RM0433 section 8. PLL 1 only; the other two may not be switched on.
 
 use super::Peripheral;
-use super::rcc::{INTERNAL_START, PLL_LOCK, Source, bus_divider, external, peripheral_divider, within};
+use super::rcc::{CR, Layout, Origin, Oscillators, bus_divider, peripheral_divider, pll_is_on, within};
 use crate::register::{Register, Registers, bit};
 use crate::wires::{Clocks, Reset, Wires};
 
-const CR: u32 = 0x00;
 const CFGR: u32 = 0x10;
 const D1CFGR: u32 = 0x18;
 const D2CFGR: u32 = 0x1c;
@@ -66,25 +65,24 @@ static MAP: [Register; 44] = [
     Register::new("RCC_APB4ENR", 0xf4, 0x0001_0000, 0x0021_deaa),
 ];
 
+static LAYOUT: Layout = Layout {
+    internal: [0, 2],
+    codes: [0, 2, 3],
+    selection: (CFGR, 3),
+    refusal: "selects a source that is not ready",
+    sections: ["RM0433 8.7.2", "RM0433 8.7.2 HSEBYP", "RM0433 8.7.6"],
+};
+
 /// The controller.
 #[derive(Debug)]
 pub struct Rcc {
     registers: Registers,
-    internal: Source,
-    external: Source,
-    external_rate: u64,
-    pll: Source,
+    oscillators: Oscillators,
 }
 
 impl Default for Rcc {
     fn default() -> Self {
-        Self {
-            registers: Registers::new(&MAP),
-            internal: Source::RUNNING,
-            external: Source::default(),
-            external_rate: 0,
-            pll: Source::default(),
-        }
+        Self { registers: Registers::new(&MAP), oscillators: Oscillators::new(&LAYOUT) }
     }
 }
 
@@ -97,7 +95,7 @@ impl Rcc {
     fn pll_rates(&self) -> [u64; 3] {
         let source = match self.registers.field(PLLCKSELR, 0, 2) {
             0 => self.internal_rate(),
-            2 => self.external_rate,
+            2 => self.oscillators.external_rate,
             _ => 0,
         };
         let input = source.checked_div(self.registers.field(PLLCKSELR, 4, 6).into()).unwrap_or(0);
@@ -107,8 +105,8 @@ impl Rcc {
 
     fn start_pll(&mut self, wires: &mut Wires) {
         let [input, inner, output] = self.pll_rates();
-        let source = if self.registers.field(PLLCKSELR, 0, 2) == 2 { self.external } else { self.internal };
-        if !source.is_ready(wires.now) {
+        let source = if self.registers.field(PLLCKSELR, 0, 2) == 2 { Origin::External } else { Origin::Internal };
+        if !self.oscillators.is_ready(source, wires) {
             wires.violation("RCC_CR", "PLL 1 is switched on before its source is ready", "RM0433 8.5.5");
         }
         // PLL1RGE and PLL1VCOSEL say what comes in and how fast it is inside.
@@ -139,40 +137,11 @@ impl Rcc {
     }
 
     fn control_written(&mut self, value: u32, before: u32, wires: &mut Wires) {
-        let system = self.registers.field(CFGR, 3, 3);
-        for (source, on) in [(0, bit(0)), (2, bit(16)), (3, bit(24))] {
-            if system == source && value & on == 0 {
-                wires.violation("RCC_CR", "switches off the source of the system clock", "RM0433 8.7.2");
-            }
-        }
-        if value & bit(16) != 0 && (value ^ before) & bit(18) != 0 && before & bit(16) != 0 {
-            wires.violation("RCC_CR", "HSEBYP is changed while HSEON is 1", "RM0433 8.7.2 HSEBYP");
-        }
         if value & (bit(26) | bit(28)) != 0 {
             wires.violation("RCC_CR", "PLL 2 and PLL 3 are not modelled", "RM0433 8.7.2");
         }
-        let outside = external(wires, value & bit(18) != 0);
-        self.external_rate = outside.map_or(0, |(rate, _)| rate);
-        self.internal.switch(value & bit(0) != 0, Some(INTERNAL_START), wires.now);
-        self.external.switch(value & bit(16) != 0, outside.map(|(_, start)| start), wires.now);
-        if value & bit(24) != 0 && before & bit(24) == 0 {
+        if self.oscillators.control_written(value, before, &self.registers, wires) {
             self.start_pll(wires);
-        }
-        self.pll.switch(value & bit(24) != 0, Some(PLL_LOCK), wires.now);
-    }
-
-    fn configuration_written(&mut self, value: u32, wires: &mut Wires) {
-        let wanted = value & 7;
-        let ready = match wanted {
-            0 => self.internal.is_ready(wires.now),
-            2 => self.external.is_ready(wires.now),
-            3 => self.pll.is_ready(wires.now),
-            _ => false,
-        };
-        if ready {
-            self.registers.change(CFGR, wanted << 3, 0x38);
-        } else {
-            wires.violation("RCC_CFGR", "selects a source that is not ready", "RM0433 8.7.6");
         }
     }
 }
@@ -182,18 +151,13 @@ impl Peripheral for Rcc {
         &mut self.registers
     }
 
-    fn read(&mut self, offset: u32, wires: &mut Wires) -> u32 {
-        self.advance(wires);
-        self.registers.get(offset)
-    }
-
     fn written(&mut self, offset: u32, value: u32, before: u32, wires: &mut Wires) {
         match offset {
             CR => self.control_written(value, before, wires),
-            PLLCKSELR | PLLCFGR | PLL1DIVR if self.registers.is_set(CR, 24) && value != before => {
+            PLLCKSELR | PLLCFGR | PLL1DIVR if pll_is_on(&self.registers) && value != before => {
                 wires.violation("RCC_PLL", "a PLL is set up while it is on", "RM0433 8.5.5");
             }
-            CFGR => self.configuration_written(value, wires),
+            CFGR => self.oscillators.select(value, true, &mut self.registers, wires),
             RSR if value & bit(16) != 0 => self.registers.change(RSR, 0, FLAGS | bit(16)),
             _ => {}
         }
@@ -206,13 +170,11 @@ impl Peripheral for Rcc {
     }
 
     fn advance(&mut self, wires: &mut Wires) {
-        let ready = [(self.internal, 2), (self.external, 17), (self.pll, 25)];
-        let flags: u32 = ready.iter().map(|(source, place)| u32::from(source.is_ready(wires.now)) << place).sum();
-        self.registers.change(CR, flags | bit(14) | bit(15) | bit(5), READY);
-        let system = match self.registers.field(CFGR, 3, 3) {
-            0 => self.internal_rate(),
-            2 => self.external_rate,
-            _ => self.pll_rates()[2],
+        self.registers.change(CR, self.oscillators.ready_flags(wires) | bit(14) | bit(15) | bit(5), READY);
+        let system = match self.oscillators.selected(&self.registers) {
+            Origin::Internal => self.internal_rate(),
+            Origin::External => self.oscillators.external_rate,
+            Origin::Pll => self.pll_rates()[2],
         };
         let core = system / bus_divider(self.registers.field(D1CFGR, 8, 4));
         let bus = core / bus_divider(self.registers.field(D1CFGR, 0, 4));

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 
 use super::Peripheral;
 use crate::register::{Register, Registers, bit, bits};
-use crate::wires::{Mode, Pin, Request, Time, Wires};
+use crate::wires::{Pin, Request, Wires};
 
 const CR1: u32 = 0x00;
 const CR2: u32 = 0x04;
@@ -95,9 +95,14 @@ impl Spi {
         self.to_send.len() <= if self.has_fifos { 2 } else { 0 }
     }
 
+    /// RXDMAEN or TXDMAEN.
+    fn wants_transfer(&self) -> bool {
+        self.registers.get(CR2) & 3 != 0
+    }
+
     /// Pins that a slave cannot do without.
     fn is_routed(&self, wires: &Wires) -> bool {
-        self.place.pins.iter().all(|(pin, function)| wires.mode(*pin) == Mode::Alternate(*function))
+        self.place.pins.iter().all(|pin| wires.leads_to(&[*pin]))
     }
 
     /// The master clocks a byte each way.
@@ -188,18 +193,8 @@ impl Peripheral for Spi {
         wires.request(Request::SpiToSend(number), send);
     }
 
-    fn next_event(&self) -> Option<Time> {
-        None
-    }
-
     fn reset(&mut self) {
         let table = if self.has_fifos { &NEW } else { &OLD };
         *self = Self::with(table, self.has_fifos, self.place);
-    }
-}
-
-impl Spi {
-    fn wants_transfer(&self) -> bool {
-        self.registers.get(CR2) & 3 != 0
     }
 }

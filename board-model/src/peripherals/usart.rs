@@ -6,7 +6,7 @@ use std::collections::VecDeque;
 
 use super::Peripheral;
 use crate::register::{Register, Registers, bit, bits};
-use crate::wires::{Mode, Pin, Time, Wires, cycles};
+use crate::wires::{Pin, Time, Wires, cycles};
 
 /// RM0090 30.6.
 static OLD: [Register; 7] = [
@@ -47,6 +47,22 @@ enum Kind {
     Old,
     /// FIFOs of so many bytes, once they are on.
     New(usize),
+}
+
+impl Kind {
+    /// Offsets of the first control register and of BRR.
+    fn control(self) -> u32 {
+        if self == Self::Old { 0x0c } else { 0x00 }
+    }
+
+    fn divider(self) -> u32 {
+        if self == Self::Old { 0x08 } else { 0x0c }
+    }
+
+    /// UE in the control register.
+    fn enable(self) -> u32 {
+        if self == Self::Old { bit(13) } else { bit(0) }
+    }
 }
 
 /// Which clock it has.
@@ -111,15 +127,15 @@ impl Usart {
     }
 
     fn control(&self) -> u32 {
-        self.registers.get(if self.kind == Kind::Old { 0x0c } else { 0x00 })
+        self.registers.get(self.kind.control())
     }
 
     fn is_enabled(&self) -> bool {
-        self.control() & if self.kind == Kind::Old { bit(13) } else { bit(0) } != 0
+        self.control() & self.kind.enable() != 0
     }
 
     fn receives(&self, wires: &Wires) -> bool {
-        self.is_enabled() && self.control() & bit(2) != 0 && is_routed(self.place.receive, wires)
+        self.is_enabled() && self.control() & bit(2) != 0 && wires.leads_to(self.place.receive)
     }
 
     fn sends(&self) -> bool {
@@ -140,7 +156,7 @@ impl Usart {
             BusClock::High => wires.clocks.high,
         };
         let over_8 = self.control() & bit(15) != 0;
-        let divider = u64::from(self.registers.get(if self.kind == Kind::Old { 0x08 } else { 0x0c }));
+        let divider = u64::from(self.registers.get(self.kind.divider()));
         let prescaler = match self.kind {
             Kind::Old => 1,
             Kind::New(_) => {
@@ -187,7 +203,7 @@ impl Usart {
     }
 
     fn control_changed(&mut self, value: u32, before: u32, wires: &mut Wires) {
-        let enable = if self.kind == Kind::Old { bit(13) } else { bit(0) };
+        let enable = self.kind.enable();
         if let Kind::New(_) = self.kind {
             // RM0440 37.8.1: these fields can only be written while the USART is off.
             let fixed = bit(29) | bit(28) | bit(15) | bit(12) | bits(11, 9);
@@ -200,11 +216,11 @@ impl Usart {
             }
         }
         if value & enable != 0 && before & enable == 0 {
-            if self.registers.get(if self.kind == Kind::Old { 0x08 } else { 0x0c }) < 16 {
+            if self.registers.get(self.kind.divider()) < 16 {
                 wires.violation("USART_BRR", "is below 16 when the USART is enabled", "RM0440 37.5.7");
             }
             for (pins, what) in [(self.place.send, "sends"), (self.place.receive, "receives")] {
-                if !is_routed(pins, wires) {
+                if !wires.leads_to(pins) {
                     let what = format!("the USART is enabled while no pin that {what} is routed to it");
                     wires.violation("USART_CR1", what, "RM0090 8.3.2");
                 }
@@ -213,6 +229,14 @@ impl Usart {
                 let what = format!("gives {} baud where the host has {}", self.baud(wires), wires.line.baud);
                 wires.violation("USART_BRR", what, "RM0090 30.3.4");
             }
+        }
+    }
+
+    fn start_sending(&mut self, now: Time, wires: &Wires) {
+        if self.sends()
+            && let Some(byte) = self.waiting.pop_front()
+        {
+            self.sending = Some((byte, now + cycles(BITS, self.baud(wires))));
         }
     }
 
@@ -230,10 +254,6 @@ impl Usart {
             wires.line.overruns += 1;
         }
     }
-}
-
-fn is_routed(pins: &[(Pin, u32)], wires: &Wires) -> bool {
-    pins.iter().any(|(pin, function)| wires.mode(*pin) == Mode::Alternate(*function))
 }
 
 impl Peripheral for Usart {
@@ -266,7 +286,7 @@ impl Peripheral for Usart {
         self.advance(wires);
         match (self.kind, offset) {
             (Kind::Old, 0x04) | (Kind::New(_), 0x28) => self.write_data(value, wires),
-            (Kind::Old, 0x0c) | (Kind::New(_), 0x00) => self.control_changed(value, before, wires),
+            (kind, offset) if offset == kind.control() => self.control_changed(value, before, wires),
             // RM0440 37.8.5: the divider is written while the USART is off.
             (Kind::New(_), 0x0c) if self.is_enabled() => {
                 wires.violation("USART_BRR", "is written while UE is 1", "RM0440 37.8.5");
@@ -281,7 +301,7 @@ impl Peripheral for Usart {
     fn advance(&mut self, wires: &mut Wires) {
         while let Some((byte, done)) = self.sending.filter(|(_, done)| *done <= wires.now) {
             let byte = if self.is_off_speed(wires) { !byte } else { byte };
-            if is_routed(self.place.send, wires) {
+            if wires.leads_to(self.place.send) {
                 wires.line.to_host.push(byte);
             }
             self.sending = None;
@@ -313,15 +333,5 @@ impl Peripheral for Usart {
     fn reset(&mut self) {
         let table = if self.kind == Kind::Old { &OLD[..] } else { &NEW[..] };
         *self = Self::with(table, self.kind, self.place);
-    }
-}
-
-impl Usart {
-    fn start_sending(&mut self, now: Time, wires: &Wires) {
-        if self.sends()
-            && let Some(byte) = self.waiting.pop_front()
-        {
-            self.sending = Some((byte, now + cycles(BITS, self.baud(wires))));
-        }
     }
 }

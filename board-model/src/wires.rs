@@ -65,6 +65,17 @@ pub enum Request {
     SpiReceived(u32),
     /// One with room for a byte.
     SpiToSend(u32),
+    /// A USART with a byte to be fetched.
+    UsartReceived(u32),
+    /// One with room for a byte.
+    UsartToSend(u32),
+}
+
+impl Request {
+    /// Whether what asks wants bytes from memory.
+    pub fn is_outwards(self) -> bool {
+        matches!(self, Self::SpiToSend(_) | Self::UsartToSend(_))
+    }
 }
 
 /// Why a chip resets.
@@ -269,6 +280,11 @@ impl Wires {
         } else {
             self.served.remove(&request);
         }
+    }
+
+    /// Whether a channel that is on serves a request.
+    pub fn is_served(&self, request: Request) -> bool {
+        self.served.contains(&request)
     }
 
     /// Asks for DMA, or no more.

@@ -27,6 +27,7 @@ static MEMORIES: [Memory; 2] = [
 
 /// Data sheet of STM32F405, table 9: USART1 is function 7.
 const USART1: Place = Place {
+    number: 1,
     interrupt: 37,
     clock: BusClock::High,
     send: &[(Pin('A', 9), 7), (Pin('B', 6), 7)],

@@ -31,6 +31,7 @@ static MEMORIES: [Memory; 2] = [
 
 /// Data sheet of STM32G474, table 13: USART2 is function 7.
 const USART2: Place = Place {
+    number: 2,
     interrupt: 38,
     clock: BusClock::Low,
     send: &[(Pin('A', 2), 7), (Pin('A', 14), 7), (Pin('B', 3), 7), (Pin('D', 5), 7)],

@@ -25,6 +25,7 @@ static MEMORIES: [Memory; 5] = [
 
 /// Data sheet of STM32H743, table 9: USART3 is function 7.
 const USART3: Place = Place {
+    number: 3,
     interrupt: 39,
     clock: BusClock::Low,
     send: &[(Pin('B', 10), 7), (Pin('C', 10), 7), (Pin('D', 8), 7)],

@@ -1,4 +1,7 @@
-//! What both kinds of DMA controller share: a transfer of one item between a peripheral and memory.
+//! What both kinds of DMA controller share: a transfer of one item between a peripheral and memory, once through or round and
+//! round.
+
+use crate::register::Registers;
 
 /// One item to be moved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,5 +35,189 @@ impl Way {
         let memory = self.memory + if self.rises { number * self.size } else { 0 };
         let (from, to) = if self.outwards { (memory, self.peripheral) } else { (self.peripheral, memory) };
         Transfer { from, to, size: self.size }
+    }
+}
+
+/// What is reached with an item: RM0090 10.3.17, RM0440 12.4.6.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Reached {
+    /// Neither of the others.
+    Nothing,
+    /// Half of the items.
+    Half,
+    /// The last one.
+    End,
+}
+
+/// How far one that runs has come.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Course {
+    length: u32,
+    moved: u32,
+}
+
+impl Course {
+    /// Begins with as many items as a register of numbers holds.
+    pub fn start(&mut self, registers: &Registers, number: u32) {
+        *self = Self { length: registers.get(number), moved: 0 };
+    }
+
+    /// The number of the next item, and what is reached with it. The register counts down; where the course is circular, it
+    /// holds the length again after the last item, which the first one follows (RM0090 10.3.8, RM0440 12.4.5).
+    pub fn step(&mut self, circular: bool, registers: &mut Registers, number: u32) -> (u32, Reached) {
+        let item = self.moved;
+        self.moved += 1;
+        let reached = match self.moved {
+            moved if moved == self.length => Reached::End,
+            moved if moved == self.length / 2 => Reached::Half,
+            _ => Reached::Nothing,
+        };
+        if circular && reached == Reached::End {
+            self.moved = 0;
+        }
+        registers.set(number, self.length.saturating_sub(self.moved));
+        (item, reached)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+    use crate::chips;
+    use crate::machine::Machine;
+    use crate::peripherals::flash::BASE;
+    use crate::wires::{MICROSECOND, SECOND, Surroundings, Time, cycles};
+
+    const BAUD: u64 = 230_400;
+    const BUFFER: u32 = 0x2000_0100;
+    const LENGTH: u32 = 16;
+
+    /// What differs between the chips: writes that begin to receive into the buffer round and round, with interrupts of half
+    /// and end and of an idle line; the register of what is left; interrupts of DMA and USART; the register of flags of DMA with
+    /// those of half and end; and accesses that clear the flag of an idle line.
+    struct Case {
+        machine: Machine,
+        writes: &'static [(u32, u32)],
+        left: u32,
+        interrupts: [usize; 2],
+        flags: (u32, u32),
+        clears: fn(&mut Machine),
+    }
+
+    fn cases() -> [Case; 2] {
+        let surroundings = Surroundings { crystal: None, external_clock: None };
+        let machine = |chip| Machine::new(chip, surroundings, BAUD, 1000);
+        let f405 = Case {
+            machine: machine(chips::f405::chip(BASE + 0x1000)),
+            writes: &[
+                (0x4002_3830, 1 << 22 | 1),
+                (0x4002_3844, 1 << 4),
+                (0x4002_0024, 0x770),
+                (0x4002_0000, 0xa828_0000),
+                (0x4002_6444, LENGTH),
+                (0x4002_6448, 0x4001_1004),
+                (0x4002_644c, BUFFER),
+                (0x4002_6440, 4 << 25 | 1 << 10 | 1 << 8 | 0b11 << 3 | 1),
+                (0x4001_1008, 69),
+                (0x4001_1014, 1 << 6),
+                (0x4001_100c, 1 << 13 | 0b11 << 2 | 1 << 4),
+            ],
+            left: 0x4002_6444,
+            interrupts: [58, 37],
+            flags: (0x4002_6400, 0b11 << 20),
+            clears: |machine| {
+                machine.read(0x4001_1000, 4);
+                machine.read(0x4001_1004, 4);
+            },
+        };
+        let g474 = Case {
+            machine: machine(chips::g474::chip(BASE + 0x1000)),
+            writes: &[
+                (0x4002_1048, 1 << 8 | 1 << 2 | 1),
+                (0x4002_104c, 1),
+                (0x4002_1058, 1 << 17 | 1 << 10),
+                (0x4800_0020, 0x7700),
+                (0x4800_0000, 0xabff_ffaf),
+                (0x4002_0800, 26),
+                (0x4002_000c, LENGTH),
+                (0x4002_0010, 0x4000_4424),
+                (0x4002_0014, BUFFER),
+                (0x4002_0008, 1 << 7 | 1 << 5 | 0b11 << 1 | 1),
+                (0x4000_440c, 69),
+                (0x4000_4408, 1 << 6),
+                (0x4000_4400, 0b11 << 2 | 1 << 4),
+                (0x4000_4400, 0b11 << 2 | 1 << 4 | 1),
+            ],
+            left: 0x4002_000c,
+            interrupts: [11, 38],
+            flags: (0x4002_0000, 0b11 << 1),
+            clears: |machine| machine.write(0x4000_4420, 4, 1 << 4),
+        };
+        [f405, g474]
+    }
+
+    /// Lets time pass with what DMA moves in it, as the core does.
+    fn run_for(machine: &mut Machine, memory: &mut BTreeMap<u32, u8>, duration: Time) {
+        let end = machine.time() + duration;
+        while machine.time() < end {
+            machine.settle();
+            while let Some(Transfer { from, to, size }) = machine.next_transfer() {
+                memory.insert(to, machine.read(from, size) as u8);
+                machine.settle();
+            }
+            machine.cycles = machine.deadline.min(machine.cycles + 100);
+        }
+    }
+
+    fn started(case: &mut Case, memory: &mut BTreeMap<u32, u8>) {
+        case.machine.settle();
+        for (address, value) in case.writes {
+            case.machine.write(*address, 4, (*value).into());
+        }
+        // A receiver that is switched on sees an idle line first.
+        run_for(&mut case.machine, memory, cycles(12, BAUD));
+        (case.clears)(&mut case.machine);
+    }
+
+    #[test]
+    fn bytes_go_round_and_round_in_memory_and_a_pause_is_told_once() {
+        for mut case in cases() {
+            let mut memory = BTreeMap::new();
+            started(&mut case, &mut memory);
+            let Case { mut machine, left, interrupts: [dma, line], flags: (register, flags), clears, .. } = case;
+            let name = machine.chip.name;
+            machine.wires.line.to_board.extend(1..=40);
+            run_for(&mut machine, &mut memory, cycles(40 * 10, BAUD) + MICROSECOND);
+            assert!(!machine.wires.interrupts.contains(&line), "{name}: idle at once");
+            assert!(machine.wires.interrupts.contains(&dma) && machine.read(register, 4) as u32 & flags == flags);
+            run_for(&mut machine, &mut memory, cycles(12, BAUD));
+            assert!(machine.wires.interrupts.contains(&line), "{name}: not idle");
+            assert_eq!(machine.read(left, 4), 8, "{name}");
+            let held: Vec<u8> = memory.values().copied().collect();
+            assert_eq!(held, [33, 34, 35, 36, 37, 38, 39, 40, 25, 26, 27, 28, 29, 30, 31, 32], "{name}");
+            clears(&mut machine);
+            run_for(&mut machine, &mut memory, SECOND / 100);
+            assert!(!machine.wires.interrupts.contains(&line), "{name}: idle again");
+            assert_eq!(machine.wires.line.overruns, 0, "{name}");
+            let said: Vec<_> = machine.wires.violations.all().iter().map(ToString::to_string).collect();
+            assert_eq!(said, [""; 0], "{name}");
+        }
+    }
+
+    #[test]
+    fn bytes_that_come_while_the_core_stands_still_are_moved() {
+        for mut case in cases() {
+            let mut memory = BTreeMap::new();
+            started(&mut case, &mut memory);
+            case.machine.wires.line.to_board.extend(1..=200);
+            run_for(&mut case.machine, &mut memory, cycles(20, BAUD));
+            case.machine.wires.stall = SECOND / 10;
+            run_for(&mut case.machine, &mut memory, SECOND / 9);
+            let wires = &case.machine.wires;
+            assert_eq!((wires.line.overruns, wires.line.to_board.len()), (0, 0), "{}", case.machine.chip.name);
+            assert_eq!(memory[&(BUFFER + 7)], 200, "{}", case.machine.chip.name);
+        }
     }
 }

@@ -1,8 +1,8 @@
-//! The DMA controllers of STM32G474, by channels: RM0440 section 12. Between a peripheral and memory, once through; which
-//! peripheral, the multiplexer says.
+//! The DMA controllers of STM32G474, by channels: RM0440 section 12. Between a peripheral and memory; which peripheral, the
+//! multiplexer says.
 
 use super::Peripheral;
-use super::dma::{Transfer, Way};
+use super::dma::{Course, Reached, Transfer, Way};
 use crate::register::{Register, Registers, bit, bits};
 use crate::wires::{Request, Wires};
 
@@ -14,6 +14,15 @@ const STEP: u32 = 0x14;
 const NDTR: u32 = 0x04;
 const PAR: u32 = 0x08;
 const MAR: u32 = 0x0c;
+/// Flags of a channel: any, complete, half. The interrupts of the last two are at the same places of the control register.
+const ANY: u32 = bit(0);
+const COMPLETE: u32 = bit(1);
+const HALF: u32 = bit(2);
+const ENABLES: u32 = bits(3, 1);
+const CIRCULAR: u32 = 5;
+/// Interrupts of the channels of DMA1 and DMA2: RM0440 table 97.
+const INTERRUPTS: [[usize; CHANNELS as usize]; 2] =
+    [[11, 12, 13, 14, 15, 16, 17, 96], [56, 57, 58, 59, 60, 97, 98, 99]];
 
 static MAP: [Register; 34] = map();
 
@@ -38,13 +47,13 @@ const fn map() -> [Register; 34] {
 pub struct DmaChannels {
     registers: Registers,
     number: u32,
-    moved: [u32; CHANNELS as usize],
+    courses: [Course; CHANNELS as usize],
 }
 
 impl DmaChannels {
     /// By its number.
     pub fn new(number: u32) -> Self {
-        Self { registers: Registers::new(&MAP), number, moved: [0; CHANNELS as usize] }
+        Self { registers: Registers::new(&MAP), number, courses: Default::default() }
     }
 
     fn is_on(&self, channel: u32) -> bool {
@@ -67,14 +76,18 @@ impl DmaChannels {
             wires.violation("DMA_CNDTRx", "is 0 when the channel is switched on", "RM0440 12.4.4");
         }
         let outwards = control & bit(4) != 0;
-        if request.is_some() && outwards != matches!(request, Some(Request::SpiToSend(_))) {
+        if request.is_some_and(|request| request.is_outwards() != outwards) {
             let what = format!("channel {} goes the wrong way", channel + 1);
             wires.violation("DMA_CCRx", what, "RM0440 12.6.3 DIR");
         }
-        if control & (bit(5) | bit(6) | bit(14)) != 0 || control >> 8 & 3 != control >> 10 & 3 {
-            wires.violation("DMA_CCRx", "only items of one size, once through, are modelled", "RM0440 12.4");
+        if control & (bit(6) | bit(14)) != 0 || control >> 8 & 3 != control >> 10 & 3 {
+            wires.violation(
+                "DMA_CCRx",
+                "only items of one size are modelled, in memory one after the other",
+                "RM0440 12.4",
+            );
         }
-        self.moved[channel as usize] = 0;
+        self.courses[channel as usize].start(&self.registers, base + NDTR);
     }
 }
 
@@ -118,6 +131,9 @@ impl Peripheral for DmaChannels {
             if let Some(request) = self.request(channel, wires) {
                 wires.serve(request, self.is_on(channel));
             }
+            let flags = self.registers.get(ISR) >> (4 * channel) & ENABLES;
+            let asks = flags & self.registers.get(FIRST + STEP * channel) != 0;
+            wires.interrupt(INTERRUPTS[self.number as usize - 1][channel as usize], asks);
         }
     }
 
@@ -137,14 +153,16 @@ impl Peripheral for DmaChannels {
             outwards: control & bit(4) != 0,
             size: 1 << (control >> 8 & 3),
         };
-        let transfer = way.item(self.moved[channel as usize]);
-        self.moved[channel as usize] += 1;
-        let left = self.registers.get(base + NDTR) - 1;
-        self.registers.set(base + NDTR, left);
-        if left == 0 {
-            self.registers.change(ISR, 0b11 << (4 * channel), 0);
-        }
-        Some(transfer)
+        let circular = control >> CIRCULAR & 1 == 1;
+        let (item, reached) = self.courses[channel as usize].step(circular, &mut self.registers, base + NDTR);
+        let flags = match reached {
+            Reached::Nothing => 0,
+            Reached::Half => ANY | HALF,
+            Reached::End => ANY | COMPLETE,
+        };
+        self.registers.change(ISR, flags << (4 * channel), 0);
+        self.advance(wires);
+        Some(way.item(item))
     }
 
     fn reset(&mut self) {

@@ -1,8 +1,7 @@
-//! The DMA controllers of STM32F405, by streams: RM0090 section 10. Direct mode between a peripheral and memory, once
-//! through.
+//! The DMA controllers of STM32F405, by streams: RM0090 section 10. Direct mode between a peripheral and memory.
 
 use super::Peripheral;
-use super::dma::{Transfer, Way};
+use super::dma::{Course, Reached, Transfer, Way};
 use crate::register::{Register, Registers, bit, bits};
 use crate::wires::{Request, Wires};
 
@@ -15,15 +14,25 @@ const M0AR: u32 = 0x0c;
 const FCR: u32 = 0x14;
 /// Flags of a stream: FIFO error, direct mode error, transfer error, half, complete.
 const FLAGS: u32 = 0x3d;
+const HALF: u32 = bit(4);
+const COMPLETE: u32 = bit(5);
+/// Interrupts of errors, half and end in the control register, one place below their flags.
+const ENABLES: u32 = bits(4, 1);
+const CIRCULAR: u32 = 8;
+/// Interrupts of the streams of DMA2: RM0090 table 61.
+const INTERRUPTS: [usize; STREAMS as usize] = [56, 57, 58, 59, 60, 68, 69, 70];
 /// Where the flags of four streams begin in a register.
 const PLACES: [u32; 4] = [0, 6, 16, 22];
 const ALL_FLAGS: u32 = 0x0f7d_0f7d;
 /// Who is on which stream and channel of DMA2: RM0090 table 43.
-const DMA2: [(u32, u32, Request); 4] = [
+const DMA2: [(u32, u32, Request); 7] = [
     (0, 3, Request::SpiReceived(1)),
     (2, 3, Request::SpiReceived(1)),
     (3, 3, Request::SpiToSend(1)),
     (5, 3, Request::SpiToSend(1)),
+    (2, 4, Request::UsartReceived(1)),
+    (5, 4, Request::UsartReceived(1)),
+    (7, 4, Request::UsartToSend(1)),
 ];
 
 static MAP: [Register; 52] = map();
@@ -52,13 +61,12 @@ const fn map() -> [Register; 52] {
 #[derive(Debug)]
 pub struct DmaStreams {
     registers: Registers,
-    /// Items that each stream has moved.
-    moved: [u32; STREAMS as usize],
+    courses: [Course; STREAMS as usize],
 }
 
 impl Default for DmaStreams {
     fn default() -> Self {
-        Self { registers: Registers::new(&MAP), moved: [0; STREAMS as usize] }
+        Self { registers: Registers::new(&MAP), courses: Default::default() }
     }
 }
 
@@ -72,15 +80,25 @@ impl DmaStreams {
         DMA2.iter().find(|(place, number, _)| (*place, *number) == (stream, channel)).map(|(.., request)| *request)
     }
 
+    /// Register of a stream's flags, and their place in it.
+    fn flag_place(stream: u32) -> (u32, u32) {
+        (if stream < 4 { 0x00 } else { 0x04 }, PLACES[stream as usize % 4])
+    }
+
+    fn flags(&self, stream: u32) -> u32 {
+        let (register, place) = Self::flag_place(stream);
+        self.registers.get(register) >> place & FLAGS
+    }
+
     fn flag(&mut self, stream: u32, flag: u32) {
-        let register = if stream < 4 { 0x00 } else { 0x04 };
-        self.registers.change(register, flag << PLACES[stream as usize % 4], 0);
+        let (register, place) = Self::flag_place(stream);
+        self.registers.change(register, flag << place, 0);
     }
 
     fn start(&mut self, stream: u32, wires: &mut Wires) {
         let base = FIRST + STEP * stream;
         let control = self.registers.get(base);
-        let flags = self.registers.get(if stream < 4 { 0x00 } else { 0x04 }) >> PLACES[stream as usize % 4] & FLAGS;
+        let flags = self.flags(stream);
         if flags != 0 {
             let what = format!("stream {stream} is switched on while its flags {flags:#04x} are up");
             wires.violation("DMA_SxCR", what, "RM0090 10.3.17");
@@ -93,14 +111,14 @@ impl DmaStreams {
             wires.violation("DMA_SxNDTR", "is 0 when the stream is switched on", "RM0090 10.5.6");
         }
         let outwards = control >> 6 & 3 == 1;
-        let wanted = matches!(self.request(stream), Some(Request::SpiToSend(_)));
+        let wanted = self.request(stream).is_some_and(Request::is_outwards);
         if control >> 6 & 3 > 1 || outwards != wanted {
             wires.violation("DMA_SxCR", format!("stream {stream} goes the wrong way"), "RM0090 10.5.5 DIR");
         }
-        if control & (bit(5) | bit(8) | bit(9) | bit(18)) != 0 || self.registers.is_set(base + FCR, 2) {
-            wires.violation("DMA_SxCR", "only direct mode, once through, is modelled", "RM0090 10.3");
+        if control & (bit(5) | bit(9) | bit(18)) != 0 || self.registers.is_set(base + FCR, 2) {
+            wires.violation("DMA_SxCR", "only direct mode with one buffer is modelled", "RM0090 10.3");
         }
-        self.moved[stream as usize] = 0;
+        self.courses[stream as usize].start(&self.registers, base + NDTR);
     }
 }
 
@@ -133,7 +151,7 @@ impl Peripheral for DmaStreams {
                 }
                 if control && was_on && value & 1 == 0 {
                     // RM0090 10.3.16: switching off sets the flag of the end.
-                    self.flag(stream, bit(5));
+                    self.flag(stream, COMPLETE);
                 }
             }
         }
@@ -145,6 +163,8 @@ impl Peripheral for DmaStreams {
             if let Some(request) = self.request(stream) {
                 wires.serve(request, self.is_on(stream));
             }
+            let asks = self.flags(stream) >> 1 & ENABLES & self.registers.get(FIRST + STEP * stream) != 0;
+            wires.interrupt(INTERRUPTS[stream as usize], asks);
         }
     }
 
@@ -161,16 +181,20 @@ impl Peripheral for DmaStreams {
             outwards: control >> 6 & 3 == 1,
             size: 1 << (control >> 11 & 3),
         };
-        let transfer = way.item(self.moved[stream as usize]);
-        self.moved[stream as usize] += 1;
-        let left = self.registers.get(base + NDTR).saturating_sub(1);
-        self.registers.set(base + NDTR, left);
-        if left == 0 {
-            self.registers.change(base, 0, 1);
-            self.flag(stream, bit(5));
-            self.advance(wires);
+        let circular = control >> CIRCULAR & 1 == 1;
+        let (item, reached) = self.courses[stream as usize].step(circular, &mut self.registers, base + NDTR);
+        match reached {
+            Reached::Nothing => {}
+            Reached::Half => self.flag(stream, HALF),
+            Reached::End => {
+                self.flag(stream, COMPLETE);
+                if !circular {
+                    self.registers.change(base, 0, 1);
+                }
+            }
         }
-        Some(transfer)
+        self.advance(wires);
+        Some(way.item(item))
     }
 
     fn reset(&mut self) {

@@ -42,6 +42,12 @@ fn request(number: u32) -> Option<Request> {
         13 => Some(Request::SpiToSend(2)),
         14 => Some(Request::SpiReceived(3)),
         15 => Some(Request::SpiToSend(3)),
+        24 => Some(Request::UsartReceived(1)),
+        25 => Some(Request::UsartToSend(1)),
+        26 => Some(Request::UsartReceived(2)),
+        27 => Some(Request::UsartToSend(2)),
+        28 => Some(Request::UsartReceived(3)),
+        29 => Some(Request::UsartToSend(3)),
         _ => None,
     }
 }

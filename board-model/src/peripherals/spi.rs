@@ -128,12 +128,11 @@ impl Spi {
             wires.violation("SPI_CR1", "a slave is switched on while its pins are not routed to it", "RM0090 28.3.2");
         }
         if offset == CR2 && self.has_fifos {
-            let served = |request| wires.served.contains(&request);
             let number = self.place.number;
-            if value & !before & bit(0) != 0 && served(Request::SpiReceived(number)) {
+            if value & !before & bit(0) != 0 && wires.is_served(Request::SpiReceived(number)) {
                 let what = "RXDMAEN is set after the channel that receives: before it is the order";
                 wires.violation("SPI_CR2", what, "RM0440 39.4.9, DMA");
-            } else if value & !before & bit(1) != 0 && !served(Request::SpiToSend(number)) {
+            } else if value & !before & bit(1) != 0 && !wires.is_served(Request::SpiToSend(number)) {
                 let what = "TXDMAEN is set before the channel that sends: after it is the order";
                 wires.violation("SPI_CR2", what, "RM0440 39.4.9, DMA");
             }

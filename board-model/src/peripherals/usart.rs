@@ -1,17 +1,18 @@
 //! USARTs: RM0090 section 30, which has room for one byte each way, and RM0440 section 37 with RM0433 section 48, which have
 //! FIFOs. Asynchronous, 8 bits, no parity; the line's speed is that of the clock tree and of BRR, and a byte that comes
-//! before the one before has been fetched is lost, as it is on the chip.
+//! before the one before has been fetched is lost, as it is on the chip. Bytes may be moved by DMA, and a line that falls idle
+//! says so.
 
 use std::collections::VecDeque;
 
 use super::Peripheral;
 use crate::register::{Register, Registers, bit, bits};
-use crate::wires::{Pin, Time, Wires, cycles};
+use crate::wires::{Pin, Request, Time, Wires, cycles};
 
-/// RM0090 30.6.
+/// RM0090 30.6. DMA moves bytes between data registers and memory: the bridge to the bus makes words of them (RM0090 10.3.10).
 static OLD: [Register; 7] = [
     Register::new("USART_SR", 0x00, 0xc0, 0x3ff).special(0x3ff).half_words(),
-    Register::new("USART_DR", 0x04, 0, 0x1ff).special(0x1ff).half_words(),
+    Register::new("USART_DR", 0x04, 0, 0x1ff).special(0x1ff).any_width(),
     Register::new("USART_BRR", 0x08, 0, 0xffff).half_words(),
     Register::new("USART_CR1", 0x0c, 0, 0xbfff).half_words(),
     Register::new("USART_CR2", 0x10, 0, 0x7f6f).half_words(),
@@ -29,8 +30,8 @@ static NEW: [Register; 12] = [
     Register::new("USART_RQR", 0x18, 0, 0x1f).special(0x1f),
     Register::new("USART_ISR", 0x1c, 0x0080_00c0, u32::MAX).special(u32::MAX),
     Register::new("USART_ICR", 0x20, 0, 0x0012_3bff).special(0x0012_3bff),
-    Register::new("USART_RDR", 0x24, 0, 0x1ff).special(0x1ff),
-    Register::new("USART_TDR", 0x28, 0, 0x1ff).special(0x1ff),
+    Register::new("USART_RDR", 0x24, 0, 0x1ff).special(0x1ff).any_width(),
+    Register::new("USART_TDR", 0x28, 0, 0x1ff).special(0x1ff).any_width(),
     Register::new("USART_PRESC", 0x2c, 0, 0xf),
 ];
 
@@ -59,6 +60,11 @@ impl Kind {
         if self == Self::Old { 0x08 } else { 0x0c }
     }
 
+    /// Offset of the third control register.
+    fn requests(self) -> u32 {
+        if self == Self::Old { 0x14 } else { 0x08 }
+    }
+
     /// UE in the control register.
     fn enable(self) -> u32 {
         if self == Self::Old { bit(13) } else { bit(0) }
@@ -77,6 +83,8 @@ pub enum BusClock {
 /// Where it is on the chip.
 #[derive(Debug, Clone, Copy)]
 pub struct Place {
+    /// Its number.
+    pub number: u32,
     /// Its interrupt.
     pub interrupt: usize,
     /// Its clock.
@@ -95,8 +103,11 @@ pub struct Usart {
     place: Place,
     received: VecDeque<u8>,
     overrun: bool,
-    /// The status was read while it said overrun: reading the data ends that.
-    overrun_seen: bool,
+    idle: bool,
+    /// The flags of overrun and of an idle line that the status showed when it was read: reading the data ends them.
+    seen: [bool; 2],
+    /// The line has been idle for a byte then, unless one begins before.
+    idle_at: Option<Time>,
     waiting: VecDeque<u8>,
     /// On its way out, and when it is done.
     sending: Option<(u8, Time)>,
@@ -120,7 +131,9 @@ impl Usart {
             place,
             received: VecDeque::new(),
             overrun: false,
-            overrun_seen: false,
+            idle: false,
+            seen: [false; 2],
+            idle_at: None,
             waiting: VecDeque::new(),
             sending: None,
         }
@@ -179,7 +192,7 @@ impl Usart {
     }
 
     fn status(&self) -> u32 {
-        let mut status = u32::from(self.overrun) << 3;
+        let mut status = u32::from(self.overrun) << 3 | u32::from(self.idle) << 4;
         status |= u32::from(!self.received.is_empty()) << 5;
         status |= u32::from(self.sending.is_none() && self.waiting.is_empty()) << 6;
         status |= u32::from(self.has_room()) << 7;
@@ -204,6 +217,12 @@ impl Usart {
 
     fn control_changed(&mut self, value: u32, before: u32, wires: &mut Wires) {
         let enable = self.kind.enable();
+        let receives = |control: u32| control & enable != 0 && control & bit(2) != 0;
+        if receives(value) && !receives(before) {
+            self.falls_silent(wires.now, wires);
+        } else if !receives(value) {
+            self.idle_at = None;
+        }
         if let Kind::New(_) = self.kind {
             // RM0440 37.8.1: these fields can only be written while the USART is off.
             let fixed = bit(29) | bit(28) | bit(15) | bit(12) | bits(11, 9);
@@ -240,13 +259,30 @@ impl Usart {
         }
     }
 
+    /// Looks whether the line was silent for as long as a byte takes (RM0090 30.3.3, RM0440 37.5.6), up to now or up to the
+    /// next byte that has begun.
+    fn watch_silence(&mut self, begun: Option<Time>, now: Time) {
+        let Some(idle_at) = self.idle_at else { return };
+        if begun.is_some_and(|begun| begun < idle_at) {
+            self.idle_at = None;
+        } else if idle_at <= now {
+            (self.idle, self.idle_at) = (true, None);
+        }
+    }
+
+    /// The line is silent from a time on.
+    fn falls_silent(&mut self, now: Time, wires: &Wires) {
+        self.idle_at = Some(now + cycles(BITS, self.baud(wires)));
+    }
+
     /// A byte has come in full.
-    fn arrive(&mut self, byte: u8, wires: &mut Wires) {
+    fn arrive(&mut self, byte: u8, at: Time, wires: &mut Wires) {
         // A wrong speed makes other bytes of them.
         let byte = if self.is_off_speed(wires) { !byte } else { byte };
         if !self.receives(wires) {
             return;
         }
+        self.falls_silent(at, wires);
         if self.received.len() < self.depth() {
             self.received.push_back(byte);
         } else {
@@ -265,15 +301,15 @@ impl Peripheral for Usart {
         self.advance(wires);
         match (self.kind, offset) {
             (Kind::Old, 0x00) => {
-                self.overrun_seen = self.overrun;
+                self.seen = [self.overrun, self.idle];
                 self.status()
             }
             (Kind::New(_), 0x1c) => self.status(),
             (Kind::Old, 0x04) | (Kind::New(_), 0x24) => {
-                // RM0090 30.6.1: a read of the status and then of the data clears the overrun.
-                if self.kind == Kind::Old && std::mem::take(&mut self.overrun_seen) {
-                    self.overrun = false;
-                }
+                // RM0090 30.6.1: a read of the status and then of the data, by whomever, clears overrun and idle line.
+                let [overrun, idle] = std::mem::take(&mut self.seen);
+                self.overrun &= !overrun;
+                self.idle &= !idle;
                 let byte = self.received.pop_front().unwrap_or_default();
                 self.advance(wires);
                 byte.into()
@@ -291,7 +327,10 @@ impl Peripheral for Usart {
             (Kind::New(_), 0x0c) if self.is_enabled() => {
                 wires.violation("USART_BRR", "is written while UE is 1", "RM0440 37.8.5");
             }
-            (Kind::New(_), 0x20) if value & bit(3) != 0 => self.overrun = false,
+            (Kind::New(_), 0x20) => {
+                self.overrun &= value & bit(3) == 0;
+                self.idle &= value & bit(4) == 0;
+            }
             (Kind::New(_), 0x18) if value & bit(3) != 0 => self.received.clear(),
             _ => {}
         }
@@ -311,23 +350,38 @@ impl Peripheral for Usart {
             self.start_sending(wires.now, wires);
         }
         while let Some(arrives) = wires.line.arrives.filter(|arrives| *arrives <= wires.now) {
+            // While the core stands still, DMA has its turn after every byte.
+            if !self.received.is_empty() && wires.is_served(Request::UsartReceived(self.place.number)) {
+                break;
+            }
+            let start = arrives.saturating_sub(cycles(BITS, wires.line.baud));
+            self.watch_silence(Some(start), arrives);
             let byte = wires.line.to_board.pop_front().unwrap_or_default();
-            self.arrive(byte, wires);
+            self.arrive(byte, arrives, wires);
             let next = arrives + cycles(BITS, wires.line.baud);
             wires.line.arrives = (!wires.line.to_board.is_empty()).then_some(next);
         }
         if wires.line.arrives.is_none() && !wires.line.to_board.is_empty() {
             wires.line.arrives = Some(wires.now + cycles(BITS, wires.line.baud));
         }
+        let start = wires.line.arrives.map(|arrives| arrives.saturating_sub(cycles(BITS, wires.line.baud)));
+        self.watch_silence(start, wires.now);
         let (status, control) = (self.status(), self.control());
+        let requests = self.registers.get(self.kind.requests());
         let receive = control & bit(5) != 0 && status & (bit(5) | bit(3)) != 0;
         let send = control & bit(7) != 0 && status & bit(7) != 0;
         let done = control & bit(6) != 0 && status & bit(6) != 0;
-        wires.interrupt(self.place.interrupt, self.is_enabled() && (receive || send || done));
+        let idle = control & bit(4) != 0 && status & bit(4) != 0;
+        // RM0090 30.6.6: EIE is for DMA only; RM0440 37.8.4: it is not.
+        let errs = requests & bit(0) != 0 && (self.kind != Kind::Old || requests & bit(6) != 0) && self.overrun;
+        wires.interrupt(self.place.interrupt, self.is_enabled() && (receive || send || done || idle || errs));
+        let number = self.place.number;
+        wires.request(Request::UsartReceived(number), self.is_enabled() && requests & status << 1 & bit(6) != 0);
+        wires.request(Request::UsartToSend(number), self.sends() && requests & status & bit(7) != 0);
     }
 
     fn next_event(&self) -> Option<Time> {
-        self.sending.map(|(_, done)| done)
+        self.sending.map(|(_, done)| done).into_iter().chain(self.idle_at).min()
     }
 
     fn reset(&mut self) {

@@ -14,9 +14,9 @@ pub const USUAL_COST: u64 = 1000;
 /// What drives the clock of a board as it is sold.
 pub fn usual_surroundings(board: Kind) -> Surroundings {
     match board {
-        Kind::Stm32f405 => Surroundings { crystal: Some(8_000_000), external_clock: None },
-        Kind::Stm32g474 => Surroundings { crystal: Some(24_000_000), external_clock: None },
-        Kind::Stm32h743 => Surroundings { crystal: None, external_clock: Some(8_000_000) },
+        Kind::Stm32f405 => Surroundings::crystal(8_000_000),
+        Kind::Stm32g474 => Surroundings::crystal(24_000_000),
+        Kind::Stm32h743 => Surroundings::clock(8_000_000),
     }
 }
 

@@ -119,12 +119,15 @@ impl Board<'_> {
             self.start();
             return;
         }
-        self.exceptions();
+        let stands_still = self.machine().is_stopped();
+        if !stands_still {
+            self.exceptions();
+        }
         let machine = self.core.get_data_mut();
-        if self.sleeping {
+        if self.sleeping || stands_still {
             let wake = machine.deadline;
-            let step = machine.wires.clocks.core.max(1) / 1000;
-            let limit = machine.cycles + step.max(1);
+            let step = machine.wires.clocks.core / 1000;
+            let limit = machine.cycles + step.max(1000);
             machine.cycles = if machine.time() < end { wake.min(limit) } else { machine.cycles };
             return;
         }

@@ -9,6 +9,8 @@ use crate::wires::{Clocks, Gate, Reset, SECOND, Surroundings, Time, Wires};
 
 /// Place of the clock controller among the peripherals.
 const CLOCK_CONTROLLER: usize = 0;
+/// Cycles by which time is counted while the clock of the core stands still [Hz].
+const STOPPED_RATE: u64 = 1_000_000;
 /// Cycles that pass between two looks at flash that is at work, instead of some twenty: a sector takes a second.
 const LOOK_AGAIN: u64 = 2000;
 
@@ -118,7 +120,7 @@ impl Machine {
             go_on: false,
             stopped: false,
         };
-        machine.wires.clocks = Clocks { system: rate, core: rate, bus: rate, low: rate, high: rate };
+        machine.wires.clocks = Clocks { system: rate, core: rate, bus: rate, low: rate, high: rate, timers: rate };
         machine.note_reset(Reset::Power);
         machine
     }
@@ -159,9 +161,10 @@ impl Machine {
             placed.peripheral.advance(&mut self.wires);
         }
         self.hold();
-        if self.wires.clocks.core != self.rate {
+        let rate = if self.is_stopped() { STOPPED_RATE } else { self.wires.clocks.core };
+        if rate != self.rate {
             self.since = (self.cycles, self.wires.now);
-            self.rate = self.wires.clocks.core.max(1);
+            self.rate = rate;
         }
         self.scs.advance(self.cycles, &mut self.wires);
         let events = self.chip.peripherals.iter().filter_map(|placed| placed.peripheral.next_event());
@@ -170,6 +173,11 @@ impl Machine {
         let never = self.cycles + self.rate;
         self.deadline = [next, self.scs.next_event()].into_iter().flatten().min().unwrap_or(never).max(self.cycles + 1);
         self.attention = false;
+    }
+
+    /// Whether the clock of the core stands still.
+    pub fn is_stopped(&self) -> bool {
+        self.wires.clocks.core == 0
     }
 
     /// The next item that DMA moves.
@@ -331,7 +339,7 @@ mod tests {
     use crate::peripherals::flash::BASE;
 
     fn machine() -> Machine {
-        let surroundings = Surroundings { crystal: Some(8_000_000), external_clock: None };
+        let surroundings = Surroundings::crystal(8_000_000);
         let mut machine = Machine::new(chips::f405::chip(BASE + 0x1000), surroundings, 230_400, 1000);
         machine.settle();
         machine

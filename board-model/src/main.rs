@@ -72,7 +72,7 @@ fn run(image: &Path, kind: Kind, source: Option<u64>, cost: u64) -> Result<(), S
         None => usual,
         Some(rate) => {
             let rate = Some(rate).filter(|rate| *rate > 0);
-            Surroundings { crystal: usual.crystal.and(rate), external_clock: usual.external_clock.and(rate) }
+            Surroundings { crystal: usual.crystal.and(rate), external_clock: usual.external_clock.and(rate), ..usual }
         }
     };
     let subject = Subject { kind, image: Image::read(image)?, tampers: &[] };

@@ -30,6 +30,8 @@ pub struct Clocks {
     pub low: u64,
     /// That of the second peripheral bus.
     pub high: u64,
+    /// That of the timers on it.
+    pub timers: u64,
 }
 
 /// A bit of a register of the reset and clock controller.
@@ -130,12 +132,31 @@ impl Master {
 }
 
 /// What is outside of the chip.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct Surroundings {
     /// A crystal at the pins of the external oscillator [Hz].
     pub crystal: Option<u64>,
     /// A clock at its input, for the bypass [Hz].
     pub external_clock: Option<u64>,
+    /// The one or the other dies then.
+    pub dies_at: Option<Time>,
+}
+
+impl Surroundings {
+    /// A crystal [Hz].
+    pub fn crystal(rate: u64) -> Self {
+        Self { crystal: Some(rate), ..Self::default() }
+    }
+
+    /// A clock from outside [Hz].
+    pub fn clock(rate: u64) -> Self {
+        Self { external_clock: Some(rate), ..Self::default() }
+    }
+
+    /// Whether the external source is dead.
+    pub fn is_dead(&self, now: Time) -> bool {
+        self.dies_at.is_some_and(|time| time <= now)
+    }
 }
 
 /// All of it.
@@ -149,6 +170,8 @@ pub struct Wires {
     pub violations: Violations,
     /// Clocks as they are.
     pub clocks: Clocks,
+    /// The external oscillator as timers can capture it: divided, while it runs [Hz].
+    pub divided_external: Option<u64>,
     /// Registers of the clock controller by offset, as far as they switch clocks on and hold resets.
     pub gates: BTreeMap<u32, u32>,
     /// Interrupt lines that are high.
@@ -205,6 +228,7 @@ impl Wires {
             pc: 0,
             violations: Violations::default(),
             clocks: Clocks::default(),
+            divided_external: None,
             gates: BTreeMap::new(),
             interrupts: BTreeSet::new(),
             pins: BTreeMap::new(),

@@ -12,7 +12,7 @@ use crate::wires::{MICROSECOND, SECOND, Time};
 const COUNTED: u32 = 10;
 
 /// The tick comes at its rate, and nothing is above it.
-fn ticks(talk: &mut Talk<'_>, rate: u32) -> Result<(), String> {
+pub fn ticks(talk: &mut Talk<'_>, rate: u32) -> Result<(), String> {
     let count = |talk: &Talk<'_>| talk.board.borrow().machine().scs.taken(SYSTICK);
     let before = count(talk);
     talk.hear(SECOND / Time::from(COUNTED));

@@ -40,6 +40,7 @@ pub const ALL: &[Named] = &[
     short("boots, ticks and answers", &[Work::Plant, Work::Observer, Work::Loop], boot::answers),
     short("boots from the internal oscillator", &[Work::Plant], sources::dead_crystal),
     short("other crystals", &[Work::Plant], sources::other_crystals),
+    short("the external source dies in a run", &[Work::Plant], sources::dies_in_a_run),
     short("20,000 steps, the same in every bit as the host's twin", &[Work::Plant], bits::steps),
     short("keeps, writes and erases what was learnt", &[Work::Observer], memory::keeps),
     short("plant with ticks as long as counted: no tick too long, no byte lost", &[Work::Plant], load::plant),

@@ -25,8 +25,13 @@ fn level(talk: &Talk<'_>, kind: Kind) -> Mode {
     talk.board.borrow().machine().wires.mode(enable(kind))
 }
 
+/// Whether it is on.
+pub fn is_enabled(talk: &Talk<'_>, kind: Kind) -> bool {
+    level(talk, kind) == Mode::Output(true)
+}
+
 /// Starts a run in real time whose last command holds for long.
-fn start_run<'a>(subject: &Subject) -> Result<Talk<'a>, String> {
+pub fn start_run<'a>(subject: &Subject) -> Result<Talk<'a>, String> {
     let mut talk = Talk::new(subject.start()?);
     talk.call(2 * SECOND).ok_or("no answer")?;
     if level(&talk, subject.kind) != Mode::Output(false) {
@@ -38,7 +43,7 @@ fn start_run<'a>(subject: &Subject) -> Result<Talk<'a>, String> {
     let commands = [Command { tick: 0, drive_torque: 0.1, load_torque: 0.0 }].into_iter().collect();
     talk.say(&ToBoard::Schedule(Schedule { sequence: 0, horizon: 10 * TIMEOUT, commands }));
     talk.hear(5000 * MICROSECOND);
-    if level(&talk, subject.kind) != Mode::Output(true) {
+    if !is_enabled(&talk, subject.kind) {
         return Err(format!("the enable output is {:?} in a run", level(&talk, subject.kind)));
     }
     Ok(talk)
@@ -84,7 +89,7 @@ pub fn watchdog(subject: &Subject) -> Result<String, String> {
     let Some((Reset::Watchdog, at)) = talk.board.borrow().machine().resets.get(resets).copied() else {
         return Err("no reset by the watchdog within a second".into());
     };
-    if level(&talk, subject.kind) == Mode::Output(true) {
+    if is_enabled(&talk, subject.kind) {
         return Err("the enable output is still on after the reset".into());
     }
     let hello = talk.call(2 * SECOND).ok_or("no answer after the reset")?;
@@ -118,7 +123,7 @@ pub fn fault(subject: &Subject) -> Result<String, String> {
         talk.hear(100 * MICROSECOND);
     }
     let reset = talk.board.borrow().machine().resets.get(resets).copied();
-    if !matches!(reset, Some((Reset::Software, _))) || level(&talk, subject.kind) == Mode::Output(true) {
+    if !matches!(reset, Some((Reset::Software, _))) || is_enabled(&talk, subject.kind) {
         return Err(format!("after a fault: reset {reset:?}, enable {:?}", level(&talk, subject.kind)));
     }
     let hello = talk.call(2 * SECOND).ok_or("no answer after a fault")?;

@@ -1,16 +1,22 @@
-//! Other clock sources than the one that the board is sold with.
+//! Other clock sources than the one that the board is sold with: every usual rate, by crystal and by clock, none at all, and
+//! one that dies in a run. Either the tick has the rate that the hello says, or the hello says that it has not.
 
-use link::messages::Clock;
+use link::messages::{Clock, Hello};
 
-use super::clean;
-use crate::boards::{self, Subject};
+use super::outputs::{is_enabled, start_run};
+use super::{boot, clean};
+use crate::boards::Subject;
 use crate::talk::Talk;
-use crate::wires::{SECOND, Surroundings};
+use crate::wires::{MICROSECOND, SECOND, Surroundings, Time};
+
+/// What crystals and clocks of boards with these chips have [Hz].
+const RATES: [u64; 6] = [8_000_000, 12_000_000, 16_000_000, 24_000_000, 25_000_000, 26_000_000];
+/// Without its clock a board has this long until its outputs are off: the watchdog's half second and its spread.
+const OUTPUTS_OFF: Time = SECOND * 6 / 10;
 
 /// The external source is dead: the internal oscillator takes over, and the hello says so.
 pub fn dead_crystal(subject: &Subject) -> Result<String, String> {
-    let nothing = Surroundings { crystal: None, external_clock: None };
-    let mut talk = Talk::new(subject.start_with(nothing)?);
+    let mut talk = Talk::new(subject.start_with(Surroundings::default())?);
     let hello = talk.call(4 * SECOND);
     clean(&talk.board.borrow())?;
     let hello = hello.ok_or("no answer")?;
@@ -18,25 +24,53 @@ pub fn dead_crystal(subject: &Subject) -> Result<String, String> {
     if hello.clock != Clock::InternalFallback || core != u64::from(subject.kind.core_rate()) {
         return Err(format!("{core} Hz from {:?}", hello.clock));
     }
+    boot::ticks(&mut talk, hello.tick_rate)?;
     Ok(format!("{core} Hz from the internal oscillator"))
 }
 
-/// Crystals that other boards with the chip have: none may take a clock out of its range.
+/// Crystals and clocks that other boards with the chip have: none may take a clock out of its range, or the line away, and the
+/// hello tells the truth about the tick.
 pub fn other_crystals(subject: &Subject) -> Result<String, String> {
-    let rates = [8_000_000, 12_000_000, 16_000_000, 24_000_000, 25_000_000];
-    let mut wrong = Vec::new();
-    for rate in rates {
-        let source = match boards::usual_surroundings(subject.kind).crystal {
-            Some(_) => Surroundings { crystal: Some(rate), external_clock: None },
-            None => Surroundings { crystal: None, external_clock: Some(rate) },
-        };
-        let mut talk = Talk::new(subject.start_with(source)?);
-        let hello = talk.call(SECOND);
-        if let Err(why) = clean(&talk.board.borrow()) {
-            wrong.push(format!("{rate} Hz:\n{why}"));
-        } else if hello.is_none() {
-            wrong.push(format!("{rate} Hz: no answer"));
+    let (mut said, mut wrong) = (Vec::new(), Vec::new());
+    for rate in RATES {
+        for (kind, source) in [("crystal", Surroundings::crystal(rate)), ("clock", Surroundings::clock(rate))] {
+            let mut talk = Talk::new(subject.start_with(source)?);
+            match truthful(&mut talk) {
+                Ok(hello) => said.push(format!("{:?}", hello.clock)),
+                Err(why) => wrong.push(format!("a {kind} of {rate} Hz: {why}")),
+            }
         }
     }
-    if wrong.is_empty() { Ok(format!("{} crystals", rates.len())) } else { Err(wrong.join("\n")) }
+    if wrong.is_empty() { Ok(said.join(", ")) } else { Err(wrong.join("\n")) }
+}
+
+/// The board answers, and what it says about its tick is so.
+fn truthful(talk: &mut Talk<'_>) -> Result<Hello, String> {
+    let hello = talk.call(SECOND / 2);
+    clean(&talk.board.borrow())?;
+    let hello = hello.ok_or("no answer")?;
+    if hello.clock != Clock::Failed {
+        boot::ticks(talk, hello.tick_rate)?;
+    }
+    Ok(hello)
+}
+
+/// The external source dies in a run: the outputs go off, and the next hello names another source.
+pub fn dies_in_a_run(subject: &Subject) -> Result<String, String> {
+    let mut talk = start_run(subject)?;
+    let start = talk.board.borrow().now();
+    talk.board.borrow_mut().machine_mut().wires.surroundings.dies_at = Some(start + MICROSECOND);
+    while is_enabled(&talk, subject.kind) && talk.board.borrow().now() < start + OUTPUTS_OFF {
+        talk.hear(100 * MICROSECOND);
+    }
+    let off = talk.board.borrow().now() - start;
+    if is_enabled(&talk, subject.kind) {
+        return Err(format!("the enable output is on {} ms after the clock is gone", off / (1000 * MICROSECOND)));
+    }
+    talk.hear(SECOND / 2);
+    let hello = truthful(&mut talk)?;
+    match hello.clock {
+        Clock::External => Err("the hello names the source that is dead".into()),
+        clock => Ok(format!("off after {:.1} ms, then {clock:?}", off as f64 / (1000 * MICROSECOND) as f64)),
+    }
 }

@@ -8,6 +8,7 @@ use crate::peripherals::gpio::Gpio;
 use crate::peripherals::iwdg::Iwdg;
 use crate::peripherals::spi::{self, Spi};
 use crate::peripherals::syscfg::Syscfg;
+use crate::peripherals::tim::{self, Timer};
 use crate::peripherals::usart::{BusClock, Place, Usart};
 use crate::peripherals::{flash_f4, pwr_f4, rcc_f4};
 use crate::wires::Pin;
@@ -38,6 +39,9 @@ const USART1: Place = Place {
 const SPI1: spi::Place =
     spi::Place { number: 1, pins: [(Pin('A', 4), 5), (Pin('A', 5), 5), (Pin('A', 6), 5), (Pin('A', 7), 5)] };
 
+/// RM0090 19.5.11: HSE_RTC is input 2.
+const TIM11: tim::Place = tim::Place { map: &tim::F4, interrupt: 26, selection: (0x50, 2) };
+
 /// The chip, with an image up to an address.
 pub fn chip(image_end: u32) -> Chip {
     let mut peripherals = vec![
@@ -49,6 +53,7 @@ pub fn chip(image_end: u32) -> Chip {
         gated(RM, "SYSCFG", 0x4001_3800, (APB2ENR, 14), Some((APB2RSTR, 14)), Box::new(Syscfg::default())),
         gated(RM, "USART1", 0x4001_1000, (APB2ENR, 4), Some((APB2RSTR, 4)), Box::new(Usart::old(USART1))),
         gated(RM, "DMA2", 0x4002_6400, (AHB1ENR, 22), Some((AHB1RSTR, 22)), Box::new(DmaStreams::default())),
+        gated(RM, "TIM11", 0x4001_4800, (APB2ENR, 18), Some((APB2RSTR, 18)), Box::new(Timer::new(TIM11))),
         gated(RM, "SPI1", 0x4001_3000, (APB2ENR, 12), Some((APB2RSTR, 12)), Box::new(Spi::old(SPI1))),
     ];
     let names = ["GPIOA", "GPIOB", "GPIOC", "GPIOD", "GPIOE", "GPIOF", "GPIOG", "GPIOH", "GPIOI"];

@@ -9,6 +9,7 @@ use crate::peripherals::gpio::Gpio;
 use crate::peripherals::iwdg::Iwdg;
 use crate::peripherals::spi::{self, Spi};
 use crate::peripherals::syscfg::Syscfg;
+use crate::peripherals::tim::{self, Timer};
 use crate::peripherals::usart::{BusClock, Place, Usart};
 use crate::peripherals::{flash_g4, pwr_g4, rcc_g4};
 use crate::wires::Pin;
@@ -42,6 +43,10 @@ const USART2: Place = Place {
 const SPI2: spi::Place =
     spi::Place { number: 2, pins: [(Pin('B', 12), 5), (Pin('B', 13), 5), (Pin('B', 14), 5), (Pin('B', 15), 5)] };
 
+/// RM0440 30.8.18: HSE/32 is input 3 of both.
+const TIM16: tim::Place = tim::Place { map: &tim::G4, interrupt: 25, selection: (0x5c, 3) };
+const TIM17: tim::Place = tim::Place { interrupt: 26, ..TIM16 };
+
 /// The chip, with an image up to an address.
 pub fn chip(image_end: u32) -> Chip {
     let mut peripherals = vec![
@@ -52,6 +57,8 @@ pub fn chip(image_end: u32) -> Chip {
         gated(RM, "PWR", 0x4000_7000, (APB1ENR1, 28), Some((APB1RSTR1, 28)), Box::new(pwr_g4::Pwr::default())),
         gated(RM, "SYSCFG", 0x4001_0000, (APB2ENR, 0), Some((APB2RSTR, 0)), Box::new(Syscfg::default())),
         gated(RM, "USART2", 0x4000_4400, (APB1ENR1, 17), Some((APB1RSTR1, 17)), Box::new(Usart::new(USART2, 8))),
+        gated(RM, "TIM16", 0x4001_4400, (APB2ENR, 17), Some((APB2RSTR, 17)), Box::new(Timer::new(TIM16))),
+        gated(RM, "TIM17", 0x4001_4800, (APB2ENR, 18), Some((APB2RSTR, 18)), Box::new(Timer::new(TIM17))),
         gated(RM, "DMA1", 0x4002_0000, (AHB1ENR, 0), Some((AHB1RSTR, 0)), Box::new(DmaChannels::new(1))),
         gated(RM, "DMAMUX", 0x4002_0800, (AHB1ENR, 2), Some((AHB1RSTR, 2)), Box::new(DmaMux::default())),
         gated(RM, "SPI2", 0x4000_3800, (APB1ENR1, 14), Some((APB1RSTR1, 14)), Box::new(Spi::new(SPI2))),

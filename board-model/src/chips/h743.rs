@@ -4,14 +4,17 @@ use super::{always, gated, ports};
 use crate::machine::{Chip, Memory};
 use crate::peripherals::gpio::Gpio;
 use crate::peripherals::iwdg::Iwdg;
+use crate::peripherals::tim::{self, Timer};
 use crate::peripherals::usart::{BusClock, Place, Usart};
 use crate::peripherals::{flash_h7, pwr_h7, rcc_h7};
 use crate::wires::Pin;
 
 const AHB4ENR: u32 = 0xe0;
 const APB1LENR: u32 = 0xe8;
+const APB2ENR: u32 = 0xf0;
 const AHB4RSTR: u32 = 0x88;
 const APB1LRSTR: u32 = 0x90;
+const APB2RSTR: u32 = 0x98;
 const RM: &str = "RM0433 8.7";
 
 /// RM0433 2.4: instruction and data memory of the core, then that of each domain.
@@ -32,6 +35,9 @@ const USART3: Place = Place {
     receive: &[(Pin('B', 11), 7), (Pin('C', 11), 7), (Pin('D', 9), 7)],
 };
 
+/// RM0433 41.6.18: HSE_1MHz is input 2.
+const TIM17: tim::Place = tim::Place { map: &tim::H7, interrupt: 118, selection: (0x68, 2) };
+
 /// The chip, with an image up to an address.
 pub fn chip(image_end: u32) -> Chip {
     let mut peripherals = vec![
@@ -39,6 +45,7 @@ pub fn chip(image_end: u32) -> Chip {
         always("PWR", 0x5802_4800, Box::new(pwr_h7::Pwr::default())),
         always("FLASH", 0x5200_2000, Box::new(flash_h7::Flash::new(image_end))),
         always("IWDG1", 0x5800_4800, Box::new(Iwdg::new(true))),
+        gated(RM, "TIM17", 0x4001_4800, (APB2ENR, 18), Some((APB2RSTR, 18)), Box::new(Timer::new(TIM17))),
         gated(RM, "USART3", 0x4000_4800, (APB1LENR, 18), Some((APB1LRSTR, 18)), Box::new(Usart::new(USART3, 16))),
     ];
     let names = ["GPIOA", "GPIOB", "GPIOC", "GPIOD", "GPIOE", "GPIOF", "GPIOG", "GPIOH", "GPIOI", "GPIOJ", "GPIOK"];

@@ -107,7 +107,7 @@ mod tests {
     }
 
     fn cases() -> [Case; 2] {
-        let surroundings = Surroundings { crystal: None, external_clock: None };
+        let surroundings = Surroundings::default();
         let machine = |chip| Machine::new(chip, surroundings, BAUD, 1000);
         let f405 = Case {
             machine: machine(chips::f405::chip(BASE + 0x1000)),

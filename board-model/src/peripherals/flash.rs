@@ -214,7 +214,7 @@ mod tests {
     use crate::wires::Surroundings;
 
     fn wires() -> Wires {
-        Wires::new(Surroundings { crystal: None, external_clock: None }, 9600)
+        Wires::new(Surroundings::default(), 9600)
     }
 
     #[test]

@@ -20,6 +20,7 @@ pub mod rcc_g4;
 pub mod rcc_h7;
 pub mod spi;
 pub mod syscfg;
+pub mod tim;
 pub mod usart;
 
 use self::dma::Transfer;

@@ -40,6 +40,7 @@ impl Source {
 /// Frequency of the external oscillator and the time to its ready flag, if it comes.
 fn external(wires: &Wires, bypass: bool) -> Option<(u64, Time)> {
     match bypass {
+        _ if wires.surroundings.is_dead(wires.now) => None,
         true => wires.surroundings.external_clock.map(|rate| (rate, BYPASS_START)),
         false => wires.surroundings.crystal.map(|rate| (rate, CRYSTAL_START)),
     }
@@ -50,6 +51,7 @@ pub const CR: u32 = 0x00;
 const HSEON: u32 = bit(16);
 const HSERDY: u32 = 17;
 const HSEBYP: u32 = bit(18);
+const CSSON: u32 = bit(19);
 const PLLON: u32 = 24;
 const PLLRDY: u32 = 25;
 
@@ -77,6 +79,8 @@ pub struct Layout {
     pub refusal: &'static str,
     /// Sections of the control register, of its HSEBYP, and of the selection.
     pub sections: [&'static str; 3],
+    /// The flag of the clock security system, and what clears it: registers and places.
+    pub security: [(u32, u32); 2],
 }
 
 /// Internal and external oscillator and the PLL behind them.
@@ -86,15 +90,17 @@ pub struct Oscillators {
     internal: Source,
     external: Source,
     pll: Source,
-    /// Frequency of the external one, as it is switched on or would be [Hz].
+    /// Frequency of the external one, as it is switched on or would be; 0 once it is dead [Hz].
     pub external_rate: u64,
+    /// When it dies.
+    dies_at: Option<Time>,
 }
 
 impl Oscillators {
     /// As after a reset: the internal one runs.
     pub fn new(layout: &'static Layout) -> Self {
         let (external, pll) = (Source::default(), Source::default());
-        Self { layout, internal: Source::RUNNING, external, pll, external_rate: 0 }
+        Self { layout, internal: Source::RUNNING, external, pll, external_rate: 0, dies_at: None }
     }
 
     /// Whether one of them can be used.
@@ -148,6 +154,60 @@ impl Oscillators {
         value & !before & bit(PLLON) != 0
     }
 
+    /// A register was written: a one in the right place clears the flag of the clock security system.
+    pub fn clear_security(&self, offset: u32, value: u32, registers: &mut Registers) {
+        let [(flags, flag), (clears, clear)] = self.layout.security;
+        if offset == clears && value >> clear & 1 == 1 {
+            registers.change(flags, 0, bit(flag));
+        }
+    }
+
+    /// Whether the external oscillator still runs. With the clock security system on, one that has died is switched off, with
+    /// the PLL if that lived on it, and the internal oscillator drives what it drove; the flag of that holds the non-maskable
+    /// interrupt (RM0090 7.2.7, RM0440 7.2.10, RM0433 8.5.3). Without it whatever it drove stands still.
+    pub fn watch(&mut self, pll_source: Origin, registers: &mut Registers, wires: &mut Wires) {
+        self.dies_at = wires.surroundings.dies_at.filter(|time| *time > wires.now);
+        if wires.surroundings.is_dead(wires.now) {
+            self.external_rate = 0;
+            if registers.get(CR) & CSSON != 0 && self.external.is_ready(wires.now) {
+                self.fall_back(pll_source, registers, wires);
+            }
+        }
+        let (flags, flag) = self.layout.security[0];
+        wires.non_maskable |= registers.is_set(flags, flag);
+    }
+
+    fn fall_back(&mut self, pll_source: Origin, registers: &mut Registers, wires: &Wires) {
+        let selected = self.selected(registers);
+        self.external.switch(false, None, wires.now);
+        registers.change(CR, 0, HSEON);
+        let lost_pll = pll_source == Origin::External;
+        if lost_pll {
+            self.pll.switch(false, None, wires.now);
+            registers.change(CR, 0, bit(PLLON));
+        }
+        if selected == Origin::External || selected == Origin::Pll && lost_pll {
+            let (register, width) = self.layout.selection;
+            let code = self.layout.codes[0];
+            self.internal = Source::RUNNING;
+            registers.change(CR, bit(self.layout.internal[0]), 0);
+            registers.change(register, code << width | code, bit(2 * width) - 1);
+        }
+        let (flags, flag) = self.layout.security[0];
+        registers.change(flags, bit(flag), 0);
+    }
+
+    /// When the external oscillator dies, if that is still to come.
+    pub fn next_event(&self) -> Option<Time> {
+        self.dies_at
+    }
+
+    /// Frequency of the external oscillator behind a divider, while it runs.
+    pub fn divided_external(&self, divider: u32, wires: &Wires) -> Option<u64> {
+        let runs = self.external.is_ready(wires.now) && self.external_rate > 0;
+        runs.then(|| self.external_rate.checked_div(divider.into())).flatten()
+    }
+
     /// SW was written: it is taken over if what it selects is ready. `led_out` says whether the output of the PLL that the
     /// system clock takes is on, where it has a switch.
     pub fn select(&self, value: u32, led_out: bool, registers: &mut Registers, wires: &mut Wires) {
@@ -180,6 +240,12 @@ pub fn bus_divider(code: u32) -> u64 {
 /// Divider of a peripheral bus, in the same registers.
 pub fn peripheral_divider(code: u32) -> u64 {
     if code < 4 { 1 } else { 2 << (code - 4) }
+}
+
+/// Clock of the timers on a peripheral bus: that of the bus if it is not divided, else twice that (RM0090 7.2, RM0440 7.2,
+/// RM0433 8.5.9 with TIMPRE 0).
+pub fn timer_clock(bus: u64, peripherals: u64) -> u64 {
+    if bus == peripherals { bus } else { 2 * peripherals }
 }
 
 /// Frequencies in megahertz, for messages.

@@ -1,12 +1,13 @@
 //! Reset and clock control of STM32F405: RM0090 section 7.
 
 use super::Peripheral;
-use super::rcc::{CR, Layout, Origin, Oscillators, bus_divider, peripheral_divider, pll_is_on, within};
+use super::rcc::{CR, Layout, Origin, Oscillators, bus_divider, peripheral_divider, pll_is_on, timer_clock, within};
 use crate::register::{Register, Registers, bit, bits};
-use crate::wires::{Clocks, Reset, Wires};
+use crate::wires::{Clocks, Reset, Time, Wires};
 
 const PLLCFGR: u32 = 0x04;
 const CFGR: u32 = 0x08;
+const CIR: u32 = 0x0c;
 const CSR: u32 = 0x74;
 /// Internal oscillator [Hz].
 const INTERNAL: u64 = 16_000_000;
@@ -19,7 +20,7 @@ static MAP: [Register; 18] = [
         .special(READY | bits(15, 8)),
     Register::new("RCC_PLLCFGR", PLLCFGR, 0x2400_3010, 0x0f43_7fff),
     Register::new("RCC_CFGR", CFGR, 0, 0xffff_fcff).special(0xc),
-    Register::new("RCC_CIR", 0x0c, 0, 0x00ff_7fff).special(0x00ff_00ff),
+    Register::new("RCC_CIR", CIR, 0, 0x00ff_7fff).special(0x00ff_00ff),
     Register::new("RCC_AHB1RSTR", 0x10, 0, 0x2260_11ff),
     Register::new("RCC_AHB2RSTR", 0x14, 0, 0xf1),
     Register::new("RCC_AHB3RSTR", 0x18, 0, 1),
@@ -42,6 +43,7 @@ static LAYOUT: Layout = Layout {
     selection: (CFGR, 2),
     refusal: "selects a source that is not ready",
     sections: ["RM0090 7.3.1", "RM0090 7.3.1 HSEBYP", "RM0090 7.2.6"],
+    security: [(CIR, 7), (CIR, 23)],
 };
 
 /// The controller.
@@ -106,6 +108,7 @@ impl Peripheral for Rcc {
                 wires.violation("RCC_PLLCFGR", "is written while the PLL is on", "RM0090 7.3.2");
             }
             CFGR => self.oscillators.select(value, true, &mut self.registers, wires),
+            CIR => self.oscillators.clear_security(offset, value, &mut self.registers),
             CSR if value & bit(24) != 0 => self.registers.change(CSR, 0, FLAGS | bit(24)),
             _ => {}
         }
@@ -116,7 +119,12 @@ impl Peripheral for Rcc {
     }
 
     fn advance(&mut self, wires: &mut Wires) {
+        let pll_source = self.pll_source();
+        self.oscillators.watch(pll_source, &mut self.registers, wires);
         self.registers.change(CR, self.oscillators.ready_flags(wires), READY);
+        // RTCPRE: less than 2 is no clock.
+        let divider = Some(self.registers.field(CFGR, 16, 5)).filter(|divider| *divider > 1);
+        wires.divided_external = divider.and_then(|divider| self.oscillators.divided_external(divider, wires));
         let system = match self.oscillators.selected(&self.registers) {
             Origin::Internal => INTERNAL,
             Origin::External => self.oscillators.external_rate,
@@ -125,14 +133,21 @@ impl Peripheral for Rcc {
         let core = system / bus_divider(self.registers.field(CFGR, 4, 4));
         let low = core / peripheral_divider(self.registers.field(CFGR, 10, 3));
         let high = core / peripheral_divider(self.registers.field(CFGR, 13, 3));
-        let clocks = Clocks { system, core, bus: core, low, high };
+        let clocks = Clocks { system, core, bus: core, low, high, timers: timer_clock(core, high) };
         if clocks != wires.clocks {
             wires.clocks = clocks;
+            if system == 0 {
+                return;
+            }
             for (what, rate, most) in [("core", core, 168), ("APB1", low, 42), ("APB2", high, 84)] {
                 let what = format!("the clock of {what}");
                 within(wires, "RCC_CFGR", &what, rate, [1, most * 1_000_000], "RM0090 7.3.3");
             }
         }
+    }
+
+    fn next_event(&self) -> Option<Time> {
+        self.oscillators.next_event()
     }
 
     /// RM0090 7.1.1: a reset leaves the flags of resets.

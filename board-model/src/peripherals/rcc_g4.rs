@@ -1,17 +1,21 @@
 //! Reset and clock control of STM32G474: RM0440 section 7.
 
 use super::Peripheral;
-use super::rcc::{CR, Layout, Origin, Oscillators, bus_divider, peripheral_divider, pll_is_on, within};
+use super::rcc::{CR, Layout, Origin, Oscillators, bus_divider, peripheral_divider, pll_is_on, timer_clock, within};
 use crate::register::{Register, Registers, bit, bits};
 use crate::wires::{Clocks, MICROSECOND, Reset, Time, Wires};
 
 const CFGR: u32 = 0x08;
+const CIFR: u32 = 0x1c;
+const CICR: u32 = 0x20;
 const PLLCFGR: u32 = 0x0c;
 const CSR: u32 = 0x94;
 /// Internal oscillator [Hz].
 const INTERNAL: u64 = 16_000_000;
 const READY: u32 = bit(10) | bit(17) | bit(25);
 const FLAGS: u32 = bits(31, 25);
+/// RM0440 7.2.17: timers capture the external oscillator divided by this.
+const MEASURED: u32 = 32;
 /// RM0440 7.2.7: a step of more than this needs a microsecond at half speed.
 const STEP: u64 = 80_000_000;
 
@@ -22,8 +26,8 @@ static MAP: [Register; 28] = [
     Register::new("RCC_CFGR", CFGR, 0x05, 0x7f00_3fff).special(0xc),
     Register::new("RCC_PLLCFGR", PLLCFGR, 0x1000, 0xff73_7ff3 | bits(31, 27)),
     Register::new("RCC_CIER", 0x18, 0, 0x63b),
-    Register::new("RCC_CIFR", 0x1c, 0, 0x73b).special(u32::MAX),
-    Register::new("RCC_CICR", 0x20, 0, 0x73b).special(u32::MAX),
+    Register::new("RCC_CIFR", CIFR, 0, 0x73b).special(u32::MAX),
+    Register::new("RCC_CICR", CICR, 0, 0x73b).special(u32::MAX),
     Register::new("RCC_AHB1RSTR", 0x28, 0, 0x111f),
     Register::new("RCC_AHB2RSTR", 0x2c, 0, 0x050f_607f),
     Register::new("RCC_AHB3RSTR", 0x30, 0, 0x0101),
@@ -53,6 +57,7 @@ static LAYOUT: Layout = Layout {
     selection: (CFGR, 2),
     refusal: "selects a source that is not ready, or the PLL without PLLREN",
     sections: ["RM0440 7.4.1", "RM0440 7.4.1 HSEBYP", "RM0440 7.2.8"],
+    security: [(CIFR, 8), (CICR, 8)],
 };
 
 /// The controller.
@@ -71,6 +76,10 @@ impl Default for Rcc {
 }
 
 impl Rcc {
+    fn pll_source(&self) -> Origin {
+        if self.registers.field(PLLCFGR, 0, 2) == 3 { Origin::External } else { Origin::Internal }
+    }
+
     fn source_rate(&self) -> u64 {
         match self.registers.field(PLLCFGR, 0, 2) {
             2 => INTERNAL,
@@ -88,8 +97,7 @@ impl Rcc {
 
     fn start_pll(&mut self, wires: &mut Wires) {
         let [input, inner, output] = self.pll_rates();
-        let source = if self.registers.field(PLLCFGR, 0, 2) == 3 { Origin::External } else { Origin::Internal };
-        if !self.oscillators.is_ready(source, wires) {
+        if !self.oscillators.is_ready(self.pll_source(), wires) {
             wires.violation("RCC_CR", "the PLL is switched on before its source is ready", "RM0440 7.2.4");
         }
         within(wires, "RCC_PLLCFGR", "the input of the PLL", input, [2_660_000, 16_000_000], "RM0440 7.4.4 PLLM");
@@ -151,6 +159,7 @@ impl Peripheral for Rcc {
                 wires.violation("RCC_PLLCFGR", "is written while the PLL is on", "RM0440 7.4.4");
             }
             CFGR => self.configuration_written(value, before, wires),
+            CICR => self.oscillators.clear_security(offset, value, &mut self.registers),
             CSR if value & bit(23) != 0 => self.registers.change(CSR, 0, FLAGS | bit(23)),
             _ => {}
         }
@@ -161,16 +170,26 @@ impl Peripheral for Rcc {
     }
 
     fn advance(&mut self, wires: &mut Wires) {
+        let pll_source = self.pll_source();
+        self.oscillators.watch(pll_source, &mut self.registers, wires);
         self.registers.change(CR, self.oscillators.ready_flags(wires), READY);
+        wires.divided_external = self.oscillators.divided_external(MEASURED, wires);
         let system = self.system();
         let core = system / bus_divider(self.registers.field(CFGR, 4, 4));
         let low = core / peripheral_divider(self.registers.field(CFGR, 8, 3));
         let high = core / peripheral_divider(self.registers.field(CFGR, 11, 3));
-        let clocks = Clocks { system, core, bus: core, low, high };
+        let clocks = Clocks { system, core, bus: core, low, high, timers: timer_clock(core, high) };
         if clocks != wires.clocks {
             wires.clocks = clocks;
+            if system == 0 {
+                return;
+            }
             within(wires, "RCC_CFGR", "the clock of the core", core, [1, 170_000_000], "RM0440 7.2");
         }
+    }
+
+    fn next_event(&self) -> Option<Time> {
+        self.oscillators.next_event()
     }
 
     /// RM0440 7.1: a reset leaves the flags of resets.

@@ -1,11 +1,13 @@
 //! Reset and clock control of STM32H743: RM0433 section 8. PLL 1 only; the other two may not be switched on.
 
 use super::Peripheral;
-use super::rcc::{CR, Layout, Origin, Oscillators, bus_divider, peripheral_divider, pll_is_on, within};
+use super::rcc::{CR, Layout, Origin, Oscillators, bus_divider, peripheral_divider, pll_is_on, timer_clock, within};
 use crate::register::{Register, Registers, bit};
-use crate::wires::{Clocks, Reset, Wires};
+use crate::wires::{Clocks, Reset, Time, Wires};
 
 const CFGR: u32 = 0x10;
+const CIFR: u32 = 0x64;
+const CICR: u32 = 0x68;
 const D1CFGR: u32 = 0x18;
 const D2CFGR: u32 = 0x1c;
 const PLLCKSELR: u32 = 0x28;
@@ -18,7 +20,7 @@ const READY: u32 = bit(2) | bit(5) | bit(8) | bit(13) | bit(14) | bit(15) | bit(
 const FLAGS: u32 = 0x55fa_0000;
 
 /// RM0433 8.7.
-static MAP: [Register; 44] = [
+static MAP: [Register; 45] = [
     Register::new("RCC_CR", CR, 0xc025, 0x3f0f_f3bf).special(READY),
     Register::new("RCC_HSICFGR", 0x04, 0x4000_0000, 0x7f00_0fff).special(0xfff),
     Register::new("RCC_CRRCR", 0x08, 0, 0x3ff).special(u32::MAX),
@@ -40,8 +42,8 @@ static MAP: [Register; 44] = [
     Register::new("RCC_D2CCIP2R", 0x54, 0, 0x70f0_3337),
     Register::new("RCC_D3CCIPR", 0x58, 0, 0x77e3_fc07),
     Register::new("RCC_CIER", 0x60, 0, 0x03ff),
-    Register::new("RCC_CIFR", 0x64, 0, 0x07ff).special(u32::MAX),
-    Register::new("RCC_CICR", 0x68, 0, 0x07ff).special(u32::MAX),
+    Register::new("RCC_CIFR", CIFR, 0, 0x07ff).special(u32::MAX),
+    Register::new("RCC_CICR", CICR, 0, 0x07ff).special(u32::MAX),
     Register::new("RCC_BDCR", 0x70, 0, 0x0001_837f).special(bit(1)),
     Register::new("RCC_CSR", 0x74, 0, 3).special(bit(1)),
     Register::new("RCC_AHB3RSTR", 0x7c, 0, 0x8001_5031),
@@ -62,6 +64,7 @@ static MAP: [Register; 44] = [
     Register::new("RCC_APB3ENR", 0xe4, 0, 0x0048),
     Register::new("RCC_APB1LENR", 0xe8, 0, 0xe8ff_cbff),
     Register::new("RCC_APB1HENR", 0xec, 0, 0x0136),
+    Register::new("RCC_APB2ENR", 0xf0, 0, 0x31d7_3033),
     Register::new("RCC_APB4ENR", 0xf4, 0x0001_0000, 0x0021_deaa),
 ];
 
@@ -71,6 +74,7 @@ static LAYOUT: Layout = Layout {
     selection: (CFGR, 3),
     refusal: "selects a source that is not ready",
     sections: ["RM0433 8.7.2", "RM0433 8.7.2 HSEBYP", "RM0433 8.7.6"],
+    security: [(CIFR, 10), (CICR, 10)],
 };
 
 /// The controller.
@@ -87,6 +91,10 @@ impl Default for Rcc {
 }
 
 impl Rcc {
+    fn pll_source(&self) -> Origin {
+        if self.registers.field(PLLCKSELR, 0, 2) == 2 { Origin::External } else { Origin::Internal }
+    }
+
     fn internal_rate(&self) -> u64 {
         INTERNAL >> self.registers.field(CR, 3, 2)
     }
@@ -105,8 +113,7 @@ impl Rcc {
 
     fn start_pll(&mut self, wires: &mut Wires) {
         let [input, inner, output] = self.pll_rates();
-        let source = if self.registers.field(PLLCKSELR, 0, 2) == 2 { Origin::External } else { Origin::Internal };
-        if !self.oscillators.is_ready(source, wires) {
+        if !self.oscillators.is_ready(self.pll_source(), wires) {
             wires.violation("RCC_CR", "PLL 1 is switched on before its source is ready", "RM0433 8.5.5");
         }
         // PLL1RGE and PLL1VCOSEL say what comes in and how fast it is inside.
@@ -158,6 +165,7 @@ impl Peripheral for Rcc {
                 wires.violation("RCC_PLL", "a PLL is set up while it is on", "RM0433 8.5.5");
             }
             CFGR => self.oscillators.select(value, true, &mut self.registers, wires),
+            CICR => self.oscillators.clear_security(offset, value, &mut self.registers),
             RSR if value & bit(16) != 0 => self.registers.change(RSR, 0, FLAGS | bit(16)),
             _ => {}
         }
@@ -170,7 +178,13 @@ impl Peripheral for Rcc {
     }
 
     fn advance(&mut self, wires: &mut Wires) {
-        self.registers.change(CR, self.oscillators.ready_flags(wires) | bit(14) | bit(15) | bit(5), READY);
+        let pll_source = self.pll_source();
+        self.oscillators.watch(pll_source, &mut self.registers, wires);
+        let ready = self.oscillators.ready_flags(wires) | bit(14) | bit(15) | bit(5);
+        self.registers.change(CR, ready, READY);
+        // RTCPRE: less than 2 is no clock.
+        let divider = Some(self.registers.field(CFGR, 8, 6)).filter(|divider| *divider > 1);
+        wires.divided_external = divider.and_then(|divider| self.oscillators.divided_external(divider, wires));
         let system = match self.oscillators.selected(&self.registers) {
             Origin::Internal => self.internal_rate(),
             Origin::External => self.oscillators.external_rate,
@@ -179,9 +193,15 @@ impl Peripheral for Rcc {
         let core = system / bus_divider(self.registers.field(D1CFGR, 8, 4));
         let bus = core / bus_divider(self.registers.field(D1CFGR, 0, 4));
         let divided = |offset, low| bus / peripheral_divider(self.registers.field(offset, low, 3));
-        let clocks = Clocks { system, core, bus, low: divided(D2CFGR, 4), high: divided(D2CFGR, 8) };
+        let [low, high] = [4, 8].map(|place| divided(D2CFGR, place));
+        // RM0433 8.7.6: with TIMPRE timers have four times the clock of their bus, as far as that of the core's bus goes.
+        let timers = if self.registers.is_set(CFGR, 15) { bus.min(4 * high) } else { timer_clock(bus, high) };
+        let clocks = Clocks { system, core, bus, low, high, timers };
         if clocks != wires.clocks {
             wires.clocks = clocks;
+            if system == 0 {
+                return;
+            }
             // RM0433 8.7.7 and data sheet table 23: by voltage scale.
             let [cores, buses, peripherals] = match wires.voltage {
                 1 => [400, 200, 100],
@@ -200,6 +220,10 @@ impl Peripheral for Rcc {
                 within(wires, "RCC_D1CFGR", &what, rate, [1, most * 1_000_000], "RM0433 6.6.2, 8.7.7");
             }
         }
+    }
+
+    fn next_event(&self) -> Option<Time> {
+        self.oscillators.next_event()
     }
 
     /// RM0433 8.4: a reset leaves the flags of resets.

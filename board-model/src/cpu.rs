@@ -373,7 +373,13 @@ impl Board<'_> {
 /// Everything that is not plain memory goes to the machine.
 fn map_device(core: &mut Unicorn<'_, Machine>, base: u32, size: u32) -> Result<(), uc_error> {
     let read = move |core: &mut Unicorn<'_, Machine>, offset: u64, size: usize| {
-        core.get_data_mut().read(base + offset as u32, size as u32)
+        let value = core.get_data_mut().read(base + offset as u32, size as u32);
+        if core.get_data().wires.bus_fault.is_some() {
+            let faultmask = core.reg_read(RegisterARM::FAULTMASK).unwrap_or_default() & 1 == 1;
+            let machine = core.get_data_mut();
+            machine.scs.ignore_bus_fault(faultmask, &mut machine.wires);
+        }
+        value
     };
     let write = move |core: &mut Unicorn<'_, Machine>, offset: u64, size: usize, value: u64| {
         core.get_data_mut().write(base + offset as u32, size as u32, value);

@@ -16,9 +16,6 @@ const CHECKS: &[(&str, &str, &str)] = &[
     ("stm32h743", "other crystals", "another clock than 8 MHz overclocks"),
     ("stm32f405", "loop with ticks", "a tick outlasts a byte of the line, and the USART has room for one"),
     ("stm32g474", "loop with ticks", "a tick outlasts its period"),
-    ("stm32f405", "power cut", "a cut while it is written leaves no memory"),
-    ("stm32g474", "power cut", "a cut while it is written leaves a board that does not boot"),
-    ("stm32h743", "power cut", "a cut while it is written leaves a board that does not boot"),
 ];
 
 static SEEN: Mutex<BTreeSet<usize>> = Mutex::new(BTreeSet::new());

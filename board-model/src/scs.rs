@@ -8,8 +8,12 @@ use crate::wires::Wires;
 
 /// Exceptions with numbers of their own.
 pub const NMI: usize = 2;
-/// What every fault escalates to here: the images enable no other fault.
+/// What every fault escalates to unless it is enabled by itself.
 pub const HARD_FAULT: usize = 3;
+const BUS_FAULT: usize = 5;
+/// Bits of CCR and SHCSR: handlers of highest priority ignore bus faults; bus faults have a handler of their own.
+const BFHFNMIGN: u32 = bit(8);
+const BUSFAULTENA: u32 = bit(17);
 const PEND_SV: usize = 14;
 /// The tick.
 pub const SYSTICK: usize = 15;
@@ -170,15 +174,35 @@ impl Scs {
                 self.pending.insert(exception);
             }
         }
-        if std::mem::take(&mut wires.non_maskable) {
+        if std::mem::take(&mut wires.non_maskable) && !self.active.contains(&NMI) {
             self.pending.insert(NMI);
         }
         if let Some(address) = wires.bus_fault.take() {
-            // CFSR: PRECISERR with BFARVALID; HFSR: FORCED.
-            self.fault_status |= bit(9) | bit(15);
-            self.hard_fault_status |= bit(30);
-            self.fault_address = address;
-            self.pending.insert(HARD_FAULT);
+            self.note_bus_fault(address);
+            if self.shcsr & BUSFAULTENA != 0 && self.priority_of(BUS_FAULT) < self.active_priority() {
+                self.pending.insert(BUS_FAULT);
+            } else {
+                // HFSR: FORCED.
+                self.hard_fault_status |= bit(30);
+                self.pending.insert(HARD_FAULT);
+            }
+        }
+    }
+
+    /// CFSR: PRECISERR with BFARVALID.
+    fn note_bus_fault(&mut self, address: u32) {
+        self.fault_status |= bit(9) | bit(15);
+        self.fault_address = address;
+    }
+
+    /// A bus fault of a load or store comes to nothing but its status where FAULTMASK or a handler of highest priority runs with
+    /// BFHFNMIGN (ARMv7-M B3.2.8): so what may not be readable is looked at.
+    pub fn ignore_bus_fault(&mut self, faultmask: bool, wires: &mut Wires) {
+        if self.ccr & BFHFNMIGN != 0
+            && (faultmask || self.active_priority() < 0)
+            && let Some(address) = wires.bus_fault.take()
+        {
+            self.note_bus_fault(address);
         }
     }
 

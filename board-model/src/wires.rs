@@ -91,6 +91,47 @@ pub enum Reset {
     Watchdog,
 }
 
+/// What flash does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Operation {
+    /// Erases a sector or page.
+    Erase,
+    /// Programs what its check bits hold together.
+    Program,
+}
+
+/// How far an operation of flash has come when power goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum HowFar {
+    /// Nothing of it has been done.
+    Before,
+    /// Most of it is still as it was.
+    Early,
+    /// As much is old as new, and most is neither.
+    Middle,
+    /// Most of it is done.
+    Late,
+}
+
+impl HowFar {
+    /// How far an operation may have come: a program is short, and is cut before it or in it.
+    pub fn of(operation: Operation) -> &'static [Self] {
+        match operation {
+            Operation::Erase => &[Self::Before, Self::Early, Self::Middle, Self::Late],
+            Operation::Program => &[Self::Before, Self::Middle],
+        }
+    }
+}
+
+/// When power goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Cut {
+    /// In this operation of flash, by its number since power-up, from 0.
+    pub operation: usize,
+    /// How far it has come.
+    pub how_far: HowFar,
+}
+
 /// The serial line, as the host's end drives it.
 #[derive(Debug, Default)]
 pub struct Line {
@@ -214,10 +255,10 @@ pub struct Wires {
     pub barrier: bool,
     /// An image lies in flash up to here.
     pub image_end: u32,
-    /// Power goes when flash has begun so many operations.
-    pub cut_after: Option<u32>,
-    /// Operations that flash has begun: erases and programs.
-    pub flash_operations: u32,
+    /// When power goes.
+    pub cut: Option<Cut>,
+    /// Operations that flash has begun.
+    pub flash_operations: Vec<Operation>,
 }
 
 impl Wires {
@@ -250,8 +291,8 @@ impl Wires {
             waiting: false,
             barrier: true,
             image_end: 0,
-            cut_after: None,
-            flash_operations: 0,
+            cut: None,
+            flash_operations: Vec::new(),
         }
     }
 
@@ -291,10 +332,13 @@ impl Wires {
         };
     }
 
-    /// A flash operation begins; whether power goes with it.
-    pub fn begins_flash_operation(&mut self) -> bool {
-        self.flash_operations += 1;
-        self.cut_after == Some(self.flash_operations)
+    /// A flash operation begins; how far it comes, if power goes with it.
+    pub fn begins_flash_operation(&mut self, operation: Operation) -> Option<HowFar> {
+        let number = self.flash_operations.len();
+        self.flash_operations.push(operation);
+        let cut = self.cut.take_if(|cut| cut.operation == number)?;
+        self.reset = Some(Reset::Power);
+        Some(cut.how_far)
     }
 
     /// A channel serves a request, or no more.

@@ -1,5 +1,6 @@
 //! What was learnt, kept in flash: saved, read, found again after a reset, loaded, written, erased. And with a cut of power at
-//! every single operation of flash: the board must boot, and have the old memory or the new one.
+//! every single operation of flash, before it and within it: the board must boot, have the old memory or the new one, and take
+//! another.
 
 use link::messages::{FromBoard, MEMORY_PARTS, MemoryOutcome, MemoryPart, MemoryRequest, MemoryState, ToBoard};
 
@@ -9,7 +10,7 @@ use super::clean;
 use crate::boards::Subject;
 use crate::cpu::Board;
 use crate::talk::Talk;
-use crate::wires::{Reset, SECOND, Time};
+use crate::wires::{Cut, HowFar, Operation, Reset, SECOND, Time};
 
 /// Erasing a sector of 128 KiB takes up to two seconds, and the answer comes after that.
 const PATIENCE: Time = 6 * SECOND;
@@ -29,102 +30,196 @@ pub fn keeps(subject: &Subject) -> Result<String, String> {
     restart(&mut talk, Reset::Power);
     expect_state(&mut talk, MemoryState::Nothing, "after it was erased")?;
     let other = another(&saved);
-    for part in &other {
-        talk.say(&ToBoard::Memory(MemoryRequest::Load(part.clone())));
-    }
-    let checked = talk.wait(PATIENCE, |message| match message {
-        FromBoard::MemoryChecked(state) => Some(state),
-        _ => None,
-    });
-    if checked != Some(MemoryState::Good) {
-        return Err(format!("a good memory is not taken: {checked:?}"));
-    }
+    load(&mut talk, &other)?;
     request(&mut talk, MemoryRequest::Write, "written")?;
     if read(&mut talk)? != other {
         return Err("what is read is not what was written".into());
     }
     clean(&talk.board.borrow())?;
-    let operations = talk.board.borrow().machine().wires.flash_operations;
+    let operations = talk.board.borrow().machine().wires.flash_operations.len();
     Ok(format!("{operations} erases and programs"))
 }
 
 /// What is under way when power goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Work {
-    /// The first memory of a board is saved.
-    First,
-    /// Another memory is written over one.
-    Over,
-    /// A memory is erased.
-    Erase,
+    /// A memory is written, after so many others.
+    Write(usize),
+    /// The memory is erased, after so many were written.
+    Erase(usize),
 }
 
-/// Cuts power at every operation of a first save, of a write over another memory, and of an erase.
-pub fn survives_cuts(subject: &Subject) -> Result<String, String> {
-    let mut tried = 0;
-    for work in [Work::First, Work::Over, Work::Erase] {
-        for cut in 1.. {
-            let failed = |why: String| format!("{work:?} cut at operation {cut}: {why}");
-            match survives(subject, work, cut).map_err(failed)? {
-                true => tried += 1,
-                false => break,
-            }
+/// All that differ: two memories may lie beside each other, so the third is written over one, and two are to be erased.
+const WORKS: [Work; 5] = [Work::Write(0), Work::Write(1), Work::Write(2), Work::Erase(1), Work::Erase(2)];
+/// So many failures of a work are told; then the next one is tried.
+const TOLD: usize = 2;
+
+/// What a board held before some work, and what it holds after it.
+#[derive(Debug, Clone)]
+struct Course {
+    work: Work,
+    memories: Vec<Vec<MemoryPart>>,
+    operations: Vec<Operation>,
+}
+
+impl Course {
+    fn held(&self) -> Option<&Vec<MemoryPart>> {
+        match self.work {
+            Work::Write(before) => before.checked_sub(1).map(|last| &self.memories[last]),
+            Work::Erase(before) => self.memories.get(before - 1),
         }
     }
-    Ok(format!("{tried} cuts"))
+
+    fn wanted(&self) -> Option<&Vec<MemoryPart>> {
+        match self.work {
+            Work::Write(before) => self.memories.get(before),
+            Work::Erase(_) => None,
+        }
+    }
+
+    /// A board that holds the old one, and is asked for the work.
+    fn begin<'a>(&self, subject: &Subject, cut: Option<Cut>) -> Result<Talk<'a>, String> {
+        let mut talk = Talk::new(subject.start()?);
+        expect_state(&mut talk, MemoryState::Nothing, "of a new board")?;
+        let (Work::Write(before) | Work::Erase(before)) = self.work;
+        for memory in &self.memories[..before] {
+            load(&mut talk, memory)?;
+            request(&mut talk, MemoryRequest::Write, "written")?;
+        }
+        let asked = match self.work {
+            Work::Write(before) => {
+                load(&mut talk, &self.memories[before])?;
+                MemoryRequest::Write
+            }
+            Work::Erase(_) => MemoryRequest::Erase,
+        };
+        {
+            let mut board = talk.board.borrow_mut();
+            let wires = &mut board.machine_mut().wires;
+            let done = wires.flash_operations.len();
+            wires.cut = cut.map(|cut| Cut { operation: done + cut.operation, ..cut });
+        }
+        talk.say(&ToBoard::Memory(asked));
+        Ok(talk)
+    }
 }
 
-/// Cuts power at an operation; `false` if the work has fewer.
-fn survives(subject: &Subject, work: Work, cut: u32) -> Result<bool, String> {
+/// Cuts power before and within every operation of every work.
+pub fn survives_cuts(subject: &Subject) -> Result<String, String> {
+    survive(subject, |_, _| true)
+}
+
+/// The same at the first and the last programs of each work, at one between them, and at all erases.
+pub fn survives_some_cuts(subject: &Subject) -> Result<String, String> {
+    survive(subject, |operations, number| {
+        let programs = |range: &[Operation]| range.iter().filter(|other| **other == Operation::Program).count();
+        let (before, all) = (programs(&operations[..number]), programs(operations));
+        operations[number] == Operation::Erase || [0, 1, all / 2, all - 1].contains(&before)
+    })
+}
+
+fn survive(subject: &Subject, is_tried: impl Fn(&[Operation], usize) -> bool) -> Result<String, String> {
+    let memories = memories(subject)?;
+    let (mut tried, mut told) = (0, Vec::new());
+    for work in WORKS {
+        let mut course = Course { work, memories: memories.clone(), operations: Vec::new() };
+        course.operations = operations(subject, &course).map_err(|why| format!("{work:?}: {why}"))?;
+        let numbers = (0..course.operations.len()).filter(|number| is_tried(&course.operations, *number));
+        let cuts = numbers.flat_map(|operation| {
+            HowFar::of(course.operations[operation]).iter().map(move |how_far| Cut { operation, how_far: *how_far })
+        });
+        let failed = cuts.filter_map(|cut| {
+            tried += 1;
+            let why = survives(subject, &course, cut).err()?;
+            let operation = course.operations[cut.operation];
+            Some(format!("{work:?}, cut {:?} {operation:?} {}: {why}", cut.how_far, cut.operation))
+        });
+        told.extend(failed.take(TOLD));
+    }
+    if told.is_empty() { Ok(format!("{tried} cuts")) } else { Err(told.join("\n")) }
+}
+
+/// What a new board saves, and others that are as good.
+fn memories(subject: &Subject) -> Result<Vec<Vec<MemoryPart>>, String> {
     let mut talk = Talk::new(subject.start()?);
     expect_state(&mut talk, MemoryState::Nothing, "of a new board")?;
-    let (mut old, mut new) = (None, None);
-    if work != Work::First {
-        request(&mut talk, MemoryRequest::Save, "saved")?;
-        old = Some(read(&mut talk)?);
+    request(&mut talk, MemoryRequest::Save, "saved")?;
+    let first = read(&mut talk)?;
+    Ok(std::iter::successors(Some(first), |parts| Some(another(parts))).take(4).collect())
+}
+
+/// Operations of a work that nobody cuts.
+fn operations(subject: &Subject, course: &Course) -> Result<Vec<Operation>, String> {
+    let mut talk = course.begin(subject, None)?;
+    let before = talk.board.borrow().machine().wires.flash_operations.len();
+    match talk.wait(PATIENCE, outcome) {
+        Some(MemoryOutcome::Stored) => {}
+        other => return Err(format!("is not done: {other:?}; {}", stuck(&talk))),
     }
-    if let (Work::Over, Some(old)) = (work, &old) {
-        let other = another(old);
-        other.iter().for_each(|part| talk.say(&ToBoard::Memory(MemoryRequest::Load(part.clone()))));
-        talk.hear(SECOND / 2);
-        new = Some(other);
-    }
-    let (operations, resets) = {
-        let mut board = talk.board.borrow_mut();
-        let machine = board.machine_mut();
-        let operations = machine.wires.flash_operations + cut;
-        machine.wires.cut_after = Some(operations);
-        (operations, machine.resets.len())
-    };
-    let asked = match work {
-        Work::First => MemoryRequest::Save,
-        Work::Over => MemoryRequest::Write,
-        Work::Erase => MemoryRequest::Erase,
-    };
-    let is_cut = |talk: &Talk<'_>| talk.board.borrow().machine().wires.flash_operations >= operations;
-    talk.say(&ToBoard::Memory(asked));
+    clean(&talk.board.borrow())?;
+    Ok(talk.board.borrow().machine().wires.flash_operations[before..].to_vec())
+}
+
+/// Cuts power once: then the board boots and holds the old memory or the new one, and takes others.
+fn survives(subject: &Subject, course: &Course, cut: Cut) -> Result<(), String> {
+    let mut talk = course.begin(subject, Some(cut))?;
+    let resets = talk.board.borrow().machine().resets.len();
     let end = talk.board.borrow().now() + PATIENCE;
+    let is_cut = |talk: &Talk<'_>| talk.board.borrow().machine().resets.len() > resets;
     while !is_cut(&talk) && talk.board.borrow().now() < end {
-        if talk.hear(SECOND / 1000).into_iter().any(|message| outcome(message).is_some()) {
-            break;
-        }
+        talk.hear(SECOND / 1000);
     }
     if !is_cut(&talk) {
-        return Ok(false);
+        return Err("power was not cut".into());
     }
-    talk.board.borrow_mut().machine_mut().wires.cut_after = None;
-    let hello = talk.call(SECOND / 2).ok_or_else(|| stuck(&talk))?;
-    if talk.board.borrow().machine().resets.len() != resets + 1 {
-        return Err("the board has reset itself since".into());
+    let mut hello = None;
+    while hello.is_none() && talk.board.borrow().now() < end {
+        hello = talk.call(SECOND / 10);
+        if talk.board.borrow().machine().resets.len() != resets + 1 {
+            return Err(format!("the board has reset itself since; {}", stuck(&talk)));
+        }
     }
+    let hello = hello.ok_or_else(|| stuck(&talk))?;
     let left = match hello.memory {
-        MemoryState::Nothing => None,
+        // What is left of one that was cut is none, whichever way that is told.
+        MemoryState::Nothing | MemoryState::NotAMemory | MemoryState::Damaged => None,
         MemoryState::Good => Some(read(&mut talk)?),
         state => return Err(format!("the memory is {state:?}")),
     };
-    // A first save is whole or not there; what `new` is of it, nobody has seen before.
-    let whole = left == old || left == new || work == Work::First;
-    whole.then_some(true).ok_or_else(|| "neither the old memory nor the new one is left".into())
+    if left.as_ref() != course.held() && left.as_ref() != course.wanted() {
+        let found = left.and_then(|left| course.memories.iter().position(|memory| *memory == left));
+        return Err(format!(
+            "neither the old memory nor the new one is left, but {found:?}, and the hello says {:?}",
+            hello.memory
+        ));
+    }
+    let other = course.memories.last().ok_or("no other memory")?;
+    load(&mut talk, other)?;
+    request(&mut talk, MemoryRequest::Write, "written after the cut")?;
+    restart(&mut talk, Reset::Power);
+    expect_state(&mut talk, MemoryState::Good, "after it was written anew")?;
+    if read(&mut talk)? != *other {
+        return Err("what is read is not what was written after the cut".into());
+    }
+    request(&mut talk, MemoryRequest::Erase, "erased after the cut")?;
+    restart(&mut talk, Reset::Power);
+    expect_state(&mut talk, MemoryState::Nothing, "after it was erased")?;
+    clean(&talk.board.borrow())
+}
+
+/// Loads a memory into the board, which must find it good.
+fn load(talk: &mut Talk<'_>, memory: &[MemoryPart]) -> Result<(), String> {
+    for part in memory {
+        talk.say(&ToBoard::Memory(MemoryRequest::Load(part.clone())));
+    }
+    let checked = talk.wait(PATIENCE, |message| match message {
+        FromBoard::MemoryChecked(state) => Some(state),
+        _ => None,
+    });
+    match checked {
+        Some(MemoryState::Good) => Ok(()),
+        other => Err(format!("a good memory is not taken: {other:?}")),
+    }
 }
 
 /// Another memory, that is as good: the place of the encoders' zeros is one further, and the digest is that of it.

@@ -50,6 +50,7 @@ pub const ALL: &[Named] = &[
     short("a fault resets and is told", &[Work::Plant], outputs::fault),
     short("transfers, good and bad", &[Work::SpiSlave], spi::transfers),
     short("transfers that are too long", &[Work::SpiSlave], spi::too_long),
+    short("power cut at some operations of flash", &[Work::Observer], memory::survives_some_cuts),
     Named {
         name: "power cut at every operation of flash",
         works: &[Work::Observer],

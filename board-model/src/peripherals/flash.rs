@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::register::{Registers, bit, bits};
-use crate::wires::{Time, Wires};
+use crate::wires::{HowFar, Time, Wires};
 
 /// The access control register of all three chips.
 pub const ACR: u32 = 0x00;
@@ -17,15 +17,17 @@ pub const KEYS: [u32; 2] = [0x4567_0123, 0xcdef_89ab];
 pub struct Array {
     start: u32,
     bytes: Vec<u8>,
-    /// Bytes that are corrected or checked together.
+    /// Bytes that are programmed together, and checked together where there are check bits.
     word: u32,
+    has_check_bits: bool,
     damaged: BTreeSet<u32>,
 }
 
 impl Array {
     /// Erased, from an address to the end of a flash of a size.
-    pub fn new(start: u32, size: u32, word: u32) -> Self {
-        Self { start, bytes: vec![0xff; (BASE + size).saturating_sub(start) as usize], word, damaged: BTreeSet::new() }
+    pub fn new(start: u32, size: u32, word: u32, has_check_bits: bool) -> Self {
+        let bytes = vec![0xff; (BASE + size).saturating_sub(start) as usize];
+        Self { start, bytes, word, has_check_bits, damaged: BTreeSet::new() }
     }
 
     /// Whether an address is in it.
@@ -40,7 +42,7 @@ impl Array {
         bytes.rev().fold(0, |value, byte| value << 8 | u64::from(*byte))
     }
 
-    /// Whether the word around an address was left damaged.
+    /// Whether the word around an address was left with check bits that do not fit it.
     pub fn is_damaged(&self, address: u32) -> bool {
         self.damaged.contains(&(address / self.word))
     }
@@ -60,23 +62,80 @@ impl Array {
         }
     }
 
+    /// Power went while a word was programmed: some of the bits that were to be cleared are, and its check bits do not fit.
+    pub fn leave_programmed(&mut self, address: u32, size: u32, value: u64, how_far: HowFar) {
+        if how_far != HowFar::Before {
+            self.program(address, size, value | noise(address));
+            self.damage(address);
+        }
+    }
+
     /// Erases from an address on; what of it the image holds is a violation.
     pub fn erase(&mut self, address: u32, size: u32, wires: &mut Wires) {
+        self.spare_image(address, wires);
+        self.erase_words(address, size, |_| Left::Erased);
+    }
+
+    /// Power went while that was done: each word is as it was, or erased, or neither.
+    pub fn leave_erased(&mut self, address: u32, size: u32, how_far: HowFar, wires: &mut Wires) {
+        self.spare_image(address, wires);
+        // Eighths that are as they were, and those that are erased.
+        let (old, erased) = match how_far {
+            HowFar::Before => (8, 0),
+            HowFar::Early => (6, 0),
+            HowFar::Middle => (2, 2),
+            HowFar::Late => (0, 6),
+        };
+        self.erase_words(address, size, |word| match noise(word) % 8 {
+            part if part < old => Left::Old,
+            part if part < old + erased => Left::Erased,
+            _ => Left::Neither,
+        });
+    }
+
+    fn spare_image(&self, address: u32, wires: &mut Wires) {
         if address < wires.image_end {
             wires.violation("FLASH", format!("the image is erased at {address:#010x}"), "the image");
         }
-        for place in (address..address + size).filter(|place| *place >= self.start) {
-            if let Some(byte) = self.bytes.get_mut((place - self.start) as usize) {
-                *byte = 0xff;
-            }
-        }
-        self.damaged.retain(|word| !(address..address + size).contains(&(word * self.word)));
     }
 
-    /// Power went while the words of a range were erased or programmed.
-    pub fn damage(&mut self, address: u32, size: u32) {
-        self.damaged.extend((address / self.word)..(address + size).div_ceil(self.word));
+    fn erase_words(&mut self, address: u32, size: u32, left: impl Fn(u32) -> Left) {
+        for word in (address.max(self.start)..address + size).step_by(self.word as usize) {
+            let place = (word - self.start) as usize;
+            let Some(bytes) = self.bytes.get_mut(place..place + self.word as usize) else { continue };
+            match left(word) {
+                Left::Old => {}
+                Left::Erased => {
+                    bytes.fill(0xff);
+                    self.damaged.remove(&(word / self.word));
+                }
+                Left::Neither => {
+                    let noise = noise(word).to_le_bytes();
+                    bytes.iter_mut().zip(noise.iter().cycle()).for_each(|(byte, noise)| *byte = *noise);
+                    self.damage(word);
+                }
+            }
+        }
     }
+
+    fn damage(&mut self, address: u32) {
+        if self.has_check_bits {
+            self.damaged.insert(address / self.word);
+        }
+    }
+}
+
+/// What an erase that was cut leaves of a word.
+enum Left {
+    Old,
+    Erased,
+    Neither,
+}
+
+/// Bits of no order, the same in every run.
+fn noise(address: u32) -> u64 {
+    let mixed = u64::from(address / 4).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    (mixed ^ mixed >> 29).wrapping_mul(0xbf58_476d_1ce4_e5b9) >> 3
 }
 
 /// The caches in front of the flash of F405 and G474, by their access control register: RM0090 3.9.1, RM0440 3.7.1.
@@ -219,14 +278,41 @@ mod tests {
 
     #[test]
     fn a_program_clears_bits_and_an_erase_sets_them() {
-        let mut array = Array::new(BASE + 0x1000, 0x4000, 8);
+        let mut array = Array::new(BASE + 0x1000, 0x4000, 8, true);
         array.program(BASE + 0x2000, 4, 0x1234_5678);
         array.program(BASE + 0x2000, 4, 0xffff_0000);
         assert_eq!(array.read(BASE + 0x2000, 8), 0xffff_ffff_1234_0000);
-        array.damage(BASE + 0x2000, 1);
-        assert!(array.is_damaged(BASE + 0x2007) && !array.is_erased(BASE + 0x2000));
         array.erase(BASE + 0x2000, 0x1000, &mut wires());
         assert!(array.is_erased(BASE + 0x2000));
+    }
+
+    #[test]
+    fn a_word_that_was_cut_is_neither_old_nor_new() {
+        let mut array = Array::new(BASE, 0x4000, 8, true);
+        array.leave_programmed(BASE, 8, 0, HowFar::Before);
+        assert!(array.is_erased(BASE) && !array.is_damaged(BASE));
+        array.leave_programmed(BASE, 8, 0, HowFar::Middle);
+        assert!(array.is_damaged(BASE + 7) && !array.is_damaged(BASE + 8));
+        assert!(![0, u64::MAX].contains(&array.read(BASE, 8)));
+    }
+
+    #[test]
+    fn an_erase_that_was_cut_leaves_words_of_all_kinds() {
+        for (how_far, expected) in [
+            (HowFar::Before, [true, false, false]),
+            (HowFar::Early, [true, false, true]),
+            (HowFar::Middle, [true, true, true]),
+            (HowFar::Late, [false, true, true]),
+        ] {
+            let mut array = Array::new(BASE, 0x4000, 8, true);
+            (0..0x800).step_by(8).for_each(|place| array.program(BASE + place, 8, 0x1234));
+            array.leave_erased(BASE, 0x800, how_far, &mut wires());
+            let words: Vec<u32> = (BASE..BASE + 0x800).step_by(8).collect();
+            let old = words.iter().any(|word| array.read(*word, 8) == 0x1234 && !array.is_damaged(*word));
+            let erased = words.iter().any(|word| array.is_erased(*word));
+            let damaged = words.iter().any(|word| array.is_damaged(*word));
+            assert_eq!([old, erased, damaged], expected, "{how_far:?}");
+        }
     }
 
     #[test]

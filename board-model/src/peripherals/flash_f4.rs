@@ -3,7 +3,7 @@
 use super::Peripheral;
 use super::flash::{ACR, Array, BASE, Caches, Lock, Work};
 use crate::register::{Register, Registers, bit};
-use crate::wires::{MICROSECOND, Reset, Time, Wires};
+use crate::wires::{MICROSECOND, Operation, Time, Wires};
 
 const KEYR: u32 = 0x04;
 const SR: u32 = 0x0c;
@@ -44,7 +44,7 @@ impl Flash {
     pub fn new(image_end: u32) -> Self {
         Self {
             registers: Registers::new(&MAP),
-            array: Array::new(image_end, SIZE, 4),
+            array: Array::new(image_end, SIZE, 4, false),
             lock: Lock::default(),
             work: Work::default(),
             caches: Caches::new(["RM0090 3.9.1", "RM0090 3.5.2"]),
@@ -92,10 +92,8 @@ impl Flash {
             4 => (64 * KIB, 64 * KIB),
             _ => ((sector - 4) * 128 * KIB, 128 * KIB),
         };
-        let cut = wires.begins_flash_operation();
-        if cut {
-            self.array.damage(BASE + first, size);
-            wires.reset = Some(Reset::Power);
+        if let Some(how_far) = wires.begins_flash_operation(Operation::Erase) {
+            self.array.leave_erased(BASE + first, size, how_far, wires);
             return;
         }
         self.array.erase(BASE + first, size, wires);
@@ -174,11 +172,9 @@ impl Peripheral for Flash {
         if held & value != value {
             wires.violation("flash", "is programmed over what is not erased", "RM0090 3.6.4");
         }
-        let cut = wires.begins_flash_operation();
-        if cut {
-            // Some bits have been cleared: F405 has no check of its words.
-            self.array.program(address, size, value | 0x5555_5555);
-            wires.reset = Some(Reset::Power);
+        if let Some(how_far) = wires.begins_flash_operation(Operation::Program) {
+            // F405 has no check of its words: nothing tells them from good ones.
+            self.array.leave_programmed(address, size, value, how_far);
             return true;
         }
         self.array.program(address, size, value);

@@ -4,7 +4,7 @@
 use super::Peripheral;
 use super::flash::{ACR, Array, BASE, Caches, Lock, Work};
 use crate::register::{Register, Registers, bit, bits};
-use crate::wires::{MICROSECOND, Reset, Time, Wires};
+use crate::wires::{MICROSECOND, Operation, Time, Wires};
 
 const KEYR: u32 = 0x08;
 const SR: u32 = 0x10;
@@ -52,7 +52,7 @@ impl Flash {
     pub fn new(image_end: u32) -> Self {
         Self {
             registers: Registers::new(&MAP),
-            array: Array::new(image_end, SIZE, DOUBLE_WORD),
+            array: Array::new(image_end, SIZE, DOUBLE_WORD, true),
             lock: Lock::default(),
             work: Work::default(),
             half: None,
@@ -103,9 +103,8 @@ impl Flash {
             wires.violation("FLASH_CR", "an erase starts while an error flag is up", "RM0440 3.3.6");
         }
         let first = BASE + BANK * (control >> 11 & 1) + PAGE * (control >> 3 & 0x7f);
-        if wires.begins_flash_operation() {
-            self.array.damage(first, PAGE);
-            wires.reset = Some(Reset::Power);
+        if let Some(how_far) = wires.begins_flash_operation(Operation::Erase) {
+            self.array.leave_erased(first, PAGE, how_far, wires);
             return;
         }
         self.array.erase(first, PAGE, wires);
@@ -119,10 +118,8 @@ impl Flash {
             wires.violation("flash", "is programmed over what is not erased", "RM0440 3.3.7 PROGERR");
             return;
         }
-        if wires.begins_flash_operation() {
-            self.array.program(address, DOUBLE_WORD, value | 0x5555_5555_5555_5555);
-            self.array.damage(address, DOUBLE_WORD);
-            wires.reset = Some(Reset::Power);
+        if let Some(how_far) = wires.begins_flash_operation(Operation::Program) {
+            self.array.leave_programmed(address, DOUBLE_WORD, value, how_far);
             return;
         }
         self.array.program(address, DOUBLE_WORD, value);
@@ -148,7 +145,7 @@ impl Peripheral for Flash {
             SR => self.registers.change(SR, 0, value & 0xc3fb),
             CR => self.control_written(value, wires),
             // ECCC (30) and ECCD (31) are cleared by ones.
-            ECCR => self.registers.change(ECCR, 0, value & bits(31, 28)),
+            ECCR => self.registers.change(ECCR, value & bit(24), value & bits(31, 28) | bit(24)),
             _ => wires.violation("FLASH", "option bytes are not modelled and not to be touched", "RM0440 3.4"),
         }
         if self.lock == Lock::Open {
@@ -188,10 +185,12 @@ impl Peripheral for Flash {
         }
         self.caches.flash_is_read(wires);
         if self.array.is_damaged(address) {
-            let place = (address - BASE) / DOUBLE_WORD;
-            let bank = u32::from(address >= BASE + BANK);
-            self.registers.set(ECCR, bit(31) | bank << 21 | place & 0x7_ffff);
-            wires.non_maskable = true;
+            // RM0440 3.7.7: the first one is kept: its bank, and the double word's place in that.
+            let offset = (address - BASE) / DOUBLE_WORD * DOUBLE_WORD;
+            if !self.registers.is_set(ECCR, 31) {
+                self.registers.change(ECCR, bit(31) | (offset / BANK) << 21 | (offset % BANK), bit(21) | bits(18, 0));
+            }
+            self.advance(wires);
         }
         if address >= BASE + BANK {
             wires.stall += self.work.left(wires);
@@ -231,5 +230,52 @@ impl Peripheral for Flash {
             _ => self.program(address, value, wires),
         }
         true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::chips;
+    use crate::machine::Machine;
+    use crate::peripherals::flash::KEYS;
+    use crate::scs::{Masks, NMI};
+    use crate::wires::{Cut, HowFar, Surroundings};
+
+    const FLASH: u32 = 0x4002_2000;
+    const PLACE: u32 = BASE + 0x7_f010;
+
+    #[test]
+    fn a_double_word_that_was_cut_raises_nmi_again_and_again_until_its_flag_is_cleared() {
+        let chip = chips::g474::chip(BASE + 0x1000);
+        let mut machine = Machine::new(chip, Surroundings::default(), 9600, 1000);
+        machine.settle();
+        machine.wires.cut = Some(Cut { operation: 0, how_far: HowFar::Middle });
+        KEYS.into_iter().for_each(|key| machine.write(FLASH + KEYR, 4, key.into()));
+        machine.write(FLASH + ACR, 4, 0x0004_0200);
+        machine.write(FLASH + CR, 4, 1);
+        machine.write(PLACE, 4, 0x1234);
+        machine.write(PLACE + 4, 4, 0x5678);
+        assert_eq!(machine.wires.reset.take(), Some(crate::wires::Reset::Power));
+        machine.reset(crate::wires::Reset::Power);
+        machine.settle();
+        assert_eq!(machine.scs.due(Masks::default()), None);
+        machine.read(PLACE + 4, 4);
+        machine.settle();
+        assert_eq!(machine.read(FLASH + ECCR, 4), 1 << 31 | 1 << 21 | 0x3_f010);
+        for _ in 0..2 {
+            assert_eq!(machine.scs.due(Masks { primask: true, ..Masks::default() }), Some(NMI));
+            machine.scs.enter(NMI);
+            machine.settle();
+            machine.scs.leave();
+            machine.settle();
+        }
+        machine.scs.enter(NMI);
+        machine.write(FLASH + ECCR, 4, 1 << 31);
+        machine.settle();
+        machine.scs.leave();
+        machine.settle();
+        assert_eq!(machine.scs.due(Masks::default()), None);
+        assert_eq!(machine.wires.violations.all(), []);
     }
 }

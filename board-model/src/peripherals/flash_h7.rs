@@ -4,12 +4,13 @@
 use super::Peripheral;
 use super::flash::{ACR, Array, BASE, Lock, Work};
 use crate::register::{Register, Registers, bit};
-use crate::wires::{MICROSECOND, Reset, Time, Wires};
+use crate::wires::{MICROSECOND, Operation, Time, Wires};
 
 const KEYR: u32 = 0x04;
 const CR: u32 = 0x0c;
 const SR: u32 = 0x10;
 const CCR: u32 = 0x14;
+const ECC_FA: u32 = 0x60;
 /// Registers of the second bank are so much further.
 const SECOND: u32 = 0x100;
 /// 2 MiB in two banks.
@@ -30,12 +31,12 @@ static MAP: [Register; 14] = [
     Register::new("FLASH_CCR1", CCR, 0, FLAGS).special(u32::MAX),
     Register::new("FLASH_OPTCR", 0x18, 1, 0xc000_0013).special(u32::MAX),
     Register::new("FLASH_OPTSR_CUR", 0x1c, 0x1bc6_aaf0, u32::MAX).special(u32::MAX),
-    Register::new("FLASH_ECC_FA1", 0x60, 0, 0x7fff).special(u32::MAX),
+    Register::new("FLASH_ECC_FA1", ECC_FA, 0, 0x7fff).special(u32::MAX),
     Register::new("FLASH_KEYR2", SECOND + KEYR, 0, u32::MAX).special(u32::MAX).any_value(),
     Register::new("FLASH_CR2", SECOND + CR, 0x31, 0x0fff_87ff).special(u32::MAX),
     Register::new("FLASH_SR2", SECOND + SR, 0, 0x1fef_000f).special(u32::MAX),
     Register::new("FLASH_CCR2", SECOND + CCR, 0, FLAGS).special(u32::MAX),
-    Register::new("FLASH_ECC_FA2", SECOND + 0x60, 0, 0x7fff).special(u32::MAX),
+    Register::new("FLASH_ECC_FA2", SECOND + ECC_FA, 0, 0x7fff).special(u32::MAX),
 ];
 
 /// Data sheet of STM32H743, table 53: a sector 1 s by double words, 256 bits 100 us.
@@ -69,7 +70,11 @@ pub struct Flash {
 impl Flash {
     /// With an image up to an address.
     pub fn new(image_end: u32) -> Self {
-        Self { registers: Registers::new(&MAP), array: Array::new(image_end, SIZE, WORD), banks: Default::default() }
+        Self {
+            registers: Registers::new(&MAP),
+            array: Array::new(image_end, SIZE, WORD, true),
+            banks: Default::default(),
+        }
     }
 
     fn control_written(&mut self, bank: usize, value: u32, before: u32, wires: &mut Wires) {
@@ -107,9 +112,8 @@ impl Flash {
             return;
         }
         let first = BASE + BANK * bank as u32 + SECTOR * (control >> 8 & 7);
-        if wires.begins_flash_operation() {
-            self.array.damage(first, SECTOR);
-            wires.reset = Some(Reset::Power);
+        if let Some(how_far) = wires.begins_flash_operation(Operation::Erase) {
+            self.array.leave_erased(first, SECTOR, how_far, wires);
             return;
         }
         self.array.erase(first, SECTOR, wires);
@@ -139,13 +143,14 @@ impl Flash {
         if !self.array.is_erased(first) {
             wires.violation("flash", "is programmed over what is not erased", "RM0433 4.3.9");
         }
-        let cut = wires.begins_flash_operation();
+        let cut = wires.begins_flash_operation(Operation::Program);
         for (word, place) in words.iter().flatten().zip((first..).step_by(4)) {
-            self.array.program(place, 4, u64::from(if cut { word | 0x5555_5555 } else { *word }));
+            match cut {
+                Some(how_far) => self.array.leave_programmed(place, 4, u64::from(*word), how_far),
+                None => self.array.program(place, 4, u64::from(*word)),
+            }
         }
-        if cut {
-            self.array.damage(first, WORD);
-            wires.reset = Some(Reset::Power);
+        if cut.is_some() {
             return;
         }
         self.work(bank, PROGRAM, wires);
@@ -214,8 +219,12 @@ impl Peripheral for Flash {
         }
         let bank = bank_of(address);
         if self.array.is_damaged(address) {
-            // RM0433 4.7.3: an error in two bits is a bus error.
-            self.registers.change(bank as u32 * SECOND + SR, bit(26), 0);
+            // RM0433 4.7.3: an error in two bits is a bus error, and its flag holds the place of the first word with one.
+            let offset = bank as u32 * SECOND;
+            if !self.registers.is_set(offset + SR, 26) {
+                self.registers.set(offset + ECC_FA, (address - BASE) % BANK / WORD);
+            }
+            self.registers.change(offset + SR, bit(26), 0);
             wires.bus_fault = Some(address);
         }
         wires.stall += self.banks[bank].work.left(wires);
@@ -247,5 +256,45 @@ impl Peripheral for Flash {
         wires.stall += self.banks[bank].work.left(wires);
         self.gather(bank, address, value as u32, wires);
         true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::chips;
+    use crate::machine::Machine;
+    use crate::peripherals::flash::KEYS;
+    use crate::scs::{HARD_FAULT, Masks};
+    use crate::wires::{Cut, HowFar, Reset, Surroundings};
+
+    const FLASH: u32 = 0x5200_2000 + SECOND;
+    const PLACE: u32 = BASE + BANK + 0x40;
+
+    #[test]
+    fn a_word_that_was_cut_is_a_bus_fault_which_a_look_with_faultmask_survives() {
+        let mut machine = Machine::new(chips::h743::chip(BASE + 0x1000), Surroundings::default(), 9600, 1000);
+        machine.settle();
+        machine.wires.cut = Some(Cut { operation: 0, how_far: HowFar::Middle });
+        KEYS.into_iter().for_each(|key| machine.write(FLASH + KEYR, 4, key.into()));
+        machine.write(FLASH + CR, 4, 0x32);
+        (0..8).for_each(|word| machine.write(PLACE + 4 * word, 4, 0x1234));
+        assert_eq!(machine.wires.reset.take(), Some(Reset::Power));
+        machine.reset(Reset::Power);
+        machine.settle();
+        // BFHFNMIGN.
+        machine.write(0xe000_ed14, 4, 0x300);
+        machine.read(PLACE + 12, 4);
+        machine.scs.ignore_bus_fault(true, &mut machine.wires);
+        machine.settle();
+        assert_eq!(machine.scs.due(Masks::default()), None);
+        assert_eq!((machine.read(0xe000_ed28, 4), machine.read(0xe000_ed38, 4)), (0x8200, u64::from(PLACE + 12)));
+        assert_eq!((machine.read(FLASH + SR, 4), machine.read(FLASH + ECC_FA, 4)), (1 << 26, 2));
+        machine.write(FLASH + CCR, 4, 1 << 26);
+        assert_eq!(machine.read(FLASH + SR, 4), 0);
+        machine.read(PLACE, 4);
+        machine.settle();
+        assert_eq!(machine.scs.due(Masks::default()), Some(HARD_FAULT));
+        assert_eq!(machine.wires.violations.all(), []);
     }
 }

@@ -1,30 +1,53 @@
 //! The boards: chip, what drives its clock, and the speed of its line, as the firmware's page on boards states them.
 
-use board::target::board::Board as Kind;
+use board::target::board::{Board as Described, Chip};
+use board_file::ExternalClock;
 
 use crate::chips;
 use crate::cpu::{Board, Setup};
 use crate::image::Image;
 use crate::tamper::Tamper;
-use crate::wires::Surroundings;
+use crate::wires::{Pin, Surroundings};
 
 /// An instruction takes a cycle, unless it is said otherwise [thousandths].
 pub const USUAL_COST: u64 = 1000;
 
-/// What drives the clock of a board as it is sold.
-pub fn usual_surroundings(board: Kind) -> Surroundings {
-    match board {
-        Kind::Stm32f405 => Surroundings::crystal(8_000_000),
-        Kind::Stm32g474 => Surroundings::crystal(24_000_000),
-        Kind::Stm32h743 => Surroundings::clock(8_000_000),
+/// What drives the clock of a board, as its file says.
+pub fn usual_surroundings(board: &Described) -> Surroundings {
+    match board.described.clock {
+        ExternalClock::None => Surroundings::default(),
+        ExternalClock::Crystal(frequency) => Surroundings::crystal(frequency.into()),
+        ExternalClock::Signal(frequency) => Surroundings::clock(frequency.into()),
     }
+}
+
+/// A board with a chip that is modelled.
+pub fn with(chip: Chip) -> Result<Described, String> {
+    let name = board_file::boards_with(chip).first().copied().ok_or("no board has this chip")?;
+    Described::load(name).map_err(|failure| failure.to_string())
+}
+
+/// Whether board and chip are modelled, the unit of its line among them.
+pub fn is_modelled(board: &Described) -> bool {
+    let unit = match board.chip() {
+        Chip::Stm32f405 => "USART1",
+        Chip::Stm32g474 => "USART2",
+        Chip::Stm32h743 => "USART3",
+        Chip::Stm32g431 => return false,
+    };
+    board.described.serial.unit == unit
+}
+
+/// A pin as the model names it.
+pub fn pin(pin: board_file::Pin) -> Pin {
+    Pin(pin.letter(), pin.number.into())
 }
 
 /// What a check is of: an image on its board, with the mistakes that were planted.
 #[derive(Debug, Clone)]
 pub struct Subject {
     /// The board.
-    pub kind: Kind,
+    pub board: Described,
     /// The image.
     pub image: Image,
     /// What is done to its writes.
@@ -34,7 +57,7 @@ pub struct Subject {
 impl Subject {
     /// The board as it is sold.
     pub fn start<'a>(&self) -> Result<Board<'a>, String> {
-        self.start_with(usual_surroundings(self.kind))
+        self.start_with(usual_surroundings(&self.board))
     }
 
     /// The board with other surroundings.
@@ -44,11 +67,12 @@ impl Subject {
 
     /// The board with instructions that take longer or shorter.
     pub fn start_at<'a>(&self, surroundings: Surroundings, cost: u64) -> Result<Board<'a>, String> {
-        let setup = Setup { surroundings, baud: self.kind.baud_rate().into(), cost };
-        let chip = match self.kind {
-            Kind::Stm32f405 => chips::f405::chip,
-            Kind::Stm32g474 => chips::g474::chip,
-            Kind::Stm32h743 => chips::h743::chip,
+        let setup = Setup { surroundings, baud: self.board.baud_rate().into(), cost };
+        let chip = match self.board.chip() {
+            Chip::Stm32f405 => chips::f405::chip,
+            Chip::Stm32g474 => chips::g474::chip,
+            Chip::Stm32h743 => chips::h743::chip,
+            Chip::Stm32g431 => return Err("no such chip is modelled".to_owned()),
         };
         let mut board = Board::new(chip, self.image.clone(), setup)?;
         board.machine_mut().tampers = self.tampers;

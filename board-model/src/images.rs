@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use board::target::board::Board as Kind;
+use board::target::board::Board;
 use board::target::image::{self, CONTROL_RATE, DEFAULT_TICK_RATE, SPI_RATE};
 use board::target::toolchain::Toolchain;
 use link::messages::Role;
@@ -40,7 +40,7 @@ impl Work {
 /// Images by board and work.
 pub struct Images {
     toolchain: Toolchain,
-    built: BTreeMap<(&'static str, Work), Image>,
+    built: BTreeMap<(String, Work), Image>,
 }
 
 impl Images {
@@ -51,8 +51,8 @@ impl Images {
     }
 
     /// One of them; built when it is asked for first.
-    pub fn get(&mut self, board: Kind, work: Work) -> Result<Image, String> {
-        if let Some(image) = self.built.get(&(board.name(), work)) {
+    pub fn get(&mut self, board: &Board, work: Work) -> Result<Image, String> {
+        if let Some(image) = self.built.get(&(board.named.clone(), work)) {
             return Ok(image.clone());
         }
         let (joint, quiet) = (image::preset_file(JOINT), |_: &str| {});
@@ -64,7 +64,7 @@ impl Images {
             Work::SpiSlave => image::build_spi_slave(&self.toolchain, &joint, board, SPI_RATE, &quiet),
         };
         let image = Image::read(&built.map_err(|failure| failure.to_string())?.elf)?;
-        self.built.insert((board.name(), work), image.clone());
+        self.built.insert((board.named.clone(), work), image.clone());
         Ok(image)
     }
 }

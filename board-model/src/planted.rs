@@ -1,8 +1,8 @@
 //! Thirty and more mistakes that a port to these chips can make, planted one by one into the writes of the images that ship.
 //! Each must make its check fail: this is the model's own test.
 
-use board::target::board::Board as Kind;
-use board::target::board::Board::{Stm32f405, Stm32g474, Stm32h743};
+use board::target::board::Chip;
+use board::target::board::Chip::{Stm32f405, Stm32g474, Stm32h743};
 
 use crate::checks::{Check, boot, load, memory, outputs, spi};
 use crate::images::Work;
@@ -14,8 +14,8 @@ use crate::tamper::{How, Tamper};
 pub struct Mistake {
     /// In words.
     pub what: &'static str,
-    /// On this board.
-    pub board: Kind,
+    /// On a board with this chip.
+    pub chip: Chip,
     /// In this image.
     pub work: Work,
     /// What must find it.
@@ -28,8 +28,8 @@ pub struct Mistake {
 
 impl Mistake {
     /// One that is left to the long form.
-    const fn new(board: Kind, work: Work, check: Check, tampers: &'static [Tamper], what: &'static str) -> Self {
-        Self { what, board, work, check, tampers, in_short: false }
+    const fn new(chip: Chip, work: Work, check: Check, tampers: &'static [Tamper], what: &'static str) -> Self {
+        Self { what, chip, work, check, tampers, in_short: false }
     }
 
     /// It stands for its kind in the short form.

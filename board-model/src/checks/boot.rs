@@ -1,7 +1,5 @@
 //! From reset to the first answer.
 
-use link::messages::Clock;
-
 use super::clean;
 use crate::boards::Subject;
 use crate::scs::SYSTICK;
@@ -34,11 +32,11 @@ pub fn answers(subject: &Subject) -> Result<String, String> {
     let hello = hello.ok_or_else(|| format!("no answer; it was at {}", talk.board.borrow().whereabouts()))?;
     let board = talk.board.borrow();
     let core = board.machine().wires.clocks.core;
-    if hello.board != subject.kind.name()
-        || core != u64::from(subject.kind.core_rate())
-        || hello.clock != Clock::External
+    if hello.board != subject.board.name()
+        || core != u64::from(subject.board.core_rate())
+        || hello.clock.source.is_external() != subject.board.described.clock.frequency().is_some()
     {
-        return Err(format!("{} at {core} Hz from {:?} is not {}", hello.board, hello.clock, subject.kind.name()));
+        return Err(format!("{} at {core} Hz from {:?} is not {}", hello.board, hello.clock, subject.board.name()));
     }
     let milliseconds = board.now() / (1000 * MICROSECOND);
     drop(board);

@@ -1,7 +1,7 @@
 //! A run with ticks of the length that the counted instructions give, while the host talks: the tick must end within its
 //! period, and the line must not lose a byte.
 
-use board::target::board::Board as Kind;
+use board::target::board::Chip;
 use link::messages::{Command, FromBoard, RunMode, RunSettings, Schedule, Statistics, ToBoard};
 use link::virtual_joint::{KNOTS_PER_SCHEDULE, Knot, WireTrajectory};
 
@@ -17,11 +17,11 @@ const PAUSE: Time = 20_000 * MICROSECOND;
 const TIMEOUT: u32 = 1_000_000;
 
 /// Thousandths of a cycle that an instruction takes, as the project's page on its budget estimates them.
-fn cost(kind: Kind) -> u64 {
-    match kind {
-        Kind::Stm32f405 => 1400,
-        Kind::Stm32g474 => 1900,
-        Kind::Stm32h743 => 1000,
+fn cost(chip: Chip) -> u64 {
+    match chip {
+        Chip::Stm32f405 => 1400,
+        Chip::Stm32g474 | Chip::Stm32g431 => 1900,
+        Chip::Stm32h743 => 1000,
     }
 }
 
@@ -41,7 +41,7 @@ pub fn whole_loop(subject: &Subject) -> Result<String, String> {
 
 /// A run of which the host repeats the schedule, which changes nothing, again and again.
 fn loaded(subject: &Subject, schedule: &ToBoard) -> Result<String, String> {
-    let board = subject.start_at(usual_surroundings(subject.kind), cost(subject.kind))?;
+    let board = subject.start_at(usual_surroundings(&subject.board), cost(subject.board.chip()))?;
     let mut talk = Talk::new(board);
     talk.call(2 * SECOND).ok_or("no answer")?;
     let settings =

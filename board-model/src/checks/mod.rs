@@ -9,7 +9,7 @@ pub mod outputs;
 pub mod sources;
 pub mod spi;
 
-use board::target::board::Board as Kind;
+use board::target::board::Board as Described;
 
 use crate::boards::Subject;
 use crate::cpu::Board;
@@ -75,6 +75,6 @@ pub fn clean(board: &Board<'_>) -> Result<(), String> {
 }
 
 /// Whether a board has an image for this.
-pub fn applies(board: Kind, work: Work) -> bool {
+pub fn applies(board: &Described, work: Work) -> bool {
     work != Work::SpiSlave || board.has_spi_slave()
 }

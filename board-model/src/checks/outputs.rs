@@ -1,11 +1,11 @@
 //! The motor-enable output and what takes it away: silence of the host, a fault, the watchdog.
 
-use board::target::board::Board as Kind;
+use board_file::Level;
 use link::messages::{Command, FromBoard, RunMode, RunSettings, Schedule, ToBoard, Trip};
 
 use super::clean;
 use super::memory::restart;
-use crate::boards::Subject;
+use crate::boards::{Subject, pin};
 use crate::talk::Talk;
 use crate::wires::{MICROSECOND, Mode, Pin, Reset, SECOND, Time};
 
@@ -13,29 +13,33 @@ use crate::wires::{MICROSECOND, Mode, Pin, Reset, SECOND, Time};
 const TIMEOUT: u32 = 2000;
 const TICK: Time = SECOND / 20_000;
 
-/// The motor-enable output, as the firmware's page on boards states it.
-fn enable(kind: Kind) -> Pin {
-    match kind {
-        Kind::Stm32f405 | Kind::Stm32g474 => Pin('B', 0),
-        Kind::Stm32h743 => Pin('C', 8),
-    }
+/// The motor-enable output, and whether it is on when high.
+fn enable(subject: &Subject) -> Result<(Pin, bool), String> {
+    let output = subject.board.described.enable.ok_or("the board has no enable output")?;
+    Ok((pin(output.pin), output.on == Level::High))
 }
 
-fn level(talk: &Talk<'_>, kind: Kind) -> Mode {
-    talk.board.borrow().machine().wires.mode(enable(kind))
+fn level(talk: &Talk<'_>, subject: &Subject) -> Option<Mode> {
+    let (pin, _) = enable(subject).ok()?;
+    Some(talk.board.borrow().machine().wires.mode(pin))
+}
+
+/// Whether it is an output that is on, or off.
+fn is_switched(talk: &Talk<'_>, subject: &Subject, on: bool) -> bool {
+    enable(subject).is_ok_and(|(_, high)| level(talk, subject) == Some(Mode::Output(on == high)))
 }
 
 /// Whether it is on.
-pub fn is_enabled(talk: &Talk<'_>, kind: Kind) -> bool {
-    level(talk, kind) == Mode::Output(true)
+pub fn is_enabled(talk: &Talk<'_>, subject: &Subject) -> bool {
+    is_switched(talk, subject, true)
 }
 
 /// Starts a run in real time whose last command holds for long.
 pub fn start_run<'a>(subject: &Subject) -> Result<Talk<'a>, String> {
     let mut talk = Talk::new(subject.start()?);
     talk.call(2 * SECOND).ok_or("no answer")?;
-    if level(&talk, subject.kind) != Mode::Output(false) {
-        return Err(format!("the enable output is {:?} before any run", level(&talk, subject.kind)));
+    if !is_switched(&talk, subject, false) {
+        return Err(format!("the enable output is {:?} before any run", level(&talk, subject)));
     }
     let settings =
         RunSettings { mode: RunMode::Realtime, decimation: 1000, command_timeout: TIMEOUT, from_memory: false };
@@ -43,8 +47,8 @@ pub fn start_run<'a>(subject: &Subject) -> Result<Talk<'a>, String> {
     let commands = [Command { tick: 0, drive_torque: 0.1, load_torque: 0.0 }].into_iter().collect();
     talk.say(&ToBoard::Schedule(Schedule { sequence: 0, horizon: 10 * TIMEOUT, commands }));
     talk.hear(5000 * MICROSECOND);
-    if !is_enabled(&talk, subject.kind) {
-        return Err(format!("the enable output is {:?} in a run", level(&talk, subject.kind)));
+    if !is_enabled(&talk, subject) {
+        return Err(format!("the enable output is {:?} in a run", level(&talk, subject)));
     }
     Ok(talk)
 }
@@ -60,7 +64,7 @@ pub fn silence(subject: &Subject) -> Result<String, String> {
                 trip = Some(why);
             }
         }
-        if gone.is_none() && level(&talk, subject.kind) == Mode::Output(false) {
+        if gone.is_none() && is_switched(&talk, subject, false) {
             gone = Some(talk.board.borrow().now() - start);
         }
     }
@@ -89,7 +93,7 @@ pub fn watchdog(subject: &Subject) -> Result<String, String> {
     let Some((Reset::Watchdog, at)) = talk.board.borrow().machine().resets.get(resets).copied() else {
         return Err("no reset by the watchdog within a second".into());
     };
-    if is_enabled(&talk, subject.kind) {
+    if is_enabled(&talk, subject) {
         return Err("the enable output is still on after the reset".into());
     }
     let hello = talk.call(2 * SECOND).ok_or("no answer after the reset")?;
@@ -123,8 +127,8 @@ pub fn fault(subject: &Subject) -> Result<String, String> {
         talk.hear(100 * MICROSECOND);
     }
     let reset = talk.board.borrow().machine().resets.get(resets).copied();
-    if !matches!(reset, Some((Reset::Software, _))) || is_enabled(&talk, subject.kind) {
-        return Err(format!("after a fault: reset {reset:?}, enable {:?}", level(&talk, subject.kind)));
+    if !matches!(reset, Some((Reset::Software, _))) || is_enabled(&talk, subject) {
+        return Err(format!("after a fault: reset {reset:?}, enable {:?}", level(&talk, subject)));
     }
     let hello = talk.call(2 * SECOND).ok_or("no answer after a fault")?;
     clean(&talk.board.borrow())?;

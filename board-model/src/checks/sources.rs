@@ -1,7 +1,7 @@
 //! Other clock sources than the one that the board is sold with: every usual rate, by crystal and by clock, none at all, and
 //! one that dies in a run. Either the tick has the rate that the hello says, or the hello says that it has not.
 
-use link::messages::{Clock, Hello};
+use link::messages::{ClockSource, Hello};
 
 use super::outputs::{is_enabled, start_run};
 use super::{boot, clean};
@@ -21,7 +21,7 @@ pub fn dead_crystal(subject: &Subject) -> Result<String, String> {
     clean(&talk.board.borrow())?;
     let hello = hello.ok_or("no answer")?;
     let core = talk.board.borrow().machine().wires.clocks.core;
-    if hello.clock != Clock::InternalFallback || core != u64::from(subject.kind.core_rate()) {
+    if hello.clock.source != ClockSource::DidNotStart || core != u64::from(subject.board.core_rate()) {
         return Err(format!("{core} Hz from {:?}", hello.clock));
     }
     boot::ticks(&mut talk, hello.tick_rate)?;
@@ -49,7 +49,7 @@ fn truthful(talk: &mut Talk<'_>) -> Result<Hello, String> {
     let hello = talk.call(SECOND / 2);
     clean(&talk.board.borrow())?;
     let hello = hello.ok_or("no answer")?;
-    if hello.clock != Clock::Failed {
+    if hello.clock.source != ClockSource::Failed {
         boot::ticks(talk, hello.tick_rate)?;
     }
     Ok(hello)
@@ -60,17 +60,17 @@ pub fn dies_in_a_run(subject: &Subject) -> Result<String, String> {
     let mut talk = start_run(subject)?;
     let start = talk.board.borrow().now();
     talk.board.borrow_mut().machine_mut().wires.surroundings.dies_at = Some(start + MICROSECOND);
-    while is_enabled(&talk, subject.kind) && talk.board.borrow().now() < start + OUTPUTS_OFF {
+    while is_enabled(&talk, subject) && talk.board.borrow().now() < start + OUTPUTS_OFF {
         talk.hear(100 * MICROSECOND);
     }
     let off = talk.board.borrow().now() - start;
-    if is_enabled(&talk, subject.kind) {
+    if is_enabled(&talk, subject) {
         return Err(format!("the enable output is on {} ms after the clock is gone", off / (1000 * MICROSECOND)));
     }
     talk.hear(SECOND / 2);
     let hello = truthful(&mut talk)?;
-    match hello.clock {
-        Clock::External => Err("the hello names the source that is dead".into()),
+    match hello.clock.source {
+        source if source.is_external() => Err("the hello names the source that is dead".into()),
         clock => Ok(format!("off after {:.1} ms, then {clock:?}", off as f64 / (1000 * MICROSECOND) as f64)),
     }
 }

@@ -1,12 +1,11 @@
 //! The slave on SPI: good transfers are answered in the next one, and after every kind of bad transfer the next good one is
 //! too.
 
-use board::target::board::Board as Kind;
 use link::controller::{Answered, Exchange, Motion, SetPoint};
 use link::framing::{sealed, unsealed};
 
 use super::clean;
-use crate::boards::Subject;
+use crate::boards::{Subject, pin};
 use crate::talk::Talk;
 use crate::wires::{MICROSECOND, Pin, SECOND, Time};
 
@@ -94,10 +93,9 @@ impl Master<'_> {
 
 fn master<'a>(subject: &Subject) -> Result<Master<'a>, String> {
     let talk = Talk::new(subject.start()?);
-    let (select, spi) = match subject.kind {
-        Kind::Stm32f405 => (Pin('A', 4), 1),
-        _ => (Pin('B', 12), 2),
-    };
+    let slave = subject.board.described.spi_slave.as_ref().ok_or("the board is no slave")?;
+    let select = pin(slave.select.pin);
+    let spi = slave.unit.trim_start_matches("SPI").parse().map_err(|_| format!("unit {}", slave.unit))?;
     let mut master = Master { talk, select, spi, tick: 0 };
     master.select(true);
     master.talk.hear(20_000 * MICROSECOND);

@@ -133,7 +133,7 @@ fn boards_are_named_and_not_taken_for_their_chips() {
     joint(&["image", "q1", "--board", "no_such"]).refused(&["no_such", "nucleo-g474re"]);
     let place = folder();
     let file = place.path().join("mine.toml");
-    let text = fs::read_to_string(workspace().join("boards/odrive-3.6.toml")).expect("a preset");
+    let text = fs::read_to_string(report::workspace::workspace().join("boards/odrive-3.6.toml")).expect("a preset");
     fs::write(&file, text.replace("PA0\"", "PB10\"")).expect("written");
     let mine = file.to_str().expect("a path");
     joint(&["board", "check", mine]).refused(&["PB10", "brake"]);

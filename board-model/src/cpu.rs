@@ -10,7 +10,7 @@ use crate::machine::{Chip, Machine};
 use crate::peripherals::dma::Transfer;
 use crate::peripherals::flash;
 use crate::scs::{FIRST_INTERRUPT, HARD_FAULT, Masks};
-use crate::wires::{Reset, Surroundings, Time};
+use crate::wires::{MICROSECOND, Reset, Surroundings, Time};
 
 /// Interrupts of the emulator library.
 const BREAKPOINT: u32 = 7;
@@ -32,6 +32,9 @@ const BASIC_FRAME: u32 = 1 << 4;
 const IF_THEN: u32 = 0x0600_fc00;
 /// An encoding of `dsb sy`, as it lies in memory.
 const BARRIER: [u8; 4] = [0xbf, 0xf3, 0x4f, 0x8f];
+
+/// Time passes by these steps while a debugger holds the core.
+const STEP_WHILE_HELD: Time = 20 * MICROSECOND;
 
 /// How a board is set up.
 #[derive(Debug, Clone, Copy)]
@@ -105,6 +108,16 @@ impl Board<'_> {
         while self.now() < end && self.machine().halted.is_none() {
             self.turn(end);
         }
+    }
+
+    /// A debugger holds the core for a time, or until something resets the chip.
+    pub fn hold_for(&mut self, duration: Time) {
+        let end = self.now() + duration;
+        while self.now() < end && self.machine().wires.reset.is_none() {
+            self.core.get_data_mut().pass_without_core(STEP_WHILE_HELD);
+            self.transfers();
+        }
+        self.core.get_data_mut().wires.is_held = false;
     }
 
     /// One turn: everything to the present, exceptions, then code until something happens.

@@ -9,6 +9,8 @@ use crate::wires::{Clocks, Gate, Reset, SECOND, Surroundings, Time, Wires};
 
 /// Place of the clock controller among the peripherals.
 const CLOCK_CONTROLLER: usize = 0;
+/// The private peripheral bus, whose registers are those of the core itself.
+const PRIVATE: std::ops::Range<u32> = 0xe000_0000..0xe004_0000;
 /// Cycles by which time is counted while the clock of the core stands still [Hz].
 const STOPPED_RATE: u64 = 1_000_000;
 /// Cycles that pass between two looks at flash that is at work, instead of some twenty: a sector takes a second.
@@ -150,6 +152,13 @@ impl Machine {
         self.cycles = self.cycle_at(self.time() + duration);
     }
 
+    /// Lets time pass for all but the core, which a debugger holds: its cycles do not count.
+    pub fn pass_without_core(&mut self, duration: Time) {
+        self.since.1 += duration;
+        self.wires.is_held = true;
+        self.settle();
+    }
+
     /// Brings all parts up to the present, and finds when something happens next.
     pub fn settle(&mut self) {
         let stall = std::mem::take(&mut self.wires.stall);
@@ -195,6 +204,9 @@ impl Machine {
     pub fn reset(&mut self, reset: Reset) {
         self.wires.now = self.time();
         for placed in &mut self.chip.peripherals {
+            if reset == Reset::Power {
+                placed.peripheral.power_lost();
+            }
             placed.peripheral.reset();
         }
         self.scs = Scs::new(self.chip.is_m7);
@@ -220,7 +232,7 @@ impl Machine {
     /// A read outside of memory.
     pub fn read(&mut self, address: u32, size: u32) -> u64 {
         self.wires.now = self.time();
-        if address >= 0xe000_0000 {
+        if PRIVATE.contains(&address) {
             return self.scs.read(address, size, self.cycles, &mut self.wires).into();
         }
         for placed in &mut self.chip.peripherals {
@@ -263,7 +275,7 @@ impl Machine {
         self.attention = true;
         let planted = self.tampers.iter().try_fold(value as u32, |value, tamper| tamper.apply(address, value));
         let Some(value) = planted.map(|low| value & !u64::from(u32::MAX) | u64::from(low)) else { return };
-        if address >= 0xe000_0000 {
+        if PRIVATE.contains(&address) {
             return self.scs.write(address, size, value as u32, self.cycles, &mut self.wires);
         }
         for placed in &mut self.chip.peripherals {

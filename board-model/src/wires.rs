@@ -243,6 +243,10 @@ pub struct Wires {
     pub bus_fault: Option<u32>,
     /// The chip is to be reset.
     pub reset: Option<Reset>,
+    /// A debugger holds the core.
+    pub is_held: bool,
+    /// The watchdog stands still while it does.
+    pub watchdog_stops_with_core: bool,
     /// The regulator gives the highest range, with boost where there is one.
     pub boost: bool,
     /// Scale or range of the regulator by its number in the manual: 1 is the fastest.
@@ -285,6 +289,8 @@ impl Wires {
             non_maskable: false,
             bus_fault: None,
             reset: None,
+            is_held: false,
+            watchdog_stops_with_core: false,
             boost: false,
             voltage: 1,
             changed: false,

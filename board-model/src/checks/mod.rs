@@ -47,6 +47,7 @@ pub const ALL: &[Named] = &[
     short("loop with ticks as long as counted: no tick too long, no byte lost", &[Work::Loop], load::whole_loop),
     short("safe state when the host is silent", &[Work::Plant], outputs::silence),
     short("watchdog when the ticks stop", &[Work::Plant], outputs::watchdog),
+    short("held by a debugger", &[Work::Plant], outputs::held_by_debugger),
     short("a fault resets and is told", &[Work::Plant], outputs::fault),
     short("transfers, good and bad", &[Work::SpiSlave], spi::transfers),
     short("transfers that are too long", &[Work::SpiSlave], spi::too_long),

@@ -3,8 +3,8 @@
 use board_file::Level;
 use link::messages::{Command, FromBoard, RunMode, RunSettings, Schedule, ToBoard, Trip};
 
-use super::clean;
 use super::memory::restart;
+use super::{boot, clean};
 use crate::boards::{Subject, pin};
 use crate::talk::Talk;
 use crate::wires::{MICROSECOND, Mode, Pin, Reset, SECOND, Time};
@@ -12,6 +12,8 @@ use crate::wires::{MICROSECOND, Mode, Pin, Reset, SECOND, Time};
 /// Ticks without a word of the host until the safe state.
 const TIMEOUT: u32 = 2000;
 const TICK: Time = SECOND / 20_000;
+/// A debugger holds the core so long.
+const HELD: Time = 2 * SECOND;
 
 /// The motor-enable output, and whether it is on when high.
 fn enable(subject: &Subject) -> Result<(Pin, bool), String> {
@@ -111,6 +113,22 @@ pub fn watchdog(subject: &Subject) -> Result<String, String> {
         late if late < SECOND * 6 / 10 => Ok(format!("reset after {} ms", late / (1000 * MICROSECOND))),
         late => Err(format!("the watchdog took {} ms", late / (1000 * MICROSECOND))),
     }
+}
+
+/// A debugger holds the core for longer than the watchdog waits, and lets it go on: nothing has been reset, and the tick goes
+/// on.
+pub fn held_by_debugger(subject: &Subject) -> Result<String, String> {
+    let mut talk = Talk::new(subject.start()?);
+    talk.call(2 * SECOND).ok_or("no answer")?;
+    let resets = talk.board.borrow().machine().resets.len();
+    talk.board.borrow_mut().hold_for(HELD);
+    let hello = talk.call(2 * SECOND).ok_or("no answer after that")?;
+    clean(&talk.board.borrow())?;
+    if talk.board.borrow().machine().resets.len() > resets {
+        return Err("the watchdog resets the board whose core a debugger holds".into());
+    }
+    boot::ticks(&mut talk, hello.tick_rate)?;
+    Ok(format!("held for {} s", HELD / SECOND))
 }
 
 /// A bus fault in a run: a reset, the output gone, and its message in the next hello.

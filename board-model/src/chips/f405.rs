@@ -2,6 +2,7 @@
 
 use super::{always, gated, ports};
 use crate::machine::{Chip, Memory};
+use crate::peripherals::dbgmcu::Dbgmcu;
 use crate::peripherals::dma_stream::DmaStreams;
 use crate::peripherals::exti::Exti;
 use crate::peripherals::gpio::Gpio;
@@ -49,6 +50,7 @@ pub fn chip(image_end: u32) -> Chip {
         always("FLASH", 0x4002_3c00, Box::new(flash_f4::Flash::new(image_end))),
         always("IWDG", 0x4000_3000, Box::new(Iwdg::new(false))),
         always("EXTI", 0x4001_3c00, Box::new(Exti::f4())),
+        always("DBGMCU", 0xe004_2000, Box::new(Dbgmcu::f405())),
         gated(RM, "PWR", 0x4000_7000, (APB1ENR, 28), None, Box::new(pwr_f4::Pwr::default())),
         gated(RM, "SYSCFG", 0x4001_3800, (APB2ENR, 14), Some((APB2RSTR, 14)), Box::new(Syscfg::default())),
         gated(RM, "USART1", 0x4001_1000, (APB2ENR, 4), Some((APB2RSTR, 4)), Box::new(Usart::old(USART1))),

@@ -2,6 +2,7 @@
 
 use super::{always, gated, ports};
 use crate::machine::{Chip, Memory};
+use crate::peripherals::dbgmcu::Dbgmcu;
 use crate::peripherals::dma_channel::DmaChannels;
 use crate::peripherals::dmamux::DmaMux;
 use crate::peripherals::exti::Exti;
@@ -54,6 +55,7 @@ pub fn chip(image_end: u32) -> Chip {
         always("FLASH", 0x4002_2000, Box::new(flash_g4::Flash::new(image_end))),
         always("IWDG", 0x4000_3000, Box::new(Iwdg::new(true))),
         always("EXTI", 0x4001_0400, Box::new(Exti::g4())),
+        always("DBGMCU", 0xe004_2000, Box::new(Dbgmcu::g474())),
         gated(RM, "PWR", 0x4000_7000, (APB1ENR1, 28), Some((APB1RSTR1, 28)), Box::new(pwr_g4::Pwr::default())),
         gated(RM, "SYSCFG", 0x4001_0000, (APB2ENR, 0), Some((APB2RSTR, 0)), Box::new(Syscfg::default())),
         gated(RM, "USART2", 0x4000_4400, (APB1ENR1, 17), Some((APB1RSTR1, 17)), Box::new(Usart::new(USART2, 8))),

@@ -2,6 +2,7 @@
 
 use super::{always, gated, ports};
 use crate::machine::{Chip, Memory};
+use crate::peripherals::dbgmcu::Dbgmcu;
 use crate::peripherals::gpio::Gpio;
 use crate::peripherals::iwdg::Iwdg;
 use crate::peripherals::tim::{self, Timer};
@@ -45,6 +46,7 @@ pub fn chip(image_end: u32) -> Chip {
         always("PWR", 0x5802_4800, Box::new(pwr_h7::Pwr::default())),
         always("FLASH", 0x5200_2000, Box::new(flash_h7::Flash::new(image_end))),
         always("IWDG1", 0x5800_4800, Box::new(Iwdg::new(true))),
+        always("DBGMCU", 0x5c00_1000, Box::new(Dbgmcu::h743())),
         gated(RM, "TIM17", 0x4001_4800, (APB2ENR, 18), Some((APB2RSTR, 18)), Box::new(Timer::new(TIM17))),
         gated(RM, "USART3", 0x4000_4800, (APB1LENR, 18), Some((APB1LRSTR, 18)), Box::new(Usart::new(USART3, 16))),
     ];

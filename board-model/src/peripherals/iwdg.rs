@@ -1,4 +1,5 @@
-//! The independent watchdog: RM0090 section 21, RM0440 section 44, RM0433 section 45. Only the newer ones have a window.
+//! The independent watchdog: RM0090 section 21, RM0440 section 44, RM0433 section 45. Only the newer ones have a window. It
+//! may stand still while a debugger holds the core.
 
 use super::Peripheral;
 use crate::register::{Register, Registers};
@@ -32,13 +33,15 @@ pub struct Iwdg {
     expires: Option<Time>,
     /// A setting is being taken up until then: prescaler, reload value.
     updates: [Option<Time>; 2],
+    /// When it was looked at last.
+    seen: Time,
 }
 
 impl Iwdg {
     /// Of a chip with a window or without.
     pub fn new(has_window: bool) -> Self {
         let registers = Registers::new(if has_window { &MAP } else { &MAP[..4] });
-        Self { registers, runs: false, unlocked: false, expires: None, updates: [None; 2] }
+        Self { registers, runs: false, unlocked: false, expires: None, updates: [None; 2], seen: 0 }
     }
 
     fn feed(&mut self, wires: &Wires) {
@@ -101,6 +104,10 @@ impl Peripheral for Iwdg {
     }
 
     fn advance(&mut self, wires: &mut Wires) {
+        let passed = wires.now - std::mem::replace(&mut self.seen, wires.now);
+        if wires.is_held && wires.watchdog_stops_with_core {
+            self.expires = self.expires.map(|expires| expires + passed);
+        }
         for update in &mut self.updates {
             if update.is_some_and(|ready| ready <= wires.now) {
                 *update = None;

@@ -1,5 +1,6 @@
 //! The peripherals of the chips, each by its chapter of the reference manual.
 
+pub mod dbgmcu;
 pub mod dma;
 pub mod dma_channel;
 pub mod dma_stream;
@@ -58,6 +59,9 @@ pub trait Peripheral {
     fn reset(&mut self) {
         self.registers().reset();
     }
+
+    /// Power is gone, after which the reset comes: what a reset alone leaves.
+    fn power_lost(&mut self) {}
 
     /// A read of flash that is not part of the image.
     fn read_memory(&mut self, _address: u32, _size: u32, _wires: &mut Wires) -> Option<u64> {

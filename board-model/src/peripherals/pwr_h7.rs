@@ -82,9 +82,13 @@ impl Peripheral for Pwr {
         wires.voltage = 4 - active;
     }
 
-    /// RM0433 6.8.4: the set-up of the supply stays until power goes; the model keeps it over every reset.
+    /// RM0433 6.8.4: the set-up of the supply stays until power goes.
     fn reset(&mut self) {
         let supplied = self.supplied;
         *self = Self { supplied, ..Self::default() };
+    }
+
+    fn power_lost(&mut self) {
+        self.supplied = None;
     }
 }

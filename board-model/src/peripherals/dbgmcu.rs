@@ -1,0 +1,107 @@
+//! What a debugger stops besides the core: RM0090 38.16, RM0440 47.16, RM0433 60.5.8. Of all that it can freeze the independent
+//! watchdog matters here. A reset of the chip leaves its registers; only power takes them back.
+
+use super::Peripheral;
+use crate::register::{Register, Registers};
+use crate::wires::Wires;
+
+static F405: [Register; 4] = [
+    Register::new("DBGMCU_IDCODE", 0x00, 0x1000_0413, 0).special(u32::MAX),
+    Register::new("DBGMCU_CR", 0x04, 0, 0xe7),
+    Register::new("DBGMCU_APB1_FZ", 0x08, 0, 0x06e0_1dff),
+    Register::new("DBGMCU_APB2_FZ", 0x0c, 0, 0x0007_0003),
+];
+static G474: [Register; 5] = [
+    Register::new("DBGMCU_IDCODE", 0x00, 0x2003_6469, 0).special(u32::MAX),
+    Register::new("DBGMCU_CR", 0x04, 0, 0xe7),
+    Register::new("DBGMCU_APB1FZR1", 0x08, 0, 0xc060_1c3f),
+    Register::new("DBGMCU_APB1FZR2", 0x0c, 0, 0x2),
+    Register::new("DBGMCU_APB2FZR", 0x10, 0, 0x0417_2800),
+];
+static H743: [Register; 7] = [
+    Register::new("DBGMCU_IDC", 0x00, 0x2003_6450, 0).special(u32::MAX),
+    Register::new("DBGMCU_CR", 0x04, 0, 0x1070_0007),
+    Register::new("DBGMCU_APB3FZ1", 0x34, 0, 0x40),
+    Register::new("DBGMCU_APB1LFZ1", 0x3c, 0, 0x00e0_03ff),
+    Register::new("DBGMCU_APB1HFZ1", 0x44, 0, 0x0100),
+    Register::new("DBGMCU_APB2FZ1", 0x4c, 0, 0x2007_0003),
+    Register::new("DBGMCU_APB4FZ1", 0x54, 0, 0x0005_1e80),
+];
+
+/// The unit, by where it freezes the independent watchdog: register and bit.
+#[derive(Debug)]
+pub struct Dbgmcu {
+    registers: Registers,
+    watchdog: (u32, u32),
+}
+
+impl Dbgmcu {
+    /// DBG_IWDG_STOP.
+    pub fn f405() -> Self {
+        Self { registers: Registers::new(&F405), watchdog: (0x08, 12) }
+    }
+
+    /// DBG_IWDG_STOP.
+    pub fn g474() -> Self {
+        Self { registers: Registers::new(&G474), watchdog: (0x08, 12) }
+    }
+
+    /// DBG_IWDG1.
+    pub fn h743() -> Self {
+        Self { registers: Registers::new(&H743), watchdog: (0x54, 18) }
+    }
+}
+
+impl Peripheral for Dbgmcu {
+    fn registers(&mut self) -> &mut Registers {
+        &mut self.registers
+    }
+
+    fn written(&mut self, _offset: u32, _value: u32, _before: u32, wires: &mut Wires) {
+        self.advance(wires);
+    }
+
+    fn advance(&mut self, wires: &mut Wires) {
+        let (register, bit) = self.watchdog;
+        wires.watchdog_stops_with_core = self.registers.is_set(register, bit);
+    }
+
+    fn reset(&mut self) {}
+
+    fn power_lost(&mut self) {
+        self.registers.reset();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::chips;
+    use crate::machine::Machine;
+    use crate::peripherals::flash::BASE;
+    use crate::wires::{Reset, SECOND, Surroundings};
+
+    #[test]
+    fn the_watchdog_stands_still_with_a_held_core_where_it_is_told_to() {
+        let machine = |chip| Machine::new(chip, Surroundings::default(), 9600, 1000);
+        for (mut machine, watchdog, freeze) in [
+            (machine(chips::f405::chip(BASE + 0x1000)), 0x4000_3000, (0xe004_2008, 1 << 12)),
+            (machine(chips::g474::chip(BASE + 0x1000)), 0x4000_3000, (0xe004_2008, 1 << 12)),
+            (machine(chips::h743::chip(BASE + 0x1000)), 0x5800_4800, (0x5c00_1054, 1 << 18)),
+        ] {
+            machine.settle();
+            // Its longest time is that of 4096 counts by 4: half a second.
+            machine.write(watchdog, 4, 0xcccc);
+            machine.write(freeze.0, 4, freeze.1);
+            (0..20).for_each(|_| machine.pass_without_core(SECOND / 10));
+            assert_eq!(machine.wires.reset, None, "{}", machine.chip.name);
+            machine.reset(Reset::Software);
+            machine.write(watchdog, 4, 0xcccc);
+            (0..20).for_each(|_| machine.pass_without_core(SECOND / 10));
+            assert_eq!(machine.wires.reset.take(), None, "{}: a reset has taken it back", machine.chip.name);
+            machine.write(freeze.0, 4, 0);
+            (0..20).for_each(|_| machine.pass_without_core(SECOND / 10));
+            assert_eq!(machine.wires.reset, Some(Reset::Watchdog), "{}", machine.chip.name);
+            assert_eq!(machine.wires.violations.all(), []);
+        }
+    }
+}

@@ -36,6 +36,9 @@ const BARRIER: [u8; 4] = [0xbf, 0xf3, 0x4f, 0x8f];
 /// Time passes by these steps while a debugger holds the core.
 const STEP_WHILE_HELD: Time = 20 * MICROSECOND;
 
+/// Cycles between two ticks of a bootloader: a millisecond at the usual rate after a reset.
+const BOOTLOADER_TICK: u64 = 15_999;
+
 /// How a board is set up.
 #[derive(Debug, Clone, Copy)]
 pub struct Setup {
@@ -107,6 +110,18 @@ impl Board<'_> {
         let end = self.now() + duration;
         while self.now() < end && self.machine().halted.is_none() {
             self.turn(end);
+        }
+    }
+
+    /// Begins the image as a bootloader does that jumps to it: with the vectors still those of the bootloader, whose tick runs,
+    /// interrupts masked, and some of them left pending.
+    pub fn jump_from(&mut self, bootloader: u32, pending: &[usize]) {
+        self.set(RegisterARM::PRIMASK, 1);
+        let machine = self.core.get_data_mut();
+        machine.scs.vectors = bootloader;
+        pending.iter().for_each(|line| machine.scs.pend(FIRST_INTERRUPT + line));
+        for (register, value) in [(0xe000_e014, BOOTLOADER_TICK), (0xe000_e018, 0), (0xe000_e010, 0b111)] {
+            machine.write(register, 4, value);
         }
     }
 
@@ -270,6 +285,13 @@ impl Board<'_> {
         }
         let base = if self.machine().scs.running() == 0 { TO_THREAD } else { TO_HANDLER };
         let vector = self.core.get_data_mut().scs.enter(exception);
+        if !(flash::BASE..self.machine().wires.image_end).contains(&vector) {
+            let what =
+                format!("exception {exception} is taken by the vector at {vector:#010x}, which is not the image's");
+            self.violation("VTOR", &what, "ARMv7-M B3.2.5");
+            self.core.get_data_mut().halted = Some(what);
+            return;
+        }
         let handler = self.word(vector);
         if handler & 1 == 0 {
             let what = format!("exception {exception} is taken, and its vector holds {handler:#010x}");

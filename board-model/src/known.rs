@@ -17,6 +17,9 @@ const CHECKS: &[(&str, &str, &str)] = &[
     ("stm32f405", "debugger", "the watchdog resets a board whose core a debugger holds"),
     ("stm32g474", "debugger", "the watchdog resets a board whose core a debugger holds"),
     ("stm32h743", "debugger", "the watchdog resets a board whose core a debugger holds"),
+    ("stm32f405", "bootloader", "vectors are those of whoever jumped to the image"),
+    ("stm32g474", "bootloader", "vectors are those of whoever jumped to the image"),
+    ("stm32h743", "bootloader", "vectors are those of whoever jumped to the image"),
     ("stm32f405", "loop with ticks", "a tick outlasts a byte of the line, and the USART has room for one"),
     ("stm32g474", "loop with ticks", "a tick outlasts its period"),
 ];

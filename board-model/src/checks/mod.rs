@@ -38,6 +38,7 @@ const fn short(name: &'static str, works: &'static [Work], run: Check) -> Named 
 /// All checks.
 pub const ALL: &[Named] = &[
     short("boots, ticks and answers", &[Work::Plant, Work::Observer, Work::Loop], boot::answers),
+    short("starts after a bootloader", &[Work::Plant, Work::Observer, Work::Loop], boot::after_bootloader),
     short("boots from the internal oscillator", &[Work::Plant], sources::dead_crystal),
     short("other crystals", &[Work::Plant], sources::other_crystals),
     short("the external source dies in a run", &[Work::Plant], sources::dies_in_a_run),

@@ -249,6 +249,8 @@ pub struct Wires {
     pub watchdog_stops_with_core: bool,
     /// The regulator gives the highest range, with boost where there is one.
     pub boost: bool,
+    /// The supply [mV].
+    pub supply: u32,
     /// Scale or range of the regulator by its number in the manual: 1 is the fastest.
     pub voltage: u32,
     /// A level has changed, or something else that is looked at between blocks.
@@ -292,6 +294,7 @@ impl Wires {
             is_held: false,
             watchdog_stops_with_core: false,
             boost: false,
+            supply: 3300,
             voltage: 1,
             changed: false,
             waiting: false,

@@ -12,6 +12,7 @@ pub mod flash_g4;
 pub mod flash_h7;
 pub mod gpio;
 pub mod iwdg;
+pub mod pvd;
 pub mod pwr_f4;
 pub mod pwr_g4;
 pub mod pwr_h7;

@@ -1,12 +1,24 @@
 //! Power control of STM32F405: RM0090 section 5. The regulator is at scale 1 after a reset, which 168 MHz need.
 
 use super::Peripheral;
+use super::pvd::Detector;
 use crate::register::{Register, Registers, bit};
 use crate::wires::Wires;
 
+const CR: u32 = 0x00;
+const CSR: u32 = 0x04;
+
 /// RM0090 5.4.
 static MAP: [Register; 2] =
-    [Register::new("PWR_CR", 0x00, 0x4000, 0x43ff), Register::new("PWR_CSR", 0x04, 0x4000, 0x430f).special(0x400f)];
+    [Register::new("PWR_CR", CR, 0x4000, 0x43ff), Register::new("PWR_CSR", CSR, 0x4000, 0x430f).special(0x400f)];
+
+/// Data sheet of STM32F405, table 18.
+const DETECTOR: Detector = Detector {
+    enable: (CR, 4),
+    level: (CR, 5),
+    output: (CSR, 2),
+    levels: [2040, 2190, 2350, 2510, 2660, 2820, 2930, 3030],
+};
 
 /// Power control.
 #[derive(Debug)]
@@ -26,8 +38,9 @@ impl Peripheral for Pwr {
     }
 
     fn advance(&mut self, wires: &mut Wires) {
+        DETECTOR.watch(&mut self.registers, wires);
         // RM0090 5.1.3: 144 MHz at scale 2.
-        if self.registers.get(0) & bit(14) == 0 && wires.clocks.core > 144_000_000 {
+        if self.registers.get(CR) & bit(14) == 0 && wires.clocks.core > 144_000_000 {
             wires.violation("PWR_CR", "scale 2 is too low for more than 144 MHz", "RM0090 5.1.3");
         }
     }

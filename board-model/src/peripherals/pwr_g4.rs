@@ -1,17 +1,19 @@
 //! Power control of STM32G474: RM0440 section 6. Which range the regulator is in, and its boost.
 
 use super::Peripheral;
+use super::pvd::Detector;
 use crate::register::{Register, Registers, bit};
 use crate::wires::Wires;
 
 const CR1: u32 = 0x00;
+const CR2: u32 = 0x04;
 const SR2: u32 = 0x14;
 const CR5: u32 = 0x80;
 
 /// RM0440 6.4.
 static MAP: [Register; 8] = [
     Register::new("PWR_CR1", CR1, 0x0200, 0x4707),
-    Register::new("PWR_CR2", 0x04, 0, 0x03ef),
+    Register::new("PWR_CR2", CR2, 0, 0x03ef),
     Register::new("PWR_CR3", 0x08, 0x8000, 0xc51f),
     Register::new("PWR_CR4", 0x0c, 0, 0x031f),
     Register::new("PWR_SR1", 0x10, 0, 0x811f).special(u32::MAX),
@@ -19,6 +21,14 @@ static MAP: [Register; 8] = [
     Register::new("PWR_SCR", 0x18, 0, 0x011f).special(u32::MAX),
     Register::new("PWR_CR5", CR5, 0x0100, 0x0100),
 ];
+
+/// Data sheet of STM32G474, section 5.3.4.
+const DETECTOR: Detector = Detector {
+    enable: (CR2, 0),
+    level: (CR2, 1),
+    output: (SR2, 11),
+    levels: [2050, 2200, 2360, 2520, 2640, 2810, 2900, 0],
+};
 
 /// Power control.
 #[derive(Debug)]
@@ -52,6 +62,7 @@ impl Peripheral for Pwr {
     }
 
     fn advance(&mut self, wires: &mut Wires) {
+        DETECTOR.watch(&mut self.registers, wires);
         wires.voltage = self.registers.field(CR1, 9, 2);
         wires.boost = !self.registers.is_set(CR5, 8);
         let most = match (wires.voltage, wires.boost) {

@@ -2,16 +2,18 @@
 //! scale may be changed.
 
 use super::Peripheral;
+use super::pvd::Detector;
 use crate::register::{Register, Registers, bit};
 use crate::wires::{MICROSECOND, Time, Wires};
 
+const CR1: u32 = 0x00;
 const CSR1: u32 = 0x04;
 const CR3: u32 = 0x0c;
 const D3CR: u32 = 0x18;
 
 /// RM0433 6.8.
 static MAP: [Register; 8] = [
-    Register::new("PWR_CR1", 0x00, 0xf000_c000, 0xf007_c3f1),
+    Register::new("PWR_CR1", CR1, 0xf000_c000, 0xf007_c3f1),
     Register::new("PWR_CSR1", CSR1, 0x4000, 0x0001_e010).special(u32::MAX),
     Register::new("PWR_CR2", 0x08, 0, 0x00f1_0011).special(0x00f1_0000),
     Register::new("PWR_CR3", CR3, 0x06, 0x0700_0307).special(bit(26)),
@@ -20,6 +22,14 @@ static MAP: [Register; 8] = [
     Register::new("PWR_WKUPCR", 0x20, 0, 0x3f).special(0x3f),
     Register::new("PWR_WKUPFR", 0x24, 0, 0x3f).special(0x3f),
 ];
+
+/// Data sheet of STM32H743, section 6.3.4.
+const DETECTOR: Detector = Detector {
+    enable: (CR1, 4),
+    level: (CR1, 5),
+    output: (CSR1, 4),
+    levels: [1910, 2050, 2190, 2350, 2500, 2650, 2800, 0],
+};
 
 /// Until another scale is reached.
 const SETTLES: Time = 10 * MICROSECOND;
@@ -78,6 +88,7 @@ impl Peripheral for Pwr {
         self.registers.change(D3CR, u32::from(ready) << 13, bit(13));
         let active = if ready { scale } else { self.registers.field(CSR1, 14, 2) };
         self.registers.set(CSR1, active << 14 | u32::from(supplied && ready) << 13);
+        DETECTOR.watch(&mut self.registers, wires);
         // VOS 3 is scale 1, the fastest.
         wires.voltage = 4 - active;
     }

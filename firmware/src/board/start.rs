@@ -25,8 +25,14 @@ pub struct Started {
     clocks: pac::RCC,
 }
 
+/// Where the linker puts the vectors: at the start of flash.
+const VECTORS: u32 = 0x0800_0000;
+
 /// Sets up clock, outputs and watchdog. Every wait is bounded.
 pub fn start(device: pac::Peripherals, core: &mut cortex_m::Peripherals) -> Started {
+    // Whoever jumped here, such as a bootloader, may have had vectors of its own.
+    // SAFETY: vectors are there, and no interrupt is on yet.
+    unsafe { core.SCB.vtor.write(VECTORS) };
     let Parts { clock, slots, watchdog, watchdog_reset, clocks } = ThisChip::start(device, core);
     let output = |output: Option<(u8, u8, bool)>| {
         Output::open(output.map(|(port, number, high)| {

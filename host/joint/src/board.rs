@@ -46,6 +46,7 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
         }
         Action::List => {
             let mut page = Sheet::new("Boards".to_owned());
+            page.heading("With a file in boards/");
             for name in PRESETS {
                 let board = named::load(name.as_ref())?.board;
                 page.row(name, format!("{}: {}", board.chip_name, board.description));

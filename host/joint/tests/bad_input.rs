@@ -39,7 +39,7 @@ fn every_command_refuses_a_file_that_is_nothing_by_its_name() {
         &["check", "@"],
         &["budget", "@"],
         &["image", "@"],
-        &["flash", "@"],
+        &["flash", "@", "--board", "nucleo-g474re"],
         &["sim", "@", "--out", out],
         &["sim", "q1", "--profile", "@", "--out", out],
         &["sweep", "@", "--vary", "half_backlash_um=10,20", "--out", out],
@@ -134,7 +134,7 @@ fn boards_are_named_and_not_taken_for_their_chips() {
     let place = folder();
     let file = place.path().join("mine.toml");
     let text = fs::read_to_string(report::workspace::workspace().join("boards/odrive-3.6.toml")).expect("a preset");
-    fs::write(&file, text.replace("PA0\"", "PB10\"")).expect("written");
+    fs::write(&file, text + "[light]\npin = \"PB10\"\non = \"high\"\n").expect("written");
     let mine = file.to_str().expect("a path");
     joint(&["board", "check", mine]).refused(&["PB10", "brake"]);
     joint(&["image", "q1", "--board", mine]).refused(&["PB10", "brake"]);

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use board::target::board::Board;
 use board::target::image::{self, CONTROL_RATE, DEFAULT_TICK_RATE, SPI_RATE};
+use board::target::tick_time;
 use board::target::toolchain::Toolchain;
 use link::messages::Role;
 
@@ -60,7 +61,13 @@ impl Images {
         let built = match work {
             Work::Plant => role(Role::Plant, DEFAULT_TICK_RATE),
             Work::Observer => role(Role::Observer, CONTROL_RATE),
-            Work::Loop => role(Role::Loop, CONTROL_RATE),
+            // The highest rate that the chip has time for.
+            Work::Loop => {
+                let parameters = joint_file::read(joint_file::preset(JOINT).ok_or("no such joint")?)
+                    .map_err(|_| "a preset with problems")?
+                    .parameters;
+                role(Role::Loop, tick_time::usual_rate(&parameters, board, Role::Loop))
+            }
             Work::SpiSlave => image::build_spi_slave(&self.toolchain, &joint, board, SPI_RATE, &quiet),
         };
         let image = Image::read(&built.map_err(|failure| failure.to_string())?.elf)?;

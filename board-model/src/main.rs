@@ -100,7 +100,9 @@ fn check(only_board: Option<Board>, only: Option<&str>, full: bool) -> Result<()
     let boards = Board::presets().map_err(|failure| failure.to_string())?;
     for board in boards.iter().filter(|board| boards::is_modelled(board)) {
         let is_first = boards::with(board.chip())? == *board;
-        for check in checks::ALL.iter().filter(|check| wanted(board, check.name) && (full || !check.is_long)) {
+        for check in checks::ALL.iter().filter(|check| {
+            check.chips.contains(&board.chip()) && wanted(board, check.name) && (full || !check.is_long)
+        }) {
             // What differs between boards with the same chip is found when they boot.
             if !is_first && check.name != checks::ALL[0].name {
                 continue;

@@ -261,6 +261,8 @@ pub struct Wires {
     pub barrier: bool,
     /// An image lies in flash up to here.
     pub image_end: u32,
+    /// Option byte DBANK of G474 is 0: its flash is one bank.
+    pub single_bank: bool,
     /// When power goes.
     pub cut: Option<Cut>,
     /// Operations that flash has begun.
@@ -300,6 +302,7 @@ impl Wires {
             waiting: false,
             barrier: true,
             image_end: 0,
+            single_bank: false,
             cut: None,
             flash_operations: Vec::new(),
         }

@@ -40,6 +40,25 @@ pub fn keeps(subject: &Subject) -> Result<String, String> {
     Ok(format!("{operations} erases and programs"))
 }
 
+/// A G474 whose option byte makes one bank of its flash: what is saved is kept, or it is said that it is not.
+pub fn one_bank(subject: &Subject) -> Result<String, String> {
+    let board = subject.start()?;
+    let mut talk = Talk::new(board);
+    talk.board.borrow_mut().machine_mut().wires.single_bank = true;
+    expect_state(&mut talk, MemoryState::Nothing, "of a new board")?;
+    let told = talk.ask(&ToBoard::Memory(MemoryRequest::Save), PATIENCE, outcome);
+    clean(&talk.board.borrow())?;
+    restart(&mut talk, Reset::Power);
+    let (expected, found) = match told {
+        Some(MemoryOutcome::Stored) => (MemoryState::Good, "kept"),
+        Some(MemoryOutcome::NotWritten) => (MemoryState::Nothing, "not kept, and that is said"),
+        other => return Err(format!("the memory is not saved: {other:?}; {}", stuck(&talk))),
+    };
+    expect_state(&mut talk, expected, "after a save")?;
+    clean(&talk.board.borrow())?;
+    Ok(found.into())
+}
+
 /// What is under way when power goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Work {

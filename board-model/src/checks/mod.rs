@@ -9,7 +9,7 @@ pub mod outputs;
 pub mod sources;
 pub mod spi;
 
-use board::target::board::Board as Described;
+use board::target::board::{Board as Described, Chip};
 
 use crate::boards::Subject;
 use crate::cpu::Board;
@@ -25,6 +25,8 @@ pub struct Named {
     pub name: &'static str,
     /// Images that it is for.
     pub works: &'static [Work],
+    /// Chips that it is for.
+    pub chips: &'static [Chip],
     /// It.
     pub run: Check,
     /// It is left to the long form.
@@ -32,7 +34,7 @@ pub struct Named {
 }
 
 const fn short(name: &'static str, works: &'static [Work], run: Check) -> Named {
-    Named { name, works, run, is_long: false }
+    Named { name, works, chips: &Chip::ALL, run, is_long: false }
 }
 
 /// All checks.
@@ -44,6 +46,13 @@ pub const ALL: &[Named] = &[
     short("the external source dies in a run", &[Work::Plant], sources::dies_in_a_run),
     short("20,000 steps, the same in every bit as the host's twin", &[Work::Plant], bits::steps),
     short("keeps, writes and erases what was learnt", &[Work::Observer], memory::keeps),
+    Named {
+        name: "flash as one bank",
+        works: &[Work::Observer],
+        chips: &[Chip::Stm32g474],
+        run: memory::one_bank,
+        is_long: false,
+    },
     short("plant with ticks as long as counted: no tick too long, no byte lost", &[Work::Plant], load::plant),
     short("loop with ticks as long as counted: no tick too long, no byte lost", &[Work::Loop], load::whole_loop),
     short("safe state when the host is silent", &[Work::Plant], outputs::silence),
@@ -56,6 +65,7 @@ pub const ALL: &[Named] = &[
     Named {
         name: "power cut at every operation of flash",
         works: &[Work::Observer],
+        chips: &Chip::ALL,
         run: memory::survives_cuts,
         is_long: true,
     },

@@ -1,5 +1,5 @@
-//! The flash controller of STM32G474 (category 3, two banks): RM0440 section 3. Double words with their check bits; code of
-//! one bank runs while the other is at work.
+//! The flash controller of STM32G474 (category 3): RM0440 section 3. Double words with their check bits; two banks, of which
+//! code in one runs while the other is at work, or by an option byte one bank with pages of twice the size.
 
 use super::Peripheral;
 use super::flash::{ACR, Array, BASE, Caches, Lock, Work};
@@ -16,6 +16,9 @@ const SIZE: u32 = 0x8_0000;
 const BANK: u32 = SIZE / 2;
 const PAGE: u32 = 0x800;
 const DOUBLE_WORD: u32 = 8;
+/// Flags of an error in two bits.
+const ECCD: u32 = bit(31);
+const ECCD2: u32 = bit(29);
 const ERRORS: u32 = 0xc3fa;
 
 /// RM0440 3.7.
@@ -60,16 +63,21 @@ impl Flash {
         }
     }
 
+    /// Whether the core waits for an operation on an address: RM0440 3.3.6, reads of the bank at work wait for it,
+    /// instructions too.
+    fn holds_up(address: u32, wires: &Wires) -> bool {
+        wires.single_bank || address < BASE + BANK
+    }
+
     /// An operation on an address begins.
     fn work(&mut self, address: u32, duration: Time, wires: &mut Wires) {
         self.work.begin(duration, wires);
-        if self.caches.flash_changes(&self.registers) {
+        if self.caches.flash_changes(&self.registers) && !Self::holds_up(address, wires) {
             // ES0430 2.2.2: a read of the one bank while the other is at work may corrupt the data cache.
             let what = "the data cache is on while a bank is erased or programmed beside running code";
             wires.violation("FLASH_ACR", what, "ES0430 2.2.2");
         }
-        // RM0440 3.3.6: reads of the bank at work wait for it, instructions too.
-        if address < BASE + BANK {
+        if Self::holds_up(address, wires) {
             wires.stall += duration;
         }
     }
@@ -102,12 +110,19 @@ impl Flash {
         if self.registers.get(SR) & ERRORS != 0 {
             wires.violation("FLASH_CR", "an erase starts while an error flag is up", "RM0440 3.3.6");
         }
-        let first = BASE + BANK * (control >> 11 & 1) + PAGE * (control >> 3 & 0x7f);
+        let (page, bank) = (control >> 3 & 0x7f, control >> 11 & 1);
+        if wires.single_bank && bank != 0 {
+            wires.violation("FLASH_CR", "BKER is 1 while DBANK is 0: there is one bank", "RM0440 3.3.1, 3.7.6");
+        }
+        let (first, size) = match wires.single_bank {
+            true => (BASE + 2 * PAGE * page, 2 * PAGE),
+            false => (BASE + BANK * bank + PAGE * page, PAGE),
+        };
         if let Some(how_far) = wires.begins_flash_operation(Operation::Erase) {
-            self.array.leave_erased(first, PAGE, how_far, wires);
+            self.array.leave_erased(first, size, how_far, wires);
             return;
         }
-        self.array.erase(first, PAGE, wires);
+        self.array.erase(first, size, wires);
         self.work(first, ERASE, wires);
     }
 
@@ -155,6 +170,8 @@ impl Peripheral for Flash {
     }
 
     fn advance(&mut self, wires: &mut Wires) {
+        // DBANK.
+        self.registers.change(OPTR, u32::from(!wires.single_bank) << 22, bit(22));
         let busy = self.work.goes_on(wires);
         self.registers.change(SR, u32::from(busy) << 16, bit(16));
         let waits = u64::from(self.registers.field(ACR, 0, 4));
@@ -169,7 +186,7 @@ impl Peripheral for Flash {
             wires.violation("FLASH_ACR", what, "RM0440 3.3.3, table 9");
         }
         // RM0440 3.3.8: the flag of an error in two bits holds the non-maskable interrupt.
-        wires.non_maskable |= self.registers.is_set(ECCR, 31);
+        wires.non_maskable |= self.registers.get(ECCR) & (ECCD | ECCD2) != 0;
     }
 
     fn reset(&mut self) {
@@ -186,13 +203,19 @@ impl Peripheral for Flash {
         self.caches.flash_is_read(wires);
         if self.array.is_damaged(address) {
             // RM0440 3.7.7: the first one is kept: its bank, and the double word's place in that.
+            // In one bank two of them are read together, and the second one has a flag of its own.
             let offset = (address - BASE) / DOUBLE_WORD * DOUBLE_WORD;
-            if !self.registers.is_set(ECCR, 31) {
-                self.registers.change(ECCR, bit(31) | (offset / BANK) << 21 | (offset % BANK), bit(21) | bits(18, 0));
+            let (flag, bank, place) = match wires.single_bank {
+                true if offset & DOUBLE_WORD != 0 => (ECCD2, 0, offset - DOUBLE_WORD),
+                true => (ECCD, 0, offset),
+                false => (ECCD, offset / BANK, offset % BANK),
+            };
+            if self.registers.get(ECCR) & (ECCD | ECCD2) == 0 {
+                self.registers.change(ECCR, flag | bank << 21 | place, bit(21) | bits(18, 0));
             }
             self.advance(wires);
         }
-        if address >= BASE + BANK {
+        if !Self::holds_up(address, wires) {
             wires.stall += self.work.left(wires);
         }
         Some(self.array.read(address, size))
@@ -244,6 +267,30 @@ mod tests {
 
     const FLASH: u32 = 0x4002_2000;
     const PLACE: u32 = BASE + 0x7_f010;
+
+    #[test]
+    fn one_bank_has_pages_of_twice_the_size_and_no_second_bank() {
+        let chip = chips::g474::chip(BASE + 0x1000);
+        let mut machine = Machine::new(chip, Surroundings::default(), 9600, 1000);
+        machine.wires.single_bank = true;
+        machine.settle();
+        assert_eq!(machine.read(FLASH + OPTR, 4) >> 22 & 1, 0);
+        KEYS.into_iter().for_each(|key| machine.write(FLASH + KEYR, 4, key.into()));
+        for place in [BASE + 0x7_f000, BASE + 0x7_f800] {
+            machine.write(FLASH + CR, 4, 1);
+            machine.write(place, 8, 0x1234);
+            machine.settle();
+        }
+        machine.write(FLASH + ACR, 4, 0x0004_0200);
+        machine.write(FLASH + ACR, 4, 0x0004_1200);
+        machine.write(FLASH + ACR, 4, 0x0004_0200);
+        machine.write(FLASH + CR, 4, 1 << 16 | 127 << 3 | 2);
+        machine.settle();
+        assert_eq!([0x7_f000, 0x7_f800].map(|place| machine.read(BASE + place, 4)), [0xffff_ffff; 2]);
+        assert_eq!(machine.wires.violations.all(), []);
+        machine.write(FLASH + CR, 4, 1 << 16 | 1 << 11 | 127 << 3 | 2);
+        assert!(machine.wires.violations.all()[0].what.contains("BKER"));
+    }
 
     #[test]
     fn a_double_word_that_was_cut_raises_nmi_again_and_again_until_its_flag_is_cleared() {

@@ -7,7 +7,7 @@ use link::messages::Role;
 
 use board::target::board::Board;
 use board::target::image;
-use board::target::image::CONTROL_RATE;
+use board::target::tick_time;
 use board::target::toolchain::Toolchain;
 use joint_file::named;
 use report::failure::Outcome;
@@ -41,7 +41,7 @@ pub struct Image {
     #[arg(long, value_enum, default_value = "plant")]
     role: ImageRole,
     /// Steps a second, in Hz; a step of all roles but plant is a control period [default: 20000 for plant, 5000 for
-    /// spi-observer, else 10000]
+    /// spi-observer, else 10000, or the next lower rate that the chip has time for]
     #[arg(long, value_name = "HZ", value_parser = clap::value_parser!(u32).range(1..))]
     rate: Option<u32>,
 }
@@ -68,11 +68,13 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
 
 /// Builds an image, with a line that tells how far it is.
 pub fn build(arguments: &Image, board: &Board) -> Outcome<image::Image> {
-    let file = image::joint_file(&arguments.file, &named::load(&arguments.file)?.name);
+    let loaded = named::load(&arguments.file)?;
+    let file = image::joint_file(&arguments.file, &loaded.name);
+    let control_rate = |role| tick_time::usual_rate(&loaded.file.parameters, board, role);
     let (role, usual) = match arguments.role {
         ImageRole::Plant => (Some(Role::Plant), image::DEFAULT_TICK_RATE),
-        ImageRole::Observer => (Some(Role::Observer), CONTROL_RATE),
-        ImageRole::Loop => (Some(Role::Loop), CONTROL_RATE),
+        ImageRole::Observer => (Some(Role::Observer), control_rate(Role::Observer)),
+        ImageRole::Loop => (Some(Role::Loop), control_rate(Role::Loop)),
         ImageRole::SpiObserver => (None, image::SPI_RATE),
     };
     let rate = arguments.rate.unwrap_or(usual);

@@ -1,6 +1,7 @@
 //! What `joint hil --check` does after the run: every board's image and what its tick can reach, clippy over the
 //! firmware, the proofs about the step that need the emulated board, and the tests that need it.
 
+use std::path::Path;
 use std::process::{Command, Stdio};
 
 use link::messages::Role;
@@ -9,8 +10,9 @@ use crate::roles;
 use crate::{board_model, costs, same_bits, tick, worst_case};
 use board::target::board::{Board, Chip};
 use board::target::image;
-use board::target::image::CONTROL_RATE;
 use board::target::lint;
+use board::target::tick_time;
+use joint_file::named;
 use board::target::toolchain::Toolchain;
 use report::failure::{Failure, Outcome};
 use report::output;
@@ -22,12 +24,18 @@ pub fn check(tick_rate: u32, progress: &Progress) -> Outcome<()> {
     let say = |line: &str| progress.say(line);
     progress.stage("preparing the toolchain");
     let toolchain = Toolchain::prepare(&say)?;
+    let joint = named::load(Path::new("q1"))?.file.parameters;
     let mut seen: Vec<Chip> = Vec::new();
     for board in &Board::presets()? {
         // Boards differ in pins and clock; what a role is made of is the same on all with a chip.
         let is_first = !seen.contains(&board.chip());
         seen.push(board.chip());
-        let roles = [(Role::Plant, tick_rate), (Role::Observer, CONTROL_RATE), (Role::Loop, CONTROL_RATE)];
+        let control_rate = |role| tick_time::usual_rate(&joint, board, role);
+        let roles = [
+            (Role::Plant, tick_rate),
+            (Role::Observer, control_rate(Role::Observer)),
+            (Role::Loop, control_rate(Role::Loop)),
+        ];
         let built = if is_first && image::has_room_for_all(board) { &roles[..] } else { &roles[..1] };
         for &(role, rate) in built {
             let what = format!("role {} for {}", image::word(role), board.name());

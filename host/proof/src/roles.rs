@@ -7,6 +7,7 @@ use std::fmt;
 use super::worst_case::CYCLES_AN_INSTRUCTION;
 use board::target::board::Chip;
 use board::target::image::CONTROL_RATE;
+use board::target::tick_time::CONTROLLER;
 use board::target::toolchain::Toolchain;
 use board::target::{Say, measuring};
 use report::failure::{Failure, Outcome};
@@ -58,12 +59,6 @@ fn parse(line: &str) -> Option<RoleCost> {
     Some(RoleCost { role, joint, periods, mean: sum / f64::from(periods.max(1)), most, at, bytes })
 }
 
-/// Part of a control period that a role's worst tick may take: an observer leaves a quarter to the motor controller that
-/// it is a guest of, a whole loop has the chip alone.
-fn share(role: &str) -> f64 {
-    if role == "loop" { 1.0 } else { 0.75 }
-}
-
 /// Part of a control period of the emulated board that a tick of so many instructions takes.
 pub fn part(instructions: f64) -> f64 {
     instructions * CYCLES_AN_INSTRUCTION * f64::from(CONTROL_RATE) / f64::from(Chip::Stm32f405.core_rate())
@@ -71,13 +66,19 @@ pub fn part(instructions: f64) -> f64 {
 
 /// Fails if a role's worst tick takes more of a control period than it may.
 pub fn judge(costs: &[RoleCost]) -> Outcome<()> {
-    let over = |load: &&RoleCost| part(load.most.into()) > share(&load.role);
+    // A whole loop has the chip alone; an observer may take what images are refused by.
+    let over = |load: &&RoleCost| match load.role.as_str() {
+        "loop" => part(load.most.into()) > 1.0,
+        _ => load.most > CONTROLLER,
+    };
     let over: Vec<String> = costs.iter().filter(over).map(RoleCost::to_string).collect();
     if over.is_empty() {
         return Ok(());
     }
-    let help =
-        format!("at {CONTROL_RATE} Hz an observer may take 75 % of a period, a whole loop all: make that tick cheaper");
+    let help = format!(
+        "an observer may take {CONTROLLER} instructions (host/board/src/target/tick_time.rs), a whole loop a period at \
+         {CONTROL_RATE} Hz: make that tick cheaper"
+    );
     Err(Failure::check_failed(format!("too many instructions:\n{}", over.join("\n"))).with_help(help))
 }
 
@@ -92,9 +93,9 @@ mod tests {
         let failure = judge(std::slice::from_ref(&load)).unwrap_err();
         assert!(failure.message().contains("role loop, Q1"), "{failure}");
         assert!(judge(&[RoleCost { most: 12_000, ..load.clone() }]).is_ok());
-        let observer = RoleCost { role: "observer".to_owned(), most: 9001, ..load };
+        let observer = RoleCost { role: "observer".to_owned(), most: CONTROLLER + 1, ..load };
         assert!(judge(std::slice::from_ref(&observer)).is_err());
-        assert!(judge(&[RoleCost { most: 9000, ..observer }]).is_ok());
+        assert!(judge(&[RoleCost { most: CONTROLLER, ..observer }]).is_ok());
         assert_eq!(parse("panicked at x.rs"), None);
     }
 }

@@ -12,6 +12,7 @@ use super::Say;
 use super::board::Board;
 use super::compile::{FIRMWARE, PROFILE, compile, store};
 use super::sources::{self, hexadecimal};
+use super::tick_time;
 use super::toolchain::Toolchain;
 use report::failure::{Failure, Outcome};
 use report::workspace::workspace;
@@ -59,6 +60,7 @@ pub fn build_image(
 ) -> Outcome<Image> {
     let joint_file = readable(joint_file)?;
     check_rate(board, tick_rate)?;
+    tick_time::refuse(&joint_file, board, role, tick_rate)?;
     let place = file_name(&joint_file, board, word(role), tick_rate);
     finish(toolchain, [&joint_file; 2], board, binary(role), &Control::usual(tick_rate), &place, say)
 }

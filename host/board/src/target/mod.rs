@@ -14,6 +14,7 @@ pub mod lint;
 pub mod measuring;
 pub mod packages;
 mod sources;
+pub mod tick_time;
 pub mod sysroot;
 pub mod tool;
 pub mod toolchain;

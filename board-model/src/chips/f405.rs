@@ -40,7 +40,7 @@ const USART1: Place = Place {
 const SPI1: spi::Place =
     spi::Place { number: 1, pins: [(Pin('A', 4), 5), (Pin('A', 5), 5), (Pin('A', 6), 5), (Pin('A', 7), 5)] };
 
-/// RM0090 19.5.11: HSE_RTC is input 2.
+/// RM0090 19.5: HSE_RTC is input 2.
 const TIM11: tim::Place = tim::Place { map: &tim::F4, interrupt: 26, selection: (0x50, 2) };
 
 /// The chip, with an image up to an address.
@@ -52,7 +52,7 @@ pub fn chip(image_end: u32) -> Chip {
         always("EXTI", 0x4001_3c00, Box::new(Exti::f4())),
         always("DBGMCU", 0xe004_2000, Box::new(Dbgmcu::f405())),
         gated(RM, "PWR", 0x4000_7000, (APB1ENR, 28), None, Box::new(pwr_f4::Pwr::default())),
-        gated(RM, "SYSCFG", 0x4001_3800, (APB2ENR, 14), Some((APB2RSTR, 14)), Box::new(Syscfg::default())),
+        gated(RM, "SYSCFG", 0x4001_3800, (APB2ENR, 14), Some((APB2RSTR, 14)), Box::new(Syscfg::f4())),
         gated(RM, "USART1", 0x4001_1000, (APB2ENR, 4), Some((APB2RSTR, 4)), Box::new(Usart::old(USART1))),
         gated(RM, "DMA2", 0x4002_6400, (AHB1ENR, 22), Some((AHB1RSTR, 22)), Box::new(DmaStreams::default())),
         gated(RM, "TIM11", 0x4001_4800, (APB2ENR, 18), Some((APB2RSTR, 18)), Box::new(Timer::new(TIM11))),

@@ -44,7 +44,7 @@ const USART2: Place = Place {
 const SPI2: spi::Place =
     spi::Place { number: 2, pins: [(Pin('B', 12), 5), (Pin('B', 13), 5), (Pin('B', 14), 5), (Pin('B', 15), 5)] };
 
-/// RM0440 30.8.18: HSE/32 is input 3 of both.
+/// RM0440 30.8: HSE/32 is input 3 of both.
 const TIM16: tim::Place = tim::Place { map: &tim::G4, interrupt: 25, selection: (0x5c, 3) };
 const TIM17: tim::Place = tim::Place { interrupt: 26, ..TIM16 };
 
@@ -57,7 +57,7 @@ pub fn chip(image_end: u32) -> Chip {
         always("EXTI", 0x4001_0400, Box::new(Exti::g4())),
         always("DBGMCU", 0xe004_2000, Box::new(Dbgmcu::g474())),
         gated(RM, "PWR", 0x4000_7000, (APB1ENR1, 28), Some((APB1RSTR1, 28)), Box::new(pwr_g4::Pwr::default())),
-        gated(RM, "SYSCFG", 0x4001_0000, (APB2ENR, 0), Some((APB2RSTR, 0)), Box::new(Syscfg::default())),
+        gated(RM, "SYSCFG", 0x4001_0000, (APB2ENR, 0), Some((APB2RSTR, 0)), Box::new(Syscfg::g4())),
         gated(RM, "USART2", 0x4000_4400, (APB1ENR1, 17), Some((APB1RSTR1, 17)), Box::new(Usart::new(USART2, 8))),
         gated(RM, "TIM16", 0x4001_4400, (APB2ENR, 17), Some((APB2RSTR, 17)), Box::new(Timer::new(TIM16))),
         gated(RM, "TIM17", 0x4001_4800, (APB2ENR, 18), Some((APB2RSTR, 18)), Box::new(Timer::new(TIM17))),

@@ -36,7 +36,7 @@ const USART3: Place = Place {
     receive: &[(Pin('B', 11), 7), (Pin('C', 11), 7), (Pin('D', 9), 7)],
 };
 
-/// RM0433 41.6.18: HSE_1MHz is input 2.
+/// RM0433 41.6: HSE_1MHz is input 2.
 const TIM17: tim::Place = tim::Place { map: &tim::H7, interrupt: 118, selection: (0x68, 2) };
 
 /// The chip, with an image up to an address.

@@ -17,10 +17,10 @@ static F4: [Register; 6] = [
 static G4: [Register; 6] = [
     Register::new("EXTI_IMR1", 0x00, 0x1f84_0000, u32::MAX),
     Register::new("EXTI_EMR1", 0x04, 0, u32::MAX),
-    Register::new("EXTI_RTSR1", 0x08, 0, 0xe07f_ffff),
-    Register::new("EXTI_FTSR1", 0x0c, 0, 0xe07f_ffff),
-    Register::new("EXTI_SWIER1", 0x10, 0, 0xe07f_ffff),
-    Register::new("EXTI_PR1", 0x14, 0, 0xe07f_ffff).special(0xe07f_ffff),
+    Register::new("EXTI_RTSR1", 0x08, 0, 0xe07b_ffff),
+    Register::new("EXTI_FTSR1", 0x0c, 0, 0xe07b_ffff),
+    Register::new("EXTI_SWIER1", 0x10, 0, 0xe07b_ffff),
+    Register::new("EXTI_PR1", 0x14, 0, 0xe07b_ffff).special(0xe07b_ffff),
 ];
 
 const IMR: u32 = 0x00;

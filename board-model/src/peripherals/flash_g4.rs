@@ -28,10 +28,10 @@ static MAP: [Register; 8] = [
     Register::new("FLASH_KEYR", KEYR, 0, u32::MAX).special(u32::MAX).any_value(),
     Register::new("FLASH_OPTKEYR", 0x0c, 0, u32::MAX).special(u32::MAX).any_value(),
     Register::new("FLASH_SR", SR, 0, 0x0001_c3fb).special(u32::MAX),
-    Register::new("FLASH_CR", CR, 0xc000_0000, 0xff07_8fff).special(u32::MAX),
-    Register::new("FLASH_ECCR", ECCR, 0, 0xf17f_ffff).special(u32::MAX),
+    Register::new("FLASH_CR", CR, 0xc000_0000, 0xff07_8bff).special(u32::MAX),
+    Register::new("FLASH_ECCR", ECCR, 0, 0xf167_ffff).special(u32::MAX),
     // DBANK (22) is 1 as delivered.
-    Register::new("FLASH_OPTR", OPTR, 0xffef_f8aa, u32::MAX).special(u32::MAX),
+    Register::new("FLASH_OPTR", OPTR, 0xffef_f8aa, 0x7fdf_77ff).special(u32::MAX),
 ];
 
 /// Data sheet of STM32G474, table 52: a page 22 ms, a double word 82 us.

@@ -1,4 +1,4 @@
-//! The independent watchdog: RM0090 section 21, RM0440 section 44, RM0433 section 45. Only the newer ones have a window. It
+//! The independent watchdog: RM0090 section 21, RM0440 section 42, RM0433 section 45. Only the newer ones have a window. It
 //! may stand still while a debugger holds the core.
 
 use super::Peripheral;
@@ -99,7 +99,7 @@ impl Peripheral for Iwdg {
             PR => self.set(0, PR, value, wires),
             RLR => self.set(1, RLR, value, wires),
             SR => wires.violation("IWDG_SR", "is read-only", "RM0090 21.4.4"),
-            _ => wires.violation("IWDG_WINR", "windows are not modelled", "RM0440 44.3.2"),
+            _ => wires.violation("IWDG_WINR", "windows are not modelled", "RM0440 42.3.2"),
         }
     }
 

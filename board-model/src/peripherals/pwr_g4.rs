@@ -13,8 +13,8 @@ const CR5: u32 = 0x80;
 /// RM0440 6.4.
 static MAP: [Register; 8] = [
     Register::new("PWR_CR1", CR1, 0x0200, 0x4707),
-    Register::new("PWR_CR2", CR2, 0, 0x03ef),
-    Register::new("PWR_CR3", 0x08, 0x8000, 0xc51f),
+    Register::new("PWR_CR2", CR2, 0, 0xff),
+    Register::new("PWR_CR3", 0x08, 0x8000, 0xe51f),
     Register::new("PWR_CR4", 0x0c, 0, 0x031f),
     Register::new("PWR_SR1", 0x10, 0, 0x811f).special(u32::MAX),
     Register::new("PWR_SR2", SR2, 0, 0xff00).special(u32::MAX),

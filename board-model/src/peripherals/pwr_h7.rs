@@ -13,11 +13,11 @@ const D3CR: u32 = 0x18;
 
 /// RM0433 6.8.
 static MAP: [Register; 8] = [
-    Register::new("PWR_CR1", CR1, 0xf000_c000, 0xf007_c3f1),
+    Register::new("PWR_CR1", CR1, 0xf000_c000, 0x0007_c3f1),
     Register::new("PWR_CSR1", CSR1, 0x4000, 0x0001_e010).special(u32::MAX),
     Register::new("PWR_CR2", 0x08, 0, 0x00f1_0011).special(0x00f1_0000),
     Register::new("PWR_CR3", CR3, 0x06, 0x0700_0307).special(bit(26)),
-    Register::new("PWR_CPUCR", 0x10, 0, 0x0000_0f67),
+    Register::new("PWR_CPUCR", 0x10, 0, 0x0000_0be7),
     Register::new("PWR_D3CR", D3CR, 0x4000, 0x0000_e000).special(bit(13)),
     Register::new("PWR_WKUPCR", 0x20, 0, 0x3f).special(0x3f),
     Register::new("PWR_WKUPFR", 0x24, 0, 0x3f).special(0x3f),

@@ -164,7 +164,7 @@ impl Oscillators {
 
     /// Whether the external oscillator still runs. With the clock security system on, one that has died is switched off, with
     /// the PLL if that lived on it, and the internal oscillator drives what it drove; the flag of that holds the non-maskable
-    /// interrupt (RM0090 7.2.7, RM0440 7.2.10, RM0433 8.5.3). Without it whatever it drove stands still.
+    /// interrupt (RM0090 7.2.7, RM0440 7.2.9, RM0433 8.5.3). Without it whatever it drove stands still.
     pub fn watch(&mut self, pll_source: Origin, registers: &mut Registers, wires: &mut Wires) {
         self.dies_at = wires.surroundings.dies_at.filter(|time| *time > wires.now);
         if wires.surroundings.is_dead(wires.now) {
@@ -243,7 +243,7 @@ pub fn peripheral_divider(code: u32) -> u64 {
 }
 
 /// Clock of the timers on a peripheral bus: that of the bus if it is not divided, else twice that (RM0090 7.2, RM0440 7.2,
-/// RM0433 8.5.9 with TIMPRE 0).
+/// RM0433 8.7.6 with TIMPRE 0).
 pub fn timer_clock(bus: u64, peripherals: u64) -> u64 {
     if bus == peripherals { bus } else { 2 * peripherals }
 }

@@ -14,20 +14,20 @@ const INTERNAL: u64 = 16_000_000;
 const READY: u32 = bit(1) | bit(17) | bit(25) | bit(27);
 const FLAGS: u32 = bits(31, 25);
 
-/// RM0090 7.3.
+/// RM0090 7.3, without what STM32F405 lacks: Ethernet, camera, cryptography, a PLL for audio of its own.
 static MAP: [Register; 18] = [
     Register::new("RCC_CR", CR, 0x83, bits(15, 3) | bits(1, 0) | bits(19, 16) | bits(27, 24))
         .special(READY | bits(15, 8)),
     Register::new("RCC_PLLCFGR", PLLCFGR, 0x2400_3010, 0x0f43_7fff),
     Register::new("RCC_CFGR", CFGR, 0, 0xffff_fcff).special(0xc),
-    Register::new("RCC_CIR", CIR, 0, 0x00ff_7fff).special(0x00ff_00ff),
-    Register::new("RCC_AHB1RSTR", 0x10, 0, 0x2260_11ff),
-    Register::new("RCC_AHB2RSTR", 0x14, 0, 0xf1),
+    Register::new("RCC_CIR", CIR, 0, 0x00bf_3fbf).special(0x00bf_00bf),
+    Register::new("RCC_AHB1RSTR", 0x10, 0, 0x2060_11ff),
+    Register::new("RCC_AHB2RSTR", 0x14, 0, 0xc0),
     Register::new("RCC_AHB3RSTR", 0x18, 0, 1),
     Register::new("RCC_APB1RSTR", 0x20, 0, 0x36fe_c9ff),
     Register::new("RCC_APB2RSTR", 0x24, 0, 0x0007_5933),
-    Register::new("RCC_AHB1ENR", 0x30, 0x0010_0000, 0x7e74_11ff),
-    Register::new("RCC_AHB2ENR", 0x34, 0, 0xf1),
+    Register::new("RCC_AHB1ENR", 0x30, 0x0010_0000, 0x6074_11ff),
+    Register::new("RCC_AHB2ENR", 0x34, 0, 0xc0),
     Register::new("RCC_AHB3ENR", 0x38, 0, 1),
     Register::new("RCC_APB1ENR", 0x40, 0, 0x36fe_c9ff),
     Register::new("RCC_APB2ENR", 0x44, 0, 0x0007_5f33),

@@ -14,12 +14,12 @@ const CSR: u32 = 0x94;
 const INTERNAL: u64 = 16_000_000;
 const READY: u32 = bit(10) | bit(17) | bit(25);
 const FLAGS: u32 = bits(31, 25);
-/// RM0440 7.2.17: timers capture the external oscillator divided by this.
+/// RM0440 7.2.16: timers capture the external oscillator divided by this.
 const MEASURED: u32 = 32;
 /// RM0440 7.2.7: a step of more than this needs a microsecond at half speed.
 const STEP: u64 = 80_000_000;
 
-/// RM0440 7.4.
+/// RM0440 7.4, without the cryptography of STM32G484.
 static MAP: [Register; 28] = [
     Register::new("RCC_CR", CR, 0x0500, bits(10, 8) | bits(19, 16) | bits(25, 24)).special(READY),
     Register::new("RCC_ICSCR", 0x04, 0x4000_0000, 0x7fff_0000).special(0x00ff_0000),
@@ -29,19 +29,19 @@ static MAP: [Register; 28] = [
     Register::new("RCC_CIFR", CIFR, 0, 0x73b).special(u32::MAX),
     Register::new("RCC_CICR", CICR, 0, 0x73b).special(u32::MAX),
     Register::new("RCC_AHB1RSTR", 0x28, 0, 0x111f),
-    Register::new("RCC_AHB2RSTR", 0x2c, 0, 0x050f_607f),
+    Register::new("RCC_AHB2RSTR", 0x2c, 0, 0x040f_607f),
     Register::new("RCC_AHB3RSTR", 0x30, 0, 0x0101),
     Register::new("RCC_APB1RSTR1", 0x38, 0, 0xd2fe_c13f),
     Register::new("RCC_APB1RSTR2", 0x3c, 0, 0x0103),
     Register::new("RCC_APB2RSTR", 0x40, 0, 0x0437_f801),
     Register::new("RCC_AHB1ENR", 0x48, 0x0100, 0x111f),
-    Register::new("RCC_AHB2ENR", 0x4c, 0, 0x050f_607f),
+    Register::new("RCC_AHB2ENR", 0x4c, 0, 0x040f_607f),
     Register::new("RCC_AHB3ENR", 0x50, 0, 0x0101),
     Register::new("RCC_APB1ENR1", 0x58, 0x0400, 0xd2fe_cd3f),
     Register::new("RCC_APB1ENR2", 0x5c, 0, 0x0103),
     Register::new("RCC_APB2ENR", 0x60, 0, 0x0437_f801),
     Register::new("RCC_AHB1SMENR", 0x68, 0x131f, 0x131f),
-    Register::new("RCC_AHB2SMENR", 0x6c, 0x050f_667f, 0x050f_667f),
+    Register::new("RCC_AHB2SMENR", 0x6c, 0x040f_667f, 0x040f_667f),
     Register::new("RCC_AHB3SMENR", 0x70, 0x0101, 0x0101),
     Register::new("RCC_APB1SMENR1", 0x78, 0xd2fe_cd3f, 0xd2fe_cd3f),
     Register::new("RCC_APB1SMENR2", 0x7c, 0x0103, 0x0103),
@@ -56,7 +56,7 @@ static LAYOUT: Layout = Layout {
     codes: [1, 2, 3],
     selection: (CFGR, 2),
     refusal: "selects a source that is not ready, or the PLL without PLLREN",
-    sections: ["RM0440 7.4.1", "RM0440 7.4.1 HSEBYP", "RM0440 7.2.8"],
+    sections: ["RM0440 7.4.1", "RM0440 7.4.1 HSEBYP", "RM0440 7.2.7"],
     security: [(CIFR, 8), (CICR, 8)],
 };
 

@@ -19,7 +19,7 @@ const INTERNAL: u64 = 64_000_000;
 const READY: u32 = bit(2) | bit(5) | bit(8) | bit(13) | bit(14) | bit(15) | bit(17) | bit(25) | bit(27) | bit(29);
 const FLAGS: u32 = 0x55fa_0000;
 
-/// RM0433 8.7.
+/// RM0433 8.7, without the cryptography of STM32H753.
 static MAP: [Register; 45] = [
     Register::new("RCC_CR", CR, 0xc025, 0x3f0f_f3bf).special(READY),
     Register::new("RCC_HSICFGR", 0x04, 0x4000_0000, 0x7f00_0fff).special(0xfff),
@@ -38,9 +38,9 @@ static MAP: [Register; 45] = [
     Register::new("RCC_PLL3DIVR", 0x40, 0x0101_0280, 0x7f7f_ffff),
     Register::new("RCC_PLL3FRACR", 0x44, 0, 0xfff8),
     Register::new("RCC_D1CCIPR", 0x4c, 0, 0x3001_0033),
-    Register::new("RCC_D2CCIP1R", 0x50, 0, 0xb137_3777),
-    Register::new("RCC_D2CCIP2R", 0x54, 0, 0x70f0_3337),
-    Register::new("RCC_D3CCIPR", 0x58, 0, 0x77e3_fc07),
+    Register::new("RCC_D2CCIP1R", 0x50, 0, 0xb137_71c7),
+    Register::new("RCC_D2CCIP2R", 0x54, 0, 0x70f0_333f),
+    Register::new("RCC_D3CCIPR", 0x58, 0, 0x77e3_ff07),
     Register::new("RCC_CIER", 0x60, 0, 0x03ff),
     Register::new("RCC_CIFR", CIFR, 0, 0x07ff).special(u32::MAX),
     Register::new("RCC_CICR", CICR, 0, 0x07ff).special(u32::MAX),
@@ -48,21 +48,21 @@ static MAP: [Register; 45] = [
     Register::new("RCC_CSR", 0x74, 0, 3).special(bit(1)),
     Register::new("RCC_AHB3RSTR", 0x7c, 0, 0x8001_5031),
     Register::new("RCC_AHB1RSTR", 0x80, 0, 0x0a00_8023),
-    Register::new("RCC_AHB2RSTR", 0x84, 0, 0x0271),
+    Register::new("RCC_AHB2RSTR", 0x84, 0, 0x0241),
     Register::new("RCC_AHB4RSTR", 0x88, 0, 0x0328_07ff),
     Register::new("RCC_APB3RSTR", 0x8c, 0, 0x0008),
     Register::new("RCC_APB1LRSTR", 0x90, 0, 0xe8ff_c3ff),
     Register::new("RCC_APB1HRSTR", 0x94, 0, 0x0136),
     Register::new("RCC_APB2RSTR", 0x98, 0, 0x31d7_3033),
-    Register::new("RCC_APB4RSTR", 0x9c, 0, 0x0020_dfae),
+    Register::new("RCC_APB4RSTR", 0x9c, 0, 0x0020_deaa),
     Register::new("RCC_GCR", 0xa0, 0, 1),
     Register::new("RCC_RSR", RSR, 0x00e8_0000, 0x55fb_0000).special(FLAGS),
     Register::new("RCC_AHB3ENR", 0xd4, 0, 0x0001_5031),
     Register::new("RCC_AHB1ENR", 0xd8, 0, 0x1e03_8023),
-    Register::new("RCC_AHB2ENR", 0xdc, 0, 0xe000_0271),
+    Register::new("RCC_AHB2ENR", 0xdc, 0, 0xe000_0241),
     Register::new("RCC_AHB4ENR", 0xe0, 0, 0x1328_07ff),
     Register::new("RCC_APB3ENR", 0xe4, 0, 0x0048),
-    Register::new("RCC_APB1LENR", 0xe8, 0, 0xe8ff_cbff),
+    Register::new("RCC_APB1LENR", 0xe8, 0, 0xe8ff_c3ff),
     Register::new("RCC_APB1HENR", 0xec, 0, 0x0136),
     Register::new("RCC_APB2ENR", 0xf0, 0, 0x31d7_3033),
     Register::new("RCC_APB4ENR", 0xf4, 0x0001_0000, 0x0021_deaa),

@@ -6,14 +6,22 @@ use crate::wires::Wires;
 
 const EXTICR1: u32 = 0x08;
 
-static MAP: [Register; 6] = [
-    Register::new("SYSCFG_MEMRMP", 0x00, 0, 0x0000_0107),
-    Register::new("SYSCFG_PMC", 0x04, 0, 0x0080_0000),
-    Register::new("SYSCFG_EXTICR1", EXTICR1, 0, 0xffff),
-    Register::new("SYSCFG_EXTICR2", EXTICR1 + 4, 0, 0xffff),
-    Register::new("SYSCFG_EXTICR3", EXTICR1 + 8, 0, 0xffff),
-    Register::new("SYSCFG_EXTICR4", EXTICR1 + 12, 0, 0xffff),
-];
+/// RM0090 9.2, as far as STM32F405 has it; RM0440 10.2.
+static F4: [Register; 6] = map([("SYSCFG_MEMRMP", 0, 0x3), ("SYSCFG_PMC", 0, 0x0080_0000)]);
+static G4: [Register; 6] = map([("SYSCFG_MEMRMP", 0, 0x0107), ("SYSCFG_CFGR1", 0x7c00_0001, 0xfcff_0300)]);
+
+/// The register map, with names, reset values and fields of the two that differ.
+const fn map(first: [(&'static str, u32, u32); 2]) -> [Register; 6] {
+    let [(memory, memory_reset, memory_fields), (other, other_reset, other_fields)] = first;
+    [
+        Register::new(memory, 0x00, memory_reset, memory_fields),
+        Register::new(other, 0x04, other_reset, other_fields),
+        Register::new("SYSCFG_EXTICR1", EXTICR1, 0, 0xffff),
+        Register::new("SYSCFG_EXTICR2", EXTICR1 + 4, 0, 0xffff),
+        Register::new("SYSCFG_EXTICR3", EXTICR1 + 8, 0, 0xffff),
+        Register::new("SYSCFG_EXTICR4", EXTICR1 + 12, 0, 0xffff),
+    ]
+}
 
 /// System configuration.
 #[derive(Debug)]
@@ -21,9 +29,15 @@ pub struct Syscfg {
     registers: Registers,
 }
 
-impl Default for Syscfg {
-    fn default() -> Self {
-        Self { registers: Registers::new(&MAP) }
+impl Syscfg {
+    /// Of F405.
+    pub fn f4() -> Self {
+        Self { registers: Registers::new(&F4) }
+    }
+
+    /// Of G474.
+    pub fn g4() -> Self {
+        Self { registers: Registers::new(&G4) }
     }
 }
 

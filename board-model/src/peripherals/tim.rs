@@ -1,6 +1,6 @@
 //! Timers whose first channel can capture the external oscillator, divided, so that an image can measure it against the
 //! internal one before it relies on it: TIM11 of STM32F405 (RM0090 7.2.11 and section 19), TIM16 and TIM17 of STM32G474
-//! (RM0440 7.2.17 and section 30), TIM17 of STM32H743 (RM0433 8.5.10 and section 41). Counter, prescaler, reload and capture of
+//! (RM0440 7.2.16 and section 30), TIM17 of STM32H743 (RM0433 8.5.8 and section 41). Counter, prescaler, reload and capture of
 //! rising edges; no other input, no output and no slave mode.
 
 use super::Peripheral;

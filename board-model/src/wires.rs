@@ -181,6 +181,9 @@ pub struct Surroundings {
     pub external_clock: Option<u64>,
     /// The one or the other dies then.
     pub dies_at: Option<Time>,
+    /// A timer that measures it counts so many thousandths too fast: the internal oscillator is that much off. All else has it
+    /// exact.
+    pub internal_off: i64,
 }
 
 impl Surroundings {

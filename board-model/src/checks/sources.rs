@@ -1,16 +1,20 @@
 //! Other clock sources than the one that the board is sold with: every usual rate, by crystal and by clock, none at all, and
 //! one that dies in a run. Either the tick has the rate that the hello says, or the hello says that it has not.
 
+use std::collections::BTreeMap;
+
 use link::messages::{ClockSource, Hello};
 
 use super::outputs::{is_enabled, start_run};
 use super::{boot, clean};
-use crate::boards::Subject;
+use crate::boards::{Subject, usual_surroundings};
 use crate::talk::Talk;
 use crate::wires::{MICROSECOND, SECOND, Surroundings, Time};
 
 /// What crystals and clocks of boards with these chips have [Hz].
 const RATES: [u64; 6] = [8_000_000, 12_000_000, 16_000_000, 24_000_000, 25_000_000, 26_000_000];
+/// How far the internal oscillator is off at room temperature, by the data sheets of all three chips [thousandths].
+const INTERNAL_OFF: i64 = 10;
 /// Without its clock a board has this long until its outputs are off: the watchdog's half second and its spread.
 const OUTPUTS_OFF: Time = SECOND * 6 / 10;
 
@@ -31,17 +35,32 @@ pub fn dead_crystal(subject: &Subject) -> Result<String, String> {
 /// Crystals and clocks that other boards with the chip have: none may take a clock out of its range, or the line away, and the
 /// hello tells the truth about the tick.
 pub fn other_crystals(subject: &Subject) -> Result<String, String> {
-    let (mut said, mut wrong) = (Vec::new(), Vec::new());
+    let (mut said, mut wrong) = (BTreeMap::new(), Vec::new());
     for rate in RATES {
-        for (kind, source) in [("crystal", Surroundings::crystal(rate)), ("clock", Surroundings::clock(rate))] {
+        let off = |internal_off| Surroundings { internal_off, ..of_usual_kind(subject, rate) };
+        for (kind, source) in [
+            ("crystal", Surroundings::crystal(rate)),
+            ("clock", Surroundings::clock(rate)),
+            ("source by an internal oscillator that is too fast,", off(INTERNAL_OFF)),
+            ("source by an internal oscillator that is too slow,", off(-INTERNAL_OFF)),
+        ] {
             let mut talk = Talk::new(subject.start_with(source)?);
             match truthful(&mut talk) {
-                Ok(hello) => said.push(format!("{:?}", hello.clock)),
+                Ok(hello) => *said.entry(format!("{:?}", hello.clock)).or_insert(0) += 1,
                 Err(why) => wrong.push(format!("a {kind} of {rate} Hz: {why}")),
             }
         }
     }
+    let said: Vec<String> = said.iter().map(|(clock, times)| format!("{times} times {clock}")).collect();
     if wrong.is_empty() { Ok(said.join(", ")) } else { Err(wrong.join("\n")) }
+}
+
+/// A source of the kind that the board is sold with.
+fn of_usual_kind(subject: &Subject, rate: u64) -> Surroundings {
+    match usual_surroundings(&subject.board).crystal {
+        Some(_) => Surroundings::crystal(rate),
+        None => Surroundings::clock(rate),
+    }
 }
 
 /// The board answers, and what it says about its tick is so.

@@ -107,7 +107,9 @@ impl Timer {
     }
 
     fn rate(&self, wires: &Wires) -> u64 {
-        wires.clocks.timers / u64::from(self.prescaler + 1)
+        let clock = wires.clocks.timers as i64;
+        let off = clock / 1000 * wires.surroundings.internal_off;
+        (clock + off) as u64 / u64::from(self.prescaler + 1)
     }
 
     /// The counter goes on from a value.

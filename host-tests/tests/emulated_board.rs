@@ -12,7 +12,9 @@ use board::target::image::{build_image, preset_file};
 use board::target::toolchain::Toolchain;
 use link::PROTOCOL_VERSION;
 use link::framing::{Receiver, encode};
-use link::messages::{Clock, ClockSource, Command, FromBoard, Hello, Role, RunMode, RunSettings, Sample, Schedule, ToBoard};
+use link::messages::{
+    Clock, ClockSource, Command, FromBoard, Hello, Role, RunMode, RunSettings, Sample, Schedule, ToBoard,
+};
 use model_core::gears::design::design;
 use model_core::gears::{Model, Tables, Torques};
 use model_core::numbers::digest::{self, chain};

@@ -14,8 +14,8 @@ pub mod lint;
 pub mod measuring;
 pub mod packages;
 mod sources;
-pub mod tick_time;
 pub mod sysroot;
+pub mod tick_time;
 pub mod tool;
 pub mod toolchain;
 

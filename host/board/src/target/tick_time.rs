@@ -9,7 +9,6 @@ use model_core::gears::design::{Effort, StepSize};
 use parameters::JointParameters;
 
 use super::board::Board;
-use super::image::CONTROL_RATE;
 use report::failure::{Failure, Outcome};
 
 /// Instructions that observer and compensation take in a tick at most, their role's own work with them. What counts them holds
@@ -37,12 +36,13 @@ fn load(parameters: &JointParameters, board: &Board, role: Role, rate: u32) -> O
 }
 
 fn fits(parameters: &JointParameters, board: &Board, role: Role, rate: u32) -> bool {
-    board.core_rate().is_multiple_of(rate) && load(parameters, board, role, rate).is_none_or(|(part, share)| part <= share)
+    board.core_rate().is_multiple_of(rate)
+        && load(parameters, board, role, rate).is_none_or(|(part, share)| part <= share)
 }
 
 /// The highest usual rate at which a role that controls fits into its period; the usual one where none does [Hz].
 pub fn usual_rate(parameters: &JointParameters, board: &Board, role: Role) -> u32 {
-    USUAL.into_iter().find(|rate| fits(parameters, board, role, *rate)).unwrap_or(CONTROL_RATE)
+    USUAL.into_iter().find(|rate| fits(parameters, board, role, *rate)).unwrap_or(USUAL[0])
 }
 
 /// Refuses an image whose worst tick outlasts what it may take of its period.

@@ -236,6 +236,21 @@ pub const ALL: &[Mistake] = &[
         &[at(0x4000_3804, Clear(1 << 12))],
         "SPI: every second byte asks for DMA",
     ),
+    Mistake::new(
+        Stm32g474,
+        Observer,
+        memory::survives_some_cuts,
+        &[at(0x4002_2018, Omit)],
+        "flash: the flag of a double error is not cleared in NMI",
+    ),
+    Mistake::new(
+        Stm32g474,
+        Observer,
+        memory::one_bank,
+        &[at(0x4002_2014, Set(1 << 11))],
+        "flash: the second bank of a chip with one",
+    )
+    .short(),
     // STM32H743.
     Mistake::new(Stm32h743, Plant, boot::answers, &[at(0x5802_4818, Omit)], "voltage scale 3 at 400 MHz").short(),
     Mistake::new(Stm32h743, Plant, boot::answers, &[at(0x5802_480c, Omit)], "the supply is not set up"),
@@ -259,5 +274,12 @@ pub const ALL: &[Mistake] = &[
         memory::keeps,
         &[at(0x5200_210c, Swap(0x84, 0x84, 0x04))],
         "flash: the erase is not started",
+    ),
+    Mistake::new(
+        Stm32h743,
+        Observer,
+        memory::survives_some_cuts,
+        &[at(0xe000_ed14, Clear(1 << 8))],
+        "flash: a word that may be damaged is read with bus faults on",
     ),
 ];

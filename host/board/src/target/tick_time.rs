@@ -11,28 +11,32 @@ use parameters::JointParameters;
 use super::board::Board;
 use report::failure::{Failure, Outcome};
 
-/// Instructions that observer and compensation take in a tick at most, their role's own work with them. What counts them holds
-/// them against this.
-pub const CONTROLLER: u32 = 6500;
+/// Instructions that a tick of the role `observer` takes at most. What counts them holds them against this and the next.
+pub const OBSERVER: u32 = 6500;
+/// Those of a tick of the role `loop` beside the joint's step: the worst of both do not meet.
+const LOOP: u32 = 5600;
 /// Part of the period that an observer may take: the rest is the motor controller's whose guest it is.
 const GUEST: f64 = 0.75;
 /// Rates that are usual for a control period [Hz].
 const USUAL: [u32; 5] = [10_000, 8000, 5000, 4000, 2000];
 
-/// Part of a period that the worst tick of a role takes, against the part that it may take. The plant is fitted to its period by
-/// its own budget.
-fn load(parameters: &JointParameters, board: &Board, role: Role, rate: u32) -> Option<(f64, f64)> {
-    let processor = board.processor();
-    let (instructions, share) = match role {
-        Role::Plant => return None,
-        Role::Observer => (f64::from(CONTROLLER), GUEST),
+/// Instructions of the worst tick of a role that controls, none for the plant, which is fitted to its period by its own budget.
+pub fn worst(parameters: &JointParameters, board: &Board, role: Role, rate: u32) -> Option<f64> {
+    match role {
+        Role::Plant => None,
+        Role::Observer => Some(OBSERVER.into()),
         Role::Loop => {
             let step_size = StepSize::new(parameters);
-            let substeps = step_size.substeps(rate, Effort::Within(processor)).ok()?;
-            (f64::from(CONTROLLER) + step_size.cost().all_crossing(substeps), 1.0)
+            let substeps = step_size.substeps(rate, Effort::Within(board.processor())).ok()?;
+            Some(f64::from(LOOP) + step_size.cost().all_crossing(substeps))
         }
-    };
-    Some((processor.part(instructions, rate), share))
+    }
+}
+
+/// Part of a period that it takes, against the part that it may take: a whole loop has the chip alone.
+fn load(parameters: &JointParameters, board: &Board, role: Role, rate: u32) -> Option<(f64, f64)> {
+    let share = if role == Role::Observer { GUEST } else { 1.0 };
+    Some((board.processor().part(worst(parameters, board, role, rate)?, rate), share))
 }
 
 fn fits(parameters: &JointParameters, board: &Board, role: Role, rate: u32) -> bool {

@@ -63,6 +63,7 @@ pub trait Slots {
 }
 
 /// What a slot was found to hold.
+#[allow(clippy::large_enum_variant, reason = "no allocator to box with")]
 enum Content {
     Empty,
     Damaged,

@@ -33,7 +33,7 @@ fn the_longest_hello_arrives() {
         digest_good: true,
         tick_rate: u32::MAX,
         timer_rate: u32::MAX,
-        clock: Clock::NotModelled,
+        clock: Clock { source: ClockSource::OtherFrequency { measured: u32::MAX }, tolerance: u32::MAX },
         planets: u8::MAX,
         queue_capacity: u16::MAX,
         last_panic: Some(text()),

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use host_tests::tolerance::compensation::{SHORT_LATE, SHORT_PEAK, SHORT_RMS};
 use model_core::gears::{Kinematics, Mechanics};
 use rayon::prelude::*;
-use reference::closed_loop::{Figures, Motion, MotionProfile, Run};
+use reference::closed_loop::{Figures, Motion, MotionProfile, Run, minimum_jerk, swelling};
 use scenario::case::Case;
 use scenario::controller::ControllerName::{self, MotorPid, NoPreview, Preview};
 use scenario::execution::RunSpec;
@@ -105,15 +105,13 @@ impl Excessive {
             }
             Kind::Sine => {
                 let rate = (acceleration / height).sqrt();
-                let part = rate / TAU;
-                let [swell, swelling, jolt] = minimum_jerk((part * time).min(1.0));
                 let (sine, cosine) = (rate * time).sin_cos();
-                let [place, speed, bend] = [height * sine, height * rate * cosine, -height * rate * rate * sine];
-                Motion {
-                    position: swell * place,
-                    speed: part * swelling * place + swell * speed,
-                    acceleration: part * part * jolt * place + 2.0 * part * swelling * speed + swell * bend,
-                }
+                let motion = Motion {
+                    position: height * sine,
+                    speed: height * rate * cosine,
+                    acceleration: -height * rate * rate * sine,
+                };
+                swelling(time, TAU / rate, motion)
             }
             Kind::Trapezoid => {
                 let ramp = lasts / 3.0;
@@ -153,15 +151,6 @@ impl MotionProfile for Excessive {
             Motion { position: if self.kind == Kind::Sine { 0.0 } else { self.height }, ..Motion::default() }
         }
     }
-}
-
-/// From 0 to 1 over 0 to 1, with both derivatives.
-fn minimum_jerk(s: f64) -> [f64; 3] {
-    [
-        s * s * s * (10.0 + s * (6.0 * s - 15.0)),
-        30.0 * s * s * (1.0 - s) * (1.0 - s),
-        60.0 * s * (1.0 - s) * (1.0 - 2.0 * s),
-    ]
 }
 
 /// What the motor can do to a plant, all at the link.

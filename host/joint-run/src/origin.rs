@@ -50,7 +50,7 @@ pub fn clock_in_words(clock: Clock) -> String {
             "internal oscillator and PLL: what came from outside was measured as {:.2} MHz, which is not what the board file says",
             f64::from(measured) / 1e6
         ),
-        ClockSource::Failed => "failed: the tick rate is not the stated one".to_owned(),
+        ClockSource::Failed => "no PLL came up: the tick rate is not the stated one".to_owned(),
         ClockSource::NotModelled => "not modelled: emulated board".to_owned(),
     };
     match clock.tolerance {

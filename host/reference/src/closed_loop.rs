@@ -8,7 +8,7 @@ mod run;
 mod sensing;
 
 pub use metrics::{Figures, deviation};
-pub use profile::{MotionProfile, Profile, SharedProfile};
+pub use profile::{MotionProfile, Profile, SharedProfile, minimum_jerk, swelling};
 pub use rivals::{Impedance, ImpedanceLaw, LoadCascade, MotorPid, OutputIntegral, VelocitySign};
 pub use run::{Run, Sample};
 pub use sensing::{LinkTracker, MotorTracker};

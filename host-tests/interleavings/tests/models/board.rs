@@ -20,7 +20,7 @@ use interleavings::timing_report::Resources;
 use interleavings::work::Work;
 use link::framing::{Receiver, encode};
 use link::messages::{
-    Clock, Command, FromBoard, Hello, Log, MemoryState, Role, RunMode, RunSettings, Schedule, ToBoard,
+    Clock, ClockSource, Command, FromBoard, Hello, Log, MemoryState, Role, RunMode, RunSettings, Schedule, ToBoard,
 };
 use loom::model::Builder;
 use loom::sync::atomic::Ordering::Relaxed;
@@ -300,7 +300,7 @@ fn hello() -> Hello {
         digest_good: true,
         tick_rate: 1,
         timer_rate: 1,
-        clock: Clock::NotModelled,
+        clock: Clock::of(ClockSource::NotModelled),
         planets: 3,
         queue_capacity: 127,
         last_panic: None,

@@ -53,7 +53,7 @@ pub enum Profile {
 }
 
 /// Minimum-jerk path from 0 to 1 over 0 to 1 with its first two derivatives.
-pub(super) fn minimum_jerk(part: f64) -> [f64; 3] {
+pub fn minimum_jerk(part: f64) -> [f64; 3] {
     let s = part.clamp(0.0, 1.0);
     [
         s * s * s * (10.0 + s * (6.0 * s - 15.0)),
@@ -62,9 +62,10 @@ pub(super) fn minimum_jerk(part: f64) -> [f64; 3] {
     ]
 }
 
-/// A motion times a swelling factor, by the product rule.
-fn swelling(time: f64, motion: Motion) -> Motion {
-    let [f, df, ddf] = minimum_jerk(time);
+/// A motion that swells up to itself over so many seconds, by the product rule.
+pub fn swelling(time: f64, over: f64, motion: Motion) -> Motion {
+    let [f, df, ddf] = minimum_jerk(time / over);
+    let (df, ddf) = (df / over, ddf / (over * over));
     Motion {
         position: f * motion.position,
         speed: df * motion.position + f * motion.speed,
@@ -89,7 +90,7 @@ fn uniform(random: &mut ChaCha8Rng) -> f64 {
 impl MotionProfile for Profile {
     fn at(&self, time: f64) -> Motion {
         match *self {
-            Self::Sine { amplitude, frequency } => swelling(time, sine(amplitude, frequency, 0.0, time)),
+            Self::Sine { amplitude, frequency } => swelling(time, 1.0, sine(amplitude, frequency, 0.0, time)),
             Self::Random { amplitude, highest, seed } => {
                 let mut random = ChaCha8Rng::seed_from_u64(seed);
                 let mut sum = Motion::default();
@@ -101,7 +102,7 @@ impl MotionProfile for Profile {
                     sum.speed += part.speed;
                     sum.acceleration += part.acceleration;
                 }
-                swelling(time, sum)
+                swelling(time, 1.0, sum)
             }
             Self::Steps { height, duration, rest, seed } => {
                 let mut random = ChaCha8Rng::seed_from_u64(seed);

@@ -143,7 +143,11 @@ fn noise(address: u32) -> u64 {
 pub struct Caches {
     /// Sections of the register, and of what a cache returns.
     sections: [&'static str; 2],
-    /// That of data may hold what was there before.
+    /// That of data is on after a reset.
+    is_on_after_reset: bool,
+    /// It holds something, also while it is off.
+    filled: bool,
+    /// What it holds may be what was there before.
     stale: bool,
 }
 
@@ -154,9 +158,9 @@ impl Caches {
     /// Bits that writes change by way of [`Caches::written`].
     pub const SPECIAL: u32 = bits(12, 11);
 
-    /// Empty, with the sections of the access control register and of what a cache returns.
-    pub fn new(sections: [&'static str; 2]) -> Self {
-        Self { sections, stale: false }
+    /// As after a reset, with the sections of the access control register and of what a cache returns.
+    pub fn new(sections: [&'static str; 2], is_on_after_reset: bool) -> Self {
+        Self { sections, is_on_after_reset, filled: is_on_after_reset, stale: false }
     }
 
     /// Whether that of data is on.
@@ -172,22 +176,22 @@ impl Caches {
                 wires.violation("FLASH_ACR", what, self.sections[0]);
             }
         }
+        self.filled |= Self::keeps_data(registers);
         if value & bit(Self::RESETS[1]) != 0 && value & bit(Self::ENABLES[1]) == 0 {
-            self.stale = false;
+            (self.filled, self.stale) = (false, false);
         }
         registers.change(ACR, value & Self::SPECIAL, Self::SPECIAL);
     }
 
     /// Flash changes; whether the cache of data is on while it does.
     pub fn flash_changes(&mut self, registers: &Registers) -> bool {
-        let is_on = Self::keeps_data(registers);
-        self.stale |= is_on;
-        is_on
+        self.stale |= self.filled;
+        Self::keeps_data(registers)
     }
 
     /// Flash is read.
-    pub fn flash_is_read(&self, wires: &mut Wires) {
-        if self.stale {
+    pub fn flash_is_read(&self, registers: &Registers, wires: &mut Wires) {
+        if self.stale && Self::keeps_data(registers) {
             let what = "is read through a data cache that was not reset since flash was changed";
             wires.violation("flash", what, self.sections[1]);
         }
@@ -195,7 +199,7 @@ impl Caches {
 
     /// As after a reset.
     pub fn reset(&mut self) {
-        self.stale = false;
+        *self = Self::new(self.sections, self.is_on_after_reset);
     }
 }
 

@@ -47,7 +47,7 @@ impl Flash {
             array: Array::new(image_end, SIZE, 4, false),
             lock: Lock::default(),
             work: Work::default(),
-            caches: Caches::new(["RM0090 3.9.1", "RM0090 3.5.2"]),
+            caches: Caches::new(["RM0090 3.9.1", "RM0090 3.5.2"], false),
         }
     }
 
@@ -141,7 +141,7 @@ impl Peripheral for Flash {
         if !self.array.holds(address) {
             return None;
         }
-        self.caches.flash_is_read(wires);
+        self.caches.flash_is_read(&self.registers, wires);
         Some(self.array.read(address, size))
     }
 

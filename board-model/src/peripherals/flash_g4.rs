@@ -59,7 +59,7 @@ impl Flash {
             lock: Lock::default(),
             work: Work::default(),
             half: None,
-            caches: Caches::new(["RM0440 3.7.1", "RM0440 3.3.4"]),
+            caches: Caches::new(["RM0440 3.7.1", "RM0440 3.3.4"], true),
         }
     }
 
@@ -200,7 +200,7 @@ impl Peripheral for Flash {
         if !self.array.holds(address) {
             return None;
         }
-        self.caches.flash_is_read(wires);
+        self.caches.flash_is_read(&self.registers, wires);
         if self.array.is_damaged(address) {
             // RM0440 3.7.7: the first one is kept: its bank, and the double word's place in that.
             // In one bank two of them are read together, and the second one has a flag of its own.

@@ -1,6 +1,9 @@
 //! A command that is killed at any moment leaves no half-written file under a final name, and the same command run again
 //! gives what a run that nobody has killed gives, and clears away what was left.
 //!
+//! Seen to fail: with results that are written in parts under their final names, every command has a kill that finds one half
+//! written.
+//!
 //! The short run has fixed seeds; `KILLS=1000` makes as many of each command, from a seed that is printed and that `KILLS_SEED`
 //! brings again.
 

@@ -93,8 +93,9 @@ impl Flash for SecondBank {
     }
 
     fn erase(&mut self, slot: Slot) {
-        // SAFETY: sector erase (2), the slot's sector (8), by double words (4), start (7).
+        // Sector erase (2), the slot's sector (8), by double words (4), start (7).
         let bits = 1 << 2 | (slot.index() as u32) << 8 | 3 << 4 | 1 << 7;
+        // SAFETY: what it erases is a slot, which is nobody else's.
         self.flash.bank2().cr().write(|w| unsafe { w.bits(bits) });
     }
 

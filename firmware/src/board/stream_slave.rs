@@ -93,8 +93,8 @@ impl Unit for StreamSpi {
         let (spi, dma, clocks, exti, syscfg) = unit::take(device);
         let line = 1 << select.number;
         let (port, shift) = (u32::from(select.port), 4 * u32::from(select.number % 4));
-        // SAFETY: of the register only the field of this line changes, to the port of the chip select.
         let to_port = |bits: u32| bits & !(0xf << shift) | port << shift;
+        // SAFETY: of the register only the field of this line changes, to the port of the chip select.
         unsafe {
             match select.number / 4 {
                 0 => syscfg.exticr1().modify(|r, w| w.bits(to_port(r.bits()))),

@@ -7,7 +7,7 @@ use crate::chips;
 use crate::cpu::{Board, Setup};
 use crate::image::Image;
 use crate::tamper::Tamper;
-use crate::wires::{Pin, Surroundings};
+use crate::wires::{Cable, Pin, Surroundings};
 
 /// An instruction takes a cycle, unless it is said otherwise [thousandths].
 pub const USUAL_COST: u64 = 1000;
@@ -27,15 +27,15 @@ pub fn with(chip: Chip) -> Result<Described, String> {
     Described::load(name).map_err(|failure| failure.to_string())
 }
 
-/// Whether board and chip are modelled, the unit of its line among them.
-pub fn is_modelled(board: &Described) -> bool {
-    let unit = match board.chip() {
-        Chip::Stm32f405 => "USART1",
-        Chip::Stm32g474 => "USART2",
-        Chip::Stm32h743 => "USART3",
-        Chip::Stm32g431 => return false,
-    };
-    board.described.serial.unit == unit
+/// The line of a board: its unit's number is at the end of its name.
+fn cable(board: &Described) -> Cable {
+    let serial = &board.described.serial;
+    Cable {
+        baud: board.baud_rate().into(),
+        unit: serial.unit.trim_start_matches(char::is_alphabetic).parse().unwrap_or_default(),
+        send: pin(serial.send.pin),
+        receive: pin(serial.receive.pin),
+    }
 }
 
 /// A pin as the model names it.
@@ -67,14 +67,18 @@ impl Subject {
 
     /// The board with instructions that take longer or shorter.
     pub fn start_at<'a>(&self, surroundings: Surroundings, cost: u64) -> Result<Board<'a>, String> {
-        let setup = Setup { surroundings, baud: self.board.baud_rate().into(), cost };
+        let setup = Setup { surroundings, cable: cable(&self.board), cost };
         let chip = match self.board.chip() {
             Chip::Stm32f405 => chips::f405::chip,
             Chip::Stm32g474 => chips::g474::chip,
             Chip::Stm32h743 => chips::h743::chip,
-            Chip::Stm32g431 => return Err("no such chip is modelled".to_owned()),
+            Chip::Stm32g431 => chips::g431::chip,
         };
         let mut board = Board::new(chip, self.image.clone(), setup)?;
+        let unit = self.board.described.serial.unit;
+        if !board.machine().chip.peripherals.iter().any(|placed| placed.name == unit) {
+            return Err(format!("{unit} of {} is not modelled", self.board.chip().name()));
+        }
         board.machine_mut().tampers = self.tampers;
         Ok(board)
     }

@@ -10,7 +10,7 @@ use crate::machine::{Chip, Machine};
 use crate::peripherals::dma::Transfer;
 use crate::peripherals::flash;
 use crate::scs::{FIRST_INTERRUPT, HARD_FAULT, Masks};
-use crate::wires::{MICROSECOND, Reset, Surroundings, Time};
+use crate::wires::{Cable, MICROSECOND, Reset, Surroundings, Time};
 
 /// Interrupts of the emulator library.
 const BREAKPOINT: u32 = 7;
@@ -44,8 +44,8 @@ const BOOTLOADER_TICK: u64 = 15_999;
 pub struct Setup {
     /// What is outside of the chip.
     pub surroundings: Surroundings,
-    /// The host's speed on the line [baud].
-    pub baud: u64,
+    /// The line to the host.
+    pub cable: Cable,
     /// Thousandths of a cycle that an instruction takes.
     pub cost: u64,
 }
@@ -68,7 +68,7 @@ impl Board<'_> {
         if image.bytes.len() as u32 > flash_size {
             return Err(format!("the image is longer than the flash of {}", chip.name));
         }
-        let mut machine = Machine::new(chip, setup.surroundings, setup.baud, setup.cost);
+        let mut machine = Machine::new(chip, setup.surroundings, setup.cable, setup.cost);
         machine.wires.image_end = image_end;
         let mut core = Unicorn::new_with_data(Arch::ARM, Mode::THUMB | Mode::MCLASS, machine).map_err(failed)?;
         let model = if is_m7 { ArmCpuModel::CORTEX_M7 } else { ArmCpuModel::CORTEX_M4 };

@@ -5,7 +5,7 @@ use crate::peripherals::dma::Transfer;
 use crate::register::Register;
 use crate::scs::Scs;
 use crate::tamper::Tamper;
-use crate::wires::{Clocks, Gate, Reset, SECOND, Surroundings, Time, Wires};
+use crate::wires::{Cable, Clocks, Gate, Reset, SECOND, Surroundings, Time, Wires};
 
 /// Place of the clock controller among the peripherals.
 const CLOCK_CONTROLLER: usize = 0;
@@ -101,10 +101,10 @@ pub struct Machine {
 
 impl Machine {
     /// A chip at power-up.
-    pub fn new(chip: Chip, surroundings: Surroundings, baud: u64, cost: u64) -> Self {
+    pub fn new(chip: Chip, surroundings: Surroundings, cable: Cable, cost: u64) -> Self {
         let (scs, rate) = (Scs::new(chip.is_m7), chip.after_reset);
         let mut machine = Self {
-            wires: Wires::new(surroundings, baud),
+            wires: Wires::new(surroundings, cable),
             scs,
             chip,
             cycles: 0,
@@ -352,7 +352,7 @@ mod tests {
 
     fn machine() -> Machine {
         let surroundings = Surroundings::crystal(8_000_000);
-        let mut machine = Machine::new(chips::f405::chip(BASE + 0x1000), surroundings, 230_400, 1000);
+        let mut machine = Machine::new(chips::f405::chip(BASE + 0x1000), surroundings, Cable::default(), 1000);
         machine.settle();
         machine
     }

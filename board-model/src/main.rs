@@ -7,6 +7,7 @@ use std::time::Instant;
 
 use board::target::board::Board;
 use board_model::boards::{Subject, USUAL_COST, usual_surroundings};
+use board_model::checks::Named;
 use board_model::image::Image;
 use board_model::images::Images;
 use board_model::planted::{self, Mistake};
@@ -15,7 +16,7 @@ use board_model::{boards, checks, known, port};
 use clap::{Parser, Subcommand};
 
 #[derive(Parser)]
-#[command(version, about = "STM32F405, STM32G474 and STM32H743 at the level of registers")]
+#[command(version, about = "STM32F405, STM32G474, STM32G431 and STM32H743 at the level of registers")]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
@@ -79,9 +80,7 @@ fn run(image: &Path, board: Board, source: Option<u64>, cost: u64) -> Result<(),
     let subject = Subject { board, image: Image::read(image)?, tampers: &[] };
     let mut board = subject.start_at(surroundings, cost)?;
     let mut told = 0;
-    let opened = |path: &str| {
-        println!("{} at {path}: give the host's commands --port {path} --board {name}", name)
-    };
+    let opened = |path: &str| println!("{} at {path}: give the host's commands --port {path} --board {name}", name);
     port::serve(&mut board, opened, |board| {
         for violation in &board.machine().wires.violations.all()[told..] {
             eprintln!("{violation}, in {}", board.image.function(violation.pc));
@@ -98,18 +97,12 @@ fn check(only_board: Option<Board>, only: Option<&str>, full: bool) -> Result<()
         only_board.as_ref().is_none_or(|wanted| wanted == board) && only.is_none_or(|text| name.contains(text))
     };
     let boards = Board::presets().map_err(|failure| failure.to_string())?;
-    for board in boards.iter().filter(|board| boards::is_modelled(board)) {
+    for board in &boards {
         let is_first = boards::with(board.chip())? == *board;
-        for check in checks::ALL.iter().filter(|check| {
-            check.chips.contains(&board.chip()) && wanted(board, check.name) && (full || !check.is_long)
-        }) {
-            // What differs between boards with the same chip is found when they boot.
-            if !is_first && check.name != checks::ALL[0].name {
-                continue;
-            }
-            let works = if is_first { check.works } else { &check.works[..1] };
-            for work in works.iter().filter(|work| checks::applies(board, **work)) {
-                let subject = Subject { board: board.clone(), image: images.get(board, *work)?, tampers: &[] };
+        let chosen = |check: &&Named| wanted(board, check.name) && (full || !check.is_long);
+        for check in checks::ALL.iter().filter(chosen) {
+            for work in check.works(board, is_first) {
+                let subject = Subject { board: board.clone(), image: images.get(board, work)?, tampers: &[] };
                 let start = Instant::now();
                 let outcome = (check.run)(&subject);
                 let what = format!("{}, {}: {}", board.name(), work.name(), check.name);
@@ -138,9 +131,7 @@ fn check(only_board: Option<Board>, only: Option<&str>, full: bool) -> Result<()
         failed += missed.len();
         missed.iter().for_each(|line| println!("FAILED   {line}: was not met: take it off the list in known.rs"));
     }
-    for mistake in
-        planted::ALL.iter().filter(|mistake| full || mistake.in_short)
-    {
+    for mistake in planted::ALL.iter().filter(|mistake| full || mistake.in_short) {
         let Mistake { what, chip, work, check, tampers, .. } = mistake;
         let board = boards::with(*chip)?;
         if !wanted(&board, what) {

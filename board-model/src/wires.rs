@@ -44,7 +44,7 @@ pub struct Gate {
 }
 
 /// A pin: port and number.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Pin(pub char, pub u32);
 
 /// What a pin is set up as.
@@ -132,11 +132,24 @@ pub struct Cut {
     pub how_far: HowFar,
 }
 
+/// What the host's end of the serial line is connected to.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Cable {
+    /// The host's speed [baud].
+    pub baud: u64,
+    /// Number of the USART that the line is for.
+    pub unit: u32,
+    /// The pin that the board sends by.
+    pub send: Pin,
+    /// The pin that it receives by.
+    pub receive: Pin,
+}
+
 /// The serial line, as the host's end drives it.
 #[derive(Debug, Default)]
 pub struct Line {
-    /// The host's speed [baud].
-    pub baud: u64,
+    /// Where it is.
+    pub cable: Cable,
     /// Sent by the host and not yet on the line.
     pub to_board: VecDeque<u8>,
     /// What the host received.
@@ -274,7 +287,7 @@ pub struct Wires {
 
 impl Wires {
     /// At power-up.
-    pub fn new(surroundings: Surroundings, baud: u64) -> Self {
+    pub fn new(surroundings: Surroundings, cable: Cable) -> Self {
         Self {
             now: 0,
             pc: 0,
@@ -290,7 +303,7 @@ impl Wires {
             served: BTreeSet::new(),
             master: Master::default(),
             routes: BTreeMap::new(),
-            line: Line { baud, ..Line::default() },
+            line: Line { cable, ..Line::default() },
             surroundings,
             stall: 0,
             non_maskable: false,
@@ -329,6 +342,11 @@ impl Wires {
     /// Whether one of some pins has its alternate function.
     pub fn leads_to(&self, pins: &[(Pin, u32)]) -> bool {
         pins.iter().any(|(pin, function)| self.mode(*pin) == Mode::Alternate(*function))
+    }
+
+    /// Whether a pin is one of some pins and has its alternate function.
+    pub fn leads_by(&self, pin: Pin, pins: &[(Pin, u32)]) -> bool {
+        pins.iter().any(|(other, function)| *other == pin && self.mode(pin) == Mode::Alternate(*function))
     }
 
     /// The level at a pin: its own, or that from outside, or low.

@@ -35,8 +35,9 @@ pub fn steps(subject: &Subject) -> Result<String, String> {
     clean(&talk.board.borrow())?;
     run.map_err(words)?;
     let recording = &session.recording;
-    let agreement = twin::compare(&joint, subject.board.chip(), DEFAULT_TICK_RATE, &recording.accepted, &recording.samples)
-        .map_err(words)?;
+    let agreement =
+        twin::compare(&joint, subject.board.chip(), DEFAULT_TICK_RATE, &recording.accepted, &recording.samples)
+            .map_err(words)?;
     if agreement.steps < profile.ticks || agreement.different > 0 {
         return Err(format!("{} of {} steps agree: {:?}", agreement.steps, profile.ticks, agreement.first));
     }

@@ -25,21 +25,44 @@ pub struct Named {
     pub name: &'static str,
     /// Images that it is for.
     pub works: &'static [Work],
-    /// Chips that it is for.
+    /// Chips that it is for, on the first board with each.
     pub chips: &'static [Chip],
+    /// The plant must pass it on every board.
+    pub is_for_every_board: bool,
     /// It.
     pub run: Check,
     /// It is left to the long form.
     pub is_long: bool,
 }
 
+/// Chips with room for all images.
+const CHIPS: &[Chip] = &[Chip::Stm32f405, Chip::Stm32g474, Chip::Stm32h743];
+
 const fn short(name: &'static str, works: &'static [Work], run: Check) -> Named {
-    Named { name, works, chips: &Chip::ALL, run, is_long: false }
+    Named { name, works, chips: CHIPS, is_for_every_board: false, run, is_long: false }
+}
+
+impl Named {
+    const fn on_every_board(mut self) -> Self {
+        self.is_for_every_board = true;
+        self
+    }
+
+    /// Images of a board that it is for. What differs between boards with the same chip is found when they boot and run.
+    pub fn works(&self, board: &Described, is_first: bool) -> impl Iterator<Item = Work> {
+        let works = match () {
+            () if is_first && self.chips.contains(&board.chip()) => self.works,
+            () if self.is_for_every_board => &[Work::Plant],
+            () => &[],
+        };
+        let has_spi_slave = board.has_spi_slave();
+        works.iter().copied().filter(move |work| *work != Work::SpiSlave || has_spi_slave)
+    }
 }
 
 /// All checks.
 pub const ALL: &[Named] = &[
-    short("boots, ticks and answers", &[Work::Plant, Work::Observer, Work::Loop], boot::answers),
+    short("boots, ticks and answers", &[Work::Plant, Work::Observer, Work::Loop], boot::answers).on_every_board(),
     short("starts after a bootloader", &[Work::Plant, Work::Observer, Work::Loop], boot::after_bootloader),
     short("boots from the internal oscillator", &[Work::Plant], sources::dead_crystal),
     short("other crystals", &[Work::Plant], sources::other_crystals),
@@ -50,6 +73,7 @@ pub const ALL: &[Named] = &[
         name: "flash as one bank",
         works: &[Work::Observer],
         chips: &[Chip::Stm32g474],
+        is_for_every_board: false,
         run: memory::one_bank,
         is_long: false,
     },
@@ -65,7 +89,8 @@ pub const ALL: &[Named] = &[
     Named {
         name: "power cut at every operation of flash",
         works: &[Work::Observer],
-        chips: &Chip::ALL,
+        chips: CHIPS,
+        is_for_every_board: false,
         run: memory::survives_cuts,
         is_long: true,
     },
@@ -84,9 +109,4 @@ pub fn clean(board: &Board<'_>) -> Result<(), String> {
     }
     let lines = new.iter().map(|violation| format!("{violation}, in {}", board.image.function(violation.pc)));
     Err(lines.collect::<Vec<_>>().join("\n"))
-}
-
-/// Whether a board has an image for this.
-pub fn applies(board: &Described, work: Work) -> bool {
-    work != Work::SpiSlave || board.has_spi_slave()
 }

@@ -13,7 +13,7 @@ use crate::wires::{MICROSECOND, SECOND, Surroundings, Time};
 
 /// What crystals and clocks of boards with these chips have [Hz].
 const RATES: [u64; 6] = [8_000_000, 12_000_000, 16_000_000, 24_000_000, 25_000_000, 26_000_000];
-/// How far the internal oscillator is off at room temperature, by the data sheets of all three chips [thousandths].
+/// How far the internal oscillator is off at room temperature, by the data sheets of all chips [thousandths].
 const INTERNAL_OFF: i64 = 10;
 /// Without its clock a board has this long until its outputs are off: the watchdog's half second and its spread.
 const OUTPUTS_OFF: Time = SECOND * 6 / 10;

@@ -1,6 +1,7 @@
 //! The chips: which peripherals are where.
 
 pub mod f405;
+pub mod g431;
 pub mod g474;
 pub mod h743;
 

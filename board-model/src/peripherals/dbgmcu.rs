@@ -11,13 +11,9 @@ static F405: [Register; 4] = [
     Register::new("DBGMCU_APB1_FZ", 0x08, 0, 0x06e0_1dff),
     Register::new("DBGMCU_APB2_FZ", 0x0c, 0, 0x0007_0003),
 ];
-static G474: [Register; 5] = [
-    Register::new("DBGMCU_IDCODE", 0x00, 0x2003_6469, 0).special(u32::MAX),
-    Register::new("DBGMCU_CR", 0x04, 0, 0xe7),
-    Register::new("DBGMCU_APB1FZR1", 0x08, 0, 0xc060_1c3f),
-    Register::new("DBGMCU_APB1FZR2", 0x0c, 0, 0x2),
-    Register::new("DBGMCU_APB2FZR", 0x10, 0, 0x0417_2800),
-];
+static G474: [Register; 5] = g4(0x2003_6469, [0xc060_1c3f, 0x2, 0x0417_2800]);
+/// Without TIM5, I2C4, TIM20 and HRTIM.
+static G431: [Register; 5] = g4(0x2003_6468, [0xc060_1c37, 0, 0x0007_2800]);
 static H743: [Register; 7] = [
     Register::new("DBGMCU_IDC", 0x00, 0x2003_6450, 0).special(u32::MAX),
     Register::new("DBGMCU_CR", 0x04, 0, 0x1070_0007),
@@ -27,6 +23,17 @@ static H743: [Register; 7] = [
     Register::new("DBGMCU_APB2FZ1", 0x4c, 0, 0x2007_0003),
     Register::new("DBGMCU_APB4FZ1", 0x54, 0, 0x0005_1e80),
 ];
+
+/// The register map of the chips of RM0440, with their identity and what they can freeze.
+const fn g4(identity: u32, [low, low_2, high]: [u32; 3]) -> [Register; 5] {
+    [
+        Register::new("DBGMCU_IDCODE", 0x00, identity, 0).special(u32::MAX),
+        Register::new("DBGMCU_CR", 0x04, 0, 0xe7),
+        Register::new("DBGMCU_APB1FZR1", 0x08, 0, low),
+        Register::new("DBGMCU_APB1FZR2", 0x0c, 0, low_2),
+        Register::new("DBGMCU_APB2FZR", 0x10, 0, high),
+    ]
+}
 
 /// The unit, by where it freezes the independent watchdog: register and bit.
 #[derive(Debug)]
@@ -44,6 +51,11 @@ impl Dbgmcu {
     /// DBG_IWDG_STOP.
     pub fn g474() -> Self {
         Self { registers: Registers::new(&G474), watchdog: (0x08, 12) }
+    }
+
+    /// DBG_IWDG_STOP.
+    pub fn g431() -> Self {
+        Self { registers: Registers::new(&G431), watchdog: (0x08, 12) }
     }
 
     /// DBG_IWDG1.
@@ -78,11 +90,11 @@ mod tests {
     use crate::chips;
     use crate::machine::Machine;
     use crate::peripherals::flash::BASE;
-    use crate::wires::{Reset, SECOND, Surroundings};
+    use crate::wires::{Cable, Reset, SECOND, Surroundings};
 
     #[test]
     fn the_watchdog_stands_still_with_a_held_core_where_it_is_told_to() {
-        let machine = |chip| Machine::new(chip, Surroundings::default(), 9600, 1000);
+        let machine = |chip| Machine::new(chip, Surroundings::default(), Cable::default(), 1000);
         for (mut machine, watchdog, freeze) in [
             (machine(chips::f405::chip(BASE + 0x1000)), 0x4000_3000, (0xe004_2008, 1 << 12)),
             (machine(chips::g474::chip(BASE + 0x1000)), 0x4000_3000, (0xe004_2008, 1 << 12)),

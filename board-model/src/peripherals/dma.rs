@@ -88,7 +88,7 @@ mod tests {
     use crate::chips;
     use crate::machine::Machine;
     use crate::peripherals::flash::BASE;
-    use crate::wires::{MICROSECOND, SECOND, Surroundings, Time, cycles};
+    use crate::wires::{Cable, MICROSECOND, Pin, SECOND, Surroundings, Time, cycles};
 
     const BAUD: u64 = 230_400;
     const BUFFER: u32 = 0x2000_0100;
@@ -106,11 +106,13 @@ mod tests {
         clears: fn(&mut Machine),
     }
 
-    fn cases() -> [Case; 2] {
+    fn cases() -> [Case; 3] {
         let surroundings = Surroundings::default();
-        let machine = |chip| Machine::new(chip, surroundings, BAUD, 1000);
+        let machine = |chip, unit, receive| {
+            Machine::new(chip, surroundings, Cable { baud: BAUD, unit, receive, ..Cable::default() }, 1000)
+        };
         let f405 = Case {
-            machine: machine(chips::f405::chip(BASE + 0x1000)),
+            machine: machine(chips::f405::chip(BASE + 0x1000), 1, Pin('A', 10)),
             writes: &[
                 (0x4002_3830, 1 << 22 | 1),
                 (0x4002_3844, 1 << 4),
@@ -133,7 +135,7 @@ mod tests {
             },
         };
         let g474 = Case {
-            machine: machine(chips::g474::chip(BASE + 0x1000)),
+            machine: machine(chips::g474::chip(BASE + 0x1000), 2, Pin('A', 3)),
             writes: &[
                 (0x4002_1048, 1 << 8 | 1 << 2 | 1),
                 (0x4002_104c, 1),
@@ -155,7 +157,30 @@ mod tests {
             flags: (0x4002_0000, 0b11 << 1),
             clears: |machine| machine.write(0x4000_4420, 4, 1 << 4),
         };
-        [f405, g474]
+        let f405_low = Case {
+            machine: machine(chips::f405::chip(BASE + 0x1000), 3, Pin('B', 11)),
+            writes: &[
+                (0x4002_3830, 1 << 21 | 1 << 1),
+                (0x4002_3840, 1 << 18),
+                (0x4002_0424, 0x7700),
+                (0x4002_0400, 0x00a0_0280),
+                (0x4002_602c, LENGTH),
+                (0x4002_6030, 0x4000_4804),
+                (0x4002_6034, BUFFER),
+                (0x4002_6028, 4 << 25 | 1 << 10 | 1 << 8 | 0b11 << 3 | 1),
+                (0x4000_4808, 69),
+                (0x4000_4814, 1 << 6),
+                (0x4000_480c, 1 << 13 | 0b11 << 2 | 1 << 4),
+            ],
+            left: 0x4002_602c,
+            interrupts: [12, 39],
+            flags: (0x4002_6000, 0b11 << 10),
+            clears: |machine| {
+                machine.read(0x4000_4800, 4);
+                machine.read(0x4000_4804, 4);
+            },
+        };
+        [f405, f405_low, g474]
     }
 
     /// Lets time pass with what DMA moves in it, as the core does.

@@ -1,11 +1,12 @@
-//! The DMA controllers of STM32G474, by channels: RM0440 section 12. Between a peripheral and memory; which peripheral, the
-//! multiplexer says.
+//! The DMA controllers of STM32G474 and STM32G431, by channels: RM0440 section 12. Between a peripheral and memory; which
+//! peripheral, the multiplexer says.
 
 use super::Peripheral;
 use super::dma::{Course, Reached, Transfer, Way};
 use crate::register::{Register, Registers, bit, bits};
 use crate::wires::{Request, Wires};
 
+/// Most channels of a controller: STM32G431 has six.
 const CHANNELS: u32 = 8;
 const ISR: u32 = 0x00;
 const IFCR: u32 = 0x04;
@@ -47,13 +48,15 @@ const fn map() -> [Register; 34] {
 pub struct DmaChannels {
     registers: Registers,
     number: u32,
+    channels: u32,
     courses: [Course; CHANNELS as usize],
 }
 
 impl DmaChannels {
-    /// By its number.
-    pub fn new(number: u32) -> Self {
-        Self { registers: Registers::new(&MAP), number, courses: Default::default() }
+    /// By its number, with so many channels.
+    pub fn new(number: u32, channels: u32) -> Self {
+        let registers = Registers::new(&MAP[..2 + 4 * channels as usize]);
+        Self { registers, number, channels, courses: Default::default() }
     }
 
     fn is_on(&self, channel: u32) -> bool {
@@ -105,7 +108,7 @@ impl Peripheral for DmaChannels {
             ISR => wires.violation("DMA_ISR", "is read-only", "RM0440 12.6.1"),
             IFCR => {
                 // A global flag clears the other three.
-                let all = (0..CHANNELS).filter(|channel| value >> (4 * channel) & 1 == 1);
+                let all = (0..self.channels).filter(|channel| value >> (4 * channel) & 1 == 1);
                 let mask = all.map(|channel| 0xf << (4 * channel)).fold(value, |mask, flags| mask | flags);
                 self.registers.change(ISR, 0, mask);
             }
@@ -127,7 +130,7 @@ impl Peripheral for DmaChannels {
     }
 
     fn advance(&mut self, wires: &mut Wires) {
-        for channel in 0..CHANNELS {
+        for channel in 0..self.channels {
             if let Some(request) = self.request(channel, wires) {
                 wires.serve(request, self.is_on(channel));
             }
@@ -143,7 +146,7 @@ impl Peripheral for DmaChannels {
             let left = self.registers.get(FIRST + STEP * channel + NDTR) > 0;
             self.is_on(*channel) && left && request.is_some_and(|request| wires.requests.contains(&request))
         };
-        let channel = (0..CHANNELS).find(asks)?;
+        let channel = (0..self.channels).find(asks)?;
         let base = FIRST + STEP * channel;
         let control = self.registers.get(base);
         let way = Way {
@@ -166,6 +169,6 @@ impl Peripheral for DmaChannels {
     }
 
     fn reset(&mut self) {
-        *self = Self::new(self.number);
+        *self = Self::new(self.number, self.channels);
     }
 }

@@ -19,13 +19,25 @@ const COMPLETE: u32 = bit(5);
 /// Interrupts of errors, half and end in the control register, one place below their flags.
 const ENABLES: u32 = bits(4, 1);
 const CIRCULAR: u32 = 8;
-/// Interrupts of the streams of DMA2: RM0090 table 61.
-const INTERRUPTS: [usize; STREAMS as usize] = [56, 57, 58, 59, 60, 68, 69, 70];
+/// Interrupts of the streams of DMA1 and DMA2: RM0090 table 61.
+const INTERRUPTS: [[usize; STREAMS as usize]; 2] = [[11, 12, 13, 14, 15, 16, 17, 47], [56, 57, 58, 59, 60, 68, 69, 70]];
 /// Where the flags of four streams begin in a register.
 const PLACES: [u32; 4] = [0, 6, 16, 22];
 const ALL_FLAGS: u32 = 0x0f7d_0f7d;
-/// Who is on which stream and channel of DMA2: RM0090 table 43.
-const DMA2: [(u32, u32, Request); 7] = [
+/// Who is on which stream and channel of DMA1, as far as it is modelled: RM0090 table 42.
+const DMA1: [(u32, u32, Request); 9] = [
+    (0, 4, Request::UsartReceived(5)),
+    (1, 4, Request::UsartReceived(3)),
+    (2, 4, Request::UsartReceived(4)),
+    (3, 4, Request::UsartToSend(3)),
+    (4, 4, Request::UsartToSend(4)),
+    (4, 7, Request::UsartToSend(3)),
+    (5, 4, Request::UsartReceived(2)),
+    (6, 4, Request::UsartToSend(2)),
+    (7, 4, Request::UsartToSend(5)),
+];
+/// The same of DMA2: RM0090 table 43.
+const DMA2: [(u32, u32, Request); 11] = [
     (0, 3, Request::SpiReceived(1)),
     (2, 3, Request::SpiReceived(1)),
     (3, 3, Request::SpiToSend(1)),
@@ -33,6 +45,10 @@ const DMA2: [(u32, u32, Request); 7] = [
     (2, 4, Request::UsartReceived(1)),
     (5, 4, Request::UsartReceived(1)),
     (7, 4, Request::UsartToSend(1)),
+    (1, 5, Request::UsartReceived(6)),
+    (2, 5, Request::UsartReceived(6)),
+    (6, 5, Request::UsartToSend(6)),
+    (7, 5, Request::UsartToSend(6)),
 ];
 
 static MAP: [Register; 52] = map();
@@ -61,23 +77,24 @@ const fn map() -> [Register; 52] {
 #[derive(Debug)]
 pub struct DmaStreams {
     registers: Registers,
+    number: usize,
     courses: [Course; STREAMS as usize],
 }
 
-impl Default for DmaStreams {
-    fn default() -> Self {
-        Self { registers: Registers::new(&MAP), courses: Default::default() }
-    }
-}
-
 impl DmaStreams {
+    /// By its number.
+    pub fn new(number: usize) -> Self {
+        Self { registers: Registers::new(&MAP), number, courses: Default::default() }
+    }
+
     fn is_on(&self, stream: u32) -> bool {
         self.registers.is_set(FIRST + STEP * stream, 0)
     }
 
     fn request(&self, stream: u32) -> Option<Request> {
         let channel = self.registers.field(FIRST + STEP * stream, 25, 3);
-        DMA2.iter().find(|(place, number, _)| (*place, *number) == (stream, channel)).map(|(.., request)| *request)
+        let requests = if self.number == 1 { &DMA1[..] } else { &DMA2[..] };
+        requests.iter().find(|(place, number, _)| (*place, *number) == (stream, channel)).map(|(.., request)| *request)
     }
 
     /// Register of a stream's flags, and their place in it.
@@ -105,7 +122,7 @@ impl DmaStreams {
         }
         if self.request(stream).is_none() {
             let what = format!("no peripheral that is modelled is on channel {} of stream {stream}", control >> 25 & 7);
-            wires.violation("DMA_SxCR", what, "RM0090 10.3.3, table 43");
+            wires.violation("DMA_SxCR", what, "RM0090 10.3.3, tables 42 and 43");
         }
         if self.registers.get(base + NDTR) == 0 {
             wires.violation("DMA_SxNDTR", "is 0 when the stream is switched on", "RM0090 10.5.6");
@@ -164,7 +181,7 @@ impl Peripheral for DmaStreams {
                 wires.serve(request, self.is_on(stream));
             }
             let asks = self.flags(stream) >> 1 & ENABLES & self.registers.get(FIRST + STEP * stream) != 0;
-            wires.interrupt(INTERRUPTS[stream as usize], asks);
+            wires.interrupt(INTERRUPTS[self.number - 1][stream as usize], asks);
         }
     }
 
@@ -198,6 +215,6 @@ impl Peripheral for DmaStreams {
     }
 
     fn reset(&mut self) {
-        *self = Self::default();
+        *self = Self::new(self.number);
     }
 }

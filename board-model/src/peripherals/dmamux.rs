@@ -1,10 +1,11 @@
-//! The multiplexer of requests of STM32G474: RM0440 section 13. Its outputs 0 to 7 are the channels of DMA1, 8 to 15 those of
-//! DMA2.
+//! The multiplexer of requests of STM32G474 and STM32G431: RM0440 section 13. Its first outputs are the channels of DMA1, the
+//! others those of DMA2: eight each, or six.
 
 use super::Peripheral;
 use crate::register::{Register, Registers};
 use crate::wires::{Request, Wires};
 
+/// Most outputs.
 const OUTPUTS: u32 = 16;
 
 static MAP: [Register; 18] = map();
@@ -25,11 +26,13 @@ const fn map() -> [Register; 18] {
 #[derive(Debug)]
 pub struct DmaMux {
     registers: Registers,
+    channels: u32,
 }
 
-impl Default for DmaMux {
-    fn default() -> Self {
-        Self { registers: Registers::new(&MAP) }
+impl DmaMux {
+    /// For controllers of so many channels.
+    pub fn new(channels: u32) -> Self {
+        Self { registers: Registers::new(&MAP[..2 + 2 * channels as usize]), channels }
     }
 }
 
@@ -58,9 +61,9 @@ impl Peripheral for DmaMux {
     }
 
     fn written(&mut self, _offset: u32, _value: u32, _before: u32, wires: &mut Wires) {
-        for output in 0..OUTPUTS {
+        for output in 0..2 * self.channels {
             let route = request(self.registers.field(4 * output, 0, 7));
-            wires.routes.insert((1 + output / 8, output % 8), route);
+            wires.routes.insert((1 + output / self.channels, output % self.channels), route);
         }
     }
 }

@@ -274,10 +274,10 @@ impl Lock {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::wires::Surroundings;
+    use crate::wires::{Cable, Surroundings};
 
     fn wires() -> Wires {
-        Wires::new(Surroundings::default(), 9600)
+        Wires::new(Surroundings::default(), Cable::default())
     }
 
     #[test]

@@ -1,5 +1,6 @@
-//! The flash controller of STM32G474 (category 3): RM0440 section 3. Double words with their check bits; two banks, of which
-//! code in one runs while the other is at work, or by an option byte one bank with pages of twice the size.
+//! The flash controllers of STM32G474 (category 3), RM0440 section 3, and of STM32G431 (category 2), section 5. Double words
+//! with their check bits. Category 3 has two banks, of which code in one runs while the other is at work, or by an option byte one
+//! bank with pages of twice the size; category 2 has one bank with pages of the usual size. Sections are those of category 3.
 
 use super::Peripheral;
 use super::flash::{ACR, Array, BASE, Caches, Lock, Work};
@@ -11,9 +12,11 @@ const SR: u32 = 0x10;
 const CR: u32 = 0x14;
 const ECCR: u32 = 0x18;
 const OPTR: u32 = 0x20;
-/// 512 KiB in two banks.
+/// Of category 3: 512 KiB in two banks.
 const SIZE: u32 = 0x8_0000;
 const BANK: u32 = SIZE / 2;
+/// Of category 2: 128 KiB.
+const SMALL_SIZE: u32 = 0x2_0000;
 const PAGE: u32 = 0x800;
 const DOUBLE_WORD: u32 = 8;
 /// Flags of an error in two bits.
@@ -21,18 +24,24 @@ const ECCD: u32 = bit(31);
 const ECCD2: u32 = bit(29);
 const ERRORS: u32 = 0xc3fa;
 
-/// RM0440 3.7.
-static MAP: [Register; 8] = [
-    Register::new("FLASH_ACR", ACR, 0x0004_0600, 0x0004_7f0f).special(Caches::SPECIAL),
-    Register::new("FLASH_PDKEYR", 0x04, 0, u32::MAX).special(u32::MAX).any_value(),
-    Register::new("FLASH_KEYR", KEYR, 0, u32::MAX).special(u32::MAX).any_value(),
-    Register::new("FLASH_OPTKEYR", 0x0c, 0, u32::MAX).special(u32::MAX).any_value(),
-    Register::new("FLASH_SR", SR, 0, 0x0001_c3fb).special(u32::MAX),
-    Register::new("FLASH_CR", CR, 0xc000_0000, 0xff07_8bff).special(u32::MAX),
-    Register::new("FLASH_ECCR", ECCR, 0, 0xf167_ffff).special(u32::MAX),
-    // DBANK (22) is 1 as delivered.
-    Register::new("FLASH_OPTR", OPTR, 0xffef_f8aa, 0x7fdf_77ff).special(u32::MAX),
-];
+/// RM0440 3.7, 5.7: category 2 has no MER2, BKER, SEC_PROT2, ECCD2, ECCC2, BK_ECC, DBANK and BFB2.
+static CATEGORY_3: [Register; 8] = map(0xff07_8bff, 0xf167_ffff, 0x7fdf_77ff);
+static CATEGORY_2: [Register; 8] = map(0xdf07_03ff, 0xc147_ffff, 0x7f8f_77ff);
+
+/// The register map, with fields of the three that differ.
+const fn map(control: u32, check: u32, options: u32) -> [Register; 8] {
+    [
+        Register::new("FLASH_ACR", ACR, 0x0004_0600, 0x0004_7f0f).special(Caches::SPECIAL),
+        Register::new("FLASH_PDKEYR", 0x04, 0, u32::MAX).special(u32::MAX).any_value(),
+        Register::new("FLASH_KEYR", KEYR, 0, u32::MAX).special(u32::MAX).any_value(),
+        Register::new("FLASH_OPTKEYR", 0x0c, 0, u32::MAX).special(u32::MAX).any_value(),
+        Register::new("FLASH_SR", SR, 0, 0x0001_c3fb).special(u32::MAX),
+        Register::new("FLASH_CR", CR, 0xc000_0000, control).special(u32::MAX),
+        Register::new("FLASH_ECCR", ECCR, 0, check).special(u32::MAX),
+        // DBANK (22) is 1 as delivered.
+        Register::new("FLASH_OPTR", OPTR, 0xffef_f8aa, options).special(u32::MAX),
+    ]
+}
 
 /// Data sheet of STM32G474, table 52: a page 22 ms, a double word 82 us.
 const ERASE: Time = 22_000 * MICROSECOND;
@@ -42,6 +51,7 @@ const PROGRAM: Time = 82 * MICROSECOND;
 #[derive(Debug)]
 pub struct Flash {
     registers: Registers,
+    has_two_banks: bool,
     array: Array,
     lock: Lock,
     work: Work,
@@ -51,11 +61,21 @@ pub struct Flash {
 }
 
 impl Flash {
-    /// With an image up to an address.
-    pub fn new(image_end: u32) -> Self {
+    /// Of STM32G474, with an image up to an address.
+    pub fn category_3(image_end: u32) -> Self {
+        Self::with(&CATEGORY_3, true, Array::new(image_end, SIZE, DOUBLE_WORD, true))
+    }
+
+    /// Of STM32G431.
+    pub fn category_2(image_end: u32) -> Self {
+        Self::with(&CATEGORY_2, false, Array::new(image_end, SMALL_SIZE, DOUBLE_WORD, true))
+    }
+
+    fn with(table: &'static [Register], has_two_banks: bool, array: Array) -> Self {
         Self {
-            registers: Registers::new(&MAP),
-            array: Array::new(image_end, SIZE, DOUBLE_WORD, true),
+            registers: Registers::new(table),
+            has_two_banks,
+            array,
             lock: Lock::default(),
             work: Work::default(),
             half: None,
@@ -65,19 +85,19 @@ impl Flash {
 
     /// Whether the core waits for an operation on an address: RM0440 3.3.6, reads of the bank at work wait for it,
     /// instructions too.
-    fn holds_up(address: u32, wires: &Wires) -> bool {
-        wires.single_bank || address < BASE + BANK
+    fn holds_up(&self, address: u32, wires: &Wires) -> bool {
+        !self.has_two_banks || wires.single_bank || address < BASE + BANK
     }
 
     /// An operation on an address begins.
     fn work(&mut self, address: u32, duration: Time, wires: &mut Wires) {
         self.work.begin(duration, wires);
-        if self.caches.flash_changes(&self.registers) && !Self::holds_up(address, wires) {
+        if self.caches.flash_changes(&self.registers) && !self.holds_up(address, wires) {
             // ES0430 2.2.2: a read of the one bank while the other is at work may corrupt the data cache.
             let what = "the data cache is on while a bank is erased or programmed beside running code";
             wires.violation("FLASH_ACR", what, "ES0430 2.2.2");
         }
-        if Self::holds_up(address, wires) {
+        if self.holds_up(address, wires) {
             wires.stall += duration;
         }
     }
@@ -111,10 +131,14 @@ impl Flash {
             wires.violation("FLASH_CR", "an erase starts while an error flag is up", "RM0440 3.3.6");
         }
         let (page, bank) = (control >> 3 & 0x7f, control >> 11 & 1);
-        if wires.single_bank && bank != 0 {
+        if !self.has_two_banks && page >= SMALL_SIZE / PAGE {
+            wires.violation("FLASH_CR", format!("there is no page {page}"), "RM0440 5.3.1");
+            return;
+        }
+        if self.has_two_banks && wires.single_bank && bank != 0 {
             wires.violation("FLASH_CR", "BKER is 1 while DBANK is 0: there is one bank", "RM0440 3.3.1, 3.7.6");
         }
-        let (first, size) = match wires.single_bank {
+        let (first, size) = match self.has_two_banks && wires.single_bank {
             true => (BASE + 2 * PAGE * page, 2 * PAGE),
             false => (BASE + BANK * bank + PAGE * page, PAGE),
         };
@@ -170,8 +194,10 @@ impl Peripheral for Flash {
     }
 
     fn advance(&mut self, wires: &mut Wires) {
-        // DBANK.
-        self.registers.change(OPTR, u32::from(!wires.single_bank) << 22, bit(22));
+        if self.has_two_banks {
+            // DBANK.
+            self.registers.change(OPTR, u32::from(!wires.single_bank) << 22, bit(22));
+        }
         let busy = self.work.goes_on(wires);
         self.registers.change(SR, u32::from(busy) << 16, bit(16));
         let waits = u64::from(self.registers.field(ACR, 0, 4));
@@ -205,7 +231,7 @@ impl Peripheral for Flash {
             // RM0440 3.7.7: the first one is kept: its bank, and the double word's place in that.
             // In one bank two of them are read together, and the second one has a flag of its own.
             let offset = (address - BASE) / DOUBLE_WORD * DOUBLE_WORD;
-            let (flag, bank, place) = match wires.single_bank {
+            let (flag, bank, place) = match wires.single_bank && self.has_two_banks {
                 true if offset & DOUBLE_WORD != 0 => (ECCD2, 0, offset - DOUBLE_WORD),
                 true => (ECCD, 0, offset),
                 false => (ECCD, offset / BANK, offset % BANK),
@@ -215,7 +241,7 @@ impl Peripheral for Flash {
             }
             self.advance(wires);
         }
-        if !Self::holds_up(address, wires) {
+        if !self.holds_up(address, wires) {
             wires.stall += self.work.left(wires);
         }
         Some(self.array.read(address, size))
@@ -263,7 +289,7 @@ mod tests {
     use crate::machine::Machine;
     use crate::peripherals::flash::KEYS;
     use crate::scs::{Masks, NMI};
-    use crate::wires::{Cut, HowFar, Surroundings};
+    use crate::wires::{Cable, Cut, HowFar, Surroundings};
 
     const FLASH: u32 = 0x4002_2000;
     const PLACE: u32 = BASE + 0x7_f010;
@@ -271,7 +297,7 @@ mod tests {
     #[test]
     fn one_bank_has_pages_of_twice_the_size_and_no_second_bank() {
         let chip = chips::g474::chip(BASE + 0x1000);
-        let mut machine = Machine::new(chip, Surroundings::default(), 9600, 1000);
+        let mut machine = Machine::new(chip, Surroundings::default(), Cable::default(), 1000);
         machine.wires.single_bank = true;
         machine.settle();
         assert_eq!(machine.read(FLASH + OPTR, 4) >> 22 & 1, 0);
@@ -293,9 +319,34 @@ mod tests {
     }
 
     #[test]
+    fn a_chip_with_one_bank_has_64_pages_of_2_kib() {
+        let mut machine =
+            Machine::new(chips::g431::chip(BASE + 0x1000), Surroundings::default(), Cable::default(), 1000);
+        machine.settle();
+        KEYS.into_iter().for_each(|key| machine.write(FLASH + KEYR, 4, key.into()));
+        for place in [BASE + 0x1_f000, BASE + 0x1_f800] {
+            machine.write(FLASH + CR, 4, 1);
+            machine.write(place, 8, 0x1234);
+            machine.settle();
+        }
+        machine.write(FLASH + ACR, 4, 0x0004_0200);
+        machine.write(FLASH + ACR, 4, 0x0004_1200);
+        machine.write(FLASH + ACR, 4, 0x0004_0200);
+        machine.write(FLASH + CR, 4, 1 << 16 | 63 << 3 | 2);
+        machine.settle();
+        assert_eq!([0x1_f000, 0x1_f800].map(|place| machine.read(BASE + place, 4)), [0x1234, 0xffff_ffff]);
+        assert_eq!(machine.wires.violations.all(), []);
+        machine.write(FLASH + CR, 4, 1 << 16 | 1 << 11 | 63 << 3 | 2);
+        machine.settle();
+        machine.write(FLASH + CR, 4, 1 << 16 | 64 << 3 | 2);
+        let said: Vec<_> = machine.wires.violations.all().iter().map(|violation| violation.what.as_str()).collect();
+        assert_eq!(said, ["reserved bits 0x00000800 are written", "there is no page 64"]);
+    }
+
+    #[test]
     fn a_double_word_that_was_cut_raises_nmi_again_and_again_until_its_flag_is_cleared() {
         let chip = chips::g474::chip(BASE + 0x1000);
-        let mut machine = Machine::new(chip, Surroundings::default(), 9600, 1000);
+        let mut machine = Machine::new(chip, Surroundings::default(), Cable::default(), 1000);
         machine.settle();
         machine.wires.cut = Some(Cut { operation: 0, how_far: HowFar::Middle });
         KEYS.into_iter().for_each(|key| machine.write(FLASH + KEYR, 4, key.into()));

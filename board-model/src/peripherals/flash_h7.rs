@@ -266,14 +266,15 @@ mod tests {
     use crate::machine::Machine;
     use crate::peripherals::flash::KEYS;
     use crate::scs::{HARD_FAULT, Masks};
-    use crate::wires::{Cut, HowFar, Reset, Surroundings};
+    use crate::wires::{Cable, Cut, HowFar, Reset, Surroundings};
 
     const FLASH: u32 = 0x5200_2000 + SECOND;
     const PLACE: u32 = BASE + BANK + 0x40;
 
     #[test]
     fn a_word_that_was_cut_is_a_bus_fault_which_a_look_with_faultmask_survives() {
-        let mut machine = Machine::new(chips::h743::chip(BASE + 0x1000), Surroundings::default(), 9600, 1000);
+        let mut machine =
+            Machine::new(chips::h743::chip(BASE + 0x1000), Surroundings::default(), Cable::default(), 1000);
         machine.settle();
         machine.wires.cut = Some(Cut { operation: 0, how_far: HowFar::Middle });
         KEYS.into_iter().for_each(|key| machine.write(FLASH + KEYR, 4, key.into()));

@@ -31,11 +31,11 @@ mod tests {
     use crate::chips;
     use crate::machine::Machine;
     use crate::peripherals::flash::BASE;
-    use crate::wires::Surroundings;
+    use crate::wires::{Cable, Surroundings};
 
     #[test]
     fn a_supply_below_the_level_is_told_while_the_detector_is_on() {
-        let machine = |chip| Machine::new(chip, Surroundings::default(), 9600, 1000);
+        let machine = |chip| Machine::new(chip, Surroundings::default(), Cable::default(), 1000);
         for (mut machine, gate, enable, output) in [
             (
                 machine(chips::f405::chip(BASE + 0x1000)),

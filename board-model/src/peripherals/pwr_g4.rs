@@ -1,4 +1,4 @@
-//! Power control of STM32G474: RM0440 section 6. Which range the regulator is in, and its boost.
+//! Power control of STM32G474 and STM32G431: RM0440 section 6. Which range the regulator is in, and its boost.
 
 use super::Peripheral;
 use super::pvd::Detector;

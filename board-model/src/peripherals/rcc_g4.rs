@@ -1,4 +1,4 @@
-//! Reset and clock control of STM32G474: RM0440 section 7.
+//! Reset and clock control of STM32G474 and STM32G431: RM0440 section 7.
 
 use super::Peripheral;
 use super::rcc::{CR, Layout, Origin, Oscillators, bus_divider, peripheral_divider, pll_is_on, timer_clock, within};
@@ -20,7 +20,7 @@ const MEASURED: u32 = 32;
 const STEP: u64 = 80_000_000;
 
 /// RM0440 7.4, without the cryptography of STM32G484.
-static MAP: [Register; 28] = [
+const MAP: [Register; 28] = [
     Register::new("RCC_CR", CR, 0x0500, bits(10, 8) | bits(19, 16) | bits(25, 24)).special(READY),
     Register::new("RCC_ICSCR", 0x04, 0x4000_0000, 0x7fff_0000).special(0x00ff_0000),
     Register::new("RCC_CFGR", CFGR, 0x05, 0x7f00_3fff).special(0xc),
@@ -51,6 +51,36 @@ static MAP: [Register; 28] = [
     Register::new("RCC_CSR", CSR, 0x0c00_0000, 0xfe80_0003).special(FLAGS | bit(1)),
 ];
 
+/// Of category 3: STM32G474.
+static CATEGORY_3: [Register; 28] = MAP;
+/// Of category 2: STM32G431, without ADC3 to ADC5, DAC2, DAC4, FMC, QUADSPI, TIM5, UART5, I2C4, SPI4, TIM20 and HRTIM. Resets
+/// and gates of each bus.
+static CATEGORY_2: [Register; 28] = without(&[
+    ([0x2c, 0x4c], bit(14) | bit(17) | bit(19)),
+    ([0x30, 0x50], bit(0) | bit(8)),
+    ([0x38, 0x58], bit(3) | bit(20)),
+    ([0x3c, 0x5c], bit(1)),
+    ([0x40, 0x60], bit(15) | bit(20) | bit(26)),
+]);
+
+/// The map with bits of some registers reserved.
+const fn without(lacking: &[([u32; 2], u32)]) -> [Register; 28] {
+    let mut map = MAP;
+    let mut place = 0;
+    while place < map.len() {
+        let mut bus = 0;
+        while bus < lacking.len() {
+            let ([hold, gate], bits) = lacking[bus];
+            if map[place].offset == hold || map[place].offset == gate {
+                map[place].fields &= !bits;
+            }
+            bus += 1;
+        }
+        place += 1;
+    }
+    map
+}
+
 static LAYOUT: Layout = Layout {
     internal: [8, 10],
     codes: [1, 2, 3],
@@ -69,13 +99,21 @@ pub struct Rcc {
     halved_since: Option<Time>,
 }
 
-impl Default for Rcc {
-    fn default() -> Self {
-        Self { registers: Registers::new(&MAP), oscillators: Oscillators::new(&LAYOUT), halved_since: None }
-    }
-}
-
 impl Rcc {
+    /// Of STM32G474.
+    pub fn category_3() -> Self {
+        Self::with(Registers::new(&CATEGORY_3))
+    }
+
+    /// Of STM32G431.
+    pub fn category_2() -> Self {
+        Self::with(Registers::new(&CATEGORY_2))
+    }
+
+    fn with(registers: Registers) -> Self {
+        Self { registers, oscillators: Oscillators::new(&LAYOUT), halved_since: None }
+    }
+
     fn pll_source(&self) -> Origin {
         if self.registers.field(PLLCFGR, 0, 2) == 3 { Origin::External } else { Origin::Internal }
     }
@@ -195,7 +233,8 @@ impl Peripheral for Rcc {
     /// RM0440 7.1: a reset leaves the flags of resets.
     fn reset(&mut self) {
         let flags = self.registers.get(CSR) & FLAGS;
-        *self = Self::default();
+        self.registers.reset();
+        *self = Self::with(self.registers.clone());
         self.registers.set(CSR, flags);
     }
 }

@@ -236,7 +236,7 @@ mod tests {
     use crate::chips;
     use crate::machine::Machine;
     use crate::peripherals::flash::BASE;
-    use crate::wires::{MICROSECOND, Surroundings, Time};
+    use crate::wires::{Cable, MICROSECOND, Surroundings, Time};
 
     /// The clock of the internal oscillator's timer over that of the external one, from eight captures of every eighth edge.
     fn measured(mut machine: Machine, writes: &[(u32, u32)], timer: u32, divider: u64) -> u64 {
@@ -270,7 +270,7 @@ mod tests {
     #[test]
     fn the_external_oscillator_is_measured_in_counts_of_the_internal_one() {
         for rate in [8_000_000, 12_000_000, 16_000_000, 24_000_000, 25_000_000, 26_000_000] {
-            let machine = |chip, source| Machine::new(chip, source, 9600, 1000);
+            let machine = |chip, source| Machine::new(chip, source, Cable::default(), 1000);
             let f405 = machine(chips::f405::chip(BASE + 0x1000), Surroundings::crystal(rate));
             let g474 = machine(chips::g474::chip(BASE + 0x1000), Surroundings::crystal(rate));
             let h743 = machine(chips::h743::chip(BASE + 0x1000), Surroundings::clock(rate));

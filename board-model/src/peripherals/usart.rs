@@ -9,16 +9,24 @@ use super::Peripheral;
 use crate::register::{Register, Registers, bit, bits};
 use crate::wires::{Pin, Request, Time, Wires, cycles};
 
-/// RM0090 30.6. DMA moves bytes between data registers and memory: the bridge to the bus makes words of them (RM0090 10.3.10).
-static OLD: [Register; 7] = [
-    Register::new("USART_SR", 0x00, 0xc0, 0x3ff).special(0x3ff).half_words(),
-    Register::new("USART_DR", 0x04, 0, 0x1ff).special(0x1ff).any_width(),
-    Register::new("USART_BRR", 0x08, 0, 0xffff).half_words(),
-    Register::new("USART_CR1", 0x0c, 0, 0xbfff).half_words(),
-    Register::new("USART_CR2", 0x10, 0, 0x7f6f).half_words(),
-    Register::new("USART_CR3", 0x14, 0, 0x0fff).half_words(),
-    Register::new("USART_GTPR", 0x18, 0, 0xffff).half_words(),
-];
+/// RM0090 30.6; UART4 and UART5 have no clock, no flow control and no cards.
+static OLD: [Register; 7] = old(0x7f6f, 0x0fff);
+static OLD_UART: [Register; 7] = old(0x706f, 0x08cf);
+
+/// The register map with the fields of two registers. DMA moves bytes between data registers and memory: the bridge to the bus
+/// makes words of them (RM0090 10.3.10).
+const fn old(cr2: u32, cr3: u32) -> [Register; 7] {
+    [
+        Register::new("USART_SR", 0x00, 0xc0, 0x3ff).special(0x3ff).half_words(),
+        Register::new("USART_DR", 0x04, 0, 0x1ff).special(0x1ff).any_width(),
+        Register::new("USART_BRR", 0x08, 0, 0xffff).half_words(),
+        Register::new("USART_CR1", 0x0c, 0, 0xbfff).half_words(),
+        Register::new("USART_CR2", 0x10, 0, cr2).half_words(),
+        Register::new("USART_CR3", 0x14, 0, cr3).half_words(),
+        Register::new("USART_GTPR", 0x18, 0, 0xffff).half_words(),
+    ]
+}
+
 /// RM0440 37.8, RM0433 48.7.
 static NEW: [Register; 12] = [
     Register::new("USART_CR1", 0x00, 0, u32::MAX),
@@ -116,17 +124,22 @@ pub struct Usart {
 impl Usart {
     /// One byte each way.
     pub fn old(place: Place) -> Self {
-        Self::with(&OLD, Kind::Old, place)
+        Self::with(Registers::new(&OLD), Kind::Old, place)
+    }
+
+    /// The same without a clock: UART4 and UART5.
+    pub fn old_uart(place: Place) -> Self {
+        Self::with(Registers::new(&OLD_UART), Kind::Old, place)
     }
 
     /// With FIFOs: 8 bytes on G474, 16 on H743.
     pub fn new(place: Place, depth: usize) -> Self {
-        Self::with(&NEW, Kind::New(depth), place)
+        Self::with(Registers::new(&NEW), Kind::New(depth), place)
     }
 
-    fn with(table: &'static [Register], kind: Kind, place: Place) -> Self {
+    fn with(registers: Registers, kind: Kind, place: Place) -> Self {
         Self {
-            registers: Registers::new(table),
+            registers,
             kind,
             place,
             received: VecDeque::new(),
@@ -148,7 +161,14 @@ impl Usart {
     }
 
     fn receives(&self, wires: &Wires) -> bool {
-        self.is_enabled() && self.control() & bit(2) != 0 && wires.leads_to(self.place.receive)
+        self.is_enabled()
+            && self.control() & bit(2) != 0
+            && wires.leads_by(wires.line.cable.receive, self.place.receive)
+    }
+
+    /// Whether the line to the host is for it.
+    fn has_line(&self, wires: &Wires) -> bool {
+        wires.line.cable.unit == self.place.number
     }
 
     fn sends(&self) -> bool {
@@ -183,7 +203,7 @@ impl Usart {
     }
 
     fn is_off_speed(&self, wires: &Wires) -> bool {
-        let (own, host) = (self.baud(wires), wires.line.baud);
+        let (own, host) = (self.baud(wires), wires.line.cable.baud);
         own.abs_diff(host) * 1000 > TOLERANCE * host
     }
 
@@ -245,7 +265,7 @@ impl Usart {
                 }
             }
             if self.is_off_speed(wires) {
-                let what = format!("gives {} baud where the host has {}", self.baud(wires), wires.line.baud);
+                let what = format!("gives {} baud where the host has {}", self.baud(wires), wires.line.cable.baud);
                 wires.violation("USART_BRR", what, "RM0090 30.3.4");
             }
         }
@@ -340,7 +360,7 @@ impl Peripheral for Usart {
     fn advance(&mut self, wires: &mut Wires) {
         while let Some((byte, done)) = self.sending.filter(|(_, done)| *done <= wires.now) {
             let byte = if self.is_off_speed(wires) { !byte } else { byte };
-            if wires.leads_to(self.place.send) {
+            if self.has_line(wires) && wires.leads_by(wires.line.cable.send, self.place.send) {
                 wires.line.to_host.push(byte);
             }
             self.sending = None;
@@ -349,22 +369,24 @@ impl Peripheral for Usart {
         if self.sending.is_none() {
             self.start_sending(wires.now, wires);
         }
-        while let Some(arrives) = wires.line.arrives.filter(|arrives| *arrives <= wires.now) {
+        let has_line = self.has_line(wires);
+        while let Some(arrives) = wires.line.arrives.filter(|arrives| has_line && *arrives <= wires.now) {
             // While the core stands still, DMA has its turn after every byte.
             if !self.received.is_empty() && wires.is_served(Request::UsartReceived(self.place.number)) {
                 break;
             }
-            let start = arrives.saturating_sub(cycles(BITS, wires.line.baud));
+            let start = arrives.saturating_sub(cycles(BITS, wires.line.cable.baud));
             self.watch_silence(Some(start), arrives);
             let byte = wires.line.to_board.pop_front().unwrap_or_default();
             self.arrive(byte, arrives, wires);
-            let next = arrives + cycles(BITS, wires.line.baud);
+            let next = arrives + cycles(BITS, wires.line.cable.baud);
             wires.line.arrives = (!wires.line.to_board.is_empty()).then_some(next);
         }
-        if wires.line.arrives.is_none() && !wires.line.to_board.is_empty() {
-            wires.line.arrives = Some(wires.now + cycles(BITS, wires.line.baud));
+        if has_line && wires.line.arrives.is_none() && !wires.line.to_board.is_empty() {
+            wires.line.arrives = Some(wires.now + cycles(BITS, wires.line.cable.baud));
         }
-        let start = wires.line.arrives.map(|arrives| arrives.saturating_sub(cycles(BITS, wires.line.baud)));
+        let arrives = wires.line.arrives.filter(|_| has_line);
+        let start = arrives.map(|arrives| arrives.saturating_sub(cycles(BITS, wires.line.cable.baud)));
         self.watch_silence(start, wires.now);
         let (status, control) = (self.status(), self.control());
         let requests = self.registers.get(self.kind.requests());
@@ -385,7 +407,7 @@ impl Peripheral for Usart {
     }
 
     fn reset(&mut self) {
-        let table = if self.kind == Kind::Old { &OLD[..] } else { &NEW[..] };
-        *self = Self::with(table, self.kind, self.place);
+        self.registers.reset();
+        *self = Self::with(self.registers.clone(), self.kind, self.place);
     }
 }

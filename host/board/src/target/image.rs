@@ -13,7 +13,7 @@ use super::board::Board;
 use super::compile::{FIRMWARE, PROFILE, compile, store};
 use super::sources::{self, hexadecimal};
 use super::tick_time;
-use super::toolchain::Toolchain;
+use super::toolchain::{TARGET_FLAGS, Toolchain};
 use report::failure::{Failure, Outcome};
 use report::workspace::workspace;
 
@@ -25,6 +25,8 @@ pub const CONTROL_RATE: u32 = 10_000;
 pub const SPI_RATE: u32 = 5000;
 /// The binary of that slave.
 const SPI_BINARY: &str = "spi_observer";
+/// For boards with little flash: at a lower level of optimisation the tick's loops keep checks that can panic.
+const LESS_INLINED: &str = " -Cllvm-args=-inline-threshold=100";
 /// No image is larger [byte].
 const LARGEST_IMAGE: u32 = 256 << 10;
 /// Where the flash of every board begins; RAM is at and beyond [`RAM`].
@@ -144,9 +146,12 @@ fn finish(
 ) -> Outcome<Image> {
     let (rate, bandwidth) = (control.rate.to_string(), control.bandwidth.to_string());
     let motor_only = if control.output_encoder { "0" } else { "1" };
-    let optimisation = if has_room_for_all(board) { "3" } else { "2" };
+    let mut target_flags = toolchain.target_flags();
+    if !has_room_for_all(board) {
+        target_flags.push(LESS_INLINED);
+    }
     let environment: [(&str, &OsStr); 7] = [
-        ("CARGO_PROFILE_FIRMWARE_OPT_LEVEL", optimisation.as_ref()),
+        (TARGET_FLAGS, &target_flags),
         ("BOARD_FILE", board.file.as_os_str()),
         ("JOINT_FILE", truth.as_os_str()),
         ("JOINT_TOLD", told.as_os_str()),
@@ -176,7 +181,8 @@ fn finish(
         ram_bytes,
         compiler: toolchain.compiler().to_owned(),
         flags: format!(
-            "profile {PROFILE} (opt-level {optimisation}, fat LTO), {}, board {}",
+            "profile {PROFILE} (opt-level 3, fat LTO{}), {}, board {}",
+            if has_room_for_all(board) { "" } else { LESS_INLINED },
             toolchain.flags(),
             board.name()
         ),

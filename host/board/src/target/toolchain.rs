@@ -21,6 +21,9 @@ const DISTRIBUTION_CARGO: &str = "/usr/bin/cargo";
 const DISTRIBUTION_RUSTC: &str = "/usr/bin/rustc";
 const LIBRARY_SOURCE: &str = "/usr/lib/rustlib/src/rust/library/core/Cargo.toml";
 
+/// The variable by which cargo tells the compiler its flags for the target.
+pub const TARGET_FLAGS: &str = "CARGO_TARGET_THUMBV7EM_NONE_EABIHF_RUSTFLAGS";
+
 /// A way to build for the board.
 #[derive(Debug, Clone)]
 pub struct Toolchain {
@@ -68,21 +71,29 @@ impl Toolchain {
         self.sysroot.is_some()
     }
 
+    /// What the compiler is told for the target, as [`TARGET_FLAGS`] has it.
+    pub fn target_flags(&self) -> OsString {
+        let mut flags = OsString::new();
+        if let Some(sysroot) = &self.sysroot {
+            flags.push("--sysroot=");
+            flags.push(sysroot);
+            flags.push(" -Clinker=ld.lld -Clinker-flavor=ld.lld");
+        }
+        flags
+    }
+
     /// A cargo command in the workspace, for this toolchain. The subcommand comes first.
     pub fn cargo(&self, subcommand: &str) -> Command {
         let mut command = Command::new(&self.cargo);
         clean(&mut command).current_dir(workspace());
-        if let (Some(rustc), Some(sysroot)) = (&self.rustc, &self.sysroot) {
+        if let Some(rustc) = &self.rustc {
             // A plugin of cargo, such as clippy, is looked for on the path: the distribution's, not another's.
             let path = env::var_os("PATH").unwrap_or_default();
             let folders = [PathBuf::from("/usr/bin")].into_iter().chain(env::split_paths(&path));
             if let Ok(path) = env::join_paths(folders) {
                 command.env("PATH", path);
             }
-            let mut flags = OsString::from("--sysroot=");
-            flags.push(sysroot);
-            flags.push(" -Clinker=ld.lld -Clinker-flavor=ld.lld");
-            command.env("RUSTC", rustc).env("CARGO_TARGET_THUMBV7EM_NONE_EABIHF_RUSTFLAGS", flags);
+            command.env("RUSTC", rustc).env(TARGET_FLAGS, self.target_flags());
         }
         command.arg(subcommand).args(["--target", TARGET, "--target-dir"]).arg(&self.folder);
         command

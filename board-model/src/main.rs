@@ -96,7 +96,8 @@ fn check(only_board: Option<Board>, only: Option<&str>, full: bool) -> Result<()
     let wanted = |board: &Board, name: &str| {
         only_board.as_ref().is_none_or(|wanted| wanted == board) && only.is_none_or(|text| name.contains(text))
     };
-    let boards = Board::presets().map_err(|failure| failure.to_string())?;
+    let mut boards = Board::presets().map_err(|failure| failure.to_string())?;
+    boards.extend(only_board.clone().filter(|board| !boards.contains(board)));
     for board in &boards {
         let is_first = boards::with(board.chip())? == *board;
         let chosen = |check: &&Named| wanted(board, check.name) && (full || !check.is_long);

@@ -2,9 +2,9 @@
 //! Each must make its check fail: this is the model's own test.
 
 use board::target::board::Chip;
-use board::target::board::Chip::{Stm32f405, Stm32g474, Stm32h743};
+use board::target::board::Chip::{Stm32f405, Stm32g431, Stm32g474, Stm32h743};
 
-use crate::checks::{Check, boot, load, memory, outputs, spi};
+use crate::checks::{Check, boot, load, memory, outputs, pins, spi};
 use crate::images::Work;
 use crate::images::Work::{Observer, Plant, SpiSlave};
 use crate::tamper::How::{Clear, Field, Omit, OmitValue, Set, Swap};
@@ -86,6 +86,14 @@ pub const ALL: &[Mistake] = &[
     ),
     Mistake::new(Stm32f405, Plant, boot::answers, &[at(0x4002_0000, Clear(3 << 20))], "PA10 stays an input"),
     Mistake::new(Stm32f405, Plant, boot::answers, &[at(0x4002_0000, Clear(3 << 26))], "a debug pin is taken"),
+    Mistake::new(
+        Stm32f405,
+        Plant,
+        pins::only_those_of_the_file,
+        &[at(0x4002_000c, Set(1))],
+        "PA0, which the board's file forbids, has a pull",
+    )
+    .short(),
     Mistake::new(
         Stm32f405,
         Plant,
@@ -249,6 +257,15 @@ pub const ALL: &[Mistake] = &[
         memory::one_bank,
         &[at(0x4002_2014, Set(1 << 11))],
         "flash: the second bank of a chip with one",
+    )
+    .short(),
+    // STM32G431.
+    Mistake::new(
+        Stm32g431,
+        Plant,
+        pins::only_those_of_the_file,
+        &[at(0x4800_0400, Field(3 << 30, 1 << 30))],
+        "PB15, the gate input of a phase, is an output",
     )
     .short(),
     // STM32H743.

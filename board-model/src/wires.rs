@@ -235,6 +235,8 @@ pub struct Wires {
     pub interrupts: BTreeSet<usize>,
     /// Pins that are not as after a reset.
     pub pins: BTreeMap<Pin, Mode>,
+    /// Pins that were ever set up in another way than a reset does.
+    pub set_up: BTreeSet<Pin>,
     /// Levels that somebody outside drives.
     pub driven: BTreeMap<Pin, bool>,
     /// The port behind each external interrupt line, by number.
@@ -297,6 +299,7 @@ impl Wires {
             gates: BTreeMap::new(),
             interrupts: BTreeSet::new(),
             pins: BTreeMap::new(),
+            set_up: BTreeSet::new(),
             driven: BTreeMap::new(),
             line_ports: ['A'; 16],
             requests: BTreeSet::new(),

@@ -6,6 +6,7 @@ pub mod boot;
 pub mod load;
 pub mod memory;
 pub mod outputs;
+pub mod pins;
 pub mod sources;
 pub mod spi;
 
@@ -50,10 +51,12 @@ impl Named {
 
     /// Images of a board that it is for. What differs between boards with the same chip is found when they boot and run.
     pub fn works(&self, board: &Described, is_first: bool) -> impl Iterator<Item = Work> {
-        let works = match () {
-            () if is_first && self.chips.contains(&board.chip()) => self.works,
-            () if self.is_for_every_board => &[Work::Plant],
-            () => &[],
+        let works: &[Work] = if is_first && self.chips.contains(&board.chip()) {
+            self.works
+        } else if self.is_for_every_board {
+            &[Work::Plant]
+        } else {
+            &[]
         };
         let has_spi_slave = board.has_spi_slave();
         works.iter().copied().filter(move |work| *work != Work::SpiSlave || has_spi_slave)
@@ -63,6 +66,7 @@ impl Named {
 /// All checks.
 pub const ALL: &[Named] = &[
     short("boots, ticks and answers", &[Work::Plant, Work::Observer, Work::Loop], boot::answers).on_every_board(),
+    short("drives no pin that its file forbids", &[Work::Plant], pins::only_those_of_the_file).on_every_board(),
     short("starts after a bootloader", &[Work::Plant, Work::Observer, Work::Loop], boot::after_bootloader),
     short("boots from the internal oscillator", &[Work::Plant], sources::dead_crystal),
     short("other crystals", &[Work::Plant], sources::other_crystals),

@@ -32,21 +32,21 @@ static MEMORIES: [Memory; 2] = [
 ];
 
 /// Data sheet of STM32G474, table 13: USART1 to USART3 are function 7.
-pub(super) const USART1: Place = Place {
+const USART1: Place = Place {
     number: 1,
     interrupt: 37,
     clock: BusClock::High,
     send: &[(Pin('A', 9), 7), (Pin('B', 6), 7), (Pin('C', 4), 7), (Pin('E', 0), 7), (Pin('G', 9), 7)],
     receive: &[(Pin('A', 10), 7), (Pin('B', 7), 7), (Pin('C', 5), 7), (Pin('E', 1), 7)],
 };
-pub(super) const USART2: Place = Place {
+const USART2: Place = Place {
     number: 2,
     interrupt: 38,
     clock: BusClock::Low,
     send: &[(Pin('A', 2), 7), (Pin('A', 14), 7), (Pin('B', 3), 7), (Pin('D', 5), 7)],
     receive: &[(Pin('A', 3), 7), (Pin('A', 15), 7), (Pin('B', 4), 7), (Pin('D', 6), 7)],
 };
-pub(super) const USART3: Place = Place {
+const USART3: Place = Place {
     number: 3,
     interrupt: 39,
     clock: BusClock::Low,
@@ -55,12 +55,12 @@ pub(super) const USART3: Place = Place {
 };
 
 /// The same table: SPI2 is function 5.
-pub(super) const SPI2: spi::Place =
+const SPI2: spi::Place =
     spi::Place { number: 2, pins: [(Pin('B', 12), 5), (Pin('B', 13), 5), (Pin('B', 14), 5), (Pin('B', 15), 5)] };
 
 /// RM0440 30.8: HSE/32 is input 3 of both.
-pub(super) const TIM16: tim::Place = tim::Place { map: &tim::G4, interrupt: 25, selection: (0x5c, 3) };
-pub(super) const TIM17: tim::Place = tim::Place { interrupt: 26, ..TIM16 };
+const TIM16: tim::Place = tim::Place { map: &tim::G4, interrupt: 25, selection: (0x5c, 3) };
+const TIM17: tim::Place = tim::Place { interrupt: 26, ..TIM16 };
 
 /// What is not the same on all chips of RM0440.
 pub(super) struct Parts {

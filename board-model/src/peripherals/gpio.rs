@@ -6,6 +6,9 @@ use crate::register::{Register, Registers};
 use crate::wires::{Mode, Pin, Wires};
 
 const MODER: u32 = 0x00;
+const OTYPER: u32 = 0x04;
+const OSPEEDR: u32 = 0x08;
+const PUPDR: u32 = 0x0c;
 const IDR: u32 = 0x10;
 const ODR: u32 = 0x14;
 const BSRR: u32 = 0x18;
@@ -17,9 +20,9 @@ const BRR: u32 = 0x28;
 const fn map(moder: u32, ospeedr: u32, pupdr: u32) -> [Register; 11] {
     [
         Register::new("MODER", MODER, moder, u32::MAX).any_width(),
-        Register::new("OTYPER", 0x04, 0, 0xffff).any_width(),
-        Register::new("OSPEEDR", 0x08, ospeedr, u32::MAX).any_width(),
-        Register::new("PUPDR", 0x0c, pupdr, u32::MAX).any_width(),
+        Register::new("OTYPER", OTYPER, 0, 0xffff).any_width(),
+        Register::new("OSPEEDR", OSPEEDR, ospeedr, u32::MAX).any_width(),
+        Register::new("PUPDR", PUPDR, pupdr, u32::MAX).any_width(),
         Register::new("IDR", IDR, 0, 0xffff).special(0xffff).any_width(),
         Register::new("ODR", ODR, 0, 0xffff).any_width(),
         Register::new("BSRR", BSRR, 0, u32::MAX).special(u32::MAX).any_width(),
@@ -71,6 +74,18 @@ impl Gpio {
         Self { port, has_brr, registers: Registers::new(&table[..if has_brr { 11 } else { 10 }]), is_new: true }
     }
 
+    /// Whether anything of a pin is not as after a reset.
+    fn is_set_up(&self, pin: u32) -> bool {
+        let functions = if pin < 8 { AFRL } else { AFRH };
+        [(MODER, 2), (OTYPER, 1), (OSPEEDR, 2), (PUPDR, 2), (ODR, 1), (functions, 4)].into_iter().any(
+            |(offset, width)| {
+                let reset = self.registers.describe(offset).map_or(0, |register| register.reset);
+                let place = width * if width == 4 { pin % 8 } else { pin };
+                (self.registers.get(offset) ^ reset) >> place & ((1 << width) - 1) != 0
+            },
+        )
+    }
+
     fn mode(&self, pin: u32) -> Mode {
         match self.registers.field(MODER, 2 * pin, 2) {
             0 => Mode::Input,
@@ -116,11 +131,46 @@ impl Peripheral for Gpio {
         }
         for pin in 0..16 {
             wires.pins.insert(Pin(self.port, pin), self.mode(pin));
+            if self.is_set_up(pin) {
+                wires.set_up.insert(Pin(self.port, pin));
+            }
         }
     }
 
     fn reset(&mut self) {
         self.registers.reset();
         self.is_new = true;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::chips;
+    use crate::machine::Machine;
+    use crate::peripherals::flash::BASE;
+    use crate::wires::{Cable, Pin, Reset, Surroundings};
+
+    #[test]
+    fn a_pin_that_was_set_up_is_told_for_good() {
+        let mut machine =
+            Machine::new(chips::f405::chip(BASE + 0x1000), Surroundings::default(), Cable::default(), 1000);
+        machine.settle();
+        machine.write(0x4002_3830, 4, 0b111);
+        // A mode and its reset value again, a pull, a function, and the debug port as it is.
+        for (address, value) in [
+            (0x4002_0800, 1 << 6),
+            (0x4002_0800, 0),
+            (0x4002_080c, 1 << 10),
+            (0x4002_0424, 7 << 8),
+            (0x4002_0000, 0xa800_0000),
+        ] {
+            machine.write(address, 4, value);
+        }
+        let set_up = [Pin('B', 10), Pin('C', 3), Pin('C', 5)].into();
+        assert_eq!(machine.wires.set_up, set_up);
+        machine.reset(Reset::Software);
+        machine.settle();
+        assert_eq!(machine.wires.set_up, set_up);
+        assert_eq!(machine.wires.violations.all(), []);
     }
 }

@@ -1,0 +1,52 @@
+//! Pins: those that the board's file names are set up, and no others, least of all those that it forbids.
+
+use std::collections::BTreeSet;
+
+use super::clean;
+use super::outputs::start_run;
+use crate::boards::{Subject, pin};
+use crate::wires::{MICROSECOND, Mode, Pin, Time};
+
+/// How long a run goes on.
+const RUN: Time = 20_000 * MICROSECOND;
+
+/// Boots and runs: no pin that the file forbids was set up at any time, and of the others those that it names.
+pub fn only_those_of_the_file(subject: &Subject) -> Result<String, String> {
+    let mut talk = start_run(subject)?;
+    talk.hear(RUN);
+    clean(&talk.board.borrow())?;
+    let board = &subject.board.described;
+    let set_up = talk.board.borrow().machine().wires.set_up.clone();
+    let mode = |pin| talk.board.borrow().machine().wires.mode(pin);
+    let driven: Vec<_> = board
+        .never_driven
+        .iter()
+        .filter(|(forbidden, _)| set_up.contains(&pin(*forbidden)))
+        .map(|(forbidden, why)| format!("{} ({why}), now {:?}", named(pin(*forbidden)), mode(pin(*forbidden))))
+        .collect();
+    if !driven.is_empty() {
+        return Err(format!("pins that the board's file forbids were set up: {}", driven.join(", ")));
+    }
+    let lines = [board.serial.send, board.serial.receive];
+    let lines = lines.map(|line| (pin(line.pin), Mode::Alternate(line.function.into())));
+    let outputs: Vec<_> = board.enable.iter().chain(&board.light).map(|output| pin(output.pin)).collect();
+    let wanted: BTreeSet<_> = lines.iter().map(|(pin, _)| *pin).chain(outputs.iter().copied()).collect();
+    if set_up != wanted {
+        return Err(format!("{} are set up, and the file names {}", list(&set_up), list(&wanted)));
+    }
+    if let Some((pin, function)) = lines.into_iter().find(|(pin, function)| mode(*pin) != *function) {
+        return Err(format!("{} is {:?}, not {function:?}", named(pin), mode(pin)));
+    }
+    if let Some(pin) = outputs.into_iter().find(|pin| !matches!(mode(*pin), Mode::Output(_))) {
+        return Err(format!("{} is {:?}, not an output", named(pin), mode(pin)));
+    }
+    Ok(format!("{} are set up, {} left alone", list(&wanted), board.never_driven.len()))
+}
+
+fn named(Pin(port, number): Pin) -> String {
+    format!("P{port}{number}")
+}
+
+fn list(pins: &BTreeSet<Pin>) -> String {
+    pins.iter().map(|pin| named(*pin)).collect::<Vec<_>>().join(", ")
+}

@@ -26,7 +26,7 @@ pub struct Named {
     pub name: &'static str,
     /// Images that it is for.
     pub works: &'static [Work],
-    /// Chips that it is for, on the first board with each.
+    /// Chips that it is for, on the first board with each; others boot and run the plant only.
     pub chips: &'static [Chip],
     /// The plant must pass it on every board.
     pub is_for_every_board: bool,
@@ -36,11 +36,8 @@ pub struct Named {
     pub is_long: bool,
 }
 
-/// Chips with room for all images.
-const CHIPS: &[Chip] = &[Chip::Stm32f405, Chip::Stm32g474, Chip::Stm32h743];
-
 const fn short(name: &'static str, works: &'static [Work], run: Check) -> Named {
-    Named { name, works, chips: CHIPS, is_for_every_board: false, run, is_long: false }
+    Named { name, works, chips: &Chip::ALL, is_for_every_board: false, run, is_long: false }
 }
 
 impl Named {
@@ -58,8 +55,7 @@ impl Named {
         } else {
             &[]
         };
-        let has_spi_slave = board.has_spi_slave();
-        works.iter().copied().filter(move |work| *work != Work::SpiSlave || has_spi_slave)
+        works.iter().copied().filter(|work| has_image(board, *work))
     }
 }
 
@@ -93,12 +89,21 @@ pub const ALL: &[Named] = &[
     Named {
         name: "power cut at every operation of flash",
         works: &[Work::Observer],
-        chips: CHIPS,
+        chips: &Chip::ALL,
         is_for_every_board: false,
         run: memory::survives_cuts,
         is_long: true,
     },
 ];
+
+/// Whether a board has an image for this: STM32G431 has room for the plant alone.
+fn has_image(board: &Described, work: Work) -> bool {
+    match work {
+        Work::Plant => true,
+        Work::Observer | Work::Loop => board.chip() != Chip::Stm32g431,
+        Work::SpiSlave => board.has_spi_slave(),
+    }
+}
 
 /// Fails if a board has been halted or has done anything against a rule.
 pub fn clean(board: &Board<'_>) -> Result<(), String> {

@@ -56,7 +56,7 @@ pub fn start_run<'a>(subject: &Subject) -> Result<Talk<'a>, String> {
     Ok(talk)
 }
 
-/// The host falls silent: enable goes within the timeout.
+/// The host falls silent: enable goes within the timeout, and the board says so, whether it has that output or not.
 pub fn silence(subject: &Subject) -> Result<String, String> {
     let mut talk = start_run(subject)?;
     let start = talk.board.borrow().now();
@@ -67,7 +67,9 @@ pub fn silence(subject: &Subject) -> Result<String, String> {
                 trip = Some(why);
             }
         }
-        if gone.is_none() && is_switched(&talk, subject, false) {
+        let is_off =
+            if subject.board.described.enable.is_some() { is_switched(&talk, subject, false) } else { trip.is_some() };
+        if gone.is_none() && is_off {
             gone = Some(talk.board.borrow().now() - start);
         }
     }

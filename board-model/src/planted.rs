@@ -101,7 +101,7 @@ pub const ALL: &[Mistake] = &[
         &[at(0x4001_1008, Field(0xffff, 182))],
         "the divider of the line is that of APB1",
     ),
-    Mistake::new(Stm32f405, Plant, boot::answers, &[at(0x4001_100c, Clear(1 << 5))], "no interrupt for received bytes"),
+    Mistake::new(Stm32f405, Plant, boot::answers, &[at(0x4001_1014, Clear(1 << 6))], "no DMA for received bytes"),
     Mistake::new(Stm32f405, Plant, boot::answers, &[at(0x4001_100c, Set(1 << 14))], "a reserved bit of USART_CR1"),
     // The core.
     Mistake::new(Stm32f405, Plant, boot::answers, &[at(0xe000_e104, Omit)], "the line's interrupt stays masked"),
@@ -213,6 +213,7 @@ pub const ALL: &[Mistake] = &[
     Mistake::new(Stm32g474, Plant, boot::answers, &[at(0x4002_1008, Clear(0xf0))], "full bus clock at once"),
     Mistake::new(Stm32g474, Plant, boot::answers, &[at(0x4002_2000, Field(0xf, 3))], "three wait states for four"),
     Mistake::new(Stm32g474, Plant, boot::answers, &[at(0x4002_100c, Clear(1 << 24))], "the output R of the PLL is off"),
+    Mistake::new(Stm32g474, Plant, boot::answers, &[at(0x4000_4400, Clear(1 << 5))], "no interrupt for received bytes"),
     Mistake::new(Stm32g474, Plant, load::plant, &[at(0x4000_4400, Clear(1 << 29))], "the FIFO of the USART is off"),
     Mistake::new(
         Stm32g474,

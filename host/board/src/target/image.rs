@@ -146,10 +146,9 @@ fn finish(
 ) -> Outcome<Image> {
     let (rate, bandwidth) = (control.rate.to_string(), control.bandwidth.to_string());
     let motor_only = if control.output_encoder { "0" } else { "1" };
+    let own_flags = if has_room_for_all(board) { "" } else { LESS_INLINED };
     let mut target_flags = toolchain.target_flags();
-    if !has_room_for_all(board) {
-        target_flags.push(LESS_INLINED);
-    }
+    target_flags.push(own_flags);
     let environment: [(&str, &OsStr); 7] = [
         (TARGET_FLAGS, &target_flags),
         ("BOARD_FILE", board.file.as_os_str()),
@@ -166,7 +165,7 @@ fn finish(
         &images,
         &place,
         [truth, told, &board.file],
-        &format!("{binary}{}{control:?}", board.file.display()),
+        &format!("{binary}{}{control:?}{own_flags}", board.file.display()),
         || {
             compile(toolchain, FIRMWARE, binary, board.chip().name(), &environment, say)
                 .map_err(|failure| too_large(&failure, board).unwrap_or(failure))
@@ -182,7 +181,7 @@ fn finish(
         compiler: toolchain.compiler().to_owned(),
         flags: format!(
             "profile {PROFILE} (opt-level 3, fat LTO{}), {}, board {}",
-            if has_room_for_all(board) { "" } else { LESS_INLINED },
+            own_flags,
             toolchain.flags(),
             board.name()
         ),

@@ -26,6 +26,9 @@ const TICKS: u32 = 4000;
 const HOLD: u32 = 100;
 /// A busy machine is given time; nothing here is judged by it.
 const TIMEOUT: Duration = Duration::from_secs(120);
+/// Silence after which a message is taken for lost and sent again. An answer arrives in pieces, each of them a sign that
+/// the board is at it: who asked again at every piece would flood it, and a flood loses frames.
+const REPEAT_AFTER: Duration = Duration::from_secs(2);
 
 /// The line to the board, in messages.
 struct Line {
@@ -55,16 +58,30 @@ impl Line {
         bytes[..count].iter().filter_map(|byte| self.receiver.push(*byte)).collect()
     }
 
-    /// Repeats a message until an answer is found.
+    /// Asks until an answer is found.
     fn ask<A>(&mut self, message: &ToBoard, answer: impl Fn(FromBoard) -> Option<A>) -> A {
         let start = Instant::now();
+        let mut asked: Option<Instant> = None;
         while start.elapsed() < TIMEOUT {
-            self.send(message);
+            if asked.is_none_or(|time| time.elapsed() > REPEAT_AFTER) {
+                self.send(message);
+                asked = Some(Instant::now());
+            }
             if let Some(found) = self.receive().into_iter().find_map(&answer) {
                 return found;
             }
         }
         panic!("no answer to {message:?}");
+    }
+
+    /// Waits until the board has nothing more to say: where it was asked twice, it answers twice.
+    fn drain(&mut self) {
+        let mut heard = Instant::now();
+        while heard.elapsed() < REPEAT_AFTER {
+            if !self.receive().is_empty() {
+                heard = Instant::now();
+            }
+        }
     }
 }
 
@@ -97,7 +114,7 @@ fn run(line: &mut Line) -> Vec<Sample> {
         RunSettings { mode: RunMode::Lockstep, decimation: HOLD as u16, command_timeout, from_memory: false };
     line.ask(&ToBoard::Reset(settings), hello);
     // On a busy machine the board was asked more than once: a reset that comes later would end the run.
-    while !line.receive().is_empty() {}
+    line.drain();
     let (mut samples, mut next) = (Vec::new(), 0);
     let start = Instant::now();
     line.send(&schedule(0));

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use board_file::Level;
+
 use super::clean;
 use super::outputs::start_run;
 use crate::boards::{Subject, pin};
@@ -29,7 +31,8 @@ pub fn only_those_of_the_file(subject: &Subject) -> Result<String, String> {
     }
     let lines = [board.serial.send, board.serial.receive];
     let lines = lines.map(|line| (pin(line.pin), Mode::Alternate(line.function.into())));
-    let outputs: Vec<_> = board.enable.iter().chain(&board.light).map(|output| pin(output.pin)).collect();
+    let outputs: Vec<_> =
+        board.supply.iter().chain(&board.enable).chain(&board.light).map(|output| pin(output.pin)).collect();
     let wanted: BTreeSet<_> = lines.iter().map(|(pin, _)| *pin).chain(outputs.iter().copied()).collect();
     if set_up != wanted {
         return Err(format!("{} are set up, and the file names {}", list(&set_up), list(&wanted)));
@@ -39,6 +42,12 @@ pub fn only_those_of_the_file(subject: &Subject) -> Result<String, String> {
     }
     if let Some(pin) = outputs.into_iter().find(|pin| !matches!(mode(*pin), Mode::Output(_))) {
         return Err(format!("{} is {:?}, not an output", named(pin), mode(pin)));
+    }
+    if let Some(supply) = board.supply {
+        let (pin, held) = (pin(supply.pin), Mode::Output(supply.on == Level::High));
+        if mode(pin) != held {
+            return Err(format!("{} is {:?} and lets the supply go", named(pin), mode(pin)));
+        }
     }
     Ok(format!("{} are set up, {} left alone", list(&wanted), board.never_driven.len()))
 }

@@ -84,10 +84,10 @@ pub struct Output {
 }
 
 impl Output {
-    /// Makes the pin an output that is off from the first moment on.
-    pub fn open(pin: Option<(Pin, bool)>) -> Self {
-        let mut output = Self { pin: pin.map(|(pin, _)| pin), on_is_high: pin.is_some_and(|(_, high)| high) };
-        let Ok(()) = output.set_low();
+    /// Makes the pin an output that is on, or off, from the first moment on.
+    pub fn open(pin: Option<(Pin, bool)>, on: bool) -> Self {
+        let output = Self { pin: pin.map(|(pin, _)| pin), on_is_high: pin.is_some_and(|(_, high)| high) };
+        output.switch(on);
         if let Some(pin) = output.pin {
             pin.set_mode(1);
         }

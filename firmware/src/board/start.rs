@@ -33,17 +33,13 @@ pub fn start(device: pac::Peripherals, core: &mut cortex_m::Peripherals) -> Star
     // Whoever jumped here, such as a bootloader, may have had vectors of its own.
     // SAFETY: vectors are there, and no interrupt is on yet.
     unsafe { core.SCB.vtor.write(VECTORS) };
+    // What holds the supply comes first: until then it is there by courtesy of a finger on a button.
+    let _supply = output(&device.RCC, description::SUPPLY, true);
     let Parts { clock, slots, watchdog, watchdog_reset, clocks } = ThisChip::start(device, core);
-    let output = |output: Option<(u8, u8, bool)>| {
-        Output::open(output.map(|(port, number, high)| {
-            ThisChip::power_port(&clocks, port);
-            (Pin::new(port, number), high)
-        }))
-    };
     Started {
         clock,
-        enable: output(description::ENABLE),
-        light: output(description::LIGHT),
+        enable: output(&clocks, description::ENABLE, false),
+        light: output(&clocks, description::LIGHT, false),
         slots,
         watchdog: Watchdog::start(watchdog),
         watchdog_reset,
@@ -64,6 +60,15 @@ impl Started {
         let clock = if has_pll { description::SERIAL_CLOCK } else { ThisChip::INTERNAL.rate };
         ThisChip::open_port(&self.clocks, clock, description::BAUD)
     }
+}
+
+/// An output of the board's file, the clock of its port on.
+fn output(clocks: &pac::RCC, output: Option<(u8, u8, bool)>, on: bool) -> Output {
+    let pin = output.map(|(port, number, high)| {
+        ThisChip::power_port(clocks, port);
+        (Pin::new(port, number), high)
+    });
+    Output::open(pin, on)
 }
 
 /// A pin with the function that it is given to, the clock of its port on.

@@ -37,6 +37,8 @@ pub struct Board {
     pub serial: Serial,
     /// The line to a motor controller whose slave the board is.
     pub spi_slave: Option<SpiSlave>,
+    /// Holds the board's own supply.
+    pub supply: Option<Output>,
     /// Switches the motor on.
     pub enable: Option<Output>,
     /// The status light.
@@ -151,6 +153,7 @@ impl Board {
                 ("spi_slave.in", input.pin),
             ]);
         }
+        pins.extend(self.supply.map(|output| ("supply.pin", output.pin)));
         pins.extend(self.enable.map(|output| ("enable.pin", output.pin)));
         pins.extend(self.light.map(|output| ("light.pin", output.pin)));
         pins

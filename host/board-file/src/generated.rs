@@ -24,6 +24,7 @@ pub fn rust_source(board: &Board) -> String {
         let _ = writeln!(source, "/// {what}\npub const {name}: {kind} = {value};");
     };
     const PIN: &str = "(u8, u8, u8)";
+    const OUTPUT: &str = "Option<(u8, u8, bool)>";
     let hertz = |clock: ExternalClock| match clock {
         ExternalClock::None => "None".to_owned(),
         ExternalClock::Crystal(frequency) => format!("Some(({frequency}, false))"),
@@ -65,13 +66,9 @@ pub fn rust_source(board: &Board) -> String {
                 .map(|slave| format!("[{}]", [slave.select, slave.clock, slave.out, slave.input].map(pin).join(", "))),
         ),
     );
-    constant(
-        "What switches the motor on: port, number, whether high is on.",
-        "ENABLE",
-        "Option<(u8, u8, bool)>",
-        output(board.enable),
-    );
-    constant("The status light: the same.", "LIGHT", "Option<(u8, u8, bool)>", output(board.light));
+    constant("What holds the supply: port, number, whether high is on.", "SUPPLY", OUTPUT, output(board.supply));
+    constant("What switches the motor on: the same.", "ENABLE", OUTPUT, output(board.enable));
+    constant("The status light: the same.", "LIGHT", OUTPUT, output(board.light));
     let [first, second] = board.slots();
     constant(
         "Where what the observer has learnt is kept.",

@@ -56,6 +56,7 @@ pub(crate) const KEYS: &[Key] = &[
         Section,
         "the line to a motor controller whose slave the board is; leave it out if there is none",
     ),
+    key("", "supply", Section, "the output that holds the board's own supply; leave it out if there is none"),
     key("", "enable", Section, "the output that switches the motor on; leave it out if there is none"),
     key("", "light", Section, "the status light; leave it out if there is none"),
     key("", "never_driven", Section, "pins that are left alone, each with what it is there: PA8 = \"gate of phase A\""),
@@ -82,6 +83,8 @@ pub(crate) const KEYS: &[Key] = &[
     key("spi_slave", "out", Pin, "to the master (MISO)"),
     key("spi_slave", "in", Pin, "from the master (MOSI)"),
     // Outputs
+    key("supply", "pin", Pin, "the pin that holds the supply"),
+    key("supply", "on", Choice(LEVELS), "its level while the supply is held"),
     key("enable", "pin", Pin, "the pin that switches the motor on"),
     key("enable", "on", Choice(LEVELS), "its level while the motor is on"),
     key("light", "pin", Pin, "the pin of the light"),

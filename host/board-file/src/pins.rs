@@ -131,6 +131,9 @@ impl Pins {
             top.notes.error(place, message, help);
             list = None;
         }
+        if let Some(list) = &mut list {
+            list.sort();
+        }
         list
     }
 

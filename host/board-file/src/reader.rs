@@ -55,6 +55,7 @@ fn read_table(top: &Section<'_>) -> Option<Board> {
     let pins = Pins::new(part, clock);
     let serial = top.required_section("serial").and_then(|section| read_serial(&section, part, &pins));
     let spi_slave = optional(top, "spi_slave", |section| read_spi_slave(section, part, &pins));
+    let supply = optional(top, "supply", |section| read_output(section, &pins));
     let enable = optional(top, "enable", |section| read_output(section, &pins));
     let light = optional(top, "light", |section| read_output(section, &pins));
     let never_driven = pins.never_driven(top);
@@ -77,6 +78,7 @@ fn read_table(top: &Section<'_>) -> Option<Board> {
         pll: Plls { external, internal: part.chip.internal_pll() },
         serial: serial?,
         spi_slave: spi_slave?,
+        supply: supply?,
         enable: enable?,
         light: light?,
         never_driven: never_driven?,

@@ -81,6 +81,7 @@ fn layout(board: &Board) -> Sheet {
     let serial = &board.serial;
     let line = format!("{}: {} out, {} in, {} baud", serial.unit, serial.send.pin, serial.receive.pin, serial.baud);
     page.row("line to the host", line);
+    page.row("hold of the supply", output(board.supply));
     page.row("enable", output(board.enable));
     page.row("status light", output(board.light));
     page.row(

@@ -8,6 +8,7 @@
 
 mod arguments;
 mod columns;
+mod contradictions;
 mod estimate;
 pub mod findings;
 mod friction;
@@ -117,6 +118,9 @@ fn identify(arguments: &Arguments, prior: &PriorModel) -> Outcome<Identified> {
     let read = Log::read(arguments, prior)?;
     let in_the_file = |failure: Failure| failure.while_doing(path.display());
     let shortest = QUICK_BOX.min(prior.swing() / SWING_PARTS);
+    contradictions::angles(&read, prior)
+        .and_then(|()| contradictions::torques(&read, prior, shortest))
+        .map_err(in_the_file)?;
     let (length, mut rows, mut twist) = first_fit(&read, prior, shortest).map_err(in_the_file)?;
     let mut log = read.clone();
     for _ in 0..ROUNDS {
@@ -128,6 +132,9 @@ fn identify(arguments: &Arguments, prior: &PriorModel) -> Outcome<Identified> {
         let seen = Rows::new(&corrected, prior, length);
         let Some(better) = twist::fit(&corrected, &seen, prior) else { break };
         (log, rows, twist) = (corrected, seen, better);
+    }
+    if let Some(free) = twist::fit_with_any_torque(&log, &rows, prior) {
+        contradictions::ringing(&log, prior, &free.solution).map_err(in_the_file)?;
     }
     let slow = Rows::new(&log, prior, SLOW_BOX);
     let findings = findings::gather(&log, &rows, &slow, &twist, prior);

@@ -11,7 +11,7 @@ use super::prior::PriorModel;
 use super::sampling::sampling;
 use board::profile::MAX_TORQUE;
 use report::failure::{Failure, Outcome};
-use report::number::TYPED;
+use report::number::{ESTIMATE, TYPED};
 
 /// Fewer counts of the motor may be its encoder's own scatter.
 const LEAST_TRAVEL: f64 = 8.0;
@@ -19,6 +19,19 @@ const LEAST_TRAVEL: f64 = 8.0;
 const SPEED_OVER: f64 = 1e-3;
 /// Turns that a motor cannot make between two samples.
 const JUMP_TURNS: f64 = 0.5;
+/// Most steps are no longer than that of this part of them...
+const USUAL: (usize, usize) = (995, 1000);
+/// ... and none is so many times as long, unless it is shorter than this part of a turn.
+const JUMP_STEPS: f64 = 20.0;
+const JUMP_LEAST: f64 = 0.02;
+/// An angle that begins anew jumps by a turn, but for what it moves meanwhile [turns].
+const WHOLE_TURN: f64 = 0.2;
+/// A jump is that of a turn if it is so near to it, as a ratio.
+const SAME_TURN: f64 = 0.03;
+/// Samples over which an encoder is seen to turn.
+const STALE_WINDOW: usize = 60;
+/// Share of them that may have the last reading once more.
+const STALE_SHARE: f64 = 0.4;
 
 /// A recorded test.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,6 +54,17 @@ pub struct Log {
     pub output_torque: Option<Vec<f64>>,
     /// How much motor and output readings scatter [rad^2].
     pub noise: [Noise; 2],
+    /// What motor and output were read as.
+    pub kinds: [Kind; 2],
+}
+
+/// What an encoder's readings are in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Whole counts of a stated resolution.
+    Counts,
+    /// Angles.
+    Angle,
 }
 
 /// Readings of one encoder.
@@ -74,8 +98,10 @@ impl Log {
             }
         }
         let twist = twist(&motor, &output, prior);
+        let kinds = [motor.kind(), output.kind()];
         let (motor, output) = (motor.angles(prior.motor_bits), output.angles(prior.output_bits));
         let log = Self {
+            kinds,
             time,
             period,
             noise: [Noise::of(&motor), Noise::of(&output)],
@@ -130,25 +156,18 @@ impl Log {
             ))
             .with_help("the torque must overcome the friction, and turn the motor through the gap"));
         }
-        // Where the output turns far, it must turn as the motor does.
-        let (moved, of_motor) = (travel(&self.output), travel(&self.motor) / prior.ratio());
-        let twisted = travel(&self.twist);
-        if of_motor.max(moved) > 0.2 && twisted > 0.1 * of_motor.max(moved) {
-            return Err(Failure::new(format!(
-                "output and motor do not turn together: {moved:.3} rad and {of_motor:.3} rad (motor over its ratio of \
-                 {:.4}), apart by up to {twisted:.3} rad",
-                prior.ratio()
-            ))
-            .with_help(
-                "check --motor-bits, --output-bits, the teeth of the joint file, and that both encoders count up when \
-                 the joint turns forwards",
-            ));
-        }
         Ok(())
     }
 }
 
 impl Readings {
+    fn kind(&self) -> Kind {
+        match self {
+            Self::Counts(_) => Kind::Counts,
+            Self::Angles(_) => Kind::Angle,
+        }
+    }
+
     fn angles(&self, bits: u32) -> Vec<f64> {
         match self {
             Self::Counts(counts) => counts.iter().map(|&count| count as f64 * TAU / (1_u64 << bits) as f64).collect(),
@@ -188,22 +207,71 @@ fn readings(columns: &Columns, names: [&str; 2], bits: u32) -> Outcome<Readings>
         if whole.iter().all(|count| (0..turn).contains(count)) {
             unwrap(&mut whole, turn);
         }
-        let jump = (JUMP_TURNS * turn as f64) as u64;
-        let jumps = whole.windows(2).position(|pair| pair[1].abs_diff(pair[0]) >= jump);
-        return match jumps {
-            Some(line) => Err(jumped(columns, name, line + 1)),
-            None => Ok(Readings::Counts(whole)),
-        };
+        let steps: Vec<f64> = whole.windows(2).map(|pair| (pair[1] - pair[0]) as f64).collect();
+        check_steps(&steps, turn as f64, 1.0, columns, name)?;
+        return Ok(Readings::Counts(whole));
     }
-    match values.windows(2).position(|pair| (pair[1] - pair[0]).abs() >= JUMP_TURNS * TAU) {
-        Some(line) => Err(jumped(columns, name, line + 1)),
-        None => Ok(Readings::Angles(values)),
-    }
+    let angles = unwrapped(values);
+    let steps: Vec<f64> = angles.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    check_steps(&steps, TAU, TAU / (1_i64 << bits) as f64, columns, name)?;
+    Ok(Readings::Angles(angles))
 }
 
-fn jumped(columns: &Columns, name: &str, line: usize) -> Failure {
-    Failure::new(format!("`{name}` jumps by half a turn or more in {}", columns.place(line)))
-        .with_help("a reading was lost or corrupted, or the encoder's resolution is not as stated")
+/// Refuses readings that no turning encoder gives: single steps beside which all others are small, and readings that are
+/// the last ones again and again although the encoder turns. `count` is a step that is seen at all.
+fn check_steps(steps: &[f64], turn: f64, count: f64, columns: &Columns, name: &str) -> Outcome<()> {
+    let mut sizes: Vec<f64> = steps.iter().map(|step| step.abs()).collect();
+    sizes.sort_by(f64::total_cmp);
+    let usual = sizes.get(sizes.len() * USUAL.0 / USUAL.1).copied().unwrap_or_default().max(count);
+    let jump = (JUMP_TURNS * turn).min((JUMP_STEPS * usual).max(JUMP_LEAST * turn));
+    if let Some(row) = steps.iter().position(|step| step.abs() >= jump) {
+        let (size, place) = (steps[row].abs(), columns.place(row + 1));
+        let message =
+            format!("`{name}` jumps by {} in {place}, where a turn is {}", ESTIMATE.write(size), ESTIMATE.write(turn));
+        let whole = |turn: f64| (size / turn).ln().abs() < SAME_TURN;
+        let other = match (8..=30).find(|bits| whole(f64::from(*bits).exp2())) {
+            Some(bits) if count == 1.0 => Some(format!("an encoder of {bits} bits begins anew so")),
+            _ if count == 1.0 => None,
+            _ => [(1.0, "turns"), (360.0, "degrees"), (1e3 * TAU, "mrad")]
+                .iter()
+                .find(|(turn, _)| whole(*turn))
+                .map(|(_, unit)| format!("an angle in {unit} begins anew so")),
+        };
+        let lost = "a reading was lost or corrupted, or the encoder's unit or resolution is not as stated";
+        return Err(Failure::new(message).with_help(other.unwrap_or_else(|| lost.to_owned())));
+    }
+    // Windows in which every sample should have brought a count.
+    let (mut moving, mut same) = (0, 0);
+    for window in steps.chunks_exact(STALE_WINDOW) {
+        if window.iter().sum::<f64>().abs() > 2.0 * count * STALE_WINDOW as f64 {
+            moving += STALE_WINDOW;
+            same += window.iter().filter(|step| step.abs() < 0.5 * count).count();
+        }
+    }
+    if same > (STALE_SHARE * moving as f64) as usize && moving > 0 {
+        let every = (moving as f64 / (moving - same).max(1) as f64).round();
+        return Err(Failure::new(format!(
+            "`{name}` brings a new reading in about one of {every} samples, and repeats it in between"
+        ))
+        .with_help("keep the rows with new readings only, or log as often as the encoder is read"));
+    }
+    Ok(())
+}
+
+/// Angles that begin anew every turn are taken for continuous ones.
+fn unwrapped(mut angles: Vec<f64>) -> Vec<f64> {
+    let mut turns = 0.0;
+    let mut last = angles.first().copied().unwrap_or_default();
+    for angle in angles.iter_mut().skip(1) {
+        let step = *angle - last;
+        last = *angle;
+        // A step that is nearly a whole turn; others are none of an encoder and refused later.
+        if (step.abs() - TAU).abs() < WHOLE_TURN * TAU {
+            turns -= step.signum();
+        }
+        *angle += turns * TAU;
+    }
+    angles
 }
 
 /// Counts that begin anew every turn are taken for continuous ones.

@@ -40,6 +40,8 @@ pub struct PriorModel {
     pub mesh_relaxation_per_ratio: f64,
     /// Compliance from motor to link that the joint file states [rad/(N m)].
     pub compliance: f64,
+    /// What the output moves freely while the motor stands [rad].
+    pub lost_motion: f64,
     /// The link hangs on a compliance of its own behind the carrier.
     pub compliant: bool,
     /// What surrounds the gears.
@@ -84,6 +86,8 @@ impl PriorModel {
         let sun = 4.0 * (joint.bodies.sun_equivalent_mass + joint.rotor_equivalent_mass());
         let gears = planets * joint.bodies.planet_equivalent_mass;
         let carrier = joint.carrier_equivalent_mass();
+        let gaps = [&joint.sun_planet, &joint.ring_planet].map(|mesh| &mesh.half_backlash[..geometry.planets]);
+        let half_backlash = gaps.iter().copied().flatten().sum::<f64>() / (2.0 * planets);
         let compliant = joint.compliance.is_some();
         // Without a compliance the teeth are the spring: planets stand in its middle, the carrier behind it.
         let [before, behind] =
@@ -104,6 +108,7 @@ impl PriorModel {
             mesh_stiffness: joint.sun_planet.mean_stiffness,
             mesh_relaxation_per_ratio,
             compliance: mesh_compliance + own,
+            lost_motion: 2.0 * half_backlash / lever,
             compliant,
             torque_error: around.torque_constant_error_ratio.abs(),
             surroundings: *around,

@@ -41,6 +41,8 @@ pub struct Row {
     pub motor: f64,
     /// [rad/s].
     pub motor_speed: f64,
+    /// [rad/s^2].
+    pub motor_acceleration: f64,
     /// [rad].
     pub output: f64,
     /// [rad/s].
@@ -143,8 +145,9 @@ fn row(log: &Log, prior: &PriorModel, kernel: &Kernel, sample: usize) -> Row {
     };
     let [motor_speed, output_speed] = [&log.motor, &log.output].map(|angle| smooth(angle, 1));
     let torque = smooth(&log.torque, 0);
+    let motor_acceleration = smooth(&log.motor, 2);
     let net =
-        torque - prior.motor_inertia * smooth(&log.motor, 2) - prior.surroundings.motor_friction.viscous * motor_speed;
+        torque - prior.motor_inertia * motor_acceleration - prior.surroundings.motor_friction.viscous * motor_speed;
     let direction = direction(log, prior, kernel, sample);
     // Losses that grow with the load: the link gets less than a driving motor gives, and more has to be braked.
     let efficiency = prior.surroundings.efficiency;
@@ -161,6 +164,7 @@ fn row(log: &Log, prior: &PriorModel, kernel: &Kernel, sample: usize) -> Row {
         wind_rate: smooth(&log.carried, 1) / prior.ratio() - output_speed,
         motor: smooth(&log.motor, 0),
         motor_speed,
+        motor_acceleration,
         output: smooth(&log.output, 0),
         output_speed,
         output_acceleration: smooth(&log.output, 2),

@@ -12,6 +12,8 @@ const LEAST_RATE: f64 = 2000.0;
 const LEAST_IN_A_SWING: f64 = 3.0;
 /// No encoder is read so often: the time is in another unit [Hz].
 const MOST_RATE: f64 = 1e6;
+/// What drives log, at most [Hz].
+const LIKELY_RATE: f64 = 1e5;
 /// Samples of a swing from which its damping can be told.
 pub const SWING_SAMPLES: f64 = 16.0;
 /// A step of time may differ by this ratio from the usual one.
@@ -58,10 +60,13 @@ fn check_time(period: f64, samples: usize, prior: &PriorModel) -> Outcome<()> {
             "the log is sampled too slowly: {rate:.0} Hz, at least {needed:.0} Hz are needed for a joint that swings at \
              {swing:.0} Hz"
         ))
-        .with_help(format!(
-            "record every control period; {:.0} Hz also show the damping",
-            (SWING_SAMPLES * swing).max(needed)
-        )));
+        .with_help(match [("ms", 1e3), ("us", 1e6)].iter().find(|(_, by)| (needed..LIKELY_RATE).contains(&(rate * by))) {
+            Some((unit, by)) => format!("if the time is in {unit}, which were {:.0} Hz, call its column time_{unit}", rate * by),
+            None => format!(
+                "record every control period; {:.0} Hz also show the damping",
+                (SWING_SAMPLES * swing).max(needed)
+            ),
+        }));
     }
     if rate > MOST_RATE {
         return Err(Failure::new(format!(

@@ -73,6 +73,15 @@ pub fn width(unknown: usize) -> f64 {
 
 /// Fits; `None` if the moments do not determine gap and compliance.
 pub fn fit(log: &Log, rows: &Rows, prior: &PriorModel) -> Option<Twist> {
+    fit_with(log, rows, prior, prior.torque_error)
+}
+
+/// The same for a torque whose scale is not known at all; nothing where no torque of the motor enters.
+pub fn fit_with_any_torque(log: &Log, rows: &Rows, prior: &PriorModel) -> Option<Twist> {
+    if log.output_torque.is_some() { None } else { fit_with(log, rows, prior, f64::INFINITY) }
+}
+
+fn fit_with(log: &Log, rows: &Rows, prior: &PriorModel, torque_error: f64) -> Option<Twist> {
     let used: Vec<Row> = rows.carrying().filter(|row| row.direction != 0.0).copied().collect();
     let mut equations = Equations::default();
     let products = rows.kernel.products();
@@ -85,7 +94,7 @@ pub fn fit(log: &Log, rows: &Rows, prior: &PriorModel) -> Option<Twist> {
     // With the torque measured behind them, the motor's friction and its delay do not show in the twist.
     let measured = log.output_torque.is_some();
     widths[MOTOR_FRICTION] = if measured { NONE } else { prior.compliance * rows.greatest };
-    widths[TORQUE_ERROR] = if measured { NONE } else { (prior.compliance * prior.torque_error).max(NONE) };
+    widths[TORQUE_ERROR] = if measured { NONE } else { (prior.compliance * torque_error).max(NONE) };
     let solution = equations.solve(&widths)?;
     Some(Twist { solution, rows: used })
 }

@@ -342,3 +342,227 @@ fn a_simulated_log_has_the_documented_columns() {
     joint(&["identify", text(&log), "--simulate", "--seed", "4"]).refused(&["virtual.csv", "new file"]);
     assert_eq!(fs::read_to_string(&log).expect("still there"), written);
 }
+
+/// A way in which a log, or what is said of it, is wrong: a name, header, what is done to a row (time, counts of motor and
+/// output, torque), arguments, and what the refusal must name.
+struct Wrong {
+    what: &'static str,
+    angles: bool,
+    change: fn(&mut [f64; 4]),
+    arguments: &'static [&'static str],
+    named: &'static [&'static str],
+}
+
+const COUNTS: Wrong = Wrong { what: "", angles: false, change: |_| {}, arguments: &[], named: &[] };
+const ANGLES: Wrong = Wrong { angles: true, ..COUNTS };
+const TOGETHER: &str = "do not turn together";
+const DEGREES: f64 = 180.0 / std::f64::consts::PI;
+const TAU: f64 = std::f64::consts::TAU;
+
+const WRONG: [Wrong; 30] = [
+    Wrong {
+        what: "turns",
+        change: |row| (row[1], row[2]) = (row[1] / TAU, row[2] / TAU),
+        named: &["times what", "both angles are in turns"],
+        ..ANGLES
+    },
+    Wrong {
+        what: "degrees",
+        change: |row| (row[1], row[2]) = (row[1] * DEGREES, row[2] * DEGREES),
+        named: &["both angles are in degrees"],
+        ..ANGLES
+    },
+    Wrong {
+        what: "a motor in turns",
+        change: |row| row[1] /= TAU,
+        named: &[TOGETHER, "the motor's angle is in turns"],
+        ..ANGLES
+    },
+    Wrong {
+        what: "a motor in degrees",
+        change: |row| row[1] *= DEGREES,
+        named: &[TOGETHER, "the motor's angle is in degrees"],
+        ..ANGLES
+    },
+    Wrong {
+        what: "an output in turns",
+        change: |row| row[2] /= TAU,
+        named: &[TOGETHER, "the output's angle is in turns"],
+        ..ANGLES
+    },
+    Wrong {
+        what: "an output in degrees",
+        change: |row| row[2] *= DEGREES,
+        named: &[TOGETHER, "the output's angle is in degrees"],
+        ..ANGLES
+    },
+    Wrong { what: "an output in mrad", change: |row| row[2] *= 1e3, named: &["output_angle_rad"], ..ANGLES },
+    Wrong {
+        what: "a motor behind its gears",
+        change: |row| row[1] /= 6.0,
+        named: &[TOGETHER, "the motor's angle is taken behind the gears"],
+        ..ANGLES
+    },
+    Wrong {
+        what: "a wrapped angle in turns",
+        change: |row| row[1] = (row[1] / TAU).rem_euclid(1.0),
+        named: &["motor_angle_rad", "jumps", "an angle in turns begins anew so"],
+        ..ANGLES
+    },
+    Wrong {
+        what: "two bits too many",
+        arguments: &["--motor-bits", "16", "--output-bits", "19"],
+        named: &["14 bits (motor) and 17 bits (output)"],
+        ..COUNTS
+    },
+    Wrong {
+        what: "a bit too many",
+        arguments: &["--motor-bits", "15", "--output-bits", "18"],
+        named: &["14 bits (motor) and 17 bits (output)"],
+        ..COUNTS
+    },
+    Wrong {
+        what: "a bit too few",
+        arguments: &["--motor-bits", "13", "--output-bits", "16"],
+        named: &["14 bits (motor) and 17 bits (output)"],
+        ..COUNTS
+    },
+    Wrong {
+        what: "a motor with a bit too many",
+        arguments: &["--motor-bits", "15"],
+        named: &[TOGETHER, "the motor encoder has 14 bits"],
+        ..COUNTS
+    },
+    Wrong {
+        what: "an output with two bits too few",
+        arguments: &["--output-bits", "15"],
+        named: &[TOGETHER, "the output encoder has 17 bits"],
+        ..COUNTS
+    },
+    Wrong {
+        what: "wrapped counts of other bits",
+        change: |row| row[1] = row[1].rem_euclid(16384.0),
+        arguments: &["--motor-bits", "16"],
+        named: &["motor_counts", "an encoder of 14 bits begins anew so"],
+        ..COUNTS
+    },
+    Wrong { what: "amperes", change: |row| row[3] /= 0.06, named: &["the torque is a current, of 0.061"], ..COUNTS },
+    Wrong {
+        what: "amperes of a strong motor",
+        change: |row| row[3] /= 0.75,
+        named: &["the torque is a current, of 0.76"],
+        ..COUNTS
+    },
+    Wrong { what: "mN m", change: |row| row[3] *= 1e3, named: &["the torque is in mN m"], ..COUNTS },
+    Wrong { what: "N cm", change: |row| row[3] *= 100.0, named: &["the torque is in N cm"], ..COUNTS },
+    Wrong { what: "kgf cm", change: |row| row[3] *= 10.197, named: &["the torque is in kgf cm"], ..COUNTS },
+    Wrong {
+        what: "torque at the output",
+        change: |row| row[3] *= 6.0,
+        named: &["the torque is the output's"],
+        ..COUNTS
+    },
+    Wrong {
+        what: "torque the other way",
+        change: |row| row[3] = -row[3],
+        named: &["brakes all that turns", "sign"],
+        ..COUNTS
+    },
+    Wrong {
+        what: "angles the other way",
+        change: |row| (row[1], row[2]) = (-row[1], -row[2]),
+        named: &["brakes all that turns", "sign"],
+        ..COUNTS
+    },
+    Wrong {
+        what: "a motor the other way",
+        change: |row| row[1] = -row[1],
+        named: &[TOGETHER, "one encoder counts down"],
+        ..COUNTS
+    },
+    Wrong {
+        what: "exchanged columns",
+        change: |row| row.swap(1, 2),
+        named: &[TOGETHER, "motor and output are exchanged"],
+        ..COUNTS
+    },
+    Wrong { what: "a step twice as long", change: |row| row[0] *= 2.0, named: &["2 times as far apart"], ..COUNTS },
+    Wrong { what: "a step half as long", change: |row| row[0] /= 2.0, named: &["2 times as close"], ..COUNTS },
+    Wrong { what: "milliseconds", change: |row| row[0] *= 1e3, named: &["too slowly", "time_ms"], ..COUNTS },
+    Wrong { what: "an output that stands", change: |row| row[2] = 7.0, named: &["the output does not turn"], ..COUNTS },
+    Wrong {
+        what: "another link",
+        arguments: &["--set", "link_inertia_kg_m2=0.3"],
+        named: &["the link of this log", "--set link_inertia_kg_m2=0.1"],
+        ..COUNTS
+    },
+];
+
+/// A simulated log of Q1: rows of time, counts of motor and output, torque.
+fn right(folder: &Path) -> Vec<[f64; 4]> {
+    let path = folder.join("right.csv");
+    joint(&["identify", text(&path), "--joint", "q1", "--simulate", "--seed", "31"]).well();
+    let log = fs::read_to_string(&path).expect("written");
+    let row = |line: &str| {
+        let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().expect("a number")).collect();
+        [cells[0], cells[1], cells[2], cells[3]]
+    };
+    log.lines().skip(1).map(row).collect()
+}
+
+fn write_rows(path: &Path, rows: &[[f64; 4]], angles: bool) {
+    let head = if angles { "motor_angle_rad,output_angle_rad" } else { "motor_counts,output_counts" };
+    let mut log = format!("time_s,{head},motor_torque_N_m\n");
+    for [time, motor, output, torque] in rows {
+        writeln!(log, "{time},{motor},{output},{torque}").expect("a string");
+    }
+    fs::write(path, log).expect("written");
+}
+
+#[test]
+fn a_log_that_contradicts_itself_is_refused_with_the_likely_cause_and_nothing_is_written() {
+    let folder = folder();
+    let rows = right(folder.path());
+    let [path, out] = ["log.csv", "out"].map(|name| folder.path().join(name));
+    for wrong in WRONG {
+        println!("{}", wrong.what);
+        let of_counts = |mut row: [f64; 4]| {
+            if wrong.angles {
+                (row[1], row[2]) = (row[1] * TAU / 16384.0, row[2] * TAU / 131_072.0);
+            }
+            (wrong.change)(&mut row);
+            row
+        };
+        let rows: Vec<[f64; 4]> = rows.iter().copied().map(of_counts).collect();
+        write_rows(&path, &rows, wrong.angles);
+        let arguments = ["identify", text(&path), "--joint", "q1", "--out", text(&out)];
+        joint(&[&arguments[..], wrong.arguments].concat()).refused(wrong.named);
+        assert!(!out.exists(), "{}: nothing is written", wrong.what);
+    }
+    // Every tenth reading of the output only.
+    let stale: Vec<[f64; 4]> =
+        rows.iter().enumerate().map(|(index, row)| [row[0], row[1], rows[index / 10 * 10][2], row[3]]).collect();
+    write_rows(&path, &stale, false);
+    joint(&["identify", text(&path), "--joint", "q1", "--out", text(&out)]).refused(&["output_counts", "one of 10"]);
+}
+
+#[test]
+fn what_is_right_or_does_no_harm_is_not_taken_for_a_contradiction() {
+    let folder = folder();
+    let rows = right(folder.path());
+    let [path, out] = ["log.csv", "out"].map(|name| folder.path().join(name));
+    let turn = [TAU / 16384.0, TAU / 131_072.0];
+    let wrapped = |[time, motor, output, torque]: [f64; 4]| {
+        [time, (motor * turn[0]).rem_euclid(TAU), (output * turn[1]).rem_euclid(TAU), torque]
+    };
+    let late: Vec<[f64; 4]> = (0..rows.len())
+        .map(|index| [rows[index][0], rows[index][1], rows[index][2], rows[index.saturating_sub(50)][3]])
+        .collect();
+    let angles: Vec<[f64; 4]> = rows.iter().copied().map(wrapped).collect();
+    for (what, rows, angles) in [("as it is", &rows, false), ("late torque", &late, false), ("angles", &angles, true)] {
+        write_rows(&path, rows, angles);
+        joint(&["identify", text(&path), "--joint", "q1", "--out", text(&out)]).well();
+        let (value, _) = found(&json(&out.join("findings.json")), BACKLASH).expect("found");
+        assert!((value / 40.0 - 1.0).abs() < 0.01, "{what}: {value}");
+    }
+}

@@ -1,0 +1,324 @@
+//! What a log contradicts: the joint file, or itself. The two angles of a geared joint turn by its ratio, and a torque
+//! accelerates an inertia. Where the numbers say otherwise, a unit, a sign, a resolution or the time step is not what it was
+//! taken for, and all that would be found were wrong by as much. Such a log is refused with its likely causes.
+
+use std::f64::consts::TAU;
+
+use super::log::{Kind, Log};
+use super::prior::PriorModel;
+use super::regression::{Equations, Solution};
+use super::rows::Rows;
+use super::twist::{self, BLOCK_LENGTH};
+use report::failure::{Failure, Outcome};
+use report::number::ESTIMATE;
+
+/// So many moments are enough to hold angle against angle.
+const MOMENTS: usize = 4000;
+/// A factor is taken for certain if it stands out of its scatter by so many standard deviations.
+const SURE: f64 = 6.0;
+/// Over a whole turn and more an encoder's own error cancels, and teeth do not slip: the ratio holds within this.
+const RATIO_OVER_TURNS: f64 = 2e-3;
+/// Over less than a turn an encoder's error of 0.2 degrees feigns this much.
+const RATIO_WITHIN_A_TURN: f64 = 1e-2;
+/// What gap and wind-up feign of a ratio where the joint hardly moves: so many times what the joint file says of them.
+const SLACK: f64 = 3.0;
+/// Error by angle that is always possible [rad].
+const ANY_ERROR: f64 = 1e-3;
+/// An output that turns by less than this share of what the motor does stands.
+const STANDS: f64 = 1e-3;
+/// Box of the kernel for the balance of torques: longer than a swing on the compliance, shorter than a reversal [s].
+const BALANCE_BOX: f64 = 8e-3;
+/// Share of the largest torque that gravity, or an offset, may take.
+const HELD: f64 = 1.0;
+/// What turns in all is known within this factor, or the file is not this joint's.
+const INERTIA_FACTOR: f64 = 1.6;
+/// The motor's own inertia stands in a data sheet: it is known better.
+const MOTOR_FACTOR: f64 = 1.25;
+/// The balance of torques tells its factor if it is as narrow as this.
+const NARROW: f64 = 0.1;
+/// Torques before and behind the gears differ by ratio and losses, and by no more than this factor.
+const GEARS_FACTOR: f64 = 1.5;
+/// A cause is likely if it gives the factor within this ratio; those that come nearest are named first, and so many.
+const LIKELY: f64 = 0.2;
+const NAMED: usize = 4;
+/// Bits by which both encoders may be told wrong.
+const BITS: i32 = 5;
+
+const DEGREES: f64 = 360.0 / TAU;
+/// Units that an angle may be in instead, and how many of them are a radian.
+const ANGLES: [(&str, f64); 3] = [("turns", 1.0 / TAU), ("degrees", DEGREES), ("mrad", 1e3)];
+/// Units that a torque may be in instead, and how many of them are 1 N m.
+const TORQUES: [(&str, f64); 5] =
+    [("mN m", 1e3), ("N cm", 1e2), ("kgf cm", 10.197), ("ozf in", 141.61), ("lbf in", 8.8507)];
+/// Ratios by which a time step is wrong: another prescaler, or every so many-th sample.
+const STEPS: [f64; 6] = [2.0, 3.0, 4.0, 5.0, 8.0, 10.0];
+/// Constants of motors that there are [N m/A].
+const TORQUE_CONSTANTS: [f64; 2] = [0.002, 20.0];
+
+/// What may explain a factor, each with how far it is from doing so.
+struct Causes {
+    factor: f64,
+    list: Vec<(f64, String)>,
+}
+
+impl Causes {
+    fn of(factor: Factor) -> Self {
+        Self { factor: factor.value, list: Vec::new() }
+    }
+
+    /// Something that would make the factor so much.
+    fn consider(&mut self, by: f64, text: impl Into<String>) {
+        let apart = (self.factor / by).ln().abs();
+        if self.factor * by > 0.0 && apart < LIKELY {
+            self.list.push((apart, text.into()));
+        }
+    }
+
+    /// The likeliest, and what to look at in any case; `otherwise` stands at the end of them.
+    fn help(mut self, otherwise: Option<String>, check: &str) -> String {
+        self.list.sort_by(|one, other| one.0.total_cmp(&other.0));
+        let mut causes: Vec<String> = self.list.into_iter().take(NAMED).map(|(_, text)| text).collect();
+        causes.extend(otherwise);
+        if causes.is_empty() { check.to_owned() } else { format!("perhaps {}; {check}", causes.join(", or ")) }
+    }
+}
+
+/// What should be 1.
+#[derive(Debug, Clone, Copy)]
+struct Factor {
+    value: f64,
+    deviation: f64,
+}
+
+impl Factor {
+    fn of(solution: &Solution, unknown: usize) -> Self {
+        Self { value: solution.values[unknown], deviation: solution.deviation(unknown) }
+    }
+
+    /// Known well enough to be held against anything.
+    fn is_narrow(self) -> bool {
+        self.deviation < NARROW * self.value.abs()
+    }
+
+    /// Surely not from 1/most to most.
+    fn is_beyond(self, most: f64) -> bool {
+        let reach = SURE * self.deviation;
+        self.value + reach < 1.0 / most || self.value - reach > most
+    }
+}
+
+/// Refuses a log whose angles do not turn by the joint's ratio.
+pub fn angles(log: &Log, prior: &PriorModel) -> Outcome<()> {
+    let [motor, output] = [&log.motor, &log.output].map(|angles| travel(angles));
+    let of_motor = motor / prior.ratio();
+    let slack = SLACK * (prior.lost_motion + 2.0 * prior.compliance * strongest(log, prior) + ANY_ERROR);
+    if output < STANDS * of_motor && of_motor > slack {
+        return Err(Failure::new(format!(
+            "the output does not turn in this log: by {output:.6} rad, the motor over its ratio by {of_motor:.4} rad"
+        ))
+        .with_help("check the output encoder and its column"));
+    }
+    let Some(factor) = angle_by_angle(log, prior) else { return Ok(()) };
+    let least = if output > TAU { RATIO_OVER_TURNS } else { RATIO_WITHIN_A_TURN };
+    if (factor.value - 1.0).abs() < least.max(SURE * factor.deviation).max(slack / output.max(f64::MIN_POSITIVE)) {
+        return Ok(());
+    }
+    let message = format!(
+        "output and motor do not turn together: by {output:.4} rad and {of_motor:.4} rad (motor over its ratio of {:.4}), \
+         {} of them for each of the output",
+        prior.ratio(),
+        ESTIMATE.write(factor.value),
+    );
+    let check = "check the teeth of the joint file, units, --motor-bits and --output-bits, and that both encoders count up \
+                 when the joint turns forwards";
+    let ratio = format!("the gears' ratio is {} instead", ESTIMATE.write(prior.ratio() * factor.value));
+    let causes = angle_causes(log, prior, factor);
+    let otherwise = causes.list.is_empty().then_some(ratio).filter(|_| factor.value > 0.0);
+    Err(Failure::new(message).with_help(causes.help(otherwise, check)))
+}
+
+/// What the motor turns over the ratio for what the output turns, but for what goes with the flank.
+fn angle_by_angle(log: &Log, prior: &PriorModel) -> Option<Factor> {
+    let mut equations = Equations::default();
+    for sample in (0..log.time.len()).step_by((log.time.len() / MOMENTS).max(1)) {
+        let torque = log.torque[sample];
+        let side = if torque == 0.0 { 0.0 } else { torque.signum() };
+        let block = (log.time[sample] / BLOCK_LENGTH) as usize;
+        equations.push(vec![1.0, side, log.output[sample]], log.motor[sample] / prior.ratio(), block);
+    }
+    Some(Factor::of(&equations.solve(&[f64::INFINITY; 3])?, 2))
+}
+
+fn angle_causes(log: &Log, prior: &PriorModel, factor: Factor) -> Causes {
+    let ratio = prior.ratio();
+    let [motor, output] = log.kinds;
+    let bits = |bits: u32| i32::try_from(bits).unwrap_or_default();
+    let [motor_bits, output_bits] = [prior.motor_bits, prior.output_bits].map(bits);
+    let mut causes = Causes::of(factor);
+    causes.consider(1.0 / ratio, "the motor's angle is taken behind the gears");
+    causes.consider(ratio, "the output's angle is the motor's");
+    let counts = if log.kinds == [Kind::Counts; 2] { 2 * (output_bits - motor_bits) } else { 0 };
+    causes.consider(f64::from(counts).exp2() / (ratio * ratio), "motor and output are exchanged");
+    causes.consider(-1.0, "one encoder counts down when the joint turns forwards");
+    for (kind, name, sign, told) in [(motor, "motor", 1, motor_bits), (output, "output", -1, output_bits)] {
+        if kind == Kind::Angle {
+            for (unit, by) in ANGLES {
+                causes.consider(by.powi(sign), format!("the {name}'s angle is in {unit}"));
+            }
+            causes.consider((f64::from(told).exp2() / TAU).powi(sign), format!("the {name}'s angle is in counts"));
+        } else {
+            for more in (-16..=16).filter(|more| *more != 0 && (8..=30).contains(&(told + more))) {
+                let text = format!("the {name} encoder has {} bits", told + more);
+                causes.consider(f64::from(-more).exp2().powi(-sign), text);
+            }
+        }
+    }
+    causes
+}
+
+/// Refuses a log whose torque does not go with the acceleration of what it turns, or with the torque behind the gears.
+///
+/// Moments of ringing are looked at by a kernel with a box as short as this [s].
+pub fn torques(log: &Log, prior: &PriorModel, shortest: f64) -> Outcome<()> {
+    let rows = Rows::new(log, prior, BALANCE_BOX);
+    behind_the_gears(prior, &rows)?;
+    let Some(whole) = whole_balance(&rows, prior) else { return Ok(()) };
+    if !whole.is_narrow() || !whole.is_beyond(INERTIA_FACTOR) {
+        return Ok(());
+    }
+    // Where the motor's own inertia agrees, it is the link's that does not.
+    let rows = Rows::new(log, prior, shortest);
+    let of_motor = twist::fit_with_any_torque(log, &rows, prior).map(|free| motor_balance(&free.solution));
+    if whole.value > 0.0 && of_motor.is_some_and(|factor| factor.is_narrow() && !factor.is_beyond(MOTOR_FACTOR)) {
+        let motor = prior.motor_inertia * prior.ratio() * prior.ratio();
+        let link = (whole.value * (motor + prior.link_inertia) - motor).max(0.0);
+        let message = format!(
+            "the link of this log has an inertia of about {} kg m^2, that of the joint file {}",
+            ESTIMATE.write(link),
+            ESTIMATE.write(prior.link_inertia)
+        );
+        let help = format!(
+            "set link_inertia_kg_m2 as it was in the test, such as by --set link_inertia_kg_m2={link:.3}: the motor's own \
+             inertia goes with the torque"
+        );
+        return Err(Failure::new(message).with_help(help));
+    }
+    Err(contradiction(log, prior, whole, "all that turns", total_inertia(prior)))
+}
+
+/// Refuses a log whose ringing asks for another inertia of the motor than its own: `free` is a fit that expected nothing of
+/// the torque's scale.
+pub fn ringing(log: &Log, prior: &PriorModel, free: &Solution) -> Outcome<()> {
+    let factor = motor_balance(free);
+    if !factor.is_narrow() || !factor.is_beyond(MOTOR_FACTOR) {
+        return Ok(());
+    }
+    Err(contradiction(log, prior, factor, "the motor", prior.motor_inertia))
+}
+
+/// Logged torque over what the motor's inertia takes of it while the joint rings.
+fn motor_balance(free: &Solution) -> Factor {
+    let compliance = free.values[twist::COMPLIANCE];
+    let value = 1.0 / (1.0 + free.values[twist::TORQUE_ERROR] / compliance);
+    Factor { value, deviation: free.deviation(twist::TORQUE_ERROR) / compliance.abs() * value * value }
+}
+
+/// Logged torque over what the joint file's inertias need: everything that turns, friction and weight apart.
+fn whole_balance(rows: &Rows, prior: &PriorModel) -> Option<Factor> {
+    let mut equations = Equations::default();
+    for row in rows.all.iter().filter(|row| row.direction != 0.0) {
+        let needed =
+            prior.ratio() * prior.motor_inertia * row.motor_acceleration + prior.link_inertia * row.output_acceleration;
+        let coefficients = vec![needed, row.direction, row.output_speed, row.output.sin(), row.output.cos(), 1.0];
+        let block = (row.time / BLOCK_LENGTH) as usize;
+        equations.push(coefficients, prior.ratio() * row.motor_torque / row.leverage, block);
+    }
+    let held = HELD * rows.greatest.max(f64::MIN_POSITIVE);
+    let solution = equations.solve(&[f64::INFINITY, f64::INFINITY, f64::INFINITY, held, held, held])?;
+    Some(Factor::of(&solution, 0))
+}
+
+/// What stands behind the gears is what the motor gives, less what it takes for itself.
+fn behind_the_gears(prior: &PriorModel, rows: &Rows) -> Outcome<()> {
+    let mut equations = Equations::default();
+    for row in rows.all.iter().filter(|row| row.direction != 0.0) {
+        let Some(measured) = row.measured else { continue };
+        equations.push(vec![row.drive, row.direction, 1.0], measured, (row.time / BLOCK_LENGTH) as usize);
+    }
+    let Some(factor) = equations.solve(&[f64::INFINITY; 3]).map(|solution| Factor::of(&solution, 0)) else {
+        return Ok(());
+    };
+    if !factor.is_narrow() || !factor.is_beyond(GEARS_FACTOR) {
+        return Ok(());
+    }
+    let mut causes = Causes::of(factor);
+    for (unit, by) in TORQUES {
+        causes.consider(by, format!("the torque at the output is in {unit}"));
+        causes.consider(1.0 / by, format!("the motor's torque is in {unit}"));
+    }
+    causes.consider(1.0 / prior.ratio(), "both torques are taken on the same side of the gears");
+    causes.consider(-1.0, "one torque has the other sign");
+    let message = format!(
+        "the torque at the output is {} times what the motor's torque gives there by the ratio of {:.4}",
+        ESTIMATE.write(factor.value),
+        prior.ratio()
+    );
+    Err(Failure::new(message).with_help(causes.help(None, "check signs and units of both torques")))
+}
+
+fn contradiction(log: &Log, prior: &PriorModel, factor: Factor, what: &str, inertia: f64) -> Failure {
+    if factor.value < 0.0 {
+        return Failure::new(format!("the torque of this log brakes {what} where it speeds up")).with_help(
+            "change the sign of the torque, or of both angles: all must be positive when the joint turns forwards",
+        );
+    }
+    let message = format!(
+        "the torque of this log is {} times what {what} needs for its acceleration by the joint file's inertia of {} kg m^2",
+        ESTIMATE.write(factor.value),
+        ESTIMATE.write(inertia)
+    );
+    let mut causes = Causes::of(factor);
+    if log.kinds == [Kind::Angle; 2] {
+        for (unit, by) in ANGLES {
+            causes.consider(1.0 / by, format!("both angles are in {unit}"));
+        }
+    }
+    if log.kinds == [Kind::Counts; 2] {
+        for more in (-BITS..=BITS).filter(|more| *more != 0) {
+            let told = |bits: u32| i64::from(bits) - i64::from(more);
+            let (motor, output) = (told(prior.motor_bits), told(prior.output_bits));
+            causes.consider(
+                f64::from(more).exp2(),
+                format!("the encoders have {motor} bits (motor) and {output} bits (output)"),
+            );
+        }
+    }
+    for (unit, by) in TORQUES {
+        causes.consider(by, format!("the torque is in {unit}"));
+    }
+    causes.consider(prior.ratio(), "the torque is the output's");
+    for by in STEPS {
+        causes.consider(by * by, format!("samples are {by} times as far apart in the log as in truth"));
+        causes.consider(1.0 / (by * by), format!("samples are {by} times as close in the log as in truth"));
+    }
+    let constant = 1.0 / factor.value;
+    let current = format!("the torque is a current, of {} N m/A", ESTIMATE.write(constant));
+    let inertia = format!("the inertia is {} kg m^2", ESTIMATE.write(factor.value * inertia));
+    let is_a_current = (TORQUE_CONSTANTS[0]..TORQUE_CONSTANTS[1]).contains(&constant);
+    let otherwise = if is_a_current { format!("{current}, or {inertia}") } else { inertia };
+    Failure::new(message).with_help(causes.help(Some(otherwise), "check units, bits and the time"))
+}
+
+fn total_inertia(prior: &PriorModel) -> f64 {
+    prior.motor_inertia * prior.ratio() * prior.ratio() + prior.link_inertia
+}
+
+/// Largest torque of the log, at the output [N m].
+fn strongest(log: &Log, prior: &PriorModel) -> f64 {
+    prior.ratio() * log.torque.iter().fold(0.0_f64, |most, torque| most.max(torque.abs()))
+}
+
+fn travel(angles: &[f64]) -> f64 {
+    let (least, most) = angles.iter().fold((f64::MAX, f64::MIN), |(a, b), &angle| (a.min(angle), b.max(angle)));
+    most - least
+}

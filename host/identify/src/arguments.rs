@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::columns::KNOWN;
+use super::units::{self, Unit};
 
 /// Arguments of `joint identify`.
 #[derive(Debug, Clone, clap::Args)]
@@ -15,6 +16,8 @@ Examples:
   joint identify my_log.csv --joint my_joint.toml --motor-bits 14 --output-bits 18
   joint identify lab.mcap --topic /joint_states --column motor_angle_rad=position[0] --column output_angle_rad=position[1]
     --column motor_torque_N_m=effort[0]
+  joint identify drive.csv --column motor_angle=pos --unit motor_angle=turns --column motor_torque=iq
+    --unit motor_torque=0.06*N_m
   joint identify virtual.csv --joint q1 --simulate --seed 7    makes a log on the f64 reference, without hardware
   joint identify virtual.csv --joint q1                        and what is found in it
 
@@ -30,6 +33,13 @@ pub struct Arguments {
     /// Takes a column of another name, such as motor_counts=pos_raw; may be repeated
     #[arg(long, value_name = "COLUMN=NAME", value_parser = renaming)]
     pub column: Vec<(String, String)>,
+    /// Unit of a column that is called by its quantity alone, such as motor_angle=turns, motor_torque=mN_m,
+    /// motor_torque=0.06*N_m for a current of 0.06 N m/A, motor_angle=turns@output; may be repeated
+    #[arg(long, value_name = "QUANTITY=UNIT", value_parser = units::parse)]
+    pub unit: Vec<Unit>,
+    /// Names and units of a maker's columns: a file, or ros2-joint-states, moteus, odrive, vesc-tool, feetech
+    #[arg(long, value_name = "MAP")]
+    pub map: Option<PathBuf>,
     /// Joint file (TOML) or preset that gives teeth, levers and inertias, and that is patched
     #[arg(long, value_name = "FILE", default_value = "q1")]
     pub joint: PathBuf,
@@ -46,7 +56,7 @@ pub struct Arguments {
     #[arg(long, value_name = "PERCENT", value_parser = percent)]
     pub torque_error: Option<f64>,
     /// Writes LOG instead of reading it: the recommended test, done by the f64 reference of the joint file
-    #[arg(long, conflicts_with_all = ["topic", "column", "torque_error", "out", "json"])]
+    #[arg(long, conflicts_with_all = ["topic", "column", "unit", "map", "torque_error", "out", "json"])]
     pub simulate: bool,
     /// Seed of a simulated test's noise and encoder phases
     #[arg(long, value_name = "N", default_value_t = 1, requires = "simulate")]
@@ -62,12 +72,14 @@ pub struct Arguments {
     pub json: Option<PathBuf>,
 }
 
-fn renaming(text: &str) -> Result<(String, String), String> {
+/// Reads what `--column` was given.
+pub fn renaming(text: &str) -> Result<(String, String), String> {
     let (own, theirs) = text.split_once('=').ok_or("write COLUMN=NAME, as in motor_counts=pos_raw")?;
-    if KNOWN.iter().any(|(name, _)| *name == own) && !theirs.is_empty() {
+    let mut names = KNOWN.iter().map(|(name, _)| *name).chain(units::bare_names());
+    if names.any(|name| name == own) && !theirs.is_empty() {
         return Ok((own.to_owned(), theirs.to_owned()));
     }
-    let names: Vec<&str> = KNOWN.iter().map(|(name, _)| *name).collect();
+    let names: Vec<&str> = KNOWN.iter().map(|(name, _)| *name).chain(units::bare_names()).collect();
     Err(format!("`{own}` is none of {}", names.join(", ")))
 }
 

@@ -105,15 +105,25 @@ impl Columns {
         Ok(self)
     }
 
+    /// Multiplies a column and gives it another name, in place of one that has it.
+    pub(super) fn scale(&mut self, name: &str, new_name: &str, by: f64) {
+        self.names.iter_mut().filter(|known| *known == new_name).for_each(|known| known.insert(0, '~'));
+        if let Some(place) = self.names.iter().position(|known| known == name) {
+            self.values[place].iter_mut().for_each(|value| *value *= by);
+            new_name.clone_into(&mut self.names[place]);
+        }
+    }
+
     /// Whether motor, output and torque are there.
     pub(super) fn will_do(&self) -> bool {
         let has = |wanted: &[&str]| {
             let all = KNOWN.iter().filter(|(name, _)| wanted.contains(name));
             all.flat_map(|(name, others)| others.iter().chain([name])).any(|name| self.names().any(|own| own == *name))
         };
-        has(&["motor_counts", "motor_angle_rad"])
-            && has(&["output_counts", "output_angle_rad"])
-            && has(&["motor_torque_N_m"])
+        let bare = |name: &str| self.names().any(|own| own == name);
+        (has(&["motor_counts", "motor_angle_rad"]) || bare("motor_angle"))
+            && (has(&["output_counts", "output_angle_rad"]) || bare("output_angle"))
+            && (has(&["motor_torque_N_m"]) || bare("motor_torque"))
     }
 
     /// Names in their order.

@@ -7,6 +7,7 @@
 //! of it, with its `estimate`s; `table`, `page`, `pictures` and `patch` show it. `virtual_test` makes a log without hardware.
 
 mod arguments;
+mod column_map;
 mod columns;
 mod contradictions;
 mod estimate;
@@ -30,6 +31,7 @@ mod ros_message;
 mod rows;
 mod sampling;
 mod twist;
+mod units;
 pub mod virtual_test;
 
 pub use arguments::Arguments;

@@ -566,3 +566,32 @@ fn what_is_right_or_does_no_harm_is_not_taken_for_a_contradiction() {
         assert!((value / 40.0 - 1.0).abs() < 0.01, "{what}: {value}");
     }
 }
+
+#[test]
+fn units_and_names_are_said_by_options_or_by_a_map() {
+    let folder = folder();
+    let rows = right(folder.path());
+    let [path, out] = ["log.csv", "out"].map(|name| folder.path().join(name));
+    // As a maker's table has it: turns, a torque at the output, milliseconds.
+    let mut log = "t;ENCODER_0_POSITION;ENCODER_1_POSITION;TORQUE\n".replace(';', ",");
+    for [time, motor, output, torque] in rows {
+        let [time, torque] = [1e3 * time, 6.0 * torque];
+        writeln!(log, "{time},{},{},{torque}", motor / 16384.0, output / 131_072.0).expect("a string");
+    }
+    fs::write(&path, log).expect("written");
+    let time = ["--column", "time=t", "--unit", "time=ms"];
+    let common = [&["identify", text(&path), "--joint", "q1", "--out", text(&out)], &time[..]].concat();
+    let by_map = [&common[..], &["--map", "moteus"]].concat();
+    joint(&by_map).well();
+    let (value, _) = found(&json(&out.join("findings.json")), BACKLASH).expect("found");
+    assert!((value / 40.0 - 1.0).abs() < 0.01, "{value}");
+    let by_options = ["motor_angle=ENCODER_0_POSITION", "output_angle=ENCODER_1_POSITION", "motor_torque=TORQUE"];
+    let columns: Vec<&str> = by_options.iter().flat_map(|column| ["--column", column]).collect();
+    joint(&[&common[..], &columns].concat()).refused(&["the unit of the column `motor_angle` is not said"]);
+    let units = ["--unit", "motor_angle=turns", "--unit", "output_angle=turns", "--unit", "motor_torque=N_m@output"];
+    joint(&[&common[..], &columns, &units].concat()).well();
+    // The wrong one is told from the log itself.
+    let wrong = [&by_map[..], &["--unit", "motor_torque=N_m"]].concat();
+    joint(&wrong).refused(&["times what", "the torque is the output's"]);
+    joint(&[&common[..], &["--map", "nosuch"]].concat()).refused(&["nosuch", "ros2-joint-states"]);
+}

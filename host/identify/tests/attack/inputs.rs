@@ -183,6 +183,8 @@ fn arguments(log: &Path, folder: &Path) -> Arguments {
         log: log.to_owned(),
         topic: None,
         column,
+        unit: Vec::new(),
+        map: None,
         joint: "q1".into(),
         set: Vec::new(),
         motor_bits: None,

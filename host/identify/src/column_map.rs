@@ -1,0 +1,126 @@
+//! Maps: which columns of a maker's log are which quantities, and in what units. A map says what `--column` and `--unit` say,
+//! once for all logs of a kind; what is said on the command line goes before it.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde::Deserialize;
+
+use super::arguments::renaming;
+use super::units::{self, Unit};
+use report::failure::{Failure, Outcome};
+use report::input;
+
+/// The maps that come with the program.
+const PRESETS: [(&str, &str); 5] = [
+    ("ros2-joint-states", include_str!("../../../maps/ros2-joint-states.toml")),
+    ("moteus", include_str!("../../../maps/moteus.toml")),
+    ("odrive", include_str!("../../../maps/odrive.toml")),
+    ("vesc-tool", include_str!("../../../maps/vesc-tool.toml")),
+    ("feetech", include_str!("../../../maps/feetech.toml")),
+];
+
+/// A map as it stands in a file.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MapFile {
+    /// Name in the log by name here.
+    columns: BTreeMap<String, String>,
+    /// Unit by quantity.
+    #[serde(default)]
+    units: BTreeMap<String, String>,
+}
+
+/// Columns with their names in a log, and units.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ColumnMap {
+    /// Pairs of a name here and one in the log.
+    pub columns: Vec<(String, String)>,
+    /// Of columns under bare names.
+    pub units: Vec<Unit>,
+}
+
+impl ColumnMap {
+    /// What is said on the command line, and of all else what a map says, if there is one.
+    pub fn new(map: Option<&Path>, columns: &[(String, String)], units: &[Unit]) -> Outcome<Self> {
+        let mut all = Self { columns: columns.to_vec(), units: units.to_vec() };
+        let Some(path) = map else { return Ok(all) };
+        let map = read(path)?;
+        let said = |own: &str| columns.iter().any(|(name, _)| units::quantity_of(name) == units::quantity_of(own));
+        all.columns.extend(map.columns.into_iter().filter(|(own, _)| !said(own)));
+        // A column that is named with a unit of its own needs none of the map.
+        let is_there = |unit: &Unit| all.columns.iter().any(|(own, _)| own == unit.name());
+        let told = |unit: &Unit| units.iter().any(|other| other.name() == unit.name());
+        all.units.extend(map.units.into_iter().filter(|unit| is_there(unit) && !told(unit)));
+        Ok(all)
+    }
+}
+
+fn read(path: &Path) -> Outcome<ColumnMap> {
+    let name = path.to_string_lossy();
+    let preset = PRESETS.iter().find(|(known, _)| *known == name).filter(|_| !path.exists());
+    let text = match preset {
+        Some((_, text)) => (*text).to_owned(),
+        None => input::text(path, input::LARGEST_TYPED).map_err(|why| {
+            let known: Vec<&str> = PRESETS.iter().map(|(name, _)| *name).collect();
+            Failure::new(format!("cannot read the map {name}: {why}"))
+                .with_help(format!("give the path of a TOML file, or one of {}", known.join(", ")))
+        })?,
+    };
+    of(&text).map_err(|failure| failure.while_doing(name))
+}
+
+fn of(text: &str) -> Outcome<ColumnMap> {
+    let help = "[columns] has lines such as motor_angle = \"pos\", [units] such as motor_angle = \"turns\"";
+    let refused = |why: &str| Failure::new(why.to_owned()).with_help(help);
+    let file: MapFile = toml::from_str(text).map_err(|error| {
+        let line = error.span().map_or(0, |span| text[..span.start].lines().count().max(1));
+        refused(&format!("line {line}: {}", error.message()))
+    })?;
+    let columns = file.columns.iter().map(|(own, theirs)| renaming(&format!("{own}={theirs}")));
+    let units = file.units.iter().map(|(quantity, unit)| units::parse(&format!("{quantity}={unit}")));
+    Ok(ColumnMap {
+        columns: columns.collect::<Result<_, _>>().map_err(|why| refused(&format!("[columns]: {why}")))?,
+        units: units.collect::<Result<_, _>>().map_err(|why| refused(&format!("[units]: {why}")))?,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_map_that_comes_along_can_be_read_and_is_documented() {
+        let page = include_str!("../../../docs/reference/identify.md");
+        for (name, text) in PRESETS {
+            let map = of(text).unwrap_or_else(|failure| panic!("{name}: {failure}"));
+            assert!(map.columns.iter().any(|(own, _)| own == "motor_angle"), "{name}");
+            assert!(text.contains("# Source: "), "{name}");
+            assert!(page.contains(&format!("`{name}`")), "{name}");
+        }
+    }
+
+    #[test]
+    fn the_command_line_goes_before_a_map() {
+        let columns = [("output_counts".to_owned(), "raw".to_owned())];
+        let units = [units::parse("motor_angle=deg").expect("a unit")];
+        let map = ColumnMap::new(Some(Path::new("moteus")), &columns, &units).expect("a preset");
+        assert_eq!(map.columns.iter().filter(|(own, _)| own.starts_with("output")).count(), 1);
+        assert_eq!(map.units.iter().filter(|unit| unit.name() == "motor_angle").count(), 1);
+        assert!(map.units.iter().all(|unit| unit.name() != "output_angle"));
+    }
+
+    #[test]
+    fn a_map_that_is_none_is_refused_with_its_place() {
+        for (text, why) in [
+            ("[columns]\nspeed = \"v\"\n", "[columns]: `speed` is none of"),
+            ("[columns]\nmotor_angle = 3\n", "line 2"),
+            ("[columns]\n[units]\nmotor_angle = \"grad\"\n", "[units]: `grad` is none of"),
+            ("[column]\n", "line 1"),
+            ("", "columns"),
+        ] {
+            let refused = of(text).expect_err(text);
+            assert!(refused.message().contains(why), "{text}: {refused}");
+        }
+    }
+}

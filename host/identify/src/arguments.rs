@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::columns::KNOWN;
+use super::quasi_static::{DIFFERENCE, Options};
 use super::units::{self, Unit};
 
 /// Arguments of `joint identify`.
@@ -20,6 +21,7 @@ Examples:
     --unit motor_torque=0.06*N_m
   joint identify virtual.csv --joint q1 --simulate --seed 7    makes a log on the f64 reference, without hardware
   joint identify virtual.csv --joint q1                        and what is found in it
+  joint identify sweeps.csv --quasi-static --gear-ratio 6      slow sweeps to and fro, without a joint file
 
 Exit code: 0 if something could be identified, 2 for bad input or a log that cannot tell, 130 after Ctrl-C."
 )]
@@ -70,12 +72,15 @@ pub struct Arguments {
     /// Writes the findings as JSON to this file too
     #[arg(long, value_name = "OUT")]
     pub json: Option<PathBuf>,
+    /// Slow logs.
+    #[command(flatten)]
+    pub slow: Options,
 }
 
 /// Reads what `--column` was given.
 pub fn renaming(text: &str) -> Result<(String, String), String> {
     let (own, theirs) = text.split_once('=').ok_or("write COLUMN=NAME, as in motor_counts=pos_raw")?;
-    let mut names = KNOWN.iter().map(|(name, _)| *name).chain(units::bare_names());
+    let mut names = KNOWN.iter().map(|(name, _)| *name).chain(units::bare_names()).chain([DIFFERENCE]);
     if names.any(|name| name == own) && !theirs.is_empty() {
         return Ok((own.to_owned(), theirs.to_owned()));
     }

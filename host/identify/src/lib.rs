@@ -5,6 +5,7 @@
 //! `numbers`; `log` turns them into samples, checked by `sampling`, whose scatter is `noise`; `prior` says what the joint file knows; `rows` are the moments at which a
 //! flank carries, smoothed by `kernel`; `twist` and `friction` are fitted to them by `regression`; `findings` is what comes
 //! of it, with its `estimate`s; `table`, `page`, `pictures` and `patch` show it. `virtual_test` makes a log without hardware.
+//! `quasi_static` reads slow logs by itself.
 
 mod arguments;
 mod column_map;
@@ -25,6 +26,7 @@ pub(crate) mod page;
 mod patch;
 mod pictures;
 mod prior;
+mod quasi_static;
 mod refusal;
 mod regression;
 mod ros_message;
@@ -38,6 +40,7 @@ pub use arguments::Arguments;
 use findings::{Finding, Record};
 use log::Log;
 use prior::PriorModel;
+pub use quasi_static::Options;
 use rows::Rows;
 use twist::Twist;
 
@@ -80,6 +83,13 @@ struct Identified {
 
 /// Identifies a joint, or makes a log of one, and prints the result.
 pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
+    if arguments.slow.quasi_static {
+        return slow_log(arguments, progress);
+    }
+    if arguments.column.iter().any(|(own, _)| own == quasi_static::DIFFERENCE) {
+        return Err(Failure::new(format!("only --quasi-static reads a column {}", quasi_static::DIFFERENCE))
+            .with_help("add --quasi-static for a slow log, or name the motor's own column"));
+    }
     let loaded = named::load_with(&arguments.joint, &arguments.set)?;
     if arguments.simulate {
         return simulate(arguments, &loaded, progress);
@@ -113,6 +123,13 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
     progress.clear();
     let [report, joint] = [REPORT, JOINT].map(|name| folder.file(name));
     Ok(format!("{}\nreport: {}\njoint file: {}\n", terminal(&document), report.display(), joint.display()))
+}
+
+fn slow_log(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
+    let Arguments { log, topic, column, out, json, slow, .. } = arguments;
+    let common =
+        quasi_static::Common { log, topic: topic.as_deref(), column, out: out.as_deref(), json: json.as_ref() };
+    quasi_static::run(common, slow, progress)
 }
 
 fn identify(arguments: &Arguments, prior: &PriorModel) -> Outcome<Identified> {

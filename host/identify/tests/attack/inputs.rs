@@ -6,7 +6,7 @@ use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 use board::profile::{LONGEST_RUN, TorqueProfile};
-use identify::Arguments;
+use identify::{Arguments, Options};
 use mcap::records::MessageHeader;
 use mcap::{Compression, WriteOptions};
 use reference::closed_loop::MotionProfile;
@@ -195,6 +195,7 @@ fn arguments(log: &Path, folder: &Path) -> Arguments {
         with_output_torque: false,
         out: Some(folder.join("out")),
         json: None,
+        slow: Options::default(),
     }
 }
 

@@ -1,0 +1,164 @@
+//! Which way the output is loaded in each pass, as far as the log or its user says: by halves, by torque, or not at all.
+
+use super::profiles::{Profile, Profiles};
+use super::statistics::{mean, rms};
+use report::failure::{Failure, Outcome};
+
+/// A pass is loaded one way if the torque has that sign in this share of its bins.
+const ONE_SIGN: f64 = 0.9;
+/// Levels of one direction are apart by this share of the width...
+const LEVELS_APART: f64 = 0.5;
+/// ... and the widest gap between passes is so many deviations of those on one level.
+const LEVELS_CLEAR: f64 = 4.0;
+
+/// How the load is known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Loading {
+    /// Told by `--half`.
+    ByHalf,
+    /// The torque keeps its sign within passes, and has either sign in both directions.
+    ByTorque,
+    /// Not known: direction of motion is all there is. Whether a measured output torque reverses with the direction.
+    ByDirection {
+        /// It does.
+        reverses: bool,
+    },
+    /// The torque has one sign in all passes: one flank carries throughout.
+    OneWay,
+}
+
+impl Loading {
+    /// The one of these passes.
+    pub fn of(profiles: &Profiles, halves: usize) -> Self {
+        if halves > 0 {
+            return Self::ByHalf;
+        }
+        let signs: Vec<(bool, f64)> = profiles.all.iter().map(|one| (one.pass.forwards, sign(one))).collect();
+        let count = |forwards: bool, wanted: f64| signs.iter().filter(|own| **own == (forwards, wanted)).count();
+        let unknown = signs.iter().filter(|(_, sign)| *sign == 0.0).count();
+        let measured = profiles.all.iter().all(|one| one.output_torque.is_some());
+        let kinds =
+            [(true, 1.0), (false, 1.0), (true, -1.0), (false, -1.0)].map(|(forwards, sign)| count(forwards, sign));
+        let enough = kinds.map(|count| count >= 2);
+        match kinds.map(|count| count > 0) {
+            _ if unknown > 0 => Self::ByDirection { reverses: false },
+            [true, true, true, true] if enough == [true; 4] => Self::ByTorque,
+            [true, true, false, false] | [false, false, true, true] => Self::OneWay,
+            [true, false, false, true] => Self::ByDirection { reverses: measured },
+            _ => Self::ByDirection { reverses: false },
+        }
+    }
+
+    /// How many groups there are: by direction, and by load if that is known to have been either way.
+    pub fn groups(self) -> usize {
+        if matches!(self, Self::ByHalf | Self::ByTorque) { 4 } else { 2 }
+    }
+
+    /// The group of a pass: forwards and backwards under the first load, then under the second. The first half, or positive
+    /// torque, is the first load.
+    pub fn group(self, profile: &Profile) -> usize {
+        let load = match self {
+            Self::ByHalf => profile.pass.half,
+            Self::ByTorque => usize::from(sign(profile) < 0.0),
+            Self::ByDirection { .. } | Self::OneWay => 0,
+        };
+        2 * load + usize::from(!profile.pass.forwards)
+    }
+
+    /// What the loads are called.
+    pub fn names(self) -> &'static [&'static str] {
+        match self {
+            Self::ByHalf => &["first half", "second half"],
+            Self::ByTorque => &["positive torque", "negative torque"],
+            Self::ByDirection { .. } | Self::OneWay => &["all passes"],
+        }
+    }
+
+    /// The same in one sentence.
+    pub fn in_words(self) -> &'static str {
+        match self {
+            Self::ByHalf => "The load is told: one way in the first half, the other way in the second.",
+            Self::ByTorque => {
+                "The load is told by the torque: it keeps its sign within each pass, and has either sign in both directions."
+            }
+            Self::ByDirection { reverses: true } => {
+                "The measured output torque reverses with the direction of motion: each direction carries on its own flank, so \
+                 the width by direction is lost motion and hysteresis together, which this log does not separate."
+            }
+            Self::ByDirection { reverses: false } => {
+                "The load is not told. If friction at the output closes one flank forwards and the other backwards, the width by \
+                 direction is lost motion and hysteresis together; if a load keeps one flank closed, it is hysteresis alone. \
+                 Nothing in this log says which: sweep under a known load either way and state --half, or log the output torque."
+            }
+            Self::OneWay => {
+                "The torque has one sign throughout: one flank carries all the time, so that the width by direction is \
+                 hysteresis, and the lost motion is not in this log."
+            }
+        }
+    }
+}
+
+/// The sign of the torque in nearly all of a pass, as measured at the output or else at the motor; 0 if there is none.
+fn sign(profile: &Profile) -> f64 {
+    let Some(torque) = profile.output_torque.as_ref().or(profile.motor_torque.as_ref()) else { return 0.0 };
+    let there: Vec<f64> = torque.iter().copied().filter(|value| value.is_finite()).collect();
+    let share = |sign: f64| there.iter().filter(|value| *value * sign > 0.0).count() as f64 / there.len() as f64;
+    [1.0, -1.0].into_iter().find(|sign| share(*sign) >= ONE_SIGN).unwrap_or(0.0)
+}
+
+/// Refuses passes of one direction that lie on two levels, as those do whose load has changed untold.
+pub fn check_levels(profiles: &Profiles, width: f64) -> Outcome<()> {
+    let level = |one: &Profile| Profile::mean(&one.difference);
+    let of_way = |forwards: bool| {
+        let own = profiles.all.iter().filter(|one| one.pass.forwards == forwards);
+        mean(&own.map(level).collect::<Vec<_>>())
+    };
+    let means = [of_way(false), of_way(true)];
+    let about = |one: &Profile| level(one) - means[usize::from(one.pass.forwards)];
+    let mut sorted: Vec<f64> = profiles.all.iter().map(about).collect();
+    sorted.sort_by(f64::total_cmp);
+    let gap = |pair: &[f64]| pair[1] - pair[0];
+    let Some(widest) = sorted.windows(2).max_by(|a, b| gap(a).total_cmp(&gap(b))) else { return Ok(()) };
+    let limit = 0.5 * (widest[0] + widest[1]);
+    let (below, above): (Vec<f64>, Vec<f64>) = sorted.iter().partition(|value| **value < limit);
+    let both_ways = |upper: bool| {
+        let own = |forwards: bool| {
+            profiles.all.iter().filter(|one| one.pass.forwards == forwards && (about(one) > limit) == upper).count()
+        };
+        own(true) >= 2 && own(false) >= 2
+    };
+    if !both_ways(true) || !both_ways(false) {
+        return Ok(());
+    }
+    let apart = mean(&above) - mean(&below);
+    let scatter: Vec<f64> =
+        below.iter().map(|value| value - mean(&below)).chain(above.iter().map(|value| value - mean(&above))).collect();
+    if apart < LEVELS_APART * width.abs() || gap(widest) < LEVELS_CLEAR * rms(&scatter) {
+        return Ok(());
+    }
+    // Stretches of passes on one level.
+    let mut stretches: Vec<(bool, f64, f64)> = Vec::new();
+    for one in &profiles.all {
+        let (upper, [from, _, to]) = (about(one) > limit, one.time);
+        match stretches.last_mut() {
+            Some((last, _, end)) if *last == upper => *end = to,
+            _ => stretches.push((upper, from, to)),
+        }
+    }
+    let help = match stretches[..] {
+        [(_, a, b), (_, c, d)] => format!(
+            "if it is loaded one way and then the other, name the stretches, such as --half {:.0}..{:.0} --half {:.0}..{:.0}",
+            a.floor(),
+            b.ceil(),
+            c.floor(),
+            d.ceil()
+        ),
+        _ => "sweep loaded one way first and then the other, and name both stretches by --half FROM..TO".to_owned(),
+    };
+    Err(Failure::new(format!(
+        "the load changes in this log: passes of one direction lie on two levels, apart by {apart:.4} where both directions are \
+         apart by {:.4}",
+        width.abs()
+    ))
+    .with_help(help))
+}

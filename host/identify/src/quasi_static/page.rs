@@ -1,0 +1,194 @@
+//! What a slow log shows as a document, and as a record for JSON.
+
+use serde::Serialize;
+
+use super::prediction::Prediction;
+use super::results::{Curve, Quantity, Results};
+use super::samples::Samples;
+use report::document::{
+    Align, Block, Document, Text, notes, numbers, picture, row, section, section_bare, table, text, words,
+};
+use report::number::ESTIMATE;
+use report::plot::Figure;
+use report::provenance::VERSION;
+
+/// Name and version of the record.
+pub const SCHEMA: &str = "joint-identify-quasi-static/1";
+
+/// The record of a slow log.
+#[derive(Serialize)]
+pub struct Record<'a> {
+    schema: &'static str,
+    log: &'a str,
+    unit: &'a str,
+    units_per_turn: Option<f64>,
+    duration_s: f64,
+    samples: usize,
+    period_s: f64,
+    /// From the 5 to the 95 % quantile of the time between samples.
+    jitter_s: [f64; 2],
+    /// Steps of more than ten periods.
+    gaps: usize,
+    longest_step_s: f64,
+    left_out_at_ends: f64,
+    bin_width: f64,
+    assumptions: Vec<String>,
+    quantities: &'a [Quantity],
+    prediction: &'a Prediction,
+    passes: Vec<Pass>,
+    place: &'a [f64],
+    width_over_place: &'a Curve,
+    hysteresis_over_place: &'a [Curve],
+    map_over_place: &'a [f64],
+    long_wave_over_place: &'a [f64],
+    /// Mean difference by direction and load, each over the place.
+    difference_over_place: &'a [Vec<f64>],
+}
+
+#[derive(Serialize)]
+struct Pass {
+    forwards: bool,
+    load: &'static str,
+    from_s: f64,
+    to_s: f64,
+    speed_per_s: f64,
+}
+
+impl<'a> Record<'a> {
+    /// Of a log's results.
+    pub fn of(log: &'a str, samples: &Samples, results: &'a Results) -> Self {
+        let pass = |one: &super::profiles::Profile| Pass {
+            forwards: one.pass.forwards,
+            load: results.loading.names()[results.loading.group(one) / 2],
+            from_s: one.time[0],
+            to_s: one.time[2],
+            speed_per_s: one.speed,
+        };
+        Self {
+            schema: SCHEMA,
+            log,
+            unit: results.scale.unit,
+            units_per_turn: results.scale.per_turn,
+            duration_s: samples.time.last().copied().unwrap_or_default(),
+            samples: samples.time.len(),
+            period_s: samples.period,
+            jitter_s: samples.jitter,
+            gaps: samples.gaps.0,
+            longest_step_s: samples.gaps.1,
+            left_out_at_ends: results.left_out,
+            bin_width: results.profiles.width,
+            assumptions: assumptions(samples, results),
+            quantities: &results.quantities,
+            prediction: &results.prediction,
+            passes: results.profiles.all.iter().map(pass).collect(),
+            place: &results.profiles.places,
+            width_over_place: &results.width,
+            hysteresis_over_place: &results.hysteresis,
+            map_over_place: &results.map.whole,
+            long_wave_over_place: &results.map.long_wave,
+            difference_over_place: &results.groups,
+        }
+    }
+}
+
+fn assumptions(samples: &Samples, results: &Results) -> Vec<String> {
+    let Results { scale, profiles, left_out, loading, .. } = results;
+    let number = |value: f64| ESTIMATE.write(value);
+    let (unit, count) = (scale.unit, profiles.all.len());
+    vec![
+        loading.in_words().to_owned(),
+        match scale.per_turn {
+            Some(turn) if unit == "units" => format!("A turn of the output is {} units, as told.", number(turn)),
+            Some(_) => "Angles are in radians.".to_owned(),
+            None => {
+                "Figures are in the log's own unit: how much of it a turn is was not told (--output-units-per-turn)."
+                    .to_owned()
+            }
+        },
+        format!(
+            "{count} passes, {} bins of {} {unit}, {} {unit} left out at each end of a pass; usual speed {} {unit}/s.",
+            profiles.places.len(),
+            number(profiles.width),
+            number(*left_out),
+            number(profiles.speed())
+        ),
+        format!(
+            "Samples every {} ms (5 to 95 %: {} to {} ms), {} gaps of more than ten periods, longest step {} ms.",
+            number(1e3 * samples.period),
+            number(1e3 * samples.jitter[0]),
+            number(1e3 * samples.jitter[1]),
+            samples.gaps.0,
+            number(1e3 * samples.gaps.1)
+        ),
+        "Intervals take passes for independent repeats; what all passes share is not in them.".to_owned(),
+    ]
+}
+
+/// The page, with pictures in their order.
+pub fn document(log: &str, samples: &Samples, results: &Results, figures: Vec<Figure>) -> Document {
+    let figures = figures.into_iter().map(|figure| picture(figure, Text::default()));
+    let seconds = samples.time.last().copied().unwrap_or_default();
+    let heading = format!("{log}: slow sweeps");
+    Document {
+        title: heading.clone(),
+        heading: heading.into(),
+        subtitle: format!("{seconds:.1} s · {} samples · {} passes", samples.time.len(), results.profiles.all.len())
+            .into(),
+        blocks: vec![
+            section_bare("What was found", vec![quantities(results)]),
+            section_bare("How well it predicts", predictions(results)),
+            section("Pictures", figures.collect()),
+            section_bare(
+                "What it rests on",
+                vec![Block::List(assumptions(samples, results).into_iter().map(Text::from).collect())],
+            ),
+        ],
+        footer: text("joint ") + VERSION,
+        ..Document::default()
+    }
+}
+
+fn quantities(results: &Results) -> Block {
+    let none = || text("–");
+    let number = |value: Option<f64>| value.map_or_else(none, |value| ESTIMATE.write(value).into());
+    let ends = |ends: Option<[f64; 2]>| {
+        ends.map(|ends| ends.map(|end| ESTIMATE.write(end)))
+            .map_or_else(none, |[low, high]| format!("{low} … {high}").into())
+    };
+    let in_degrees = results.scale.per_turn.is_some();
+    let mut columns =
+        vec![words("Quantity"), numbers("found"), words("95 % interval").aligned(Align::Centre), words("unit")];
+    if in_degrees {
+        columns.extend([numbers("degrees"), words("95 % interval").aligned(Align::Centre)]);
+    }
+    columns.push(notes("note"));
+    let rows = results.quantities.iter().map(|one| {
+        let mut cells = vec![text(&one.name), number(one.value), ends(one.interval), text(&one.unit)];
+        if in_degrees {
+            cells.extend([number(one.value_deg), ends(one.interval_deg)]);
+        }
+        cells.push(text(&one.note));
+        row(cells)
+    });
+    table(columns, rows.collect())
+}
+
+fn predictions(results: &Results) -> Vec<Block> {
+    let Results { prediction, scale, .. } = results;
+    let rows = [
+        ("a map alone", prediction.map),
+        ("a map and one number for each direction and load", prediction.map_and_width),
+        ("a curve for each direction and load", prediction.curves),
+        ("expected of the last from repeatability alone", prediction.repeatability),
+        ("beyond the second that the third knows", prediction.unexplained()),
+    ];
+    let rows = rows.map(|(name, value)| row([text(name), text(ESTIMATE.write(value)), text(scale.unit)]));
+    let lead = format!(
+        "Fitted on {} passes, tried on the other {}: root mean square of what is left over, by bins.",
+        prediction.fitted, prediction.predicted
+    );
+    vec![
+        Block::Paragraph(lead.into()),
+        table(vec![words("Model"), numbers("left over"), words("unit")], rows.into_iter().collect()),
+    ]
+}

@@ -1,0 +1,167 @@
+//! The motor's passes from one turning point to the next, cut where a half ends and at gaps, without their ends.
+
+use std::ops::Range;
+
+use super::samples::{GAP, Samples, spread};
+use report::failure::{Failure, Outcome};
+use report::number::ESTIMATE;
+
+/// A turning point counts when the motor then goes back by this share of its travel.
+const TURNED: f64 = 0.25;
+/// At each end of a pass at least this share of the travel is left out.
+const LEAST_LEFT_OUT: f64 = 0.02;
+/// More than this share cannot be left out at both ends.
+const MOST_LEFT_OUT: f64 = 0.25;
+/// What is left of a pass is this share of the travel at least.
+const LEAST_LEFT: f64 = 0.1;
+/// Fewer samples do not show how the difference goes over a pass.
+const LEAST_SAMPLES: usize = 24;
+
+/// Motion of the motor one way.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pass {
+    /// Its samples.
+    pub range: Range<usize>,
+    /// Which way.
+    pub forwards: bool,
+    /// The half of the log that it is in, 0 or 1; 0 where none are told.
+    pub half: usize,
+}
+
+/// All passes of a log in their order, with what was left out at each of their ends.
+pub fn passes(samples: &Samples, halves: &[(f64, f64)]) -> Outcome<(Vec<Pass>, f64)> {
+    let travel = samples.travel();
+    let turns = turning_points(&samples.motor, TURNED * travel);
+    if turns.len() < 3 {
+        return Err(Failure::new(format!(
+            "there is no reversal in this log: the motor never goes back by a quarter of its travel of {}",
+            ESTIMATE.write(travel)
+        ))
+        .with_help("sweep slowly to and fro over the same places, at least twice each way"));
+    }
+    let left_out = (LEAST_LEFT_OUT * travel).max(spread(&samples.difference));
+    if left_out > MOST_LEFT_OUT * travel {
+        return Err(Failure::new(format!(
+            "the passes are too short: the difference of output and motor ranges over {}, the motor travels {}",
+            ESTIMATE.write(left_out),
+            ESTIMATE.write(travel)
+        ))
+        .with_help(
+            "sweep over ten times the lost motion and more; check the units if the difference cannot be so large",
+        ));
+    }
+    let mut passes = Vec::new();
+    for pair in turns.windows(2) {
+        let forwards = samples.motor[pair[1]] > samples.motor[pair[0]];
+        for (half, range) in cut(samples, pair[0]..pair[1] + 1, halves) {
+            let range = without_ends(&samples.motor, range, forwards, left_out);
+            let long = range.len() > 1
+                && (samples.motor[range.end - 1] - samples.motor[range.start]).abs() >= LEAST_LEFT * travel;
+            if long {
+                passes.push(Pass { range, forwards, half });
+            }
+        }
+    }
+    let mut lengths: Vec<usize> = passes.iter().map(|pass| pass.range.len()).collect();
+    lengths.sort_unstable();
+    match lengths.get(lengths.len() / 2) {
+        Some(usual) if *usual < LEAST_SAMPLES => Err(Failure::new(format!(
+            "the motion is too fast for this log: {usual} samples in a pass, {LEAST_SAMPLES} are the least"
+        ))
+        .with_help("sweep more slowly, or log more often")),
+        Some(_) => Ok((passes, left_out)),
+        None => Err(Failure::new("no pass is left between turning points, gaps and the ends of the halves")
+            .with_help("let --half FROM..TO hold whole sweeps; times are counted from the first sample")),
+    }
+}
+
+/// Samples at which the motor turns, the first and the last of the log's motion among them.
+fn turning_points(motor: &[f64], threshold: f64) -> Vec<usize> {
+    let (mut least, mut most) = (0, 0);
+    let mut turns: Vec<usize> = Vec::new();
+    // The way since the last turning point; nothing before the first.
+    let mut forwards: Option<bool> = None;
+    let mut farthest = 0;
+    for (sample, place) in motor.iter().enumerate() {
+        match forwards {
+            None => {
+                if *place < motor[least] {
+                    least = sample;
+                }
+                if *place > motor[most] {
+                    most = sample;
+                }
+                if place - motor[least] >= threshold {
+                    (forwards, farthest) = (Some(true), sample);
+                    turns.push(least);
+                } else if motor[most] - place >= threshold {
+                    (forwards, farthest) = (Some(false), sample);
+                    turns.push(most);
+                }
+            }
+            Some(way) => {
+                let sign = if way { 1.0 } else { -1.0 };
+                if sign * (place - motor[farthest]) > 0.0 {
+                    farthest = sample;
+                } else if sign * (motor[farthest] - place) >= threshold {
+                    turns.push(farthest);
+                    (forwards, farthest) = (Some(!way), sample);
+                }
+            }
+        }
+    }
+    if forwards.is_some() {
+        turns.push(farthest);
+    }
+    turns
+}
+
+/// Parts of a stretch that lie in one half each, without gaps.
+fn cut(samples: &Samples, stretch: Range<usize>, halves: &[(f64, f64)]) -> Vec<(usize, Range<usize>)> {
+    let half = |sample: usize| match halves {
+        [] => Some(0),
+        halves => halves.iter().position(|(from, to)| (*from..*to).contains(&samples.time[sample])),
+    };
+    let mut parts: Vec<(usize, Range<usize>)> = Vec::new();
+    for sample in stretch.clone() {
+        let Some(own) = half(sample) else { continue };
+        let goes_on = sample > stretch.start && samples.time[sample] - samples.time[sample - 1] <= GAP * samples.period;
+        match parts.last_mut() {
+            Some((last, range)) if *last == own && range.end == sample && goes_on => range.end = sample + 1,
+            _ => parts.push((own, sample..sample + 1)),
+        }
+    }
+    parts
+}
+
+/// A stretch from where the motor has gone some way on to where it has the same way to go.
+fn without_ends(motor: &[f64], range: Range<usize>, forwards: bool, left_out: f64) -> Range<usize> {
+    let sign = if forwards { 1.0 } else { -1.0 };
+    let (first, last) = (motor[range.start], motor[range.end - 1]);
+    let inside =
+        |sample: &usize| sign * (motor[*sample] - first) >= left_out && sign * (last - motor[*sample]) >= left_out;
+    let begin = range.clone().find(inside);
+    let end = range.rev().find(inside);
+    begin.zip(end).map_or(0..0, |(begin, end)| begin..end + 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn small_reversals_do_not_make_a_turning_point() {
+        let motor: Vec<f64> = (0..400)
+            .map(|sample: i32| {
+                let sweep = 100 - (sample % 200 - 100).abs();
+                f64::from(sweep) + if sample % 2 == 0 { 3.0 } else { -3.0 }
+            })
+            .collect();
+        let turns = turning_points(&motor, 25.0);
+        assert_eq!(turns.len(), 5, "{turns:?}");
+        assert!(
+            turns.iter().zip([0, 100, 200, 300, 399]).all(|(turn, truth): (&usize, usize)| turn.abs_diff(truth) < 5)
+        );
+        assert!(turning_points(&motor[..90], 200.0).is_empty());
+    }
+}

@@ -1,0 +1,195 @@
+//! The profile of each pass: means of the difference, and of torques, over bins of the output that the passes share.
+
+use super::passes::Pass;
+use super::samples::Samples;
+use super::statistics::{mean, quantile_of};
+use report::failure::{Failure, Outcome};
+
+/// A bin holds so many samples of a usual pass...
+const IN_A_BIN: f64 = 6.0;
+/// ... as long as there are not fewer or more bins than these.
+const BINS: (f64, f64) = (12.0, 120.0);
+/// Fewer bins that all groups share show no map.
+pub const LEAST_BINS: usize = 8;
+/// Passes that a bin needs of each direction.
+pub const LEAST_PASSES: usize = 2;
+
+/// One pass over the bins.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Profile {
+    /// The pass.
+    pub pass: Pass,
+    /// Mean difference in each bin; not a number where the pass does not go over the whole bin.
+    pub difference: Vec<f64>,
+    /// Mean motor torque likewise, if there is one [N m].
+    pub motor_torque: Option<Vec<f64>>,
+    /// Mean torque of the joint on its link likewise [N m].
+    pub output_torque: Option<Vec<f64>>,
+    /// First, middle and last moment [s].
+    pub time: [f64; 3],
+    /// Mean speed of the motor on the output's scale [units/s].
+    pub speed: f64,
+    /// Squares of single readings about their bin's mean, and how many are free.
+    pub scatter: (f64, f64),
+}
+
+/// Bins and the passes over them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Profiles {
+    /// Middle of each bin [units of the output].
+    pub places: Vec<f64>,
+    /// Width of a bin.
+    pub width: f64,
+    /// Every pass that goes over bins, in time.
+    pub all: Vec<Profile>,
+}
+
+impl Profiles {
+    /// Over the places that passes of each direction, in each half, go over.
+    pub fn of(samples: &Samples, passes: &[Pass], halves: usize) -> Outcome<Self> {
+        let (mut low, mut high) = (f64::MIN, f64::MAX);
+        for half in 0..halves.max(1) {
+            for forwards in [true, false] {
+                let own = passes.iter().filter(|pass| pass.half == half && pass.forwards == forwards);
+                let ends: Vec<(f64, f64)> = own.map(|pass| range(&samples.output[pass.range.clone()])).collect();
+                check_count(ends.len(), half, halves, forwards)?;
+                low = low.max(ends.iter().map(|ends| ends.0).fold(f64::MAX, f64::min));
+                high = high.min(ends.iter().map(|ends| ends.1).fold(f64::MIN, f64::max));
+            }
+        }
+        if low >= high {
+            return Err(no_common_places());
+        }
+        let inside = |pass: &Pass| {
+            let places = samples.output[pass.range.clone()].iter();
+            places.filter(|place| (low..=high).contains(*place)).count() as f64
+        };
+        let counts: Vec<f64> = passes.iter().map(inside).collect();
+        let count = (quantile_of(&counts, 0.5) / IN_A_BIN).floor().clamp(BINS.0, BINS.1);
+        let width = (high - low) / count;
+        let bins = Bins { low, width, count: count as usize };
+        let all: Vec<Profile> = passes.iter().map(|pass| profile(samples, pass, &bins)).collect();
+        let places = (0..bins.count).map(|bin| low + (bin as f64 + 0.5) * width).collect();
+        let all = all.into_iter().filter(|one| one.difference.iter().any(|value| value.is_finite())).collect();
+        Ok(Self { places, width, all })
+    }
+
+    /// Only the bins that every group has; in enough of them every group must have been twice.
+    pub fn shared(mut self, group: impl Fn(&Profile) -> usize, groups: usize) -> Outcome<Self> {
+        let count = |bin: usize, wanted: usize| {
+            self.all.iter().filter(|one| group(one) == wanted && one.difference[bin].is_finite()).count()
+        };
+        let keep: Vec<bool> =
+            (0..self.places.len()).map(|bin| (0..groups).all(|group| count(bin, group) > 0)).collect();
+        let repeated =
+            |group: usize| (0..keep.len()).filter(|bin| keep[*bin] && count(*bin, group) >= LEAST_PASSES).count();
+        if (0..groups).any(|group| repeated(group) < LEAST_BINS) {
+            return Err(no_common_places());
+        }
+        let kept = |values: &[f64]| -> Vec<f64> {
+            values.iter().zip(&keep).filter(|(_, keep)| **keep).map(|(value, _)| *value).collect()
+        };
+        self.places = kept(&self.places);
+        for one in &mut self.all {
+            one.difference = kept(&one.difference);
+            for torque in [&mut one.motor_torque, &mut one.output_torque].into_iter().flatten() {
+                *torque = kept(torque);
+            }
+        }
+        Ok(self)
+    }
+
+    /// Root mean square of single readings about their bin's mean [units of the output].
+    pub fn scatter(&self) -> f64 {
+        let (sum, free) =
+            self.all.iter().fold((0.0, 0.0), |(sum, free), one| (sum + one.scatter.0, free + one.scatter.1));
+        (sum / free).sqrt()
+    }
+
+    /// Usual speed [units of the output/s].
+    pub fn speed(&self) -> f64 {
+        quantile_of(&self.all.iter().map(|one| one.speed).collect::<Vec<_>>(), 0.5)
+    }
+}
+
+impl Profile {
+    /// Mean of what there is.
+    pub fn mean(values: &[f64]) -> f64 {
+        mean(&values.iter().copied().filter(|value| value.is_finite()).collect::<Vec<_>>())
+    }
+}
+
+/// Refuses fewer passes than an interval can be taken from.
+pub fn check_count(count: usize, half: usize, halves: usize, forwards: bool) -> Outcome<()> {
+    if count >= LEAST_PASSES {
+        return Ok(());
+    }
+    let way = if forwards { "forwards" } else { "backwards" };
+    let place = match halves {
+        0 => String::new(),
+        _ => format!(" in the {} half", ["first", "second"][half.min(1)]),
+    };
+    Err(Failure::new(format!("too few passes: {count} {way}{place}, {LEAST_PASSES} each way are the least")).with_help(
+        "sweep over the same places at least twice each way, slowly; an interval is taken from how passes repeat",
+    ))
+}
+
+fn no_common_places() -> Failure {
+    Failure::new(
+        "the passes do not go over the same places: fewer than eight places have all kinds of passes and a repeat",
+    )
+    .with_help("sweep to and fro between the same places, in each half of the log")
+}
+
+struct Bins {
+    low: f64,
+    width: f64,
+    count: usize,
+}
+
+fn range(values: &[f64]) -> (f64, f64) {
+    values.iter().fold((f64::MAX, f64::MIN), |(low, high), value| (low.min(*value), high.max(*value)))
+}
+
+fn profile(samples: &Samples, pass: &Pass, bins: &Bins) -> Profile {
+    let own = pass.range.clone();
+    let (low, high) = range(&samples.output[own.clone()]);
+    // Where noise alone takes a pass to a bin's end, the bin is whole.
+    let slack = 1e-9 * bins.width;
+    let whole = |bin: usize| {
+        let from = bins.low + bin as f64 * bins.width;
+        low <= from + slack && high >= from + bins.width - slack
+    };
+    let bin = |sample: usize| {
+        let place = ((samples.output[sample] - bins.low) / bins.width).floor();
+        (place >= 0.0 && place < bins.count as f64).then_some(place as usize)
+    };
+    let means = |values: &[f64]| -> Vec<f64> {
+        let (mut sums, mut counts) = (vec![0.0; bins.count], vec![0.0; bins.count]);
+        for (sample, bin) in own.clone().filter_map(|sample| Some((sample, bin(sample)?))) {
+            sums[bin] += values[sample];
+            counts[bin] += 1.0;
+        }
+        let mean = |bin: usize| if whole(bin) { sums[bin] / counts[bin] } else { f64::NAN };
+        (0..bins.count).map(mean).collect()
+    };
+    let difference = means(&samples.difference);
+    let (mut squares, mut readings) = (0.0, 0.0);
+    for (sample, bin) in own.clone().filter_map(|sample| Some((sample, bin(sample)?))) {
+        if difference[bin].is_finite() {
+            squares += (samples.difference[sample] - difference[bin]).powi(2);
+            readings += 1.0;
+        }
+    }
+    let bins_there = difference.iter().filter(|value| value.is_finite()).count() as f64;
+    let (first, last) = (samples.time[own.start], samples.time[own.end - 1]);
+    Profile {
+        motor_torque: samples.motor_torque.as_deref().map(means),
+        output_torque: samples.output_torque.as_deref().map(means),
+        time: [first, 0.5 * (first + last), last],
+        speed: (samples.motor[own.end - 1] - samples.motor[own.start]).abs() / (last - first),
+        scatter: (squares, (readings - bins_there).max(0.0)),
+        difference,
+        pass: pass.clone(),
+    }
+}

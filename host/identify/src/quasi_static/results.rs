@@ -1,0 +1,442 @@
+//! What a slow log shows: every figure with its interval, the curves behind them, and the test of both.
+
+use serde::Serialize;
+
+use super::curves::Curves;
+use super::loading::{Loading, check_levels};
+use super::map::Map;
+use super::passes::passes;
+use super::prediction::Prediction;
+use super::profiles::{Profile, Profiles, check_count};
+use super::samples::{Samples, Scale};
+use super::statistics::{mean, quantile_of, rms, student};
+use crate::estimate::Estimate;
+use report::failure::{Failure, Outcome};
+use report::number::ESTIMATE;
+
+/// From one sample to the next the joint moves by this share of the width at most.
+const QUASI_STATIC: f64 = 0.5;
+
+/// One figure.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Quantity {
+    /// Its key.
+    pub key: String,
+    /// What it is.
+    pub name: String,
+    /// Unit of value and interval.
+    pub unit: String,
+    /// Best value; absent if the log does not show it.
+    pub value: Option<f64>,
+    /// Lower and upper end of the 95 % interval, where passes give one.
+    pub interval: Option<[f64; 2]>,
+    /// The value in degrees of the output, where a turn is known [deg].
+    pub value_deg: Option<f64>,
+    /// Its interval likewise [deg].
+    pub interval_deg: Option<[f64; 2]>,
+    /// What to know about it; may be empty.
+    pub note: String,
+}
+
+/// A curve over places with its 95 % interval [units of the output].
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Curve {
+    /// Mean.
+    pub value: Vec<f64>,
+    /// Lower end.
+    pub low: Vec<f64>,
+    /// Upper end.
+    pub high: Vec<f64>,
+}
+
+impl Curve {
+    fn of(estimates: Vec<Estimate>) -> Self {
+        let mut curve = Self::default();
+        for Estimate { value, half } in estimates {
+            curve.value.push(value);
+            curve.low.push(value - half);
+            curve.high.push(value + half);
+        }
+        curve
+    }
+}
+
+/// All that was found.
+pub struct Results {
+    /// How the load is known.
+    pub loading: Loading,
+    /// Unit of the output.
+    pub scale: Scale,
+    /// Passes over the bins.
+    pub profiles: Profiles,
+    /// What is left out at each end of a pass.
+    pub left_out: f64,
+    /// Mean difference of each group over the bins.
+    pub groups: Vec<Vec<f64>>,
+    /// Lost motion or width by direction over the bins.
+    pub width: Curve,
+    /// Hysteresis under each load over the bins, where loads are told.
+    pub hysteresis: Vec<Curve>,
+    /// Error map.
+    pub map: Map,
+    /// The test.
+    pub prediction: Prediction,
+    /// Mean of each pass about its group's, in time [s, units].
+    pub levels: Vec<(f64, f64)>,
+    /// Every figure.
+    pub quantities: Vec<Quantity>,
+}
+
+impl Results {
+    /// Out of samples, and of the halves that were told.
+    pub fn of(samples: &Samples, halves: &[(f64, f64)]) -> Outcome<Self> {
+        let (passes, left_out) = passes(samples, halves)?;
+        let profiles = Profiles::of(samples, &passes, halves.len())?;
+        let loading = Loading::of(&profiles, halves.len());
+        let profiles = profiles.shared(|one| loading.group(one), loading.groups())?;
+        let of_groups = |values: &dyn Fn(&Profile) -> Option<Vec<f64>>| -> Option<Curves> {
+            let mut groups = vec![Vec::new(); loading.groups()];
+            for one in &profiles.all {
+                groups[loading.group(one)].push(values(one)?);
+            }
+            Some(Curves(groups))
+        };
+        let curves = of_groups(&|one| Some(one.difference.clone())).unwrap_or_default();
+        for (group, passes) in curves.0.iter().enumerate() {
+            check_count(passes.len(), group / 2, halves.len(), group % 2 == 0)?;
+        }
+        // Lost motion is the first load's less the second's, with the sign that makes it positive where halves do not say
+        // which way they are loaded.
+        let apart = |means: &[Vec<f64>], place: usize| match loading.groups() {
+            4 => 0.5 * (means[2][place] + means[3][place] - means[0][place] - means[1][place]),
+            _ => means[1][place] - means[0][place],
+        };
+        let places = profiles.places.len();
+        let over = |means: &[Vec<f64>]| -> Vec<f64> { (0..places).map(|place| apart(means, place)).collect() };
+        let groups = curves.means();
+        let sign = if loading == Loading::ByHalf && quantile_of(&over(&groups), 0.5) < 0.0 { -1.0 } else { 1.0 };
+        let share = |share: f64| curves.estimate(|means| quantile_of(&signed(&over(means), sign), share));
+        let hysteresis = |load: usize| {
+            curves.estimate(|means| {
+                mean(&(0..places).map(|place| means[2 * load + 1][place] - means[2 * load][place]).collect::<Vec<_>>())
+            })
+        };
+        let shares = [0.5, 0.1, 0.9].map(share);
+        let loops: Vec<Estimate> = (0..loading.groups() / 2).map(hysteresis).collect();
+        let largest = loops.iter().map(|one| one.value.abs()).fold(shares[0].value.abs(), f64::max);
+        let step = profiles.speed() * samples.period;
+        if halves.is_empty() && loading.groups() == 2 {
+            check_levels(&profiles, shares[0].value)?;
+        }
+        check_sign(loading, &shares[0])?;
+        if step > QUASI_STATIC * largest {
+            return Err(Failure::new(format!(
+                "the motion is too fast for this log: {} from one sample to the next, where the widths found are {} at most",
+                ESTIMATE.write(step),
+                ESTIMATE.write(largest)
+            ))
+            .with_help(
+                "sweep more slowly, or log more often: encoders that are read at different moments would feign such a width",
+            ));
+        }
+        let mut found = Found { scale: samples.scale, all: Vec::new() };
+        let heights = if sign < 0.0 { "first" } else { "second" };
+        let ranges: Vec<[f64; 2]> = (0..loops.len())
+            .map(|load| {
+                let loops: Vec<f64> =
+                    (0..places).map(|place| groups[2 * load + 1][place] - groups[2 * load][place]).collect();
+                [0.1, 0.9].map(|share| quantile_of(&loops, share))
+            })
+            .collect();
+        found.widths(loading, &shares, (&loops, &ranges), 2.0 * step, heights);
+        found.map(&curves, &profiles);
+        let levels = found.repeatability(&curves, &profiles, &|one| loading.group(one), loading);
+        for (key, name, torque) in [
+            ("motor", "motor torque", of_groups(&|one| one.motor_torque.clone())),
+            ("output", "output torque", of_groups(&|one| one.output_torque.clone())),
+        ] {
+            if let Some(torque) = torque {
+                found.friction(key, name, &torque, loading);
+            }
+        }
+        let hysteresis = (0..loading.groups() / 2).filter(|_| loading.groups() == 4).map(|load| {
+            Curve::of(curves.estimates(|means, place| means[2 * load + 1][place] - means[2 * load][place]))
+        });
+        Ok(Self {
+            loading,
+            scale: samples.scale,
+            left_out,
+            width: Curve::of(curves.estimates(|means, place| sign * apart(means, place))),
+            hysteresis: hysteresis.collect(),
+            map: Map::of(&profiles.places, &groups),
+            prediction: Prediction::of(&curves),
+            groups,
+            levels,
+            quantities: found.all,
+            profiles,
+        })
+    }
+}
+
+fn signed(values: &[f64], sign: f64) -> Vec<f64> {
+    values.iter().map(|value| sign * value).collect()
+}
+
+/// Refuses an output that is ahead of the motor, or ahead under the torque.
+fn check_sign(loading: Loading, width: &Estimate) -> Outcome<()> {
+    if loading == Loading::ByHalf || width.value + width.half >= 0.0 {
+        return Ok(());
+    }
+    let what = if loading == Loading::ByTorque {
+        "the output stands ahead of the motor where the torque drives it forwards"
+    } else {
+        "the output is ahead of the motor in both directions"
+    };
+    Err(Failure::new(format!("{what}, by {}: no backlash and no friction does that", ESTIMATE.write(-width.value)))
+        .with_help("the difference, the torque or an encoder counts the other way, or the encoders are read at different moments"))
+}
+
+/// Of the interval, if there is one.
+fn ends(Estimate { value, half }: Estimate) -> Option<[f64; 2]> {
+    half.is_finite().then_some([value - half, value + half])
+}
+
+/// Figures as they come.
+struct Found {
+    scale: Scale,
+    all: Vec<Quantity>,
+}
+
+impl Found {
+    /// A figure in the unit of the output.
+    fn angle(&mut self, key: impl Into<String>, name: impl Into<String>, estimate: Estimate, note: impl Into<String>) {
+        let degrees = self.scale.degrees();
+        let interval = ends(estimate);
+        self.all.push(Quantity {
+            key: key.into(),
+            name: name.into(),
+            unit: self.scale.unit.into(),
+            value: Some(estimate.value),
+            interval,
+            value_deg: degrees.map(|degrees| degrees * estimate.value),
+            interval_deg: degrees.zip(interval).map(|(degrees, ends)| ends.map(|end| degrees * end)),
+            note: note.into(),
+        });
+    }
+
+    /// A figure in another unit.
+    fn other(&mut self, key: String, name: String, unit: &str, estimate: Estimate, note: &str) {
+        self.all.push(Quantity {
+            key,
+            name,
+            unit: unit.into(),
+            value: Some(estimate.value),
+            interval: ends(estimate),
+            value_deg: None,
+            interval_deg: None,
+            note: note.into(),
+        });
+    }
+
+    fn widths(
+        &mut self,
+        loading: Loading,
+        shares: &[Estimate; 3],
+        (loops, ranges): (&[Estimate], &[[f64; 2]]),
+        feigned: f64,
+        higher: &str,
+    ) {
+        let known = loading.groups() == 4;
+        let by_place = [
+            ("median", "median over the places"),
+            ("10_percent", "10 % of the places below"),
+            ("90_percent", "90 % of the places below"),
+        ];
+        if !known {
+            self.all.push(Quantity {
+                key: "lost_motion".into(),
+                name: "lost motion".into(),
+                unit: self.scale.unit.into(),
+                value: None,
+                interval: None,
+                value_deg: None,
+                interval_deg: None,
+                note: "not told by this log alone: no reversal under a known load".into(),
+            });
+        }
+        if loading != Loading::OneWay {
+            let (key, name) =
+                if known { ("lost_motion", "lost motion") } else { ("width_by_direction", "width by direction") };
+            for ((own, which), estimate) in by_place.iter().zip(shares) {
+                let note = match (known, *own) {
+                    (true, "median") if loading == Loading::ByHalf => {
+                        format!("wind-up under the load included; the output stands higher in the {higher} half")
+                    }
+                    (true, "median") => "wind-up under the load included".to_owned(),
+                    (false, "median") => "lost motion and hysteresis, not separated".to_owned(),
+                    _ => String::new(),
+                };
+                self.angle(format!("{key}_{own}"), format!("{name}, {which}"), *estimate, note);
+            }
+        }
+        if known || loading == Loading::OneWay {
+            for (load, (name, estimate)) in loading.names().iter().zip(loops).enumerate() {
+                let note = if estimate.value + estimate.half < 0.0 {
+                    "negative: the output is ahead of the motor, which no friction does; the encoders are read at different moments, \
+                     or the motor is not where its encoder says"
+                } else {
+                    ""
+                };
+                let [low, high] = ranges[load].map(|end| ESTIMATE.write(end));
+                let note = format!("mean over the places; 10 to 90 % of them: {low} to {high}")
+                    + if note.is_empty() { "" } else { "; " }
+                    + note;
+                self.angle(format!("hysteresis_{}", load + 1), format!("hysteresis, {name}"), *estimate, note);
+            }
+        }
+        self.angle(
+            "feigned_by_one_period",
+            "feigned by readings one sampling period apart",
+            Estimate { value: feigned, half: f64::NAN },
+            "what it would put into figures by direction; not in their intervals",
+        );
+    }
+
+    fn map(&mut self, curves: &Curves, profiles: &Profiles) {
+        let places = &profiles.places;
+        let of = |means: &[Vec<f64>]| Map::of(places, means);
+        let scale = curves.estimate(|means| 1.0 / (1.0 - of(means).slope));
+        self.other(
+            "output_per_motor".into(),
+            "output for each 1 of the motor".into(),
+            "",
+            scale,
+            "slope of the error map; 1 as stated",
+        );
+        let long = curves.estimate(|means| of(means).long_wave_range());
+        self.angle("map_long_wave_range", "error map: long wave, least to greatest", long, "");
+        // What the scatter of the passes alone leaves in the mean of them.
+        let noise: f64 = curves
+            .0
+            .iter()
+            .zip(&curves.deviations().0)
+            .map(|(group, deviations)| {
+                let square = rms(&Curves(vec![deviations.clone()]).values()).powi(2);
+                let there = Curves(vec![group.clone()]).values().len() as f64 / profiles.places.len() as f64;
+                square / (there * (curves.0.len() * curves.0.len()) as f64)
+            })
+            .sum();
+        let ripple = curves.estimate(|means| (of(means).ripple_rms().powi(2) - noise).max(0.0).sqrt());
+        let strongest = of(&curves.means()).strongest(places).map_or(String::new(), |(period, amplitude)| {
+            format!(
+                "scatter taken off; strongest period {}, amplitude {} {}",
+                ESTIMATE.write(period),
+                ESTIMATE.write(amplitude),
+                self.scale.unit
+            )
+        });
+        self.angle("map_ripple_rms", "error map: ripple, root mean square", ripple, strongest);
+    }
+
+    /// Scatter and drift; the mean of each pass about its group's, in time.
+    fn repeatability(
+        &mut self,
+        curves: &Curves,
+        profiles: &Profiles,
+        group: &dyn Fn(&Profile) -> usize,
+        loading: Loading,
+    ) -> Vec<(f64, f64)> {
+        let without = |value: f64| Estimate { value, half: f64::NAN };
+        let deviations = curves.deviations();
+        self.angle(
+            "repeatability_rms",
+            "repeatability of passes, root mean square",
+            without(rms(&deviations.values())),
+            "",
+        );
+        for (load, name) in loading.names().iter().enumerate().filter(|_| loading.groups() == 4) {
+            let own = Curves(deviations.0[2 * load..2 * load + 2].to_vec());
+            self.angle(
+                format!("repeatability_rms_{}", load + 1),
+                format!("repeatability, {name}"),
+                without(rms(&own.values())),
+                "",
+            );
+        }
+        let means = curves.means();
+        let mut levels: Vec<(usize, f64, f64)> = Vec::new();
+        for one in &profiles.all {
+            let own = group(one);
+            // Where it is the only one of its group it is no repeat.
+            let repeats = |place: usize| curves.0[own].iter().filter(|curve| curve[place].is_finite()).count() > 1;
+            let about = one.difference.iter().zip(&means[own]).enumerate().filter(|(place, _)| repeats(*place));
+            let about: Vec<f64> = about.map(|(_, (value, mean))| value - mean).collect();
+            if about.iter().all(|value| value.is_nan()) {
+                continue;
+            }
+            levels.push((own, one.time[1], Profile::mean(&about)));
+        }
+        let count = levels.len() as f64;
+        let groups = curves.0.len() as f64;
+        let squares: f64 = levels.iter().map(|level| level.2.powi(2)).sum();
+        let whole = (squares / (count - groups)).sqrt();
+        self.angle(
+            "repeatability_of_whole_passes",
+            "repeatability of whole passes, by their means",
+            without(whole),
+            "",
+        );
+        self.angle(
+            "scatter_of_readings",
+            "scatter of single readings within a bin",
+            without(profiles.scatter()),
+            "slope of the map over a bin included",
+        );
+        let time_of = |wanted: usize| {
+            mean(&levels.iter().filter(|level| level.0 == wanted).map(|level| level.1).collect::<Vec<_>>())
+        };
+        let starts: Vec<f64> = (0..curves.0.len()).map(time_of).collect();
+        let square: f64 = levels.iter().map(|level| (level.1 - starts[level.0]).powi(2)).sum();
+        let slope = levels.iter().map(|level| (level.1 - starts[level.0]) * level.2).sum::<f64>() / square;
+        let freedom = count - groups - 1.0;
+        let left: f64 = levels.iter().map(|level| (level.2 - slope * (level.1 - starts[level.0])).powi(2)).sum();
+        let half = student(freedom) * (left / freedom / square).sqrt();
+        let unit = format!("{}/s", self.scale.unit);
+        let note = "of the passes' means about their group's; a width between halves has it over the time between them";
+        self.other("drift".into(), "drift".into(), &unit, Estimate { value: slope, half }, note);
+        levels.into_iter().map(|(_, time, level)| (time, level)).collect()
+    }
+
+    fn friction(&mut self, key: &str, name: &str, torque: &Curves, loading: Loading) {
+        let at = |means: &[Vec<f64>], group: usize| Profile::mean(&means[group]);
+        for (load, which) in loading.names().iter().enumerate() {
+            let which = if loading.groups() == 4 { format!(", {which}") } else { String::new() };
+            let index = if loading.groups() == 4 { format!("_{}", load + 1) } else { String::new() };
+            let [forwards, backwards] = [2 * load, 2 * load + 1];
+            let figures = [
+                ("forwards", torque.estimate(|means| at(means, forwards)), ""),
+                ("backwards", torque.estimate(|means| at(means, backwards)), ""),
+                (
+                    "dry_friction",
+                    torque.estimate(|means| 0.5 * (at(means, forwards) - at(means, backwards))),
+                    "mean of both directions, with what viscous friction there is at this speed",
+                ),
+                (
+                    "load_and_asymmetry",
+                    torque.estimate(|means| 0.5 * (at(means, forwards) + at(means, backwards))),
+                    "load, and half by which friction forwards is larger than backwards, not separated",
+                ),
+            ];
+            for (own, estimate, note) in figures {
+                let label = own.replace('_', " ");
+                self.other(
+                    format!("{key}_torque_{own}{index}"),
+                    format!("{name}, {label}{which}"),
+                    "N m",
+                    estimate,
+                    note,
+                );
+            }
+        }
+    }
+}

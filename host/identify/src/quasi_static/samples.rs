@@ -1,0 +1,310 @@
+//! A slow log as samples: output, motor on the output's scale and their difference, in the output's unit, with gaps and
+//! jitter as they are.
+
+use std::f64::consts::TAU;
+
+use super::options::Options;
+use super::statistics::quantile;
+use crate::columns::{Columns, KNOWN};
+use report::failure::{Failure, Outcome};
+use report::number::ESTIMATE;
+
+/// Column of the output less the motor, which only this mode knows.
+pub const DIFFERENCE: &str = "output_less_motor_counts";
+/// Fewer samples hold no passes.
+const LEAST_SAMPLES: usize = 96;
+/// A longer step of time than so many usual ones is a gap.
+pub const GAP: f64 = 10.0;
+/// Nothing turns by so much of its whole travel from one sample to the next.
+const JUMP_SHARE: f64 = 0.2;
+/// Output for each 1 of the motor, both on one scale.
+const AS_STATED: std::ops::RangeInclusive<f64> = 0.9..=1.1;
+/// Below this correlation the output does not follow the motor.
+const FOLLOWS: f64 = 0.8;
+
+/// A slow log.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Samples {
+    /// From the first sample on [s].
+    pub time: Vec<f64>,
+    /// Output as read.
+    pub output: Vec<f64>,
+    /// Motor over the gear ratio, on the output's scale.
+    pub motor: Vec<f64>,
+    /// Output less motor.
+    pub difference: Vec<f64>,
+    /// Motor torque [N m].
+    pub motor_torque: Option<Vec<f64>>,
+    /// Torque of the joint on its link [N m].
+    pub output_torque: Option<Vec<f64>>,
+    /// What the output is read in.
+    pub scale: Scale,
+    /// Usual time from one sample to the next [s].
+    pub period: f64,
+    /// From the 5 to the 95 % quantile of that time [s].
+    pub jitter: [f64; 2],
+    /// Gaps, and the longest step of time [s].
+    pub gaps: (usize, f64),
+}
+
+/// Unit of the output's column.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scale {
+    /// What it is called.
+    pub unit: &'static str,
+    /// How much of it is a turn, if that is known.
+    pub per_turn: Option<f64>,
+}
+
+impl Scale {
+    /// What makes degrees of it.
+    pub fn degrees(self) -> Option<f64> {
+        self.per_turn.map(|turn| 360.0 / turn)
+    }
+}
+
+/// A column of angles.
+struct Angles {
+    values: Vec<f64>,
+    /// In radians, or in counts of what a turn has not been told.
+    scale: Scale,
+}
+
+impl Samples {
+    /// Out of columns with known names.
+    pub fn of(columns: &Columns, options: &Options) -> Outcome<Self> {
+        let mut time = columns.time()?;
+        if time.len() < LEAST_SAMPLES {
+            return Err(Failure::new(format!("there are only {} samples, {LEAST_SAMPLES} are the least", time.len()))
+                .with_help("record several slow sweeps each way"));
+        }
+        let start = time[0];
+        time.iter_mut().for_each(|time| *time -= start);
+        let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        if let Some(row) = steps.iter().position(|step| *step < 0.0) {
+            return Err(Failure::new(format!("the time falls in {}", columns.place(row + 1)))
+                .with_help("samples must be in the order in which they were taken"));
+        }
+        steps.sort_by(f64::total_cmp);
+        let period = quantile(&steps, 0.5);
+        if period <= 0.0 {
+            return Err(Failure::new("the time stands still for most of the log").with_help(
+                "check the column: time_s, time_ms and time_us are understood, --column time_s=NAME takes another",
+            ));
+        }
+        let gaps = steps.iter().filter(|step| **step > GAP * period).count();
+        let longest = steps[steps.len() - 1];
+        let output = angles(columns, ["output_counts", "output_angle_rad"], options.output_units_per_turn, "output")?
+            .ok_or_else(|| missing("output", columns))?;
+        let Angles { values: mut output, scale } = output;
+        unwrap(&mut output, scale);
+        let motor = motor(columns, options, scale, &output)?;
+        for (name, values) in [("output", &output), ("motor", &motor)] {
+            check_jumps(name, values, &time, period, columns)?;
+        }
+        let difference = output.iter().zip(&motor).map(|(output, motor)| output - motor).collect();
+        let samples = Self {
+            difference,
+            motor_torque: torque(columns, "motor_torque_N_m", options.gear_ratio.unwrap_or(1.0).signum())?,
+            output_torque: torque(columns, "output_torque_N_m", 1.0)?,
+            scale,
+            period,
+            jitter: [quantile(&steps, 0.05), quantile(&steps, 0.95)],
+            gaps: (gaps, longest),
+            time,
+            output,
+            motor,
+        };
+        samples.check_scale(options)?;
+        Ok(samples)
+    }
+
+    /// How far the motor goes, but for its last per cents [units of the output].
+    pub fn travel(&self) -> f64 {
+        spread(&self.motor)
+    }
+
+    /// Refuses encoders that are not in one unit after gear ratio and units.
+    fn check_scale(&self, options: &Options) -> Outcome<()> {
+        let count = self.motor.len() as f64;
+        let mean = |values: &[f64]| values.iter().sum::<f64>() / count;
+        let [of_motor, of_output] = [mean(&self.motor), mean(&self.output)];
+        let (mut square, mut product, mut other) = (0.0, 0.0, 0.0);
+        for (motor, output) in self.motor.iter().zip(&self.output) {
+            let (motor, output) = (motor - of_motor, output - of_output);
+            square += motor * motor;
+            product += motor * output;
+            other += output * output;
+        }
+        if square <= 0.0 || other <= 0.0 {
+            let still = if square <= 0.0 { "motor" } else { "output" };
+            return Err(Failure::new(format!("the {still} does not move in this log"))
+                .with_help("record slow sweeps to and fro, with both encoders; check --column"));
+        }
+        let (slope, correlation) = (product / square, product / (square * other).sqrt());
+        if correlation.abs() < FOLLOWS {
+            return Err(Failure::new(format!(
+                "the output does not follow the motor: their readings correlate by {correlation:.2}"
+            ))
+            .with_help(
+                "check --column; counts that begin anew each turn need --output-units-per-turn and --motor-units-per-turn",
+            ));
+        }
+        if AS_STATED.contains(&slope) {
+            return Ok(());
+        }
+        let message = format!(
+            "output and motor are not in one unit: the output moves by {} for each 1 of the motor over its gear ratio",
+            ESTIMATE.write(slope)
+        );
+        let ratio = options.gear_ratio.unwrap_or(1.0) / slope;
+        Err(Failure::new(message).with_help(format!(
+            "state --gear-ratio, --output-units-per-turn and --motor-units-per-turn; with the units as they are, the gear \
+             ratio would have to be {}",
+            ESTIMATE.write(ratio)
+        )))
+    }
+}
+
+/// A torque if it is there, positive when it drives the output forwards.
+fn torque(columns: &Columns, name: &str, sign: f64) -> Outcome<Option<Vec<f64>>> {
+    if !is_there(columns, name) {
+        return Ok(None);
+    }
+    let (_, torque) = columns.named(&[name])?;
+    Ok(Some(torque.iter().map(|torque| sign * torque).collect()))
+}
+
+/// Whether there is a column, by any of its names.
+fn is_there(columns: &Columns, name: &str) -> bool {
+    let others = KNOWN.iter().find(|(known, _)| *known == name).map_or(&[][..], |(_, others)| *others);
+    columns.names().any(|own| own == name || others.contains(&own))
+}
+
+/// From the 1 to the 99 % quantile.
+pub fn spread(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    quantile(&sorted, 0.99) - quantile(&sorted, 0.01)
+}
+
+/// Counts or radians, if either is there.
+fn angles(columns: &Columns, names: [&str; 2], per_turn: Option<f64>, whose: &str) -> Outcome<Option<Angles>> {
+    let Some(wanted) = names.into_iter().find(|name| is_there(columns, name)) else { return Ok(None) };
+    let (_, values) = columns.named(&[wanted])?;
+    if wanted == names[0] {
+        return Ok(Some(Angles { values, scale: Scale { unit: "units", per_turn } }));
+    }
+    if per_turn.is_some() {
+        return Err(Failure::new(format!("--{whose}-units-per-turn has no effect on `{wanted}`, which is in radians"))
+            .with_help(format!("leave it out, or read the column as {} by --column", names[0])));
+    }
+    Ok(Some(Angles { values, scale: Scale { unit: "rad", per_turn: Some(TAU) } }))
+}
+
+/// The motor on the output's scale, from its own column or from the difference.
+fn motor(columns: &Columns, options: &Options, scale: Scale, output: &[f64]) -> Outcome<Vec<f64>> {
+    if let Some(mut difference) = columns.maybe(DIFFERENCE)? {
+        let stated = [("--gear-ratio", options.gear_ratio), ("--motor-units-per-turn", options.motor_units_per_turn)];
+        if let Some((option, _)) = stated.iter().find(|(_, value)| value.is_some()) {
+            return Err(Failure::new(format!(
+                "{option} has no effect: `{DIFFERENCE}` is of a motor that is geared already"
+            ))
+            .with_help("leave the option out, or give the motor's own column"));
+        }
+        step_over_turns(&mut difference, scale);
+        return Ok(output.iter().zip(&difference).map(|(output, difference)| output - difference).collect());
+    }
+    let motor = angles(columns, ["motor_counts", "motor_angle_rad"], options.motor_units_per_turn, "motor")?;
+    let Angles { mut values, scale: own } = motor.ok_or_else(|| missing("motor", columns))?;
+    let ratio = options.gear_ratio.unwrap_or(1.0);
+    unwrap(&mut values, own);
+    let factor = match (scale.per_turn, own.per_turn) {
+        (Some(output), Some(motor)) => output / motor,
+        // Both in counts of one size.
+        _ if scale.unit == own.unit => 1.0,
+        _ => {
+            let option = if own.per_turn.is_none() { "--motor-units-per-turn" } else { "--output-units-per-turn" };
+            return Err(Failure::new("one encoder is in radians, the other in counts of unknown size")
+                .with_help(format!("state {option}")));
+        }
+    };
+    values.iter_mut().for_each(|value| *value *= factor / ratio);
+    Ok(values)
+}
+
+fn missing(what: &str, columns: &Columns) -> Failure {
+    let there: Vec<&str> = columns.names().take(12).collect();
+    let there = there.join(", ");
+    let (wanted, tells) = match what {
+        "motor" => (
+            format!("motor_counts, motor_angle_rad or {DIFFERENCE}"),
+            "an output alone shows neither lost motion nor an error map",
+        ),
+        _ => (
+            "output_counts or output_angle_rad".to_owned(),
+            "a motor alone shows no lost motion and no error map: where the output stands while the motor crosses the gap is \
+             not in it",
+        ),
+    };
+    Failure::new(format!("there is no column for the {what} ({there} are there): {tells}"))
+        .with_help(format!("name it {wanted}, or take a column of another name or number: --column output_counts=2"))
+}
+
+/// Counts that begin anew every turn are taken for continuous ones.
+fn unwrap(values: &mut [f64], scale: Scale) {
+    let Some(turn) = scale.per_turn else { return };
+    let (least, most) =
+        values.iter().fold((f64::MAX, f64::MIN), |(least, most), value| (least.min(*value), most.max(*value)));
+    if most - least <= turn * (1.0 + 1e-9) {
+        step_over_turns(values, scale);
+    }
+}
+
+fn step_over_turns(values: &mut [f64], scale: Scale) {
+    let Some(turn) = scale.per_turn else { return };
+    let (mut added, mut before) = (0.0, values.first().copied().unwrap_or_default());
+    for value in values {
+        added -= ((*value - before) / turn).round() * turn;
+        before = *value;
+        *value += added;
+    }
+}
+
+fn check_jumps(name: &str, values: &[f64], time: &[f64], period: f64, columns: &Columns) -> Outcome<()> {
+    let (least, most) =
+        values.iter().fold((f64::MAX, f64::MIN), |(least, most), value| (least.min(*value), most.max(*value)));
+    let limit = JUMP_SHARE * (most - least);
+    let jumps = |row: &usize| {
+        (values[row + 1] - values[*row]).abs() > limit.max(f64::MIN_POSITIVE)
+            && time[row + 1] - time[*row] <= GAP * period
+    };
+    let Some(row) = (0..values.len() - 1).find(jumps) else { return Ok(()) };
+    let by = ESTIMATE.write((values[row + 1] - values[row]).abs());
+    Err(Failure::new(format!(
+        "the {name} jumps by {by} in {}, of {} in all",
+        columns.place(row + 1),
+        ESTIMATE.write(most - least)
+    ))
+    .with_help(format!(
+        "a reading was lost, the log is too slow for the motion, or counts begin anew each turn: then state \
+             --{name}-units-per-turn"
+    )))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_that_begin_anew_are_joined_and_fractions_kept() {
+        let scale = Scale { unit: "units", per_turn: Some(100.0) };
+        let truth: Vec<f64> = (0..400).map(|step| 7.25 * f64::from(step)).collect();
+        let mut read: Vec<f64> = truth.iter().map(|value| value.rem_euclid(100.0)).collect();
+        unwrap(&mut read, scale);
+        assert!(read.iter().zip(&truth).all(|(read, truth)| (read - truth).abs() < 1e-9));
+        let mut many_turns: Vec<f64> = truth.clone();
+        unwrap(&mut many_turns, scale);
+        assert_eq!(many_turns, truth);
+    }
+}

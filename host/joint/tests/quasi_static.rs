@@ -346,6 +346,8 @@ fn logs_that_cannot_tell_are_refused_with_the_reason_and_the_mend() {
     let with = |more: &[&'static str]| [&MEASURED[..], more].concat();
     // What is in the log.
     refused(&measured, &MEASURED, ["two levels", "--half"]);
+    let cut = Sweeps { phase: 0.45, count: 3, sweep: 20.0, rate: 50.0, ..quick };
+    refused(&cut.as_measured(), &MEASURED, ["do not repeat", "--half"]);
     refused(&measured, &["--quasi-static"], ["no header", "--column time_s=1"]);
     refused(
         &measured,

@@ -10,6 +10,10 @@ const ONE_SIGN: f64 = 0.9;
 const LEVELS_APART: f64 = 0.5;
 /// ... and the widest gap between passes is so many deviations of those on one level.
 const LEVELS_CLEAR: f64 = 4.0;
+/// Passes of one direction that differ by this share of the width...
+const UNREPEATED: f64 = 0.5;
+/// ... and by so many times what neighbouring places differ by, do not repeat.
+const ABOVE_ROUGHNESS: f64 = 3.0;
 
 /// How the load is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -106,16 +110,34 @@ fn sign(profile: &Profile) -> f64 {
     [1.0, -1.0].into_iter().find(|sign| share(*sign) >= ONE_SIGN).unwrap_or(0.0)
 }
 
-/// Refuses passes of one direction that lie on two levels, as those do whose load has changed untold.
-pub fn check_levels(profiles: &Profiles, width: f64) -> Outcome<()> {
-    let level = |one: &Profile| Profile::mean(&one.difference);
-    let of_way = |forwards: bool| {
-        let own = profiles.all.iter().filter(|one| one.pass.forwards == forwards);
-        mean(&own.map(level).collect::<Vec<_>>())
+/// Refuses passes of one direction that lie on two levels, or that do not repeat, as those do whose load has changed untold.
+/// Given are the means of both directions by place, and how far apart they are.
+pub fn check_one_load(profiles: &Profiles, means: &[Vec<f64>], width: f64) -> Outcome<()> {
+    let deviations = |one: &Profile| -> Vec<f64> {
+        let own = &means[usize::from(!one.pass.forwards)];
+        let all = one.difference.iter().zip(own).map(|(value, mean)| value - mean);
+        all.filter(|value| value.is_finite()).collect()
     };
-    let means = [of_way(false), of_way(true)];
-    let about = |one: &Profile| level(one) - means[usize::from(one.pass.forwards)];
-    let mut sorted: Vec<f64> = profiles.all.iter().map(about).collect();
+    let all: Vec<Vec<f64>> = profiles.all.iter().map(deviations).collect();
+    check_levels(profiles, &all, width)?;
+    let steps: Vec<f64> = all.iter().flat_map(|one| one.windows(2).map(|pair| pair[1] - pair[0])).collect();
+    let (apart, rough) = (rms(&all.concat()), rms(&steps) / std::f64::consts::SQRT_2);
+    if apart < UNREPEATED * width.abs() || apart < ABOVE_ROUGHNESS * rough {
+        return Ok(());
+    }
+    Err(Failure::new(format!(
+        "passes of one direction do not repeat: they differ by {apart:.4} where both directions are apart by {:.4}",
+        width.abs()
+    ))
+    .with_help(
+        "the load changed, or something slips or drifts: sweep loaded one way first and then the other, and name both stretches by \
+         --half FROM..TO",
+    ))
+}
+
+fn check_levels(profiles: &Profiles, deviations: &[Vec<f64>], width: f64) -> Outcome<()> {
+    let levels: Vec<f64> = deviations.iter().map(|one| mean(one)).collect();
+    let mut sorted = levels.clone();
     sorted.sort_by(f64::total_cmp);
     let gap = |pair: &[f64]| pair[1] - pair[0];
     let Some(widest) = sorted.windows(2).max_by(|a, b| gap(a).total_cmp(&gap(b))) else { return Ok(()) };
@@ -123,7 +145,8 @@ pub fn check_levels(profiles: &Profiles, width: f64) -> Outcome<()> {
     let (below, above): (Vec<f64>, Vec<f64>) = sorted.iter().partition(|value| **value < limit);
     let both_ways = |upper: bool| {
         let own = |forwards: bool| {
-            profiles.all.iter().filter(|one| one.pass.forwards == forwards && (about(one) > limit) == upper).count()
+            let passes = profiles.all.iter().zip(&levels);
+            passes.filter(|(one, level)| one.pass.forwards == forwards && (**level > limit) == upper).count()
         };
         own(true) >= 2 && own(false) >= 2
     };
@@ -138,8 +161,8 @@ pub fn check_levels(profiles: &Profiles, width: f64) -> Outcome<()> {
     }
     // Stretches of passes on one level.
     let mut stretches: Vec<(bool, f64, f64)> = Vec::new();
-    for one in &profiles.all {
-        let (upper, [from, _, to]) = (about(one) > limit, one.time);
+    for (one, level) in profiles.all.iter().zip(&levels) {
+        let (upper, [from, _, to]) = (*level > limit, one.time);
         match stretches.last_mut() {
             Some((last, _, end)) if *last == upper => *end = to,
             _ => stretches.push((upper, from, to)),

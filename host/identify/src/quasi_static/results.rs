@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::curves::Curves;
-use super::loading::{Loading, check_levels};
+use super::loading::{Loading, check_one_load};
 use super::map::Map;
 use super::passes::passes;
 use super::prediction::Prediction;
@@ -126,7 +126,7 @@ impl Results {
         let largest = loops.iter().map(|one| one.value.abs()).fold(shares[0].value.abs(), f64::max);
         let step = profiles.speed() * samples.period;
         if halves.is_empty() && loading.groups() == 2 {
-            check_levels(&profiles, shares[0].value)?;
+            check_one_load(&profiles, &groups, shares[0].value)?;
         }
         check_sign(loading, &shares[0])?;
         if step > QUASI_STATIC * largest {

@@ -35,7 +35,9 @@ pub enum Kind {
     Torques,
     /// A log for `joint identify`.
     CsvLog,
-    /// The same as MCAP, packed in one of the ways.
+    /// A slow log for its quasi-static mode.
+    SlowLog,
+    /// The log as MCAP, packed in one of the ways.
     McapLog(usize),
     /// The form of such a log's messages alone.
     Form,
@@ -47,7 +49,9 @@ pub type Fault = fn(&[u8]) -> bool;
 /// Every kind of file.
 pub fn all() -> impl Iterator<Item = Kind> {
     let packed = (0..PACKINGS).map(Kind::McapLog);
-    [Kind::Joint, Kind::Test, Kind::Motion, Kind::Torques, Kind::CsvLog, Kind::Form].into_iter().chain(packed)
+    [Kind::Joint, Kind::Test, Kind::Motion, Kind::Torques, Kind::CsvLog, Kind::SlowLog, Kind::Form]
+        .into_iter()
+        .chain(packed)
 }
 
 const MOTION: &str = "time_s,position_rad,load_torque_N_m\n0,0,0\n0.5,0.1,1\n1,0.3,2\n2.5,0.2,-1\n4,0,0\n";
@@ -73,6 +77,7 @@ impl Kind {
             Self::Motion => MOTION.into(),
             Self::Torques => TORQUES.into(),
             Self::CsvLog => csv().into(),
+            Self::SlowLog => sweeps().into(),
             Self::McapLog(packing) => mcap(packing, FORM.as_bytes()),
             Self::Form => FORM.into(),
         }
@@ -109,6 +114,10 @@ impl Kind {
                 };
                 if profile.as_ref().is_none_or(finite) { Ok(()) } else { Err("a torque is not finite".to_owned()) }
             }
+            Self::SlowLog => {
+                let log = file("log.csv", bytes)?;
+                refused(identify::run(&slow(&log, folder.path()), &Progress::new())).map(drop)
+            }
             Self::CsvLog => identified(&file("log.csv", bytes)?, folder.path()),
             Self::McapLog(_) => identified(&file("log.mcap", bytes)?, folder.path()),
             Self::Form => identified(&file("log.mcap", &mcap(0, bytes))?, folder.path()),
@@ -120,10 +129,11 @@ impl Kind {
         let folder = tempfile::tempdir().ok()?;
         let path = folder.path().join("log");
         match self {
-            Self::CsvLog | Self::McapLog(_) => fs::write(&path, bytes).ok()?,
+            Self::CsvLog | Self::SlowLog | Self::McapLog(_) => fs::write(&path, bytes).ok()?,
             Self::Form => fs::write(&path, mcap(0, bytes)).ok()?,
             _ => return None,
         }
+        let arguments = if matches!(self, Self::SlowLog) { slow } else { arguments };
         let why = identify::run(&arguments(&path, folder.path()), &Progress::new()).err()?.message().to_owned();
         (!why.contains(TOO_SHORT)).then_some(why)
     }
@@ -197,6 +207,21 @@ fn arguments(log: &Path, folder: &Path) -> Arguments {
         json: None,
         slow: Options::default(),
     }
+}
+
+fn slow(log: &Path, folder: &Path) -> Arguments {
+    Arguments { slow: Options { quasi_static: true, ..Options::default() }, ..arguments(log, folder) }
+}
+
+/// Three sweeps each way over a width of 200 counts.
+fn sweeps() -> String {
+    let mut text = "time_s,motor_counts,output_counts,motor_torque_N_m\n".to_owned();
+    for row in 0..300 {
+        let (sweep, place) = (row / 50 % 2, row % 50);
+        let motor = 40 * if sweep == 0 { place } else { 50 - place };
+        let _ = writeln!(text, "{},{motor},{},{}", row as f64 * 0.1, motor + 200 * sweep, 1 - 2 * sweep);
+    }
+    text
 }
 
 fn csv() -> String {

@@ -80,6 +80,11 @@ proptest! {
     }
 
     #[test]
+    fn slow_logs_are_read_or_refused(changes in mutations()) {
+        attack(Kind::SlowLog, &changes)?;
+    }
+
+    #[test]
     fn logs_as_mcap_are_read_or_refused(changes in mutations(), packing in 0..inputs::PACKINGS) {
         attack(Kind::McapLog(packing), &changes)?;
     }

@@ -124,6 +124,11 @@ fn a_killed_identification_leaves_nothing_half_written() {
 }
 
 #[test]
+fn a_killed_reading_of_slow_sweeps_leaves_nothing_half_written() {
+    is_killed_at_any_moment(Writer::SlowLog);
+}
+
+#[test]
 fn a_killed_recording_leaves_nothing_half_written() {
     is_killed_at_any_moment(Writer::Simulate);
 }

@@ -24,11 +24,22 @@ fn inputs() -> PathBuf {
     fs::create_dir_all(&inputs).expect("room");
     fs::write(path("test.toml"), TEST).expect("room");
     joint(&["identify", text(&path("log.csv")), "--simulate"]).well();
+    fs::write(path("sweeps.csv"), sweeps()).expect("room");
     for shard in ["1/2", "2/2"] {
         joint(&[&SWEEP[..], &["--shard", shard, "--out", text(&path("shards"))]].concat()).well();
     }
     fs::remove_file(path("shards/points.csv")).expect("the last shard has written it");
     inputs
+}
+
+/// Slow sweeps to and fro, with a width of 100 counts.
+fn sweeps() -> String {
+    let row = |sample: i32| {
+        let (sweep, place) = (sample / 100 % 2, sample % 100);
+        let motor = 20 * if sweep == 0 { place } else { 100 - place };
+        format!("{sample},{motor},{}\n", motor + 100 * sweep)
+    };
+    "time_s,motor_counts,output_counts\n".to_owned() + &(0..600).map(row).collect::<String>()
 }
 
 /// A command that writes.
@@ -40,6 +51,7 @@ pub enum Writer {
     Tests,
     Board,
     Identify,
+    SlowLog,
     Simulate,
     Check,
     Budget,
@@ -53,7 +65,8 @@ pub struct Line {
 
 impl Writer {
     /// Those that write to the folder of `--out`.
-    pub const TO_FOLDERS: [Self; 6] = [Self::Sim, Self::Sweep, Self::Merge, Self::Tests, Self::Board, Self::Identify];
+    pub const TO_FOLDERS: [Self; 7] =
+        [Self::Sim, Self::Sweep, Self::Merge, Self::Tests, Self::Board, Self::Identify, Self::SlowLog];
 
     /// Those that take a second and more, of which a short run makes fewer.
     pub fn is_slow(self) -> bool {
@@ -75,6 +88,7 @@ impl Writer {
                 words(&["hil", "q1", "--port", text(&path), "--no-build", "--no-reference", "--duration", "0.1"])
             }
             Self::Identify => words(&["identify", &input("log.csv")]),
+            Self::SlowLog => words(&["identify", &input("sweeps.csv"), "--quasi-static"]),
             Self::Simulate => words(&["identify", &file("log.csv"), "--simulate"]),
             Self::Check => words(&["check", "q1", "--json", &file("check.json")]),
             Self::Budget => words(&["budget", "q1", "--json", &file("budget.json")]),

@@ -300,6 +300,46 @@ fn the_torque_s_sign_tells_the_loads_without_halves() {
 }
 
 #[test]
+fn radians_a_motor_that_counts_backwards_and_the_other_order_of_loads_are_read_alike() {
+    let sweeps = Sweeps { rate: 50.0, loads: [-1.0, 1.0], ..SWEEPS };
+    let [first, second] = sweeps.halves();
+    let halves = ["--half", &first, "--half", &second];
+    let turn = TURN.to_string();
+    let log = |output: f64, motor: f64, names: [&str; 2]| -> String {
+        let mut log = format!("{} {} time_s\n", names[0], names[1]);
+        for one in sweeps.record() {
+            writeln!(log, "{} {} {}", output * one.output, motor * one.motor, one.time).expect("a string");
+        }
+        log
+    };
+    let radians = TAU / TURN;
+    let in_radians = log(radians, -50.0 * radians, ["output_angle_rad", "motor_angle_rad"]);
+    let mixed = log(1.0, -50.0 * radians, ["output_counts", "motor_angle_rad"]);
+    let in_counts = log(1.0, 1.0, ["output_counts", "motor_counts"]);
+    let geared = [&["--quasi-static", "--gear-ratio", "-50"], &halves[..]].concat();
+    let told = ["--output-units-per-turn", &turn];
+    let degrees = |log: &str, options: &[&str]| {
+        let record = findings(log, options);
+        assert!(
+            record["quantities"][0]["note"].as_str().expect("text").contains("higher in the first half"),
+            "{record}"
+        );
+        record["quantities"][0]["value_deg"].as_f64().expect("a turn is known")
+    };
+    let all = [
+        degrees(&in_radians, &geared),
+        degrees(&mixed, &[&geared[..], &told].concat()),
+        degrees(&in_counts, &[&["--quasi-static"], &halves[..], &told].concat()),
+    ];
+    assert!((all[0] / (20.0 * 360.0 / TURN) - 1.0).abs() < 0.15, "{all:?}");
+    assert!(all.iter().all(|one| (one / all[0] - 1.0).abs() < 1e-6), "{all:?}");
+    let folder = folder();
+    let refused = |log: &str, options: &[&str], words: &[&str]| identify(folder.path(), log, options).refused(words);
+    refused(&mixed, &geared, &["one encoder is in radians", "state --output-units-per-turn"]);
+    refused(&in_radians, &[&geared[..], &told].concat(), &["--output-units-per-turn has no effect", "leave it out"]);
+}
+
+#[test]
 fn gaps_and_jitter_are_taken_and_told_and_turns_are_joined() {
     let sweeps = Sweeps { rate: 100.0, ..SWEEPS };
     let mut random = RandomStream::new(7, "jitter");
@@ -379,6 +419,8 @@ fn logs_that_cannot_tell_are_refused_with_the_reason_and_the_mend() {
         .map(|one| format!("{} {} {}\n", one.time, one.output, one.motor - one.output))
         .collect();
     refused(&other_sign, &MEASURED, ["ahead of the motor in both directions", "counts the other way"]);
+    let against = with_torque(&quick, ",", |one| -3.0 * one.load + 0.5 * one.way);
+    refused(&against, &GEARED, ["ahead of the motor where the torque drives it", "counts the other way"]);
     let mut falling: Vec<&str> = measured.lines().collect();
     falling.swap(300, 310);
     refused(&falling.join("\n"), &halves, ["time falls in line 302", "in the order"]);

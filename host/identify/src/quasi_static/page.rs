@@ -187,8 +187,14 @@ fn predictions(results: &Results) -> Vec<Block> {
         "Fitted on {} passes, tried on the other {}: root mean square of what is left over, by bins.",
         prediction.fitted, prediction.predicted
     );
-    vec![
+    let mut blocks = vec![
         Block::Paragraph(lead.into()),
         table(vec![words("Model"), numbers("left over"), words("unit")], rows.into_iter().collect()),
-    ]
+    ];
+    let groups = results.groups.len();
+    if (prediction.fitted, prediction.predicted) == (groups, groups) {
+        let note = "With two passes of each kind the third and the fourth line are the same by construction.";
+        blocks.push(Block::Note(note.into()));
+    }
+    blocks
 }

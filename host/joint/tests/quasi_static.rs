@@ -340,6 +340,33 @@ fn radians_a_motor_that_counts_backwards_and_the_other_order_of_loads_are_read_a
 }
 
 #[test]
+fn an_mcap_log_says_what_the_same_log_as_text_says() {
+    let sweeps = Sweeps { rate: 50.0, loads: [0.0; 2], count: 3, ..SWEEPS };
+    let folder = folder();
+    let [log, out] = ["log.mcap", "out"].map(|name| folder.path().join(name));
+    let file = std::io::BufWriter::new(fs::File::create(&log).expect("room"));
+    let mut writer = mcap::Writer::new(file).expect("a log");
+    let mut plain = "time_s,output_counts,motor_counts\n".to_owned();
+    let channel = writer.add_channel(0, "/joint", "json", &Default::default()).expect("a channel");
+    for (sequence, one) in (0..).zip(sweeps.record()) {
+        let Sample { time, output, motor, .. } = one;
+        let log_time = (time * 1e9) as u64;
+        let header = mcap::records::MessageHeader { channel_id: channel, sequence, log_time, publish_time: log_time };
+        let message = format!("{{\"time_s\": {time}, \"read\": [{output}, {motor}]}}");
+        writer.write_to_known_channel(&header, message.as_bytes()).expect("written");
+        writeln!(plain, "{time},{output},{motor}").expect("a string");
+    }
+    writer.finish().expect("written");
+    let columns = ["--column", "output_counts=read[0]", "--column", "motor_counts=read[1]"];
+    for topic in [&[][..], &["--topic", "/joint"]] {
+        let options = ["identify", text(&log), "--quasi-static", "--out", text(&out)];
+        joint(&[&options[..], &columns, topic].concat()).well();
+        let record = json(&out.join("findings.json"));
+        assert_eq!(record["quantities"], findings(&plain, &["--quasi-static"])["quantities"]);
+    }
+}
+
+#[test]
 fn gaps_and_jitter_are_taken_and_told_and_turns_are_joined() {
     let sweeps = Sweeps { rate: 100.0, ..SWEEPS };
     let mut random = RandomStream::new(7, "jitter");

@@ -12,7 +12,7 @@ use report::plot::unit::{SECONDS, Unit};
 pub fn all(results: &Results) -> Vec<(&'static str, Figure)> {
     let Results { profiles, width, map, prediction, groups, levels, loading, hysteresis, .. } = results;
     let unit = match results.scale.degrees() {
-        Some(factor) => Unit { factor, name: "°" },
+        Some(factor) => Unit { factor, name: "deg" },
         None => Unit { factor: 1.0, name: "units" },
     };
     let (first, last) = (profiles.places[0], profiles.places[profiles.places.len() - 1]);

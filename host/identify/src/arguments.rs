@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use super::columns::KNOWN;
-use super::quasi_static::{DIFFERENCE, Options};
+use super::column_map::renaming;
+use super::quasi_static::Options;
 use super::units::{self, Unit};
 
 /// Arguments of `joint identify`.
@@ -75,17 +75,6 @@ pub struct Arguments {
     /// Slow logs.
     #[command(flatten)]
     pub slow: Options,
-}
-
-/// Reads what `--column` was given.
-pub fn renaming(text: &str) -> Result<(String, String), String> {
-    let (own, theirs) = text.split_once('=').ok_or("write COLUMN=NAME, as in motor_counts=pos_raw")?;
-    let mut names = KNOWN.iter().map(|(name, _)| *name).chain(units::bare_names()).chain([DIFFERENCE]);
-    if names.any(|name| name == own) && !theirs.is_empty() {
-        return Ok((own.to_owned(), theirs.to_owned()));
-    }
-    let names: Vec<&str> = KNOWN.iter().map(|(name, _)| *name).chain(units::bare_names()).collect();
-    Err(format!("`{own}` is none of {}", names.join(", ")))
 }
 
 fn percent(text: &str) -> Result<f64, String> {

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use serde::Deserialize;
 
-use super::arguments::renaming;
+use super::columns::{DIFFERENCE, KNOWN};
 use super::units::{self, Unit};
 use report::failure::{Failure, Outcome};
 use report::input;
@@ -54,6 +54,17 @@ impl ColumnMap {
         all.units.extend(map.units.into_iter().filter(|unit| is_there(unit) && !told(unit)));
         Ok(all)
     }
+}
+
+/// Reads what `--column` was given.
+pub fn renaming(text: &str) -> Result<(String, String), String> {
+    let (own, theirs) = text.split_once('=').ok_or("write COLUMN=NAME, as in motor_counts=pos_raw")?;
+    let mut names = KNOWN.iter().map(|(name, _)| *name).chain(units::bare_names()).chain([DIFFERENCE]);
+    if names.any(|name| name == own) && !theirs.is_empty() {
+        return Ok((own.to_owned(), theirs.to_owned()));
+    }
+    let names: Vec<&str> = KNOWN.iter().map(|(name, _)| *name).chain(units::bare_names()).collect();
+    Err(format!("`{own}` is none of {}", names.join(", ")))
 }
 
 fn read(path: &Path) -> Outcome<ColumnMap> {

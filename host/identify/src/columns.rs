@@ -1,9 +1,9 @@
-//! Named columns of numbers, from CSV text or row by row. A missing or non-numeric value is reported with its place.
+//! Named columns of numbers, row by row. A missing or non-numeric value is reported with its place.
 
 use report::failure::{Failure, Outcome};
 
 /// What to write in the first line.
-const HEADER_HELP: &str = "the first line names the columns: time_s,motor_counts,output_counts,motor_torque_N_m and, if it \
+pub const HEADER_HELP: &str = "the first line names the columns: time_s,motor_counts,output_counts,motor_torque_N_m and, if it \
                            was measured, output_torque_N_m; --column motor_counts=NAME takes another name";
 
 /// The name of each column, and the names it may have in a log.
@@ -18,6 +18,9 @@ pub const KNOWN: [(&str, &[&str]); 9] = [
     ("motor_torque_N_m", &["motor_torque_Nm", "motor_torque_nm", "drive_torque_Nm", "drive_torque_nm"]),
     ("output_torque_N_m", &[]),
 ];
+
+/// Column of the output less the motor, which slow logs may have in place of the motor's.
+pub const DIFFERENCE: &str = "output_less_motor_counts";
 
 /// Columns by name.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,36 +38,6 @@ impl Columns {
     /// Nothing yet, in rows that are called so.
     pub fn of(row: &'static str) -> Self {
         Self { names: Vec::new(), values: Vec::new(), places: Vec::new(), row }
-    }
-
-    /// Of CSV text.
-    pub fn parse(text: &str) -> Outcome<Self> {
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let lines = (1..).zip(text.lines().map(str::trim));
-        let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
-        let (_, header) = lines.next().ok_or_else(|| Failure::new("the log is empty").with_help(HEADER_HELP))?;
-        let names: Vec<String> = header.split(',').map(|name| name.trim().trim_matches('"').to_owned()).collect();
-        if names.iter().all(|name| name.parse::<f64>().is_ok()) {
-            return Err(Failure::new("the first line has numbers in place of names").with_help(HEADER_HELP));
-        }
-        let mut columns = Self { values: vec![Vec::new(); names.len()], names, ..Self::of("line") };
-        for (line, text) in lines {
-            // A row that is filled up would take far more room here than in the file.
-            let count = text.split(',').count();
-            if count < columns.values.len() {
-                let message = format!("line {line} has {count} values, the header has {}", columns.values.len());
-                return Err(
-                    Failure::new(message).with_help("give every row a value for every column, or cut the log there")
-                );
-            }
-            let mut cells = text.split(',');
-            for values in &mut columns.values {
-                // A cell that is no number matters only in a column that is used.
-                values.push(cells.next().and_then(|cell| cell.trim().parse().ok()).unwrap_or(f64::NAN));
-            }
-            columns.places.push(line);
-        }
-        Ok(columns)
     }
 
     /// The same columns without their values.
@@ -176,21 +149,5 @@ impl Columns {
                 .with_help("write a number with a point in every row, or cut the log there")),
             None => Ok(Some(values.clone())),
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_row_is_not_filled_up_to_a_header_that_is_much_longer() {
-        // 40,000 rows of two bytes under 40,000 names would take 13 GB.
-        let text = format!("time_s{}\n{}", ",x".repeat(40_000), "1\n".repeat(40_000));
-        let refused = Columns::parse(&text).expect_err("short rows");
-        assert_eq!(refused.message(), "line 2 has 1 values, the header has 40001");
-        let more = Columns::parse("time_s,motor_counts\n0,1,\n1,,\n").expect("a comma at the end is no harm");
-        assert_eq!(more.maybe("time_s").expect("numbers"), Some(vec![0.0, 1.0]));
-        assert!(more.maybe("motor_counts").is_err(), "an empty cell matters in a column that is used");
     }
 }

@@ -1,8 +1,8 @@
 //! `joint identify`: from a recorded reversal test to a joint's backlash, compliance, damping, friction and encoder
 //! errors, each with its interval, and to a patched joint file.
 //!
-//! `log_file` reads a file into `columns`, an MCAP log by `mcap_file`, `mcap_log` and `ros_message`, message by message as
-//! `numbers`; `log` turns them into samples, checked by `sampling`, whose scatter is `noise`; `prior` says what the joint file knows; `rows` are the moments at which a
+//! `log_file` reads a file into `columns`, text by `text_table`, an MCAP log by `mcap_file`, `mcap_log` and `ros_message`, message by message as
+//! `numbers`; `units` and `column_map` say what the columns are; `log` turns them into samples, checked by `sampling`, whose scatter is `noise`; `prior` says what the joint file knows; `rows` are the moments at which a
 //! flank carries, smoothed by `kernel`; `twist` and `friction` are fitted to them by `regression`; `findings` is what comes
 //! of it, with its `estimate`s; `table`, `page`, `pictures` and `patch` show it. `virtual_test` makes a log without hardware.
 //! `quasi_static` reads slow logs by itself.
@@ -32,11 +32,13 @@ mod regression;
 mod ros_message;
 mod rows;
 mod sampling;
+mod text_table;
 mod twist;
 mod units;
 pub mod virtual_test;
 
 pub use arguments::Arguments;
+use column_map::ColumnMap;
 use findings::{Finding, Record};
 use log::Log;
 use prior::PriorModel;
@@ -86,8 +88,8 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
     if arguments.slow.quasi_static {
         return slow_log(arguments, progress);
     }
-    if arguments.column.iter().any(|(own, _)| own == quasi_static::DIFFERENCE) {
-        return Err(Failure::new(format!("only --quasi-static reads a column {}", quasi_static::DIFFERENCE))
+    if arguments.column.iter().any(|(own, _)| own == columns::DIFFERENCE) {
+        return Err(Failure::new(format!("only --quasi-static reads a column {}", columns::DIFFERENCE))
             .with_help("add --quasi-static for a slow log, or name the motor's own column"));
     }
     let loaded = named::load_with(&arguments.joint, &arguments.set)?;
@@ -126,9 +128,10 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
 }
 
 fn slow_log(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
-    let Arguments { log, topic, column, out, json, slow, .. } = arguments;
+    let Arguments { log, topic, column, unit, map, out, json, slow, .. } = arguments;
+    let map = ColumnMap::new(map.as_deref(), column, unit)?;
     let common =
-        quasi_static::Common { log, topic: topic.as_deref(), column, out: out.as_deref(), json: json.as_ref() };
+        quasi_static::Common { log, topic: topic.as_deref(), map: &map, out: out.as_deref(), json: json.as_ref() };
     quasi_static::run(common, slow, progress)
 }
 

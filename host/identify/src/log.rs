@@ -10,7 +10,6 @@ use super::log_file;
 use super::noise::Noise;
 use super::prior::PriorModel;
 use super::sampling::sampling;
-use super::units;
 use board::profile::MAX_TORQUE;
 use report::failure::{Failure, Outcome};
 use report::number::{ESTIMATE, TYPED};
@@ -80,9 +79,8 @@ impl Log {
     pub fn read(arguments: &Arguments, prior: &PriorModel) -> Outcome<Self> {
         let path = arguments.log.as_path();
         let map = ColumnMap::new(arguments.map.as_deref(), &arguments.column, &arguments.unit)?;
-        let columns = log_file::read(path, arguments.topic.as_deref(), &map.columns)?;
-        let columns = units::convert(columns, &map.units, prior.ratio());
-        columns.and_then(|columns| Self::of(&columns, prior)).map_err(|failure| failure.while_doing(path.display()))
+        let columns = log_file::read(path, arguments.topic.as_deref(), &map, prior.ratio(), Columns::will_do)?;
+        Self::of(&columns, prior).map_err(|failure| failure.while_doing(path.display()))
     }
 
     fn of(columns: &Columns, prior: &PriorModel) -> Outcome<Self> {

@@ -1,7 +1,7 @@
 //! `joint identify --quasi-static`: from a slow log of sweeps to and fro to lost motion, hysteresis, error map and friction,
 //! without a joint file. docs/reference/identify.md defines each of them.
 //!
-//! `options` are its own; `text_table` reads text with any separator; `samples` puts both encoders on one scale; `passes`
+//! `options` are its own; `samples` puts both encoders on one scale; `passes`
 //! are the motor's ways between turning points, `profiles` their means by place; `loading` says which flank carries;
 //! `results` are figures by `statistics`, with the error `map` and the `prediction`; `page` and `pictures` show them.
 
@@ -17,22 +17,21 @@ mod profiles;
 mod results;
 mod samples;
 mod statistics;
-mod text_table;
 
 use std::path::{Path, PathBuf};
 
 pub use options::Options;
-pub use samples::DIFFERENCE;
 
-use crate::columns::Columns;
-use crate::mcap_log;
+use crate::column_map::ColumnMap;
+use crate::columns::{Columns, DIFFERENCE};
+use crate::log_file;
 use page::Record;
 use report::document::{html, terminal};
 use report::failure::{Failure, Outcome};
 use report::folder::{self, Folder};
+use report::output;
 use report::progress::Progress;
 use report::write::write_text;
-use report::{input, output};
 use results::Results;
 use samples::Samples;
 
@@ -48,8 +47,8 @@ pub struct Common<'a> {
     pub log: &'a Path,
     /// Topic of an MCAP log.
     pub topic: Option<&'a str>,
-    /// Columns of other names.
-    pub column: &'a [(String, String)],
+    /// Names and units of columns.
+    pub map: &'a ColumnMap,
     /// Folder for the results.
     pub out: Option<&'a Path>,
     /// Where the findings go too.
@@ -64,7 +63,8 @@ pub fn run(common: Common<'_>, options: &Options, progress: &Progress) -> Outcom
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let folder = Folder::choose(common.out, "identify", &format!("{name} slow"), &[REPORT, FINDINGS, PICTURES])?;
     progress.stage("reading");
-    let columns = read(common)?;
+    let ratio = options.gear_ratio.unwrap_or(1.0);
+    let columns = log_file::read(path, common.topic, common.map, ratio, has_both)?;
     let in_the_file = |failure: Failure| failure.while_doing(path.display());
     let samples = Samples::of(&columns, options).map_err(in_the_file)?;
     let results = Results::of(&samples, &options.halves).map_err(in_the_file)?;
@@ -93,43 +93,9 @@ fn check_halves(halves: &[(f64, f64)]) -> Outcome<()> {
     }
 }
 
-/// Columns of the log under the names that are known here.
-fn read(common: Common<'_>) -> Outcome<Columns> {
-    let Common { log, topic, column, .. } = common;
-    let failed = |what: &str| {
-        Failure::new(format!("cannot read the log {}: {what}", log.display()))
-            .with_help("text in columns, with a header or without, or an MCAP log")
-    };
-    let bytes = input::bytes(log, input::LARGEST_RECORDED).map_err(|why| failed(&why))?;
-    let columns = if mcap_log::is_mcap(&bytes) {
-        mcap_log::read(&bytes, topic, |columns| columns.heads().renamed(column).is_ok_and(|own| has_both(&own)))
-    } else if let Some(topic) = topic {
-        Err(Failure::new(format!("it is no MCAP log, so it has no topic `{topic}`")).with_help("leave --topic out"))
-    } else {
-        let text = String::from_utf8(bytes).map_err(|_| failed("it is neither MCAP nor text (UTF-8)"))?;
-        text_table::columns(&text)
-    };
-    let columns = columns.map_err(|failure| failure.while_doing(log.display()))?;
-    let numbered = columns.names().all(|name| name.parse::<usize>().is_ok());
-    columns
-        .renamed(column)
-        .and_then(|columns| with_names(columns, numbered))
-        .map_err(|failure| failure.while_doing(log.display()))
-}
-
 /// Whether both encoders are among the columns.
 fn has_both(columns: &Columns) -> bool {
     let has = |wanted: &[&str]| columns.names().any(|name| wanted.contains(&name));
-    has(&["output_counts", "output_angle_rad"]) && has(&["motor_counts", "motor_angle_rad", DIFFERENCE])
-}
-
-/// Refuses a file without a header whose columns nobody has named.
-fn with_names(columns: Columns, numbered: bool) -> Outcome<Columns> {
-    if !numbered || columns.names().any(|name| name.starts_with("time_")) {
-        return Ok(columns);
-    }
-    Err(Failure::new(format!("the log has no header: which of its {} columns are what?", columns.names().count()))
-        .with_help(format!(
-            "name them by their numbers: --column time_s=1 --column output_counts=2 --column {DIFFERENCE}=3"
-        )))
+    has(&["output_counts", "output_angle_rad", "output_angle"])
+        && has(&["motor_counts", "motor_angle_rad", "motor_angle", DIFFERENCE])
 }

@@ -5,12 +5,10 @@ use std::f64::consts::TAU;
 
 use super::options::Options;
 use super::statistics::quantile;
-use crate::columns::{Columns, KNOWN};
+use crate::columns::{Columns, DIFFERENCE, KNOWN};
 use report::failure::{Failure, Outcome};
 use report::number::ESTIMATE;
 
-/// Column of the output less the motor, which only this mode knows.
-pub const DIFFERENCE: &str = "output_less_motor_counts";
 /// Fewer samples hold no passes.
 const LEAST_SAMPLES: usize = 96;
 /// A longer step of time than so many usual ones is a gap.

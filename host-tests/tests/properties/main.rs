@@ -5,4 +5,5 @@
 mod balances;
 mod core;
 mod digest;
+mod files;
 mod random;

@@ -78,6 +78,14 @@ impl<'t> Notes<'t> {
         keys.iter().find_map(|key| places.get(*key)).cloned().unwrap_or(self.top())
     }
 
+    /// The first of `keys` that the file holds, with the place of its value; the first of all, at the top of the file, if
+    /// it holds none.
+    pub(crate) fn first_held<'k>(&self, keys: &[&'k str]) -> (&'k str, Range<usize>) {
+        let places = self.places.borrow();
+        let held = keys.iter().find_map(|key| places.get(*key).map(|place| (*key, place.clone())));
+        held.unwrap_or((keys.first().copied().unwrap_or_default(), self.top()))
+    }
+
     /// Remembers the comment behind a number.
     pub fn source(&self, key: String, value: &Range<usize>) {
         let mut sources = self.sources.borrow_mut();

@@ -7,28 +7,12 @@ use model_core::gears::Scales;
 use parameters::{Coherence, Excitation, JointParameters, Surroundings};
 use toml::de::DeTable;
 
-use crate::motion::{self, Profile};
-use crate::notes::{Notes, Source};
+use crate::contents::JointFile;
+use crate::motion;
+use crate::notes::Notes;
 use crate::problem::Problem;
 use crate::section::Section;
-use crate::{bodies, coherence, drive_train, geometry, meshes};
-
-/// A valid joint file.
-#[derive(Debug, Clone, PartialEq)]
-pub struct JointFile {
-    /// The joint, in SI.
-    pub parameters: JointParameters,
-    /// A sentence for reports; may be empty.
-    pub description: String,
-    /// Torques for motion profiles.
-    pub profile: Profile,
-    /// What surrounds the gears; what the file says nothing of is ideal.
-    pub surroundings: Surroundings,
-    /// What is odd but can be used.
-    pub warnings: Vec<Problem>,
-    /// Where each number comes from, by the comment behind it.
-    pub sources: Vec<Source>,
-}
+use crate::{bodies, coherence, drive_train, geometry, meshes, plausible};
 
 /// Reads the text of a joint file. On failure gives every problem, warnings among them, in the order of the text.
 ///
@@ -139,14 +123,19 @@ fn read_table(top: &Section<'_>) -> Option<JointFile> {
     let parameters = assemble();
     let omega_n = parameters.as_ref().map(|parameters| Scales::new(parameters).frequency);
     let excitation = motion::read_excitation(top.section("excitation", "excitation").as_ref(), omega_n);
-    Some(JointFile {
+    let file = JointFile {
         parameters: JointParameters { excitation: excitation?, ..parameters? },
         description: description?,
         surroundings: Surroundings { torque_limit: profile.as_ref()?.motor_torque_limit, ..surroundings },
         profile: profile?,
         warnings: Vec::new(),
         sources: Vec::new(),
-    })
+    };
+    // What is wrong by itself contradicts everything.
+    if !top.notes.has_errors() {
+        plausible::check(&file, top.notes);
+    }
+    Some(file)
 }
 
 /// The name, short and plain enough for the board's hello.

@@ -12,6 +12,7 @@ use board::twin;
 use clap::ValueEnum;
 use joint_file::JointFile;
 use joint_file::named::{self, Loaded};
+use joint_file::warned;
 use link::messages::{Role, RunMode, RunSettings};
 use report::failure::{Failure, Outcome};
 
@@ -67,6 +68,7 @@ impl RunPlan {
     /// Reads and designs all that a run needs.
     pub fn new(request: &RunRequest<'_>) -> Outcome<Self> {
         let loaded = named::load(request.file)?;
+        warned::tell(&loaded);
         let path = image::joint_file(request.file, &loaded.name);
         let Loaded { name, file: joint, .. } = loaded;
         let parameters = &joint.parameters;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use board::target::board::Board;
 use board::target::image;
-use joint_file::named;
+use joint_file::{named, warned};
 use report::failure::{Failure, Outcome};
 use report::output;
 use simulation::budget::{layout, refuse, summary};
@@ -35,6 +35,7 @@ pub struct Arguments {
 /// Prints the certificate with its verdict.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
     let loaded = named::load(&arguments.file)?;
+    warned::tell(&loaded);
     let parameters = &loaded.file.parameters;
     refuse(parameters, &arguments.board, arguments.rate)?;
     let summary = summary(parameters, &arguments.board, arguments.rate)

@@ -9,7 +9,7 @@ use board::target::board::Board;
 use board::target::image;
 use board::target::tick_time;
 use board::target::toolchain::Toolchain;
-use joint_file::named;
+use joint_file::{named, warned};
 use report::failure::Outcome;
 use report::progress::Progress;
 use report::{interruption, output};
@@ -69,6 +69,7 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
 /// Builds an image, with a line that tells how far it is.
 pub fn build(arguments: &Image, board: &Board) -> Outcome<image::Image> {
     let loaded = named::load(&arguments.file)?;
+    warned::tell(&loaded);
     let file = image::joint_file(&arguments.file, &loaded.name);
     let control_rate = |role| tick_time::usual_rate(&loaded.file.parameters, board, role);
     let (role, usual) = match arguments.role {

@@ -16,7 +16,8 @@ use link::messages::{MemoryOutcome, MemoryState};
 use model_core::observer::{MEMORY_BYTES, Memory, MemoryError};
 
 use board::session::Session;
-use joint_file::named;
+use joint_file::named::{self, Loaded};
+use joint_file::warned;
 use report::failure::{Failure, Outcome};
 use report::input;
 use report::output;
@@ -39,15 +40,22 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
     })
 }
 
+/// A joint file, whose warnings are told.
+fn load_joint(file: &Path) -> Outcome<Loaded> {
+    let loaded = named::load(file)?;
+    warned::tell(&loaded);
+    Ok(loaded)
+}
+
 fn show(file: &Path, joint: &Path, json: Option<&Path>) -> Outcome<()> {
-    let (memory, loaded) = (load(file)?, named::load(joint)?);
+    let (memory, loaded) = (load(file)?, load_joint(joint)?);
     let content = Content::of(&memory, &loaded).map_err(|error| refused(&file.display().to_string(), error))?;
     let text = content.text(&file.display().to_string(), &loaded);
     output::deliver(&content, &text, json, &[file, joint])
 }
 
 fn read(file: &Path, place: &BoardArguments, progress: &Progress) -> Outcome<()> {
-    let loaded = named::load(&place.joint)?;
+    let loaded = load_joint(&place.joint)?;
     let mut found = AnsweringBoard::call(place, &loaded, progress)?;
     let memory = found.session.stored_memory()?;
     progress.clear();
@@ -74,7 +82,7 @@ fn read(file: &Path, place: &BoardArguments, progress: &Progress) -> Outcome<()>
 }
 
 fn write(file: &Path, place: &BoardArguments, progress: &Progress) -> Outcome<()> {
-    let (memory, loaded) = (load(file)?, named::load(&place.joint)?);
+    let (memory, loaded) = (load(file)?, load_joint(&place.joint)?);
     let name = file.display().to_string();
     // What is no memory at all is known before a board is asked.
     match Content::of(&memory, &loaded) {
@@ -103,7 +111,7 @@ fn write(file: &Path, place: &BoardArguments, progress: &Progress) -> Outcome<()
 
 /// Has a board do something with its own flash, and prints the result.
 fn change(place: &BoardArguments, progress: &Progress, ask: Ask, done: &str) -> Outcome<()> {
-    let loaded = named::load(&place.joint)?;
+    let loaded = load_joint(&place.joint)?;
     let mut found = AnsweringBoard::call(place, &loaded, progress)?;
     let kept = ask(&mut found.session)?;
     progress.clear();

@@ -17,6 +17,7 @@ use super::recorded::RecordedMotion;
 use board::profile::check_length;
 use joint_file::diagnostic;
 use joint_file::named::{self, Loaded};
+use joint_file::warned;
 use report::failure::{Failure, Outcome};
 use report::input;
 
@@ -184,7 +185,9 @@ fn test_of(name: String, text: String, file: TestFile, folder: &Path, plant: Pla
 /// A joint file beside the test file goes before one that the command would find.
 fn joint(name: &str, folder: &Path) -> Outcome<Loaded> {
     let beside = folder.join(name);
-    named::load(if beside.is_file() { &beside } else { Path::new(name) })
+    let loaded = named::load(if beside.is_file() { &beside } else { Path::new(name) })?;
+    warned::tell(&loaded);
+    Ok(loaded)
 }
 
 fn sha256(text: &str) -> String {

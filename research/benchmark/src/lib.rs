@@ -21,7 +21,7 @@ use contest::catalogue;
 
 use board::target::emulator;
 use board::target::toolchain::Toolchain;
-use joint_file::named;
+use joint_file::{named, warned};
 use report::document::{Medium, html, markdown};
 use report::failure::{Failure, Outcome};
 use report::progress::Progress;
@@ -117,7 +117,9 @@ fn gather(arguments: &Arguments, progress: &Progress) -> Outcome<BenchmarkRecord
 /// The cases asked for.
 fn cases(arguments: &Arguments) -> Outcome<Vec<Case>> {
     if let Some(file) = &arguments.file {
-        return Ok(vec![catalogue::of_joint(&named::load(file)?.file.parameters)]);
+        let loaded = named::load(file)?;
+        warned::tell(&loaded);
+        return Ok(vec![catalogue::of_joint(&loaded.file.parameters)]);
     }
     let all = catalogue::cases();
     let known = |key: &String| all.iter().any(|case| case.key == *key);

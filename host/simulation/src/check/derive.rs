@@ -2,11 +2,11 @@
 
 use std::f64::consts::TAU;
 
-use joint_file::Severity;
+use joint_file::{Severity, sheet};
 use model_core::gears::design::modes::natural_frequencies;
 use model_core::gears::design::{Effort, StepSize};
 use model_core::gears::{Kinematics, Mechanics, MeshPhasing, Scales};
-use parameters::{DampingLaw, JointParameters, MESH_KINDS, MeshKind, PerPlanet};
+use parameters::{DampingLaw, JointParameters, MESH_KINDS, MeshKind};
 
 use super::step::step;
 use super::summary::{
@@ -104,10 +104,9 @@ fn frequencies(parameters: &JointParameters) -> Frequencies {
     }
 }
 
-/// Force of one mesh at rated torque: each planet hands 2 F to the carrier [N].
+/// Force of one mesh at rated torque [N].
 fn mesh_force(parameters: &JointParameters) -> f64 {
-    let geometry = &parameters.geometry;
-    parameters.rated_output_torque / (2.0 * geometry.planets as f64 * geometry.carrier_base_radius())
+    parameters.rated_output_torque * sheet::force_per_torque(&parameters.geometry)
 }
 
 fn mesh(parameters: &JointParameters, kind: MeshKind) -> MeshFigures {
@@ -129,19 +128,12 @@ fn mesh(parameters: &JointParameters, kind: MeshKind) -> MeshFigures {
     }
 }
 
-/// Span of u_s - 2 u_c over which the tightest planet still carries nothing: twice the sum of its half-backlashes.
-fn gap(sun_planet: &PerPlanet, ring_planet: &PerPlanet) -> f64 {
-    2.0 * sun_planet.iter().zip(ring_planet).map(|(sun, ring)| sun + ring).fold(f64::INFINITY, f64::min)
-}
-
 fn output(parameters: &JointParameters) -> Output {
     let torque = parameters.rated_output_torque;
-    let lever = parameters.geometry.carrier_base_radius();
-    let force = mesh_force(parameters);
-    let gap = gap(&parameters.sun_planet.half_backlash, &parameters.ring_planet.half_backlash);
-    let give = force / parameters.sun_planet.mean_stiffness + force / parameters.ring_planet.mean_stiffness;
-    let lost_motion = gap / (2.0 * lever);
-    let of_teeth = give / (2.0 * lever);
+    let (force, gap) = (mesh_force(parameters), sheet::gap(parameters));
+    let lost_motion = sheet::lost_motion(parameters);
+    let stiffness = MESH_KINDS.map(|kind| parameters.mesh(kind).mean_stiffness);
+    let of_teeth = torque * sheet::teeth_compliance(&parameters.geometry, stiffness);
     let of_compliance = parameters.compliance.map_or(0.0, |compliance| torque / compliance.stiffness);
     Output {
         rated_torque_N_m: torque,

@@ -36,7 +36,7 @@ use scheme::{Choice, SchemeName};
 use stepping::RunEnd;
 use summary::SimulationSummary;
 
-use joint_file::named;
+use joint_file::{named, warned};
 use report::document::{html, terminal};
 use report::failure::{Failure, Outcome};
 use report::folder::{self, Folder};
@@ -65,6 +65,7 @@ pub struct Simulated {
 /// Simulates a joint; report, figures and history are in its folder then.
 pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<Simulated> {
     let loaded = named::load_with(&arguments.file, &arguments.motion.set)?;
+    warned::tell(&loaded);
     let plan = SimulationPlan::new(loaded, &arguments.motion)?;
     let every = every(&plan, arguments.every)?;
     let scheme = arguments.scheme.shown();

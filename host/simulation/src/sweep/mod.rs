@@ -26,6 +26,7 @@ use crate::sim::arguments::{MotionArguments, quoted};
 use crate::sim::scheme::{Choice, SchemeName};
 use board::profile::BUILTIN;
 use joint_file::named::{self, Loaded};
+use joint_file::warned;
 use report::failure::{Failure, Outcome};
 use report::folder::file_part;
 use report::input;
@@ -78,6 +79,7 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
     let scheme = scheme(arguments.scheme)?;
     let grid = Grid::parse(&arguments.vary)?;
     let base = named::load_with(&arguments.file, &arguments.motion.set)?;
+    warned::tell(&base);
     grid.try_out(&base)?;
     let metrics = if arguments.metric.is_empty() { all_metrics() } else { arguments.metric.clone() };
     // The changes of the command line are in the joint file already.

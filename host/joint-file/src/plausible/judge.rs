@@ -1,0 +1,78 @@
+//! How one figure is judged: against limits beyond which a joint is odd, and others beyond which it cannot be.
+
+use crate::notes::Notes;
+use crate::problem::Severity;
+
+/// Takes complaints.
+pub(super) struct Judge<'n> {
+    pub notes: &'n Notes<'n>,
+    /// What cannot be is used all the same.
+    pub lenient: bool,
+}
+
+/// What may be said of a figure. Outside of `odd` it is warned of, outside of `possible` it is refused.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Limits {
+    pub odd: (f64, f64),
+    pub possible: (f64, f64),
+}
+
+/// Nothing is too large, or too small.
+pub(super) const ANY: f64 = f64::INFINITY;
+
+impl Limits {
+    /// Too much is odd, and far too much impossible.
+    pub(super) const fn above(odd: f64, possible: f64) -> Self {
+        Self { odd: (-ANY, odd), possible: (-ANY, possible) }
+    }
+
+    /// How bad a figure is.
+    fn severity(self, figure: f64) -> Option<Severity> {
+        let outside = |(low, high): (f64, f64)| figure < low || high < figure;
+        match figure {
+            _ if outside(self.possible) => Some(Severity::Error),
+            _ if outside(self.odd) => Some(Severity::Warning),
+            _ => None,
+        }
+    }
+}
+
+impl Judge<'_> {
+    /// Judges a figure of the first of `keys` that the file holds; `complaint` gives message and help, and is told
+    /// whether the figure is too large and how the key is called.
+    pub(super) fn judge(
+        &self,
+        keys: &[&str],
+        figure: f64,
+        limits: Limits,
+        complaint: impl Fn(bool, &str) -> (String, String),
+    ) {
+        let Some(severity) = limits.severity(figure) else { return };
+        let (key, place) = self.notes.first_held(keys);
+        let name = key.rsplit('.').next().unwrap_or(key);
+        let (message, help) = complaint(figure > limits.odd.1, name);
+        let severity = if self.lenient { Severity::Warning } else { severity };
+        self.notes.problem(place, message, help, severity);
+    }
+}
+
+/// A figure with three digits, as a person would write it.
+pub(super) fn figure(value: f64) -> String {
+    let size = value.abs();
+    if value == 0.0 || !(1e-3..1e5).contains(&size) {
+        return if value == 0.0 { "0".to_owned() } else { format!("{value:.2e}") };
+    }
+    let decimals = (2 - size.log10().floor() as i32).max(0) as usize;
+    format!("{value:.decimals$}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::figure;
+
+    #[test]
+    fn figures_have_three_digits() {
+        let shown = [0.0, 12345.6, 1.2345, 0.01234, 1.5e-7, 2e9].map(figure);
+        assert_eq!(shown, ["0", "12346", "1.23", "0.0123", "1.50e-7", "2.00e9"]);
+    }
+}

@@ -1,0 +1,198 @@
+//! Gears and carrier against their sizes, planets against their own mass, rotor against its torque, link against what
+//! moves it.
+//!
+//! A body's inertia is told as the face width that a solid disc of steel of its pitch radius would need for it:
+//! w = 2 I / (rho pi r^4). Hollow bodies and light materials need less, none needs twenty times its radius.
+
+use std::f64::consts::PI;
+
+use model_core::gears::{Kinematics, Mechanics};
+
+use super::judge::{ANY, Judge, Limits, figure};
+use super::units;
+use crate::contents::JointFile;
+
+/// Of steel [kg/m^3].
+const STEEL: f64 = 7850.0;
+
+/// Face width of a gear of solid steel over its pitch radius. The presets lie between 0.1 and 4.6.
+const WIDTH: Limits = Limits { odd: (5e-3, 10.0), possible: (3e-4, 25.0) };
+/// The same of a carrier, over r_c: presets have 0.08 to 0.9.
+const CARRIER_WIDTH: Limits = Limits { odd: (5e-4, 5.0), possible: (1e-5, 25.0) };
+/// What is usual of either.
+const USUAL_WIDTH: (f64, f64) = (0.02, 5.0);
+
+pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
+    gears(file, judge);
+    planets(file, judge);
+    carrier(file, judge);
+    rotor(file, judge);
+    link(file, judge);
+}
+
+/// Width of a disc of steel with such an inertia [m].
+fn width(inertia: f64, radius: f64) -> f64 {
+    2.0 * inertia / (STEEL * PI * radius.powi(4))
+}
+
+fn gears(file: &JointFile, judge: &Judge<'_>) {
+    let (geometry, bodies) = (&file.parameters.geometry, &file.parameters.bodies);
+    let cosine = geometry.working_pressure_angle.cos();
+    let gears = [
+        ("sun", bodies.sun_equivalent_mass, geometry.sun_base_radius),
+        ("planet", bodies.planet_equivalent_mass, geometry.planet_base_radius),
+    ];
+    for (name, mass, base_radius) in gears {
+        let radius = base_radius / cosine;
+        let inertia = mass * base_radius * base_radius;
+        let [as_mass, as_inertia] =
+            [format!("bodies.{name}_equivalent_mass_kg"), format!("bodies.{name}_inertia_kg_m2")];
+        let wide = width(inertia, radius);
+        let relative = wide / radius;
+        judge.judge(&[&as_mass, &as_inertia, AT_INPUT], relative, WIDTH, |too_much, key| {
+            let (size, wide) = (figure(1e3 * radius), figure(1e3 * wide));
+            let message = if too_much {
+                format!(
+                    "`{key}`: a {name} of {size} mm pitch radius with this inertia would be {wide} mm wide in steel"
+                )
+            } else {
+                format!("`{key}`: a {name} of {size} mm pitch radius with this inertia is {wide} mm of steel, a foil")
+            };
+            (message, mend(key, inertia, mass, relative))
+        });
+    }
+}
+
+const AT_INPUT: &str = "bodies.gear_inertia_at_input_kg_cm2";
+const RADII: &str = "; or the module or radii are wrong";
+
+/// The likely unit of a body's inertia or equivalent mass, by the key that states it.
+fn mend(key: &str, inertia: f64, mass: f64, wide: f64) -> String {
+    let likely = |slips, value, unit| units::likely(slips, value, wide, 1, USUAL_WIDTH, unit);
+    let unit = match key {
+        key if key.ends_with("kg_cm2") => "it is in kg cm^2, at the input: 1e-4 kg m^2 are 1 kg cm^2".to_owned(),
+        key if key.ends_with("kg_m2") => likely(units::INERTIA, inertia, "kg m^2"),
+        _ => likely(units::MASS, mass, "kg"),
+    };
+    unit + RADII
+}
+
+/// All of a planet's mass lies within its tip circle: I <= m r_tip^2. And its teeth are part of it.
+fn planets(file: &JointFile, judge: &Judge<'_>) {
+    /// I / r_b^2 over the mass is 0.57 for a solid disc; a heavy pin and bearing make it less.
+    const GYRATION: (f64, f64) = (0.03, 5e-4);
+    let (geometry, bodies) = (&file.parameters.geometry, &file.parameters.bodies);
+    let (mass, equivalent) = (bodies.planet_mass, bodies.planet_equivalent_mass);
+    // 0 leaves the mass out.
+    if mass == 0.0 {
+        return;
+    }
+    let cosine = geometry.working_pressure_angle.cos();
+    let tip = (1.0 + 2.0 / f64::from(geometry.planet_teeth)) / cosine;
+    let most = tip * tip;
+    let limits = Limits { odd: (GYRATION.0, most), possible: (GYRATION.1, most) };
+    let keys = ["bodies.planet_mass_kg", "bodies.planet_equivalent_mass_kg", "bodies.planet_inertia_kg_m2"];
+    judge.judge(&keys, equivalent / mass, limits, |too_much, key| {
+        let [mass, equivalent] = [mass, equivalent].map(figure);
+        if too_much {
+            let message = format!(
+                "`{key}`: a planet of {mass} kg cannot have an equivalent mass of {equivalent} kg: with all of it at the \
+                 tips of the teeth I / r_b^2 is {} kg",
+                figure(most * bodies.planet_mass)
+            );
+            (message, "a solid planet has I / r_b^2 of about 0.57 of its mass; one of the two is in another unit".into())
+        } else {
+            let message = format!("`{key}`: a planet of {mass} kg has an equivalent mass of {equivalent} kg only");
+            (message, "a solid planet has I / r_b^2 of about 0.57 of its mass; one of the two is in another unit".into())
+        }
+    });
+    let radius = geometry.planet_base_radius / cosine;
+    let wide = mass / (STEEL * PI * radius * radius);
+    judge.judge(&keys, wide / radius, Limits::above(10.0, 25.0), |_, key| {
+        let message = format!(
+            "`{key}`: a planet of {} mm pitch radius and {} kg would be {} mm wide in steel",
+            figure(1e3 * radius),
+            figure(mass),
+            figure(1e3 * wide)
+        );
+        (message, units::likely(units::MASS, mass, wide / radius, 1, USUAL_WIDTH, "kg") + RADII)
+    });
+}
+
+/// A disc half as wide again as r_c, which reaches over the planets' pins and bearings.
+fn carrier(file: &JointFile, judge: &Judge<'_>) {
+    const REACH: f64 = 1.5;
+    let geometry = &file.parameters.geometry;
+    let over_square = file.parameters.bodies.carrier_inertia_over_radius_squared;
+    let inertia = over_square * geometry.carrier_radius.powi(2);
+    let wide = width(inertia, REACH * geometry.carrier_radius);
+    let keys = [
+        "bodies.carrier_inertia_over_radius_squared_kg",
+        "bodies.carrier_equivalent_mass_kg",
+        "bodies.carrier_inertia_kg_m2",
+        AT_INPUT,
+    ];
+    let relative = wide / geometry.carrier_radius;
+    judge.judge(&keys, relative, CARRIER_WIDTH, |too_much, key| {
+        let message = format!(
+            "`{key}`: a carrier with pins at {} mm and this inertia would be a disc of {} mm of steel{}",
+            figure(1e3 * geometry.carrier_radius),
+            figure(1e3 * wide),
+            if too_much { "" } else { ", a foil" }
+        );
+        (message, mend(key, inertia, over_square, relative))
+    });
+}
+
+/// Motors bring themselves to some 1e3 to 2e5 rad/s^2 by the torque that they can hold.
+fn rotor(file: &JointFile, judge: &Judge<'_>) {
+    const ACCELERATION: Limits = Limits { odd: (50.0, 3e6), possible: (0.05, 3e9) };
+    let inertia = file.parameters.rotor_inertia;
+    // 0 leaves the rotor out.
+    if inertia == 0.0 {
+        return;
+    }
+    let acceleration = file.profile.drive_torque / inertia;
+    judge.judge(&["bodies.rotor_inertia_kg_m2"], acceleration, ACCELERATION, |_, key| {
+        let message = format!(
+            "`{key}`: the drive torque of {} N m alone brings this rotor to {} rad/s^2",
+            figure(file.profile.drive_torque),
+            figure(acceleration)
+        );
+        (message, units::likely(units::INERTIA, inertia, acceleration, -1, (500.0, 5e5), "kg m^2"))
+    });
+}
+
+/// The link, at the motor's side, against all that turns with the motor: joints are built with 0.05 to 50 times.
+fn link(file: &JointFile, judge: &Judge<'_>) {
+    const RATIO: Limits = Limits { odd: (2e-3, 3e3), possible: (0.0, 1e7) };
+    let joint = &file.parameters;
+    if joint.link_inertia == 0.0 {
+        return;
+    }
+    let sun = joint.bodies.sun_equivalent_mass + joint.rotor_equivalent_mass();
+    let ratio = joint.geometry.ratio_by_radii();
+    let at_motor = joint.link_inertia / (ratio * ratio);
+    let motor = sun * joint.geometry.sun_base_radius.powi(2);
+    let keys = ["bodies.link_inertia_kg_m2"];
+    judge.judge(&keys, at_motor / motor, RATIO, |_, key| {
+        let message = format!(
+            "`{key}`: at the motor the link is {} times what turns there ({} against {} kg m^2)",
+            figure(at_motor / motor),
+            figure(at_motor),
+            figure(motor)
+        );
+        let help = units::likely(units::INERTIA, joint.link_inertia, at_motor / motor, 1, (0.05, 100.0), "kg m^2");
+        (message, help + "; or `rotor_inertia_kg_m2` is in another unit")
+    });
+    // A link may be anything; one that its rated torque cannot bring to speed within half a minute is no link.
+    let acceleration = joint.rated_output_torque / joint.link_inertia;
+    judge.judge(&keys, acceleration, Limits { odd: (0.05, ANY), possible: (1e-5, ANY) }, |_, key| {
+        let message = format!(
+            "`{key}`: the rated torque of {} N m brings this link to {} rad/s^2 only",
+            figure(joint.rated_output_torque),
+            figure(acceleration)
+        );
+        (message, units::likely(units::INERTIA, joint.link_inertia, acceleration, -1, (5.0, 5e3), "kg m^2"))
+    });
+}

@@ -1,0 +1,40 @@
+//! What is odd about a joint file, told by every command that uses one: `joint check` lists it among its figures, all
+//! others say it on standard error before they begin.
+
+use report::output;
+
+use crate::named::Loaded;
+use crate::problem::Severity;
+
+/// Says each warning with its file and line.
+pub fn tell(loaded: &Loaded) {
+    for warning in lines(loaded) {
+        output::remark(&warning);
+    }
+}
+
+/// The same as lines.
+fn lines(loaded: &Loaded) -> impl Iterator<Item = String> {
+    let warnings = loaded.file.warnings.iter().filter(|warning| warning.severity == Severity::Warning);
+    warnings.map(|warning| {
+        let line = 1 + loaded.text[..warning.span.start].matches('\n').count();
+        format!("warning: {}, line {line}: {} (help: {})", loaded.name, warning.message, warning.help)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::lines;
+    use crate::named::load;
+
+    #[test]
+    fn each_warning_is_told_with_file_line_and_help() {
+        let paper = load(Path::new("paper")).expect("a preset");
+        let told: Vec<String> = lines(&paper).collect();
+        assert_eq!(told.len(), 2);
+        assert!(told[0].starts_with("warning: paper, line ") && told[0].contains("not coaxial"), "{told:?}");
+        assert!(told[0].ends_with("(help: ring_teeth = 97)"), "{told:?}");
+    }
+}

@@ -1,9 +1,10 @@
 //! Reads `[bodies]` and `[compliance]`. Both readings of the paper's Table 1 are accepted, I / r^2 in kg and I in kg
 //! m^2.
 
-use parameters::{Bodies, Compliance, Geometry};
+use parameters::{Bodies, Compliance, Geometry, Mesh};
 
 use crate::section::Section;
+use crate::sheet;
 
 /// Masses of the gears, rotor inertia and link inertia.
 pub(crate) struct Masses {
@@ -14,6 +15,38 @@ pub(crate) struct Masses {
 
 /// The masses, or `None` once what is wrong has been noted. Inertias need the geometry's radii.
 pub(crate) fn read(section: &Section<'_>, geometry: Option<&Geometry>) -> Option<Masses> {
+    let rotor_inertia = optional(section, "rotor_inertia_kg_m2", 0.0);
+    let link_inertia = optional(section, "link_inertia_kg_m2", 0.0);
+    let bodies = if section.has(AT_INPUT) { read_at_input(section, geometry) } else { read_each(section, geometry) };
+    Some(Masses { bodies: bodies?, rotor_inertia: rotor_inertia?, link_inertia: link_inertia? })
+}
+
+/// What a data sheet says of gears and carrier together.
+const AT_INPUT: &str = "gear_inertia_at_input_kg_cm2";
+
+/// Gears and carrier of their inertia at the input, by the shares that discs of one thickness have in it.
+fn read_at_input(section: &Section<'_>, geometry: Option<&Geometry>) -> Option<Bodies> {
+    const EACH: [&str; 8] = [
+        "sun_equivalent_mass_kg",
+        "sun_inertia_kg_m2",
+        "planet_equivalent_mass_kg",
+        "planet_inertia_kg_m2",
+        "planet_mass_kg",
+        "carrier_inertia_over_radius_squared_kg",
+        "carrier_equivalent_mass_kg",
+        "carrier_inertia_kg_m2",
+    ];
+    for key in EACH.into_iter().filter(|key| section.has(key)) {
+        let message = format!("`{key}` is part of `{AT_INPUT}`: both say what gears and carrier weigh");
+        let help = format!("keep `{AT_INPUT}`, or the masses of sun, planets and carrier");
+        section.notes.error(section.place(key), message, help);
+    }
+    let inertia = section.number(AT_INPUT)?;
+    geometry.map(|geometry| sheet::bodies(inertia, geometry))
+}
+
+/// Gears and carrier one by one.
+fn read_each(section: &Section<'_>, geometry: Option<&Geometry>) -> Option<Bodies> {
     let sun = equivalent_mass(
         section,
         ["sun_equivalent_mass_kg", "sun_inertia_kg_m2"],
@@ -26,24 +59,40 @@ pub(crate) fn read(section: &Section<'_>, geometry: Option<&Geometry>) -> Option
     );
     let planet_mass = section.required_number("planet_mass_kg");
     let carrier = carrier_mass(section, geometry);
-    let rotor_inertia = optional(section, "rotor_inertia_kg_m2", 0.0);
-    let link_inertia = optional(section, "link_inertia_kg_m2", 0.0);
-    Some(Masses {
-        bodies: Bodies {
-            sun_equivalent_mass: sun?,
-            planet_equivalent_mass: planet?,
-            planet_mass: planet_mass?,
-            carrier_inertia_over_radius_squared: carrier?,
-        },
-        rotor_inertia: rotor_inertia?,
-        link_inertia: link_inertia?,
+    Some(Bodies {
+        sun_equivalent_mass: sun?,
+        planet_equivalent_mass: planet?,
+        planet_mass: planet_mass?,
+        carrier_inertia_over_radius_squared: carrier?,
     })
 }
 
-/// The torsion spring between carrier and link.
-pub(crate) fn read_compliance(section: &Section<'_>) -> Option<Compliance> {
-    let stiffness = section.required_number("stiffness_N_m_per_rad");
+/// The torsion spring between carrier and link. Of a data sheet's stiffness at the output it has what the teeth leave.
+pub(crate) fn read_compliance(
+    section: &Section<'_>,
+    geometry: Option<&Geometry>,
+    meshes: Option<&[Mesh; 2]>,
+) -> Option<Compliance> {
+    const BEHIND: &str = "stiffness_N_m_per_rad";
+    const TOTAL: &str = "total_stiffness_N_m_per_arcmin";
     let damping_ratio = section.required_number("damping_ratio");
+    let stiffness = if section.has(TOTAL) {
+        section.one_of(&[BEHIND, TOTAL], true)?;
+        let total = section.number(TOTAL)?;
+        let teeth = sheet::teeth_compliance(geometry?, meshes?.each_ref().map(|mesh| mesh.mean_stiffness));
+        let left = sheet::shaft_stiffness(total, teeth);
+        if left.is_none() {
+            let of_teeth = sheet::ARCMIN / teeth;
+            let stated = total * sheet::ARCMIN;
+            let message = format!("`{TOTAL}` is {stated:.4}, but the teeth alone give {of_teeth:.4} N m/arcmin");
+            let help = "teeth and shafts in series are softer than the teeth: raise `mean_stiffness_N_per_m` of [mesh], or \
+                        leave [compliance] out";
+            section.notes.error(section.place(TOTAL), message, help);
+        }
+        left
+    } else {
+        section.required_number(BEHIND)
+    };
     Some(Compliance { stiffness: stiffness?, damping_ratio: damping_ratio? })
 }
 

@@ -1,5 +1,7 @@
 //! Units that keys are typed in and the range that a value must lie in, in that unit. Which key has which is in `keys`.
 
+use crate::sheet::ARCMIN;
+
 /// The unit in a key's name, with its conversion to SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Unit {
@@ -11,6 +13,12 @@ pub(crate) enum Unit {
     Micro,
     /// Degrees of angle.
     Degrees,
+    /// Minutes of arc.
+    Arcmin,
+    /// Of a torque for each minute of arc.
+    PerArcmin,
+    /// kg cm^2.
+    SquareCentimetres,
 }
 
 impl Unit {
@@ -21,6 +29,9 @@ impl Unit {
             Self::Milli => value / 1e3,
             Self::Micro => value / 1e6,
             Self::Degrees => value.to_radians(),
+            Self::Arcmin => value * ARCMIN,
+            Self::PerArcmin => value / ARCMIN,
+            Self::SquareCentimetres => value / 1e4,
         }
     }
 }

@@ -19,11 +19,25 @@ pub struct Refused {
 }
 
 /// Keys that say the same thing in different units or forms: setting one takes the place of the others.
-const SAME_THING: [&[&str]; 6] = [
-    &["half_backlash_um", "backlash_um"],
+const SAME_THING: [&[&str]; 9] = [
+    &["half_backlash_um", "backlash_um", "lost_motion_arcmin"],
+    &["stiffness_N_m_per_rad", "total_stiffness_N_m_per_arcmin"],
+    &["motor_coulomb_friction_N_m", "no_load_torque_N_m"],
     &["sun_equivalent_mass_kg", "sun_inertia_kg_m2"],
     &["planet_equivalent_mass_kg", "planet_inertia_kg_m2"],
     &["carrier_inertia_over_radius_squared_kg", "carrier_equivalent_mass_kg", "carrier_inertia_kg_m2"],
+    // Takes the place of all of them; none of them alone takes its place.
+    &[
+        "gear_inertia_at_input_kg_cm2",
+        "sun_equivalent_mass_kg",
+        "sun_inertia_kg_m2",
+        "planet_equivalent_mass_kg",
+        "planet_inertia_kg_m2",
+        "planet_mass_kg",
+        "carrier_inertia_over_radius_squared_kg",
+        "carrier_equivalent_mass_kg",
+        "carrier_inertia_kg_m2",
+    ],
     &["carrier_radius_mm", "carrier_base_radius_mm"],
     &["mesh_frequency_rad_per_s", "mesh_frequency_Hz", "mesh_frequency_over_omega_n"],
 ];
@@ -94,7 +108,8 @@ fn in_the_way(path: &str) -> Refused {
 
 /// What setting a key takes the place of: itself, other forms of it, and for both mesh families what one of them has.
 fn replaced(section: &str, name: &str) -> Vec<String> {
-    let forms = SAME_THING.iter().find(|forms| forms.contains(&name)).copied();
+    // `planet_mass_kg` has no other form: it is part of one.
+    let forms = SAME_THING.iter().find(|forms| forms.contains(&name) && name != "planet_mass_kg").copied();
     let forms = forms.unwrap_or_default().iter().copied().filter(|form| *form != name).chain([name]);
     let sections: &[&str] = match section {
         "mesh" => &["mesh", "mesh.sun_planet", "mesh.ring_planet"],

@@ -5,13 +5,15 @@ use parameters::{AbsoluteEncoder, Friction, Surroundings};
 
 use crate::problem::Severity;
 use crate::section::Section;
+use crate::sheet;
 
 /// Speed of the Stribeck rise at the link where a file gives none [rad/s].
 const STRIBECK_SPEED: f64 = 0.05;
 
 /// What surrounds the gears, the motor's torque limit aside, which is the profile's. Keys left out are ideal, and so are
 /// wrong ones once they have been noted, and so is everything without the section.
-pub(crate) fn read(section: Option<&Section<'_>>) -> Surroundings {
+/// `ratio` is the joint's, where it is known.
+pub(crate) fn read(section: Option<&Section<'_>>, ratio: Option<f64>) -> Surroundings {
     let ideal = Surroundings {
         load_friction: Friction { stribeck_speed: STRIBECK_SPEED, ..Friction::default() },
         ..Surroundings::ideal()
@@ -20,7 +22,7 @@ pub(crate) fn read(section: Option<&Section<'_>>) -> Surroundings {
     let number = |key: &str, default: f64| section.number(key).unwrap_or(default);
     Surroundings {
         motor_friction: Friction {
-            coulomb: number("motor_coulomb_friction_N_m", 0.0),
+            coulomb: motor_friction(section, ratio).unwrap_or(0.0),
             viscous: number("motor_viscous_friction_N_m_s_per_rad", 0.0),
             ..Friction::default()
         },
@@ -42,6 +44,28 @@ pub(crate) fn read(section: Option<&Section<'_>>) -> Surroundings {
         motor_encoder: encoder(section, "motor_encoder"),
         output_encoder: encoder(section, "output_encoder"),
         ..ideal
+    }
+}
+
+/// Dry friction at the motor, stated or as the rest of a data sheet's no-load torque.
+fn motor_friction(section: &Section<'_>, ratio: Option<f64>) -> Option<f64> {
+    const NO_LOAD: &str = "no_load_torque_N_m";
+    match section.one_of(&["motor_coulomb_friction_N_m", NO_LOAD], false)? {
+        NO_LOAD => {
+            let no_load = section.number(NO_LOAD)?;
+            let load = section.number("load_coulomb_friction_N_m").unwrap_or(0.0);
+            let (ratio, efficiency) = (ratio?, section.number("efficiency").unwrap_or(1.0));
+            let left = sheet::motor_friction(no_load, load, ratio, efficiency);
+            if left.is_none() {
+                let at_motor = load / (ratio * efficiency);
+                let message =
+                    format!("`{NO_LOAD}` is {no_load}, but the load's dry friction alone takes {at_motor:.4} N m");
+                let help = "it is the torque at the input that turns the joint: lower `load_coulomb_friction_N_m`";
+                section.notes.error(section.place(NO_LOAD), message, help);
+            }
+            left
+        }
+        key => section.number(key),
     }
 }
 

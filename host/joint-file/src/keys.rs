@@ -48,7 +48,7 @@ const fn section(parent: &'static str, name: &'static str, hint: &'static str) -
 
 use Bound::{Between, FromToBelow, Inside, ZeroOr};
 use Kind::{Choice, Number, PerPlanet, Text, Whole};
-use Unit::{Degrees, Micro, Milli, Si};
+use Unit::{Arcmin, Degrees, Micro, Milli, PerArcmin, Si, SquareCentimetres};
 
 /// What a typing error may not leave: the board computes in f32.
 const MASS: Bound = Between(1e-6, 1e6);
@@ -152,6 +152,12 @@ pub(crate) const KEYS: &[Key] = &[
     ),
     key(
         "bodies",
+        "gear_inertia_at_input_kg_cm2",
+        Number(SquareCentimetres, Between(1e-9, 1e10)),
+        "a data sheet's moment of inertia of the gearbox at its input in kg cm^2, in place of all masses but rotor and link",
+    ),
+    key(
+        "bodies",
         "rotor_inertia_kg_m2",
         Number(Si, MAY_BE_ABSENT),
         "motor rotor on the sun shaft in kg m^2; 0 if left out",
@@ -163,6 +169,12 @@ pub(crate) const KEYS: &[Key] = &[
         "stiffness_N_m_per_rad",
         Number(Si, Between(1.0, 1e9)),
         "in N m/rad: 3 N m/arcmin are 10.3e3 N m/rad",
+    ),
+    key(
+        "compliance",
+        "total_stiffness_N_m_per_arcmin",
+        Number(PerArcmin, Between(1e-4, 1e6)),
+        "a data sheet's torsional stiffness at the output in N m/arcmin, teeth and shafts together",
     ),
     key(
         "compliance",
@@ -210,6 +222,12 @@ pub(crate) const KEYS: &[Key] = &[
         "backlash_um",
         PerPlanet(Micro, ZeroOr(1.0, 2000.0)),
         "the whole backlash 2b along the line of action in um: 0.12 mm are 120 um",
+    ),
+    key(
+        "mesh",
+        "lost_motion_arcmin",
+        Number(Arcmin, ZeroOr(0.01, 600.0)),
+        "a data sheet's lost motion at the output in arcmin, over all meshes: 2b / (r_c cos(alpha)); in [mesh] only",
     ),
     key(
         "mesh",
@@ -263,6 +281,12 @@ pub(crate) const KEYS: &[Key] = &[
     ),
     // Drive train
     key("drive_train", "motor_coulomb_friction_N_m", Number(Si, MAY_BE_ABSENT), FRICTION_HINT),
+    key(
+        "drive_train",
+        "no_load_torque_N_m",
+        Number(Si, MAY_BE_ABSENT),
+        "a data sheet's torque at the input that turns the joint without a load, all dry friction together",
+    ),
     key(
         "drive_train",
         "motor_viscous_friction_N_m_s_per_rad",

@@ -2,21 +2,23 @@
 //! differs in its own section.
 
 use model_core::gears::StiffnessSeries;
-use parameters::{Mesh, MeshPhases, PerPlanet, StiffnessWave};
+use parameters::{Geometry, Mesh, MeshPhases, PerPlanet, StiffnessWave};
 
 use crate::section::{PerPlanetValue, Section};
+use crate::sheet;
 
 /// The section of one mesh family over the section that both share.
 struct Layers<'s, 'a> {
     own: Option<&'s Section<'a>>,
     shared: &'s Section<'a>,
     planets: Option<usize>,
+    geometry: Option<&'s Geometry>,
 }
 
 /// Sun-planet and ring-planet meshes, or `None` once what is wrong has been noted.
-pub(crate) fn read(shared: &Section<'_>, planets: Option<usize>) -> Option<[Mesh; 2]> {
+pub(crate) fn read(shared: &Section<'_>, planets: Option<usize>, geometry: Option<&Geometry>) -> Option<[Mesh; 2]> {
     let own = ["sun_planet", "ring_planet"].map(|name| shared.section(name, "mesh"));
-    let [sun_planet, ring_planet] = own.map(|own| Layers { own: own.as_ref(), shared, planets }.read());
+    let [sun_planet, ring_planet] = own.map(|own| Layers { own: own.as_ref(), shared, planets, geometry }.read());
     Some([sun_planet?, ring_planet?])
 }
 
@@ -64,9 +66,27 @@ impl Layers<'_, '_> {
         }
     }
 
-    /// b, from itself or from the whole backlash 2b.
+    /// b, from itself, from the whole backlash 2b, or from the lost motion of all meshes together.
     fn half_backlash(&self) -> Option<PerPlanet> {
+        const LOST_MOTION: &str = "lost_motion_arcmin";
         let keys = ["half_backlash_um", "backlash_um"];
+        if let Some(own) = self.own.filter(|own| own.has(LOST_MOTION)) {
+            let message = format!("`{LOST_MOTION}` is of all meshes together, not of {}", own.called());
+            own.notes.error(own.place(LOST_MOTION), message, "write it in [mesh], or give the backlash of this family");
+            return None;
+        }
+        if self.shared.has(LOST_MOTION) {
+            self.shared.one_of(&[LOST_MOTION, keys[0], keys[1]], true)?;
+            if let Some((own, key)) = self.own.and_then(|own| Some((own, keys.iter().find(|key| own.has(key))?))) {
+                let message =
+                    format!("`{key}` of {} and `{LOST_MOTION}` of [mesh] both say the backlash", own.called());
+                own.notes.error(own.place(key), message, "keep one of them");
+                return None;
+            }
+            let lost_motion = self.shared.number(LOST_MOTION)?;
+            let half_backlash = sheet::half_backlash(lost_motion, self.geometry?);
+            return Some((0..self.planets?).map(|_| half_backlash).collect());
+        }
         match self.holder(&keys).one_of(&keys, true)? {
             "backlash_um" => self.list("backlash_um", 0.5),
             key => self.list(key, 1.0),

@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use model_core::gears::Scales;
+use model_core::gears::{Kinematics, Scales};
 use parameters::{Coherence, Excitation, JointParameters, Surroundings};
 use toml::de::DeTable;
 
@@ -79,10 +79,11 @@ fn read_table(top: &Section<'_>) -> Option<JointFile> {
     // Meshes can be read as soon as the number of planets is known.
     let planets = geometry_section.as_ref().and_then(|section| section.whole("planets")).map(|count| count as usize);
     let masses = top.required_section("bodies", "bodies").and_then(|section| bodies::read(&section, geometry.as_ref()));
-    let meshes = top.required_section("mesh", "mesh").and_then(|section| meshes::read(&section, planets));
+    let meshes =
+        top.required_section("mesh", "mesh").and_then(|section| meshes::read(&section, planets, geometry.as_ref()));
     let compliance_section = top.section("compliance", "compliance");
     let compliance = match &compliance_section {
-        Some(section) => bodies::read_compliance(section).map(Some),
+        Some(section) => bodies::read_compliance(section, geometry.as_ref(), meshes.as_ref()).map(Some),
         None => Some(None),
     };
     if let (Some(section), Some(masses)) = (&compliance_section, &masses)
@@ -94,7 +95,10 @@ fn read_table(top: &Section<'_>) -> Option<JointFile> {
     let contact = motion::read_contact(top.section("contact", "contact").as_ref());
     let profile_section = top.section("profile", "profile");
     let profile = motion::read_profile(profile_section.as_ref(), geometry.as_ref(), rated_output_torque);
-    let surroundings = drive_train::read(top.section("drive_train", "drive_train").as_ref());
+    let surroundings = drive_train::read(
+        top.section("drive_train", "drive_train").as_ref(),
+        geometry.as_ref().map(Kinematics::ratio_by_radii),
+    );
 
     if let Some(geometry) = &geometry {
         coherence::check(geometry, top.notes);

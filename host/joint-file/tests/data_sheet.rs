@@ -1,0 +1,181 @@
+//! Keys that take a data sheet's numbers: what they become, what they exclude, what they refuse.
+
+use joint_file::sheet::{self, ARCMIN};
+use joint_file::{JointFile, change, preset, read};
+use model_core::gears::Kinematics;
+
+fn q1() -> &'static str {
+    preset("q1").expect("a preset")
+}
+
+/// Q1 with keys set, each in place of what meant the same.
+fn with(changes: &[(&str, &str)]) -> String {
+    changes.iter().fold(q1().to_owned(), |text, (key, value)| change(&text, key, value).expect("a known key"))
+}
+
+fn joint(text: &str) -> JointFile {
+    read(text).unwrap_or_else(|problems| panic!("{problems:#?}"))
+}
+
+#[track_caller]
+fn refused(text: &str, words: &[&str]) {
+    let problems = read(text).expect_err("refused");
+    let says = |problem: &joint_file::Problem| {
+        let all = format!("{} {}", problem.message, problem.help);
+        words.iter().all(|word| all.contains(word))
+    };
+    assert!(problems.iter().any(says), "{words:?}: {problems:#?}");
+}
+
+#[track_caller]
+fn assert_close(value: f64, expected: f64) {
+    assert!((value - expected).abs() <= 1e-12 * expected.abs(), "{value} is not {expected}");
+}
+
+#[test]
+fn lost_motion_at_the_output_becomes_the_half_backlash_of_every_mesh() {
+    let file = joint(&with(&[("mesh.lost_motion_arcmin", "15")]));
+    let joint = &file.parameters;
+    assert_close(sheet::lost_motion(joint), 15.0 * ARCMIN);
+    let half_backlash = 0.5 * 15.0 * (std::f64::consts::PI / 10_800.0) * joint.geometry.carrier_base_radius();
+    for mesh in [&joint.sun_planet, &joint.ring_planet] {
+        assert!(mesh.half_backlash.iter().all(|b| (b / half_backlash - 1.0).abs() < 1e-12), "{mesh:?}");
+    }
+}
+
+#[test]
+fn the_stiffness_at_the_output_is_that_of_teeth_and_shafts_in_series() {
+    let file = joint(&with(&[("total_stiffness_N_m_per_arcmin", "2.5")]));
+    let joint = &file.parameters;
+    let teeth = sheet::teeth_compliance(&joint.geometry, [1e8; 2]);
+    // Three planets, two meshes of 1e8 N/m each on twice the lever: by hand.
+    let lever = joint.geometry.carrier_base_radius();
+    assert_close(teeth, 2.0 / 1e8 / (4.0 * 3.0 * lever * lever));
+    let shafts = joint.compliance.expect("a compliance").stiffness;
+    assert_close(1.0 / (1.0 / shafts + teeth), 2.5 / ARCMIN);
+    assert!(shafts > 2.5 / ARCMIN);
+}
+
+#[test]
+fn teeth_that_are_softer_than_the_stated_stiffness_are_refused() {
+    let text = with(&[("total_stiffness_N_m_per_arcmin", "2.5"), ("mesh.mean_stiffness_N_per_m", "2e6")]);
+    refused(&text, &["`total_stiffness_N_m_per_arcmin` is 2.5000", "the teeth alone give 1.56", "N m/arcmin"]);
+    // A sheet's number in N m/rad would be stiffer than any teeth.
+    refused(&with(&[("total_stiffness_N_m_per_arcmin", "10.3e3")]), &["the teeth alone give 78.", "mean_stiffness"]);
+}
+
+#[test]
+fn the_inertia_at_the_input_is_that_of_sun_planets_and_carrier() {
+    let file = joint(&with(&[("gear_inertia_at_input_kg_cm2", "0.05")]));
+    let (geometry, bodies) = (&file.parameters.geometry, &file.parameters.bodies);
+    assert_close(sheet::inertia_at_input(bodies, geometry), 0.05e-4);
+    // By the kinetic energy at one radian a second of the input, in the plain terms of a planetary gear.
+    let cosine = geometry.working_pressure_angle.cos();
+    let carrier_speed = 1.0 / geometry.ratio_by_teeth();
+    let along_line = geometry.carrier_base_radius() * carrier_speed;
+    let planets = 3.0;
+    let energy = 0.5 * bodies.sun_equivalent_mass * geometry.sun_base_radius.powi(2)
+        + 0.5 * planets * bodies.planet_equivalent_mass * along_line.powi(2)
+        + 0.5 * planets * bodies.planet_mass * (along_line / cosine).powi(2)
+        + 0.5 * bodies.carrier_inertia_over_radius_squared * (along_line / cosine).powi(2);
+    assert_close(2.0 * energy, 0.05e-4);
+    // Discs of one thickness: masses as the squares of the radii, inertias as their fourth powers.
+    let [sun, planet] = [geometry.sun_base_radius, geometry.planet_base_radius];
+    let inertia = |mass: f64, radius: f64| mass * radius * radius;
+    let over = inertia(bodies.planet_equivalent_mass, planet) / inertia(bodies.sun_equivalent_mass, sun);
+    assert_close(over, 2f64.powi(4));
+    assert_close(bodies.planet_equivalent_mass / bodies.planet_mass, 0.5 / (cosine * cosine));
+}
+
+#[test]
+fn the_no_load_torque_is_the_motors_friction_and_the_loads_through_the_gears() {
+    let file = joint(&with(&[("no_load_torque_N_m", "0.09")]));
+    assert_close(file.surroundings.motor_friction.coulomb, 0.09 - 0.3 / (6.0 * 0.97));
+    refused(
+        &with(&[("no_load_torque_N_m", "0.05")]),
+        &["`no_load_torque_N_m` is 0.05", "alone takes 0.0515 N m", "load_coulomb_friction_N_m"],
+    );
+}
+
+#[test]
+fn a_data_sheets_key_beside_the_one_that_it_replaces_is_refused_by_both_names() {
+    let beside = |from: &str, line: &str| {
+        assert_eq!(q1().matches(from).count(), 1, "{from}");
+        q1().replace(from, &format!("{line}\n{from}"))
+    };
+    let pairs = [
+        ("half_backlash_um = 40.0", "lost_motion_arcmin = 13", "half_backlash_um", "lost_motion_arcmin"),
+        (
+            "stiffness_N_m_per_rad = 10.3e3",
+            "total_stiffness_N_m_per_arcmin = 2.8",
+            "stiffness_N_m_per_rad",
+            "total_stiffness",
+        ),
+        (
+            "planet_mass_kg = 0.05",
+            "gear_inertia_at_input_kg_cm2 = 0.05",
+            "planet_mass_kg",
+            "gear_inertia_at_input_kg_cm2",
+        ),
+        (
+            "motor_coulomb_friction_N_m = 0.03",
+            "no_load_torque_N_m = 0.1",
+            "motor_coulomb_friction_N_m",
+            "no_load_torque_N_m",
+        ),
+    ];
+    for (from, line, one, other) in pairs {
+        refused(&beside(from, line), &[&format!("`{one}"), &format!("`{other}"), "keep"]);
+    }
+    let family = "[mesh.ring_planet]\nbacklash_um = 80.0\n\n[contact]";
+    let own = with(&[("lost_motion_arcmin", "13")]).replace("[contact]", family);
+    refused(&own, &["`backlash_um` of [mesh.ring_planet]", "`lost_motion_arcmin` of [mesh]"]);
+    let family = "[mesh.ring_planet]\nlost_motion_arcmin = 13\n\n[contact]";
+    refused(&q1().replace("[contact]", family), &["of all meshes together", "[mesh.ring_planet]"]);
+}
+
+#[test]
+fn what_was_found_takes_the_place_of_what_the_sheet_said() {
+    let sheet = with(&[
+        ("mesh.lost_motion_arcmin", "15"),
+        ("total_stiffness_N_m_per_arcmin", "2.5"),
+        ("no_load_torque_N_m", "0.09"),
+    ]);
+    let found = [("half_backlash_um", "55"), ("stiffness_N_m_per_rad", "9e3"), ("motor_coulomb_friction_N_m", "0.02")];
+    let text = found.iter().fold(sheet, |text, (key, value)| change(&text, key, value).expect("a known key"));
+    let file = joint(&text);
+    assert_close(file.parameters.ring_planet.half_backlash[1], 55e-6);
+    assert_close(file.parameters.compliance.expect("a compliance").stiffness, 9e3);
+    assert_close(file.surroundings.motor_friction.coulomb, 0.02);
+}
+
+#[test]
+fn slips_in_a_data_sheets_keys_are_named_by_them() {
+    let warned = |key: &str, value: &str, words: &[&str]| {
+        let all: Vec<String> = match read(&with(&[(key, value)])) {
+            Ok(file) => file.warnings.iter().map(ToString::to_string).collect(),
+            Err(problems) => problems.iter().map(ToString::to_string).collect(),
+        };
+        assert!(all.iter().any(|said| words.iter().all(|word| said.contains(word))), "{key}: {all:#?}");
+    };
+    warned("mesh.lost_motion_arcmin", "300", &["lost_motion_arcmin", "module of 1.00 mm", "1 deg is 60 arcmin"]);
+    warned("total_stiffness_N_m_per_arcmin", "0.002", &["total_stiffness_N_m_per_arcmin", "3 N m/arcmin"]);
+    warned("no_load_torque_N_m", "90", &["no_load_torque_N_m", "typed in mN m"]);
+}
+
+#[test]
+fn an_inertia_at_the_input_in_another_unit_is_named_by_its_key() {
+    // Q1's own masses are 0.061 kg cm^2 at the input.
+    let own = joint(q1()).parameters;
+    assert!((1e4 * sheet::inertia_at_input(&own.bodies, &own.geometry) - 0.0608).abs() < 5e-5);
+    for (value, foil) in [("900", false), ("1e-5", true)] {
+        let text = with(&[("gear_inertia_at_input_kg_cm2", value)]);
+        let said = read(&text).map_or_else(|problems| problems, |file| file.warnings);
+        let named = said.iter().filter(|problem| problem.message.contains("`gear_inertia_at_input_kg_cm2`"));
+        let named: Vec<String> = named.map(ToString::to_string).collect();
+        assert!(
+            named.iter().any(|said| said.contains("foil") == foil && said.contains("kg cm^2")),
+            "{value}: {said:#?}"
+        );
+    }
+}

@@ -171,3 +171,36 @@ fn numbers_that_cannot_be_are_refused_for_what_they_are() {
     }
     joint(&["sim", "--drive", "-1", "--duration", "0.01", "--out", out]).well();
 }
+
+#[test]
+fn what_is_odd_about_a_joint_is_told_by_every_command_and_what_cannot_be_is_refused_by_all() {
+    let place = folder();
+    let q1 = joint_file::preset("q1").expect("a preset");
+    let [odd, none, out, log] = ["odd.toml", "none.toml", "out", "log.csv"].map(|name| place.path().join(name));
+    fs::write(&odd, q1.replace("gravity_torque_N_m = 6.0", "gravity_torque_N_m = 13.0")).expect("a file");
+    fs::write(&none, q1.replace("planet_mass_kg = 0.05", "planet_mass_kg = 50")).expect("a file");
+    let test = place.path().join("test.toml");
+    let commands = |joint: &Path| -> Vec<Vec<String>> {
+        fs::write(&test, format!("joint = \"{}\"\n{SHORT}", text(joint))).expect("a file");
+        let lines: [&[&str]; 6] = [
+            &["check", text(joint)],
+            &["budget", text(joint)],
+            &["sim", text(joint), "--duration", "0.01", "--no-energy", "--out", text(&out)],
+            &["sweep", text(joint), "--vary", "half_backlash_um=30,40", "--duration", "0.01", "--out", text(&out)],
+            &["hil", text(&test), "--host", "--out", text(&out)],
+            &["identify", text(&log), "--simulate", "--joint", text(joint)],
+        ];
+        lines.iter().map(|line| line.iter().map(ToString::to_string).collect()).collect()
+    };
+    for line in commands(&odd) {
+        let words: Vec<&str> = line.iter().map(String::as_str).collect();
+        let ended = joint(&words).well();
+        let said = if line[0] == "check" { &ended.out } else { &ended.err };
+        assert!(said.contains("warning") && said.contains("gravity_torque_N_m"), "{line:?}: {ended:?}");
+        let _ = fs::remove_dir_all(&out);
+    }
+    for line in commands(&none) {
+        let words: Vec<&str> = line.iter().map(String::as_str).collect();
+        joint(&words).refused(&["planet_mass_kg", "likely typed in g"]);
+    }
+}

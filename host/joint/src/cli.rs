@@ -7,7 +7,7 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use report::failure::Outcome;
 use report::{command_line, output};
 
-use crate::{board, budget, check, flash, hil, identify, image, memory, merge, research, sim, sweep};
+use crate::{board, budget, check, flash, hil, identify, image, memory, merge, new, research, sim, sweep};
 
 /// Simulates a planetary robot joint with backlash on a microcontroller, drives it and checks it
 #[derive(Debug, Parser)]
@@ -21,6 +21,8 @@ struct Cli {
 enum Command {
     /// Run a joint on the emulated board or on a real one, check it and write a report
     Hil(hil::Arguments),
+    /// Write a joint file from the numbers of a data sheet
+    New(new::Arguments),
     /// Read a joint file and print what follows from it
     Check(check::Arguments),
     /// Compare the step with what people use: error against cost, on the emulated core and on the host
@@ -56,6 +58,7 @@ fn run(cli: &Cli) -> Outcome<()> {
     match &cli.command {
         None => show_help(),
         Some(Command::Hil(arguments)) => hil::run(arguments),
+        Some(Command::New(arguments)) => new::run(arguments),
         Some(Command::Check(arguments)) => check::run(arguments),
         Some(Command::Bench(arguments)) => research::run("benchmark", &arguments.rest),
         Some(Command::Budget(arguments)) => budget::run(arguments),

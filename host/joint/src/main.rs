@@ -10,6 +10,7 @@ mod identify;
 mod image;
 mod memory;
 mod merge;
+mod new;
 mod research;
 mod sim;
 mod sweep;

@@ -79,7 +79,7 @@ fn is_killed_at_any_moment(writer: Writer) {
             break;
         }
         // Half of them have nothing in the folder, and half a whole run.
-        let out = if kill % 2 == 0 || writer == Writer::Simulate { empty(place.path()) } else { out.clone() };
+        let out = if kill % 2 == 0 || writer.writes_once().is_some() { empty(place.path()) } else { out.clone() };
         let after = long.mul_f64(1.05 * stream.uniform());
         let when = format!("{writer:?}, kill {kill}, after {after:?}, KILLS_SEED={seed}");
         match killed(writer, &out, after) {
@@ -87,8 +87,7 @@ fn is_killed_at_any_moment(writer: Writer) {
             false => long = long.mul_f64(0.8),
         }
         assert_none_is_half_written(writer, &tree(&out), &whole, &when);
-        // A log is never written over: there it is whole.
-        if writer != Writer::Simulate || !out.join("log.csv").exists() {
+        if !writer.writes_once().is_some_and(|file| out.join(file).exists()) {
             let ended = writer.run(&out);
             assert_eq!(ended.code, Some(0), "{when}: {ended:?}");
         }
@@ -131,6 +130,11 @@ fn a_killed_reading_of_slow_sweeps_leaves_nothing_half_written() {
 #[test]
 fn a_killed_recording_leaves_nothing_half_written() {
     is_killed_at_any_moment(Writer::Simulate);
+}
+
+#[test]
+fn a_killed_new_joint_leaves_nothing_half_written() {
+    is_killed_at_any_moment(Writer::New);
 }
 
 #[test]

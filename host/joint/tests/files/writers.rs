@@ -42,6 +42,24 @@ fn sweeps() -> String {
     "time_s,motor_counts,output_counts\n".to_owned() + &(0..600).map(row).collect::<String>()
 }
 
+/// A data sheet.
+const SHEET: [&str; 14] = [
+    "--ratio",
+    "9",
+    "--lost-motion-arcmin",
+    "15",
+    "--stiffness-Nm-per-arcmin",
+    "1.8",
+    "--rated-torque-Nm",
+    "8",
+    "--rotor-inertia-kg-cm2",
+    "0.32",
+    "--no-load-torque-Nm",
+    "0.05",
+    "--efficiency",
+    "0.94",
+];
+
 /// A command that writes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Writer {
@@ -55,6 +73,7 @@ pub enum Writer {
     Simulate,
     Check,
     Budget,
+    New,
 }
 
 /// A command line, and the port of a board that stays open as long as it runs.
@@ -71,6 +90,15 @@ impl Writer {
     /// Those that take a second and more, of which a short run makes fewer.
     pub fn is_slow(self) -> bool {
         matches!(self, Self::Identify | Self::Simulate)
+    }
+
+    /// The file of those that never write over anything: there it is whole.
+    pub fn writes_once(self) -> Option<&'static str> {
+        match self {
+            Self::Simulate => Some("log.csv"),
+            Self::New => Some("elbow.toml"),
+            _ => None,
+        }
     }
 
     /// The command that writes to a folder, or to a file in it.
@@ -92,6 +120,11 @@ impl Writer {
             Self::Simulate => words(&["identify", &file("log.csv"), "--simulate"]),
             Self::Check => words(&["check", "q1", "--json", &file("check.json")]),
             Self::Budget => words(&["budget", "q1", "--json", &file("budget.json")]),
+            Self::New => [&["new", &file("elbow"), "--no-measure"][..], &SHEET]
+                .concat()
+                .iter()
+                .map(ToString::to_string)
+                .collect(),
         };
         let mut line = Line { words, _port: port };
         if Self::TO_FOLDERS.contains(&self) {

@@ -1,0 +1,104 @@
+//! What `joint new` may be told on the command line, and the data sheet that comes of it.
+
+use std::path::PathBuf;
+
+use super::material::Material;
+
+/// Arguments of `joint new`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Example:
+  joint new elbow --ratio 9 --lost-motion-arcmin 15 --stiffness-Nm-per-arcmin 1.8 --rated-torque-Nm 8 \\
+      --rotor-inertia-kg-cm2 0.32 --no-load-torque-Nm 0.05 --efficiency 0.94
+
+On a terminal it asks for what is left out of these. The file is elbow.toml; one that is there already is never written over.
+Exit code 2 if no gears of that ratio assemble, or if there can be no such joint.")]
+pub struct Arguments {
+    /// Name of the joint, or path of its file: NAME.toml
+    #[arg(value_name = "NAME")]
+    pub name: PathBuf,
+    /// Gear ratio, motor turns for one turn of the link
+    #[arg(long, value_name = "RATIO", allow_negative_numbers = true)]
+    pub ratio: Option<f64>,
+    /// Lost motion at the output in minutes of arc
+    #[arg(long, value_name = "ARCMIN", allow_negative_numbers = true)]
+    pub lost_motion_arcmin: Option<f64>,
+    /// Torsional stiffness at the output in N m/arcmin, teeth and shafts together
+    #[arg(long = "stiffness-Nm-per-arcmin", value_name = "NM/ARCMIN", allow_negative_numbers = true)]
+    pub stiffness: Option<f64>,
+    /// Rated torque at the output in N m
+    #[arg(long = "rated-torque-Nm", value_name = "NM", allow_negative_numbers = true)]
+    pub rated_torque: Option<f64>,
+    /// Inertia of the motor's rotor in kg cm^2
+    #[arg(long = "rotor-inertia-kg-cm2", value_name = "KG CM2", allow_negative_numbers = true)]
+    pub rotor_inertia: Option<f64>,
+    /// Torque at the input that turns the joint without a load, in N m
+    #[arg(long = "no-load-torque-Nm", value_name = "NM", allow_negative_numbers = true)]
+    pub no_load_torque: Option<f64>,
+    /// Efficiency of the gears: 94 % is 0.94
+    #[arg(long, value_name = "RATIO", allow_negative_numbers = true)]
+    pub efficiency: Option<f64>,
+    /// Inertia of gears and carrier at the input in kg cm^2 [default: derived from size and material]
+    #[arg(long = "gear-inertia-kg-cm2", value_name = "KG CM2", allow_negative_numbers = true)]
+    pub gear_inertia: Option<f64>,
+    /// Inertia of the link in kg m^2 [default: ten times the rotor's, at the link]
+    #[arg(long = "link-inertia-kg-m2", value_name = "KG M2", allow_negative_numbers = true)]
+    pub link_inertia: Option<f64>,
+    /// Torque of the link's weight in N m, when it is level [default: none]
+    #[arg(long = "gravity-torque-Nm", value_name = "NM", allow_negative_numbers = true)]
+    pub gravity_torque: Option<f64>,
+    /// Peak torque of the motor in N m [default: twice what the rated torque takes]
+    #[arg(long = "motor-peak-torque-Nm", value_name = "NM", allow_negative_numbers = true)]
+    pub motor_peak_torque: Option<f64>,
+    /// Outer diameter of the ring in mm: the largest module that fits is taken [default: a module by the rated torque]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    pub outer_diameter_mm: Option<f64>,
+    /// What the gears are made of [default: steel, assumed]
+    #[arg(long, value_enum)]
+    pub material: Option<Material>,
+    /// Planets, 3 to 5
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(3..=5))]
+    pub planets: Option<u32>,
+    /// How far the ratio of the teeth may be off, in percent
+    #[arg(long, value_name = "PERCENT", default_value_t = 1.0, allow_negative_numbers = true)]
+    pub ratio_tolerance: f64,
+    /// Resolution of the motor encoder: 14 bits are 16384 counts a turn [default: 14, assumed]
+    #[arg(long, value_name = "BITS", value_parser = clap::value_parser!(u32).range(8..=32))]
+    pub motor_bits: Option<u32>,
+    /// Resolution of the output encoder [default: 17, assumed]
+    #[arg(long, value_name = "BITS", value_parser = clap::value_parser!(u32).range(8..=32))]
+    pub output_bits: Option<u32>,
+    /// Does not measure what a wrong assumption does: a moment in place of a minute
+    #[arg(long)]
+    pub no_measure: bool,
+}
+
+/// The sheet, complete. Figures are in the units of its options.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs, reason = "as the options")]
+pub struct DataSheet {
+    pub name: String,
+    pub ratio: f64,
+    pub lost_motion_arcmin: f64,
+    pub stiffness: f64,
+    pub rated_torque: f64,
+    pub rotor_inertia: f64,
+    pub no_load_torque: f64,
+    pub efficiency: f64,
+    pub gear_inertia: Option<f64>,
+    pub link_inertia: Option<f64>,
+    pub gravity_torque: Option<f64>,
+    pub motor_peak_torque: Option<f64>,
+    pub outer_diameter_mm: Option<f64>,
+    pub material: Option<Material>,
+    pub planets: Option<u32>,
+    pub ratio_tolerance: f64,
+    pub motor_bits: Option<u32>,
+    pub output_bits: Option<u32>,
+}
+
+impl DataSheet {
+    /// Steel, unless it says otherwise.
+    pub fn material(&self) -> Material {
+        self.material.unwrap_or_default()
+    }
+}

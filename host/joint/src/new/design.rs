@@ -1,0 +1,138 @@
+//! Sizes, masses and stiffnesses that follow from a data sheet, a material and the teeth.
+
+use joint_file::sheet::{self, ARCMIN};
+use parameters::{Bodies, Coherence, Geometry};
+use report::failure::{Failure, Outcome};
+
+use super::arguments::DataSheet;
+use super::teeth::{self, Teeth};
+
+/// Modules by ISO 54, first and second series [mm].
+const MODULES: [f64; 26] = [
+    0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.7, 0.8, 0.9, 1.0, 1.125, 1.25, 1.5, 1.75, 2.0, 2.25, 2.5, 3.0,
+    4.0, 5.0, 6.0, 8.0, 10.0,
+];
+/// Face widths in modules, the usual one first; wider where the teeth alone would be softer than the sheet's joint.
+const WIDTHS: [f64; 4] = [10.0, 12.0, 15.0, 20.0];
+/// Modules from the ring's pitch circle to its outside on both sides: root of 1.25 and rim of 2.
+const RIM: f64 = 6.5;
+/// Root stress over force by module and face width; 3 is that of 17 teeth and more.
+const FORM_FACTOR: f64 = 3.0;
+/// The carrier's disc over the face width.
+const CARRIER: f64 = 0.5;
+
+/// A joint of a data sheet.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Design {
+    /// Teeth and planets.
+    pub teeth: Teeth,
+    /// Module [mm].
+    pub module_mm: f64,
+    /// Where the module comes from.
+    pub module_from: String,
+    /// Face width [mm].
+    pub width_mm: f64,
+    /// Mean stiffness of a mesh [N/m].
+    pub mean_stiffness: f64,
+    /// What sun, planets and carrier weigh by size and material.
+    pub bodies: Bodies,
+    /// Carrier's thickness [mm].
+    pub carrier_mm: f64,
+    /// The part of the compliance at the output that is the teeth's [-].
+    pub teeth_share: f64,
+}
+
+/// Pressure angle of all of it [deg].
+pub const PRESSURE_ANGLE_DEG: f64 = 20.0;
+
+/// Finds teeth, sizes and stiffnesses.
+pub fn design(sheet: &DataSheet) -> Outcome<Design> {
+    let teeth = teeth::find(sheet.ratio, sheet.ratio_tolerance, sheet.planets.unwrap_or(3))?;
+    let (module_mm, module_from) = module(sheet, &teeth)?;
+    let geometry = geometry(&teeth, module_mm);
+    let material = sheet.material();
+    let total = sheet.stiffness / ARCMIN;
+    let of_width = |wide: f64| {
+        let width = wide * 1e-3 * module_mm;
+        let mean_stiffness = rounded(material.stiffness_per_width() * width);
+        let teeth_share = total * sheet::teeth_compliance(&geometry, [mean_stiffness; 2]);
+        (width, mean_stiffness, teeth_share)
+    };
+    let stiff = WIDTHS.into_iter().map(of_width).find(|(_, _, share)| *share < 1.0);
+    let Some((width, mean_stiffness, teeth_share)) = stiff else {
+        let (_, _, share) = of_width(WIDTHS[WIDTHS.len() - 1]);
+        let message = format!(
+            "teeth of {} of module {module_mm} mm alone give {:.3} N m/arcmin, and the sheet says {}",
+            material.word(),
+            sheet.stiffness / share,
+            sheet.stiffness
+        );
+        let help =
+            "a larger --outer-diameter-mm, --material steel, or a --stiffness-Nm-per-arcmin that is in N m/arcmin";
+        return Err(Failure::new(message).with_help(help));
+    };
+    let of_metre = material.density() * width;
+    Ok(Design {
+        teeth,
+        module_mm,
+        module_from,
+        width_mm: 1e3 * width,
+        mean_stiffness,
+        bodies: sheet::discs(&geometry, [of_metre, of_metre, CARRIER * of_metre]),
+        carrier_mm: 1e3 * CARRIER * width,
+        teeth_share,
+    })
+}
+
+/// The geometry as the reader of joint files makes it of a module.
+fn geometry(teeth: &Teeth, module_mm: f64) -> Geometry {
+    let angle = PRESSURE_ANGLE_DEG.to_radians();
+    let radius = |teeth: u32| 0.5e-3 * module_mm * f64::from(teeth);
+    Geometry {
+        planets: teeth.planets as usize,
+        sun_teeth: teeth.sun,
+        planet_teeth: teeth.planet,
+        ring_teeth: teeth.ring,
+        working_pressure_angle: angle,
+        sun_base_radius: radius(teeth.sun) * angle.cos(),
+        planet_base_radius: radius(teeth.planet) * angle.cos(),
+        carrier_radius: radius(teeth.sun + teeth.planet),
+        coherence: Coherence::Required,
+    }
+}
+
+/// The largest module that fits the outer diameter, or the smallest that carries the rated torque.
+fn module(sheet: &DataSheet, teeth: &Teeth) -> Outcome<(f64, String)> {
+    if let Some(diameter) = sheet.outer_diameter_mm {
+        let outside = f64::from(teeth.ring) + RIM;
+        let fits = MODULES.into_iter().rev().find(|module| module * outside <= diameter);
+        let from = format!("{diameter} mm outer diameter over {outside} modules of ring and rim");
+        return fits.map(|module| (module, from)).ok_or_else(|| {
+            Failure::new(format!("a ring of {} teeth does not fit {diameter} mm at any module", teeth.ring)).with_help(
+                format!("{:.0} mm take module {}; or a smaller --ratio", outside * MODULES[0] + 0.5, MODULES[0]),
+            )
+        });
+    }
+    let stress = |module: f64| {
+        let geometry = geometry(teeth, module);
+        let force = sheet.rated_torque * sheet::force_per_torque(&geometry);
+        FORM_FACTOR * force / (WIDTHS[0] * (1e-3 * module).powi(2))
+    };
+    let allowed = sheet.material().stress();
+    let carries = MODULES.into_iter().find(|module| stress(*module) <= allowed);
+    let from = format!(
+        "the rated torque: at most {} MPa at the root of a {} tooth of {} modules face width",
+        allowed / 1e6,
+        sheet.material().word(),
+        WIDTHS[0]
+    );
+    carries.map(|module| (module, from)).ok_or_else(|| {
+        let what = format!("no module carries {} N m with teeth of {}", sheet.rated_torque, sheet.material().word());
+        Failure::new(what).with_help("--rated-torque-Nm is in N m; or give --outer-diameter-mm")
+    })
+}
+
+/// With four digits: what is derived or assumed is not known better.
+pub fn rounded(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value)
+}

@@ -1,0 +1,170 @@
+//! What the command line leaves out is asked for on a terminal, and named anywhere else. Answers and options are held to
+//! the same bounds.
+
+use std::io::{self, BufRead, IsTerminal};
+
+use report::failure::{Failure, Outcome};
+use report::output;
+
+use super::arguments::{Arguments, DataSheet};
+
+/// A figure of the sheet.
+struct Figure {
+    option: &'static str,
+    question: &'static str,
+    least: f64,
+    most: f64,
+}
+
+const fn figure(option: &'static str, question: &'static str, least: f64, most: f64) -> Figure {
+    Figure { option, question, least, most }
+}
+
+/// What no sheet may leave out, in the order in which it is asked for.
+const NEEDED: [Figure; 7] = [
+    figure("--ratio", "gear ratio, motor turns for one turn of the link, such as 9", 2.2, 14.0),
+    figure("--lost-motion-arcmin", "lost motion at the output in arcmin, such as 15", 0.0, 600.0),
+    figure("--stiffness-Nm-per-arcmin", "torsional stiffness at the output in N m/arcmin, such as 1.8", 1e-4, 1e6),
+    figure("--rated-torque-Nm", "rated torque at the output in N m, such as 8", 1e-3, 1e6),
+    figure("--rotor-inertia-kg-cm2", "inertia of the motor's rotor in kg cm^2, such as 0.32", 1e-6, 1e6),
+    figure(
+        "--no-load-torque-Nm",
+        "torque at the input that turns the joint without a load, in N m, such as 0.05",
+        0.0,
+        1e6,
+    ),
+    figure("--efficiency", "efficiency of the gears, such as 0.94", 0.1, 1.0),
+];
+
+/// What it may leave out.
+const OPTIONAL: [Figure; 6] = [
+    figure("--gear-inertia-kg-cm2", "", 1e-9, 1e10),
+    figure("--link-inertia-kg-m2", "", 1e-9, 1e6),
+    figure("--gravity-torque-Nm", "", -1e6, 1e6),
+    figure("--motor-peak-torque-Nm", "", 1e-6, 1e6),
+    figure("--outer-diameter-mm", "", 2.0, 5000.0),
+    figure("--ratio-tolerance", "", 0.0, 20.0),
+];
+
+/// The whole sheet.
+pub fn complete(arguments: &Arguments) -> Outcome<DataSheet> {
+    let stem = match arguments.name.extension() {
+        Some(extension) if extension == "toml" => arguments.name.file_stem(),
+        _ => arguments.name.file_name(),
+    };
+    let name = stem.map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    check_name(&name)?;
+    let given = [
+        arguments.ratio,
+        arguments.lost_motion_arcmin,
+        arguments.stiffness,
+        arguments.rated_torque,
+        arguments.rotor_inertia,
+        arguments.no_load_torque,
+        arguments.efficiency,
+    ];
+    let optional = [
+        arguments.gear_inertia,
+        arguments.link_inertia,
+        arguments.gravity_torque,
+        arguments.motor_peak_torque,
+        arguments.outer_diameter_mm,
+        Some(arguments.ratio_tolerance),
+    ];
+    for (figure, value) in NEEDED.iter().zip(given).chain(OPTIONAL.iter().zip(optional)) {
+        if let Some(value) = value {
+            figure.check(value).map_err(|why| Failure::new(format!("{}: {why}", figure.option)).with_help(HELP))?;
+        }
+    }
+    let missing: Vec<&str> =
+        NEEDED.iter().zip(given).filter(|(_, value)| value.is_none()).map(|(figure, _)| figure.option).collect();
+    let stdin = io::stdin();
+    if !missing.is_empty() && !stdin.is_terminal() {
+        return Err(Failure::new(format!("{name}: the data sheet lacks {}", missing.join(", ")))
+            .with_help("give each with its figure; on a terminal they are asked for"));
+    }
+    let mut figures = [0.0; NEEDED.len()];
+    for ((figure, value), place) in NEEDED.iter().zip(given).zip(&mut figures) {
+        *place = match value {
+            Some(value) => value,
+            None => figure.ask(&mut stdin.lock())?,
+        };
+    }
+    let [ratio, lost_motion_arcmin, stiffness, rated_torque, rotor_inertia, no_load_torque, efficiency] = figures;
+    Ok(DataSheet {
+        name,
+        ratio,
+        lost_motion_arcmin,
+        stiffness,
+        rated_torque,
+        rotor_inertia,
+        no_load_torque,
+        efficiency,
+        gear_inertia: arguments.gear_inertia,
+        link_inertia: arguments.link_inertia,
+        gravity_torque: arguments.gravity_torque,
+        motor_peak_torque: arguments.motor_peak_torque,
+        outer_diameter_mm: arguments.outer_diameter_mm,
+        material: arguments.material,
+        planets: arguments.planets,
+        ratio_tolerance: arguments.ratio_tolerance,
+        motor_bits: arguments.motor_bits,
+        output_bits: arguments.output_bits,
+    })
+}
+
+const HELP: &str = "`joint new --help` says what each is, and its unit";
+
+/// The reader of joint files takes the same names.
+fn check_name(name: &str) -> Outcome<()> {
+    let plain = |letter: char| letter.is_ascii_alphanumeric() || " -_.+()".contains(letter);
+    match !name.trim().is_empty() && name.len() <= 32 && name.chars().all(plain) {
+        true => Ok(()),
+        false => Err(Failure::new(format!("a joint cannot be called `{name}`"))
+            .with_help("at most 32 letters, digits, spaces and -_.+(), such as elbow")),
+    }
+}
+
+impl Figure {
+    fn check(&self, value: f64) -> Result<(), String> {
+        let Self { least, most, .. } = *self;
+        match least <= value && value <= most {
+            true => Ok(()),
+            false => Err(format!("{value} is not between {least} and {most}")),
+        }
+    }
+
+    /// Asks until there is an answer that can be.
+    fn ask(&self, answers: &mut impl BufRead) -> Outcome<f64> {
+        loop {
+            output::remark(&format!("{}:", self.question));
+            let mut line = String::new();
+            let ended = |why: &str| Failure::new(format!("no answer for {}{why}", self.option)).with_help(HELP);
+            let read = answers.read_line(&mut line).map_err(|error| ended(&format!(": {error}")))?;
+            if read == 0 {
+                return Err(ended(""));
+            }
+            let answer = line.trim();
+            let value = answer.parse::<f64>().map_err(|_| format!("`{answer}` is not a number"));
+            match value.and_then(|value| self.check(value).map(|()| value)) {
+                Ok(value) => return Ok(value),
+                Err(why) => output::remark(&format!("{why}; once more")),
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Cursor;
+
+    use super::*;
+
+    #[test]
+    fn an_answer_that_is_none_is_asked_for_again() {
+        let mut answers = Cursor::new("nine\n-9\nNaN\n9\n");
+        assert_eq!(NEEDED[0].ask(&mut answers).expect("an answer"), 9.0);
+        let failure = NEEDED[0].ask(&mut answers).expect_err("no more answers");
+        assert!(failure.message().contains("--ratio"), "{failure}");
+    }
+}

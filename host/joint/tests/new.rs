@@ -1,0 +1,221 @@
+//! `joint new`: data sheets become joint files whose every line says where it comes from, and which every command takes;
+//! what is missing, what cannot be and what is there already is refused.
+
+mod command;
+mod pseudo_terminal;
+
+use std::fs;
+use std::io::{Read, Write};
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+use command::{folder, joint, text, within};
+use joint_file::sheet::{self, ARCMIN};
+use joint_file::{JointFile, read};
+use model_core::gears::Kinematics;
+use parameters::MESH_KINDS;
+
+/// Ratio, lost motion, stiffness, rated torque, rotor, no-load torque, efficiency, and what else is said.
+type Sheet = ([f64; 7], &'static [&'static str]);
+
+const ELBOW: Sheet = ([9.0, 15.0, 1.8, 8.0, 0.32, 0.05, 0.94], &[]);
+const KNEE: Sheet = (
+    [6.25, 8.0, 6.0, 40.0, 4.5, 0.2, 0.96],
+    &["--link-inertia-kg-m2", "0.4", "--outer-diameter-mm", "110", "--motor-bits", "16", "--output-bits", "19"],
+);
+const PLASTIC: Sheet = (
+    [4.5, 40.0, 0.02, 0.3, 0.012, 0.006, 0.85],
+    &["--material", "plastic", "--planets", "4", "--gear-inertia-kg-cm2", "0.0003", "--gravity-torque-Nm", "0.1"],
+);
+
+const OPTIONS: [&str; 7] = [
+    "--ratio",
+    "--lost-motion-arcmin",
+    "--stiffness-Nm-per-arcmin",
+    "--rated-torque-Nm",
+    "--rotor-inertia-kg-cm2",
+    "--no-load-torque-Nm",
+    "--efficiency",
+];
+
+fn line(name: &Path, (figures, more): Sheet, also: &[&str]) -> Vec<String> {
+    let named = OPTIONS.iter().zip(figures).flat_map(|(option, figure)| [(*option).to_owned(), figure.to_string()]);
+    let words = ["new".to_owned(), text(name).to_owned()].into_iter().chain(named);
+    words.chain(more.iter().chain(also).map(ToString::to_string)).collect()
+}
+
+fn words(line: &[String]) -> Vec<&str> {
+    line.iter().map(String::as_str).collect()
+}
+
+/// Makes a joint without measuring its assumptions.
+fn made(place: &Path, sheet: Sheet) -> (String, JointFile) {
+    let path = place.join("made.toml");
+    joint(&words(&line(&place.join("made"), sheet, &["--no-measure"]))).well();
+    let text = fs::read_to_string(&path).expect("it was written");
+    let file = read(&text).unwrap_or_else(|problems| panic!("{problems:#?}"));
+    (text, file)
+}
+
+#[test]
+fn data_sheets_become_joints_that_check_sim_and_budget_take_without_a_warning() {
+    for (figures, more) in [ELBOW, KNEE, PLASTIC] {
+        let place = folder();
+        let (written, file) = made(place.path(), (figures, more));
+        let [ratio, lost_motion, stiffness, rated, rotor, no_load, efficiency] = figures;
+        let parameters = &file.parameters;
+        let close =
+            |value: f64, wanted: f64| assert!((value / wanted - 1.0).abs() < 1e-9, "{value}, {wanted}\n{written}");
+        assert!((parameters.geometry.ratio_by_teeth() / ratio - 1.0).abs() <= 0.01);
+        close(sheet::lost_motion(parameters), lost_motion * ARCMIN);
+        let teeth =
+            sheet::teeth_compliance(&parameters.geometry, MESH_KINDS.map(|kind| parameters.mesh(kind).mean_stiffness));
+        close(1.0 / (teeth + 1.0 / parameters.compliance.expect("a compliance").stiffness), stiffness / ARCMIN);
+        close(parameters.rated_output_torque, rated);
+        close(1e4 * parameters.rotor_inertia, rotor);
+        let around = &file.surroundings;
+        let load = around.load_friction.coulomb / (parameters.geometry.ratio_by_teeth() * efficiency);
+        close(around.motor_friction.coulomb + load, no_load);
+        assert_eq!(file.warnings, [], "{written}");
+        for line in written.lines().filter(|line| line.contains(" = ")) {
+            let known = ["# data sheet: ", "# derived from ", "# assumed: "];
+            assert!(line.starts_with('#') || known.iter().any(|word| line.contains(word)), "{line}");
+        }
+        let path = place.path().join("made.toml");
+        let (path, out) = (text(&path), place.path().join("out"));
+        assert!(!joint(&["check", path]).well().out.contains("without a source"));
+        joint(&["budget", path]).well();
+        joint(&["sim", path, "--duration", "0.02", "--out", text(&out)]).well();
+    }
+}
+
+#[test]
+fn options_of_the_sheet_stand_in_the_file_as_the_sheets() {
+    let place = folder();
+    let (knee, file) = made(place.path(), KNEE);
+    assert!(knee.contains("link_inertia_kg_m2 = 0.4 # data sheet"), "{knee}");
+    assert_eq!((file.surroundings.motor_encoder.bits, file.surroundings.output_encoder.bits), (16, 19));
+    let ring = file.parameters.geometry.sun_base_radius / file.parameters.geometry.working_pressure_angle.cos()
+        * f64::from(file.parameters.geometry.ring_teeth)
+        / f64::from(file.parameters.geometry.sun_teeth);
+    assert!(2.0 * ring < 0.110 && 2.0 * ring > 0.08, "{ring}");
+    let place = folder();
+    let (plastic, file) = made(place.path(), PLASTIC);
+    assert!(plastic.contains("gear_inertia_at_input_kg_cm2 = 3e-4 # data sheet"), "{plastic}");
+    assert_eq!(file.parameters.geometry.planets, 4);
+    let [geometry, bodies] = [(); 2].map(|()| &file.parameters).map(|joint| (&joint.geometry, &joint.bodies));
+    assert!((1e4 * sheet::inertia_at_input(bodies.1, geometry.0) / 0.0003 - 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn a_joint_that_a_board_has_no_time_for_is_written_with_a_note_of_the_rate_that_fits() {
+    let place = folder();
+    let light: Sheet =
+        ([5.0, 20.0, 0.3, 2.0, 0.05, 0.02, 0.9], &["--planets", "4", "--outer-diameter-mm", "40", "--no-measure"]);
+    let made = joint(&words(&line(&place.path().join("light"), light, &[]))).well();
+    assert!(made.out.contains("note: ") && made.out.contains("--rate "), "{}", made.out);
+    joint(&["check", text(&place.path().join("light.toml"))]).well();
+    joint(&["budget", text(&place.path().join("light.toml"))]).refused(&["--rate"]);
+}
+
+#[test]
+fn every_assumption_is_measured_by_the_standard_test() {
+    let place = folder();
+    let made = joint(&words(&line(&place.path().join("elbow"), ELBOW, &[]))).well();
+    let file = fs::read_to_string(place.path().join("elbow.toml")).expect("it was written");
+    let assumed: Vec<&str> = file.lines().filter(|line| line.contains("# assumed: ")).collect();
+    assert!(assumed.len() > 20, "{file}");
+    for line in &assumed {
+        let measured = line.contains("moves the standard test by ") && line.ends_with('%');
+        assert!(measured || line.starts_with("planets = "), "{line}");
+    }
+    // The link's inertia is what T2 is driven by, and the noise of the current is nothing beside it.
+    let of = |key: &str| {
+        let line = assumed.iter().find(|line| line.starts_with(key)).unwrap_or_else(|| panic!("{key}\n{file}"));
+        let moved = line.rsplit("by ").next().and_then(|words| words.trim_end_matches(" %").parse::<f64>().ok());
+        moved.unwrap_or(0.0)
+    };
+    assert!(of("link_inertia_kg_m2") > 10.0, "{file}");
+    assert!(
+        file.contains("The standard test is motion T2 of `joint hil`") && file.contains("mrad for this file"),
+        "{file}"
+    );
+    assert!(made.out.contains("standard test: ") && made.out.contains("3 planets, teeth 18, 63, 144"), "{}", made.out);
+}
+
+#[test]
+fn what_the_sheet_lacks_is_named_where_nobody_can_be_asked() {
+    let place = folder();
+    let name = place.path().join("elbow");
+    let lacks = ["lacks --lost-motion-arcmin, --stiffness-Nm-per-arcmin", "on a terminal they are asked for"];
+    joint(&["new", text(&name), "--ratio", "9"]).refused(&lacks);
+    assert_eq!(command::contents(place.path()), []);
+}
+
+#[test]
+fn what_cannot_be_is_refused_before_anything_is_written() {
+    let place = folder();
+    let name = place.path().join("elbow");
+    let with = |also: &[&str]| {
+        let mut line = line(&name, ELBOW, &["--no-measure"]);
+        for pair in also.chunks(2) {
+            match line.iter().position(|word| word == pair[0]) {
+                Some(at) => line[at + 1] = pair[1].to_owned(),
+                None => line.extend(pair.iter().map(ToString::to_string)),
+            }
+        }
+        joint(&words(&line))
+    };
+    with(&["--ratio", "9", "--planets", "5"]).refused(&["5 planets", "fewer planets"]);
+    with(&["--ratio", "-9"]).refused(&["--ratio: -9 is not between"]);
+    with(&["--efficiency", "94"]).refused(&["--efficiency: 94 is not between 0.1 and 1"]);
+    with(&["--lost-motion-arcmin", "NaN"]).refused(&["--lost-motion-arcmin: NaN"]);
+    with(&["--outer-diameter-mm", "20"]).refused(&["ring of 144 teeth does not fit 20 mm", "module 0.2"]);
+    with(&["--stiffness-Nm-per-arcmin", "6188"]).refused(&["alone give", "N m/arcmin", "the sheet says 6188"]);
+    with(&["--no-load-torque-Nm", "50"]).refused(&["no_load_torque_N_m", "typed in mN m"]);
+    with(&["--motor-peak-torque-Nm", "0.1"]).refused(&["motor_torque_limit_N_m", "below the drive torque"]);
+    let bad = place.path().join("my \"elbow\"");
+    joint(&words(&line(&bad, ELBOW, &["--no-measure"]))).refused(&["cannot be called", "letters, digits"]);
+    assert_eq!(command::contents(place.path()), []);
+}
+
+#[test]
+fn a_file_that_is_there_is_never_written_over() {
+    let place = folder();
+    let path = place.path().join("elbow.toml");
+    fs::write(&path, "mine").expect("a file");
+    for name in ["elbow", "elbow.toml"] {
+        let line = line(&place.path().join(name), ELBOW, &["--no-measure"]);
+        joint(&words(&line)).refused(&["elbow.toml is there already", "another name"]);
+    }
+    assert_eq!(fs::read_to_string(&path).expect("still there"), "mine");
+}
+
+#[test]
+fn on_a_terminal_it_asks_for_what_is_missing() {
+    let place = folder();
+    let (mut master, terminal, _) = pseudo_terminal::pair();
+    let name = place.path().join("elbow");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_joint"));
+    command.args(["new", text(&name), "--no-measure", "--ratio", "9", "--lost-motion-arcmin", "15"]);
+    command.args(["--rated-torque-Nm", "8", "--rotor-inertia-kg-cm2", "0.32", "--no-load-torque-Nm", "0.05"]);
+    let asked = command.stdin(terminal).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
+    let mut asked = asked.expect("the command can be started");
+    master.write_all(b"soft\n1.8\n0.94\n").expect("a terminal takes it");
+    let ended = within(Duration::from_secs(60), "an end", || {
+        // What the terminal repeats must be taken off it.
+        let _ = master.read(&mut [0; 256]);
+        asked.try_wait().expect("it was started here")
+    });
+    let mut said = String::new();
+    asked.stderr.take().expect("piped").read_to_string(&mut said).expect("text");
+    assert!(ended.success(), "{said}");
+    for words in ["torsional stiffness at the output in N m/arcmin", "`soft` is not a number; once more", "efficiency"]
+    {
+        assert!(said.contains(words), "{said}");
+    }
+    assert!(!said.contains("gear ratio"), "{said}");
+    let file = fs::read_to_string(place.path().join("elbow.toml")).expect("it was written");
+    assert!(file.contains("total_stiffness_N_m_per_arcmin = 1.8 # data sheet"), "{file}");
+}

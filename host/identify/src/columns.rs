@@ -123,15 +123,42 @@ impl Columns {
 
     /// The values of the first of these columns that is there, by whichever of its names, and which one it is.
     pub fn named<'n>(&self, columns: &[&'n str]) -> Outcome<(&'n str, Vec<f64>)> {
+        self.first_of(columns)?.ok_or_else(|| self.missing(columns.first().copied().unwrap_or_default()))
+    }
+
+    /// The same; nothing if none of them is there.
+    pub fn first_of<'n>(&self, columns: &[&'n str]) -> Outcome<Option<(&'n str, Vec<f64>)>> {
         for &column in columns {
             let others = KNOWN.iter().find(|(name, _)| *name == column).map_or(&[][..], |(_, others)| *others);
             for name in std::iter::once(column).chain(others.iter().copied()) {
                 if let Some(values) = self.maybe(name)? {
-                    return Ok((column, values));
+                    return Ok(Some((column, values)));
                 }
             }
         }
-        Err(self.missing(columns.first().copied().unwrap_or_default()))
+        Ok(None)
+    }
+
+    /// The refusal of a log with one encoder only, with what that one can tell.
+    pub fn without_encoder(&self, what: &str) -> Failure {
+        let counts = format!("{what}_counts");
+        if joint_file::nearest(&counts, self.names()).is_some() {
+            return self.missing(&counts);
+        }
+        let there: Vec<&str> = self.names().take(12).collect();
+        let there = there.join(", ");
+        let tells = match what {
+            "motor" => "an output alone shows neither lost motion, nor stiffness, nor an error map",
+            _ => {
+                "a motor alone shows no lost motion, stiffness or error map: where the output stands while the motor \
+                 crosses the gap is not in it"
+            }
+        };
+        let difference = if what == "motor" { format!(" (in a slow log {DIFFERENCE})") } else { String::new() };
+        Failure::new(format!("there is no column for the {what} ({there} are there): {tells}")).with_help(format!(
+            "name it {counts} or {what}_angle_rad{difference}, or take a column of another name or number: \
+             --column {counts}=NAME"
+        ))
     }
 
     fn missing(&self, wanted: &str) -> Failure {

@@ -198,7 +198,9 @@ fn twist(motor: &Readings, output: &Readings, prior: &PriorModel) -> Vec<f64> {
 
 /// Counts, or else angles.
 fn readings(columns: &Columns, names: [&str; 2], bits: u32) -> Outcome<Readings> {
-    let (name, values) = columns.named(&names)?;
+    let what = if names[0].starts_with("motor") { "motor" } else { "output" };
+    let there = columns.first_of(&names)?;
+    let (name, values) = there.ok_or_else(|| columns.without_encoder(what))?;
     if name == names[0] {
         let turn = 1_i64 << bits;
         if let Some(line) = values.iter().position(|value| value.fract() != 0.0 || value.abs() > 9e15) {

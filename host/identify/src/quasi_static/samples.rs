@@ -93,7 +93,7 @@ impl Samples {
         let gaps = steps.iter().filter(|step| **step > GAP * period).count();
         let longest = steps[steps.len() - 1];
         let output = angles(columns, ["output_counts", "output_angle_rad"], options.output_units_per_turn, "output")?
-            .ok_or_else(|| missing("output", columns))?;
+            .ok_or_else(|| columns.without_encoder("output"))?;
         let Angles { values: mut output, scale } = output;
         unwrap(&mut output, scale);
         let motor = motor(columns, options, scale, &output)?;
@@ -214,7 +214,7 @@ fn motor(columns: &Columns, options: &Options, scale: Scale, output: &[f64]) -> 
         return Ok(output.iter().zip(&difference).map(|(output, difference)| output - difference).collect());
     }
     let motor = angles(columns, ["motor_counts", "motor_angle_rad"], options.motor_units_per_turn, "motor")?;
-    let Angles { mut values, scale: own } = motor.ok_or_else(|| missing("motor", columns))?;
+    let Angles { mut values, scale: own } = motor.ok_or_else(|| columns.without_encoder("motor"))?;
     let ratio = options.gear_ratio.unwrap_or(1.0);
     unwrap(&mut values, own);
     let factor = match (scale.per_turn, own.per_turn) {
@@ -229,24 +229,6 @@ fn motor(columns: &Columns, options: &Options, scale: Scale, output: &[f64]) -> 
     };
     values.iter_mut().for_each(|value| *value *= factor / ratio);
     Ok(values)
-}
-
-fn missing(what: &str, columns: &Columns) -> Failure {
-    let there: Vec<&str> = columns.names().take(12).collect();
-    let there = there.join(", ");
-    let (wanted, tells) = match what {
-        "motor" => (
-            format!("motor_counts, motor_angle_rad or {DIFFERENCE}"),
-            "an output alone shows neither lost motion nor an error map",
-        ),
-        _ => (
-            "output_counts or output_angle_rad".to_owned(),
-            "a motor alone shows no lost motion and no error map: where the output stands while the motor crosses the gap is \
-             not in it",
-        ),
-    };
-    Failure::new(format!("there is no column for the {what} ({there} are there): {tells}"))
-        .with_help(format!("name it {wanted}, or take a column of another name or number: --column output_counts=2"))
 }
 
 /// Counts that begin anew every turn are taken for continuous ones.

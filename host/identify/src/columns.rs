@@ -142,7 +142,10 @@ impl Columns {
     /// The refusal of a log with one encoder only, with what that one can tell.
     pub fn without_encoder(&self, what: &str) -> Failure {
         let counts = format!("{what}_counts");
-        if joint_file::nearest(&counts, self.names()).is_some() {
+        // A column of the other encoder is no misspelt one of this.
+        let strangers =
+            self.names().filter(|name| KNOWN.iter().all(|(known, others)| known != name && !others.contains(name)));
+        if joint_file::nearest(&counts, strangers).is_some() {
             return self.missing(&counts);
         }
         let there: Vec<&str> = self.names().take(12).collect();

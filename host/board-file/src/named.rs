@@ -27,7 +27,7 @@ pub fn load(file: &Path) -> Outcome<Loaded> {
     if let Some((message, help)) = known.and_then(chip_in_place_of_board) {
         return Err(Failure::new(message).with_help(help));
     }
-    let text = match known.and_then(preset) {
+    let text = match input::preset(file, preset) {
         Some(text) => text.to_owned(),
         None => input::text(file, input::LARGEST_TYPED).map_err(|why| {
             let help = format!("give the path of a board file, or one of the boards {}", PRESETS.join(", "));

@@ -53,8 +53,7 @@ pub fn read_changed(name: String, mut text: String, changes: &[String]) -> Outco
 /// Name and text of a path or a preset.
 fn text(file: &Path) -> Outcome<(String, String)> {
     let name = file.display().to_string();
-    let preset = file.to_str().and_then(crate::preset).filter(|_| !file.is_file());
-    let text = match preset {
+    let text = match input::preset(file, crate::preset) {
         Some(text) => text.to_owned(),
         None => read(file)?,
     };

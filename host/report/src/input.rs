@@ -1,13 +1,46 @@
 //! Files that users name, read whole into memory, but no more of them than a stated size: a device or a pipe may have no end.
+//! A file goes before what comes with the program under the same name.
 
+use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
+
+use crate::output;
 
 /// A file of this size was not typed by anybody, and named by mistake [bytes].
 pub const LARGEST_TYPED: u64 = 1 << 20;
 /// A recording may be this large; a larger one is taken for a mistake [bytes].
 pub const LARGEST_RECORDED: u64 = 2 << 30;
+
+/// What comes with the program under a name, unless a file has that very name. Where either could be meant, it is said once
+/// which one is taken.
+pub fn preset<T>(file: &Path, with_name: impl FnOnce(&str) -> Option<T>) -> Option<T> {
+    let name = file.to_str()?;
+    let found = with_name(name)?;
+    let beside = format!("{name}.toml");
+    match (file.is_file(), Path::new(&beside).is_file()) {
+        (true, _) => say_once(format!("note: `{name}` is the file of that name in this folder, not the preset {name}")),
+        (false, true) => {
+            say_once(format!(
+                "note: `{name}` is the preset of that name, not the file {beside} in this folder: name that ./{beside}"
+            ));
+        }
+        (false, false) => {}
+    }
+    (!file.is_file()).then_some(found)
+}
+
+/// A command may look for one file several times.
+fn say_once(remark: String) {
+    static SAID: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
+    let mut said = SAID.lock().unwrap_or_else(PoisonError::into_inner);
+    if !said.contains(&remark) {
+        output::remark(&remark);
+        said.insert(remark);
+    }
+}
 
 /// The bytes of a file, or why they cannot be had.
 pub fn bytes(path: &Path, largest: u64) -> Result<Vec<u8>, String> {

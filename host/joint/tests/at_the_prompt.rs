@@ -1,0 +1,28 @@
+//! What a user who types commands is told and given: which of two files is meant, what is on standard output, where results
+//! go.
+
+mod command;
+
+use std::fs;
+
+use command::{folder, joint_in};
+
+#[test]
+fn a_file_with_the_name_of_a_preset_is_told_apart_from_it() {
+    let place = folder();
+    let mine = fs::read_to_string(report::workspace::workspace().join("joints/s1.toml")).expect("a preset");
+    fs::write(place.path().join("q1.toml"), &mine).expect("room");
+    let beside = joint_in(place.path(), &["check", "q1"]).well();
+    assert!(beside.out.starts_with("Q1"), "{beside:?}");
+    assert_eq!(
+        beside.err,
+        "note: `q1` is the preset of that name, not the file q1.toml in this folder: name that ./q1.toml\n"
+    );
+    fs::write(place.path().join("q1"), &mine).expect("room");
+    let same = joint_in(place.path(), &["check", "q1"]).well();
+    assert!(same.out.starts_with("S1"), "{same:?}");
+    assert_eq!(same.err, "note: `q1` is the file of that name in this folder, not the preset q1\n");
+    for plain in ["./q1", "q1.toml", "s1"] {
+        assert_eq!(joint_in(place.path(), &["check", plain]).well().err, "", "{plain}: there is no other of that name");
+    }
+}

@@ -9,8 +9,8 @@ pub fn nearest<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str>) ->
         .map(|(_, candidate)| candidate)
 }
 
-/// Edits between the words, if they are few for the words' length; a word that only lost or changed its unit
-/// (`backlash`, `backlash_mm`) counts as near.
+/// Edits between the words, if they are few for the words' length and for that of the parts that differ; a word that only
+/// lost or changed its unit (`half_backlash`, `half_backlash_mm`) counts as near.
 fn cost(word: &str, candidate: &str) -> Option<usize> {
     let (word, candidate) = (word.to_lowercase(), candidate.to_lowercase());
     let stem = |text: &str| text.rsplit_once('_').map_or(text.to_owned(), |(stem, _)| stem.to_owned());
@@ -23,10 +23,32 @@ fn cost(word: &str, candidate: &str) -> Option<usize> {
     pairs
         .iter()
         .filter(may_be_near)
+        .filter(|(from, to, _)| parts_are_near(from, to))
         .map(|(from, to, more)| (edits(from, to) + more, from.len().max(to.len())))
         .filter(|(cost, length)| is_near(*cost, *length))
         .map(|(cost, _)| cost)
         .min()
+}
+
+/// Whether what is left of two words without the parts that they share is as near as whole words must be. What many keys
+/// have in common says nothing: `no_load_torque_N_m` is no misspelt `cogging_torque_N_m`.
+fn parts_are_near(from: &str, to: &str) -> bool {
+    // A name whose unit was left out, all parts of it.
+    if to.strip_prefix(from).is_some_and(|rest| rest.starts_with('_')) {
+        return true;
+    }
+    let mut own: Vec<&str> = from.split('_').collect();
+    let mut others: Vec<&str> = to.split('_').collect();
+    own.retain(|part| match others.iter().position(|other| other == part) {
+        Some(place) => {
+            others.remove(place);
+            false
+        }
+        None => true,
+    });
+    let [from, to] = [own.join("_"), others.join("_")];
+    let longest = from.len().max(to.len());
+    is_near(from.chars().count().abs_diff(to.chars().count()), longest) && is_near(edits(&from, &to), longest)
 }
 
 /// Whether so many edits are few for a length.
@@ -66,6 +88,16 @@ mod tests {
         assert_eq!(nearest("half_backlash_mm", KEYS), Some("half_backlash_um"));
         assert_eq!(nearest("half_backlash", KEYS), Some("half_backlash_um"));
         assert_eq!(nearest("mean_stiffness_N_per_um", KEYS), Some("mean_stiffness_N_per_m"));
+    }
+
+    #[test]
+    fn what_many_keys_share_makes_none_of_them_another() {
+        let drive_train = ["cogging_torque_N_m", "load_coulomb_friction_N_m", "link_inertia_kg_m2", "sun_teeth"];
+        for word in ["no_load_torque_N_m", "coulomb_friction_N_m", "sun_inertia_kg_m2", "ring_teeth"] {
+            assert_eq!(nearest(word, drive_train), None, "{word}");
+        }
+        assert_eq!(nearest("coging_torque_Nm", drive_train), Some("cogging_torque_N_m"));
+        assert_eq!(nearest("link_inertia", drive_train), Some("link_inertia_kg_m2"));
     }
 
     #[test]

@@ -69,7 +69,7 @@ pub struct Arguments {
     /// Folder for report.html, joint.toml and findings.json; a file that this command did not write is refused [default: target/identify/<joint>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Writes the findings as JSON to this file too
+    /// Writes the findings as JSON to this file too ("-" is standard output, and all else on standard error)
     #[arg(long, value_name = "OUT")]
     pub json: Option<PathBuf>,
     /// Slow logs.

@@ -121,7 +121,7 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
     folder.write_text(REPORT, &html(&document))?;
     folder.write_text(JOINT, &patched)?;
     folder.write_text(FINDINGS, &json)?;
-    arguments.json.as_ref().map_or(Ok(()), |path| write_text(path, &json))?;
+    arguments.json.as_ref().map_or(Ok(()), |path| output::write_json(path, &json))?;
     progress.clear();
     let [report, joint] = [REPORT, JOINT].map(|name| folder.file(name));
     Ok(format!("{}\nreport: {}\njoint file: {}\n", terminal(&document), report.display(), joint.display()))

@@ -9,7 +9,7 @@ use crate::record::RunRecord;
 use board::logs;
 use report::failure::{Failure, Outcome};
 use report::folder::Folder;
-use report::write::write_record;
+use report::output;
 
 const REPORT: &str = "report.html";
 const RECORD: &str = "record.json";
@@ -20,7 +20,7 @@ pub const ALL: [&str; 3] = [REPORT, RECORD, LOG];
 /// Writes everything, the record also to a file that was asked for by name; returns where the report is.
 pub fn write(folder: &Folder, json: Option<&Path>, record: &RunRecord) -> Outcome<PathBuf> {
     let kept = write_to(folder, record);
-    let asked = json.map_or(Ok(()), |json| write_record(json, record));
+    let asked = json.map_or(Ok(()), |json| output::write_json_record(json, record));
     match (kept, asked) {
         (Ok(report), Ok(())) => Ok(report),
         (Ok(_), Err(failure)) => Err(failure.with_help(format!("the record is in {}", folder.file(RECORD).display()))),

@@ -13,6 +13,7 @@ use scenario::suite;
 
 /// Runs a joint on a board; succeeds only if every check held.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
+    output::keep_for_json(arguments.json.as_deref());
     Progress::during(|progress| {
         if suite::is_of_tests(arguments.file()) {
             return scenario::run(&tests::test_request(arguments)?, progress);

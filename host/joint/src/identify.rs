@@ -9,6 +9,7 @@ use report::progress::Progress;
 
 /// Identifies a joint, or makes a log of one, and prints what was found.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
+    output::keep_for_json(arguments.json.as_deref());
     // What cannot be read is told by the work itself.
     if let Ok(loaded) = named::load_with(&arguments.joint, &arguments.set) {
         warned::tell(&loaded);

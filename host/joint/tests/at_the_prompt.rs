@@ -26,3 +26,28 @@ fn a_file_with_the_name_of_a_preset_is_told_apart_from_it() {
         assert_eq!(joint_in(place.path(), &["check", plain]).well().err, "", "{plain}: there is no other of that name");
     }
 }
+
+/// The joint on a board is held to it beside the other tests of boards: `command_failure_modes`.
+#[test]
+fn json_is_alone_on_standard_output_where_that_is_asked_for() {
+    let place = folder();
+    fs::write(
+        place.path().join("test.toml"),
+        "duration_s = 0.2\nsettle_s = 0.1\nprofile = \"T2\"\n[controller]\nrivals = []\n",
+    )
+    .expect("room");
+    joint_in(place.path(), &["identify", "log.csv", "--simulate"]).well();
+    let commands: [&[&str]; 5] = [
+        &["check"],
+        &["budget"],
+        &["sim", "l1", "--duration", "0.02", "--out", "sim"],
+        &["hil", "test.toml", "--host", "--out", "tests"],
+        &["identify", "log.csv", "--out", "identified"],
+    ];
+    for command in commands {
+        let ended = joint_in(place.path(), &[command, &["--json", "-"]].concat()).well();
+        let found: Result<serde_json::Value, _> = serde_json::from_str(&ended.out);
+        assert!(found.is_ok_and(|found| found["schema"].is_string()), "{command:?}: {}", ended.out);
+    }
+    assert!(!place.path().join("-").exists());
+}

@@ -197,3 +197,12 @@ fn a_reader_that_goes_away_is_no_error() {
     drop(child.stdout.take());
     wait(child).said(0, &[]);
 }
+
+#[test]
+fn json_on_standard_output_is_the_record_alone() {
+    let (port, _open) = board(Misbehaviour::None);
+    let out = folder();
+    let ended = finish(&[&line("0.2", &port, out.path())[..], &["--json", "-"]].concat()).well();
+    assert_eq!(ended.out, fs::read_to_string(out.path().join("record.json")).expect("the record"));
+    assert!(ended.err.contains("report: "), "{ended:?}");
+}

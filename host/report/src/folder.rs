@@ -11,7 +11,7 @@ use crate::failure::{Failure, Outcome};
 use crate::interruption::InOrder;
 use crate::own_files::{OwnFiles, Owner};
 use crate::workspace::workspace;
-use crate::write::{record_into, unwritten, write_with};
+use crate::write::{is_standard_output, record_into, unwritten, write_with};
 
 /// Where the files of a run go.
 #[derive(Debug)]
@@ -189,7 +189,11 @@ pub fn check_file(option: &str, file: &Path, read: &[&Path]) -> Outcome<()> {
 /// The same for what several options ask for, no two of which may be one file. "-" is standard output.
 pub fn check_files(wanted: &[(&str, Option<&Path>)], read: &[&Path]) -> Outcome<()> {
     let files = wanted.iter().filter_map(|(option, file)| Some((*option, (*file)?)));
-    let files: Vec<(&str, &Path)> = files.filter(|(_, file)| file.as_os_str() != "-").collect();
+    let (out, files): (Vec<_>, Vec<_>) = files.partition(|(_, file)| is_standard_output(file));
+    if let Some((option, _)) = out.iter().find(|(option, _)| *option != "json") {
+        return Err(Failure::new(format!("--{option} -: only JSON can be had on standard output"))
+            .with_help("name a file; one whose name begins with a dash is ./-"));
+    }
     for (place, (option, file)) in files.iter().enumerate() {
         check_file(option, file, read)?;
         if let Some((other, _)) = files[..place].iter().find(|(_, before)| before == file) {
@@ -321,6 +325,8 @@ mod tests {
         assert!(failure.message().contains("--json and --junit"), "{failure}");
         let out = Some(Path::new("-"));
         assert!(check_files(&[("json", out), ("html", other)], &[]).is_ok());
+        let failure = check_files(&[("json", out), ("html", out)], &[]).expect_err("no JSON");
+        assert!(failure.message().contains("--html -") && failure.help().is_some(), "{failure}");
     }
 
     #[test]

@@ -3,15 +3,51 @@
 
 use std::io::{self, Write};
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde::Serialize;
 
 use crate::failure::{Failure, Outcome};
 use crate::folder;
-use crate::write::write_text;
+use crate::write::{is_standard_output, record_into, write_record, write_text};
 
-/// Prints a result on standard output.
+/// Standard output is for JSON alone.
+static FOR_JSON: AtomicBool = AtomicBool::new(false);
+
+/// Keeps standard output for JSON alone, if that is where it shall go: what is printed after this is on standard error.
+pub fn keep_for_json(wanted: Option<&Path>) {
+    if wanted.is_some_and(is_standard_output) {
+        FOR_JSON.store(true, Ordering::Relaxed);
+    }
+}
+
+/// Prints a result on standard output; on standard error where that is kept for JSON.
 pub fn print(text: &str) -> Outcome<()> {
+    if FOR_JSON.load(Ordering::Relaxed) {
+        // As far as anyone listens.
+        let _ = io::stderr().lock().write_all(text.as_bytes());
+        return Ok(());
+    }
+    print_out(text)
+}
+
+/// Writes JSON to the file that is asked for; "-" is standard output.
+pub fn write_json(file: &Path, json: &str) -> Outcome<()> {
+    if is_standard_output(file) { print_out(json) } else { write_text(file, json) }
+}
+
+/// The same for a record that is written in one line.
+pub fn write_json_record(file: &Path, record: &impl Serialize) -> Outcome<()> {
+    if !is_standard_output(file) {
+        return write_record(file, record);
+    }
+    let mut line = Vec::new();
+    record_into(&mut line, record)
+        .map_err(|error| Failure::new(format!("cannot write the record as JSON: {error}")))?;
+    print_out(&String::from_utf8_lossy(&line))
+}
+
+fn print_out(text: &str) -> Outcome<()> {
     let mut out = io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
@@ -33,11 +69,10 @@ pub fn json(what: &str, record: &impl Serialize) -> Outcome<String> {
 pub fn deliver(figures: &impl Serialize, text: &str, wanted: Option<&Path>, read: &[&Path]) -> Outcome<()> {
     folder::check_files(&[("json", wanted)], read)?;
     if let Some(path) = wanted {
-        let json = json("figures", figures)?;
-        if path.as_os_str() == "-" {
-            return print(&json);
+        write_json(path, &json("figures", figures)?)?;
+        if is_standard_output(path) {
+            return Ok(());
         }
-        write_text(path, &json)?;
     }
     print(text)
 }

@@ -10,6 +10,11 @@ use serde::Serialize;
 use crate::failure::{Failure, Outcome};
 use crate::interruption::InOrder;
 
+/// Whether a file that is to be written stands for standard output.
+pub fn is_standard_output(file: &Path) -> bool {
+    file.as_os_str() == "-"
+}
+
 /// Writes a whole file, or leaves the old one as it was.
 pub fn write_text(path: &Path, text: &str) -> Outcome<()> {
     write_bytes(path, text.as_bytes())

@@ -191,7 +191,7 @@ fn write(request: &TestRequest<'_>, folder: &Folder, record: &TestsRecord, docum
     folder.write_text(RECORD, &json)?;
     folder.write_text(JUNIT, &junit)?;
     folder.write_text(REPORT, &html(document))?;
-    request.json.map_or(Ok(()), |path| write_text(path, &json))?;
+    request.json.map_or(Ok(()), |path| output::write_json(path, &json))?;
     request.junit.map_or(Ok(()), |path| write_text(path, &junit))
 }
 

@@ -8,7 +8,7 @@ use super::record::{Class, Reading, StudyRecord};
 use report::document::{Document, html};
 use report::failure::Outcome;
 use report::folder::{Folder, file_part};
-use report::write::write_record;
+use report::output;
 
 const REPORT: &str = "report.html";
 const RECORD: &str = "study.json";
@@ -29,7 +29,7 @@ pub const ALL: [&str; 10] = [
 /// Writes everything, the record also to a file that was asked for by name; returns where the report is.
 pub fn write(folder: &Folder, json: Option<&Path>, record: &StudyRecord, document: &Document) -> Outcome<PathBuf> {
     // What was asked for by name comes first: nothing after it can cost it.
-    json.map_or(Ok(()), |path| write_record(path, record))?;
+    json.map_or(Ok(()), |path| output::write_json_record(path, record))?;
     folder.write_record(RECORD, record)?;
     for (name, table) in tables(record) {
         folder.write_text(&format!("{name}.csv"), &table)?;

@@ -47,6 +47,7 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
     let plan = StudyPlan::new(arguments)?;
     let read: Vec<&Path> = arguments.file.as_deref().into_iter().collect();
     folder::check_files(&[("json", arguments.json.as_deref())], &read)?;
+    output::keep_for_json(arguments.json.as_deref());
     let folder = Folder::prepare(arguments.out.as_deref(), "paper", plan.name(), &files::ALL)?;
     let progress = Progress::new();
     let studied = study(&plan, &progress);

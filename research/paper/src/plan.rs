@@ -56,7 +56,7 @@ pub struct Arguments {
     /// [default: target/paper/<joint>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Writes the study as JSON to this file too
+    /// Writes the study as JSON to this file too ("-" is standard output, and all else on standard error)
     #[arg(long, value_name = "OUT")]
     pub json: Option<PathBuf>,
 }

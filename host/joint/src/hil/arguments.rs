@@ -65,7 +65,7 @@ pub struct Arguments {
     /// Folder for report.html, record.json and log.txt; a file that this command did not write is refused [default: target/hil/<joint>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Writes the record as JSON to this file too
+    /// Writes the record as JSON to this file too ("-" is standard output, and all else on standard error)
     #[arg(long, value_name = "OUT")]
     pub json: Option<PathBuf>,
     /// Draws the first reversal through the gap to this file (SVG), for a document

@@ -33,7 +33,7 @@ pub struct Arguments {
     /// Folder for report.html, history.csv and history.mcap; a file that this command did not write is refused [default: target/sim/<joint>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Writes the figures as JSON to this file too
+    /// Writes the figures as JSON to this file too ("-" is standard output, and all else on standard error)
     #[arg(long, value_name = "OUT")]
     pub json: Option<PathBuf>,
 }

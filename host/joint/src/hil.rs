@@ -21,7 +21,7 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
         tests::refuse_for_joints(arguments)?;
         let joint = joint_run::run(&arguments.request(), progress);
         if arguments.check {
-            return joint.and_then(|()| everything::check(arguments.rate, progress));
+            return joint.and_then(|()| everything::check(arguments.rate(), progress));
         }
         match (&arguments.file, &arguments.line.port) {
             (Some(_), _) => joint,

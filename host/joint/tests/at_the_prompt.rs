@@ -51,3 +51,13 @@ fn json_is_alone_on_standard_output_where_that_is_asked_for() {
     }
     assert!(!place.path().join("-").exists());
 }
+
+#[test]
+fn what_does_nothing_to_the_reference_is_refused() {
+    for option in ["--f64", "--accurate"] {
+        let words = [option, "does nothing to the scheme reference", "leave it out"];
+        joint_in(folder().path(), &["sim", "--scheme", "reference", option]).refused(&words);
+        let vary = ["sweep", "q1", "--vary", "half_backlash_um=10,20", "--scheme", "reference", option];
+        joint_in(folder().path(), &vary).refused(&words);
+    }
+}

@@ -241,7 +241,27 @@ fn arguments_of_joints_and_of_tests_are_not_mixed_up() {
     joint(&["hil", text(&file), "--host", "--role", "loop"]).refused(&["--host", "--role"]);
     joint(&["hil", text(&file), "--role", "loop", "--plant", "reference"]).refused(&["does not run on a board"]);
     joint(&["hil", "q1", "--role", "loop"]).refused(&["--role is for test files"]);
-    joint(&["hil", text(&file), "--host", "--duration", "3"]).refused(&["--duration is for joints"]);
+    let of_joints: [&[&str]; 7] = [
+        &["--duration", "3"],
+        &["--profile", "reversals"],
+        &["--rate", "20000"],
+        &["--decimation", "20"],
+        &["--picture", "a.svg"],
+        &["--no-reference"],
+        &["--check"],
+    ];
+    for option in of_joints {
+        let refused = format!("{} is for joints", option[0]);
+        joint(&[&["hil", text(&file)], option].concat()).refused(&[&refused, "help:"]);
+    }
+    joint(&["hil", text(&file), "--host", "--mode", "lockstep"]).refused(&["--mode is for a whole loop"]);
+    joint(&["hil", text(&file), "--host", "--full", "--seed", "3"]).refused(&["--full", "--seed", "leave one"]);
+    let of_tests: [&[&str]; 2] = [&["--full"], &["--junit", "a.xml"]];
+    for option in of_tests {
+        let refused = format!("{} is for test files", option[0]);
+        joint(&[&["hil", "--port", "/dev/none"], option].concat()).refused(&[&refused]);
+        joint(&[&["hil", "--check"], option].concat()).refused(&[&refused]);
+    }
     joint(&["hil", "q1", "--host"]).refused(&["--host is for test files, and q1 is a joint"]);
     joint(&["hil", "none.toml", "--host"]).refused(&["cannot read the test file none.toml"]);
     joint(&["hil", text(folder.path()), "--host", "--json", "/none/x.json"]).refused(&["no folder /none"]);

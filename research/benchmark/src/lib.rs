@@ -52,8 +52,8 @@ pub struct Arguments {
     /// Named cases, in place of all: A, Q, R, B, F, L
     #[arg(long, value_name = "KEYS", value_delimiter = ',', conflicts_with = "file")]
     case: Vec<String>,
-    /// Leaves out the host libraries
-    #[arg(long)]
+    /// Leaves out the host libraries, which take no joint file anyway
+    #[arg(long, conflicts_with = "file")]
     no_libraries: bool,
     /// Writes all figures as JSON ("-" is standard output, in place of the tables)
     #[arg(long, value_name = "OUT")]

@@ -8,6 +8,9 @@ use board::target::image;
 use joint_run::plan::RunRequest;
 use scenario::plant::PlantName;
 
+/// Steps between two samples, unless it is asked for another number of them.
+const DECIMATION: u16 = 20;
+
 /// Arguments of `joint hil`.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
@@ -50,18 +53,19 @@ pub struct Arguments {
     /// Who waits for whom [default: lockstep on the emulated board, realtime on a real one]
     #[arg(long, value_enum)]
     pub mode: Option<Mode>,
-    /// Steps a second, in Hz; part of the image
-    #[arg(long, value_name = "HZ", default_value_t = image::DEFAULT_TICK_RATE, value_parser = clap::value_parser!(u32).range(1..))]
-    pub rate: u32,
+    /// Steps a second, in Hz; part of the image [default: 20000]
+    #[arg(long, value_name = "HZ", value_parser = clap::value_parser!(u32).range(1..))]
+    pub rate: Option<u32>,
     /// Torque profile: `reversals`, or a CSV file with the columns time_s, motor_torque_Nm and load_torque_Nm
-    #[arg(long, value_name = "NAME|FILE", default_value = BUILTIN[0])]
-    pub profile: String,
+    /// [default: reversals]
+    #[arg(long, value_name = "NAME|FILE")]
+    pub profile: Option<String>,
     /// Length of the run in s [default: the profile's own; 5 s for `reversals`]
     #[arg(long, value_name = "S")]
     pub duration: Option<f64>,
-    /// A sample every so many steps; the digest covers every step
-    #[arg(long, value_name = "STEPS", default_value_t = 20, value_parser = clap::value_parser!(u16).range(1..))]
-    pub decimation: u16,
+    /// A sample every so many steps; the digest covers every step [default: 20]
+    #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u16).range(1..))]
+    pub decimation: Option<u16>,
     /// Folder for report.html, record.json and log.txt; a file that this command did not write is refused [default: target/hil/<joint>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -92,16 +96,21 @@ impl Arguments {
         self.file.as_deref().unwrap_or(Path::new("q1"))
     }
 
+    /// Steps a second [Hz].
+    pub fn rate(&self) -> u32 {
+        self.rate.unwrap_or(image::DEFAULT_TICK_RATE)
+    }
+
     /// What is asked of a joint on a board.
     pub fn request(&self) -> RunRequest<'_> {
         RunRequest {
             file: self.file(),
             line: &self.line,
             mode: self.mode,
-            rate: self.rate,
-            profile: &self.profile,
+            rate: self.rate(),
+            profile: self.profile.as_deref().unwrap_or(BUILTIN[0]),
             duration: self.duration,
-            decimation: self.decimation,
+            decimation: self.decimation.unwrap_or(DECIMATION),
             no_build: self.no_build,
             no_reference: self.no_reference,
             out: self.out.as_deref(),

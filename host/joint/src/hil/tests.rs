@@ -7,7 +7,6 @@ use link::messages::Role;
 
 use super::arguments::Arguments;
 use board::line_options::RoleName;
-use board::profile::BUILTIN;
 use report::failure::{Failure, Outcome};
 use report::input;
 use report::workspace::workspace;
@@ -20,18 +19,25 @@ use scenario::{TestGroup, TestRequest};
 /// What is asked of the tests in a file or folder.
 pub fn test_request(arguments: &Arguments) -> Outcome<TestRequest<'_>> {
     let of_joints = [
-        ("mode", arguments.mode.is_some() && (arguments.host || arguments.role == Some(RoleName::Observer))),
-        ("duration", arguments.duration.is_some()),
-        ("picture", arguments.picture.is_some()),
-        ("no-reference", arguments.no_reference),
-        ("check", arguments.check),
-        ("profile", arguments.profile != BUILTIN[0]),
+        ("duration", arguments.duration.is_some(), "write duration_s into the test file"),
+        ("profile", arguments.profile.is_some(), "write profile into the test file"),
+        ("rate", arguments.rate.is_some(), "write drive_train.control_rate_Hz into [known] of the test file"),
+        ("decimation", arguments.decimation.is_some(), "leave it out: the log of a run has what there is"),
+        ("picture", arguments.picture.is_some(), "leave it out: the report has pictures"),
+        ("no-reference", arguments.no_reference, "leave it out: --plant says what is controlled"),
+        ("check", arguments.check, "leave FILE out, or name a joint"),
     ];
-    if let Some((name, _)) = of_joints.iter().find(|(_, given)| *given) {
+    if let Some((name, _, mend)) = of_joints.iter().find(|(_, given, _)| *given) {
         let message = format!("--{name} is for joints, and {} holds tests", arguments.file().display());
-        return Err(
-            Failure::new(message).with_help("write it into the test file: docs/reference/hil-file.md tells its keys")
-        );
+        return Err(Failure::new(message).with_help(*mend));
+    }
+    if arguments.mode.is_some() && (arguments.host || arguments.role == Some(RoleName::Observer)) {
+        return Err(Failure::new("--mode is for a whole loop on a board: all else goes step by step")
+            .with_help("leave it out, or run on a board with --role loop"));
+    }
+    if arguments.full && arguments.seed.is_some() && !arguments.file().is_dir() {
+        return Err(Failure::new("--full asks for the full list of seeds, and --seed for one of them")
+            .with_help("leave one of them out"));
     }
     if let (true, Some(port)) = (arguments.host, &arguments.line.port) {
         return Err(Failure::new(format!("--host runs without a board, and --port {port} names one"))
@@ -104,13 +110,15 @@ fn boards(arguments: &Arguments, role: Role) -> BoardRequest<'_> {
 
 /// Complains about arguments of tests when a joint was named.
 pub fn refuse_for_joints(arguments: &Arguments) -> Outcome<()> {
+    // Without a file, on the emulated board, the tests that come with the program follow.
+    let alone = arguments.file.is_some() || arguments.line.port.is_some() || arguments.check;
     let of_tests = [
         ("host", arguments.host),
         ("role", arguments.role.is_some()),
         ("seed", arguments.seed.is_some()),
         ("plant", arguments.plant.is_some()),
-        ("full", arguments.full && arguments.file.is_some()),
-        ("junit", arguments.junit.is_some() && arguments.file.is_some()),
+        ("full", arguments.full && alone),
+        ("junit", arguments.junit.is_some() && alone),
     ];
     let Some((name, _)) = of_tests.iter().find(|(_, given)| *given) else { return Ok(()) };
     let file = arguments.file().display();

@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
-use super::scheme::Choice;
+use super::scheme::{Choice, SchemeName};
 use super::start::StartName;
+use report::failure::{Failure, Outcome};
 
 /// Arguments of `joint sim`.
 #[derive(Debug, Clone, clap::Args)]
@@ -80,6 +81,18 @@ pub struct MotionArguments {
 }
 
 impl MotionArguments {
+    /// Refuses what does nothing to a scheme.
+    pub fn check_for(&self, scheme: SchemeName) -> Outcome<()> {
+        let of_core = [("f64", self.f64), ("accurate", self.accurate)];
+        let idle = of_core.iter().find(|(_, given)| *given && scheme == SchemeName::Reference);
+        idle.map_or(Ok(()), |(name, _)| {
+            Err(Failure::new(format!(
+                "--{name} does nothing to the scheme reference, which is f64 and as fine as it must be"
+            ))
+            .with_help("leave it out, or name a scheme of the core: realtime, paper, rk4, euler"))
+        })
+    }
+
     /// The options that ask for the same motion again, each with a space in front.
     pub fn replay(&self) -> String {
         let mut options = String::new();

@@ -64,6 +64,7 @@ pub struct Simulated {
 
 /// Simulates a joint; report, figures and history are in its folder then.
 pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<Simulated> {
+    arguments.motion.check_for(arguments.scheme.shown())?;
     let loaded = named::load_with(&arguments.file, &arguments.motion.set)?;
     warned::tell(&loaded);
     let plan = SimulationPlan::new(loaded, &arguments.motion)?;

@@ -77,6 +77,7 @@ pub struct Arguments {
 /// Sweeps a grid, or goes on with it, and returns the result as text.
 pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
     let scheme = scheme(arguments.scheme)?;
+    arguments.motion.check_for(scheme)?;
     let grid = Grid::parse(&arguments.vary)?;
     let base = named::load_with(&arguments.file, &arguments.motion.set)?;
     warned::tell(&base);

@@ -5,7 +5,7 @@ mod command;
 
 use std::fs;
 
-use command::{folder, joint_in};
+use command::{folder, joint, joint_in, send, start, text, until, wait};
 
 #[test]
 fn a_file_with_the_name_of_a_preset_is_told_apart_from_it() {
@@ -60,4 +60,19 @@ fn what_does_nothing_to_the_reference_is_refused() {
         let vary = ["sweep", "q1", "--vary", "half_backlash_um=10,20", "--scheme", "reference", option];
         joint_in(folder().path(), &vary).refused(&words);
     }
+}
+
+#[test]
+fn two_runs_into_one_folder_do_not_mix_and_a_killed_one_does_not_stand_in_the_way() {
+    let place = folder();
+    let out = text(place.path());
+    let first = start(&["sim", "l1", "--duration", "3600", "--every", "2000", "--no-energy", "--out", out]);
+    until("the history grows", || place.path().join("history.partial.csv").exists());
+    let short = ["sim", "l1", "--duration", "0.02", "--no-energy", "--out", out];
+    joint(&short).refused(&["another run is writing to", out, "--out DIR"]);
+    assert!(!place.path().join("history.csv").exists());
+    send("-KILL", &first);
+    wait(first);
+    joint(&short).well();
+    assert_eq!(fs::read_to_string(place.path().join("history.csv")).expect("whole").lines().count(), 402);
 }

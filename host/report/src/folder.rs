@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use crate::failure::{Failure, Outcome};
 use crate::interruption::InOrder;
-use crate::own_files::{OwnFiles, Owner};
+use crate::own_files::{OwnFiles, Owner, Writers};
 use crate::workspace::workspace;
 use crate::write::{is_standard_output, record_into, unwritten, write_with};
 
@@ -30,9 +30,7 @@ impl Folder {
         let usual = || workspace().join("target").join(kind).join(file_part(joint));
         let path = wanted.map_or_else(usual, Path::to_owned);
         let folder = Self { own: OwnFiles::read(&path)?, path, files, named: wanted.is_some() };
-        if folder.named {
-            folder.refuse_foreign()?;
-        }
+        folder.refuse_foreign()?;
         Ok(folder)
     }
 
@@ -43,10 +41,25 @@ impl Folder {
         Ok(folder)
     }
 
-    /// Makes the folder and tries to write to it.
+    /// The same for a run beside others, each with files of its own, that all write one of these at their end.
+    pub fn prepare_beside_others(
+        path: &Path,
+        kind: &str,
+        joint: &str,
+        files: &'static [&'static str],
+    ) -> Outcome<Self> {
+        let folder = Self::choose(Some(path), kind, joint, files)?;
+        make(&folder.path)?;
+        folder.own.open(Writers::Several)?;
+        Ok(folder)
+    }
+
+    /// Makes the folder and tries to write to it. Refuses one that another run is writing to.
     pub fn make(&self) -> Outcome<()> {
         make(&self.path)?;
-        self.own.open()
+        self.own.open(Writers::One)?;
+        // Another run may have ended since this one was chosen.
+        self.refuse_foreign()
     }
 
     /// A file in it.
@@ -107,6 +120,9 @@ impl Folder {
 
     /// Refuses a folder with a file that would be lost.
     fn refuse_foreign(&self) -> Outcome<()> {
+        if !self.named {
+            return Ok(());
+        }
         for files in self.files {
             for name in self.present(files)? {
                 let path = self.file(&name);
@@ -186,7 +202,7 @@ pub fn check_file(option: &str, file: &Path, read: &[&Path]) -> Outcome<()> {
     Ok(())
 }
 
-/// The same for what several options ask for, no two of which may be one file. "-" is standard output.
+/// The same for what several options ask for, no two of which may be one file. "-" is standard output, which is for JSON.
 pub fn check_files(wanted: &[(&str, Option<&Path>)], read: &[&Path]) -> Outcome<()> {
     let files = wanted.iter().filter_map(|(option, file)| Some((*option, (*file)?)));
     let (out, files): (Vec<_>, Vec<_>) = files.partition(|(_, file)| is_standard_output(file));
@@ -256,13 +272,30 @@ mod tests {
     fn what_earlier_runs_left_is_removed_and_nothing_else() {
         let folder = tempfile::tempdir().expect("a folder");
         let prepare = || Folder::prepare(Some(folder.path()), "hil", "Q1", &["*.mcap"]).expect("of ours");
-        prepare().write_text("old.mcap", "1").and_then(|()| prepare().write_text("both.mcap", "1")).expect("room");
+        prepare().write_text("old.mcap", "1").expect("room");
+        prepare().write_text("both.mcap", "1").expect("room");
         let second = prepare();
         second.write_text("both.mcap", "1").and_then(|()| second.write_text("new.mcap", "1")).expect("room");
         fs::write(folder.path().join("mine.mcap"), "put there meanwhile").expect("room");
         second.clear_older("*.mcap").expect("may be written");
         let left = second.present("*.mcap").expect("a folder");
         assert_eq!(left, ["both.mcap", "mine.mcap", "new.mcap"]);
+    }
+
+    #[test]
+    fn two_runs_do_not_write_to_one_folder_at_once() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let choose = || Folder::choose(Some(folder.path()), "sim", "Q1", &[REPORT]).expect("of ours");
+        let (one, other) = (choose(), choose());
+        one.make().expect("nobody else does");
+        let failure = other.make().expect_err("its files would be mixed with those of the first");
+        assert!(failure.message().contains("another run") && failure.help().is_some(), "{failure}");
+        one.write_text(REPORT, "1").expect("room");
+        // What holds the folder goes away with a process, however it ends.
+        drop(one);
+        other.make().expect("nobody else does any more");
+        other.write_text(REPORT, "2").expect("what the first has written is known by now");
+        choose();
     }
 
     #[test]

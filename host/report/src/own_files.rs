@@ -11,7 +11,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use sha2::{Digest, Sha256};
 
 use crate::failure::{Failure, Outcome};
-use crate::write::unwritten;
+use crate::write::{locked, unwritten};
 
 /// The list, hidden since it is no result.
 pub const LIST: &str = ".written-by-joint";
@@ -39,6 +39,15 @@ struct List {
     file: Option<File>,
 }
 
+/// Who may write to a folder at a time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Writers {
+    /// One run: the files of two would be mixed.
+    One,
+    /// Several that have files of their own, such as the shards of a sweep.
+    Several,
+}
+
 /// Whose a file is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Owner {
@@ -61,18 +70,19 @@ impl OwnFiles {
         if !is_begun(&text) && !is_whole(&text) {
             return Err(no_list(folder, &"it is of somebody else"));
         }
-        let mut list = List::default();
-        for line in text.lines().skip(1) {
-            list.take(line);
-        }
-        Ok(Self { folder: folder.to_owned(), list: Mutex::new(list) })
+        Ok(Self { folder: folder.to_owned(), list: Mutex::new(List::of(&text)) })
     }
 
-    /// Begins or goes on with the list on disk. Where not even this can be written, nothing else can.
-    pub fn open(&self) -> Outcome<()> {
+    /// Begins or goes on with the list on disk, as it is by now. Where not even this can be written, nothing else can. The
+    /// list is locked until this goes away, or the process does, however it ends.
+    pub fn open(&self, writers: Writers) -> Outcome<()> {
         let path = self.folder.join(LIST);
         let open = || {
             let mut file = File::options().append(true).create(true).open(&path)?;
+            let alone = writers == Writers::Several || locked(&file);
+            if !alone {
+                return Ok(None);
+            }
             let text = fs::read_to_string(&path)?;
             if is_begun(&text) {
                 if !text.is_empty() {
@@ -81,16 +91,20 @@ impl OwnFiles {
                 }
                 file.write_all(HEAD.as_bytes())?;
             }
-            Ok(file)
+            Ok(Some((file, text)))
         };
-        let file = open().map_err(|error: io::Error| {
+        let opened = open().map_err(|error: io::Error| {
             if fs::metadata(&path).is_ok_and(|data| data.len() == 0) {
                 // It was ours, and it was empty: nothing is lost if it stays.
                 let _ = fs::remove_file(&path);
             }
             unwritten(&path, &error)
         })?;
-        self.list().file = Some(file);
+        let Some((file, text)) = opened else {
+            return Err(Failure::new(format!("another run is writing to {}", self.folder.display()))
+                .with_help("let it finish, or name another folder by --out DIR"));
+        };
+        *self.list() = List { file: Some(file), ..List::of(&text) };
         Ok(())
     }
 
@@ -149,6 +163,15 @@ impl OwnFiles {
 }
 
 impl List {
+    /// What the lines of a list say.
+    fn of(text: &str) -> Self {
+        let mut list = Self::default();
+        for line in text.lines().skip(1) {
+            list.take(line);
+        }
+        list
+    }
+
     /// Takes what a line says; whether it is new.
     fn take(&mut self, line: &str) -> bool {
         match line.split_once("  ") {
@@ -192,7 +215,7 @@ mod tests {
 
     fn written(folder: &Path) -> OwnFiles {
         let own = OwnFiles::read(folder).expect("no list, or one of ours");
-        own.open().expect("room");
+        own.open(Writers::One).expect("room");
         own
     }
 

@@ -1,9 +1,10 @@
 //! Safe writing: into a temporary file beside the target, then renamed, so that a reader sees the old file or the whole
 //! new one.
 
-use std::fs::{self, File};
+use std::fs::{self, File, TryLockError};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use serde::Serialize;
 
@@ -82,6 +83,22 @@ fn fill_whole(file: File, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<
     let mut buffered = BufWriter::new(file);
     fill(&mut buffered)?;
     buffered.into_inner().map_err(io::IntoInnerError::into_error)
+}
+
+/// A file that another process holds is asked for so many times, so far apart.
+const LOCK_ATTEMPTS: u32 = 20;
+const LOCK_PAUSE: Duration = Duration::from_millis(50);
+
+/// Takes a file for this process alone, until it is closed. A process that has just ended may hold it for a moment longer.
+pub fn locked(file: &File) -> bool {
+    for _ in 0..LOCK_ATTEMPTS {
+        match file.try_lock() {
+            Err(TryLockError::WouldBlock) => std::thread::sleep(LOCK_PAUSE),
+            // A file system without locks is no reason not to write.
+            Ok(()) | Err(TryLockError::Error(_)) => return true,
+        }
+    }
+    false
 }
 
 /// What the name of a temporary file has before and behind the process that writes it.

@@ -44,7 +44,7 @@ impl SweepFolder {
                 ));
             }
         }
-        let folder = Folder::prepare(Some(path), "sweep", &manifest.joint, &[RESULT])?;
+        let folder = Folder::prepare_beside_others(path, "sweep", &manifest.joint, &[RESULT])?;
         if !there {
             write_text(&path.join(MANIFEST), &manifest.text()?)?;
         }

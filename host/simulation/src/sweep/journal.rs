@@ -2,27 +2,22 @@
 //! points come in. A line that a kill or a full disk cut short is found and dropped; nothing else is ever taken out.
 
 use std::collections::BTreeMap;
-use std::fs::{File, TryLockError};
+use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 use model_core::numbers::digest;
 
 use super::grid::Shard;
 use report::failure::{Failure, Outcome};
 use report::input;
-use report::write::unwritten;
+use report::write::{locked, unwritten};
 
 /// Finished points by number: status and values, as they stand in the result.
 pub type Points = BTreeMap<u64, String>;
 
 /// First word of every journal.
 const HEAD: &str = "joint-sweep";
-
-/// A journal that another process holds is asked for so many times, so far apart.
-const LOCK_ATTEMPTS: u32 = 20;
-const LOCK_PAUSE: Duration = Duration::from_millis(50);
 
 /// A journal that is being written.
 #[derive(Debug)]
@@ -72,18 +67,6 @@ impl Journal {
         let written = self.file.write_all(lines.as_bytes()).and_then(|()| self.file.sync_data());
         written.map_err(|error| unwritten(&self.path, &error))
     }
-}
-
-/// Takes the file for this process alone. A process that has just ended may hold it for a moment longer.
-fn locked(file: &File) -> bool {
-    for _ in 0..LOCK_ATTEMPTS {
-        match file.try_lock() {
-            Err(TryLockError::WouldBlock) => std::thread::sleep(LOCK_PAUSE),
-            // A file system without locks is no reason not to work on it.
-            Ok(()) | Err(TryLockError::Error(_)) => return true,
-        }
-    }
-    false
 }
 
 /// The line of a finished point.

@@ -66,7 +66,7 @@ pub struct Arguments {
     /// Has a simulated test record the torque at the output too
     #[arg(long, requires = "simulate")]
     pub with_output_torque: bool,
-    /// Folder for report.html, joint.toml and findings.json; a file that this command did not write is refused [default: target/identify/<joint>]
+    /// Folder for report.html, joint.toml and findings.json; a file that this command did not write is refused [default: joint-out/identify/<joint>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Writes the findings as JSON to this file too ("-" is standard output, and all else on standard error)

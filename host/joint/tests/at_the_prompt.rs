@@ -76,3 +76,17 @@ fn two_runs_into_one_folder_do_not_mix_and_a_killed_one_does_not_stand_in_the_wa
     joint(&short).well();
     assert_eq!(fs::read_to_string(place.path().join("history.csv")).expect("whole").lines().count(), 402);
 }
+
+#[test]
+fn results_go_below_the_folder_that_the_user_works_in() {
+    let place = folder();
+    joint_in(place.path(), &["sim", "l1", "--duration", "0.02", "--no-energy"]).well();
+    assert!(place.path().join("joint-out/sim/l1/report.html").is_file());
+    joint_in(place.path(), &["sweep", "l1", "--vary", "half_backlash_um=10,20", "--duration", "0.01"]).well();
+    assert_eq!(fs::read_dir(place.path().join("joint-out/sweep")).expect("a folder").count(), 1);
+    let mine = place.path().join("joint-out/sim/l1/report.html");
+    fs::write(&mine, "my notes").expect("room");
+    joint_in(place.path(), &["sim", "l1", "--duration", "0.02"])
+        .refused(&["report.html has been changed", "--out DIR"]);
+    assert_eq!(fs::read_to_string(mine).expect("still there"), "my notes");
+}

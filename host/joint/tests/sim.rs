@@ -6,7 +6,9 @@ mod command;
 use std::fs;
 use std::path::Path;
 
-use command::{contents, folder, interrupt, joint, joint_on_a_full_disk, json, size, start, text, until, wait};
+use command::{
+    contents, folder, interrupt, joint, joint_in, joint_on_a_full_disk, json, size, start, text, until, wait,
+};
 use host_tests::tolerance;
 use mcap::MessageStream;
 use mcap::read::Options;
@@ -273,7 +275,7 @@ fn bad_input_is_named_with_its_mend() {
     joint(&["sim", "q1", "--duration", "1000", "--every", "1"]).refused(&["samples", "--every"]);
     joint(&["sim", "q1", "--settle", "5"]).refused(&["--settle 5 leaves nothing"]);
     joint(&["sim", "q1", "--drive", "inf"]).refused(&["--drive is inf"]);
-    joint(&["sim", "q1", "--rate", "500"]).refused(&["500 Hz", "--rate"]);
+    joint_in(folder.path(), &["sim", "q1", "--rate", "500"]).refused(&["500 Hz", "--rate"]);
     joint(&["sim", "q1", "--profile", "no-such-profile"]).refused(&["no profile `no-such-profile`", "reversals"]);
     joint(&["sim", "q1", "--scheme", "verlet"]).refused(&["verlet"]);
     joint(&["sim", "q1", "--out", "/proc/nowhere"]).refused(&["/proc/nowhere", "--out DIR"]);

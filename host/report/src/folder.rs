@@ -10,8 +10,15 @@ use serde::Serialize;
 use crate::failure::{Failure, Outcome};
 use crate::interruption::InOrder;
 use crate::own_files::{OwnFiles, Owner, Writers};
-use crate::workspace::workspace;
 use crate::write::{is_standard_output, record_into, unwritten, write_with};
+
+/// Where results go that no other folder is named for, below the folder that the user works in.
+const USUAL: &str = "joint-out";
+
+/// The folder of results of a kind, such as those of a command for a joint, unless the user names another.
+pub fn usual(kind: &str, name: &str) -> PathBuf {
+    Path::new(USUAL).join(kind).join(file_part(name))
+}
 
 /// Where the files of a run go.
 #[derive(Debug)]
@@ -19,17 +26,14 @@ pub struct Folder {
     path: PathBuf,
     files: &'static [&'static str],
     own: OwnFiles,
-    /// The user has named it: what is in it may be anybody's.
-    named: bool,
 }
 
 impl Folder {
     /// The folder that a run will write `files` to, of which each may have one `*`. Refuses one in which any of them is not
-    /// what a command has written: it would be lost. Where none is wanted it is `target/KIND/JOINT`. Writes nothing yet.
+    /// what a command has written: it would be lost. Where none is wanted it is [`usual`]. Writes nothing yet.
     pub fn choose(wanted: Option<&Path>, kind: &str, joint: &str, files: &'static [&'static str]) -> Outcome<Self> {
-        let usual = || workspace().join("target").join(kind).join(file_part(joint));
-        let path = wanted.map_or_else(usual, Path::to_owned);
-        let folder = Self { own: OwnFiles::read(&path)?, path, files, named: wanted.is_some() };
+        let path = wanted.map_or_else(|| usual(kind, joint), Path::to_owned);
+        let folder = Self { own: OwnFiles::read(&path)?, path, files };
         folder.refuse_foreign()?;
         Ok(folder)
     }
@@ -108,7 +112,7 @@ impl Folder {
     /// Removes what earlier runs have left of files of this kind, once this run has written its own.
     pub fn clear_older(&self, files: &str) -> Outcome<()> {
         for name in self.present(files)? {
-            let ours = !self.named || self.own.owner(&name) == Owner::Ours;
+            let ours = self.own.owner(&name) == Owner::Ours;
             if !ours || self.own.is_of_this_run(&name) {
                 continue;
             }
@@ -120,9 +124,6 @@ impl Folder {
 
     /// Refuses a folder with a file that would be lost.
     fn refuse_foreign(&self) -> Outcome<()> {
-        if !self.named {
-            return Ok(());
-        }
         for files in self.files {
             for name in self.present(files)? {
                 let path = self.file(&name);
@@ -296,6 +297,11 @@ mod tests {
         other.make().expect("nobody else does any more");
         other.write_text(REPORT, "2").expect("what the first has written is known by now");
         choose();
+    }
+
+    #[test]
+    fn results_go_below_the_folder_that_the_user_works_in() {
+        assert_eq!(usual("hil/tests", "Q1 b"), Path::new("joint-out/hil/tests/q1-b"));
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! The folder of this workspace: the firmware is built from it, and results are written below it.
+//! The folder of this workspace: the firmware is built from it.
 
 use std::path::{Path, PathBuf};
 

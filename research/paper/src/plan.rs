@@ -53,7 +53,7 @@ pub struct Arguments {
     #[arg(long, value_name = "LIST")]
     pub expect: Option<String>,
     /// Folder for report.html, study.json, pictures (SVG) and tables (CSV); a file that this command did not write is refused
-    /// [default: target/paper/<joint>]
+    /// [default: joint-out/paper/<joint>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Writes the study as JSON to this file too ("-" is standard output, and all else on standard error)

@@ -31,7 +31,7 @@ pub struct Arguments {
     /// Does not keep the books of energy
     #[arg(long)]
     pub no_energy: bool,
-    /// Folder for report.html, history.csv and history.mcap; a file that this command did not write is refused [default: target/sim/<joint>]
+    /// Folder for report.html, history.csv and history.mcap; a file that this command did not write is refused [default: joint-out/sim/<joint>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Writes the figures as JSON to this file too ("-" is standard output, and all else on standard error)

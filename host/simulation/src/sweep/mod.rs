@@ -28,12 +28,10 @@ use board::profile::BUILTIN;
 use joint_file::named::{self, Loaded};
 use joint_file::warned;
 use report::failure::{Failure, Outcome};
-use report::folder::file_part;
 use report::input;
 use report::interruption::InOrder;
 use report::output;
 use report::progress::Progress;
-use report::workspace::workspace;
 
 /// Arguments of `joint sweep`.
 #[derive(Debug, Clone, clap::Args)]
@@ -63,7 +61,7 @@ pub struct Arguments {
     /// What moves the joint at every point
     #[command(flatten)]
     pub motion: MotionArguments,
-    /// Folder of the sweep [default: target/sweep/<joint>-<digest>]
+    /// Folder of the sweep [default: joint-out/sweep/<joint>-<digest>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Computes only the i-th of n parts of the grid, for job arrays
@@ -186,7 +184,7 @@ fn manifest(
 }
 
 fn usual_folder(manifest: &Manifest) -> PathBuf {
-    workspace().join("target/sweep").join(format!("{}-{}", file_part(&manifest.joint), &manifest.digest[..8]))
+    report::folder::usual("sweep", &format!("{}-{}", manifest.joint, &manifest.digest[..8]))
 }
 
 /// The command that goes on with this sweep.

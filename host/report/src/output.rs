@@ -1,15 +1,24 @@
 //! Output of a command: results on standard output or in a file, remarks on standard error. A closed pipe is not an
 //! error.
 
+use std::borrow::Cow;
 use std::io::{self, Write};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use anstream::stream::RawStream;
+use anstream::{AutoStream, ColorChoice};
 use serde::Serialize;
 
 use crate::failure::{Failure, Outcome};
 use crate::folder;
 use crate::write::{is_standard_output, record_into, write_record, write_text};
+
+/// Verdicts that must not be overlooked.
+const BAD: [&str; 3] = ["FAILED", "BROKEN", "NOT RUN"];
+/// Bold red, and the end of it.
+const RED: &str = "\u{1b}[1;31m";
+const PLAIN: &str = "\u{1b}[0m";
 
 /// Standard output is for JSON alone.
 static FOR_JSON: AtomicBool = AtomicBool::new(false);
@@ -21,14 +30,32 @@ pub fn keep_for_json(wanted: Option<&Path>) {
     }
 }
 
-/// Prints a result on standard output; on standard error where that is kept for JSON.
+/// Prints a result on standard output; on standard error where that is kept for JSON. What failed is red on a terminal.
 pub fn print(text: &str) -> Outcome<()> {
     if FOR_JSON.load(Ordering::Relaxed) {
+        let text = on(&io::stderr(), text);
         // As far as anyone listens.
         let _ = io::stderr().lock().write_all(text.as_bytes());
         return Ok(());
     }
-    print_out(text)
+    print_out(&on(&io::stdout(), text))
+}
+
+/// A text as a stream wants it: with colours on a terminal that has them, unless NO_COLOR or its like say otherwise.
+pub fn on<'t>(stream: &impl RawStream, text: &'t str) -> Cow<'t, str> {
+    match AutoStream::choice(stream) {
+        ColorChoice::Never => Cow::Borrowed(text),
+        _ => Cow::Owned(with_failures_in_red(text)),
+    }
+}
+
+/// Has the verdicts stand out that begin a line and are bad ones.
+fn with_failures_in_red(text: &str) -> String {
+    let line = |line: &str| match BAD.iter().find(|word| line.starts_with(**word)) {
+        Some(word) => format!("{RED}{word}{PLAIN}{}", &line[word.len()..]),
+        None => line.to_owned(),
+    };
+    text.split_inclusive('\n').map(line).collect()
 }
 
 /// Writes JSON to the file that is asked for; "-" is standard output.
@@ -80,4 +107,19 @@ pub fn deliver(figures: &impl Serialize, text: &str, wanted: Option<&Path>, read
 /// Prints a remark on standard error, as far as anyone listens.
 pub fn remark(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{text}");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bad_verdicts_are_red_and_nothing_else_is() {
+        let shown = with_failures_in_red("ok       a\nFAILED   b FAILED\n         FAILED\nBROKEN   c\n");
+        let red = |word: &str| format!("\u{1b}[1;31m{word}\u{1b}[0m");
+        assert_eq!(
+            shown,
+            format!("ok       a\n{}   b FAILED\n         FAILED\n{}   c\n", red("FAILED"), red("BROKEN"))
+        );
+    }
 }

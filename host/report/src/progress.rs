@@ -65,7 +65,7 @@ impl Progress {
     /// A line that stays above the moving one; on anything but a terminal results speak for themselves.
     pub fn say_above(&self, line: &str) {
         if let Some(bar) = self.bar().as_ref().filter(|bar| !bar.is_hidden()) {
-            bar.println(line);
+            bar.println(crate::output::on(&std::io::stderr(), line));
         }
     }
 

@@ -1,5 +1,5 @@
-//! A document as lines for a terminal: no colours, so that a terminal, a file and a log show the same, and only
-//! characters that every terminal has.
+//! A document as lines for a terminal, only of characters that every terminal has. Colours are put on by `output`, where
+//! it is one.
 
 use std::fmt::Write as _;
 

@@ -10,6 +10,9 @@ use super::keys::{Key, Kind};
 use crate::random::NumberOrRange;
 use report::number::TYPED;
 
+/// Seeds that a number may ask for: more are a slip of the keyboard.
+const MOST_SEEDS: u64 = 10_000;
+
 /// One table of the file.
 pub(super) struct Section<'a>(Table<'a, Kind>);
 
@@ -147,7 +150,15 @@ impl<'a> Section<'a> {
         };
         let seeds = match value.get_ref() {
             DeValue::Array(list) => list.iter().map(seed).collect::<Option<Vec<u64>>>(),
-            _ => seed(value).filter(|count| *count <= 10_000).map(|count| (1..=count).collect()),
+            _ => {
+                let count = seed(value);
+                if let Some(count) = count.filter(|count| *count > MOST_SEEDS) {
+                    let message = format!("`{name}`: {count} seeds are too many, {MOST_SEEDS} are the most");
+                    self.notes.error(value.span(), message, key.hint);
+                    return None;
+                }
+                count.map(|count| (1..=count).collect())
+            }
         };
         let good = seeds.filter(|seeds| !seeds.is_empty());
         match &good {

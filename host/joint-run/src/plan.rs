@@ -14,6 +14,7 @@ use joint_file::JointFile;
 use joint_file::named::{self, Loaded};
 use joint_file::warned;
 use link::messages::{Role, RunMode, RunSettings};
+use report::command_line::quoted;
 use report::failure::{Failure, Outcome};
 
 /// A run as it was asked for.
@@ -110,10 +111,10 @@ impl RunRequest<'_> {
 
     /// The command that makes this run again.
     pub fn replay_command(&self) -> String {
-        let mut command = format!("cargo joint hil {}", self.file.display());
+        let mut command = format!("cargo joint hil {}", quoted(&self.file.display().to_string()));
         let mut option = |name: &str, value: Option<String>| {
             if let Some(value) = value {
-                command += &format!(" --{name} {value}");
+                command += &format!(" --{name} {}", quoted(&value));
             }
         };
         option("port", self.line.port.clone());
@@ -123,6 +124,11 @@ impl RunRequest<'_> {
         option("profile", Some(self.profile.to_owned()));
         option("duration", self.duration.map(|duration| duration.to_string()));
         option("decimation", Some(self.decimation.to_string()));
+        for (name, given) in [("no-reference", self.no_reference), ("no-build", self.no_build)] {
+            if given {
+                command += &format!(" --{name}");
+            }
+        }
         command + &self.rate_option()
     }
 

@@ -8,16 +8,18 @@ use rayon::prelude::*;
 
 use super::controller::ControllerName;
 use super::execution::{RunSpec, execute};
-use super::file::fault_word;
+use super::file::{Aggregate, fault_word};
 use super::log_file;
 use super::on_board::Boards;
 use super::plant::PlantName;
-use super::record::{TestRecord, TestRun};
+use super::record::{AssertionRecord, TestRecord, TestRun};
 use super::rig::RunError;
 use super::suite::Test;
 use super::trace::Trace;
 use super::values::MetricValues;
 use super::verdict::{Results, judge};
+use report::checks::Verdict;
+use report::command_line::quoted;
 use report::failure::{Failure, Outcome};
 use report::folder::Folder;
 
@@ -101,12 +103,16 @@ pub fn run(test: &Test, options: &RunOptions<'_>, before: &AtomicU32) -> Outcome
     // What the tested controller broke off for is the test's own failure; a rival that breaks only costs its figures.
     let own = |(job, done): (&Job, &Done)| {
         let why = done.run.broken.as_ref().filter(|_| job.controller == test.file.controller)?;
-        Some(format!("seed {}: {why}", job.seed))
+        Some((job.seed, format!("seed {}: {why}", job.seed)))
     };
-    let broken = jobs.iter().zip(&done).find_map(own);
-    let failed = assertions.iter().find(|assertion| assertion.verdict == report::checks::Verdict::Failed);
-    let shown_seed = failed.and_then(|failed| failed.seed).or(seeds.first().copied()).unwrap_or_default();
-    let passed = failed.is_none() && broken.is_none();
+    let broken: Vec<(u64, String)> = jobs.iter().zip(&done).filter_map(own).collect();
+    let failed: Vec<&AssertionRecord> =
+        assertions.iter().filter(|assertion| assertion.verdict == Verdict::Failed).collect();
+    let broken_seed = broken.first().map(|(seed, _)| *seed);
+    let shown_seed = failed.first().and_then(|failed| failed.seed).or(broken_seed).or(seeds.first().copied());
+    let shown_seed = shown_seed.unwrap_or_default();
+    let passed = failed.is_empty() && broken.is_empty();
+    let replay = replay(test, options, alone(&failed, &broken));
     let mut runs = Vec::new();
     let mut shown = Vec::new();
     for (job, done) in jobs.iter().zip(done) {
@@ -130,20 +136,36 @@ pub fn run(test: &Test, options: &RunOptions<'_>, before: &AtomicU32) -> Outcome
         faults: test.file.faults.iter().map(|fault| fault_word(fault).to_owned()).collect(),
         seeds,
         passed,
-        broken,
+        broken: broken.into_iter().next().map(|(_, why)| why),
         assertions,
         runs,
         shown_seed,
-        replay: format!(
-            "cargo joint hil {} {} --plant {} --seed {shown_seed}",
-            test.name,
-            options.boards.map_or("--host".to_owned(), Boards::arguments),
-            options.plant.word()
-        ),
+        replay,
         seconds: start.elapsed().as_secs_f64(),
     };
     let faults = test.file.faults.iter().map(|fault| (fault_word(fault), [fault.start, fault.end])).collect();
     Ok(FinishedTest { record, shown, faults })
+}
+
+/// The seed whose run alone shows all that failed, if there is one: what is made of several seeds, or fails with several,
+/// takes them all.
+fn alone(failed: &[&AssertionRecord], broken: &[(u64, String)]) -> Option<u64> {
+    let of_one =
+        failed.iter().map(|assertion| assertion.seed.filter(|_| assertion.aggregate == Aggregate::Worst.word()));
+    let mut seeds = of_one.chain(broken.iter().map(|(seed, _)| Some(*seed)));
+    let first = seeds.next()??;
+    seeds.all(|seed| seed == Some(first)).then_some(first)
+}
+
+/// The command that runs what failed again; with a seed only that of all.
+fn replay(test: &Test, options: &RunOptions<'_>, alone: Option<u64>) -> String {
+    let place = options.boards.map_or("--host".to_owned(), Boards::arguments);
+    let seeds = match (options.seed.or(alone), options.full) {
+        (Some(seed), _) => format!(" --seed {seed}"),
+        (None, true) => " --full".to_owned(),
+        (None, false) => String::new(),
+    };
+    format!("cargo joint hil {} {place} --plant {}{seeds}", quoted(&test.name), options.plant.word())
 }
 
 fn one(test: &Test, options: &RunOptions<'_>, job: &Job, deadline: Instant) -> Outcome<Done> {

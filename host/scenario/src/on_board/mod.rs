@@ -35,6 +35,7 @@ use board::target::image::{Control, Image, word};
 use board::target::toolchain::Toolchain;
 use board::transport::Port;
 use board::twin::tables_digest;
+use report::command_line::quoted;
 use report::failure::{Failure, Outcome};
 use report::progress::Progress;
 
@@ -99,8 +100,22 @@ impl<'w> Boards<'w> {
 
     /// The arguments that ask for them again.
     pub fn arguments(&self) -> String {
-        let port = self.request.port.map_or_else(String::new, |port| format!(" --port {port}"));
-        format!("--role {}{port}", word(self.request.role))
+        let BoardRequest { role, port, baud, board, no_build, mode } = self.request;
+        let mut arguments = format!("--role {}", word(role));
+        if let Some(port) = port {
+            arguments += &format!(" --port {} --board {}", quoted(port), quoted(&board.named));
+        }
+        if let Some(baud) = baud {
+            arguments += &format!(" --baud {baud}");
+        }
+        if no_build {
+            arguments += " --no-build";
+        }
+        match mode {
+            Some(RunMode::Lockstep) => arguments + " --mode lockstep",
+            Some(RunMode::Realtime) => arguments + " --mode realtime",
+            None => arguments,
+        }
     }
 
     /// Tells the case's controllers what a joint file can say, to the last bit.

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::scheme::{Choice, SchemeName};
 use super::start::StartName;
+use report::command_line::quoted;
 use report::failure::{Failure, Outcome};
 
 /// Arguments of `joint sim`.
@@ -119,15 +120,5 @@ impl MotionArguments {
             options += " --accurate";
         }
         options
-    }
-}
-
-/// As a shell takes it for one word.
-pub fn quoted(word: &str) -> String {
-    let plain = |letter: char| letter.is_ascii_alphanumeric() || "-_./=:,+@%".contains(letter);
-    if !word.is_empty() && word.chars().all(plain) {
-        word.to_owned()
-    } else {
-        format!("'{}'", word.replace('\'', "'\\''"))
     }
 }

@@ -37,6 +37,7 @@ use stepping::RunEnd;
 use summary::SimulationSummary;
 
 use joint_file::{named, warned};
+use report::command_line::quoted;
 use report::document::{html, terminal};
 use report::failure::{Failure, Outcome};
 use report::folder::{self, Folder};
@@ -147,7 +148,7 @@ fn remarks(arguments: &Arguments, plan: &SimulationPlan, scheme: SchemeName) -> 
 
 /// The command that makes this run again.
 fn replay(arguments: &Arguments) -> String {
-    let mut command = format!("cargo joint sim {}", arguments::quoted(&arguments.file.display().to_string()));
+    let mut command = format!("cargo joint sim {}", quoted(&arguments.file.display().to_string()));
     command += &format!(" --scheme {}", arguments.scheme.name());
     command += &arguments.motion.replay();
     if let Some(every) = arguments.every {

@@ -22,11 +22,12 @@ pub use merge::merge;
 use metrics::Metric;
 use work::Work;
 
-use crate::sim::arguments::{MotionArguments, quoted};
+use crate::sim::arguments::MotionArguments;
 use crate::sim::scheme::{Choice, SchemeName};
 use board::profile::BUILTIN;
 use joint_file::named::{self, Loaded};
 use joint_file::warned;
+use report::command_line::quoted;
 use report::failure::{Failure, Outcome};
 use report::input;
 use report::interruption::InOrder;

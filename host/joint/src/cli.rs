@@ -7,11 +7,11 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use report::failure::Outcome;
 use report::{command_line, output};
 
-use crate::{board, budget, check, flash, hil, identify, image, memory, merge, new, research, sim, sweep};
+use crate::{board, budget, check, completions, flash, hil, identify, image, memory, merge, new, research, sim, sweep};
 
 /// Simulates a planetary robot joint with backlash on a microcontroller, drives it and checks it
 #[derive(Debug, Parser)]
-#[command(name = "joint", version, disable_help_subcommand = true)]
+#[command(name = "joint", version = env!("JOINT_VERSION"), disable_help_subcommand = true)]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
@@ -47,6 +47,8 @@ enum Command {
     Image(image::Arguments),
     /// Build the firmware image of a joint and write it to a real board by probe-rs or over USB
     Flash(flash::Arguments),
+    /// Print a script by which a shell completes this command's options: bash, zsh, fish and others
+    Completions(completions::Arguments),
 }
 
 /// Parses the command line, runs it and turns the outcome into an exit code.
@@ -71,6 +73,7 @@ fn run(cli: &Cli) -> Outcome<()> {
         Some(Command::Board(arguments)) => board::run(arguments),
         Some(Command::Image(arguments)) => image::run(arguments),
         Some(Command::Flash(arguments)) => flash::run(arguments),
+        Some(Command::Completions(arguments)) => completions::run(arguments, Cli::command()),
     }
 }
 

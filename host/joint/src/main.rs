@@ -4,6 +4,7 @@ mod board;
 mod budget;
 mod check;
 mod cli;
+mod completions;
 mod flash;
 mod hil;
 mod identify;

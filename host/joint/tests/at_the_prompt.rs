@@ -63,6 +63,29 @@ fn what_does_nothing_to_the_reference_is_refused() {
 }
 
 #[test]
+fn shells_are_given_scripts_that_know_the_commands_and_their_words() {
+    let place = folder();
+    for shell in ["bash", "zsh", "fish"] {
+        let script = joint_in(place.path(), &["completions", shell]).well().out;
+        for word in ["hil", "completions", "no-reference", "lockstep"] {
+            assert!(script.contains(word), "{shell}: {word}");
+        }
+    }
+    joint_in(place.path(), &["completions", "cmd"]).refused(&["cmd", "bash"]);
+}
+
+#[test]
+fn the_version_says_its_commit_where_there_is_one() {
+    let said = joint_in(folder().path(), &["--version"]).well().out;
+    let (version, commit) = said.trim_end().split_once(" (commit ").unwrap_or((said.trim_end(), ""));
+    assert_eq!(version, format!("joint {}", env!("CARGO_PKG_VERSION")));
+    let known = report::provenance::git_commit();
+    assert_eq!(commit.is_empty(), known.is_none(), "{said}");
+    let digits = commit.trim_end_matches(')').trim_end_matches(", changed");
+    assert!(known.is_none_or(|known| known.starts_with(digits)), "{said}");
+}
+
+#[test]
 fn two_runs_into_one_folder_do_not_mix_and_a_killed_one_does_not_stand_in_the_way() {
     let place = folder();
     let out = text(place.path());

@@ -1,0 +1,26 @@
+//! `joint completions`: a script by which a shell completes commands, options and their words.
+
+use clap::Command;
+use clap_complete::{Shell, generate};
+
+use report::failure::Outcome;
+use report::output;
+
+/// Arguments of `joint completions`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  joint completions bash > ~/.local/share/bash-completion/completions/joint
+  joint completions zsh > ~/.zfunc/_joint               with fpath+=~/.zfunc before compinit in ~/.zshrc
+  joint completions fish > ~/.config/fish/completions/joint.fish")]
+pub struct Arguments {
+    /// Shell that the script is for
+    #[arg(value_enum, value_name = "SHELL")]
+    shell: Shell,
+}
+
+/// Prints the script for a command line.
+pub fn run(arguments: &Arguments, mut command: Command) -> Outcome<()> {
+    let mut script = Vec::new();
+    generate(arguments.shell, &mut command, "joint", &mut script);
+    output::print(&String::from_utf8_lossy(&script))
+}

@@ -105,6 +105,16 @@ fn a_controller_that_does_nothing_fails_and_the_report_leads_with_it() {
     assert!(page.contains("What failed") && page.contains("<svg"), "no picture of the failure");
     let junit = fs::read_to_string(folder.path().join("out/junit.xml")).expect("written");
     assert!(junit.contains("tests=\"2\" failures=\"1\""), "{junit}");
+    let times = |tag: &str| -> Vec<f64> {
+        let lines = junit.lines().filter(|line| line.trim_start().starts_with(tag));
+        lines
+            .map(|line| line.split(" time=\"").nth(1).and_then(|rest| rest.split('"').next()).expect("a time"))
+            .map(|time| time.parse().expect("seconds"))
+            .collect()
+    };
+    let (cases, suite) = (times("<testcase "), times("<testsuite "));
+    assert_eq!(cases.len(), 2);
+    assert!(suite[0] > 0.0 && (cases.iter().sum::<f64>() - suite[0]).abs() < 2e-3, "{cases:?} of {suite:?}");
     let log = folder.path().join("out").join(results["tests"][0]["runs"][0]["log"].as_str().expect("a log"));
     let messages = mcap::MessageStream::new(&fs::read(log).expect("a log")).expect("MCAP").count();
     assert_eq!(messages, 1200);

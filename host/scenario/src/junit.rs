@@ -1,5 +1,6 @@
 //! The results as JUnit XML, for a lab's own test server: a suite for each file, a case for each assertion; a file that could
-//! not run is a case that was skipped. What JUnit has no word for is in the JSON.
+//! not run is a case that was skipped. Assertions are judged on the same runs: each has an equal share of their time, so that
+//! the cases' times add up to the suite's. What JUnit has no word for is in the JSON.
 
 use std::fmt::Write;
 
@@ -33,6 +34,7 @@ fn suite(xml: &mut String, test: &TestRecord, date: &str) {
     let name = escaped(&test.file);
     let errors = usize::from(test.broken.is_some());
     let failed = test.failed().count();
+    let time = test.seconds / cases(test) as f64;
     let _ = writeln!(
         xml,
         "  <testsuite name=\"{name}\" tests=\"{}\" failures=\"{failed}\" errors=\"{errors}\" skipped=\"0\" time=\"{:.3}\" timestamp=\"{}\">",
@@ -41,7 +43,7 @@ fn suite(xml: &mut String, test: &TestRecord, date: &str) {
         escaped(date)
     );
     if test.broken.is_some() || test.assertions.is_empty() {
-        let _ = write!(xml, "    <testcase classname=\"{name}\" name=\"runs to its end\"");
+        let _ = write!(xml, "    <testcase classname=\"{name}\" name=\"runs to its end\" time=\"{time:.3}\"");
         match &test.broken {
             Some(why) => {
                 let _ = writeln!(
@@ -61,7 +63,7 @@ fn suite(xml: &mut String, test: &TestRecord, date: &str) {
             Bound::None => String::new(),
         };
         let title = escaped(&format!("{} ({}) {bound}", assertion.name, assertion.aggregate));
-        let _ = write!(xml, "    <testcase classname=\"{name}\" name=\"{title}\"");
+        let _ = write!(xml, "    <testcase classname=\"{name}\" name=\"{title}\" time=\"{time:.3}\"");
         if assertion.verdict == Verdict::Failed {
             let figure = assertion.figure.map_or("none".to_owned(), |figure| figure.to_string());
             let seed = assertion.seed.map_or(String::new(), |seed| format!(", seed {seed}"));
@@ -81,7 +83,7 @@ fn left_out(xml: &mut String, not_run: &NotRun, date: &str) {
     let _ = writeln!(
         xml,
         "  <testsuite name=\"{name}\" tests=\"1\" failures=\"0\" errors=\"0\" skipped=\"1\" time=\"0\" timestamp=\"{date}\">\n    \
-         <testcase classname=\"{name}\" name=\"runs to its end\">\n      <skipped type=\"not run\" message=\"{message}\"/>\n    </testcase>\n  \
+         <testcase classname=\"{name}\" name=\"runs to its end\" time=\"0\">\n      <skipped type=\"not run\" message=\"{message}\"/>\n    </testcase>\n  \
          </testsuite>"
     );
 }

@@ -4,8 +4,10 @@
 use std::ffi::OsString;
 use std::process::Command;
 
+use board::target::tool;
 use report::failure::{Failure, Outcome};
 use report::interruption;
+use report::progress::Progress;
 use report::workspace::workspace;
 
 /// Everything behind the subcommand, as the program itself understands it.
@@ -22,11 +24,13 @@ pub fn run(package: &str, rest: &[OsString]) -> Outcome<()> {
     // Ctrl-C reaches the program as well, which ends in order; this one waits for it.
     interruption::watch()?;
     let _in_order = interruption::InOrder::begin();
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let status = Command::new(cargo)
-        .args(["run", "--quiet", "--release", "--package", package, "--manifest-path"])
-        .arg(workspace().join("Cargo.toml"))
-        .arg("--")
+    let progress = Progress::new();
+    progress.stage(&format!("building {package}"));
+    let built = tool::follow(&mut cargo("build", package), &format!("building {package}"), &|line| progress.say(line));
+    progress.clear();
+    interruption::explain(built)?;
+    let status = cargo("run", package)
+        .args(["--quiet", "--"])
         .args(rest)
         .status()
         .map_err(|error| Failure::new(format!("cannot start `{package}` through cargo: {error}")))?;
@@ -36,4 +40,12 @@ pub fn run(package: &str, rest: &[OsString]) -> Outcome<()> {
         Some(code) => std::process::exit(code),
         None => Err(Failure::interrupted(format!("`{package}` was ended by a signal"))),
     }
+}
+
+/// Cargo with a program of the workspace.
+fn cargo(subcommand: &str, package: &str) -> Command {
+    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    command.args([subcommand, "--release", "--package", package, "--manifest-path"]);
+    command.arg(workspace().join("Cargo.toml"));
+    command
 }

@@ -1,7 +1,7 @@
 //! Compiles the firmware's binaries, one at a time in each build folder, and moves each result into place atomically.
 
 use std::ffi::OsStr;
-use std::fs::{self, File};
+use std::fs::{self, File, TryLockError};
 use std::io;
 use std::path::Path;
 
@@ -26,7 +26,7 @@ pub(super) fn compile(
     say: Say<'_>,
 ) -> Outcome<Vec<u8>> {
     // One build at a time in this folder, and none between a build and the copy of its result.
-    let _lock = lock(toolchain.folder())?;
+    let _lock = lock(toolchain.folder(), say)?;
     let mut command = toolchain.cargo("build");
     command
         .args(["--package", package, "--profile", PROFILE, "--bin", binary])
@@ -37,11 +37,14 @@ pub(super) fn compile(
     fs::read(&built).map_err(|error| Failure::new(format!("{}: {error}", built.display())))
 }
 
-fn lock(folder: &Path) -> Outcome<File> {
+fn lock(folder: &Path, say: Say<'_>) -> Outcome<File> {
     let path = folder.join(".one-at-a-time");
     let open = || {
         fs::create_dir_all(folder)?;
         let file = File::create(&path)?;
+        if let Err(TryLockError::WouldBlock) = file.try_lock() {
+            say(&format!("waiting for another build of firmware in {}", folder.display()));
+        }
         file.lock()?;
         Ok(file)
     };
@@ -59,7 +62,27 @@ pub(super) fn store(images: &Path, place: &Path, elf: &[u8]) -> Outcome<()> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Mutex;
+
     use super::*;
+
+    #[test]
+    fn waiting_for_another_build_is_said() {
+        let folder = tempfile::tempdir().unwrap();
+        let said = Mutex::new(Vec::new());
+        let say = |line: &str| said.lock().unwrap().push(line.to_owned());
+        let first = lock(folder.path(), &say).unwrap();
+        assert!(said.lock().unwrap().is_empty());
+        std::thread::scope(|scope| {
+            scope.spawn(|| lock(folder.path(), &say).unwrap());
+            while said.lock().unwrap().is_empty() {
+                std::thread::yield_now();
+            }
+            drop(first);
+        });
+        let said = said.into_inner().unwrap();
+        assert!(said.len() == 1 && said[0].starts_with("waiting for another build of firmware in"), "{said:?}");
+    }
 
     #[test]
     fn an_image_that_cannot_be_stored_is_named() {

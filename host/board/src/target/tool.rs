@@ -8,6 +8,9 @@ use std::process::{Command, Stdio};
 use super::Say;
 use report::failure::{Failure, Outcome};
 
+/// How cargo says that another one is at work.
+const WAITS: &str = "Blocking waiting for file lock on";
+
 /// Most lines of a failed program's output that an error shows.
 const LINES_SHOWN: usize = 60;
 
@@ -43,7 +46,10 @@ pub fn follow(command: &mut Command, what: &str, say: Say<'_>) -> Outcome<()> {
     if let Some(stderr) = child.stderr.take() {
         for line in BufReader::new(stderr).split(b'\n').map_while(Result::ok) {
             let line = String::from_utf8_lossy(&line).into_owned();
-            say(line.trim());
+            match line.trim().strip_prefix(WAITS) {
+                Some(what) => say(&format!("waiting for another cargo, which holds the {}", what.trim())),
+                None => say(line.trim()),
+            }
             lines.push(line);
         }
     }
@@ -89,6 +95,15 @@ mod tests {
         let say = |line: &str| said.borrow_mut().push(line.to_owned());
         follow(&mut shell("echo one >&2; echo unseen; echo two >&2"), "counting", &say).unwrap();
         assert_eq!(*said.borrow(), ["one", "two"]);
+    }
+
+    #[test]
+    fn that_cargo_waits_for_another_is_said_in_words_of_our_own() {
+        let said = RefCell::new(Vec::new());
+        let say = |line: &str| said.borrow_mut().push(line.to_owned());
+        let script = "echo '    Blocking waiting for file lock on build directory' >&2";
+        follow(&mut shell(script), "building", &say).unwrap();
+        assert_eq!(*said.borrow(), ["waiting for another cargo, which holds the build directory"]);
     }
 
     #[test]

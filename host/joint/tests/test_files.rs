@@ -121,6 +121,39 @@ fn a_controller_that_does_nothing_fails_and_the_report_leads_with_it() {
 }
 
 #[test]
+fn a_motor_that_is_held_is_called_locked_and_runs_once() {
+    let folder = folder();
+    let ended = run(folder.path(), "profile = \"hysteresis\"", &[]).well();
+    assert!(ended.out.contains("hysteresis of joint Q1, locked"), "{ended:?}");
+    let test = &results(folder.path())["tests"][0];
+    assert_eq!(test["controller"], "locked");
+    let ran: Vec<&str> =
+        test["runs"].as_array().expect("runs").iter().filter_map(|run| run["controller"].as_str()).collect();
+    assert_eq!(ran, ["locked", "output_integral"]);
+}
+
+#[test]
+fn what_failed_runs_again_as_it_was() {
+    let head =
+        "profile = \"T2\"\nseeds = 3\n[controller]\nrivals = []\n[plant]\nhalf_backlash_um = [40, 80]\n[assert]\n";
+    for (bound, with_one_seed) in [("\"<= 0\"", true), ("{ mean = \"<= 0\" }", false)] {
+        let folder = folder();
+        assert_eq!(run(folder.path(), &format!("{head}rms_mrad = {bound}"), &[]).code, Some(1));
+        let of = |out: &str| json(&folder.path().join(out).join("record.json"))["tests"][0].clone();
+        let first = of("out");
+        let replay = first["replay"].as_str().expect("a command").to_owned();
+        let seed = format!(" --seed {}", first["assertions"][0]["seed"]);
+        assert_eq!(replay.ends_with(&seed), with_one_seed, "{replay}");
+        assert_eq!(replay.contains("--seed"), with_one_seed, "{replay}");
+        let again = folder.path().join("again");
+        let words: Vec<&str> = replay.split(' ').skip(2).chain(["--out", text(&again)]).collect();
+        assert_eq!(joint(&words).code, Some(1), "{replay}");
+        assert_eq!(of("again")["assertions"][0]["figure"], first["assertions"][0]["figure"], "{replay}");
+        assert_eq!(of("again")["replay"], first["replay"]);
+    }
+}
+
+#[test]
 fn what_cannot_run_in_a_folder_is_named_and_the_rest_runs() {
     let folder = folder();
     let tests = folder.path().join("tests");

@@ -13,7 +13,9 @@ pub enum ControllerName {
     Probe,
     /// PID on the motor: position control without compensation.
     MotorPid,
-    /// The same with an offset by the sign of the speed.
+    /// The same PID where it is the motor that is held, and the link that is pushed.
+    Locked,
+    /// The PID with an offset by the sign of the speed.
     VelocitySign,
     /// Output position over motor speed.
     LoadCascade,
@@ -67,8 +69,11 @@ impl ControllerName {
         Self::Off,
     ];
 
-    /// From its word in a file; `none` and `locked` stand for the baseline.
+    /// From its word in a file; `none` stands for the baseline, and `locked` too where that is an impedance.
     pub fn of_word(word: &str, impedance: bool) -> Self {
+        if word == Self::Locked.word() && !impedance {
+            return Self::Locked;
+        }
         let found = Self::ALL.into_iter().find(|name| name.word() == word);
         found.unwrap_or(Self::baseline(impedance))
     }
@@ -81,6 +86,7 @@ impl ControllerName {
             Self::Impedance => ("impedance", "compensation, impedance"),
             Self::Probe => ("probe", "width probe"),
             Self::MotorPid => ("motor_pid", "motor PID"),
+            Self::Locked => ("locked", "motor held by its PID"),
             Self::VelocitySign => ("velocity_sign", "velocity-sign offset"),
             Self::LoadCascade => ("load_cascade", "load cascade"),
             Self::OutputIntegral => ("output_integral", "output integral and jump"),
@@ -120,6 +126,12 @@ impl ControllerName {
     /// The strongest controller without compensation.
     pub fn best_rival(impedance: bool) -> Self {
         if impedance { Self::LinkSpring } else { Self::OutputIntegral }
+    }
+
+    /// Whether two are one law under two names.
+    pub fn is_the_same_as(self, other: Self) -> bool {
+        let law = |name| if name == Self::Locked { Self::MotorPid } else { name };
+        law(self) == law(other)
     }
 
     /// The controller that gives the same impedance on a joint without a gap, from which the deviation is measured.

@@ -162,6 +162,8 @@ fn read_table(table: &DeTable<'_>, notes: &Notes<'_>) -> Option<TestFile> {
             notes.error(controller.place("rivals"), format!("{} cannot run beside this", rival.word()), help);
         }
     }
+    // The same law twice shows nothing, unless a bound asks for it.
+    rivals.retain(|rival| name.is_none_or(|name| !rival.is_the_same_as(name)));
     let about = assertions::TestTraits { controller: name, gains: gains.is_some(), profile: profile.as_ref() };
     let assertions = assertions::read(&top, &about);
     for rival in assertions.iter().filter_map(Assertion::rival) {

@@ -1,7 +1,10 @@
 //! The options that name a board, its role and its line, which every command that talks to one has.
 
+use std::sync::LazyLock;
+
 use clap::ValueEnum;
 use link::messages::{Role, RunMode};
+use report::command_line::quoted;
 
 use crate::target::board::Board;
 
@@ -14,15 +17,37 @@ pub struct LineOptions {
     /// Speed of the serial port in baud [default: that of the board's image]
     #[arg(long, value_name = "BAUD", requires = "port", value_parser = clap::value_parser!(u32).range(1..))]
     pub baud: Option<u32>,
-    /// Board behind the port: a name of boards/, or the path of a board file
-    #[arg(long, value_name = "NAME|FILE", value_parser = Board::parse, default_value = board_file::DEFAULT, requires = "port")]
-    pub board: Board,
+    /// Board behind the port: a name of boards/, or the path of a board file [default: olimex-h405]
+    #[arg(long = "board", value_name = "NAME|FILE", value_parser = Board::parse, requires = "port")]
+    named_board: Option<Board>,
 }
+
+/// The board that is meant where none is named.
+static USUAL: LazyLock<Board> = LazyLock::new(Board::emulated);
 
 impl LineOptions {
     /// Speed of the line [baud].
     pub fn baud_rate(&self) -> u32 {
-        self.baud.unwrap_or(self.board.baud_rate())
+        self.baud.unwrap_or(self.board().baud_rate())
+    }
+
+    /// The board behind the port, or the emulated one.
+    pub fn board(&self) -> &Board {
+        self.named_board.as_ref().unwrap_or(&USUAL)
+    }
+
+    /// The board as the user named it; the word for one in its place where none is named, since no image is for just any
+    /// board.
+    pub fn board_word(&self) -> String {
+        self.named_board.as_ref().map_or("NAME".to_owned(), |board| quoted(&board.named))
+    }
+
+    /// The options that name port and board again, each with a space in front.
+    pub fn again(&self) -> String {
+        let port = self.port.as_ref().map(|port| format!(" --port {}", quoted(port)));
+        let baud = self.baud.map(|baud| format!(" --baud {baud}"));
+        let board = self.named_board.as_ref().map(|board| format!(" --board {}", quoted(&board.named)));
+        [port, baud, board].into_iter().flatten().collect()
     }
 }
 

@@ -104,7 +104,7 @@ fn prepare(request: &RunRequest<'_>, plan: &RunPlan, progress: &Progress) -> Out
         None => Connection::emulated(progress, |board| build(request, plan, board, progress)),
         Some(path) => Connection::on_port(path, request.line.baud_rate(), || match request.no_build {
             true => Ok(None),
-            false => build(request, plan, &request.line.board, progress).map(Some),
+            false => build(request, plan, request.line.board(), progress).map(Some),
         }),
     }
 }

@@ -73,7 +73,7 @@ impl RunPlan {
         let path = image::joint_file(request.file, &loaded.name);
         let Loaded { name, file: joint, .. } = loaded;
         let parameters = &joint.parameters;
-        let digest = twin::tables_digest(parameters, request.line.board.chip(), request.rate)?;
+        let digest = twin::tables_digest(parameters, request.line.board().chip(), request.rate)?;
         let profile = TorqueProfile::load(request.profile, parameters, request.rate, request.duration)?;
         let mode = match (request.mode, &request.line.port) {
             (Some(Mode::Lockstep), _) | (None, None) => RunMode::Lockstep,
@@ -94,7 +94,7 @@ impl RunPlan {
         };
         let command_timeout = command_timeout(request.rate, request.line.port.is_none());
         let settings = RunSettings { mode, decimation: request.decimation, command_timeout, from_memory: false };
-        Ok(Self { name, path, board: request.line.board.clone(), expected, profile, settings, joint })
+        Ok(Self { name, path, board: request.line.board().clone(), expected, profile, settings, joint })
     }
 }
 
@@ -104,22 +104,19 @@ impl RunRequest<'_> {
         if self.line.port.is_none() {
             return BoardHelp::Rebuild;
         }
-        let (file, board) = (self.file.display(), &self.line.board.named);
+        let (file, board) = (quoted(&self.file.display().to_string()), self.line.board_word());
         let command = format!("cargo joint flash {file} --board {board}{}", self.rate_option());
         if self.no_build { BoardHelp::Flash(command) } else { BoardHelp::FlashBuilt(command) }
     }
 
     /// The command that makes this run again.
     pub fn replay_command(&self) -> String {
-        let mut command = format!("cargo joint hil {}", quoted(&self.file.display().to_string()));
+        let mut command = format!("cargo joint hil {}{}", quoted(&self.file.display().to_string()), self.line.again());
         let mut option = |name: &str, value: Option<String>| {
             if let Some(value) = value {
                 command += &format!(" --{name} {}", quoted(&value));
             }
         };
-        option("port", self.line.port.clone());
-        option("baud", self.line.baud.map(|baud| baud.to_string()));
-        option("board", self.line.port.as_ref().map(|_| self.line.board.named.clone()));
         option("mode", self.mode.and_then(|mode| mode.to_possible_value()).map(|mode| mode.get_name().to_owned()));
         option("profile", Some(self.profile.to_owned()));
         option("duration", self.duration.map(|duration| duration.to_string()));

@@ -5,6 +5,7 @@ mod arguments;
 mod tests;
 
 pub use arguments::Arguments;
+use board::line_options::LineOptions;
 use proof::everything;
 use report::failure::{Failure, Outcome};
 use report::output;
@@ -25,7 +26,7 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
         }
         match (&arguments.file, &arguments.line.port) {
             (Some(_), _) => joint,
-            (None, Some(port)) => joint.and_then(|()| say_how_to_go_on(port, &arguments.line.board.named)),
+            (None, Some(_)) => joint.and_then(|()| say_how_to_go_on(&arguments.line)),
             (None, None) => run_tests(arguments, joint, progress),
         }
     })
@@ -56,9 +57,10 @@ fn run_tests(arguments: &Arguments, joint: Outcome<()>, progress: &Progress) -> 
 }
 
 /// A real board keeps the image that it has until the user flashes another one.
-fn say_how_to_go_on(port: &str, board: &str) -> Outcome<()> {
+fn say_how_to_go_on(line: &LineOptions) -> Outcome<()> {
     output::print(&format!(
         "tests of observer and compensation take an image of their own, which is built and named by\n\
-         joint hil hil/t2.toml --role loop --port {port} --board {board}\n"
+         joint hil hil/t2.toml --role loop{}\n",
+        line.again()
     ))
 }

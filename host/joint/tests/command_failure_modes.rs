@@ -112,7 +112,7 @@ fn another_board_is_refused_with_the_command_that_mends_it() {
     for misbehaviour in
         [Misbehaviour::AnotherDigest, Misbehaviour::AnotherRole, Misbehaviour::Protocol(PROTOCOL_VERSION + 1)]
     {
-        run(misbehaviour).0.refused(&["cargo joint flash q1 --board olimex-h405"]);
+        run(misbehaviour).0.refused(&["cargo joint flash q1 --board NAME"]);
     }
 }
 

@@ -102,7 +102,7 @@ fn boards(arguments: &Arguments, role: Role) -> BoardRequest<'_> {
         role,
         port: arguments.line.port.as_deref(),
         baud: arguments.line.baud,
-        board: &arguments.line.board,
+        board: arguments.line.board(),
         no_build: arguments.no_build,
         mode: arguments.mode.map(Into::into),
     }

@@ -31,13 +31,12 @@ impl AnsweringBoard {
         let (connection, options) = match &place.line.port {
             Some(path) => {
                 let baud = place.line.baud_rate();
-                let options = format!(" --port {path} --board {}", place.line.board.named);
-                (Connection::on_port(path, baud, || Ok(None))?, options)
+                (Connection::on_port(path, baud, || Ok(None))?, place.line.again())
             }
             None => (emulated(place, loaded, progress)?, String::new()),
         };
         progress.stage("calling the board");
-        let flash = format!("cargo joint flash {file} --role observer --board {}", place.line.board.named);
+        let flash = format!("cargo joint flash {file} --role observer --board {}", place.line.board_word());
         let help = if place.line.port.is_some() { BoardHelp::Flash(flash.clone()) } else { BoardHelp::Rebuild };
         let mut session = Session::new(connection.line, connection.supervisor);
         let hello = session.call(&help, connection.timeout)?;

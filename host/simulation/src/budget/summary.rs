@@ -2,10 +2,11 @@
 //! `joint-budget/1`. They are computed by `model_core::gears::design`.
 
 use model_core::gears::certificate::{Certificate, ErrorQuantiles};
-use model_core::gears::design::{DesignError, Effort, Processor, Substeps, certificate};
+use model_core::gears::design::{DesignError, Effort, Processor, StepSize, Substeps, certificate};
 use parameters::JointParameters;
 use serde::Serialize;
 
+use super::verdict::highest;
 use board::target::board::Board;
 
 /// Says which fields there are; rises when one changes its meaning or goes.
@@ -59,7 +60,7 @@ pub struct BudgetSummary {
     pub unseen_departure: Option<f64>,
     /// Below it no step is stable.
     pub lowest_rate_Hz: u32,
-    /// Above it the board has no time.
+    /// The highest that the board's clock can be divided to and has time for.
     pub highest_rate_Hz: u32,
 }
 
@@ -87,10 +88,17 @@ pub struct TickWork {
 pub fn summary(parameters: &JointParameters, board: &Board, rate: u32) -> Result<BudgetSummary, DesignError> {
     let processor = board.processor();
     let certificate = certificate(parameters, rate, Effort::Within(processor), &processor)?;
-    Ok(of(parameters, board, &processor, &certificate))
+    let highest = highest(&StepSize::new(parameters), &processor);
+    Ok(of(parameters, board, &processor, &certificate, highest))
 }
 
-fn of(parameters: &JointParameters, board: &Board, processor: &Processor, certificate: &Certificate) -> BudgetSummary {
+fn of(
+    parameters: &JointParameters,
+    board: &Board,
+    processor: &Processor,
+    certificate: &Certificate,
+    highest: u32,
+) -> BudgetSummary {
     let rate = certificate.tick_rate;
     let work = |instructions: u32| TickWork {
         instructions,
@@ -125,6 +133,6 @@ fn of(parameters: &JointParameters, board: &Board, processor: &Processor, certif
         unseen_for_s: certificate.unseen.duration,
         unseen_departure: certificate.unseen.departure,
         lowest_rate_Hz: certificate.lowest_rate,
-        highest_rate_Hz: certificate.highest_rate,
+        highest_rate_Hz: highest,
     }
 }

@@ -103,3 +103,21 @@ fn text_and_json_say_the_same() {
     assert!(json.contains("\"schema\": \"joint-budget/1\""), "{json}");
     assert!(text.contains("fits"), "{text}");
 }
+
+#[test]
+fn a_rate_that_fits_is_within_the_limits_that_are_told() {
+    for name in PRESETS {
+        for board in Board::presets().expect("good presets") {
+            for rate in [5000, 20_000, 40_000].into_iter().filter(|rate| refuse(&preset(name), &board, *rate).is_ok()) {
+                let told = summary(&preset(name), &board, rate).expect("it fits");
+                let (lowest, highest) = (told.lowest_rate_Hz, told.highest_rate_Hz);
+                assert!(
+                    (lowest..=highest).contains(&rate),
+                    "{name}, {}: {rate} of {lowest} to {highest}",
+                    board.name()
+                );
+                assert!(refuse(&preset(name), &board, highest).is_ok(), "{name}, {}: {highest}", board.name());
+            }
+        }
+    }
+}

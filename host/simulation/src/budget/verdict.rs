@@ -42,13 +42,21 @@ fn obstacle(step_size: &StepSize, processor: &Processor, rate: u32) -> Option<St
     })
 }
 
+/// The highest rate that nothing stands against; zero if there is none.
+pub(super) fn highest(step_size: &StepSize, processor: &Processor) -> u32 {
+    rates(step_size, processor).find(|candidate| obstacle(step_size, processor, *candidate).is_none()).unwrap_or(0)
+}
+
+/// Rates that can be made of a processor's clock and are stable, the highest first.
+fn rates(step_size: &StepSize, processor: &Processor) -> impl Iterator<Item = u32> {
+    let clock = processor.clock;
+    let divisors = (clock / HIGHEST).max(1)..=clock / step_size.lowest_rate(Effort::Within(*processor));
+    divisors.filter(move |divisor| clock.is_multiple_of(*divisor)).map(move |divisor| clock / divisor)
+}
+
 /// The nearest rate that nothing stands against; of two as near, the higher.
 pub(super) fn nearest(step_size: &StepSize, processor: &Processor, rate: u32) -> Option<u32> {
-    let lowest = step_size.lowest_rate(Effort::Within(*processor));
-    let divisors = processor.clock / HIGHEST..=processor.clock / lowest;
-    divisors
-        .filter(|divisor| *divisor > 0 && processor.clock.is_multiple_of(*divisor))
-        .map(|divisor| processor.clock / divisor)
+    rates(step_size, processor)
         .filter(|candidate| obstacle(step_size, processor, *candidate).is_none())
         .min_by_key(|candidate| (candidate.abs_diff(rate), u32::MAX - candidate))
 }

@@ -3,5 +3,7 @@
 
 pub mod budget;
 pub mod check;
+#[cfg(test)]
+mod schema;
 pub mod sim;
 pub mod sweep;

@@ -14,6 +14,7 @@ const SCHEMA: &str = "joint-budget/1";
 
 /// A certificate on a board.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[allow(non_snake_case, reason = "Hz is written Hz")]
 pub struct BudgetSummary {
     /// `joint-budget/1`.
@@ -66,6 +67,7 @@ pub struct BudgetSummary {
 
 /// RMS error over the motion's standard deviation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct PredictedError {
     /// Half of all motions stay below.
     pub typical: f64,
@@ -75,6 +77,7 @@ pub struct PredictedError {
 
 /// Cost of a tick.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct TickWork {
     /// Instructions.
     pub instructions: u32,

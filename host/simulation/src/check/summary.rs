@@ -8,6 +8,7 @@ pub(super) const SCHEMA: &str = "joint-check/1";
 
 /// Everything that `joint check` says of a joint.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct CheckSummary {
     /// `joint-check/1`.
     pub schema: String,
@@ -39,6 +40,7 @@ pub struct CheckSummary {
 
 /// Teeth, radii, ratio.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[allow(missing_docs, reason = "names and units say it")]
 pub struct GeometryFigures {
     pub planets: usize,
@@ -59,6 +61,7 @@ pub struct GeometryFigures {
 
 /// Masses along the line of action, I / r^2.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Masses {
     /// The sun's own.
     pub sun_kg: f64,
@@ -74,6 +77,7 @@ pub struct Masses {
 
 /// omega_n and natural frequencies, undamped, all meshes in contact at mean stiffness.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[allow(non_snake_case, reason = "Hz is written Hz")]
 pub struct Frequencies {
     /// Eq. 18.
@@ -88,6 +92,7 @@ pub struct Frequencies {
 
 /// One family of meshes. Lists hold one value for each planet.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[allow(non_snake_case, reason = "N is written N")]
 pub struct MeshFigures {
     /// `sun_planet` or `ring_planet`.
@@ -108,6 +113,7 @@ pub struct MeshFigures {
 
 /// Seen from the link.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[allow(non_snake_case, reason = "N is written N")]
 pub struct Output {
     /// From the file.
@@ -136,6 +142,7 @@ pub struct Output {
 
 /// The fixed step at the wanted rate.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[allow(non_snake_case, reason = "Hz is written Hz")]
 pub struct FixedStep {
     /// Asked for.
@@ -160,6 +167,7 @@ pub struct FixedStep {
 
 /// The sources of the file's numbers.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Numbers {
     /// Numbers in the file.
     pub stated: usize,
@@ -171,6 +179,7 @@ pub struct Numbers {
 
 /// What is odd but can be used.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Warning {
     /// Line of the file, from 1.
     pub line: usize,

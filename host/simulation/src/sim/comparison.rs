@@ -50,6 +50,7 @@ pub struct Comparison {
 
 /// One line of the table.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Row {
     /// Name of the scheme.
     pub scheme: &'static str,

@@ -15,6 +15,7 @@ const MOST_POINTS: usize = 20_000;
 
 /// Energy balance of a run [J].
 #[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[allow(missing_docs, non_snake_case, reason = "names and units say it")]
 pub struct Balance {
     /// Kinetic and elastic energy at the start and at the end.

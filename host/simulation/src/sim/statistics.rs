@@ -28,6 +28,7 @@ pub struct MeshSums {
 
 /// Figures of one mesh.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[allow(non_snake_case, reason = "N is written N")]
 pub struct MeshStatistics {
     /// Share of time on the drive side [-].

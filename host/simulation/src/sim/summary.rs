@@ -14,6 +14,7 @@ const SCHEMA: &str = "joint-sim/1";
 
 /// All figures of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[allow(non_snake_case, reason = "units are written as they are")]
 pub struct SimulationSummary {
     /// `joint-sim/1`.
@@ -62,6 +63,7 @@ pub struct SimulationSummary {
 
 /// One mesh.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Mesh {
     /// Such as `sun–planet 1`.
     pub name: String,

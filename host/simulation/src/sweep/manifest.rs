@@ -18,6 +18,7 @@ const SCHEMA: &str = "joint-sweep/1";
 
 /// A sweep.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Manifest {
     /// `joint-sweep/1`.
     pub schema: String,

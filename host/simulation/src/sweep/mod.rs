@@ -7,7 +7,7 @@ mod axis;
 mod folder;
 mod grid;
 mod journal;
-mod manifest;
+pub(crate) mod manifest;
 mod merge;
 mod metrics;
 mod work;

@@ -1,0 +1,16 @@
+//! The published schemas of what the commands of this crate write as JSON are those of their types. Only tests are here.
+
+use report::schema::assert_published;
+
+use crate::budget::BudgetSummary;
+use crate::check::CheckSummary;
+use crate::sim::summary::SimulationSummary;
+use crate::sweep::manifest::Manifest;
+
+#[test]
+fn the_published_schemas_are_those_of_the_types() {
+    assert_published::<CheckSummary>("check.schema.json");
+    assert_published::<BudgetSummary>("budget.schema.json");
+    assert_published::<SimulationSummary>("sim.schema.json");
+    assert_published::<Manifest>("sweep.schema.json");
+}

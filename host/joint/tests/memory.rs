@@ -42,6 +42,26 @@ fn memory(words: &[&str], port: &str) -> Ended {
     joint(&[&["memory"], words, &["--port", port]].concat())
 }
 
+/// What is learnt on the host is a board's memory, with the joint file that it is good for.
+#[test]
+fn what_is_learnt_on_the_host_is_had_as_a_file() {
+    let folder = folder();
+    let test = folder.path().join("learning.toml");
+    fs::write(&test, "duration_s = 3\nsettle_s = 0.5\nprofile = \"T2\"\n[controller]\nrivals = []\n").expect("room");
+    let out = folder.path().join("out");
+    joint(&["hil", text(&test), "--host", "--memory", "--out", text(&out)]).well();
+    let run = &command::json(&out.join("record.json"))["tests"][0]["runs"][0];
+    let memory = out.join(run["memory"].as_str().expect("it was to be kept"));
+    assert_eq!(fs::metadata(&memory).expect("written").len(), MEMORY_BYTES as u64);
+    let told = memory.with_extension("toml");
+    let shown = joint(&["memory", "show", text(&memory), "--joint", text(&told)]).well().out;
+    assert!(shown.contains("half-backlash b"), "{shown}");
+    joint(&["memory", "show", text(&memory), "--joint", "s1"]).refused(&["another joint"]);
+    joint(&["hil", text(&test), "--memory"]).refused(&["--host"]);
+    joint(&["hil", text(&test), "--host", "--out", text(&out)]).well();
+    assert!(!memory.exists() && !told.exists(), "what an older run has learnt is not of this one");
+}
+
 #[test]
 fn what_was_learnt_is_shown_with_units_beside_the_joint_file() {
     let folder = folder();

@@ -10,6 +10,7 @@ use super::controller::ControllerName;
 use super::execution::{RunSpec, execute};
 use super::file::{Aggregate, fault_word};
 use super::log_file;
+use super::memory_file;
 use super::on_board::Boards;
 use super::plant::PlantName;
 use super::record::{AssertionRecord, TestRecord, TestRun};
@@ -33,6 +34,8 @@ pub struct RunOptions<'c> {
     pub full: bool,
     /// The boards that the tested controller runs on, if it does not run here.
     pub boards: Option<&'c Boards<'c>>,
+    /// Whether what observers have learnt is kept, as a board keeps it.
+    pub memories: bool,
     /// Where logs go.
     pub folder: &'c Folder,
     /// Told after every run how many are done.
@@ -170,8 +173,8 @@ fn replay(test: &Test, options: &RunOptions<'_>, alone: Option<u64>) -> String {
 
 fn one(test: &Test, options: &RunOptions<'_>, job: &Job, deadline: Instant) -> Outcome<Done> {
     let mut case = test.case(job.seed)?;
-    if let Some(boards) = options.boards {
-        boards.set_nominal(&mut case)?;
+    if options.boards.is_some() || options.memories {
+        case.round_nominal()?;
     }
     let spec = RunSpec { controller: job.controller, plant: options.plant, without_gap: false };
     let mut run = TestRun { seed: job.seed, controller: job.controller.word().to_owned(), ..TestRun::default() };
@@ -205,6 +208,10 @@ fn one(test: &Test, options: &RunOptions<'_>, job: &Job, deadline: Instant) -> O
             ];
             let remarks = remarks.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
             run.log = Some(log_file::write(options.folder, &name, &history, remarks)?);
+            if let Some(memory) = history.memory.filter(|_| options.memories) {
+                let name = name.trim_end_matches(".mcap");
+                run.memory = Some(memory_file::write(options.folder, name, &memory, &case.nominal_text()?)?);
+            }
             Ok(Done { values: Some(values), run, trace: Trace::of(&history) })
         }
         Err(RunError::Refused(failure)) => Err(failure.while_doing(&test.name)),

@@ -104,11 +104,13 @@ impl Case {
             .map_err(|refused| Failure::new(refused.message).with_help(refused.help))
     }
 
-    /// Replaces the nominal joint by that of a joint file, so that host and a board built from the file have the same numbers
+    /// Tells controllers no more than a joint file can say, so that host and a board built from the file have the same numbers
     /// to the last bit.
-    pub fn set_nominal(&mut self, nominal: &JointFile) {
-        self.nominal = nominal.parameters.clone();
+    pub fn round_nominal(&mut self) -> Outcome<()> {
+        let nominal = read_told(&self.nominal_text()?)?;
+        self.nominal = nominal.parameters;
         self.nominal_surroundings = nominal.surroundings;
+        Ok(())
     }
 
     /// True half-backlash, mean over the planets [m].
@@ -151,6 +153,14 @@ impl Case {
         let usual = compensation_settings(&self.nominal_surroundings, file.bandwidth);
         CompensationSettings { peak_torque: file.peak_torque, ..usual }
     }
+}
+
+/// A joint file that a controller is told.
+pub fn read_told(text: &str) -> Outcome<JointFile> {
+    joint_file::read(text).map_err(|problems| {
+        let first = problems.first().map_or_else(String::new, ToString::to_string);
+        Failure::new(format!("the joint that a controller is told cannot be: {first}"))
+    })
 }
 
 /// Tries the changes of a file at both ends of their ranges, so that what cannot be is found before anything runs.

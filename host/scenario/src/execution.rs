@@ -111,6 +111,7 @@ impl RunContext<'_> {
             history.note(period);
             Ok(())
         })?;
+        history.memory = controller.memory();
         Ok(history)
     }
 }

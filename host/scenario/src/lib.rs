@@ -16,6 +16,7 @@ pub mod faults;
 pub mod file;
 mod junit;
 mod log_file;
+mod memory_file;
 pub mod metrics;
 mod observer_metrics;
 pub mod on_board;
@@ -61,6 +62,8 @@ const REPORT: &str = "report.html";
 const RECORD: &str = "record.json";
 const JUNIT: &str = "junit.xml";
 const LOGS: &str = "runs/*.mcap";
+/// Everything that tests write.
+const FILES: [&str; 6] = [REPORT, RECORD, JUNIT, LOGS, memory_file::MEMORIES, memory_file::JOINTS];
 
 /// A request to run tests.
 #[derive(Debug, Clone)]
@@ -71,6 +74,8 @@ pub struct TestRequest<'w> {
     pub seed: Option<u64>,
     /// The full lists of seeds.
     pub full: bool,
+    /// Whether what observers on the host have learnt is kept.
+    pub memories: bool,
     /// Name of the usual folder for everything that stays.
     pub name: String,
     /// Another folder.
@@ -104,7 +109,7 @@ struct PreparedGroup<'w> {
 /// Runs tests; succeeds only if all ran and passed.
 pub fn run(request: &TestRequest<'_>, progress: &Progress) -> Outcome<()> {
     let start = Instant::now();
-    let folder = Folder::choose(request.out.as_deref(), "hil/tests", &request.name, &[REPORT, RECORD, JUNIT, LOGS])?;
+    let folder = Folder::choose(request.out.as_deref(), "hil/tests", &request.name, &FILES)?;
     let mut parts = Vec::new();
     for TestGroup { path, choice, plant, boards } in &request.parts {
         let mut suite = suite::load(path, *choice, *plant)?;
@@ -134,7 +139,9 @@ pub fn run(request: &TestRequest<'_>, progress: &Progress) -> Outcome<()> {
     write(request, &folder, &record, &document)?;
     // Logs of an older run would be taken for this one's. Where a test has not run, its older log is all there is.
     if record.not_run.is_empty() {
-        folder.clear_older(LOGS)?;
+        for files in [LOGS, memory_file::MEMORIES, memory_file::JOINTS] {
+            folder.clear_older(files)?;
+        }
     }
     output::print(&format!("report: {}\n", folder.file(REPORT).display()))?;
     verdict(&record)
@@ -161,6 +168,7 @@ fn run_parts(
             seed: request.seed,
             full: request.full,
             boards: boards.as_ref(),
+            memories: request.memories,
             folder,
             done: &|runs| progress.at(runs),
         };

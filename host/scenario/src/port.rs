@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use model_core::compensation::{self, Command, ImpedancePoint, Position};
 use model_core::controller::{self, Controller};
 use model_core::numbers::Real;
-use model_core::observer::{Reading, Samples};
+use model_core::observer::{Memory, Reading, Samples};
 use reference::closed_loop::{Motion, SetPoint};
 
 use super::case::Designed;
@@ -26,6 +26,11 @@ pub trait ControllerPort {
 
     /// Keeps what has been learnt, and begins anew from it.
     fn restart_from_memory(&mut self) -> Outcome<()>;
+
+    /// What has been learnt, as a board keeps it; `None` where it is elsewhere.
+    fn memory(&self) -> Option<Memory> {
+        None
+    }
 }
 
 /// Observer and compensation in this process: the very code that a board runs.
@@ -51,6 +56,10 @@ impl ControllerPort for HostPort<'_> {
 
     fn restart_from_memory(&mut self) -> Outcome<()> {
         remember(&mut self.0)
+    }
+
+    fn memory(&self) -> Option<Memory> {
+        Some(self.0.save())
     }
 }
 

@@ -138,6 +138,8 @@ pub struct TestRun {
     pub digest: String,
     /// The MCAP log, beside the report.
     pub log: Option<String>,
+    /// What the observer had learnt at the end, beside the log, if it was to be kept.
+    pub memory: Option<String>,
     /// Why it ended early, if it did.
     pub broken: Option<String>,
     /// Why the width probe refused to say a width, if it did.

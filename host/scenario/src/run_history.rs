@@ -2,7 +2,7 @@
 
 use model_core::gears::{Flank, sign};
 use model_core::numbers::digest;
-use model_core::observer::{Progress, Refusal, Source};
+use model_core::observer::{Memory, Progress, Refusal, Source};
 use reference::closed_loop::{Run, Sample};
 
 use super::port::Answer;
@@ -19,6 +19,8 @@ pub struct RunHistory {
     pub truths: Vec<TrueValues>,
     /// Digest over every bit of all of it.
     pub digest: u64,
+    /// What the observer had learnt at the end, if it ran in this process.
+    pub memory: Option<Memory>,
 }
 
 /// True values beside the sample.
@@ -73,6 +75,7 @@ impl RunHistory {
             observer_outputs: Vec::new(),
             truths: Vec::with_capacity(periods as usize),
             digest: digest::START,
+            memory: None,
         }
     }
 

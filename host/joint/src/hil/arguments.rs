@@ -35,6 +35,10 @@ pub struct Arguments {
     /// Test files: what the board does, observer and compensation or the whole loop with the joint [default: loop]
     #[arg(long, value_enum)]
     pub role: Option<RoleName>,
+    /// Test files with --host: keeps what the observer has learnt at the end of each run, as a board does, and the joint file
+    /// that it is good for, for `joint memory`
+    #[arg(long, requires = "host")]
+    pub memory: bool,
     /// Test files: runs this seed in place of the file's
     #[arg(long, value_name = "N", value_parser = seed, allow_negative_numbers = true)]
     pub seed: Option<u64>,

@@ -90,6 +90,7 @@ fn of_groups<'a>(
         parts,
         seed: arguments.seed,
         full: arguments.full,
+        memories: arguments.memory,
         name,
         out,
         json: arguments.json.as_deref().filter(|_| arguments.file.is_some()),

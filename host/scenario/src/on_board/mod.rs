@@ -20,7 +20,7 @@ use model_core::controller::design::{ControlRequest, NominalPlant, control_sourc
 pub use request::BoardRequest;
 use request::{check_request, check_test};
 
-use super::case::Case;
+use super::case::{Case, read_told};
 use super::execution::RunSpec;
 use super::plant::PlantName;
 use super::record::BoardRun;
@@ -118,13 +118,6 @@ impl<'w> Boards<'w> {
         }
     }
 
-    /// Tells the case's controllers what a joint file can say, to the last bit.
-    pub fn set_nominal(&self, case: &mut Case) -> Outcome<()> {
-        let nominal = read(&case.nominal_text()?)?;
-        case.set_nominal(&nominal);
-        Ok(())
-    }
-
     /// Runs a case on a board and here; fails if they differ in any bit.
     pub fn run(&self, test: &Test, case: &Case, seed: u64, spec: RunSpec) -> Result<(RunHistory, BoardRun), RunError> {
         let pair = self.pair(test, case)?;
@@ -140,7 +133,7 @@ impl<'w> Boards<'w> {
         let truth_text =
             if self.request.role == Role::Loop { case.truth_text().to_owned() } else { nominal_text.clone() };
         let rate = case.nominal_surroundings.control_rate;
-        let (mut nominal, mut truth) = (read(&nominal_text)?, read(&truth_text)?);
+        let (mut nominal, mut truth) = (read_told(&nominal_text)?, read_told(&truth_text)?);
         [&mut nominal, &mut truth].into_iter().for_each(|joint| joint.surroundings.control_rate = rate);
         let control = Control { rate, bandwidth: test.file.bandwidth, output_encoder: test.file.output_encoder };
         Ok(Pair { texts: [truth_text, nominal_text], nominal, truth, control })
@@ -222,11 +215,4 @@ impl<'w> Boards<'w> {
             stack_bytes: figure(&|statistics| statistics.stack_used),
         }
     }
-}
-
-fn read(text: &str) -> Outcome<JointFile> {
-    joint_file::read(text).map_err(|problems| {
-        let first = problems.first().map_or_else(String::new, ToString::to_string);
-        Failure::new(format!("the joint that a controller is told cannot be: {first}"))
-    })
 }

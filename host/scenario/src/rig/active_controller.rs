@@ -1,6 +1,7 @@
 //! A controller in the loop: the compensation behind its port, a rival, the compensation fed with the true state, or
 //! the width probe, or none.
 
+use model_core::observer::Memory;
 use reference::closed_loop::rivals::Knowledge;
 use reference::closed_loop::{
     Controller, Impedance, ImpedanceLaw, LoadCascade, MotorPid, OutputIntegral, SetPoint, VelocitySign,
@@ -57,6 +58,14 @@ impl<'p> ActiveController<'p> {
             translator.reset();
         }
         Ok(())
+    }
+
+    /// What the observer has learnt so far, if there is one in this process.
+    pub fn memory(&self) -> Option<Memory> {
+        match self {
+            Self::Compensation(port, _) | Self::Probe(port, _) => port.memory(),
+            _ => None,
+        }
     }
 
     /// Passes the true state, before a period, to the compensation that is fed with it.

@@ -4,8 +4,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::page;
 use crate::record::RunRecord;
+use crate::{log_file, page};
 use board::logs;
 use report::failure::{Failure, Outcome};
 use report::folder::Folder;
@@ -14,8 +14,9 @@ use report::output;
 const REPORT: &str = "report.html";
 const RECORD: &str = "record.json";
 const LOG: &str = "log.txt";
+const SAMPLES: &str = "run.mcap";
 /// Everything that a run writes.
-pub const ALL: [&str; 3] = [REPORT, RECORD, LOG];
+pub const ALL: [&str; 4] = [REPORT, RECORD, LOG, SAMPLES];
 
 /// Writes everything, the record also to a file that was asked for by name; returns where the report is.
 pub fn write(folder: &Folder, json: Option<&Path>, record: &RunRecord) -> Outcome<PathBuf> {
@@ -52,6 +53,7 @@ pub fn write_to(folder: &Folder, record: &RunRecord) -> Outcome<PathBuf> {
     folder.write_text(LOG, &logs::text(&record.log))?;
     let kept = folder.write_record(RECORD, record);
     let shown = folder.write_text(REPORT, &page::render(record));
-    kept.and(shown)?;
+    let logged = folder.write_with(SAMPLES, |file| log_file::fill(file, record));
+    kept.and(shown).and(logged)?;
     Ok(folder.file(REPORT))
 }

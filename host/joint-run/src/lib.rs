@@ -8,6 +8,7 @@ pub mod checks;
 pub mod comparison;
 mod evaluation;
 pub mod files;
+mod log_file;
 mod origin;
 pub mod page;
 pub mod plan;

@@ -206,3 +206,25 @@ fn json_on_standard_output_is_the_record_alone() {
     assert_eq!(ended.out, fs::read_to_string(out.path().join("record.json")).expect("the record"));
     assert!(ended.err.contains("report: "), "{ended:?}");
 }
+
+#[test]
+fn a_run_leaves_a_log_of_its_samples_in_the_units_and_words_of_the_record() {
+    let (ended, out) = run(Misbehaviour::None);
+    ended.well();
+    let log = fs::read(out.path().join("run.mcap")).expect("written");
+    let (summary, record) = (mcap::Summary::read(&log).expect("finished").expect("with a summary"), record(&out));
+    let channel = summary.channels.values().next().expect("one channel");
+    assert_eq!(channel.topic, "/joint/run");
+    let messages: Vec<_> =
+        mcap::MessageStream::new(&log).expect("MCAP").map(|message| message.expect("a message")).collect();
+    assert_eq!(messages.len(), samples(&record));
+    let last = messages.last().expect("samples");
+    let number = |place: usize| f64::from_le_bytes(last.data[4 + 8 * place..][..8].try_into().expect("eight bytes"));
+    let of_record = |name: &str| record["samples"][name].as_array().and_then(|column| column.last()?.as_f64());
+    assert_eq!(Some(number(0)), of_record("time_s"));
+    assert_eq!(last.log_time, (1e9 * number(0)).round() as u64, "the log's time is the board's");
+    assert_eq!(Some(number(2)), of_record("link_angle_rad"));
+    assert_eq!(Some(number(5) as f32), of_record("gap_m").map(|gap| gap as f32));
+    let words = ["separated\0", "drive_side\0", "back_side\0"];
+    assert!(words.iter().any(|word| last.data.ends_with(word.as_bytes())), "contact is a word");
+}

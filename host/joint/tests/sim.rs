@@ -106,8 +106,7 @@ fn csv_and_log_hold_the_same_history() {
     let csv = fs::read_to_string(folder.path().join("history.csv")).expect("written");
     let mut lines = csv.lines();
     let names: Vec<&str> = lines.next().expect("a head").split(',').collect();
-    let rows: Vec<Vec<f64>> =
-        lines.map(|line| line.split(',').map(|value| value.parse().expect("a number")).collect()).collect();
+    let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
     assert_eq!(rows.len(), 201);
     assert!(rows.iter().all(|row| row.len() == names.len() && names.len() == 12 + 4 * 6));
     let column = |name: &str| names.iter().position(|other| *other == name).expect(name);
@@ -124,14 +123,19 @@ fn csv_and_log_hold_the_same_history() {
     let place = |name: &str| fields.iter().position(|other| *other == name).expect(name);
 
     for (row, message) in rows.iter().zip(messages(&log)) {
-        assert_eq!(field(&message, place("time_s")), row[column("time_s")]);
-        assert_eq!(field(&message, place("twist_rad")), row[column("twist_rad")]);
-        assert_eq!(field(&message, place("gap_um")), 1e6 * row[column("gap_m")]);
+        let number = |name: &str| row[column(name)].parse::<f64>().expect("a number");
+        for name in ["time_s", "twist_rad", "gap_m", "drive_torque_Nm"] {
+            assert_eq!(field(&message, place(&name.to_lowercase())), number(name), "{name}");
+        }
         // The first list begins behind all numbers with its length, on a multiple of eight.
-        let list = place("sun_planet_deflection_um");
+        let list = place("sun_planet_deflection_m");
         assert_eq!(message[4 + 8 * list], 3);
-        assert_eq!(field(&message, list + 1), 1e6 * row[column("sun_planet_1_deflection_m")]);
-        assert_eq!(field(&message, list + 3), 1e6 * row[column("sun_planet_3_deflection_m")]);
+        assert_eq!(field(&message, list + 1), number("sun_planet_1_deflection_m"));
+        assert_eq!(field(&message, list + 3), number("sun_planet_3_deflection_m"));
+        let contact = row[column("ring_planet_3_contact")];
+        assert!(["separated", "drive_side", "back_side"].contains(&contact), "{contact}");
+        let word = [contact.as_bytes(), &[0]].concat();
+        assert!(message.ends_with(&word), "the last word is that of the last planet");
     }
     assert_eq!(messages(&log).len(), 201);
 }

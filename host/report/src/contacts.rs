@@ -36,6 +36,15 @@ const STATES: [(Contact, Ink, &str); 3] = [
 ];
 
 impl Contact {
+    /// The word for it in logs and tables.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Separated => "separated",
+            Self::DriveSide => "drive_side",
+            Self::BackSide => "back_side",
+        }
+    }
+
     /// State of a mesh in the two-bit form of the line.
     pub fn from_bits(bits: u32, mesh: usize) -> Self {
         Self::try_from((bits >> (2 * mesh) & 3) as u8).unwrap_or(Self::Separated)

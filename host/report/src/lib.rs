@@ -9,6 +9,7 @@ pub mod failure;
 pub mod folder;
 pub mod input;
 pub mod interruption;
+pub mod log;
 pub mod number;
 pub mod output;
 mod own_files;

@@ -70,7 +70,7 @@ pub struct Arguments {
     /// A sample every so many steps; the digest covers every step [default: 20]
     #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u16).range(1..))]
     pub decimation: Option<u16>,
-    /// Folder for report.html, record.json and log.txt; a file that this command did not write is refused [default: joint-out/hil/<joint>]
+    /// Folder for report.html, record.json, log.txt and run.mcap; a file that this command did not write is refused [default: joint-out/hil/<joint>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Writes the record as JSON to this file too ("-" is standard output, and all else on standard error)

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 
 use parameters::JointParameters;
 
-use super::quantities::{QUANTITIES, code};
+use super::quantities::{QUANTITIES, contact_word};
 use super::snapshot::Snapshot;
 
 /// The names of the columns, for so many planets.
@@ -28,7 +28,7 @@ pub fn write_row(out: &mut impl Write, joint: &JointParameters, snapshot: &Snaps
         write!(out, ",{:?}", (quantity.value)(snapshot, joint))?;
     }
     for teeth in &snapshot.teeth {
-        write!(out, ",{:?},{:?},{:?},{}", teeth.deflection, teeth.rate, teeth.force, code(teeth.contact))?;
+        write!(out, ",{:?},{:?},{:?},{}", teeth.deflection, teeth.rate, teeth.force, contact_word(teeth.contact))?;
     }
     writeln!(out)
 }

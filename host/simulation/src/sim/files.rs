@@ -9,10 +9,11 @@ use std::path::PathBuf;
 use parameters::JointParameters;
 
 use super::csv;
-use super::log_file::{self, Channel, SCHEMA_NAME, TOPIC, encoded};
+use super::log_file::{self, SCHEMA_NAME, TOPIC, message};
 use super::snapshot::Snapshot;
 use report::failure::{Failure, Outcome};
 use report::folder::Folder;
+use report::log::Channel;
 use report::write::unwritten;
 
 /// The page.
@@ -53,7 +54,7 @@ impl<'a> HistoryFiles<'a> {
         csv::write_row(&mut self.csv, self.joint, snapshot)
             .map_err(|error| unwritten(&self.folder.file(CSV[0]), &error))?;
         self.log
-            .write(snapshot.time, &encoded(self.joint, snapshot))
+            .write(snapshot.time, &message(self.joint, snapshot))
             .map_err(|error| unwritten(&self.folder.file(LOG[0]), &error))
     }
 

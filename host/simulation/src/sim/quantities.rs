@@ -1,20 +1,16 @@
-//! The quantities of a snapshot beside its meshes that a history holds: one list for CSV and log. CSV is in SI; the log
-//! has the units that a viewer likes, and names that ROS 2 accepts.
+//! The quantities of a snapshot beside its meshes that a history holds: one list for CSV and log, all in SI.
 
 use parameters::{ContactState, JointParameters};
+use report::contacts::Contact;
 
 use super::snapshot::Snapshot;
 
 /// A quantity of a snapshot.
 pub struct Quantity {
-    /// Name of its CSV column.
+    /// Name of its CSV column, and of its field in the log.
     pub column: &'static str,
-    /// Name of its field in the log.
-    pub field: &'static str,
-    /// What it means, with the log's unit.
+    /// What it means, with its unit.
     pub meaning: &'static str,
-    /// The log's number for one in SI.
-    pub scale: f64,
     /// The number in SI.
     pub value: Value,
 }
@@ -24,38 +20,29 @@ type Value = fn(&Snapshot, &JointParameters) -> f64;
 
 /// All but the time.
 pub const QUANTITIES: [Quantity; 11] = [
-    quantity("drive_torque_Nm", "drive_torque_nm", "torque on the sun shaft [N m]", 1.0, |snapshot, _| snapshot.drive),
-    quantity("load_torque_Nm", "load_torque_nm", "torque that brakes the link [N m]", 1.0, |snapshot, _| snapshot.load),
-    quantity("motor_angle_rad", "motor_angle_rad", "[rad]", 1.0, Snapshot::motor_angle),
-    quantity("link_angle_rad", "link_angle_rad", "[rad]", 1.0, |snapshot, _| snapshot.link_angle()),
-    quantity("twist_rad", "twist_rad", "motor angle over ratio, less link angle [rad]", 1.0, Snapshot::twist),
-    quantity("carrier_speed_rad_per_s", "carrier_speed_rad_per_s", "of the rigid body [rad/s]", 1.0, |snapshot, _| {
-        snapshot.carrier_speed
-    }),
-    quantity("mesh_periods", "mesh_periods", "mesh phase [periods]", 1.0, |snapshot, _| snapshot.mesh_periods),
-    quantity("gap_m", "gap_um", "gap coordinate u_s - 2 u_c [um]", 1e6, |snapshot, _| snapshot.gap),
-    quantity("gap_rate_m_per_s", "gap_rate_mm_per_s", "[mm/s]", 1e3, |snapshot, _| snapshot.gap_rate),
-    quantity("wind_up_m", "wind_up_um", "carrier less link along the line of action [um]", 1e6, |snapshot, _| {
-        snapshot.wind_up
-    }),
-    quantity("wind_up_rate_m_per_s", "wind_up_rate_mm_per_s", "[mm/s]", 1e3, |snapshot, _| snapshot.wind_up_rate),
+    quantity("drive_torque_Nm", "torque on the sun shaft [N m]", |snapshot, _| snapshot.drive),
+    quantity("load_torque_Nm", "torque that brakes the link [N m]", |snapshot, _| snapshot.load),
+    quantity("motor_angle_rad", "[rad]", Snapshot::motor_angle),
+    quantity("link_angle_rad", "[rad]", |snapshot, _| snapshot.link_angle()),
+    quantity("twist_rad", "motor angle over ratio, less link angle [rad]", Snapshot::twist),
+    quantity("carrier_speed_rad_per_s", "of the rigid body [rad/s]", |snapshot, _| snapshot.carrier_speed),
+    quantity("mesh_periods", "mesh phase [periods]", |snapshot, _| snapshot.mesh_periods),
+    quantity("gap_m", "gap coordinate u_s - 2 u_c [m]", |snapshot, _| snapshot.gap),
+    quantity("gap_rate_m_per_s", "[m/s]", |snapshot, _| snapshot.gap_rate),
+    quantity("wind_up_m", "carrier less link along the line of action [m]", |snapshot, _| snapshot.wind_up),
+    quantity("wind_up_rate_m_per_s", "[m/s]", |snapshot, _| snapshot.wind_up_rate),
 ];
 
-const fn quantity(
-    column: &'static str,
-    field: &'static str,
-    meaning: &'static str,
-    scale: f64,
-    value: Value,
-) -> Quantity {
-    Quantity { column, field, meaning, scale, value }
+const fn quantity(column: &'static str, meaning: &'static str, value: Value) -> Quantity {
+    Quantity { column, meaning, value }
 }
 
-/// Number of a contact state in files: 0 parted, 1 drive side, 2 back side.
-pub fn code(contact: ContactState) -> u8 {
+/// Word for a contact state in files.
+pub fn contact_word(contact: ContactState) -> &'static str {
     match contact {
-        ContactState::Separated => 0,
-        ContactState::DriveSide => 1,
-        ContactState::BackSide => 2,
+        ContactState::Separated => Contact::Separated,
+        ContactState::DriveSide => Contact::DriveSide,
+        ContactState::BackSide => Contact::BackSide,
     }
+    .word()
 }

@@ -1,0 +1,69 @@
+//! The samples of a run as a log, which viewers of robot data open: the same names, units and states as in the record.
+
+use std::collections::BTreeMap;
+use std::io::{self, Write};
+
+use report::contacts::Contact;
+use report::log::{Channel, Message, field};
+
+use crate::record::{RunRecord, Samples};
+
+/// Topic of the motion.
+const TOPIC: &str = "/joint/run";
+/// Name of its schema.
+const SCHEMA_NAME: &str = "joint_msgs/msg/Run";
+/// Fields that are numbers, with what they mean.
+const NUMBERS: [(&str, &str); 7] = [
+    ("time_s", "board time since the reset [s]"),
+    ("motor_angle_rad", "[rad]"),
+    ("link_angle_rad", "[rad]"),
+    ("twist_rad", "motor angle over ratio, less link angle [rad]"),
+    ("carrier_speed_rad_per_s", "of the rigid body [rad/s]"),
+    ("gap_m", "gap coordinate along the line of action [m]"),
+    ("wind_up_m", "carrier less link along the line of action [m]"),
+];
+/// Fields that have an entry for each planet.
+const LISTS: [(&str, &str, &str); 4] = [
+    ("float64[]", "sun_planet_deflection_m", "[m], one for each planet"),
+    ("string[]", "sun_planet_contact", "separated, drive_side or back_side, one for each planet"),
+    ("float64[]", "ring_planet_deflection_m", "[m], one for each planet"),
+    ("string[]", "ring_planet_contact", "likewise"),
+];
+
+/// Writes all samples of the board.
+pub fn fill(out: &mut impl Write, record: &RunRecord) -> io::Result<()> {
+    let numbers = NUMBERS.iter().map(|(name, meaning)| field("float64", name, meaning));
+    let lists = LISTS.iter().map(|(kind, name, meaning)| field(kind, name, meaning));
+    let identity = &record.identity;
+    let remarks = [
+        ("joint", identity.joint.clone()),
+        ("joint_file", identity.joint_file.clone()),
+        ("transport", identity.transport.clone()),
+        ("date", identity.date.clone()),
+        ("command", record.settings.replay.clone()),
+        ("version", identity.host_version.clone()),
+    ];
+    let remarks: BTreeMap<String, String> = remarks.into_iter().map(|(name, text)| (name.to_owned(), text)).collect();
+    let schema: String = numbers.chain(lists).collect();
+    let mut channel = Channel::begin(out, TOPIC, SCHEMA_NAME, &schema, remarks)?;
+    for place in 0..record.samples.len() {
+        channel.write(record.samples.time_s[place], &message(&record.samples, place))?;
+    }
+    channel.finish().map(drop)
+}
+
+fn message(samples: &Samples, place: usize) -> Message {
+    let mut message = Message::default();
+    for column in [&samples.time_s, &samples.motor_angle_rad, &samples.link_angle_rad, &samples.twist_rad] {
+        message.number(column[place]);
+    }
+    for column in [&samples.carrier_speed, &samples.gap_m, &samples.wind_up_m] {
+        message.number(column[place].into());
+    }
+    let planets = samples.deflection_m.len() / 2;
+    for meshes in [0..planets, planets..2 * planets] {
+        message.numbers(samples.deflection_m[meshes.clone()].iter().map(|column| f64::from(column[place])));
+        message.words(samples.contact[meshes].iter().map(|column: &Vec<Contact>| column[place].word()));
+    }
+    message
+}

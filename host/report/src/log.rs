@@ -1,0 +1,143 @@
+//! Logs as MCAP, which Foxglove and PlotJuggler open: one topic, ROS 2 message text as its schema, CDR as its encoding.
+//! Chunks are written whole, so that a log that was cut off can be read up to its last chunk. Numbers are in SI under the
+//! names that CSV and JSON have, in small letters, since ROS 2 takes no others; states are words.
+
+use std::collections::BTreeMap;
+use std::io::{self, Write};
+
+use mcap::records::{MessageHeader, Metadata};
+use mcap::write::NoSeek;
+use mcap::{Compression, McapError, WriteOptions, Writer};
+
+/// Bytes of a chunk before compression: what a crash may cost at most.
+const CHUNK: u64 = 128 << 10;
+/// The head of a message in CDR: little endian.
+const HEAD: [u8; 4] = [0, 1, 0, 0];
+
+/// Writes messages of one schema to one topic.
+pub struct Channel<W: Write> {
+    writer: Writer<NoSeek<W>>,
+    channel: u16,
+    sequence: u32,
+}
+
+impl<W: Write> Channel<W> {
+    /// Begins a log; `schema` is ROS 2 message text, `remarks` say where it comes from.
+    pub fn begin(out: W, topic: &str, name: &str, schema: &str, remarks: BTreeMap<String, String>) -> io::Result<Self> {
+        let options = WriteOptions::new()
+            .compression(Some(Compression::Lz4))
+            .chunk_size(Some(CHUNK))
+            .library(concat!("joint ", env!("CARGO_PKG_VERSION")))
+            .disable_seeking(true);
+        let mut writer = Writer::with_options(NoSeek::new(out), options).map_err(cause)?;
+        let schema = writer.add_schema(name, "ros2msg", schema.as_bytes()).map_err(cause)?;
+        let channel = writer.add_channel(schema, topic, "cdr", &BTreeMap::new()).map_err(cause)?;
+        writer.write_metadata(&Metadata { name: "joint".into(), metadata: remarks }).map_err(cause)?;
+        Ok(Self { writer, channel, sequence: 0 })
+    }
+
+    /// One message, at a time of the run [s], which is that of the log too.
+    pub fn write(&mut self, time: f64, message: &Message) -> io::Result<()> {
+        let nanoseconds = (time * 1e9).round() as u64;
+        let header = MessageHeader {
+            channel_id: self.channel,
+            sequence: self.sequence,
+            log_time: nanoseconds,
+            publish_time: nanoseconds,
+        };
+        self.sequence = self.sequence.wrapping_add(1);
+        self.writer.write_to_known_channel(&header, &message.0).map_err(cause)
+    }
+
+    /// Writes the index and the end, without which readers call a log damaged.
+    pub fn finish(mut self) -> io::Result<W> {
+        self.writer.finish().map_err(cause)?;
+        let mut out = self.writer.into_inner().into_inner();
+        out.flush()?;
+        Ok(out)
+    }
+}
+
+/// The system's error, if it was one.
+fn cause(error: McapError) -> io::Error {
+    match error {
+        McapError::Io(error) => error,
+        other => io::Error::other(other),
+    }
+}
+
+/// A message in CDR: every value on a multiple of its size behind the head.
+#[derive(Debug)]
+pub struct Message(Vec<u8>);
+
+impl Default for Message {
+    fn default() -> Self {
+        Self(HEAD.to_vec())
+    }
+}
+
+impl Message {
+    /// A `float64`.
+    pub fn number(&mut self, value: f64) {
+        self.align(8);
+        self.0.extend(value.to_le_bytes());
+    }
+
+    /// A `float64[]`.
+    pub fn numbers(&mut self, values: impl ExactSizeIterator<Item = f64>) {
+        self.count(values.len());
+        values.for_each(|value| self.number(value));
+    }
+
+    /// A `string`.
+    pub fn word(&mut self, word: &str) {
+        self.count(word.len() + 1);
+        self.0.extend(word.as_bytes());
+        self.0.push(0);
+    }
+
+    /// A `string[]`.
+    pub fn words<'w>(&mut self, words: impl ExactSizeIterator<Item = &'w str>) {
+        self.count(words.len());
+        words.for_each(|word| self.word(word));
+    }
+
+    fn count(&mut self, count: usize) {
+        self.align(4);
+        self.0.extend((count as u32).to_le_bytes());
+    }
+
+    /// The head does not count for alignment.
+    fn align(&mut self, size: usize) {
+        self.0.resize(HEAD.len() + (self.0.len() - HEAD.len()).next_multiple_of(size), 0);
+    }
+}
+
+/// A field of a message as its schema has it.
+pub fn field(kind: &str, name: &str, meaning: &str) -> String {
+    format!("{kind} {}  # {meaning}\n", name.to_ascii_lowercase())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_stand_on_multiples_of_their_sizes() {
+        let mut message = Message::default();
+        message.words(["ab", "c"].into_iter());
+        message.number(1.0);
+        message.numbers([2.0].into_iter());
+        let mut expected = vec![0, 1, 0, 0];
+        expected.extend([2, 0, 0, 0, 3, 0, 0, 0, b'a', b'b', 0, 0, 2, 0, 0, 0, b'c', 0, 0, 0, 0, 0, 0, 0]);
+        expected.extend(1.0_f64.to_le_bytes());
+        expected.extend([1, 0, 0, 0, 0, 0, 0, 0]);
+        expected.extend(2.0_f64.to_le_bytes());
+        assert_eq!(message.0, expected);
+    }
+
+    #[test]
+    fn names_are_those_of_csv_in_the_letters_of_ros() {
+        assert_eq!(field("float64", "drive_torque_Nm", "[N m]"), "float64 drive_torque_nm  # [N m]\n");
+    }
+}

@@ -3,6 +3,7 @@
 
 use super::plan::{StudyPlan, SweepStart};
 use super::record::{AttractorRecord, Class, ClassWindow, DeadZoneFigure, Reading};
+use super::windows::class_at;
 use report::checks::{Bound, Check, Source};
 
 /// Distance allowed to a known Poincare point, over b_c.
@@ -110,6 +111,7 @@ pub fn checks(plan: &StudyPlan, readings: &[Reading], dead_zone: &DeadZoneFigure
         }
         for found in &reading.attractors {
             consistency(reading, found, &mut checks);
+            checks.extend(same_in_diagram(reading, found));
         }
     }
     if plan.is_set_p {
@@ -186,6 +188,17 @@ fn consistency(reading: &Reading, found: &AttractorRecord, checks: &mut Vec<Chec
             .note("Runge-Kutta of order 8 in absolute coordinates, at the next Poincaré points"),
         None => Check::not_run(name, "", bound, "the independent integrator refuses this joint"),
     });
+}
+
+/// An attractor and the diagram from the same start are of one class at one half-backlash: where they are not, one of them had
+/// not settled, and neither may be called known.
+fn same_in_diagram(reading: &Reading, found: &AttractorRecord) -> Option<Check> {
+    let rest = reading.sweeps.iter().find(|sweep| sweep.start == SweepStart::Rest.word())?;
+    let shown = class_at(&rest.windows, found.half_backlash_m)?;
+    let name = format!("{}: attractor and diagram agree", place(reading, found));
+    let same = f64::from(u8::from(shown == found.class));
+    let note = format!("attractor: {}, diagram: {shown}", found.class);
+    Some(Check::judge(name, same, "", Bound::Exactly(1.0), Source::Host).note(note))
 }
 
 fn windows(reading: &Reading, checks: &mut Vec<Check>) {

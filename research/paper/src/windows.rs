@@ -20,9 +20,26 @@ pub fn chaos_below(windows: &[ClassWindow], half_backlash: f64) -> Vec<&ClassWin
     windows.iter().filter(chaotic).filter(|window| window.to_m < half_backlash).collect()
 }
 
+/// The class at a half-backlash [m], if it lies within a window; between two windows either may be right.
+pub fn class_at(windows: &[ClassWindow], half_backlash: f64) -> Option<Class> {
+    // Micrometres typed in decimals come with rounding noise.
+    const NOISE: f64 = 1e-12;
+    let within = |window: &&ClassWindow| (window.from_m - NOISE..=window.to_m + NOISE).contains(&half_backlash);
+    windows.iter().find(within).map(|window| window.class)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_class_is_told_within_a_window_and_not_between_two() {
+        let window = |from_m, to_m, class| ClassWindow { from_m, to_m, class };
+        let windows = [window(0.0, 10e-6, Class::Periodic(1)), window(20e-6, 20e-6, Class::Chaotic)];
+        let classes = [0.0, 5e-6, 10e-6, 15e-6, 20e-6, 25e-6].map(|b| class_at(&windows, b));
+        let (one, chaos) = (Some(Class::Periodic(1)), Some(Class::Chaotic));
+        assert_eq!(classes, [one, one, one, None, chaos, None]);
+    }
 
     #[test]
     fn neighbours_of_one_class_are_one_window() {

@@ -42,6 +42,16 @@ fn a_small_study_leaves_report_record_pictures_and_tables() {
     let record: serde_json::Value = serde_json::from_str(&text).expect("JSON");
     assert_eq!(record["readings"][0]["attractors"][1]["period"], 3);
     assert_eq!(record["readings"][0]["sweeps"][0]["points"].as_array().map(Vec::len), Some(3));
+    let checks = record["checks"].as_array().expect("checks");
+    let agree: Vec<_> = checks
+        .iter()
+        .filter(|check| check["name"].as_str().is_some_and(|name| name.ends_with("attractor and diagram agree")))
+        .collect();
+    assert_eq!(agree.len(), 1, "10 um is not in the diagram");
+    assert_eq!(
+        (agree[0]["verdict"].as_str(), agree[0]["note"].as_str()),
+        (Some("passed"), Some("attractor: period 3, diagram: period 3"))
+    );
     let page = fs::read_to_string(out.join("report.html")).expect("the report");
     for text in ["PASSED", "Fig. 3.", "Poincaré", "period 3", "Bifurcation diagram", "The parameters are ours"] {
         assert!(page.contains(text), "{text}");

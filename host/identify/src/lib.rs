@@ -47,6 +47,7 @@ use rows::Rows;
 use twist::Twist;
 
 use joint_file::named::{self, Loaded};
+use joint_file::warned;
 use report::document::{html, terminal};
 use report::failure::{Failure, Outcome};
 use report::folder::{self, Folder};
@@ -93,6 +94,7 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
             .with_help("add --quasi-static for a slow log, or name the motor's own column"));
     }
     let loaded = named::load_with(&arguments.joint, &arguments.set)?;
+    warned::tell(&loaded);
     if arguments.simulate {
         return simulate(arguments, &loaded, progress);
     }

@@ -1,7 +1,7 @@
 //! What is known of the joint before a log is read, from its joint file: ratio in whole teeth, lever arms, inertias on
 //! either side of the gap, the expected compliance.
 
-use joint_file::JointFile;
+use joint_file::{JointFile, sheet};
 use model_core::gears::{Kinematics, Mechanics};
 use parameters::{Mesh, MeshKind, StiffnessWave, Surroundings};
 
@@ -69,13 +69,14 @@ impl PriorModel {
         let planets = geometry.planets as f64;
         let ratio = geometry.ratio_by_teeth();
         // One planet after the other carries 1/n; softening by the ripple is that of a mean over 1/k.
-        let softness = |mesh: &Mesh| {
+        let softened = |mesh: &Mesh| {
             let (StiffnessWave::Harmonic { stiffness_ratio: ripple }
             | StiffnessWave::Rectangular { stiffness_ratio: ripple, .. }) = mesh.stiffness_wave;
-            1.0 / (mesh.mean_stiffness * (1.0 - ripple * ripple).sqrt())
+            mesh.mean_stiffness * (1.0 - ripple * ripple).sqrt()
         };
-        let soft = [softness(&joint.sun_planet), softness(&joint.ring_planet)];
-        let mesh_compliance = (soft[0] + soft[1]) / (4.0 * planets * lever * lever);
+        let softened = [&joint.sun_planet, &joint.ring_planet].map(softened);
+        let soft = softened.map(f64::recip);
+        let mesh_compliance = sheet::teeth_compliance(geometry, softened);
         // In series each kind takes its part of the twist, and of its rate.
         let relaxation = |kind: MeshKind| joint.damping_coefficient(kind) / joint.mesh(kind).damping_ratio;
         let relaxations = [MeshKind::SunPlanet, MeshKind::RingPlanet].map(relaxation);

@@ -2,7 +2,6 @@
 
 pub use identify::Arguments;
 use identify::run as identify;
-use joint_file::{named, warned};
 use report::failure::Outcome;
 use report::output;
 use report::progress::Progress;
@@ -10,9 +9,5 @@ use report::progress::Progress;
 /// Identifies a joint, or makes a log of one, and prints what was found.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
     output::keep_for_json(arguments.json.as_deref());
-    // What cannot be read is told by the work itself.
-    if let Ok(loaded) = named::load_with(&arguments.joint, &arguments.set) {
-        warned::tell(&loaded);
-    }
     Progress::during(|progress| output::print(&identify(arguments, progress)?))
 }

@@ -2,8 +2,8 @@
 
 use report::provenance;
 
-use super::arguments::DataSheet;
-use super::design::{Design, PRESSURE_ANGLE_DEG, rounded};
+use crate::arguments::DataSheet;
+use crate::sizes::{PRESSURE_ANGLE_DEG, Sizes, rounded};
 
 /// Where a value comes from.
 #[derive(Debug, Clone, PartialEq)]
@@ -85,7 +85,7 @@ pub fn percent(share: f64) -> String {
 }
 
 /// Every line, in the order of the file.
-pub fn lines(sheet: &DataSheet, design: &Design) -> Vec<Line> {
+pub fn lines(sheet: &DataSheet, sizes: &Sizes) -> Vec<Line> {
     let mut lines = Vec::new();
     let mut section = "";
     let mut add = |place: Option<&'static str>, key: &'static str, value: String, origin: Origin| {
@@ -98,7 +98,7 @@ pub fn lines(sheet: &DataSheet, design: &Design) -> Vec<Line> {
     let derived = |from: String| Origin::Derived(from);
     let assumed = |why: &str| Origin::Assumed(why.to_owned());
     let round = |value: f64| number(rounded(value));
-    let teeth = &design.teeth;
+    let teeth = &sizes.teeth;
     let ratio = teeth.ratio();
     let (rated, drive) = (sheet.rated_torque, sheet.rated_torque / ratio);
     let material = sheet.material().word();
@@ -137,11 +137,11 @@ pub fn lines(sheet: &DataSheet, design: &Design) -> Vec<Line> {
         (teeth.sun + teeth.ring) / teeth.planets
     );
     add(None, "ring_teeth", teeth.ring.to_string(), derived(assembles));
-    add(None, "module_mm", number(design.module_mm), derived(design.module_from.clone()));
+    add(None, "module_mm", number(sizes.module_mm), derived(sizes.module_from.clone()));
     add(None, "working_pressure_angle_deg", number(PRESSURE_ANGLE_DEG), assumed("ISO 53 basic rack, no profile shift"));
 
     let disc = |what: &str, wide: f64| derived(format!("size and material: {what} of {material}, {wide:.2} mm thick"));
-    let bodies = &design.bodies;
+    let bodies = &sizes.bodies;
     match sheet.gear_inertia {
         Some(inertia) => add(
             Some("bodies"),
@@ -155,13 +155,13 @@ pub fn lines(sheet: &DataSheet, design: &Design) -> Vec<Line> {
                 Some("bodies"),
                 "sun_equivalent_mass_kg",
                 round(bodies.sun_equivalent_mass),
-                disc(solid, design.width_mm),
+                disc(solid, sizes.width_mm),
             );
-            add(None, "planet_equivalent_mass_kg", round(bodies.planet_equivalent_mass), disc(solid, design.width_mm));
-            add(None, "planet_mass_kg", round(bodies.planet_mass), disc(solid, design.width_mm));
+            add(None, "planet_equivalent_mass_kg", round(bodies.planet_equivalent_mass), disc(solid, sizes.width_mm));
+            add(None, "planet_mass_kg", round(bodies.planet_mass), disc(solid, sizes.width_mm));
             let carrier = "a disc of the radius of the planets' axes";
             let over = bodies.carrier_inertia_over_radius_squared;
-            add(None, "carrier_inertia_over_radius_squared_kg", round(over), disc(carrier, design.carrier_mm));
+            add(None, "carrier_inertia_over_radius_squared_kg", round(over), disc(carrier, sizes.carrier_mm));
         }
     }
     let rotor = format!("inertia of the rotor, {} kg cm^2", sheet.rotor_inertia);
@@ -176,21 +176,21 @@ pub fn lines(sheet: &DataSheet, design: &Design) -> Vec<Line> {
 
     let total = format!(
         "torsional stiffness at the output; the teeth take {:.1} % of its compliance",
-        100.0 * design.teeth_share
+        100.0 * sizes.teeth_share
     );
     add(Some("compliance"), "total_stiffness_N_m_per_arcmin", number(sheet.stiffness), Origin::Sheet(total));
     add(None, "damping_ratio", number(0.02), assumed("bolted steel joints"));
 
     let stiffness = format!(
         "face width and material: {:.2} mm of {material}, {:.3e} N/m for a metre",
-        design.width_mm,
+        sizes.width_mm,
         sheet.material().stiffness_per_width()
     );
-    add(Some("mesh"), "mean_stiffness_N_per_m", number(design.mean_stiffness), derived(stiffness));
+    add(Some("mesh"), "mean_stiffness_N_per_m", number(sizes.mean_stiffness), derived(stiffness));
     add(None, "stiffness_ratio", number(0.15), assumed("spur gears of contact ratio 1.6"));
     add(None, "damping_ratio", number(0.05), assumed("0.03 to 0.1 is usual of gear meshes"));
     add(None, "lost_motion_arcmin", number(sheet.lost_motion_arcmin), data("lost motion at the output"));
-    let error = rounded(3.0 * design.module_mm.sqrt());
+    let error = rounded(3.0 * sizes.module_mm.sqrt());
     add(None, "transmission_error_um", number(error), assumed("amplitude, quality 6 of ISO 1328 for this size"));
 
     if let Some(peak) = sheet.motor_peak_torque {
@@ -256,7 +256,7 @@ pub struct Figures {
 }
 
 /// The file, with the figures of the standard test once they are known.
-pub fn text(sheet: &DataSheet, design: &Design, lines: &[Line], figures: Option<&Figures>) -> String {
+pub fn text(sheet: &DataSheet, sizes: &Sizes, lines: &[Line], figures: Option<&Figures>) -> String {
     let mut text = format!(
         "# {}, made by joint new {} from its data sheet: ratio {} (met within {} %), gears of {}{}.\n\
          # Behind every value stands \"data sheet\", \"derived from\" what, or \"assumed\".\n",
@@ -283,7 +283,7 @@ pub fn text(sheet: &DataSheet, design: &Design, lines: &[Line], figures: Option<
             percent(*chance)
         );
     }
-    if let Some(undercut) = design.teeth.undercut() {
+    if let Some(undercut) = sizes.teeth.undercut() {
         text += &format!("# {undercut}.\n");
     }
     text.push('\n');

@@ -4,8 +4,8 @@ use joint_file::sheet::{self, ARCMIN};
 use parameters::{Bodies, Coherence, Geometry};
 use report::failure::{Failure, Outcome};
 
-use super::arguments::DataSheet;
-use super::teeth::{self, Teeth};
+use crate::arguments::DataSheet;
+use crate::teeth::{self, Teeth};
 
 /// Modules by ISO 54, first and second series [mm].
 const MODULES: [f64; 26] = [
@@ -23,7 +23,7 @@ const CARRIER: f64 = 0.5;
 
 /// A joint of a data sheet.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Design {
+pub struct Sizes {
     /// Teeth and planets.
     pub teeth: Teeth,
     /// Module [mm].
@@ -46,7 +46,7 @@ pub struct Design {
 pub const PRESSURE_ANGLE_DEG: f64 = 20.0;
 
 /// Finds teeth, sizes and stiffnesses.
-pub fn design(sheet: &DataSheet) -> Outcome<Design> {
+pub fn sizes(sheet: &DataSheet) -> Outcome<Sizes> {
     let teeth = teeth::find(sheet.ratio, sheet.ratio_tolerance, sheet.planets.unwrap_or(3))?;
     let (module_mm, module_from) = module(sheet, &teeth)?;
     let geometry = geometry(&teeth, module_mm);
@@ -72,7 +72,7 @@ pub fn design(sheet: &DataSheet) -> Outcome<Design> {
         return Err(Failure::new(message).with_help(help));
     };
     let of_metre = material.density() * width;
-    Ok(Design {
+    Ok(Sizes {
         teeth,
         module_mm,
         module_from,

@@ -18,7 +18,7 @@ use scenario::plant::PlantName;
 use scenario::rig::RunError;
 use scenario::values::MetricValues;
 
-use super::lines::{Figures, Line};
+use crate::lines::{Figures, Line};
 
 /// The motion; controllers begin with the file's own backlash.
 const TEST: &str = "profile = \"T2\"\n[controller]\nrivals = []\nwidth_guess_ratio = 1.0\n";

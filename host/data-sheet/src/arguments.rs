@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::material::Material;
+use crate::material::Material;
 
 /// Arguments of `joint new`.
 #[derive(Debug, clap::Args)]

@@ -6,7 +6,7 @@ use std::io::{self, BufRead, IsTerminal};
 use report::failure::{Failure, Outcome};
 use report::output;
 
-use super::arguments::{Arguments, DataSheet};
+use crate::arguments::{Arguments, DataSheet};
 
 /// A figure of the sheet.
 struct Figure {

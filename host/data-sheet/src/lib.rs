@@ -1,0 +1,130 @@
+//! From the numbers of a data sheet to a joint file. Every line of it says whether it is the sheet's, derived
+//! from it, or assumed, and how far a wrong assumption moves the standard test.
+//!
+//! `arguments` is the command line, `questions` asks for what is missing, `teeth` finds gears that assemble, `sizes`
+//! derives sizes, masses and stiffnesses of a `material`, `lines` writes the file, `standard_test` measures the assumptions.
+
+mod arguments;
+mod lines;
+mod material;
+mod questions;
+mod sizes;
+mod standard_test;
+mod teeth;
+
+use std::path::{Path, PathBuf};
+
+pub use arguments::Arguments;
+use board::target::board::Board;
+use joint_file::named::Loaded;
+use joint_file::{diagnostic, warned};
+use report::failure::{Failure, Outcome};
+use report::progress::Progress;
+use report::write::write_text;
+use simulation::{budget, check};
+
+use arguments::DataSheet;
+use lines::{Figures, Line, Origin};
+
+/// Steps a second at which the new joint is tried: what `joint check` and `joint sim` take.
+const RATE: u32 = 20_000;
+
+/// Makes the file; gives what is told of it.
+pub fn run(arguments: &Arguments) -> Outcome<String> {
+    let path = arguments.path();
+    free(&path)?;
+    let sheet = questions::complete(arguments)?;
+    Progress::during(|progress| make(&sheet, &path, !arguments.no_measure, progress))
+}
+
+/// The file, tried and measured; gives what is told of it.
+fn make(sheet: &DataSheet, path: &Path, measured: bool, progress: &Progress) -> Outcome<String> {
+    let sizes = sizes::sizes(sheet)?;
+    let mut lines = lines::lines(sheet, &sizes);
+    let unmeasured = lines::text(sheet, &sizes, &lines, None);
+    tried(path, &unmeasured)?;
+    let figures = measured.then(|| standard_test::measure(&unmeasured, &mut lines, progress)).transpose()?;
+    let text = lines::text(sheet, &sizes, &lines, figures.as_ref());
+    let loaded = tried(path, &text)?;
+    free(path)?;
+    write_text(path, &text)?;
+    progress.clear();
+    warned::tell(&loaded);
+    let [sun, planet, ring] = [sizes.teeth.sun, sizes.teeth.planet, sizes.teeth.ring];
+    let mut told = format!(
+        "{}: {} planets, teeth {sun}, {planet}, {ring}, module {} mm, ratio {:.4} ({:+.2} %)\n",
+        path.display(),
+        sizes.teeth.planets,
+        sizes.module_mm,
+        sizes.teeth.ratio(),
+        100.0 * (sizes.teeth.ratio() / sheet.ratio - 1.0)
+    );
+    if let Some(undercut) = sizes.teeth.undercut() {
+        told += &format!("{undercut}\n");
+    }
+    if let Some(Figures { of_file, chance }) = figures {
+        let chance = lines::percent(chance);
+        told += &format!(
+            "standard test: {of_file:.4} mrad rms, which chance moves by {chance}; assumptions move it most by\n"
+        );
+        for (key, moved) in most(&lines) {
+            told += &format!("  {key:<55} {moved}\n");
+        }
+    }
+    // A board's time is no part of a data sheet: the joint is as it is.
+    if let Err(failure) = budget::refuse(&loaded.file.parameters, &Board::load(board_file::DEFAULT)?, RATE) {
+        let help = failure.full_help().map_or(String::new(), |help| format!(" ({help})"));
+        told += &format!("note: {}{help}\n", failure.message());
+    }
+    told += &format!("next: joint check {0}; joint sim {0}; joint budget {0}\n", path.display());
+    Ok(told)
+}
+
+/// The three assumptions that matter most.
+fn most(lines: &[Line]) -> Vec<(String, String)> {
+    let mut assumed: Vec<(&Line, f64)> =
+        lines.iter().filter_map(|line| Some((line, line.moved.as_ref()?.as_ref().ok().copied()?))).collect();
+    assumed.sort_by(|one, other| other.1.total_cmp(&one.1));
+    assumed.iter().take(3).map(|(line, moved)| (line.path(), lines::percent(*moved))).collect()
+}
+
+/// Reads the text as every command will, and designs the step of it.
+fn tried(path: &Path, text: &str) -> Outcome<Loaded> {
+    let name = path.display().to_string();
+    let file =
+        joint_file::read(text).map_err(|problems| Failure::from_report(diagnostic::report(&name, text, &problems)))?;
+    let loaded = Loaded { name, text: text.to_owned(), file };
+    check::summary(&loaded, RATE)?;
+    Ok(loaded)
+}
+
+/// Refuses a path at which there is something.
+fn free(path: &Path) -> Outcome<()> {
+    match path.symlink_metadata() {
+        Err(_) => Ok(()),
+        Ok(_) => Err(Failure::new(format!("{} is there already, and would be lost", path.display()))
+            .with_help("give the joint another name, or move that file away")),
+    }
+}
+
+impl Arguments {
+    /// Where the file goes: the name with its extension.
+    fn path(&self) -> PathBuf {
+        match self.name.extension() {
+            Some(extension) if extension == "toml" => self.name.clone(),
+            _ => self.name.with_added_extension("toml"),
+        }
+    }
+}
+
+impl Line {
+    /// The full path of its key.
+    fn path(&self) -> String {
+        if self.section.is_empty() { self.key.to_owned() } else { format!("{}.{}", self.section, self.key) }
+    }
+
+    /// Whether a wrong value of it is to be tried.
+    fn is_assumed(&self) -> bool {
+        matches!(self.origin, Origin::Assumed(_)) && self.moved.is_none()
+    }
+}

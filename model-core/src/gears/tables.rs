@@ -312,6 +312,8 @@ impl Digest {
         self.0 = digest::chain(self.0, word);
     }
 
+    /// Not inlined: it runs once, when a board starts, and is called some dozens of times.
+    #[inline(never)]
     fn reals<T: Real>(&mut self, values: &[T]) {
         values.iter().for_each(|value| self.whole(value.bits()));
     }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::column_map::renaming;
+use super::prior::INERTIA_ERROR;
 use super::quasi_static::Options;
 use super::units::{self, Unit};
 
@@ -54,11 +55,14 @@ pub struct Arguments {
     /// Resolution of the output encoder [default: as in the joint file]
     #[arg(long, value_name = "BITS", value_parser = clap::value_parser!(u32).range(8..=30))]
     pub output_bits: Option<u32>,
-    /// How wrong the motor's torque may be, in percent of it [default: torque_constant_error_ratio of the joint file]
+    /// How wrong the motor's torque may be, in percent of it (one standard deviation) [default: torque_constant_error_ratio of the joint file]
     #[arg(long, value_name = "PERCENT", value_parser = percent)]
     pub torque_error: Option<f64>,
+    /// How wrong the joint file's inertia of motor and link may each be, in percent of it (one standard deviation)
+    #[arg(long, value_name = "PERCENT", default_value_t = 100.0 * INERTIA_ERROR, value_parser = percent)]
+    pub inertia_error: f64,
     /// Writes LOG instead of reading it: the recommended test, done by the f64 reference of the joint file
-    #[arg(long, conflicts_with_all = ["topic", "column", "unit", "map", "torque_error", "out", "json"])]
+    #[arg(long, conflicts_with_all = ["topic", "column", "unit", "map", "torque_error", "inertia_error", "out", "json"])]
     pub simulate: bool,
     /// Seed of a simulated test's noise and encoder phases
     #[arg(long, value_name = "N", default_value_t = 1, requires = "simulate")]

@@ -4,6 +4,7 @@
 
 use std::f64::consts::TAU;
 
+use super::balances::{self, Factor, SURE};
 use super::log::{Kind, Log};
 use super::prior::PriorModel;
 use super::regression::{Equations, Solution};
@@ -14,8 +15,6 @@ use report::number::ESTIMATE;
 
 /// So many moments are enough to hold angle against angle.
 const MOMENTS: usize = 4000;
-/// A factor is taken for certain if it stands out of its scatter by so many standard deviations.
-const SURE: f64 = 6.0;
 /// Over a whole turn and more an encoder's own error cancels, and teeth do not slip: the ratio holds within this.
 const RATIO_OVER_TURNS: f64 = 2e-3;
 /// Over less than a turn an encoder's error of 0.2 degrees feigns this much.
@@ -28,14 +27,10 @@ const ANY_ERROR: f64 = 1e-3;
 const STANDS: f64 = 1e-3;
 /// Box of the kernel for the balance of torques: longer than a swing on the compliance, shorter than a reversal [s].
 const BALANCE_BOX: f64 = 8e-3;
-/// Share of the largest torque that gravity, or an offset, may take.
-const HELD: f64 = 1.0;
 /// What turns in all is known within this factor, or the file is not this joint's.
 const INERTIA_FACTOR: f64 = 1.6;
 /// The motor's own inertia stands in a data sheet: it is known better.
 const MOTOR_FACTOR: f64 = 1.25;
-/// The balance of torques tells its factor if it is as narrow as this.
-const NARROW: f64 = 0.1;
 /// Torques before and behind the gears differ by ratio and losses, and by no more than this factor.
 const GEARS_FACTOR: f64 = 1.5;
 /// A cause is likely if it gives the factor within this ratio; those that come nearest are named first, and so many.
@@ -80,30 +75,6 @@ impl Causes {
         let mut causes: Vec<String> = self.list.into_iter().take(NAMED).map(|(_, text)| text).collect();
         causes.extend(otherwise);
         if causes.is_empty() { check.to_owned() } else { format!("perhaps {}; {check}", causes.join(", or ")) }
-    }
-}
-
-/// What should be 1.
-#[derive(Debug, Clone, Copy)]
-struct Factor {
-    value: f64,
-    deviation: f64,
-}
-
-impl Factor {
-    fn of(solution: &Solution, unknown: usize) -> Self {
-        Self { value: solution.values[unknown], deviation: solution.deviation(unknown) }
-    }
-
-    /// Known well enough to be held against anything.
-    fn is_narrow(self) -> bool {
-        self.deviation < NARROW * self.value.abs()
-    }
-
-    /// Surely not from 1/most to most.
-    fn is_beyond(self, most: f64) -> bool {
-        let reach = SURE * self.deviation;
-        self.value + reach < 1.0 / most || self.value - reach > most
     }
 }
 
@@ -182,13 +153,13 @@ fn angle_causes(log: &Log, prior: &PriorModel, factor: Factor) -> Causes {
 pub fn torques(log: &Log, prior: &PriorModel, shortest: f64) -> Outcome<()> {
     let rows = Rows::new(log, prior, BALANCE_BOX);
     behind_the_gears(prior, &rows)?;
-    let Some(whole) = whole_balance(&rows, prior) else { return Ok(()) };
+    let Some(whole) = balances::of_all(&rows, prior) else { return Ok(()) };
     if !whole.is_narrow() || !whole.is_beyond(INERTIA_FACTOR) {
         return Ok(());
     }
     // Where the motor's own inertia agrees, it is the link's that does not.
     let rows = Rows::new(log, prior, shortest);
-    let of_motor = twist::fit_with_any_torque(log, &rows, prior).map(|free| motor_balance(&free.solution));
+    let of_motor = twist::fit_with_any_torque(log, &rows, prior).map(|free| balances::of_the_motor(&free.solution));
     if whole.value > 0.0 && of_motor.is_some_and(|factor| factor.is_narrow() && !factor.is_beyond(MOTOR_FACTOR)) {
         let motor = prior.motor_inertia * prior.ratio() * prior.ratio();
         let link = (whole.value * (motor + prior.link_inertia) - motor).max(0.0);
@@ -209,33 +180,11 @@ pub fn torques(log: &Log, prior: &PriorModel, shortest: f64) -> Outcome<()> {
 /// Refuses a log whose ringing asks for another inertia of the motor than its own: `free` is a fit that expected nothing of
 /// the torque's scale.
 pub fn ringing(log: &Log, prior: &PriorModel, free: &Solution) -> Outcome<()> {
-    let factor = motor_balance(free);
+    let factor = balances::of_the_motor(free);
     if !factor.is_narrow() || !factor.is_beyond(MOTOR_FACTOR) {
         return Ok(());
     }
     Err(contradiction(log, prior, factor, "the motor", prior.motor_inertia))
-}
-
-/// Logged torque over what the motor's inertia takes of it while the joint rings.
-fn motor_balance(free: &Solution) -> Factor {
-    let compliance = free.values[twist::COMPLIANCE];
-    let value = 1.0 / (1.0 + free.values[twist::TORQUE_ERROR] / compliance);
-    Factor { value, deviation: free.deviation(twist::TORQUE_ERROR) / compliance.abs() * value * value }
-}
-
-/// Logged torque over what the joint file's inertias need: everything that turns, friction and weight apart.
-fn whole_balance(rows: &Rows, prior: &PriorModel) -> Option<Factor> {
-    let mut equations = Equations::default();
-    for row in rows.all.iter().filter(|row| row.direction != 0.0) {
-        let needed =
-            prior.ratio() * prior.motor_inertia * row.motor_acceleration + prior.link_inertia * row.output_acceleration;
-        let coefficients = vec![needed, row.direction, row.output_speed, row.output.sin(), row.output.cos(), 1.0];
-        let block = (row.time / BLOCK_LENGTH) as usize;
-        equations.push(coefficients, prior.ratio() * row.motor_torque / row.leverage, block);
-    }
-    let held = HELD * rows.greatest.max(f64::MIN_POSITIVE);
-    let solution = equations.solve(&[f64::INFINITY, f64::INFINITY, f64::INFINITY, held, held, held])?;
-    Some(Factor::of(&solution, 0))
 }
 
 /// What stands behind the gears is what the motor gives, less what it takes for itself.

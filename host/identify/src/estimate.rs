@@ -30,6 +30,11 @@ impl Estimate {
         Self { half: self.half + systematic.abs(), ..self }
     }
 
+    /// With an error beside the scatter that has nothing to do with it, half of its 95 % interval given.
+    pub fn beside(self, independent: f64) -> Self {
+        Self { half: self.half.hypot(independent), ..self }
+    }
+
     /// In another unit.
     pub fn times(self, factor: f64) -> Self {
         Self { value: self.value * factor, half: self.half * factor.abs() }

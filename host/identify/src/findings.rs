@@ -1,10 +1,12 @@
 //! Identified parameters, each with its 95 % interval in the joint file's unit and the key it belongs to, or the reason
-//! why the log does not determine it: `gap`, `brakes` and `angles`.
+//! why the log does not determine it: `gap`, `brakes`, `inertias` and `angles`.
 
 pub(crate) mod angles;
 mod brakes;
+mod feigned;
 mod finding;
 mod gap;
+mod inertias;
 
 pub use finding::Finding;
 
@@ -13,6 +15,7 @@ use serde::Serialize;
 use super::log::Log;
 use super::prior::PriorModel;
 use super::rows::Rows;
+use super::scales::Scales;
 use super::twist::Twist;
 
 /// The record of an identification, for JSON and the report.
@@ -34,10 +37,26 @@ pub struct Record<'a> {
     pub findings: &'a [Finding],
 }
 
-/// Everything that a log shows of a joint.
-pub fn gather(log: &Log, quick: &Rows, slow: &Rows, twist: &Twist, prior: &PriorModel) -> Vec<Finding> {
-    let mut findings = gap::gap_and_compliance(log, twist, prior);
-    findings.extend(brakes::frictions(quick, slow, twist, prior));
+/// What stays open of a torque that was not measured behind the gears.
+#[derive(Debug, Clone, Copy)]
+pub struct Doubt {
+    /// Of torque and inertias together.
+    pub scales: Scales,
+    /// What the motor's inertia, as much as it may still be off beside them, puts into the compliance, as a share of it.
+    pub by_inertia: f64,
+}
+
+/// Everything that a log shows of a joint, with what stays open where the motor's torque is what bends it.
+pub fn gather(
+    log: &Log,
+    [quick, slow]: [&Rows; 2],
+    twist: &Twist,
+    prior: &PriorModel,
+    doubt: Option<&Doubt>,
+) -> Vec<Finding> {
+    let mut findings = gap::gap_and_compliance(log, quick, twist, prior, doubt);
+    findings.extend(brakes::frictions([quick, slow], twist, prior, doubt));
+    findings.extend(doubt.iter().flat_map(|doubt| inertias::inertias(&doubt.scales, prior)));
     findings.extend(angles::maps(twist, prior));
     findings.push(angles::skew(log, twist, prior));
     findings

@@ -24,7 +24,7 @@ const STRIBECK_SPEEDS: f64 = 5.0;
 /// Share of the largest torque within which an offset of the torque is expected.
 const BIAS: f64 = 0.02;
 
-/// Balance of the link, with a motor torque that exceeds the logged one by a ratio and a motor of this dry friction, if
+/// Balance of the link, with a motor torque that exceeds the scaled one by a ratio and a motor of this dry friction, if
 /// no torque was measured behind them.
 pub fn of_the_link(rows: &Rows, prior: &PriorModel, torque_error: f64, motor_dry: f64) -> Option<Solution> {
     let slowest = SLOWEST.max(STRIBECK_SPEEDS * prior.surroundings.load_friction.stribeck_speed);

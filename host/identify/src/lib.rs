@@ -8,6 +8,7 @@
 //! `quasi_static` reads slow logs by itself.
 
 mod arguments;
+mod balances;
 mod column_map;
 mod columns;
 mod contradictions;
@@ -32,6 +33,7 @@ mod regression;
 mod ros_message;
 mod rows;
 mod sampling;
+mod scales;
 mod text_table;
 mod twist;
 mod units;
@@ -39,11 +41,12 @@ pub mod virtual_test;
 
 pub use arguments::Arguments;
 use column_map::ColumnMap;
-use findings::{Finding, Record};
+use findings::{Doubt, Finding, Record};
 use log::Log;
 use prior::PriorModel;
 pub use quasi_static::Options;
 use rows::Rows;
+use scales::Scales;
 use twist::Twist;
 
 use joint_file::named::{self, Loaded};
@@ -79,6 +82,8 @@ const FINDINGS: &str = "findings.json";
 /// What a log has shown.
 struct Identified {
     log: Log,
+    /// What was known before, with the inertias that were found.
+    prior: PriorModel,
     rows: Rows,
     twist: Twist,
     findings: Vec<Finding>,
@@ -107,7 +112,7 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
     let name = arguments.log.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let patched = patch::patch(&loaded, &prior, &identified.findings, &name)?;
     let assumptions = assumptions(&prior, &identified.log);
-    let Identified { log, rows, twist, findings } = &identified;
+    let Identified { log, prior, rows, twist, findings } = &identified;
     let record = Record {
         schema: "joint-identify/1",
         joint: &prior.name,
@@ -117,7 +122,7 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
         assumptions: &assumptions,
         findings,
     };
-    let figures = vec![pictures::loop_of(log, rows, twist, &prior), pictures::time_history(log, twist)];
+    let figures = vec![pictures::loop_of(log, rows, twist, prior), pictures::time_history(log, twist)];
     let document = page::document(&record, &loaded.text, figures);
     let json = output::json("findings", &record)?;
     folder.write_text(REPORT, &html(&document))?;
@@ -157,16 +162,26 @@ fn identify(arguments: &Arguments, prior: &PriorModel) -> Outcome<Identified> {
         let Some(better) = twist::fit(&corrected, &seen, prior) else { break };
         (log, rows, twist) = (corrected, seen, better);
     }
-    if let Some(free) = twist::fit_with_any_torque(&log, &rows, prior) {
-        contradictions::ringing(&log, prior, &free.solution).map_err(in_the_file)?;
+    let mut prior = prior.clone();
+    let mut doubt = None;
+    if let Some(free) = twist::fit_with_any_torque(&log, &rows, &prior) {
+        contradictions::ringing(&log, &prior, &free.solution).map_err(in_the_file)?;
+        let found = Scales::new(&log, &prior, &free.solution);
+        (log, prior) = found.apply(&log, &prior);
+        rows = Rows::new(&log, &prior, length);
+        twist = twist::fit_with_this_torque(&log, &rows, &prior).unwrap_or(twist);
+        let heavier = found.with_most_of_the_motor(&prior);
+        let moved = twist::fit_with_this_torque(&log, &Rows::new(&log, &heavier, length), &heavier);
+        let by_inertia = moved.map_or(f64::NAN, |moved| moved.compliance() / twist.compliance() - 1.0);
+        doubt = Some(Doubt { scales: found, by_inertia });
     }
-    let slow = Rows::new(&log, prior, SLOW_BOX);
-    let findings = findings::gather(&log, &rows, &slow, &twist, prior);
+    let slow = Rows::new(&log, &prior, SLOW_BOX);
+    let findings = findings::gather(&log, [&rows, &slow], &twist, &prior, doubt.as_ref());
     if findings.iter().all(|finding| finding.value.is_none()) {
         return Err(in_the_file(Failure::new("nothing is identifiable from this log"))
             .with_help("record more reversals, with torques well above the friction and of different strength"));
     }
-    Ok(Identified { log, rows, twist, findings })
+    Ok(Identified { log, prior, rows, twist, findings })
 }
 
 /// The fit with the shortest box of the kernel at which encoder counts are not most of what an acceleration shows; the best
@@ -209,18 +224,17 @@ fn assumptions(prior: &PriorModel, log: &Log) -> Vec<String> {
             prior.teeth[1], prior.teeth[0]
         ),
         format!("Encoders of {} bits (motor) and {} bits (output).", prior.motor_bits, prior.output_bits),
-        "Motor's inertia right within 1.5 %, readings of motor and torque at the same time within 2 us: both are in the \
-         intervals."
-            .to_owned(),
+        "Readings of motor and torque at the same time within 2 us: that is in the intervals.".to_owned(),
         "Half-backlash is the mean over all meshes: a log cannot tell sun and ring apart.".to_owned(),
     ];
     list.push(if log.output_torque.is_some() {
         "Torque measured at the output; its own error is not in the intervals.".to_owned()
     } else {
         format!(
-            "Motor torque as logged, its scale expected to be right within {:.1} % (one standard deviation); what the log does \
-             not show of it is in the intervals.",
-            100.0 * prior.torque_error
+            "Torque's scale expected to be right within {:.1} %, inertias of motor and link within {:.1} % each (one standard \
+             deviation); the log shows ratios of the three, and what it does not show is in the intervals.",
+            100.0 * prior.torque_error,
+            100.0 * prior.inertia_error
         )
     });
     list

@@ -8,6 +8,9 @@ use parameters::{Mesh, MeshKind, StiffnessWave, Surroundings};
 use super::arguments::Arguments;
 use joint_file::named::Loaded;
 
+/// How wrong an inertia of a joint file is expected to be, as a ratio: one standard deviation, of what drawings give.
+pub const INERTIA_ERROR: f64 = 0.015;
+
 /// The joint as known from its file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PriorModel {
@@ -46,8 +49,10 @@ pub struct PriorModel {
     pub compliant: bool,
     /// What surrounds the gears.
     pub surroundings: Surroundings,
-    /// How wrong the motor's torque may be, as a ratio.
+    /// How wrong the motor's torque may be, as a ratio: one standard deviation.
     pub torque_error: f64,
+    /// How wrong each inertia may be, likewise.
+    pub inertia_error: f64,
 }
 
 impl PriorModel {
@@ -57,6 +62,7 @@ impl PriorModel {
         prior.motor_bits = arguments.motor_bits.unwrap_or(prior.motor_bits);
         prior.output_bits = arguments.output_bits.unwrap_or(prior.output_bits);
         prior.torque_error = arguments.torque_error.map_or(prior.torque_error, |percent| percent / 100.0);
+        prior.inertia_error = arguments.inertia_error / 100.0;
         prior
     }
 
@@ -112,6 +118,7 @@ impl PriorModel {
             lost_motion: 2.0 * half_backlash / lever,
             compliant,
             torque_error: around.torque_constant_error_ratio.abs(),
+            inertia_error: INERTIA_ERROR,
             surroundings: *around,
         }
     }

@@ -76,6 +76,11 @@ pub fn fit(log: &Log, rows: &Rows, prior: &PriorModel) -> Option<Twist> {
     fit_with(log, rows, prior, prior.torque_error)
 }
 
+/// The same for a torque that is right.
+pub fn fit_with_this_torque(log: &Log, rows: &Rows, prior: &PriorModel) -> Option<Twist> {
+    fit_with(log, rows, prior, 0.0)
+}
+
 /// The same for a torque whose scale is not known at all; nothing where no torque of the motor enters.
 pub fn fit_with_any_torque(log: &Log, rows: &Rows, prior: &PriorModel) -> Option<Twist> {
     if log.output_torque.is_some() { None } else { fit_with(log, rows, prior, f64::INFINITY) }
@@ -153,9 +158,9 @@ fn equation(log: &Log, rows: &Rows, prior: &PriorModel, row: &Row) -> Vec<f64> {
 }
 
 impl Twist {
-    /// By which the motor's true torque exceeds the logged one, as a ratio.
-    pub fn torque_error(&self) -> f64 {
-        self.solution.values[TORQUE_ERROR] / self.solution.values[COMPLIANCE]
+    /// Of the joint [rad/(N m)].
+    pub fn compliance(&self) -> f64 {
+        self.solution.values[COMPLIANCE]
     }
 
     /// Error at an angle that comes once and twice in its turn [rad]; `first` is the first of its four unknowns.

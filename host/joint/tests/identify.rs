@@ -121,6 +121,44 @@ fn true_values_lie_in_the_stated_intervals() {
 }
 
 #[test]
+fn an_inertia_that_is_wrong_by_five_percent_bends_nothing_and_is_told() {
+    let folder = folder();
+    let log = folder.path().join("log.csv");
+    let common = ["identify", text(&log), "--joint", "q1"];
+    joint(&[&common[..], &["--simulate", "--seed", "31"]].concat()).well();
+    let identified = |set: &str, out: &str| {
+        let out = folder.path().join(out);
+        joint(&[&common[..], &["--set", set, "--out", text(&out)]].concat()).well();
+        json(&out.join("findings.json"))
+    };
+    let half = |record: &Value| {
+        let (_, [low, high]) = found(record, STIFFNESS).expect("found");
+        assert!((low..=high).contains(&10.3e3), "{low} to {high}");
+        0.5 * (high - low) / 10.3e3
+    };
+    let right = half(&identified("link_inertia_kg_m2=0.15", "right"));
+    for (place, set) in ["rotor_inertia_kg_m2=2.63e-4", "rotor_inertia_kg_m2=2.37e-4"].into_iter().enumerate() {
+        let wrong = half(&identified(set, &format!("motor{place}")));
+        assert!(right < 0.03 && wrong > 1.2 * right && wrong < 0.06, "{set}: {wrong} beside {right}");
+    }
+    for (place, set) in ["link_inertia_kg_m2=0.158", "link_inertia_kg_m2=0.142"].into_iter().enumerate() {
+        half(&identified(set, &format!("link{place}")));
+    }
+    // Where the torque is not doubted, the log tells which inertia is wrong.
+    let out = folder.path().join("told");
+    let sets = ["--set", "rotor_inertia_kg_m2=3e-4", "--set", "drive_train.torque_constant_error_ratio=0"];
+    joint(&[&common[..], &sets, &["--torque-error", "0", "--out", text(&out)]].concat()).well();
+    let notes: Vec<String> = json(&out.join("findings.json"))["findings"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .filter(|finding| finding["name"].as_str().is_some_and(|name| name.starts_with("inertia")))
+        .map(|finding| finding["note"].as_str().expect("a note").to_owned())
+        .collect();
+    assert!(notes[0].contains("% of the joint file's, which the torque contradicts"), "{notes:?}");
+}
+
+#[test]
 fn a_torque_measured_at_the_output_tells_the_motor_s_friction_from_the_link_s() {
     let record = identified("q1", &[], 21, true);
     let viscous = "drive_train.motor_viscous_friction_N_m_s_per_rad";

@@ -1,5 +1,6 @@
 //! What a log shows of the encoders: errors that come once and twice a turn, and the age of the output's reading.
 
+use super::feigned;
 use super::finding::{Finding, finding};
 use crate::estimate::Estimate;
 use crate::log::Log;
@@ -9,8 +10,6 @@ use crate::twist::Twist;
 
 /// An error by angle counts as found if the log narrows it to this share of what is expected anyway.
 const NARROWED: f64 = 0.1;
-/// Amplitude that counts and teeth may feign [counts]. Found on simulated logs of joints without such errors.
-const FEIGNED_COUNTS: f64 = 0.03;
 /// Time over which a speed is taken [s].
 const SPAN: f64 = 0.01;
 /// Radius within which two parts lie in 95 of 100 cases, over the reach within which one does.
@@ -36,7 +35,7 @@ pub(super) fn maps(twist: &Twist, prior: &PriorModel) -> Vec<Finding> {
             let amplitude = along.hypot(across);
             let [by_sine, by_cosine] = [along / amplitude, across / amplitude];
             let estimate = Estimate::from(solution, amplitude, &[(sine, by_sine), (cosine, by_cosine)]);
-            let estimate = estimate.wider_by(FEIGNED_COUNTS * std::f64::consts::TAU / f64::from(1_u32 << bits));
+            let estimate = estimate.wider_by(feigned::angle(bits));
             // An amplitude of two parts that scatter is never zero: one that does not stand out of both may well be.
             let both = Estimate { half: OF_BOTH * estimate.half, ..estimate };
             let estimate = if amplitude < both.half { both } else { estimate };
@@ -60,9 +59,8 @@ pub(super) fn maps(twist: &Twist, prior: &PriorModel) -> Vec<Finding> {
 /// How old the output's reading is. What counts and teeth feign of an angle looks like an age the more, the slower the output
 /// turns.
 pub(super) fn skew(log: &Log, twist: &Twist, prior: &PriorModel) -> Finding {
-    let count = |bits: u32| std::f64::consts::TAU / f64::from(1_u32 << bits);
-    let feigned = FEIGNED_COUNTS * (count(prior.motor_bits) / prior.ratio() + count(prior.output_bits));
-    let skew = Estimate::of(&twist.solution, twist::SKEW).wider_by(feigned / usual_speed(log).max(f64::MIN_POSITIVE));
+    let speed = usual_speed(log).max(f64::MIN_POSITIVE);
+    let skew = Estimate::of(&twist.solution, twist::SKEW).wider_by(feigned::twist(prior) / speed);
     let why = "the joint must turn at different speeds";
     let narrow = skew.half < 2.0 * NARROWED * twist::width(twist::SKEW);
     finding("output encoder: age of a reading", "us", "drive_train.output_encoder.skew_us", skew.times(1e6))

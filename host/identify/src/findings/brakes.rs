@@ -1,7 +1,8 @@
 //! What a log shows of motor and link friction, and of the error in the torque scale, on which both depend. The torque
 //! balances are fitted in `friction`.
 
-use super::finding::{Finding, INERTIA_SHARE, SHARE, finding};
+use super::Doubt;
+use super::finding::{Finding, SHARE, finding};
 use crate::estimate::Estimate;
 use crate::friction;
 use crate::prior::PriorModel;
@@ -16,28 +17,31 @@ const SMALL: f64 = 0.02;
 const BALANCE_SHARE: f64 = 0.0015;
 
 /// Frictions of motor and link.
-pub(super) fn frictions(quick: &Rows, slow: &Rows, twist: &Twist, prior: &PriorModel) -> Vec<Finding> {
+pub(super) fn frictions(
+    [quick, slow]: [&Rows; 2],
+    twist: &Twist,
+    prior: &PriorModel,
+    doubt: Option<&Doubt>,
+) -> Vec<Finding> {
     let solution = &twist.solution;
     let measured = quick.all.iter().any(|row| row.measured.is_some());
     let small = SMALL * quick.greatest;
     let found = |estimate: Estimate, least: f64| estimate.half < (SHARE * estimate.value.abs()).max(least);
     let motor = if measured { friction::of_the_motor(quick, prior) } else { None };
     let compliance = solution.values[twist::COMPLIANCE];
+    let of_torque = doubt.map_or(0.0, |doubt| doubt.scales.torque.half());
     let motor_dry = match &motor {
         Some(balance) => Estimate::of(balance, friction::MOTOR_DRY),
         None => {
             let value = -solution.values[twist::MOTOR_FRICTION] / compliance;
             let slopes = [(twist::MOTOR_FRICTION, -1.0 / compliance), (twist::COMPLIANCE, -value / compliance)];
-            Estimate::from(solution, value, &slopes).wider_by(INERTIA_SHARE * value)
+            Estimate::from(solution, value, &slopes).beside(of_torque * value)
         }
     };
-    let excess = match &motor {
-        Some(balance) => Estimate::of(balance, friction::TORQUE_ERROR),
-        None => {
-            let value = twist.torque_error();
-            let slopes = [(twist::TORQUE_ERROR, 1.0 / compliance), (twist::COMPLIANCE, -value / compliance)];
-            Estimate::from(solution, value, &slopes).wider_by(INERTIA_SHARE)
-        }
+    let excess = match (&motor, doubt) {
+        (Some(balance), _) => Estimate::of(balance, friction::TORQUE_ERROR),
+        (None, Some(doubt)) => Estimate { value: doubt.scales.torque.factor() - 1.0, half: of_torque },
+        (None, None) => Estimate { value: f64::NAN, half: f64::NAN },
     };
     let motor_known = found(motor_dry, small / prior.ratio());
     let why_motor = "the motor must turn both ways on each flank, and bend the joint by several counts as it does";
@@ -48,7 +52,7 @@ pub(super) fn frictions(quick: &Rows, slow: &Rows, twist: &Twist, prior: &PriorM
     let key = "drive_train.torque_constant_error_ratio";
     let why = "flanks must land so hard that the motor's inertia shows";
     let share = finding("true torque over the logged one, less 1", "-", key, excess).if_so(narrower, why);
-    findings.push(share.noted("by the inertia of the joint file"));
+    findings.push(share.noted("by the inertias of the joint file"));
     if let Some(balance) = &motor {
         let viscous = Estimate::of(balance, friction::MOTOR_VISCOUS);
         let fastest = fastest(quick, |row| row.motor_speed);
@@ -70,7 +74,7 @@ pub(super) fn frictions(quick: &Rows, slow: &Rows, twist: &Twist, prior: &PriorM
         (Estimate { value: prior.surroundings.motor_friction.coulomb, half: 0.0 }, "if the motor's is as stated")
     };
     let balance = |excess: f64, dry: f64| friction::of_the_link(slow, prior, excess, dry);
-    let Some(link) = balance(excess.value, dry.value) else {
+    let Some(link) = balance(0.0, dry.value) else {
         let nothing = Estimate { value: f64::NAN, half: f64::NAN };
         findings.extend(
             [0, 1].map(|place| finding(names[place], units[place], keys[place], nothing).if_so(false, why_link)),
@@ -78,7 +82,7 @@ pub(super) fn frictions(quick: &Rows, slow: &Rows, twist: &Twist, prior: &PriorM
         return findings;
     };
     // How far what is still uncertain moves the balance is found by moving it.
-    let moved = [balance(excess.value + excess.half, dry.value), balance(excess.value, dry.value + dry.half)];
+    let moved = [balance(of_torque, dry.value), balance(0.0, dry.value + dry.half)];
     let of_link = |unknown: usize| {
         let shift = |moved: &Option<Solution>| {
             moved.as_ref().map_or(f64::NAN, |moved| moved.values[unknown] - link.values[unknown])

@@ -7,8 +7,6 @@ use crate::estimate::Estimate;
 
 /// A value counts as found if half of its interval is at most this share of it.
 pub(super) const SHARE: f64 = 0.5;
-/// Relative error of the motor's inertia in a joint file, from which the scale of the torque is found.
-pub(super) const INERTIA_SHARE: f64 = 0.015;
 /// What two inertias on a spring leave out of a joint, as a share of a value: widens every interval. Found on simulated
 /// logs of the presets, where the scatter alone promised more than the reference keeps.
 const MODEL_SHARE: f64 = 0.003;

@@ -1,10 +1,12 @@
 //! What a log shows of gap, compliance and damping.
 
-use super::finding::{Finding, INERTIA_SHARE, SHARE, finding};
+use super::finding::{Finding, SHARE, finding};
+use super::{Doubt, feigned};
 use crate::estimate::Estimate;
 use crate::log::Log;
 use crate::prior::PriorModel;
 use crate::regression::Solution;
+use crate::rows::Rows;
 use crate::sampling::SWING_SAMPLES;
 use crate::twist;
 use crate::twist::Twist;
@@ -13,12 +15,18 @@ use crate::twist::Twist;
 const SAME_TIME: f64 = 2e-6;
 
 /// The gap, what bends, and how it rings.
-pub(super) fn gap_and_compliance(log: &Log, twist: &Twist, prior: &PriorModel) -> Vec<Finding> {
+pub(super) fn gap_and_compliance(
+    log: &Log,
+    rows: &Rows,
+    twist: &Twist,
+    prior: &PriorModel,
+    doubt: Option<&Doubt>,
+) -> Vec<Finding> {
     let solution = &twist.solution;
     let half_gap = Estimate::of(solution, twist::HALF_GAP);
     let compliance = Estimate::of(solution, twist::COMPLIANCE);
-    let rests_on_inertia = if log.output_torque.is_some() { 0.0 } else { INERTIA_SHARE };
-    let compliance = compliance.wider_by(rests_on_inertia * compliance.value);
+    let open = doubt.map_or(0.0, |doubt| doubt.scales.torque.half().hypot(doubt.by_inertia));
+    let compliance = compliance.beside(open * compliance.value).beside(feigned::twist(prior) / rows.greatest);
     let has_gap = half_gap.value > 0.0 && half_gap.half < SHARE * half_gap.value;
     let bends = compliance.value > 0.0 && compliance.half < SHARE * compliance.value;
     let why_gap =

@@ -5,7 +5,7 @@
 #[command(next_help_heading = "Slow logs")]
 pub struct Options {
     /// Reads a slow log of sweeps to and fro, without a joint file: lost motion, hysteresis, error map, friction
-    #[arg(long, conflicts_with_all = ["joint", "set", "motor_bits", "output_bits", "torque_error", "simulate"])]
+    #[arg(long, conflicts_with_all = ["joint", "set", "motor_bits", "output_bits", "torque_error", "inertia_error", "simulate"])]
     pub quasi_static: bool,
     /// Seconds of the log in which the output is loaded one way, such as 0..60; again for those of the other way
     #[arg(long = "half", value_name = "FROM..TO", requires = "quasi_static", value_parser = stretch)]

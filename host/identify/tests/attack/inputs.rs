@@ -200,6 +200,7 @@ fn arguments(log: &Path, folder: &Path) -> Arguments {
         motor_bits: None,
         output_bits: None,
         torque_error: None,
+        inertia_error: 1.5,
         simulate: false,
         seed: 1,
         with_output_torque: false,

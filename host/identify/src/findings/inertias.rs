@@ -1,0 +1,24 @@
+//! What a log makes of the joint file's inertias, for who wrote them.
+
+use super::finding::{Finding, finding};
+use crate::estimate::Estimate;
+use crate::prior::PriorModel;
+use crate::scales::{Scale, Scales};
+
+/// What turns with the motor and with the link; nothing of it goes into the joint file, which states parts of them.
+pub(super) fn inertias(scales: &Scales, prior: &PriorModel) -> [Finding; 2] {
+    let of = |name: &str, inertia: f64, scale: Scale| {
+        let estimate = Estimate { value: inertia, half: inertia * scale.half() };
+        let found = finding(name, "kg m^2", "", estimate);
+        if scale.is_another() {
+            let share = 100.0 * (scale.factor() - 1.0);
+            found.noted(format!("{share:+.1} % of the joint file's, which the torque contradicts"))
+        } else {
+            found.noted("as expected of the joint file's")
+        }
+    };
+    [
+        of("inertia that turns with the motor", prior.motor_inertia, scales.motor_inertia),
+        of("inertia that turns with the link", prior.link_inertia, scales.link_inertia),
+    ]
+}

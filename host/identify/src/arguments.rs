@@ -3,9 +3,11 @@
 use std::path::PathBuf;
 
 use super::column_map::renaming;
-use super::prior::INERTIA_ERROR;
 use super::quasi_static::Options;
 use super::units::{self, Unit};
+
+/// How wrong an inertia of a joint file is expected to be, as a ratio: one standard deviation, of what drawings give.
+pub const INERTIA_ERROR: f64 = 0.015;
 
 /// Arguments of `joint identify`.
 #[derive(Debug, Clone, clap::Args)]

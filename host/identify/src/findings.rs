@@ -15,7 +15,7 @@ use serde::Serialize;
 use super::log::Log;
 use super::prior::PriorModel;
 use super::rows::Rows;
-use super::scales::Scales;
+use super::scales::Doubt;
 use super::twist::Twist;
 
 /// The record of an identification, for JSON and the report.
@@ -35,15 +35,6 @@ pub struct Record<'a> {
     pub assumptions: &'a [String],
     /// What was found.
     pub findings: &'a [Finding],
-}
-
-/// What stays open of a torque that was not measured behind the gears.
-#[derive(Debug, Clone, Copy)]
-pub struct Doubt {
-    /// Of torque and inertias together.
-    pub scales: Scales,
-    /// What the motor's inertia, as much as it may still be off beside them, puts into the compliance, as a share of it.
-    pub by_inertia: f64,
 }
 
 /// Everything that a log shows of a joint, with what stays open where the motor's torque is what bends it.

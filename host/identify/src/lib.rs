@@ -41,12 +41,12 @@ pub mod virtual_test;
 
 pub use arguments::Arguments;
 use column_map::ColumnMap;
-use findings::{Doubt, Finding, Record};
+use findings::{Finding, Record};
 use log::Log;
 use prior::PriorModel;
 pub use quasi_static::Options;
 use rows::Rows;
-use scales::Scales;
+use scales::{Doubt, Scales};
 use twist::Twist;
 
 use joint_file::named::{self, Loaded};

@@ -5,11 +5,8 @@ use joint_file::{JointFile, sheet};
 use model_core::gears::{Kinematics, Mechanics};
 use parameters::{Mesh, MeshKind, StiffnessWave, Surroundings};
 
-use super::arguments::Arguments;
+use super::arguments::{Arguments, INERTIA_ERROR};
 use joint_file::named::Loaded;
-
-/// How wrong an inertia of a joint file is expected to be, as a ratio: one standard deviation, of what drawings give.
-pub const INERTIA_ERROR: f64 = 0.015;
 
 /// The joint as known from its file.
 #[derive(Debug, Clone, PartialEq)]

@@ -53,6 +53,15 @@ pub struct Scale {
     pub deviation: f64,
 }
 
+/// What stays open of a torque that was not measured behind the gears.
+#[derive(Debug, Clone, Copy)]
+pub struct Doubt {
+    /// Of torque and inertias together.
+    pub scales: Scales,
+    /// What the motor's inertia, as much as it may still be off beside them, puts into the compliance, as a share of it.
+    pub by_inertia: f64,
+}
+
 impl Scale {
     /// True over stated.
     pub fn factor(self) -> f64 {

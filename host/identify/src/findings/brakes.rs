@@ -1,13 +1,13 @@
 //! What a log shows of motor and link friction, and of the error in the torque scale, on which both depend. The torque
 //! balances are fitted in `friction`.
 
-use super::Doubt;
 use super::finding::{Finding, SHARE, finding};
 use crate::estimate::Estimate;
 use crate::friction;
 use crate::prior::PriorModel;
 use crate::regression::Solution;
 use crate::rows::{Row, Rows};
+use crate::scales::Doubt;
 use crate::twist;
 use crate::twist::Twist;
 

@@ -1,13 +1,14 @@
 //! What a log shows of gap, compliance and damping.
 
+use super::feigned;
 use super::finding::{Finding, SHARE, finding};
-use super::{Doubt, feigned};
 use crate::estimate::Estimate;
 use crate::log::Log;
 use crate::prior::PriorModel;
 use crate::regression::Solution;
 use crate::rows::Rows;
 use crate::sampling::SWING_SAMPLES;
+use crate::scales::Doubt;
 use crate::twist;
 use crate::twist::Twist;
 

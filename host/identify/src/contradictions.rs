@@ -5,8 +5,9 @@
 use std::f64::consts::TAU;
 
 use super::balances::{self, Factor, SURE};
-use super::log::{Kind, Log};
+use super::log::Log;
 use super::prior::PriorModel;
+use super::readings::Kind;
 use super::regression::{Equations, Solution};
 use super::rows::Rows;
 use super::twist::{self, BLOCK_LENGTH};

@@ -1,10 +1,12 @@
 //! `joint identify`: from a recorded reversal test to a joint's backlash, compliance, damping, friction and encoder
 //! errors, each with its interval, and to a patched joint file.
 //!
-//! `log_file` reads a file into `columns`, text by `text_table`, an MCAP log by `mcap_file`, `mcap_log` and `ros_message`, message by message as
-//! `numbers`; `units` and `column_map` say what the columns are; `log` turns them into samples, checked by `sampling`, whose scatter is `noise`; `prior` says what the joint file knows; `rows` are the moments at which a
-//! flank carries, smoothed by `kernel`; `twist` and `friction` are fitted to them by `regression`; `findings` is what comes
-//! of it, with its `estimate`s; `table`, `page`, `pictures` and `patch` show it. `virtual_test` makes a log without hardware.
+//! `log_file` reads a file into `columns`, text by `text_table`, an MCAP log by `mcap_file`, `mcap_log` and `ros_message`,
+//! message by message as `numbers`; `units` and `column_map` say what the columns are. `log` turns them into samples: angles by
+//! `readings`, at `even_times`, checked by `sampling`, whose scatter is `noise`. `prior` says what the joint file knows; `rows`
+//! are the moments at which a flank carries, smoothed by `kernel`; `twist` and `friction` are fitted to them by `regression`;
+//! `balances` hold torque against inertias, for `contradictions` and for `scales`. `findings` is what comes of it, with its
+//! `estimate`s; `page`, `pictures` and `patch` show it. `virtual_test` makes a log without hardware.
 //! `quasi_static` reads slow logs by itself.
 
 mod arguments;
@@ -13,6 +15,7 @@ mod column_map;
 mod columns;
 mod contradictions;
 mod estimate;
+mod even_times;
 pub mod findings;
 mod friction;
 mod kernel;
@@ -28,6 +31,7 @@ mod patch;
 mod pictures;
 mod prior;
 mod quasi_static;
+mod readings;
 mod refusal;
 mod regression;
 mod ros_message;
@@ -227,6 +231,7 @@ fn assumptions(prior: &PriorModel, log: &Log) -> Vec<String> {
         "Readings of motor and torque at the same time within 2 us: that is in the intervals.".to_owned(),
         "Half-backlash is the mean over all meshes: a log cannot tell sun and ring apart.".to_owned(),
     ];
+    list.extend(log.times.told.clone());
     list.push(if log.output_torque.is_some() {
         "Torque measured at the output; its own error is not in the intervals.".to_owned()
     } else {

@@ -11,12 +11,30 @@ const GAIN: f64 = 70.0;
 pub struct Noise(Vec<f64>);
 
 impl Noise {
-    /// Of readings that are evenly spaced.
-    pub fn of(readings: &[f64]) -> Self {
-        let differences: Vec<f64> =
-            readings.windows(5).map(|w| w[0] - 4.0 * w[1] + 6.0 * w[2] - 4.0 * w[3] + w[4]).collect();
-        let variance = |block: &[f64]| block.iter().map(|d| d * d).sum::<f64>() / (GAIN * block.len() as f64);
-        Self(differences.chunks(BLOCK_LENGTH).map(variance).collect())
+    /// Of readings at even times, of which nothing is lost from one place to before another where so it is said.
+    pub fn of(readings: &[f64], is_whole: impl Fn(usize, usize) -> bool) -> Self {
+        let difference = |w: &[f64]| w[0] - 4.0 * w[1] + 6.0 * w[2] - 4.0 * w[3] + w[4];
+        let windows = readings.windows(5).enumerate();
+        let differences: Vec<Option<f64>> =
+            windows.map(|(place, window)| is_whole(place, place + 5).then(|| difference(window))).collect();
+        let mut last = 0.0;
+        let mut variance = |block: &[Option<f64>]| {
+            let (mut sum, mut count) = (0.0, 0_u32);
+            for difference in block.iter().flatten() {
+                sum += difference * difference;
+                count += 1;
+            }
+            if count > 0 {
+                last = sum / (GAIN * f64::from(count));
+            }
+            last
+        };
+        Self(differences.chunks(BLOCK_LENGTH).map(&mut variance).collect())
+    }
+
+    /// Of all of them.
+    pub fn mean(&self) -> f64 {
+        self.0.iter().sum::<f64>() / self.0.len().max(1) as f64
     }
 
     /// Around a sample.
@@ -33,9 +51,9 @@ mod tests {
     fn whole_counts_of_a_motion_scatter_by_a_twelfth_of_a_count_squared() {
         let angle = |sample: usize| 40.0 * (1e-2 * sample as f64).sin() + 0.7 * sample as f64;
         let counts: Vec<f64> = (0..4096).map(|sample| angle(sample).round()).collect();
-        let mean = (0..16).map(|block| Noise::of(&counts).at(256 * block)).sum::<f64>() / 16.0;
+        let mean = (0..16).map(|block| Noise::of(&counts, |_, _| true).at(256 * block)).sum::<f64>() / 16.0;
         assert!((12.0 * mean - 1.0).abs() < 0.1, "{mean}");
         let smooth: Vec<f64> = (0..4096).map(angle).collect();
-        assert!(Noise::of(&smooth).at(1000) < 1e-6);
+        assert!(Noise::of(&smooth, |_, _| true).at(1000) < 1e-6);
     }
 }

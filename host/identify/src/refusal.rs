@@ -8,11 +8,20 @@ use report::failure::{Failure, Outcome};
 
 /// Changes of flank that are needed: from fewer the gap is a guess.
 const LEAST_CROSSINGS: usize = 4;
+/// Moments near lost samples are left out; more than so many of them, and the rest is no test.
+const MOST_LEFT_OUT: f64 = 0.7;
 /// Time that each flank must carry in all [s].
 const LEAST_CARRIED: f64 = 0.1;
 
 /// Refuses a log without a usable reversal test in it.
 pub fn check(log: &Log, rows: &Rows, prior: &PriorModel) -> Outcome<()> {
+    if rows.left_out > MOST_LEFT_OUT {
+        return Err(Failure::new(format!(
+            "samples are lost so often that {:.0} % of this log's moments have one near them",
+            100.0 * rows.left_out
+        ))
+        .with_help("record so that samples arrive, or log every second one of them"));
+    }
     let (least, most) =
         log.torque.iter().fold((f64::MAX, f64::MIN), |(least, most), &torque| (least.min(torque), most.max(torque)));
     let friction = prior.surroundings.motor_friction.coulomb;
@@ -37,8 +46,7 @@ pub fn check(log: &Log, rows: &Rows, prior: &PriorModel) -> Outcome<()> {
         .with_help("reverse the torque more often, and hold it for some hundredths of a second each time"));
     }
     for (side, name) in [(1.0, "drive"), (-1.0, "back")] {
-        let step = rows.all.get(1).zip(rows.all.first()).map_or(0.0, |(next, row)| next.time - row.time);
-        let carried = rows.carrying().filter(|row| row.side == side).count() as f64 * step;
+        let carried = rows.carrying().filter(|row| row.side == side).count() as f64 * rows.step;
         if carried < LEAST_CARRIED {
             return Err(Failure::new(format!(
                 "the {name} flank carries for {:.0} ms only, {:.0} ms are needed",

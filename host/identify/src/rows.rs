@@ -76,6 +76,10 @@ pub struct Rows {
     pub greatest: f64,
     /// Changes from one carrying flank to the other.
     pub crossings: usize,
+    /// Time from one moment to the next [s].
+    pub step: f64,
+    /// Share of all moments that are left out since samples near them are lost.
+    pub left_out: f64,
 }
 
 impl Rows {
@@ -84,14 +88,20 @@ impl Rows {
         let samples = ((length / log.period).round() as usize).clamp(2, log.time.len() / 50);
         let kernel = Kernel::new(samples, log.period);
         let half = kernel.half();
+        let guard = ((half as f64 + LAG / log.period) / samples as f64).ceil() as usize;
         let end = log.time.len().saturating_sub(half);
-        let mut all: Vec<Row> = (half..end).step_by(samples).map(|sample| row(log, prior, &kernel, sample)).collect();
+        let moments = (half..end).step_by(samples);
+        // Near a hole a change of flank may have been lost.
+        let near = half + guard * samples;
+        let is_known = |sample: &usize| log.times.is_whole(sample.saturating_sub(near), sample + near + 1);
+        let mut all: Vec<Row> =
+            moments.clone().filter(is_known).map(|sample| row(log, prior, &kernel, sample)).collect();
+        let left_out = 1.0 - all.len() as f64 / moments.len().max(1) as f64;
         let mut torques: Vec<f64> = all.iter().map(|row| row.torque().abs()).collect();
         torques.sort_by(f64::total_cmp);
         let greatest = torques.get(torques.len() * 19 / 20).copied().unwrap_or_default();
         let friction = prior.ratio() * prior.surroundings.motor_friction.coulomb;
         let carrying = (CARRYING_SHARE * greatest).max(OVER_FRICTION * friction);
-        let guard = ((half as f64 + LAG / log.period) / samples as f64).ceil() as usize;
         let per_reading = prior.ratio() * prior.motor_inertia * kernel.products()[2][2].sqrt();
         let side = |row: &Row| {
             let scatter = if row.measured.is_some() { 0.0 } else { per_reading * log.noise[0].at(row.sample).sqrt() };
@@ -108,7 +118,7 @@ impl Rows {
         if length > UNRESOLVED * prior.swing() {
             leave_out_landings(&mut all);
         }
-        Self { all, kernel, greatest, crossings }
+        Self { all, kernel, greatest, crossings, step: samples as f64 * log.period, left_out }
     }
 
     /// Moments at which a flank carries.
@@ -191,7 +201,9 @@ fn direction(log: &Log, prior: &PriorModel, kernel: &Kernel, sample: usize) -> f
     let (quick, slow) = (kernel.half(), (SLOW / log.period) as usize);
     let sure = |way: &f64| {
         turns(quick, step, *way, QUICK_COUNTS)
-            || (turns(slow, slow / 2, *way, SLOW_COUNTS) && turns(quick, step, *way, -QUICK_COUNTS))
+            || (turns(slow, slow / 2, *way, SLOW_COUNTS)
+                && turns(quick, step, *way, -QUICK_COUNTS)
+                && log.times.is_whole(sample.saturating_sub(slow), sample + slow + 1))
     };
     [1.0, -1.0].into_iter().find(sure).unwrap_or(0.0)
 }

@@ -1,6 +1,7 @@
 //! Whether a log was sampled evenly, fast and long enough for its joint, with the figures of what is needed.
 
 use super::columns::Columns;
+use super::even_times::EvenTimes;
 use super::prior::PriorModel;
 use report::failure::{Failure, Outcome};
 
@@ -17,38 +18,16 @@ const MOST_RATE: f64 = 1e6;
 const LIKELY_RATE: f64 = 1e5;
 /// Samples of a swing from which its damping can be told.
 pub const SWING_SAMPLES: f64 = 16.0;
-/// A step of time may differ by this ratio from the usual one.
-const UNEVEN_RATIO: f64 = 0.5;
 
-/// The sampling period of a log that is fast, long and even enough.
-pub fn sampling(time: &[f64], columns: &Columns, prior: &PriorModel) -> Outcome<f64> {
+/// Even times for a log that is fast, long and whole enough; `time` begins at zero.
+pub fn sampling(time: &[f64], columns: &Columns, prior: &PriorModel) -> Outcome<EvenTimes> {
     if time.len() < 2 {
         return Err(Failure::new(format!("there are only {} samples", time.len()))
             .with_help(format!("record several reversals, for {LEAST_TIME} s at the very least")));
     }
-    let period = evenly_spaced(time, columns)?;
-    check_time(period, time.len(), prior)?;
-    Ok(period)
-}
-
-fn evenly_spaced(time: &[f64], columns: &Columns) -> Outcome<f64> {
-    let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    if let Some(line) = steps.iter().position(|&step| step <= 0.0) {
-        return Err(Failure::new(format!("the time does not rise in {}", columns.place(line + 1)))
-            .with_help("samples must be in the order in which they were taken, each with its own time"));
-    }
-    let unsorted = steps.clone();
-    steps.sort_by(f64::total_cmp);
-    let usual = steps[steps.len() / 2];
-    match unsorted.iter().position(|step| (step / usual - 1.0).abs() > UNEVEN_RATIO) {
-        Some(line) => Err(Failure::new(format!(
-            "samples are not evenly spaced: {:.3e} s before {}, usually {usual:.3e} s",
-            unsorted[line],
-            columns.place(line + 1)
-        ))
-        .with_help("samples were lost: cut the log there, or resample it")),
-        None => Ok((time[time.len() - 1] - time[0]) / (time.len() - 1) as f64),
-    }
+    let times = EvenTimes::new(time, columns)?;
+    check_time(times.period, time.len(), prior)?;
+    Ok(times)
 }
 
 /// Refuses a log that is too short, or sampled too slowly for the joint's swing.

@@ -1,0 +1,179 @@
+//! What an encoder's readings say: whole counts or angles, made continuous over turns, and refused if no turning encoder gives
+//! them.
+
+use std::f64::consts::TAU;
+
+use super::columns::Columns;
+use super::even_times::EvenTimes;
+use report::failure::{Failure, Outcome};
+use report::number::ESTIMATE;
+
+/// Turns that a motor cannot make between two samples.
+const JUMP_TURNS: f64 = 0.5;
+/// Most steps are no longer than that of this part of them...
+const USUAL: (usize, usize) = (995, 1000);
+/// ... and none is so many times as long, unless it is shorter than this part of a turn.
+const JUMP_STEPS: f64 = 20.0;
+const JUMP_LEAST: f64 = 0.02;
+/// An angle that begins anew jumps by a turn, but for what it moves meanwhile [turns].
+const WHOLE_TURN: f64 = 0.2;
+/// A jump is that of a turn if it is so near to it, as a ratio.
+const SAME_TURN: f64 = 0.03;
+/// Samples over which an encoder is seen to turn.
+const STALE_WINDOW: usize = 60;
+/// Share of them that may have the last reading once more.
+const STALE_SHARE: f64 = 0.4;
+
+/// What an encoder's readings are in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Whole counts of a stated resolution.
+    Counts,
+    /// Angles.
+    Angle,
+}
+
+/// Readings of one encoder.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Readings {
+    /// Counts of turns joined together.
+    Counts(Vec<i64>),
+    /// [rad], likewise.
+    Angles(Vec<f64>),
+}
+
+impl Readings {
+    /// What they are in.
+    pub fn kind(&self) -> Kind {
+        match self {
+            Self::Counts(_) => Kind::Counts,
+            Self::Angles(_) => Kind::Angle,
+        }
+    }
+
+    /// As angles [rad].
+    pub fn angles(&self, bits: u32) -> Vec<f64> {
+        match self {
+            Self::Counts(counts) => counts.iter().map(|&count| count as f64 * TAU / (1_u64 << bits) as f64).collect(),
+            Self::Angles(angles) => angles.clone(),
+        }
+    }
+}
+
+/// Counts, or else angles.
+pub fn readings(columns: &Columns, names: [&str; 2], bits: u32, times: &EvenTimes) -> Outcome<Readings> {
+    let what = if names[0].starts_with("motor") { "motor" } else { "output" };
+    let there = columns.first_of(&names)?;
+    let (name, values) = there.ok_or_else(|| columns.without_encoder(what))?;
+    if name == names[0] {
+        let turn = 1_i64 << bits;
+        if let Some(line) = values.iter().position(|value| value.fract() != 0.0 || value.abs() > 9e15) {
+            return Err(Failure::new(format!("{} of `{name}` is no whole number of counts", columns.place(line)))
+                .with_help("angles are understood in a column such as motor_angle_rad"));
+        }
+        let mut whole: Vec<i64> = values.iter().map(|&value| value as i64).collect();
+        if whole.iter().all(|count| (0..turn).contains(count)) {
+            unwrap(&mut whole, turn, times);
+        }
+        let steps: Vec<f64> = whole.windows(2).map(|pair| (pair[1] - pair[0]) as f64).collect();
+        let steps = times.per_period(steps);
+        check_steps(&steps, turn as f64, 1.0, columns, name)?;
+        return Ok(Readings::Counts(whole));
+    }
+    let angles = unwrapped(values, times);
+    let steps = times.per_period(angles.windows(2).map(|pair| pair[1] - pair[0]).collect());
+    check_steps(&steps, TAU, TAU / (1_i64 << bits) as f64, columns, name)?;
+    Ok(Readings::Angles(angles))
+}
+
+/// Refuses readings that no turning encoder gives: single steps beside which all others are small, and readings that are
+/// the last ones again and again although the encoder turns. `count` is a step that is seen at all.
+fn check_steps(steps: &[f64], turn: f64, count: f64, columns: &Columns, name: &str) -> Outcome<()> {
+    let mut sizes: Vec<f64> = steps.iter().map(|step| step.abs()).collect();
+    sizes.sort_by(f64::total_cmp);
+    let usual = sizes.get(sizes.len() * USUAL.0 / USUAL.1).copied().unwrap_or_default().max(count);
+    let jump = (JUMP_TURNS * turn).min((JUMP_STEPS * usual).max(JUMP_LEAST * turn));
+    if let Some(row) = steps.iter().position(|step| step.abs() >= jump) {
+        let (size, place) = (steps[row].abs(), columns.place(row + 1));
+        let message =
+            format!("`{name}` jumps by {} in {place}, where a turn is {}", ESTIMATE.write(size), ESTIMATE.write(turn));
+        let whole = |turn: f64| (size / turn).ln().abs() < SAME_TURN;
+        let other = match (8..=30).find(|bits| whole(f64::from(*bits).exp2())) {
+            Some(bits) if count == 1.0 => Some(format!("an encoder of {bits} bits begins anew so")),
+            _ if count == 1.0 => None,
+            _ => [(1.0, "turns"), (360.0, "degrees"), (1e3 * TAU, "mrad")]
+                .iter()
+                .find(|(turn, _)| whole(*turn))
+                .map(|(_, unit)| format!("an angle in {unit} begins anew so")),
+        };
+        let lost = "a reading was lost or corrupted, or the encoder's unit or resolution is not as stated";
+        return Err(Failure::new(message).with_help(other.unwrap_or_else(|| lost.to_owned())));
+    }
+    // Windows in which every sample should have brought a count.
+    let (mut moving, mut same) = (0, 0);
+    for window in steps.chunks_exact(STALE_WINDOW) {
+        if window.iter().sum::<f64>().abs() > 2.0 * count * STALE_WINDOW as f64 {
+            moving += STALE_WINDOW;
+            same += window.iter().filter(|step| step.abs() < 0.5 * count).count();
+        }
+    }
+    if same > (STALE_SHARE * moving as f64) as usize && moving > 0 {
+        let every = (moving as f64 / (moving - same).max(1) as f64).round();
+        return Err(Failure::new(format!(
+            "`{name}` brings a new reading in about one of {every} samples, and repeats it in between"
+        ))
+        .with_help("keep the rows with new readings only, or log as often as the encoder is read"));
+    }
+    Ok(())
+}
+
+/// Angles that begin anew every turn are taken for continuous ones.
+fn unwrapped(mut angles: Vec<f64>, times: &EvenTimes) -> Vec<f64> {
+    let mut turns = 0.0;
+    let mut last = angles.first().copied().unwrap_or_default();
+    let mut before = 0.0;
+    for row in 1..angles.len() {
+        let read = angles[row];
+        // Over lost samples the encoder is expected to have gone on as it did.
+        let expected = before * (times.periods_before(row) - 1.0);
+        let step = read - last - expected;
+        // A step that is nearly a whole turn; others are none of an encoder and refused later.
+        if (step.abs() - TAU).abs() < WHOLE_TURN * TAU {
+            turns -= step.signum();
+        }
+        last = read;
+        angles[row] += turns * TAU;
+        before = (angles[row] - angles[row - 1]) / times.periods_before(row);
+    }
+    angles
+}
+
+/// Counts that begin anew every turn are taken for continuous ones.
+fn unwrap(counts: &mut [i64], turn: i64, times: &EvenTimes) {
+    let mut turns = 0;
+    let mut before = 0.0;
+    for row in 1..counts.len() {
+        let last = counts[row - 1] - turns * turn;
+        // Over lost samples the encoder is expected to have gone on as it did.
+        let expected = (before * (times.periods_before(row) - 1.0)) as i64;
+        let step = counts[row] - last - expected;
+        turns -= step.signum() * ((step.abs() + turn / 2 - 1) / turn);
+        counts[row] += turns * turn;
+        before = (counts[row] - counts[row - 1]) as f64 / times.periods_before(row);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_that_begin_anew_every_turn_become_continuous() {
+        let mut counts: Vec<i64> = (0..400).map(|step: i64| (step * 7).rem_euclid(256)).collect();
+        unwrap(&mut counts, 256, &EvenTimes::of_even(1e-4, 400));
+        assert_eq!(counts, (0..400).map(|step| step * 7).collect::<Vec<i64>>());
+        let mut back: Vec<i64> = (0..400).map(|step: i64| (-step * 7).rem_euclid(256)).collect();
+        unwrap(&mut back, 256, &EvenTimes::of_even(1e-4, 400));
+        assert_eq!(back, (0..400).map(|step| -step * 7).collect::<Vec<i64>>());
+    }
+}

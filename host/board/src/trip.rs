@@ -84,7 +84,12 @@ fn words(trip: &Trip) -> (&'static str, Option<u32>, &'static str, &'static str)
 pub fn failure(trip: &Trip) -> Failure {
     let (name, tick, what, help) = words(trip);
     let place = tick.map(|tick| format!(" at tick {tick}")).unwrap_or_default();
-    Failure::check_failed(format!("the board went into its safe state{place}: {what} ({name})")).with_help(help)
+    let happened = match trip {
+        // What a message asked for was not done, and nothing else changed.
+        Trip::NotRunning | Trip::WrongRole | Trip::Overtaken => "the board refused a message",
+        _ => "the board went into its safe state",
+    };
+    Failure::check_failed(format!("{happened}{place}: {what} ({name})")).with_help(help)
 }
 
 /// A trip as a line of the record.

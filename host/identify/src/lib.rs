@@ -76,7 +76,7 @@ const RELIABLE: f64 = 0.9;
 const LEAST_RELIABLE: f64 = 0.5;
 
 /// Fits one after the other, each with the errors by angle of the last taken off the accelerations.
-const ROUNDS: usize = 3;
+const ROUNDS: usize = 4;
 
 /// The page, the joint file with what was found, and the figures.
 const REPORT: &str = "report.html";
@@ -162,7 +162,8 @@ fn identify(arguments: &Arguments, prior: &PriorModel) -> Outcome<Identified> {
                 twist.error(twist::TEETH, angle)
             }];
         let corrected = read.without(errors, twist.solution.values[twist::SKEW], prior);
-        let seen = Rows::new(&corrected, prior, length);
+        let mut seen = Rows::new(&corrected, prior, length);
+        twist.leave_out_flights(&corrected, &mut seen, prior);
         let Some(better) = twist::fit(&corrected, &seen, prior) else { break };
         (log, rows, twist) = (corrected, seen, better);
     }
@@ -173,9 +174,12 @@ fn identify(arguments: &Arguments, prior: &PriorModel) -> Outcome<Identified> {
         let found = Scales::new(&log, &prior, &free.solution);
         (log, prior) = found.apply(&log, &prior);
         rows = Rows::new(&log, &prior, length);
+        twist.leave_out_flights(&log, &mut rows, &prior);
         twist = twist::fit_with_this_torque(&log, &rows, &prior).unwrap_or(twist);
         let heavier = found.with_most_of_the_motor(&prior);
-        let moved = twist::fit_with_this_torque(&log, &Rows::new(&log, &heavier, length), &heavier);
+        let mut seen = Rows::new(&log, &heavier, length);
+        twist.leave_out_flights(&log, &mut seen, &heavier);
+        let moved = twist::fit_with_this_torque(&log, &seen, &heavier);
         let by_inertia = moved.map_or(f64::NAN, |moved| moved.compliance() / twist.compliance() - 1.0);
         doubt = Some(Doubt { scales: found, by_inertia });
     }

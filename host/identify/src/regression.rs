@@ -4,7 +4,11 @@
 use nalgebra::{DMatrix, DVector};
 
 /// Rounds of turning down outliers.
-const ROUNDS: usize = 8;
+const ROUNDS: usize = 12;
+/// After so many of them what lies so many deviations beyond is taken for none of what the equations are about, such as teeth
+/// that bounce on.
+const TURNED_DOWN: usize = 5;
+const NONE_OF_IT: f64 = 8.0;
 /// Residuals beyond this many deviations count less (Huber); the usual constant for 95 % efficiency.
 const HUBER: f64 = 1.345;
 
@@ -40,6 +44,8 @@ pub struct Solution {
     pub reach: f64,
     /// What the equations leave over.
     pub residuals: Vec<f64>,
+    /// Its standard deviation, outliers apart.
+    pub noise: f64,
     /// Part of what the equations seem to say of an unknown with scattering coefficients that is no scatter; of the worst.
     pub reliability: f64,
 }
@@ -94,7 +100,7 @@ impl Equations {
         let mut information = DMatrix::zeros(unknowns, unknowns);
         let mut residuals = values.clone();
         let mut reliability = 1.0;
-        for _ in 0..ROUNDS {
+        for round in 0..ROUNDS {
             let floor = 1e-12 * (1.0 + values.amax());
             let sharpness = 1.0 / (noise * noise).max(floor * floor);
             let weighted = DMatrix::from_fn(self.count(), unknowns, |row, column| {
@@ -114,7 +120,10 @@ impl Equations {
             }
             residuals = &values - &matrix * &solved;
             noise = spread(residuals.as_slice()).max(floor);
-            weights = residuals.map(|residual| (HUBER * noise / residual.abs().max(1e-300)).min(1.0));
+            weights = residuals.map(|residual| {
+                let size = residual.abs() / noise.max(1e-300);
+                if round >= TURNED_DOWN && size > NONE_OF_IT { 0.0 } else { (HUBER / size.max(1e-300)).min(1.0) }
+            });
         }
         let inverse = information.cholesky()?.inverse();
         let pulls =
@@ -128,6 +137,7 @@ impl Equations {
             // Student's 97.5 % quantile, by the first terms of its expansion.
             reach: 1.96 + 2.37 / freedom + 2.82 / (freedom * freedom),
             residuals: residuals.as_slice().to_vec(),
+            noise,
             reliability,
         })
     }

@@ -45,6 +45,9 @@ const DEGREE: f64 = std::f64::consts::PI / 180.0;
 /// Length of the blocks whose residuals are assumed to be independent of one another [s].
 pub const BLOCK_LENGTH: f64 = 0.1;
 
+/// Teeth whose twist is inside the gap by so many deviations are not in contact.
+const FLYING: f64 = 6.0;
+
 /// Takes an unknown out of a fit.
 const NONE: f64 = 1e-12;
 
@@ -168,6 +171,18 @@ impl Twist {
         let part = |place: usize| self.solution.values[first + place];
         let (once, twice) = (angle.sin_cos(), (2.0 * angle).sin_cos());
         part(0) * once.0 + part(1) * once.1 + part(2) * twice.0 + part(3) * twice.1
+    }
+
+    /// Leaves out moments at which the teeth fly, whatever the mean torque: those whose twist is inside the gap by more than it
+    /// scatters. Teeth may bounce on for long where the joint is accelerated as they are.
+    pub fn leave_out_flights(&self, log: &Log, rows: &mut Rows, prior: &PriorModel) {
+        let least = self.solution.values[HALF_GAP] - FLYING * self.solution.noise;
+        let cleaned = self.cleaned(log, rows, prior);
+        for (row, (_, twist)) in rows.all.iter_mut().zip(cleaned) {
+            if row.side * twist < least {
+                row.side = 0.0;
+            }
+        }
     }
 
     /// What is left of a moment's twist without encoder, tooth and skew errors: gap and wind-up alone [rad].

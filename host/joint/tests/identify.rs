@@ -528,7 +528,7 @@ const WRONG: [Wrong; 30] = [
     Wrong {
         what: "amperes of a strong motor",
         change: |row| row[3] /= 0.75,
-        named: &["the torque is a current, of 0.76"],
+        named: &["the torque is a current, of 0.77"],
         ..COUNTS
     },
     Wrong { what: "mN m", change: |row| row[3] *= 1e3, named: &["the torque is in mN m"], ..COUNTS },

@@ -89,14 +89,24 @@ impl Columns {
 
     /// Whether motor, output and torque are there.
     pub(super) fn will_do(&self) -> bool {
+        self.will_do_with(true)
+    }
+
+    /// The same; the output may be missing.
+    pub(super) fn will_do_with(&self, output: bool) -> bool {
         let has = |wanted: &[&str]| {
             let all = KNOWN.iter().filter(|(name, _)| wanted.contains(name));
             all.flat_map(|(name, others)| others.iter().chain([name])).any(|name| self.names().any(|own| own == *name))
         };
         let bare = |name: &str| self.names().any(|own| own == name);
         (has(&["motor_counts", "motor_angle_rad"]) || bare("motor_angle"))
-            && (has(&["output_counts", "output_angle_rad"]) || bare("output_angle"))
+            && (!output || has(&["output_counts", "output_angle_rad"]) || bare("output_angle"))
             && (has(&["motor_torque_N_m"]) || bare("motor_torque"))
+    }
+
+    /// Whether both encoders are there as counts.
+    pub(super) fn have_counts(&self) -> bool {
+        ["motor_counts", "output_counts"].iter().all(|wanted| self.names().any(|own| own == *wanted))
     }
 
     /// Names in their order.
@@ -168,6 +178,12 @@ impl Columns {
         let near = joint_file::nearest(wanted, self.names());
         let there = near.map_or(String::new(), |near| format!("; was `{near}` meant for it?"));
         Failure::new(format!("there is no column `{wanted}`{there}")).with_help(HEADER_HELP)
+    }
+
+    /// The values under a name as they are.
+    pub fn column(&self, name: &str) -> Option<&[f64]> {
+        let place = self.names.iter().position(|known| known == name)?;
+        self.values.get(place).map(Vec::as_slice)
     }
 
     /// The values under a name, all of them finite.

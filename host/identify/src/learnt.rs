@@ -69,6 +69,11 @@ impl Content {
         terminal(&Document { title: name.to_owned(), line: line.into(), blocks, ..Document::default() })
     }
 
+    /// All values.
+    pub fn into_values(self) -> Vec<Finding> {
+        self.values
+    }
+
     /// A value by its name.
     pub fn value(&self, name: &str) -> Option<f64> {
         self.values.iter().find(|finding| finding.name == name)?.value

@@ -7,7 +7,7 @@
 //! are the moments at which a flank carries, smoothed by `kernel`; `twist` and `friction` are fitted to them by `regression`;
 //! `balances` hold torque against inertias, for `contradictions` and for `scales`. `findings` is what comes of it, with its
 //! `estimate`s; `page`, `pictures` and `patch` show it. `virtual_test` makes a log without hardware.
-//! `quasi_static` reads slow logs by itself.
+//! `quasi_static` reads slow logs by itself, `replay` runs an observer over a log.
 
 mod arguments;
 mod balances;
@@ -34,10 +34,13 @@ mod quasi_static;
 mod readings;
 mod refusal;
 mod regression;
+pub mod replay;
 mod ros_message;
 mod rows;
 mod sampling;
 mod scales;
+#[cfg(test)]
+mod schema;
 mod text_table;
 mod twist;
 mod units;

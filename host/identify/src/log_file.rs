@@ -1,12 +1,14 @@
 //! A log's file, text in columns or MCAP, read into columns under the names that are known here, in SI.
 
-use std::path::Path;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 use super::column_map::ColumnMap;
 use super::columns::Columns;
-use super::{mcap_log, text_table, units};
+use super::{mcap_file, mcap_log, text_table, units};
 use report::failure::{Failure, Outcome};
 use report::input;
+use report::log::REMARKS;
 
 /// Reads a file by what it is; `will_do` says whether columns are those that are wanted, `ratio` is motor over output.
 pub fn read(
@@ -16,24 +18,71 @@ pub fn read(
     ratio: f64,
     will_do: impl Fn(&Columns) -> bool,
 ) -> Outcome<Columns> {
-    let failed = |what: &str| {
-        Failure::new(format!("cannot read the log {}: {what}", path.display()))
-            .with_help("`joint identify LOG --simulate` makes one without hardware")
-    };
-    let bytes = input::bytes(path, input::LARGEST_RECORDED).map_err(|why| failed(&why))?;
-    let columns = if mcap_log::is_mcap(&bytes) {
-        mcap_log::read(&bytes, topic, |columns| columns.heads().renamed(&map.columns).is_ok_and(|own| will_do(&own)))
-    } else if let Some(topic) = topic {
-        let message = format!("it is no MCAP log, so it has no topic `{topic}`");
-        Err(Failure::new(message).with_help("leave --topic out"))
-    } else {
-        let text =
-            String::from_utf8(bytes).map_err(|_| failed("it is neither MCAP nor text (UTF-8): export it as CSV"))?;
-        text_table::columns(&text)
-    };
-    columns
-        .and_then(|columns| under_known_names(columns, map, ratio))
-        .map_err(|failure| failure.while_doing(path.display()))
+    LogFile::open(path)?.columns(topic, map, ratio, will_do)
+}
+
+/// A log's file.
+pub struct LogFile {
+    path: PathBuf,
+    bytes: Vec<u8>,
+}
+
+impl LogFile {
+    /// Reads it.
+    pub fn open(path: &Path) -> Outcome<Self> {
+        let bytes = input::bytes(path, input::LARGEST_RECORDED).map_err(|why| unreadable(path, &why))?;
+        Ok(Self { path: path.to_owned(), bytes })
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// What the program that wrote it said of it, if it is one of ours.
+    pub fn remarks(&self) -> BTreeMap<String, String> {
+        if mcap_log::is_mcap(&self.bytes) { mcap_file::metadata(&self.bytes, REMARKS) } else { BTreeMap::new() }
+    }
+
+    /// The columns of a topic of MCAP just as it has them.
+    pub fn topic(&self, topic: &str) -> Outcome<Columns> {
+        mcap_log::read(&self.bytes, Some(topic), |_| true, |_| true)
+    }
+
+    /// Columns by what it is, under the names that are known here.
+    pub fn columns(
+        &self,
+        topic: Option<&str>,
+        map: &ColumnMap,
+        ratio: f64,
+        will_do: impl Fn(&Columns) -> bool,
+    ) -> Outcome<Columns> {
+        let path = self.path.as_path();
+        let columns = if mcap_log::is_mcap(&self.bytes) {
+            let heads = |columns: &Columns| columns.heads().renamed(&map.columns);
+            let [has_what_is_wanted, has_counts]: [&dyn Fn(&Columns) -> bool; 2] = [
+                &|columns| heads(columns).is_ok_and(|own| will_do(&own)),
+                // The truth of a simulated run is logged too: what encoders gave goes before it.
+                &|columns| heads(columns).is_ok_and(|own| own.have_counts()),
+            ];
+            mcap_log::read(&self.bytes, topic, has_what_is_wanted, has_counts)
+        } else if let Some(topic) = topic {
+            let message = format!("it is no MCAP log, so it has no topic `{topic}`");
+            Err(Failure::new(message).with_help("leave --topic out"))
+        } else {
+            let text = std::str::from_utf8(&self.bytes)
+                .map_err(|_| unreadable(path, "it is neither MCAP nor text (UTF-8): export it as CSV"))?;
+            text_table::columns(text)
+        };
+        columns
+            .and_then(|columns| under_known_names(columns, map, ratio))
+            .map_err(|failure| failure.while_doing(path.display()))
+    }
+}
+
+fn unreadable(path: &Path, why: &str) -> Failure {
+    Failure::new(format!("cannot read the log {}: {why}", path.display()))
+        .with_help("`joint identify LOG --simulate` makes one without hardware")
 }
 
 fn under_known_names(columns: Columns, map: &ColumnMap, ratio: f64) -> Outcome<Columns> {

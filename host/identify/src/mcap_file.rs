@@ -2,6 +2,7 @@
 //! that are there before anything is reserved for them, and what chunks unpack to against the file's size.
 
 use std::cell::Cell;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use mcap::read::ChannelAccumulator;
@@ -44,6 +45,27 @@ struct Reading<'r, E> {
     /// What chunks may still unpack to [bytes].
     room: u64,
     take: &'r mut Take<'r, E>,
+}
+
+/// The metadata of a name, joined if there are several; nothing of a file that is damaged before its end.
+pub fn metadata(bytes: &[u8], name: &str) -> BTreeMap<String, String> {
+    let options = LinearReaderOptions::default().with_emit_chunks(true).with_record_length_limit(bytes.len());
+    let mut found = BTreeMap::new();
+    let read = each_record(
+        options,
+        bytes,
+        |_| (),
+        |opcode, data| {
+            if opcode == op::METADATA && check_texts(opcode, data).is_ok() {
+                match parse_record(opcode, data) {
+                    Ok(Record::Metadata(known)) if known.name == name => found.extend(known.metadata),
+                    _ => {}
+                }
+            }
+            Ok(())
+        },
+    );
+    if read.is_ok() { found } else { BTreeMap::new() }
 }
 
 /// Passes on all messages of a file.
@@ -146,13 +168,14 @@ fn check_texts(opcode: u8, data: &[u8]) -> Result<(), String> {
             op::SCHEMA => (2, 2),
             op::CHANNEL => (4, 2),
             op::CHUNK => (28, 1),
+            op::METADATA => (0, 1),
             _ => return Some(()),
         };
         let mut rest = data.get(before..)?;
         for _ in 0..texts {
             rest = behind_text(rest)?;
         }
-        if opcode == op::CHANNEL {
+        if [op::CHANNEL, op::METADATA].contains(&opcode) {
             // Pairs of texts, with their number of bytes ahead.
             let (length, pairs) = rest.split_first_chunk()?;
             let mut pairs = pairs.get(..usize::try_from(u32::from_le_bytes(*length)).ok()?)?;
@@ -172,12 +195,12 @@ fn behind_text(bytes: &[u8]) -> Option<&[u8]> {
 }
 
 /// Passes on the records of bytes.
-fn each_record<E>(
+fn each_record<B>(
     options: LinearReaderOptions,
     mut bytes: &[u8],
-    damaged: impl Fn(McapError) -> Broken<E>,
-    mut take: impl FnMut(u8, &[u8]) -> Result<(), Broken<E>>,
-) -> Result<(), Broken<E>> {
+    damaged: impl Fn(McapError) -> B,
+    mut take: impl FnMut(u8, &[u8]) -> Result<(), B>,
+) -> Result<(), B> {
     let mut reader = LinearReader::new_with_options(options);
     while let Some(event) = reader.next_event() {
         match event.map_err(&damaged)? {

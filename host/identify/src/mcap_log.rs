@@ -85,8 +85,13 @@ fn flatten(value: &Value, path: String, numbers: &mut Numbers) -> Result<(), Str
     }
 }
 
-/// Reads the topic that is named, or else the only one whose columns will do.
-pub fn read(bytes: &[u8], topic: Option<&str>, will_do: impl Fn(&Columns) -> bool) -> Outcome<Columns> {
+/// Reads the topic that is named, or else the only one whose columns will do; among several the only one that is better.
+pub fn read(
+    bytes: &[u8],
+    topic: Option<&str>,
+    will_do: impl Fn(&Columns) -> bool,
+    is_better: impl Fn(&Columns) -> bool,
+) -> Outcome<Columns> {
     let mut topics: BTreeMap<String, Topic> = BTreeMap::new();
     let (mut forms, mut messages) = (Forms::new(), 0);
     let mut room = MOST_MEMORY.saturating_mul(bytes.len() as u64).saturating_add(SOME);
@@ -123,7 +128,8 @@ pub fn read(bytes: &[u8], topic: Option<&str>, will_do: impl Fn(&Columns) -> boo
         None => {
             let good: Vec<&String> =
                 topics.iter().filter(|(_, topic)| will_do(&topic.columns)).map(|(name, _)| name).collect();
-            match good.as_slice() {
+            let better: Vec<&String> = good.iter().copied().filter(|name| is_better(&topics[*name].columns)).collect();
+            match if better.len() == 1 { better } else { good }.as_slice() {
                 [one] => {
                     let one = (*one).clone();
                     topics.remove(&one).ok_or_else(|| Failure::new("the log is empty"))?

@@ -1,4 +1,5 @@
-//! The samples of a run as a log, which viewers of robot data open: the same names, units and states as in the record.
+//! The samples of a run as a log, which viewers of robot data open: the same names, units and states as in the record, with
+//! the torques of the profile.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -6,14 +7,14 @@ use std::io::{self, Write};
 use report::contacts::Contact;
 use report::log::{Channel, Message, field};
 
-use crate::record::{RunRecord, Samples};
+use crate::record::RunRecord;
 
 /// Topic of the motion.
 const TOPIC: &str = "/joint/run";
 /// Name of its schema.
 const SCHEMA_NAME: &str = "joint_msgs/msg/Run";
 /// Fields that are numbers, with what they mean.
-const NUMBERS: [(&str, &str); 7] = [
+const NUMBERS: [(&str, &str); 9] = [
     ("time_s", "board time since the reset [s]"),
     ("motor_angle_rad", "[rad]"),
     ("link_angle_rad", "[rad]"),
@@ -21,6 +22,8 @@ const NUMBERS: [(&str, &str); 7] = [
     ("carrier_speed_rad_per_s", "of the rigid body [rad/s]"),
     ("gap_m", "gap coordinate along the line of action [m]"),
     ("wind_up_m", "carrier less link along the line of action [m]"),
+    ("drive_torque_Nm", "on the sun shaft, as the profile has it in this tick [N m]"),
+    ("load_torque_Nm", "that brakes the link, likewise [N m]"),
 ];
 /// Fields that have an entry for each planet.
 const LISTS: [(&str, &str, &str); 4] = [
@@ -47,12 +50,15 @@ pub fn fill(out: &mut impl Write, record: &RunRecord) -> io::Result<()> {
     let schema: String = numbers.chain(lists).collect();
     let mut channel = Channel::begin(out, TOPIC, SCHEMA_NAME, &schema, remarks)?;
     for place in 0..record.samples.len() {
-        channel.write(record.samples.time_s[place], &message(&record.samples, place))?;
+        channel.write(record.samples.time_s[place], &message(record, place))?;
     }
     channel.finish().map(drop)
 }
 
-fn message(samples: &Samples, place: usize) -> Message {
+fn message(record: &RunRecord, place: usize) -> Message {
+    let samples = &record.samples;
+    // A command acts from its tick on; a sample is taken after the step of the tick before its own.
+    let acting = record.schedule.iter().rev().find(|command| command.tick < samples.tick[place]);
     let mut message = Message::default();
     for column in [&samples.time_s, &samples.motor_angle_rad, &samples.link_angle_rad, &samples.twist_rad] {
         message.number(column[place]);
@@ -60,6 +66,8 @@ fn message(samples: &Samples, place: usize) -> Message {
     for column in [&samples.carrier_speed, &samples.gap_m, &samples.wind_up_m] {
         message.number(column[place].into());
     }
+    message.number(acting.map_or(0.0, |command| command.drive_torque.into()));
+    message.number(acting.map_or(0.0, |command| command.load_torque.into()));
     let planets = samples.deflection_m.len() / 2;
     for meshes in [0..planets, planets..2 * planets] {
         message.numbers(samples.deflection_m[meshes.clone()].iter().map(|column| f64::from(column[place])));

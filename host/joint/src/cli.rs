@@ -7,7 +7,9 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use report::failure::Outcome;
 use report::{command_line, output};
 
-use crate::{board, budget, check, completions, flash, hil, identify, image, memory, merge, new, research, sim, sweep};
+use crate::{
+    board, budget, check, completions, flash, hil, identify, image, memory, merge, new, replay, research, sim, sweep,
+};
 
 /// Simulates a planetary robot joint with backlash on a microcontroller, drives it and checks it
 #[derive(Debug, Parser)]
@@ -39,6 +41,8 @@ enum Command {
     Merge(merge::Arguments),
     /// Find backlash, compliance, damping, friction and encoder errors in a recorded reversal test
     Identify(identify::Arguments),
+    /// Run the observer over a log: does it repeat its run, and what does it say of any other
+    Replay(replay::Arguments),
     /// Read what a board has learnt, show it, write it to a board, erase it
     Memory(memory::Arguments),
     /// Check a board file: pins, clock, memory; or list the boards that come with the program
@@ -69,6 +73,7 @@ fn run(cli: &Cli) -> Outcome<()> {
         Some(Command::Sweep(arguments)) => sweep::run(arguments),
         Some(Command::Merge(arguments)) => merge::run(arguments),
         Some(Command::Identify(arguments)) => identify::run(arguments),
+        Some(Command::Replay(arguments)) => replay::run(arguments),
         Some(Command::Memory(arguments)) => memory::run(arguments),
         Some(Command::Board(arguments)) => board::run(arguments),
         Some(Command::Image(arguments)) => image::run(arguments),

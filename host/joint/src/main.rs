@@ -12,6 +12,7 @@ mod image;
 mod memory;
 mod merge;
 mod new;
+mod replay;
 mod research;
 mod sim;
 mod sweep;

@@ -1,4 +1,4 @@
-//! Logs as MCAP, which Foxglove and PlotJuggler open: one topic, ROS 2 message text as its schema, CDR as its encoding.
+//! Logs as MCAP, which Foxglove and PlotJuggler open: ROS 2 message text as the schema of a topic, CDR as its encoding.
 //! Chunks are written whole, so that a log that was cut off can be read up to its last chunk. Numbers are in SI under the
 //! names that CSV and JSON have, in small letters, since ROS 2 takes no others; states are words.
 
@@ -11,41 +11,53 @@ use mcap::{Compression, McapError, WriteOptions, Writer};
 
 /// Bytes of a chunk before compression: what a crash may cost at most.
 const CHUNK: u64 = 128 << 10;
+/// Name of the metadata that say where a log comes from.
+pub const REMARKS: &str = "joint";
 /// The head of a message in CDR: little endian.
 const HEAD: [u8; 4] = [0, 1, 0, 0];
 
-/// Writes messages of one schema to one topic.
-pub struct Channel<W: Write> {
+/// A log with any number of topics.
+pub struct Log<W: Write> {
     writer: Writer<NoSeek<W>>,
+}
+
+/// Where messages of one schema go.
+#[derive(Debug)]
+pub struct Topic {
     channel: u16,
     sequence: u32,
 }
 
-impl<W: Write> Channel<W> {
-    /// Begins a log; `schema` is ROS 2 message text, `remarks` say where it comes from.
-    pub fn begin(out: W, topic: &str, name: &str, schema: &str, remarks: BTreeMap<String, String>) -> io::Result<Self> {
+impl<W: Write> Log<W> {
+    /// Begins a log; `remarks` say where it comes from.
+    pub fn begin(out: W, remarks: BTreeMap<String, String>) -> io::Result<Self> {
         let options = WriteOptions::new()
-            .compression(Some(Compression::Lz4))
+            .compression(Some(Compression::Zstd))
             .chunk_size(Some(CHUNK))
             .library(concat!("joint ", env!("CARGO_PKG_VERSION")))
             .disable_seeking(true);
         let mut writer = Writer::with_options(NoSeek::new(out), options).map_err(cause)?;
-        let schema = writer.add_schema(name, "ros2msg", schema.as_bytes()).map_err(cause)?;
-        let channel = writer.add_channel(schema, topic, "cdr", &BTreeMap::new()).map_err(cause)?;
-        writer.write_metadata(&Metadata { name: "joint".into(), metadata: remarks }).map_err(cause)?;
-        Ok(Self { writer, channel, sequence: 0 })
+        writer.write_metadata(&Metadata { name: REMARKS.into(), metadata: remarks }).map_err(cause)?;
+        Ok(Self { writer })
+    }
+
+    /// One more topic; `schema` is ROS 2 message text.
+    pub fn topic(&mut self, topic: &str, name: &str, schema: &str) -> io::Result<Topic> {
+        let schema = self.writer.add_schema(name, "ros2msg", schema.as_bytes()).map_err(cause)?;
+        let channel = self.writer.add_channel(schema, topic, "cdr", &BTreeMap::new()).map_err(cause)?;
+        Ok(Topic { channel, sequence: 0 })
     }
 
     /// One message, at a time of the run [s], which is that of the log too.
-    pub fn write(&mut self, time: f64, message: &Message) -> io::Result<()> {
+    pub fn write(&mut self, topic: &mut Topic, time: f64, message: &Message) -> io::Result<()> {
         let nanoseconds = (time * 1e9).round() as u64;
         let header = MessageHeader {
-            channel_id: self.channel,
-            sequence: self.sequence,
+            channel_id: topic.channel,
+            sequence: topic.sequence,
             log_time: nanoseconds,
             publish_time: nanoseconds,
         };
-        self.sequence = self.sequence.wrapping_add(1);
+        topic.sequence = topic.sequence.wrapping_add(1);
         self.writer.write_to_known_channel(&header, &message.0).map_err(cause)
     }
 
@@ -55,6 +67,31 @@ impl<W: Write> Channel<W> {
         let mut out = self.writer.into_inner().into_inner();
         out.flush()?;
         Ok(out)
+    }
+}
+
+/// A log with one topic.
+pub struct Channel<W: Write> {
+    log: Log<W>,
+    topic: Topic,
+}
+
+impl<W: Write> Channel<W> {
+    /// Begins a log; `schema` is ROS 2 message text, `remarks` say where it comes from.
+    pub fn begin(out: W, topic: &str, name: &str, schema: &str, remarks: BTreeMap<String, String>) -> io::Result<Self> {
+        let mut log = Log::begin(out, remarks)?;
+        let topic = log.topic(topic, name, schema)?;
+        Ok(Self { log, topic })
+    }
+
+    /// One message, at a time of the run [s].
+    pub fn write(&mut self, time: f64, message: &Message) -> io::Result<()> {
+        self.log.write(&mut self.topic, time, message)
+    }
+
+    /// Ends the log.
+    pub fn finish(self) -> io::Result<W> {
+        self.log.finish()
     }
 }
 
@@ -83,6 +120,23 @@ impl Message {
         self.0.extend(value.to_le_bytes());
     }
 
+    /// A `float32`.
+    pub fn single(&mut self, value: f32) {
+        self.align(4);
+        self.0.extend(value.to_le_bytes());
+    }
+
+    /// A `uint32`.
+    pub fn whole(&mut self, value: u32) {
+        self.align(4);
+        self.0.extend(value.to_le_bytes());
+    }
+
+    /// A `bool`.
+    pub fn flag(&mut self, set: bool) {
+        self.0.push(set.into());
+    }
+
     /// A `float64[]`.
     pub fn numbers(&mut self, values: impl ExactSizeIterator<Item = f64>) {
         self.count(values.len());
@@ -103,8 +157,7 @@ impl Message {
     }
 
     fn count(&mut self, count: usize) {
-        self.align(4);
-        self.0.extend((count as u32).to_le_bytes());
+        self.whole(count as u32);
     }
 
     /// The head does not count for alignment.
@@ -128,11 +181,16 @@ mod tests {
         message.words(["ab", "c"].into_iter());
         message.number(1.0);
         message.numbers([2.0].into_iter());
+        message.flag(true);
+        message.whole(5);
+        message.single(0.5);
         let mut expected = vec![0, 1, 0, 0];
         expected.extend([2, 0, 0, 0, 3, 0, 0, 0, b'a', b'b', 0, 0, 2, 0, 0, 0, b'c', 0, 0, 0, 0, 0, 0, 0]);
         expected.extend(1.0_f64.to_le_bytes());
         expected.extend([1, 0, 0, 0, 0, 0, 0, 0]);
         expected.extend(2.0_f64.to_le_bytes());
+        expected.extend([1, 0, 0, 0, 5, 0, 0, 0]);
+        expected.extend(0.5_f32.to_le_bytes());
         assert_eq!(message.0, expected);
     }
 

@@ -1,15 +1,17 @@
 //! Runs one test: every seed and every controller, on all cores, and combines the results. The order of completion does
 //! not change them.
 
+use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
 use super::controller::ControllerName;
+use super::controller_log::ObserverOrigin;
 use super::execution::{RunSpec, execute};
 use super::file::{Aggregate, fault_word};
-use super::log_file;
+use super::log_file::{self, LoggedRun};
 use super::memory_file;
 use super::on_board::Boards;
 use super::plant::PlantName;
@@ -173,8 +175,12 @@ fn replay(test: &Test, options: &RunOptions<'_>, alone: Option<u64>) -> String {
 
 fn one(test: &Test, options: &RunOptions<'_>, job: &Job, deadline: Instant) -> Outcome<Done> {
     let mut case = test.case(job.seed)?;
-    if options.boards.is_some() || options.memories {
-        case.round_nominal()?;
+    // A log carries the joint file of its observer. A guess that no joint file may have is run all the same where nobody
+    // else reads it.
+    if let Err(refused) = case.round_nominal()
+        && (options.boards.is_some() || options.memories)
+    {
+        return Err(refused);
     }
     let spec = RunSpec { controller: job.controller, plant: options.plant, without_gap: false };
     let mut run = TestRun { seed: job.seed, controller: job.controller.word().to_owned(), ..TestRun::default() };
@@ -206,8 +212,13 @@ fn one(test: &Test, options: &RunOptions<'_>, job: &Job, deadline: Instant) -> O
                 ("plant", options.plant.word().to_owned()),
                 ("digest", run.digest.clone()),
             ];
-            let remarks = remarks.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
-            run.log = Some(log_file::write(options.folder, &name, &history, remarks)?);
+            let mut remarks: BTreeMap<_, _> = remarks.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
+            let origin = case.observer_origin(&test.file, history.memory_at_start);
+            remarks
+                .extend(origin.filter(|_| job.controller.is_compensation()).iter().flat_map(ObserverOrigin::remarks));
+            let every_period = job.controller == test.file.controller;
+            let logged = LoggedRun { history: &history, faults: &test.file.faults, every_period, remarks };
+            run.log = Some(log_file::write(options.folder, &name, logged)?);
             if let Some(memory) = history.memory.filter(|_| options.memories) {
                 let name = name.trim_end_matches(".mcap");
                 run.memory = Some(memory_file::write(options.folder, name, &memory, &case.nominal_text()?)?);

@@ -8,12 +8,13 @@ use joint_file::{JointFile, Problem, Severity};
 use model_core::compensation::CompensationTables;
 use model_core::compensation::design::{CompensationSettings, compensation_settings, design_compensation};
 use model_core::observer::design::{design_observer, design_usual_probe, observer_settings};
-use model_core::observer::{ObserverTables, ProbeTable};
+use model_core::observer::{Memory, ObserverTables, ProbeTable};
 use parameters::{JointParameters, Surroundings};
 use reference::closed_loop::rivals::Knowledge;
 use reference::closed_loop::{Profile as Standard, SharedProfile};
 use reference::drive_train::{Disturbance, DriveTrainParameters};
 
+use super::controller_log::ObserverOrigin;
 use super::disturbances::disturbances;
 use super::file::{Change, NewValue, TestFile, Trajectory};
 use super::plant::half_backlash;
@@ -40,6 +41,8 @@ pub struct Case {
     pub disturbances: Vec<Disturbance>,
     /// Texts of the joint files: as controllers know the joint but for its backlash, and the truth.
     texts: [String; 2],
+    /// The nominal joint is just what its file says.
+    is_told: bool,
 }
 
 /// The designed tables of observer, compensation and width probe for a case.
@@ -89,6 +92,7 @@ impl Case {
             motion: trajectory(file, motion, seed),
             disturbances: disturbances(file, motion, rated),
             texts,
+            is_told: false,
         })
     }
 
@@ -104,12 +108,19 @@ impl Case {
             .map_err(|refused| Failure::new(refused.message).with_help(refused.help))
     }
 
+    /// What an observer of this case repeats a run from, if a joint file says all that it was told.
+    pub fn observer_origin(&self, file: &TestFile, memory: Option<Memory>) -> Option<ObserverOrigin> {
+        let joint_file = self.nominal_text().ok().filter(|_| self.is_told)?;
+        Some(ObserverOrigin { joint_file, output_encoder: file.output_encoder, memory })
+    }
+
     /// Tells controllers no more than a joint file can say, so that host and a board built from the file have the same numbers
     /// to the last bit.
     pub fn round_nominal(&mut self) -> Outcome<()> {
         let nominal = read_told(&self.nominal_text()?)?;
         self.nominal = nominal.parameters;
         self.nominal_surroundings = nominal.surroundings;
+        self.is_told = true;
         Ok(())
     }
 

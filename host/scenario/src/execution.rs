@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use model_core::compensation::CompensationTables;
 use model_core::compensation::design::design_compensation;
+use model_core::observer::design::observer_settings;
 
 use super::case::{Case, Designed};
 use super::controller::ControllerName;
@@ -68,7 +69,8 @@ pub fn execute_with(
     if file.from_memory && spec.controller.is_compensation() {
         // The learning run has other noise, so that the memory holds the joint and not the noise.
         run.pass(&mut controller, !seed)?;
-        controller.restart_from_memory()?;
+        let memory_at_start = controller.restart_from_memory()?;
+        return Ok(RunHistory { memory_at_start, ..run.pass(&mut controller, seed)? });
     }
     run.pass(&mut controller, seed)
 }
@@ -99,6 +101,8 @@ impl RunContext<'_> {
         let rig = Rig::new(&setup(file, case, seed, spec))?;
         let mut set_points = SetPointSource::new(file, case, spec.controller, designed);
         let mut history = RunHistory::begin(rig.period(), rig.periods());
+        // The same that a compensation has of its own, so that readings are logged as they come.
+        let mut translator = translator(case);
         rig.run(controller, &mut set_points, &mut |period| {
             if period.index % PERIODS_BETWEEN_CHECKS == 0 {
                 if Instant::now() > deadline {
@@ -108,7 +112,7 @@ impl RunContext<'_> {
                     return Err(RunError::Interrupted);
                 }
             }
-            history.note(period);
+            history.note(period, &mut translator);
             Ok(())
         })?;
         history.memory = controller.memory();
@@ -122,13 +126,19 @@ fn compensation_controller<'d>(
     designed: &'d Designed,
     port: MakePort<'_>,
 ) -> Outcome<ActiveController<'d>> {
-    let around = &case.nominal_surroundings;
-    let bits = [around.motor_encoder.bits, around.output_encoder.bits];
-    let translator = Translator::new(designed.ticks, bits);
+    let translator = translator(case);
     Ok(match name {
         ControllerName::Probe => ActiveController::Probe(port(designed)?, translator),
         _ => ActiveController::Compensation(port(designed)?, translator),
     })
+}
+
+/// Makes samples for an observer of the nominal joint.
+fn translator(case: &Case) -> Translator {
+    let around = &case.nominal_surroundings;
+    let settings = observer_settings(around);
+    let bits = [around.motor_encoder.bits, around.output_encoder.bits];
+    Translator::new(settings.clock_rate / settings.control_rate, bits)
 }
 
 /// The compensation fed with the true state is designed to the true joint.

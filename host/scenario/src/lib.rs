@@ -5,17 +5,20 @@
 //! seed; `execution` runs the case on the `rig`, which closes the loop between `plant` and `controller` through
 //! `faults`, with observer and compensation behind `port`, and `run_history` keeps what happened; `metrics`, `values`
 //! and `observer_metrics` compute the figures, `verdict` judges them, `campaign` combines all seeds; `page`, `junit`,
-//! `log_file` and `record` are the results on disk.
+//! `log_file` and `record` are the results on disk; `controller_log` and `estimate_fields` are what a log says of the
+//! controller.
 
 mod campaign;
 pub mod case;
 pub mod controller;
+pub mod controller_log;
 mod disturbances;
+pub mod estimate_fields;
 pub mod execution;
 pub mod faults;
 pub mod file;
 mod junit;
-mod log_file;
+pub mod log_file;
 mod memory_file;
 pub mod metrics;
 mod observer_metrics;

@@ -1,14 +1,17 @@
-//! A run as an MCAP log, which Foxglove and PlotJuggler open: truth, estimates and torque a thousand times a second.
-//! For the full rate, run it again: runs repeat bit for bit.
+//! A run as an MCAP log, which Foxglove and PlotJuggler open: truth, set-point, faults and estimates a thousand times a
+//! second; of the tested controller also what went into it in every control period, so that its observer can be run over
+//! it again.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
+use super::controller_log::{self, ControllerMessages};
+use super::estimate_fields;
+use super::file::{Fault, fault_is_on, fault_word};
 use super::run_history::RunHistory;
-use report::contacts::Contact;
 use report::failure::Outcome;
 use report::folder::Folder;
-use report::log::{Channel, Message, field};
+use report::log::{Log, Message, field};
 
 /// Folder of all logs, in that of the results.
 pub const FOLDER: &str = "runs";
@@ -20,7 +23,7 @@ const SCHEMA_NAME: &str = "joint_msgs/msg/Trial";
 const RATE: f64 = 1000.0;
 
 /// Fields that are numbers, in SI, with what they mean.
-const NUMBERS: [(&str, &str); 17] = [
+const NUMBERS: [(&str, &str); 20] = [
     ("time_s", "since the start [s]"),
     ("wanted_rad", "where the link was to be [rad]"),
     ("link_rad", "where it is [rad]"),
@@ -33,29 +36,54 @@ const NUMBERS: [(&str, &str); 17] = [
     ("peak_mesh_force_N", "largest of them since the last message [N]"),
     ("load_torque_Nm", "what brakes the link [N m]"),
     ("motor_torque_Nm", "asked of the motor [N m]"),
-    ("estimated_gap_m", "by the observer [m]"),
-    ("estimated_half_backlash_m", "[m]"),
-    ("estimated_load_torque_Nm", "[N m]"),
+    ("set_point_rad", "angle that the controller was asked for [rad]"),
+    ("set_point_speed_rad_per_s", "[rad/s]"),
+    ("set_point_acceleration_rad_per_s2", "[rad/s^2]"),
+    ("set_point_torque_Nm", "torque sent along with an impedance [N m]"),
+    ("set_point_stiffness_Nm_per_rad", "of an impedance [N m/rad]"),
+    ("set_point_damping_Nms_per_rad", "of an impedance [N m s/rad]"),
     ("trust", "share of the compensation in the torque"),
     ("short_of_torque", "1: the law asks for more torque than there is, or brakes early because of that"),
 ];
-/// The field that is a word.
-const SIDE: (&str, &str) =
-    ("estimated_side", "flank that carries, by the observer: separated, drive_side or back_side; none without it");
+/// The field of faults.
+const FAULTS: (&str, &str) = ("injected_faults", "faults of the test that act, by their words in its file");
+
+/// A run as it is logged.
+pub struct LoggedRun<'r> {
+    /// What happened.
+    pub history: &'r RunHistory,
+    /// Faults of the test.
+    pub faults: &'r [Fault],
+    /// Whether every control period of the controller is logged, which takes most of the room.
+    pub every_period: bool,
+    /// Where it comes from.
+    pub remarks: BTreeMap<String, String>,
+}
 
 /// Writes a run to a file of this name, and says where that is in the folder of all.
-pub fn write(folder: &Folder, name: &str, history: &RunHistory, remarks: BTreeMap<String, String>) -> Outcome<String> {
+pub fn write(folder: &Folder, name: &str, run: LoggedRun<'_>) -> Outcome<String> {
     let path = format!("{FOLDER}/{name}");
-    folder.write_with(&path, |out| fill(out, history, remarks))?;
+    folder.write_with(&path, |out| fill(out, run))?;
     Ok(path)
 }
 
-fn fill(out: &mut impl Write, history: &RunHistory, remarks: BTreeMap<String, String>) -> io::Result<()> {
-    let numbers = NUMBERS.iter().map(|(name, meaning)| field("float64", name, meaning));
-    let schema: String = numbers.chain([field("string", SIDE.0, SIDE.1)]).collect();
-    let mut channel = Channel::begin(out, TOPIC, SCHEMA_NAME, &schema, remarks)?;
-    for (sample, truth, seen, peak) in history.thinned(RATE) {
-        let observed = seen.copied().unwrap_or_default();
+fn fill(out: &mut impl Write, run: LoggedRun<'_>) -> io::Result<()> {
+    let LoggedRun { history, faults, every_period, remarks } = run;
+    let mut log = Log::begin(out, remarks)?;
+    let mut trial = log.topic(TOPIC, SCHEMA_NAME, &schema())?;
+    let mut controller = log.topic(controller_log::TOPIC, controller_log::SCHEMA_NAME, &controller_log::schema())?;
+    let (every, mut messages) = (history.every(RATE), ControllerMessages::default());
+    let mut thinned = history.thinned(RATE);
+    for (period, of) in history.controller.iter().enumerate() {
+        let began = period as f64 * history.run.period;
+        if every_period {
+            log.write(&mut controller, began, &messages.next(began, period, of))?;
+        }
+        if (period + 1) % every != 0 {
+            continue;
+        }
+        let Some((sample, truth, seen, peak)) = thinned.next() else { continue };
+        let (observed, asked) = (seen.copied().unwrap_or_default(), &history.asked[period]);
         let numbers: [f64; NUMBERS.len()] = [
             sample.time,
             sample.wanted,
@@ -69,25 +97,30 @@ fn fill(out: &mut impl Write, history: &RunHistory, remarks: BTreeMap<String, St
             peak,
             truth.load_torque,
             sample.command,
-            observed.gap.into(),
-            observed.half_backlash.into(),
-            observed.load_torque.into(),
+            asked.motion.position,
+            asked.motion.speed,
+            asked.motion.acceleration,
+            asked.torque,
+            asked.stiffness,
+            asked.damping,
             observed.trust.into(),
             f64::from(u8::from(observed.short_of_torque)),
         ];
         let mut message = Message::default();
         numbers.into_iter().for_each(|number| message.number(number));
-        message.word(seen.map_or("none", |seen| side(seen.side).word()));
-        channel.write(sample.time, &message)?;
+        message.whole(period as u32);
+        estimate_fields::add(&mut message, of.estimates.as_ref());
+        let acting: Vec<&str> = faults.iter().filter(|fault| fault_is_on(fault, began)).map(fault_word).collect();
+        message.words(acting.into_iter());
+        log.write(&mut trial, sample.time, &message)?;
     }
-    channel.finish().map(drop)
+    log.finish().map(drop)
 }
 
-/// The flank of a side.
-fn side(side: i8) -> Contact {
-    match side.signum() {
-        0 => Contact::Separated,
-        1 => Contact::DriveSide,
-        _ => Contact::BackSide,
-    }
+/// The message of the truth, the set-point and the estimates as ROS 2 writes it down.
+fn schema() -> String {
+    let numbers = NUMBERS.iter().map(|(name, meaning)| field("float64", name, meaning));
+    let period =
+        field("uint32", controller_log::PERIOD, "number of the control period, at whose beginning it was estimated");
+    numbers.chain([period, estimate_fields::schema(), field("string[]", FAULTS.0, FAULTS.1)]).collect()
 }

@@ -24,8 +24,8 @@ pub trait ControllerPort {
     /// One control period of a width probe.
     fn probe(&mut self, samples: &Samples<f32>) -> Outcome<Answer>;
 
-    /// Keeps what has been learnt, and begins anew from it.
-    fn restart_from_memory(&mut self) -> Outcome<()>;
+    /// Keeps what has been learnt, and begins anew from it: says what that is.
+    fn restart_from_memory(&mut self) -> Outcome<Memory>;
 
     /// What has been learnt, as a board keeps it; `None` where it is elsewhere.
     fn memory(&self) -> Option<Memory> {
@@ -54,7 +54,7 @@ impl ControllerPort for HostPort<'_> {
         Ok(self.0.probe(samples))
     }
 
-    fn restart_from_memory(&mut self) -> Outcome<()> {
+    fn restart_from_memory(&mut self) -> Outcome<Memory> {
         remember(&mut self.0)
     }
 
@@ -64,12 +64,13 @@ impl ControllerPort for HostPort<'_> {
 }
 
 /// A controller's start from what it has learnt, as a board has it after a reset.
-pub fn remember(controller: &mut Controller<'_, f32>) -> Outcome<()> {
+pub fn remember(controller: &mut Controller<'_, f32>) -> Outcome<Memory> {
     let memory = controller.save();
     controller.reset();
     controller
         .load(&memory)
-        .map_err(|error| Failure::check_failed(format!("what was learnt is not taken back: {error}")))
+        .map_err(|error| Failure::check_failed(format!("what was learnt is not taken back: {error}")))?;
+    Ok(memory)
 }
 
 /// Converts a run's numbers (f64, radians, counts) to those of the port (f32, turns).
@@ -124,8 +125,8 @@ impl Translator {
     }
 
     /// Remembers the torque that the observer is shown next.
-    pub fn note(&mut self, answer: &Answer) {
-        self.torque = answer.shaped.torque;
+    pub fn note(&mut self, torque: f32) {
+        self.torque = torque;
     }
 }
 

@@ -2,10 +2,11 @@
 
 use model_core::gears::{Flank, sign};
 use model_core::numbers::digest;
-use model_core::observer::{Memory, Progress, Refusal, Source};
-use reference::closed_loop::{Run, Sample};
+use model_core::observer::{Memory, Progress, Refusal, Samples, Source};
+use reference::closed_loop::{Motion, Run, Sample, SetPoint};
 
-use super::port::Answer;
+use super::controller_log::ControllerPeriod;
+use super::port::{Answer, Translator};
 use super::rig::Period;
 
 /// The history of a run.
@@ -17,8 +18,14 @@ pub struct RunHistory {
     pub observer_outputs: Vec<ObserverOutput>,
     /// Half of the true gap at every period [m]: teeth may wear.
     pub truths: Vec<TrueValues>,
+    /// What the controller was shown and said, in the same order.
+    pub controller: Vec<ControllerPeriod>,
+    /// What it was asked for, likewise.
+    pub asked: Vec<Asked>,
     /// Digest over every bit of all of it.
     pub digest: u64,
+    /// What the observer began with, if that is not what was designed.
+    pub memory_at_start: Option<Memory>,
     /// What the observer had learnt at the end, if it ran in this process.
     pub memory: Option<Memory>,
 }
@@ -34,6 +41,30 @@ pub struct TrueValues {
     pub load_torque: f64,
     /// Motor angle [rad].
     pub motor: f64,
+}
+
+/// What a controller was asked for in one period, turns counted from the joint's own zero.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Asked {
+    /// Angle, speed and acceleration of the link [rad, rad/s, rad/s^2].
+    pub motion: Motion,
+    /// Torque on top [N m].
+    pub torque: f64,
+    /// Of an impedance, or zero [N m/rad].
+    pub stiffness: f64,
+    /// Likewise [N m s/rad].
+    pub damping: f64,
+}
+
+impl From<&SetPoint> for Asked {
+    fn from(set_point: &SetPoint) -> Self {
+        match *set_point {
+            SetPoint::Position { now, .. } => Self { motion: now, ..Self::default() },
+            SetPoint::Impedance { about, torque, stiffness, damping } => {
+                Self { motion: about, torque, stiffness, damping }
+            }
+        }
+    }
 }
 
 /// The observer's estimates in one period.
@@ -74,7 +105,10 @@ impl RunHistory {
             run: Run { samples: Vec::with_capacity(periods as usize), period },
             observer_outputs: Vec::new(),
             truths: Vec::with_capacity(periods as usize),
+            controller: Vec::with_capacity(periods as usize),
+            asked: Vec::with_capacity(periods as usize),
             digest: digest::START,
+            memory_at_start: None,
             memory: None,
         }
     }
@@ -87,10 +121,15 @@ impl RunHistory {
         }
     }
 
+    /// Control periods between samples of a rate [Hz].
+    pub fn every(&self, rate: f64) -> usize {
+        (1.0 / (rate * self.run.period)).round().max(1.0) as usize
+    }
+
     /// Samples at a rate [Hz], each with what is true beside it, what the observer made of it, and the largest net force of
     /// the sun's meshes since the one before [N].
     pub fn thinned(&self, rate: f64) -> impl Iterator<Item = (&Sample, &TrueValues, Option<&ObserverOutput>, f64)> {
-        let every = (1.0 / (rate * self.run.period)).round().max(1.0) as usize;
+        let every = self.every(rate);
         self.run.samples.chunks_exact(every).zip(1..).map(move |(chunk, number)| {
             let last = number * every - 1;
             let peak = chunk.iter().map(|sample| sample.mesh_force.abs()).fold(0.0, f64::max);
@@ -98,8 +137,8 @@ impl RunHistory {
         })
     }
 
-    /// Adds a period of a rig.
-    pub fn note(&mut self, period: &Period<'_>) {
+    /// Adds a period of a rig, whose readings the translator makes samples of.
+    pub fn note(&mut self, period: &Period<'_>, translator: &mut Translator) {
         let joint = period.plant.joint();
         let sample = Sample::of(joint, period.wanted, period.half_backlash, period.command);
         let truth = TrueValues {
@@ -108,11 +147,26 @@ impl RunHistory {
             load_torque: period.load_torque(),
             motor: joint.motor_angle,
         };
-        self.add(sample, truth, period.answer);
+        let samples = translator.samples(period.seen);
+        translator.note(period.command as f32);
+        self.add(sample, truth, samples, period.set_point.into(), period.answer);
     }
 
     /// Adds a period.
-    pub fn add(&mut self, sample: Sample, truth: TrueValues, answer: Option<&Answer>) {
+    pub fn add(
+        &mut self,
+        sample: Sample,
+        truth: TrueValues,
+        samples: Samples<f32>,
+        asked: Asked,
+        answer: Option<&Answer>,
+    ) {
+        self.controller.push(ControllerPeriod {
+            samples,
+            torque: sample.command as f32,
+            estimates: answer.map(|answer| answer.estimates),
+        });
+        self.asked.push(asked);
         for value in [sample.link, sample.mesh_force, sample.command, truth.gap, truth.motor] {
             self.digest = digest::chain(self.digest, value.to_bits());
         }

@@ -13,6 +13,7 @@ const MODEL_SHARE: f64 = 0.003;
 
 /// One parameter.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Finding {
     /// What it is.
     pub name: String,

@@ -6,14 +6,15 @@ use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 use board::profile::{LONGEST_RUN, TorqueProfile};
+use identify::replay::ReplayArguments;
 use identify::{Arguments, Options};
 use mcap::records::MessageHeader;
 use mcap::{Compression, WriteOptions};
 use reference::closed_loop::MotionProfile;
-use report::failure::{EXIT_BAD_INPUT, Failure};
+use report::failure::{EXIT_BAD_INPUT, EXIT_CHECK_FAILED, Failure};
 use report::progress::Progress;
 use scenario::plant::PlantName;
-use scenario::suite;
+use scenario::{TestGroup, TestRequest, suite};
 
 /// Ways in which a log may be packed.
 pub const PACKINGS: usize = 5;
@@ -41,6 +42,8 @@ pub enum Kind {
     McapLog(usize),
     /// The form of such a log's messages alone.
     Form,
+    /// The log of a run, for `joint replay`.
+    Run,
 }
 
 /// Whether bytes have something that a reader with a fault would stumble over.
@@ -49,7 +52,7 @@ pub type Fault = fn(&[u8]) -> bool;
 /// Every kind of file.
 pub fn all() -> impl Iterator<Item = Kind> {
     let packed = (0..PACKINGS).map(Kind::McapLog);
-    [Kind::Joint, Kind::Test, Kind::Motion, Kind::Torques, Kind::CsvLog, Kind::SlowLog, Kind::Form]
+    [Kind::Joint, Kind::Test, Kind::Motion, Kind::Torques, Kind::CsvLog, Kind::SlowLog, Kind::Form, Kind::Run]
         .into_iter()
         .chain(packed)
 }
@@ -80,6 +83,7 @@ impl Kind {
             Self::SlowLog => sweeps().into(),
             Self::McapLog(packing) => mcap(packing, FORM.as_bytes()),
             Self::Form => FORM.into(),
+            Self::Run => run_log().unwrap_or_default(),
         }
     }
 
@@ -121,6 +125,11 @@ impl Kind {
             Self::CsvLog => identified(&file("log.csv", bytes)?, folder.path()),
             Self::McapLog(_) => identified(&file("log.mcap", bytes)?, folder.path()),
             Self::Form => identified(&file("log.mcap", &mcap(0, bytes))?, folder.path()),
+            Self::Run => match replay(&file("log.mcap", bytes)?, folder.path()) {
+                // Another count or estimate is no refusal: the run is not repeated, and that is said.
+                Err(failure) if failure.exit_code() == EXIT_CHECK_FAILED => Ok(()),
+                outcome => refused(outcome).map(drop),
+            },
         }
     }
 
@@ -131,6 +140,10 @@ impl Kind {
         match self {
             Self::CsvLog | Self::SlowLog | Self::McapLog(_) => fs::write(&path, bytes).ok()?,
             Self::Form => fs::write(&path, mcap(0, bytes)).ok()?,
+            Self::Run => {
+                fs::write(&path, bytes).ok()?;
+                return replay(&path, folder.path()).err().map(|failure| failure.to_string());
+            }
             _ => return None,
         }
         let arguments = if matches!(self, Self::SlowLog) { slow } else { arguments };
@@ -141,7 +154,7 @@ impl Kind {
     /// Faults that a reader of such files may have, by what brings them to light.
     pub fn planted_faults(self) -> Vec<(&'static str, Fault)> {
         match self {
-            Self::McapLog(_) => vec![
+            Self::McapLog(_) | Self::Run => vec![
                 ("a length beyond the file", |bytes| bytes.windows(8).any(|eight| eight == u64::MAX.to_le_bytes())),
                 ("no end", |bytes| !bytes.ends_with(b"\x89MCAP0\r\n")),
             ],
@@ -182,6 +195,58 @@ fn followed(test: &suite::Test) -> Result<(), String> {
 
 fn identified(log: &Path, folder: &Path) -> Result<(), String> {
     refused(identify::run(&arguments(log, folder), &Progress::new())).map(drop)
+}
+
+fn replay(log: &Path, folder: &Path) -> Result<String, Failure> {
+    let arguments = ReplayArguments {
+        log: log.to_owned(),
+        joint: None,
+        set: Vec::new(),
+        motor_only: false,
+        topic: None,
+        column: Vec::new(),
+        unit: Vec::new(),
+        map: None,
+        every: None,
+        out: Some(folder.join("out")),
+        json: None,
+    };
+    identify::replay::run(&arguments, &Progress::new())
+}
+
+/// The log of a very short run: made once for all the processes of cases, and anew when this program is.
+fn run_log() -> Option<Vec<u8>> {
+    let kept = Path::new(env!("CARGO_TARGET_TMPDIR")).join("attacked-run.mcap");
+    let changed = |path: &Path| fs::metadata(path).and_then(|file| file.modified()).ok();
+    if changed(&kept) > changed(&std::env::current_exe().ok()?) {
+        return fs::read(&kept).ok();
+    }
+    let bytes = new_run_log()?;
+    // Whole under its name, whoever else makes it now.
+    let growing = kept.with_extension(std::process::id().to_string());
+    fs::write(&growing, &bytes).and_then(|()| fs::rename(&growing, &kept)).ok()?;
+    Some(bytes)
+}
+
+fn new_run_log() -> Option<Vec<u8>> {
+    let folder = tempfile::tempdir().ok()?;
+    let path = folder.path().join("test.toml");
+    let test = "duration_s = 0.02\nsettle_s = 0.01\nprofile = \"T2\"\n[controller]\nrivals = []\nfrom_memory = true\n";
+    fs::write(&path, test).ok()?;
+    let group = TestGroup { path, choice: suite::Choice::Full, plant: PlantName::Core, boards: None };
+    let request = TestRequest {
+        parts: vec![group],
+        seed: Some(1),
+        full: false,
+        memories: false,
+        name: "test".to_owned(),
+        out: Some(folder.path().join("out")),
+        json: None,
+        junit: None,
+    };
+    scenario::run(&request, &Progress::new()).ok()?;
+    let mut logs = fs::read_dir(folder.path().join("out/runs")).ok()?;
+    fs::read(logs.next()?.ok()?.path()).ok()
 }
 
 fn arguments(log: &Path, folder: &Path) -> Arguments {

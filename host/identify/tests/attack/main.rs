@@ -93,6 +93,11 @@ proptest! {
     fn forms_of_messages_are_read_or_refused(changes in mutations()) {
         attack(Kind::Form, &changes)?;
     }
+
+    #[test]
+    fn logs_of_runs_are_read_or_refused(changes in mutations()) {
+        attack(Kind::Run, &changes)?;
+    }
 }
 
 #[test]

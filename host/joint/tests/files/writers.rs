@@ -25,6 +25,7 @@ fn inputs() -> PathBuf {
     fs::write(path("test.toml"), TEST).expect("room");
     joint(&["identify", text(&path("log.csv")), "--simulate"]).well();
     fs::write(path("sweeps.csv"), sweeps()).expect("room");
+    fs::write(path("still.csv"), still()).expect("room");
     for shard in ["1/2", "2/2"] {
         joint(&[&SWEEP[..], &["--shard", shard, "--out", text(&path("shards"))]].concat()).well();
     }
@@ -40,6 +41,12 @@ fn sweeps() -> String {
         format!("{sample},{motor},{}\n", motor + 100 * sweep)
     };
     "time_s,motor_counts,output_counts\n".to_owned() + &(0..600).map(row).collect::<String>()
+}
+
+/// Half a second of a joint that hardly moves, a row each control period.
+fn still() -> String {
+    let row = |row: i32| format!("{},{},{row},0.1\n", 1e-4 * f64::from(row), row / 3);
+    "time_s,motor_counts,output_counts,motor_torque_N_m\n".to_owned() + &(0..5000).map(row).collect::<String>()
 }
 
 /// A data sheet.
@@ -70,6 +77,7 @@ pub enum Writer {
     Board,
     Identify,
     SlowLog,
+    Replay,
     Simulate,
     Check,
     Budget,
@@ -84,8 +92,8 @@ pub struct Line {
 
 impl Writer {
     /// Those that write to the folder of `--out`.
-    pub const TO_FOLDERS: [Self; 7] =
-        [Self::Sim, Self::Sweep, Self::Merge, Self::Tests, Self::Board, Self::Identify, Self::SlowLog];
+    pub const TO_FOLDERS: [Self; 8] =
+        [Self::Sim, Self::Sweep, Self::Merge, Self::Tests, Self::Board, Self::Identify, Self::SlowLog, Self::Replay];
 
     /// Those that take a second and more, of which a short run makes fewer.
     pub fn is_slow(self) -> bool {
@@ -117,6 +125,7 @@ impl Writer {
             }
             Self::Identify => words(&["identify", &input("log.csv")]),
             Self::SlowLog => words(&["identify", &input("sweeps.csv"), "--quasi-static"]),
+            Self::Replay => words(&["replay", &input("still.csv"), "q1"]),
             Self::Simulate => words(&["identify", &file("log.csv"), "--simulate"]),
             Self::Check => words(&["check", "q1", "--json", &file("check.json")]),
             Self::Budget => words(&["budget", "q1", "--json", &file("budget.json")]),

@@ -7,7 +7,7 @@ use std::rc::Rc;
 use link::controller::{Exchange, WireShaped};
 use model_core::compensation::Command;
 use model_core::numbers::digest;
-use model_core::observer::Samples;
+use model_core::observer::{Memory, Samples};
 
 use crate::case::Designed;
 use crate::port::{Answer, ControllerPort, HostPort};
@@ -42,7 +42,7 @@ impl ControllerPort for BoardPort<'_> {
         self.ask(Exchange::probing(self.tick, samples), own)
     }
 
-    fn restart_from_memory(&mut self) -> Outcome<()> {
+    fn restart_from_memory(&mut self) -> Outcome<Memory> {
         (self.tick, self.digest) = (0, digest::START);
         self.session.borrow_mut().restart_from_memory()?;
         self.twin.restart_from_memory()

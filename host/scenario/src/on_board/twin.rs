@@ -2,8 +2,11 @@
 //! in the same order of operations. The metrics of the board's run are computed from it, since every period can be seen
 //! here.
 
+use std::f64::consts::TAU;
+
 use joint_file::JointFile;
 use link::virtual_joint::Knot;
+use model_core::compensation::{Command, Position};
 use model_core::controller::Controller;
 use model_core::controller::trajectory::Trajectory;
 use model_core::gears::design::{Effort, design_scheme};
@@ -13,13 +16,13 @@ use model_core::virtual_joint::design::design_surroundings;
 use model_core::virtual_joint::fault::{Fault, FixedPoint};
 use model_core::virtual_joint::faults::Faults;
 use model_core::virtual_joint::{SurroundingsTable, VirtualJoint};
-use reference::closed_loop::Sample;
+use reference::closed_loop::{Motion, Sample};
 
 use super::trajectory;
 use crate::case::{Case, Designed};
 use crate::file::TestFile;
 use crate::port::remember;
-use crate::run_history::{RunHistory, TrueValues};
+use crate::run_history::{Asked, RunHistory, TrueValues};
 use board::target::board::Board;
 use report::failure::{Failure, Outcome};
 use simulation::sim::snapshot::Reader;
@@ -74,7 +77,10 @@ impl Twin<'_> {
         let mut controller = Controller::new(&self.designed.observer, &self.designed.compensation);
         if self.file.from_memory {
             self.pass(&tables, &table, &mut controller);
-            remember(&mut controller)?;
+            let memory_at_start = Some(remember(&mut controller)?);
+            let mut result = self.pass(&tables, &table, &mut controller);
+            result.history.memory_at_start = memory_at_start;
+            return Ok(result);
         }
         Ok(self.pass(&tables, &table, &mut controller))
     }
@@ -90,7 +96,8 @@ impl Twin<'_> {
         let mut faults = Faults::default();
         let all_taken = self.faults.iter().all(|fault| faults.add(*fault));
         debug_assert!(all_taken, "more than fit were refused before");
-        let knots = trajectory::knots(self.file, self.case, self.designed, virtual_joint.output_turn());
+        let first_turn = virtual_joint.output_turn();
+        let knots = trajectory::knots(self.file, self.case, self.designed, first_turn);
         let joint = &self.truth.parameters;
         let reader = Reader::new(joint, tables);
 
@@ -134,8 +141,29 @@ impl Twin<'_> {
                 load_torque: f64::from(virtual_joint.acting().load),
                 motor: moment.motor_angle(joint),
             };
-            history.add(sample, truth, Some(&answer));
+            history.add(sample, truth, samples, asked(&command, first_turn), Some(&answer));
         }
         TwinResult { knots, history, digests }
+    }
+}
+
+/// A set-point with its turns counted from the joint's own zero.
+fn asked(command: &Command<f32>, first_turn: i32) -> Asked {
+    let angle = |position: Position<f32>| TAU * (f64::from(position.turns + first_turn) + f64::from(position.fraction));
+    match command {
+        Command::Position { now, .. } => Asked {
+            motion: Motion {
+                position: angle(now.position),
+                speed: now.speed.into(),
+                acceleration: now.acceleration.into(),
+            },
+            ..Asked::default()
+        },
+        Command::Impedance(point) => Asked {
+            motion: Motion { position: angle(point.position), speed: point.speed.into(), acceleration: 0.0 },
+            torque: point.torque.into(),
+            stiffness: point.stiffness.into(),
+            damping: point.damping.into(),
+        },
     }
 }

@@ -52,12 +52,12 @@ impl<'p> ActiveController<'p> {
     }
 
     /// Restarts with what was learnt so far, as after a power cycle; a controller that learns nothing goes on.
-    pub fn restart_from_memory(&mut self) -> Outcome<()> {
-        if let Self::Compensation(port, translator) | Self::Probe(port, translator) = self {
-            port.restart_from_memory()?;
-            translator.reset();
-        }
-        Ok(())
+    /// Says what that is.
+    pub fn restart_from_memory(&mut self) -> Outcome<Option<Memory>> {
+        let (Self::Compensation(port, translator) | Self::Probe(port, translator)) = self else { return Ok(None) };
+        let memory = port.restart_from_memory()?;
+        translator.reset();
+        Ok(Some(memory))
     }
 
     /// What the observer has learnt so far, if there is one in this process.
@@ -89,12 +89,12 @@ impl<'p> ActiveController<'p> {
             Self::Compensation(port, translator) => {
                 let samples = translator.samples(seen);
                 let answer = port.exchange(&samples, &translator.command(set_point))?;
-                translator.note(&answer);
+                translator.note(answer.shaped.torque);
                 Ok((f64::from(answer.shaped.torque), Some(answer)))
             }
             Self::Probe(port, translator) => {
                 let answer = port.probe(&translator.samples(seen))?;
-                translator.note(&answer);
+                translator.note(answer.shaped.torque);
                 Ok((f64::from(answer.shaped.torque), Some(answer)))
             }
         }

@@ -101,6 +101,8 @@ impl Rig {
                 plant,
                 wanted: motion.at(joint.time).position,
                 half_backlash: faults.half_backlash_now(),
+                seen: &seen,
+                set_point: &set_point,
                 command,
                 answer: answer.as_ref(),
             })?;

@@ -1,5 +1,8 @@
 //! The result of one control period, as shown to those who record a run.
 
+use reference::closed_loop::SetPoint;
+
+use crate::faults::ControllerInputs;
 use crate::plant::Plant;
 use crate::port::Answer;
 
@@ -15,6 +18,10 @@ pub struct Period<'r> {
     pub wanted: f64,
     /// Half-backlash during it [m].
     pub half_backlash: f64,
+    /// What the controller was shown at its beginning.
+    pub seen: &'r ControllerInputs,
+    /// What the controller was asked for.
+    pub set_point: &'r SetPoint,
     /// Torque asked of the motor [N m].
     pub command: f64,
     /// The answer of observer and compensation, if they control.

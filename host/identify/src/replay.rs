@@ -1,0 +1,155 @@
+//! `joint replay`: runs the observer of a joint, the very code that a board runs, over the counts and torques of a log. A
+//! log of `joint hil TEST` says itself what its observer was told, and whether its run is repeated in every bit is checked;
+//! of any other log the estimates are shown.
+//!
+//! `arguments` is the command line, `samples` makes an observer's samples of columns, `pass` runs the observer over them,
+//! `recorded` is what a run has said of itself, `history` writes estimates as CSV and MCAP, `record` is the JSON, `page` and
+//! `pictures` show it.
+
+mod arguments;
+mod history;
+mod page;
+mod pass;
+mod pictures;
+mod record;
+mod recorded;
+mod samples;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+pub use arguments::ReplayArguments;
+use model_core::observer::design::{ObserverSettings, design_observer, observer_settings};
+use model_core::observer::{MAPPED, Memory, Observer, ObserverTables};
+use pass::Pass;
+pub use record::ReplayRecord;
+use recorded::Recorded;
+use samples::ReplaySamples;
+use scenario::controller_log::{self, ObserverOrigin};
+
+use crate::column_map::ColumnMap;
+use crate::learnt::Content;
+use crate::log_file::LogFile;
+use joint_file::named::{self, Loaded};
+use joint_file::warned;
+use report::document::{html, terminal};
+use report::failure::{Failure, Outcome};
+use report::folder::{self, Folder};
+use report::output;
+use report::progress::Progress;
+
+/// What is written.
+const REPORT: &str = "report.html";
+const RECORD: &str = "record.json";
+const CSV: &str = "estimates.csv";
+const LOG: &str = "estimates.mcap";
+
+/// An observer as it was before its first samples.
+struct Start {
+    tables: ObserverTables<f32>,
+    memory: Option<Memory>,
+}
+
+impl Start {
+    fn observer(&self) -> Outcome<Observer<'_, f32, MAPPED>> {
+        let mut observer = Observer::new(&self.tables);
+        if let Some(memory) = &self.memory {
+            observer.load(memory).map_err(|error| Failure::new(format!("what the observer began with: {error}")))?;
+        }
+        Ok(observer)
+    }
+}
+
+/// Replays a log, writes what comes of it and prints it; fails if a run is not repeated.
+pub fn run(arguments: &ReplayArguments, progress: &Progress) -> Outcome<String> {
+    let path = arguments.log.as_path();
+    let map = ColumnMap::new(arguments.map.as_deref(), &arguments.column, &arguments.unit)?;
+    let read: Vec<&Path> = [Some(path), arguments.joint.as_deref()].into_iter().flatten().collect();
+    folder::check_files(&[("json", arguments.json.as_deref())], &read)?;
+    progress.stage("reading");
+    let file = LogFile::open(path)?;
+    let remarks = file.remarks();
+    let origin = ObserverOrigin::of(&remarks).filter(|_| arguments.asks_for_the_run());
+    let loaded = load(arguments, origin.as_ref(), remarks.get(samples::RUN))?;
+    let settings = settings(&loaded, origin.as_ref(), arguments.motor_only);
+    let tables = design_observer::<f32>(&loaded.file.parameters, &settings).map_err(|error| {
+        Failure::new(format!("no observer can be designed for joint `{}`: {error}", loaded.file.parameters.name))
+    })?;
+    let in_the_file = |failure: Failure| failure.while_doing(path.display());
+    let start = Start { tables, memory: origin.as_ref().and_then(|origin| origin.memory) };
+    let topic = origin.as_ref().map(|_| controller_log::TOPIC).or(arguments.topic.as_deref());
+    let samples = ReplaySamples::read(&file, topic, &map, &loaded, &settings)?;
+    let recorded = match &origin {
+        Some(_) => Some(Recorded::read(&file).map_err(in_the_file)?),
+        None => None,
+    };
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let folder = Folder::choose(arguments.out.as_deref(), "replay", &name, &[REPORT, RECORD, CSV, LOG])?;
+
+    progress.stage("replaying");
+    let (mut pass, mut agreement) = (Pass::new(&samples), recorded.as_ref().map(Recorded::compare));
+    let mut observer = start.observer()?;
+    for index in 0..samples.len() {
+        let estimates = *observer.step(&samples.at(index));
+        pass.note(index, &estimates);
+        if let Some(agreement) = &mut agreement {
+            agreement.note(index, &estimates);
+        }
+    }
+    let learnt = Content::of(&observer.save(), &loaded).map_or_else(|_| Vec::new(), Content::into_values);
+    let repeated = agreement.map(recorded::Agreement::finish);
+    let record = ReplayRecord::of(&name, &loaded, &samples, &pass, learnt, repeated);
+
+    folder.make()?;
+    let document = page::document(&record, &loaded.text, pictures::all(&pass, &record));
+    folder.write_text(REPORT, &html(&document))?;
+    let json = output::json("replay", &record)?;
+    folder.write_text(RECORD, &json)?;
+    let every = arguments.every.map_or_else(|| samples.usual_thinning(), |every| every.get().into());
+    let remarks: BTreeMap<String, String> = [("log", name.clone()), ("joint", record.joint.clone())]
+        .into_iter()
+        .map(|(key, value)| (key.to_owned(), value))
+        .collect();
+    // An observer repeats itself, so that a long log need not be kept in memory as estimates.
+    let observer = start.observer()?;
+    folder.write_with(CSV, |out| history::csv(out, &samples, observer, every))?;
+    let observer = start.observer()?;
+    folder.write_with(LOG, |out| history::mcap(out, &samples, observer, every, remarks))?;
+    arguments.json.as_ref().map_or(Ok(()), |path| output::write_json(path, &json))?;
+    progress.clear();
+    let text = format!("{}\nreport: {}\n", terminal(&document), folder.file(REPORT).display());
+    match record.repeats.as_ref().filter(|repeats| !repeats.every_bit) {
+        None => Ok(text),
+        Some(repeats) => {
+            output::print(&text)?;
+            Err(Failure::check_failed(repeats.sentence())
+                .with_help("the counts or torques of the log were changed, or another version of the program wrote it"))
+        }
+    }
+}
+
+/// The joint file that the observer is designed from.
+fn load(arguments: &ReplayArguments, origin: Option<&ObserverOrigin>, controller: Option<&String>) -> Outcome<Loaded> {
+    if let Some(origin) = origin {
+        return named::read_changed(arguments.log.display().to_string(), origin.joint_file.clone(), &[]);
+    }
+    let Some(joint) = &arguments.joint else {
+        if let Some(controller) = controller {
+            return Err(samples::without_counts(controller).while_doing(arguments.log.display()));
+        }
+        let log = arguments.log.display();
+        return Err(Failure::new(format!("{log} does not say which joint it is of"))
+            .with_help(format!("name a joint file or preset: joint replay {log} JOINT")));
+    };
+    let loaded = named::load_with(joint, &arguments.set)?;
+    warned::tell(&loaded);
+    Ok(loaded)
+}
+
+fn settings(loaded: &Loaded, origin: Option<&ObserverOrigin>, motor_only: bool) -> ObserverSettings {
+    let mut settings = observer_settings(&loaded.file.surroundings);
+    if motor_only || origin.is_some_and(|origin| !origin.output_encoder) {
+        settings.output_encoder = None;
+    }
+    settings
+}

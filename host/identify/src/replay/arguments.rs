@@ -1,0 +1,64 @@
+//! What `joint replay` may be asked for on the command line.
+
+use std::num::NonZeroU16;
+use std::path::PathBuf;
+
+use crate::column_map::renaming;
+use crate::units::{self, Unit};
+
+/// Arguments of `joint replay`.
+#[derive(Debug, Clone, clap::Args)]
+#[command(
+    after_help = "LOG is an MCAP log that `joint hil TEST` wrote, which needs nothing else, or any log that `joint identify` reads:
+  time_s, motor_counts, output_counts, motor_torque_N_m, a row each control period.
+
+Examples:
+  joint replay joint-out/hil/tests/t2/runs/t2-seed1-preview.mcap       does the observer repeat the run, in every bit?
+  joint replay joint-out/hil/tests/t2/runs/t2-seed1-preview.mcap q1    what would the observer of the preset have said?
+  joint replay my_log.csv my_joint.toml --out results                  what does the observer make of a recorded test?
+  joint replay drive.csv my_joint.toml --map moteus --set control_rate_Hz=1000
+
+Exit code: 0 if a run is repeated, or of a log that is none; 1 if a run is not repeated; 2 for bad input, 130 after Ctrl-C."
+)]
+pub struct ReplayArguments {
+    /// A run's log, or a recorded test
+    #[arg(value_name = "LOG")]
+    pub log: PathBuf,
+    /// Joint file (TOML) or preset that the observer is designed from [default: what the log of a run says]
+    #[arg(value_name = "JOINT")]
+    pub joint: Option<PathBuf>,
+    /// Changes a value of the joint file first, such as control_rate_Hz=1000; may be repeated
+    #[arg(long = "set", value_name = "KEY=VALUE", requires = "joint")]
+    pub set: Vec<String>,
+    /// Shows the observer the motor's encoder alone
+    #[arg(long, requires = "joint")]
+    pub motor_only: bool,
+    /// Topic of an MCAP log [default: the one that has motor, output and torque]
+    #[arg(long, value_name = "TOPIC", requires = "joint")]
+    pub topic: Option<String>,
+    /// Takes a column of another name, such as motor_counts=pos_raw; may be repeated
+    #[arg(long, value_name = "COLUMN=NAME", value_parser = renaming, requires = "joint")]
+    pub column: Vec<(String, String)>,
+    /// Unit of a column that is called by its quantity alone, such as motor_angle=turns; may be repeated
+    #[arg(long, value_name = "QUANTITY=UNIT", value_parser = units::parse, requires = "joint")]
+    pub unit: Vec<Unit>,
+    /// Names and units of a maker's columns: a file, or ros2-joint-states, moteus, odrive, vesc-tool, feetech
+    #[arg(long, value_name = "MAP", requires = "joint")]
+    pub map: Option<PathBuf>,
+    /// Writes one of N control periods to estimates.csv and estimates.mcap [default: about a thousand a second]
+    #[arg(long, value_name = "N")]
+    pub every: Option<NonZeroU16>,
+    /// Folder for report.html, record.json, estimates.csv and estimates.mcap; a file that this command did not write is refused [default: joint-out/replay/<log>]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Writes the record as JSON to this file too ("-" is standard output, and all else on standard error)
+    #[arg(long, value_name = "OUT")]
+    pub json: Option<PathBuf>,
+}
+
+impl ReplayArguments {
+    /// Whether the log's own observer is wanted.
+    pub fn asks_for_the_run(&self) -> bool {
+        self.joint.is_none()
+    }
+}

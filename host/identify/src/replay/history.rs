@@ -1,0 +1,68 @@
+//! The estimates of a replay as CSV and as MCAP: the same names, units and words as in the log of a run.
+
+use std::collections::BTreeMap;
+use std::io::{self, Write};
+
+use model_core::observer::{MAPPED, Observer};
+use scenario::estimate_fields::{self, NOTICES, WORDS, fields, notices};
+
+use super::samples::ReplaySamples;
+use report::log::{Channel, Message, field};
+
+/// Topic of the estimates.
+const TOPIC: &str = "/joint/estimates";
+/// Name of its schema.
+const SCHEMA_NAME: &str = "joint_msgs/msg/Estimates";
+
+/// One of `every` rows as CSV.
+pub fn csv(
+    out: &mut impl Write,
+    samples: &ReplaySamples,
+    mut observer: Observer<'_, f32, MAPPED>,
+    every: usize,
+) -> io::Result<()> {
+    let names: Vec<&str> =
+        fields().map(|field| field.name).chain(WORDS.iter().map(|word| word.name)).chain([NOTICES.0]).collect();
+    writeln!(out, "time_s,motor_torque_Nm,{}", names.join(","))?;
+    for index in 0..samples.len() {
+        let estimates = observer.step(&samples.at(index));
+        if !index.is_multiple_of(every) {
+            continue;
+        }
+        write!(out, "{:?},{:?}", samples.time[index], samples.torque[index])?;
+        for field in fields() {
+            let value = field.of(estimates);
+            if field.is_flag() { write!(out, ",{value}")? } else { write!(out, ",{value:?}")? }
+        }
+        for word in WORDS {
+            write!(out, ",{}", (word.word)(estimates))?;
+        }
+        writeln!(out, ",{}", notices(estimates.notices).join(" "))?;
+    }
+    out.flush()
+}
+
+/// The same as MCAP.
+pub fn mcap(
+    out: &mut impl Write,
+    samples: &ReplaySamples,
+    mut observer: Observer<'_, f32, MAPPED>,
+    every: usize,
+    remarks: BTreeMap<String, String>,
+) -> io::Result<()> {
+    let schema = field("float64", "time_s", "since the first row [s]")
+        + &field("float64", "motor_torque_Nm", "asked of the motor [N m]")
+        + &estimate_fields::schema();
+    let mut channel = Channel::begin(out, TOPIC, SCHEMA_NAME, &schema, remarks)?;
+    for index in 0..samples.len() {
+        let estimates = observer.step(&samples.at(index));
+        if index.is_multiple_of(every) {
+            let mut message = Message::default();
+            message.number(samples.time[index]);
+            message.number(samples.torque[index]);
+            estimate_fields::add(&mut message, Some(estimates));
+            channel.write(samples.time[index], &message)?;
+        }
+    }
+    channel.finish().map(drop)
+}

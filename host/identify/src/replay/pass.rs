@@ -1,0 +1,135 @@
+//! What is kept of an observer's pass over a log: counts of its states, and points for pictures.
+
+use std::collections::BTreeMap;
+
+use model_core::observer::{Estimate, Estimates, Source};
+use scenario::estimate_fields::{WORDS, notices};
+use serde::Serialize;
+
+use super::samples::ReplaySamples;
+use report::contacts::Contact;
+
+/// Points that are kept for pictures.
+const POINTS: usize = 200_000;
+/// Changes of source that are listed.
+const CHANGES: usize = 50;
+/// 95 of 100 values lie within so many standard deviations.
+const REACH: f64 = 1.96;
+
+/// What the estimates stand on from a moment on.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct SourceChange {
+    /// Since the first control period [s].
+    pub time_s: f64,
+    /// `both`, `motor_only` or `nothing`.
+    pub estimates_from: String,
+    /// Why not both, such as `output_frozen`; `none` otherwise.
+    pub encoder_fault: String,
+}
+
+/// A value with the half of its interval.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Interval {
+    /// Best guess.
+    pub value: f64,
+    /// Half of the 95 % interval.
+    pub half: f64,
+}
+
+/// A moment for pictures.
+#[derive(Debug, Clone, Copy)]
+pub struct Point {
+    /// [s].
+    pub time: f64,
+    /// Asked of the motor [N m].
+    pub torque: f64,
+    /// Gap coordinate [m].
+    pub gap: Interval,
+    /// Whether it may be used.
+    pub gap_valid: bool,
+    /// Half-backlash as learnt [m].
+    pub half_backlash: Interval,
+    /// What brakes the link [N m].
+    pub load_torque: Interval,
+    /// The flank that carries.
+    pub side: Contact,
+    /// Whether that may be used.
+    pub side_valid: bool,
+    /// Both encoders are used.
+    pub both: bool,
+}
+
+/// A pass.
+pub struct Pass<'s> {
+    samples: &'s ReplaySamples,
+    every: usize,
+    /// For pictures.
+    pub points: Vec<Point>,
+    /// Periods in which both encoders were trusted.
+    pub both: usize,
+    /// Periods in which the gap was valid.
+    pub gap_valid: usize,
+    /// When the source changed, the first ones.
+    pub sources: Vec<SourceChange>,
+    /// The others.
+    pub sources_left_out: usize,
+    /// Periods with a notice, by its name.
+    pub notices: BTreeMap<&'static str, usize>,
+    source: Option<Source>,
+}
+
+impl<'s> Pass<'s> {
+    /// Before the first samples.
+    pub fn new(samples: &'s ReplaySamples) -> Self {
+        Self {
+            samples,
+            every: samples.len().div_ceil(POINTS).max(1),
+            points: Vec::new(),
+            both: 0,
+            gap_valid: 0,
+            sources: Vec::new(),
+            sources_left_out: 0,
+            notices: BTreeMap::new(),
+            source: None,
+        }
+    }
+
+    /// Estimates of the next period.
+    pub fn note(&mut self, index: usize, of: &Estimates<f32>) {
+        let time = self.samples.time[index];
+        self.both += usize::from(of.source == Source::Both);
+        self.gap_valid += usize::from(of.gap.valid);
+        notices(of.notices).into_iter().for_each(|name| *self.notices.entry(name).or_default() += 1);
+        if self.source.replace(of.source) != Some(of.source) {
+            let [estimates_from, encoder_fault] =
+                ["estimates_from", "encoder_fault"].map(|name| word(name, of).to_owned());
+            if self.sources.len() < CHANGES {
+                self.sources.push(SourceChange { time_s: time, estimates_from, encoder_fault });
+            } else {
+                self.sources_left_out += 1;
+            }
+        }
+        if index.is_multiple_of(self.every) {
+            self.points.push(Point {
+                time,
+                torque: self.samples.torque[index],
+                gap: interval(of.gap),
+                gap_valid: of.gap.valid,
+                half_backlash: interval(of.half_backlash),
+                load_torque: interval(of.load_torque),
+                side: Contact::try_from(of.reported_contact.code()).unwrap_or(Contact::Separated),
+                side_valid: of.contact_valid,
+                both: of.source == Source::Both,
+            });
+        }
+    }
+}
+
+fn word(name: &str, of: &Estimates<f32>) -> &'static str {
+    WORDS.iter().find(|field| field.name == name).map_or("", |field| (field.word)(of))
+}
+
+fn interval(of: Estimate<f32>) -> Interval {
+    Interval { value: of.value.into(), half: REACH * f64::from(of.variance.max(0.0)).sqrt() }
+}

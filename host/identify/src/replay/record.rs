@@ -1,0 +1,143 @@
+//! The record of a replay, for JSON and the report. docs/reference/replay.md explains the keys.
+
+use serde::Serialize;
+
+use super::pass::{Pass, SourceChange};
+use super::samples::ReplaySamples;
+use crate::findings::Finding;
+use joint_file::named::Loaded;
+use report::provenance;
+
+/// Name and version of the form.
+const SCHEMA: &str = "joint-replay/1";
+
+/// A replay.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct ReplayRecord {
+    /// Name and version of this form.
+    pub schema: String,
+    /// Version of the host command.
+    pub host_version: String,
+    /// Name of the joint whose observer it is.
+    pub joint: String,
+    /// Name of the log.
+    pub log: String,
+    /// Control periods in it.
+    pub periods: usize,
+    /// Control periods a second [Hz].
+    #[serde(rename = "control_rate_Hz")]
+    pub control_rate: f64,
+    /// From the first to the last of them [s].
+    pub duration_s: f64,
+    /// Angles were taken for counts of the joint file's encoders.
+    pub counts_from_angles: bool,
+    /// Whether the estimates are those of the run that wrote the log; absent for any other log.
+    pub repeats: Option<Repeats>,
+    /// Share of the time in which both encoders were trusted [%].
+    pub both_encoders_percent: f64,
+    /// Share in which the gap coordinate was valid [%].
+    pub gap_valid_percent: f64,
+    /// Times at which what the estimates stand on changed.
+    pub sources: Vec<SourceChange>,
+    /// Changes of it that are not in the list.
+    pub sources_left_out: usize,
+    /// Control periods with a notice about their samples, by its name.
+    pub notices: std::collections::BTreeMap<String, usize>,
+    /// What was learnt at the end.
+    pub learnt: Vec<Finding>,
+}
+
+/// Whether a run is repeated.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Repeats {
+    /// All estimates of all control periods are the same in every bit.
+    pub every_bit: bool,
+    /// Control periods that were compared.
+    pub periods: usize,
+    /// Those that differ.
+    pub differing_periods: usize,
+    /// The first of them.
+    pub first_difference: Option<Difference>,
+}
+
+/// Where a replay departs from its run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Difference {
+    /// The first control period that differs in any bit.
+    pub period: usize,
+    /// Its beginning [s].
+    pub time_s: f64,
+    /// The first control period whose values were logged and differ.
+    pub values_period: Option<usize>,
+    /// Its beginning [s].
+    pub values_time_s: Option<f64>,
+    /// Those values.
+    pub values: Vec<ValueDifference>,
+}
+
+/// A value that differs.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct ValueDifference {
+    /// Its name in the log.
+    pub name: String,
+    /// As the run has it.
+    pub recorded: f64,
+    /// As the replay has it.
+    pub replayed: f64,
+}
+
+impl ReplayRecord {
+    /// What came of a pass.
+    pub fn of(
+        log: &str,
+        loaded: &Loaded,
+        samples: &ReplaySamples,
+        pass: &Pass,
+        learnt: Vec<Finding>,
+        repeats: Option<Repeats>,
+    ) -> Self {
+        let percent = |count: usize| 100.0 * count as f64 / samples.len().max(1) as f64;
+        Self {
+            schema: SCHEMA.to_owned(),
+            host_version: provenance::VERSION.to_owned(),
+            joint: loaded.file.parameters.name.to_string(),
+            log: log.to_owned(),
+            periods: samples.len(),
+            control_rate: 1.0 / samples.period,
+            duration_s: samples.time.last().copied().unwrap_or_default(),
+            counts_from_angles: samples.from_angles,
+            repeats,
+            both_encoders_percent: percent(pass.both),
+            gap_valid_percent: percent(pass.gap_valid),
+            sources: pass.sources.clone(),
+            sources_left_out: pass.sources_left_out,
+            notices: pass.notices.iter().map(|(name, count)| ((*name).to_owned(), *count)).collect(),
+            learnt,
+        }
+    }
+}
+
+impl Repeats {
+    /// In words.
+    pub fn sentence(&self) -> String {
+        let Some(first) = &self.first_difference else {
+            return match self.every_bit {
+                true => format!("the observer repeats the run: {} control periods, every bit", self.periods),
+                false => format!("{} control periods of the run are not in its log", self.differing_periods),
+            };
+        };
+        let Difference { period, time_s, values, .. } = first;
+        let mut sentence = format!(
+            "the observer does not repeat the run: the first difference is in control period {period}, t = {time_s:.4} s"
+        );
+        if let (Some(value), Some(time)) = (values.first(), first.values_time_s) {
+            let ValueDifference { name, recorded, replayed } = value;
+            sentence += &format!("; {name} at t = {time:.4} s is {recorded:e} in the log, {replayed:e} here");
+        }
+        sentence
+    }
+}

@@ -1,0 +1,117 @@
+//! What the log of a run says of its own estimates, and whether a replay repeats it: the digest of every control period,
+//! and the values of those that are logged with them.
+
+use std::collections::BTreeMap;
+
+use model_core::observer::Estimates;
+use scenario::controller_log::{DIGEST, PERIOD, TOPIC};
+use scenario::estimate_fields::{digest_of, fields};
+use scenario::log_file;
+
+use super::record::{Difference, Repeats, ValueDifference};
+use crate::columns::Columns;
+use crate::log_file::LogFile;
+use report::failure::{Failure, Outcome};
+
+/// What a run has logged of its estimates.
+pub struct Recorded {
+    digests: Vec<u32>,
+    time: Vec<f64>,
+    /// Rows of values by their control period.
+    rows: BTreeMap<u32, usize>,
+    values: Columns,
+}
+
+impl Recorded {
+    /// Out of the log of a run.
+    pub fn read(file: &LogFile) -> Outcome<Self> {
+        let controller = file.topic(TOPIC)?;
+        let whole = |columns: &Columns, name: &str| -> Outcome<Vec<u32>> {
+            Ok(columns.named(&[name])?.1.into_iter().map(|value| value as u32).collect())
+        };
+        let periods = whole(&controller, PERIOD)?;
+        if let Some((row, period)) = (0..).zip(&periods).find(|(row, period)| row != *period) {
+            let message = match row {
+                0 => {
+                    format!("the run begins at control period {period}: what its observer had seen before is not in it")
+                }
+                _ => format!("control periods {row} to {} of the run are missing", period.saturating_sub(1)),
+            };
+            return Err(Failure::new(message).with_help(
+                "take the whole log, or name the joint too, and see what an observer makes of what is left",
+            ));
+        }
+        let values = file.topic(log_file::TOPIC)?;
+        let rows = whole(&values, PERIOD)?.into_iter().zip(0..).collect();
+        Ok(Self { digests: whole(&controller, DIGEST)?, time: controller.time()?, rows, values })
+    }
+
+    /// Begins to compare.
+    pub fn compare(&self) -> Agreement<'_> {
+        Agreement { recorded: self, periods: 0, differing: 0, first: None, values: None }
+    }
+
+    /// Values of a period that are not the recorded ones; nothing where none were recorded.
+    fn differences(&self, period: usize, estimates: &Estimates<f32>) -> Option<Vec<ValueDifference>> {
+        let row = *self.rows.get(&u32::try_from(period).ok()?)?;
+        let of = |field: scenario::estimate_fields::EstimateField| {
+            let recorded = *self.values.column(&field.name.to_ascii_lowercase())?.get(row)?;
+            let replayed = field.of(estimates);
+            let name = field.name.to_owned();
+            (recorded.to_bits() != replayed.to_bits()).then_some(ValueDifference { name, recorded, replayed })
+        };
+        Some(fields().filter_map(of).collect())
+    }
+}
+
+/// A comparison on its way.
+pub struct Agreement<'r> {
+    recorded: &'r Recorded,
+    periods: usize,
+    differing: usize,
+    first: Option<usize>,
+    /// The first values that were logged and differ.
+    values: Option<(usize, Vec<ValueDifference>)>,
+}
+
+impl Agreement<'_> {
+    /// The estimates of the next period.
+    pub fn note(&mut self, period: usize, estimates: &Estimates<f32>) {
+        self.periods += 1;
+        let differs = self.recorded.digests.get(period) != Some(&digest_of(estimates));
+        if differs {
+            self.differing += 1;
+            self.first = self.first.or(Some(period));
+        }
+        if (differs || self.recorded.rows.contains_key(&(period as u32)))
+            && self.values.is_none()
+            && let Some(values) = self.recorded.differences(period, estimates).filter(|values| !values.is_empty())
+        {
+            // A value that differs under a digest that does not was changed in the log itself.
+            if !differs {
+                self.differing += 1;
+                self.first = self.first.or(Some(period));
+            }
+            self.values = Some((period, values));
+        }
+    }
+
+    /// What came of it.
+    pub fn finish(self) -> Repeats {
+        let time = |period: usize| self.recorded.time.get(period).copied().unwrap_or_default();
+        let missing = self.recorded.digests.len().saturating_sub(self.periods);
+        let (values_period, values) = self.values.unwrap_or_default();
+        Repeats {
+            every_bit: self.differing == 0 && missing == 0,
+            periods: self.periods,
+            differing_periods: self.differing + missing,
+            first_difference: self.first.map(|period| Difference {
+                period,
+                time_s: time(period),
+                values_period: (!values.is_empty()).then_some(values_period),
+                values_time_s: (!values.is_empty()).then(|| time(values_period)),
+                values,
+            }),
+        }
+    }
+}

@@ -1,0 +1,193 @@
+//! An observer's samples from the columns of a log: of a run just as its controller got them, of any other log by the time
+//! of each row.
+
+use std::f64::consts::TAU;
+
+use model_core::observer::design::{EncoderSettings, ObserverSettings};
+use model_core::observer::{Reading, Samples};
+use scenario::controller_log::{OUTPUT_READ, SAMPLES, SHOWN_TORQUE};
+
+use crate::column_map::ColumnMap;
+use crate::columns::Columns;
+use crate::log_file::LogFile;
+use crate::prior::PriorModel;
+use board::profile::MAX_TORQUE;
+use joint_file::named::Loaded;
+use report::failure::{Failure, Outcome};
+use report::number::TYPED;
+
+/// Rows may come at another rate than control periods by this ratio.
+const SAME_RATE: f64 = 0.02;
+/// Rows of estimates that are written in a second.
+const USUAL_RATE: f64 = 1000.0;
+
+/// What only runs of `joint hil TEST` say of themselves.
+pub const RUN: &str = "controller";
+
+/// Samples of a log.
+pub struct ReplaySamples {
+    /// Of each row [s].
+    pub time: Vec<f64>,
+    /// Control period [s].
+    pub period: f64,
+    /// Whether angles were taken for the counts of the joint file's encoders.
+    pub from_angles: bool,
+    /// Asked of the motor from each row on [N m].
+    pub torque: Vec<f64>,
+    samples: Vec<Samples<f32>>,
+}
+
+impl ReplaySamples {
+    /// Reads a log.
+    pub fn read(
+        file: &LogFile,
+        topic: Option<&str>,
+        map: &ColumnMap,
+        loaded: &Loaded,
+        settings: &ObserverSettings,
+    ) -> Outcome<Self> {
+        let period = 1.0 / f64::from(settings.control_rate);
+        let motor_only = settings.output_encoder.is_none();
+        let will_do = |columns: &Columns| columns.will_do_with(!motor_only);
+        let columns = file.columns(topic, map, PriorModel::of(&loaded.file).ratio(), will_do)?;
+        let read = if columns.names().any(|name| name == SAMPLES[0]) {
+            Self::of_run(&columns, period)
+        } else if let Some(controller) = file.remarks().get(RUN) {
+            Err(without_counts(controller))
+        } else {
+            Self::of_any(&columns, settings, period)
+        };
+        let read = read.and_then(|read| read.at_the_control_rate(settings));
+        read.map_err(|failure| failure.while_doing(file.path().display()))
+    }
+
+    /// Just what a controller got.
+    fn of_run(columns: &Columns, period: f64) -> Outcome<Self> {
+        let whole = |name: &str| -> Outcome<Vec<u32>> {
+            let (_, values) = columns.named(&[name])?;
+            let bad = |value: &f64| value.fract() != 0.0 || !(0.0..=f64::from(u32::MAX)).contains(value);
+            if let Some(row) = values.iter().position(bad) {
+                return Err(Failure::new(format!("{} of `{name}` is no whole number of 32 bits", columns.place(row)))
+                    .with_help("take the log as `joint hil` wrote it"));
+            }
+            Ok(values.into_iter().map(|value| value as u32).collect())
+        };
+        let [now, motor, motor_at, output, output_at] = SAMPLES.map(whole);
+        let (now, motor, motor_at, output, output_at) = (now?, motor?, motor_at?, output?, output_at?);
+        let (_, fresh) = columns.named(&[OUTPUT_READ])?;
+        let (_, shown) = columns.named(&[&SHOWN_TORQUE.to_ascii_lowercase()])?;
+        let (_, torque) = columns.named(&["motor_torque_N_m"])?;
+        let sample = |row: usize| Samples {
+            time: now[row],
+            motor: Reading { counts: motor[row], time: motor_at[row] },
+            output: (fresh[row] != 0.0).then(|| Reading { counts: output[row], time: output_at[row] }),
+            torque: shown[row] as f32,
+        };
+        let samples = (0..now.len()).map(sample);
+        Ok(Self { time: columns.time()?, period, from_angles: false, torque, samples: samples.collect() })
+    }
+
+    /// Rows of any log, each a control period.
+    fn of_any(columns: &Columns, settings: &ObserverSettings, period: f64) -> Outcome<Self> {
+        let mut time = columns.time()?;
+        let start = time.first().copied().unwrap_or_default();
+        time.iter_mut().for_each(|time| *time -= start);
+        let (motor, motor_angle) = counts(columns, "motor", settings.motor_encoder)?;
+        let output = settings.output_encoder.map(|encoder| counts(columns, "output", encoder)).transpose()?;
+        let from_angles = motor_angle || output.as_ref().is_some_and(|(_, angle)| *angle);
+        let output = output.map(|(counts, _)| counts);
+        let (_, torque) = columns.named(&["motor_torque_N_m"])?;
+        if let Some(row) = torque.iter().position(|torque| torque.abs() > MAX_TORQUE) {
+            let message = format!("{}: `motor_torque_N_m` is {}", columns.place(row), TYPED.write(torque[row]));
+            return Err(Failure::new(message)
+                .with_help(format!("it may be from -{MAX_TORQUE} to {MAX_TORQUE} N m: check the unit")));
+        }
+        let clock = f64::from(settings.clock_rate);
+        let sample = |row: usize| {
+            // The clock wraps, as a controller's does.
+            let now = (time[row] * clock).round() as u64 as u32;
+            Samples {
+                time: now,
+                motor: Reading { counts: motor[row], time: now },
+                output: output.as_ref().map(|counts| Reading { counts: counts[row], time: now }),
+                // A row has the torque from then on: that of the row before has acted until now.
+                torque: row.checked_sub(1).map_or(0.0, |before| torque[before] as f32),
+            }
+        };
+        let samples = (0..time.len()).map(sample).collect();
+        let read = Self { period, from_angles, samples, torque, time };
+        if let Some(row) = read.time.windows(2).position(|pair| pair[1] <= pair[0]) {
+            return Err(Failure::new(format!("the time does not rise in {}", columns.place(row + 1)))
+                .with_help("samples must be in the order in which they were taken, each with its own time"));
+        }
+        Ok(read)
+    }
+
+    /// Refuses rows that are no control periods.
+    fn at_the_control_rate(self, settings: &ObserverSettings) -> Outcome<Self> {
+        let mut steps: Vec<f64> = self.time.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        steps.sort_by(f64::total_cmp);
+        let Some(usual) = steps.get(steps.len() / 2) else {
+            return Err(Failure::new(format!("there are only {} samples", self.time.len()))
+                .with_help("an observer follows a motion over many control periods"));
+        };
+        if (usual / self.period - 1.0).abs() > SAME_RATE {
+            let rate = 1.0 / usual;
+            let message = format!(
+                "its rows come at {rate:.0} Hz, the control periods of this joint at {} Hz",
+                settings.control_rate
+            );
+            return Err(Failure::new(message).with_help(format!(
+                "log every control period; if the controller runs at that rate, add --set control_rate_Hz={rate:.0}"
+            )));
+        }
+        Ok(self)
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.samples.len()
+    }
+
+    /// What the observer is shown.
+    pub fn at(&self, index: usize) -> Samples<f32> {
+        self.samples[index]
+    }
+
+    /// Rows for each that is written, if nothing else is asked for.
+    pub fn usual_thinning(&self) -> usize {
+        (1.0 / (USUAL_RATE * self.period)).round().max(1.0) as usize
+    }
+}
+
+/// The refusal of a run's log from which no observer can be run.
+pub fn without_counts(controller: &str) -> Failure {
+    Failure::new(format!("the log of this run of `{controller}` has no observer's samples")).with_help(
+        "they are logged of the tested controller, not of rivals, and not by older versions: run the test again, and take \
+         the log of its own controller, if that has an observer",
+    )
+}
+
+/// Raw counts of an encoder; angles are taken for the counts of one with the joint file's resolution.
+fn counts(columns: &Columns, what: &str, encoder: EncoderSettings) -> Outcome<(Vec<u32>, bool)> {
+    let names = [format!("{what}_counts"), format!("{what}_angle_rad")];
+    let there = columns.first_of(&[names[0].as_str(), names[1].as_str()])?;
+    let (name, values) = there.ok_or_else(|| {
+        let of_identify = columns.without_encoder(what);
+        let help = of_identify.help().unwrap_or_default().to_owned();
+        Failure::new(format!("an observer needs counts, and there is no column for the {what}")).with_help(help)
+    })?;
+    let range = if encoder.wraps_at == 0 { 1_i64 << 32 } else { i64::from(encoder.wraps_at) };
+    let is_angle = name == names[1];
+    let turn = f64::from(encoder.counts_per_turn);
+    let mut raw = Vec::with_capacity(values.len());
+    for (row, value) in values.iter().enumerate() {
+        let counts = if is_angle { (value * turn / TAU).floor() } else { *value };
+        if counts.fract() != 0.0 || counts.abs() > 9e15 {
+            return Err(Failure::new(format!("{} of `{name}` is no whole number of counts", columns.place(row)))
+                .with_help(format!("angles are understood in a column such as {what}_angle_rad")));
+        }
+        raw.push((counts as i64).rem_euclid(range) as u32);
+    }
+    Ok((raw, is_angle))
+}

@@ -1,0 +1,13 @@
+//! `joint replay`: runs an observer over a log.
+
+pub use identify::replay::ReplayArguments as Arguments;
+use identify::replay::run as replay;
+use report::failure::Outcome;
+use report::output;
+use report::progress::Progress;
+
+/// Replays a log and prints what came of it.
+pub fn run(arguments: &Arguments) -> Outcome<()> {
+    output::keep_for_json(arguments.json.as_deref());
+    Progress::during(|progress| output::print(&replay(arguments, progress)?))
+}

@@ -1,0 +1,230 @@
+//! `joint replay`: a run of `joint hil TEST` is repeated in every bit, and any other log is shown to an observer.
+
+mod command;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use mcap::records::Metadata;
+use mcap::{MessageStream, Writer};
+use serde_json::Value;
+use tempfile::TempDir;
+
+use command::{joint, json, text};
+
+/// Topic and place of a count: behind the head of CDR, the time, the period and the clock.
+const CONTROLLER: &str = "/joint/controller";
+const MOTOR_COUNTS_AT: usize = 4 + 8 + 4 + 4;
+/// A motion with enough of everything that a joint is identified by.
+const SWING: &str = "[profile]\nkind = \"random\"\namplitude_rad = 0.4\nhighest_Hz = 8\n[controller]\nrivals = []\n";
+
+/// Runs a test on the host, and says where its only log is.
+fn log_of(folder: &Path, test: &str, plant: &str) -> PathBuf {
+    let (file, out) = (folder.join("swing.toml"), folder.join("tests"));
+    fs::write(&file, test).expect("room");
+    joint(&["hil", text(&file), "--host", "--plant", plant, "--out", text(&out)]).well();
+    let mut logs = fs::read_dir(out.join("runs")).expect("it has logs").map(|entry| entry.expect("readable").path());
+    logs.find(|path| path.extension().is_some_and(|ending| ending == "mcap")).expect("a log")
+}
+
+fn replayed(log: &Path, out: &Path) -> (Option<i32>, String, Value) {
+    let ended = joint(&["replay", text(log), "--out", text(out)]);
+    let record = json(&out.join("record.json"));
+    (ended.code, ended.out + &ended.err, record)
+}
+
+fn find<'f>(findings: &'f Value, name: &str) -> &'f Value {
+    let all = findings["findings"].as_array().expect("a list");
+    all.iter().find(|finding| finding["name"] == name).expect(name)
+}
+
+/// The same log with the messages of a topic changed.
+fn changed(log: &Path, into: &Path, topic: &str, mut change: impl FnMut(u32, &mut Vec<u8>) -> bool) {
+    let bytes = fs::read(log).expect("a log");
+    let mut writer = Writer::new(std::io::BufWriter::new(fs::File::create(into).expect("room"))).expect("a log");
+    let summary = mcap::Summary::read(&bytes).expect("whole").expect("with a summary");
+    for index in summary.metadata_indexes {
+        let metadata: Metadata = mcap::read::metadata(&bytes, &index).expect("it is there");
+        writer.write_metadata(&metadata).expect("room");
+    }
+    for message in MessageStream::new(&bytes).expect("a log") {
+        let mut message = message.expect("whole");
+        let mut data = message.data.into_owned();
+        if message.channel.topic != topic || change(message.sequence, &mut data) {
+            message.data = data.into();
+            writer.write(&message).expect("room");
+        }
+    }
+    writer.finish().expect("room");
+}
+
+#[test]
+fn a_run_is_repeated_in_every_bit_with_faults_and_from_memory() {
+    let folder = TempDir::new().expect("a folder");
+    let test = "duration_s = 1\nsettle_s = 0.5\nseeds = [3]\nprofile = \"T2\"\n[controller]\nrivals = []\nfrom_memory = true\n\
+                [[fault]]\nkind = \"encoder_frozen\"\nstart_s = 0.4\nend_s = 0.5\n\
+                [[fault]]\nkind = \"lost_frames\"\nshare = 0.3\nstart_s = 0.6\nend_s = 0.7\n";
+    for plant in ["core", "reference"] {
+        let log = log_of(folder.path(), test, plant);
+        let (code, said, record) = replayed(&log, &folder.path().join("replay"));
+        assert_eq!(code, Some(0), "{said}");
+        assert!(said.contains("the observer repeats the run: 10000 control periods, every bit"), "{said}");
+        assert_eq!((&record["periods"], &record["repeats"]["every_bit"]), (&10_000.into(), &true.into()));
+        assert!(record["sources"].as_array().is_some_and(|sources| sources.len() > 1), "the fault is seen: {record}");
+    }
+}
+
+#[test]
+fn a_run_with_one_count_changed_is_told_with_its_first_difference() {
+    let folder = TempDir::new().expect("a folder");
+    let test = format!("duration_s = 0.5\nsettle_s = 0.2\n{SWING}");
+    let log = log_of(folder.path(), &test, "core");
+    let other = folder.path().join("changed.mcap");
+    changed(&log, &other, CONTROLLER, |period, data| {
+        if period == 3456 {
+            data[MOTOR_COUNTS_AT] ^= 1;
+        }
+        true
+    });
+    let (code, said, record) = replayed(&other, &folder.path().join("replay"));
+    assert_eq!(code, Some(1), "{said}");
+    assert!(said.contains("the first difference is in control period 3456, t = 0.3456 s"), "{said}");
+    let first = &record["repeats"]["first_difference"];
+    assert_eq!(first["period"], 3456);
+    // Values are logged a thousand times a second.
+    assert_eq!(first["values_period"], 3459);
+    assert!(first["values"].as_array().is_some_and(|values| !values.is_empty()), "{first}");
+}
+
+#[test]
+fn a_run_with_an_estimate_changed_or_a_period_missing_is_told() {
+    let folder = TempDir::new().expect("a folder");
+    let test = format!("duration_s = 0.3\nsettle_s = 0.1\n{SWING}");
+    let log = log_of(folder.path(), &test, "core");
+    let other = folder.path().join("changed.mcap");
+    // The last bytes of a period are the digest of its estimates.
+    changed(&log, &other, CONTROLLER, |period, data| {
+        let last = data.len() - 1;
+        data[last] ^= u8::from(period == 2000);
+        true
+    });
+    let (code, said, record) = replayed(&other, &folder.path().join("replay"));
+    assert_eq!((code, &record["repeats"]["differing_periods"]), (Some(1), &1.into()), "{said}");
+    changed(&log, &other, CONTROLLER, |period, _| period != 1000);
+    let ended = joint(&["replay", text(&other)]);
+    assert_eq!(ended.code, Some(2));
+    assert!(ended.err.contains("control periods 1000 to 1000 of the run are missing"), "{}", ended.err);
+    changed(&log, &other, CONTROLLER, |period, _| period >= 1000);
+    let ended = joint(&["replay", text(&other)]);
+    assert!(ended.err.contains("the run begins at control period 1000"), "{}", ended.err);
+}
+
+#[test]
+fn a_log_without_counts_is_refused_with_the_mend() {
+    let folder = TempDir::new().expect("a folder");
+    let test = "duration_s = 0.2\nsettle_s = 0.1\nprofile = \"T2\"\n[controller]\nmode = \"preview\"\nrivals = [\"motor_pid\"]\n";
+    let log = log_of(folder.path(), test, "core");
+    let rival = log.with_file_name("swing-seed1-motor_pid.mcap");
+    let refused = joint(&["replay", text(&rival)]);
+    assert_eq!(refused.code, Some(2));
+    assert!(refused.err.contains("of this run of `motor_pid` has no observer's samples"), "{}", refused.err);
+    assert!(refused.err.contains("take the log of its own controller"), "{}", refused.err);
+
+    let csv = folder.path().join("log.csv");
+    fs::write(&csv, "time_s,speed,motor_torque_N_m\n0,1,0\n0.0001,1,0\n").expect("room");
+    let refused = joint(&["replay", text(&csv), "q1"]);
+    assert_eq!(refused.code, Some(2));
+    assert!(refused.err.contains("an observer needs counts, and there is no column for the motor"), "{}", refused.err);
+    assert!(refused.err.contains("--column motor_counts=NAME"), "{}", refused.err);
+    let refused = joint(&["replay", text(&csv)]);
+    assert!(refused.err.contains("does not say which joint it is of"), "{}", refused.err);
+}
+
+#[test]
+fn any_log_is_shown_to_the_observer_of_a_joint() {
+    let folder = TempDir::new().expect("a folder");
+    let (log, out) = (folder.path().join("log.csv"), folder.path().join("out"));
+    joint(&["identify", text(&log), "--simulate"]).well();
+    let guess = ["--set", "half_backlash_um=60"];
+    joint(&[&["replay", text(&log), "q1", "--out", text(&out)][..], &guess].concat()).well();
+    let record = json(&out.join("record.json"));
+    assert!(record["repeats"].is_null() && record["counts_from_angles"] == false);
+    let learnt = record["learnt"].as_array().expect("a list");
+    let width = learnt.iter().find(|finding| finding["name"] == "half-backlash b").expect("it is learnt");
+    // As right as tests of the observer ask for, and with an interval.
+    assert!((width["value"].as_f64().expect("a number") / 40.0 - 1.0).abs() < 0.05, "{width}");
+    assert!(width["interval"][0].as_f64() < width["interval"][1].as_f64(), "{width}");
+    // The same names in CSV and MCAP, at the usual thousand rows a second.
+    let csv = fs::read_to_string(out.join("estimates.csv")).expect("written");
+    let mut lines = csv.lines();
+    let head: Vec<String> = lines.next().expect("a head").split(',').map(str::to_ascii_lowercase).collect();
+    assert!(lines.clone().all(|line| line.split(',').count() == head.len()));
+    let second: Vec<&str> = lines.nth(1).expect("rows").split(',').collect();
+    assert_eq!(second[0], "0.001");
+    let bytes = fs::read(out.join("estimates.mcap")).expect("written");
+    let message = MessageStream::new(&bytes).expect("a log").next().expect("messages").expect("whole");
+    let schema = String::from_utf8(message.channel.schema.as_ref().expect("one").data.to_vec()).expect("text");
+    let fields: Vec<&str> = schema.lines().filter_map(|line| line.split(' ').nth(1)).collect();
+    assert_eq!(fields, head);
+}
+
+#[test]
+fn rows_that_are_no_control_periods_are_refused_with_the_key_of_the_rate() {
+    let folder = TempDir::new().expect("a folder");
+    let log = folder.path().join("log.csv");
+    let rows = (0..100).map(|row| format!("{},{row},{row},0\n", 1e-3 * f64::from(row)));
+    fs::write(&log, "time_s,motor_counts,output_counts,motor_torque_N_m\n".to_owned() + &rows.collect::<String>())
+        .expect("room");
+    let refused = joint(&["replay", text(&log), "q1"]);
+    assert_eq!(refused.code, Some(2));
+    let rates = "its rows come at 1000 Hz, the control periods of this joint at 10000 Hz";
+    assert!(refused.err.contains(rates), "{}", refused.err);
+    assert!(refused.err.contains("--set control_rate_Hz=1000"), "{}", refused.err);
+    let out = folder.path().join("out");
+    joint(&["replay", text(&log), "q1", "--set", "control_rate_Hz=1000", "--out", text(&out)]).well();
+}
+
+#[test]
+fn a_run_is_shown_to_the_observer_of_another_joint_file() {
+    let folder = TempDir::new().expect("a folder");
+    let test = format!("duration_s = 0.5\nsettle_s = 0.2\n{SWING}");
+    let log = log_of(folder.path(), &test, "core");
+    let out = folder.path().join("out");
+    joint(&["replay", text(&log), "q1", "--motor-only", "--out", text(&out)]).well();
+    let record = json(&out.join("record.json"));
+    assert!(record["repeats"].is_null());
+    assert_eq!(record["both_encoders_percent"], 0.0);
+}
+
+#[test]
+fn identify_finds_the_joint_in_the_log_of_a_test() {
+    let folder = TempDir::new().expect("a folder");
+    let truths = [
+        ("half-backlash b", 40.0),
+        ("dry friction of the motor", 0.03),
+        ("motor encoder: error once a turn", 0.1),
+        ("motor encoder: error twice a turn", 0.1),
+        ("output encoder: age of a reading", 50.0),
+    ];
+    let log = log_of(folder.path(), &format!("duration_s = 6\nseeds = [1]\n{SWING}"), "reference");
+    let out = folder.path().join("identified");
+    joint(&["identify", text(&log), "--joint", "q1", "--out", text(&out)]).well();
+    let findings = json(&out.join("findings.json"));
+    for (name, truth) in truths {
+        let finding = find(&findings, name);
+        let [low, high] = [0, 1].map(|end| finding["interval"][end].as_f64().expect(name));
+        assert!(low <= truth && truth <= high, "{finding}");
+    }
+
+    // A link that hardly moves tells little, and each figure that it does not tell says why.
+    let still = "duration_s = 2\nsettle_s = 0.5\nseeds = [1]\n[profile]\nkind = \"sine\"\namplitude_rad = 0.02\nfrequency_Hz = 0.5\n\
+                 [controller]\nrivals = []\n";
+    let log = log_of(folder.path(), still, "reference");
+    joint(&["identify", text(&log), "--joint", "q1", "--out", text(&out)]).well();
+    let findings = json(&out.join("findings.json"));
+    for name in ["half-backlash b", "dry friction of the link", "output encoder: age of a reading"] {
+        let finding = find(&findings, name);
+        let note = finding["note"].as_str().expect("a reason");
+        assert!(finding["value"].is_null() && note.starts_with("not identifiable from this log: "), "{finding}");
+    }
+}

@@ -1,0 +1,152 @@
+//! What went into a controller and came out of it in every control period, as a topic of a run's log: counts and moments as
+//! the controller got them, torques, and a digest over all estimates. With it an observer repeats the run.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use model_core::observer::{Estimates, MEMORY_BYTES, Memory, Reading, Samples};
+use report::log::{Message, field};
+
+use super::estimate_fields::digest_of;
+
+/// Topic of every control period.
+pub const TOPIC: &str = "/joint/controller";
+/// Name of its schema.
+pub const SCHEMA_NAME: &str = "joint_msgs/msg/Controller";
+
+/// Number of the control period, in this and other topics of the log.
+pub const PERIOD: &str = "period";
+/// The digest of the estimates.
+pub const DIGEST: &str = "estimates_digest";
+/// The torque that the observer was shown.
+pub const SHOWN_TORQUE: &str = "shown_torque_Nm";
+/// Whether the output encoder gave a reading.
+pub const OUTPUT_READ: &str = "output_read";
+/// Fields of 32 bits that make samples.
+pub const SAMPLES: [&str; 5] =
+    ["clock_ticks", "motor_counts", "motor_read_at_ticks", "output_counts", "output_read_at_ticks"];
+
+/// One control period.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ControllerPeriod {
+    /// What the controller was shown.
+    pub samples: Samples<f32>,
+    /// The torque that it asked for [N m].
+    pub torque: f32,
+    /// What its observer made of it.
+    pub estimates: Option<Estimates<f32>>,
+}
+
+/// What an observer must be told to repeat a run, as the log's remarks say it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ObserverOrigin {
+    /// Text of the joint file that it was designed from.
+    pub joint_file: String,
+    /// Whether it was shown the output encoder.
+    pub output_encoder: bool,
+    /// What it began with.
+    pub memory: Option<Memory>,
+}
+
+/// Names of remarks.
+const JOINT_FILE: &str = "observer_joint_file";
+const OUTPUT_ENCODER: &str = "observer_output_encoder";
+const MEMORY: &str = "observer_memory";
+
+/// The message as ROS 2 writes it down.
+pub fn schema() -> String {
+    let meanings = [
+        "now, by the clock of all readings",
+        "raw counts, which wrap",
+        "when they were read",
+        "raw counts; the last ones while none come",
+        "when they were read",
+    ];
+    let mut text = field("float64", "time_s", "beginning of the period [s]");
+    text += &field("uint32", PERIOD, "number of the control period");
+    text.extend(SAMPLES.iter().zip(meanings).map(|(name, meaning)| field("uint32", name, meaning)));
+    text += &field("bool", OUTPUT_READ, "whether the output encoder gave a reading in this period");
+    text +=
+        &field("float32", SHOWN_TORQUE, "asked of the motor in the period before, as the observer is shown it [N m]");
+    text += &field("float32", "motor_torque_Nm", "asked of the motor from now on [N m]");
+    text += &field("uint32", DIGEST, "digest over every bit of all estimates, 0 without them");
+    text
+}
+
+/// Makes the messages of a run.
+#[derive(Debug, Default)]
+pub struct ControllerMessages {
+    /// The last reading of the output encoder.
+    output: Reading,
+}
+
+impl ControllerMessages {
+    /// Of the next period.
+    pub fn next(&mut self, time: f64, period: usize, of: &ControllerPeriod) -> Message {
+        let ControllerPeriod { samples, torque, estimates } = of;
+        self.output = samples.output.unwrap_or(self.output);
+        let mut message = Message::default();
+        message.number(time);
+        message.whole(period as u32);
+        for value in [samples.time, samples.motor.counts, samples.motor.time, self.output.counts, self.output.time] {
+            message.whole(value);
+        }
+        message.flag(samples.output.is_some());
+        message.single(samples.torque);
+        message.single(*torque);
+        message.whole(estimates.as_ref().map_or(0, digest_of));
+        message
+    }
+}
+
+impl ObserverOrigin {
+    /// As remarks.
+    pub fn remarks(&self) -> BTreeMap<String, String> {
+        let hexadecimal = |memory: &Memory| {
+            memory.iter().fold(String::new(), |mut text, byte| {
+                let _ = write!(text, "{byte:02x}");
+                text
+            })
+        };
+        let memory = self.memory.as_ref().map(|memory| (MEMORY, hexadecimal(memory)));
+        let both = [(JOINT_FILE, self.joint_file.clone()), (OUTPUT_ENCODER, self.output_encoder.to_string())];
+        both.into_iter().chain(memory).map(|(name, text)| (name.to_owned(), text)).collect()
+    }
+
+    /// From remarks; nothing if they do not say it.
+    pub fn of(remarks: &BTreeMap<String, String>) -> Option<Self> {
+        let bytes = |text: &String| -> Option<Memory> {
+            let byte = |place: usize| u8::from_str_radix(text.get(2 * place..2 * place + 2)?, 16).ok();
+            let bytes: Option<Vec<u8>> = (0..MEMORY_BYTES).map(byte).collect();
+            bytes.filter(|_| text.len() == 2 * MEMORY_BYTES)?.try_into().ok()
+        };
+        let memory = match remarks.get(MEMORY) {
+            Some(text) => Some(bytes(text)?),
+            None => None,
+        };
+        Some(Self {
+            joint_file: remarks.get(JOINT_FILE)?.clone(),
+            output_encoder: remarks.get(OUTPUT_ENCODER)?.parse().ok()?,
+            memory,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_remarks_say_is_what_was_to_be_said() {
+        let mut memory = [0_u8; MEMORY_BYTES];
+        memory[3] = 0xa7;
+        for memory in [None, Some(memory)] {
+            let origin = ObserverOrigin { joint_file: "name = \"J\"\n".to_owned(), output_encoder: false, memory };
+            assert_eq!(ObserverOrigin::of(&origin.remarks()), Some(origin.clone()));
+            let mut damaged = origin.remarks();
+            damaged.insert(MEMORY.to_owned(), "a7".to_owned());
+            assert_eq!(ObserverOrigin::of(&damaged), None);
+        }
+        assert_eq!(ObserverOrigin::of(&BTreeMap::new()), None);
+    }
+}

@@ -284,3 +284,26 @@ fn a_joint_that_cannot_be_is_one_row_and_not_the_end() {
     assert_eq!(status, ["ok", "ok", "ok", "ok", "ok", "refused"]);
     assert!(result.lines().nth(6).is_some_and(|line| line.starts_with("3,2.5,refused,,,")), "{result}");
 }
+
+#[test]
+fn a_sweep_draws_its_map_whoever_finishes_it() {
+    let folder = folder();
+    let page = |path: &Path| fs::read_to_string(path.join("report.html")).expect("a page");
+    let whole = folder.path().join("whole");
+    let ended = sweep(&[], &whole).well();
+    assert!(ended.out.contains("report: "), "{ended:?}");
+    assert!(page(&whole).contains("Greatest mesh force") && page(&whole).contains("mesh.half_backlash_um"));
+    // The same bytes out of shards, and again into the same folder.
+    let paths = ["1/2", "2/2"].map(|shard| {
+        let path = folder.path().join(shard.replace('/', "-of-"));
+        sweep(&["--shard", shard], &path).well();
+        assert!(!path.join("report.html").exists(), "not before all points are there");
+        path
+    });
+    let [one, two] = paths.each_ref().map(text);
+    let out = folder.path().join("merged");
+    joint(&["merge", one, two, "--out", text(&out)]).well();
+    assert_eq!(page(&out), page(&whole));
+    sweep(&[], &whole).well();
+    assert_eq!(page(&out), page(&whole));
+}

@@ -40,14 +40,34 @@ pub enum Ink {
     Fourth,
     /// Fifth.
     Fifth,
+    /// Classes of a map, the least first: darker on light ground, brighter on dark ground.
+    Class1,
+    /// Second.
+    Class2,
+    /// Third.
+    Class3,
+    /// Fourth.
+    Class4,
+    /// Fifth.
+    Class5,
+    /// Sixth.
+    Class6,
+    /// Seventh.
+    Class7,
+    /// Eighth.
+    Class8,
 }
 
 /// Lines of a picture in the order of use; told apart also by colour-blind readers (after Okabe and Ito, 2008).
 pub const LINES: [Ink; 5] = [Ink::First, Ink::Second, Ink::Third, Ink::Fourth, Ink::Fifth];
 
+/// Classes of a map from the least value to the greatest (viridis, which stays in order without colours).
+pub const CLASSES: [Ink; 8] =
+    [Ink::Class1, Ink::Class2, Ink::Class3, Ink::Class4, Ink::Class5, Ink::Class6, Ink::Class7, Ink::Class8];
+
 /// Name, value on light ground, value on dark ground. The light values must differ: they mark the places where a
 /// drawn picture gets its variables.
-const TABLE: [(Ink, &str, u32, u32); 16] = [
+const TABLE: [(Ink, &str, u32, u32); 24] = [
     (Ink::Text, "text", 0x1b2430, 0xe8ecf1),
     (Ink::Muted, "muted", 0x5b6776, 0x9aa7b6),
     (Ink::Axis, "axis", 0x98a3b0, 0x566272),
@@ -64,6 +84,14 @@ const TABLE: [(Ink, &str, u32, u32); 16] = [
     (Ink::Third, "line-3", 0x009e73, 0x2fd0a2),
     (Ink::Fourth, "line-4", 0xb0508c, 0xe08fc4),
     (Ink::Fifth, "line-5", 0x9c7a00, 0xe6c229),
+    (Ink::Class1, "class-1", 0xfde725, 0x440154),
+    (Ink::Class2, "class-2", 0xa0da39, 0x46327e),
+    (Ink::Class3, "class-3", 0x4ac16d, 0x365c8d),
+    (Ink::Class4, "class-4", 0x1fa187, 0x277f8e),
+    (Ink::Class5, "class-5", 0x277f8e, 0x1fa187),
+    (Ink::Class6, "class-6", 0x365c8d, 0x4ac16d),
+    (Ink::Class7, "class-7", 0x46327e, 0xa0da39),
+    (Ink::Class8, "class-8", 0x440154, 0xfde725),
 ];
 
 impl Ink {

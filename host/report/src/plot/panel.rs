@@ -46,6 +46,8 @@ pub enum VerticalAxis {
         /// The highest.
         to: i32,
     },
+    /// Evenly over just what the marks take, which are of the quantity that is named.
+    Named(String),
     /// One row for each name, top first; no numbers.
     Rows(Vec<String>),
 }
@@ -69,6 +71,10 @@ impl Panel {
         let (low, high) = match &self.axis {
             VerticalAxis::Rows(rows) => (0.0, rows.len() as f64),
             VerticalAxis::Decades { from, to } => (f64::from(*from), f64::from(*to)),
+            VerticalAxis::Named(_) => {
+                let values = self.marks.iter().flat_map(Mark::values).map(|value| value * self.unit.factor);
+                values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
+            }
             _ => axis_range(self.marks.iter().flat_map(Mark::values).map(|value| value * self.unit.factor)),
         };
         if self.axis == VerticalAxis::Counts {
@@ -165,8 +171,9 @@ impl Panel {
                 unit => format!("{} [{unit}]", common.name),
             });
         }
-        match self.axis {
+        match &self.axis {
             VerticalAxis::Rows(_) => mesh.disable_mesh().y_labels(0),
+            VerticalAxis::Named(name) => mesh.y_desc(name),
             _ => mesh.y_desc(self.unit.name),
         };
         mesh.draw()?;

@@ -1,4 +1,4 @@
-//! The folder of a sweep: `sweep.json`, journals, and `points.csv` once all points are there. A folder with foreign
+//! The folder of a sweep: `sweep.json`, journals, and `points.csv` with its page once all points are there. A folder with foreign
 //! files is refused before anything is written.
 
 use std::fs;
@@ -7,6 +7,8 @@ use std::path::{Path, PathBuf};
 use super::grid::Grid;
 use super::journal::{self, Points};
 use super::manifest::Manifest;
+use super::page;
+use report::document::html;
 use report::failure::{Failure, Outcome};
 use report::folder::{self, Folder};
 use report::write::write_text;
@@ -15,6 +17,8 @@ use report::write::write_text;
 pub const MANIFEST: &str = "sweep.json";
 /// The result.
 pub const RESULT: &str = "points.csv";
+/// The result as a page.
+pub const REPORT: &str = "report.html";
 /// Foreign files named in a message at most.
 const NAMED: usize = 3;
 
@@ -44,7 +48,7 @@ impl SweepFolder {
                 ));
             }
         }
-        let folder = Folder::prepare_beside_others(path, "sweep", &manifest.joint, &[RESULT])?;
+        let folder = Folder::prepare_beside_others(path, "sweep", &manifest.joint, &[RESULT, REPORT])?;
         if !there {
             write_text(&path.join(MANIFEST), &manifest.text()?)?;
         }
@@ -104,7 +108,9 @@ impl SweepFolder {
     /// Writes the result, all points in their order, and says where it is.
     pub fn write_result(&self, manifest: &Manifest, grid: &Grid, points: &Points) -> Outcome<String> {
         self.folder.write_text(RESULT, &result(manifest, grid, points))?;
-        Ok(format!("{} points: {}\n", grid.points, self.folder.file(RESULT).display()))
+        self.folder.write_text(REPORT, &html(&page::document(manifest, grid, points)))?;
+        let [result, report] = [RESULT, REPORT].map(|name| self.folder.file(name));
+        Ok(format!("{} points: {}\nreport: {}\n", grid.points, result.display(), report.display()))
     }
 }
 
@@ -143,7 +149,7 @@ fn entries(path: &Path) -> Outcome<Vec<String>> {
 /// What is in a folder that no sweep has put there.
 fn foreign(path: &Path) -> Outcome<Vec<String>> {
     let own = |name: &String| {
-        let known = name == MANIFEST || name == RESULT || journal::shard_of(name).is_some();
+        let known = [MANIFEST, RESULT, REPORT].contains(&name.as_str()) || journal::shard_of(name).is_some();
         known && path.join(name).is_file()
     };
     let mut names = entries(path)?;

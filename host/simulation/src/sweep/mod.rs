@@ -1,7 +1,8 @@
 //! Any grid of joints through one simulation each, in parallel, resumable and in shards.
 //!
 //! `axis` and `grid` say which points there are, `manifest` which sweep it is, `folder` and `journal` keep what is done,
-//! `metrics` computes a point, `work` shares the points out, `merge` puts shards together.
+//! `metrics` computes a point, `work` shares the points out, `merge` puts shards together; `page` shows the result, with
+//! `pictures` of its `table`.
 
 mod axis;
 mod folder;
@@ -10,6 +11,9 @@ mod journal;
 pub(crate) mod manifest;
 mod merge;
 mod metrics;
+mod page;
+mod pictures;
+mod table;
 mod work;
 
 use std::path::{Path, PathBuf};
@@ -42,8 +46,8 @@ use report::progress::Progress;
   joint sweep paper --vary half_backlash_um=0:150:0.1 --shard 3/16 --out bifurcation     one job of sixteen
   joint merge bifurcation                                                                 when all are done
 
-Stopped or killed, the same command goes on from where it was. The result is points.csv in the folder: the same bytes
-whatever the number of threads and shards.
+Stopped or killed, the same command goes on from where it was. The result is points.csv in the folder, and report.html with its
+map: the same bytes whatever the number of threads and shards.
 
 Exit code: 0 if all points are there, 2 for bad input or a bad environment, 130 after Ctrl-C.")]
 pub struct Arguments {

@@ -1,0 +1,152 @@
+//! The result of a sweep as numbers on its grid, as far as pictures need it.
+
+use super::grid::Grid;
+use super::journal::Points;
+use super::manifest::Manifest;
+use super::metrics::Metric;
+
+/// What became of a point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Status {
+    /// It has values.
+    Whole,
+    /// The scheme did not hold the motion.
+    Diverged,
+    /// There is no such joint.
+    Refused,
+}
+
+/// An axis with its values as numbers.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NumberedAxis<'g> {
+    /// Its key.
+    pub key: &'g str,
+    /// Values as typed.
+    pub words: &'g [String],
+    /// The same as numbers; places from 1 where one is no number, or where they do not rise or fall all the way.
+    pub values: Vec<f64>,
+    /// Whether they are places.
+    pub by_place: bool,
+    /// Points from one value to the next.
+    stride: u64,
+}
+
+/// All points.
+pub struct SweepTable<'g> {
+    /// Axes in the order of the command line.
+    pub axes: Vec<NumberedAxis<'g>>,
+    /// Columns.
+    pub metrics: &'g [Metric],
+    /// Status of each point.
+    pub status: Vec<Status>,
+    /// Values of each metric; NaN where there is none.
+    pub values: Vec<Vec<f64>>,
+}
+
+impl<'g> NumberedAxis<'g> {
+    fn of(key: &'g str, words: &'g [String], stride: u64) -> Self {
+        let numbers: Option<Vec<f64>> =
+            words.iter().map(|word| word.parse::<f64>().ok().filter(|value| value.is_finite())).collect();
+        let in_order = |values: &Vec<f64>| {
+            values.windows(2).all(|pair| pair[0] < pair[1]) || values.windows(2).all(|pair| pair[0] > pair[1])
+        };
+        let numbers = numbers.filter(in_order);
+        let by_place = numbers.is_none();
+        let values = numbers.unwrap_or_else(|| (1..=words.len()).map(|place| place as f64).collect());
+        Self { key, words, values, by_place, stride }
+    }
+
+    /// Place of a point on this axis.
+    pub fn place(&self, point: usize) -> usize {
+        point / self.stride as usize % self.words.len()
+    }
+
+    /// Edges between its values, one more than there are, rising: half-way between neighbours.
+    pub fn edges(&self) -> Vec<f64> {
+        let mut values = self.values.clone();
+        values.sort_by(f64::total_cmp);
+        let (first, last) = (values[0], values[values.len() - 1]);
+        let half = |a: f64, b: f64| 0.5 * (b - a);
+        let (before, after) = match values.as_slice() {
+            [one] => (0.05 * one.abs().max(1.0), 0.05 * one.abs().max(1.0)),
+            [.., y, z] => (half(values[0], values[1]), half(*y, *z)),
+            [] => (0.5, 0.5),
+        };
+        let between = values.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
+        std::iter::once(first - before).chain(between).chain([last + after]).collect()
+    }
+
+    /// Place of a value among the cells between the edges: an axis may fall.
+    pub fn cell(&self, place: usize) -> usize {
+        let falls = self.values.first() > self.values.last();
+        if falls { self.values.len() - 1 - place } else { place }
+    }
+}
+
+impl<'g> SweepTable<'g> {
+    /// Out of the lines of a result.
+    pub fn of(manifest: &'g Manifest, grid: &'g Grid, points: &Points) -> Self {
+        let mut stride = grid.points;
+        let axes = grid.axes.iter().map(|axis| {
+            stride /= axis.values.len() as u64;
+            NumberedAxis::of(&axis.key, &axis.values, stride)
+        });
+        let axes = axes.collect();
+        let mut status = Vec::with_capacity(points.len());
+        let mut values = vec![Vec::with_capacity(points.len()); manifest.metrics.len()];
+        for result in points.values() {
+            let mut cells = result.split(',');
+            status.push(match cells.next() {
+                Some("ok") => Status::Whole,
+                Some("diverged") => Status::Diverged,
+                _ => Status::Refused,
+            });
+            for column in &mut values {
+                column.push(cells.next().and_then(|cell| cell.parse().ok()).unwrap_or(f64::NAN));
+            }
+        }
+        Self { axes, metrics: &manifest.metrics, status, values }
+    }
+
+    /// How many points have a status.
+    pub fn count(&self, wanted: Status) -> usize {
+        self.status.iter().filter(|status| **status == wanted).count()
+    }
+
+    /// Where a point is, in words: keys by their last part, if that tells them apart.
+    pub fn place_of(&self, point: usize) -> String {
+        let last = |key: &'g str| key.rsplit('.').next().unwrap_or(key);
+        let name = |key: &'g str| {
+            let alone = self.axes.iter().filter(|axis| last(axis.key) == last(key)).count() == 1;
+            if alone { last(key) } else { key }
+        };
+        let axis = |axis: &NumberedAxis<'g>| format!("{} = {}", name(axis.key), axis.words[axis.place(point)]);
+        self.axes.iter().map(axis).collect::<Vec<_>>().join(", ")
+    }
+
+    /// Points of the least and the greatest value of a column.
+    pub fn ends(&self, column: usize) -> Option<[usize; 2]> {
+        let values = &self.values[column];
+        let finite = || (0..values.len()).filter(|point| values[*point].is_finite());
+        let least = finite().min_by(|a, b| values[*a].total_cmp(&values[*b]))?;
+        let most = finite().max_by(|a, b| values[*a].total_cmp(&values[*b]).then(b.cmp(a)))?;
+        Some([least, most])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn edges_lie_half_way_between_values_whichever_way_they_run() {
+        let words: Vec<String> = ["30", "10", "0"].map(str::to_owned).to_vec();
+        let axis = NumberedAxis::of("a", &words, 1);
+        assert_eq!(axis.edges(), [-5.0, 5.0, 20.0, 40.0]);
+        assert_eq!([0, 1, 2].map(|place| axis.cell(place)), [2, 1, 0]);
+        let words: Vec<String> = ["sharp", "tanh"].map(str::to_owned).to_vec();
+        let axis = NumberedAxis::of("a", &words, 1);
+        assert!(axis.by_place);
+        assert_eq!(axis.edges(), [0.5, 1.5, 2.5]);
+    }
+}

@@ -20,6 +20,7 @@ use super::twist::Twist;
 
 /// The record of an identification, for JSON and the report.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Record<'a> {
     /// Name and version of this form.
     pub schema: &'static str,

@@ -21,11 +21,15 @@ const MOTOR_NUMBERS: usize = 5;
 
 /// A memory of a known joint.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Content {
+    /// Name and version of this form.
     schema: &'static str,
+    /// Name of the joint.
     joint: String,
     /// It was learnt with the output encoder.
     output_encoder: bool,
+    /// What was learnt.
     values: Vec<Finding>,
 }
 

@@ -25,7 +25,7 @@ pub use options::Options;
 use crate::column_map::ColumnMap;
 use crate::columns::{Columns, DIFFERENCE};
 use crate::log_file;
-use page::Record;
+pub use page::Record as SlowRecord;
 use report::document::{html, terminal};
 use report::failure::{Failure, Outcome};
 use report::folder::{self, Folder};
@@ -75,7 +75,7 @@ pub fn run(common: Common<'_>, options: &Options, progress: &Progress) -> Outcom
     }
     let figures = pictures.into_iter().map(|(_, figure)| figure).collect();
     let document = page::document(&name, &samples, &results, figures);
-    let json = output::json("findings", &Record::of(&name, &samples, &results))?;
+    let json = output::json("findings", &SlowRecord::of(&name, &samples, &results))?;
     folder.write_text(REPORT, &html(&document))?;
     folder.write_text(FINDINGS, &json)?;
     common.json.map_or(Ok(()), |path| write_text(path, &json))?;

@@ -34,6 +34,87 @@ pub fn assert_explained<T: JsonSchema>(page: &str, others: impl IntoIterator<Ite
     assert!(wanted.len() > least && missing.is_empty(), "not explained: {missing:?}");
 }
 
+/// Fails unless a value is what the published schema docs/reference/`name` says, with no key that it does not know.
+pub fn assert_valid(name: &str, value: &Value) {
+    let path = document(name);
+    let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let schema: Value = serde_json::from_str(&text).expect("a schema is JSON");
+    let faults = faults(&schema, &schema, value, "");
+    assert!(faults.is_empty(), "{name}: {}", faults.join("; "));
+}
+
+/// Where a value is not what a schema says, as far as schemas made from types say it.
+fn faults(root: &Value, schema: &Value, value: &Value, place: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    let Value::Object(rules) = schema else { return found };
+    for (rule, told) in rules {
+        match (rule.as_str(), told, value) {
+            ("$ref", Value::String(to), _) => match root.pointer(to.trim_start_matches('#')) {
+                Some(schema) => found.extend(faults(root, schema, value, place)),
+                None => found.push(format!("{to} is not in the schema")),
+            },
+            ("type", told, _) => {
+                let told = told.as_array().cloned().unwrap_or_else(|| vec![told.clone()]);
+                if !told.iter().filter_map(Value::as_str).any(|told| is_of(told, value)) {
+                    found.push(format!("{place} is {value}, not {told:?}"));
+                }
+            }
+            ("anyOf" | "oneOf", Value::Array(ways), _) => {
+                if ways.iter().all(|way| !faults(root, way, value, place).is_empty()) {
+                    found.push(format!("{place} is {value}, which is none of {} ways", ways.len()));
+                }
+            }
+            ("enum", Value::Array(words), _) if !words.contains(value) => found.push(format!("{place} is {value}")),
+            ("const", told, _) if told != value => found.push(format!("{place} is {value}, not {told}")),
+            ("required", Value::Array(names), Value::Object(map)) => {
+                let missing = names.iter().filter_map(Value::as_str).filter(|name| !map.contains_key(*name));
+                found.extend(missing.map(|name| format!("{place}/{name} is missing")));
+            }
+            ("properties", Value::Object(known), Value::Object(map)) => {
+                for (name, value) in map {
+                    match known.get(name) {
+                        Some(schema) => found.extend(faults(root, schema, value, &format!("{place}/{name}"))),
+                        None => found.push(format!("{place}/{name} is not in the schema")),
+                    }
+                }
+            }
+            ("additionalProperties", schema, Value::Object(map)) if !rules.contains_key("properties") => {
+                found.extend(
+                    map.iter().flat_map(|(name, value)| faults(root, schema, value, &format!("{place}/{name}"))),
+                );
+            }
+            ("items", schema, Value::Array(values)) => {
+                let each = values.iter().enumerate();
+                found.extend(each.flat_map(|(at, value)| faults(root, schema, value, &format!("{place}/{at}"))));
+            }
+            ("minItems", told, Value::Array(values)) if told.as_u64() > Some(values.len() as u64) => {
+                found.push(format!("{place} has {} entries", values.len()));
+            }
+            ("maxItems", told, Value::Array(values)) if told.as_u64() < Some(values.len() as u64) => {
+                found.push(format!("{place} has {} entries", values.len()));
+            }
+            ("minimum", told, Value::Number(number)) if number.as_f64() < told.as_f64() => {
+                found.push(format!("{place} is {number}"));
+            }
+            _ => {}
+        }
+    }
+    found
+}
+
+fn is_of(kind: &str, value: &Value) -> bool {
+    match kind {
+        "null" => value.is_null(),
+        "boolean" => value.is_boolean(),
+        "integer" => value.is_i64() || value.is_u64(),
+        "number" => value.is_number(),
+        "string" => value.is_string(),
+        "array" => value.is_array(),
+        "object" => value.is_object(),
+        _ => false,
+    }
+}
+
 /// Keys of objects, everywhere in a schema.
 fn keys(schema: &Value, found: &mut BTreeSet<String>) {
     match schema {
@@ -47,5 +128,42 @@ fn keys(schema: &Value, found: &mut BTreeSet<String>) {
         }
         Value::Array(values) => values.iter().for_each(|value| keys(value, found)),
         _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn a_value_is_held_to_each_rule_of_its_schema() {
+        let schema = json!({
+            "$defs": {"Part": {"type": "object", "properties": {"one": {"type": "number"}}, "required": ["one"]}},
+            "type": "object",
+            "properties": {
+                "kind": {"enum": ["a", "b"]},
+                "parts": {"type": "array", "items": {"$ref": "#/$defs/Part"}, "maxItems": 2},
+                "maybe": {"anyOf": [{"$ref": "#/$defs/Part"}, {"type": "null"}]},
+                "counts": {"type": "object", "additionalProperties": {"type": "integer", "minimum": 0}},
+            },
+            "required": ["kind"],
+        });
+        let good = json!({"kind": "a", "parts": [{"one": 1.5}], "maybe": null, "counts": {"x": 3}});
+        assert_eq!(faults(&schema, &schema, &good, ""), Vec::<String>::new());
+        for (bad, why) in [
+            (json!({}), "/kind is missing"),
+            (json!({"kind": "c"}), "/kind is"),
+            (json!({"kind": "a", "other": 1}), "/other is not in the schema"),
+            (json!({"kind": "a", "parts": [{"one": "1"}]}), "/parts/0/one is"),
+            (json!({"kind": "a", "parts": [{}]}), "/parts/0/one is missing"),
+            (json!({"kind": "a", "parts": [{"one": 1}, {"one": 1}, {"one": 1}]}), "/parts has 3 entries"),
+            (json!({"kind": "a", "maybe": 3}), "/maybe is 3"),
+            (json!({"kind": "a", "counts": {"x": -1}}), "/counts/x is -1"),
+        ] {
+            let found = faults(&schema, &schema, &bad, "");
+            assert!(found.len() == 1 && found[0].starts_with(why), "{bad}: {found:?}");
+        }
     }
 }

@@ -17,6 +17,7 @@ pub const SCHEMA: &str = "joint-identify-quasi-static/1";
 
 /// The record of a slow log.
 #[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Record<'a> {
     schema: &'static str,
     log: &'a str,
@@ -46,6 +47,7 @@ pub struct Record<'a> {
 }
 
 #[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 struct Pass {
     forwards: bool,
     load: &'static str,

@@ -10,6 +10,7 @@ const ROUNDS: usize = 500;
 
 /// What three models leave over in passes that they have not seen, root mean square over bins [units of the output].
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Prediction {
     /// Passes that were fitted.
     pub fitted: usize,

@@ -19,6 +19,7 @@ const QUASI_STATIC: f64 = 0.5;
 
 /// One figure.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Quantity {
     /// Its key.
     pub key: String,
@@ -40,6 +41,7 @@ pub struct Quantity {
 
 /// A curve over places with its 95 % interval [units of the output].
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Curve {
     /// Mean.
     pub value: Vec<f64>,

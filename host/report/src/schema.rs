@@ -59,10 +59,10 @@ fn faults(root: &Value, schema: &Value, value: &Value, place: &str) -> Vec<Strin
                     found.push(format!("{place} is {value}, not {told:?}"));
                 }
             }
-            ("anyOf" | "oneOf", Value::Array(ways), _) => {
-                if ways.iter().all(|way| !faults(root, way, value, place).is_empty()) {
-                    found.push(format!("{place} is {value}, which is none of {} ways", ways.len()));
-                }
+            ("anyOf" | "oneOf", Value::Array(ways), _)
+                if ways.iter().all(|way| !faults(root, way, value, place).is_empty()) =>
+            {
+                found.push(format!("{place} is {value}, which is none of {} ways", ways.len()));
             }
             ("enum", Value::Array(words), _) if !words.contains(value) => found.push(format!("{place} is {value}")),
             ("const", told, _) if told != value => found.push(format!("{place} is {value}, not {told}")),

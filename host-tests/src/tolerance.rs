@@ -15,6 +15,7 @@ macro_rules! bounds {
 pub mod certificate;
 pub mod compensation;
 pub mod core;
+pub mod equivalent;
 pub mod light_planets;
 pub mod observer;
 

@@ -5,7 +5,8 @@ use heapless::String;
 
 use crate::mesh::{DampingLaw, DeadZone, Mesh, MeshKind};
 
-/// A planetary joint with a fixed ring: sun driven, carrier loaded (2K-H).
+/// A planetary joint with a fixed ring: sun driven, carrier loaded (2K-H); or a joint with an
+/// [equivalent gear](crate::EquivalentGear), which is written as one planet without mass.
 ///
 /// Sign convention: a positive sun angle turns the carrier the same way; positive drive torque accelerates the sun,
 /// positive load torque brakes the link. A positive deflection of either mesh carries drive torque towards the load.
@@ -93,7 +94,7 @@ pub struct JointParameters {
 /// Teeth and radii. Only radii enter the equations of motion; teeth give mesh phases and the exact ratio.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Geometry {
-    /// Number of planets n.
+    /// Number of planets n; one stands for an equivalent gear.
     pub planets: usize,
     /// Teeth of the sun.
     pub sun_teeth: u32,

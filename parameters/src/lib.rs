@@ -8,12 +8,14 @@
 
 #![allow(rustdoc::broken_intra_doc_links, reason = "units stand in brackets")]
 
+mod equivalent;
 mod joint;
 mod mesh;
 mod planets;
 mod surroundings;
 mod validity;
 
+pub use equivalent::{EQUIVALENT, EquivalentGear};
 pub use joint::{Bodies, Coherence, Compliance, Excitation, Geometry, JointParameters};
 pub use mesh::{
     ContactState, DampingLaw, DeadZone, MAX_HARMONICS, MESH_KINDS, Mesh, MeshKind, MeshPhases, StiffnessWave,

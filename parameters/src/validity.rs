@@ -3,8 +3,9 @@
 
 use core::fmt;
 
+use crate::equivalent::{EQUIVALENT, EquivalentGear};
 use crate::joint::{Excitation, JointParameters};
-use crate::mesh::{DeadZone, MAX_HARMONICS, MESH_KINDS, MeshPhases};
+use crate::mesh::{DampingLaw, DeadZone, MAX_HARMONICS, MESH_KINDS, MeshPhases, StiffnessWave};
 use crate::planets::{MAX_PLANETS, MIN_PLANETS};
 
 /// What is wrong with parameters.
@@ -33,6 +34,8 @@ pub enum ParameterError {
         /// What it must be.
         must_be: &'static str,
     },
+    /// An equivalent gear with what only gears with teeth have.
+    NotEquivalent,
 }
 
 impl fmt::Display for ParameterError {
@@ -43,6 +46,10 @@ impl fmt::Display for ParameterError {
                 write!(formatter, "{what} has {given} values for {planets} planets: give one for each")
             }
             Self::OutOfRange { what, given, must_be } => write!(formatter, "{what} is {given}: it must be {must_be}"),
+            Self::NotEquivalent => formatter.write_str(
+                "an equivalent gear has no ripple, no transmission error, no compliance beside its own, a sharp dead zone \
+                 and the damping law `contact`",
+            ),
         }
     }
 }
@@ -71,6 +78,9 @@ fn finite(what: &'static str, given: f64) -> Result<(), ParameterError> {
 impl JointParameters {
     /// Whether every number can be one of a joint, and every list has a value for each planet.
     pub fn validate(&self) -> Result<(), ParameterError> {
+        if let Some(gear) = self.equivalent_gear() {
+            return self.validate_equivalent(&gear);
+        }
         let geometry = &self.geometry;
         let planets = geometry.planets;
         if !(MIN_PLANETS..=MAX_PLANETS).contains(&planets) {
@@ -144,4 +154,42 @@ impl JointParameters {
         }
         Ok(())
     }
+
+    /// The same of an equivalent gear: its own quantities, and nothing in the parameters that it has not.
+    fn validate_equivalent(&self, gear: &EquivalentGear) -> Result<(), ParameterError> {
+        let [over, under] = gear.ratio;
+        if under == 0 || over <= under {
+            let (given, must_be) = (f64::from(over) / f64::from(under), "above 1: motor turns over link turns");
+            return Err(ParameterError::OutOfRange { what: "the ratio of an equivalent gear", given, must_be });
+        }
+        for mesh in MESH_KINDS.map(|kind| self.mesh(kind)) {
+            let lists = [
+                ("the list of half-backlashes", &mesh.half_backlash),
+                ("the list of errors", &mesh.transmission_error),
+            ];
+            for (what, list) in lists {
+                if list.len() != EQUIVALENT {
+                    return Err(ParameterError::ListLength { what, given: list.len(), planets: EQUIVALENT });
+                }
+            }
+        }
+        not_negative("the lost motion", gear.lost_motion)?;
+        positive("the stiffness of an equivalent gear", gear.stiffness)?;
+        not_negative("the damping ratio of an equivalent gear", gear.damping_ratio)?;
+        not_negative("the inertia of an equivalent gear", gear.inertia_at_input)?;
+        not_negative("the rotor inertia", self.rotor_inertia)?;
+        positive("the inertia of rotor and equivalent gear", gear.inertia_at_input + self.rotor_inertia)?;
+        positive("the link inertia behind an equivalent gear", self.link_inertia)?;
+        positive("the characteristic length", self.characteristic_length)?;
+        // Whatever else the parameters of planetary gears may say must be nothing here, or one side would read it and
+        // another would not.
+        let same = [&self.sun_planet, &self.ring_planet]
+            .into_iter()
+            .all(|mesh| mesh.transmission_error[0] == 0.0 && mesh.stiffness_wave == NO_RIPPLE);
+        let alike = self.sun_planet == self.ring_planet && self.compliance.is_none();
+        let contact = self.damping_law == DampingLaw::Contact && self.dead_zone == DeadZone::Sharp;
+        if same && alike && contact { Ok(()) } else { Err(ParameterError::NotEquivalent) }
+    }
 }
+
+const NO_RIPPLE: StiffnessWave = StiffnessWave::Harmonic { stiffness_ratio: 0.0 };

@@ -41,6 +41,7 @@ pub struct Difference {
 /// Digest of the tables that a board with this joint must state.
 pub fn tables_digest(joint: &JointParameters, chip: Chip, tick_rate: u32) -> Outcome<u64> {
     match joint.geometry.planets {
+        1 => Ok(tables::<1>(joint, chip, tick_rate)?.digest),
         3 => Ok(tables::<3>(joint, chip, tick_rate)?.digest),
         4 => Ok(tables::<4>(joint, chip, tick_rate)?.digest),
         5 => Ok(tables::<5>(joint, chip, tick_rate)?.digest),
@@ -81,6 +82,7 @@ pub fn replay(
     ticks: &[u32],
 ) -> Outcome<Vec<Sample>> {
     match joint.geometry.planets {
+        1 => Ok(replayed(&tables::<1>(joint, chip, tick_rate)?, commands, ticks)),
         3 => Ok(replayed(&tables::<3>(joint, chip, tick_rate)?, commands, ticks)),
         4 => Ok(replayed(&tables::<4>(joint, chip, tick_rate)?, commands, ticks)),
         5 => Ok(replayed(&tables::<5>(joint, chip, tick_rate)?, commands, ticks)),

@@ -55,7 +55,7 @@ impl Content {
             let Ok(tables) = design_observer::<f32>(joint, &settings) else { continue };
             match Observer::<f32, MAPPED>::new(&tables).load(memory) {
                 Ok(()) => {
-                    let values = values(&Numbers::new(memory), &tables);
+                    let values = values(&Numbers::new(memory), &tables, joint.equivalent_gear().is_some());
                     let joint = joint.name.to_string();
                     return Ok(Self { schema: "joint-memory/1", joint, output_encoder, values });
                 }
@@ -156,13 +156,21 @@ impl Learnt {
     }
 }
 
-fn values(numbers: &Numbers, tables: &ObserverTables<f32>) -> Vec<Finding> {
+/// What was learnt; an equivalent gear has a lost motion and no errors of teeth.
+fn values(numbers: &Numbers, tables: &ObserverTables<f32>, equivalent: bool) -> Vec<Finding> {
     let LeverTable { sun, per_sun, per_output, .. } = &tables.levers;
     let [sun, per_sun, per_output] = [sun, per_sun, per_output].map(|lever| f64::from(*lever));
     let parameter = |index: usize| numbers.parameter(tables, index);
     let motor = |index: usize| numbers.of_motor(tables, index).times(sun);
+    let width = if equivalent {
+        // The gap is twice the twist on the lever of the link.
+        let lost_motion = parameter(0).times(2e3 * per_output);
+        lost_motion.finding("lost motion at the output", "mrad", "equivalent_gear.lost_motion_mrad", "")
+    } else {
+        parameter(0).times(0.5e6).finding("half-backlash b", "um", "mesh.half_backlash_um", "")
+    };
     let mut values = vec![
-        parameter(0).times(0.5e6).finding("half-backlash b", "um", "mesh.half_backlash_um", ""),
+        width,
         parameter(2).times(1e6 * per_output * per_output).finding("compliance at the output", "urad/(N m)", "", ""),
         parameter(1).times(1e3 * per_output).finding("encoder offset at the output", "mrad", "", ""),
         parameter(3).times(1e6 * per_output).finding(
@@ -180,7 +188,8 @@ fn values(numbers: &Numbers, tables: &ObserverTables<f32>) -> Vec<Finding> {
         ),
         numbers.inertia_ratio(tables).finding("inertia of the link over the joint file's", "-", "", ""),
     ];
-    let mut maps = vec![("gears: error along the line of action".to_owned(), "um", String::new(), 4, 1e6)];
+    let of_teeth = ("gears: error along the line of action".to_owned(), "um", String::new(), 4, 1e6);
+    let mut maps = if equivalent { Vec::new() } else { vec![of_teeth] };
     for (encoder, first, lever) in [("motor", 6, per_sun), ("output", 10, per_output)] {
         for (order, word) in [(0, "once"), (1, "twice")] {
             let (name, key) = angles::names(encoder, word);

@@ -231,12 +231,18 @@ fn first_fit(log: &Log, prior: &PriorModel, shortest: f64) -> Outcome<(f64, Rows
 fn assumptions(prior: &PriorModel, log: &Log) -> Vec<String> {
     let mut list = vec![
         format!(
-            "Ratio {} / {} by whole teeth; levers, inertias and efficiency as in the joint file.",
-            prior.teeth[1], prior.teeth[0]
+            "Ratio {} / {} by whole {}; levers, inertias and efficiency as in the joint file.",
+            prior.teeth[1],
+            prior.teeth[0],
+            if prior.equivalent { "turns" } else { "teeth" }
         ),
         format!("Encoders of {} bits (motor) and {} bits (output).", prior.motor_bits, prior.output_bits),
         "Readings of motor and torque at the same time within 2 us: that is in the intervals.".to_owned(),
-        "Half-backlash is the mean over all meshes: a log cannot tell sun and ring apart.".to_owned(),
+        if prior.equivalent {
+            "An equivalent gear: errors of teeth, preload and hysteresis are not looked for.".to_owned()
+        } else {
+            "Half-backlash is the mean over all meshes: a log cannot tell sun and ring apart.".to_owned()
+        },
     ];
     list.extend(log.times.told.clone());
     list.push(if log.output_torque.is_some() {

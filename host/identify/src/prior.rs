@@ -44,6 +44,8 @@ pub struct PriorModel {
     pub lost_motion: f64,
     /// The link hangs on a compliance of its own behind the carrier.
     pub compliant: bool,
+    /// The gear is an equivalent one: it has no teeth whose errors could show.
+    pub equivalent: bool,
     /// What surrounds the gears.
     pub surroundings: Surroundings,
     /// How wrong the motor's torque may be, as a ratio: one standard deviation.
@@ -114,6 +116,7 @@ impl PriorModel {
             compliance: mesh_compliance + own,
             lost_motion: 2.0 * half_backlash / lever,
             compliant,
+            equivalent: joint.equivalent_gear().is_some(),
             torque_error: around.torque_constant_error_ratio.abs(),
             inertia_error: INERTIA_ERROR,
             surroundings: *around,

@@ -103,6 +103,10 @@ fn fit_with(log: &Log, rows: &Rows, prior: &PriorModel, torque_error: f64) -> Op
     let measured = log.output_torque.is_some();
     widths[MOTOR_FRICTION] = if measured { NONE } else { prior.compliance * rows.greatest };
     widths[TORQUE_ERROR] = if measured { NONE } else { (prior.compliance * torque_error).max(NONE) };
+    if prior.equivalent {
+        // No teeth, no errors of theirs.
+        (TEETH..TORQUE_ERROR).chain(TORQUE_ERROR + 1..UNKNOWNS).for_each(|unknown| widths[unknown] = NONE);
+    }
     let solution = equations.solve(&widths)?;
     Some(Twist { solution, rows: used })
 }

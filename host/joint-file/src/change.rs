@@ -19,8 +19,8 @@ pub struct Refused {
 }
 
 /// Keys that say the same thing in different units or forms: setting one takes the place of the others.
-const SAME_THING: [&[&str]; 9] = [
-    &["half_backlash_um", "backlash_um", "lost_motion_arcmin"],
+const SAME_THING: [&[&str]; 10] = [
+    &["half_backlash_um", "backlash_um", "lost_motion_arcmin", "lost_motion_mrad"],
     &["stiffness_N_m_per_rad", "total_stiffness_N_m_per_arcmin"],
     &["motor_coulomb_friction_N_m", "no_load_torque_N_m"],
     &["sun_equivalent_mass_kg", "sun_inertia_kg_m2"],
@@ -38,6 +38,8 @@ const SAME_THING: [&[&str]; 9] = [
         "carrier_equivalent_mass_kg",
         "carrier_inertia_kg_m2",
     ],
+    // Likewise.
+    &["ratio", "motor_turns", "link_turns"],
     &["carrier_radius_mm", "carrier_base_radius_mm"],
     &["mesh_frequency_rad_per_s", "mesh_frequency_Hz", "mesh_frequency_over_omega_n"],
 ];
@@ -108,8 +110,9 @@ fn in_the_way(path: &str) -> Refused {
 
 /// What setting a key takes the place of: itself, other forms of it, and for both mesh families what one of them has.
 fn replaced(section: &str, name: &str) -> Vec<String> {
-    // `planet_mass_kg` has no other form: it is part of one.
-    let forms = SAME_THING.iter().find(|forms| forms.contains(&name) && name != "planet_mass_kg").copied();
+    // These have no other form: they are part of one.
+    const PARTS: [&str; 3] = ["planet_mass_kg", "motor_turns", "link_turns"];
+    let forms = SAME_THING.iter().find(|forms| forms.contains(&name) && !PARTS.contains(&name)).copied();
     let forms = forms.unwrap_or_default().iter().copied().filter(|form| *form != name).chain([name]);
     let sections: &[&str] = match section {
         "mesh" => &["mesh", "mesh.sun_planet", "mesh.ring_planet"],
@@ -139,6 +142,11 @@ fn find(key: &str) -> Result<(String, &'static Key), Refused> {
     let depth = |path: &str| path.matches('.').count();
     let least = found.iter().map(|(path, _)| depth(path)).min();
     found.retain(|(path, _)| Some(depth(path)) == least);
+    // What gears with teeth have too must name an equivalent gear's section.
+    let of_teeth = |path: &str| !path.starts_with("equivalent_gear.");
+    if found.iter().any(|(path, _)| of_teeth(path)) {
+        found.retain(|(path, _)| of_teeth(path));
+    }
     match found.len() {
         0 => Err(unknown(key)),
         1 => Ok(found.remove(0)),

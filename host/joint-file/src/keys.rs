@@ -63,6 +63,8 @@ const ANGLE: Kind = Number(Degrees, Between(5.0, 45.0));
 const TEETH: Kind = Whole(5, 1000);
 const PHASE: Kind = PerPlanet(Si, Between(-6.3, 6.3));
 const PHASE_HINT: &str = "in rad, within a turn: one number is the phase of planet 0 and the others follow from the teeth; a list states every planet's";
+const TURNS_HINT: &str =
+    "whole turns of motor and link after which both are back where they were: 29 and 3 are a ratio of 29/3";
 const FRICTION_HINT: &str = "a torque in N m, 0 if there is none";
 
 /// All keys, in the order of the documentation.
@@ -77,9 +79,18 @@ pub(crate) const KEYS: &[Key] = &[
         "the torque at the link that profiles and reports scale with",
     ),
     key("", "characteristic_length_um", Number(Micro, Between(1e-3, 1e4)), "b_c of eq. 16; 10 if left out"),
-    section("", "geometry", "teeth, angles and radii: planets, sun_teeth, planet_teeth, ring_teeth, ..."),
+    section(
+        "",
+        "geometry",
+        "teeth, angles and radii: planets, sun_teeth, planet_teeth, ring_teeth, ...; or [equivalent_gear] in place of teeth",
+    ),
     section("", "bodies", "masses: sun_equivalent_mass_kg, planet_equivalent_mass_kg, planet_mass_kg, ..."),
     section("", "compliance", "stiffness_N_m_per_rad and damping_ratio; leave it out to join carrier and link rigidly"),
+    section(
+        "",
+        "equivalent_gear",
+        "in place of all sections on teeth: ratio, lost_motion_arcmin, total_stiffness_N_m_per_arcmin, damping_ratio",
+    ),
     section(
         "",
         "mesh",
@@ -89,6 +100,45 @@ pub(crate) const KEYS: &[Key] = &[
     section("", "excitation", "mode and, in mode \"time\", the mesh frequency"),
     section("", "profile", "torques that the built-in motion profile scales with"),
     section("", "drive_train", "friction, cogging, current loop and encoders around the joint"),
+    // Equivalent gear
+    key(
+        "equivalent_gear",
+        "ratio",
+        Number(Si, Inside(1.0, 1000.0)),
+        "motor turns over link turns as a decimal number, such as 50 or 12.5; 29/3 is motor_turns = 29 and link_turns = 3",
+    ),
+    key("equivalent_gear", "motor_turns", Whole(1, 100_000), TURNS_HINT),
+    key("equivalent_gear", "link_turns", Whole(1, 100_000), TURNS_HINT),
+    key(
+        "equivalent_gear",
+        "lost_motion_arcmin",
+        Number(Arcmin, ZeroOr(0.01, 600.0)),
+        "a data sheet's lost motion or backlash at the output in arcmin, from flank to flank",
+    ),
+    key(
+        "equivalent_gear",
+        "lost_motion_mrad",
+        Number(Milli, ZeroOr(0.003, 175.0)),
+        "the same in mrad: 1 arcmin is 0.291 mrad",
+    ),
+    key(
+        "equivalent_gear",
+        "total_stiffness_N_m_per_arcmin",
+        Number(PerArcmin, Between(1e-4, 1e6)),
+        "a data sheet's torsional stiffness at the output in N m/arcmin, all parts together",
+    ),
+    key(
+        "equivalent_gear",
+        "stiffness_N_m_per_rad",
+        Number(Si, Between(1.0, 1e9)),
+        "the same in N m/rad: 3 N m/arcmin are 10.3e3 N m/rad",
+    ),
+    key(
+        "equivalent_gear",
+        "damping_ratio",
+        Number(Si, FromToBelow(0.0, 1.0)),
+        "of the motor's side swinging against the link in contact; 5 % is 0.05",
+    ),
     // Geometry
     key("geometry", "planets", Whole(3, 5), "the model has 3, 4 or 5 equally spaced planets"),
     key("geometry", "sun_teeth", TEETH, "the number of teeth of the sun"),

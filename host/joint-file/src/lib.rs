@@ -15,6 +15,7 @@ mod contents;
 #[cfg(feature = "diagnostics")]
 pub mod diagnostic;
 mod drive_train;
+mod equivalent;
 mod geometry;
 mod keys;
 mod meshes;

@@ -1,8 +1,7 @@
 //! Reads `[contact]`, `[excitation]` and `[profile]`: how teeth meet, what drives the mesh phase, and the torques that
 //! a motion profile scales with.
 
-use model_core::gears::Kinematics;
-use parameters::{DampingLaw, DeadZone, Excitation, Geometry};
+use parameters::{DampingLaw, DeadZone, Excitation};
 
 use crate::section::Section;
 
@@ -60,13 +59,13 @@ pub(crate) fn read_excitation(section: Option<&Section<'_>>, omega_n: Option<f64
 /// Torques for profiles: `[profile]`; what balances the rated output torque if it is absent.
 pub(crate) fn read_profile(
     section: Option<&Section<'_>>,
-    geometry: Option<&Geometry>,
+    ratio: Option<f64>,
     rated_output_torque: Option<f64>,
 ) -> Option<Profile> {
     let stated = |key| section.filter(|section| section.has(key)).map(|section| section.number(key));
     let drive_torque = match stated("drive_torque_N_m") {
         Some(torque) => torque,
-        None => geometry.zip(rated_output_torque).map(|(geometry, torque)| torque / geometry.ratio_by_radii()),
+        None => ratio.zip(rated_output_torque).map(|(ratio, torque)| torque / ratio),
     };
     let limit = match stated("motor_torque_limit_N_m") {
         Some(limit) => limit,

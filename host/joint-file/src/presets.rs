@@ -1,7 +1,7 @@
 //! The joint files that come with the program. Each carries the source of its numbers, or the word "assumed".
 
 /// Names of the presets, the default first.
-pub const PRESETS: [&str; 6] = ["q1", "s1", "d2", "l1", "paper", "paper_printed"];
+pub const PRESETS: [&str; 7] = ["q1", "s1", "d2", "l1", "c1", "paper", "paper_printed"];
 
 /// The text of a preset, by its name.
 pub fn preset(name: &str) -> Option<&'static str> {
@@ -10,6 +10,7 @@ pub fn preset(name: &str) -> Option<&'static str> {
         "s1" => include_str!("../../../joints/s1.toml"),
         "d2" => include_str!("../../../joints/d2.toml"),
         "l1" => include_str!("../../../joints/l1.toml"),
+        "c1" => include_str!("../../../joints/c1.toml"),
         "paper" => include_str!("../../../joints/paper.toml"),
         "paper_printed" => include_str!("../../../joints/paper_printed.toml"),
         _ => return None,

@@ -12,7 +12,7 @@ use crate::motion;
 use crate::notes::Notes;
 use crate::problem::Problem;
 use crate::section::Section;
-use crate::{bodies, coherence, drive_train, geometry, meshes, plausible};
+use crate::{bodies, coherence, drive_train, equivalent, geometry, meshes, plausible};
 
 /// Reads the text of a joint file. On failure gives every problem, warnings among them, in the order of the text.
 ///
@@ -66,11 +66,39 @@ fn line_around(text: &str, at: usize) -> Range<usize> {
 fn read_table(top: &Section<'_>) -> Option<JointFile> {
     let name = read_name(top);
     let description = if top.has("description") { top.text("description") } else { Some(Default::default()) };
+    let rated_output_torque = top.required_number("rated_output_torque_N_m");
+    let (ratio, parameters) = match top.section("equivalent_gear", "equivalent_gear") {
+        Some(section) => equivalent::read(top, &section, name, rated_output_torque),
+        None => read_planetary(top, name, rated_output_torque),
+    };
+    let profile_section = top.section("profile", "profile");
+    let profile = motion::read_profile(profile_section.as_ref(), ratio, rated_output_torque);
+    let surroundings = drive_train::read(top.section("drive_train", "drive_train").as_ref(), ratio);
+    let file = JointFile {
+        parameters: parameters?,
+        description: description?,
+        surroundings: Surroundings { torque_limit: profile.as_ref()?.motor_torque_limit, ..surroundings },
+        profile: profile?,
+        warnings: Vec::new(),
+        sources: Vec::new(),
+    };
+    // What is wrong by itself contradicts everything.
+    if !top.notes.has_errors() {
+        plausible::check(&file, top.notes);
+    }
+    Some(file)
+}
+
+/// A planetary gear: its ratio and the joint's parameters, as far as they are right; what is wrong has been noted.
+fn read_planetary(
+    top: &Section<'_>,
+    name: Option<heapless::String<32>>,
+    rated_output_torque: Option<f64>,
+) -> (Option<f64>, Option<JointParameters>) {
     let coherence = match top.choice("coherence") {
         Some("warn") => Coherence::Warned,
         _ => Coherence::Required,
     };
-    let rated_output_torque = top.required_number("rated_output_torque_N_m");
     let characteristic_length =
         if top.has("characteristic_length_um") { top.number("characteristic_length_um") } else { Some(10e-6) };
 
@@ -93,17 +121,12 @@ fn read_table(top: &Section<'_>) -> Option<JointFile> {
         top.notes.error(section.header.clone(), "a compliance needs a link behind it", help);
     }
     let contact = motion::read_contact(top.section("contact", "contact").as_ref());
-    let profile_section = top.section("profile", "profile");
-    let profile = motion::read_profile(profile_section.as_ref(), geometry.as_ref(), rated_output_torque);
-    let surroundings = drive_train::read(
-        top.section("drive_train", "drive_train").as_ref(),
-        geometry.as_ref().map(Kinematics::ratio_by_radii),
-    );
 
     if let Some(geometry) = &geometry {
         coherence::check(geometry, top.notes);
     }
 
+    let ratio = geometry.as_ref().map(Kinematics::ratio_by_radii);
     let assemble = || {
         let (damping_law, dead_zone) = contact?;
         let [sun_planet, ring_planet] = meshes?;
@@ -127,19 +150,8 @@ fn read_table(top: &Section<'_>) -> Option<JointFile> {
     let parameters = assemble();
     let omega_n = parameters.as_ref().map(|parameters| Scales::new(parameters).frequency);
     let excitation = motion::read_excitation(top.section("excitation", "excitation").as_ref(), omega_n);
-    let file = JointFile {
-        parameters: JointParameters { excitation: excitation?, ..parameters? },
-        description: description?,
-        surroundings: Surroundings { torque_limit: profile.as_ref()?.motor_torque_limit, ..surroundings },
-        profile: profile?,
-        warnings: Vec::new(),
-        sources: Vec::new(),
-    };
-    // What is wrong by itself contradicts everything.
-    if !top.notes.has_errors() {
-        plausible::check(&file, top.notes);
-    }
-    Some(file)
+    let parameters = parameters.zip(excitation);
+    (ratio, parameters.map(|(parameters, excitation)| JointParameters { excitation, ..parameters }))
 }
 
 /// The name, short and plain enough for the board's hello.

@@ -100,6 +100,11 @@ impl<'a, K: Keys> Table<'a, K> {
         if self.path.is_empty() { K::FILE.to_owned() } else { format!("[{}]", self.path) }
     }
 
+    /// The names of all that it holds.
+    pub fn keys(&self) -> impl Iterator<Item = &'a str> {
+        self.table.keys().map(|name| name.get_ref().as_ref())
+    }
+
     /// Whether a key is there.
     pub fn has(&self, name: &str) -> bool {
         self.table.get(name).is_some()

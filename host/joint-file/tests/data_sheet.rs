@@ -179,3 +179,62 @@ fn an_inertia_at_the_input_in_another_unit_is_named_by_its_key() {
         );
     }
 }
+
+/// C1 with one line in place of another.
+fn c1(line: &str, by: &str) -> String {
+    let text = preset("c1").expect("a preset");
+    assert!(text.contains(line), "{line}");
+    text.replacen(line, by, 1)
+}
+
+#[test]
+fn an_equivalent_gear_has_the_data_sheets_numbers_and_an_exact_ratio() {
+    let joint = joint(preset("c1").expect("a preset")).parameters;
+    let gear = joint.equivalent_gear().expect("an equivalent gear");
+    assert_eq!(gear.ratio, [59, 1]);
+    assert_close(gear.lost_motion, 3.0 * ARCMIN);
+    assert_close(gear.stiffness, 20.0 / ARCMIN);
+    assert_close(gear.inertia_at_input, 0.25e-4);
+    assert_close(sheet::lost_motion(&joint), 3.0 * ARCMIN);
+    assert_close(joint.geometry.ratio_by_radii(), 59.0);
+    let ratio =
+        |by: &str| read(&c1("ratio = 59", by)).expect("a ratio").parameters.equivalent_gear().map(|gear| gear.ratio);
+    assert_eq!(ratio("ratio = 47.5"), Some([95, 2]));
+    assert_eq!(ratio("motor_turns = 178\nlink_turns = 6"), Some([89, 3]));
+    let other = c1("lost_motion_arcmin = 3.0", "lost_motion_mrad = 0.5");
+    assert_close(sheet::lost_motion(&read(&other).expect("mrad").parameters), 0.5e-3);
+}
+
+#[test]
+fn a_ratio_that_was_rounded_is_warned_of_or_refused() {
+    let warned = joint(&c1("ratio = 59", "ratio = 58.333"));
+    assert!(warned.warnings[0].message.contains("58333/1000"), "{:?}", warned.warnings);
+    refused(&c1("ratio = 59", "ratio = 58.3333333"), &["rounded", "motor_turns"]);
+    refused(&c1("ratio = 59", "motor_turns = 59"), &["link_turns", "missing"]);
+    refused(&c1("ratio = 59", "ratio = 59\nlink_turns = 1"), &["both say", "keep `ratio`"]);
+    refused(&c1("ratio = 59", "motor_turns = 3\nlink_turns = 29"), &["3/29", "faster"]);
+    refused(&c1("ratio = 59", "ratio = 0.5"), &["ratio", "greater than 1"]);
+}
+
+#[test]
+fn teeth_beside_an_equivalent_gear_are_refused() {
+    let with = |section: &str| format!("{}\n{section}\n", preset("c1").expect("a preset"));
+    refused(&with("[mesh]\nmean_stiffness_N_per_m = 1e8"), &["`mesh`", "[equivalent_gear] has none"]);
+    refused(&with("[contact]\ndamping_law = \"paper\""), &["`contact`", "leave one of the two out"]);
+    refused(&c1("[bodies]", "[bodies]\nplanet_mass_kg = 0.1"), &["`planet_mass_kg`", "at its input"]);
+    refused(&c1("link_inertia_kg_m2 = 0.80", "# link_inertia_kg_m2 = 0.80"), &["needs a link"]);
+    refused(&c1("total_stiffness_N_m_per_arcmin", "total_stiffnes_N_m_per_arcmin"), &["did you mean `total_stiffness"]);
+    refused(&c1("total_stiffness_N_m_per_arcmin = 20.0", "stiffness_N_m_per_rad = 20.0"), &["N m/arcmin"]);
+}
+
+#[test]
+fn keys_of_an_equivalent_gear_are_set_by_their_section() {
+    let text = preset("c1").expect("a preset");
+    let set = |key, value| change(text, key, value).expect("a known key");
+    let wide = read(&set("equivalent_gear.lost_motion_mrad", "2")).expect("another form takes its place").parameters;
+    assert_close(sheet::lost_motion(&wide), 2e-3);
+    let geared = read(&set("ratio", "45.5")).expect("a ratio").parameters;
+    assert_close(geared.geometry.ratio_by_teeth(), 45.5);
+    // Without the section the key is the meshes', and those are refused here.
+    refused(&set("lost_motion_arcmin", "2"), &["`mesh`", "[equivalent_gear] has none"]);
+}

@@ -26,7 +26,7 @@ fn every_preset_is_read_and_carries_its_name() {
 
 #[test]
 fn robot_joints_are_read_without_a_warning() {
-    for name in ["q1", "s1", "d2", "l1"] {
+    for name in ["q1", "s1", "d2", "l1", "c1"] {
         assert_eq!(file(name).warnings, [], "{name}");
         assert!(file(name).parameters.geometry.coherence == parameters::Coherence::Required);
     }

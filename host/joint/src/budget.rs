@@ -18,7 +18,7 @@ use simulation::budget::{layout, refuse, summary};
 
 Exit code 2 if the board has no time for that rate; the nearest rate that it has time for is named.")]
 pub struct Arguments {
-    /// Joint file (TOML), or the name of a preset: q1, s1, d2, l1, paper, paper_printed
+    /// Joint file (TOML), or the name of a preset: q1, s1, d2, l1, c1, paper, paper_printed
     #[arg(default_value = "q1", value_name = "FILE")]
     file: PathBuf,
     /// Board that steps the joint: a name of boards/, or the path of a board file

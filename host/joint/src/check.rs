@@ -10,7 +10,7 @@ use simulation::check::{layout, summary};
 /// Arguments of `joint check`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Joint file (TOML), or the name of a preset: q1, s1, d2, l1, paper, paper_printed
+    /// Joint file (TOML), or the name of a preset: q1, s1, d2, l1, c1, paper, paper_printed
     #[arg(default_value = "q1", value_name = "FILE")]
     pub file: PathBuf,
     /// Writes the same figures as JSON ("-" is standard output, in place of the text)

@@ -34,7 +34,7 @@ pub struct Arguments {
 #[derive(Debug, clap::Args)]
 #[group(id = "image")]
 pub struct Image {
-    /// Joint file (TOML), or the name of a preset: q1, s1, d2, l1, paper, paper_printed
+    /// Joint file (TOML), or the name of a preset: q1, s1, d2, l1, c1, paper, paper_printed
     #[arg(value_name = "FILE", default_value = "q1")]
     file: PathBuf,
     /// What the board does

@@ -1,5 +1,5 @@
 //! The test joints of the proofs: 3, 4 and 5 planets, both damping laws, with compliance and without, mesh phase by
-//! angle and by time, equal, unequal and no backlash. They are presets with a few values changed.
+//! angle and by time, equal, unequal and no backlash, and an equivalent gear. They are presets with a few values changed.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -19,24 +19,25 @@ pub struct TestJoint {
 }
 
 /// All of them.
-pub const TEST_JOINTS: [TestJoint; 5] = [
+pub const TEST_JOINTS: [TestJoint; 6] = [
     TestJoint { name: "Q1", preset: "q1", changes: &[] },
     TestJoint { name: "paper", preset: "paper", changes: &[] },
     TestJoint {
         name: "L1 with 4 planets",
         preset: "l1",
-        changes: &[("planets", "4"), ("mesh.half_backlash_um", "[60.0, 45.0, 30.0, 15.0]")],
+        changes: &[("coherence", "warn"), ("planets", "4"), ("mesh.half_backlash_um", "[60.0, 45.0, 30.0, 15.0]")],
     },
     TestJoint {
         name: "S1 without backlash",
         preset: "s1",
-        changes: &[("planets", "4"), ("mesh.half_backlash_um", "0.0")],
+        changes: &[("coherence", "warn"), ("planets", "4"), ("mesh.half_backlash_um", "0.0")],
     },
     TestJoint {
         name: "Q1 with 5 planets",
         preset: "q1",
         // A larger sun leaves room between five planets.
         changes: &[
+            ("coherence", "warn"),
             ("planets", "5"),
             ("sun_teeth", "30"),
             ("ring_teeth", "90"),
@@ -44,6 +45,8 @@ pub const TEST_JOINTS: [TestJoint; 5] = [
             ("mesh.half_backlash_um", "[40.0, 30.0, 20.0, 10.0, 0.0]"),
         ],
     },
+    // An equivalent gear, whose contact is fast against a tick.
+    TestJoint { name: "C1", preset: "c1", changes: &[("equivalent_gear.total_stiffness_N_m_per_arcmin", "6000")] },
 ];
 
 impl TestJoint {
@@ -51,7 +54,7 @@ impl TestJoint {
     pub fn text(&self) -> Outcome<String> {
         let preset = joint_file::preset(self.preset);
         let start = preset.ok_or_else(|| Failure::new(format!("there is no preset {}", self.preset)))?;
-        let named = [("name", self.name), ("coherence", "warn")];
+        let named = [("name", self.name)];
         named.iter().chain(self.changes).try_fold(start.to_owned(), |text, (key, value)| {
             joint_file::change(&text, key, value)
                 .map_err(|refused| Failure::new(refused.message).with_help(refused.help))

@@ -51,6 +51,7 @@ pub type InMode<'a> = &'a dyn Fn(&mut dyn FnMut());
 pub fn on_host(joint: &TestJoint, in_mode: InMode<'_>) -> Outcome<Digests> {
     let parameters = joint.read()?.parameters;
     match parameters.geometry.planets {
+        1 => with_planets::<1>(joint.name, &parameters, in_mode),
         3 => with_planets::<3>(joint.name, &parameters, in_mode),
         4 => with_planets::<4>(joint.name, &parameters, in_mode),
         _ => with_planets::<5>(joint.name, &parameters, in_mode),

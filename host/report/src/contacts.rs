@@ -101,6 +101,10 @@ pub fn panel(times: &[f64], contact: &[Vec<Contact>], range: (f64, f64)) -> Pane
 /// Name of a mesh by its place among all.
 pub fn mesh_name(mesh: usize, meshes: usize) -> String {
     let planets = meshes / 2;
+    if planets == 1 {
+        // An equivalent gear has one contact, whose deflection and force are shared by two halves.
+        return ["half at the motor", "half at the link"][mesh.min(1)].to_owned();
+    }
     if mesh < planets { format!("sun–planet {}", mesh + 1) } else { format!("ring–planet {}", mesh - planets + 1) }
 }
 

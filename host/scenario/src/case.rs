@@ -103,8 +103,14 @@ impl Case {
 
     /// The nominal joint file, which controllers are designed to.
     pub fn nominal_text(&self) -> Outcome<String> {
-        let half_backlash = self.nominal.sun_planet.half_backlash.first().copied().unwrap_or_default();
-        joint_file::change(&self.texts[0], "mesh.half_backlash_um", &format!("{:?}", 1e6 * half_backlash))
+        let (key, value) = match self.nominal.equivalent_gear() {
+            Some(gear) => ("equivalent_gear.lost_motion_mrad", 1e3 * gear.lost_motion),
+            None => {
+                let half_backlash = self.nominal.sun_planet.half_backlash.first().copied().unwrap_or_default();
+                ("mesh.half_backlash_um", 1e6 * half_backlash)
+            }
+        };
+        joint_file::change(&self.texts[0], key, &format!("{value:?}"))
             .map_err(|refused| Failure::new(refused.message).with_help(refused.help))
     }
 

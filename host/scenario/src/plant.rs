@@ -90,6 +90,7 @@ pub fn plant_from(
             train.parts_per_period = (f64::from(DEFAULT_TICK_RATE) / control_rate).round().max(1.0) as u32;
             let rate = (control_rate * f64::from(train.parts_per_period)).round() as u32;
             match joint.geometry.planets {
+                1 => Box::new(CoreJoint::<1>::new(joint, rate)?),
                 3 => Box::new(CoreJoint::<3>::new(joint, rate)?),
                 4 => Box::new(CoreJoint::<4>::new(joint, rate)?),
                 _ => Box::new(CoreJoint::<5>::new(joint, rate)?),

@@ -162,6 +162,13 @@ fn test_of(name: String, text: String, file: TestFile, folder: &Path, plant: Pla
         .map_err(|problems| Failure::from_report(diagnostic::report(&name, &text, &problems)))?;
     let broken_tooth =
         file.faults.iter().any(|fault| matches!(fault.kind, FaultKind::Other(HostOnlyFault::BrokenTooth(_))));
+    if broken_tooth && joint.file.parameters.equivalent_gear().is_some() {
+        return Err(Failure::new(format!(
+            "{name}: joint `{}` is an equivalent gear, which has no tooth to break",
+            joint.file.parameters.name
+        ))
+        .with_help("leave the broken tooth out, or name a joint with teeth"));
+    }
     if broken_tooth && plant == PlantName::Core {
         return Err(Failure::new(format!(
             "{name}: the core's planets share their stiffness, so no tooth of it can break"

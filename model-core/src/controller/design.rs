@@ -58,6 +58,7 @@ pub fn control_source(
     let compensation: CompensationTables<f32> =
         design_compensation(nominal.joint, &compensation_settings(nominal.surroundings, nominal.request.bandwidth))?;
     let surroundings: SurroundingsTable<f32> = match joint.geometry.planets {
+        1 => surroundings::<1>(joint, around, processor)?,
         3 => surroundings::<3>(joint, around, processor)?,
         4 => surroundings::<4>(joint, around, processor)?,
         5 => surroundings::<5>(joint, around, processor)?,

@@ -20,6 +20,10 @@ pub trait Mechanics {
     /// without rotor and link [N s/m].
     fn damping_coefficient(&self, kind: MeshKind) -> f64;
 
+    /// Inertia of the motor's side, referred to the link, and of the link in series: what swings on an equivalent gear
+    /// [kg m^2].
+    fn inertia_in_series(&self) -> f64;
+
     /// Load torque that keeps the rigid body from accelerating under `drive_torque` [N m].
     fn balanced_load_torque(&self, drive_torque: f64) -> f64;
 }
@@ -43,6 +47,12 @@ impl Mechanics for JointParameters {
     fn damping_coefficient(&self, kind: MeshKind) -> f64 {
         let mesh = self.mesh(kind);
         let planet = self.bodies.planet_equivalent_mass;
+        if let Some(gear) = self.equivalent_gear() {
+            // Both meshes are one spring of half their stiffness, which both sides swing on.
+            let lever = self.geometry.carrier_base_radius();
+            let coefficient = 2.0 * gear.damping_ratio * libm::sqrt(gear.stiffness * self.inertia_in_series());
+            return coefficient / (2.0 * lever * lever);
+        }
         let mass = match kind {
             MeshKind::SunPlanet => {
                 let sun = self.bodies.sun_equivalent_mass;
@@ -52,6 +62,13 @@ impl Mechanics for JointParameters {
             MeshKind::RingPlanet => planet,
         };
         2.0 * mesh.damping_ratio * libm::sqrt(mesh.mean_stiffness * mass)
+    }
+
+    fn inertia_in_series(&self) -> f64 {
+        let lever = self.geometry.carrier_base_radius();
+        // The sun's way counts twice on the carrier's line of action.
+        let motor = 4.0 * (self.bodies.sun_equivalent_mass + self.rotor_equivalent_mass()) * lever * lever;
+        motor * self.link_inertia / (motor + self.link_inertia)
     }
 
     fn balanced_load_torque(&self, drive_torque: f64) -> f64 {

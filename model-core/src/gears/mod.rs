@@ -15,6 +15,7 @@ mod crossing;
 pub mod dead_zone;
 #[cfg(feature = "design")]
 pub mod design;
+mod equivalent;
 mod excitation;
 mod fixed_contact_set;
 mod flank;

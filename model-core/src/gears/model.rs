@@ -4,6 +4,7 @@
 use core::array;
 
 use crate::gears::contact::{AppliedAcceleration, contact, mesh_coordinates};
+use crate::gears::equivalent::{self, Point};
 use crate::gears::excitation::{MAX_OVERTONES, MeshPhase, PerMesh, Phasor, mesh_excitations, mesh_phase_advance};
 use crate::gears::runge_kutta::Motion;
 use crate::gears::state::State;
@@ -11,7 +12,7 @@ use crate::gears::tables::{Scheme, Tables};
 use crate::gears::warm_start::WarmStart;
 use crate::gears::{full_forces, light, paper};
 use crate::numbers::Real;
-use parameters::ContactState;
+use parameters::{ContactState, EQUIVALENT};
 
 /// Torques, constant over a tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -119,6 +120,14 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
             carrier: -(units.load_on_carrier * torques.load),
             link: -(units.load_on_link * torques.load),
         };
+        // Known when it is compiled: an image of an equivalent gear has nothing of the rest.
+        if N == EQUIVALENT {
+            self.state.rigid.advance(&tables.rigid, torques.drive, torques.load);
+            let start = Point { position: self.state.position.gap, rate: self.state.rate.gap };
+            let acceleration = applied.sun - T::TWO * applied.carrier;
+            self.state.set_gap(equivalent::tick(tables, acceleration, start));
+            return;
+        }
         let start = Phasor::at(self.phase());
         let travel = self.state.rigid.advance(&tables.rigid, torques.drive, torques.load);
         let advance = mesh_phase_advance(&tables.excitation, travel);

@@ -3,6 +3,8 @@
 
 use parameters::{JointParameters, MeshKind};
 
+use crate::gears::mechanics::Mechanics;
+
 /// One dimensionless unit of each quantity, in SI.
 ///
 /// ```
@@ -22,7 +24,8 @@ use parameters::{JointParameters, MeshKind};
 pub struct Scales {
     /// Length b_c [m].
     pub length: f64,
-    /// Frequency omega_n = sqrt(K_m (1/M_s + 1/M_p)), gears' own masses [rad/s]; dimensionless time is omega_n t.
+    /// Frequency omega_n = sqrt(K_m (1/M_s + 1/M_p)), gears' own masses; of an equivalent gear that of both sides swinging
+    /// on it in contact [rad/s]. Dimensionless time is omega_n t.
     pub frequency: f64,
     /// Stiffness: the mean of the sun-planet mesh [N/m].
     pub stiffness: f64,
@@ -32,9 +35,13 @@ impl Scales {
     /// Scales of a joint.
     pub fn new(parameters: &JointParameters) -> Self {
         let stiffness = parameters.mesh(MeshKind::SunPlanet).mean_stiffness;
+        let length = parameters.characteristic_length;
+        if let Some(gear) = parameters.equivalent_gear() {
+            return Self { length, frequency: libm::sqrt(gear.stiffness / parameters.inertia_in_series()), stiffness };
+        }
         let bodies = &parameters.bodies;
         let inverse_mass = 1.0 / bodies.sun_equivalent_mass + 1.0 / bodies.planet_equivalent_mass;
-        Self { length: parameters.characteristic_length, frequency: libm::sqrt(stiffness * inverse_mass), stiffness }
+        Self { length, frequency: libm::sqrt(stiffness * inverse_mass), stiffness }
     }
 
     /// Force K_m b_c [N].

@@ -3,6 +3,7 @@
 
 use core::array;
 
+use crate::gears::equivalent::Point;
 use crate::gears::excitation::{PhaseHarmonics, Phasor, mesh_phase_advance};
 use crate::gears::tables::{Rigid, Tables};
 use crate::numbers::Real;
@@ -135,6 +136,14 @@ impl<T: Real, const N: usize> State<T, N> {
             state.rate.planets[i] += imposed.error_rate;
         }
         state
+    }
+
+    /// Moves an equivalent gear's gap: its planet without mass is in the middle. Canonical as every state is.
+    #[inline]
+    pub(super) fn set_gap(&mut self, gap: Point<T>) {
+        let (position, rate) = (gap.position.canonical(), gap.rate.canonical());
+        (self.position.gap, self.rate.gap) = (position, rate);
+        (self.position.planets, self.rate.planets) = ([T::HALF * position; N], [T::HALF * rate; N]);
     }
 
     /// Brings every number into its canonical form, so that the next tick does not depend on the floating-point mode.

@@ -119,6 +119,13 @@ fn cases(arguments: &Arguments) -> Outcome<Vec<Case>> {
     if let Some(file) = &arguments.file {
         let loaded = named::load(file)?;
         warned::tell(&loaded);
+        if loaded.file.parameters.equivalent_gear().is_some() {
+            return Err(Failure::new(format!(
+                "{} is an equivalent gear: the methods compared are for the meshes of planets",
+                loaded.name
+            ))
+            .with_help("name a joint with teeth; `joint budget` says what the step of an equivalent gear costs"));
+        }
         return Ok(vec![catalogue::of_joint(&loaded.file.parameters)]);
     }
     let all = catalogue::cases();

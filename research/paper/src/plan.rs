@@ -165,6 +165,13 @@ impl StudyPlan {
 
 impl StudyJoint {
     fn new(loaded: Loaded, omega: Option<f64>) -> Outcome<Self> {
+        if loaded.file.parameters.equivalent_gear().is_some() {
+            return Err(Failure::new(format!(
+                "{} is an equivalent gear: it has no teeth, so no mesh frequency that could excite it",
+                loaded.name
+            ))
+            .with_help("the paper's study is of planetary gears: name a joint file with [geometry] and [mesh]"));
+        }
         let mut parameters = loaded.file.parameters.clone();
         if let Some(omega) = omega {
             if !(1e-3..=100.0).contains(&omega) {

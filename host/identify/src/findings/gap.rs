@@ -33,18 +33,27 @@ pub(super) fn gap_and_compliance(
     let why_gap =
         "both flanks must carry torques well above the friction, and the gap must be wider than what the encoders tell";
     let why_bends = "the torque on one flank must change by much, so that it bends the joint by several counts";
-    let mut findings = vec![
-        finding("half-backlash b", "um", "mesh.half_backlash_um", half_gap.times(1e6 * prior.lever))
-            .if_so(has_gap, why_gap),
-        finding("lost motion at the output", "mrad", "", half_gap.times(2e3)).if_so(has_gap, why_gap),
+    let mut findings = Vec::new();
+    if !prior.equivalent {
+        let half_backlash = half_gap.times(1e6 * prior.lever);
+        findings.push(finding("half-backlash b", "um", "mesh.half_backlash_um", half_backlash).if_so(has_gap, why_gap));
+    }
+    let lost_motion_key = if prior.equivalent { "equivalent_gear.lost_motion_mrad" } else { "" };
+    findings.extend([
+        finding("lost motion at the output", "mrad", lost_motion_key, half_gap.times(2e3)).if_so(has_gap, why_gap),
         finding("compliance at the output", "urad/(N m)", "", compliance.times(1e6)).if_so(bends, why_bends),
-    ];
+    ]);
     // What the teeth give is known better from the joint file than from the small part that they have in it.
     let own = compliance.value - prior.mesh_compliance;
     let stiffness = if prior.compliant {
         let stiffness = Estimate { value: 1.0 / own, half: compliance.half / (own * own) };
         let bends = bends && own > 0.0 && compliance.half < SHARE * own;
         finding("stiffness behind the carrier", "N m/rad", "compliance.stiffness_N_m_per_rad", stiffness)
+            .if_so(bends, why_bends)
+    } else if prior.equivalent {
+        let stiffness = compliance.value.recip();
+        let estimate = Estimate { value: stiffness, half: stiffness * compliance.half / compliance.value };
+        finding("stiffness at the output", "N m/rad", "equivalent_gear.stiffness_N_m_per_rad", estimate)
             .if_so(bends, why_bends)
     } else {
         let stiffness = prior.mesh_stiffness * prior.mesh_compliance / compliance.value;
@@ -65,6 +74,10 @@ fn damping(solution: &Solution, prior: &PriorModel, compliance: Estimate, bends:
         let per_ratio =
             2.0 * (prior.swinging_inertia() / own.max(f64::MIN_POSITIVE)).sqrt() * own * own / compliance.value;
         ("damping ratio of the compliance", "compliance.damping_ratio", per_ratio)
+    } else if prior.equivalent {
+        // D / K = 2 zeta sqrt(J c).
+        let per_ratio = 2.0 * (prior.swinging_inertia() * compliance.value.max(0.0)).sqrt();
+        ("damping ratio of the gear", "equivalent_gear.damping_ratio", per_ratio)
     } else {
         ("damping ratio of the meshes", "mesh.damping_ratio", prior.mesh_relaxation_per_ratio)
     };

@@ -22,10 +22,15 @@ const CARRIER_WIDTH: Limits = Limits { odd: (5e-4, 5.0), possible: (1e-5, 25.0) 
 /// What is usual of either.
 const USUAL_WIDTH: (f64, f64) = (0.02, 5.0);
 
-pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
+/// Gears with teeth.
+pub(super) fn check_gears(file: &JointFile, judge: &Judge<'_>) {
     gears(file, judge);
     planets(file, judge);
     carrier(file, judge);
+}
+
+/// What is on either side of the gears.
+pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
     rotor(file, judge);
     link(file, judge);
 }

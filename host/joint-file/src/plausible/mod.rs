@@ -22,8 +22,11 @@ use judge::Judge;
 /// Notes everything that contradicts the rest of the file.
 pub(crate) fn check(file: &JointFile, notes: &Notes<'_>) {
     let judge = Judge { notes, lenient: file.parameters.geometry.coherence == Coherence::Warned };
+    if file.parameters.equivalent_gear().is_none() {
+        masses::check_gears(file, &judge);
+        teeth::check(file, &judge);
+    }
     masses::check(file, &judge);
-    teeth::check(file, &judge);
     torques::check(file, &judge);
     signals::check(file, &judge);
 }

@@ -119,7 +119,9 @@ pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
         of_angle,
         "20 is usual, 14.5 to 28 are made",
     );
-    let length = file.parameters.characteristic_length;
+    // An equivalent gear's follows from its stiffness.
+    let stated = file.parameters.equivalent_gear().is_none();
+    let length = if stated { file.parameters.characteristic_length } else { 0.0 };
     let of_length = "is far from the deflections that it scales";
     only_if(length, LENGTH, "characteristic_length_um", "um", 1e6, of_length, "10 is usual");
 }

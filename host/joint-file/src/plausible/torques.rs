@@ -2,6 +2,7 @@
 //! one; and the stiffness behind the carrier against the torque that it carries.
 
 use model_core::gears::Kinematics;
+use parameters::{Compliance, EquivalentGear};
 
 use super::judge::{ANY, Judge, Limits, figure};
 use super::units;
@@ -62,31 +63,41 @@ pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
         let help = units::likely(units::TORQUE, weight, weight / rated, 1, (0.02, 0.8), "N m");
         (message, help + "; it is mass times 9.81 times lever")
     });
-    if let Some(compliance) = &joint.compliance {
-        let turned = rated / compliance.stiffness;
+    if let Some(compliance) = joint.compliance {
         let keys = ["compliance.stiffness_N_m_per_rad", "compliance.total_stiffness_N_m_per_arcmin"];
-        judge.judge(&keys, turned, WIND_UP, |_, key| {
-            let message = format!(
-                "`{key}`: at the rated torque of {} N m the shafts twist by {} deg ({} arcmin)",
-                figure(rated),
-                figure(turned.to_degrees()),
-                figure(60.0 * turned.to_degrees())
-            );
-            let help = match key {
-                "total_stiffness_N_m_per_arcmin" => "it is in N m/arcmin: 10.3e3 N m/rad are 3 N m/arcmin".to_owned(),
-                _ => units::likely(units::STIFFNESS, compliance.stiffness, turned, -1, USUAL_WIND_UP, "N m/rad"),
-            };
-            (message, help)
+        spring(rated, &compliance, ("compliance", "shafts twist"), &keys, judge);
+    }
+    if let Some(EquivalentGear { stiffness, damping_ratio, .. }) = joint.equivalent_gear() {
+        let keys = ["equivalent_gear.stiffness_N_m_per_rad", "equivalent_gear.total_stiffness_N_m_per_arcmin"];
+        let gear = Compliance { stiffness, damping_ratio };
+        spring(rated, &gear, ("equivalent_gear", "gear gives"), &keys, judge);
+    }
+}
+
+/// A spring at the output against the rated torque, and its damping; its section and what it does.
+fn spring(rated: f64, of: &Compliance, (section, does): (&str, &str), keys: &[&str], judge: &Judge<'_>) {
+    let turned = rated / of.stiffness;
+    judge.judge(keys, turned, WIND_UP, |_, key| {
+        let message = format!(
+            "`{key}`: at the rated torque of {} N m the {does} by {} deg ({} arcmin)",
+            figure(rated),
+            figure(turned.to_degrees()),
+            figure(60.0 * turned.to_degrees())
+        );
+        let help = match key {
+            "total_stiffness_N_m_per_arcmin" => "it is in N m/arcmin: 10.3e3 N m/rad are 3 N m/arcmin".to_owned(),
+            _ => units::likely(units::STIFFNESS, of.stiffness, turned, -1, USUAL_WIND_UP, "N m/rad"),
+        };
+        (message, help)
+    });
+    let damping = of.damping_ratio;
+    if damping > 0.0 {
+        let limits = Limits { odd: (2e-4, 0.4), possible: (0.0, 1.0) };
+        judge.judge(&[&format!("{section}.damping_ratio")], damping, limits, |too_much, key| {
+            let what = if too_much { "a joint that hardly swings" } else { "a joint that swings for ever" };
+            let message = format!("`{key}` of [{section}] = {damping}: {what}");
+            (message, "0.01 to 0.05 is usual of bolted steel: 2 % is 0.02; 0 if there shall be none".into())
         });
-        let damping = compliance.damping_ratio;
-        if damping > 0.0 {
-            let limits = Limits { odd: (2e-4, 0.4), possible: (0.0, 1.0) };
-            judge.judge(&["compliance.damping_ratio"], damping, limits, |too_much, key| {
-                let what = if too_much { "a joint that hardly swings" } else { "a joint that swings for ever" };
-                let message = format!("`{key}` of [compliance] = {damping}: {what}");
-                (message, "0.01 to 0.05 is usual of bolted steel: 2 % is 0.02; 0 if there shall be none".into())
-            });
-        }
     }
 }
 
@@ -164,7 +175,7 @@ fn frictions(file: &JointFile, judge: &Judge<'_>) {
         (
             message,
             format!(
-                "a planetary stage has 0.9 to 0.98; a loss of {efficiency} is an efficiency of {}",
+                "a stage of gears has 0.9 to 0.98; a loss of {efficiency} is an efficiency of {}",
                 figure(1.0 - efficiency)
             ),
         )

@@ -25,7 +25,7 @@ const DECIMATION: u16 = 20;
 
 Exit code: 0 if every check held, 1 if one did not, 2 for bad input or a bad environment, 130 after Ctrl-C.")]
 pub struct Arguments {
-    /// Joint file (TOML), or the name of a preset: q1, s1, d2, l1, paper, paper_printed; or a test file, or a folder
+    /// Joint file (TOML), or the name of a preset: q1, s1, d2, l1, c1, paper, paper_printed; or a test file, or a folder
     /// of them (docs/reference/hil-file.md) [default: joint q1, then the short run of the tests in hil]
     #[arg(value_name = "FILE")]
     pub file: Option<PathBuf>,

@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 
 use heapless::Vec;
-use parameters::{JointParameters, MAX_PLANETS, Mesh, MeshPhases, StiffnessWave};
+use parameters::{DampingLaw, EquivalentGear, JointParameters, MAX_PLANETS, Mesh, MeshPhases, StiffnessWave};
 
 use super::ReferenceError;
 use super::equations::JointEquations;
@@ -15,6 +15,9 @@ impl JointEquations {
     /// The equations of a joint, without torques.
     pub fn new(joint: &JointParameters) -> Result<Self, ReferenceError> {
         check(joint)?;
+        if let Some(gear) = joint.equivalent_gear() {
+            return Ok(Self::of_equivalent_gear(joint, &gear));
+        }
         let geometry = &joint.geometry;
         let cosine = geometry.working_pressure_angle.cos();
         let carrier_lever = geometry.carrier_radius * cosine;
@@ -55,6 +58,7 @@ impl JointEquations {
         let highest_frequency = highest_frequency(joint, &masses, compliance.map_or(0.0, |(stiffness, _)| stiffness));
         Ok(Self {
             planets: geometry.planets,
+            equivalent: false,
             sun_lever: geometry.sun_base_radius,
             carrier_lever,
             ring_teeth: f64::from(geometry.ring_teeth),
@@ -71,7 +75,53 @@ impl JointEquations {
             load_force: 0.0,
         })
     }
+
+    /// Motor and link on one spring with a gap. On the lever of the link each of two meshes takes half of what both are
+    /// apart in angle, delta = theta_m / ratio - theta_l, and half of the force: together they store K delta^2 / 2.
+    fn of_equivalent_gear(joint: &JointParameters, gear: &EquivalentGear) -> Self {
+        let ratio = f64::from(gear.ratio[0]) / f64::from(gear.ratio[1]);
+        let lever = joint.geometry.carrier_radius;
+        let (sun_lever, arm) = (2.0 * lever / ratio, lever * lever);
+        let motor_inertia = joint.rotor_inertia + gear.inertia_at_input;
+        let at_link = ratio * ratio * motor_inertia;
+        let reduced = 1.0 / (1.0 / at_link + 1.0 / joint.link_inertia);
+        let damping = 2.0 * gear.damping_ratio * (gear.stiffness * reduced).sqrt();
+        let mesh = || {
+            let constants = MeshConstants {
+                mean_stiffness: 0.5 * gear.stiffness / arm,
+                wave: StiffnessWave::Harmonic { stiffness_ratio: 0.0 },
+                stiffness_phase: 0.0,
+                damping: 0.5 * damping / arm,
+                law: DampingLaw::Contact,
+                half_backlash: 0.5 * gear.lost_motion * lever,
+                error_amplitude: 0.0,
+                error_phase: 0.0,
+            };
+            Vec::from_iter([constants])
+        };
+        Self {
+            planets: 1,
+            equivalent: true,
+            sun_lever,
+            carrier_lever: lever,
+            ring_teeth: PARTS_OF_A_TURN,
+            length: joint.characteristic_length,
+            masses: Vec::from_iter([motor_inertia / (sun_lever * sun_lever), joint.link_inertia / arm]),
+            compliance: None,
+            meshes: [mesh(), mesh()],
+            zones: [[Zone::Free; MAX_PLANETS]; 2],
+            excitation: joint.excitation,
+            highest_frequency: (gear.stiffness / reduced).sqrt(),
+            harmonics: 1.0,
+            phase_rate: 0.0,
+            drive_force: 0.0,
+            load_force: 0.0,
+        }
+    }
 }
+
+/// Without teeth to count, whole parts of a turn are taken off the coordinates: any number does that keeps them small.
+const PARTS_OF_A_TURN: f64 = 16384.0;
 
 fn constants(
     joint: &JointParameters,

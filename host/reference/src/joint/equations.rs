@@ -27,6 +27,8 @@ const LONGEST_STEP: f64 = 1.5;
 #[derive(Debug, Clone)]
 pub(super) struct JointEquations {
     pub planets: usize,
+    /// An equivalent gear: its one planet has no mass and is no body, so that it has the same force on both sides.
+    pub equivalent: bool,
     pub sun_lever: f64,
     pub carrier_lever: f64,
     pub ring_teeth: f64,
@@ -62,7 +64,7 @@ impl JointEquations {
     }
 
     pub fn carrier(&self) -> usize {
-        self.planets + 1
+        if self.equivalent { 1 } else { self.planets + 1 }
     }
 
     /// Last body: the link, or the carrier that it is rigidly joined to.
@@ -109,10 +111,25 @@ impl JointEquations {
     /// Displacement across a mesh (eq. 4 without its error), of positions, speeds or accelerations alike.
     pub fn across(&self, kind: usize, planet: usize, values: &[f64]) -> f64 {
         let carrier = values[self.carrier()];
+        if self.equivalent {
+            return 0.5 * values[0] - carrier;
+        }
         match kind {
             SUN_PLANET => values[0] - values[1 + planet] - carrier,
             _ => values[1 + planet] - carrier,
         }
+    }
+
+    /// Adds the forces of one planet's meshes to those on the bodies.
+    pub fn apply(&self, planet: usize, sun_planet: f64, ring_planet: f64, forces: &mut [f64]) {
+        let both = sun_planet + ring_planet;
+        if self.equivalent {
+            forces[0] -= 0.5 * both;
+        } else {
+            forces[0] -= sun_planet;
+            forces[1 + planet] += sun_planet - ring_planet;
+        }
+        forces[self.carrier()] += both;
     }
 
     pub fn internal_forces(&self, time: f64, state: &Entries) -> InternalForces {
@@ -149,9 +166,7 @@ impl SwitchedSystem for JointEquations {
         for planet in 0..self.planets {
             let sun_planet = &internal.meshes[SUN_PLANET][planet];
             let ring_planet = &internal.meshes[RING_PLANET][planet];
-            forces[0] -= sun_planet.force;
-            forces[1 + planet] = sun_planet.force - ring_planet.force;
-            forces[carrier] += sun_planet.force + ring_planet.force;
+            self.apply(planet, sun_planet.force, ring_planet.force, &mut forces);
             for mesh in [sun_planet, ring_planet] {
                 dissipated += (mesh.force - mesh.stiffness * mesh.overlap) * mesh.deflection_rate;
                 against_errors += mesh.force * mesh.error_rate;

@@ -87,16 +87,13 @@ fn kick(
     let (carrier, link) = (equations.carrier(), equations.link());
     let mut forces = [0.0; MAX_PLANETS + 3];
     forces[0] = equations.drive_force;
+    let force = |kind: usize, planet: usize| {
+        let displacement = equations.across(kind, planet, positions);
+        let rate = equations.across(kind, planet, speeds);
+        excited[kind][planet].force(&equations.meshes[kind][planet], displacement, rate, since)
+    };
     for planet in 0..equations.planets {
-        let force = |kind: usize| {
-            let displacement = equations.across(kind, planet, positions);
-            let rate = equations.across(kind, planet, speeds);
-            excited[kind][planet].force(&equations.meshes[kind][planet], displacement, rate, since)
-        };
-        let (sun_planet, ring_planet) = (force(0), force(1));
-        forces[0] -= sun_planet;
-        forces[1 + planet] = sun_planet - ring_planet;
-        forces[carrier] += sun_planet + ring_planet;
+        equations.apply(planet, force(0, planet), force(1, planet), &mut forces);
     }
     if let Some((stiffness, damping)) = equations.compliance {
         let wind_up = stiffness * (positions[carrier] - positions[link]) + damping * (speeds[carrier] - speeds[link]);

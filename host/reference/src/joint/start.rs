@@ -81,7 +81,7 @@ pub(super) fn resolve(start: &Start, equations: &JointEquations) -> Entries {
     // With the carrier held at zero; the rigid part is put right afterwards.
     positions[0] = relative.gap;
     speeds[0] = relative.gap_rate;
-    for planet in 0..equations.planets {
+    for planet in 0..if equations.equivalent { 0 } else { equations.planets } {
         let [error, error_rate, _] = equations.meshes[0][planet].transmission_error(phase);
         positions[1 + planet] = relative.gap - error - relative.sun_planet[planet];
         speeds[1 + planet] = relative.gap_rate - error_rate - relative.sun_planet_rate[planet];

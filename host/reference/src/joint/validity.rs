@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-use parameters::{DeadZone, Excitation, JointParameters, MAX_PLANETS, MIN_PLANETS, Mesh, MeshPhases};
+use parameters::{DeadZone, EquivalentGear, Excitation, JointParameters, MAX_PLANETS, MIN_PLANETS, Mesh, MeshPhases};
 
 use crate::integrator::IntegrationError;
 
@@ -69,6 +69,9 @@ pub(super) fn check(joint: &JointParameters) -> Result<(), ReferenceError> {
     if joint.dead_zone != DeadZone::Sharp {
         return Err(ReferenceError::SmoothDeadZone);
     }
+    if let Some(gear) = joint.equivalent_gear() {
+        return check_equivalent(joint, &gear);
+    }
     let planets = joint.geometry.planets;
     if !(MIN_PLANETS..=MAX_PLANETS).contains(&planets) {
         return Err(ReferenceError::Planets(planets));
@@ -95,6 +98,19 @@ pub(super) fn check(joint: &JointParameters) -> Result<(), ReferenceError> {
     }
     check_mesh(&joint.sun_planet, planets)?;
     check_mesh(&joint.ring_planet, planets)
+}
+
+fn check_equivalent(joint: &JointParameters, gear: &EquivalentGear) -> Result<(), ReferenceError> {
+    let [over, under] = gear.ratio.map(f64::from);
+    must("ratio of an equivalent gear", over / under, over > under && under > 0.0, "above 1")?;
+    not_negative("lost motion", gear.lost_motion)?;
+    positive("stiffness of an equivalent gear", gear.stiffness)?;
+    not_negative("damping ratio of an equivalent gear", gear.damping_ratio)?;
+    not_negative("inertia of an equivalent gear", gear.inertia_at_input)?;
+    not_negative("rotor inertia", joint.rotor_inertia)?;
+    positive("inertia of rotor and equivalent gear", joint.rotor_inertia + gear.inertia_at_input)?;
+    positive("link inertia behind an equivalent gear", joint.link_inertia)?;
+    positive("characteristic length", joint.characteristic_length)
 }
 
 fn check_mesh(mesh: &Mesh, planets: usize) -> Result<(), ReferenceError> {

@@ -57,6 +57,7 @@ impl Twin<'_> {
     /// Runs it.
     pub fn run(&self) -> Outcome<TwinResult> {
         match self.truth.parameters.geometry.planets {
+            1 => self.run_with::<1>(),
             3 => self.run_with::<3>(),
             4 => self.run_with::<4>(),
             _ => self.run_with::<5>(),

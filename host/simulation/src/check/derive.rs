@@ -6,11 +6,12 @@ use joint_file::{Severity, sheet};
 use model_core::gears::design::modes::natural_frequencies;
 use model_core::gears::design::{Effort, StepSize};
 use model_core::gears::{Kinematics, Mechanics, MeshPhasing, Scales};
-use parameters::{DampingLaw, JointParameters, MESH_KINDS, MeshKind};
+use parameters::{DampingLaw, EquivalentGear, JointParameters, MESH_KINDS, MeshKind};
 
 use super::step::step;
 use super::summary::{
-    CheckSummary, FixedStep, Frequencies, GeometryFigures, Masses, MeshFigures, Numbers, Output, SCHEMA, Warning,
+    CheckSummary, EquivalentFigures, FixedStep, Frequencies, GeometryFigures, Masses, MeshFigures, Numbers, Output,
+    SCHEMA, Warning,
 };
 use joint_file::named::Loaded;
 use report::failure::{Failure, Outcome};
@@ -23,15 +24,17 @@ pub(super) fn arcmin(angle: f64) -> f64 {
 /// The figures of a joint at a step rate [Hz].
 pub fn summary(loaded: &Loaded, rate: u32) -> Outcome<CheckSummary> {
     let parameters = &loaded.file.parameters;
+    let with_teeth = parameters.equivalent_gear().is_none();
     let summary = CheckSummary {
         schema: SCHEMA.to_owned(),
         file: loaded.name.clone(),
         name: parameters.name.to_string(),
         description: loaded.file.description.clone(),
-        geometry: geometry(parameters),
-        equivalent_masses: masses(parameters),
+        equivalent_gear: parameters.equivalent_gear().map(|gear| equivalent(parameters, &gear)),
+        geometry: with_teeth.then(|| geometry(parameters)),
+        equivalent_masses: with_teeth.then(|| masses(parameters)),
         frequencies: frequencies(parameters),
-        meshes: MESH_KINDS.map(|kind| mesh(parameters, kind)),
+        meshes: MESH_KINDS.into_iter().filter(|_| with_teeth).map(|kind| mesh(parameters, kind)).collect(),
         damping_law: match parameters.damping_law {
             DampingLaw::Contact => "contact",
             DampingLaw::Paper => "paper",
@@ -59,6 +62,25 @@ fn first_null(value: &serde_json::Value, path: &str) -> Option<String> {
             fields.iter().find_map(|(key, field)| first_null(field, &format!("{path}.{key}")))
         }
         _ => None,
+    }
+}
+
+fn equivalent(parameters: &JointParameters, gear: &EquivalentGear) -> EquivalentFigures {
+    let [motor_turns, link_turns] = gear.ratio;
+    let ratio = parameters.geometry.ratio_by_teeth();
+    let motor = parameters.rotor_inertia + gear.inertia_at_input;
+    let series = parameters.inertia_in_series();
+    EquivalentFigures {
+        motor_turns,
+        link_turns,
+        ratio,
+        stiffness_N_m_per_rad: gear.stiffness,
+        damping_ratio: gear.damping_ratio,
+        damping_N_m_s_per_rad: 2.0 * gear.damping_ratio * (gear.stiffness * series).sqrt(),
+        gear_inertia_at_input_kg_m2: gear.inertia_at_input,
+        motor_inertia_kg_m2: motor,
+        motor_inertia_at_link_kg_m2: motor * ratio * ratio,
+        link_inertia_kg_m2: parameters.link_inertia,
     }
 }
 
@@ -99,7 +121,8 @@ fn frequencies(parameters: &JointParameters) -> Frequencies {
     Frequencies {
         omega_n_rad_per_s: omega_n,
         omega_n_Hz: omega_n / TAU,
-        gears_alone_Hz: in_hertz(&gears_alone),
+        // Without what is on either side of it an equivalent gear is nothing that swings.
+        gears_alone_Hz: if parameters.equivalent_gear().is_some() { Vec::new() } else { in_hertz(&gears_alone) },
         whole_joint_Hz: in_hertz(parameters),
     }
 }
@@ -138,7 +161,7 @@ fn output(parameters: &JointParameters) -> Output {
     Output {
         rated_torque_N_m: torque,
         balancing_drive_torque_N_m: torque / parameters.geometry.ratio_by_radii(),
-        mesh_force_N: force,
+        mesh_force_N: parameters.equivalent_gear().is_none().then_some(force),
         gap_m: gap,
         lost_motion_rad: lost_motion,
         lost_motion_arcmin: arcmin(lost_motion),

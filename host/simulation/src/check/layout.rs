@@ -3,7 +3,8 @@
 
 use std::fmt::Write;
 
-use super::summary::{CheckSummary, MeshFigures};
+use super::summary::{CheckSummary, EquivalentFigures, GeometryFigures, Masses, MeshFigures};
+use joint_file::sheet;
 use report::document::{Sheet, terminal};
 use report::number::DATA_SHEET;
 
@@ -13,8 +14,15 @@ pub fn layout(summary: &CheckSummary) -> String {
         "" => summary.name.clone(),
         description => format!("{}: {description}", summary.name),
     });
-    gears(&mut page, summary);
-    masses(&mut page, summary);
+    if let Some(gear) = &summary.equivalent_gear {
+        equivalent(&mut page, gear);
+    }
+    if let Some(geometry) = &summary.geometry {
+        gears(&mut page, geometry);
+    }
+    if let Some(bodies) = &summary.equivalent_masses {
+        masses(&mut page, bodies);
+    }
     frequencies(&mut page, summary);
     meshes(&mut page, summary);
     output(&mut page, summary);
@@ -23,8 +31,22 @@ pub fn layout(summary: &CheckSummary) -> String {
     terminal(&page.document())
 }
 
-fn gears(page: &mut Sheet, summary: &CheckSummary) {
-    let geometry = &summary.geometry;
+fn equivalent(page: &mut Sheet, gear: &EquivalentFigures) {
+    page.heading("Equivalent gear, without teeth");
+    page.row("ratio", format!("{:.6} = {} / {} turns", gear.ratio, gear.motor_turns, gear.link_turns));
+    let stiffness = gear.stiffness_N_m_per_rad;
+    let per_arcmin = stiffness * sheet::ARCMIN;
+    page.row("stiffness", format!("{} N m/rad = {} N m/arcmin", digits(stiffness), digits(per_arcmin)));
+    let (ratio, damping) = (gear.damping_ratio, gear.damping_N_m_s_per_rad);
+    page.row("damping", format!("ratio {}, {} N m s/rad", digits(ratio), digits(damping)));
+    page.row("inertia of the gear, at the motor", format!("{} kg m^2", digits(gear.gear_inertia_at_input_kg_m2)));
+    let (own, at_link) = (gear.motor_inertia_kg_m2, gear.motor_inertia_at_link_kg_m2);
+    page.row("rotor and gear", format!("{} kg m^2, {} kg m^2 at the link", digits(own), digits(at_link)));
+    page.row("link", format!("{} kg m^2", digits(gear.link_inertia_kg_m2)));
+    page.row("not in it", "preload and hysteresis, as harmonic drives have; errors of teeth");
+}
+
+fn gears(page: &mut Sheet, geometry: &GeometryFigures) {
     page.heading("Gears");
     page.row("planets", geometry.planets);
     let teeth = [geometry.sun_teeth, geometry.planet_teeth, geometry.ring_teeth];
@@ -38,8 +60,7 @@ fn gears(page: &mut Sheet, summary: &CheckSummary) {
     page.row("ratio by radii", format!("{:.6}", geometry.ratio_by_radii));
 }
 
-fn masses(page: &mut Sheet, summary: &CheckSummary) {
-    let masses = &summary.equivalent_masses;
+fn masses(page: &mut Sheet, masses: &Masses) {
     page.heading("Equivalent masses, I / r^2 on the line of action");
     page.row("sun", format!("{} kg", digits(masses.sun_kg)));
     page.row("sun with rotor", format!("{} kg", digits(masses.sun_with_rotor_kg)));
@@ -52,8 +73,14 @@ fn frequencies(page: &mut Sheet, summary: &CheckSummary) {
     let frequencies = &summary.frequencies;
     page.heading("Frequencies, in contact at mean stiffness");
     let omega_n = (frequencies.omega_n_rad_per_s, frequencies.omega_n_Hz);
-    page.row("omega_n (eq. 18)", format!("{:.1} rad/s = {:.2} Hz", omega_n.0, omega_n.1));
-    page.row("gears alone", hertz(&frequencies.gears_alone_Hz));
+    let with_teeth = summary.equivalent_gear.is_none();
+    page.row(
+        if with_teeth { "omega_n (eq. 18)" } else { "omega_n, motor against link" },
+        format!("{:.1} rad/s = {:.2} Hz", omega_n.0, omega_n.1),
+    );
+    if with_teeth {
+        page.row("gears alone", hertz(&frequencies.gears_alone_Hz));
+    }
     page.row("with rotor and link", hertz(&frequencies.whole_joint_Hz));
 }
 
@@ -87,14 +114,19 @@ fn output(page: &mut Sheet, summary: &CheckSummary) {
     let output = &summary.output;
     page.heading("At the output");
     let torques = (output.rated_torque_N_m, output.balancing_drive_torque_N_m);
-    page.row("rated torque", format!("{} N m, {} N m at the sun", digits(torques.0), digits(torques.1)));
-    page.row("force of one mesh", format!("{} N", digits(output.mesh_force_N)));
-    page.row("gap coordinate, 4b", format!("{} um", digits(1e6 * output.gap_m)));
+    let input = if summary.equivalent_gear.is_some() { "motor" } else { "sun" };
+    page.row("rated torque", format!("{} N m, {} N m at the {input}", digits(torques.0), digits(torques.1)));
+    if let Some(force) = output.mesh_force_N {
+        page.row("force of one mesh", format!("{} N", digits(force)));
+        page.row("gap coordinate, 4b", format!("{} um", digits(1e6 * output.gap_m)));
+    }
     page.row("lost motion", angle(output.lost_motion_rad, output.lost_motion_arcmin));
-    page.row("lost motion at the sun", format!("{:.3} mrad", 1e3 * output.lost_motion_at_sun_rad));
+    page.row(&format!("lost motion at the {input}"), format!("{:.3} mrad", 1e3 * output.lost_motion_at_sun_rad));
     page.row("wind-up at rated torque", angle(output.wind_up_rad, output.wind_up_arcmin));
-    let parts = [output.wind_up_of_teeth_rad, output.wind_up_of_compliance_rad].map(|part| 1e3 * part);
-    page.row("  teeth, compliance", format!("{:.4}, {:.4} mrad", parts[0], parts[1]));
+    if summary.equivalent_gear.is_none() {
+        let parts = [output.wind_up_of_teeth_rad, output.wind_up_of_compliance_rad].map(|part| 1e3 * part);
+        page.row("  teeth, compliance", format!("{:.4}, {:.4} mrad", parts[0], parts[1]));
+    }
 }
 
 fn step(page: &mut Sheet, summary: &CheckSummary) {

@@ -18,6 +18,7 @@ pub(super) struct Step {
 /// The step at `rate` [Hz].
 pub(super) fn step(parameters: &JointParameters, rate: u32) -> Result<Step, DesignError> {
     match parameters.geometry.planets {
+        1 => of_size::<1>(parameters, rate),
         3 => of_size::<3>(parameters, rate),
         4 => of_size::<4>(parameters, rate),
         _ => of_size::<5>(parameters, rate),

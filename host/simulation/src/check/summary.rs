@@ -18,14 +18,19 @@ pub struct CheckSummary {
     pub name: String,
     /// From the file; may be empty.
     pub description: String,
-    /// Teeth, radii, ratio.
-    pub geometry: GeometryFigures,
-    /// Masses along the line of action.
-    pub equivalent_masses: Masses,
+    /// Ratio, stiffness, damping and inertias of an equivalent gear, in place of all that teeth have.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub equivalent_gear: Option<EquivalentFigures>,
+    /// Teeth, radii, ratio; not of an equivalent gear.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub geometry: Option<GeometryFigures>,
+    /// Masses along the line of action; not of an equivalent gear.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub equivalent_masses: Option<Masses>,
     /// omega_n and natural frequencies.
     pub frequencies: Frequencies,
-    /// Sun-planet, then ring-planet.
-    pub meshes: [MeshFigures; 2],
+    /// Sun-planet, then ring-planet; none of an equivalent gear.
+    pub meshes: Vec<MeshFigures>,
     /// `contact` or `paper`.
     pub damping_law: &'static str,
     /// What the output does under load and when it is turned by hand.
@@ -36,6 +41,28 @@ pub struct CheckSummary {
     pub numbers: Numbers,
     /// What is odd but can be used.
     pub warnings: Vec<Warning>,
+}
+
+/// An equivalent gear with what is on either side of it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[allow(missing_docs, non_snake_case, reason = "names and units say it")]
+pub struct EquivalentFigures {
+    pub motor_turns: u32,
+    pub link_turns: u32,
+    /// The first over the second.
+    pub ratio: f64,
+    pub stiffness_N_m_per_rad: f64,
+    pub damping_ratio: f64,
+    /// C = 2 zeta sqrt(K J), J both sides in series at the link.
+    pub damping_N_m_s_per_rad: f64,
+    /// Of the gear alone, at the motor.
+    pub gear_inertia_at_input_kg_m2: f64,
+    /// Rotor and gear, at the motor.
+    pub motor_inertia_kg_m2: f64,
+    /// The same, at the link.
+    pub motor_inertia_at_link_kg_m2: f64,
+    pub link_inertia_kg_m2: f64,
 }
 
 /// Teeth, radii, ratio.
@@ -84,7 +111,7 @@ pub struct Frequencies {
     pub omega_n_rad_per_s: f64,
     /// omega_n / 2 pi.
     pub omega_n_Hz: f64,
-    /// Gears alone, as the paper has them; the rigid body's zero left out.
+    /// Gears alone, as the paper has them; the rigid body's zero left out. None of an equivalent gear.
     pub gears_alone_Hz: Vec<f64>,
     /// With rotor, link and compliance; the rigid body's zero left out.
     pub whole_joint_Hz: Vec<f64>,
@@ -120,9 +147,11 @@ pub struct Output {
     pub rated_torque_N_m: f64,
     /// At the sun, in balance with the rated torque by the ratio of radii.
     pub balancing_drive_torque_N_m: f64,
-    /// Force of one mesh at rated torque, shared alike.
-    pub mesh_force_N: f64,
-    /// Span of the gap coordinate u_s - 2 u_c while every mesh is free: 4 b.
+    /// Force of one mesh at rated torque, shared alike; not of an equivalent gear.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mesh_force_N: Option<f64>,
+    /// Span of the gap coordinate u_s - 2 u_c while every mesh is free: 4 b. Of an equivalent gear, which has no line of
+    /// action, on a lever of 1 m at the link.
     pub gap_m: f64,
     /// With the sun held, the link turns this far without resistance.
     pub lost_motion_rad: f64,

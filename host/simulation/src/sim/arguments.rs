@@ -17,7 +17,7 @@ use report::failure::{Failure, Outcome};
 
 Exit code: 0 if the run came to its end, 2 for bad input or a bad environment, 130 after Ctrl-C.")]
 pub struct Arguments {
-    /// Joint file (TOML), or the name of a preset: q1, s1, d2, l1, paper, paper_printed
+    /// Joint file (TOML), or the name of a preset: q1, s1, d2, l1, c1, paper, paper_printed
     #[arg(value_name = "FILE", default_value = "q1")]
     pub file: PathBuf,
     /// Scheme that moves the joint

@@ -169,9 +169,11 @@ fn with_scheme<R>(
         return work(&mut ByReference { run, reference });
     };
     match (run.joint.geometry.planets, run.double) {
+        (1, false) => with_core::<f32, 1, R>(run, scheme, work),
         (3, false) => with_core::<f32, 3, R>(run, scheme, work),
         (4, false) => with_core::<f32, 4, R>(run, scheme, work),
         (5, false) => with_core::<f32, 5, R>(run, scheme, work),
+        (1, true) => with_core::<f64, 1, R>(run, scheme, work),
         (3, true) => with_core::<f64, 3, R>(run, scheme, work),
         (4, true) => with_core::<f64, 4, R>(run, scheme, work),
         (5, true) => with_core::<f64, 5, R>(run, scheme, work),
@@ -197,6 +199,7 @@ fn tables<T: Real, const N: usize>(run: &SimulationSpec, scheme: Scheme) -> Outc
         let failure = Failure::new(format!("joint `{name}` cannot be designed for {} Hz: {error}", run.tick_rate));
         match error {
             DesignError::RateTooLow { lowest, .. } => failure.with_help(format!("add --rate {lowest} or more")),
+            DesignError::OneSchemeOnly => failure.with_help("leave --scheme out, or give --scheme reference"),
             _ => failure,
         }
     })

@@ -51,7 +51,7 @@ map: the same bytes whatever the number of threads and shards.
 
 Exit code: 0 if all points are there, 2 for bad input or a bad environment, 130 after Ctrl-C.")]
 pub struct Arguments {
-    /// Joint file (TOML), or the name of a preset: q1, s1, d2, l1, paper, paper_printed
+    /// Joint file (TOML), or the name of a preset: q1, s1, d2, l1, c1, paper, paper_printed
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
     /// Key of the joint file with its values, as from:to:step or as a list with commas; repeated for more axes

@@ -33,6 +33,12 @@ impl Body {
         let striking = joint.bodies.sun_equivalent_mass + joint.rotor_inertia / geometry.sun_base_radius.powi(2);
         let struck = planets * planet;
         let reduced = striking * struck / (striking + struck);
+        // An equivalent gear has nothing that hangs loose: what is struck is the link.
+        let strike_impedance = match joint.equivalent_gear() {
+            Some(gear) => libm::sqrt(gear.stiffness * joint.inertia_in_series()),
+            // Bodies that meet at a speed press with that speed times sqrt(stiffness mass).
+            None => libm::sqrt(planets * stiffness * reduced) * 4.0 * lever * lever,
+        };
         Self {
             gear,
             lever,
@@ -40,8 +46,7 @@ impl Body {
             motor: gear * gear * (joint.rotor_inertia + sun),
             load: (planets * planet + joint.carrier_equivalent_mass()) * lever * lever + joint.link_inertia,
             stiffness: 1.0 / twist,
-            // Bodies that meet at a speed press with that speed times sqrt(stiffness mass).
-            strike_impedance: libm::sqrt(planets * stiffness * reduced) * 4.0 * lever * lever,
+            strike_impedance,
         }
     }
 }

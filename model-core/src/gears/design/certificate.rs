@@ -35,6 +35,10 @@ const CHANGING_CONTACT: Fit = Fit { floor: [5e-5, 1.5e-3], factor: [5.2e-4, 3.9e
 const LINEAR_CONTACT: Fit = Fit { floor: [1e-5, 2e-4], factor: [7.5e-4, 8e-3] };
 const VERLET_PAPER: Fit = Fit { floor: [1e-5, 1e-4], factor: [1.2e-3, 6.5e-3] };
 const VERLET_CONTACT: Fit = Fit { floor: [5e-5, 1.5e-3], factor: [2.2e-3, 1.5e-2] };
+/// An equivalent gear: while its contact holds nothing is left but rounding; where it changes, parts of a tick are of fifth
+/// order in the contact's phase. Fit over 490 random gears and motions (f32 against the reference).
+const EQUIVALENT_HOLDS: Fit = Fit { floor: [5e-7, 1e-5], factor: [0.0, 0.0] };
+const EQUIVALENT_CHANGES: Fit = Fit { floor: [5e-7, 1e-5], factor: [1e-4, 5e-3] };
 /// Joints whose teeth are damped less are taken as damped so much: the fit knows none.
 const LEAST_DAMPING: f64 = 0.02;
 /// What errors of excitation add to the ripple.
@@ -127,6 +131,9 @@ fn contact_holds(
     tick_rate: u32,
     substeps: Substeps,
 ) -> ErrorQuantiles {
+    if parameters.equivalent_gear().is_some() {
+        return EQUIVALENT_HOLDS.at(0.0);
+    }
     let phase = step_size.phase(tick_rate, substeps.count());
     if step_size.mesh_frequency() > LARGEST_ADVANCE * TAU * f64::from(tick_rate) {
         return FAST.at(libm::pow(phase, 3.0) * coarse(phase));
@@ -143,6 +150,9 @@ fn contact_holds(
 }
 
 fn contact_changes(parameters: &JointParameters, phase: f64, substeps: Substeps) -> ErrorQuantiles {
+    if parameters.equivalent_gear().is_some() {
+        return EQUIVALENT_CHANGES.at(libm::pow(phase, 4.0));
+    }
     let (fit, order) = match (substeps, parameters.damping_law) {
         (Substeps::Corrected(_), DampingLaw::Paper) => (CHANGING_PAPER, 3.0),
         (Substeps::Corrected(_), DampingLaw::Contact) => (CHANGING_CONTACT, 3.0),
@@ -161,6 +171,7 @@ fn sizes(planets: usize) -> (u32, u32) {
         (size_of::<Tables<f32, N>>() as u32, size_of::<Model<'_, f32, N>>() as u32)
     }
     match planets {
+        1 => of::<1>(),
         3 => of::<3>(),
         4 => of::<4>(),
         _ => of::<5>(),

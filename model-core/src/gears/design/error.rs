@@ -32,6 +32,8 @@ pub enum DesignError {
         /// The lowest rate that works [Hz].
         lowest: u32,
     },
+    /// A scheme of planets' meshes for a gear without them.
+    OneSchemeOnly,
     /// A number does not fit into single precision.
     NotRepresentable {
         /// Which table.
@@ -50,6 +52,7 @@ impl fmt::Display for DesignError {
             Self::RateTooLow { given, lowest } => {
                 write!(formatter, "a tick rate of {given} Hz is too low for this joint: use {lowest} Hz or more")
             }
+            Self::OneSchemeOnly => formatter.write_str("an equivalent gear has one scheme, the board's"),
             Self::NotRepresentable { what } => write!(
                 formatter,
                 "{what} does not fit into single precision: look for a parameter that is orders of magnitude off"

@@ -5,6 +5,7 @@
 mod certificate;
 mod cost;
 pub mod dynamics;
+mod equivalent;
 mod error;
 pub mod exponential;
 mod flow_tables;

@@ -2,14 +2,19 @@
 //! hold against closed forms. Computed in absolute coordinates, where mass and stiffness are symmetric.
 
 use nalgebra::{DMatrix, DVector};
+use std::vec;
 use std::vec::Vec;
 
 use crate::gears::design::dynamics::MovingMasses;
 use crate::gears::kinematics::Kinematics;
+use crate::gears::scales::Scales;
 use parameters::JointParameters;
 
 /// Natural frequencies in rising order, the rigid body's zero first [rad/s].
 pub fn natural_frequencies(parameters: &JointParameters) -> Vec<f64> {
+    if parameters.equivalent_gear().is_some() {
+        return vec![0.0, Scales::new(parameters).frequency];
+    }
     let planets = parameters.geometry.planets;
     let masses = MovingMasses::new(parameters);
     let size = planets + 2 + usize::from(masses.link.is_some());

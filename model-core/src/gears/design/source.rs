@@ -35,6 +35,7 @@ pub fn rust_source_for(
     processor: &Processor,
 ) -> Result<String, DesignError> {
     match parameters.geometry.planets {
+        1 => source::<1>(parameters, tick_rate, processor),
         3 => source::<3>(parameters, tick_rate, processor),
         4 => source::<4>(parameters, tick_rate, processor),
         5 => source::<5>(parameters, tick_rate, processor),

@@ -5,6 +5,7 @@ use core::array;
 
 pub use crate::gears::certificate::Substeps;
 use crate::gears::design::cost::Cost;
+use crate::gears::design::equivalent;
 use crate::gears::design::error::DesignError;
 use crate::gears::design::modes;
 use crate::gears::design::processor::Processor;
@@ -51,6 +52,8 @@ pub struct StepSize {
     /// Prescribed mesh frequency; zero in `angle` mode, where the joint's speed keeps it far below the modes [rad/s].
     mesh_frequency: f64,
     cost: Cost,
+    /// Changes of contact are followed within a whole tick, as those of an equivalent gear are: there are no sub-steps.
+    whole: bool,
     /// The dead zone is sharp; Verlet sub-steps are for no other.
     sharp: bool,
     /// Phase of the fastest mode that a sub-step may have, by the number of sub-steps of a tick from 1 on [rad].
@@ -69,6 +72,7 @@ impl StepSize {
         let relaxations =
             MESH_KINDS.map(|kind| parameters.damping_coefficient(kind) / parameters.mesh(kind).mean_stiffness);
         let damping_ratio = 0.5 * fastest * relaxations[0].max(relaxations[1]);
+        let whole = parameters.equivalent_gear().is_some();
         // Ticks may each begin anew, or go on from one another without end.
         let without_end = stability::largest_phase(damping_ratio, stability::WITHOUT_END);
         Self {
@@ -78,6 +82,7 @@ impl StepSize {
                 Excitation::Angle => 0.0,
             },
             cost: Cost::new(parameters),
+            whole,
             sharp: parameters.dead_zone == DeadZone::Sharp,
             largest_phases: array::from_fn(|i| without_end.min(stability::largest_phase(damping_ratio, i as u32 + 1))),
             largest_verlet_phase: stability::largest_verlet_phase(damping_ratio),
@@ -86,6 +91,10 @@ impl StepSize {
 
     /// Corrected sub-steps of a tick.
     pub fn corrected_substeps(&self, tick_rate: u32, effort: Effort) -> Result<u32, DesignError> {
+        if self.whole {
+            let lowest = self.lowest_rate(effort);
+            return if tick_rate < lowest { Err(DesignError::RateTooLow { given: tick_rate, lowest }) } else { Ok(1) };
+        }
         if let Effort::Substeps(substeps) | Effort::Verlet(substeps) = effort {
             return Ok(substeps.clamp(1, MOST_SUBSTEPS as u32));
         }
@@ -115,6 +124,9 @@ impl StepSize {
     /// processor has time for them or they are the cheaper of two that it has no time for.
     pub fn substeps(&self, tick_rate: u32, effort: Effort) -> Result<Substeps, DesignError> {
         let substeps = self.corrected_substeps(tick_rate, effort)?;
+        if self.whole {
+            return Ok(Substeps::Corrected(substeps));
+        }
         let processor = match effort {
             Effort::Board => Processor::STM32F405,
             Effort::Within(processor) => processor,
@@ -131,6 +143,9 @@ impl StepSize {
 
     /// Lowest tick rate that is accepted [Hz].
     pub fn lowest_rate(&self, effort: Effort) -> u32 {
+        if self.whole {
+            return libm::ceil(self.fastest / equivalent::LARGEST_PHASE).max(1.0) as u32;
+        }
         let reach = (1..).zip(self.largest_phases).map(|(substeps, largest)| f64::from(substeps) * MARGIN * largest);
         let stable = self.fastest / reach.fold(0.0, f64::max);
         let wanted = match effort {
@@ -142,12 +157,18 @@ impl StepSize {
 
     /// Lowest tick rate at which the usual number of sub-steps resolves everything [Hz].
     pub fn recommended_rate(&self) -> u32 {
+        if self.whole {
+            return libm::ceil(self.fastest / GOOD_PHASE).max(1.0) as u32;
+        }
         let wanted = (self.fastest / GOOD_PHASE).max(self.mesh_frequency / EXCITATION_PHASE);
         libm::ceil(wanted / USUAL_SUBSTEPS).max(1.0) as u32
     }
 
     /// Phase of the fastest mode in a sub-step from which on a tick of such sub-steps is unstable [rad].
     pub fn largest_phase(&self, substeps: Substeps) -> f64 {
+        if self.whole {
+            return equivalent::LARGEST_PHASE;
+        }
         match substeps {
             Substeps::Corrected(substeps) => self.largest_phases[(substeps.max(1) as usize - 1).min(MOST_SUBSTEPS - 1)],
             Substeps::Verlet(_) => self.largest_verlet_phase,

@@ -7,7 +7,7 @@ use crate::gears::design::dynamics::{Dynamics, MovingMasses};
 use crate::gears::design::error::DesignError;
 use crate::gears::design::step_size::{Effort, StepSize, Substeps};
 use crate::gears::design::validate::validate;
-use crate::gears::design::{flow_tables, verlet_tables};
+use crate::gears::design::{equivalent, flow_tables, verlet_tables};
 use crate::gears::kinematics::Kinematics;
 use crate::gears::mechanics::Mechanics;
 use crate::gears::mesh_phases::MeshPhasing;
@@ -49,6 +49,16 @@ pub fn design_scheme<T: Real, const N: usize>(
     let planets = parameters.geometry.planets;
     if planets != N {
         return Err(DesignError::WrongPlanetCount { wanted: N, given: planets });
+    }
+    if parameters.equivalent_gear().is_some() {
+        if scheme != Scheme::Realtime {
+            return Err(DesignError::OneSchemeOnly);
+        }
+        StepSize::new(parameters).corrected_substeps(tick_rate, effort)?;
+        let units = units(parameters, &Scales::new(parameters), tick_rate);
+        let mut tables = equivalent::tables(parameters, tick_rate, units, rigid(parameters, tick_rate));
+        tables.digest = tables.numbers_digest();
+        return Ok(tables);
     }
     let scales = Scales::new(parameters);
     let dynamics = Dynamics::new(parameters, &scales);

@@ -1,0 +1,8 @@
+//! Equivalent gears: the core against the independent reference on random joints, both against closed forms and balances,
+//! and what is refused.
+
+mod balances;
+mod closed_forms;
+mod random;
+mod reference_and_core;
+mod refused;

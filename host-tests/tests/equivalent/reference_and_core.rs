@@ -1,0 +1,92 @@
+//! The core beside the independent reference, tick by tick.
+
+use host_tests::tolerance::equivalent;
+use model_core::gears::design::{Effort, Processor, certificate, design};
+use model_core::gears::{Model, Tables, Torques};
+use model_core::numbers::Real;
+use reference::joint::{Reference, RelativeState, Start};
+
+use crate::random::{Motion, motion};
+
+/// Seeds of random joints at each tick rate.
+const SEEDS: u64 = 40;
+
+/// Motions in which a change of the start grows more are left out: they judge the motion instead of the step.
+const PREDICTABLE: f64 = 30.0;
+
+/// The gap in the reference after each tick, when it starts so far off its middle [m].
+fn in_reference(motion: &Motion, offset: f64) -> Vec<f64> {
+    let sun_planet = [0.5 * offset].into_iter().collect();
+    let start = RelativeState { gap: offset, sun_planet, ..RelativeState::centred(1) };
+    let mut reference = Reference::start(&motion.joint, &Start::Relative(start)).expect("a sound joint");
+    let mut seen = vec![reference.observe().gap];
+    for tick in 0..motion.ticks {
+        let (drive, load) = motion.torques_at(tick);
+        let end = f64::from(tick + 1) / f64::from(motion.tick_rate);
+        reference.advance(end, drive, load).expect("a motion that can be integrated");
+        seen.push(reference.observe().gap);
+    }
+    seen
+}
+
+/// The gap in the core after each tick [m].
+fn in_core<T: Real>(motion: &Motion) -> Vec<f64> {
+    let tables: Tables<T, 1> = design(&motion.joint, motion.tick_rate).expect("a joint that can be stepped");
+    let mut model = Model::new(&tables);
+    let mut seen = vec![model.outputs().gap.to_f64()];
+    for tick in 0..motion.ticks {
+        let (drive, load) = motion.torques_at(tick);
+        model.step(Torques { drive: T::from_f64(drive), load: T::from_f64(load) });
+        seen.push(model.outputs().gap.to_f64());
+    }
+    seen
+}
+
+fn rms(values: impl Iterator<Item = f64> + Clone) -> f64 {
+    let count = values.clone().count() as f64;
+    (values.map(|value| value * value).sum::<f64>() / count).sqrt()
+}
+
+fn difference(one: &[f64], other: &[f64]) -> f64 {
+    rms(one.iter().zip(other).map(|(one, other)| one - other))
+}
+
+/// Errors of f32 and f64 over the gap's own size; none of a motion that cannot be predicted.
+fn errors(motion: &Motion) -> Option<[f64; 2]> {
+    let right = in_reference(motion, 0.0);
+    let nudge = 1e-9 * motion.joint.characteristic_length;
+    let growth = difference(&right, &in_reference(motion, nudge)) / nudge;
+    let scale = rms(right.iter().copied());
+    let found = [in_core::<f32>(motion), in_core::<f64>(motion)];
+    (growth < PREDICTABLE).then(|| found.map(|found| difference(&found, &right) / scale))
+}
+
+#[test]
+fn random_equivalent_gears_follow_the_reference_at_every_rate() {
+    for tick_rate in [10_000, 20_000, 40_000] {
+        let motions = (0..SEEDS).map(|seed| motion(seed + u64::from(tick_rate), tick_rate));
+        let all: Vec<[f64; 2]> = motions.filter_map(|motion| errors(&motion)).collect();
+        assert!(all.len() >= 30, "{} motions at {tick_rate} Hz can be predicted", all.len());
+        let worst = |which: usize| all.iter().map(|error| error[which]).fold(0.0, f64::max);
+        println!("{tick_rate} Hz, {} motions:", all.len());
+        equivalent::RANDOM.check(worst(0));
+        equivalent::RANDOM_DOUBLE.check(worst(1));
+    }
+}
+
+#[test]
+fn nine_errors_in_ten_are_below_what_the_certificate_says() {
+    let mut within = [0, 0];
+    let mut all = 0;
+    for seed in 1000..1120 {
+        let motion = motion(seed, 20_000);
+        let Some([error, _]) = errors(&motion) else { continue };
+        let promise = certificate(&motion.joint, 20_000, Effort::Board, &Processor::STM32F405).expect("a sound joint");
+        assert_eq!(promise.substeps.count(), 1);
+        all += 1;
+        within[0] += usize::from(error <= promise.contact_changes.typical);
+        within[1] += usize::from(error <= promise.contact_changes.nine_in_ten);
+    }
+    println!("{within:?} of {all} motions");
+    assert!(10 * within[0] >= 4 * all && 10 * within[1] >= 9 * all, "{within:?} of {all}");
+}

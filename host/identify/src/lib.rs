@@ -153,6 +153,15 @@ fn identify(arguments: &Arguments, prior: &PriorModel) -> Outcome<Identified> {
     let path = arguments.log.as_path();
     let read = Log::read(arguments, prior)?;
     let in_the_file = |failure: Failure| failure.while_doing(path.display());
+    if prior.equivalent && read.output_torque.is_none() {
+        return Err(in_the_file(Failure::new(
+            "an equivalent gear is not identified by its motor's torque: intervals missed in simulated logs",
+        ))
+        .with_help(
+            "log the torque between gear and link as output_torque_N_m, or record a slow log: --quasi-static finds lost \
+             motion, hysteresis and friction",
+        ));
+    }
     let shortest = QUICK_BOX.min(prior.swing() / SWING_PARTS);
     contradictions::angles(&read, prior)
         .and_then(|()| contradictions::torques(&read, prior, shortest))

@@ -208,6 +208,39 @@ fn a_torque_measured_at_the_output_tells_the_motor_s_friction_from_the_link_s() 
     }
 }
 
+#[test]
+fn an_equivalent_gear_is_identified_with_the_torque_at_its_output_and_refused_without() {
+    let folder = folder();
+    let [log, without, out] = ["log.csv", "without.csv", "out"].map(|name| folder.path().join(name));
+    let sets = ["--set", "drive_train.motor_encoder.once_per_turn_error_deg=0.1"];
+    let common = ["identify", text(&log), "--joint", "c1"];
+    joint(&[&common[..], &["--simulate", "--with-output-torque", "--seed", "5"], &sets].concat()).well();
+    joint(&[&common[..], &["--out", text(&out)]].concat()).well();
+    let record = json(&out.join("findings.json"));
+    let lost_motion = 3.0_f64.to_radians() / 60.0 * 1e3;
+    let stiffness = 20.0 * 60.0_f64.to_degrees();
+    for (key, truth, share) in [
+        ("equivalent_gear.lost_motion_mrad", lost_motion, 0.01),
+        ("equivalent_gear.stiffness_N_m_per_rad", stiffness, 0.01),
+        ("equivalent_gear.damping_ratio", 0.05, 0.05),
+        (MOTOR_ONCE, 0.1, 0.02),
+    ] {
+        let (_, [low, high]) = found(&record, key).unwrap_or_else(|| panic!("{key} is not found"));
+        assert!(
+            (low..=high).contains(&truth) && high - low < 2.0 * share * truth,
+            "{key}: {low} to {high}, truly {truth}"
+        );
+    }
+    joint(&["identify", text(&without), "--joint", "c1", "--simulate"]).well();
+    let out = folder.path().join("nothing");
+    joint(&["identify", text(&without), "--joint", "c1", "--out", text(&out)]).refused(&[
+        "not identified by its motor's torque",
+        "output_torque_N_m",
+        "--quasi-static",
+    ]);
+    assert!(!out.exists(), "a refused log leaves nothing");
+}
+
 /// A log of a motor that turns evenly but for what a row may change: time, motor counts, output counts, torque.
 fn log(folder: &Path, change: impl Fn(usize, &mut [String; 4])) -> Ended {
     let mut text = "time_s,motor_counts,output_counts,motor_torque_N_m\n".to_owned();

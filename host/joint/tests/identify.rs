@@ -209,6 +209,20 @@ fn a_torque_measured_at_the_output_tells_the_motor_s_friction_from_the_link_s() 
 }
 
 #[test]
+fn teeth_that_bounce_on_for_long_bend_neither_gap_nor_stiffness() {
+    let folder = folder();
+    let [log, out] = ["log.csv", "out"].map(|name| folder.path().join(name));
+    let common = ["identify", text(&log), "--joint", "l1", "--motor-bits", "14", "--output-bits", "18"];
+    joint(&[&common[..], &["--simulate", "--set", "mesh.half_backlash_um=79.49222113134289"]].concat()).well();
+    joint(&[&common[..], &["--out", text(&out)]].concat()).well();
+    let record = json(&out.join("findings.json"));
+    for (key, truth) in [(BACKLASH, 79.492_221), ("mesh.mean_stiffness_N_per_m", 1e8)] {
+        let (_, [low, high]) = found(&record, key).unwrap_or_else(|| panic!("{key} is not found"));
+        assert!((low..=high).contains(&truth), "{key}: {low} to {high}, truly {truth}");
+    }
+}
+
+#[test]
 fn an_equivalent_gear_is_identified_with_the_torque_at_its_output_and_refused_without() {
     let folder = folder();
     let [log, without, out] = ["log.csv", "without.csv", "out"].map(|name| folder.path().join(name));

@@ -7,6 +7,7 @@ use toml::de::DeTable;
 
 use crate::board::{Board, ExternalClock, Level, Output, Serial, SpiSlave};
 use crate::chip::{Chip, Part, SerialUnit, SpiUnit};
+use crate::lines;
 use crate::pins::Pins;
 use crate::pll::Plls;
 use crate::section::Section;
@@ -55,6 +56,8 @@ fn read_table(top: &Section<'_>) -> Option<Board> {
     let pins = Pins::new(part, clock);
     let serial = top.required_section("serial").and_then(|section| read_serial(&section, part, &pins));
     let spi_slave = optional(top, "spi_slave", |section| read_spi_slave(section, part, &pins));
+    let can = optional(top, "can", |section| lines::read_can(section, part, &pins));
+    let encoders = optional(top, "encoder", |section| lines::read_encoders(section, part, &pins));
     let supply = optional(top, "supply", |section| read_output(section, &pins));
     let enable = optional(top, "enable", |section| read_output(section, &pins));
     let light = optional(top, "light", |section| read_output(section, &pins));
@@ -78,6 +81,8 @@ fn read_table(top: &Section<'_>) -> Option<Board> {
         pll: Plls { external, internal: part.chip.internal_pll() },
         serial: serial?,
         spi_slave: spi_slave?,
+        can: can?,
+        encoders: encoders?.unwrap_or_default(),
         supply: supply?,
         enable: enable?,
         light: light?,
@@ -214,11 +219,17 @@ fn read_serial(section: &Section<'_>, part: Option<Part>, pins: &Pins) -> Option
 }
 
 /// Complains about a unit that the chip does not have, or not for this.
-fn no_unit<T>(section: &Section<'_>, name: &str, part: Part, units: &[&str], why: Option<&str>) -> Option<T> {
+pub(crate) fn no_unit<T>(
+    section: &Section<'_>,
+    name: &str,
+    part: Part,
+    units: &[&str],
+    why: Option<&str>,
+) -> Option<T> {
     let chip = part.chip.name().to_uppercase();
     let message = match why {
         Some(why) => format!("{name} of {chip} cannot be used: {why}"),
-        None => format!("{chip} has no {name} for [{}]", section.schema),
+        None => format!("{chip} has no {name} for [{}]", section.path),
     };
     section.notes.error(section.place("unit"), message, format!("use {}", listed_as(units, '"', "or")));
     None

@@ -6,8 +6,7 @@ use joint_file::wording::listed;
 use crate::board::{Can, Encoder, EncoderPins};
 use crate::chip::{CanUnit, Part, TimerUnit};
 use crate::pin::Pin;
-use crate::pins::Pins;
-use crate::reader::no_unit;
+use crate::pins::{Pins, no_unit};
 use crate::section::Section;
 
 /// Keys of an encoder that answers on SPI, and of one that sends pulses.

@@ -3,6 +3,7 @@
 use std::cell::RefCell;
 use std::ops::Range;
 
+use joint_file::wording::listed_as;
 use joint_file::{Notes, Severity};
 
 use crate::board::ExternalClock;
@@ -24,6 +25,23 @@ struct Use {
     span: Range<usize>,
     /// Unit and wire of a bus that several may be on.
     bus: Option<(&'static str, String)>,
+}
+
+/// Complains about a unit that the chip does not have, or not for this.
+pub(crate) fn no_unit<T>(
+    section: &Section<'_>,
+    name: &str,
+    part: Part,
+    units: &[&str],
+    why: Option<&str>,
+) -> Option<T> {
+    let chip = part.chip.name().to_uppercase();
+    let message = match why {
+        Some(why) => format!("{name} of {chip} cannot be used: {why}"),
+        None => format!("{chip} has no {name} for [{}]", section.path),
+    };
+    section.notes.error(section.place("unit"), message, format!("use {}", listed_as(units, '"', "or")));
+    None
 }
 
 /// Reads pins, and keeps what they are used for.

@@ -1,14 +1,13 @@
 //! Reads a whole board file: parses, takes the sections' values, holds them against the chip, and gives either the board with
 //! its warnings or everything that is wrong at once.
 
-use joint_file::wording::listed_as;
 use joint_file::{Notes, Problem};
 use toml::de::DeTable;
 
 use crate::board::{Board, ExternalClock, Level, Output, Serial, SpiSlave};
 use crate::chip::{Chip, Part, SerialUnit, SpiUnit};
 use crate::lines;
-use crate::pins::Pins;
+use crate::pins::{Pins, no_unit};
 use crate::pll::Plls;
 use crate::section::Section;
 
@@ -216,23 +215,6 @@ fn read_serial(section: &Section<'_>, part: Option<Part>, pins: &Pins) -> Option
     let (unit, baud) = (unit?, baud?);
     check_baud(section, unit, baud);
     Some(Serial { unit: unit.name, clock: unit.clock, send: send?, receive: receive?, baud })
-}
-
-/// Complains about a unit that the chip does not have, or not for this.
-pub(crate) fn no_unit<T>(
-    section: &Section<'_>,
-    name: &str,
-    part: Part,
-    units: &[&str],
-    why: Option<&str>,
-) -> Option<T> {
-    let chip = part.chip.name().to_uppercase();
-    let message = match why {
-        Some(why) => format!("{name} of {chip} cannot be used: {why}"),
-        None => format!("{chip} has no {name} for [{}]", section.path),
-    };
-    section.notes.error(section.place("unit"), message, format!("use {}", listed_as(units, '"', "or")));
-    None
 }
 
 /// Complains about a speed that the unit cannot make.

@@ -114,12 +114,15 @@ impl Board<'_> {
     }
 
     /// Begins the image as a bootloader does that jumps to it: with the vectors still those of the bootloader, whose tick runs,
-    /// interrupts masked, and some of them left pending.
-    pub fn jump_from(&mut self, bootloader: u32, pending: &[usize]) {
+    /// interrupts masked, and some of them left on and pending.
+    pub fn jump_from(&mut self, bootloader: u32, left: &[usize]) {
         self.set(RegisterARM::PRIMASK, 1);
         let machine = self.core.get_data_mut();
         machine.scs.vectors = bootloader;
-        pending.iter().for_each(|line| machine.scs.pend(FIRST_INTERRUPT + line));
+        for line in left {
+            machine.write(0xe000_e100 + 4 * (*line as u32 / 32), 4, 1 << (line % 32));
+            machine.scs.pend(FIRST_INTERRUPT + line);
+        }
         for (register, value) in [(0xe000_e014, BOOTLOADER_TICK), (0xe000_e018, 0), (0xe000_e010, 0b111)] {
             machine.write(register, 4, value);
         }

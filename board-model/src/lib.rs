@@ -1,6 +1,7 @@
 //! STM32F405, STM32G474 and STM32H743 at the level of registers, written from their reference manuals and not from the
 //! firmware: runs the images that ship, and notes every step over a rule.
 
+pub mod as5047p;
 pub mod blocks;
 pub mod boards;
 pub mod checks;

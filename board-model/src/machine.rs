@@ -1,5 +1,7 @@
 //! A chip without its core: memory map, peripherals in their places, and the rules of access that hold for all of them.
 
+use std::collections::BTreeMap;
+
 use crate::peripherals::Peripheral;
 use crate::peripherals::dma::Transfer;
 use crate::register::Register;
@@ -91,6 +93,8 @@ pub struct Machine {
     pub returning: Option<u32>,
     /// What ended the emulation for good.
     pub halted: Option<String>,
+    /// Clocks that were switched on and whose register has not been read back: offsets in the clock controller, and bits.
+    rising: BTreeMap<u32, u32>,
     /// Mistakes that were planted.
     pub tampers: &'static [Tamper],
     /// One more block is run before anything else.
@@ -118,6 +122,7 @@ impl Machine {
             resets: Vec::new(),
             returning: None,
             halted: None,
+            rising: BTreeMap::new(),
             tampers: &[],
             go_on: false,
             stopped: false,
@@ -212,6 +217,7 @@ impl Machine {
         self.scs = Scs::new(self.chip.is_m7);
         self.wires.interrupts.clear();
         self.wires.gates.clear();
+        self.rising.clear();
         self.wires.routes.clear();
         self.wires.requests.clear();
         self.wires.served.clear();
@@ -231,7 +237,7 @@ impl Machine {
 
     /// A read outside of memory.
     pub fn read(&mut self, address: u32, size: u32) -> u64 {
-        self.wires.now = self.time();
+        (self.wires.now, self.wires.width) = (self.time(), size);
         if PRIVATE.contains(&address) {
             return self.scs.read(address, size, self.cycles, &mut self.wires).into();
         }
@@ -243,6 +249,9 @@ impl Machine {
         }
         let Some((place, offset)) = self.find(address, "read") else { return 0 };
         let Some(register) = self.check(place, offset, size, "read") else { return 0 };
+        if place == CLOCK_CONTROLLER {
+            self.rising.remove(&register.offset);
+        }
         let placed = &mut self.chip.peripherals[place];
         let value = placed.peripheral.read(register.offset, &mut self.wires);
         self.look();
@@ -271,7 +280,7 @@ impl Machine {
 
     /// A write outside of memory.
     pub fn write(&mut self, address: u32, size: u32, value: u64) {
-        self.wires.now = self.time();
+        (self.wires.now, self.wires.width) = (self.time(), size);
         self.attention = true;
         let planted = self.tampers.iter().try_fold(value as u32, |value, tamper| tamper.apply(address, value));
         let Some(value) = planted.map(|low| value & !u64::from(u32::MAX) | u64::from(low)) else { return };
@@ -304,7 +313,17 @@ impl Machine {
         peripheral.registers().set(register.offset, before & kept | written & !kept);
         peripheral.written(register.offset, written, before, &mut self.wires);
         if place == CLOCK_CONTROLLER {
+            *self.rising.entry(register.offset).or_default() |= written & !before;
             self.hold();
+        }
+    }
+
+    /// A write of a word, as code that is right makes it: a clock that it switches on is read back.
+    pub fn set_up(&mut self, address: u32, value: u32) {
+        self.write(address, 4, value.into());
+        let clocks = &self.chip.peripherals[CLOCK_CONTROLLER];
+        if (clocks.base..clocks.base + clocks.size).contains(&address) {
+            self.read(address, 4);
         }
     }
 
@@ -332,6 +351,11 @@ impl Machine {
         if clock.is_some_and(|clock| !self.wires.is_on(clock)) {
             self.wires.violation(&named, format!("is {done} while the clock of {name} is off"), section);
             return None;
+        }
+        let rising = |clock: Gate| self.rising.get(&clock.offset).is_some_and(|bits| bits >> clock.bit & 1 == 1);
+        if clock.is_some_and(rising) {
+            let what = format!("is {done} before the clock of {name}, just switched on, was read back");
+            self.wires.violation(&named, what, "RM0440 7.2.17, ES0182: two cycles of the bus");
         }
         if hold.is_some_and(|hold| self.wires.is_on(hold)) {
             self.wires.violation(&named, format!("is {done} while {name} is held in reset"), section);
@@ -366,9 +390,27 @@ mod tests {
         let mut machine = machine();
         machine.write(0x4002_0000, 4, 0xa800_0001);
         assert_eq!(said(&machine), ["is written while the clock of GPIOA is off"]);
-        machine.write(0x4002_3830, 4, 0x0010_0001);
+        machine.set_up(0x4002_3830, 0x0010_0001);
         machine.write(0x4002_0000, 4, 0xa800_0001);
         assert_eq!((machine.read(0x4002_0000, 4), said(&machine).len()), (0xa800_0001, 1));
+    }
+
+    #[test]
+    fn a_clock_that_was_just_switched_on_is_read_back_first() {
+        let mut machine = machine();
+        machine.write(0x4002_3830, 4, 0x0010_0001);
+        machine.write(0x4002_0000, 4, 0xa800_0001);
+        assert_eq!(said(&machine), ["is written before the clock of GPIOA, just switched on, was read back"]);
+        // Another register's look does not do.
+        machine.read(0x4002_3840, 4);
+        machine.read(0x4002_0000, 4);
+        assert_eq!(said(&machine).len(), 2);
+        machine.read(0x4002_3830, 4);
+        machine.read(0x4002_0000, 4);
+        // It stays on: written again it need not come again.
+        machine.write(0x4002_3830, 4, 0x0010_0001);
+        machine.read(0x4002_0000, 4);
+        assert_eq!(said(&machine).len(), 2);
     }
 
     #[test]
@@ -391,7 +433,7 @@ mod tests {
     #[test]
     fn a_peripheral_that_was_held_in_reset_is_as_after_power_up() {
         let mut machine = machine();
-        machine.write(0x4002_3844, 4, 1 << 4);
+        machine.set_up(0x4002_3844, 1 << 4);
         machine.write(0x4001_1008, 4, 364);
         machine.write(0x4002_3824, 4, 1 << 4);
         machine.write(0x4002_3824, 4, 0);

@@ -4,7 +4,7 @@
 use board::target::board::Chip;
 use board::target::board::Chip::{Stm32f405, Stm32g431, Stm32g474, Stm32h743};
 
-use crate::checks::{Check, boot, load, memory, outputs, pins, spi};
+use crate::checks::{Check, boot, bootloader, load, memory, outputs, pins, spi};
 use crate::images::Work;
 use crate::images::Work::{Observer, Plant, SpiSlave};
 use crate::tamper::How::{Clear, Field, Omit, OmitValue, Set, Swap};
@@ -121,6 +121,51 @@ pub const ALL: &[Mistake] = &[
         "the tick is that of another core clock",
     ),
     Mistake::new(Stm32f405, Plant, boot::answers, &[at(0xe000_ed88, Omit)], "the floating-point unit stays off"),
+    // After a bootloader.
+    Mistake::new(
+        Stm32f405,
+        Plant,
+        bootloader::starts,
+        &[at(0xe000_ed08, Omit)],
+        "a bootloader's vectors stay in force",
+    )
+    .short(),
+    Mistake::new(
+        Stm32f405,
+        Plant,
+        bootloader::starts,
+        &[at(0xe000_e188, Omit)],
+        "an interrupt that a bootloader has left on stays on",
+    )
+    .short(),
+    Mistake::new(
+        Stm32f405,
+        SpiSlave,
+        bootloader::serves_a_master,
+        &[at(0xe000_e010, OmitValue(0))],
+        "a bootloader's tick goes on",
+    ),
+    Mistake::new(
+        Stm32f405,
+        Plant,
+        bootloader::starts,
+        &[at(0x4002_3808, Swap(3, 0, 2))],
+        "the core stays on a bootloader's PLL",
+    ),
+    Mistake::new(
+        Stm32h743,
+        Plant,
+        bootloader::starts,
+        &[at(0x5802_4488, Omit)],
+        "a pin that a bootloader drove is driven still",
+    ),
+    Mistake::new(
+        Stm32g431,
+        Plant,
+        boot::answers,
+        &[at(0x4000_7008, Omit)],
+        "the line's pin is pulled down for an empty battery on USB",
+    ),
     // STM32F405: watchdog and outputs.
     Mistake::new(
         Stm32f405,

@@ -3,6 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
+use crate::as5047p::As5047p;
 use crate::violation::Violations;
 
 /// Time in femtoseconds: a cycle of every clock is a whole number of them to nine digits.
@@ -247,6 +248,10 @@ pub struct Wires {
     pub served: BTreeSet<Request>,
     /// The master on SPI.
     pub master: Master,
+    /// A slave on SPI.
+    pub encoder: Option<As5047p>,
+    /// Bytes of the present access to a register.
+    pub width: u32,
     /// Requests that a multiplexer leads to a channel of DMA, by controller and channel.
     pub routes: BTreeMap<(u32, u32), Option<Request>>,
     /// The serial line.
@@ -265,6 +270,8 @@ pub struct Wires {
     pub is_held: bool,
     /// The watchdog stands still while it does.
     pub watchdog_stops_with_core: bool,
+    /// PB4 and PB6 are pulled down for an empty battery on USB.
+    pub pulls_down_for_usb: bool,
     /// The regulator gives the highest range, with boost where there is one.
     pub boost: bool,
     /// The supply [mV].
@@ -305,6 +312,8 @@ impl Wires {
             requests: BTreeSet::new(),
             served: BTreeSet::new(),
             master: Master::default(),
+            encoder: None,
+            width: 4,
             routes: BTreeMap::new(),
             line: Line { cable, ..Line::default() },
             surroundings,
@@ -314,6 +323,7 @@ impl Wires {
             reset: None,
             is_held: false,
             watchdog_stops_with_core: false,
+            pulls_down_for_usb: false,
             boost: false,
             supply: 3300,
             voltage: 1,
@@ -357,6 +367,25 @@ impl Wires {
         match self.mode(pin) {
             Mode::Output(level) => level,
             _ => self.driven.get(&pin).copied().unwrap_or(false),
+        }
+    }
+
+    /// A master on the chip clocks eight bits, in a mode (CPOL, CPHA); what it receives: an open line is high.
+    pub fn clock_slave(&mut self, spi: u32, byte: u8, mode: (bool, bool), bit: Time, start: Time) -> u8 {
+        let Some(encoder) = self.encoder.as_mut().filter(|encoder| encoder.spi == spi) else { return 0xff };
+        let (answer, wrong) = encoder.exchange(byte, mode, bit, start);
+        if let Some(what) = wrong {
+            self.violation("AS5047P", what, "DS000324, SPI timing");
+        }
+        answer
+    }
+
+    /// Pins have other levels: the slave may be selected now, or no more.
+    pub fn look_at_select(&mut self) {
+        let Some(select) = self.encoder.as_ref().map(|encoder| encoder.select) else { return };
+        let (is_low, now) = (self.mode(select) == Mode::Output(false), self.now);
+        if let Some(what) = self.encoder.as_mut().and_then(|encoder| encoder.selected(is_low, now)) {
+            self.violation("AS5047P", what, "DS000324, SPI timing");
         }
     }
 

@@ -1,15 +1,11 @@
 //! From reset to the first answer.
 
-use board::target::board::Chip;
-
 use super::clean;
 use crate::boards::Subject;
 use crate::scs::SYSTICK;
 use crate::talk::Talk;
 use crate::wires::{MICROSECOND, SECOND, Time};
 
-/// Interrupts of the serial lines of these boards.
-const SERIAL: [usize; 3] = [37, 38, 39];
 /// Ticks of a tenth of a second are counted.
 const COUNTED: u32 = 10;
 
@@ -46,25 +42,4 @@ pub fn answers(subject: &Subject) -> Result<String, String> {
     drop(board);
     ticks(&mut talk, hello.tick_rate)?;
     Ok(format!("{core} Hz, answered {milliseconds} ms after power came on"))
-}
-
-/// Where the bootloader of the chip is: RM0090 2.4, RM0440 2.6, RM0433 2.6.
-fn system_memory(chip: Chip) -> u32 {
-    match chip {
-        Chip::Stm32f405 | Chip::Stm32g474 | Chip::Stm32g431 => 0x1fff_0000,
-        Chip::Stm32h743 => 0x1ff0_9800,
-    }
-}
-
-/// A bootloader jumps to the image, with its own vectors in force and interrupts left pending: the image takes its own vectors
-/// before any interrupt comes.
-pub fn after_bootloader(subject: &Subject) -> Result<String, String> {
-    let mut board = subject.start()?;
-    board.jump_from(system_memory(subject.board.chip()), &SERIAL);
-    let mut talk = Talk::new(board);
-    let hello = talk.call(2 * SECOND);
-    clean(&talk.board.borrow())?;
-    let hello = hello.ok_or_else(|| format!("no answer; it was at {}", talk.board.borrow().whereabouts()))?;
-    ticks(&mut talk, hello.tick_rate)?;
-    Ok(format!("vectors at {:#010x}", talk.board.borrow().machine().scs.vectors))
 }

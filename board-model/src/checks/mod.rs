@@ -3,6 +3,8 @@
 
 pub mod bits;
 pub mod boot;
+pub mod bootloader;
+pub mod encoder;
 pub mod load;
 pub mod memory;
 pub mod outputs;
@@ -63,7 +65,8 @@ impl Named {
 pub const ALL: &[Named] = &[
     short("boots, ticks and answers", &[Work::Plant, Work::Observer, Work::Loop], boot::answers).on_every_board(),
     short("drives no pin that its file forbids", &[Work::Plant], pins::only_those_of_the_file).on_every_board(),
-    short("starts after a bootloader", &[Work::Plant, Work::Observer, Work::Loop], boot::after_bootloader),
+    short("starts after a bootloader", &[Work::Plant, Work::Observer, Work::Loop], bootloader::starts),
+    short("serves a master after a bootloader", &[Work::SpiSlave], bootloader::serves_a_master),
     short("boots from the internal oscillator", &[Work::Plant], sources::dead_crystal),
     short("other crystals", &[Work::Plant], sources::other_crystals),
     short("the external source dies in a run", &[Work::Plant], sources::dies_in_a_run),
@@ -85,6 +88,14 @@ pub const ALL: &[Named] = &[
     short("a fault resets and is told", &[Work::Plant], outputs::fault),
     short("transfers, good and bad", &[Work::SpiSlave], spi::transfers),
     short("transfers that are too long", &[Work::SpiSlave], spi::too_long),
+    Named {
+        name: "an encoder is read over SPI as a master",
+        works: &[Work::Plant],
+        chips: &[Chip::Stm32f405, Chip::Stm32g474, Chip::Stm32g431],
+        is_for_every_board: false,
+        run: encoder::is_read,
+        is_long: false,
+    },
     short("power cut at some operations of flash", &[Work::Observer], memory::survives_some_cuts),
     Named {
         name: "power cut at every operation of flash",

@@ -20,11 +20,13 @@ pub fn only_those_of_the_file(subject: &Subject) -> Result<String, String> {
     let board = &subject.board.described;
     let set_up = talk.board.borrow().machine().wires.set_up.clone();
     let mode = |pin| talk.board.borrow().machine().wires.mode(pin);
-    let driven: Vec<_> = board
-        .never_driven
+    let without_use = board.pins_without_use();
+    let forbidden = board.never_driven.iter().map(|(left, why)| (*left, why.as_str()));
+    let forbidden: Vec<_> = forbidden.chain(without_use.iter().map(|(key, left)| (*left, *key))).collect();
+    let driven: Vec<_> = forbidden
         .iter()
-        .filter(|(forbidden, _)| set_up.contains(&pin(*forbidden)))
-        .map(|(forbidden, why)| format!("{} ({why}), now {:?}", named(pin(*forbidden)), mode(pin(*forbidden))))
+        .filter(|(left, _)| set_up.contains(&pin(*left)))
+        .map(|(left, why)| format!("{} ({why}), now {:?}", named(pin(*left)), mode(pin(*left))))
         .collect();
     if !driven.is_empty() {
         return Err(format!("pins that the board's file forbids were set up: {}", driven.join(", ")));
@@ -49,7 +51,7 @@ pub fn only_those_of_the_file(subject: &Subject) -> Result<String, String> {
             return Err(format!("{} is {:?} and lets the supply go", named(pin), mode(pin)));
         }
     }
-    Ok(format!("{} are set up, {} left alone", list(&wanted), board.never_driven.len()))
+    Ok(format!("{} are set up, {} left alone", list(&wanted), forbidden.len()))
 }
 
 fn named(Pin(port, number): Pin) -> String {

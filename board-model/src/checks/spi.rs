@@ -6,6 +6,7 @@ use link::framing::{sealed, unsealed};
 
 use super::clean;
 use crate::boards::{Subject, pin};
+use crate::cpu::Board;
 use crate::talk::Talk;
 use crate::wires::{MICROSECOND, Pin, SECOND, Time};
 
@@ -91,8 +92,8 @@ impl Master<'_> {
     }
 }
 
-fn master<'a>(subject: &Subject) -> Result<Master<'a>, String> {
-    let talk = Talk::new(subject.start()?);
+fn master<'a>(subject: &Subject, board: Board<'a>) -> Result<Master<'a>, String> {
+    let talk = Talk::new(board);
     let slave = subject.board.described.spi_slave.as_ref().ok_or("the board is no slave")?;
     let select = pin(slave.select.pin);
     let spi = slave.unit.trim_start_matches("SPI").parse().map_err(|_| format!("unit {}", slave.unit))?;
@@ -102,9 +103,18 @@ fn master<'a>(subject: &Subject) -> Result<Master<'a>, String> {
     Ok(master)
 }
 
+/// A board that has begun in some way answers.
+pub fn serves(subject: &Subject, board: Board<'_>) -> Result<String, String> {
+    let mut master = master(subject, board)?;
+    let outcome = (0..3).try_for_each(|_| master.is_answered());
+    clean(&master.talk.board.borrow())?;
+    outcome?;
+    Ok("3 transfers answered".into())
+}
+
 /// Good transfers, and all kinds of bad ones between them.
 pub fn transfers(subject: &Subject) -> Result<String, String> {
-    let mut master = master(subject)?;
+    let mut master = master(subject, subject.start()?)?;
     for _ in 0..20 {
         let outcome = master.is_answered();
         clean(&master.talk.board.borrow())?;
@@ -135,7 +145,7 @@ pub fn transfers(subject: &Subject) -> Result<String, String> {
 
 /// Transfers that are too long are no frames, by however many bytes.
 pub fn too_long(subject: &Subject) -> Result<String, String> {
-    let mut master = master(subject)?;
+    let mut master = master(subject, subject.start()?)?;
     master.is_answered()?;
     let extra = [1, 2, 3, 4, 5, 8, 100, 192, 1000];
     let mut taken = Vec::new();

@@ -68,8 +68,11 @@ const USART6: Place = Place {
 };
 
 /// The same table: SPI1 is function 5.
-const SPI1: spi::Place =
-    spi::Place { number: 1, pins: [(Pin('A', 4), 5), (Pin('A', 5), 5), (Pin('A', 6), 5), (Pin('A', 7), 5)] };
+const SPI1: spi::Place = spi::Place {
+    number: 1,
+    clock: BusClock::High,
+    pins: [(Pin('A', 4), 5), (Pin('A', 5), 5), (Pin('A', 6), 5), (Pin('A', 7), 5)],
+};
 
 /// RM0090 19.5: HSE_RTC is input 2.
 const TIM11: tim::Place = tim::Place { map: &tim::F4, interrupt: 26, selection: (0x50, 2) };

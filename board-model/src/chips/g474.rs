@@ -55,8 +55,11 @@ const USART3: Place = Place {
 };
 
 /// The same table: SPI2 is function 5.
-const SPI2: spi::Place =
-    spi::Place { number: 2, pins: [(Pin('B', 12), 5), (Pin('B', 13), 5), (Pin('B', 14), 5), (Pin('B', 15), 5)] };
+const SPI2: spi::Place = spi::Place {
+    number: 2,
+    clock: BusClock::Low,
+    pins: [(Pin('B', 12), 5), (Pin('B', 13), 5), (Pin('B', 14), 5), (Pin('B', 15), 5)],
+};
 
 /// RM0440 30.8: HSE/32 is input 3 of both.
 const TIM16: tim::Place = tim::Place { map: &tim::G4, interrupt: 25, selection: (0x5c, 3) };

@@ -199,7 +199,7 @@ mod tests {
     fn started(case: &mut Case, memory: &mut BTreeMap<u32, u8>) {
         case.machine.settle();
         for (address, value) in case.writes {
-            case.machine.write(*address, 4, (*value).into());
+            case.machine.set_up(*address, *value);
         }
         // A receiver that is switched on sees an idle line first.
         run_for(&mut case.machine, memory, cycles(12, BAUD));

@@ -274,6 +274,8 @@ impl Lock {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::chips;
+    use crate::machine::Machine;
     use crate::wires::{Cable, Surroundings};
 
     fn wires() -> Wires {
@@ -288,6 +290,30 @@ mod tests {
         assert_eq!(array.read(BASE + 0x2000, 8), 0xffff_ffff_1234_0000);
         array.erase(BASE + 0x2000, 0x1000, &mut wires());
         assert!(array.is_erased(BASE + 0x2000));
+    }
+
+    #[test]
+    fn option_bytes_are_not_touched() {
+        let machine = |chip| Machine::new(chip, Surroundings::default(), Cable::default(), 1000);
+        for (mut machine, writes) in [
+            // Keys of the options, the options, on STM32G474 also that they are loaded.
+            (machine(chips::f405::chip(BASE + 0x1000)), &[(0x4002_3c08, 0x0819_2a3b), (0x4002_3c14, 0x0fff_aaee)][..]),
+            (
+                machine(chips::g474::chip(BASE + 0x1000)),
+                &[(0x4002_200c, 0x0819_2a3b), (0x4002_2020, 0xffaf_f8aa), (0x4002_2014, 1 << 27)],
+            ),
+            (machine(chips::h743::chip(BASE + 0x1000)), &[(0x5200_2008, 0x0819_2a3b), (0x5200_2018, 2)]),
+        ] {
+            machine.settle();
+            let count = |machine: &Machine| {
+                let said = machine.wires.violations.all().iter();
+                said.filter(|said| said.what.contains("option bytes")).map(|said| said.times).sum::<u32>()
+            };
+            for (number, (address, value)) in writes.iter().enumerate() {
+                machine.write(*address, 4, *value);
+                assert_eq!(count(&machine), number as u32 + 1, "{}: {address:#010x}", machine.chip.name);
+            }
+        }
     }
 
     #[test]

@@ -103,6 +103,10 @@ impl Flash {
     }
 
     fn control_written(&mut self, value: u32, wires: &mut Wires) {
+        // OPTSTRT and OBL_LAUNCH.
+        if value & (bit(17) | bit(27)) != 0 {
+            wires.violation("FLASH_CR", "option bytes are not modelled and not to be touched", "RM0440 3.4.2");
+        }
         let kept = self.registers.get(CR) & bit(30);
         if value & bit(31) != 0 {
             self.lock = Lock::default();

@@ -135,6 +135,7 @@ impl Peripheral for Gpio {
                 wires.set_up.insert(Pin(self.port, pin));
             }
         }
+        wires.look_at_select();
     }
 
     fn reset(&mut self) {
@@ -155,7 +156,7 @@ mod tests {
         let mut machine =
             Machine::new(chips::f405::chip(BASE + 0x1000), Surroundings::default(), Cable::default(), 1000);
         machine.settle();
-        machine.write(0x4002_3830, 4, 0b111);
+        machine.set_up(0x4002_3830, 0b111);
         // A mode and its reset value again, a pull, a function, and the debug port as it is.
         for (address, value) in [
             (0x4002_0800, 1 << 6),

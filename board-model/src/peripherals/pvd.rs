@@ -57,7 +57,7 @@ mod tests {
             ),
         ] {
             machine.settle();
-            machine.write(gate.0, 4, gate.1);
+            machine.set_up(gate.0, gate.1);
             let says = |machine: &mut Machine| machine.read(output.0, 4) >> output.1 & 1;
             machine.wires.supply = 2000;
             assert_eq!(says(&mut machine), 0);

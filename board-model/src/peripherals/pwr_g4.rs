@@ -7,6 +7,7 @@ use crate::wires::Wires;
 
 const CR1: u32 = 0x00;
 const CR2: u32 = 0x04;
+const CR3: u32 = 0x08;
 const SR2: u32 = 0x14;
 const CR5: u32 = 0x80;
 
@@ -14,7 +15,7 @@ const CR5: u32 = 0x80;
 static MAP: [Register; 8] = [
     Register::new("PWR_CR1", CR1, 0x0200, 0x4707),
     Register::new("PWR_CR2", CR2, 0, 0xff),
-    Register::new("PWR_CR3", 0x08, 0x8000, 0xe51f),
+    Register::new("PWR_CR3", CR3, 0x8000, 0xe51f),
     Register::new("PWR_CR4", 0x0c, 0, 0x031f),
     Register::new("PWR_SR1", 0x10, 0, 0x811f).special(u32::MAX),
     Register::new("PWR_SR2", SR2, 0, 0xff00).special(u32::MAX),
@@ -64,6 +65,8 @@ impl Peripheral for Pwr {
     fn advance(&mut self, wires: &mut Wires) {
         DETECTOR.watch(&mut self.registers, wires);
         wires.voltage = self.registers.field(CR1, 9, 2);
+        // UCPD1_DBDIS: RM0440 6.4.3.
+        wires.pulls_down_for_usb = !self.registers.is_set(CR3, 14);
         wires.boost = !self.registers.is_set(CR5, 8);
         let most = match (wires.voltage, wires.boost) {
             (2, _) => 26_000_000,

@@ -242,7 +242,7 @@ mod tests {
     fn measured(mut machine: Machine, writes: &[(u32, u32)], timer: u32, divider: u64) -> u64 {
         machine.settle();
         for (address, value) in writes {
-            machine.write(*address, 4, (*value).into());
+            machine.set_up(*address, *value);
             machine.settle();
             machine.pass(100 * MICROSECOND);
             machine.settle();

@@ -264,6 +264,12 @@ impl Usart {
                     wires.violation("USART_CR1", what, "RM0090 8.3.2");
                 }
             }
+            let pulled = [Pin('B', 4), Pin('B', 6)];
+            let is_on = |pin: &Pin| wires.leads_by(*pin, self.place.send) || wires.leads_by(*pin, self.place.receive);
+            if wires.pulls_down_for_usb && pulled.iter().any(is_on) {
+                let what = "a pin of the USART is pulled down for an empty battery on USB: UCPD1_DBDIS is 0";
+                wires.violation("PWR_CR3", what, "RM0440 6.4.3");
+            }
             if self.is_off_speed(wires) {
                 let what = format!("gives {} baud where the host has {}", self.baud(wires), wires.line.cable.baud);
                 wires.violation("USART_BRR", what, "RM0090 30.3.4");

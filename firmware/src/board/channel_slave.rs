@@ -24,6 +24,7 @@ macro_rules! units {
             /// The unit with its clock on.
             pub fn take(clocks: &pac::RCC) -> Spi {
                 clocks.$gates().modify(|_, w| w.$gate().set_bit());
+                let _ = clocks.$gates().read();
                 // SAFETY: asked for once, at the start; nobody else has the unit in hand.
                 unsafe { Spi::steal() }
             }
@@ -91,7 +92,9 @@ impl Unit for ChannelSpi {
     fn start(device: pac::Peripherals, select: Pin) -> Self {
         let pac::Peripherals { DMA1: dma, DMAMUX: requests, EXTI: exti, RCC: clocks, SYSCFG: syscfg, .. } = device;
         clocks.ahb1enr().modify(|_, w| w.dma1en().set_bit().dmamux1en().set_bit());
+        let _ = clocks.ahb1enr().read();
         clocks.apb2enr().modify(|_, w| w.syscfgen().set_bit());
+        let _ = clocks.apb2enr().read();
         let spi = unit::take(&clocks);
         for (channel, request) in [(RECEIVING, unit::RECEIVES), (SENDING, unit::SENDS)] {
             // SAFETY: a channel that is off may have any request.

@@ -1,4 +1,7 @@
 //! What the firmware needs of a chip; each has a file of its own.
+//!
+//! A clock that is switched on comes to its peripheral two cycles of the bus later, and a write before that is lost (RM0440 7.2.17;
+//! STM32F405's errata sheet ES0182): so each switch is read back before what it is for is touched.
 
 use link::messages::Clock;
 
@@ -18,6 +21,9 @@ pub trait Chip {
 
     /// Sets up clock and flash. Every wait is bounded.
     fn start(device: pac::Peripherals, core: &mut cortex_m::Peripherals) -> Parts<Self>;
+
+    /// All ports of pins as after a reset: a bootloader may have set pins up that nobody here may touch.
+    fn reset_ports(clocks: &pac::RCC);
 
     /// Switches the clock of a port of pins on.
     fn power_port(clocks: &pac::RCC, port: u8);

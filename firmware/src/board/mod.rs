@@ -21,6 +21,7 @@ pub mod flash_slots;
 #[cfg(not(feature = "stm32h743"))]
 pub mod flash_unit;
 mod gpio;
+mod handover;
 mod serial_unit;
 mod start;
 mod watchdog;

@@ -158,6 +158,7 @@ fn has_passed_both() -> bool {
 /// Lets the stream fill the ring from a data register; whether it is there at all.
 fn start_stream(clocks: &pac::RCC, data: u32) -> bool {
     clocks.ahb1enr().modify(|_, w| if STREAM.0 == 1 { w.dma1en().set_bit() } else { w.dma2en().set_bit() });
+    let _ = clocks.ahb1enr().read();
     let stream = stream();
     let settings = STREAM.2 << 25 | SETTINGS;
     // SAFETY: the data register, the ring, which lives for ever, and its length; a stream that is off may have any settings.

@@ -6,7 +6,7 @@ use super::pac;
 
 /// Registers, interrupt and clock of each unit of a chip.
 macro_rules! units {
-    ($($name:literal => $unit:ident, $gates:ident, $gate:ident;)+) => {$(
+    ($($name:literal => $unit:ident, $gates:ident, $gate:ident, $resets:ident, $reset:ident;)+) => {$(
         /// The unit's registers.
         #[cfg(serial = $name)]
         pub type Registers = pac::$unit;
@@ -15,10 +15,13 @@ macro_rules! units {
         #[cfg(serial = $name)]
         const INTERRUPT: pac::Interrupt = pac::Interrupt::$unit;
 
-        /// The unit with its clock on.
+        /// The unit with its clock on, as after a reset: a bootloader may have used it.
         #[cfg(serial = $name)]
         pub fn take(clocks: &pac::RCC) -> Registers {
             clocks.$gates().modify(|_, w| w.$gate().set_bit());
+            let _ = clocks.$gates().read();
+            clocks.$resets().modify(|_, w| w.$reset().set_bit());
+            clocks.$resets().modify(|_, w| w.$reset().clear_bit());
             // SAFETY: asked for once, at the start; nobody else has the unit in hand.
             unsafe { Registers::steal() }
         }
@@ -27,33 +30,33 @@ macro_rules! units {
 
 #[cfg(feature = "stm32f405")]
 units! {
-    "usart1" => USART1, apb2enr, usart1en;
-    "usart2" => USART2, apb1enr, usart2en;
-    "usart3" => USART3, apb1enr, usart3en;
-    "uart4" => UART4, apb1enr, uart4en;
-    "uart5" => UART5, apb1enr, uart5en;
-    "usart6" => USART6, apb2enr, usart6en;
+    "usart1" => USART1, apb2enr, usart1en, apb2rstr, usart1rst;
+    "usart2" => USART2, apb1enr, usart2en, apb1rstr, usart2rst;
+    "usart3" => USART3, apb1enr, usart3en, apb1rstr, usart3rst;
+    "uart4" => UART4, apb1enr, uart4en, apb1rstr, uart4rst;
+    "uart5" => UART5, apb1enr, uart5en, apb1rstr, uart5rst;
+    "usart6" => USART6, apb2enr, usart6en, apb2rstr, usart6rst;
 }
 
 #[cfg(any(feature = "stm32g474", feature = "stm32g431"))]
 units! {
-    "usart1" => USART1, apb2enr, usart1en;
-    "usart2" => USART2, apb1enr1, usart2en;
-    "usart3" => USART3, apb1enr1, usart3en;
-    "uart4" => UART4, apb1enr1, uart4en;
-    "uart5" => UART5, apb1enr1, uart5en;
+    "usart1" => USART1, apb2enr, usart1en, apb2rstr, usart1rst;
+    "usart2" => USART2, apb1enr1, usart2en, apb1rstr1, usart2rst;
+    "usart3" => USART3, apb1enr1, usart3en, apb1rstr1, usart3rst;
+    "uart4" => UART4, apb1enr1, uart4en, apb1rstr1, uart4rst;
+    "uart5" => UART5, apb1enr1, uart5en, apb1rstr1, uart5rst;
 }
 
 #[cfg(feature = "stm32h743")]
 units! {
-    "usart1" => USART1, apb2enr, usart1en;
-    "usart2" => USART2, apb1lenr, usart2en;
-    "usart3" => USART3, apb1lenr, usart3en;
-    "uart4" => UART4, apb1lenr, uart4en;
-    "uart5" => UART5, apb1lenr, uart5en;
-    "usart6" => USART6, apb2enr, usart6en;
-    "uart7" => UART7, apb1lenr, uart7en;
-    "uart8" => UART8, apb1lenr, uart8en;
+    "usart1" => USART1, apb2enr, usart1en, apb2rstr, usart1rst;
+    "usart2" => USART2, apb1lenr, usart2en, apb1lrstr, usart2rst;
+    "usart3" => USART3, apb1lenr, usart3en, apb1lrstr, usart3rst;
+    "uart4" => UART4, apb1lenr, uart4en, apb1lrstr, uart4rst;
+    "uart5" => UART5, apb1lenr, uart5en, apb1lrstr, uart5rst;
+    "usart6" => USART6, apb2enr, usart6en, apb2rstr, usart6rst;
+    "uart7" => UART7, apb1lenr, uart7en, apb1lrstr, uart7rst;
+    "uart8" => UART8, apb1lenr, uart8en, apb1lrstr, uart8rst;
 }
 
 /// Makes the interrupt run.

@@ -30,9 +30,10 @@ const VECTORS: u32 = 0x0800_0000;
 
 /// Sets up clock, outputs and watchdog. Every wait is bounded.
 pub fn start(device: pac::Peripherals, core: &mut cortex_m::Peripherals) -> Started {
-    // Whoever jumped here, such as a bootloader, may have had vectors of its own.
+    // Whoever jumped here, such as a bootloader, may have had vectors of its own; what else it leaves is `handover`'s.
     // SAFETY: vectors are there, and no interrupt is on yet.
     unsafe { core.SCB.vtor.write(VECTORS) };
+    ThisChip::reset_ports(&device.RCC);
     // What holds the supply comes first: until then it is there by courtesy of a finger on a button.
     let _supply = output(&device.RCC, description::SUPPLY, true);
     let Parts { clock, slots, watchdog, watchdog_reset, clocks } = ThisChip::start(device, core);

@@ -32,15 +32,25 @@ impl Chip for Stm32F405 {
         let watchdog_reset = device.RCC.csr().read().wdgrstf().bit_is_set();
         device.RCC.csr().modify(|_, w| w.rmvf().set_bit());
         device.RCC.apb1enr().modify(|_, w| w.pwren().set_bit());
+        let _ = device.RCC.apb1enr().read();
         // The watchdog waits while a debugger halts the core.
         device.DBGMCU.apb1_fz().modify(|_, w| w.dbg_iwdg_stop().set_bit());
         let slots = FlashSlots::new(FlashUnit::new(device.FLASH, Sectors::watch_supply(device.PWR)));
         Parts { clock, slots, watchdog: device.IWDG, watchdog_reset, clocks: device.RCC }
     }
 
+    fn reset_ports(clocks: &pac::RCC) {
+        // SAFETY: a bit for each port that the chip has; a reset leaves the pins of the debug probe to it.
+        unsafe {
+            clocks.ahb1rstr().modify(|r, w| w.bits(r.bits() | 0x1ff));
+            clocks.ahb1rstr().modify(|r, w| w.bits(r.bits() & !0x1ff));
+        }
+    }
+
     fn power_port(clocks: &pac::RCC, port: u8) {
         // SAFETY: the chip has this port.
         clocks.ahb1enr().modify(|r, w| unsafe { w.bits(r.bits() | 1 << port) });
+        let _ = clocks.ahb1enr().read();
     }
 
     fn open_port(clocks: &pac::RCC, clock: u32, baud_rate: u32) -> OldUsart {
@@ -49,10 +59,14 @@ impl Chip for Stm32F405 {
 }
 
 /// 168 MHz by the PLL: from what drives the clock from outside, if that is what the board's file says, else from the internal
-/// oscillator. The internal oscillator drives the core from reset on, so if it is not ready there is no clock controller.
+/// oscillator. Where nothing of that reads as it must there is no clock controller.
 fn start_clock(clocks: &pac::RCC, flash: &pac::FLASH, timer: &CaptureTimer) -> Clock {
-    if clocks.cr().read().hsirdy().bit_is_clear() {
+    // The first source that can be selected, while the internal oscillator is off: no chip is ever so.
+    if clocks.cr().read().hsirdy().bit_is_clear() && clocks.cfgr().read().bits() >> 2 & 3 == 0 {
         return Clock::of(ClockSource::NotModelled);
+    }
+    if !back_to_internal(clocks) {
+        return Clock::of(ClockSource::Failed);
     }
     let external = EXTERNAL.map(|(frequency, is_signal)| {
         clocks.cr().modify(|_, w| w.hsebyp().bit(is_signal));
@@ -86,12 +100,29 @@ fn start_clock(clocks: &pac::RCC, flash: &pac::FLASH, timer: &CaptureTimer) -> C
     clock
 }
 
+/// As after a reset, whatever a bootloader has made of it: the core and all buses run from the internal oscillator, all else is off.
+/// Wait states may stay.
+fn back_to_internal(clocks: &pac::RCC) -> bool {
+    clocks.cr().modify(|_, w| w.hsion().set_bit());
+    if !wait_until(|| clocks.cr().read().hsirdy().bit_is_set()) {
+        return false;
+    }
+    clocks.cfgr().modify(|_, w| w.sw().hsi());
+    if !wait_until(|| clocks.cfgr().read().sws().is_hsi()) {
+        return false;
+    }
+    clocks.cfgr().modify(|_, w| w.hpre().div1().ppre1().div1().ppre2().div1());
+    clocks.cr().modify(|_, w| w.pllon().clear_bit().hseon().clear_bit().csson().clear_bit());
+    wait_until(|| clocks.cr().read().pllrdy().bit_is_clear() && clocks.cr().read().hserdy().bit_is_clear())
+}
+
 /// The external clock [Hz]: timer 11 sees a 25th of it.
 fn measured(clocks: &pac::RCC, timer: &CaptureTimer) -> u32 {
     const DIVIDER: u8 = 25;
     // SAFETY: the division for the clock of the time of day, which nothing else uses.
     clocks.cfgr().modify(|_, w| unsafe { w.rtcpre().bits(DIVIDER) });
     clocks.apb2enr().modify(|_, w| w.tim11en().set_bit());
+    let _ = clocks.apb2enr().read();
     // SAFETY: the timer's input is the divided external clock (2).
     timer.or().write(|w| unsafe { w.bits(2) });
     let measured = measure(timer, DIVIDER.into(), &Stm32F405::INTERNAL);

@@ -41,6 +41,7 @@ impl Chip for Stm32G4 {
         let watchdog_reset = device.RCC.csr().read().iwdgrstf().bit_is_set();
         device.RCC.csr().modify(|_, w| w.rmvf().set_bit());
         device.RCC.apb1enr1().modify(|_, w| w.pwren().set_bit());
+        let _ = device.RCC.apb1enr1().read();
         // The watchdog waits while a debugger halts the core.
         device.DBGMCU.apb1l_fz().modify(|_, w| w.dbg_iwdg_stop().set_bit());
         let pages = LastPages::watch_supply(device.PWR, &device.FLASH);
@@ -48,9 +49,18 @@ impl Chip for Stm32G4 {
         Parts { clock, slots, watchdog: device.IWDG, watchdog_reset, clocks: device.RCC }
     }
 
+    fn reset_ports(clocks: &pac::RCC) {
+        // SAFETY: a bit for each port that the chip has; a reset leaves the pins of the debug probe to it.
+        unsafe {
+            clocks.ahb2rstr().modify(|r, w| w.bits(r.bits() | 0x7f));
+            clocks.ahb2rstr().modify(|r, w| w.bits(r.bits() & !0x7f));
+        }
+    }
+
     fn power_port(clocks: &pac::RCC, port: u8) {
         // SAFETY: the chip has this port.
         clocks.ahb2enr().modify(|r, w| unsafe { w.bits(r.bits() | 1 << port) });
+        let _ = clocks.ahb2enr().read();
     }
 
     fn open_port(clocks: &pac::RCC, clock: u32, baud_rate: u32) -> FifoUart {
@@ -85,6 +95,11 @@ impl Pages {
 impl LastPages {
     /// Has the supply watched at 2.9 V, and looks how flash is divided.
     fn watch_supply(power: pac::PWR, flash: &pac::FLASH) -> Self {
+        // Pull-downs for an empty battery on USB, at PB4 and PB6 (RM0440 6.4.3): to be switched off whoever uses the pins.
+        power.cr3().modify(|r, w| {
+            // SAFETY: UCPD1_DBDIS, which not all chips' descriptions have.
+            unsafe { w.bits(r.bits() | 1 << 14) }
+        });
         // SAFETY: 6 is a level of the supply itself.
         power.cr2().modify(|_, w| unsafe { w.pvdls().bits(6) }.pvde().set_bit());
         let pages = Pages::look(flash);
@@ -144,8 +159,12 @@ unsafe fn NonMaskableInt() {
 /// 170 MHz by the PLL: from what drives the clock from outside, if that is what the board's file says, else from the internal
 /// oscillator. Above 150 MHz the regulator must be in its boost mode, and the bus clock is halved while that and the PLL come in.
 fn start_clock(clocks: &pac::RCC, power: &pac::PWR, flash: &pac::FLASH, timer: &CaptureTimer) -> Clock {
-    if clocks.cr().read().hsirdy().bit_is_clear() {
+    // The first source that can be selected, while the internal oscillator is off: no chip is ever so.
+    if clocks.cr().read().hsirdy().bit_is_clear() && clocks.cfgr().read().bits() >> 2 & 3 == 0 {
         return Clock::of(ClockSource::NotModelled);
+    }
+    if !back_to_internal(clocks) {
+        return Clock::of(ClockSource::Failed);
     }
     let external = EXTERNAL.map(|(frequency, is_signal)| {
         clocks.cr().modify(|_, w| w.hsebyp().bit(is_signal));
@@ -170,6 +189,7 @@ fn start_clock(clocks: &pac::RCC, power: &pac::PWR, flash: &pac::FLASH, timer: &
         return Clock::of(ClockSource::Failed);
     }
     clocks.apb1enr1().modify(|_, w| w.pwren().set_bit());
+    let _ = clocks.apb1enr1().read();
     clocks.cfgr().modify(|_, w| w.hpre().div2());
     power.cr5().modify(|_, w| w.r1mode().clear_bit());
     flash.acr().modify(|_, w| {
@@ -190,10 +210,27 @@ fn start_clock(clocks: &pac::RCC, power: &pac::PWR, flash: &pac::FLASH, timer: &
     clock
 }
 
+/// As after a reset, whatever a bootloader has made of it: the core and all buses run from the internal oscillator, all else is off.
+/// Wait states and boost may stay.
+fn back_to_internal(clocks: &pac::RCC) -> bool {
+    clocks.cr().modify(|_, w| w.hsion().set_bit());
+    if !wait_until(|| clocks.cr().read().hsirdy().bit_is_set()) {
+        return false;
+    }
+    clocks.cfgr().modify(|_, w| w.sw().hsi());
+    if !wait_until(|| clocks.cfgr().read().sws().is_hsi()) {
+        return false;
+    }
+    clocks.cfgr().modify(|_, w| w.hpre().div1().ppre1().div1().ppre2().div1());
+    clocks.cr().modify(|_, w| w.pllon().clear_bit().hseon().clear_bit().csson().clear_bit());
+    wait_until(|| clocks.cr().read().pllrdy().bit_is_clear() && clocks.cr().read().hserdy().bit_is_clear())
+}
+
 /// The external clock [Hz]: timer 17 sees a 32nd of it.
 fn measured(clocks: &pac::RCC, timer: &CaptureTimer) -> u32 {
     const DIVIDER: u32 = 32;
     clocks.apb2enr().modify(|_, w| w.tim17en().set_bit());
+    let _ = clocks.apb2enr().read();
     // SAFETY: the timer's input is the divided external clock (3).
     timer.tisel().write(|w| unsafe { w.bits(3) });
     let measured = measure(timer, DIVIDER, &Stm32G4::INTERNAL);

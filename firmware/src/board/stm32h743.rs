@@ -42,9 +42,18 @@ impl Chip for Stm32H743 {
         Parts { clock, slots, watchdog: device.IWDG, watchdog_reset, clocks: device.RCC }
     }
 
+    fn reset_ports(clocks: &pac::RCC) {
+        // SAFETY: a bit for each port that the chip has; a reset leaves the pins of the debug probe to it.
+        unsafe {
+            clocks.ahb4rstr().modify(|r, w| w.bits(r.bits() | 0x7ff));
+            clocks.ahb4rstr().modify(|r, w| w.bits(r.bits() & !0x7ff));
+        }
+    }
+
     fn power_port(clocks: &pac::RCC, port: u8) {
         // SAFETY: the chip has this port.
         clocks.ahb4enr().modify(|r, w| unsafe { w.bits(r.bits() | 1 << port) });
+        let _ = clocks.ahb4enr().read();
     }
 
     fn open_port(clocks: &pac::RCC, clock: u32, baud_rate: u32) -> FifoUart {
@@ -145,8 +154,12 @@ impl Flash for SecondBank {
 /// 400 MHz by PLL 1 at voltage scale 1: from what drives the clock from outside, if that is what the board's file says, else from
 /// the internal oscillator. Buses run at 200 MHz, peripherals at 100 MHz.
 fn start_clock(clocks: &pac::RCC, power: &pac::PWR, flash: &pac::FLASH, timer: &CaptureTimer) -> Clock {
-    if clocks.cr().read().hsirdy().bit_is_clear() {
+    // The first source that can be selected, while the internal oscillator is off: no chip is ever so.
+    if clocks.cr().read().hsirdy().bit_is_clear() && clocks.cfgr().read().bits() >> 3 & 7 == 0 {
         return Clock::of(ClockSource::NotModelled);
+    }
+    if !back_to_internal(clocks) {
+        return Clock::of(ClockSource::Failed);
     }
     power.cr3().modify(|_, w| w.scuen().set_bit().ldoen().set_bit().bypass().clear_bit());
     if !wait_until(|| power.csr1().read().actvosrdy().bit_is_set()) {
@@ -195,12 +208,30 @@ fn start_clock(clocks: &pac::RCC, power: &pac::PWR, flash: &pac::FLASH, timer: &
     clock
 }
 
+/// As after a reset, whatever a bootloader has made of it: the core and all buses run from the internal oscillator, all else is off.
+/// Wait states and voltage scale may stay.
+fn back_to_internal(clocks: &pac::RCC) -> bool {
+    clocks.cr().modify(|_, w| w.hsion().set_bit());
+    if !wait_until(|| clocks.cr().read().hsirdy().bit_is_set()) {
+        return false;
+    }
+    clocks.cfgr().modify(|_, w| w.sw().hsi());
+    if !wait_until(|| clocks.cfgr().read().sws().is_hsi()) {
+        return false;
+    }
+    clocks.cr().modify(|_, w| w.hsidiv().div1().pll1on().clear_bit().hseon().clear_bit().hsecsson().clear_bit());
+    clocks.d1cfgr().modify(|_, w| w.d1cpre().div1().hpre().div1().d1ppre().div1());
+    clocks.d2cfgr().modify(|_, w| w.d2ppre1().div1().d2ppre2().div1());
+    wait_until(|| clocks.cr().read().pll1rdy().bit_is_clear() && clocks.cr().read().hserdy().bit_is_clear())
+}
+
 /// The external clock [Hz]: timer 17 sees it divided to 1 MHz, if it is what the board's file says.
 fn measured(clocks: &pac::RCC, timer: &CaptureTimer, frequency: u32) -> u32 {
     let divider = frequency / 1_000_000;
     // SAFETY: the division for the clock of the time of day, 63 at most, which nothing else uses.
     clocks.cfgr().modify(|_, w| unsafe { w.rtcpre().bits(divider as u8) });
     clocks.apb2enr().modify(|_, w| w.tim17en().set_bit());
+    let _ = clocks.apb2enr().read();
     // SAFETY: the timer's input is the divided external clock (2).
     timer.tim17_tisel().write(|w| unsafe { w.bits(2) });
     let measured = measure(timer, divider, &Stm32H743::INTERNAL);

@@ -27,8 +27,11 @@ macro_rules! units {
             pub fn take(device: pac::Peripherals) -> (Spi, Dma, pac::RCC, pac::EXTI, pac::SYSCFG) {
                 let pac::Peripherals { $spi: spi, $dma: dma, RCC: clocks, EXTI: exti, SYSCFG: syscfg, .. } = device;
                 clocks.ahb1enr().modify(|_, w| w.$dma_gate().set_bit());
+                let _ = clocks.ahb1enr().read();
                 clocks.$gates().modify(|_, w| w.$gate().set_bit());
+                let _ = clocks.$gates().read();
                 clocks.apb2enr().modify(|_, w| w.syscfgen().set_bit());
+                let _ = clocks.apb2enr().read();
                 (spi, dma, clocks, exti, syscfg)
             }
 

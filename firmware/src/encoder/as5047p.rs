@@ -1,5 +1,6 @@
 //! AS5047P, a 14-bit magnetic encoder on SPI (mode 1, at most 10 MHz): one frame of 16 bits a tick, each carrying a
-//! command and the answer to the one before. Its ABI, PWM and programming are left out.
+//! command and the answer to the one before. Its ABI, PWM and programming are left out. It wants 350 ns between select and clock, and
+//! between frames: that is the bus's business.
 //!
 //! A frame: bit 15 makes the parity even; bit 14 of a command says "read", of an answer that the command before was
 //! faulty; 14 bits of address or content. An idle line gives all ones or all zeros, both with a good parity: all ones is

@@ -37,6 +37,10 @@ pub struct Board {
     pub serial: Serial,
     /// The line to a motor controller whose slave the board is.
     pub spi_slave: Option<SpiSlave>,
+    /// Its line on CAN, which no image uses yet.
+    pub can: Option<Can>,
+    /// Encoders of motor and output, which no image reads yet.
+    pub encoders: [Option<Encoder>; 2],
     /// Holds the board's own supply.
     pub supply: Option<Output>,
     /// Switches the motor on.
@@ -102,6 +106,51 @@ pub struct SpiSlave {
     pub input: Alternate,
 }
 
+/// A line on CAN.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Can {
+    /// The unit, such as CAN1.
+    pub unit: &'static str,
+    /// To the transceiver.
+    pub send: Pin,
+    /// From the transceiver.
+    pub receive: Pin,
+}
+
+/// An encoder.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Encoder {
+    /// The unit that reads it, such as SPI2 or TIM4.
+    pub unit: &'static str,
+    /// Its wires.
+    pub pins: EncoderPins,
+}
+
+/// The wires of an encoder.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EncoderPins {
+    /// It answers on SPI, whose master the board is.
+    Spi {
+        /// Low while the board speaks to it.
+        select: Pin,
+        /// The clock.
+        clock: Pin,
+        /// From the encoder.
+        out: Pin,
+        /// To the encoder.
+        input: Pin,
+    },
+    /// It sends pulses.
+    Pulses {
+        /// One channel.
+        a: Pin,
+        /// The other channel, a quarter of a period apart.
+        b: Pin,
+        /// Once a turn.
+        index: Option<Pin>,
+    },
+}
+
 /// A pin that switches something.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Output {
@@ -119,6 +168,28 @@ pub enum Level {
     /// At the supply.
     High,
 }
+
+/// Keys of both encoders' pins.
+const ENCODER_KEYS: [[&str; 7]; 2] = [
+    [
+        "encoder.motor.select",
+        "encoder.motor.clock",
+        "encoder.motor.out",
+        "encoder.motor.in",
+        "encoder.motor.a",
+        "encoder.motor.b",
+        "encoder.motor.index",
+    ],
+    [
+        "encoder.output.select",
+        "encoder.output.clock",
+        "encoder.output.out",
+        "encoder.output.in",
+        "encoder.output.a",
+        "encoder.output.b",
+        "encoder.output.index",
+    ],
+];
 
 impl Board {
     /// The two parts of the flash that keep what the observer has learnt.
@@ -156,6 +227,27 @@ impl Board {
         pins.extend(self.supply.map(|output| ("supply.pin", output.pin)));
         pins.extend(self.enable.map(|output| ("enable.pin", output.pin)));
         pins.extend(self.light.map(|output| ("light.pin", output.pin)));
+        pins
+    }
+
+    /// Every pin of a line that no image uses yet, with the key that says so: the firmware leaves them as they are after a reset.
+    pub fn pins_without_use(&self) -> Vec<(&'static str, Pin)> {
+        let mut pins = Vec::new();
+        if let Some(Can { send, receive, .. }) = self.can {
+            pins.extend([("can.send", send), ("can.receive", receive)]);
+        }
+        for (encoder, [select, clock, out, input, a, b, index]) in self.encoders.iter().zip(ENCODER_KEYS) {
+            match encoder.map(|encoder| encoder.pins) {
+                Some(EncoderPins::Spi { select: chosen, clock: clocked, out: answered, input: asked }) => {
+                    pins.extend([(select, chosen), (clock, clocked), (out, answered), (input, asked)]);
+                }
+                Some(EncoderPins::Pulses { a: one, b: other, index: turn }) => {
+                    pins.extend([(a, one), (b, other)]);
+                    pins.extend(turn.map(|turn| (index, turn)));
+                }
+                None => {}
+            }
+        }
         pins
     }
 }

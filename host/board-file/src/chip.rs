@@ -14,7 +14,7 @@ use crate::pin::Pin;
 use crate::pll::Pll;
 use facts::{Facts, Package, Variant};
 
-pub(crate) use facts::{SerialUnit, SpiUnit};
+pub(crate) use facts::{CanUnit, SerialUnit, SpiUnit, TimerUnit};
 
 /// A chip.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -244,6 +244,22 @@ mod tests {
             }
             for pin in facts.oscillator_pins.iter().chain(&facts.boot_pin) {
                 assert!(packages().all(|package| package.has(*pin)), "{chip:?} {pin}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_pin_of_a_line_without_a_use_is_brought_out_by_some_package_and_stands_there_once() {
+        for chip in Chip::ALL {
+            let facts = chip.facts();
+            let can = facts.can.iter().flat_map(|unit| [unit.send, unit.receive]);
+            let timers = facts.timers.iter().flat_map(|unit| [unit.a, unit.b]);
+            for list in can.chain(timers) {
+                for (at, pin) in list.iter().enumerate() {
+                    let mut packages = facts.variants.iter().flat_map(|variant| variant.packages);
+                    assert!(packages.any(|package| package.has(*pin)), "{chip:?} {pin}");
+                    assert!(!list[..at].contains(pin), "{chip:?} {pin}");
+                }
             }
         }
     }

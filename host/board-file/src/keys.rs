@@ -56,6 +56,13 @@ pub(crate) const KEYS: &[Key] = &[
         Section,
         "the line to a motor controller whose slave the board is; leave it out if there is none",
     ),
+    key("", "can", Section, "the line on CAN, which no image uses yet; leave it out if there is none"),
+    key(
+        "",
+        "encoder",
+        Section,
+        "[encoder.motor] and [encoder.output], which no image reads yet; leave out what there is not",
+    ),
     key("", "supply", Section, "the output that holds the board's own supply; leave it out if there is none"),
     key("", "enable", Section, "the output that switches the motor on; leave it out if there is none"),
     key("", "light", Section, "the status light; leave it out if there is none"),
@@ -82,6 +89,20 @@ pub(crate) const KEYS: &[Key] = &[
     key("spi_slave", "clock", Pin, "the master's clock (SCK)"),
     key("spi_slave", "out", Pin, "to the master (MISO)"),
     key("spi_slave", "in", Pin, "from the master (MOSI)"),
+    // Lines that no image uses yet
+    key("can", "unit", Text, "the unit that the pins belong to, such as \"CAN1\""),
+    key("can", "send", Pin, "to the transceiver"),
+    key("can", "receive", Pin, "from the transceiver"),
+    key("encoder", "motor", Section, "the encoder at the motor: unit, and its pins"),
+    key("encoder", "output", Section, "the encoder at the joint's output: unit, and its pins"),
+    key("encoder.motor", "unit", Text, "what reads it: an SPI, or a timer that counts its pulses, such as \"TIM3\""),
+    key("encoder.motor", "select", Pin, "on SPI: low while the board speaks to it; any pin"),
+    key("encoder.motor", "clock", Pin, "on SPI: the board's clock (SCK)"),
+    key("encoder.motor", "out", Pin, "on SPI: from the encoder (MISO)"),
+    key("encoder.motor", "in", Pin, "on SPI: to the encoder (MOSI)"),
+    key("encoder.motor", "a", Pin, "by pulses: channel A"),
+    key("encoder.motor", "b", Pin, "by pulses: channel B"),
+    key("encoder.motor", "index", Pin, "by pulses: once a turn, any pin; may be left out"),
     // Outputs
     key("supply", "pin", Pin, "the pin that holds the supply"),
     key("supply", "on", Choice(LEVELS), "its level while the supply is held"),
@@ -121,8 +142,11 @@ mod tests {
 
     #[test]
     fn every_section_is_documented() {
-        for key in KEYS.iter().filter(|key| matches!(key.kind, Kind::Section)) {
-            assert!(PAGE.contains(&format!("## `[{}]`", key.name)), "{}", key.name);
+        for key in KEYS.iter().filter(|key| matches!(key.kind, Kind::Section) && key.name != "encoder") {
+            let name =
+                if key.section.is_empty() { key.name.to_owned() } else { format!("{}.{}", key.section, key.name) };
+            let is_heading = |line: &str| line.starts_with("## ") && line.contains(&format!("`[{name}]`"));
+            assert!(PAGE.lines().any(is_heading), "{name}");
         }
     }
 }

@@ -2,7 +2,7 @@
 //! once, each with its place in the text.
 //!
 //! `chip` has the facts of every chip, a file each; `keys` lists every key; `section` takes values out of a table by that
-//! list; `pins` says which pins may be used for what; `reader` puts the board together. `generated` is what a build of the
+//! list; `pins` says which pins may be used for what, `lines` what a board has that no image uses yet; `reader` puts the board together. `generated` is what a build of the
 //! firmware takes from it. A board that is read can be built for: pins, clock, speed of the line and memory have been held
 //! against its chip.
 
@@ -12,6 +12,7 @@ mod board;
 mod chip;
 mod generated;
 mod keys;
+mod lines;
 #[cfg(feature = "diagnostics")]
 pub mod named;
 mod pin;
@@ -21,7 +22,9 @@ mod presets;
 mod reader;
 mod section;
 
-pub use board::{Board, ExternalClock, FLASH_START, Level, Output, RAM_START, Serial, SpiSlave};
+pub use board::{
+    Board, Can, Encoder, EncoderPins, ExternalClock, FLASH_START, Level, Output, RAM_START, Serial, SpiSlave,
+};
 pub use chip::{Chip, Slot};
 pub use generated::{all_cfgs, cfgs, linker_script, rust_source};
 pub use joint_file::{Problem, Severity, Source};

@@ -3,6 +3,7 @@
 use std::cell::RefCell;
 use std::ops::Range;
 
+use joint_file::wording::listed_as;
 use joint_file::{Notes, Severity};
 
 use crate::board::ExternalClock;
@@ -22,6 +23,25 @@ struct Use {
     key: String,
     pin: Pin,
     span: Range<usize>,
+    /// Unit and wire of a bus that several may be on.
+    bus: Option<(&'static str, String)>,
+}
+
+/// Complains about a unit that the chip does not have, or not for this.
+pub(crate) fn no_unit<T>(
+    section: &Section<'_>,
+    name: &str,
+    part: Part,
+    units: &[&str],
+    why: Option<&str>,
+) -> Option<T> {
+    let chip = part.chip.name().to_uppercase();
+    let message = match why {
+        Some(why) => format!("{name} of {chip} cannot be used: {why}"),
+        None => format!("{chip} has no {name} for [{}]", section.path),
+    };
+    section.notes.error(section.place("unit"), message, format!("use {}", listed_as(units, '"', "or")));
+    None
 }
 
 /// Reads pins, and keeps what they are used for.
@@ -40,13 +60,7 @@ impl Pins {
 
     /// A pin that the firmware may use.
     pub fn free(&self, section: &Section<'_>, name: &str) -> Option<Pin> {
-        let pin = section.required(name, Section::pin)?;
-        let (key, span) = (section.full(name), section.place(name));
-        self.uses.borrow_mut().push(Use { key, pin, span: span.clone() });
-        if let Some((message, help)) = self.reserved(pin) {
-            section.notes.error(span, message, help);
-            return None;
-        }
+        let (pin, span) = (self.of_nobody_else(section, name, None)?, section.place(name));
         let boot = self.part.and_then(|part| part.chip.facts().boot_pin).filter(|boot| *boot == pin);
         if let Some(boot) = boot {
             let message =
@@ -57,6 +71,32 @@ impl Pins {
         Some(pin)
     }
 
+    /// A pin that the package has and that nothing else needs; of a unit's bus, if it is one that several may be on.
+    fn of_nobody_else(&self, section: &Section<'_>, name: &str, bus: Option<&'static str>) -> Option<Pin> {
+        let pin = section.required(name, Section::pin)?;
+        let (key, span) = (section.full(name), section.place(name));
+        self.uses.borrow_mut().push(Use { key, pin, span: span.clone(), bus: bus.map(|unit| (unit, name.to_owned())) });
+        match self.reserved(pin) {
+            None => Some(pin),
+            Some((message, help)) => {
+                section.notes.error(span, message, help);
+                None
+            }
+        }
+    }
+
+    /// A pin of a line that no image uses yet; in `of` a unit's name and its pins for it, where it is a unit's.
+    pub fn of_line(&self, section: &Section<'_>, name: &str, of: Option<(&str, &[Pin])>) -> Option<Pin> {
+        let pin = self.of_nobody_else(section, name, None)?;
+        of.is_none_or(|(unit, list)| self.is_of(section, name, pin, unit, list)).then_some(pin)
+    }
+
+    /// The same on a unit's bus, which several may share.
+    pub fn of_bus(&self, section: &Section<'_>, name: &str, unit: &'static str, list: &[Pin]) -> Option<Pin> {
+        let pin = self.of_nobody_else(section, name, Some(unit))?;
+        self.is_of(section, name, pin, unit, list).then_some(pin)
+    }
+
     /// A pin that a unit has for this; in `of` a unit's name and its pins for it.
     pub fn of_unit(&self, section: &Section<'_>, name: &str, of: Option<(&str, &[Alternate])>) -> Option<Alternate> {
         let pin = self.free(section, name);
@@ -65,14 +105,24 @@ impl Pins {
         if let Some(found) = list.iter().find(|alternate| alternate.pin == pin) {
             return Some(*found);
         }
-        let has = |alternate: &&Alternate| self.part.is_none_or(|part| part.has(alternate.pin));
-        let there: Vec<String> = list.iter().filter(has).map(|alternate| alternate.pin.to_string()).collect();
+        let pins: Vec<Pin> = list.iter().map(|alternate| alternate.pin).collect();
+        self.is_of(section, name, pin, unit, &pins);
+        None
+    }
+
+    /// Whether a pin is one of a unit's for this; complains if not.
+    fn is_of(&self, section: &Section<'_>, name: &str, pin: Pin, unit: &str, list: &[Pin]) -> bool {
+        if list.contains(&pin) {
+            return true;
+        }
+        let has = |pin: &&Pin| self.part.is_none_or(|part| part.has(**pin));
+        let there: Vec<String> = list.iter().filter(has).map(Pin::to_string).collect();
         let help = match there.as_slice() {
             [] => format!("no pin of this package is `{name}` of {unit}: use another unit"),
             _ => format!("{unit} has {} for `{name}`", there.join(" or ")),
         };
         section.notes.error(section.place(name), format!("{pin} cannot be `{name}` of {unit}"), help);
-        None
+        false
     }
 
     /// Why nobody may use a pin, and what to do.
@@ -140,8 +190,9 @@ impl Pins {
     /// Complains about pins that are used twice, or although they are never driven.
     pub fn check(&self, never_driven: &[(Pin, String)], notes: &Notes<'_>) {
         let uses = self.uses.borrow();
-        for (at, Use { key, pin, span }) in uses.iter().enumerate() {
-            if let Some(first) = uses[..at].iter().find(|other| other.pin == *pin) {
+        for (at, Use { key, pin, span, bus }) in uses.iter().enumerate() {
+            let is_other = |other: &&Use| other.pin == *pin && (bus.is_none() || other.bus != *bus);
+            if let Some(first) = uses[..at].iter().find(is_other) {
                 let message = format!("{pin} is used twice, for `{}` and for `{key}`", first.key);
                 notes.error(span.clone(), message, "give one of them another pin");
             }

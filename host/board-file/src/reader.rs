@@ -1,13 +1,13 @@
 //! Reads a whole board file: parses, takes the sections' values, holds them against the chip, and gives either the board with
 //! its warnings or everything that is wrong at once.
 
-use joint_file::wording::listed_as;
 use joint_file::{Notes, Problem};
 use toml::de::DeTable;
 
 use crate::board::{Board, ExternalClock, Level, Output, Serial, SpiSlave};
 use crate::chip::{Chip, Part, SerialUnit, SpiUnit};
-use crate::pins::Pins;
+use crate::lines;
+use crate::pins::{Pins, no_unit};
 use crate::pll::Plls;
 use crate::section::Section;
 
@@ -55,6 +55,8 @@ fn read_table(top: &Section<'_>) -> Option<Board> {
     let pins = Pins::new(part, clock);
     let serial = top.required_section("serial").and_then(|section| read_serial(&section, part, &pins));
     let spi_slave = optional(top, "spi_slave", |section| read_spi_slave(section, part, &pins));
+    let can = optional(top, "can", |section| lines::read_can(section, part, &pins));
+    let encoders = optional(top, "encoder", |section| lines::read_encoders(section, part, &pins));
     let supply = optional(top, "supply", |section| read_output(section, &pins));
     let enable = optional(top, "enable", |section| read_output(section, &pins));
     let light = optional(top, "light", |section| read_output(section, &pins));
@@ -78,6 +80,8 @@ fn read_table(top: &Section<'_>) -> Option<Board> {
         pll: Plls { external, internal: part.chip.internal_pll() },
         serial: serial?,
         spi_slave: spi_slave?,
+        can: can?,
+        encoders: encoders?.unwrap_or_default(),
         supply: supply?,
         enable: enable?,
         light: light?,
@@ -211,17 +215,6 @@ fn read_serial(section: &Section<'_>, part: Option<Part>, pins: &Pins) -> Option
     let (unit, baud) = (unit?, baud?);
     check_baud(section, unit, baud);
     Some(Serial { unit: unit.name, clock: unit.clock, send: send?, receive: receive?, baud })
-}
-
-/// Complains about a unit that the chip does not have, or not for this.
-fn no_unit<T>(section: &Section<'_>, name: &str, part: Part, units: &[&str], why: Option<&str>) -> Option<T> {
-    let chip = part.chip.name().to_uppercase();
-    let message = match why {
-        Some(why) => format!("{name} of {chip} cannot be used: {why}"),
-        None => format!("{chip} has no {name} for [{}]", section.schema),
-    };
-    section.notes.error(section.place("unit"), message, format!("use {}", listed_as(units, '"', "or")));
-    None
 }
 
 /// Complains about a speed that the unit cannot make.

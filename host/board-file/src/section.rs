@@ -42,7 +42,9 @@ impl<'a> Section<'a> {
     pub fn section(&self, name: &'static str) -> Option<Self> {
         let value = self.table(name)?;
         let DeValue::Table(table) = value.get_ref() else { return None };
-        Some(Self(Table::new(name.to_owned(), name, value.span(), table, self.notes)))
+        // Both encoders have the same keys.
+        let schema = if self.schema == "encoder" { "encoder.motor" } else { name };
+        Some(Self(Table::new(self.full(name), schema, value.span(), table, self.notes)))
     }
 
     /// The table `name`, which must be there.

@@ -449,3 +449,73 @@ fn the_pin_that_is_read_as_boot0_is_warned_of() {
     // On the F405 that pin is a pin as any other.
     assert_eq!(good(&spoilt("pin = \"PC12\"", "pin = \"PB8\"")).warnings, []);
 }
+
+/// The good file with a piece at its end.
+fn with(piece: &str) -> String {
+    format!("{GOOD}\n{piece}")
+}
+
+const CAN: &str = "[can]\nunit = \"CAN1\"\nsend = \"PB9\"\nreceive = \"PB8\"\n";
+const PULSES: &str = "[encoder.motor]\nunit = \"TIM3\"\na = \"PC6\"\nb = \"PC7\"\nindex = \"PC8\"\n";
+const ON_SPI: &str =
+    "[encoder.output]\nunit = \"SPI3\"\nselect = \"PA15\"\nclock = \"PC10\"\nout = \"PC11\"\nin = \"PB5\"\n";
+
+#[test]
+fn lines_that_no_image_uses_are_read_and_keep_their_pins() {
+    let board = good(&with(&format!("{CAN}{PULSES}{ON_SPI}")));
+    let pins: Vec<String> = board.pins_without_use().iter().map(|(key, pin)| format!("{key} {pin}")).collect();
+    let wanted = [
+        "can.send PB9",
+        "can.receive PB8",
+        "encoder.motor.a PC6",
+        "encoder.motor.b PC7",
+        "encoder.motor.index PC8",
+        "encoder.output.select PA15",
+        "encoder.output.clock PC10",
+        "encoder.output.out PC11",
+        "encoder.output.in PB5",
+    ];
+    assert_eq!(pins, wanted);
+    // None of them is used by the firmware.
+    assert_eq!(board.used_pins(), good(GOOD).used_pins());
+    let taken = with(CAN).replace("pin = \"PC12\"", "pin = \"PB9\"");
+    refused(&taken, "PB9 is used twice, for `can.send` and for `light.pin`", "\"PB9\"", "another pin");
+    let gate = with(&CAN.replace("PB9", "PA12")).replace("PB12 = ", "PA12 = ");
+    refused(&gate, "PA12 of `can.send` is never driven: brake resistor", "\"PA12\"", "take it out");
+}
+
+#[test]
+fn two_encoders_share_a_bus_but_no_select() {
+    let motor = ON_SPI.replace("output", "motor").replace("PA15", "PB1");
+    assert!(good(&with(&format!("{ON_SPI}{motor}"))).encoders.iter().all(Option::is_some));
+    let same = with(&format!("{}{ON_SPI}", ON_SPI.replace("output", "motor")));
+    let message = "PA15 is used twice, for `encoder.motor.select` and for `encoder.output.select`";
+    refused(&same, message, "\"PA15\"", "another pin");
+    // A bus is shared wire by wire.
+    let crossed = motor.replace("clock = \"PC10\"", "clock = \"PB3\"").replace("select = \"PB1\"", "select = \"PC10\"");
+    let message = "PC10 is used twice, for `encoder.motor.select` and for `encoder.output.clock`";
+    refused(&with(&format!("{ON_SPI}{crossed}")), message, "\"PC10\"", "another pin");
+}
+
+#[test]
+fn lines_that_the_chip_does_not_have_are_refused() {
+    let can = with(&CAN.replace("CAN1", "CAN3"));
+    refused(&can, "STM32F405 has no CAN3 for [can]", "\"CAN3\"", "\"CAN1\" or \"CAN2\"");
+    let pin = with(&CAN.replace("PB9", "PC3"));
+    refused(&pin, "PC3 cannot be `send` of CAN1", "\"PC3\"", "CAN1 has PA12 or PB9 for `send`");
+    let unit = with(&ON_SPI.replace("SPI3", "TIM9"));
+    refused(&unit, "STM32F405 has no TIM9 for [encoder.output]", "\"TIM9\"", "\"SPI3\"");
+    let channel = with(&PULSES.replace("a = \"PC6\"", "a = \"PC9\""));
+    refused(&channel, "PC9 cannot be `a` of TIM3", "\"PC9\"", "PA6 or PB4 or PC6");
+    let probe = with(&PULSES.replace("PC8", "PA13"));
+    refused(&probe, "PA13 is the debug probe's data (SWDIO)", "\"PA13\"", "another pin");
+    let kinds = with(&PULSES.replace("index", "select"));
+    refused(&kinds, "`select` is no pin of an encoder on TIM3", "\"PC8\"", "`a`, `b` and `index`");
+    let half = with(&CAN.replace("receive = \"PB8\"\n", ""));
+    assert!(only(&half).0.contains("`receive`"));
+    let large = with_chip("STM32H743ZI", 2048, 128) + "\n" + ON_SPI;
+    let message = "SPI3 of STM32H743 cannot be used: the pins of its SPI are not known here";
+    refused(&large, message, "\"SPI3\"", "\"TIM1\"");
+    let other = with("[encoder.link]\nunit = \"TIM3\"\n");
+    assert!(only(&other).0.contains("link"));
+}

@@ -93,6 +93,13 @@ fn layout(board: &Board) -> Sheet {
             }
         },
     );
+    let without_use = board.pins_without_use();
+    if !without_use.is_empty() {
+        page.heading("Not used by any image yet, and left alone");
+        for (key, pin) in without_use {
+            page.row(key, pin.to_string());
+        }
+    }
     page.heading("Never driven");
     for (pin, what) in &board.never_driven {
         page.row(&Pin::to_string(pin), what);

@@ -2,7 +2,7 @@
 
 use model_core::gears::design::Processor;
 
-use super::facts::{ALL, Facts, Package, SerialUnit, Slot, SpiUnit, Variant, at, pin};
+use super::facts::{ALL, CanUnit, Facts, Package, SerialUnit, Slot, SpiUnit, TimerUnit, Variant, at, pin};
 use crate::pll::PllLimits;
 
 const APB1: u32 = 42_000_000;
@@ -28,6 +28,8 @@ pub(super) const FACTS: Facts = Facts {
     serial: SERIAL,
     refused: &[],
     spi: Ok(SPI),
+    can: CAN,
+    timers: TIMERS,
     // SRAM1 and SRAM2; the 64 KiB of CCM lie elsewhere.
     ram_kib: 128,
     slots,
@@ -102,6 +104,24 @@ const SPI: &[SpiUnit] = &[
         out: &[at("PB4", 6), at("PC11", 6)],
         input: &[at("PB5", 6), at("PC12", 6)],
     },
+];
+
+const CAN: &[CanUnit] = &[
+    CanUnit {
+        name: "CAN1",
+        send: &[pin("PA12"), pin("PB9"), pin("PD1")],
+        receive: &[pin("PA11"), pin("PB8"), pin("PD0")],
+    },
+    CanUnit { name: "CAN2", send: &[pin("PB6"), pin("PB13")], receive: &[pin("PB5"), pin("PB12")] },
+];
+
+const TIMERS: &[TimerUnit] = &[
+    TimerUnit { name: "TIM1", a: &[pin("PA8"), pin("PE9")], b: &[pin("PA9"), pin("PE11")] },
+    TimerUnit { name: "TIM2", a: &[pin("PA0"), pin("PA5"), pin("PA15")], b: &[pin("PA1"), pin("PB3")] },
+    TimerUnit { name: "TIM3", a: &[pin("PA6"), pin("PB4"), pin("PC6")], b: &[pin("PA7"), pin("PB5"), pin("PC7")] },
+    TimerUnit { name: "TIM4", a: &[pin("PB6"), pin("PD12")], b: &[pin("PB7"), pin("PD13")] },
+    TimerUnit { name: "TIM5", a: &[pin("PA0")], b: &[pin("PA1")] },
+    TimerUnit { name: "TIM8", a: &[pin("PC6")], b: &[pin("PC7")] },
 ];
 
 const LQFP64: &[(char, u16)] = &[('A', ALL), ('B', ALL), ('C', ALL), ('D', 1 << 2), ('H', 0b11)];

@@ -32,6 +32,10 @@ pub(crate) struct Facts {
     pub refused: &'static [(&'static str, &'static str)],
     /// Units that can be a slave of a motor controller, or why there are none.
     pub spi: Result<&'static [SpiUnit], &'static str>,
+    /// Units that are on CAN.
+    pub can: &'static [CanUnit],
+    /// Timers that count the pulses of an encoder.
+    pub timers: &'static [TimerUnit],
     /// RAM from 0x2000_0000 on without a gap, that of other purposes left out [KiB].
     pub ram_kib: u32,
     /// Two places at the end of the flash that are erased without touching an image, by the flash that the board uses
@@ -70,6 +74,22 @@ pub(crate) struct SpiUnit {
     pub out: &'static [Alternate],
     /// From the master.
     pub input: &'static [Alternate],
+}
+
+/// A unit on CAN. What connects it to its pins is nobody's business until an image uses it.
+#[derive(Debug)]
+pub(crate) struct CanUnit {
+    pub name: &'static str,
+    pub send: &'static [Pin],
+    pub receive: &'static [Pin],
+}
+
+/// A timer that counts pulses of an encoder at its first two channels.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct TimerUnit {
+    pub name: &'static str,
+    pub a: &'static [Pin],
+    pub b: &'static [Pin],
 }
 
 /// Packages under one order name.

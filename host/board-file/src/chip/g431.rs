@@ -19,6 +19,8 @@ pub(super) const FACTS: Facts = Facts {
     serial: &[g474::USART1, g474::USART2, g474::USART3, g474::UART4],
     refused: &[g474::LPUART1],
     spi: Ok(g474::SPI),
+    can: &[g474::FDCAN1],
+    timers: g474::TIMERS,
     // SRAM1 and SRAM2; the 10 KiB of CCM that follow are for code.
     ram_kib: 22,
     slots,

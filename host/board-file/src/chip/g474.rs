@@ -3,7 +3,7 @@
 
 use model_core::gears::design::Processor;
 
-use super::facts::{ALL, Facts, Package, SerialUnit, Slot, SpiUnit, Variant, at, pin};
+use super::facts::{ALL, CanUnit, Facts, Package, SerialUnit, Slot, SpiUnit, TimerUnit, Variant, at, pin};
 use crate::pll::PllLimits;
 
 /// All buses run at the core's rate.
@@ -22,6 +22,8 @@ pub(super) const FACTS: Facts = Facts {
     serial: &[USART1, USART2, USART3, UART4, UART5],
     refused: &[LPUART1],
     spi: Ok(SPI),
+    can: CAN,
+    timers: TIMERS,
     // SRAM1 and SRAM2; the 32 KiB of CCM that follow are for code.
     ram_kib: 96,
     slots,
@@ -109,6 +111,34 @@ pub(super) const SPI: &[SpiUnit] = &[
         out: &[at("PB4", 6), at("PC11", 6)],
         input: &[at("PB5", 6), at("PC12", 6)],
     },
+];
+
+pub(super) const FDCAN1: CanUnit = CanUnit {
+    name: "FDCAN1",
+    send: &[pin("PA12"), pin("PB9"), pin("PD1")],
+    receive: &[pin("PA11"), pin("PB8"), pin("PD0")],
+};
+const CAN: &[CanUnit] = &[
+    FDCAN1,
+    CanUnit { name: "FDCAN2", send: &[pin("PB6"), pin("PB13")], receive: &[pin("PB5"), pin("PB12")] },
+    CanUnit { name: "FDCAN3", send: &[pin("PA15"), pin("PB4")], receive: &[pin("PA8"), pin("PB3")] },
+];
+
+/// Those that all chips of RM0440 have. TIM5 of the STM32G474 is left out.
+pub(super) const TIMERS: &[TimerUnit] = &[
+    TimerUnit { name: "TIM1", a: &[pin("PA8"), pin("PC0"), pin("PE9")], b: &[pin("PA9"), pin("PC1"), pin("PE11")] },
+    TimerUnit {
+        name: "TIM2",
+        a: &[pin("PA0"), pin("PA5"), pin("PA15"), pin("PD3")],
+        b: &[pin("PA1"), pin("PB3"), pin("PD4")],
+    },
+    TimerUnit {
+        name: "TIM3",
+        a: &[pin("PA6"), pin("PB4"), pin("PC6"), pin("PE2")],
+        b: &[pin("PA4"), pin("PA7"), pin("PB5"), pin("PC7"), pin("PE3")],
+    },
+    TimerUnit { name: "TIM4", a: &[pin("PA11"), pin("PB6"), pin("PD12")], b: &[pin("PA12"), pin("PB7"), pin("PD13")] },
+    TimerUnit { name: "TIM8", a: &[pin("PA15"), pin("PB6"), pin("PC6")], b: &[pin("PB8"), pin("PC7")] },
 ];
 
 // PG10 is the reset input of all of them.

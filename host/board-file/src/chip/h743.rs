@@ -3,7 +3,7 @@
 
 use model_core::gears::design::Processor;
 
-use super::facts::{ALL, Facts, Package, SerialUnit, Slot, Variant, at, pin};
+use super::facts::{ALL, CanUnit, Facts, Package, SerialUnit, Slot, TimerUnit, Variant, at, pin};
 use crate::pll::PllLimits;
 
 /// Of both buses that have USARTs: a quarter of the core's rate.
@@ -30,6 +30,8 @@ pub(super) const FACTS: Facts = Facts {
     serial: SERIAL,
     refused: &[("LPUART1", "it divides its clock in another way and has other registers")],
     spi: Err("the SPI of STM32H743 is of another kind, which the firmware has no slave for"),
+    can: CAN,
+    timers: TIMERS,
     // DTCM.
     ram_kib: 128,
     slots,
@@ -106,6 +108,24 @@ const SERIAL: &[SerialUnit] = &[
         send: &[at("PE1", 8), at("PJ8", 8)],
         receive: &[at("PE0", 8), at("PJ9", 8)],
     },
+];
+
+const CAN: &[CanUnit] = &[
+    CanUnit {
+        name: "FDCAN1",
+        send: &[pin("PA12"), pin("PB9"), pin("PD1"), pin("PH13")],
+        receive: &[pin("PA11"), pin("PB8"), pin("PD0"), pin("PH14")],
+    },
+    CanUnit { name: "FDCAN2", send: &[pin("PB6"), pin("PB13")], receive: &[pin("PB5"), pin("PB12")] },
+];
+
+const TIMERS: &[TimerUnit] = &[
+    TimerUnit { name: "TIM1", a: &[pin("PA8"), pin("PE9")], b: &[pin("PA9"), pin("PE11")] },
+    TimerUnit { name: "TIM2", a: &[pin("PA0"), pin("PA5"), pin("PA15")], b: &[pin("PA1"), pin("PB3")] },
+    TimerUnit { name: "TIM3", a: &[pin("PA6"), pin("PB4"), pin("PC6")], b: &[pin("PA7"), pin("PB5"), pin("PC7")] },
+    TimerUnit { name: "TIM4", a: &[pin("PB6"), pin("PD12")], b: &[pin("PB7"), pin("PD13")] },
+    TimerUnit { name: "TIM5", a: &[pin("PA0"), pin("PH10")], b: &[pin("PA1"), pin("PH11")] },
+    TimerUnit { name: "TIM8", a: &[pin("PC6"), pin("PI5")], b: &[pin("PC7"), pin("PI6")] },
 ];
 
 const PINS_100: &[(char, u16)] = &[('A', ALL), ('B', ALL), ('C', ALL), ('D', ALL), ('E', ALL), ('H', 0b11)];

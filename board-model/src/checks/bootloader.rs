@@ -1,0 +1,153 @@
+//! After a bootloader: an image begins with whatever that left, not with what a reset leaves.
+
+use board::target::board::Chip;
+use board_file::{ExternalClock, Pll};
+
+use super::boot::ticks;
+use super::{clean, spi};
+use crate::boards::{Subject, pin};
+use crate::cpu::Board;
+use crate::talk::Talk;
+use crate::wires::{MICROSECOND, Mode, Pin, SECOND, Time};
+
+/// Interrupts of the serial lines of these boards: left pending, and on.
+const SERIAL: [usize; 3] = [37, 38, 39];
+/// Longer than any oscillator or PLL takes.
+const A_WHILE: Time = 5000 * MICROSECOND;
+
+/// Where the bootloader of the chip is: RM0090 2.4, RM0440 2.6, RM0433 2.6.
+fn system_memory(chip: Chip) -> u32 {
+    match chip {
+        Chip::Stm32f405 | Chip::Stm32g474 | Chip::Stm32g431 => 0x1fff_0000,
+        Chip::Stm32h743 => 0x1ff0_9800,
+    }
+}
+
+/// The interrupt of USB, which no image serves: the tables of vectors, RM0090 12.2, RM0440 14.3, RM0433 19.1.2.
+fn usb(chip: Chip) -> usize {
+    match chip {
+        Chip::Stm32f405 => 67,
+        Chip::Stm32g474 | Chip::Stm32g431 => 20,
+        Chip::Stm32h743 => 101,
+    }
+}
+
+/// What makes the full core clock of what is outside, and switches the internal oscillator off: each write, then a while.
+fn full_speed(chip: Chip, is_signal: bool, Pll { divider, factor, range }: Pll) -> Vec<(u32, u32)> {
+    let bypass = u32::from(is_signal) << 18;
+    match chip {
+        Chip::Stm32f405 => {
+            let on = 0x83 | bypass | 1 << 16;
+            vec![
+                (0x4002_3800, 0x83 | bypass),
+                (0x4002_3800, on),
+                (0x4002_3804, 0x2700_0000 | 1 << 22 | factor << 6 | divider),
+                (0x4002_3c00, 0x705),
+                (0x4002_3800, on | 1 << 24),
+                (0x4002_3808, 4 << 13 | 5 << 10),
+                (0x4002_3808, 4 << 13 | 5 << 10 | 2),
+                (0x4002_3800, on & !1 | 1 << 24),
+            ]
+        }
+        Chip::Stm32g474 | Chip::Stm32g431 => {
+            let on = 0x500 | bypass | 1 << 16;
+            vec![
+                (0x4002_1000, 0x500 | bypass),
+                (0x4002_1000, on),
+                (0x4002_100c, 1 << 24 | factor << 8 | (divider - 1) << 4 | 3),
+                (0x4002_1000, on | 1 << 24),
+                (0x4002_1058, 1 << 28 | 1 << 10),
+                (0x4002_1008, 8 << 4 | 1),
+                (0x4000_7080, 0),
+                (0x4002_2000, 0x0004_0604),
+                (0x4002_1008, 8 << 4 | 3),
+                (0x4002_1008, 3),
+                (0x4002_1000, on & !0x100 | 1 << 24),
+            ]
+        }
+        Chip::Stm32h743 => {
+            let on = 0xc025 | bypass | 1 << 16;
+            vec![
+                (0x5802_480c, 0x6),
+                (0x5802_4818, 0xc000),
+                (0x5802_4400, 0xc025 | bypass),
+                (0x5802_4400, on),
+                (0x5802_4428, 0x0202_0002 | divider << 4),
+                (0x5802_442c, 0x01ff_0000 | range << 2),
+                (0x5802_4430, 0x0101_0200 | (factor - 1)),
+                (0x5802_4400, on | 1 << 24),
+                (0x5200_2000, 0x22),
+                (0x5802_4418, 4 << 4 | 8),
+                (0x5802_441c, 4 << 8 | 4 << 4),
+                (0x5802_4420, 4 << 4),
+                (0x5802_4410, 3),
+                (0x5802_4400, on & !1 | 1 << 24),
+            ]
+        }
+    }
+}
+
+/// Port C on, and its pin 6 driven: on some boards with the chip that is a gate, and none of those that are tried here uses it.
+const DRIVEN: Pin = Pin('C', 6);
+
+/// The writes for that, on top of the clocks that are on.
+fn used(chip: Chip) -> [(u32, u32); 3] {
+    let (gates, port, was) = match chip {
+        Chip::Stm32f405 => ((0x4002_3830, 0x0010_0004), 0x4002_0800, 0),
+        Chip::Stm32g474 | Chip::Stm32g431 => ((0x4002_104c, 4), 0x4800_0800, u32::MAX),
+        Chip::Stm32h743 => ((0x5802_44e0, 4), 0x5802_0800, u32::MAX),
+    };
+    [gates, (port + 0x18, 1 << DRIVEN.1), (port, was & !(3 << (2 * DRIVEN.1)) | 1 << (2 * DRIVEN.1))]
+}
+
+/// A bootloader that ran at full speed from what is outside jumps to the image: with its clock, with its own vectors in force and its
+/// tick, with interrupts pending and on that the image serves, and one that it does not, and with a pin that it drives.
+fn jumped_to<'a>(subject: &Subject) -> Result<Board<'a>, String> {
+    let (mut board, chip) = (subject.start()?, subject.board.chip());
+    let described = &subject.board.described;
+    let is_signal = matches!(described.clock, ExternalClock::Signal(_));
+    let external = described.pll.external;
+    for (address, value) in external.map(|pll| full_speed(chip, is_signal, pll)).unwrap_or_default() {
+        let machine = board.machine_mut();
+        machine.settle();
+        machine.set_up(address, value);
+        machine.pass(A_WHILE);
+        machine.settle();
+    }
+    for (address, value) in used(chip) {
+        board.machine_mut().set_up(address, value);
+    }
+    let core = board.machine().wires.clocks.core;
+    if external.is_some() && core != u64::from(subject.board.core_rate()) {
+        return Err(format!("the bootloader runs at {core} Hz"));
+    }
+    board.jump_from(system_memory(chip), &[SERIAL[0], SERIAL[1], SERIAL[2], usb(chip)]);
+    clean(&board)?;
+    Ok(board)
+}
+
+/// The image takes its own vectors before any interrupt comes, and its own clock, and is bothered by no interrupt that it does not
+/// serve.
+pub fn starts(subject: &Subject) -> Result<String, String> {
+    let mut talk = Talk::new(jumped_to(subject)?);
+    let hello = talk.call(2 * SECOND);
+    clean(&talk.board.borrow())?;
+    let hello = hello.ok_or_else(|| format!("no answer; it was at {}", talk.board.borrow().whereabouts()))?;
+    let core = talk.board.borrow().machine().wires.clocks.core;
+    let is_external = subject.board.described.clock.frequency().is_some();
+    if core != u64::from(subject.board.core_rate()) || hello.clock.source.is_external() != is_external {
+        return Err(format!("{core} Hz from {:?}", hello.clock));
+    }
+    let is_used = subject.board.described.used_pins().iter().any(|(_, used)| pin(*used) == DRIVEN);
+    if !is_used && matches!(talk.board.borrow().machine().wires.mode(DRIVEN), Mode::Output(_)) {
+        return Err("a pin that the bootloader drove is driven still".into());
+    }
+    ticks(&mut talk, hello.tick_rate)?;
+    clean(&talk.board.borrow())?;
+    Ok(format!("{core} Hz, vectors at {:#010x}", talk.board.borrow().machine().scs.vectors))
+}
+
+/// The slave on SPI, which has no tick.
+pub fn serves_a_master(subject: &Subject) -> Result<String, String> {
+    spi::serves(subject, jumped_to(subject)?)
+}

@@ -13,7 +13,7 @@ const MODEL_SHARE: f64 = 0.003;
 
 /// One parameter.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(any(test, feature = "schema"), derive(schemars::JsonSchema))]
 pub struct Finding {
     /// What it is.
     pub name: String,

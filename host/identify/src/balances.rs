@@ -25,7 +25,7 @@ pub struct Factor {
 impl Factor {
     /// An unknown of a solution.
     pub fn of(solution: &Solution, unknown: usize) -> Self {
-        Self { value: solution.values[unknown], deviation: solution.deviation(unknown) }
+        Self { value: solution.values[unknown], deviation: solution.half(&[(unknown, 1.0)]) / solution.reach }
     }
 
     /// Known well enough to be held against anything.
@@ -44,12 +44,15 @@ impl Factor {
 pub fn of_the_motor(free: &Solution) -> Factor {
     let compliance = free.values[twist::COMPLIANCE];
     let value = 1.0 / (1.0 + free.values[twist::TORQUE_ERROR] / compliance);
-    Factor { value, deviation: free.deviation(twist::TORQUE_ERROR) / compliance.abs() * value * value }
+    Factor {
+        value,
+        deviation: free.half(&[(twist::TORQUE_ERROR, 1.0)]) / free.reach / compliance.abs() * value * value,
+    }
 }
 
 /// Logged torque over what the joint file's inertias need: everything that turns, losses, friction and weight apart.
 pub fn of_all(rows: &Rows, prior: &PriorModel) -> Option<Factor> {
-    let mut equations = Equations::default();
+    let mut equations = Equations::of_moments(rows.alike);
     for row in rows.all.iter().filter(|row| row.direction != 0.0) {
         let needed =
             row.leverage * prior.motor_inertia * row.motor_acceleration + prior.link_inertia * row.output_acceleration;

@@ -66,7 +66,7 @@ impl Columns {
     }
 
     /// Under the names that are known here.
-    pub(super) fn renamed(mut self, renamed: &[(String, String)]) -> Outcome<Self> {
+    pub fn renamed(mut self, renamed: &[(String, String)]) -> Outcome<Self> {
         for (own, theirs) in renamed {
             let Some(place) = self.names.iter().position(|name| name == theirs) else {
                 return Err(self.missing(theirs));
@@ -79,7 +79,7 @@ impl Columns {
     }
 
     /// Multiplies a column and gives it another name, in place of one that has it.
-    pub(super) fn scale(&mut self, name: &str, new_name: &str, by: f64) {
+    pub fn scale(&mut self, name: &str, new_name: &str, by: f64) {
         self.names.iter_mut().filter(|known| *known == new_name).for_each(|known| known.insert(0, '~'));
         if let Some(place) = self.names.iter().position(|known| known == name) {
             self.values[place].iter_mut().for_each(|value| *value *= by);
@@ -88,12 +88,12 @@ impl Columns {
     }
 
     /// Whether motor, output and torque are there.
-    pub(super) fn will_do(&self) -> bool {
+    pub fn will_do(&self) -> bool {
         self.will_do_with(true)
     }
 
     /// The same; the output may be missing.
-    pub(super) fn will_do_with(&self, output: bool) -> bool {
+    pub fn will_do_with(&self, output: bool) -> bool {
         let has = |wanted: &[&str]| {
             let all = KNOWN.iter().filter(|(name, _)| wanted.contains(name));
             all.flat_map(|(name, others)| others.iter().chain([name])).any(|name| self.names().any(|own| own == *name))
@@ -105,7 +105,7 @@ impl Columns {
     }
 
     /// Whether both encoders are there as counts.
-    pub(super) fn have_counts(&self) -> bool {
+    pub fn have_counts(&self) -> bool {
         ["motor_counts", "output_counts"].iter().all(|wanted| self.names().any(|own| own == *wanted))
     }
 

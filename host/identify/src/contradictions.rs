@@ -190,7 +190,7 @@ pub fn ringing(log: &Log, prior: &PriorModel, free: &Solution) -> Outcome<()> {
 
 /// What stands behind the gears is what the motor gives, less what it takes for itself.
 fn behind_the_gears(prior: &PriorModel, rows: &Rows) -> Outcome<()> {
-    let mut equations = Equations::default();
+    let mut equations = Equations::of_moments(rows.alike);
     for row in rows.all.iter().filter(|row| row.direction != 0.0) {
         let Some(measured) = row.measured else { continue };
         equations.push(vec![row.drive, row.direction, 1.0], measured, (row.time / BLOCK_LENGTH) as usize);

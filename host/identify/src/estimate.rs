@@ -1,7 +1,5 @@
 //! A value with half of its 95 % interval, out of a solution.
 
-use nalgebra::DVector;
-
 use super::regression::Solution;
 
 /// A value and half of its interval.
@@ -14,15 +12,12 @@ pub(super) struct Estimate {
 impl Estimate {
     /// An unknown of a solution.
     pub fn of(solution: &Solution, unknown: usize) -> Self {
-        Self { value: solution.values[unknown], half: solution.reach * solution.deviation(unknown) }
+        Self { value: solution.values[unknown], half: solution.half(&[(unknown, 1.0)]) }
     }
 
     /// Any smooth function of a solution, by its slopes.
     pub fn from(solution: &Solution, value: f64, slopes: &[(usize, f64)]) -> Self {
-        let mut slope = DVector::zeros(solution.values.len());
-        slopes.iter().for_each(|(unknown, by)| slope[*unknown] = *by);
-        let variance = (slope.transpose() * &solution.covariance * &slope)[(0, 0)];
-        Self { value, half: solution.reach * variance.max(0.0).sqrt() }
+        Self { value, half: solution.half(slopes) }
     }
 
     /// With a systematic part beside the scatter.

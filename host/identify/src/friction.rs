@@ -24,11 +24,21 @@ const STRIBECK_SPEEDS: f64 = 5.0;
 /// Share of the largest torque within which an offset of the torque is expected.
 const BIAS: f64 = 0.02;
 
-/// Balance of the link, with a motor torque that exceeds the scaled one by a ratio and a motor of this dry friction, if
-/// no torque was measured behind them.
-pub fn of_the_link(rows: &Rows, prior: &PriorModel, torque_error: f64, motor_dry: f64) -> Option<Solution> {
+/// What the link's balance takes from the motor's side, if no torque was measured behind it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MotorSide {
+    /// Ratio by which the motor's true torque exceeds the scaled one.
+    pub torque_error: f64,
+    /// Dry friction of the motor [N m].
+    pub dry: f64,
+    /// Delay of its torque [s]: at speed it looks like viscous friction.
+    pub delay: f64,
+}
+
+/// Balance of the link.
+pub fn of_the_link(rows: &Rows, prior: &PriorModel, motor: MotorSide) -> Option<Solution> {
     let slowest = SLOWEST.max(STRIBECK_SPEEDS * prior.surroundings.load_friction.stribeck_speed);
-    let mut equations = Equations::default();
+    let mut equations = Equations::of_moments(rows.alike);
     for row in rows.carrying().filter(|row| row.output_speed.abs() > slowest && row.direction != 0.0) {
         let coefficients = vec![
             row.output_acceleration,
@@ -38,7 +48,9 @@ pub fn of_the_link(rows: &Rows, prior: &PriorModel, torque_error: f64, motor_dry
             row.output.cos(),
             1.0,
         ];
-        let from_motor = row.drive + torque_error * row.motor_torque - row.leverage * row.direction * motor_dry;
+        let from_motor = row.drive + motor.torque_error * row.motor_torque
+            - row.leverage * row.direction * motor.dry
+            - motor.delay * row.drive_rate;
         let torque = row.measured.unwrap_or(from_motor);
         equations.push(coefficients, torque, block(row));
     }
@@ -48,7 +60,7 @@ pub fn of_the_link(rows: &Rows, prior: &PriorModel, torque_error: f64, motor_dry
 
 /// Balance of the motor against the measured output torque.
 pub fn of_the_motor(rows: &Rows, prior: &PriorModel) -> Option<Solution> {
-    let mut equations = Equations::default();
+    let mut equations = Equations::of_moments(rows.alike);
     for row in rows.carrying().filter(|row| row.direction != 0.0) {
         let Some(measured) = row.measured else { continue };
         // What the joint file says of the viscous part was taken off before.

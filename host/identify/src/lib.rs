@@ -7,12 +7,12 @@
 //! are the moments at which a flank carries, smoothed by `kernel`; `twist` and `friction` are fitted to them by `regression`;
 //! `balances` hold torque against inertias, for `contradictions` and for `scales`. `findings` is what comes of it, with its
 //! `estimate`s; `page`, `pictures` and `patch` show it. `virtual_test` makes a log without hardware.
-//! `quasi_static` reads slow logs by itself, `replay` runs an observer over a log.
+//! `quasi_static` reads slow logs by itself.
 
 mod arguments;
 mod balances;
-mod column_map;
-mod columns;
+pub mod column_map;
+pub mod columns;
 mod contradictions;
 mod estimate;
 mod even_times;
@@ -21,12 +21,12 @@ mod friction;
 mod kernel;
 pub mod learnt;
 mod log;
-mod log_file;
+pub mod log_file;
 mod mcap_file;
 mod mcap_log;
 mod noise;
 mod numbers;
-pub(crate) mod page;
+pub mod page;
 mod patch;
 mod pictures;
 mod prior;
@@ -34,7 +34,6 @@ mod quasi_static;
 mod readings;
 mod refusal;
 mod regression;
-pub mod replay;
 mod ros_message;
 mod rows;
 mod sampling;
@@ -43,7 +42,7 @@ mod scales;
 mod schema;
 mod text_table;
 mod twist;
-mod units;
+pub mod units;
 pub mod virtual_test;
 
 pub use arguments::Arguments;

@@ -17,6 +17,13 @@ const OVER_SCATTER: f64 = 4.0;
 const UNRESOLVED: f64 = 0.5;
 /// Teeth bounce so long after a change of flank [s].
 const BOUNCING: f64 = 0.07;
+/// Strokes are alike if they take as long and bend the joint by as much torque, within this share up or down...
+const ALIKE: f64 = 0.1;
+/// ... that torque is what so much of a stroke stays below...
+const STROKE_PART: f64 = 0.8;
+/// ... and where up to the first of these shares of a log's time is in strokes of one kind nothing repeats itself, from the
+/// second on all does.
+const ONE_KIND: [f64; 2] = [0.6, 0.75];
 /// A slow motor's direction is told from this long to either side [s]...
 const SLOW: f64 = 0.05;
 /// ... if it moves by more than so many counts in every quarter of that.
@@ -78,6 +85,8 @@ pub struct Rows {
     pub crossings: usize,
     /// Time from one moment to the next [s].
     pub step: f64,
+    /// How far its strokes are alike: 0 where none is, or half of the time at most is in strokes of one kind, 1 where all are.
+    pub alike: f64,
     /// Share of all moments that are left out since samples near them are lost.
     pub left_out: f64,
 }
@@ -115,16 +124,58 @@ impl Rows {
         }
         let carried: Vec<f64> = all.iter().map(|row| row.side).filter(|side| *side != 0.0).collect();
         let crossings = carried.windows(2).filter(|pair| pair[0] != pair[1]).count();
+        let alike = alike(&all);
         if length > UNRESOLVED * prior.swing() {
             leave_out_landings(&mut all);
         }
-        Self { all, kernel, greatest, crossings, step: samples as f64 * log.period, left_out }
+        Self { all, kernel, greatest, crossings, alike, step: samples as f64 * log.period, left_out }
     }
 
     /// Moments at which a flank carries.
     pub fn carrying(&self) -> impl Iterator<Item = &Row> {
         self.all.iter().filter(|row| row.side != 0.0)
     }
+}
+
+/// A flank that carries, from one change to the next.
+struct Stroke {
+    side: f64,
+    time: f64,
+    torque: f64,
+    moments: usize,
+}
+
+impl Stroke {
+    fn of(rows: &[&Row]) -> Self {
+        let mut torques: Vec<f64> = rows.iter().map(|row| row.torque().abs()).collect();
+        torques.sort_by(f64::total_cmp);
+        Self {
+            side: rows[0].side,
+            time: rows[rows.len() - 1].time - rows[0].time,
+            torque: torques[(STROKE_PART * (torques.len() - 1) as f64) as usize],
+            moments: rows.len(),
+        }
+    }
+
+    fn is_like(&self, other: &Self) -> bool {
+        let near = |one: f64, other: f64| (one - other).abs() <= ALIKE * other;
+        self.side == other.side && near(self.time, other.time) && near(self.torque, other.torque)
+    }
+}
+
+/// How far strokes are alike.
+fn alike(rows: &[Row]) -> f64 {
+    let carrying: Vec<&Row> = rows.iter().filter(|row| row.side != 0.0).collect();
+    let strokes: Vec<Stroke> = carrying.chunk_by(|one, next| one.side == next.side).map(Stroke::of).collect();
+    let of_one_kind = |side: f64| {
+        let alike = |stroke: &Stroke| -> usize {
+            strokes.iter().filter(|other| other.is_like(stroke)).map(|other| other.moments).sum()
+        };
+        strokes.iter().filter(|stroke| stroke.side == side).map(alike).max().unwrap_or_default()
+    };
+    let share = (of_one_kind(1.0) + of_one_kind(-1.0)) as f64 / carrying.len().max(1) as f64;
+    let [none, all] = ONE_KIND;
+    ((share - none) / (all - none)).clamp(0.0, 1.0)
 }
 
 /// Teeth that land bounce for a while: a kernel too long to show it would take their flight for a bend.

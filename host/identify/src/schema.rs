@@ -1,21 +1,14 @@
 //! The published schemas of what the commands of this crate write as JSON are those of their types. Only tests are here.
 
-use report::schema::{assert_explained, assert_published};
+use report::schema::assert_published;
 
 use crate::findings::Record;
 use crate::learnt::Content;
 use crate::quasi_static::SlowRecord;
-use crate::replay::ReplayRecord;
 
 #[test]
 fn the_published_schemas_are_those_of_the_types() {
     assert_published::<Record<'_>>("identify.schema.json");
     assert_published::<SlowRecord<'_>>("identify-quasi-static.schema.json");
     assert_published::<Content>("memory.schema.json");
-    assert_published::<ReplayRecord>("replay.schema.json");
-}
-
-#[test]
-fn every_key_of_a_replay_is_explained() {
-    assert_explained::<ReplayRecord>("replay.md", [], 30);
 }

@@ -91,7 +91,7 @@ pub fn fit_with_any_torque(log: &Log, rows: &Rows, prior: &PriorModel) -> Option
 
 fn fit_with(log: &Log, rows: &Rows, prior: &PriorModel, torque_error: f64) -> Option<Twist> {
     let used: Vec<Row> = rows.carrying().filter(|row| row.direction != 0.0).copied().collect();
-    let mut equations = Equations::default();
+    let mut equations = Equations::of_moments(rows.alike);
     let products = rows.kernel.products();
     for row in &used {
         let block = (row.time / BLOCK_LENGTH) as usize;

@@ -21,21 +21,23 @@ pub(crate) fn read(section: &Section<'_>, geometry: Option<&Geometry>) -> Option
     Some(Masses { bodies: bodies?, rotor_inertia: rotor_inertia?, link_inertia: link_inertia? })
 }
 
-/// What a data sheet says of gears and carrier together.
-const AT_INPUT: &str = "gear_inertia_at_input_kg_cm2";
+/// What a data sheet says of gears and carrier together...
+pub(crate) const AT_INPUT: &str = "gear_inertia_at_input_kg_cm2";
+
+/// ... in place of all of these.
+pub(crate) const EACH: [&str; 8] = [
+    "sun_equivalent_mass_kg",
+    "sun_inertia_kg_m2",
+    "planet_equivalent_mass_kg",
+    "planet_inertia_kg_m2",
+    "planet_mass_kg",
+    "carrier_inertia_over_radius_squared_kg",
+    "carrier_equivalent_mass_kg",
+    "carrier_inertia_kg_m2",
+];
 
 /// Gears and carrier of their inertia at the input, by the shares that discs of one thickness have in it.
 fn read_at_input(section: &Section<'_>, geometry: Option<&Geometry>) -> Option<Bodies> {
-    const EACH: [&str; 8] = [
-        "sun_equivalent_mass_kg",
-        "sun_inertia_kg_m2",
-        "planet_equivalent_mass_kg",
-        "planet_inertia_kg_m2",
-        "planet_mass_kg",
-        "carrier_inertia_over_radius_squared_kg",
-        "carrier_equivalent_mass_kg",
-        "carrier_inertia_kg_m2",
-    ];
     for key in EACH.into_iter().filter(|key| section.has(key)) {
         let message = format!("`{key}` is part of `{AT_INPUT}`: both say what gears and carrier weigh");
         let help = format!("keep `{AT_INPUT}`, or the masses of sun, planets and carrier");

@@ -6,6 +6,7 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use crate::bodies;
 use crate::keys::{self, KEYS, Key, Kind};
 use crate::spelling;
 
@@ -19,30 +20,20 @@ pub struct Refused {
 }
 
 /// Keys that say the same thing in different units or forms: setting one takes the place of the others.
-const SAME_THING: [&[&str]; 10] = [
+const SAME_THING: [&[&str]; 8] = [
     &["half_backlash_um", "backlash_um", "lost_motion_arcmin", "lost_motion_mrad"],
     &["stiffness_N_m_per_rad", "total_stiffness_N_m_per_arcmin"],
     &["motor_coulomb_friction_N_m", "no_load_torque_N_m"],
     &["sun_equivalent_mass_kg", "sun_inertia_kg_m2"],
     &["planet_equivalent_mass_kg", "planet_inertia_kg_m2"],
     &["carrier_inertia_over_radius_squared_kg", "carrier_equivalent_mass_kg", "carrier_inertia_kg_m2"],
-    // Takes the place of all of them; none of them alone takes its place.
-    &[
-        "gear_inertia_at_input_kg_cm2",
-        "sun_equivalent_mass_kg",
-        "sun_inertia_kg_m2",
-        "planet_equivalent_mass_kg",
-        "planet_inertia_kg_m2",
-        "planet_mass_kg",
-        "carrier_inertia_over_radius_squared_kg",
-        "carrier_equivalent_mass_kg",
-        "carrier_inertia_kg_m2",
-    ],
-    // Likewise.
-    &["ratio", "motor_turns", "link_turns"],
     &["carrier_radius_mm", "carrier_base_radius_mm"],
     &["mesh_frequency_rad_per_s", "mesh_frequency_Hz", "mesh_frequency_over_omega_n"],
 ];
+
+/// Keys that take the place of several others together; none of those alone takes theirs.
+const IN_PLACE_OF: [(&str, &[&str]); 2] =
+    [(bodies::AT_INPUT, &bodies::EACH), ("ratio", &["motor_turns", "link_turns"])];
 
 /// The full path of a key, as in `mesh.sun_planet.half_backlash_um`. Its last parts are enough where they name one key;
 /// a key of `[mesh]` without a family stands for both.
@@ -110,10 +101,10 @@ fn in_the_way(path: &str) -> Refused {
 
 /// What setting a key takes the place of: itself, other forms of it, and for both mesh families what one of them has.
 fn replaced(section: &str, name: &str) -> Vec<String> {
-    // These have no other form: they are part of one.
-    const PARTS: [&str; 3] = ["planet_mass_kg", "motor_turns", "link_turns"];
-    let forms = SAME_THING.iter().find(|forms| forms.contains(&name) && !PARTS.contains(&name)).copied();
-    let forms = forms.unwrap_or_default().iter().copied().filter(|form| *form != name).chain([name]);
+    let same = SAME_THING.iter().find(|forms| forms.contains(&name)).copied();
+    let parts = IN_PLACE_OF.iter().find(|(whole, _)| *whole == name).map(|(_, parts)| *parts);
+    let forms = [same, parts].into_iter().flatten().flatten();
+    let forms = forms.copied().filter(|form| *form != name).chain([name]);
     let sections: &[&str] = match section {
         "mesh" => &["mesh", "mesh.sun_planet", "mesh.ring_planet"],
         _ => &[section],

@@ -77,6 +77,12 @@ pub fn inertia_at_input(bodies: &Bodies, geometry: &Geometry) -> f64 {
     geometry.sun_base_radius.powi(2) * (bodies.sun_equivalent_mass + 0.25 * behind)
 }
 
+/// Inertia of the whole joint at its link: i^2 (J + J_rotor) + J_link, J that of the gears at the input [kg m^2].
+pub fn inertia_at_link(joint: &JointParameters) -> f64 {
+    let at_input = inertia_at_input(&joint.bodies, &joint.geometry) + joint.rotor_inertia;
+    at_input * joint.geometry.ratio_by_teeth().powi(2) + joint.link_inertia
+}
+
 /// Dry friction of the motor's side in a no-load torque at the input, T_0 = T_m + T_l / (i eta) with the load's dry
 /// friction in motion T_l [N m]; `None` where the load's alone is more.
 pub fn motor_friction(no_load: f64, load_friction: f64, ratio: f64, efficiency: f64) -> Option<f64> {

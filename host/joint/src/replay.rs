@@ -1,7 +1,7 @@
 //! `joint replay`: runs an observer over a log.
 
-pub use identify::replay::ReplayArguments as Arguments;
-use identify::replay::run as replay;
+pub use replay::ReplayArguments as Arguments;
+use replay::run as replay;
 use report::failure::Outcome;
 use report::output;
 use report::progress::Progress;

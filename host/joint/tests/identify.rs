@@ -255,6 +255,58 @@ fn an_equivalent_gear_is_identified_with_the_torque_at_its_output_and_refused_wi
     assert!(!out.exists(), "a refused log leaves nothing");
 }
 
+/// Test files' sines of one strength: joint, frequency [Hz] and amplitude [rad].
+const SINES: [(&str, f64, f64); 12] = [
+    ("q1", 1.0, 0.4),
+    ("q1", 2.0, 0.288),
+    ("q1", 4.0, 0.072),
+    ("q1", 7.0, 0.0235),
+    ("q1", 10.0, 0.0115),
+    ("d2", 2.0, 0.267),
+    ("d2", 4.0, 0.067),
+    ("d2", 10.0, 0.0107),
+    ("l1", 2.0, 0.4),
+    ("s1", 2.0, 0.4),
+    ("s1", 4.0, 0.4),
+    ("s1", 10.0, 0.147),
+];
+
+#[test]
+fn of_a_sine_of_one_strength_nothing_wrong_is_said_with_confidence() {
+    let folder = folder();
+    let (mut found, mut told_why) = (0, 0);
+    for (name, frequency, amplitude) in SINES {
+        println!("{name} at {frequency} Hz");
+        let preset = joint_file::preset(name).expect("a preset");
+        let [test, runs, out] =
+            [".toml", "", "-found"].map(|end| folder.path().join(format!("{name}-{frequency}{end}")));
+        let told = format!(
+            "joint = \"{name}\"\nduration_s = 5\nsettle_s = 1\n[profile]\nkind = \"sine\"\nfrequency_Hz = {frequency}\n\
+             amplitude_rad = {amplitude}\n[controller]\nrivals = []\n"
+        );
+        fs::write(&test, told).expect("written");
+        joint(&["hil", text(&test), "--host", "--plant", "reference", "--seed", "1", "--out", text(&runs)]).well();
+        let log = runs.join(format!("runs/{name}-{frequency}-seed1-preview.mcap"));
+        let ended = joint(&["identify", text(&log), "--joint", name, "--out", text(&out)]);
+        if ended.code == Some(2) {
+            ended.refused(&["nothing is identifiable"]);
+            continue;
+        }
+        ended.well();
+        let record = json(&out.join("findings.json"));
+        for finding in record["findings"].as_array().expect("a list") {
+            let (Some(key), Some(value)) = (finding["key"].as_str(), finding["value"].as_f64()) else { continue };
+            let stated = joint_file::value(preset, key).expect("a key").map_or(0.0, |value| value.parse().expect(key));
+            let [low, high] = [0, 1].map(|end| finding["interval"][end].as_f64().expect("a number"));
+            assert!((low..=high).contains(&stated), "{key} is {stated}, found {value} in {low} to {high}");
+            found += 1;
+        }
+        told_why += usize::from(record.to_string().contains("in this motion it goes with something else"));
+    }
+    assert!(found > 10, "{found} values: what a sine does show is not refused");
+    assert!(told_why > 6, "why the rest is not found is told of {told_why}");
+}
+
 /// A log of a motor that turns evenly but for what a row may change: time, motor counts, output counts, torque.
 fn log(folder: &Path, change: impl Fn(usize, &mut [String; 4])) -> Ended {
     let mut text = "time_s,motor_counts,output_counts,motor_torque_N_m\n".to_owned();

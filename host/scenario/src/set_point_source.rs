@@ -1,7 +1,6 @@
 //! Makes the set-points of a run: every control period, or at an impedance's own rate and held in between.
 
-use model_core::gears::{Kinematics, Mechanics};
-use parameters::JointParameters;
+use joint_file::sheet;
 use reference::closed_loop::{Motion, SetPoint, SharedProfile};
 
 use super::case::{Case, Designed};
@@ -24,7 +23,7 @@ impl SetPointSource {
         let preview = controller == ControllerName::Preview;
         let lead = designed.filter(|_| preview).map(|designed| f64::from(designed.compensation.crossing.lead));
         let gains = file.gains.filter(|_| controller.wants_gains() || controller == ControllerName::Off);
-        let inertia = |gains: &Gains| gains.inertia.unwrap_or_else(|| inertia_at_link(&case.nominal));
+        let inertia = |gains: &Gains| gains.inertia.unwrap_or_else(|| sheet::inertia_at_link(&case.nominal));
         let impedance = gains.map(|gains| (gains, inertia(&gains)));
         Self { motion: case.motion.clone(), lead, impedance, held: None }
     }
@@ -55,13 +54,4 @@ impl SetPointSource {
         };
         (number, set_point)
     }
-}
-
-/// Inertia of the whole joint, referred to the link [kg m^2].
-fn inertia_at_link(joint: &JointParameters) -> f64 {
-    let geometry = &joint.geometry;
-    let sun = joint.bodies.sun_equivalent_mass * geometry.sun_base_radius.powi(2) + joint.rotor_inertia;
-    let planets = geometry.planets as f64 * joint.bodies.planet_equivalent_mass;
-    let carrier = (joint.carrier_equivalent_mass() + planets) * geometry.carrier_base_radius().powi(2);
-    sun * geometry.ratio_by_teeth().powi(2) + carrier + joint.link_inertia
 }

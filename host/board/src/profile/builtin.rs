@@ -1,9 +1,10 @@
 //! The built-in profile: torque steps of both signs through the gap on a joint that turns. It is made from the joint's
 //! own rated torque, ratio and inertia, so that any joint may run it.
 
-use model_core::gears::{Kinematics, Mechanics};
 use std::f64::consts::TAU;
 
+use joint_file::sheet;
+use model_core::gears::Kinematics;
 use parameters::JointParameters;
 
 use super::torques::Torques;
@@ -40,7 +41,7 @@ pub fn reversals(joint: &JointParameters, time: f64) -> Torques {
     let ratio = joint.geometry.ratio_by_radii();
     let load = joint.rated_output_torque * level(time);
     let acceleration = if time < RUN_UP { SPEED / RUN_UP } else { 0.0 };
-    Torques { drive: (load + inertia_at_link(joint) * acceleration) / ratio, load }
+    Torques { drive: (load + sheet::inertia_at_link(joint) * acceleration) / ratio, load }
 }
 
 /// Load over rated torque: steps with straight flanks.
@@ -56,18 +57,6 @@ fn level(time: f64) -> f64 {
     };
     let way = to - from;
     from + way.clamp(-SLEW * (time_in_period - start), SLEW * (time_in_period - start))
-}
-
-/// Inertia of the whole joint, referred to the link [kg m^2].
-fn inertia_at_link(joint: &JointParameters) -> f64 {
-    let geometry = &joint.geometry;
-    let lever = geometry.carrier_base_radius();
-    let ratio = geometry.ratio_by_radii();
-    let sun = joint.bodies.sun_equivalent_mass * geometry.sun_base_radius.powi(2) + joint.rotor_inertia;
-    // A rigid planet moves along the line of action as the carrier does: u_p = u_c.
-    let planets = geometry.planets as f64 * joint.bodies.planet_equivalent_mass * lever.powi(2);
-    let carrier = joint.carrier_equivalent_mass() * lever.powi(2) + joint.link_inertia;
-    sun * ratio.powi(2) + planets + carrier
 }
 
 #[cfg(test)]

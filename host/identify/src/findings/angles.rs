@@ -39,7 +39,9 @@ pub(super) fn maps(twist: &Twist, prior: &PriorModel) -> Vec<Finding> {
             // An amplitude of two parts that scatter is never zero: one that does not stand out of both may well be.
             let both = Estimate { half: OF_BOTH * estimate.half, ..estimate };
             let estimate = if amplitude < both.half { both } else { estimate };
-            let narrow = [sine, cosine].iter().all(|part| solution.deviation(*part) < NARROWED * twist::width(first));
+            let narrow = [sine, cosine]
+                .iter()
+                .all(|part| solution.half(&[(*part, 1.0)]) < solution.reach * NARROWED * twist::width(first));
             let phase = across.atan2(along) * DEGREES;
             let reach = (estimate.half / amplitude).min(std::f64::consts::PI) * DEGREES;
             let (name, key) = names(encoder, word);

@@ -3,7 +3,7 @@
 
 use super::finding::{Finding, SHARE, finding};
 use crate::estimate::Estimate;
-use crate::friction;
+use crate::friction::{self, MotorSide};
 use crate::prior::PriorModel;
 use crate::regression::Solution;
 use crate::rows::{Row, Rows};
@@ -73,8 +73,10 @@ pub(super) fn frictions(
     } else {
         (Estimate { value: prior.surroundings.motor_friction.coulomb, half: 0.0 }, "if the motor's is as stated")
     };
-    let balance = |excess: f64, dry: f64| friction::of_the_link(slow, prior, excess, dry);
-    let Some(link) = balance(0.0, dry.value) else {
+    let delay = if measured { Estimate { value: 0.0, half: 0.0 } } else { Estimate::of(solution, twist::DELAY) };
+    let as_found = MotorSide { torque_error: 0.0, dry: dry.value, delay: delay.value };
+    let balance = |motor: MotorSide| friction::of_the_link(slow, prior, motor);
+    let Some(link) = balance(as_found) else {
         let nothing = Estimate { value: f64::NAN, half: f64::NAN };
         findings.extend(
             [0, 1].map(|place| finding(names[place], units[place], keys[place], nothing).if_so(false, why_link)),
@@ -82,13 +84,17 @@ pub(super) fn frictions(
         return findings;
     };
     // How far what is still uncertain moves the balance is found by moving it.
-    let moved = [balance(of_torque, dry.value), balance(0.0, dry.value + dry.half)];
+    let moved = [
+        balance(MotorSide { torque_error: of_torque, ..as_found }),
+        balance(MotorSide { dry: dry.value + dry.half, ..as_found }),
+        balance(MotorSide { delay: delay.value + delay.half, ..as_found }),
+    ];
     let of_link = |unknown: usize| {
         let shift = |moved: &Option<Solution>| {
             moved.as_ref().map_or(f64::NAN, |moved| moved.values[unknown] - link.values[unknown])
         };
         let estimate = Estimate::of(&link, unknown);
-        Estimate { half: estimate.half.hypot(shift(&moved[0])).hypot(shift(&moved[1])), ..estimate }
+        Estimate { half: moved.iter().map(shift).fold(estimate.half, f64::hypot), ..estimate }
     };
     let dry = of_link(friction::DRY).wider_by(BALANCE_SHARE * quick.greatest);
     let viscous = of_link(friction::VISCOUS);

@@ -7,13 +7,16 @@ use crate::estimate::Estimate;
 
 /// A value counts as found if half of its interval is at most this share of it.
 pub(super) const SHARE: f64 = 0.5;
+/// Why an unknown is not found that goes with others.
+pub(super) const TOGETHER: &str = "in this motion it goes with something else, as in a sine of one strength; reverse torques of \
+                                   three or four different strengths, and swing slowly too";
 /// What two inertias on a spring leave out of a joint, as a share of a value: widens every interval. Found on simulated
 /// logs of the presets, where the scatter alone promised more than the reference keeps.
 const MODEL_SHARE: f64 = 0.003;
 
 /// One parameter.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(any(test, feature = "schema"), derive(schemars::JsonSchema))]
 pub struct Finding {
     /// What it is.
     pub name: String,

@@ -1,7 +1,7 @@
 //! What a log shows of gap, compliance and damping.
 
 use super::feigned;
-use super::finding::{Finding, SHARE, finding};
+use super::finding::{Finding, SHARE, TOGETHER, finding};
 use crate::estimate::Estimate;
 use crate::log::Log;
 use crate::prior::PriorModel;
@@ -30,9 +30,12 @@ pub(super) fn gap_and_compliance(
     let compliance = compliance.beside(open * compliance.value).beside(feigned::twist(prior) / rows.greatest);
     let has_gap = half_gap.value > 0.0 && half_gap.half < SHARE * half_gap.value;
     let bends = compliance.value > 0.0 && compliance.half < SHARE * compliance.value;
+    let or_together = |unknown: usize, why| if solution.tells_apart(unknown) { why } else { TOGETHER };
     let why_gap =
         "both flanks must carry torques well above the friction, and the gap must be wider than what the encoders tell";
     let why_bends = "the torque on one flank must change by much, so that it bends the joint by several counts";
+    let why_gap = or_together(twist::HALF_GAP, why_gap);
+    let why_bends = or_together(twist::COMPLIANCE, why_bends);
     let mut findings = Vec::new();
     if !prior.equivalent {
         let half_backlash = half_gap.times(1e6 * prior.lever);

@@ -6,11 +6,11 @@ use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 use board::profile::{LONGEST_RUN, TorqueProfile};
-use identify::replay::ReplayArguments;
 use identify::{Arguments, Options};
 use mcap::records::MessageHeader;
 use mcap::{Compression, WriteOptions};
 use reference::closed_loop::MotionProfile;
+use replay::ReplayArguments;
 use report::failure::{EXIT_BAD_INPUT, EXIT_CHECK_FAILED, Failure};
 use report::progress::Progress;
 use scenario::plant::PlantName;
@@ -211,7 +211,7 @@ fn replay(log: &Path, folder: &Path) -> Result<String, Failure> {
         out: Some(folder.join("out")),
         json: None,
     };
-    identify::replay::run(&arguments, &Progress::new())
+    replay::run(&arguments, &Progress::new())
 }
 
 /// The log of a very short run: made once for all the processes of cases, and anew when this program is.

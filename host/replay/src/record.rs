@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
-use super::pass::{Pass, SourceChange};
-use super::samples::ReplaySamples;
-use crate::findings::Finding;
+use crate::pass::{Pass, SourceChange};
+use crate::samples::ReplaySamples;
+use identify::findings::Finding;
 use joint_file::named::Loaded;
 use report::provenance;
 

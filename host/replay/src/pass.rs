@@ -6,7 +6,7 @@ use model_core::observer::{Estimate, Estimates, Source};
 use scenario::estimate_fields::{WORDS, notices};
 use serde::Serialize;
 
-use super::samples::ReplaySamples;
+use crate::samples::ReplaySamples;
 use report::contacts::Contact;
 
 /// Points that are kept for pictures.

@@ -6,7 +6,7 @@ use std::io::{self, Write};
 use model_core::observer::{MAPPED, Observer};
 use scenario::estimate_fields::{self, NOTICES, WORDS, fields, notices};
 
-use super::samples::ReplaySamples;
+use crate::samples::ReplaySamples;
 use report::log::{Channel, Message, field};
 
 /// Topic of the estimates.

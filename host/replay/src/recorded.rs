@@ -8,9 +8,9 @@ use scenario::controller_log::{DIGEST, PERIOD, TOPIC};
 use scenario::estimate_fields::{digest_of, fields};
 use scenario::log_file;
 
-use super::record::{Difference, Repeats, ValueDifference};
-use crate::columns::Columns;
-use crate::log_file::LogFile;
+use crate::record::{Difference, Repeats, ValueDifference};
+use identify::columns::Columns;
+use identify::log_file::LogFile;
 use report::failure::{Failure, Outcome};
 
 /// What a run has logged of its estimates.

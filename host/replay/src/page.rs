@@ -1,7 +1,7 @@
 //! A replay as a document: whether the run is repeated, what was learnt, what the estimates stood on, pictures.
 
-use super::record::{Difference, ReplayRecord};
-use crate::page::findings;
+use crate::record::{Difference, ReplayRecord};
+use identify::page::findings;
 use report::document::{
     Block, Document, Text, Tone, bad_notice, facts, notes, number, numbers, picture, row, section, section_bare,
     section_everywhere, strong, table, text, words,

@@ -1,8 +1,8 @@
 //! Pictures of a replay: gap, side and validity, learnt width, load and torque over the whole log, and closely around its
 //! last change of flank.
 
-use super::pass::{Interval, Pass, Point};
-use super::record::ReplayRecord;
+use crate::pass::{Interval, Pass, Point};
+use crate::record::ReplayRecord;
 use report::contacts::Contact;
 use report::panels::{Points, line};
 use report::plot::Figure;

@@ -14,6 +14,8 @@ mod pictures;
 mod record;
 mod recorded;
 mod samples;
+#[cfg(test)]
+mod schema;
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -27,9 +29,9 @@ use recorded::Recorded;
 use samples::ReplaySamples;
 use scenario::controller_log::{self, ObserverOrigin};
 
-use crate::column_map::ColumnMap;
-use crate::learnt::Content;
-use crate::log_file::LogFile;
+use identify::column_map::ColumnMap;
+use identify::learnt::Content;
+use identify::log_file::LogFile;
 use joint_file::named::{self, Loaded};
 use joint_file::warned;
 use report::document::{html, terminal};

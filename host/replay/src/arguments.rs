@@ -3,8 +3,8 @@
 use std::num::NonZeroU16;
 use std::path::PathBuf;
 
-use crate::column_map::renaming;
-use crate::units::{self, Unit};
+use identify::column_map::renaming;
+use identify::units::{self, Unit};
 
 /// Arguments of `joint replay`.
 #[derive(Debug, Clone, clap::Args)]

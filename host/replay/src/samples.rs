@@ -7,12 +7,12 @@ use model_core::observer::design::{EncoderSettings, ObserverSettings};
 use model_core::observer::{Reading, Samples};
 use scenario::controller_log::{OUTPUT_READ, SAMPLES, SHOWN_TORQUE};
 
-use crate::column_map::ColumnMap;
-use crate::columns::Columns;
-use crate::log_file::LogFile;
-use crate::prior::PriorModel;
 use board::profile::MAX_TORQUE;
+use identify::column_map::ColumnMap;
+use identify::columns::Columns;
+use identify::log_file::LogFile;
 use joint_file::named::Loaded;
+use model_core::gears::Kinematics;
 use report::failure::{Failure, Outcome};
 use report::number::TYPED;
 
@@ -49,7 +49,7 @@ impl ReplaySamples {
         let period = 1.0 / f64::from(settings.control_rate);
         let motor_only = settings.output_encoder.is_none();
         let will_do = |columns: &Columns| columns.will_do_with(!motor_only);
-        let columns = file.columns(topic, map, PriorModel::of(&loaded.file).ratio(), will_do)?;
+        let columns = file.columns(topic, map, loaded.file.parameters.geometry.ratio_by_teeth(), will_do)?;
         let read = if columns.names().any(|name| name == SAMPLES[0]) {
             Self::of_run(&columns, period)
         } else if let Some(controller) = file.remarks().get(RUN) {

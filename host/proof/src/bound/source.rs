@@ -26,12 +26,20 @@ impl<'a> Source<'a> {
         Ok(Self { context, dwarf: Dwarf::load(section).map_err(failed)? })
     }
 
-    /// File and line of an instruction, its folders left out beyond the last two.
+    /// File and line of an instruction, its folders left out beyond the last two: the innermost that is not the library's.
     pub fn line(&self, address: u32) -> Option<String> {
-        let location = self.context.find_location(address.into()).ok()??;
-        let file = location.file?;
-        let start = file.rmatch_indices('/').nth(2).map_or(0, |(index, _)| index + 1);
-        Some(format!("{}:{}", &file[start..], location.line?))
+        let mut frames = self.context.find_frames(address.into()).skip_all_loads().ok()?;
+        let mut innermost = None;
+        while let Ok(Some(frame)) = frames.next() {
+            let Some((file, line)) = frame.location.and_then(|at| Some((at.file?, at.line?))) else { continue };
+            let start = file.rmatch_indices('/').nth(2).map_or(0, |(index, _)| index + 1);
+            let here = format!("{}:{line}", &file[start..]);
+            if !file.contains("/library/") {
+                return Some(here);
+            }
+            innermost.get_or_insert(here);
+        }
+        innermost
     }
 
     /// Symbols of the functions of this name, generic arguments included.

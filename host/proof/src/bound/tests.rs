@@ -103,6 +103,27 @@ fn what_a_condition_skips_counts_as_well() {
 }
 
 #[test]
+fn what_a_condition_may_or_may_not_set_is_not_known() {
+    // movs r1, #2; cmp r0, #0; it ne; movne r1, #7; subs r1, #1; bne .-2; bx lr
+    let register = [0x2102, 0x2800, 0xbf18, 0x2107, 0x3901, 0xd1fd, 0x4770];
+    assert_eq!(longest_of_any(&register), Err(Refused::Unbounded(CODE + 8)));
+    // The first register is not zero here, and the condition holds.
+    assert_eq!(instructions(longest(&register)), 4 + 7 * 2 + 1);
+    // push {r1, lr}; movs r1, #2; str r1, [sp]; movs r2, #7; cmp r0, #0; it ne; strne r2, [sp]; ldr r1, [sp]; subs r1, #1;
+    // str r1, [sp]; bne .-6; pop {r1, pc}
+    let memory = [0xb502, 0x2102, 0x9100, 0x2207, 0x2800, 0xbf18, 0x9200, 0x9900, 0x3901, 0x9100, 0xd1fb, 0xbd02];
+    assert_eq!(longest_of_any(&memory), Err(Refused::Unbounded(CODE + 14)));
+    assert_eq!(instructions(longest(&memory)), 7 + 7 * 4 + 1);
+    // vmov s0, #1; vmov s1, #2; cmp r0, #0; it ne; vmovne s0, s1; vcmp s0, s1; vmrs; beq .+8; three nops; bx lr
+    let single = [
+        0xeeb7, 0x0a00, 0xeef0, 0x0a00, 0x2800, 0xbf18, 0xeeb0, 0x0a60, 0xeeb4, 0x0a60, 0xeef1, 0xfa10, 0xd002, 0xbf00,
+        0xbf00, 0xbf00, 0x4770,
+    ];
+    assert_eq!(instructions(longest_of_any(&single)), 12);
+    assert_eq!(instructions(longest(&single)), 9);
+}
+
+#[test]
 fn a_count_that_two_ways_bring_is_the_greater() {
     // movs r1, #2; cbz r0, .+4; movs r1, #7; subs r1, #1; bne .-2; bx lr
     assert_eq!(instructions(longest_of_any(&[0x2102, 0xb100, 0x2107, 0x3901, 0xd1fd, 0x4770])), 3 + 7 * 2 + 1);
